@@ -1,0 +1,76 @@
+// The texture atlas: which place of the lightmap belongs to which place of the scene.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "scene/scene.h"
+
+namespace luxel::atlas {
+
+inline constexpr uint32_t kNone = UINT32_MAX;
+
+/// A layout of every drawn triangle (numbered as scene::first_triangles does) on a square.
+/// Coordinates are in texels: x to the right, y downwards, texel (i, j) covers [i, i+1) x [j, j+1).
+/// As texture coordinates, u = x / resolution and v = y / resolution.
+struct Atlas {
+  int resolution = 0;                           ///< side in texels
+  std::vector<uint32_t> first_triangle;         ///< per instance, one extra entry at the end
+  std::vector<std::array<Vec2, 3>> corners;     ///< per drawn triangle, corner order of the mesh
+  std::vector<uint32_t> chart;                  ///< per drawn triangle
+  uint32_t chart_count = 0;
+
+  uint32_t triangle_number(uint32_t instance, uint32_t triangle) const {
+    return first_triangle[instance] + triangle;
+  }
+};
+
+/// One lightmap texel with a sample on a surface. The sample lies at the centroid of the part of
+/// the texel that its triangle covers, so a triangle thinner than a texel has samples too.
+struct Texel {
+  uint32_t x = 0, y = 0;
+  scene::SurfacePoint sample;
+  uint32_t triangle_number = 0;
+  bool centre_covered = false;  ///< the texel's centre lies in a triangle
+};
+
+/// All texels that any triangle touches, in rows from the top, left to right.
+struct TexelMap {
+  int resolution = 0;
+  std::vector<Texel> texels;
+  std::vector<uint32_t> texel_at;  ///< resolution^2 entries: index into texels, or kNone
+};
+
+enum class UvMode : uint8_t { automatic, keep, unwrap };
+
+struct AtlasParams {
+  UvMode uv = UvMode::automatic;  ///< automatic: keep when TEXCOORD_1 is valid, else unwrap
+  int resolution = 512;           ///< side in texels, 1 .. 16384; unused when density is given
+  float texels_per_metre = 0;     ///< > 0: the density; the side is the smallest power of 2 that fits
+  int gutter = 2;                 ///< empty texels between charts
+  float max_chart_angle_rad = 0.8f;  ///< unwrap: largest angle between a triangle and its chart's axis
+};
+
+/// What the layout is like; printed by `luxel bench atlas` and `luxel info`.
+struct AtlasStats {
+  uint32_t charts = 0;
+  double utilisation = 0;           ///< covered texels / all texels
+  double mean_stretch_l2 = 0;       ///< area-weighted L2 stretch, 1 is perfect [Sander01, section 3]
+  double texels_per_metre = 0;      ///< mean density
+  uint32_t triangles_without_texel = 0;  ///< triangles that touch no texel of their own chart: 0
+};
+
+/// Lays the scene out. Errors: --uv keep without or with invalid TEXCOORD_1 (names the triangles);
+/// a resolution that is too small (states the smallest that works) or out of range.
+Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, Progress& progress);
+
+/// Clips every triangle against the texels it touches and gives each texel one owner: the triangle
+/// that holds its centre, else the one that covers most of it (ties: the lower number).
+TexelMap rasterise(const scene::Scene& scene, const Atlas& atlas);
+
+AtlasStats atlas_stats(const scene::Scene& scene, const Atlas& atlas, const TexelMap& map);
+
+}  // namespace luxel::atlas

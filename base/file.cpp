@@ -1,0 +1,96 @@
+#include "base/file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <utility>
+
+namespace luxel {
+inline namespace base {
+namespace {
+
+tl::unexpected<Error> write_error(const std::filesystem::path& path, int error) {
+  const bool full = error == ENOSPC || error == EDQUOT;
+  return fail(full ? ErrorCode::out_of_disk : ErrorCode::io, "cannot write {}: {}", path.string(),
+              std::strerror(error));
+}
+
+/// Returns 0 or the errno of the first call that failed.
+int write_all(int file, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(file, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return n < 0 ? errno : EIO;
+    bytes = bytes.subspan(size_t(n));
+  }
+  return ::fsync(file) == 0 || errno == EINVAL ? 0 : errno;
+}
+
+/// A file that is removed with this object unless its name was cleared.
+struct TemporaryFile {
+  std::string name;
+  TemporaryFile() = default;
+  TemporaryFile(TemporaryFile&& other) noexcept : name(std::exchange(other.name, {})) {}
+  TemporaryFile& operator=(TemporaryFile&&) = delete;
+  ~TemporaryFile() {
+    if (!name.empty()) ::unlink(name.c_str());
+  }
+};
+
+Result<TemporaryFile> write_temporary(const std::filesystem::path& path,
+                                      std::span<const std::byte> bytes) {
+  TemporaryFile temporary;
+  temporary.name = path.string() + ".partial-" + std::to_string(::getpid());
+  const int file =
+      ::open(temporary.name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) return write_error(path, errno);
+  int error = write_all(file, bytes);
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error != 0) return write_error(path, error);
+  return temporary;
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    return fail(ErrorCode::io, "{}: no such file", path.string());
+  if (std::filesystem::is_directory(path, ignored))
+    return fail(ErrorCode::io, "{} is a folder, not a file", path.string());
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) return fail(ErrorCode::io, "cannot read {}: {}", path.string(), std::strerror(errno));
+  std::vector<std::byte> bytes(size_t(in.tellg()));
+  in.seekg(0);
+  in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
+  if (!in) return fail(ErrorCode::io, "cannot read {}: the read stopped early", path.string());
+  return bytes;
+}
+
+Status write_files_atomically(std::span<const OutputFile> files) {
+  std::vector<TemporaryFile> temporaries;
+  for (const OutputFile& file : files) {
+    LUXEL_TRY(TemporaryFile temporary, write_temporary(file.path, file.bytes));
+    temporaries.push_back(std::move(temporary));
+  }
+  for (size_t i = 0; i < files.size(); ++i) {
+    if (::rename(temporaries[i].name.c_str(), files[i].path.c_str()) != 0)
+      return write_error(files[i].path, errno);
+    temporaries[i].name.clear();
+  }
+  return {};
+}
+
+Status write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  LUXEL_TRY(TemporaryFile temporary, write_temporary(path, bytes));
+  if (::rename(temporary.name.c_str(), path.c_str()) != 0) return write_error(path, errno);
+  temporary.name.clear();
+  return {};
+}
+
+}  // namespace base
+}  // namespace luxel

@@ -1,0 +1,56 @@
+// Progress and cancellation of long work, shared between the worker and whoever watches.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace luxel {
+inline namespace base {
+
+/// One finished or running stage of the work.
+struct Stage {
+  std::string name;
+  double seconds = 0;
+};
+
+/// Work calls begin() per stage and advance() per tile or iteration, never per ray. A watcher may
+/// read at any time from another thread. request_cancel() may be called from a signal handler;
+/// work polls cancelled() at the same places where it advances, and at least every 0.2 s.
+class Progress {
+ public:
+  /// Starts a stage of `total` units of work and ends the one before. Called by one thread.
+  void begin(std::string_view stage, uint64_t total);
+  /// Ends the last stage.
+  void finish();
+  void advance(uint64_t units) { done_.fetch_add(units, std::memory_order_relaxed); }
+
+  void request_cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+
+  struct Snapshot {
+    std::string stage;
+    uint64_t done = 0, total = 0;
+    double stage_seconds = 0;
+    int stage_index = -1;
+  };
+  Snapshot snapshot() const;
+  /// The stages so far with their wall-clock seconds.
+  std::vector<Stage> stages() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  mutable std::mutex mutex_;
+  std::vector<Stage> stages_;
+  Clock::time_point stage_start_;
+  bool running_ = false;
+  std::atomic<uint64_t> done_{0}, total_{0};
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace base
+}  // namespace luxel

@@ -1,0 +1,46 @@
+#include "base/random.h"
+
+namespace luxel {
+inline namespace base {
+namespace {
+
+uint32_t reverse_bits(uint32_t x) {
+  x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+  x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+  return __builtin_bswap32(x);
+}
+
+// A bijection in which each bit depends only on lower bits: on bit-reversed input this is nested
+// (Owen) scrambling. Constants from Vegdahl's search, as published. [Vegdahl21]
+uint32_t scramble_upwards(uint32_t x, uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+// The second Sobol dimension, bit-reversed: row k of its generator is row k-1 of Pascal's triangle
+// modulo 2, which the loop below unrolls as prefix XORs of the index. [Ahmed24, eq. 12]
+uint32_t sobol_second_reversed(uint32_t index) {
+  index ^= (index & 0xaaaaaaaau) >> 1;
+  index ^= (index & 0xccccccccu) >> 2;
+  index ^= (index & 0xf0f0f0f0u) >> 4;
+  index ^= (index & 0xff00ff00u) >> 8;
+  index ^= (index & 0xffff0000u) >> 16;
+  return index;
+}
+
+}  // namespace
+
+Vec2 sobol_owen_2d(uint32_t index, uint64_t seed) {
+  // The first dimension is the van der Corput sequence: reversed, it is the index itself.
+  const uint32_t x = scramble_upwards(index, uint32_t(seed));
+  const uint32_t y = scramble_upwards(sobol_second_reversed(index), uint32_t(seed >> 32));
+  return {unit_float(reverse_bits(x)), unit_float(reverse_bits(y))};
+}
+
+}  // namespace base
+}  // namespace luxel

@@ -1,0 +1,33 @@
+// A picture of a solution: what a camera sees when surfaces are lit only by a solver's answer.
+#pragma once
+
+#include <functional>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "image/image.h"
+#include "scene/scene.h"
+#include "trace/ray_tracer.h"
+
+namespace luxel::display {
+
+struct DrawParams {
+  int width = 960, height = 720;
+  int samples_per_axis = 3;  ///< n x n rays per pixel
+};
+
+/// E [W/m^2] of the front side at a surface point.
+using IrradianceAt = std::function<Rgb(const scene::SurfacePoint&)>;
+
+/// Radiance per pixel, 4 channels (A = share of the pixel that shows a surface): emitted plus
+/// rho E / pi. Back faces of one-sided materials are invisible, as in a real-time engine, so a
+/// closed room can be looked into from outside. Where nothing is seen: the background.
+Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tracer,
+                          const scene::Camera& camera, const IrradianceAt& irradiance_at,
+                          const DrawParams& params, Progress& progress);
+
+/// A camera that shows the scene well: of some candidates around it (and inside it, when nothing
+/// can be seen from outside) the one that sees the most front faces of different triangles.
+scene::Camera fit_camera(const scene::Scene& scene, const trace::RayTracer& tracer, float aspect);
+
+}  // namespace luxel::display

@@ -1,0 +1,22 @@
+// Files to scenes.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "scene/scene.h"
+
+namespace luxel::import {
+
+struct Imported {
+  scene::Scene scene;                 ///< validated (scene/validate.h)
+  std::vector<std::string> warnings;  ///< one sentence each
+};
+
+/// Reads .gltf and .glb with tinygltf, everything else that Assimp knows (.obj, .x, .fbx, .dae,
+/// .ply, ...) through Assimp. Errors say file, field, value and what to do.
+Result<Imported> import_scene(const std::filesystem::path& path);
+
+}  // namespace luxel::import

@@ -1,0 +1,20 @@
+// Fills the gutter between charts so that bilinear lookups and mipmaps do not see black.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "image/image.h"
+
+namespace luxel::post {
+
+/// Lightmap of 4 channels: R G B = values of the texels of `map`, A = 1 where a triangle holds the
+/// texel's centre, 0.5 where the texel was sampled off its centre, 0 elsewhere.
+image::Image lightmap_from_texels(const atlas::TexelMap& map, std::span<const Rgb> values);
+
+/// Extends the covered texels (A > 0) outwards `rings` times: each empty texel takes the mean of its
+/// covered 8-neighbours and A = 0.5. Covered texels never change. rings < 0 fills the whole image.
+void dilate(image::Image& lightmap, int rings);
+
+}  // namespace luxel::post

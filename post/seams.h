@@ -1,0 +1,40 @@
+// Makes charts agree along the edges where the atlas was cut.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "base/progress.h"
+#include "base/result.h"
+#include "scene/scene.h"
+
+namespace luxel::post {
+
+/// A scene edge that lies in the atlas twice, at (a0, a1) and (b0, b1), in texels.
+struct Seam {
+  Vec2 a0, a1, b0, b1;
+};
+
+/// The edges that two triangles of one instance share in space with agreeing shading normals (a
+/// crease is a real change of light and is left alone) but not in the atlas.
+std::vector<Seam> find_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
+                             float max_normal_angle_rad = 0.1f);
+
+struct SeamParams {
+  float keep_weight = 0.1f;  ///< how strongly a texel holds on to its own value
+  int max_iterations = 200;  ///< of the conjugate gradient
+};
+
+/// Changes the values of the texels next to seams so that bilinear lookups from both sides agree
+/// (least squares: seam differences at about two points per texel, against staying where they are).
+/// Only texels under a seam's bilinear footprint change; the values stay non-negative. [Iwanicki13]
+Status stitch_seams(const atlas::TexelMap& map, std::span<const Seam> seams,
+                    const SeamParams& params, std::span<Rgb> values, Progress& progress);
+
+/// Root mean square of the difference between both sides over all seam points, per mean value.
+double seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
+                     std::span<const Rgb> values);
+
+}  // namespace luxel::post

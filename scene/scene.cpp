@@ -1,0 +1,160 @@
+#include "scene/scene.h"
+
+#include "base/check.h"
+#include "image/color.h"
+
+namespace luxel::scene {
+namespace {
+
+const Mesh& mesh_of(const Scene& scene, uint32_t instance) {
+  return scene.meshes[scene.instances[instance].mesh];
+}
+
+template <class T>
+T attribute_at(const std::vector<T>& values, const std::array<uint32_t, 3>& corners,
+               Barycentric at) {
+  return interpolate(values[corners[0]], values[corners[1]], values[corners[2]], at);
+}
+
+int wrapped(int i, int n, Wrap wrap) {
+  if (wrap == Wrap::clamp) return std::clamp(i, 0, n - 1);
+  const int period = wrap == Wrap::mirror ? 2 * n : n;
+  const int j = ((i % period) + period) % period;
+  return j < n ? j : period - 1 - j;
+}
+
+std::array<float, 4> texel(const Texture& t, int x, int y, bool srgb) {
+  const uint8_t* p = t.rgba.data() + 4 * (size_t(y) * size_t(t.width) + size_t(x));
+  std::array<float, 4> c{};
+  for (int k = 0; k < 4; ++k) {
+    const float v = float(p[k]) / 255.0f;
+    c[k] = srgb && k < 3 ? image::linear_from_srgb(v) : v;
+  }
+  return c;
+}
+
+Vec2 transformed_uv(const TextureRef& ref, Vec2 uv) {
+  const float s = std::sin(ref.rotation), c = std::cos(ref.rotation);
+  const Vec2 q{uv.x * ref.scale.x, uv.y * ref.scale.y};
+  return {c * q.x + s * q.y + ref.offset.x, -s * q.x + c * q.y + ref.offset.y};
+}
+
+/// Bilinear lookup; colours are filtered in linear light.
+std::array<float, 4> sample(const Scene& scene, const TextureRef& ref, Vec2 uv, bool srgb) {
+  const Texture& t = scene.textures[ref.texture];
+  uv = transformed_uv(ref, uv);
+  // A coordinate beyond float's integers would overflow the cast below; its phase is lost anyway.
+  const auto bounded = [](float v) { return std::isfinite(v) ? std::clamp(v, -1e6f, 1e6f) : 0.0f; };
+  const float x = bounded(uv.x) * float(t.width), y = bounded(uv.y) * float(t.height);
+  if (ref.filter == Filter::nearest)
+    return texel(t, wrapped(int(std::floor(x)), t.width, ref.wrap_u),
+                 wrapped(int(std::floor(y)), t.height, ref.wrap_v), srgb);
+  const int x0 = int(std::floor(x - 0.5f)), y0 = int(std::floor(y - 0.5f));
+  const float fx = x - 0.5f - float(x0), fy = y - 0.5f - float(y0);
+  std::array<float, 4> sum{};
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const float w = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
+      const auto c = texel(t, wrapped(x0 + i, t.width, ref.wrap_u),
+                           wrapped(y0 + j, t.height, ref.wrap_v), srgb);
+      for (int k = 0; k < 4; ++k) sum[k] += w * c[k];
+    }
+  return sum;
+}
+
+/// The texture's value at a surface point; white when there is no texture or no UV set for it.
+std::array<float, 4> texture_at(const Scene& scene, const SurfacePoint& p, const TextureRef& ref,
+                                bool srgb) {
+  const Mesh& mesh = mesh_of(scene, p.instance);
+  const std::vector<Vec2>& uv = ref.uv_set == 1 ? mesh.uv1 : mesh.uv0;
+  if (ref.texture == kNone || uv.empty()) return {1, 1, 1, 1};
+  return sample(scene, ref, attribute_at(uv, mesh.triangles[p.triangle], p.at), srgb);
+}
+
+}  // namespace
+
+Triangle3 world_triangle(const Scene& scene, uint32_t instance, uint32_t triangle) {
+  const Mesh& mesh = mesh_of(scene, instance);
+  const Mat34& m = scene.instances[instance].world_from_object;
+  const auto& t = mesh.triangles[triangle];
+  return {transform_point(m, mesh.positions[t[0]]), transform_point(m, mesh.positions[t[1]]),
+          transform_point(m, mesh.positions[t[2]])};
+}
+
+Vec3 front_normal(const Scene& scene, uint32_t instance, uint32_t triangle) {
+  const Triangle3 t = world_triangle(scene, instance, triangle);
+  const bool mirrored = determinant(scene.instances[instance].world_from_object) < 0;
+  const Vec3 n = normalize(geometric_normal_area2(t));
+  return mirrored ? -n : n;
+}
+
+Vec3 shading_normal(const Scene& scene, const SurfacePoint& p) {
+  const Vec3 front = front_normal(scene, p.instance, p.triangle);
+  const Mesh& mesh = mesh_of(scene, p.instance);
+  if (mesh.normals.empty()) return front;
+  const Vec3 object = attribute_at(mesh.normals, mesh.triangles[p.triangle], p.at);
+  const Vec3 n =
+      normalize(transform_normal(scene.instances[p.instance].world_from_object, object));
+  // Some files have normals that point inwards, or none at all that survive interpolation.
+  const float side = dot(n, front);
+  if (std::abs(side) < 1e-3f) return front;
+  return side < 0 ? -n : n;
+}
+
+Vec3 world_position(const Scene& scene, const SurfacePoint& p) {
+  const Triangle3 t = world_triangle(scene, p.instance, p.triangle);
+  return interpolate(t.a, t.b, t.c, p.at);
+}
+
+const Material& material_at(const Scene& scene, const SurfacePoint& p) {
+  return scene.materials[mesh_of(scene, p.instance).triangle_material[p.triangle]];
+}
+
+std::array<float, 4> base_color_at(const Scene& scene, const SurfacePoint& p) {
+  const Material& material = material_at(scene, p);
+  std::array<float, 4> c = texture_at(scene, p, material.base_color_texture, true);
+  const Mesh& mesh = mesh_of(scene, p.instance);
+  Rgb factor = material.base_color;
+  if (!mesh.colors.empty())
+    factor = factor * attribute_at(mesh.colors, mesh.triangles[p.triangle], p.at);
+  return {c[0] * factor.x, c[1] * factor.y, c[2] * factor.z, c[3] * material.alpha};
+}
+
+Rgb reflectance_at(const Scene& scene, const SurfacePoint& p) {
+  const Material& material = material_at(scene, p);
+  const auto c = base_color_at(scene, p);
+  const float metallic = material.metallic * texture_at(scene, p, material.metallic_texture, false)[2];
+  const float diffuse = 1 - std::clamp(metallic, 0.0f, 1.0f);
+  return {std::clamp(c[0] * diffuse, 0.0f, 0.99f), std::clamp(c[1] * diffuse, 0.0f, 0.99f),
+          std::clamp(c[2] * diffuse, 0.0f, 0.99f)};
+}
+
+Rgb emission_at(const Scene& scene, const SurfacePoint& p) {
+  const Material& material = material_at(scene, p);
+  if (max_component(material.emission) <= 0) return {};
+  const auto c = texture_at(scene, p, material.emission_texture, true);
+  return material.emission * Rgb{c[0], c[1], c[2]};
+}
+
+bool is_solid_at(const Scene& scene, const SurfacePoint& p) {
+  const Material& material = material_at(scene, p);
+  if (material.alpha_mode != AlphaMode::mask) return true;
+  return base_color_at(scene, p)[3] >= material.alpha_cutoff;
+}
+
+std::vector<uint32_t> first_triangles(const Scene& scene) {
+  std::vector<uint32_t> first{0};
+  for (const Instance& instance : scene.instances)
+    first.push_back(first.back() + uint32_t(scene.meshes[instance.mesh].triangles.size()));
+  return first;
+}
+
+Box3 world_bounds(const Scene& scene) {
+  Box3 box;
+  for (const Instance& instance : scene.instances)
+    for (const Vec3& p : scene.meshes[instance.mesh].positions)
+      box.extend(transform_point(instance.world_from_object, p));
+  return box;
+}
+
+}  // namespace luxel::scene

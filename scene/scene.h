@@ -1,0 +1,150 @@
+// The scene: plain data, parts refer to each other by index.
+//
+// Units: metres, radians, linear RGB with sRGB primaries. Y is up. UV as in glTF: v grows downwards.
+// Triangles are counter-clockwise seen from their front side. An instance whose transform mirrors
+// keeps its front side (as glTF asks), so its world triangles are wound the other way round:
+// ask world_triangle() below, which returns corners that are counter-clockwise in the world.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace luxel::scene {
+
+inline constexpr uint32_t kNone = UINT32_MAX;
+
+/// An 8-bit RGBA picture, display values (sRGB transfer function), row 0 is v = 0.
+struct Texture {
+  std::string name;
+  int width = 0, height = 0;
+  std::vector<uint8_t> rgba;       ///< 4 * width * height
+  std::vector<std::byte> encoded;  ///< the PNG or JPEG file it came from, for export; may be empty
+  std::string mime_type;           ///< of `encoded`
+};
+
+enum class Wrap : uint8_t { repeat, clamp, mirror };
+enum class Filter : uint8_t { linear, nearest };
+
+/// How a material looks a texture up: uv' = offset + rotate(scale * uv)  [KHR_texture_transform].
+struct TextureRef {
+  uint32_t texture = kNone;
+  int uv_set = 0;  ///< 0 = TEXCOORD_0, 1 = TEXCOORD_1
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  Filter filter = Filter::linear;
+  Vec2 offset{0, 0}, scale{1, 1};
+  float rotation = 0;  ///< radians, counter-clockwise in glTF's UV space as the extension defines
+};
+
+enum class AlphaMode : uint8_t { opaque, mask, blend };
+
+struct Material {
+  std::string name;
+  Rgb base_color{1, 1, 1};
+  float alpha = 1;
+  float metallic = 0;
+  float roughness = 1;
+  TextureRef base_color_texture;  ///< multiplies base_color and alpha
+  TextureRef metallic_texture;    ///< its blue channel, linear, multiplies metallic
+  Rgb emission{0, 0, 0};          ///< radiance L [W/(sr m^2)]: emissiveFactor * strength
+  TextureRef emission_texture;    ///< multiplies emission
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;  ///< mask: alpha below it is a hole
+  bool double_sided = false;
+  bool unlit = false;  ///< KHR_materials_unlit; baked as a diffuse surface like any other
+};
+
+/// Indexed triangles. Attribute arrays are either empty or as long as `positions`.
+struct Mesh {
+  std::string name;
+  std::vector<Vec3> positions;                   ///< object space
+  std::vector<Vec3> normals;                     ///< unit, object space; empty: flat shading
+  std::vector<Vec2> uv0, uv1;                    ///< TEXCOORD_0, TEXCOORD_1
+  std::vector<Rgb> colors;                       ///< linear, multiplies the base colour
+  std::vector<std::array<uint32_t, 3>> triangles;
+  std::vector<uint32_t> triangle_material;       ///< per triangle, index into Scene::materials
+};
+
+/// A mesh placed in the world.
+struct Instance {
+  std::string name;
+  uint32_t mesh = 0;
+  Mat34 world_from_object;
+};
+
+/// A lamp without area.
+struct PunctualLight {
+  enum class Kind : uint8_t { point, spot, directional };
+  std::string name;
+  Kind kind = Kind::point;
+  Rgb intensity{1, 1, 1};      ///< I [W/sr] for point and spot; E on a facing surface [W/m^2] else
+  Vec3 position{};             ///< point, spot
+  Vec3 direction{0, -1, 0};    ///< spot, directional: unit, the way the light travels
+  float range_m = 0;           ///< 0 = no limit; else glTF's window function
+  float inner_cone_rad = 0;    ///< spot: full light inside
+  float outer_cone_rad = kPi / 4;  ///< spot: no light outside
+  float angular_radius_rad = 0;    ///< directional: half the angle of the disc (sun 0.00465)
+};
+
+struct Camera {
+  std::string name;
+  Mat34 world_from_camera;  ///< looks along its -z, its y is up
+  float fov_y_rad = 0.8f;   ///< perspective; ignored when orthographic_height_m > 0
+  float aspect = 0;         ///< width / height; 0: that of the picture
+  float orthographic_height_m = 0;
+};
+
+struct Scene {
+  std::string name;
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<PunctualLight> lights;
+  std::vector<Camera> cameras;
+  Rgb background{0, 0, 0};  ///< radiance seen by rays that leave the scene
+};
+
+/// A point of a surface: which instance, which triangle of its mesh, where in it.
+struct SurfacePoint {
+  uint32_t instance = 0, triangle = 0;
+  Barycentric at;
+};
+
+struct Triangle3 {
+  Vec3 a, b, c;
+};
+inline Vec3 geometric_normal_area2(const Triangle3& t) { return cross(t.b - t.a, t.c - t.a); }
+inline float area_m2(const Triangle3& t) { return 0.5f * length(geometric_normal_area2(t)); }
+
+/// World corners in the order of the mesh's indices (barycentrics stay valid). For a mirroring
+/// instance this order is clockwise from the front: use front_normal for the side.
+Triangle3 world_triangle(const Scene& scene, uint32_t instance, uint32_t triangle);
+/// The unit geometric normal of the front side, in the world; zero for a degenerate triangle.
+Vec3 front_normal(const Scene& scene, uint32_t instance, uint32_t triangle);
+/// The interpolated unit shading normal in the world, on the side of front_normal; equals it when
+/// the mesh has no normals.
+Vec3 shading_normal(const Scene& scene, const SurfacePoint& p);
+Vec3 world_position(const Scene& scene, const SurfacePoint& p);
+
+const Material& material_at(const Scene& scene, const SurfacePoint& p);
+/// rho = base colour * (1 - metallic), each channel in [0, 0.99].
+Rgb reflectance_at(const Scene& scene, const SurfacePoint& p);
+/// Emitted radiance L [W/(sr m^2)] of the front side (of both when double-sided).
+Rgb emission_at(const Scene& scene, const SurfacePoint& p);
+/// False in the holes of an alpha mask. Blend counts as opaque here (coloured shadow: later).
+bool is_solid_at(const Scene& scene, const SurfacePoint& p);
+/// Texture colour times vertex colour times factor, linear, alpha in the fourth value.
+std::array<float, 4> base_color_at(const Scene& scene, const SurfacePoint& p);
+
+/// Number of triangles drawn, that is over all instances, and the offset of each instance in a
+/// numbering of them: triangle t of instance i is number first[i] + t; first has one extra entry.
+std::vector<uint32_t> first_triangles(const Scene& scene);
+Box3 world_bounds(const Scene& scene);
+
+}  // namespace luxel::scene

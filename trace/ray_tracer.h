@@ -1,0 +1,61 @@
+// What a ray hits. Batches in, hits out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "base/result.h"
+#include "base/vec.h"
+#include "scene/scene.h"
+
+namespace luxel::trace {
+
+struct Ray {
+  Vec3 origin;
+  float t_min = 0;
+  Vec3 direction;  ///< need not be of unit length; t is in units of its length
+  float t_max = INFINITY;
+};
+
+/// The closest solid surface along a ray. `instance` is kNone when there is none.
+struct Hit {
+  float t = INFINITY;
+  uint32_t instance = scene::kNone;
+  uint32_t triangle = 0;
+  Barycentric at;
+  bool back_face = false;  ///< the ray came from behind the front side
+
+  bool found() const { return instance != scene::kNone; }
+  scene::SurfacePoint point() const { return {instance, triangle, at}; }
+};
+
+/// Two levels: one geometry per mesh, instances on top. Holes of alpha masks do not block. Both
+/// sides of every triangle block. Queries are const and may run on many threads at once.
+/// `scene` is kept by reference and must outlive the tracer.
+class RayTracer {
+ public:
+  static Result<RayTracer> build(const scene::Scene& scene);
+  RayTracer(RayTracer&&) noexcept;
+  RayTracer& operator=(RayTracer&&) noexcept;
+  ~RayTracer();
+
+  /// hits[i] is what rays[i] meets first. Rays are traced in packets of neighbours: rays with
+  /// nearby origins and directions next to each other run faster. Sizes are equal.
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const;
+  Hit closest_hit(const Ray& ray) const;
+  /// blocked[i] is 1 when anything solid lies on rays[i] within (t_min, t_max).
+  void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const;
+
+ private:
+  struct Impl;
+  explicit RayTracer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A ray's start just off a surface: the point moved along `normal` (the side the ray leaves from)
+/// by a few float steps of its own magnitude and of the scene's size, so that rounding cannot put
+/// it behind the surface.
+Vec3 offset_origin(Vec3 position, Vec3 normal, float scene_diagonal_m);
+
+}  // namespace luxel::trace

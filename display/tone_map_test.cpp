@@ -69,8 +69,9 @@ TEST(Compress, KeepsTheHue) {
     const float mean_in = (c.x + c.y + c.z) / 3, mean_out = (out.x + out.y + out.z) / 3;
     const Vec3 in = normalize(c - Rgb{mean_in, mean_in, mean_in});
     const Vec3 now = normalize(out - Rgb{mean_out, mean_out, mean_out});
-    if (length(out - Rgb{mean_out, mean_out, mean_out}) > 1e-3f)
+    if (length(out - Rgb{mean_out, mean_out, mean_out}) > 1e-3f) {
       EXPECT_GT(dot(in, now), 0.9999f) << i;
+    }
   }
 }
 

@@ -17,10 +17,10 @@ inline constexpr uint32_t kNone = UINT32_MAX;
 /// Coordinates are in texels: x to the right, y downwards, texel (i, j) covers [i, i+1) x [j, j+1).
 /// As texture coordinates, u = x / resolution and v = y / resolution.
 struct Atlas {
-  int resolution = 0;                           ///< side in texels
-  std::vector<uint32_t> first_triangle;         ///< per instance, one extra entry at the end
-  std::vector<std::array<Vec2, 3>> corners;     ///< per drawn triangle, corner order of the mesh
-  std::vector<uint32_t> chart;                  ///< per drawn triangle
+  int resolution = 0;                        ///< side in texels
+  std::vector<uint32_t> first_triangle;      ///< per instance, one extra entry at the end
+  std::vector<std::array<Vec2, 3>> corners;  ///< per drawn triangle, corner order of the mesh
+  std::vector<uint32_t> chart;               ///< per drawn triangle
   uint32_t chart_count = 0;
 
   uint32_t triangle_number(uint32_t instance, uint32_t triangle) const {
@@ -49,18 +49,20 @@ enum class UvMode : uint8_t { automatic, keep, unwrap };
 struct AtlasParams {
   UvMode uv = UvMode::automatic;  ///< automatic: keep when TEXCOORD_1 is valid, else unwrap
   int resolution = 512;           ///< side in texels, 1 .. 16384; unused when density is given
-  float texels_per_metre = 0;     ///< > 0: the density; the side is the smallest power of 2 that fits
-  int gutter = 2;                 ///< empty texels between charts
-  float max_chart_angle_rad = 0.8f;  ///< unwrap: largest angle between a triangle and its chart's axis
+  float texels_per_metre = 0;  ///< > 0: the density; the side is the smallest power of 2 that fits
+  int gutter = 2;              ///< empty texels between charts
+  float max_chart_angle_rad =
+      0.8f;  ///< unwrap: largest angle between a triangle and its chart's axis
 };
 
 /// What the layout is like; printed by `luxel bench atlas` and `luxel info`.
 struct AtlasStats {
   uint32_t charts = 0;
-  double utilisation = 0;           ///< covered texels / all texels
-  double mean_stretch_l2 = 0;       ///< area-weighted L2 stretch, 1 is perfect [Sander01, section 3]
-  double texels_per_metre = 0;      ///< mean density
+  double utilisation = 0;       ///< covered texels / all texels
+  double mean_stretch_l2 = 0;   ///< area-weighted L2 stretch, 1 is perfect [Sander01, section 3]
+  double texels_per_metre = 0;  ///< mean density
   uint32_t triangles_without_texel = 0;  ///< triangles that touch no texel of their own chart: 0
+  double owning_triangles = 0;           ///< share of the triangles that own a texel themselves
 };
 
 /// Lays the scene out. Errors: --uv keep without or with invalid TEXCOORD_1 (names the triangles);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "atlas/atlas.h"
@@ -13,8 +14,9 @@ namespace luxel::post {
 /// texel's centre, 0.5 where the texel was sampled off its centre, 0 elsewhere.
 image::Image lightmap_from_texels(const atlas::TexelMap& map, std::span<const Rgb> values);
 
-/// Extends the covered texels (A > 0) outwards `rings` times: each empty texel takes the mean of its
-/// covered 8-neighbours and A = 0.5. Covered texels never change. rings < 0 fills the whole image.
+/// Extends the covered texels (A > 0) outwards `rings` times: each empty texel takes the mean of
+/// its covered 8-neighbours (of earlier rings) and A = 0.5. Covered texels never change. rings < 0
+/// fills the whole image.
 void dilate(image::Image& lightmap, int rings);
 
 }  // namespace luxel::post

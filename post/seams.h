@@ -27,6 +27,22 @@ struct SeamParams {
   int max_iterations = 200;  ///< of the conjugate gradient
 };
 
+/// The system, in full. Along each seam lie points p, about two per texel of its longer side, two
+/// at least. The lookups of the two sides are L_a(p) and L_b(p): bilinear over the texels that
+/// carry a sample, weights renormalised, as transport::irradiance_at does. For the change d of the
+/// texels under these lookups, of values x,
+///
+///   sum_p  l_p (L_a(p)(x + d) - L_b(p)(x + d))^2 / m_p^2
+///   + keep_weight^2 sum_t d_t^2 / m_t^2        ->  minimum
+///
+/// l_p is the length of seam that p stands for, in half texels: fine triangles weigh no more than
+/// coarse ones. m_p is the mean value around p, plus a thousandth of the mean of all: errors count
+/// by what the eye sees, that is relative to the light around. A dark room's seams thus matter as
+/// much as those beside the lamp, and where bright touches dark the dark points farther along the
+/// seam resist being lit. m_t is the mean of m_p over the points that look t up, the same on both
+/// sides of a seam, so that what one side gains the other loses. Solved by conjugate gradients on
+/// the normal equations, all three channels side by side.
+///
 /// Changes the values of the texels next to seams so that bilinear lookups from both sides agree
 /// (least squares: seam differences at about two points per texel, against staying where they are).
 /// Only texels under a seam's bilinear footprint change; the values stay non-negative. [Iwanicki13]

@@ -1,0 +1,111 @@
+#include "atlas/atlas.h"
+
+#include <bit>
+
+#include "atlas/charts.h"
+#include "atlas/keep_uv.h"
+#include "atlas/layout.h"
+#include "base/check.h"
+
+namespace luxel::atlas {
+namespace {
+
+tl::unexpected<Error> cancelled() { return fail(ErrorCode::cancelled, "cancelled"); }
+
+Status check_params(const AtlasParams& params) {
+  if (params.texels_per_metre < 0 || !std::isfinite(params.texels_per_metre))
+    return fail(ErrorCode::bad_setting, "texels per metre {}: must be a positive number",
+                params.texels_per_metre);
+  if (params.resolution < 1 || params.resolution > kMaxResolution)
+    return fail(ErrorCode::bad_setting, "resolution {}: must lie between 1 and {}",
+                params.resolution, kMaxResolution);
+  LUXEL_CHECK(params.gutter >= 0 && params.max_chart_angle_rad > 0);
+  return {};
+}
+
+Result<Layout> layout_charts(const std::vector<FlatChart>& charts, const AtlasParams& params,
+                             Progress& progress) {
+  if (params.texels_per_metre > 0)
+    return layout_at_density(charts, params.texels_per_metre, params.gutter, progress);
+  return layout_in_square(charts, params.resolution, params.gutter, progress);
+}
+
+/// Charts were checked for overlap at about the density they get; here it is checked at the very
+/// texels they got. Replaces the guilty ones by their parts; false when there are none.
+bool cut_overlaps(const Faces& faces, const Layout& layout, std::vector<FlatChart>& charts) {
+  std::vector<FlatChart> kept;
+  bool cut = false;
+  for (size_t c = 0; c < charts.size(); ++c) {
+    const ChartFaces away = overlapping_faces(faces, charts[c], layout.local[c]);
+    if (away.empty()) {
+      kept.push_back(std::move(charts[c]));
+      continue;
+    }
+    cut = true;
+    for (ChartFaces& part : cut_out(faces, charts[c].faces, away))
+      kept.push_back(project_chart(faces, std::move(part)));
+  }
+  charts = std::move(kept);
+  return cut;
+}
+
+Atlas write_atlas(const scene::Scene& scene, const std::vector<FlatChart>& charts,
+                  const Layout& layout) {
+  Atlas atlas;
+  atlas.resolution = layout.resolution;
+  atlas.first_triangle = scene::first_triangles(scene);
+  atlas.corners.resize(atlas.first_triangle.back());
+  atlas.chart.resize(atlas.first_triangle.back());
+  atlas.chart_count = uint32_t(charts.size());
+  for (uint32_t c = 0; c < charts.size(); ++c)
+    for (size_t i = 0; i < charts[c].faces.size(); ++i) {
+      const uint32_t f = charts[c].faces[i];
+      atlas.chart[f] = c;
+      for (int k = 0; k < 3; ++k) {
+        const Dvec2 p = layout.texels[c][i][k];
+        atlas.corners[f][k] = {float(p.x), float(p.y)};
+      }
+    }
+  return atlas;
+}
+
+Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progress& progress) {
+  progress.begin("charts", 1);
+  const Faces faces = make_faces(scene);
+  std::vector<ChartFaces> groups = grow_charts(faces, double(params.max_chart_angle_rad), progress);
+  if (progress.cancelled()) return cancelled();
+  double area = 0;
+  for (const double a : faces.area) area += a;
+  // A chart longer than the square that holds everything would set the density for all others.
+  const double max_length = std::sqrt(area / 0.8);
+  const double density = params.texels_per_metre > 0 ? double(params.texels_per_metre)
+                                                     : params.resolution / max_length;
+  std::vector<FlatChart> charts =
+      flatten_charts(faces, std::move(groups), max_length, density, progress);
+  if (progress.cancelled()) return cancelled();
+
+  progress.begin("packing", 1);
+  constexpr int kRounds =
+      4;  // overlap that slips past the first check is rare; twice is unheard of
+  for (int round = 0;; ++round) {
+    LUXEL_TRY(Layout layout, layout_charts(charts, params, progress));
+    if (round == kRounds || !cut_overlaps(faces, layout, charts))
+      return write_atlas(scene, charts, layout);
+  }
+}
+
+int smallest_side(const scene::Scene&, const AtlasParams& params) { return params.resolution; }
+
+}  // namespace
+
+Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, Progress& progress) {
+  LUXEL_TRY_STATUS(check_params(params));
+  if (params.uv != UvMode::unwrap) {
+    progress.begin("charts", 1);
+    Result<Atlas> kept = keep_uv1(scene, smallest_side(scene, params), progress);
+    if (kept || params.uv == UvMode::keep || kept.error().code == ErrorCode::cancelled) return kept;
+  }
+  return unwrap(scene, params, progress);
+}
+
+}  // namespace luxel::atlas

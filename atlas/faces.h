@@ -1,0 +1,27 @@
+// The drawn triangles in the world, and which of them are neighbours on the surface.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "atlas/plane.h"
+#include "scene/scene.h"
+
+namespace luxel::atlas {
+
+/// All drawn triangles, numbered as scene::first_triangles does.
+struct Faces {
+  std::vector<std::array<Dvec3, 3>> corners;  ///< world, corner order of the mesh
+  std::vector<Dvec3> normal;                  ///< unit, front side
+  std::vector<double> area;                   ///< m^2
+  /// The face on the other side of edge (k, k + 1), or kNone at a border. Vertices are joined by
+  /// exact position because files split them at creases and texture seams.
+  std::vector<std::array<uint32_t, 3>> across;
+
+  size_t size() const { return corners.size(); }
+};
+
+Faces make_faces(const scene::Scene& scene);
+
+}  // namespace luxel::atlas

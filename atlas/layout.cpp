@@ -1,0 +1,162 @@
+#include "atlas/layout.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/check.h"
+#include "base/parallel.h"
+
+namespace luxel::atlas {
+namespace {
+
+using Corners = std::vector<std::array<Dvec2, 3>>;
+
+double total_area(const std::vector<FlatChart>& charts) {
+  double area = 0;
+  for (const FlatChart& c : charts)
+    for (const auto& t : c.corners) area += 0.5 * std::abs(cross(t[1] - t[0], t[2] - t[0]));
+  return area;
+}
+
+/// All coordinates up to the resolution have this unit in a float: sums of chart corners and chart
+/// places are exact, and so are the products in cover.cpp.
+double grid_unit(int resolution) {
+  return std::ldexp(1.0, int(std::bit_width(unsigned(resolution))) - 23);
+}
+
+struct Attempt {
+  std::vector<Corners> corners;
+  std::vector<Mask> masks;
+};
+
+Attempt make_attempt(const std::vector<FlatChart>& charts, double density, int resolution) {
+  Attempt a;
+  a.corners.resize(charts.size());
+  a.masks.resize(charts.size());
+  parallel_for(charts.size(), 32, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c) {
+      a.corners[c] = texel_corners(charts[c], density, resolution);
+      a.masks[c] = make_mask(a.corners[c]);
+    }
+  });
+  return a;
+}
+
+Layout place_charts(Attempt attempt, const Packing& packing, int resolution, double density) {
+  Layout layout{resolution, density, std::move(attempt.corners), {}};
+  layout.texels = layout.local;
+  parallel_for(layout.texels.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c) {
+      const Place place = packing.places[c];
+      const Dvec2 corner{double(place.x), double(place.y)};
+      const double width = attempt.masks[c].width;
+      for (auto& t : layout.texels[c])
+        for (Dvec2& p : t) p = (place.turned ? Dvec2{p.y, width - p.x} : p) + corner;
+    }
+  });
+  return layout;
+}
+
+uint64_t mask_texels(const std::vector<Mask>& masks) {
+  uint64_t n = 0;
+  for (const Mask& m : masks) n += m.texels;
+  return n;
+}
+
+/// With every chart in a single texel a square of side n holds floor((n + g) / (1 + g))^2 charts.
+int smallest_power_of_two(size_t charts, int gutter) {
+  for (int n = 1; n <= kMaxResolution; n *= 2) {
+    const size_t side = size_t(n + gutter) / size_t(1 + gutter);
+    if (side * side >= charts) return n;
+  }
+  return 0;
+}
+
+tl::unexpected<Error> cancelled() { return fail(ErrorCode::cancelled, "cancelled"); }
+
+}  // namespace
+
+Corners texel_corners(const FlatChart& chart, double density, int resolution) {
+  const double unit = grid_unit(resolution);
+  const double width = chart.size.x * density, height = chart.size.y * density;
+  // A sliver would take far more texels than its area deserves: one texel in every row it crosses
+  // and the gutter beside it. Below a quarter texel of width its length shrinks with the width.
+  const auto shortened = [&](double side, double across) {
+    const double fair = side * std::min(1.0, 4 * across);
+    const double wanted = std::min(side, std::max(fair, 3.0));
+    return std::min(wanted, resolution - 0.01) / side;
+  };
+  const double sx = width > 0 ? shortened(width, height) * density : density;
+  const double sy = height > 0 ? shortened(height, width) * density : density;
+  Corners texels = chart.corners;
+  for (auto& t : texels)
+    for (Dvec2& p : t) p = {std::round(p.x * sx / unit) * unit, std::round(p.y * sy / unit) * unit};
+  return texels;
+}
+
+Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolution, int gutter,
+                                Progress& progress) {
+  const int smallest = smallest_power_of_two(charts.size(), gutter);
+  const size_t side = size_t(resolution + gutter) / size_t(1 + gutter);
+  if (side * side < charts.size()) {
+    if (smallest == 0)
+      return fail(ErrorCode::bad_setting,
+                  "resolution {}: the scene has {} charts, more than the largest atlas ({}) can "
+                  "hold; simplify the scene",
+                  resolution, charts.size(), kMaxResolution);
+    return fail(ErrorCode::bad_setting,
+                "resolution {}: too small for the scene's {} charts with {} texels between them; "
+                "the smallest power of two that works is {}",
+                resolution, charts.size(), gutter, smallest);
+  }
+  const double side_m = std::sqrt(total_area(charts));
+  double low = 0, high = INFINITY;  // densities that fit, and that do not
+  double density = 0.85 * resolution / side_m;
+  Layout best;
+  for (int round = 0; round < 60; ++round) {
+    if (progress.cancelled()) return cancelled();
+    Attempt attempt = make_attempt(charts, density, resolution);
+    const double fill = double(mask_texels(attempt.masks)) / (double(resolution) * resolution);
+    Packing packing;
+    if (fill < 1)
+      packing = pack_masks(attempt.masks, resolution, resolution, gutter);
+    else
+      packing.placed = 0.9 / fill;
+    double next;
+    if (packing.placed == 1) {
+      low = density;
+      best = place_charts(std::move(attempt), packing, resolution, density);
+      next = density * std::sqrt(double(resolution) / packing.height);
+      if (next < low * 1.01) next = low * 1.02;
+    } else {
+      high = density;
+      next = density * std::clamp(std::sqrt(packing.placed), 0.5, 0.985);
+    }
+    if (low > 0 && (high < low * 1.012 || round > 8)) break;
+    if (next >= high || next <= low) next = std::sqrt(low * high);
+    density = next;
+  }
+  LUXEL_CHECK(low > 0);
+  return best;
+}
+
+Result<Layout> layout_at_density(const std::vector<FlatChart>& charts, double texels_per_metre,
+                                 int gutter, Progress& progress) {
+  for (int n = 1; n <= kMaxResolution; n *= 2) {
+    if (progress.cancelled()) return cancelled();
+    const double area = total_area(charts) * texels_per_metre * texels_per_metre;
+    double longest = 0;
+    for (const FlatChart& c : charts) longest = std::max({longest, c.size.x, c.size.y});
+    if (area > double(n) * n || (n < kMaxResolution && longest * texels_per_metre > n)) continue;
+    Attempt attempt = make_attempt(charts, texels_per_metre, n);
+    if (mask_texels(attempt.masks) > uint64_t(n) * uint64_t(n)) continue;
+    const Packing packing = pack_masks(attempt.masks, n, n, gutter);
+    if (packing.placed == 1) return place_charts(std::move(attempt), packing, n, texels_per_metre);
+  }
+  return fail(
+      ErrorCode::bad_setting,
+      "texels per metre {}: the scene needs an atlas larger than {}; choose a lower density",
+      texels_per_metre, kMaxResolution);
+}
+
+}  // namespace luxel::atlas

@@ -1,0 +1,34 @@
+// The largest density at which all charts fit a square, or the smallest square for a density.
+#pragma once
+
+#include <vector>
+
+#include "atlas/pack.h"
+#include "atlas/project.h"
+#include "base/progress.h"
+#include "base/result.h"
+
+namespace luxel::atlas {
+
+struct Layout {
+  int resolution = 0;
+  double texels_per_metre = 0;
+  std::vector<std::vector<std::array<Dvec2, 3>>>
+      local;  ///< per chart, per face: texels from its place
+  std::vector<std::vector<std::array<Dvec2, 3>>> texels;  ///< the same on the atlas
+};
+
+/// Corners of a chart in texels: scaled, slivers shortened, on the fixed-point grid.
+std::vector<std::array<Dvec2, 3>> texel_corners(const FlatChart& chart, double texels_per_metre,
+                                                int resolution);
+
+/// Error: too small, states the smallest power of two that works.
+Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolution, int gutter,
+                                Progress& progress);
+/// Error: not even the largest square is enough.
+Result<Layout> layout_at_density(const std::vector<FlatChart>& charts, double texels_per_metre,
+                                 int gutter, Progress& progress);
+
+inline constexpr int kMaxResolution = 16384;
+
+}  // namespace luxel::atlas

@@ -1,0 +1,39 @@
+// Packing of texel masks into a strip.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "atlas/cover.h"
+
+namespace luxel::atlas {
+
+/// The texels that a chart touches: per row, runs of columns in ascending order.
+struct Mask {
+  int width = 0, height = 0;
+  std::vector<std::vector<Span>> rows;
+  uint64_t texels = 0;
+};
+
+/// Texels touched by any triangle; all corners are at or right of and below the origin.
+Mask make_mask(const std::vector<std::array<Dvec2, 3>>& texels);
+/// The mask turned by a quarter: texel (i, j) goes to (j, width - 1 - i).
+Mask turned(const Mask& mask);
+
+struct Place {
+  int x = 0, y = 0;
+  bool turned = false;
+};
+
+struct Packing {
+  std::vector<Place> places;
+  int height = 0;     ///< rows in use
+  double placed = 1;  ///< share of the mask texels placed; < 1: no room below max_height
+};
+
+/// Places masks, large ones first, each at the topmost place in a strip of `width` columns where it
+/// keeps `gutter` empty texels to the ones before it. Small charts so fill the holes in and
+/// between large ones.
+Packing pack_masks(const std::vector<Mask>& masks, int width, int max_height, int gutter);
+
+}  // namespace luxel::atlas

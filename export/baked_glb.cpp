@@ -1,0 +1,140 @@
+#include "export/baked_glb.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "base/check.h"
+#include "export/gltf_mesh.h"
+#include "export/gltf_node.h"
+#include "image/codec.h"
+
+namespace luxel::export_ {
+namespace {
+
+using nlohmann::json;
+
+/// The irradiance that white stands for in the 8-bit picture: the 99.9th percentile of the largest
+/// channel over covered texels, so that a few texels beside a lamp do not take all the steps from
+/// the rest (they clip; lightmap.exr has them). 1 where no light falls.
+float lightmap_intensity(const image::Image& lightmap) {
+  std::vector<float> values;
+  for (int y = 0; y < lightmap.height; ++y)
+    for (int x = 0; x < lightmap.width; ++x)
+      if (lightmap.at(x, y)[3] > 0) values.push_back(max_component(lightmap.rgb(x, y)));
+  if (values.empty()) return 1;
+  const size_t rank = size_t(double(values.size() - 1) * 0.999);
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
+  if (values[rank] > 0) return values[rank];
+  const float largest = *std::max_element(values.begin(), values.end());
+  return largest > 0 ? largest : 1;
+}
+
+/// linear(picture) * intensity = E, up to 8 bits and clipping.
+std::vector<std::byte> lightmap_png(const image::Image& lightmap, float intensity) {
+  image::Image scaled(lightmap.width, lightmap.height, 3);
+  for (int y = 0; y < lightmap.height; ++y)
+    for (int x = 0; x < lightmap.width; ++x)
+      scaled.set_rgb(x, y, lightmap.rgb(x, y) * (1 / intensity));
+  return image::encode_png(image::to_srgb8(scaled));
+}
+
+void append_lights_and_cameras(Glb& glb, const scene::Scene& scene, json& roots) {
+  for (const scene::PunctualLight& light : scene.lights) roots.push_back(append_light(glb, light));
+  const float diagonal = std::max(world_bounds(scene).diagonal(), 1e-6f);
+  for (const scene::Camera& camera : scene.cameras)
+    roots.push_back(append_camera(glb, camera, 1e-3f * diagonal, 10 * diagonal));
+}
+
+Result<std::vector<std::byte>> finish_scene(Glb& glb, const scene::Scene& scene, json roots) {
+  json root = json::object();
+  if (!roots.empty()) root["nodes"] = std::move(roots);
+  if (!scene.name.empty()) root["name"] = scene.name;
+  if (scene.background != Rgb{})  // glTF has no word for it
+    root["extras"]["luxel"]["background"] = {scene.background.x, scene.background.y,
+                                             scene.background.z};
+  glb.json["asset"]["version"] = "2.0";
+  glb.json["asset"]["generator"] = "luxel";
+  glb.json["scenes"] = json::array({std::move(root)});
+  glb.json["scene"] = 0;
+  return finish(glb);
+}
+
+json instance_node(const scene::Instance& instance, size_t mesh) {
+  json node = {{"mesh", mesh}};
+  if (!instance.name.empty()) node["name"] = instance.name;
+  return node;
+}
+
+/// The lightmap coordinates of an instance's triangles, in [0, 1].
+std::vector<std::array<Vec2, 3>> lightmap_uv(const atlas::Atlas& atlas, uint32_t instance) {
+  const uint32_t first = atlas.first_triangle[instance], end = atlas.first_triangle[instance + 1];
+  std::vector<std::array<Vec2, 3>> uv(atlas.corners.begin() + first, atlas.corners.begin() + end);
+  for (auto& corners : uv)
+    for (Vec2& c : corners) c = {c.x / float(atlas.resolution), c.y / float(atlas.resolution)};
+  return uv;
+}
+
+Result<std::vector<std::byte>> write_baked(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                           const image::Image& lightmap) {
+  Glb glb;
+  MaterialBook book;
+  const float intensity = lightmap_intensity(lightmap);
+  const size_t texture = append_lightmap_texture(glb, book, lightmap_png(lightmap, intensity));
+  book.lightmap = {{"index", texture}, {"texCoord", 1}, {"intensity", intensity}};
+  glb.json["asset"]["extras"]["luxel"] = {
+      {"lightmap", "lightmap.exr"},
+      {"irradiance",
+       "E [W/m^2] = intensity * linear(picture), the picture in sRGB; "
+       "lightmap.exr holds E itself"}};
+
+  json roots = json::array();
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+    if (mesh.triangles.empty()) continue;
+    const size_t index = append_mesh(glb, book, scene, mesh, lightmap_uv(atlas, i));
+    roots.push_back(append_node(glb, scene.instances[i].world_from_object,
+                                instance_node(scene.instances[i], index)));
+  }
+  append_lights_and_cameras(glb, scene, roots);
+  return finish_scene(glb, scene, std::move(roots));
+}
+
+Result<std::vector<std::byte>> write_scene(const scene::Scene& scene) {
+  Glb glb;
+  MaterialBook book;
+  std::vector<size_t> index_of(scene.meshes.size(), SIZE_MAX);
+  json roots = json::array();
+  for (const scene::Instance& instance : scene.instances) {
+    const scene::Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.triangles.empty()) continue;
+    size_t& index = index_of[instance.mesh];
+    if (index == SIZE_MAX) index = append_mesh(glb, book, scene, mesh, {});
+    roots.push_back(append_node(glb, instance.world_from_object, instance_node(instance, index)));
+  }
+  append_lights_and_cameras(glb, scene, roots);
+  return finish_scene(glb, scene, std::move(roots));
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                         const image::Image& lightmap) {
+  LUXEL_CHECK(lightmap.channels == 4);
+  LUXEL_CHECK(atlas.first_triangle.size() == scene.instances.size() + 1);
+  try {
+    return write_baked(scene, atlas, lightmap);
+  } catch (const std::exception& e) {  // nlohmann-json and memory
+    return fail(ErrorCode::io, "the baked scene cannot be written as .glb: {}", e.what());
+  }
+}
+
+Result<std::vector<std::byte>> scene_glb(const scene::Scene& scene) {
+  try {
+    return write_scene(scene);
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::io, "the scene cannot be written as .glb: {}", e.what());
+  }
+}
+
+}  // namespace luxel::export_

@@ -1,0 +1,34 @@
+// Materials and textures as glTF.
+#pragma once
+
+#include <array>
+#include <map>
+#include <tuple>
+
+#include "export/glb.h"
+#include "scene/scene.h"
+
+namespace luxel::export_ {
+
+/// Which texture coordinates a primitive has for its material's textures: for the scene's UV sets 0
+/// and 1 the number n of TEXCOORD_n, or -1. Where there are none the scene's texture is white, and
+/// glTF wants no texture at all.
+using TexcoordSlots = std::array<int, 2>;
+
+/// What is already in the document: materials, textures and samplers are written when first used.
+struct MaterialBook {
+  std::map<std::tuple<uint32_t, TexcoordSlots>, size_t> materials;
+  std::map<uint32_t, size_t> images;
+  std::map<std::array<int, 4>, size_t> samplers;     ///< wrap u, wrap v, magnify, minify
+  std::map<std::array<size_t, 2>, size_t> textures;  ///< image, sampler
+  nlohmann::json lightmap;  ///< the MOZ_lightmap of every material; null: none
+};
+
+/// The index of the material in the document.
+size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, uint32_t material,
+                      TexcoordSlots slots);
+
+/// A lightmap picture as glTF texture: clamped, bilinear, without mipmaps (charts would bleed).
+size_t append_lightmap_texture(Glb& glb, MaterialBook& book, std::span<const std::byte> png);
+
+}  // namespace luxel::export_

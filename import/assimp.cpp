@@ -1,0 +1,227 @@
+// Every format but glTF, through Assimp. Its convention: Y up, right-handed, v grows upwards.
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <map>
+
+#include "image/color.h"
+#include "import/assimp_parts.h"
+
+namespace luxel::import {
+namespace {
+
+Vec3 vec3_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+Mat34 mat34_of(const aiMatrix4x4& m) {
+  return {{{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}}};
+}
+
+/// PLY holds colours as 8-bit display values, or as linear floats.
+bool has_display_colors(const SourceFile& source) {
+  const std::string_view header(reinterpret_cast<const char*>(source.bytes.data()),
+                                std::min<size_t>(source.bytes.size(), 4096));
+  return source.extension == ".ply" && (header.find("property uchar red") != header.npos ||
+                                        header.find("property uint8 red") != header.npos);
+}
+
+Rgb linear(Rgb c) {
+  return {image::linear_from_srgb(c.x), image::linear_from_srgb(c.y), image::linear_from_srgb(c.z)};
+}
+
+/// Fills `to` for the vertices of a part that starts at `start`; parts without the attribute get
+/// `filling` when another part has it.
+template <class T, class Get>
+void append(std::vector<T>& to, bool wanted, bool has, size_t start, size_t count, T filling,
+            const Get& get) {
+  if (!wanted) return;
+  to.resize(start + count, filling);
+  if (has)
+    for (size_t i = 0; i < count; ++i) to[start + i] = get(i);
+}
+
+struct Wanted {
+  bool normals = false, uv0 = false, uv1 = false, colors = false;
+};
+
+void append_part(scene::Mesh& mesh, const aiMesh& part, const Wanted& wanted, bool srgb_colors) {
+  const size_t start = mesh.positions.size(), count = part.mNumVertices;
+  append(mesh.positions, true, true, start, count, Vec3{},
+         [&](size_t i) { return vec3_of(part.mVertices[i]); });
+  // A zero normal is later replaced by that of the triangles around it.
+  append(mesh.normals, wanted.normals, part.HasNormals(), start, count, Vec3{},
+         [&](size_t i) { return vec3_of(part.mNormals[i]); });
+  const auto uv = [&](unsigned set) {
+    return [&part, set](size_t i) {
+      const aiVector3D& v = part.mTextureCoords[set][i];
+      return Vec2{v.x, 1 - v.y};
+    };
+  };
+  append(mesh.uv0, wanted.uv0, part.HasTextureCoords(0), start, count, Vec2{}, uv(0));
+  append(mesh.uv1, wanted.uv1, part.HasTextureCoords(1), start, count, Vec2{}, uv(1));
+  append(mesh.colors, wanted.colors, part.HasVertexColors(0), start, count, Rgb{1, 1, 1},
+         [&](size_t i) {
+           const aiColor4D& c = part.mColors[0][i];
+           return srgb_colors ? linear({c.r, c.g, c.b}) : Rgb{c.r, c.g, c.b};
+         });
+  for (unsigned f = 0; f < part.mNumFaces; ++f) {
+    const aiFace& face = part.mFaces[f];
+    if (face.mNumIndices != 3) continue;  // triangulated; what is left are points and lines
+    mesh.triangles.push_back({uint32_t(start + face.mIndices[0]),
+                              uint32_t(start + face.mIndices[1]),
+                              uint32_t(start + face.mIndices[2])});
+    mesh.triangle_material.push_back(part.mMaterialIndex);
+  }
+}
+
+/// Assimp splits a surface by material; the parts that one node draws belong together (the `o` or
+/// `g` group of an .obj).
+scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, bool srgb_colors) {
+  Wanted wanted;
+  for (const unsigned p : parts) {
+    wanted.normals |= in.mMeshes[p]->HasNormals();
+    wanted.uv0 |= in.mMeshes[p]->HasTextureCoords(0);
+    wanted.uv1 |= in.mMeshes[p]->HasTextureCoords(1);
+    wanted.colors |= in.mMeshes[p]->HasVertexColors(0);
+  }
+  scene::Mesh mesh;
+  for (const unsigned p : parts) append_part(mesh, *in.mMeshes[p], wanted, srgb_colors);
+  join_identical_vertices(mesh);
+  return mesh;
+}
+
+using NodeTransforms = std::map<std::string, Mat34>;
+
+/// Instances in the order of the node tree; node lists of the same parts share one mesh. Returns
+/// where each named node is, which lights and cameras look up.
+NodeTransforms add_instances(const aiScene& in, bool srgb_colors, scene::Scene& out) {
+  struct Visit {
+    const aiNode* node;
+    Mat34 parent;
+  };
+  NodeTransforms transforms;
+  std::map<std::vector<unsigned>, uint32_t> known;
+  std::vector<Visit> stack{{in.mRootNode, {}}};
+  while (!stack.empty()) {
+    const auto [node, parent] = stack.back();
+    stack.pop_back();
+    const Mat34 world = parent * mat34_of(node->mTransformation);
+    transforms.emplace(node->mName.C_Str(), world);
+    for (unsigned i = node->mNumChildren; i-- > 0;) stack.push_back({node->mChildren[i], world});
+    if (node->mNumMeshes == 0) continue;
+    const std::vector<unsigned> parts(node->mMeshes, node->mMeshes + node->mNumMeshes);
+    const auto [mesh, is_new] = known.try_emplace(parts, uint32_t(out.meshes.size()));
+    if (is_new) {
+      out.meshes.push_back(merged_mesh(in, parts, srgb_colors));
+      out.meshes.back().name = node->mName.C_Str();
+    }
+    out.instances.push_back({node->mName.C_Str(), mesh->second, world});
+  }
+  return transforms;
+}
+
+Mat34 transform_of(const NodeTransforms& transforms, const aiString& name) {
+  const auto found = transforms.find(name.C_Str());
+  return found == transforms.end() ? Mat34{} : found->second;
+}
+
+void add_lights(const aiScene& in, const NodeTransforms& transforms, Imported& out) {
+  using Kind = scene::PunctualLight::Kind;
+  for (unsigned i = 0; i < in.mNumLights; ++i) {
+    const aiLight& from = *in.mLights[i];
+    const bool known = from.mType == aiLightSource_POINT || from.mType == aiLightSource_SPOT ||
+                       from.mType == aiLightSource_DIRECTIONAL;
+    if (!known) {
+      out.warnings.push_back(
+          fmt::format("light '{}' is neither point, spot nor directional and is "
+                      "skipped",
+                      from.mName.C_Str()));
+      continue;
+    }
+    const Mat34 world = transform_of(transforms, from.mName);
+    scene::PunctualLight light;
+    light.name = from.mName.C_Str();
+    light.kind = from.mType == aiLightSource_POINT  ? Kind::point
+                 : from.mType == aiLightSource_SPOT ? Kind::spot
+                                                    : Kind::directional;
+    light.intensity = {from.mColorDiffuse.r, from.mColorDiffuse.g, from.mColorDiffuse.b};
+    light.position = transform_point(world, vec3_of(from.mPosition));
+    light.direction = normalize(transform_vector(world, vec3_of(from.mDirection)));
+    // Assimp's cone angles go from side to side, ours from the axis.
+    light.inner_cone_rad = 0.5f * from.mAngleInnerCone;
+    light.outer_cone_rad = 0.5f * from.mAngleOuterCone;
+    out.scene.lights.push_back(light);
+  }
+}
+
+void add_cameras(const aiScene& in, const NodeTransforms& transforms, scene::Scene& out) {
+  for (unsigned i = 0; i < in.mNumCameras; ++i) {
+    const aiCamera& from = *in.mCameras[i];
+    const Mat34 world = transform_of(transforms, from.mName);
+    const Vec3 forward = normalize(transform_vector(world, vec3_of(from.mLookAt)));
+    const Vec3 right = normalize(cross(forward, transform_vector(world, vec3_of(from.mUp))));
+    scene::Camera camera;
+    camera.name = from.mName.C_Str();
+    camera.world_from_camera = from_columns(right, cross(right, forward), -forward,
+                                            transform_point(world, vec3_of(from.mPosition)));
+    camera.aspect = from.mAspect;
+    const float aspect = from.mAspect > 0 ? from.mAspect : 1.0f;
+    camera.fov_y_rad = 2 * std::atan(std::tan(0.5f * from.mHorizontalFOV) / aspect);
+    camera.orthographic_height_m = 2 * from.mOrthographicWidth / aspect;  // its width is half of it
+    out.cameras.push_back(camera);
+  }
+}
+
+std::vector<std::string> known_extensions() {
+  Assimp::Importer importer;
+  aiString list;  // "*.3d;*.3ds;..."
+  importer.GetExtensionList(list);
+  std::vector<std::string> extensions{".gltf", ".glb"};
+  std::string text = list.C_Str();
+  for (size_t at = 0; at < text.size();) {
+    const size_t end = std::min(text.find(';', at), text.size());
+    if (end > at + 1) extensions.push_back(text.substr(at + 1, end - at - 1));
+    at = end + 1;
+  }
+  std::sort(extensions.begin(), extensions.end());
+  extensions.erase(std::unique(extensions.begin(), extensions.end()), extensions.end());
+  return extensions;
+}
+
+}  // namespace
+
+Status check_extension(const SourceFile& source) {
+  const std::vector<std::string> known = known_extensions();
+  if (std::find(known.begin(), known.end(), source.extension) != known.end()) return {};
+  std::string list;
+  for (const std::string& extension : known) list += " " + extension;
+  return fail(ErrorCode::unsupported, "{}: files ending in '{}' cannot be read; these can:{}",
+              source.name, source.extension, list);
+}
+
+Result<Imported> read_with_assimp(const SourceFile& source) {
+  Imported imported;
+  if (source.extension == ".obj") LUXEL_TRY_STATUS(check_obj(source, imported.warnings));
+  if (source.extension == ".ply") LUXEL_TRY_STATUS(check_ply(source));
+
+  Assimp::Importer importer;
+  // Points and lines are sorted out into meshes of their own and dropped.
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* in =
+      importer.ReadFile(source.path.string(), aiProcess_Triangulate | aiProcess_SortByPType |
+                                                  aiProcess_ValidateDataStructure);
+  if (in == nullptr || in->mRootNode == nullptr)
+    return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
+                importer.GetErrorString());
+
+  LUXEL_TRY_STATUS(read_assimp_materials(*in, source, imported));
+  const NodeTransforms transforms = add_instances(*in, has_display_colors(source), imported.scene);
+  add_lights(*in, transforms, imported);
+  add_cameras(*in, transforms, imported.scene);
+  return imported;
+}
+
+}  // namespace luxel::import

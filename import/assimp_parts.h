@@ -1,0 +1,14 @@
+// The parts of the Assimp reader. For its own files only.
+#pragma once
+
+#include "import/readers.h"
+
+struct aiScene;
+
+namespace luxel::import {
+
+/// Fills scene.materials, in Assimp's order, and the textures they use. Errors: a texture that is
+/// missing or corrupt.
+Status read_assimp_materials(const aiScene& in, const SourceFile& source, Imported& out);
+
+}  // namespace luxel::import

@@ -1,0 +1,165 @@
+// Materials and their textures.
+#include <optional>
+
+#include "import/gltf_parts.h"
+
+namespace luxel::import {
+namespace {
+
+using scene::TextureRef;
+
+scene::Wrap wrap_of(int mode) {
+  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return scene::Wrap::clamp;
+  if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return scene::Wrap::mirror;
+  return scene::Wrap::repeat;
+}
+
+/// The scene's number of a glTF image, decoded when first asked for: files carry normal maps and
+/// variants that nobody here looks at.
+class ImageLoader {
+ public:
+  explicit ImageLoader(GltfReader& reader)
+      : reader_(reader), number_(reader.model.images.size(), scene::kNone) {}
+
+  Result<uint32_t> load(int image_index, const std::string& user) {
+    uint32_t& number = number_[size_t(image_index)];
+    if (number != scene::kNone) return number;
+    const tinygltf::Image& image = reader_.model.images[size_t(image_index)];
+    const std::string file =
+        image.uri.empty() ? label("image", size_t(image_index), image.name) : image.uri;
+    const std::string name = reader_.source.name + ": " + file;
+    // The loader callback stored the encoded bytes; tinygltf leaves none where it found no file.
+    if (image.image.empty())
+      return fail(ErrorCode::io, "{}: the texture of {} is missing or empty", name, user);
+    std::vector<std::byte> encoded(image.image.size());
+    std::memcpy(encoded.data(), image.image.data(), encoded.size());
+    LUXEL_TRY(scene::Texture texture, decode_texture(std::move(encoded), name, user));
+    texture.name = image.name.empty() ? file : image.name;
+    number = uint32_t(reader_.out.scene.textures.size());
+    reader_.out.scene.textures.push_back(std::move(texture));
+    return number;
+  }
+
+ private:
+  GltfReader& reader_;
+  std::vector<uint32_t> number_;
+};
+
+void apply_transform(TextureRef& ref, const tinygltf::ExtensionMap& extensions) {
+  const auto found = extensions.find("KHR_texture_transform");
+  if (found == extensions.end() || !found->second.IsObject()) return;
+  const tinygltf::Value& transform = found->second;
+  ref.offset = vec2_in(transform, "offset", ref.offset);
+  ref.scale = vec2_in(transform, "scale", ref.scale);
+  ref.rotation = float(number_in(transform, "rotation", ref.rotation));
+  ref.uv_set = int(number_in(transform, "texCoord", ref.uv_set));
+}
+
+Result<TextureRef> read_ref(GltfReader& reader, ImageLoader& images,
+                            const tinygltf::TextureInfo& info, const std::string& user) {
+  TextureRef ref;
+  if (info.index < 0) return ref;
+  const tinygltf::Texture& texture = reader.model.textures[size_t(info.index)];
+  if (texture.source < 0)
+    return fail(ErrorCode::unsupported,
+                "{}: texture {} of {} has no PNG or JPEG image (KTX2 and WebP are not supported)",
+                reader.source.name, info.index, user);
+  LUXEL_TRY(ref.texture, images.load(texture.source, user));
+  ref.uv_set = info.texCoord;
+  if (texture.sampler >= 0) {
+    const tinygltf::Sampler& sampler = reader.model.samplers[size_t(texture.sampler)];
+    ref.wrap_u = wrap_of(sampler.wrapS);
+    ref.wrap_v = wrap_of(sampler.wrapT);
+    if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) ref.filter = scene::Filter::nearest;
+  }
+  apply_transform(ref, info.extensions);
+  if (ref.uv_set > 1) {
+    reader.warn("{} uses TEXCOORD_{}, which is not read; TEXCOORD_0 is used instead", user,
+                ref.uv_set);
+    ref.uv_set = 0;
+  }
+  return ref;
+}
+
+scene::AlphaMode alpha_mode_of(const std::string& mode) {
+  if (mode == "MASK") return scene::AlphaMode::mask;
+  if (mode == "BLEND") return scene::AlphaMode::blend;
+  return scene::AlphaMode::opaque;
+}
+
+Result<scene::Material> read_material(GltfReader& reader, ImageLoader& images, size_t index) {
+  const tinygltf::Material& in = reader.model.materials[index];
+  const auto& pbr = in.pbrMetallicRoughness;
+  const std::string user = label("material", index, in.name);
+  scene::Material out;
+  out.name = in.name;
+  out.base_color = vec3_of(pbr.baseColorFactor, {1, 1, 1});
+  out.alpha = pbr.baseColorFactor.size() > 3 ? float(pbr.baseColorFactor[3]) : 1.0f;
+  out.metallic = float(pbr.metallicFactor);
+  out.roughness = float(pbr.roughnessFactor);
+  out.alpha_mode = alpha_mode_of(in.alphaMode);
+  out.alpha_cutoff = float(in.alphaCutoff);
+  out.double_sided = in.doubleSided;
+  out.unlit = in.extensions.count("KHR_materials_unlit") > 0;
+  // An unlit material is its base colour; the exporter's metallic factor means nothing then.
+  if (out.unlit) out.metallic = 0;
+
+  double strength = 1;
+  if (const auto it = in.extensions.find("KHR_materials_emissive_strength");
+      it != in.extensions.end())
+    strength = number_in(it->second, "emissiveStrength", 1);
+  out.emission = vec3_of(in.emissiveFactor, {}) * float(strength);
+
+  LUXEL_TRY(out.base_color_texture, read_ref(reader, images, pbr.baseColorTexture, user));
+  if (max_component(out.emission) > 0) {
+    LUXEL_TRY(out.emission_texture, read_ref(reader, images, in.emissiveTexture, user));
+  }
+  if (out.metallic > 0) {
+    tinygltf::TextureInfo metallic = pbr.metallicRoughnessTexture;
+    LUXEL_TRY(out.metallic_texture, read_ref(reader, images, metallic, user));
+  }
+  return out;
+}
+
+void warn_about_metals(GltfReader& reader) {
+  std::string names;
+  size_t count = 0;
+  for (size_t i = 0; i < reader.out.scene.materials.size(); ++i) {
+    const scene::Material& m = reader.out.scene.materials[i];
+    if (m.metallic < 1 || m.metallic_texture.texture != scene::kNone) continue;
+    if (++count <= 5) names += (count > 1 ? ", " : "") + label("material", i, m.name);
+  }
+  if (count > 0)
+    reader.warn(
+        "{} materials are fully metallic (glTF's default) and reflect no diffuse light: {}{}",
+        count, names, count > 5 ? ", ..." : "");
+}
+
+}  // namespace
+
+double number_in(const tinygltf::Value& object, const char* key, double fallback) {
+  if (!object.IsObject() || !object.Has(key)) return fallback;
+  const tinygltf::Value& value = object.Get(key);
+  return value.IsNumber() ? value.GetNumberAsDouble() : fallback;
+}
+
+Vec2 vec2_in(const tinygltf::Value& object, const char* key, Vec2 fallback) {
+  if (!object.IsObject() || !object.Has(key)) return fallback;
+  const tinygltf::Value& value = object.Get(key);
+  if (!value.IsArray() || value.ArrayLen() < 2) return fallback;
+  const tinygltf::Value &x = value.Get(0), &y = value.Get(1);
+  if (!x.IsNumber() || !y.IsNumber()) return fallback;
+  return {float(x.GetNumberAsDouble()), float(y.GetNumberAsDouble())};
+}
+
+Status read_materials(GltfReader& reader) {
+  ImageLoader images(reader);
+  for (size_t i = 0; i < reader.model.materials.size(); ++i) {
+    LUXEL_TRY(scene::Material material, read_material(reader, images, i));
+    reader.out.scene.materials.push_back(std::move(material));
+  }
+  warn_about_metals(reader);
+  return {};
+}
+
+}  // namespace luxel::import

@@ -1,0 +1,47 @@
+// Which reader takes a file, and what every file goes through before and after it.
+#include "import/import.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+
+#include "base/file.h"
+#include "import/readers.h"
+#include "scene/validate.h"
+
+namespace luxel::import {
+namespace {
+
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  return text;
+}
+
+Result<Imported> read_scene(const SourceFile& source) {
+  if (source.extension == ".gltf" || source.extension == ".glb") return read_gltf(source);
+  return read_with_assimp(source);
+}
+
+}  // namespace
+
+Result<Imported> import_scene(const std::filesystem::path& path) {
+  SourceFile source{path, path.string(), lower_case(path.extension().string()), {}};
+  LUXEL_TRY(source.bytes, read_file(path));
+  LUXEL_TRY_STATUS(check_extension(source));
+  if (source.bytes.empty()) return fail(ErrorCode::bad_input, "{}: the file is empty", source.name);
+  // Third-party readers throw; nothing of it leaves this room.
+  try {
+    LUXEL_TRY(Imported imported, read_scene(source));
+    if (imported.scene.name.empty()) imported.scene.name = path.stem().string();
+    LUXEL_TRY(std::vector<std::string> repairs, scene::validate(imported.scene, source.name));
+    imported.warnings.insert(imported.warnings.end(), repairs.begin(), repairs.end());
+    return imported;
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::out_of_memory, "{}: not enough memory to read it", source.name);
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name, e.what());
+  }
+}
+
+}  // namespace luxel::import

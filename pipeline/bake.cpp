@@ -1,0 +1,202 @@
+#include "pipeline/bake.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "display/draw.h"
+#include "display/tone_map.h"
+#include "export/baked_glb.h"
+#include "image/codec.h"
+#include "import/import.h"
+#include "pipeline/memory.h"
+#include "pipeline/version.h"
+#include "post/dilate.h"
+#include "post/seams.h"
+#include "transport/irradiance_field.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Rings of dilation: enough for bilinear lookups in four mipmap levels.
+constexpr int kDilationRings = 8;
+constexpr int kPreviewWidth = 960, kPreviewHeight = 720;
+
+Status not_cancelled(const Progress& progress) {
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return {};
+}
+
+Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>& warnings,
+                          Progress& progress) {
+  progress.begin("import", 0);
+  LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
+  warnings = std::move(imported.warnings);
+  const std::string dark = add_outside_light(settings.outside, imported.scene);
+  if (!dark.empty()) warnings.push_back(dark);
+  LUXEL_TRY_STATUS(not_cancelled(progress));
+  return std::move(imported.scene);
+}
+
+Status lay_out(const BakeSettings& settings, Bake& bake, Progress& progress) {
+  atlas::AtlasParams params;
+  params.uv = settings.uv;
+  params.resolution = settings.resolution;
+  params.texels_per_metre = settings.texels_per_metre;
+  LUXEL_TRY(bake.atlas, atlas::make_atlas(bake.scene, params, progress));
+  bake.map = atlas::rasterise(bake.scene, bake.atlas);
+  bake.atlas_stats = atlas::atlas_stats(bake.scene, bake.atlas, bake.map);
+  return not_cancelled(progress);
+}
+
+Status solve(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
+             Progress& progress) {
+  const transport::Elements elements =
+      transport::elements_from_texels(bake.scene, bake.atlas, bake.map);
+  const transport::Lights lights = transport::collect_lights(bake.scene);
+  const SolveInput input{bake.scene, bake.atlas, bake.map, elements, lights, tracer};
+  LUXEL_TRY(bake.light, find_solver(settings.solver)->solve(input, settings, progress));
+  return {};
+}
+
+Status repair(Bake& bake, Progress& progress) {
+  progress.begin("seams", 0);
+  const std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
+  bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance);
+  LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
+  bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance);
+  bake.lightmap = post::lightmap_from_texels(bake.map, bake.light.irradiance);
+  post::dilate(bake.lightmap, kDilationRings);
+  return not_cancelled(progress);
+}
+
+Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progress) {
+  const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
+  display::DrawParams params;
+  params.width = kPreviewWidth, params.height = kPreviewHeight;
+  const float aspect = float(params.width) / float(params.height);
+  scene::Camera camera = bake.scene.cameras.empty()
+                             ? display::fit_camera(bake.scene, tracer, aspect)
+                             : bake.scene.cameras.front();
+  if (camera.aspect > 0) params.width = int(float(params.height) * camera.aspect + 0.5f);
+  params.width = std::clamp(params.width, params.height / 4, params.height * 4);
+  LUXEL_TRY(const image::Image picture,
+            display::draw(
+                bake.scene, tracer, camera,
+                [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); },
+                params, progress));
+  bake.preview = display::tone_map(picture, display::auto_exposure(picture));
+  return {};
+}
+
+std::vector<std::byte> bytes_of(const std::string& text) {
+  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+  return {begin, begin + text.size()};
+}
+
+nlohmann::json seconds_json(const Progress& progress) {
+  nlohmann::json seconds = nlohmann::json::object();
+  double total = 0;
+  for (const Stage& stage : progress.stages()) {
+    seconds[stage.name] = seconds.value(stage.name, 0.0) + stage.seconds;
+    total += stage.seconds;
+  }
+  seconds["total"] = total;
+  return seconds;
+}
+
+nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Progress& progress) {
+  const nlohmann::json seconds = seconds_json(progress);
+  const double tracing = seconds.value("direct light", 0.0) + seconds.value("trace rays", 0.0);
+  return {{"version", kVersion},
+          {"settings", to_json(settings)},
+          {"counts",
+           {{"triangles", bake.atlas.corners.size()},
+            {"texels", bake.map.texels.size()},
+            {"rays", bake.light.rays},
+            {"charts", bake.atlas.chart_count},
+            {"sweeps", bake.light.sweeps},
+            {"suspicious_texels", bake.light.suspicious_texels}}},
+          {"atlas",
+           {{"resolution", bake.atlas.resolution},
+            {"utilisation", bake.atlas_stats.utilisation},
+            {"mean_stretch_l2", bake.atlas_stats.mean_stretch_l2},
+            {"texels_per_metre", bake.atlas_stats.texels_per_metre}}},
+          {"seam_residual", {bake.seam_residual_before, bake.seam_residual_after}},
+          {"seconds", seconds},
+          {"mrays_per_s", tracing > 0 ? double(bake.light.rays) * 1e-6 / tracing : 0.0},
+          {"peak_memory_bytes", peak_resident_bytes()},
+          {"scratch_bytes", bake.light.scratch_bytes},
+          {"relative_error", bake.light.relative_error},
+          {"warnings", bake.warnings}};
+}
+
+/// The output folder. It is made and tried out before the work; when the work fails and the folder
+/// was not there before, it goes again.
+class OutputFolder {
+ public:
+  explicit OutputFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder() {
+    std::error_code ignored;
+    if (made_ && !kept_) std::filesystem::remove(folder_, ignored);
+  }
+
+  Status prepare() {
+    std::error_code error;
+    made_ = std::filesystem::create_directories(folder_, error);
+    if (error || !std::filesystem::is_directory(folder_, error))
+      return fail(ErrorCode::io, "cannot make the output folder {}: {}", folder_.string(),
+                  error ? error.message() : "a file of this name is in the way");
+    const std::filesystem::path probe = folder_ / ".luxel-can-write";
+    LUXEL_TRY_STATUS(write_file_atomically(probe, {}));
+    std::filesystem::remove(probe, error);
+    return {};
+  }
+  void keep() { kept_ = true; }
+
+ private:
+  std::filesystem::path folder_;
+  bool made_ = false, kept_ = false;
+};
+
+}  // namespace
+
+Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
+  LUXEL_TRY_STATUS(check(settings));
+  const ThreadLimit threads(settings.threads);
+  Bake bake;
+  LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
+  LUXEL_TRY_STATUS(lay_out(settings, bake, progress));
+  progress.begin("build ray tracer", 0);
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
+  LUXEL_TRY_STATUS(solve(settings, tracer, bake, progress));
+  LUXEL_TRY_STATUS(repair(bake, progress));
+  LUXEL_TRY_STATUS(draw_preview(tracer, bake, progress));
+  return bake;
+}
+
+Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
+  LUXEL_TRY_STATUS(check(settings));
+  OutputFolder folder(settings.output);
+  LUXEL_TRY_STATUS(folder.prepare());
+  LUXEL_TRY(const Bake result, bake_scene(settings, progress));
+  progress.begin("write files", 0);
+  std::vector<OutputFile> files;
+  LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(result.lightmap));
+  files.push_back({settings.output / "lightmap.exr", std::move(exr)});
+  LUXEL_TRY(std::vector<std::byte> glb,
+            export_::baked_glb(result.scene, result.atlas, result.lightmap));
+  files.push_back({settings.output / "baked.glb", std::move(glb)});
+  files.push_back({settings.output / "preview.png", image::encode_png(result.preview)});
+  LUXEL_TRY_STATUS(not_cancelled(progress));
+  progress.finish();
+  nlohmann::json json = report(settings, result, progress);
+  files.push_back({settings.output / "bake.json", bytes_of(json.dump(2) + "\n")});
+  LUXEL_TRY_STATUS(write_files_atomically(files));
+  folder.keep();
+  return json;
+}
+
+}  // namespace luxel::pipeline

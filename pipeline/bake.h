@@ -1,0 +1,39 @@
+// A scene in, lightmaps out.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "base/progress.h"
+#include "base/result.h"
+#include "image/codec.h"
+#include "pipeline/settings.h"
+#include "pipeline/solvers.h"
+#include "scene/scene.h"
+
+namespace luxel::pipeline {
+
+/// A finished bake in memory, before anything is written.
+struct Bake {
+  scene::Scene scene;  ///< as baked: outside light added
+  atlas::Atlas atlas;
+  atlas::TexelMap map;
+  atlas::AtlasStats atlas_stats;
+  TexelLight light;
+  image::Image lightmap;  ///< E, 4 channels, as lightmap.exr holds it
+  image::Image8 preview;
+  double seam_residual_before = 0, seam_residual_after = 0;
+  std::vector<std::string> warnings;
+};
+
+/// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
+/// name in settings.output. Errors: whatever the stages say; settings out of range.
+Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress);
+
+/// The whole of `luxel bake`: bake_scene, then lightmap.exr, baked.glb, preview.png and bake.json in
+/// settings.output, all of them or none. Returns what bake.json holds.
+Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
+
+}  // namespace luxel::pipeline

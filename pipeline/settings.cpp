@@ -1,0 +1,148 @@
+#include "pipeline/settings.h"
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "pipeline/solvers.h"
+#include "scene/validate.h"
+
+namespace luxel::pipeline {
+namespace {
+
+constexpr int kMaxSamples = 65535;
+/// Half the angle under which the sun is seen from the earth.
+constexpr float kSunAngularRadius = 0.00465f;
+
+/// A number that is the whole of `text`.
+std::optional<double> parse_number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+/// Three numbers with commas between them.
+std::optional<std::array<double, 3>> parse_triple(std::string_view text) {
+  std::array<double, 3> values{};
+  for (int k = 0; k < 3; ++k) {
+    const size_t comma = k < 2 ? text.find(',') : text.size();
+    if (comma == std::string_view::npos) return std::nullopt;
+    const auto value = parse_number(text.substr(0, comma));
+    if (!value) return std::nullopt;
+    values[size_t(k)] = *value;
+    text.remove_prefix(std::min(text.size(), comma + 1));
+  }
+  return values;
+}
+
+Status check_range(const char* option, int value, int low, int high) {
+  if (value >= low && value <= high) return {};
+  return fail(ErrorCode::bad_setting, "{} {} is outside {} to {}", option, value, low, high);
+}
+
+const char* name_of(atlas::UvMode mode) {
+  return mode == atlas::UvMode::keep ? "keep" : mode == atlas::UvMode::unwrap ? "unwrap" : "auto";
+}
+
+}  // namespace
+
+Status check(const BakeSettings& s) {
+  if (!find_solver(s.solver))
+    return fail(ErrorCode::bad_setting, "--solver {} is not known; there is: {}", s.solver,
+                solver_names());
+  LUXEL_TRY_STATUS(check_range("--resolution", s.resolution, 1, 16384));
+  LUXEL_TRY_STATUS(check_range("--samples", s.samples, 1, kMaxSamples));
+  LUXEL_TRY_STATUS(check_range("--direct-samples", s.direct_samples, 1, kMaxSamples));
+  LUXEL_TRY_STATUS(check_range("--threads", s.threads, 0, 1024));
+  if (!std::isfinite(s.texels_per_metre) || s.texels_per_metre < 0)
+    return fail(ErrorCode::bad_setting, "--texels-per-metre {} is not a density; give a number > 0",
+                s.texels_per_metre);
+  return {};
+}
+
+nlohmann::json to_json(const BakeSettings& s) {
+  nlohmann::json json{{"scene", s.scene.string()},
+                      {"solver", s.solver},
+                      {"resolution", s.resolution},
+                      {"texels_per_metre", s.texels_per_metre},
+                      {"uv", name_of(s.uv)},
+                      {"samples", s.samples},
+                      {"direct_samples", s.direct_samples},
+                      {"max_memory_bytes", s.max_memory_bytes},
+                      {"seed", s.seed},
+                      {"threads", s.threads}};
+  json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
+  if (const auto& b = s.outside.background) json["background"] = {b->x, b->y, b->z};
+  if (const auto& sun = s.outside.sun)
+    json["sun"] = {sun->azimuth_deg, sun->elevation_deg, sun->lux};
+  return json;
+}
+
+Result<Rgb> parse_background(std::string_view text) {
+  const auto v = parse_triple(text);
+  if (!v || (*v)[0] < 0 || (*v)[1] < 0 || (*v)[2] < 0)
+    return fail(ErrorCode::bad_setting,
+                "--background '{}' is not a radiance; give three numbers >= 0 as r,g,b", text);
+  return Rgb{float((*v)[0]), float((*v)[1]), float((*v)[2])};
+}
+
+Result<Sun> parse_sun(std::string_view text) {
+  const auto v = parse_triple(text);
+  if (!v || (*v)[1] < -90 || (*v)[1] > 90 || (*v)[2] < 0)
+    return fail(ErrorCode::bad_setting,
+                "--sun '{}' is not azimuth_deg,elevation_deg,lux; the elevation is -90 to 90, lux "
+                ">= 0, as in --sun 135,45,100",
+                text);
+  return Sun{float((*v)[0]), float((*v)[1]), float((*v)[2])};
+}
+
+Result<uint64_t> parse_size(std::string_view text) {
+  std::string_view number = text;
+  double unit = 1;
+  const size_t power = text.empty() ? std::string_view::npos
+                                    : std::string_view("KMGTkmgt").find(text.back());
+  if (power != std::string_view::npos) {
+    unit = std::pow(1024.0, double(power % 4 + 1));
+    number.remove_suffix(1);
+  }
+  const auto value = parse_number(number);
+  if (!value || *value <= 0 || *value * unit > 1e18)
+    return fail(ErrorCode::bad_setting, "--max-memory '{}' is not a size; give bytes, or 900M, 1.5G",
+                text);
+  return uint64_t(*value * unit);
+}
+
+Result<int> parse_bounces(std::string_view text) {
+  if (text == "inf") return -1;
+  const auto value = parse_number(text);
+  if (!value || *value < 0 || *value > 1e6 || *value != std::floor(*value))
+    return fail(ErrorCode::bad_setting,
+                "--bounces '{}' is not a number of bounces; give 0, 1, 2, ... or inf", text);
+  return int(*value);
+}
+
+scene::PunctualLight sun_light(const Sun& sun) {
+  const float azimuth = sun.azimuth_deg * kPi / 180, elevation = sun.elevation_deg * kPi / 180;
+  scene::PunctualLight light;
+  light.name = "sun";
+  light.kind = scene::PunctualLight::Kind::directional;
+  light.intensity = Rgb{1, 1, 1} * sun.lux;
+  light.direction = -Vec3{std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                          -std::cos(azimuth) * std::cos(elevation)};
+  light.angular_radius_rad = kSunAngularRadius;
+  return light;
+}
+
+std::string add_outside_light(const OutsideLight& outside, scene::Scene& scene) {
+  if (outside.background) scene.background = *outside.background;
+  if (outside.sun && outside.sun->lux > 0) scene.lights.push_back(sun_light(*outside.sun));
+  if (scene::has_light(scene)) return {};
+  scene.background = {1, 1, 1};
+  return "the scene has no light: lit by a white background of radiance 1; --background and --sun "
+         "give others";
+}
+
+}  // namespace luxel::pipeline

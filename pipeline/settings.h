@@ -1,0 +1,69 @@
+// Everything a user can ask of a bake, as plain data.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "atlas/atlas.h"
+#include "base/result.h"
+#include "base/vec.h"
+#include "scene/scene.h"
+
+namespace luxel::pipeline {
+
+/// Where the sun stands and how strong it is.
+struct Sun {
+  float azimuth_deg = 0;    ///< compass bearing: 0 north = -Z, 90 east = +X
+  float elevation_deg = 45; ///< above the horizon, Y being up
+  float lux = 0;            ///< E on a surface that faces it [W/m^2 or lux]
+};
+
+/// Light from outside the scene's file.
+struct OutsideLight {
+  std::optional<Rgb> background;  ///< radiance of the surroundings; replaces the file's
+  std::optional<Sun> sun;
+};
+
+struct BakeSettings {
+  std::filesystem::path scene;
+  std::filesystem::path output;  ///< a folder; made when missing
+  std::string solver = "gather";
+  int resolution = 512;          ///< side of the lightmap in texels
+  float texels_per_metre = 0;    ///< > 0: chooses the resolution
+  atlas::UvMode uv = atlas::UvMode::automatic;
+  int samples = 256;
+  int direct_samples = 64;
+  int bounces = -1;              ///< < 0: all
+  uint64_t max_memory_bytes = 0; ///< 0: four fifths of what is free when the bake starts
+  uint64_t seed = 1;
+  int threads = 0;               ///< 0: all cores
+  OutsideLight outside;
+};
+
+/// Checks every number against its range. Errors (bad_setting) name the option, the value, and what
+/// works.
+Status check(const BakeSettings& settings);
+
+nlohmann::json to_json(const BakeSettings& settings);
+
+/// "r,g,b", three numbers >= 0.
+Result<Rgb> parse_background(std::string_view text);
+/// "azimuth_deg,elevation_deg,lux".
+Result<Sun> parse_sun(std::string_view text);
+/// "1500000", "900M", "1.5G": bytes; K, M, G, T are powers of 1024.
+Result<uint64_t> parse_size(std::string_view text);
+/// "inf" or a number >= 0; inf is -1.
+Result<int> parse_bounces(std::string_view text);
+
+/// The sun's disc is half a degree wide: its shadows have penumbrae.
+scene::PunctualLight sun_light(const Sun& sun);
+
+/// Adds outside light to a scene. A scene that then has no light at all gets a white background of
+/// radiance 1; the returned sentence says so (empty otherwise).
+std::string add_outside_light(const OutsideLight& outside, scene::Scene& scene);
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,50 @@
+// The table of solvers: the only place that names one by string.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "base/progress.h"
+#include "base/result.h"
+#include "pipeline/settings.h"
+#include "trace/ray_tracer.h"
+#include "transport/elements.h"
+#include "transport/lights.h"
+
+namespace luxel::pipeline {
+
+/// What every solver gets.
+struct SolveInput {
+  const scene::Scene& scene;
+  const atlas::Atlas& atlas;
+  const atlas::TexelMap& map;
+  const transport::Elements& elements;
+  const transport::Lights& lights;
+  const trace::RayTracer& tracer;
+};
+
+/// What every solver gives.
+struct TexelLight {
+  std::vector<Rgb> irradiance;  ///< E per texel of the map [W/m^2]
+  uint64_t rays = 0;
+  int sweeps = 0;
+  double relative_error = 0;    ///< estimated, root mean square over the mean
+  uint64_t suspicious_texels = 0;  ///< more than half of the rays met backs of one-sided surfaces
+  uint64_t scratch_bytes = 0;      ///< in temporary files
+};
+
+using SolveFunction = Result<TexelLight> (*)(const SolveInput&, const BakeSettings&, Progress&);
+
+struct Solver {
+  std::string_view name;
+  SolveFunction solve;
+};
+
+/// nullptr when there is no such solver.
+const Solver* find_solver(std::string_view name);
+/// "gather, ..."
+std::string solver_names();
+
+}  // namespace luxel::pipeline

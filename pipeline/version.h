@@ -1,0 +1,5 @@
+#pragma once
+
+namespace luxel::pipeline {
+inline constexpr const char* kVersion = LUXEL_VERSION;
+}

@@ -1,0 +1,103 @@
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "base/check.h"
+#include "post/seams.h"
+
+namespace luxel::post {
+namespace {
+
+/// One side of an edge of a mesh: the corner where it starts in its triangle, and the numbers of
+/// its two places in space, the smaller one first.
+struct HalfEdge {
+  uint32_t low = 0, high = 0;
+  uint32_t triangle = 0;
+  uint32_t low_corner = 0, high_corner = 0;
+};
+
+/// Vertices at exactly the same place get the same number: exporters split vertices along UV seams
+/// and hard edges, and the split copies have equal positions, bit for bit.
+std::vector<uint32_t> place_numbers(const std::vector<Vec3>& positions) {
+  const auto key = [&](uint32_t i) {
+    const Vec3 p = positions[i];
+    return std::tuple(p.x, p.y, p.z);
+  };
+  std::vector<uint32_t> order(positions.size());
+  for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+  std::vector<uint32_t> number(positions.size());
+  uint32_t next = 0;
+  for (size_t i = 0; i < order.size(); ++i) {
+    if (i > 0 && key(order[i - 1]) != key(order[i])) ++next;
+    number[order[i]] = next;
+  }
+  return number;
+}
+
+/// Sorted, so that the sides of an edge follow each other.
+std::vector<HalfEdge> half_edges(const scene::Mesh& mesh) {
+  const std::vector<uint32_t> place = place_numbers(mesh.positions);
+  std::vector<HalfEdge> edges;
+  edges.reserve(3 * mesh.triangles.size());
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (uint32_t c = 0; c < 3; ++c) {
+      const uint32_t d = (c + 1) % 3;
+      const uint32_t from = place[mesh.triangles[t][c]], to = place[mesh.triangles[t][d]];
+      if (from == to) continue;
+      edges.push_back(from < to ? HalfEdge{from, to, t, c, d} : HalfEdge{to, from, t, d, c});
+    }
+  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return std::tie(a.low, a.high, a.triangle, a.low_corner) <
+           std::tie(b.low, b.high, b.triangle, b.low_corner);
+  });
+  return edges;
+}
+
+Barycentric corner(uint32_t c) { return {c == 1 ? 1.0f : 0.0f, c == 2 ? 1.0f : 0.0f}; }
+
+/// Whether light may pass smoothly over the edge: the shading normals agree at both ends.
+bool is_smooth(const scene::Scene& scene, uint32_t instance, const HalfEdge& a, const HalfEdge& b,
+               float min_cosine) {
+  const auto agree = [&](uint32_t corner_a, uint32_t corner_b) {
+    return dot(shading_normal(scene, {instance, a.triangle, corner(corner_a)}),
+               shading_normal(scene, {instance, b.triangle, corner(corner_b)})) >= min_cosine;
+  };
+  return agree(a.low_corner, b.low_corner) && agree(a.high_corner, b.high_corner);
+}
+
+void add_seam(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t instance,
+              const HalfEdge& a, const HalfEdge& b, float min_cosine, std::vector<Seam>& seams) {
+  const auto& in_a = atlas.corners[atlas.triangle_number(instance, a.triangle)];
+  const auto& in_b = atlas.corners[atlas.triangle_number(instance, b.triangle)];
+  const Seam seam{in_a[a.low_corner], in_a[a.high_corner], in_b[b.low_corner], in_b[b.high_corner]};
+  if (seam.a0 == seam.b0 && seam.a1 == seam.b1) return;  // one place in the atlas
+  if (is_smooth(scene, instance, a, b, min_cosine)) seams.push_back(seam);
+}
+
+}  // namespace
+
+std::vector<Seam> find_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
+                             float max_normal_angle_rad) {
+  LUXEL_CHECK(atlas.first_triangle.size() == scene.instances.size() + 1);
+  const float min_cosine = std::cos(max_normal_angle_rad);
+  std::vector<std::vector<HalfEdge>> edges_of(scene.meshes.size());
+  std::vector<Seam> seams;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const uint32_t mesh = scene.instances[i].mesh;
+    std::vector<HalfEdge>& edges = edges_of[mesh];
+    if (edges.empty()) edges = half_edges(scene.meshes[mesh]);
+    for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+      while (end < edges.size() && edges[end].low == edges[begin].low &&
+             edges[end].high == edges[begin].high)
+        ++end;
+      // Two sides as a rule. Where more triangles meet, each goes with the next: all that agree
+      // hang together, without a square number of pairs.
+      for (size_t a = begin; a + 1 < end; ++a)
+        add_seam(scene, atlas, i, edges[a], edges[a + 1], min_cosine, seams);
+    }
+  }
+  return seams;
+}
+
+}  // namespace luxel::post

@@ -1,0 +1,35 @@
+// Light that arrives straight from the sources.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "scene/scene.h"
+#include "trace/ray_tracer.h"
+#include "transport/elements.h"
+#include "transport/lights.h"
+
+namespace luxel::gather {
+
+struct DirectParams {
+  int samples = 64;   ///< shadow rays per element towards triangle lights, and towards each sun disc
+  uint64_t seed = 1;
+};
+
+struct DirectLight {
+  std::vector<Rgb> irradiance;   ///< E per element [W/m^2]
+  std::vector<float> variance;   ///< estimated variance of its luminance
+  uint64_t rays = 0;
+};
+
+/// E at every element from emissive triangles, point, spot and directional lights (the background
+/// is seen by indirect rays). Each source's unshadowed irradiance is exact; only the visible share
+/// is sampled, so that where a source is seen whole, or not at all, the result has no noise.
+/// [Heitz18; docs/gather.md]. Errors: cancelled.
+Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Elements& elements,
+                                 const transport::Lights& lights, const trace::RayTracer& tracer,
+                                 const DirectParams& params, Progress& progress);
+
+}  // namespace luxel::gather

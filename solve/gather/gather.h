@@ -1,0 +1,37 @@
+// Radiosity maps: Monte Carlo gather per texel. [Moreno05]
+#pragma once
+
+#include "solve/gather/bounces.h"
+#include "solve/gather/direct_light.h"
+#include "solve/gather/trace_hits.h"
+
+namespace luxel::gather {
+
+struct GatherParams {
+  int samples = 256;         ///< indirect rays per element
+  int direct_samples = 64;   ///< shadow rays per element towards emissive surfaces
+  int bounces = -1;          ///< < 0: all
+  float tolerance = 1e-4f;   ///< see BounceParams
+  uint64_t seed = 1;
+  uint64_t hit_memory_bytes = UINT64_MAX;
+  std::filesystem::path scratch_folder = ".";
+};
+
+struct Gather {
+  std::vector<Rgb> irradiance;    ///< E per element [W/m^2], after all bounces
+  std::vector<uint16_t> met_back; ///< rays per element that met the back of a one-sided surface
+  uint64_t rays = 0;
+  int sweeps = 0;
+  uint64_t hit_bytes_in_file = 0;
+  /// Root mean square of the estimated standard errors over the mean irradiance. Conservative: it
+  /// takes the samples for independent, which stratified ones beat.
+  double relative_error = 0;
+};
+
+/// Direct light, rays, bounces: the chain of docs/gather.md. Errors: cancelled, disk full.
+Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
+                      const atlas::TexelMap& map, const transport::Elements& elements,
+                      const transport::Lights& lights, const trace::RayTracer& tracer,
+                      const GatherParams& params, Progress& progress);
+
+}  // namespace luxel::gather

@@ -1,0 +1,47 @@
+// Shoots every element's cosine-distributed rays once and remembers what they met.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "base/progress.h"
+#include "base/result.h"
+#include "scene/scene.h"
+#include "solve/gather/hit_store.h"
+#include "trace/ray_tracer.h"
+#include "transport/elements.h"
+
+namespace luxel::gather {
+
+struct TraceParams {
+  int samples = 256;  ///< rays per element
+  uint64_t seed = 1;
+  uint64_t memory_limit_bytes = UINT64_MAX;  ///< for hits; the rest goes to a temporary file
+  std::filesystem::path scratch_folder = ".";
+};
+
+struct TracedHits {
+  HitStore store;
+  int samples = 0;
+  /// Per element, how many of its rays left the scene, and how many met the back of a one-sided
+  /// surface close by or far: those bring no light, and many of them mean that the element lies
+  /// inside a solid (kept for leak repair).
+  std::vector<uint16_t> escaped, met_back;
+  uint64_t rays = 0;
+};
+
+/// One ray per sample, directions from an Owen-scrambled Sobol sequence of its own per element,
+/// cosine-distributed about the shading normal [Moreno05, eq. 3.7]. Directions below the triangle
+/// itself are mirrored to above it. Errors: cancelled, disk full.
+Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
+                              const transport::Elements& elements, const trace::RayTracer& tracer,
+                              const TraceParams& params, Progress& progress);
+
+/// The rays of one element, in the order in which they are traced: sorted so that neighbours in a
+/// packet point in similar directions. Shared with `luxel bench rays`.
+void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,
+                  std::span<trace::Ray> rays);
+
+}  // namespace luxel::gather

@@ -1,0 +1,57 @@
+// Everything that shines, in a form that can be sampled.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/vec.h"
+#include "scene/scene.h"
+
+namespace luxel::transport {
+
+/// An emissive triangle of the scene in the world.
+struct TriangleLight {
+  Vec3 a, b, c;          ///< counter-clockwise seen from the front, in the world
+  Vec3 normal;           ///< unit, front side
+  float area_m2 = 0;
+  Rgb mean_radiance;     ///< over the triangle, for choosing; never zero for a light that shines
+  uint32_t instance = 0, triangle = 0;
+  bool flipped = false;  ///< b and c are swapped against the mesh's corner order (mirrored instance)
+  bool textured = false;
+  bool two_sided = false;
+};
+
+/// A node of the light hierarchy: a range of triangles and what an element far away needs to know.
+struct LightNode {
+  Box3 bounds;
+  float power = 0;             ///< sum of luminance(mean radiance) * area * sides
+  uint32_t first = 0, count = 0;
+  uint32_t right_child = 0;    ///< the left child follows its parent; 0: a leaf of one triangle
+};
+
+struct Lights {
+  std::vector<TriangleLight> triangles;  ///< in the order of the hierarchy's leaves
+  std::vector<float> power_below;        ///< sum of powers before each triangle; one extra entry
+  std::vector<LightNode> nodes;          ///< binary, depth first; node 0 is the root
+  std::vector<scene::PunctualLight> punctual;
+  Rgb background{};                      ///< radiance of rays that leave the scene
+};
+
+/// Finds the emissive triangles, averages their textures and builds the hierarchy. A light with no
+/// power is left out.
+Lights collect_lights(const scene::Scene& scene);
+
+/// Emitted radiance at a point of a triangle light.
+Rgb radiance_at(const scene::Scene& scene, const TriangleLight& light, Barycentric at);
+
+/// Irradiance on a surface that faces the light squarely at `position`, nothing in between
+/// [W/m^2], and the unit direction towards the light (for a directional light, its centre).
+struct PunctualIncidence {
+  Rgb irradiance;
+  Vec3 towards;
+  float distance_m = INFINITY;
+};
+/// Point and spot: I / d^2 times glTF's range window and cone falloff [KHR_lights_punctual].
+PunctualIncidence incidence_at(const scene::PunctualLight& light, Vec3 position);
+
+}  // namespace luxel::transport

@@ -13,6 +13,15 @@ namespace {
 
 constexpr unsigned kPacket = 16;
 
+/// Packets take Embree's hybrid traversal. The one for packets declared coherent loops for ever now
+/// and then in Embree 3.13.5 (seen in rtcOccluded16 with instances), so it is not used.
+RTCIntersectContext packet_context() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return context;
+}
+
 /// What a filter function needs to find the hole in a mask.
 struct MeshTag {
   const scene::Scene* scene = nullptr;
@@ -135,12 +144,13 @@ Result<RayTracer> RayTracer::build(const scene::Scene& scene) {
 
 namespace {
 
-/// Loads up to 16 rays; lanes beyond `count` stay invalid.
+/// Loads up to 16 rays. Lanes beyond the last are invalid; they hold copies of the first ray, so that
+/// no garbage reaches Embree.
 unsigned load_packet(std::span<const Ray> rays, int* valid, RTCRay16& out) {
   const unsigned count = unsigned(std::min<size_t>(kPacket, rays.size()));
-  for (unsigned i = 0; i < kPacket; ++i) valid[i] = i < count ? -1 : 0;
-  for (unsigned i = 0; i < count; ++i) {
-    const Ray& ray = rays[i];
+  for (unsigned i = 0; i < kPacket; ++i) {
+    valid[i] = i < count ? -1 : 0;
+    const Ray& ray = rays[i < count ? i : 0];
     out.org_x[i] = ray.origin.x, out.org_y[i] = ray.origin.y, out.org_z[i] = ray.origin.z;
     out.dir_x[i] = ray.direction.x, out.dir_y[i] = ray.direction.y, out.dir_z[i] = ray.direction.z;
     out.tnear[i] = ray.t_min, out.tfar[i] = ray.t_max;
@@ -153,9 +163,7 @@ unsigned load_packet(std::span<const Ray> rays, int* valid, RTCRay16& out) {
 
 void RayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const {
   LUXEL_CHECK(rays.size() == hits.size());
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCIntersectContext context = packet_context();
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
     RTCRayHit16 packet;
@@ -186,9 +194,7 @@ Hit RayTracer::closest_hit(const Ray& ray) const {
 
 void RayTracer::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const {
   LUXEL_CHECK(rays.size() == blocked.size());
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCIntersectContext context = packet_context();
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
     RTCRay16 packet;

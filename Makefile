@@ -5,7 +5,8 @@
 
 SHELL := /bin/bash
 LUXEL := build/release/bin/luxel
-SOURCES := git ls-files -z '*.h' '*.cpp'
+SOURCES := find . \( -path ./build -o -path './.*' -o -name node_modules \) -prune -o \
+           \( -name '*.h' -o -name '*.cpp' \) -print0
 
 # ccache, where there is one, makes rebuilding cheap. It is never required.
 ifneq ($(shell command -v ccache),)

@@ -24,15 +24,15 @@ if [[ ${#missing[@]} -eq 0 ]]; then
   exit 0
 fi
 
-as_root=()
+as_root=(env)
 if [[ $(id -u) -ne 0 ]]; then
   if ! command -v sudo >/dev/null; then
     echo "setup: not root and no sudo; as root: apt-get install ${missing[*]}" >&2
     exit 1
   fi
-  as_root=(sudo)
+  as_root=(sudo env)
 fi
+# Through env, because sudo drops the variable.
 echo "setup: installing ${missing[*]}"
-export DEBIAN_FRONTEND=noninteractive
 "${as_root[@]}" apt-get update -q
-"${as_root[@]}" apt-get install -y -q --no-install-recommends "${missing[@]}"
+"${as_root[@]}" DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"

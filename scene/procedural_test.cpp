@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 #include <tuple>
 
 #include "scene/shapes.h"
-#include "tests/support.h"
+#include "tests/reference_data.h"
 
 namespace luxel::scene {
 namespace {
@@ -26,18 +25,6 @@ struct FactQuad {
   std::array<DVec, 4> corners_mm;
 };
 
-std::vector<std::string> cells_of(const std::string& row) {
-  std::vector<std::string> cells;
-  std::stringstream in(row);
-  for (std::string cell; std::getline(in, cell, '|');) {
-    const size_t first = cell.find_first_not_of(' ');
-    cells.push_back(first == std::string::npos
-                        ? ""
-                        : cell.substr(first, cell.find_last_not_of(' ') - first + 1));
-  }
-  return cells;
-}
-
 DVec triple_of(const std::string& text) {
   std::stringstream in(text);
   DVec v{};
@@ -47,22 +34,12 @@ DVec triple_of(const std::string& text) {
 }
 
 std::vector<FactQuad> fact_quads() {
-  std::ifstream in(testing_support::shared_folder() / kFacts);
   std::vector<FactQuad> quads;
-  bool in_table = false;
-  for (std::string line; std::getline(in, line);) {
-    if (line.rfind("| surface | material |", 0) == 0) {
-      in_table = true;
-      continue;
-    }
-    if (!in_table || line.rfind("|---", 0) == 0) continue;
-    const auto cells = cells_of(line);
-    if (cells.size() < 7) break;
+  for (const auto& cells : testing_support::markdown_rows(kFacts, "Geometry", "surface"))
     quads.push_back(
-        {cells[1],
-         cells[2],
-         {triple_of(cells[3]), triple_of(cells[4]), triple_of(cells[5]), triple_of(cells[6])}});
-  }
+        {cells[0],
+         cells[1],
+         {triple_of(cells[2]), triple_of(cells[3]), triple_of(cells[4]), triple_of(cells[5])}});
   return quads;
 }
 
@@ -235,36 +212,29 @@ TEST(CornellBox, TheLampFillsTheHoleOfTheCeiling) {
 
 TEST(CornellBox, ColoursAreThoseOfTheTable) {
   LUXEL_NEEDS_SHARED(kFacts);
-  std::ifstream in(testing_support::shared_folder() / kFacts);
-  const std::map<std::string, CornellColors> sets{{"| D:", CornellColors::d65},
-                                                  {"| M:", CornellColors::mitsuba},
-                                                  {"| P:", CornellColors::pbrt}};
-  int found = 0;
-  for (std::string line; std::getline(in, line);)
-    for (const auto& [prefix, colors] : sets) {
-      if (line.rfind(prefix, 0) != 0) continue;
-      ++found;
-      const auto cells = cells_of(line);
-      const Scene scene = cornell_box(colors);
-      for (const Material& m : scene.materials) {
-        const bool lamp = m.name == "light";
-        if (lamp && colors == CornellColors::d65) {
-          // No radiance in the data: neutral, with the luminance of set P's lamp.
-          EXPECT_EQ(m.emission.x, m.emission.y);
-          EXPECT_EQ(m.emission.x, m.emission.z);
-          EXPECT_NEAR(luminance(m.emission), luminance({17, 12, 4}), 1e-4);
-          continue;
-        }
-        const DVec c = triple_of(cells[lamp                ? 5
-                                       : m.name == "white" ? 2
-                                       : m.name == "green" ? 3
-                                                           : 4]);
-        const Rgb have = lamp ? m.emission : m.base_color;
-        EXPECT_EQ(have, (Rgb{float(c.x), float(c.y), float(c.z)})) << line << m.name;
-        EXPECT_FALSE(m.double_sided);
+  const auto rows = testing_support::markdown_rows(kFacts, "Linear sRGB", "set");
+  ASSERT_EQ(rows.size(), 3u);
+  const std::map<char, CornellColors> sets{
+      {'D', CornellColors::d65}, {'M', CornellColors::mitsuba}, {'P', CornellColors::pbrt}};
+  for (const auto& cells : rows) {
+    const CornellColors colors = sets.at(cells[0][0]);
+    const Scene scene = cornell_box(colors);
+    ASSERT_EQ(scene.materials.size(), 4u);
+    for (const Material& m : scene.materials) {
+      EXPECT_FALSE(m.double_sided);
+      const bool lamp = m.name == "light";
+      const Rgb have = lamp ? m.emission : m.base_color;
+      if (lamp && colors == CornellColors::d65) {
+        // No radiance in the data: neutral, with the luminance of set P's lamp.
+        EXPECT_EQ(have, (Rgb{have.x, have.x, have.x}));
+        EXPECT_NEAR(luminance(have), luminance({17, 12, 4}), 1e-4);
+        continue;
       }
+      const size_t column = lamp ? 4 : m.name == "white" ? 1 : m.name == "green" ? 2 : 3;
+      const DVec c = triple_of(cells[column]);
+      EXPECT_EQ(have, (Rgb{float(c.x), float(c.y), float(c.z)})) << cells[0] << m.name;
     }
-  EXPECT_EQ(found, 3);
+  }
 }
 
 // The published camera: a point of the opening's rim at the edge of the film's field of view, and

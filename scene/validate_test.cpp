@@ -50,7 +50,7 @@ TEST(Validate, ZeroAreaTrianglesAreDroppedAndCounted) {
   Scene scene = good_scene();
   Mesh& mesh = scene.meshes[0];
   mesh.positions.insert(mesh.positions.end(),
-                        {{0.1f, 0.1f, 0.1f}, {0.2f, 0.2f, 0.2f}, {0.3f, 0.3f, 0.3f}, {1, 0, 0}});
+                        {{0.1f, 0.2f, 0.7f}, {0.2f, 0.4f, 1.4f}, {0.3f, 0.6f, 2.1f}, {1, 0, 0}});
   mesh.triangles = {{1, 1, 2}, {0, 1, 2}, {4, 5, 6}, {1, 7, 2}};  // the first: corners repeated;
   mesh.triangle_material = {0, 0, 0, 0};  // the third: on a line up to rounding; the last: twins
   EXPECT_THAT(warnings_of(scene), HasSubstr("3 zero-area triangles dropped from mesh 0 (quad)"));

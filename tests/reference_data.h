@@ -11,8 +11,8 @@
 
 namespace luxel::testing_support {
 
-/// The cells of each row of the first markdown table whose header's first cell is `first_header` and
-/// which has a column `column`, below the heading that contains `section`.
+/// The cells of each row of the first markdown table whose header's first cell is `first_header`
+/// and which has a column `column`, below the heading that contains `section`.
 inline std::vector<std::vector<std::string>> markdown_rows(const std::string& file,
                                                            const std::string& section,
                                                            const std::string& first_header) {
@@ -68,9 +68,12 @@ inline std::vector<std::vector<std::string>> csv_rows(const std::string& file) {
     std::vector<std::string> cells(1);
     bool quoted = false;
     for (const char c : line) {
-      if (c == '"') quoted = !quoted;
-      else if (c == ',' && !quoted) cells.emplace_back();
-      else cells.back() += c;
+      if (c == '"')
+        quoted = !quoted;
+      else if (c == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += c;
     }
     rows.push_back(cells);
   }

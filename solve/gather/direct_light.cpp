@@ -106,13 +106,15 @@ LightPoint sample_area(const TriangleLight& light, const Receiver& r, Vec2 u) {
 void shoot_at(const scene::Scene& scene, const TriangleLight& light, const LightPoint& point,
               uint32_t source, float factor, const Receiver& r, float diagonal_m, Work& work) {
   const bool front = dot(r.position - light.a, light.normal) > 0;
-  // The ray ends just before the light, so that the light itself does not block it.
+  // The ray ends just before the light, so that the light itself does not block it, nor a wall that
+  // touches the light when the point lies on their common edge.
+  constexpr float kEnd = 1 - 1e-4f;
   const Vec3 end =
       trace::offset_origin(point.target, front ? light.normal : -light.normal, diagonal_m);
   const Rgb radiance =
       light.textured ? transport::radiance_at(scene, light, point.at) : light.mean_radiance;
   const float w = point.weight * factor;
-  add_shot(work, r, {source, w, radiance * w}, end - r.origin, 1.0f);
+  add_shot(work, r, {source, w, radiance * w}, end - r.origin, kEnd);
 }
 
 /// Shots at one triangle. Points below the receiver's horizon bring nothing and would starve the
@@ -153,8 +155,9 @@ void shoot_at_group(const scene::Scene& scene, const Lights& lights,
   }
 }
 
-/// Shares `samples` shots out over the cut in proportion to importance: an entry that deserves less
-/// than one gets one with that chance (systematic sampling), and counts for more then.
+/// Shares `samples` shots out over the cut in proportion to importance, at least one to each entry
+/// while there are twice as many shots as entries. Where there are fewer, an entry that deserves
+/// less than one gets one with that chance (systematic sampling), and counts for more then.
 void shoot_at_triangles(const scene::Scene& scene, const Lights& lights, int samples,
                         const Receiver& r, float diagonal_m, Work& work) {
   transport::light_cut(lights, r.position, r.normal, kMaxCut, work.cut);
@@ -163,8 +166,9 @@ void shoot_at_triangles(const scene::Scene& scene, const Lights& lights, int sam
   if (!(total > 0)) return;
   RandomStream random{hash64(r.seed, 0x11)};
   float owed = random.next();
+  const float least = size_t(samples) >= 2 * work.cut.size() ? 1.0f : 0.0f;
   for (const CutEntry& entry : work.cut) {
-    const float deserved = float(samples) * entry.importance / total;
+    const float deserved = std::max(least, float(samples) * entry.importance / total);
     uint32_t count = uint32_t(std::lround(deserved));
     if (deserved < 1) {
       owed += deserved;

@@ -12,6 +12,7 @@
 #include "pipeline/memory.h"
 #include "pipeline/version.h"
 #include "post/dilate.h"
+#include "post/refill.h"
 #include "post/seams.h"
 #include "transport/irradiance_field.h"
 
@@ -20,6 +21,8 @@ namespace {
 
 /// Rings of dilation: enough for bilinear lookups in four mipmap levels.
 constexpr int kDilationRings = 8;
+/// Hidden texels are refilled as far as a bilinear lookup from outside can reach.
+constexpr int kRefillRings = 2;
 constexpr int kPreviewWidth = 960, kPreviewHeight = 720;
 
 Status not_cancelled(const Progress& progress) {
@@ -61,6 +64,7 @@ Status solve(const BakeSettings& settings, const trace::RayTracer& tracer, Bake&
 
 Status repair(Bake& bake, Progress& progress) {
   progress.begin("seams", 0);
+  post::refill_hidden(bake.atlas, bake.map, bake.light.hidden, kRefillRings, bake.light.irradiance);
   const std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
   bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance);
   LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));

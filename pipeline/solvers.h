@@ -31,6 +31,7 @@ struct TexelLight {
   uint64_t rays = 0;
   int sweeps = 0;
   double relative_error = 0;       ///< estimated, root mean square over the mean
+  std::vector<uint8_t> hidden;     ///< per texel: 1 inside a solid, where E means nothing
   uint64_t suspicious_texels = 0;  ///< more than half of the rays met backs of one-sided surfaces
   uint64_t scratch_bytes = 0;      ///< in temporary files
 };

@@ -10,9 +10,7 @@
 namespace luxel {
 namespace {
 
-std::filesystem::path scenes_folder() {
-  return std::filesystem::path(LUXEL_SOURCE_DIR) / "scenes";
-}
+std::filesystem::path scenes_folder() { return std::filesystem::path(LUXEL_SOURCE_DIR) / "scenes"; }
 
 TEST(Scenes, FilesAreUpToDate) {
   for (const auto& file : tools::procedural_files()) {

@@ -37,6 +37,47 @@ Rgb mean_reflectance(const scene::Scene& scene, const atlas::Atlas& atlas,
   return sum / count;
 }
 
+/// How far a bulge may rise, relative to the triangle's size: more than the sagitta of a sphere of
+/// eight segments, and little enough not to come out behind a neighbouring wall.
+constexpr float kMaxBulge = 0.25f;
+
+/// The point lifted to the surface that the vertex normals bend over the triangle: the mean, by
+/// barycentric weights, of its projections on the three tangent planes above it. [Hanika21]
+Vec3 smooth_position(const scene::Scene& scene, const scene::SurfacePoint& p) {
+  const scene::Instance& instance = scene.instances[p.instance];
+  const scene::Mesh& mesh = scene.meshes[instance.mesh];
+  const scene::Triangle3 t = scene::world_triangle(scene, p.instance, p.triangle);
+  const Vec3 at = interpolate(t.a, t.b, t.c, p.at);
+  if (mesh.normals.empty()) return at;
+  const std::array<Vec3, 3> corners{t.a, t.b, t.c};
+  const std::array<float, 3> weights{1 - p.at.u - p.at.v, p.at.u, p.at.v};
+  const Vec3 front = scene::front_normal(scene, p.instance, p.triangle);
+  Vec3 lift{};
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec3 object = mesh.normals[mesh.triangles[p.triangle][k]];
+    const Vec3 n = normalize(transform_normal(instance.world_from_object, object));
+    // Beyond 60 degrees from the triangle a normal is not that of a smooth surface.
+    if (dot(n, front) < 0.5f) return at;
+    lift += n * (weights[k] * std::max(0.0f, dot(corners[k] - at, n)));
+  }
+  const float limit = kMaxBulge * std::sqrt(scene::area_m2(t));
+  const float height = length(lift);
+  return height <= limit ? at + lift : at + lift * (limit / height);
+}
+
+/// Lower than this part of the triangle's size a bulge is rounding.
+constexpr float kNoBulge = 1e-4f;
+
+void place_element(const scene::Scene& scene, const scene::SurfacePoint& p, size_t i, Elements& e) {
+  const Vec3 flat = scene::world_position(scene, p);
+  e.position[i] = smooth_position(scene, p);
+  e.normal[i] = scene::shading_normal(scene, p);
+  const float size =
+      std::sqrt(scene::area_m2(scene::world_triangle(scene, p.instance, p.triangle)));
+  const bool bulges = length(e.position[i] - flat) > kNoBulge * size;
+  e.geometric_normal[i] = bulges ? e.normal[i] : scene::front_normal(scene, p.instance, p.triangle);
+}
+
 }  // namespace
 
 Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
@@ -48,9 +89,7 @@ Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atl
     for (size_t i = begin; i < end; ++i) {
       const atlas::Texel& texel = map.texels[i];
       const scene::SurfacePoint& p = texel.sample;
-      e.position[i] = scene::world_position(scene, p);
-      e.normal[i] = scene::shading_normal(scene, p);
-      e.geometric_normal[i] = scene::front_normal(scene, p.instance, p.triangle);
+      place_element(scene, p, i, e);
       e.reflectance[i] = varies_over_texels(scene::material_at(scene, p))
                              ? mean_reflectance(scene, atlas, texel)
                              : scene::reflectance_at(scene, p);

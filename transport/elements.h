@@ -14,16 +14,19 @@ namespace luxel::transport {
 
 /// Structure of arrays, all of the same length.
 struct Elements {
-  std::vector<Vec3> position;          ///< on the surface, world [m]
+  std::vector<Vec3> position;          ///< on the surface (the smooth one), world [m]
   std::vector<Vec3> normal;            ///< unit shading normal of the front side
-  std::vector<Vec3> geometric_normal;  ///< unit normal of the triangle's front side
+  std::vector<Vec3> geometric_normal;  ///< unit; no light comes from below the plane it spans
   std::vector<Rgb> reflectance;        ///< rho in [0, 0.99]
 
   size_t size() const { return position.size(); }
 };
 
-/// One element per texel of the map, in its order. Reflectance is the mean over the part of the
-/// texel that its triangle covers, so that a fine texture is neither missed nor aliased.
+/// One element per texel of the map, in its order. Where vertex normals say that the surface bulges
+/// over its triangle, the element lies on the bulge and its horizon is that of the shading normal:
+/// else facets would show at the border of light and shadow [Hanika21]. Reflectance is
+/// the mean over the part of the texel that its triangle covers, so that a fine texture is neither
+/// missed nor aliased.
 Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
                               const atlas::TexelMap& map);
 

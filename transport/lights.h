@@ -11,12 +11,13 @@ namespace luxel::transport {
 
 /// An emissive triangle of the scene in the world.
 struct TriangleLight {
-  Vec3 a, b, c;          ///< counter-clockwise seen from the front, in the world
-  Vec3 normal;           ///< unit, front side
+  Vec3 a, b, c;  ///< counter-clockwise seen from the front, in the world
+  Vec3 normal;   ///< unit, front side
   float area_m2 = 0;
-  Rgb mean_radiance;     ///< over the triangle, for choosing; never zero for a light that shines
+  Rgb mean_radiance;  ///< over the triangle, for choosing; never zero for a light that shines
   uint32_t instance = 0, triangle = 0;
-  bool flipped = false;  ///< b and c are swapped against the mesh's corner order (mirrored instance)
+  bool flipped =
+      false;  ///< b and c are swapped against the mesh's corner order (mirrored instance)
   bool textured = false;
   bool two_sided = false;
 };
@@ -24,9 +25,9 @@ struct TriangleLight {
 /// A node of the light hierarchy: a range of triangles and what an element far away needs to know.
 struct LightNode {
   Box3 bounds;
-  float power = 0;             ///< sum of luminance(mean radiance) * area * sides
+  float power = 0;  ///< sum of luminance(mean radiance) * area * sides
   uint32_t first = 0, count = 0;
-  uint32_t right_child = 0;    ///< the left child follows its parent; 0: a leaf of one triangle
+  uint32_t right_child = 0;  ///< the left child follows its parent; 0: a leaf of one triangle
 };
 
 struct Lights {
@@ -34,7 +35,7 @@ struct Lights {
   std::vector<float> power_below;        ///< sum of powers before each triangle; one extra entry
   std::vector<LightNode> nodes;          ///< binary, depth first; node 0 is the root
   std::vector<scene::PunctualLight> punctual;
-  Rgb background{};                      ///< radiance of rays that leave the scene
+  Rgb background{};  ///< radiance of rays that leave the scene
 };
 
 /// Finds the emissive triangles, averages their textures and builds the hierarchy. A light with no

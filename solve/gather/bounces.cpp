@@ -15,7 +15,8 @@ namespace {
 typedef float Float4 __attribute__((vector_size(16)));
 
 /// Radiosity rho E per texel of the map, with a border of one empty texel. Coverage is 1 where
-/// there is an element, so that weights can be renormalised after a bilinear lookup.
+/// there is an element that is not hidden, so that weights can be renormalised after a bilinear
+/// lookup.
 struct RadiosityMap {
   uint32_t stride = 0;
   std::vector<Float4> texels;
@@ -29,9 +30,10 @@ RadiosityMap empty_map(int resolution) {
 }
 
 void fill(RadiosityMap& m, const atlas::TexelMap& map, const transport::Elements& elements,
-          std::span<const Rgb> irradiance) {
+          const TracedHits& hits, std::span<const Rgb> irradiance) {
   parallel_for(map.texels.size(), 1 << 14, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
+      if (is_hidden(hits, i)) continue;
       const Rgb b = elements.reflectance[i] * irradiance[i];
       m.texels[size_t(map.texels[i].y + 1) * m.stride + map.texels[i].x + 1] =
           Float4{b.x, b.y, b.z, 1.0f};
@@ -46,7 +48,7 @@ inline Float4 lookup(const RadiosityMap& m, const StoredHit& hit) {
   const Float4* lower = upper + m.stride;
   const Float4 sum =
       (upper[0] * (1 - fx) + upper[1] * fx) * (1 - fy) + (lower[0] * (1 - fx) + lower[1] * fx) * fy;
-  // Coverage is positive: the texel that holds the hit has an element.
+  // Coverage is zero only where all texels around the hit are hidden.
   return sum[3] > 0 ? sum * (1.0f / sum[3]) : Float4{};
 }
 
@@ -177,7 +179,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   progress.begin("bounces", 0);
   // Returns the root mean square change, relative to the mean irradiance.
   const auto run = [&](size_t stride) -> Result<double> {
-    fill(radiosity, map, elements, out.irradiance);
+    fill(radiosity, map, elements, hits, out.irradiance);
     Sweep sweep{source, out.irradiance, next, out.variance, stride, kPi * luminance(background),
                 {}};
     LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));

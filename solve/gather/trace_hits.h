@@ -32,6 +32,12 @@ struct TracedHits {
   uint64_t rays = 0;
 };
 
+/// Whether an element lies inside a solid, under a floor or behind a wall: most of what it sees is
+/// the back of one-sided surfaces. Its own light means nothing to anybody.
+inline bool is_hidden(const TracedHits& hits, size_t element) {
+  return 2 * int(hits.met_back[element]) > hits.samples;
+}
+
 /// One ray per sample, directions from an Owen-scrambled Sobol sequence of its own per element,
 /// cosine-distributed about the shading normal [Moreno05, eq. 3.7]. Directions below the triangle
 /// itself are mirrored to above it. Errors: cancelled, disk full.

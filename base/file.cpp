@@ -45,8 +45,7 @@ Result<TemporaryFile> write_temporary(const std::filesystem::path& path,
                                       std::span<const std::byte> bytes) {
   TemporaryFile temporary;
   temporary.name = path.string() + ".partial-" + std::to_string(::getpid());
-  const int file =
-      ::open(temporary.name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int file = ::open(temporary.name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) return write_error(path, errno);
   int error = write_all(file, bytes);
   if (::close(file) != 0 && error == 0) error = errno;

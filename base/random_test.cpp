@@ -17,8 +17,8 @@ TEST(SobolOwen2d, EveryAlignedBlockIsANetForEverySeed) {
           std::set<std::pair<int, int>> cells;
           for (uint32_t i = 0; i < (1u << m); ++i) {
             const Vec2 p = sobol_owen_2d((block << m) + i, seed);
-            cells.insert({int(p.x * float(1 << columns_log2)),
-                          int(p.y * float(1 << (m - columns_log2)))});
+            cells.insert(
+                {int(p.x * float(1 << columns_log2)), int(p.y * float(1 << (m - columns_log2)))});
           }
           EXPECT_EQ(cells.size(), size_t(1) << m) << "seed " << seed << " 2^" << m;
         }

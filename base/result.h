@@ -44,15 +44,15 @@ tl::unexpected<Error> fail(ErrorCode code, fmt::format_string<Args...> text, Arg
 #define LUXEL_CONCAT(a, b) LUXEL_CONCAT_INNER(a, b)
 
 /// LUXEL_TRY(const Scene scene, import_scene(path)); returns the error, or declares the value.
-#define LUXEL_TRY(declaration, expression)                                    \
-  auto LUXEL_CONCAT(luxel_try_, __LINE__) = (expression);                     \
-  if (!LUXEL_CONCAT(luxel_try_, __LINE__))                                    \
+#define LUXEL_TRY(declaration, expression)                                        \
+  auto LUXEL_CONCAT(luxel_try_, __LINE__) = (expression);                         \
+  if (!LUXEL_CONCAT(luxel_try_, __LINE__))                                        \
     return tl::unexpected(std::move(LUXEL_CONCAT(luxel_try_, __LINE__).error())); \
   declaration = std::move(*LUXEL_CONCAT(luxel_try_, __LINE__))
 
 /// LUXEL_TRY_STATUS(write(...)); returns the error, or goes on.
-#define LUXEL_TRY_STATUS(expression)                                              \
-  do {                                                                            \
-    auto luxel_try_status = (expression);                                         \
+#define LUXEL_TRY_STATUS(expression)                                                   \
+  do {                                                                                 \
+    auto luxel_try_status = (expression);                                              \
     if (!luxel_try_status) return tl::unexpected(std::move(luxel_try_status.error())); \
   } while (false)

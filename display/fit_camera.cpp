@@ -2,7 +2,8 @@
 //
 // Candidates stand around the scene (one-sided walls are culled, so a room shows itself like a
 // dolls' house) and inside it. Each looks at the scene with a coarse grid of rays and is scored by
-// how much of the scene's front faces it shows.
+// how much of the scene's front faces it shows, and how finely what it shows is made: the outer
+// walls of a house are large, but what people put their triangles into stands inside.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -93,18 +94,25 @@ void add_inside(const Box3& box, std::vector<Candidate>& out) {
       }
 }
 
+/// What one candidate's rays meet. `scratch` has an entry per triangle, all zero before and after.
+struct Seen {
+  float area_m2 = 0;
+  uint32_t rays = 0;
+};
+
 /// The front-face area [m^2] that the candidate's rays see, each triangle counted up to its own
 /// area. A ray of solid angle w stands for the area t^2 w / cos of the surface it meets. Sums over
 /// triangles in the order of first sight, so that equal scenes give equal scores.
 struct View {
   double area_m2 = 0;
+  double detail = 0;    ///< sum of sqrt(rays) over triangles / rays: 1 if each meets another one
   double coverage = 0;  ///< share of rays that see something
   double near = 0;      ///< share of rays blocked right before the eye
 };
 
 View look(const scene::Scene& scene, const trace::RayTracer& tracer,
           const std::vector<uint32_t>& first, const Candidate& candidate, float aspect,
-          float diagonal, std::vector<float>& seen_m2) {
+          float diagonal, std::vector<Seen>& scratch) {
   const int rows = kProbeRows, columns = std::clamp(int(float(rows) * aspect), 8, 4 * rows);
   const CameraRays rays_of(candidate.camera, columns, rows);
   std::vector<trace::Ray> rays;
@@ -126,24 +134,26 @@ View look(const scene::Scene& scene, const trace::RayTracer& tracer,
         std::abs(dot(rays[i].direction, front_normal(scene, hit.instance, hit.triangle)));
     const float area = hit.t * hit.t * pixel * axis * axis * axis / std::max(cosine, 0.05f);
     const uint32_t number = first[hit.instance] + hit.triangle;
-    if (seen_m2[number] == 0) touched.push_back(number);
-    seen_m2[number] += std::max(area, 1e-30f);
+    if (scratch[number].rays++ == 0) touched.push_back(number);
+    scratch[number].area_m2 += area;
   }
   for (uint32_t number : touched) {
     const uint32_t instance =
         uint32_t(std::upper_bound(first.begin(), first.end(), number) - first.begin()) - 1;
     const float whole = area_m2(world_triangle(scene, instance, number - first[instance]));
-    view.area_m2 += double(std::min(seen_m2[number], whole));
-    seen_m2[number] = 0;
+    view.area_m2 += double(std::min(scratch[number].area_m2, whole));
+    view.detail += std::sqrt(double(scratch[number].rays));
+    scratch[number] = {};
   }
   view.coverage /= double(rays.size());
+  view.detail /= double(rays.size());
   view.near /= double(rays.size());
   return view;
 }
 
 /// Full marks for a frame that is 40 to 95 % filled; inside a room it is filled by nature.
 double coverage_marks(const Candidate& candidate, const View& view) {
-  if (view.coverage < 0.4) return 0.25 + 0.75 * view.coverage / 0.4;
+  if (view.coverage < 0.4) return view.coverage / 0.4;
   if (view.coverage > 0.95 && !candidate.inside) return 0.8;
   return 1;
 }
@@ -161,11 +171,11 @@ scene::Camera fit_camera(const scene::Scene& scene, const trace::RayTracer& trac
   const std::vector<uint32_t> first = first_triangles(scene);
   std::vector<double> scores(candidates.size());
   parallel_for(candidates.size(), 8, [&](size_t begin, size_t end) {
-    std::vector<float> seen_m2(first.back());
+    std::vector<Seen> scratch(first.back());
     for (size_t i = begin; i < end; ++i) {
-      const View view = look(scene, tracer, first, candidates[i], aspect, box.diagonal(), seen_m2);
-      scores[i] = view.area_m2 * coverage_marks(candidates[i], view) * (1 - view.near) *
-                  double(candidates[i].liking);
+      const View view = look(scene, tracer, first, candidates[i], aspect, box.diagonal(), scratch);
+      scores[i] = view.detail * std::sqrt(view.area_m2) * coverage_marks(candidates[i], view) *
+                  (1 - view.near) * double(candidates[i].liking);
     }
   });
   const size_t best = size_t(std::max_element(scores.begin(), scores.end()) - scores.begin());

@@ -163,22 +163,24 @@ struct Reader {
 };
 
 /// One number or list. Errors: not finite, no vertex of that index.
+/// `where` is a function: a sentence is made only for the number that is wrong.
+template <class Where>
 Status check_property(const Property& property, Reader& reader, uint64_t vertices,
-                      const std::string& where) {
+                      const Where& where) {
   double count = 1, value = 0;
   const bool is_list = property.list_count != Kind::none;
   if (is_list && (!reader.next(property.list_count, count) || count < 0))
-    return fail(ErrorCode::bad_input, "{}: the file ends early, or a number is broken", where);
+    return fail(ErrorCode::bad_input, "{}: the file ends early, or a number is broken", where());
   const bool is_index = property.name == "vertex_indices" || property.name == "vertex_index";
   for (double i = 0; i < count; ++i) {
     if (!reader.next(property.kind, value))
-      return fail(ErrorCode::bad_input, "{}: the file ends early, or a number is broken", where);
+      return fail(ErrorCode::bad_input, "{}: the file ends early, or a number is broken", where());
     if (!std::isfinite(value))
-      return fail(ErrorCode::bad_input, "{}: {} is {}, not a finite number", where, property.name,
+      return fail(ErrorCode::bad_input, "{}: {} is {}, not a finite number", where(), property.name,
                   value);
     if (is_index && (value < 0 || value >= double(vertices)))
       return fail(ErrorCode::bad_input,
-                  "{}: vertex index {} is out of range, there are {} vertices", where, value,
+                  "{}: vertex index {} is out of range, there are {} vertices", where(), value,
                   vertices);
   }
   return {};
@@ -195,10 +197,11 @@ Status check_ply(const SourceFile& source) {
   for (const Element& element : header.elements) {
     // Nothing to read means nothing that a wrong count would run into.
     if (element.properties.empty()) continue;
-    for (uint64_t i = 0; i < element.count; ++i)
+    for (uint64_t i = 0; i < element.count; ++i) {
+      const auto where = [&] { return fmt::format("{}: {} {}", source.name, element.name, i); };
       for (const Property& property : element.properties)
-        LUXEL_TRY_STATUS(check_property(property, reader, vertices,
-                                        fmt::format("{}: {} {}", source.name, element.name, i)));
+        LUXEL_TRY_STATUS(check_property(property, reader, vertices, where));
+    }
   }
   return {};
 }

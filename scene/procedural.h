@@ -5,8 +5,9 @@
 
 namespace luxel::scene {
 
-/// Which RGB triples stand for the Cornell box's measured spectra (the names and the numbers are
-/// those of docs/cornell-box.md: D = spectra under D65 with the lamp's hue scaled, M, P).
+/// Which RGB triples stand for the Cornell box's measured spectra; docs/cornell-box.md has the
+/// numbers. d65 = the spectra under D65 with a neutral lamp of the luminance of set pbrt's; mitsuba
+/// and pbrt = those renderers' scenes.
 enum class CornellColors { d65, mitsuba, pbrt };
 
 /// The measured Cornell box in metres (1 unit of the data = 1 mm), Y up, with the published camera.
@@ -19,8 +20,9 @@ Scene cornell_box(CornellColors colors = CornellColors::pbrt, bool with_blocks =
 /// `tessellation` n gives n x n quads per wall.
 Scene furnace_box(Rgb reflectance, Rgb emission, int tessellation = 1);
 
-/// Spheres and cube: a red and a yellow sphere and a gray cube float in an open box with green and
-/// gray walls, background slightly green; 478 triangles. [Moreno05, section 5.2, figure 5.8]
+/// Spheres and cube: a red and a yellow sphere and a gray cube float in a box with green and gray
+/// walls, lit by a lamp in its ceiling and, through its open front (+z), by a slightly green
+/// background; 478 triangles. [Moreno05, section 5.2, figure 5.8]
 Scene spheres_and_cube();
 
 /// A sphere of radius `radius_m` seen from inside (normals point inwards), latitude-longitude-free:

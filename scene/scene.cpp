@@ -93,8 +93,7 @@ Vec3 shading_normal(const Scene& scene, const SurfacePoint& p) {
   const Mesh& mesh = mesh_of(scene, p.instance);
   if (mesh.normals.empty()) return front;
   const Vec3 object = attribute_at(mesh.normals, mesh.triangles[p.triangle], p.at);
-  const Vec3 n =
-      normalize(transform_normal(scene.instances[p.instance].world_from_object, object));
+  const Vec3 n = normalize(transform_normal(scene.instances[p.instance].world_from_object, object));
   // Some files have normals that point inwards, or none at all that survive interpolation.
   const float side = dot(n, front);
   if (std::abs(side) < 1e-3f) return front;
@@ -123,7 +122,8 @@ std::array<float, 4> base_color_at(const Scene& scene, const SurfacePoint& p) {
 Rgb reflectance_at(const Scene& scene, const SurfacePoint& p) {
   const Material& material = material_at(scene, p);
   const auto c = base_color_at(scene, p);
-  const float metallic = material.metallic * texture_at(scene, p, material.metallic_texture, false)[2];
+  const float metallic =
+      material.metallic * texture_at(scene, p, material.metallic_texture, false)[2];
   const float diffuse = 1 - std::clamp(metallic, 0.0f, 1.0f);
   return {std::clamp(c[0] * diffuse, 0.0f, 0.99f), std::clamp(c[1] * diffuse, 0.0f, 0.99f),
           std::clamp(c[2] * diffuse, 0.0f, 0.99f)};

@@ -1,9 +1,10 @@
 // The scene: plain data, parts refer to each other by index.
 //
-// Units: metres, radians, linear RGB with sRGB primaries. Y is up. UV as in glTF: v grows downwards.
-// Triangles are counter-clockwise seen from their front side. An instance whose transform mirrors
-// keeps its front side (as glTF asks), so its world triangles are wound the other way round:
-// ask world_triangle() below, which returns corners that are counter-clockwise in the world.
+// Units: metres, radians, linear RGB with sRGB primaries. Y is up. UV as in glTF: v grows
+// downwards. Triangles are counter-clockwise seen from their front side. An instance whose
+// transform mirrors keeps its front side (as glTF asks), so its world triangles are wound the other
+// way round: ask world_triangle() below, which returns corners that are counter-clockwise in the
+// world.
 #pragma once
 
 #include <array>
@@ -62,12 +63,12 @@ struct Material {
 /// Indexed triangles. Attribute arrays are either empty or as long as `positions`.
 struct Mesh {
   std::string name;
-  std::vector<Vec3> positions;                   ///< object space
-  std::vector<Vec3> normals;                     ///< unit, object space; empty: flat shading
-  std::vector<Vec2> uv0, uv1;                    ///< TEXCOORD_0, TEXCOORD_1
-  std::vector<Rgb> colors;                       ///< linear, multiplies the base colour
+  std::vector<Vec3> positions;  ///< object space
+  std::vector<Vec3> normals;    ///< unit, object space; empty: flat shading
+  std::vector<Vec2> uv0, uv1;   ///< TEXCOORD_0, TEXCOORD_1
+  std::vector<Rgb> colors;      ///< linear, multiplies the base colour
   std::vector<std::array<uint32_t, 3>> triangles;
-  std::vector<uint32_t> triangle_material;       ///< per triangle, index into Scene::materials
+  std::vector<uint32_t> triangle_material;  ///< per triangle, index into Scene::materials
 };
 
 /// A mesh placed in the world.
@@ -82,11 +83,11 @@ struct PunctualLight {
   enum class Kind : uint8_t { point, spot, directional };
   std::string name;
   Kind kind = Kind::point;
-  Rgb intensity{1, 1, 1};      ///< I [W/sr] for point and spot; E on a facing surface [W/m^2] else
-  Vec3 position{};             ///< point, spot
-  Vec3 direction{0, -1, 0};    ///< spot, directional: unit, the way the light travels
-  float range_m = 0;           ///< 0 = no limit; else glTF's window function
-  float inner_cone_rad = 0;    ///< spot: full light inside
+  Rgb intensity{1, 1, 1};    ///< I [W/sr] for point and spot; E on a facing surface [W/m^2] else
+  Vec3 position{};           ///< point, spot
+  Vec3 direction{0, -1, 0};  ///< spot, directional: unit, the way the light travels
+  float range_m = 0;         ///< 0 = no limit; else glTF's window function
+  float inner_cone_rad = 0;  ///< spot: full light inside
   float outer_cone_rad = kPi / 4;  ///< spot: no light outside
   float angular_radius_rad = 0;    ///< directional: half the angle of the disc (sun 0.00465)
 };

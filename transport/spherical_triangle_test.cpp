@@ -21,7 +21,9 @@ TEST(SphericalTriangle, ASmallFarTriangleCoversAreaOverDistanceSquared) {
 TEST(SphericalTriangle, InvertUndoesSample) {
   RandomStream random{7};
   for (int k = 0; k < 200; ++k) {
-    const auto corner = [&] { return Vec3{random.next() - 0.5f, random.next() - 0.5f, 0.3f + random.next()}; };
+    const auto corner = [&] {
+      return Vec3{random.next() - 0.5f, random.next() - 0.5f, 0.3f + random.next()};
+    };
     const auto t = spherical_triangle({}, corner(), corner(), corner());
     if (t.solid_angle < 1e-2f) continue;
     const Vec2 u{0.05f + 0.9f * random.next(), 0.05f + 0.9f * random.next()};
@@ -42,13 +44,15 @@ TEST(SphericalTriangle, SamplesHaveTheMeanOfTheUniformDensity) {
   Vec3 exact{};
   for (int k = 0; k < 3; ++k) {
     const Vec3 n = cross(r[k], r[(k + 1) % 3]);
-    exact += normalize(n) * (std::atan2(length(n), dot(r[k], r[(k + 1) % 3])) / (2 * t.solid_angle));
+    exact +=
+        normalize(n) * (std::atan2(length(n), dot(r[k], r[(k + 1) % 3])) / (2 * t.solid_angle));
   }
   Vec3 mean{};
   const int n = 4096;
   for (int i = 0; i < n; ++i)
     mean += spherical_triangle_sample(t, sobol_owen_2d(uint32_t(i), 3)) / float(n);
-  // A scrambled net of 4096 points errs by about n^-1.5 = 4e-6 on a smooth function; float adds 1e-5.
+  // A scrambled net of 4096 points errs by about n^-1.5 = 4e-6 on a smooth function; float adds
+  // 1e-5.
   EXPECT_NEAR(mean.x, exact.x, 1e-4f);
   EXPECT_NEAR(mean.y, exact.y, 1e-4f);
   EXPECT_NEAR(mean.z, exact.z, 1e-4f);

@@ -1,0 +1,54 @@
+# Short names for the few commands that everybody needs. CMakePresets.json has the details.
+#
+#   make demo    installs what is missing, builds, bakes the Cornell box
+#   make test    installs what is missing, builds, runs every test
+
+SHELL := /bin/bash
+LUXEL := build/release/bin/luxel
+SOURCES := find . \( -path ./build -o -path './.*' -o -name node_modules \) -prune -o \
+           \( -name '*.h' -o -name '*.cpp' \) -print0
+
+# ccache, where there is one, makes rebuilding cheap. It is never required.
+ifneq ($(shell command -v ccache),)
+export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
+endif
+# One compiler for every GB of memory, at most one per core: Debian machines swap otherwise.
+JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
+          print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
+
+.PHONY: setup build test demo bench asan format format-check clean
+
+setup:
+	@tools/setup.sh
+
+build: setup
+	cmake --preset release
+	cmake --build --preset release --parallel $(JOBS) --target luxel
+
+test: setup
+	cmake --preset release
+	cmake --build --preset release --parallel $(JOBS)
+	ctest --preset release --parallel $$(nproc)
+
+demo: build
+	$(LUXEL) bake scenes/cornell-box.glb -o baked/cornell-box --resolution 256 --samples 512
+	@echo
+	@echo "Open baked/cornell-box/preview.png; baked/cornell-box/baked.glb goes into any glTF viewer."
+
+bench: build
+	$(LUXEL) bench all
+
+# The fast tests under AddressSanitizer and UndefinedBehaviorSanitizer.
+asan: setup
+	cmake --preset asan
+	cmake --build --preset asan --parallel $(JOBS)
+	ctest --preset asan --parallel $$(nproc)
+
+format:
+	$(SOURCES) | xargs -0 clang-format -i
+
+format-check: setup
+	$(SOURCES) | xargs -0 clang-format --dry-run -Werror
+
+clean:
+	rm -rf build baked

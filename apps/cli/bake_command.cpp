@@ -1,0 +1,95 @@
+#include <cstdio>
+
+#include "apps/cli/cli.h"
+#include "pipeline/bake.h"
+
+namespace luxel::cli {
+namespace {
+
+struct BakeOptions {
+  Common common;
+  OutsideText outside;
+  std::string uv = "auto", bounces = "inf", max_memory;
+  pipeline::BakeSettings settings;
+};
+
+Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
+  pipeline::BakeSettings s = options.settings;
+  s.threads = options.common.threads;
+  s.uv = options.uv == "keep"     ? atlas::UvMode::keep
+         : options.uv == "unwrap" ? atlas::UvMode::unwrap
+                                  : atlas::UvMode::automatic;
+  LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
+  if (!options.max_memory.empty()) {
+    LUXEL_TRY(s.max_memory_bytes, pipeline::parse_size(options.max_memory));
+  }
+  LUXEL_TRY(s.outside, parse_outside_light(options.outside));
+  return s;
+}
+
+void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
+  const auto& counts = json["counts"];
+  std::fprintf(
+      stderr, "%s\n",
+      fmt::format("{} triangles, {} charts, {} x {} texels ({} used), {} rays in {:.1f} s, "
+                  "estimated error {:.2f} %",
+                  counts["triangles"].get<uint64_t>(), counts["charts"].get<uint64_t>(),
+                  json["atlas"]["resolution"].get<int>(), json["atlas"]["resolution"].get<int>(),
+                  counts["texels"].get<uint64_t>(), counts["rays"].get<uint64_t>(),
+                  json["seconds"]["total"].get<double>(),
+                  100 * json["relative_error"].get<double>())
+          .c_str());
+  for (const char* name : {"lightmap.exr", "baked.glb", "preview.png", "bake.json"})
+    std::fprintf(stderr, "wrote %s\n", (settings.output / name).string().c_str());
+}
+
+int run_bake(const BakeOptions& options) {
+  const auto settings = settings_from(options);
+  if (!settings) return report(settings.error());
+  return run_with_progress(options.common, [&](Progress& progress) {
+    const auto json = pipeline::bake(*settings, progress);
+    if (!json) return report(json.error());
+    print_warnings((*json)["warnings"].get<std::vector<std::string>>(), options.common);
+    if (options.common.json)
+      std::printf("%s\n", json->dump(2).c_str());
+    else if (!options.common.quiet)
+      print_summary(*settings, *json);
+    return int(kDone);
+  });
+}
+
+}  // namespace
+
+void register_bake(CLI::App& app, Action& action) {
+  CLI::App* bake = app.add_subcommand("bake", "Bake a scene's light into lightmaps");
+  auto options = std::make_shared<BakeOptions>();
+  pipeline::BakeSettings& s = options->settings;
+  bake->add_option("SCENE", s.scene, "glTF, OBJ, FBX, ... file")->required();
+  bake->add_option("-o,--output", s.output, "Folder for the results; made when missing")
+      ->required();
+  bake->add_option("--solver", s.solver, "How light is computed: gather")->capture_default_str();
+  auto* resolution =
+      bake->add_option("--resolution", s.resolution, "Side of the lightmap in texels")
+          ->capture_default_str();
+  bake->add_option("--texels-per-metre", s.texels_per_metre,
+                   "Density; the side becomes the smallest power of two that holds the scene")
+      ->excludes(resolution);
+  bake->add_option("--uv", options->uv,
+                   "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if valid")
+      ->check(CLI::IsMember({"auto", "keep", "unwrap"}))
+      ->capture_default_str();
+  bake->add_option("--samples", s.samples, "Indirect rays per texel")->capture_default_str();
+  bake->add_option("--direct-samples", s.direct_samples,
+                   "Shadow rays per texel towards area lights")
+      ->capture_default_str();
+  bake->add_option("--bounces", options->bounces, "Reflections to count, or inf")
+      ->capture_default_str();
+  bake->add_option("--max-memory", options->max_memory,
+                   "Memory to stay under, as 900M or 1.5G (default: most of what is free)");
+  bake->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();
+  add_outside_light(*bake, options->outside);
+  add_common(*bake, options->common);
+  bake->callback([options, &action] { action = [options] { return run_bake(*options); }; });
+}
+
+}  // namespace luxel::cli

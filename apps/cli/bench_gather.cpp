@@ -1,0 +1,269 @@
+// luxel bench rays, maps, threads: how fast gather is.
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+
+#include "apps/cli/bench.h"
+#include "atlas/atlas.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "import/import.h"
+#include "pipeline/settings.h"
+#include "scene/procedural.h"
+#include "solve/gather/gather.h"
+#include "trace/ray_tracer.h"
+#include "transport/elements.h"
+#include "transport/lights.h"
+
+namespace luxel::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// A scene ready for gather. Members refer to each other: it is made in place and not moved.
+struct Prepared {
+  scene::Scene scene;
+  atlas::Atlas atlas;
+  atlas::TexelMap map;
+  transport::Elements elements;
+  transport::Lights lights;
+};
+
+Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution) {
+  auto p = std::make_unique<Prepared>();
+  p->scene = std::move(scene);
+  pipeline::add_outside_light({}, p->scene);
+  atlas::AtlasParams params;
+  params.resolution = resolution;
+  Progress progress;
+  LUXEL_TRY(p->atlas, atlas::make_atlas(p->scene, params, progress));
+  p->map = atlas::rasterise(p->scene, p->atlas);
+  p->elements = transport::elements_from_texels(p->scene, p->atlas, p->map);
+  p->lights = transport::collect_lights(p->scene);
+  return p;
+}
+
+/// The same triangles, in the world, in one Embree scene of this file's own: the yardstick.
+class BareEmbree {
+ public:
+  explicit BareEmbree(const scene::Scene& scene)
+      : device_(rtcNewDevice(nullptr)), top_(rtcNewScene(device_)) {
+    for (const scene::Instance& instance : scene.instances)
+      add(scene.meshes[instance.mesh], instance.world_from_object);
+    rtcSetSceneFlags(top_, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(top_, RTC_BUILD_QUALITY_HIGH);
+    rtcCommitScene(top_);
+  }
+  BareEmbree(const BareEmbree&) = delete;
+  BareEmbree& operator=(const BareEmbree&) = delete;
+  ~BareEmbree() {
+    rtcReleaseScene(top_);
+    rtcReleaseDevice(device_);
+  }
+
+  /// The number of rays that meet something.
+  uint64_t intersect(std::span<const trace::Ray> rays) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    uint64_t found = 0;
+    for (const trace::Ray& ray : rays) {
+      RTCRayHit rh;
+      rh.ray = {ray.origin.x,
+                ray.origin.y,
+                ray.origin.z,
+                ray.t_min,
+                ray.direction.x,
+                ray.direction.y,
+                ray.direction.z,
+                0,
+                ray.t_max,
+                ~0u,
+                0,
+                0};
+      rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(top_, &context, &rh);
+      found += rh.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    }
+    return found;
+  }
+
+ private:
+  void add(const scene::Mesh& mesh, const Mat34& map) {
+    RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
+    auto* indices = static_cast<std::array<uint32_t, 3>*>(
+        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                sizeof(mesh.triangles[0]), mesh.triangles.size()));
+    std::transform(mesh.positions.begin(), mesh.positions.end(), vertices,
+                   [&](Vec3 p) { return transform_point(map, p); });
+    std::copy(mesh.triangles.begin(), mesh.triangles.end(), indices);
+    rtcCommitGeometry(g);
+    rtcAttachGeometry(top_, g);
+    rtcReleaseGeometry(g);
+  }
+
+  RTCDevice device_;
+  RTCScene top_;
+};
+
+/// Rays per second of the bare loop over gather's own rays; making the rays is not counted.
+double bare_rate(const Prepared& p, int samples) {
+  const BareEmbree embree(p.scene);
+  const float diagonal = scene::world_bounds(p.scene).diagonal();
+  std::atomic<uint64_t> nanoseconds{0};
+  parallel_for(p.elements.size(), 1024, [&](size_t begin, size_t end) {
+    std::vector<trace::Ray> rays(size_t(samples) * (end - begin));
+    for (size_t i = begin; i < end; ++i)
+      gather::element_rays(
+          trace::offset_origin(p.elements.position[i], p.elements.geometric_normal[i], diagonal),
+          p.elements.normal[i], p.elements.geometric_normal[i], hash64(1 ^ 0x6a7e, i),
+          std::span(rays).subspan((i - begin) * size_t(samples), size_t(samples)));
+    const auto start = Clock::now();
+    embree.intersect(rays);
+    nanoseconds += uint64_t(seconds_since(start) * 1e9);
+  });
+  return double(p.elements.size()) * samples / (double(nanoseconds) * 1e-9 / thread_count());
+}
+
+double gather_rate(const Prepared& p, const trace::RayTracer& tracer, int samples) {
+  Progress progress;
+  gather::TraceParams params;
+  params.samples = samples;
+  const auto start = Clock::now();
+  const auto hits = gather::trace_hits(p.scene, p.atlas, p.elements, tracer, params, progress);
+  return hits ? double(hits->rays) / seconds_since(start) : 0.0;
+}
+
+struct NamedScene {
+  std::string name;
+  std::filesystem::path file;  ///< empty: procedural
+};
+
+Result<scene::Scene> load(const NamedScene& named) {
+  if (named.file.empty()) return scene::cornell_box();
+  LUXEL_TRY(import::Imported imported, import::import_scene(named.file));
+  return std::move(imported.scene);
+}
+
+}  // namespace
+
+Result<Table> bench_rays(const std::filesystem::path& shared, const Common& common) {
+  const ThreadLimit limit(common.threads);
+  constexpr int kSamples = 64, kRounds = 5;
+  Table table{"rays",
+              thread_count(),
+              {"scene", "rtcIntersect1 loop, Mrays/s", "gather, Mrays/s", "ratio (median of 5)"},
+              {},
+              {},
+              nlohmann::json::array()};
+  const auto scenes = shared / "scenes";
+  for (const NamedScene& named :
+       {NamedScene{"Cornell box", {}},
+        NamedScene{"living_room", scenes / "living_room/living_room.glb"},
+        NamedScene{"suzanne_room", scenes / "suzanne_room/room.glb"},
+        NamedScene{"zdm2", scenes / "zdm2/zdm2.glb"},
+        NamedScene{"kaykit_city", scenes / "kaykit_city/kaykit_city.glb"}}) {
+    if (!named.file.empty() && !std::filesystem::exists(named.file)) {
+      table.notes.push_back(named.file.string() + " is not on this machine: left out");
+      continue;
+    }
+    LUXEL_TRY(scene::Scene scene, load(named));
+    LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(std::move(scene), 512));
+    LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(p->scene));
+    // In turn, so that a machine that speeds up or slows down does it to both.
+    std::vector<double> bare, ours, ratio;
+    for (int round = 0; round < kRounds; ++round) {
+      bare.push_back(bare_rate(*p, kSamples));
+      ours.push_back(gather_rate(*p, tracer, kSamples));
+      ratio.push_back(ours.back() / bare.back());
+    }
+    for (auto* values : {&bare, &ours, &ratio}) std::sort(values->begin(), values->end());
+    const size_t middle = kRounds / 2;
+    table.rows.push_back({named.name, fmt::format("{:.2f}", bare[middle] * 1e-6),
+                          fmt::format("{:.2f}", ours[middle] * 1e-6),
+                          fmt::format("{:.2f}", ratio[middle])});
+    table.json.push_back({{"scene", named.name},
+                          {"bare_mrays_per_s", bare[middle] * 1e-6},
+                          {"gather_mrays_per_s", ours[middle] * 1e-6},
+                          {"ratio", ratio[middle]}});
+  }
+  return table;
+}
+
+Result<Table> bench_maps(const std::filesystem::path&, const Common& common) {
+  const ThreadLimit limit(common.threads);
+  // [Moreno05, table 5.1]: solution time on a GeForce 6800, 200 direct and 800 indirect samples.
+  constexpr std::array<std::pair<int, double>, 4> kPaper{
+      {{64, 8.276}, {128, 15.865}, {256, 37.971}, {512, 144.815}}};
+  Table table{"maps",
+              thread_count(),
+              {"atlas", "paper, s", "luxel, s", "paper / luxel", "Mrays/s"},
+              {},
+              {},
+              nlohmann::json::array()};
+  for (const auto& [resolution, paper_s] : kPaper) {
+    LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(scene::cornell_box(), resolution));
+    LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(p->scene));
+    gather::GatherParams params;
+    params.direct_samples = 200;
+    params.samples = 800;
+    Progress progress;
+    const auto start = Clock::now();
+    LUXEL_TRY(const gather::Gather result, gather::gather(p->scene, p->atlas, p->map, p->elements,
+                                                          p->lights, tracer, params, progress));
+    const double seconds = seconds_since(start);
+    table.rows.push_back({fmt::format("{0} x {0}", resolution), fmt::format("{:.3f}", paper_s),
+                          fmt::format("{:.3f}", seconds), fmt::format("{:.1f}", paper_s / seconds),
+                          fmt::format("{:.1f}", double(result.rays) * 1e-6 / seconds)});
+    table.json.push_back({{"resolution", resolution}, {"paper_s", paper_s}, {"luxel_s", seconds}});
+  }
+  table.notes.push_back(
+      "The paper's column is a GeForce 6800 with a 2.53 GHz Pentium 4 (2005), one running average "
+      "over all bounces; ours is the processor named above, all bounces converged to 1e-4.");
+  return table;
+}
+
+Result<Table> bench_threads(const std::filesystem::path& shared, const Common&) {
+  Table table{"threads", 2,  {"scene", "1 thread, s", "2 threads, s", "speed-up (median of 5)"},
+              {},        {}, nlohmann::json::array()};
+  std::vector<NamedScene> scenes{{"Cornell box", {}},
+                                 {"suzanne_room", shared / "scenes/suzanne_room/room.glb"}};
+  for (const NamedScene& named : scenes) {
+    if (!named.file.empty() && !std::filesystem::exists(named.file)) {
+      table.notes.push_back(named.file.string() + " is not on this machine: left out");
+      continue;
+    }
+    LUXEL_TRY(scene::Scene scene, load(named));
+    LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(std::move(scene), 512));
+    LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(p->scene));
+    const auto run = [&](int threads) {
+      const ThreadLimit limit(threads);
+      gather::GatherParams params;
+      params.samples = 64;
+      Progress progress;
+      const auto start = Clock::now();
+      const auto result = gather::gather(p->scene, p->atlas, p->map, p->elements, p->lights, tracer,
+                                         params, progress);
+      return result ? seconds_since(start) : 0.0;
+    };
+    std::vector<double> one, two, ratio;
+    for (int round = 0; round < 5; ++round) {
+      one.push_back(run(1)), two.push_back(run(2));
+      ratio.push_back(one.back() / two.back());
+    }
+    for (auto* values : {&one, &two, &ratio}) std::sort(values->begin(), values->end());
+    table.rows.push_back({named.name, fmt::format("{:.2f}", one[2]), fmt::format("{:.2f}", two[2]),
+                          fmt::format("{:.2f}", ratio[2])});
+    table.json.push_back({{"scene", named.name}, {"speed_up", ratio[2]}});
+  }
+  return table;
+}
+
+}  // namespace luxel::cli

@@ -1,0 +1,51 @@
+// What the commands of `luxel` share.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "pipeline/settings.h"
+
+namespace luxel::cli {
+
+enum ExitCode { kDone = 0, kBadInput = 1, kUsage = 2, kOutOfResource = 3, kInterrupted = 130 };
+
+/// Options that every command has.
+struct Common {
+  int threads = 0;
+  bool quiet = false;
+  bool json = false;
+};
+void add_common(CLI::App& command, Common& common);
+
+/// Options for light from outside the file, as text until the command runs.
+struct OutsideText {
+  std::string background, sun;
+};
+void add_outside_light(CLI::App& command, OutsideText& text);
+Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text);
+
+/// Prints the error's sentence to stderr and returns its exit code.
+int report(const Error& error);
+void print_warnings(const std::vector<std::string>& warnings, const Common& common);
+
+/// Runs `work` while a second thread shows its progress on stderr and turns Ctrl-C into a request
+/// to stop. When the work does not stop within a second, the process ends with code 130; no file is
+/// half written then, because files appear whole under their names.
+int run_with_progress(const Common& common, const std::function<int(Progress&)>& work);
+
+/// A command registers itself in `app` and, when it was asked for, leaves what is to be done.
+using Action = std::function<int()>;
+void register_info(CLI::App& app, Action& action);
+void register_bake(CLI::App& app, Action& action);
+void register_render(CLI::App& app, Action& action);
+void register_bench(CLI::App& app, Action& action);
+
+}  // namespace luxel::cli

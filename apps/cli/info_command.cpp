@@ -1,0 +1,73 @@
+#include <cstdio>
+
+#include "apps/cli/cli.h"
+#include "import/import.h"
+#include "scene/scene.h"
+
+namespace luxel::cli {
+namespace {
+
+struct InfoOptions {
+  Common common;
+  std::string scene;
+};
+
+nlohmann::json vector_json(Vec3 v) { return {v.x, v.y, v.z}; }
+
+nlohmann::json describe(const scene::Scene& scene, const std::vector<std::string>& warnings) {
+  size_t emissive = 0, drawn = 0, stored = 0;
+  double area = 0;
+  bool uv1 = !scene.meshes.empty();
+  for (const scene::Mesh& mesh : scene.meshes) {
+    stored += mesh.triangles.size();
+    uv1 = uv1 && !mesh.uv1.empty();
+  }
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+    drawn += mesh.triangles.size();
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      area += double(scene::area_m2(scene::world_triangle(scene, i, t)));
+      emissive += max_component(scene.materials[mesh.triangle_material[t]].emission) > 0;
+    }
+  }
+  const Box3 box = scene::world_bounds(scene);
+  return {{"triangles", drawn},
+          {"triangles_stored", stored},
+          {"emissive_triangles", emissive},
+          {"meshes", scene.meshes.size()},
+          {"instances", scene.instances.size()},
+          {"materials", scene.materials.size()},
+          {"textures", scene.textures.size()},
+          {"lights", scene.lights.size()},
+          {"cameras", scene.cameras.size()},
+          {"area_m2", area},
+          {"bounds", {vector_json(box.lower), vector_json(box.upper)}},
+          {"has_texcoord_1", uv1},
+          {"warnings", warnings}};
+}
+
+int run_info(const InfoOptions& options) {
+  const auto imported = import::import_scene(options.scene);
+  if (!imported) return report(imported.error());
+  const nlohmann::json json = describe(imported->scene, imported->warnings);
+  if (options.common.json) {
+    std::printf("%s\n", json.dump(2).c_str());
+    return kDone;
+  }
+  print_warnings(imported->warnings, options.common);
+  for (const auto& [key, value] : json.items())
+    if (key != "warnings") std::printf("%-20s %s\n", key.c_str(), value.dump().c_str());
+  return kDone;
+}
+
+}  // namespace
+
+void register_info(CLI::App& app, Action& action) {
+  CLI::App* info = app.add_subcommand("info", "Say what is in a scene");
+  auto options = std::make_shared<InfoOptions>();
+  info->add_option("SCENE", options->scene, "glTF, OBJ, FBX, ... file")->required();
+  add_common(*info, options->common);
+  info->callback([options, &action] { action = [options] { return run_info(*options); }; });
+}
+
+}  // namespace luxel::cli

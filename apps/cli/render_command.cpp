@@ -1,0 +1,89 @@
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/cli/cli.h"
+#include "base/parallel.h"
+#include "pipeline/render.h"
+
+namespace luxel::cli {
+namespace {
+
+struct RenderOptions {
+  Common common;
+  OutsideText outside;
+  std::string size = "960x720", eye, look_at;
+  pipeline::RenderSettings settings;
+};
+
+Result<Vec3> parse_point(const char* option, const std::string& text) {
+  Vec3 p;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%f,%f,%f%c", &p.x, &p.y, &p.z, &rest) == 3 && is_finite(p))
+    return p;
+  return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option, text);
+}
+
+Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
+  pipeline::RenderSettings s = options.settings;
+  char rest = 0;
+  if (std::sscanf(options.size.c_str(), "%dx%d%c", &s.width, &s.height, &rest) != 2)
+    return fail(ErrorCode::bad_setting, "--size '{}' is not WIDTHxHEIGHT, as in 960x720",
+                options.size);
+  if (!options.eye.empty()) {
+    LUXEL_TRY(s.eye, parse_point("--eye", options.eye));
+    LUXEL_TRY(s.look_at, parse_point("--look-at", options.look_at));
+  }
+  LUXEL_TRY(s.outside, parse_outside_light(options.outside));
+  return s;
+}
+
+int run_render(const RenderOptions& options) {
+  const auto settings = settings_from(options);
+  if (!settings) return report(settings.error());
+  return run_with_progress(options.common, [&](Progress& progress) {
+    const ThreadLimit threads(options.common.threads);
+    const auto rendered = pipeline::render(*settings, progress);
+    if (!rendered) return report(rendered.error());
+    print_warnings(rendered->warnings, options.common);
+    if (options.common.json)
+      std::printf("%s\n", nlohmann::json{{"image", settings->output.string()},
+                                         {"width", rendered->width},
+                                         {"height", rendered->height}}
+                              .dump(2)
+                              .c_str());
+    return int(kDone);
+  });
+}
+
+}  // namespace
+
+void register_render(CLI::App& app, Action& action) {
+  CLI::App* render = app.add_subcommand("render", "Draw a baked scene");
+  auto options = std::make_shared<RenderOptions>();
+  pipeline::RenderSettings& s = options->settings;
+  render->add_option("SCENE", s.scene, "The scene that was baked")->required();
+  render->add_option("-o,--output", s.output, "Picture to write: .png or .exr")->required();
+  render->add_option("--from", s.from, "Folder that `luxel bake` left")->required();
+  render->add_option("--technique", s.technique, "What to draw: lightmap")
+      ->check(CLI::IsMember({"lightmap"}))
+      ->capture_default_str();
+  auto* camera = render->add_option("--camera", s.camera, "Name of a camera of the scene");
+  auto* eye = render->add_option("--eye", options->eye, "Where the camera stands")
+                  ->type_name("X,Y,Z")
+                  ->excludes(camera);
+  auto* look_at = render->add_option("--look-at", options->look_at, "The point it looks at")
+                      ->type_name("X,Y,Z")
+                      ->needs(eye);
+  eye->needs(look_at);
+  render->add_option("--fov-deg", s.fov_deg, "Vertical field of view")
+      ->check(CLI::Range(1.0, 170.0))
+      ->capture_default_str();
+  render->add_option("--size", options->size, "Size of the picture")
+      ->type_name("WxH")
+      ->capture_default_str();
+  add_outside_light(*render, options->outside);
+  add_common(*render, options->common);
+  render->callback([options, &action] { action = [options] { return run_render(*options); }; });
+}
+
+}  // namespace luxel::cli

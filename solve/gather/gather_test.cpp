@@ -1,0 +1,269 @@
+#include "solve/gather/gather.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+
+#include "base/parallel.h"
+#include "scene/procedural.h"
+#include "tests/reference_data.h"
+
+namespace luxel::gather {
+namespace {
+
+namespace shared = luxel::testing_support;
+
+/// A scene, laid out and ready to be solved. Heap-allocated: parts point at each other.
+struct Room {
+  scene::Scene scene;
+  atlas::Atlas atlas;
+  atlas::TexelMap map;
+  transport::Elements elements;
+  transport::Lights lights;
+  std::optional<trace::RayTracer> tracer;
+};
+
+std::unique_ptr<Room> lay_out(scene::Scene scene, int resolution) {
+  auto room = std::make_unique<Room>();
+  room->scene = std::move(scene);
+  Progress progress;
+  atlas::AtlasParams params;
+  params.resolution = resolution;
+  params.uv = atlas::UvMode::unwrap;
+  auto atlas = atlas::make_atlas(room->scene, params, progress);
+  EXPECT_TRUE(atlas) << atlas.error().message;
+  room->atlas = std::move(*atlas);
+  room->map = atlas::rasterise(room->scene, room->atlas);
+  room->elements = transport::elements_from_texels(room->scene, room->atlas, room->map);
+  room->lights = transport::collect_lights(room->scene);
+  auto tracer = trace::RayTracer::build(room->scene);
+  EXPECT_TRUE(tracer);
+  room->tracer.emplace(std::move(*tracer));
+  return room;
+}
+
+Gather solve(const Room& room, const GatherParams& params) {
+  Progress progress;
+  auto result = gather(room.scene, room.atlas, room.map, room.elements, room.lights, *room.tracer,
+                       params, progress);
+  EXPECT_TRUE(result) << result.error().message;
+  return std::move(*result);
+}
+
+GatherParams with_samples(int samples, int direct_samples = 64) {
+  GatherParams params;
+  params.samples = samples, params.direct_samples = direct_samples;
+  return params;
+}
+
+/// Mean of a channel over the texels of one material, weighted by the surface each texel stands
+/// for: all texels have the same density, so partly covered ones count less than they should, which
+/// is small at the resolutions used here.
+double mean_irradiance(const Room& room, const Gather& result, uint32_t material,
+                       float Rgb::*channel) {
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < result.irradiance.size(); ++i) {
+    const auto& p = room.map.texels[i].sample;
+    const auto& mesh = room.scene.meshes[room.scene.instances[p.instance].mesh];
+    if (mesh.triangle_material[p.triangle] != material) continue;
+    sum += double(result.irradiance[i].*channel), ++count;
+  }
+  return sum / count;
+}
+
+// Exact solution 1: B = e / (1 - rho) at every point of a closed scene with uniform emission and
+// reflectance, so E = (B - e) / rho, or e itself where nothing is reflected.
+TEST(SlowGather, AFurnaceIsUniformAtEveryTexel) {
+  for (const float rho : {0.0f, 0.5f, 0.9f}) {
+    const auto room = lay_out(scene::furnace_box({rho, rho, rho}, {1, 2, 0.5f}), 64);
+    const Gather result = solve(*room, with_samples(1024));
+    ASSERT_GT(result.irradiance.size(), 1000u);
+    const float expected = kPi / (1 - rho);  // pi L / (1 - rho) arrives, for L = 1
+    for (size_t i = 0; i < result.irradiance.size(); ++i) {
+      ASSERT_NEAR(result.irradiance[i].x / expected, 1.0f, 0.01f)
+          << "rho " << rho << " texel " << i;
+      ASSERT_NEAR(result.irradiance[i].y / expected, 2.0f, 0.02f)
+          << "rho " << rho << " texel " << i;
+    }
+  }
+}
+
+// Exact solution 1, bounce by bounce: B_k = e (1 - rho^(k+1)) / (1 - rho), so E after k reflections
+// is B_k of the emitters' light with one reflection less to come: E_k = e sum_{i<=k} rho^i.
+TEST(Gather, EveryBounceOfAFurnaceIsCounted) {
+  const float rho = 0.5f;
+  const auto room = lay_out(scene::furnace_box({rho, rho, rho}, {1, 1, 1}), 32);
+  for (const auto& [bounces, factor] : {std::pair{0, 1.0f}, {1, 1.5f}, {2, 1.75f}, {5, 1.96875f}}) {
+    GatherParams params = with_samples(256);
+    params.bounces = bounces;
+    const Gather result = solve(*room, params);
+    double mean = 0;
+    for (const Rgb& e : result.irradiance) mean += double(e.x) / double(result.irradiance.size());
+    // Direct light is exact up to floats; every ray meets the same radiosity.
+    EXPECT_NEAR(mean / (double(kPi) * double(factor)), 1.0, 2e-3) << bounces << " bounces";
+  }
+}
+
+// Exact solution 3: inside a sphere the reflected light arrives uniformly,
+// H = mean(e) / (1 - mean(rho)); here one zone by height shines, with an area fraction of its own
+// that the facets give. E = mean(e) + mean(rho) H everywhere.
+TEST(SlowGather, ASphereSharesItsLightEvenly) {
+  scene::Scene scene = scene::inward_sphere(1, 3, {0.5f, 0.5f, 0.5f}, {});
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].emission = Rgb{1, 1, 1} / kPi;
+  scene.materials[1].base_color = {0.8f, 0.8f, 0.8f};
+  scene::Mesh& mesh = scene.meshes[0];
+  double area = 0, shining = 0;
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const scene::Triangle3 w = scene::world_triangle(scene, 0, t);
+    const bool top = w.a.y + w.b.y + w.c.y > 3 * 0.6f;
+    if (top) mesh.triangle_material[t] = 1;
+    area += double(scene::area_m2(w)), shining += top ? double(scene::area_m2(w)) : 0.0;
+  }
+  const double f = shining / area, mean_rho = 0.8 * f + 0.5 * (1 - f);
+  const double expected =
+      f / (1 - mean_rho);  // H of the reference: arriving light, e = 1 on the zone
+  const auto room = lay_out(std::move(scene), 256);
+  const Gather result = solve(*room, with_samples(256, 256));
+  // 1,280 facets are not a sphere: their light arrives uniformly only up to the facets' angle
+  // (about 5 degrees), some tenths of a percent.
+  EXPECT_NEAR(mean_irradiance(*room, result, 0, &Rgb::x) / expected, 1.0, 0.01);
+  EXPECT_NEAR(mean_irradiance(*room, result, 1, &Rgb::x) / expected, 1.0, 0.01);
+}
+
+// Exact solution 4: two infinite plates, here a square box a hundred times as wide as high. Its
+// sides are black; at the centre they subtend less than 1e-3.
+TEST(Gather, ParallelPlatesExchangeLight) {
+  scene::Scene scene;
+  const auto add_plate = [&](float y, bool up, float rho, float e) {
+    scene::Material material;
+    material.base_color = {rho, rho, rho};
+    material.emission = Rgb{1, 1, 1} * (e / kPi);
+    scene.materials.push_back(material);
+    scene::Mesh plate;
+    plate.positions = {{-50, y, -50}, {-50, y, 50}, {50, y, 50}, {50, y, -50}};
+    plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+    if (!up) plate.triangles = {{0, 2, 1}, {0, 3, 2}};
+    plate.triangle_material.assign(2, uint32_t(scene.materials.size() - 1));
+    scene.meshes.push_back(plate);
+    scene.instances.push_back({"plate", uint32_t(scene.meshes.size() - 1), {}});
+  };
+  add_plate(0, true, 0.5f, 1);
+  add_plate(1, false, 0.8f, 0.25f);
+  const auto room = lay_out(std::move(scene), 64);
+  const Gather result = solve(*room, with_samples(1024));
+  // E1 = B2 and E2 = B1.
+  const double b1 = (1 + 0.5 * 0.25) / (1 - 0.4), b2 = (0.25 + 0.8) / (1 - 0.4);
+  int checked = 0;
+  for (size_t i = 0; i < result.irradiance.size(); ++i) {
+    const Vec3 p = room->elements.position[i];
+    if (std::abs(p.x) > 10 || std::abs(p.z) > 10) continue;
+    // What the finite plates miss at 40 from the edge: about (1/40)^2, per bounce.
+    EXPECT_NEAR(double(result.irradiance[i].x) / (p.y < 0.5f ? b2 : b1), 1.0, 0.005);
+    ++checked;
+  }
+  EXPECT_GT(checked, 20);
+}
+
+// Against many samples of the same map: stratified samples must at least keep up with independent
+// ones, error ~ n^-1/2.
+TEST(SlowGather, TheErrorFallsAtLeastWithTheRootOfTheSamples) {
+  const auto room = lay_out(scene::cornell_box(), 48);
+  GatherParams params = with_samples(16384, 1024);
+  params.seed = 99;
+  const Gather truth = solve(*room, params);
+  std::vector<double> log_n, log_error;
+  for (const int samples : {16, 64, 256, 1024}) {
+    const Gather result = solve(*room, with_samples(samples, 1024));
+    double sum2 = 0;
+    for (size_t i = 0; i < truth.irradiance.size(); ++i) {
+      const double d = double(luminance(result.irradiance[i]) - luminance(truth.irradiance[i]));
+      sum2 += d * d;
+    }
+    log_n.push_back(std::log(double(samples)));
+    log_error.push_back(0.5 * std::log(sum2 / double(truth.irradiance.size())));
+  }
+  // Least squares through the four points.
+  double mx = 0, my = 0, sxy = 0, sxx = 0;
+  for (size_t k = 0; k < 4; ++k) mx += log_n[k] / 4, my += log_error[k] / 4;
+  for (size_t k = 0; k < 4; ++k) {
+    sxy += (log_n[k] - mx) * (log_error[k] - my);
+    sxx += (log_n[k] - mx) * (log_n[k] - mx);
+  }
+  EXPECT_LE(sxy / sxx, -0.5) << "errors " << std::exp(log_error[0]) << " .. "
+                             << std::exp(log_error[3]);
+}
+
+uint64_t hash_of(std::span<const Rgb> values) {
+  uint64_t h = 0;
+  for (const Rgb& v : values)
+    for (const float c : {v.x, v.y, v.z}) h = h * 0x100000001b3ull ^ std::bit_cast<uint32_t>(c);
+  return h;
+}
+
+TEST(Gather, TheSameSeedGivesTheSameBitsForAnyNumberOfThreads) {
+  const auto room = lay_out(scene::spheres_and_cube(), 96);
+  std::vector<uint64_t> hashes;
+  for (const int threads : {1, 2, 7}) {
+    const ThreadLimit limit(threads);
+    hashes.push_back(hash_of(solve(*room, with_samples(32, 8)).irradiance));
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_EQ(hashes[0], hashes[2]);
+  GatherParams other = with_samples(32, 8);
+  other.seed = 2;
+  EXPECT_NE(hashes[0], hash_of(solve(*room, other).irradiance));
+}
+
+// Tiles in the temporary file hold what tiles in memory hold.
+TEST(Gather, TilesOnDiskGiveTheSameBits) {
+  const auto room = lay_out(scene::cornell_box(), 96);
+  GatherParams params = with_samples(64, 8);
+  params.scratch_folder = ::testing::TempDir();
+  const Gather in_memory = solve(*room, params);
+  params.hit_memory_bytes = 2 * kTileElements * 64 * sizeof(StoredHit);
+  const Gather on_disk = solve(*room, params);
+  EXPECT_EQ(in_memory.hit_bytes_in_file, 0u);
+  EXPECT_GT(on_disk.hit_bytes_in_file, 100000u);
+  EXPECT_EQ(hash_of(in_memory.irradiance), hash_of(on_disk.irradiance));
+}
+
+// Light is linear: with the rays kept, twice the lamp gives twice the light without a new ray.
+TEST(Gather, ALightCanChangeWithoutTracingAgain) {
+  const auto room = lay_out(scene::cornell_box(), 48);
+  Progress progress;
+  auto hits = trace_hits(room->scene, room->atlas, room->elements, *room->tracer,
+                         {64, 1, UINT64_MAX, "."}, progress);
+  ASSERT_TRUE(hits);
+  const auto direct =
+      direct_light(room->scene, room->elements, room->lights, *room->tracer, {32, 1}, progress);
+  std::vector<Rgb> half = direct->irradiance;
+  for (Rgb& e : half) e *= 0.5f;
+  const auto full =
+      bounce(room->map, room->elements, *hits, direct->irradiance, {}, {-1, 1e-6f}, progress);
+  const auto dimmed = bounce(room->map, room->elements, *hits, half, {}, {-1, 1e-6f}, progress);
+  for (size_t i = 0; i < half.size(); ++i)
+    ASSERT_NEAR(dimmed->irradiance[i].x, 0.5f * full->irradiance[i].x,
+                1e-5f * full->irradiance[i].x + 1e-7f);
+}
+
+// Inside a closed box every ray of a floor under a solid block meets the block's back: no light,
+// and the rays are counted. Blocks of the Cornell box stand on the floor.
+TEST(Gather, TexelsInsideSolidsAreDarkAndCounted) {
+  const auto room = lay_out(scene::cornell_box(), 128);
+  const Gather result = solve(*room, with_samples(64));
+  int inside = 0;
+  for (size_t i = 0; i < result.irradiance.size(); ++i) {
+    const Vec3 p = room->elements.position[i];
+    // The middle of the short block's footprint.
+    if (p.y > 1e-4f || length(Vec3{p.x - 0.185f, 0, p.z - 0.169f}) > 0.05f) continue;
+    EXPECT_EQ(result.irradiance[i], (Rgb{0, 0, 0}));
+    EXPECT_EQ(result.met_back[i], 64);
+    ++inside;
+  }
+  EXPECT_GT(inside, 10);
+}
+
+}  // namespace
+}  // namespace luxel::gather

@@ -1,0 +1,49 @@
+// The files in scenes/ are what the procedural scenes write, and read back as the same scenes.
+#include <gtest/gtest.h>
+
+#include "base/file.h"
+#include "import/import.h"
+#include "scene/validate.h"
+#include "tests/support.h"
+#include "tools/procedural_files.h"
+
+namespace luxel {
+namespace {
+
+std::filesystem::path scenes_folder() {
+  return std::filesystem::path(LUXEL_SOURCE_DIR) / "scenes";
+}
+
+TEST(Scenes, FilesAreUpToDate) {
+  for (const auto& file : tools::procedural_files()) {
+    const auto stored = read_file(scenes_folder() / file.name);
+    ASSERT_TRUE(stored) << stored.error().message;
+    EXPECT_EQ(*stored, *export_::scene_glb(file.scene))
+        << file.name << ": run build/release/bin/luxel_write_scenes scenes";
+  }
+}
+
+TEST(Scenes, FilesReadBackAsTheSameTrianglesAndLight) {
+  for (const auto& file : tools::procedural_files()) {
+    const auto imported = import::import_scene(scenes_folder() / file.name);
+    ASSERT_TRUE(imported) << imported.error().message;
+    const auto first = scene::first_triangles(file.scene);
+    const auto first_read = scene::first_triangles(imported->scene);
+    ASSERT_EQ(first, first_read) << file.name;
+    EXPECT_EQ(scene::has_light(file.scene), scene::has_light(imported->scene));
+    for (uint32_t i = 0; i + 1 < first.size(); ++i)
+      for (uint32_t t = 0; t < first[i + 1] - first[i]; ++t) {
+        const scene::Triangle3 a = scene::world_triangle(file.scene, i, t);
+        const scene::Triangle3 b = scene::world_triangle(imported->scene, i, t);
+        EXPECT_EQ(a.a, b.a);
+        EXPECT_EQ(a.b, b.b);
+        EXPECT_EQ(a.c, b.c);
+        const scene::SurfacePoint p{i, t, {0.3f, 0.3f}};
+        EXPECT_EQ(scene::emission_at(file.scene, p), scene::emission_at(imported->scene, p));
+        EXPECT_EQ(scene::reflectance_at(file.scene, p), scene::reflectance_at(imported->scene, p));
+      }
+  }
+}
+
+}  // namespace
+}  // namespace luxel

@@ -1,0 +1,216 @@
+#!/usr/bin/env python3
+"""Compares the includes between rooms with the table of rooms in ARCHITECTURE.md.
+
+    tools/check_arrows.py [ROOT]        exit 1 and one line per fault
+    tools/check_arrows.py --self-test   proves on made-up trees that each kind of fault is found
+
+The rule: a room includes itself, base, the rooms of its row, and what those may include in turn;
+its CMakeLists.txt links only rooms of its row.
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+OUTSIDE = ("tests", "bench")  # may include every room but apps
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
+PRINT = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(?:std::)?"
+                   r"(printf|fprintf|vprintf|puts|fputs|putchar|perror|exit|_exit|quick_exit|abort)\s*\(")
+PRINT_EXCEPT = {"base/check.cpp"}  # says which contract broke, then aborts
+TBB_ONLY = {"base/parallel.h", "base/parallel.cpp"}
+
+
+class Table:
+    """Rooms in the order of the table: `direct` rooms of each row, and which are planned."""
+
+    def __init__(self, text):
+        self.direct, self.planned = {}, set()
+        in_table = False
+        for line in text.splitlines():
+            cells = [c.strip() for c in line.strip().strip("|").split("|")]
+            if cells[0] == "room" and cells[-1] == "may include":
+                in_table = True
+            elif in_table and not line.startswith("|"):
+                break
+            elif in_table and not cells[0].startswith("---"):
+                self.add_row(cells[0], cells[-1])
+        if not self.direct:
+            raise SystemExit("ARCHITECTURE.md: no table with the columns room ... may include")
+        for room, rooms in self.direct.items():
+            for other in rooms - self.direct.keys():
+                raise SystemExit(f"ARCHITECTURE.md: the row of {room} names {other}, which has no row")
+
+    def add_row(self, name, allowed):
+        room = name.split()[0]
+        if "(planned)" in name:
+            self.planned.add(room)
+        if allowed == "all of the above":
+            self.direct[room] = set(self.direct)
+        else:
+            self.direct[room] = {r.strip() for r in allowed.split(",")} - {"-", ""}
+
+    def may_include(self, room):
+        found, todo = set(), [room, "base"]
+        while todo:
+            r = todo.pop()
+            if r not in found:
+                found.add(r)
+                todo += self.direct.get(r, ())
+        return found
+
+    def room_of(self, path):
+        """The room, `tests`, `bench`, or None when the path's folder is neither."""
+        parts = path.split("/")
+        if parts[0] in OUTSIDE:
+            return parts[0]
+        two = "/".join(parts[:2])
+        return two if two in self.direct else parts[0] if parts[0] in self.direct else None
+
+
+def without_comments_and_strings(code):
+    pattern = r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\''
+    return re.sub(pattern, lambda m: "\n" * m.group().count("\n"), code, flags=re.DOTALL)
+
+
+def include_faults(table, path, room, code):
+    for match in INCLUDE.finditer(code):
+        where = f"{path}:{code.count(chr(10), 0, match.start(2)) + 1}"
+        quote, name = match.groups()
+        if re.match(r"(oneapi/)?tbb/|execution$", name) and path not in TBB_ONLY:
+            yield f"{where}: includes <{name}>; only base/parallel.* may (use its loops)"
+        if quote != '"':
+            continue
+        target = table.room_of(name)
+        if target is None:
+            yield f'{where}: "{name}" names no room; write the path from the root'
+        elif target in OUTSIDE:
+            if room not in OUTSIDE and not path.endswith("_test.cpp"):
+                yield f"{where}: {room} includes {target}/; only tests may"
+        elif target.startswith("apps") and target != room:
+            yield f"{where}: {room} includes {target}; nothing includes apps"
+        elif room not in OUTSIDE and target not in table.may_include(room):
+            yield f"{where}: {room} may not include {target} (table of rooms in ARCHITECTURE.md)"
+
+
+def print_faults(path, room, code):
+    if room.startswith("apps") or room in OUTSIDE or path in PRINT_EXCEPT or path.endswith("_test.cpp"):
+        return
+    code = without_comments_and_strings(code)
+    for match in PRINT.finditer(code):
+        line = code.count("\n", 0, match.start()) + 1
+        yield f"{path}:{line}: a library prints or exits ({match.group().strip()}); return a Result"
+
+
+def link_faults(table, path, code):
+    for name, rest in re.findall(r"luxel_room\(\s*(\S+?)[\s)]([^)]*)", re.sub(r"#[^\n]*", "", code)):
+        if name not in table.direct:
+            yield f"{path}: room {name} has no row in ARCHITECTURE.md"
+            continue
+        uses = re.search(r"\bUSES\b(.*?)(\bLIBS\b|$)", rest, re.DOTALL)
+        allowed = {r.replace("/", "_") for r in table.direct[name] | {"base"}}
+        for used in uses.group(1).split() if uses else []:
+            if used.replace("/", "_") not in allowed:
+                yield f"{path}: {name} links {used}, which is not in its row"
+
+
+def faults(root):
+    table = Table((root / "ARCHITECTURE.md").read_text())
+    for room in table.direct:
+        if (room in table.planned) == (root / room / "CMakeLists.txt").exists():
+            yield f"ARCHITECTURE.md: {room} is " + (
+                "marked (planned), but is here" if room in table.planned else "not here; mark it (planned)")
+    for file in sorted(root.rglob("*")):
+        path = file.relative_to(root).as_posix()
+        top = path.split("/")[0]
+        if top in ("build", "tools", "baked") or top.startswith(".") or not file.is_file():
+            continue
+        if file.name == "CMakeLists.txt" and top != path:
+            yield from link_faults(table, path, file.read_text())
+        if file.suffix not in (".h", ".cpp"):
+            continue
+        room = table.room_of(path)
+        if room is None:
+            yield f"{path}: lies in no room of ARCHITECTURE.md"
+            continue
+        code = file.read_text()
+        yield from include_faults(table, path, room, code)
+        yield from print_faults(path, room, code)
+
+
+GOOD = {
+    "ARCHITECTURE.md": "| room | holds | may include |\n|---|---|---|\n| base | b | - |\n"
+                       "| scene | s | base |\n| transport | t | scene |\n| solve/a | a | transport |\n"
+                       "| solve/b | b | transport |\n| later (planned) | l | solve/a |\n"
+                       "| pipeline | p | all of the above |\n| apps/cli | c | pipeline |\n",
+    "base/CMakeLists.txt": "luxel_room(base LIBS fmt::fmt)",
+    "base/parallel.cpp": "#include <tbb/parallel_for.h>",
+    "base/check.cpp": "std::fprintf(stderr, text); std::abort();",
+    "scene/CMakeLists.txt": "luxel_room(scene USES base LIBS a::b)",
+    "scene/scene.h": '#include "base/vec.h"\n// printf() is not for us\nauto s = "exit(1)"; snprintf(a);',
+    "scene/scene_test.cpp": '#include "tests/support.h"\nprintf("x");',
+    "transport/CMakeLists.txt": "luxel_room(transport USES scene)",
+    "solve/a/CMakeLists.txt": "luxel_room(solve/a USES transport)",
+    "solve/a/a.cpp": '#include "solve/a/a.h"\n#include "scene/scene.h"\n#include <vector>',
+    "solve/b/CMakeLists.txt": "luxel_room(solve/b USES transport)",
+    "pipeline/CMakeLists.txt": "luxel_room(pipeline USES solve_a solve_b)",
+    "pipeline/p.cpp": '#include "solve/a/a.h"',
+    "apps/cli/CMakeLists.txt": "add_executable(luxel main.cpp)",
+    "apps/cli/main.cpp": '#include "pipeline/p.h"\n#include "base/vec.h"\nint main() { std::exit(printf("")); }',
+    "tests/agree_test.cpp": '#include "solve/a/a.h"\n#include "solve/b/b.h"',
+}
+# Each changes the good tree into one with exactly one fault, whose line contains the text.
+BAD = [
+    ("solve/b/b.cpp", '#include "solve/a/a.h"', "solve/b may not include solve/a"),
+    ("scene/s.cpp", '\n#include "transport/t.h"', "scene/s.cpp:2: scene may not include transport"),
+    ("base/b.cpp", '#  include "scene/scene.h"', "base may not include scene"),
+    ("pipeline/q.cpp", '#include "apps/cli/cli.h"', "nothing includes apps"),
+    ("tests/cli_test.cpp", '#include "apps/cli/cli.h"', "nothing includes apps"),
+    ("scene/s.cpp", '#include "tests/support.h"', "only tests may"),
+    ("scene/s.cpp", "#include <tbb/task_group.h>", "only base/parallel.* may"),
+    ("scene/s_test.cpp", "#include <oneapi/tbb/mutex.h>", "only base/parallel.* may"),
+    ("scene/s.cpp", '#include "vec.h"', "names no room"),
+    ("scene/s.cpp", "std::cout << 1;", "prints or exits"),
+    ("scene/s.cpp", 'std::printf("x");', "prints or exits"),
+    ("scene/s.cpp", "std::exit(1);", "prints or exits"),
+    ("attic/a.cpp", "", "lies in no room"),
+    ("attic/CMakeLists.txt", "luxel_room(attic USES base)", "room attic has no row"),
+    ("scene/CMakeLists.txt", "luxel_room(scene\n USES base transport\n LIBS a)", "scene links transport"),
+    ("solve/b/CMakeLists.txt", "luxel_room(solve/b USES transport solve_a)", "solve/b links solve_a"),
+    ("later/CMakeLists.txt", "luxel_room(later)", "marked (planned), but is here"),
+]
+
+
+def write_tree(root, files):
+    for path, text in files.items():
+        (root / path).parent.mkdir(parents=True, exist_ok=True)
+        (root / path).write_text(text)
+
+
+def self_test():
+    wrong = 0
+    for path, text, expected in [(None, None, None)] + BAD:
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            write_tree(root, GOOD if path is None else {**GOOD, path: text})
+            found = list(faults(root))
+            right = not found if path is None else len(found) == 1 and expected in found[0]
+            wrong += not right
+            if not right:
+                print(f"self-test: {path}: {text!r}: expected {expected}, found {found}")
+    print(f"check_arrows --self-test: {len(BAD) + 1 - wrong} of {len(BAD) + 1} right")
+    return wrong
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        return 1 if self_test() else 0
+    default = pathlib.Path(__file__).resolve().parent.parent
+    found = list(faults(pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default))
+    for fault in found:
+        print(fault)
+    print(f"check_arrows: {len(found)} faults")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that luxel is built from, if any is missing.
+# Needs no network and no rights when all are there.
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build make pkg-config python3 clang-format
+  libembree-dev libtbb-dev           # rays, threads
+  libopenexr-dev libstb-dev          # images
+  libtinygltf-dev nlohmann-json3-dev # glTF, JSON
+  libassimp-dev                      # OBJ, FBX, Collada, ...
+  libeigen3-dev                      # least squares
+  libcli11-dev libfmt-dev libexpected-dev
+  libgtest-dev libgmock-dev          # tests
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  # "install ok installed" only: a package that was removed leaves a status too.
+  status=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
+  [[ $status == "install ok installed" ]] || missing+=("$package")
+done
+if [[ ${#missing[@]} -eq 0 ]]; then
+  exit 0
+fi
+
+as_root=(env)
+if [[ $(id -u) -ne 0 ]]; then
+  if ! command -v sudo >/dev/null; then
+    echo "setup: not root and no sudo; as root: apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo env)
+fi
+# Through env, because sudo drops the variable.
+echo "setup: installing ${missing[*]}"
+"${as_root[@]}" apt-get update -q
+"${as_root[@]}" DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"

@@ -1,0 +1,26 @@
+// Writes the procedural scenes as .glb files into a folder: how scenes/ was made.
+//   build/release/bin/luxel_write_scenes scenes
+#include <cstdio>
+#include <filesystem>
+
+#include "base/file.h"
+#include "tools/procedural_files.h"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: luxel_write_scenes FOLDER\n", stderr);
+    return 2;
+  }
+  for (const auto& file : luxel::tools::procedural_files()) {
+    const auto path = std::filesystem::path(argv[1]) / file.name;
+    const auto bytes = luxel::export_::scene_glb(file.scene);
+    const auto written = bytes ? luxel::write_file_atomically(path, *bytes)
+                               : luxel::Status(tl::unexpected(bytes.error()));
+    if (!written) {
+      std::fprintf(stderr, "%s\n", written.error().message.c_str());
+      return 1;
+    }
+    std::printf("wrote %s\n", path.string().c_str());
+  }
+  return 0;
+}

@@ -1,0 +1,135 @@
+#include "trace/ray_tracer.h"
+
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+#include "scene/procedural.h"
+
+namespace luxel::trace {
+namespace {
+
+scene::Mesh unit_quad() {
+  scene::Mesh quad;
+  quad.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  quad.uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  quad.triangles = {{0, 1, 2}, {0, 2, 3}};
+  quad.triangle_material = {0, 0};
+  return quad;
+}
+
+scene::Scene quad_scene(Mat34 world_from_object = {}) {
+  scene::Scene scene;
+  scene.materials.push_back({});
+  scene.meshes.push_back(unit_quad());
+  scene.instances.push_back({"quad", 0, world_from_object});
+  return scene;
+}
+
+TEST(RayTracer, HitsWhereThePlaneIs) {
+  const scene::Scene scene = quad_scene();
+  const auto tracer = RayTracer::build(scene);
+  const Hit hit = tracer->closest_hit({{0.75f, 0.25f, 2}, 0, {0, 0, -1}, INFINITY});
+  ASSERT_TRUE(hit.found());
+  EXPECT_FLOAT_EQ(hit.t, 2);
+  EXPECT_FALSE(hit.back_face);
+  const Vec3 p = scene::world_position(scene, hit.point());
+  EXPECT_NEAR(p.x, 0.75f, 1e-6f);
+  EXPECT_NEAR(p.y, 0.25f, 1e-6f);
+  EXPECT_FALSE(tracer->closest_hit({{1.5f, 0.5f, 2}, 0, {0, 0, -1}, INFINITY}).found());
+  EXPECT_FALSE(tracer->closest_hit({{0.5f, 0.5f, 2}, 0, {0, 0, -1}, 1.5f}).found());
+}
+
+TEST(RayTracer, KnowsTheBackEvenOfMirroredInstances) {
+  for (const Vec3 scale : {Vec3{1, 1, 1}, Vec3{-1, 1, 1}, Vec3{2, -3, 1}, Vec3{-1, -1, 1}}) {
+    scene::Scene scene = quad_scene(translation({5, 0, 0}) * scaling(scale));
+    scene.instances.push_back({"elsewhere", 0, translation({0, 0, 50})});
+    const Vec3 middle = Vec3{5, 0, 0} + Vec3{0.4f * scale.x, 0.4f * scale.y, 0};
+    // Each instance a copy in the top level, then both sharing one mesh.
+    for (const size_t max_flat_triangles : {100, 0}) {
+      const auto tracer = RayTracer::build(scene, max_flat_triangles);
+      const Hit front = tracer->closest_hit({middle + Vec3{0, 0, 1}, 0, {0, 0, -1}, INFINITY});
+      const Hit back = tracer->closest_hit({middle - Vec3{0, 0, 1}, 0, {0, 0, 1}, INFINITY});
+      ASSERT_TRUE(front.found() && back.found());
+      EXPECT_FALSE(front.back_face) << scale.x << " " << scale.y;
+      EXPECT_TRUE(back.back_face) << scale.x << " " << scale.y;
+      EXPECT_EQ(front.instance, 0u);
+      EXPECT_GT(scene::front_normal(scene, 0, front.triangle).z, 0.99f);
+      const Hit other = tracer->closest_hit({{0.5f, 0.5f, 51}, 0, {0, 0, -1}, INFINITY});
+      EXPECT_EQ(other.instance, 1u);
+    }
+  }
+}
+
+TEST(RayTracer, HolesOfAMaskDoNotBlock) {
+  scene::Scene scene = quad_scene();
+  scene::Texture mask;
+  mask.width = 2, mask.height = 1;
+  mask.rgba = {255, 255, 255, 0, 255, 255, 255, 255};  // left half: a hole
+  scene.textures.push_back(mask);
+  scene.materials[0].base_color_texture.texture = 0;
+  scene.materials[0].base_color_texture.filter = scene::Filter::nearest;
+  scene.materials[0].alpha_mode = scene::AlphaMode::mask;
+  const auto tracer = RayTracer::build(scene);
+  const Ray left{{0.25f, 0.5f, 1}, 0, {0, 0, -1}, INFINITY},
+      right{{0.75f, 0.5f, 1}, 0, {0, 0, -1}, INFINITY};
+  EXPECT_FALSE(tracer->closest_hit(left).found());
+  EXPECT_TRUE(tracer->closest_hit(right).found());
+  uint8_t blocked[2];
+  const Ray rays[2] = {left, right};
+  tracer->occluded(rays, blocked);
+  EXPECT_EQ(blocked[0], 0);
+  EXPECT_EQ(blocked[1], 1);
+}
+
+// A closed sphere around the origin: whatever the direction, also exactly through edges and
+// corners, no ray may slip out between two triangles. 37 rays: two packets and a rest.
+TEST(RayTracer, NothingSlipsThroughAClosedSurface) {
+  const scene::Scene scene = scene::inward_sphere(1, 3, {0.5f, 0.5f, 0.5f}, {});
+  const auto tracer = RayTracer::build(scene);
+  const scene::Mesh& mesh = scene.meshes[0];
+  std::vector<Ray> rays;
+  for (const Vec3& corner : mesh.positions) rays.push_back({{}, 0, corner, INFINITY});
+  for (const auto& t : mesh.triangles)
+    rays.push_back({{}, 0, mesh.positions[t[0]] + mesh.positions[t[1]], INFINITY});
+  RandomStream random{3};
+  while (rays.size() % 16 != 5)
+    rays.push_back(
+        {{}, 0, {random.next() - 0.5f, random.next() - 0.5f, random.next() - 0.5f}, INFINITY});
+  std::vector<Hit> hits(rays.size());
+  tracer->closest_hits(rays, hits);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    ASSERT_TRUE(hits[i].found()) << "ray " << i;
+    EXPECT_FALSE(hits[i].back_face);
+  }
+}
+
+// From every corner region of a box, a start just off a wall must not see that wall.
+TEST(OffsetOrigin, LeavesTheSurfaceAtAnyScale) {
+  for (const float scale : {1e-2f, 1.0f, 1e3f}) {
+    scene::Scene scene = scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1});
+    for (scene::Instance& i : scene.instances)
+      i.world_from_object = translation({7 * scale, -3 * scale, scale}) *
+                            scaling({scale, scale, scale}) * i.world_from_object;
+    const auto tracer = RayTracer::build(scene);
+    const float diagonal = scene::world_bounds(scene).diagonal();
+    RandomStream random{5};
+    for (uint32_t instance = 0; instance < scene.instances.size(); ++instance)
+      for (uint32_t t = 0; t < scene.meshes[scene.instances[instance].mesh].triangles.size(); ++t)
+        for (int k = 0; k < 50; ++k) {
+          const Vec2 u = random.next2();
+          const scene::SurfacePoint p{instance, t, {u.x * (1 - u.y), u.y}};
+          const Vec3 n = scene::front_normal(scene, instance, t);
+          const Vec3 from = offset_origin(scene::world_position(scene, p), n, diagonal);
+          // Steeply along the wall: the hardest case.
+          const Frame f = frame_around(n);
+          const Hit hit =
+              tracer->closest_hit({from, 0, normalize(f.tangent + n * 0.02f), INFINITY});
+          ASSERT_TRUE(hit.found());
+          EXPECT_FALSE(hit.back_face);
+          EXPECT_FALSE(hit.instance == instance && hit.triangle == t);
+        }
+  }
+}
+
+}  // namespace
+}  // namespace luxel::trace

@@ -69,24 +69,20 @@ Atlas write_atlas(const scene::Scene& scene, const std::vector<FlatChart>& chart
   return atlas;
 }
 
-Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progress& progress) {
-  progress.begin("charts", 1);
-  const Faces faces = make_faces(scene);
-  std::vector<ChartFaces> groups = grow_charts(faces, double(params.max_chart_angle_rad), progress);
-  if (progress.cancelled()) return cancelled();
+/// Flattens and lays out at one resolution or density.
+Result<Atlas> try_layout(const scene::Scene& scene, const Faces& faces,
+                         const std::vector<ChartFaces>& groups, const AtlasParams& params,
+                         Progress& progress) {
   double area = 0;
   for (const double a : faces.area) area += a;
   // A chart longer than the square that holds everything would set the density for all others.
   const double max_length = std::sqrt(area / 0.8);
-  const double density = params.texels_per_metre > 0 ? double(params.texels_per_metre)
-                                                     : params.resolution / max_length;
-  std::vector<FlatChart> charts =
-      flatten_charts(faces, std::move(groups), max_length, density, progress);
+  double density = params.resolution / max_length;
+  if (params.texels_per_metre > 0)
+    density = std::min(double(params.texels_per_metre), kMaxResolution / max_length);
+  std::vector<FlatChart> charts = flatten_charts(faces, groups, max_length, density, progress);
   if (progress.cancelled()) return cancelled();
-
-  progress.begin("packing", 1);
-  constexpr int kRounds =
-      4;  // overlap that slips past the first check is rare; twice is unheard of
+  constexpr int kRounds = 4;  // overlap that slips past the first check is rare; twice unheard of
   for (int round = 0;; ++round) {
     LUXEL_TRY(Layout layout, layout_charts(charts, params, progress));
     if (round == kRounds || !cut_overlaps(faces, layout, charts))
@@ -94,7 +90,41 @@ Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progr
   }
 }
 
-int smallest_side(const scene::Scene&, const AtlasParams& params) { return params.resolution; }
+/// The error for a resolution that does not work, with one that was tried and does.
+Error too_small(const scene::Scene& scene, const Faces& faces,
+                const std::vector<ChartFaces>& groups, AtlasParams params, Progress& progress) {
+  const int wanted = params.resolution;
+  for (params.resolution = 1; params.resolution <= kMaxResolution; params.resolution *= 2) {
+    if (!holds_charts(params.resolution, groups.size(), params.gutter)) continue;
+    const Result<Atlas> atlas = try_layout(scene, faces, groups, params, progress);
+    if (progress.cancelled()) return cancelled().value();
+    if (atlas)
+      return fail(ErrorCode::bad_setting,
+                  "resolution {}: too small for the scene's {} charts with {} texels between them; "
+                  "the smallest power of two that works is {}",
+                  wanted, atlas->chart_count, params.gutter, params.resolution)
+          .value();
+  }
+  return fail(ErrorCode::bad_setting,
+              "resolution {}: too small for the scene's {} charts, and so is the largest ({}); "
+              "simplify the scene",
+              wanted, groups.size(), kMaxResolution)
+      .value();
+}
+
+Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progress& progress) {
+  progress.begin("charts", 1);
+  const Faces faces = make_faces(scene);
+  const std::vector<ChartFaces> groups =
+      grow_charts(faces, double(params.max_chart_angle_rad), progress);
+  if (progress.cancelled()) return cancelled();
+  progress.begin("packing", 1);
+  Result<Atlas> atlas = try_layout(scene, faces, groups, params, progress);
+  const bool small = !atlas && atlas.error().code == ErrorCode::bad_setting;
+  if (small && params.texels_per_metre == 0)
+    return tl::unexpected(too_small(scene, faces, groups, params, progress));
+  return atlas;
+}
 
 }  // namespace
 
@@ -102,7 +132,7 @@ Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, P
   LUXEL_TRY_STATUS(check_params(params));
   if (params.uv != UvMode::unwrap) {
     progress.begin("charts", 1);
-    Result<Atlas> kept = keep_uv1(scene, smallest_side(scene, params), progress);
+    Result<Atlas> kept = keep_uv1(scene, params.resolution, progress);
     if (kept || params.uv == UvMode::keep || kept.error().code == ErrorCode::cancelled) return kept;
   }
   return unwrap(scene, params, progress);

@@ -13,10 +13,12 @@ namespace {
 
 constexpr double kFlatAngle = 0.01;    ///< faces this close to a patch's first face are coplanar
 constexpr double kCreaseAngle = 0.75;  ///< light changes at a sharper edge: no chart crosses it
+constexpr double kOutlineWeight =
+    0.1;  ///< of a round outline against flatness: ragged charts pack badly
 
-/// Rounds a relative quantity so that symmetric candidates compare equal whatever the unit of
-/// length did to their last digits. The odd offset keeps common values off the rounding edge.
-double rounded(double value) { return std::floor(value * 0x1p26 + 0.37); }
+/// A size or cost in steps of one percent, so that symmetric candidates compare equal whatever the
+/// unit of length did to their last digits. What is as good as nothing is one step, too.
+double rounded(double share) { return std::floor(std::log2(std::max(share, 1e-14)) * 64 + 0.37); }
 
 /// Coplanar neighbours share a number. Large faces come first: their normals are the best known.
 std::vector<uint32_t> flat_patches(const Faces& faces, uint32_t& count) {
@@ -25,8 +27,7 @@ std::vector<uint32_t> flat_patches(const Faces& faces, uint32_t& count) {
   std::vector<uint32_t> order(faces.size());
   std::iota(order.begin(), order.end(), 0u);
   std::vector<double> key(faces.size());
-  for (size_t f = 0; f < faces.size(); ++f)
-    key[f] = -std::floor(faces.area[f] / total * 0x1p30 + 0.37);
+  for (size_t f = 0; f < faces.size(); ++f) key[f] = -rounded(faces.area[f] / total);
   std::stable_sort(order.begin(), order.end(),
                    [&](uint32_t a, uint32_t b) { return key[a] < key[b]; });
 
@@ -169,10 +170,10 @@ class Merger {
                         (q.area - length(q.normal_sum));
     const double outline = p.perimeter + q.perimeter - 2 * (border.soft + border.hard);
     const double shape = outline * outline / (16 * (p.area + q.area));
-    const double cost = (lost + 1e-3 * shape * std::min(p.area, q.area)) / total_area_;
+    const double cost = (lost + kOutlineWeight * shape * std::min(p.area, q.area)) / total_area_;
     const uint32_t b = border.other;
-    queue_.push({rounded(cost * double(clusters_.size())), std::min(a, b), std::max(a, b),
-                 clusters_[std::min(a, b)].version, clusters_[std::max(a, b)].version});
+    queue_.push({rounded(cost), std::min(a, b), std::max(a, b), clusters_[std::min(a, b)].version,
+                 clusters_[std::max(a, b)].version});
   }
 
   /// The smaller one goes into the larger one.

@@ -63,15 +63,6 @@ uint64_t mask_texels(const std::vector<Mask>& masks) {
   return n;
 }
 
-/// With every chart in a single texel a square of side n holds floor((n + g) / (1 + g))^2 charts.
-int smallest_power_of_two(size_t charts, int gutter) {
-  for (int n = 1; n <= kMaxResolution; n *= 2) {
-    const size_t side = size_t(n + gutter) / size_t(1 + gutter);
-    if (side * side >= charts) return n;
-  }
-  return 0;
-}
-
 tl::unexpected<Error> cancelled() { return fail(ErrorCode::cancelled, "cancelled"); }
 
 }  // namespace
@@ -94,21 +85,16 @@ Corners texel_corners(const FlatChart& chart, double density, int resolution) {
   return texels;
 }
 
+bool holds_charts(int resolution, size_t charts, int gutter) {
+  const size_t side = size_t(resolution + gutter) / size_t(1 + gutter);
+  return side * side >= charts;
+}
+
 Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolution, int gutter,
                                 Progress& progress) {
-  const int smallest = smallest_power_of_two(charts.size(), gutter);
-  const size_t side = size_t(resolution + gutter) / size_t(1 + gutter);
-  if (side * side < charts.size()) {
-    if (smallest == 0)
-      return fail(ErrorCode::bad_setting,
-                  "resolution {}: the scene has {} charts, more than the largest atlas ({}) can "
-                  "hold; simplify the scene",
-                  resolution, charts.size(), kMaxResolution);
-    return fail(ErrorCode::bad_setting,
-                "resolution {}: too small for the scene's {} charts with {} texels between them; "
-                "the smallest power of two that works is {}",
-                resolution, charts.size(), gutter, smallest);
-  }
+  if (!holds_charts(resolution, charts.size(), gutter))
+    return fail(ErrorCode::bad_setting, "resolution {}: too small for {} charts", resolution,
+                charts.size());
   const double side_m = std::sqrt(total_area(charts));
   double low = 0, high = INFINITY;  // densities that fit, and that do not
   double density = 0.85 * resolution / side_m;
@@ -118,7 +104,7 @@ Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolu
     Attempt attempt = make_attempt(charts, density, resolution);
     const double fill = double(mask_texels(attempt.masks)) / (double(resolution) * resolution);
     Packing packing;
-    if (fill < 1)
+    if (fill <= 1)
       packing = pack_masks(attempt.masks, resolution, resolution, gutter);
     else
       packing.placed = 0.9 / fill;
@@ -130,7 +116,9 @@ Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolu
       if (next < low * 1.01) next = low * 1.02;
     } else {
       high = density;
-      next = density * std::clamp(std::sqrt(packing.placed), 0.5, 0.985);
+      // Where gutters fill the square, density hardly matters until charts shrink to a texel each.
+      const double most = round < 4 ? 0.985 : round < 8 ? 0.85 : 0.5;
+      next = density * std::clamp(std::sqrt(packing.placed), 0.5, most);
     }
     if (low > 0 && (high < low * 1.012 || round > 8)) break;
     if (next >= high || next <= low) next = std::sqrt(low * high);

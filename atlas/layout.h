@@ -22,7 +22,10 @@ struct Layout {
 std::vector<std::array<Dvec2, 3>> texel_corners(const FlatChart& chart, double texels_per_metre,
                                                 int resolution);
 
-/// Error: too small, states the smallest power of two that works.
+/// Whether a square has room for as many charts when each shrinks to a single texel.
+bool holds_charts(int resolution, size_t charts, int gutter);
+
+/// Error (bad_setting): the square does not hold the charts.
 Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolution, int gutter,
                                 Progress& progress);
 /// Error: not even the largest square is enough.

@@ -60,9 +60,11 @@ Dvec2 best_direction(const std::vector<Dvec2>& hull) {
       x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
     }
     const double area = (x1 - x0) * (y1 - y0), turn = std::abs(d.y);
-    // Equal within rounding: the one that turns less, so that symmetric charts stay upright.
-    const bool equal = std::abs(area - best_area) <= 1e-6 * area;
-    if (equal ? turn < best_turn - 1e-6 : area < best_area) {
+    // Equal within rounding: the one that turns less, then the one that turns left, so that
+    // symmetric charts stay upright and lie the same way whatever the unit of length.
+    const bool equal = std::abs(area - best_area) <= 1e-5 * area;
+    const bool nicer = std::abs(turn - best_turn) > 1e-4 ? turn < best_turn : d.y > best.y + 1e-4;
+    if (equal ? nicer : area < best_area) {
       best = d, best_area = area, best_turn = turn;
     }
   }

@@ -193,6 +193,7 @@ std::vector<std::string> known_extensions() {
 }  // namespace
 
 Status check_extension(const SourceFile& source) {
+  if (source.extension == ".gltf" || source.extension == ".glb") return {};
   const std::vector<std::string> known = known_extensions();
   if (std::find(known.begin(), known.end(), source.extension) != known.end()) return {};
   std::string list;
@@ -203,7 +204,10 @@ Status check_extension(const SourceFile& source) {
 
 Result<Imported> read_with_assimp(const SourceFile& source) {
   Imported imported;
-  if (source.extension == ".obj") LUXEL_TRY_STATUS(check_obj(source, imported.warnings));
+  std::set<std::string> with_color;
+  if (source.extension == ".obj") {
+    LUXEL_TRY(with_color, check_obj(source, imported.warnings));
+  }
   if (source.extension == ".ply") LUXEL_TRY_STATUS(check_ply(source));
 
   Assimp::Importer importer;
@@ -215,9 +219,9 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
                                                   aiProcess_ValidateDataStructure);
   if (in == nullptr || in->mRootNode == nullptr)
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
-                importer.GetErrorString());
+                one_sentence(importer.GetErrorString()));
 
-  LUXEL_TRY_STATUS(read_assimp_materials(*in, source, imported));
+  LUXEL_TRY_STATUS(read_assimp_materials(*in, source, with_color, imported));
   const NodeTransforms transforms = add_instances(*in, has_display_colors(source), imported.scene);
   add_lights(*in, transforms, imported);
   add_cameras(*in, transforms, imported.scene);

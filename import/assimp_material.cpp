@@ -16,6 +16,7 @@ using scene::TextureRef;
 struct Textures {
   const aiScene& in;
   const SourceFile& source;
+  const std::set<std::string>& with_color;
   Imported& out;
   std::map<std::string, uint32_t> known;  ///< by the path in the file
 };
@@ -124,13 +125,21 @@ Result<scene::Material> read_material(Textures& textures, unsigned index) {
   // An .mtl with map_Ke and no Ke means the picture as it is.
   if (out.emission_texture.texture != scene::kNone && max_component(out.emission) <= 0)
     out.emission = {1, 1, 1};
+  // Assimp's own grey of 0.6 says that the .mtl is missing or has no Kd.
+  const bool made_up = textures.source.extension == ".obj" &&
+                       !textures.with_color.contains(out.name) &&
+                       out.base_color == Rgb{0.6f, 0.6f, 0.6f};
+  if (made_up)
+    out.base_color = out.base_color_texture.texture == scene::kNone ? default_material().base_color
+                                                                    : Rgb{1, 1, 1};
   return out;
 }
 
 }  // namespace
 
-Status read_assimp_materials(const aiScene& in, const SourceFile& source, Imported& out) {
-  Textures textures{in, source, out, {}};
+Status read_assimp_materials(const aiScene& in, const SourceFile& source,
+                             const std::set<std::string>& with_color, Imported& out) {
+  Textures textures{in, source, with_color, out, {}};
   for (unsigned i = 0; i < in.mNumMaterials; ++i) {
     LUXEL_TRY(scene::Material material, read_material(textures, i));
     out.scene.materials.push_back(std::move(material));

@@ -15,14 +15,6 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
   return true;
 }
 
-/// tinygltf says several things, one a line, often ending in a line break.
-std::string one_sentence(std::string text) {
-  while (!text.empty() && (text.back() == '\n' || text.back() == '.' || text.back() == ' '))
-    text.pop_back();
-  for (size_t at; (at = text.find('\n')) != std::string::npos;) text.replace(at, 1, "; ");
-  return text.empty() ? "tinygltf gives no reason" : text;
-}
-
 Result<tinygltf::Model> load_model(const SourceFile& source, const std::string& text) {
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_encoded, nullptr);

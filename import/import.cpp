@@ -40,7 +40,8 @@ Result<Imported> import_scene(const std::filesystem::path& path) {
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::out_of_memory, "{}: not enough memory to read it", source.name);
   } catch (const std::exception& e) {
-    return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name, e.what());
+    return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
+                one_sentence(e.what()));
   }
 }
 

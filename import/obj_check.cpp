@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/file.h"
 #include "import/readers.h"
 
 namespace luxel::import {
@@ -34,6 +35,7 @@ struct ObjScan {
   Counts counts;
   Index largest[3];
   bool has_faces = false;
+  std::set<std::string> with_color;
 };
 
 /// Every number of a v, vt or vn line must be one, and finite.
@@ -76,24 +78,50 @@ Status check_corners(std::string_view rest, ObjScan& scan, size_t line, const st
   return {};
 }
 
-void check_library(std::string_view rest, const SourceFile& source,
-                   std::vector<std::string>& warnings) {
+std::string_view text_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// The rest of a line without the blanks around it; names may hold blanks inside.
+std::string_view trimmed(std::string_view rest) {
   const size_t start = std::min(rest.find_first_not_of(kBlank), rest.size());
-  const size_t end = rest.find_last_not_of(kBlank) + 1;
-  if (end <= start) return;
-  const std::string name(rest.substr(start, end - start));  // may hold blanks
-  std::error_code ignored;
-  if (!std::filesystem::exists(source.path.parent_path() / name, ignored))
+  return rest.substr(start, std::max(rest.find_last_not_of(kBlank) + 1, start) - start);
+}
+
+/// Takes the next line off the text.
+std::string_view next_line(std::string_view& text) {
+  const size_t end = std::min(text.find('\n'), text.size());
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return line;
+}
+
+/// The materials of an .mtl that state Kd.
+void read_library(std::string_view rest, const SourceFile& source, ObjScan& scan,
+                  std::vector<std::string>& warnings) {
+  const std::string_view name = trimmed(rest);
+  if (name.empty()) return;
+  const auto bytes = read_file(source.path.parent_path() / std::filesystem::path(name));
+  if (!bytes) {
     warnings.push_back(
         fmt::format("{}: its material file {} is missing; a white that reflects 0.8 is used",
                     source.name, name));
+    return;
+  }
+  std::string material;
+  for (std::string_view text = text_of(*bytes); !text.empty();) {
+    std::string_view line = next_line(text);
+    const std::string_view word = next_word(line);
+    if (word == "newmtl") material = trimmed(line);
+    if (word == "Kd") scan.with_color.insert(material);
+  }
 }
 
 Status check_line(std::string_view line, size_t number, const SourceFile& source, ObjScan& scan,
                   std::vector<std::string>& warnings) {
   const std::string_view word = next_word(line);
   const bool is_v = word == "v", is_vt = word == "vt", is_vn = word == "vn", is_f = word == "f";
-  if (word == "mtllib") check_library(line, source, warnings);
+  if (word == "mtllib") read_library(line, source, scan, warnings);
   if (!is_v && !is_vt && !is_vn && !is_f) return {};
   const std::string where = fmt::format("{}, line {}", source.name, number);
   scan.counts.v += is_v;
@@ -106,13 +134,12 @@ Status check_line(std::string_view line, size_t number, const SourceFile& source
 
 }  // namespace
 
-Status check_obj(const SourceFile& source, std::vector<std::string>& warnings) {
-  std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+Result<std::set<std::string>> check_obj(const SourceFile& source,
+                                        std::vector<std::string>& warnings) {
+  std::string_view text = text_of(source.bytes);
   ObjScan scan;
   for (size_t number = 1; !text.empty(); ++number) {
-    const size_t end = std::min(text.find('\n'), text.size());
-    LUXEL_TRY_STATUS(check_line(text.substr(0, end), number, source, scan, warnings));
-    text.remove_prefix(std::min(end + 1, text.size()));
+    LUXEL_TRY_STATUS(check_line(next_line(text), number, source, scan, warnings));
   }
   const std::pair<const char*, int64_t> lists[3] = {{"vertices", scan.counts.v},
                                                     {"texture coordinates", scan.counts.vt},
@@ -125,7 +152,7 @@ Status check_obj(const SourceFile& source, std::vector<std::string>& warnings) {
   if (!scan.has_faces)
     return fail(ErrorCode::bad_input, "{}: the scene has no triangles; nothing can be lit",
                 source.name);
-  return {};
+  return std::move(scan.with_color);
 }
 
 }  // namespace luxel::import

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,10 @@ Result<Imported> read_with_assimp(const SourceFile& source);
 
 /// Assimp's readers trust their input, and Debian's build aborts where an assertion fails: what can
 /// be told cheaply is told before. Errors: NaN, index out of range, a file that ends early.
-Status check_obj(const SourceFile& source, std::vector<std::string>& warnings);
+/// Returns the names of the materials whose .mtl states a diffuse colour: Assimp makes up 0.6 for
+/// the others. A missing .mtl is a warning.
+Result<std::set<std::string>> check_obj(const SourceFile& source,
+                                        std::vector<std::string>& warnings);
 Status check_ply(const SourceFile& source);
 
 /// Decodes `encoded` and keeps it. `name` is the picture's file or number, `user` who asked for it.
@@ -41,6 +45,9 @@ void join_identical_vertices(scene::Mesh& mesh);
 /// default would be base colour 1 with metallic 1, that is black to a diffuse solver; a white of 1
 /// never loses light and would be clamped.
 scene::Material default_material();
+
+/// What a library says (several lines, full stops) as the end of a sentence of ours.
+std::string one_sentence(std::string text);
 
 /// "mesh 3 (chair)"
 std::string label(const char* kind, size_t index, const std::string& name);

@@ -84,6 +84,13 @@ Result<scene::Texture> decode_texture(std::vector<std::byte> encoded, const std:
   return texture;
 }
 
+std::string one_sentence(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == '.' || text.back() == ' '))
+    text.pop_back();
+  for (size_t at; (at = text.find('\n')) != std::string::npos;) text.replace(at, 1, "; ");
+  return text.empty() ? "no reason is known" : text;
+}
+
 scene::Material default_material() {
   scene::Material material;
   material.name = "default";

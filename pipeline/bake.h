@@ -32,8 +32,8 @@ struct Bake {
 /// name in settings.output. Errors: whatever the stages say; settings out of range.
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress);
 
-/// The whole of `luxel bake`: bake_scene, then lightmap.exr, baked.glb, preview.png and bake.json in
-/// settings.output, all of them or none. Returns what bake.json holds.
+/// The whole of `luxel bake`: bake_scene, then lightmap.exr, baked.glb, preview.png and bake.json
+/// in settings.output, all of them or none. Returns what bake.json holds.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

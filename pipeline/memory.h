@@ -5,8 +5,8 @@
 
 namespace luxel::pipeline {
 
-uint64_t resident_bytes();        ///< now
-uint64_t peak_resident_bytes();   ///< since the process started
-uint64_t available_bytes();       ///< what the machine can still give without swapping
+uint64_t resident_bytes();       ///< now
+uint64_t peak_resident_bytes();  ///< since the process started
+uint64_t available_bytes();      ///< what the machine can still give without swapping
 
 }  // namespace luxel::pipeline

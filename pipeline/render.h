@@ -18,7 +18,7 @@ struct RenderSettings {
   std::filesystem::path from;    ///< folder of a bake: baked.glb and lightmap.exr are read
   std::filesystem::path output;  ///< .png (tone-mapped) or .exr (radiance)
   std::string technique = "lightmap";
-  std::string camera;            ///< by name; empty: the first, else a fitted one
+  std::string camera;  ///< by name; empty: the first, else a fitted one
   std::optional<Vec3> eye;
   Vec3 look_at{};
   double fov_deg = 45;

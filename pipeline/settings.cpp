@@ -102,16 +102,16 @@ Result<Sun> parse_sun(std::string_view text) {
 Result<uint64_t> parse_size(std::string_view text) {
   std::string_view number = text;
   double unit = 1;
-  const size_t power = text.empty() ? std::string_view::npos
-                                    : std::string_view("KMGTkmgt").find(text.back());
+  const size_t power =
+      text.empty() ? std::string_view::npos : std::string_view("KMGTkmgt").find(text.back());
   if (power != std::string_view::npos) {
     unit = std::pow(1024.0, double(power % 4 + 1));
     number.remove_suffix(1);
   }
   const auto value = parse_number(number);
   if (!value || *value <= 0 || *value * unit > 1e18)
-    return fail(ErrorCode::bad_setting, "--max-memory '{}' is not a size; give bytes, or 900M, 1.5G",
-                text);
+    return fail(ErrorCode::bad_setting,
+                "--max-memory '{}' is not a size; give bytes, or 900M, 1.5G", text);
   return uint64_t(*value * unit);
 }
 

@@ -17,9 +17,9 @@ namespace luxel::pipeline {
 
 /// Where the sun stands and how strong it is.
 struct Sun {
-  float azimuth_deg = 0;    ///< compass bearing: 0 north = -Z, 90 east = +X
-  float elevation_deg = 45; ///< above the horizon, Y being up
-  float lux = 0;            ///< E on a surface that faces it [W/m^2 or lux]
+  float azimuth_deg = 0;     ///< compass bearing: 0 north = -Z, 90 east = +X
+  float elevation_deg = 45;  ///< above the horizon, Y being up
+  float lux = 0;             ///< E on a surface that faces it [W/m^2 or lux]
 };
 
 /// Light from outside the scene's file.
@@ -32,15 +32,15 @@ struct BakeSettings {
   std::filesystem::path scene;
   std::filesystem::path output;  ///< a folder; made when missing
   std::string solver = "gather";
-  int resolution = 512;          ///< side of the lightmap in texels
-  float texels_per_metre = 0;    ///< > 0: chooses the resolution
+  int resolution = 512;        ///< side of the lightmap in texels
+  float texels_per_metre = 0;  ///< > 0: chooses the resolution
   atlas::UvMode uv = atlas::UvMode::automatic;
   int samples = 256;
   int direct_samples = 64;
-  int bounces = -1;              ///< < 0: all
-  uint64_t max_memory_bytes = 0; ///< 0: four fifths of what is free when the bake starts
+  int bounces = -1;               ///< < 0: all
+  uint64_t max_memory_bytes = 0;  ///< 0: four fifths of what is free when the bake starts
   uint64_t seed = 1;
-  int threads = 0;               ///< 0: all cores
+  int threads = 0;  ///< 0: all cores
   OutsideLight outside;
 };
 

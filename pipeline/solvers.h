@@ -30,7 +30,7 @@ struct TexelLight {
   std::vector<Rgb> irradiance;  ///< E per texel of the map [W/m^2]
   uint64_t rays = 0;
   int sweeps = 0;
-  double relative_error = 0;    ///< estimated, root mean square over the mean
+  double relative_error = 0;       ///< estimated, root mean square over the mean
   uint64_t suspicious_texels = 0;  ///< more than half of the rays met backs of one-sided surfaces
   uint64_t scratch_bytes = 0;      ///< in temporary files
 };

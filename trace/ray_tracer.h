@@ -30,12 +30,15 @@ struct Hit {
   scene::SurfacePoint point() const { return {instance, triangle, at}; }
 };
 
-/// Two levels: one geometry per mesh, instances on top. Holes of alpha masks do not block. Both
-/// sides of every triangle block. Queries are const and may run on many threads at once.
+/// Two levels: a mesh with several instances is stored once, with its instances on top, in scenes of
+/// more than a million drawn triangles; smaller scenes and single instances lie in the top level, where
+/// rays meet one tight hierarchy. Holes of alpha masks do not block. Both sides of every triangle
+/// block. Queries are const and may run on many threads at once.
 /// `scene` is kept by reference and must outlive the tracer.
 class RayTracer {
  public:
-  static Result<RayTracer> build(const scene::Scene& scene);
+  /// `max_flat_triangles`: drawn triangles above which meshes are shared between instances.
+  static Result<RayTracer> build(const scene::Scene& scene, size_t max_flat_triangles = 1u << 20);
   RayTracer(RayTracer&&) noexcept;
   RayTracer& operator=(RayTracer&&) noexcept;
   ~RayTracer();

@@ -41,15 +41,22 @@ TEST(RayTracer, HitsWhereThePlaneIs) {
 
 TEST(RayTracer, KnowsTheBackEvenOfMirroredInstances) {
   for (const Vec3 scale : {Vec3{1, 1, 1}, Vec3{-1, 1, 1}, Vec3{2, -3, 1}, Vec3{-1, -1, 1}}) {
-    const scene::Scene scene = quad_scene(translation({5, 0, 0}) * scaling(scale));
-    const auto tracer = RayTracer::build(scene);
+    scene::Scene scene = quad_scene(translation({5, 0, 0}) * scaling(scale));
+    scene.instances.push_back({"elsewhere", 0, translation({0, 0, 50})});
     const Vec3 middle = Vec3{5, 0, 0} + Vec3{0.4f * scale.x, 0.4f * scale.y, 0};
-    const Hit front = tracer->closest_hit({middle + Vec3{0, 0, 1}, 0, {0, 0, -1}, INFINITY});
-    const Hit back = tracer->closest_hit({middle - Vec3{0, 0, 1}, 0, {0, 0, 1}, INFINITY});
-    ASSERT_TRUE(front.found() && back.found());
-    EXPECT_FALSE(front.back_face) << scale.x << " " << scale.y;
-    EXPECT_TRUE(back.back_face) << scale.x << " " << scale.y;
-    EXPECT_GT(scene::front_normal(scene, 0, front.triangle).z, 0.99f);
+    // Each instance a copy in the top level, then both sharing one mesh.
+    for (const size_t max_flat_triangles : {100, 0}) {
+      const auto tracer = RayTracer::build(scene, max_flat_triangles);
+      const Hit front = tracer->closest_hit({middle + Vec3{0, 0, 1}, 0, {0, 0, -1}, INFINITY});
+      const Hit back = tracer->closest_hit({middle - Vec3{0, 0, 1}, 0, {0, 0, 1}, INFINITY});
+      ASSERT_TRUE(front.found() && back.found());
+      EXPECT_FALSE(front.back_face) << scale.x << " " << scale.y;
+      EXPECT_TRUE(back.back_face) << scale.x << " " << scale.y;
+      EXPECT_EQ(front.instance, 0u);
+      EXPECT_GT(scene::front_normal(scene, 0, front.triangle).z, 0.99f);
+      const Hit other = tracer->closest_hit({{0.5f, 0.5f, 51}, 0, {0, 0, -1}, INFINITY});
+      EXPECT_EQ(other.instance, 1u);
+    }
   }
 }
 

@@ -3,8 +3,7 @@
 namespace luxel::transport {
 
 Rgb irradiance_at(const TexelField& field, const scene::SurfacePoint& p) {
-  const auto& corners =
-      field.atlas->corners[field.atlas->triangle_number(p.instance, p.triangle)];
+  const auto& corners = field.atlas->corners[field.atlas->triangle_number(p.instance, p.triangle)];
   const Vec2 at = interpolate(corners[0], corners[1], corners[2], p.at);
   const int side = field.map->resolution;
   const int x0 = int(std::floor(at.x - 0.5f)), y0 = int(std::floor(at.y - 0.5f));

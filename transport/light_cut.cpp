@@ -41,9 +41,8 @@ float irradiance_per_radiance(const TriangleLight& light, Vec3 position, Vec3 no
   // In the light's plane, or in ours, rounding would decide between nothing and a half space.
   constexpr float kPlaneTolerance = 1e-6f;
   if (std::abs(side) <= kPlaneTolerance * reach || (side < 0 && !light.two_sided)) return 0;
-  const float highest =
-      std::max({dot(light.a - position, normal), dot(light.b - position, normal),
-                dot(light.c - position, normal)});
+  const float highest = std::max({dot(light.a - position, normal), dot(light.b - position, normal),
+                                  dot(light.c - position, normal)});
   if (highest <= 10 * kPlaneTolerance * reach) return 0;
   const std::array<Vec3, 3> corners{light.a, side > 0 ? light.b : light.c,
                                     side > 0 ? light.c : light.b};
@@ -55,15 +54,23 @@ void light_cut(const Lights& lights, Vec3 position, Vec3 normal, size_t max_entr
   cut.clear();
   if (lights.nodes.empty()) return;
   cut.push_back(entry_for(lights, 0, position, normal));
+  // A group that brings less than a hundredth of the light is not worth refining; all single
+  // triangles of a small set are.
+  constexpr float kNegligible = 0.01f;
+  const bool all_fit = lights.triangles.size() <= max_entries;
+  float total = cut.front().importance;
   while (cut.size() < max_entries) {
     const auto widest =
         std::max_element(cut.begin(), cut.end(), [](const CutEntry& p, const CutEntry& q) {
           return (p.exact ? -1 : p.importance) < (q.exact ? -1 : q.importance);
         });
-    if (widest->exact || widest->importance <= 0) break;
+    if (widest->exact || widest->importance <= (all_fit ? 0 : kNegligible * total)) break;
     const uint32_t parent = widest->node;
+    const CutEntry right = entry_for(lights, lights.nodes[parent].right_child, position, normal);
+    total -= widest->importance;
     *widest = entry_for(lights, parent + 1, position, normal);
-    cut.push_back(entry_for(lights, lights.nodes[parent].right_child, position, normal));
+    total += widest->importance + right.importance;
+    cut.push_back(right);
   }
   std::erase_if(cut, [](const CutEntry& entry) { return entry.importance <= 0; });
 }

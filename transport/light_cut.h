@@ -21,7 +21,7 @@ struct CutEntry {
 };
 
 /// Replaces the most important group by its two halves until `max_entries` are reached or only
-/// single triangles are left, then drops what does not shine on the point. With at most
+/// single triangles are left, or the groups that are left are negligible, then drops what does not shine on the point. With at most
 /// `max_entries` triangle lights every entry is exact.
 void light_cut(const Lights& lights, Vec3 position, Vec3 normal, size_t max_entries,
                std::vector<CutEntry>& cut);

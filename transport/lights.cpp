@@ -12,8 +12,7 @@ namespace {
 /// Enough points that a small bright spot of a texture is not taken for darkness.
 constexpr int kTexturePoints = 64;
 
-TriangleLight light_from_triangle(const scene::Scene& scene, uint32_t instance,
-                                  uint32_t triangle) {
+TriangleLight light_from_triangle(const scene::Scene& scene, uint32_t instance, uint32_t triangle) {
   TriangleLight light;
   const scene::Triangle3 t = scene::world_triangle(scene, instance, triangle);
   light.flipped = determinant(scene.instances[instance].world_from_object) < 0;
@@ -31,7 +30,8 @@ TriangleLight light_from_triangle(const scene::Scene& scene, uint32_t instance,
     return light;
   }
   for (int i = 0; i < kTexturePoints; ++i)
-    light.mean_radiance += radiance_at(scene, light, triangle_sample(sobol_owen_2d(uint32_t(i), 0)));
+    light.mean_radiance +=
+        radiance_at(scene, light, triangle_sample(sobol_owen_2d(uint32_t(i), 0)));
   light.mean_radiance *= 1.0f / kTexturePoints;
   // The points may have missed what shines: keep a small chance for it.
   if (max_component(light.mean_radiance) <= 0) light.mean_radiance = material.emission * 1e-3f;

@@ -29,15 +29,16 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
 
 void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
   const auto& counts = json["counts"];
-  std::fprintf(stderr, "%s\n",
-               fmt::format("{} triangles, {} charts, {} x {} texels ({} used), {} rays in {:.1f} s, "
-                           "estimated error {:.2f} %",
-                           counts["triangles"].get<uint64_t>(), counts["charts"].get<uint64_t>(),
-                           json["atlas"]["resolution"].get<int>(),
-                           json["atlas"]["resolution"].get<int>(), counts["texels"].get<uint64_t>(),
-                           counts["rays"].get<uint64_t>(), json["seconds"]["total"].get<double>(),
-                           100 * json["relative_error"].get<double>())
-                   .c_str());
+  std::fprintf(
+      stderr, "%s\n",
+      fmt::format("{} triangles, {} charts, {} x {} texels ({} used), {} rays in {:.1f} s, "
+                  "estimated error {:.2f} %",
+                  counts["triangles"].get<uint64_t>(), counts["charts"].get<uint64_t>(),
+                  json["atlas"]["resolution"].get<int>(), json["atlas"]["resolution"].get<int>(),
+                  counts["texels"].get<uint64_t>(), counts["rays"].get<uint64_t>(),
+                  json["seconds"]["total"].get<double>(),
+                  100 * json["relative_error"].get<double>())
+          .c_str());
   for (const char* name : {"lightmap.exr", "baked.glb", "preview.png", "bake.json"})
     std::fprintf(stderr, "wrote %s\n", (settings.output / name).string().c_str());
 }
@@ -49,8 +50,10 @@ int run_bake(const BakeOptions& options) {
     const auto json = pipeline::bake(*settings, progress);
     if (!json) return report(json.error());
     print_warnings((*json)["warnings"].get<std::vector<std::string>>(), options.common);
-    if (options.common.json) std::printf("%s\n", json->dump(2).c_str());
-    else if (!options.common.quiet) print_summary(*settings, *json);
+    if (options.common.json)
+      std::printf("%s\n", json->dump(2).c_str());
+    else if (!options.common.quiet)
+      print_summary(*settings, *json);
     return int(kDone);
   });
 }
@@ -65,8 +68,9 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_option("-o,--output", s.output, "Folder for the results; made when missing")
       ->required();
   bake->add_option("--solver", s.solver, "How light is computed: gather")->capture_default_str();
-  auto* resolution = bake->add_option("--resolution", s.resolution,
-                                      "Side of the lightmap in texels")->capture_default_str();
+  auto* resolution =
+      bake->add_option("--resolution", s.resolution, "Side of the lightmap in texels")
+          ->capture_default_str();
   bake->add_option("--texels-per-metre", s.texels_per_metre,
                    "Density; the side becomes the smallest power of two that holds the scene")
       ->excludes(resolution);
@@ -75,7 +79,8 @@ void register_bake(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"auto", "keep", "unwrap"}))
       ->capture_default_str();
   bake->add_option("--samples", s.samples, "Indirect rays per texel")->capture_default_str();
-  bake->add_option("--direct-samples", s.direct_samples, "Shadow rays per texel towards area lights")
+  bake->add_option("--direct-samples", s.direct_samples,
+                   "Shadow rays per texel towards area lights")
       ->capture_default_str();
   bake->add_option("--bounces", options->bounces, "Reflections to count, or inf")
       ->capture_default_str();

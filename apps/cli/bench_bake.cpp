@@ -31,7 +31,8 @@ struct AtlasCase {
   bool twice = false;
 };
 
-/// Runs one bake in a process of its own, so that its peak memory is its own. Returns its bake.json.
+/// Runs one bake in a process of its own, so that its peak memory is its own. Returns its
+/// bake.json.
 Result<nlohmann::json> bake_in_child(const pipeline::BakeSettings& settings) {
   int channel[2];
   if (::pipe(channel) != 0) return fail(ErrorCode::io, "cannot make a pipe");
@@ -48,7 +49,8 @@ Result<nlohmann::json> bake_in_child(const pipeline::BakeSettings& settings) {
   ::close(channel[1]);
   std::string text;
   char buffer[4096];
-  for (ssize_t n; (n = ::read(channel[0], buffer, sizeof buffer)) > 0;) text.append(buffer, size_t(n));
+  for (ssize_t n; (n = ::read(channel[0], buffer, sizeof buffer)) > 0;)
+    text.append(buffer, size_t(n));
   ::close(channel[0]);
   ::waitpid(child, nullptr, 0);
   const auto json = nlohmann::json::parse(text, nullptr, false);
@@ -61,10 +63,13 @@ Result<nlohmann::json> bake_in_child(const pipeline::BakeSettings& settings) {
 
 Result<Table> bench_atlas(const std::filesystem::path& shared, const Common& common) {
   const ThreadLimit limit(common.threads);
-  Table table{"atlas", thread_count(),
+  Table table{"atlas",
+              thread_count(),
               {"scene", "triangles", "atlas", "seconds", "charts", "utilisation", "mean L2 stretch",
                "triangles without texel"},
-              {}, {}, nlohmann::json::array()};
+              {},
+              {},
+              nlohmann::json::array()};
   for (const AtlasCase& c :
        {AtlasCase{"suzanne_room", "suzanne_room/room.glb"}, AtlasCase{"zdm2", "zdm2/zdm2.glb"},
         AtlasCase{"two bunnies", "spot_teapot_bunny/stanford-bunny.obj", 2048, true},
@@ -93,24 +98,31 @@ Result<Table> bench_atlas(const std::filesystem::path& shared, const Common& com
                           fmt::format("{}", s.charts), fmt::format("{:.1f} %", 100 * s.utilisation),
                           fmt::format("{:.3f}", s.mean_stretch_l2),
                           fmt::format("{}", s.triangles_without_texel)});
-    table.json.push_back({{"scene", c.name}, {"seconds", seconds}, {"charts", s.charts},
-                          {"utilisation", s.utilisation}, {"mean_stretch_l2", s.mean_stretch_l2},
+    table.json.push_back({{"scene", c.name},
+                          {"seconds", seconds},
+                          {"charts", s.charts},
+                          {"utilisation", s.utilisation},
+                          {"mean_stretch_l2", s.mean_stretch_l2},
                           {"triangles_without_texel", s.triangles_without_texel}});
   }
   return table;
 }
 
 Result<Table> bench_memory(const std::filesystem::path& shared, const Common& common) {
-  Table table{"memory", common.threads == 0 ? thread_count() : common.threads,
-              {"--max-memory", "peak memory, MiB", "seconds", "texels", "hits in the temporary file, MiB"},
-              {}, {}, nlohmann::json::array()};
+  Table table{
+      "memory",
+      common.threads == 0 ? thread_count() : common.threads,
+      {"--max-memory", "peak memory, MiB", "seconds", "texels", "hits in the temporary file, MiB"},
+      {},
+      {},
+      nlohmann::json::array()};
   const auto file = shared / "scenes/suzanne_room/room.glb";
   if (!std::filesystem::exists(file)) {
     table.notes.push_back(file.string() + " is not on this machine: left out");
     return table;
   }
-  const auto folder = std::filesystem::temp_directory_path() /
-                      fmt::format("luxel-bench-{}", ::getpid());
+  const auto folder =
+      std::filesystem::temp_directory_path() / fmt::format("luxel-bench-{}", ::getpid());
   for (const char* cap : {"", "1G"}) {
     pipeline::BakeSettings settings;
     settings.scene = file;

@@ -26,8 +26,10 @@ int run_bench(const BenchOptions& options) {
     if (options.name != "all" && options.name != bench.name) continue;
     const auto table = bench.run(shared, options.common);
     if (!table) return report(table.error());
-    if (options.common.json) std::printf("%s\n", table->json.dump(2).c_str());
-    else std::printf("%s\n", markdown(*table).c_str());
+    if (options.common.json)
+      std::printf("%s\n", table->json.dump(2).c_str());
+    else
+      std::printf("%s\n", markdown(*table).c_str());
   }
   return kDone;
 }

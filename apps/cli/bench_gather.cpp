@@ -49,26 +49,21 @@ Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution) {
   return p;
 }
 
-/// The same triangles in an Embree scene of this file's own, with nothing around it: the yardstick.
+/// The same triangles, in the world, in one Embree scene of this file's own: the yardstick.
 class BareEmbree {
  public:
-  explicit BareEmbree(const scene::Scene& scene) : device_(rtcNewDevice(nullptr)) {
-    top_ = rtcNewScene(device_);
-    for (const scene::Mesh& mesh : scene.meshes) meshes_.push_back(bottom(mesh));
-    for (const scene::Instance& instance : scene.instances) {
-      RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-      rtcSetGeometryInstancedScene(g, meshes_[instance.mesh]);
-      rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR,
-                              instance.world_from_object.row.data());
-      attach(top_, g);
-    }
-    commit(top_);
+  explicit BareEmbree(const scene::Scene& scene)
+      : device_(rtcNewDevice(nullptr)), top_(rtcNewScene(device_)) {
+    for (const scene::Instance& instance : scene.instances)
+      add(scene.meshes[instance.mesh], instance.world_from_object);
+    rtcSetSceneFlags(top_, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(top_, RTC_BUILD_QUALITY_HIGH);
+    rtcCommitScene(top_);
   }
   BareEmbree(const BareEmbree&) = delete;
   BareEmbree& operator=(const BareEmbree&) = delete;
   ~BareEmbree() {
     rtcReleaseScene(top_);
-    for (RTCScene mesh : meshes_) rtcReleaseScene(mesh);
     rtcReleaseDevice(device_);
   }
 
@@ -79,8 +74,18 @@ class BareEmbree {
     uint64_t found = 0;
     for (const trace::Ray& ray : rays) {
       RTCRayHit rh;
-      rh.ray = {ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min, ray.direction.x,
-                ray.direction.y, ray.direction.z, 0, ray.t_max, ~0u, 0, 0};
+      rh.ray = {ray.origin.x,
+                ray.origin.y,
+                ray.origin.z,
+                ray.t_min,
+                ray.direction.x,
+                ray.direction.y,
+                ray.direction.z,
+                0,
+                ray.t_max,
+                ~0u,
+                0,
+                0};
       rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(top_, &context, &rh);
       found += rh.hit.geomID != RTC_INVALID_GEOMETRY_ID;
@@ -89,34 +94,23 @@ class BareEmbree {
   }
 
  private:
-  static void attach(RTCScene scene, RTCGeometry geometry) {
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-  }
-  static void commit(RTCScene scene) {
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-    rtcCommitScene(scene);
-  }
-  RTCScene bottom(const scene::Mesh& mesh) const {
-    RTCScene scene = rtcNewScene(device_);
+  void add(const scene::Mesh& mesh, const Mat34& map) {
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
         g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
     auto* indices = static_cast<std::array<uint32_t, 3>*>(
         rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                 sizeof(mesh.triangles[0]), mesh.triangles.size()));
-    std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
+    std::transform(mesh.positions.begin(), mesh.positions.end(), vertices,
+                   [&](Vec3 p) { return transform_point(map, p); });
     std::copy(mesh.triangles.begin(), mesh.triangles.end(), indices);
-    attach(scene, g);
-    commit(scene);
-    return scene;
+    rtcCommitGeometry(g);
+    rtcAttachGeometry(top_, g);
+    rtcReleaseGeometry(g);
   }
 
   RTCDevice device_;
   RTCScene top_;
-  std::vector<RTCScene> meshes_;
 };
 
 /// Rays per second of the bare loop over gather's own rays; making the rays is not counted.
@@ -163,15 +157,19 @@ Result<scene::Scene> load(const NamedScene& named) {
 Result<Table> bench_rays(const std::filesystem::path& shared, const Common& common) {
   const ThreadLimit limit(common.threads);
   constexpr int kSamples = 64, kRounds = 5;
-  Table table{"rays", thread_count(),
+  Table table{"rays",
+              thread_count(),
               {"scene", "rtcIntersect1 loop, Mrays/s", "gather, Mrays/s", "ratio (median of 5)"},
-              {}, {}, nlohmann::json::array()};
+              {},
+              {},
+              nlohmann::json::array()};
   const auto scenes = shared / "scenes";
-  for (const NamedScene& named : {NamedScene{"Cornell box", {}},
-                                  NamedScene{"living_room", scenes / "living_room/living_room.glb"},
-                                  NamedScene{"suzanne_room", scenes / "suzanne_room/room.glb"},
-                                  NamedScene{"zdm2", scenes / "zdm2/zdm2.glb"},
-                                  NamedScene{"kaykit_city", scenes / "kaykit_city/kaykit_city.glb"}}) {
+  for (const NamedScene& named :
+       {NamedScene{"Cornell box", {}},
+        NamedScene{"living_room", scenes / "living_room/living_room.glb"},
+        NamedScene{"suzanne_room", scenes / "suzanne_room/room.glb"},
+        NamedScene{"zdm2", scenes / "zdm2/zdm2.glb"},
+        NamedScene{"kaykit_city", scenes / "kaykit_city/kaykit_city.glb"}}) {
     if (!named.file.empty() && !std::filesystem::exists(named.file)) {
       table.notes.push_back(named.file.string() + " is not on this machine: left out");
       continue;
@@ -204,9 +202,12 @@ Result<Table> bench_maps(const std::filesystem::path&, const Common& common) {
   // [Moreno05, table 5.1]: solution time on a GeForce 6800, 200 direct and 800 indirect samples.
   constexpr std::array<std::pair<int, double>, 4> kPaper{
       {{64, 8.276}, {128, 15.865}, {256, 37.971}, {512, 144.815}}};
-  Table table{"maps", thread_count(),
+  Table table{"maps",
+              thread_count(),
               {"atlas", "paper, s", "luxel, s", "paper / luxel", "Mrays/s"},
-              {}, {}, nlohmann::json::array()};
+              {},
+              {},
+              nlohmann::json::array()};
   for (const auto& [resolution, paper_s] : kPaper) {
     LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(scene::cornell_box(), resolution));
     LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(p->scene));
@@ -230,8 +231,8 @@ Result<Table> bench_maps(const std::filesystem::path&, const Common& common) {
 }
 
 Result<Table> bench_threads(const std::filesystem::path& shared, const Common&) {
-  Table table{"threads", 2, {"scene", "1 thread, s", "2 threads, s", "speed-up (median of 5)"},
-              {}, {}, nlohmann::json::array()};
+  Table table{"threads", 2,  {"scene", "1 thread, s", "2 threads, s", "speed-up (median of 5)"},
+              {},        {}, nlohmann::json::array()};
   std::vector<NamedScene> scenes{{"Cornell box", {}},
                                  {"suzanne_room", shared / "scenes/suzanne_room/room.glb"}};
   for (const NamedScene& named : scenes) {

@@ -43,7 +43,8 @@ class ProgressLine {
       line += fmt::format("  {:3.0f} %", 100 * share);
       if (now.stage == "trace rays")
         line += fmt::format("  {:.1f} Mrays/s", double(now.done) * 1e-6 / now.stage_seconds);
-      if (share > 0.02) line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left";
+      if (share > 0.02)
+        line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left";
     }
     std::fprintf(stderr, "\r\033[K%s", line.c_str());
     std::fflush(stderr);
@@ -92,8 +93,8 @@ void watch(Progress& progress, const std::atomic<bool>& done, bool quiet) {
     }
     line.show(progress.snapshot());
     // Reading a file cannot be asked to stop; writing may finish, so that all files are there.
-    const bool late = asked != Clock::time_point{} &&
-                      Clock::now() - asked > std::chrono::milliseconds(800);
+    const bool late =
+        asked != Clock::time_point{} && Clock::now() - asked > std::chrono::milliseconds(800);
     if (late && progress.snapshot().stage != "write files") {
       std::fputs("\nluxel: stopped by the user\n", stderr);
       ::_exit(kInterrupted);
@@ -113,8 +114,8 @@ void add_common(CLI::App& command, Common& common) {
 }
 
 void add_outside_light(CLI::App& command, OutsideText& text) {
-  command.add_option("--background", text.background,
-                     "Radiance of the surroundings as r,g,b")->type_name("R,G,B");
+  command.add_option("--background", text.background, "Radiance of the surroundings as r,g,b")
+      ->type_name("R,G,B");
   command
       .add_option("--sun", text.sun,
                   "A sun: bearing (0 = -Z, 90 = +X), elevation, illuminance facing it")

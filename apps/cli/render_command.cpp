@@ -18,7 +18,8 @@ struct RenderOptions {
 Result<Vec3> parse_point(const char* option, const std::string& text) {
   Vec3 p;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%f,%f,%f%c", &p.x, &p.y, &p.z, &rest) == 3 && is_finite(p)) return p;
+  if (std::sscanf(text.c_str(), "%f,%f,%f%c", &p.x, &p.y, &p.z, &rest) == 3 && is_finite(p))
+    return p;
   return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option, text);
 }
 

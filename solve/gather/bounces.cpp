@@ -1,7 +1,9 @@
 #include "solve/gather/bounces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
+#include <numeric>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -12,8 +14,8 @@ namespace {
 /// Four floats in one register: R, G, B and coverage.
 typedef float Float4 __attribute__((vector_size(16)));
 
-/// Radiosity rho E per texel of the map, with a border of one empty texel. Coverage is 1 where there
-/// is an element, so that weights can be renormalised after a bilinear lookup.
+/// Radiosity rho E per texel of the map, with a border of one empty texel. Coverage is 1 where
+/// there is an element, so that weights can be renormalised after a bilinear lookup.
 struct RadiosityMap {
   uint32_t stride = 0;
   std::vector<Float4> texels;
@@ -42,8 +44,8 @@ inline Float4 lookup(const RadiosityMap& m, const StoredHit& hit) {
   const float fx = float(hit.fx) * kUnit, fy = float(hit.fy) * kUnit;
   const Float4* upper = m.texels.data() + hit.base;
   const Float4* lower = upper + m.stride;
-  const Float4 sum = (upper[0] * (1 - fx) + upper[1] * fx) * (1 - fy) +
-                     (lower[0] * (1 - fx) + lower[1] * fx) * fy;
+  const Float4 sum =
+      (upper[0] * (1 - fx) + upper[1] * fx) * (1 - fy) + (lower[0] * (1 - fx) + lower[1] * fx) * fy;
   // Coverage is positive: the texel that holds the hit has an element.
   return sum[3] > 0 ? sum * (1.0f / sum[3]) : Float4{};
 }
@@ -53,29 +55,45 @@ struct Gathered {
   float sum_luminance2 = 0;
 };
 
-Gathered gather_element(const RadiosityMap& m, std::span<const StoredHit> hits) {
+/// Every stride-th hit from `first` on, counted for all of them.
+Gathered gather_element(const RadiosityMap& m, std::span<const StoredHit> hits, size_t first,
+                        size_t stride) {
   Gathered g;
-  for (const StoredHit& hit : hits) {
-    const Float4 b = lookup(m, hit);
+  size_t used = 0;
+  for (size_t k = first; k < hits.size(); k += stride, ++used) {
+    const Float4 b = lookup(m, hits[k]);
     const float l = luminance({b[0], b[1], b[2]});
     g.sum += b;
     g.sum_luminance2 += l * l;
   }
+  if (used > 0 && used < hits.size()) g.sum *= float(hits.size()) / float(used);
   return g;
 }
 
-/// One sweep's input and output. `change` holds one value per tile: a fixed order for the maximum.
+/// One sweep's input and output. `change2` holds the squared change per tile: summed in a fixed
+/// order.
 struct Sweep {
   std::span<const Rgb> source;    ///< E_0
   std::span<const Rgb> previous;  ///< E of the sweep before
   std::span<Rgb> next;
-  std::span<float> variance;
-  std::vector<float> change;
+  std::span<float> variance;  ///< of the gathered part and the background
+  size_t stride = 1;          ///< only every stride-th ray is looked at
+  float background = 0;       ///< luminance that an escaped ray sees, as radiosity
+  std::vector<double> change2;
 };
+
+/// Variance of the mean over an element's rays, taken as independent.
+float variance_of_mean(const Gathered& g, const TracedHits& hits, size_t element,
+                       float background) {
+  const float n = float(hits.samples), escaped = float(hits.escaped[element]);
+  const float sum = luminance({g.sum[0], g.sum[1], g.sum[2]}) + escaped * background;
+  const float sum2 = g.sum_luminance2 + escaped * background * background;
+  return std::max(0.0f, sum2 / n - (sum / n) * (sum / n)) / n;
+}
 
 Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress) {
   const float per_ray = 1.0f / float(hits.samples);
-  sweep.change.assign(hits.store.tile_count(), 0.0f);
+  sweep.change2.assign(hits.store.tile_count(), 0.0);
   std::mutex mutex;
   Status status;
   parallel_for(hits.store.tile_count(), 1, [&](size_t t, size_t) {
@@ -91,15 +109,16 @@ Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Pr
     for (size_t k = 0; k < (*tile)->end.size(); ++k) {
       const size_t i = t * kTileElements + k;
       const uint32_t end = (*tile)->end[k];
-      const Gathered g = gather_element(m, {(*tile)->hits.data() + first, end - first});
+      const std::span<const StoredHit> own((*tile)->hits.data() + first, end - first);
+      // Neighbours look at different rays, so that what a sparse sweep misses averages out.
+      const size_t start = own.empty() ? 0 : std::min((i * 5) % sweep.stride, own.size() - 1);
+      const Gathered g = gather_element(m, own, start, sweep.stride);
       first = end;
       const Rgb gathered = Rgb{g.sum[0], g.sum[1], g.sum[2]} * per_ray;
       sweep.next[i] = sweep.source[i] + gathered;
-      const float mean = luminance(gathered);
-      sweep.variance[i] = std::max(0.0f, g.sum_luminance2 * per_ray - mean * mean) * per_ray;
+      if (sweep.stride == 1) sweep.variance[i] = variance_of_mean(g, hits, i, sweep.background);
       const Rgb d = sweep.next[i] - sweep.previous[i];
-      sweep.change[t] =
-          std::max({sweep.change[t], std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+      sweep.change2[t] += double(dot(d, d));
     }
   });
   if (!status) return status;
@@ -113,6 +132,32 @@ double mean_luminance(std::span<const Rgb> values) {
   return values.empty() ? 0 : sum / double(values.size());
 }
 
+/// With rho = 0.99 the light to come falls below 1e-4 after 1,400 sweeps; more means that something
+/// is wrong.
+constexpr int kMaxSweeps = 4000;
+
+struct ReflectanceRange {
+  double mean = 0, max = 0;
+};
+
+ReflectanceRange reflectance_range(const transport::Elements& elements) {
+  ReflectanceRange range;
+  for (const Rgb& rho : elements.reflectance) {
+    range.mean += double(luminance(rho)) / double(elements.size());
+    range.max = std::max(range.max, double(max_component(rho)));
+  }
+  return range;
+}
+
+/// The sum of all changes still to come when each is q times the one before: change q / (1 - q).
+/// The ratio of the last two changes tends to the largest q there is; it is not trusted outside of
+/// what the reflectances allow.
+double light_to_come(double change, double change_before, const ReflectanceRange& reflectance) {
+  const double seen = change_before > 0 ? change / change_before : reflectance.max;
+  const double q = std::clamp(seen, reflectance.mean, reflectance.max);
+  return change * q / (1 - q);
+}
+
 }  // namespace
 
 Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& elements,
@@ -122,32 +167,44 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   LUXEL_CHECK(direct.size() == n && map.texels.size() == n && hits.escaped.size() == n);
   // E_0: what arrives without any reflection. A ray that escapes sees the background.
   std::vector<Rgb> source(direct.begin(), direct.end());
-  float max_reflectance = 0;
-  for (size_t i = 0; i < n; ++i) {
+  for (size_t i = 0; i < n; ++i)
     source[i] += background * (kPi * float(hits.escaped[i]) / float(hits.samples));
-    max_reflectance = std::max(max_reflectance, max_component(elements.reflectance[i]));
-  }
   Bounced out;
   out.irradiance = source;
   out.variance.assign(n, 0.0f);
   std::vector<Rgb> next(n);
   RadiosityMap radiosity = empty_map(map.resolution);
-  const float tail = max_reflectance / (1 - max_reflectance);
   progress.begin("bounces", 0);
-  // With rho = 0.99 the tail falls below 1e-4 after 1,400 sweeps; more means that something is wrong.
-  constexpr int kMaxSweeps = 4000;
-  const int limit = params.bounces < 0 ? kMaxSweeps : params.bounces;
-  while (out.sweeps < limit) {
+  // Returns the root mean square change, relative to the mean irradiance.
+  const auto run = [&](size_t stride) -> Result<double> {
     fill(radiosity, map, elements, out.irradiance);
-    Sweep sweep{source, out.irradiance, next, out.variance, {}};
+    Sweep sweep{source, out.irradiance, next, out.variance, stride, kPi * luminance(background),
+                {}};
     LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
     out.irradiance.swap(next);
     ++out.sweeps;
     progress.advance(1);
-    const float change = *std::max_element(sweep.change.begin(), sweep.change.end());
-    if (params.bounces < 0 &&
-        change * tail <= params.tolerance * float(mean_luminance(out.irradiance)))
-      break;
+    const double sum2 = std::accumulate(sweep.change2.begin(), sweep.change2.end(), 0.0);
+    const double mean = mean_luminance(out.irradiance);
+    return mean > 0 ? std::sqrt(sum2 / (3 * double(n))) / mean : 0.0;
+  };
+  if (params.bounces >= 0) {
+    for (int k = 0; k < params.bounces; ++k) {
+      const Result<double> change = run(1);
+      if (!change) return tl::unexpected(change.error());
+    }
+    return out;
+  }
+  const ReflectanceRange reflectance = reflectance_range(elements);
+  for (const size_t stride : {size_t(16), size_t(4), size_t(1)}) {
+    if (stride > 1 && size_t(hits.samples) < 16 * stride) continue;
+    double before = 0;
+    for (int k = 0; k < kMaxSweeps; ++k) {
+      LUXEL_TRY(const double change, run(stride));
+      if (light_to_come(change, before, reflectance) <= double(params.tolerance) * double(stride))
+        break;
+      before = change;
+    }
   }
   return out;
 }

@@ -15,22 +15,25 @@ namespace luxel::gather {
 
 struct BounceParams {
   int bounces = -1;  ///< reflections to count; < 0: until the change is below `tolerance`
-  /// Stop when no element's irradiance can change by more than this, relative to the mean. The bound
-  /// counts all bounces still to come: change * rho / (1 - rho) with rho the largest reflectance.
+  /// Stop when the light of all bounces still to come is below this: its root mean square over the
+  /// elements, relative to the mean irradiance.
   float tolerance = 1e-4f;
 };
 
 struct Bounced {
   std::vector<Rgb> irradiance;  ///< E per element [W/m^2], direct light included
-  std::vector<float> variance;  ///< estimated variance of the luminance of the gathered part
+  std::vector<float> variance;  ///< estimated variance of its luminance, direct light aside
   int sweeps = 0;
 };
 
-/// Solves  E = E_0 + (1/N) sum over rays of rho E at the hit,  E_0 = direct light + background seen,
-/// by Neumann iteration [Moreno05, eq. 3.4, 3.7]. Unlike the paper's running average (eq. 3.15) this
-/// does not underestimate late bounces: every sweep uses all rays and the whole map of the one
-/// before. Radiosity between texels is bilinear over those with an element.
-/// `direct` has one value per element. Errors: cancelled, the file of hits cannot be read.
+/// Solves  E = E_0 + (1/N) sum over rays of rho E at the hit,  E_0 = direct light + background
+/// seen, by Neumann iteration [Moreno05, eq. 3.4, 3.7]. Unlike the paper's running average
+/// (eq. 3.15) this does not underestimate late bounces: every sweep uses all rays and the whole map
+/// of the one before. Radiosity between texels is bilinear over those with an element. With all
+/// bounces asked for, the first sweeps look at every 16th and then every 4th ray: their solution is
+/// noisier, but a sweep averages that noise out, so that few sweeps over all rays are left to do.
+/// The fixed point, and the test for having reached it, are those of all rays. `direct` has one
+/// value per element. Errors: cancelled, the file of hits cannot be read.
 Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& elements,
                        const TracedHits& hits, std::span<const Rgb> direct, Rgb background,
                        const BounceParams& params, Progress& progress);

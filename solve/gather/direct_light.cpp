@@ -17,7 +17,7 @@ using transport::CutEntry;
 using transport::Lights;
 using transport::TriangleLight;
 
-constexpr size_t kMaxCut = 48;
+constexpr size_t kMaxCut = 32;
 constexpr size_t kMaxPunctual = 64;
 /// Below it a triangle is so small that sampling its area is as good, and more exact in floats.
 constexpr float kMinSolidAngle = 1e-3f;
@@ -38,7 +38,7 @@ struct Shot {
 /// The visible share of a source is  sum w V / sum w  over its shots; its light is that share times
 /// the exact unshadowed light. A group of lights has no exact value: its light is the mean of w V.
 struct Source {
-  float scale = 0;      ///< exact: irradiance per radiance / chance; group: 1 / (shots * chance)
+  float scale = 0;  ///< exact: irradiance per radiance / chance; group: 1 / (shots * chance)
   bool exact = false;
   float sum_weight = 0;
   uint32_t shots = 0;
@@ -86,8 +86,10 @@ LightPoint sample_solid_angle(const TriangleLight& light,
   const Vec3 ab = light.b - light.a, ac = light.c - light.a, ap = p - light.a;
   const Vec3 n = cross(ab, ac);
   const float inverse = 1 / dot(n, n);
-  return {p, {dot(cross(ap, ac), n) * inverse, dot(cross(ab, ap), n) * inverse},
-          std::max(0.0f, dot(d, r.normal)), spherical.solid_angle};
+  return {p,
+          {dot(cross(ap, ac), n) * inverse, dot(cross(ab, ap), n) * inverse},
+          std::max(0.0f, dot(d, r.normal)),
+          spherical.solid_angle};
 }
 
 LightPoint sample_area(const TriangleLight& light, const Receiver& r, Vec2 u) {
@@ -123,8 +125,8 @@ void shoot_at_triangle(const scene::Scene& scene, const TriangleLight& light, ui
   uint32_t kept = 0;
   for (uint32_t k = 0; kept < count && k < 8 * count + 64; ++k) {
     const Vec2 u = sobol_owen_2d(k, seed);
-    const LightPoint point = by_angle ? sample_solid_angle(light, spherical, r, u)
-                                      : sample_area(light, r, u);
+    const LightPoint point =
+        by_angle ? sample_solid_angle(light, spherical, r, u) : sample_area(light, r, u);
     if (point.weight <= 0) continue;
     shoot_at(scene, light, point, source, 1, r, diagonal_m, work);
     ++kept;
@@ -144,8 +146,7 @@ void shoot_at_group(const scene::Scene& scene, const Lights& lights,
     const auto found = std::upper_bound(begin, begin + node.count - 1, power);
     const size_t index = node.first + size_t(found - begin);
     const TriangleLight& light = lights.triangles[index];
-    const float chance =
-        (lights.power_below[index + 1] - lights.power_below[index]) / (high - low);
+    const float chance = (lights.power_below[index + 1] - lights.power_below[index]) / (high - low);
     const LightPoint point = sample_area(light, r, random.next2());
     if (point.weight > 0 && chance > 0)
       shoot_at(scene, light, point, source, point.measure / chance, r, diagonal_m, work);
@@ -197,8 +198,7 @@ void shoot_at_disc(const scene::PunctualLight& light, uint32_t source, int sampl
     const Vec2 u = sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x5000 + source));
     const float down = u.y * height, radius = std::sqrt(std::max(0.0f, down * (2 - down)));
     const float phi = 2 * kPi * u.x;
-    const Vec3 d =
-        frame.to_world({radius * std::cos(phi), radius * std::sin(phi), 1 - down});
+    const Vec3 d = frame.to_world({radius * std::cos(phi), radius * std::sin(phi), 1 - down});
     const float w = std::max(0.0f, dot(d, r.normal));
     if (w > 0) add_shot(work, r, {source, w, Rgb{1, 1, 1} * w}, d, INFINITY);
   }
@@ -208,16 +208,18 @@ void shoot_at_punctual(const scene::PunctualLight& light, float chance, int samp
                        const Receiver& r, Work& work) {
   const transport::PunctualIncidence in = transport::incidence_at(light, r.position);
   const float cosine = dot(in.towards, r.normal);
-  const bool disc = light.kind == scene::PunctualLight::Kind::directional &&
-                    light.angular_radius_rad > 0;
+  const bool disc =
+      light.kind == scene::PunctualLight::Kind::directional && light.angular_radius_rad > 0;
   if (max_component(in.irradiance) <= 0 || (cosine <= 0 && !disc)) return;
   const uint32_t source = uint32_t(work.sources.size());
   work.sources.push_back({});
   Source& s = work.sources.back();
   s.exact = true;
-  if (disc) shoot_at_disc(light, source, samples, r, work);
-  else add_shot(work, r, {source, 1, {1, 1, 1}}, in.towards,
-                std::isfinite(in.distance_m) ? in.distance_m * (1 - 1e-5f) : INFINITY);
+  if (disc)
+    shoot_at_disc(light, source, samples, r, work);
+  else
+    add_shot(work, r, {source, 1, {1, 1, 1}}, in.towards,
+             std::isfinite(in.distance_m) ? in.distance_m * (1 - 1e-5f) : INFINITY);
   // Over the disc the cosine averages to that of its centre while all of it is above the horizon.
   const float seen = disc ? work.sources[source].sum_weight / float(samples) : cosine;
   const bool whole = disc && work.sources[source].shots == uint32_t(samples);
@@ -298,10 +300,10 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Ele
     uint64_t traced = 0;
     for (size_t i = begin; i < end; ++i) {
       work.sources.clear(), work.shots.clear(), work.rays.clear();
-      const Receiver r{elements.position[i], elements.normal[i], elements.geometric_normal[i],
-                       trace::offset_origin(elements.position[i], elements.geometric_normal[i],
-                                            diagonal_m),
-                       hash64(params.seed, i)};
+      const Receiver r{
+          elements.position[i], elements.normal[i], elements.geometric_normal[i],
+          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
+          hash64(params.seed, i)};
       shoot_at_triangles(scene, lights, params.samples, r, diagonal_m, work);
       shoot_at_lamps(lights, params.samples, r, work);
       resolve(tracer, work, out.irradiance[i], out.variance[i]);

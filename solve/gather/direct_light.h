@@ -14,13 +14,13 @@
 namespace luxel::gather {
 
 struct DirectParams {
-  int samples = 64;   ///< shadow rays per element towards triangle lights, and towards each sun disc
+  int samples = 64;  ///< shadow rays per element towards triangle lights, and towards each sun disc
   uint64_t seed = 1;
 };
 
 struct DirectLight {
-  std::vector<Rgb> irradiance;   ///< E per element [W/m^2]
-  std::vector<float> variance;   ///< estimated variance of its luminance
+  std::vector<Rgb> irradiance;  ///< E per element [W/m^2]
+  std::vector<float> variance;  ///< estimated variance of its luminance
   uint64_t rays = 0;
 };
 

@@ -27,9 +27,8 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   const TraceParams trace_params{params.samples, params.seed, params.hit_memory_bytes,
                                  params.scratch_folder};
   LUXEL_TRY(TracedHits hits, trace_hits(scene, atlas, elements, tracer, trace_params, progress));
-  LUXEL_TRY(Bounced bounced,
-            bounce(map, elements, hits, direct.irradiance, lights.background,
-                   {params.bounces, params.tolerance}, progress));
+  LUXEL_TRY(Bounced bounced, bounce(map, elements, hits, direct.irradiance, lights.background,
+                                    {params.bounces, params.tolerance}, progress));
   Gather out;
   out.relative_error = relative_error(bounced.irradiance, direct.variance, bounced.variance);
   out.irradiance = std::move(bounced.irradiance);

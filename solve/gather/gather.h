@@ -8,18 +8,18 @@
 namespace luxel::gather {
 
 struct GatherParams {
-  int samples = 256;         ///< indirect rays per element
-  int direct_samples = 64;   ///< shadow rays per element towards emissive surfaces
-  int bounces = -1;          ///< < 0: all
-  float tolerance = 1e-4f;   ///< see BounceParams
+  int samples = 256;        ///< indirect rays per element
+  int direct_samples = 64;  ///< shadow rays per element towards emissive surfaces
+  int bounces = -1;         ///< < 0: all
+  float tolerance = 1e-4f;  ///< see BounceParams
   uint64_t seed = 1;
   uint64_t hit_memory_bytes = UINT64_MAX;
   std::filesystem::path scratch_folder = ".";
 };
 
 struct Gather {
-  std::vector<Rgb> irradiance;    ///< E per element [W/m^2], after all bounces
-  std::vector<uint16_t> met_back; ///< rays per element that met the back of a one-sided surface
+  std::vector<Rgb> irradiance;     ///< E per element [W/m^2], after all bounces
+  std::vector<uint16_t> met_back;  ///< rays per element that met the back of a one-sided surface
   uint64_t rays = 0;
   int sweeps = 0;
   uint64_t hit_bytes_in_file = 0;

@@ -54,7 +54,9 @@ Result<HitStore> HitStore::create(size_t element_count, size_t max_hits_per_elem
   const size_t tiles = (element_count + kTileElements - 1) / kTileElements;
   impl->slot_bytes = uint64_t(kTileElements) * max_hits_per_element * sizeof(StoredHit);
   impl->tiles_in_memory =
-      impl->slot_bytes == 0 ? tiles : size_t(std::min<uint64_t>(tiles, memory_limit_bytes / impl->slot_bytes));
+      impl->slot_bytes == 0
+          ? tiles
+          : size_t(std::min<uint64_t>(tiles, memory_limit_bytes / impl->slot_bytes));
   impl->tiles.resize(impl->tiles_in_memory);
   impl->file_ends.resize(tiles - impl->tiles_in_memory);
   impl->folder = scratch_folder.empty() ? "." : scratch_folder;
@@ -100,9 +102,8 @@ Result<const HitTile*> HitStore::get(size_t tile, HitTile& buffer) const {
   if (tile < impl_->tiles_in_memory) return &impl_->tiles[tile];
   buffer.end = impl_->file_ends[tile - impl_->tiles_in_memory];
   buffer.hits.resize(buffer.end.empty() ? 0 : buffer.end.back());
-  const int error =
-      transfer_all(::pread, impl_->file, reinterpret_cast<char*>(buffer.hits.data()),
-                   buffer.hits.size() * sizeof(StoredHit), impl_->offset(tile));
+  const int error = transfer_all(::pread, impl_->file, reinterpret_cast<char*>(buffer.hits.data()),
+                                 buffer.hits.size() * sizeof(StoredHit), impl_->offset(tile));
   if (error != 0)
     return fail(ErrorCode::io, "cannot read the temporary ray hits back from {}: {}",
                 impl_->folder.string(), std::strerror(error));

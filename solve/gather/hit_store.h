@@ -22,8 +22,8 @@ static_assert(sizeof(StoredHit) == 8);
 
 /// The hits of kTileElements neighbouring elements.
 struct HitTile {
-  std::vector<uint32_t> end;   ///< per element: one past its last hit
-  std::vector<StoredHit> hits; ///< element after element; rays that met no light are left out
+  std::vector<uint32_t> end;    ///< per element: one past its last hit
+  std::vector<StoredHit> hits;  ///< element after element; rays that met no light are left out
 };
 
 inline constexpr size_t kTileElements = 1024;
@@ -32,8 +32,8 @@ inline constexpr size_t kTileElements = 1024;
 /// gone with the store, however the program ends.
 class HitStore {
  public:
-  /// `max_hits_per_element` and `memory_limit_bytes` decide beforehand which tiles go to the file, so
-  /// that the choice does not depend on threads.
+  /// `max_hits_per_element` and `memory_limit_bytes` decide beforehand which tiles go to the file,
+  /// so that the choice does not depend on threads.
   static Result<HitStore> create(size_t element_count, size_t max_hits_per_element,
                                  uint64_t memory_limit_bytes,
                                  const std::filesystem::path& scratch_folder);

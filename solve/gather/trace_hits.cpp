@@ -105,9 +105,8 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
                               const TraceParams& params, Progress& progress) {
   LUXEL_CHECK(params.samples >= 1 && params.samples <= 65535);
   const size_t samples = size_t(params.samples);
-  LUXEL_TRY(HitStore hit_store,
-            HitStore::create(elements.size(), samples, params.memory_limit_bytes,
-                             params.scratch_folder));
+  LUXEL_TRY(HitStore hit_store, HitStore::create(elements.size(), samples,
+                                                 params.memory_limit_bytes, params.scratch_folder));
   TracedHits out{std::move(hit_store), params.samples, {}, {}, 0};
   out.escaped.resize(elements.size());
   out.met_back.resize(elements.size());
@@ -120,9 +119,12 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
               hash64(params.seed ^ 0x6a7e, i), work, work.rays);
     tracer.closest_hits(work.rays, work.hits);
     for (const trace::Hit& hit : work.hits) {
-      if (!hit.found()) ++out.escaped[i];
-      else if (!brings_light(scene, hit)) ++out.met_back[i];
-      else tile.hits.push_back(store(atlas, hit));
+      if (!hit.found())
+        ++out.escaped[i];
+      else if (!brings_light(scene, hit))
+        ++out.met_back[i];
+      else
+        tile.hits.push_back(store(atlas, hit));
     }
     tile.end.push_back(uint32_t(tile.hits.size()));
   };

@@ -1,6 +1,7 @@
 // RayTracer over Embree 3. [Wald14]
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -23,18 +24,26 @@ RTCIntersectContext packet_context() {
 }
 
 /// What a filter function needs to find the hole in a mask.
-struct MeshTag {
+struct SceneTag {
   const scene::Scene* scene = nullptr;
 };
 
+/// Geometries of the top level are attached under their instance's number, so that a hit's instance
+/// is its geometry where it lies in the top level itself, and its innermost instance id elsewhere.
+inline uint32_t instance_of(uint32_t instance_id, uint32_t geometry_id) {
+  return instance_id != RTC_INVALID_GEOMETRY_ID ? instance_id : geometry_id;
+}
+
 /// Rejects hits in the holes of alpha masks, for packets of any size.
 void reject_holes(const RTCFilterFunctionNArguments* args) {
-  const scene::Scene& scene = *static_cast<const MeshTag*>(args->geometryUserPtr)->scene;
+  const scene::Scene& scene = *static_cast<const SceneTag*>(args->geometryUserPtr)->scene;
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
-    const scene::SurfacePoint p{RTCHitN_instID(args->hit, args->N, i, 0),
-                                RTCHitN_primID(args->hit, args->N, i),
-                                {RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i)}};
+    const scene::SurfacePoint p{
+        instance_of(RTCHitN_instID(args->hit, args->N, i, 0),
+                    RTCHitN_geomID(args->hit, args->N, i)),
+        RTCHitN_primID(args->hit, args->N, i),
+        {RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i)}};
     if (!scene::is_solid_at(scene, p)) args->valid[i] = 0;
   }
 }
@@ -55,8 +64,8 @@ void* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, siz
 struct RayTracer::Impl {
   RTCDevice device = nullptr;
   RTCScene top = nullptr;
-  std::vector<RTCScene> meshes;
-  MeshTag tag;
+  std::vector<RTCScene> meshes;  ///< per mesh; null unless several instances share it
+  SceneTag tag;
   /// Per instance, the map of object normals to world normals of the front side.
   std::vector<std::array<Vec3, 3>> normal_columns;
 
@@ -67,8 +76,9 @@ struct RayTracer::Impl {
     if (device) rtcReleaseDevice(device);
   }
 
-  bool add_mesh(const scene::Scene& scene, const scene::Mesh& mesh);
-  bool add_instance(const scene::Instance& instance);
+  RTCGeometry new_triangles(const scene::Scene& scene, const scene::Mesh& mesh, const Mat34& map);
+  bool add_shared_mesh(const scene::Scene& scene, const scene::Mesh& mesh);
+  bool add_instance(const scene::Scene& scene, uint32_t instance);
   bool from_behind(uint32_t instance, Vec3 object_normal, Vec3 direction) const {
     const auto& m = normal_columns[instance];
     const Vec3 n = m[0] * object_normal.x + m[1] * object_normal.y + m[2] * object_normal.z;
@@ -76,16 +86,20 @@ struct RayTracer::Impl {
   }
 };
 
-bool RayTracer::Impl::add_mesh(const scene::Scene& scene, const scene::Mesh& mesh) {
+/// A mesh's triangles with `map` applied; nullptr when memory ran out.
+RTCGeometry RayTracer::Impl::new_triangles(const scene::Scene& scene, const scene::Mesh& mesh,
+                                           const Mat34& map) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = new_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, sizeof(Vec3),
                               std::max<size_t>(1, mesh.positions.size()));
   void* indices = new_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
                              sizeof(mesh.triangles[0]), std::max<size_t>(1, mesh.triangles.size()));
-  RTCScene bottom = rtcNewScene(device);
-  meshes.push_back(bottom);
-  if (!vertices || !indices || !bottom) return false;
-  std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<Vec3*>(vertices));
+  if (!vertices || !indices) {
+    rtcReleaseGeometry(geometry);
+    return nullptr;
+  }
+  std::transform(mesh.positions.begin(), mesh.positions.end(), static_cast<Vec3*>(vertices),
+                 [&](Vec3 p) { return transform_point(map, p); });
   std::copy(mesh.triangles.begin(), mesh.triangles.end(),
             static_cast<std::array<uint32_t, 3>*>(indices));
   if (has_mask(scene, mesh)) {
@@ -94,46 +108,87 @@ bool RayTracer::Impl::add_mesh(const scene::Scene& scene, const scene::Mesh& mes
     rtcSetGeometryOccludedFilterFunction(geometry, reject_holes);
   }
   rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+namespace {
+
+/// Robust: no ray slips through between two triangles that share an edge (a light leak).
+void commit_scene(RTCScene scene) {
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+  rtcCommitScene(scene);
+}
+
+}  // namespace
+
+bool RayTracer::Impl::add_shared_mesh(const scene::Scene& scene, const scene::Mesh& mesh) {
+  RTCGeometry geometry = new_triangles(scene, mesh, {});
+  if (!geometry) return false;
+  RTCScene bottom = rtcNewScene(device);
+  meshes.back() = bottom;
   rtcAttachGeometry(bottom, geometry);
   rtcReleaseGeometry(geometry);
-  // Robust: no ray slips through between two triangles that share an edge (a light leak).
-  rtcSetSceneFlags(bottom, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(bottom, RTC_BUILD_QUALITY_HIGH);
-  rtcCommitScene(bottom);
+  commit_scene(bottom);
   return rtcGetDeviceError(device) == RTC_ERROR_NONE;
 }
 
-bool RayTracer::Impl::add_instance(const scene::Instance& instance) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-  if (!geometry) return false;
+bool RayTracer::Impl::add_instance(const scene::Scene& scene, uint32_t index) {
+  const scene::Instance& instance = scene.instances[index];
   const Mat34& m = instance.world_from_object;
-  rtcSetGeometryInstancedScene(geometry, meshes[instance.mesh]);
-  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, m.row.data());
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(top, geometry);
+  RTCScene shared = meshes[instance.mesh];
+  RTCGeometry geometry = shared ? rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE)
+                                : new_triangles(scene, scene.meshes[instance.mesh], m);
+  if (!geometry) return false;
+  if (shared) {
+    rtcSetGeometryInstancedScene(geometry, shared);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, m.row.data());
+    rtcCommitGeometry(geometry);
+    // Embree's normal is that of the mesh's own space, here and below: of the triangle as traced.
+    normal_columns.push_back({transform_normal(m, {1, 0, 0}), transform_normal(m, {0, 1, 0}),
+                              transform_normal(m, {0, 0, 1})});
+  } else {
+    const float side = determinant(m) < 0 ? -1.0f : 1.0f;
+    normal_columns.push_back({Vec3{side, 0, 0}, Vec3{0, side, 0}, Vec3{0, 0, side}});
+  }
+  rtcAttachGeometryByID(top, geometry, index);
   rtcReleaseGeometry(geometry);
-  normal_columns.push_back({transform_normal(m, {1, 0, 0}), transform_normal(m, {0, 1, 0}),
-                            transform_normal(m, {0, 0, 1})});
-  return true;
+  return rtcGetDeviceError(device) == RTC_ERROR_NONE;
 }
+
+namespace {
+
+/// Which meshes are stored once for all their instances.
+std::vector<bool> shared_meshes(const scene::Scene& scene, size_t max_flat_triangles) {
+  std::vector<uint32_t> uses(scene.meshes.size());
+  for (const scene::Instance& instance : scene.instances) ++uses[instance.mesh];
+  const bool large = scene::first_triangles(scene).back() > max_flat_triangles;
+  std::vector<bool> shared;
+  for (const uint32_t n : uses) shared.push_back(large && n > 1);
+  return shared;
+}
+
+}  // namespace
 
 RayTracer::RayTracer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 RayTracer::RayTracer(RayTracer&&) noexcept = default;
 RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 RayTracer::~RayTracer() = default;
 
-Result<RayTracer> RayTracer::build(const scene::Scene& scene) {
+Result<RayTracer> RayTracer::build(const scene::Scene& scene, size_t max_flat_triangles) {
   auto impl = std::make_unique<Impl>();
   impl->device = rtcNewDevice(nullptr);
   if (!impl->device) return fail(ErrorCode::unsupported, "Embree does not run on this processor");
   impl->tag.scene = &scene;
   bool good = true;
-  for (const scene::Mesh& mesh : scene.meshes) good = good && impl->add_mesh(scene, mesh);
+  const std::vector<bool> shared = shared_meshes(scene, max_flat_triangles);
+  for (size_t i = 0; i < scene.meshes.size(); ++i) {
+    impl->meshes.push_back(nullptr);
+    if (shared[i]) good = good && impl->add_shared_mesh(scene, scene.meshes[i]);
+  }
   impl->top = rtcNewScene(impl->device);
-  rtcSetSceneFlags(impl->top, RTC_SCENE_FLAG_ROBUST);
-  for (const scene::Instance& instance : scene.instances)
-    good = good && impl->add_instance(instance);
-  rtcCommitScene(impl->top);
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) good = good && impl->add_instance(scene, i);
+  commit_scene(impl->top);
   if (!good || rtcGetDeviceError(impl->device) != RTC_ERROR_NONE)
     return fail(ErrorCode::out_of_memory,
                 "no memory for the ray tracing structure of {} meshes; close other programs or "
@@ -144,8 +199,8 @@ Result<RayTracer> RayTracer::build(const scene::Scene& scene) {
 
 namespace {
 
-/// Loads up to 16 rays. Lanes beyond the last are invalid; they hold copies of the first ray, so that
-/// no garbage reaches Embree.
+/// Loads up to 16 rays. Lanes beyond the last are invalid; they hold copies of the first ray, so
+/// that no garbage reaches Embree.
 unsigned load_packet(std::span<const Ray> rays, int* valid, RTCRay16& out) {
   const unsigned count = unsigned(std::min<size_t>(kPacket, rays.size()));
   for (unsigned i = 0; i < kPacket; ++i) {
@@ -177,9 +232,11 @@ void RayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits) con
         hit = Hit{};
         continue;
       }
-      const uint32_t instance = packet.hit.instID[0][i];
+      const uint32_t instance = instance_of(packet.hit.instID[0][i], packet.hit.geomID[i]);
       const Vec3 normal{packet.hit.Ng_x[i], packet.hit.Ng_y[i], packet.hit.Ng_z[i]};
-      hit = {packet.ray.tfar[i], instance, packet.hit.primID[i],
+      hit = {packet.ray.tfar[i],
+             instance,
+             packet.hit.primID[i],
              {packet.hit.u[i], packet.hit.v[i]},
              impl_->from_behind(instance, normal, rays[first + i].direction)};
     }

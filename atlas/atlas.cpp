@@ -24,10 +24,10 @@ Status check_params(const AtlasParams& params) {
 }
 
 Result<Layout> layout_charts(const std::vector<FlatChart>& charts, const AtlasParams& params,
-                             Progress& progress) {
+                             double first_guess, Progress& progress) {
   if (params.texels_per_metre > 0)
     return layout_at_density(charts, params.texels_per_metre, params.gutter, progress);
-  return layout_in_square(charts, params.resolution, params.gutter, progress);
+  return layout_in_square(charts, params.resolution, params.gutter, first_guess, progress);
 }
 
 /// Charts were checked for overlap at about the density they get; here it is checked at the very
@@ -83,8 +83,10 @@ Result<Atlas> try_layout(const scene::Scene& scene, const Faces& faces,
   std::vector<FlatChart> charts = flatten_charts(faces, groups, max_length, density, progress);
   if (progress.cancelled()) return cancelled();
   constexpr int kRounds = 4;  // overlap that slips past the first check is rare; twice unheard of
+  double first_guess = 0;
   for (int round = 0;; ++round) {
-    LUXEL_TRY(Layout layout, layout_charts(charts, params, progress));
+    LUXEL_TRY(const Layout layout, layout_charts(charts, params, first_guess, progress));
+    first_guess = 0.998 * layout.texels_per_metre;  // a few more charts change little
     if (round == kRounds || !cut_overlaps(faces, layout, charts))
       return write_atlas(scene, charts, layout);
   }

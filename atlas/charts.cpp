@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "atlas/atlas.h"
+#include "atlas/outline.h"
 
 namespace luxel::atlas {
 namespace {
@@ -211,6 +212,31 @@ class Merger {
   double total_area_ = 0;
 };
 
+/// The connected parts of all charts, in the order of their first faces.
+std::vector<ChartFaces> collect_charts(const Faces& faces, const std::vector<uint32_t>& chart) {
+  std::vector<bool> seen(faces.size());
+  std::vector<ChartFaces> charts;
+  std::vector<uint32_t> front;
+  for (uint32_t seed = 0; seed < faces.size(); ++seed) {
+    if (seen[seed]) continue;
+    seen[seed] = true;
+    front.assign(1, seed);
+    charts.emplace_back();
+    while (!front.empty()) {
+      const uint32_t f = front.back();
+      front.pop_back();
+      charts.back().push_back(f);
+      for (const uint32_t g : faces.across[f])
+        if (g != kNone && !seen[g] && chart[g] == chart[f]) {
+          seen[g] = true;
+          front.push_back(g);
+        }
+    }
+    std::sort(charts.back().begin(), charts.back().end());
+  }
+  return charts;
+}
+
 }  // namespace
 
 Dvec3 chart_axis(const Faces& faces, const ChartFaces& chart) {
@@ -229,17 +255,10 @@ std::vector<ChartFaces> grow_charts(const Faces& faces, double max_angle,
   std::vector<uint32_t> chart_of_patch(patch_count, kNone);
   for (uint32_t c = 0; c < merger.clusters().size(); ++c)
     for (const uint32_t p : merger.clusters()[c].patches) chart_of_patch[p] = c;
-  std::vector<uint32_t> number(patch_count, kNone);  // charts in the order of their first face
-  std::vector<ChartFaces> charts;
-  for (uint32_t f = 0; f < faces.size(); ++f) {
-    uint32_t& n = number[chart_of_patch[patch[f]]];
-    if (n == kNone) {
-      n = uint32_t(charts.size());
-      charts.emplace_back();
-    }
-    charts[n].push_back(f);
-  }
-  return charts;
+  std::vector<uint32_t> chart_of_face(faces.size());
+  for (uint32_t f = 0; f < faces.size(); ++f) chart_of_face[f] = chart_of_patch[patch[f]];
+  smooth_outlines(faces, patch, max_angle, chart_of_face);
+  return collect_charts(faces, chart_of_face);
 }
 
 std::vector<ChartFaces> connected_parts(const Faces& faces, const ChartFaces& set) {

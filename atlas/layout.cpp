@@ -49,9 +49,14 @@ Layout place_charts(Attempt attempt, const Packing& packing, int resolution, dou
     for (size_t c = begin; c < end; ++c) {
       const Place place = packing.places[c];
       const Dvec2 corner{double(place.x), double(place.y)};
-      const double width = attempt.masks[c].width;
+      double width = attempt.masks[c].width, height = attempt.masks[c].height;
+      for (int turn = 0; turn < place.turns; ++turn) {
+        for (auto& t : layout.texels[c])
+          for (Dvec2& p : t) p = {p.y, width - p.x};
+        std::swap(width, height);
+      }
       for (auto& t : layout.texels[c])
-        for (Dvec2& p : t) p = (place.turned ? Dvec2{p.y, width - p.x} : p) + corner;
+        for (Dvec2& p : t) p = p + corner;
     }
   });
   return layout;
@@ -91,13 +96,13 @@ bool holds_charts(int resolution, size_t charts, int gutter) {
 }
 
 Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolution, int gutter,
-                                Progress& progress) {
+                                double first_guess, Progress& progress) {
   if (!holds_charts(resolution, charts.size(), gutter))
     return fail(ErrorCode::bad_setting, "resolution {}: too small for {} charts", resolution,
                 charts.size());
   const double side_m = std::sqrt(total_area(charts));
   double low = 0, high = INFINITY;  // densities that fit, and that do not
-  double density = 0.85 * resolution / side_m;
+  double density = first_guess > 0 ? first_guess : 0.85 * resolution / side_m;
   Layout best;
   for (int round = 0; round < 60; ++round) {
     if (progress.cancelled()) return cancelled();
@@ -105,13 +110,14 @@ Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolu
     const double fill = double(mask_texels(attempt.masks)) / (double(resolution) * resolution);
     Packing packing;
     if (fill <= 1)
-      packing = pack_masks(attempt.masks, resolution, resolution, gutter);
+      packing = pack_masks(attempt.masks, resolution, gutter, progress);
     else
       packing.placed = 0.9 / fill;
     double next;
     if (packing.placed == 1) {
       low = density;
       best = place_charts(std::move(attempt), packing, resolution, density);
+      if (first_guess > 0 && round == 0) break;
       next = density * std::sqrt(double(resolution) / packing.height);
       if (next < low * 1.01) next = low * 1.02;
     } else {
@@ -138,9 +144,10 @@ Result<Layout> layout_at_density(const std::vector<FlatChart>& charts, double te
     if (area > double(n) * n || (n < kMaxResolution && longest * texels_per_metre > n)) continue;
     Attempt attempt = make_attempt(charts, texels_per_metre, n);
     if (mask_texels(attempt.masks) > uint64_t(n) * uint64_t(n)) continue;
-    const Packing packing = pack_masks(attempt.masks, n, n, gutter);
+    const Packing packing = pack_masks(attempt.masks, n, gutter, progress);
     if (packing.placed == 1) return place_charts(std::move(attempt), packing, n, texels_per_metre);
   }
+  if (progress.cancelled()) return cancelled();
   return fail(
       ErrorCode::bad_setting,
       "texels per metre {}: the scene needs an atlas larger than {}; choose a lower density",

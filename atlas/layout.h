@@ -25,9 +25,10 @@ std::vector<std::array<Dvec2, 3>> texel_corners(const FlatChart& chart, double t
 /// Whether a square has room for as many charts when each shrinks to a single texel.
 bool holds_charts(int resolution, size_t charts, int gutter);
 
+/// first_guess > 0 is a density known to be nearly as large as can be: taken when it fits.
 /// Error (bad_setting): the square does not hold the charts.
 Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolution, int gutter,
-                                Progress& progress);
+                                double first_guess, Progress& progress);
 /// Error: not even the largest square is enough.
 Result<Layout> layout_at_density(const std::vector<FlatChart>& charts, double texels_per_metre,
                                  int gutter, Progress& progress);

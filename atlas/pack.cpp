@@ -10,19 +10,18 @@ namespace {
 
 constexpr uint64_t kFull = ~uint64_t(0);
 
-/// The strip's taken texels, 64 to a word. Level k of a row tells for each column whether any of
+/// The square's taken texels, 64 to a word. Level k of a row tells for each column whether any of
 /// the 2^k texels from there to the right is taken; what lies right of the strip is taken. A run
 /// of n free texels is then two bits of one level: 64 columns are tested at once.
 class Strip {
  public:
-  Strip(int width, int max_height)
-      : words_((size_t(width) + 63) / 64), height_(max_height), levels_(1) {
+  explicit Strip(int width) : words_((size_t(width) + 63) / 64), height_(width), levels_(1) {
     while (levels_ < 7 && (1 << levels_) <= width) ++levels_;
-    bits_.assign(size_t(max_height) * size_t(levels_) * words_, 0);
-    free_level_.assign(size_t(max_height), levels_ - 1);
+    bits_.assign(size_t(height_) * size_t(levels_) * words_, 0);
+    free_level_.assign(size_t(height_), levels_ - 1);
     if (width % 64 != 0)
-      for (int y = 0; y < max_height; ++y) row(y, 0)[words_ - 1] = kFull << (width % 64);
-    for (int y = 0; y < max_height; ++y) refresh(y);
+      for (int y = 0; y < height_; ++y) row(y, 0)[words_ - 1] = kFull << (width % 64);
+    for (int y = 0; y < height_; ++y) refresh(y);
   }
 
   size_t words() const { return words_; }
@@ -163,9 +162,9 @@ Place topmost(const Strip& strip, const Shape& shape, int first, int last,
   last = std::min(last, strip.height() - shape.mask->height);
   for (int y = first; y <= last; ++y) {
     const int x = free_column(strip, shape, y, blocked);
-    if (x >= 0) return {x, y, false};
+    if (x >= 0) return {x, y, 0};
   }
-  return {-1, -1, false};
+  return {-1, -1, 0};
 }
 
 /// Takes the mask's texels and all within `gutter` of them.
@@ -183,6 +182,29 @@ void take_with_gutter(Strip& strip, const Mask& mask, Place place, int gutter, i
   }
 }
 
+/// Of the four quarter turns the one whose bottom comes out highest; y = -1 when none fits.
+std::pair<Place, Mask> best_place(const Strip& strip, const Mask& upright,
+                                  const FirstRows& first_rows) {
+  std::vector<uint64_t> blocked(strip.words());
+  // Half a turn makes no difference to a shape that nearly fills its rectangle.
+  const bool full = double(upright.texels) > 0.95 * upright.width * upright.height;
+  Place best{-1, -1, 0};
+  Mask chosen, mask = upright;
+  for (int turns = 0; turns < (full ? 2 : 4); ++turns) {
+    const int last = best.y < 0 ? strip.height() : best.y + chosen.height - mask.height - 1;
+    Place place = topmost(strip, make_shape(mask, strip.levels()),
+                          first_rows.at(mask.width, mask.height), last, blocked);
+    Mask next = turned(mask);
+    if (place.y >= 0) {
+      place.turns = turns;
+      best = place;
+      chosen = std::move(mask);
+    }
+    mask = std::move(next);
+  }
+  return {best, std::move(chosen)};
+}
+
 std::vector<uint32_t> large_first(const std::vector<Mask>& masks) {
   std::vector<uint32_t> order(masks.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -197,39 +219,29 @@ std::vector<uint32_t> large_first(const std::vector<Mask>& masks) {
 
 }  // namespace
 
-Packing pack_masks(const std::vector<Mask>& masks, int width, int max_height, int gutter) {
-  Strip strip(width, max_height);
+Packing pack_masks(const std::vector<Mask>& masks, int width, int gutter,
+                   const Progress& progress) {
+  Strip strip(width);
   FirstRows first_rows;
-  std::vector<uint64_t> blocked(strip.words());
   Packing packing;
   packing.places.resize(masks.size());
+  packing.placed = 0;
   uint64_t total = 0, placed = 0;
   for (const Mask& m : masks) total += m.texels;
-
   for (const uint32_t m : large_first(masks)) {
-    const Mask& upright = masks[m];
-    const Mask sideways = turned(upright);
-    const int start = std::min(first_rows.at(upright.width, upright.height),
-                               first_rows.at(sideways.width, sideways.height));
-    Place best = topmost(strip, make_shape(upright, strip.levels()), start, max_height, blocked);
-    // Lying is better when its bottom ends higher.
-    const int limit = best.y < 0 ? max_height : best.y + upright.height - sideways.height - 1;
-    Place other = topmost(strip, make_shape(sideways, strip.levels()), start, limit, blocked);
-    if (other.y >= 0) {
-      best = other;
-      best.turned = true;
-    }
-    if (best.y < 0) {
+    if (progress.cancelled()) return packing;
+    const auto [place, chosen] = best_place(strip, masks[m], first_rows);
+    if (place.y < 0) {
       packing.placed = double(placed) / double(total);
       return packing;
     }
-    const Mask& chosen = best.turned ? sideways : upright;
-    first_rows.raise(chosen.width, chosen.height, best.y);
-    take_with_gutter(strip, chosen, best, gutter, width);
-    packing.places[m] = best;
-    packing.height = std::max(packing.height, best.y + chosen.height);
-    placed += upright.texels;
+    first_rows.raise(chosen.width, chosen.height, place.y);
+    take_with_gutter(strip, chosen, place, gutter, width);
+    packing.places[m] = place;
+    packing.height = std::max(packing.height, place.y + chosen.height);
+    placed += chosen.texels;
   }
+  packing.placed = 1;
   return packing;
 }
 

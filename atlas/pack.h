@@ -1,10 +1,11 @@
-// Packing of texel masks into a strip.
+// Packing of texel masks into a square.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "atlas/cover.h"
+#include "base/progress.h"
 
 namespace luxel::atlas {
 
@@ -22,18 +23,18 @@ Mask turned(const Mask& mask);
 
 struct Place {
   int x = 0, y = 0;
-  bool turned = false;
+  int turns = 0;  ///< quarter turns as turned() makes them
 };
 
 struct Packing {
   std::vector<Place> places;
   int height = 0;     ///< rows in use
-  double placed = 1;  ///< share of the mask texels placed; < 1: no room below max_height
+  double placed = 0;  ///< share of the mask texels that found room: 1 when all fit
 };
 
-/// Places masks, large ones first, each at the topmost place in a strip of `width` columns where it
-/// keeps `gutter` empty texels to the ones before it. Small charts so fill the holes in and
-/// between large ones.
-Packing pack_masks(const std::vector<Mask>& masks, int width, int max_height, int gutter);
+/// Places masks, large ones first, each at the topmost place in a square where it keeps `gutter`
+/// empty texels to the ones before it. Small charts so fill the holes in and between large ones.
+/// Stops at the first that finds no room, and when cancelled.
+Packing pack_masks(const std::vector<Mask>& masks, int side, int gutter, const Progress& progress);
 
 }  // namespace luxel::atlas

@@ -43,6 +43,11 @@ struct TemporaryFile {
 
 Result<TemporaryFile> write_temporary(const std::filesystem::path& path,
                                       std::span<const std::byte> bytes) {
+  // Renaming onto a folder would fail too, but after the files before this one got their names.
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return fail(ErrorCode::io, "cannot write {}: a folder of this name is in the way",
+                path.string());
   TemporaryFile temporary;
   temporary.name = path.string() + ".partial-" + std::to_string(::getpid());
   const int file = ::open(temporary.name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);

@@ -181,6 +181,21 @@ TEST(Atlas, DensityFollowsTheWorldNotTheMesh) {
   EXPECT_NEAR(uv[1] / uv[0], 4, 0.01);
 }
 
+TEST(Atlas, ChartsShowTheFrontSideUnmirrored) {
+  const scene::Scene scene = testing::mixed_scene();
+  const Made m = make(scene, 512);
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    for (uint32_t t = m.atlas.first_triangle[i]; t < m.atlas.first_triangle[i + 1]; ++t) {
+      // Counter-clockwise on the picture is a negative area where y grows downwards.
+      const auto& c = m.atlas.corners[t];
+      const float area2 = cross(c[1] - c[0], c[2] - c[0]);
+      if (determinant(scene.instances[i].world_from_object) < 0)
+        EXPECT_GE(area2, 0) << t;
+      else
+        EXPECT_LE(area2, 0) << t;
+    }
+}
+
 TEST(Atlas, SingleTriangleInASingleTexel) {
   scene::Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -118,7 +118,8 @@ Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolu
       low = density;
       best = place_charts(std::move(attempt), packing, resolution, density);
       if (first_guess > 0 && round == 0) break;
-      next = density * std::sqrt(double(resolution) / packing.height);
+      // Gutters do not grow with the density, but voids do: seven tenths of the way seldom fails.
+      next = density * (0.3 + 0.7 * std::sqrt(double(resolution) / packing.height));
       if (next < low * 1.01) next = low * 1.02;
     } else {
       high = density;

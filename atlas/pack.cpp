@@ -122,7 +122,7 @@ Shape make_shape(const Mask& mask, int levels) {
 
 /// The leftmost free column for a shape with its top at row y, or -1.
 int free_column(const Strip& strip, const Shape& shape, int y, std::vector<uint64_t>& blocked) {
-  for (size_t r = 0; r < std::min<size_t>(4, shape.runs.size()); ++r)
+  for (size_t r = 0; r < std::min<size_t>(24, shape.runs.size()); ++r)
     if (strip.too_full(y + shape.runs[r].row, shape.runs[r].level)) return -1;
   std::fill(blocked.begin(), blocked.end(), 0);
   for (const Shape::Run& run : shape.runs) {
@@ -141,6 +141,7 @@ class FirstRows {
  public:
   int at(int width, int height) const { return rows_[index(width, height)]; }
   void raise(int width, int height, int row) {
+    if (at(width, height) >= row) return;  // larger sizes never start above smaller ones
     for (int w = std::min(width, kMost); w <= kMost; ++w)
       for (int h = std::min(height, kMost); h <= kMost; ++h) {
         int& r = rows_[index(w, h)];

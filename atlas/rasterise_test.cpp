@@ -43,17 +43,29 @@ TEST(Rasterise, ClipsSumToTheTrianglesArea) {
   }
 }
 
+TEST(Rasterise, EdgesThroughTexelCornersTouchOneSideOnly) {
+  const UvTriangle t = uv_triangle({{{0, 0}, {4, 0}, {0, 4}}});
+  EXPECT_EQ(touched_rows(t).end, 4);
+  for (int j = 0; j < 4; ++j) {
+    EXPECT_EQ(touched_texels(t, j).begin, 0);
+    EXPECT_EQ(touched_texels(t, j).end, 4 - j);
+    EXPECT_EQ(centre_texels(t, j, CentreRule::inside_or_border).end, 4 - j);
+    const Span strict = centre_texels(t, j, CentreRule::strictly_inside);
+    EXPECT_EQ(strict.end - strict.begin, 3 - j);
+  }
+}
+
 TEST(Rasterise, CentreWinsOverAreaAndAreaOverNumber) {
-  // Texel (0, 0): triangle 1 holds its centre. Texel (2, 0): no centre; triangle 2 covers more.
+  // Texel (0, 0): triangle 1 holds its centre. Texel (2, 0): no centre; triangle 3 covers more.
   const Atlas atlas = atlas_of(4, {{{{0, 0}, {0.4f, 0}, {0, 1}}},
                                    {{{0.4f, 0}, {1, 0}, {0.4f, 1}}},
-                                   {{{2, 0}, {2.4f, 0}, {2, 0.4f}}},
-                                   {{{2.9f, 0}, {3, 0}, {3, 0.1f}}}});
+                                   {{{2.9f, 0}, {3, 0}, {3, 0.1f}}},
+                                   {{{2, 0}, {2.4f, 0}, {2, 0.4f}}}});
   const TexelMap map = rasterise({}, atlas);
   ASSERT_EQ(map.texels.size(), 2u);
   EXPECT_EQ(map.texels[0].triangle_number, 1u);
   EXPECT_TRUE(map.texels[0].centre_covered);
-  EXPECT_EQ(map.texels[1].triangle_number, 2u);
+  EXPECT_EQ(map.texels[1].triangle_number, 3u);
   EXPECT_FALSE(map.texels[1].centre_covered);
   // The sample is the centroid of the clip: here the whole triangle.
   EXPECT_NEAR(map.texels[1].sample.at.u, 1.0 / 3, 1e-4);

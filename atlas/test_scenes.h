@@ -77,10 +77,10 @@ inline scene::Mesh spiral_ramp() {
   });
 }
 
-/// Ten blades of 2 m by 20 micrometres beside a box of 1 m.
+/// Sixty blades of 2 m by 20 micrometres beside a box of 1 m.
 inline Scene slivers() {
   Scene s = scene_of(box({1, 1, 1}));
-  for (int k = 0; k < 10; ++k) {
+  for (int k = 0; k < 60; ++k) {
     scene::Mesh blade;
     blade.name = "blade";
     const float z = 2.0f + float(k);

@@ -1,19 +1,23 @@
 #include "base/random.h"
 
+#include "base/check.h"
+#include "base/vectorize.h"
+
 namespace luxel {
 inline namespace base {
 namespace {
 
-uint32_t reverse_bits(uint32_t x) {
+inline uint32_t reverse_bits(uint32_t x) {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
   x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
-  return __builtin_bswap32(x);
+  x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+  return (x >> 16) | (x << 16);
 }
 
 // A bijection in which each bit depends only on lower bits: on bit-reversed input this is nested
 // (Owen) scrambling. Constants from Vegdahl's search, as published. [Vegdahl21]
-uint32_t scramble_upwards(uint32_t x, uint32_t seed) {
+inline uint32_t scramble_upwards(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1u;
@@ -24,7 +28,7 @@ uint32_t scramble_upwards(uint32_t x, uint32_t seed) {
 
 // The second Sobol dimension, bit-reversed: row k of its generator is row k-1 of Pascal's triangle
 // modulo 2, which the loop below unrolls as prefix XORs of the index. [Ahmed24, eq. 12]
-uint32_t sobol_second_reversed(uint32_t index) {
+inline uint32_t sobol_second_reversed(uint32_t index) {
   index ^= (index & 0xaaaaaaaau) >> 1;
   index ^= (index & 0xccccccccu) >> 2;
   index ^= (index & 0xf0f0f0f0u) >> 4;
@@ -40,6 +44,22 @@ Vec2 sobol_owen_2d(uint32_t index, uint64_t seed) {
   const uint32_t x = scramble_upwards(index, uint32_t(seed));
   const uint32_t y = scramble_upwards(sobol_second_reversed(index), uint32_t(seed >> 32));
   return {unit_float(reverse_bits(x)), unit_float(reverse_bits(y))};
+}
+
+LUXEL_VECTOR_CLONES
+void sobol_owen_2d_points(uint64_t seed, std::span<float> x, std::span<float> y) {
+  LUXEL_CHECK(x.size() == y.size());
+  const uint32_t seed_x = uint32_t(seed), seed_y = uint32_t(seed >> 32);
+  float* out_x = x.data();
+  float* out_y = y.data();
+  const uint32_t count = uint32_t(x.size());
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint32_t a = reverse_bits(scramble_upwards(i, seed_x)) >> 8;
+    const uint32_t b = reverse_bits(scramble_upwards(sobol_second_reversed(i), seed_y)) >> 8;
+    // The signed conversion has a vector instruction, and 24 bits fit.
+    out_x[i] = float(int32_t(a)) * 0x1p-24f;
+    out_y[i] = float(int32_t(b)) * 0x1p-24f;
+  }
 }
 
 }  // namespace base

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "base/vec.h"
 
@@ -36,6 +37,10 @@ struct RandomStream {
 /// Hash-based nested uniform scrambling in each dimension, [Burley20, section 3; Vegdahl21's hash].
 /// The index is not shuffled: a pixel uses one seed for one pair of dimensions.
 Vec2 sobol_owen_2d(uint32_t index, uint64_t seed);
+
+/// The first x.size() points of sobol_owen_2d, bit for bit, several times as fast. x and y are of
+/// the same length.
+void sobol_owen_2d_points(uint64_t seed, std::span<float> x, std::span<float> y);
 
 }  // namespace base
 }  // namespace luxel

@@ -24,6 +24,15 @@ TEST(SobolOwen2d, EveryAlignedBlockIsANetForEverySeed) {
         }
 }
 
+TEST(SobolOwen2d, ManyAtOnceAreTheSamePoints) {
+  for (const size_t count : {1, 7, 64, 1000}) {
+    std::vector<float> x(count), y(count);
+    sobol_owen_2d_points(0x1234567890abcdef, x, y);
+    for (size_t i = 0; i < count; ++i)
+      ASSERT_EQ((Vec2{x[i], y[i]}), sobol_owen_2d(uint32_t(i), 0x1234567890abcdef)) << i;
+  }
+}
+
 TEST(SobolOwen2d, SeedsGiveDifferentPoints) {
   EXPECT_NE(sobol_owen_2d(1, 1).x, sobol_owen_2d(1, 2).x);
   EXPECT_NE(sobol_owen_2d(1, 1).y, sobol_owen_2d(1, 2ull << 32).y);

@@ -8,39 +8,35 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "base/warp.h"
+#include "base/vectorize.h"
 
 namespace luxel::gather {
 namespace {
 
-/// Directions are sorted by cells of the unit square, 16 x 16 in Morton order.
-constexpr uint32_t kCellsLog2 = 4;
-constexpr size_t kCells = size_t(1) << (2 * kCellsLog2);
+/// Directions are sorted by cells of the unit square, 8 x 8 in Morton order.
+constexpr int kCellsPerAxis = 8;
+constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
 
-uint32_t morton_cell(Vec2 u) {
-  const auto spread = [](uint32_t x) {
-    x = (x | (x << 2)) & 0x33;
-    return (x | (x << 1)) & 0x55;
-  };
-  const float scale = float(1u << kCellsLog2);
-  return spread(uint32_t(u.x * scale)) | (spread(uint32_t(u.y * scale)) << 1);
-}
+/// Everything a worker needs, reused from element to element.
+struct Work {
+  std::vector<float> u, v, x, y, z;
+  std::vector<uint8_t> cell;
+  std::vector<trace::Ray> rays;
+  std::vector<trace::Hit> hits;
 
-/// Sobol points in the order of their cells (a counting sort). Buffers are the caller's.
-void sorted_points(uint64_t seed, size_t count, std::vector<Vec2>& points,
-                   std::vector<Vec2>& scratch) {
-  points.resize(count), scratch.resize(count);
-  std::array<uint32_t, kCells + 1> first{};
-  for (size_t i = 0; i < count; ++i) {
-    scratch[i] = sobol_owen_2d(uint32_t(i), seed);
-    ++first[morton_cell(scratch[i]) + 1];
-  }
-  for (size_t c = 0; c < kCells; ++c) first[c + 1] += first[c];
-  for (size_t i = 0; i < count; ++i) points[first[morton_cell(scratch[i])]++] = scratch[i];
-}
+  explicit Work(size_t samples)
+      : u(samples),
+        v(samples),
+        x(samples),
+        y(samples),
+        z(samples),
+        cell(samples),
+        rays(samples),
+        hits(samples) {}
+};
 
-/// cos and sin of 2 pi x for x in [0, 1), to 1e-7: a quarter turn by Taylor's series about its
-/// middle. The compiler turns the loop that calls it into vector code, which std::sin prevents.
+/// cos and sin of 2 pi x for x in [0, 1), to 2e-7: each quarter turn by Taylor's series about its
+/// middle. Without branches, so that loops over it become vector code, which std::sin prevents.
 inline Vec2 unit_circle(float x) {
   const float turns = 4 * x;
   const int quadrant = int(turns);
@@ -55,25 +51,45 @@ inline Vec2 unit_circle(float x) {
   return {a * sign, b * sign};
 }
 
-/// Everything a worker needs, reused from element to element.
-struct Work {
-  std::vector<Vec2> points, scratch;
-  std::vector<trace::Ray> rays;
-  std::vector<trace::Hit> hits;
-};
+/// Directions about +z from the points (u, v), and the cell of each point.
+LUXEL_VECTOR_CLONES
+void local_directions(Work& work, size_t count) {
+  const float* u = work.u.data();
+  const float* v = work.v.data();
+  float* x = work.x.data();
+  float* y = work.y.data();
+  float* z = work.z.data();
+  for (size_t i = 0; i < count; ++i) {
+    const Vec2 circle = unit_circle(u[i]);
+    const float r = std::sqrt(v[i]);
+    x[i] = circle.x * r, y[i] = circle.y * r, z[i] = std::sqrt(1 - v[i]);
+  }
+  uint8_t* cell = work.cell.data();
+  for (size_t i = 0; i < count; ++i) {
+    const int a = int(u[i] * kCellsPerAxis), b = int(v[i] * kCellsPerAxis);
+    cell[i] =
+        uint8_t((a & 1) | (a & 2) << 1 | (a & 4) << 2 | (b & 1) << 1 | (b & 2) << 2 | (b & 4) << 3);
+  }
+}
 
+/// The rays of an element in the order of their cells (a counting sort).
 void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Work& work,
                std::span<trace::Ray> rays) {
-  sorted_points(seed, rays.size(), work.points, work.scratch);
+  const size_t count = rays.size();
+  sobol_owen_2d_points(seed, work.u, work.v);
+  local_directions(work, count);
+  std::array<uint32_t, kCells + 1> place{};
+  for (size_t i = 0; i < count; ++i) ++place[work.cell[i] + 1];
+  for (size_t c = 0; c < kCells; ++c) place[c + 1] += place[c];
   const Frame frame = frame_around(normal);
-  for (size_t k = 0; k < rays.size(); ++k) {
-    const Vec2 u = work.points[k];
-    const Vec2 circle = unit_circle(u.x);
-    const float r = std::sqrt(u.y);
-    Vec3 d = frame.to_world({circle.x * r, circle.y * r, std::sqrt(std::max(0.0f, 1 - u.y))});
-    const float above = dot(d, geometric_normal);
-    if (above < 0) d += geometric_normal * (-2 * above);
-    rays[k] = {origin, 0, d, INFINITY};
+  const bool bent = !(normal == geometric_normal);
+  for (size_t i = 0; i < count; ++i) {
+    Vec3 d = frame.to_world({work.x[i], work.y[i], work.z[i]});
+    if (bent) {
+      const float above = dot(d, geometric_normal);
+      if (above < 0) d += geometric_normal * (-2 * above);
+    }
+    rays[place[work.cell[i]]++] = {origin, 0, d, INFINITY};
   }
 }
 
@@ -96,7 +112,7 @@ bool brings_light(const scene::Scene& scene, const trace::Hit& hit) {
 
 void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,
                   std::span<trace::Ray> rays) {
-  Work work;
+  Work work(rays.size());
   fill_rays(origin, normal, geometric_normal, seed, work, rays);
 }
 
@@ -133,8 +149,7 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
   std::mutex mutex;
   Status status;
   parallel_for(elements.size(), kTileElements, [&](size_t begin, size_t end) {
-    Work work;
-    work.rays.resize(samples), work.hits.resize(samples);
+    Work work(samples);
     HitTile tile;
     tile.hits.reserve((end - begin) * samples);
     for (size_t i = begin; i < end; ++i) {

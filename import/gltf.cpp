@@ -1,5 +1,7 @@
 // glTF 2.0: checks, then tinygltf for the document and its buffers, then our parts from it.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 
 #include "import/gltf_checks.h"
@@ -53,6 +55,28 @@ Result<std::string> text_of(const SourceFile& source) {
   return std::string(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
 }
 
+/// glTF has no word for the light around a scene; luxel's own files say it in the scene's extras.
+/// What is not three finite numbers >= 0 is somebody else's and is left alone.
+Rgb background_of(const nlohmann::json& document) {
+  const size_t scene = document.value("scene", size_t(0));
+  const nlohmann::json none;
+  const auto member = [&](const nlohmann::json& object, const char* key) -> const nlohmann::json& {
+    return object.is_object() && object.contains(key) ? object.at(key) : none;
+  };
+  const nlohmann::json& scenes = member(document, "scenes");
+  if (!scenes.is_array() || scene >= scenes.size()) return {};
+  const nlohmann::json& value =
+      member(member(member(scenes[scene], "extras"), "luxel"), "background");
+  if (!value.is_array() || value.size() != 3) return {};
+  std::array<float, 3> c{};
+  for (size_t k = 0; k < 3; ++k) {
+    if (!value[k].is_number()) return {};
+    c[k] = value[k].get<float>();
+    if (!(c[k] >= 0) || !std::isfinite(c[k])) return {};
+  }
+  return {c[0], c[1], c[2]};
+}
+
 }  // namespace
 
 Result<Imported> read_gltf(const SourceFile& source) {
@@ -69,6 +93,7 @@ Result<Imported> read_gltf(const SourceFile& source) {
   LUXEL_TRY_STATUS(read_materials(reader));
   LUXEL_TRY_STATUS(read_meshes(reader));
   LUXEL_TRY_STATUS(read_nodes(reader));
+  imported.scene.background = background_of(document);
   if (!model.scenes.empty())
     imported.scene.name = model.scenes[size_t(std::max(model.defaultScene, 0))].name;
   return imported;

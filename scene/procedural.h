@@ -1,6 +1,9 @@
 // Scenes made by code: the ones whose answer is known, and the demo.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "scene/scene.h"
 
 namespace luxel::scene {
@@ -28,5 +31,13 @@ Scene spheres_and_cube();
 /// A sphere of radius `radius_m` seen from inside (normals point inwards), latitude-longitude-free:
 /// an icosahedron subdivided `levels` times; flat shading. One material.
 Scene inward_sphere(float radius_m, int levels, Rgb reflectance, Rgb emission);
+
+/// A scene under the name of its file in scenes/.
+struct NamedScene {
+  std::string file;
+  Scene scene;
+};
+/// All scenes that scenes/ holds.
+std::vector<NamedScene> procedural_scenes();
 
 }  // namespace luxel::scene

@@ -2,10 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "base/file.h"
+#include "export/baked_glb.h"
 #include "import/import.h"
+#include "scene/procedural.h"
 #include "scene/validate.h"
 #include "tests/support.h"
-#include "tools/procedural_files.h"
 
 namespace luxel {
 namespace {
@@ -13,22 +14,22 @@ namespace {
 std::filesystem::path scenes_folder() { return std::filesystem::path(LUXEL_SOURCE_DIR) / "scenes"; }
 
 TEST(Scenes, FilesAreUpToDate) {
-  for (const auto& file : tools::procedural_files()) {
-    const auto stored = read_file(scenes_folder() / file.name);
+  for (const auto& file : scene::procedural_scenes()) {
+    const auto stored = read_file(scenes_folder() / file.file);
     ASSERT_TRUE(stored) << stored.error().message;
     EXPECT_EQ(*stored, *export_::scene_glb(file.scene))
-        << file.name << ": run build/release/bin/luxel_write_scenes scenes";
+        << file.file << ": run build/release/bin/luxel_write_scenes scenes";
   }
 }
 
 TEST(Scenes, FilesReadBackAsTheSameTrianglesAndLight) {
-  for (const auto& file : tools::procedural_files()) {
-    const auto imported = import::import_scene(scenes_folder() / file.name);
+  for (const auto& file : scene::procedural_scenes()) {
+    const auto imported = import::import_scene(scenes_folder() / file.file);
     ASSERT_TRUE(imported) << imported.error().message;
     const auto first = scene::first_triangles(file.scene);
     const auto first_read = scene::first_triangles(imported->scene);
-    ASSERT_EQ(first, first_read) << file.name;
-    EXPECT_EQ(scene::has_light(file.scene), scene::has_light(imported->scene));
+    ASSERT_EQ(first, first_read) << file.file;
+    EXPECT_EQ(file.scene.background, imported->scene.background) << file.file;
     for (uint32_t i = 0; i + 1 < first.size(); ++i)
       for (uint32_t t = 0; t < first[i + 1] - first[i]; ++t) {
         const scene::Triangle3 a = scene::world_triangle(file.scene, i, t);

@@ -4,15 +4,16 @@
 #include <filesystem>
 
 #include "base/file.h"
-#include "tools/procedural_files.h"
+#include "export/baked_glb.h"
+#include "scene/procedural.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {
     std::fputs("usage: luxel_write_scenes FOLDER\n", stderr);
     return 2;
   }
-  for (const auto& file : luxel::tools::procedural_files()) {
-    const auto path = std::filesystem::path(argv[1]) / file.name;
+  for (const auto& file : luxel::scene::procedural_scenes()) {
+    const auto path = std::filesystem::path(argv[1]) / file.file;
     const auto bytes = luxel::export_::scene_glb(file.scene);
     const auto written = bytes ? luxel::write_file_atomically(path, *bytes)
                                : luxel::Status(tl::unexpected(bytes.error()));

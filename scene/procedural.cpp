@@ -1,0 +1,12 @@
+#include "scene/procedural.h"
+
+namespace luxel::scene {
+
+std::vector<NamedScene> procedural_scenes() {
+  return {{"cornell-box.glb", cornell_box()},
+          {"cornell-box-empty.glb", cornell_box(CornellColors::pbrt, false)},
+          {"furnace-box.glb", furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1})},
+          {"spheres-and-cube.glb", spheres_and_cube()}};
+}
+
+}  // namespace luxel::scene

@@ -80,18 +80,35 @@ void add_outside(const Box3& box, float aspect, std::vector<Candidate>& out) {
     }
 }
 
-void add_inside(const Box3& box, std::vector<Candidate>& out) {
+/// Whether surfaces are around the eye, as in a room or a street, and not only on one side of it.
+bool is_surrounded(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 eye) {
+  constexpr int kDirections = 64;
+  std::vector<trace::Ray> rays;
+  for (int i = 0; i < kDirections; ++i) {  // a spiral of equal areas
+    const float y = 1 - 2 * (float(i) + 0.5f) / kDirections, r = std::sqrt(1 - y * y);
+    const float phi = 2.3999632f * float(i);
+    rays.push_back({eye, 0, {r * std::cos(phi), y, r * std::sin(phi)}, INFINITY});
+  }
+  int found = 0;
+  for (const trace::Hit& hit : visible_hits(scene, tracer, rays)) found += hit.found();
+  return 5 * found >= 3 * kDirections;
+}
+
+void add_inside(const scene::Scene& scene, const trace::RayTracer& tracer, const Box3& box,
+                std::vector<Candidate>& out) {
   const Vec3 size = box.upper - box.lower;
   const float eye_height = box.lower.y + std::min(1.6f, 0.3f * size.y);
   constexpr std::array<Vec2, 5> places{
       {{0.5f, 0.5f}, {0.25f, 0.5f}, {0.75f, 0.5f}, {0.5f, 0.25f}, {0.5f, 0.75f}}};
   for (const float y : {box.lower.y + 0.5f * size.y, eye_height})
-    for (const Vec2 place : places)
+    for (const Vec2 place : places) {
+      const Vec3 eye{box.lower.x + place.x * size.x, y, box.lower.z + place.y * size.z};
+      if (!is_surrounded(scene, tracer, eye)) continue;
       for (int i = 0; i < 8; ++i) {
-        const Vec3 eye{box.lower.x + place.x * size.x, y, box.lower.z + place.y * size.z};
         const Vec3 ahead = from_angles(float(i) * 45 * kDegree, 0);
         out.push_back({camera_at(look_along(eye, ahead), kInsideFov), 1.0f, true});
       }
+    }
 }
 
 /// What one candidate's rays meet. `scratch` has an entry per triangle, all zero before and after.
@@ -166,7 +183,7 @@ scene::Camera fit_camera(const scene::Scene& scene, const trace::RayTracer& trac
   if (box.empty()) return camera_at({}, kOutsideFov);
   std::vector<Candidate> candidates;
   add_outside(box, aspect, candidates);
-  add_inside(box, candidates);
+  add_inside(scene, tracer, box, candidates);
 
   const std::vector<uint32_t> first = first_triangles(scene);
   std::vector<double> scores(candidates.size());

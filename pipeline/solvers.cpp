@@ -45,8 +45,8 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   TexelLight out;
-  out.suspicious_texels = uint64_t(std::count(result.hidden.begin(), result.hidden.end(), 1));
-  out.hidden = std::move(result.hidden);
+  out.suspicious_texels = uint64_t(std::count(result.enclosed.begin(), result.enclosed.end(), 1));
+  out.hidden = std::move(result.enclosed);
   out.irradiance = std::move(result.irradiance);
   out.rays = result.rays;
   out.sweeps = result.sweeps;

@@ -32,7 +32,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   Gather out;
   out.relative_error = relative_error(bounced.irradiance, direct.variance, bounced.variance);
   out.irradiance = std::move(bounced.irradiance);
-  for (size_t i = 0; i < elements.size(); ++i) out.hidden.push_back(is_hidden(hits, i));
+  for (size_t i = 0; i < elements.size(); ++i) out.enclosed.push_back(is_enclosed(hits, i));
   out.met_back = std::move(hits.met_back);
   out.rays = direct.rays + hits.rays;
   out.sweeps = bounced.sweeps;

@@ -20,7 +20,7 @@ struct GatherParams {
 struct Gather {
   std::vector<Rgb> irradiance;     ///< E per element [W/m^2], after all bounces
   std::vector<uint16_t> met_back;  ///< rays per element that met the back of a one-sided surface
-  std::vector<uint8_t> hidden;     ///< per element: 1 where is_hidden
+  std::vector<uint8_t> enclosed;   ///< per element: 1 where is_enclosed
   uint64_t rays = 0;
   int sweeps = 0;
   uint64_t hit_bytes_in_file = 0;

@@ -103,9 +103,26 @@ StoredHit store(const atlas::Atlas& atlas, const trace::Hit& hit) {
           uint16_t((y - float(y0)) * 65535.0f + 0.5f)};
 }
 
-/// Which materials are one-sided, by (mesh, triangle): asked for every hit.
-bool brings_light(const scene::Scene& scene, const trace::Hit& hit) {
-  return !hit.back_face || scene::material_at(scene, hit.point()).double_sided;
+bool is_double_sided(const scene::Scene& scene, const trace::Hit& hit) {
+  return scene::material_at(scene, hit.point()).double_sided;
+}
+
+/// Counts what an element's rays met, and keeps the hits that bring light.
+void sort_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
+               std::span<const trace::Hit> hits, size_t element, TracedHits& out, HitTile& tile) {
+  for (const trace::Hit& hit : hits) {
+    if (!hit.found()) {
+      ++out.escaped[element];
+      continue;
+    }
+    if (hit.back_face && !is_double_sided(scene, hit)) {
+      ++out.met_back[element];
+      continue;
+    }
+    if (hit.back_face) ++out.met_double_sided_back[element];
+    tile.hits.push_back(store(atlas, hit));
+  }
+  tile.end.push_back(uint32_t(tile.hits.size()));
 }
 
 }  // namespace
@@ -123,9 +140,10 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
   const size_t samples = size_t(params.samples);
   LUXEL_TRY(HitStore hit_store, HitStore::create(elements.size(), samples,
                                                  params.memory_limit_bytes, params.scratch_folder));
-  TracedHits out{std::move(hit_store), params.samples, {}, {}, 0};
+  TracedHits out{std::move(hit_store), params.samples, {}, {}, {}, 0};
   out.escaped.resize(elements.size());
   out.met_back.resize(elements.size());
+  out.met_double_sided_back.resize(elements.size());
   out.rays = uint64_t(elements.size()) * samples;
   const float diagonal_m = scene::world_bounds(scene).diagonal();
   const auto trace_element = [&](size_t i, Work& work, HitTile& tile) {
@@ -134,15 +152,7 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
     fill_rays(origin, elements.normal[i], elements.geometric_normal[i],
               hash64(params.seed ^ 0x6a7e, i), work, work.rays);
     tracer.closest_hits(work.rays, work.hits);
-    for (const trace::Hit& hit : work.hits) {
-      if (!hit.found())
-        ++out.escaped[i];
-      else if (!brings_light(scene, hit))
-        ++out.met_back[i];
-      else
-        tile.hits.push_back(store(atlas, hit));
-    }
-    tile.end.push_back(uint32_t(tile.hits.size()));
+    sort_hits(scene, atlas, work.hits, i, out, tile);
   };
 
   progress.begin("trace rays", out.rays);

@@ -28,7 +28,9 @@ struct TracedHits {
   /// Per element, how many of its rays left the scene, and how many met the back of a one-sided
   /// surface close by or far: those bring no light, and many of them mean that the element lies
   /// inside a solid (kept for leak repair).
-  std::vector<uint16_t> escaped, met_back;
+  /// Backs of double-sided surfaces send the light of their front (docs/gather.md); they are
+  /// counted too.
+  std::vector<uint16_t> escaped, met_back, met_double_sided_back;
   uint64_t rays = 0;
 };
 
@@ -36,6 +38,13 @@ struct TracedHits {
 /// the back of one-sided surfaces. Its own light means nothing to anybody.
 inline bool is_hidden(const TracedHits& hits, size_t element) {
   return 2 * int(hits.met_back[element]) > hits.samples;
+}
+
+/// Whether an element is hidden or sees nothing but backs, also of double-sided surfaces: the floor
+/// under a box. Many exporters call every material double-sided.
+inline bool is_enclosed(const TracedHits& hits, size_t element) {
+  const int backs = int(hits.met_back[element]) + int(hits.met_double_sided_back[element]);
+  return is_hidden(hits, element) || 100 * backs >= 98 * hits.samples;
 }
 
 /// One ray per sample, directions from an Owen-scrambled Sobol sequence of its own per element,

@@ -30,11 +30,11 @@ struct Hit {
   scene::SurfacePoint point() const { return {instance, triangle, at}; }
 };
 
-/// Two levels: a mesh with several instances is stored once, with its instances on top, in scenes of
-/// more than a million drawn triangles; smaller scenes and single instances lie in the top level, where
-/// rays meet one tight hierarchy. Holes of alpha masks do not block. Both sides of every triangle
-/// block. Queries are const and may run on many threads at once.
-/// `scene` is kept by reference and must outlive the tracer.
+/// Two levels: a mesh with several instances is stored once, with its instances on top, in scenes
+/// of more than a million drawn triangles; smaller scenes and single instances lie in the top
+/// level, where rays meet one tight hierarchy. Holes of alpha masks do not block. Both sides of
+/// every triangle block. Queries are const and may run on many threads at once. `scene` is kept by
+/// reference and must outlive the tracer.
 class RayTracer {
  public:
   /// `max_flat_triangles`: drawn triangles above which meshes are shared between instances.

@@ -1,0 +1,164 @@
+// Wrong files and wrong settings: one clear sentence, the right exit code, nothing written.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/command.h"
+
+namespace luxel::testing_support {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A small valid glTF (one triangle, base64 buffer) with one piece of its text replaced.
+std::string gltf_with(const std::string& from = "", const std::string& to = "") {
+  // Positions (0,0,0) (1,0,0) (0,1,0) as floats, then indices 0 1 2 as unsigned shorts.
+  std::string text = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],
+"buffers":[{"byteLength":42,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"}]})";
+  const size_t at = from.empty() ? std::string::npos : text.find(from);
+  if (!from.empty()) EXPECT_NE(at, std::string::npos) << from;
+  if (at != std::string::npos) text.replace(at, from.size(), to);
+  return text;
+}
+
+/// Bakes and expects failure: code, a sentence with `words`, and no output folder.
+void expect_refused(const std::string& scene_and_options, int code, const std::string& words) {
+  const ScratchFolder scratch;
+  const auto output = scratch.path / "baked";
+  const CommandResult r = luxel("bake " + scene_and_options + " -o " + output.string());
+  EXPECT_EQ(r.code, code) << scene_and_options << "\n" << r.err;
+  EXPECT_THAT(r.err, HasSubstr(words)) << scene_and_options;
+  EXPECT_THAT(r.out, "") << scene_and_options;
+  EXPECT_FALSE(std::filesystem::exists(output)) << scene_and_options;
+}
+
+TEST(BadFiles, AreRefusedWithASentence) {
+  const ScratchFolder s;
+  expect_refused((s.path / "none.glb").string(), 1, "no such file");
+  expect_refused(s.path.string(), 1, "folder");
+  expect_refused(s.write("empty.glb", "").string(), 1, "empty.glb");
+  expect_refused(s.write("what.xyz", "hello").string(), 1, "what.xyz");
+  expect_refused(s.write("json.gltf", "{\"asset\": ").string(), 1, "json.gltf");
+  const std::string whole = slurp(scene_file("cornell-box.glb"));
+  expect_refused(s.write("cut.glb", whole.substr(0, whole.size() / 2)).string(), 1, "cut.glb");
+  expect_refused(s.write("head.glb", whole.substr(0, 9)).string(), 1, "head.glb");
+}
+
+TEST(BadFiles, WrongContentIsNamed) {
+  const ScratchFolder s;
+  const auto refused = [&](const std::string& from, const std::string& to,
+                           const std::string& words) {
+    expect_refused(s.write("bad.gltf", gltf_with(from, to)).string(), 1, words);
+  };
+  refused("AAABAAIA", "AAABAAkA", "mesh 0");  // index 9 of 3 vertices
+  refused("\"count\":3,\"type\":\"VEC3\"", "\"count\":30,\"type\":\"VEC3\"", "accessor 0");
+  refused("\"indices\":1", "\"indices\":7", "7");
+  refused("AAAAAAAAAAAAAAAAAACAPw", "AADAfwAAAAAAAAAAAACAPw", "vertex 0");  // NaN
+  refused("AAAAAAAAAAAAAAAAAACAPw", "AACAfwAAAAAAAAAAAACAPw", "vertex 0");  // infinity
+  refused("\"scene\":0,",
+          R"("extensionsRequired":["EXT_strange"],"extensionsUsed":["EXT_strange"],"scene":0,)",
+          "EXT_strange");
+  refused("\"nodes\":[0]", "\"nodes\":[]", "triangle");
+}
+
+TEST(BadFiles, MissingAndCorruptTexturesAreNamed) {
+  const ScratchFolder s;
+  const auto with_image = [&](const std::string& uri) {
+    std::string text = gltf_with("\"indices\":1", "\"indices\":1,\"material\":0");
+    text.insert(
+        1,
+        R"("materials":[{"name":"wall","pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0}}],
+"textures":[{"source":0}],"images":[{"uri":")" +
+            uri + "\"}],");
+    return s.write("textured.gltf", text).string();
+  };
+  expect_refused(with_image("none.png"), 1, "none.png");
+  s.write("corrupt.png", "\x89PNG\r\n\x1a\nnonsense");
+  expect_refused(with_image("corrupt.png"), 1, "corrupt.png");
+}
+
+TEST(BadFiles, ATriangleWithoutAreaIsDroppedAndCounted) {
+  const ScratchFolder s;
+  const auto file = s.write("flat.gltf", gltf_with("AAABAAIA", "AAABAAEA"));  // indices 0 1 1
+  expect_refused(file.string(), 1, "triangle");
+}
+
+TEST(NoLight, IsSaidAndAWhiteBackgroundIsUsed) {
+  const ScratchFolder s;
+  const auto file = s.write("one.gltf", gltf_with());
+  const CommandResult r = luxel("bake " + file.string() + " --resolution 8 --samples 16 -o " +
+                                (s.path / "baked").string());
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("white background"));
+  EXPECT_TRUE(std::filesystem::exists(s.path / "baked" / "lightmap.exr"));
+}
+
+TEST(BadSettings, NameTheOptionAndTheValue) {
+  const std::string box = scene_file("cornell-box.glb");
+  for (const auto& [option, words] : {std::pair{"--resolution 0", "--resolution 0"},
+                                      {"--resolution 100000", "--resolution 100000"},
+                                      {"--samples -5", "--samples -5"},
+                                      {"--samples 0", "--samples 0"},
+                                      {"--direct-samples 0", "--direct-samples 0"},
+                                      {"--threads -1", "--threads -1"},
+                                      {"--bounces -1", "--bounces '-1'"},
+                                      {"--bounces many", "'many'"},
+                                      {"--sun noon", "'noon'"},
+                                      {"--background 1,2", "'1,2'"},
+                                      {"--background 1,2,-3", "r,g,b"},
+                                      {"--max-memory lots", "'lots'"},
+                                      {"--solver magic", "gather"},
+                                      {"--texels-per-metre -2", "-2"},
+                                      {"--uv keep", "TEXCOORD_1"},
+                                      {"--resolution 4", "smallest"}})
+    expect_refused(box + " " + option, 1, words);
+}
+
+TEST(BadSettings, TooLittleMemorySaysHowMuchWorks) {
+  expect_refused(scene_file("cornell-box.glb") + " --max-memory 1M", 3, "smallest that works");
+}
+
+TEST(Usage, IsWrongWithCodeTwo) {
+  const std::string box = scene_file("cornell-box.glb");
+  for (const char* arguments : {"", "bake", "paint x", "bake --frobnicate x -o y", "bake x",
+                                "bake x -o y --resolution abc", "render x -o y.png"})
+    EXPECT_EQ(luxel(arguments).code, 2) << arguments;
+  EXPECT_EQ(luxel("--help").code, 0);
+  EXPECT_EQ(luxel("bake --help").code, 0);
+  EXPECT_THAT(luxel("--version").out, HasSubstr("luxel"));
+}
+
+TEST(OutputFolder, ThatCannotBeMadeIsRefused) {
+  const ScratchFolder s;
+  const auto file = s.write("in-the-way", "text");
+  for (const std::string folder :
+       {file.string(), (file / "below").string(), std::string("/proc/luxel")}) {
+    const CommandResult r = luxel("bake " + scene_file("cornell-box.glb") +
+                                  " --resolution 32 --samples 4 -o " + folder);
+    EXPECT_EQ(r.code, 1) << folder;
+    EXPECT_THAT(r.err, HasSubstr("output folder")) << folder;
+  }
+  EXPECT_EQ(slurp(file), "text");
+}
+
+// A file system of 64 KiB: the files do not fit, none of them stays.
+TEST(OutputFolder, AFullDiskLeavesNothing) {
+  const ScratchFolder s;
+  const auto disk = s.path / "disk";
+  std::filesystem::create_directory(disk);
+  const std::string mount = "mount -t tmpfs -o size=64k tmpfs " + disk.string() + " 2>/dev/null";
+  if (std::system(mount.c_str()) != 0) GTEST_SKIP() << "mounting a small disk needs root";
+  const CommandResult r = luxel("bake " + scene_file("cornell-box.glb") +
+                                " --resolution 128 --samples 4 -o " + (disk / "baked").string());
+  const bool left = std::filesystem::exists(disk / "baked");
+  EXPECT_EQ(std::system(("umount " + disk.string()).c_str()), 0);
+  EXPECT_EQ(r.code, 3) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("No space"));
+  EXPECT_FALSE(left);
+}
+
+}  // namespace
+}  // namespace luxel::testing_support

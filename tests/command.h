@@ -1,0 +1,60 @@
+// Runs the real program and looks at what it says and leaves.
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "tests/support.h"
+
+namespace luxel::testing_support {
+
+struct CommandResult {
+  int code = -1;
+  std::string out, err;
+};
+
+inline std::string slurp(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// A folder of this test's own, empty, removed with the object.
+struct ScratchFolder {
+  std::filesystem::path path;
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "luxel-test-XXXXXX").string();
+    path = ::mkdtemp(name.data());
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name, std::ios::binary) << text;
+    return path / name;
+  }
+};
+
+/// `luxel ARGUMENTS` through the shell; `before` stands in front of it (timeout, ulimit).
+inline CommandResult luxel(const std::string& arguments, const std::string& before = "") {
+  const ScratchFolder scratch;
+  const std::string out = (scratch.path / "out").string(), err = (scratch.path / "err").string();
+  const int status =
+      std::system((before + " " LUXEL_BINARY " " + arguments + " >" + out + " 2>" + err).c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out), slurp(err)};
+}
+
+inline std::string scene_file(const std::string& name) {
+  return (std::filesystem::path(LUXEL_SOURCE_DIR) / "scenes" / name).string();
+}
+
+}  // namespace luxel::testing_support

@@ -1,0 +1,174 @@
+// What a bake leaves: complete, the same bits every time, and readable again.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/file.h"
+#include "image/codec.h"
+#include "import/import.h"
+#include "tests/command.h"
+
+namespace luxel::testing_support {
+namespace {
+
+using ::testing::HasSubstr;
+
+CommandResult bake(const std::string& scene, const std::filesystem::path& output,
+                   const std::string& options) {
+  return luxel("bake " + scene + " -o " + output.string() + " " + options);
+}
+
+image::Image lightmap_of(const std::filesystem::path& folder) {
+  const auto bytes = read_file(folder / "lightmap.exr");
+  EXPECT_TRUE(bytes);
+  return *image::decode_exr(*bytes, "lightmap.exr");
+}
+
+std::set<std::string> files_in(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+TEST(BakeOutputs, AreAllThereAndWhatTheContractSays) {
+  const ScratchFolder s;
+  const CommandResult r =
+      bake(scene_file("cornell-box.glb"), s.path / "b", "--resolution 64 --samples 16 --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(files_in(s.path / "b"),
+            (std::set<std::string>{"lightmap.exr", "baked.glb", "preview.png", "bake.json"}));
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json, nlohmann::json::parse(slurp(s.path / "b" / "bake.json")));
+  for (const char* key : {"settings", "version", "counts", "seconds", "mrays_per_s",
+                          "peak_memory_bytes", "relative_error"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  for (const char* key : {"triangles", "texels", "rays"}) EXPECT_GT(json["counts"][key], 0) << key;
+  EXPECT_GT(json["seconds"]["total"], 0);
+  const image::Image map = lightmap_of(s.path / "b");
+  ASSERT_EQ(map.channels, 4);
+  std::set<float> coverage;
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) coverage.insert(map.at(x, y)[3]);
+  for (const float a : coverage) EXPECT_TRUE(a == 0 || a == 0.5f || a == 1) << a;
+  EXPECT_TRUE(coverage.contains(1));
+}
+
+TEST(BakeOutputs, QuietSaysNothing) {
+  const ScratchFolder s;
+  const CommandResult r =
+      bake(scene_file("furnace-box.glb"), s.path / "b", "--resolution 32 --samples 4 --quiet");
+  EXPECT_EQ(r.code, 0);
+  EXPECT_EQ(r.out + r.err, "");
+}
+
+// A white background of radiance 1 over a plate that sees nothing else: E = pi on its front.
+TEST(BakeOutputs, ALonePlateUnderAWhiteSkyReceivesPi) {
+  const ScratchFolder s;
+  const auto file = s.write("plate.obj", "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n");
+  ASSERT_EQ(
+      bake(file.string(), s.path / "b", "--resolution 16 --samples 8 --background 1,1,1").code, 0);
+  const image::Image map = lightmap_of(s.path / "b");
+  int covered = 0;
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x)
+      if (map.at(x, y)[3] == 1) {
+        EXPECT_NEAR(map.rgb(x, y).x, kPi, 1e-5f);
+        ++covered;
+      }
+  EXPECT_GT(covered, 20);
+}
+
+/// World triangles, each as its nine coordinates rounded to a micrometre, as a multiset.
+std::multiset<std::array<long, 9>> triangles_of(const scene::Scene& scene) {
+  std::multiset<std::array<long, 9>> out;
+  const auto micro = [](float v) { return std::lround(double(v) * 1e6); };
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    for (uint32_t t = 0; t < scene.meshes[scene.instances[i].mesh].triangles.size(); ++t) {
+      const scene::Triangle3 w = scene::world_triangle(scene, i, t);
+      out.insert({micro(w.a.x), micro(w.a.y), micro(w.a.z), micro(w.b.x), micro(w.b.y),
+                  micro(w.b.z), micro(w.c.x), micro(w.c.y), micro(w.c.z)});
+    }
+  return out;
+}
+
+TEST(BakedGlb, ReadsBackWithTheSameTrianglesAndBakesAgain) {
+  for (const char* name : {"cornell-box.glb", "spheres-and-cube.glb"}) {
+    const ScratchFolder s;
+    ASSERT_EQ(bake(scene_file(name), s.path / "b", "--resolution 128 --samples 8").code, 0);
+    const auto original = import::import_scene(scene_file(name));
+    const auto baked = import::import_scene(s.path / "b" / "baked.glb");
+    ASSERT_TRUE(baked) << baked.error().message;
+    EXPECT_EQ(triangles_of(original->scene), triangles_of(baked->scene)) << name;
+    for (const scene::Mesh& mesh : baked->scene.meshes) {
+      ASSERT_EQ(mesh.uv1.size(), mesh.positions.size());
+      for (const Vec2& uv : mesh.uv1) EXPECT_TRUE(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1);
+    }
+    const CommandResult again = bake((s.path / "b" / "baked.glb").string(), s.path / "again",
+                                     "--uv keep --resolution 128 --samples 8");
+    EXPECT_EQ(again.code, 0) << again.err;
+  }
+}
+
+TEST(Render, DrawsABake) {
+  const ScratchFolder s;
+  const std::string box = scene_file("cornell-box.glb");
+  ASSERT_EQ(bake(box, s.path / "b", "--resolution 64 --samples 8").code, 0);
+  for (const char* name : {"x.png", "x.exr"}) {
+    const CommandResult r = luxel("render " + box + " --from " + (s.path / "b").string() + " -o " +
+                                  (s.path / name).string() + " --size 64x48");
+    EXPECT_EQ(r.code, 0) << r.err;
+  }
+  const auto exr = read_file(s.path / "x.exr");
+  const image::Image picture = *image::decode_exr(*exr, "x.exr");
+  EXPECT_EQ(picture.width, 64);
+  double sum = 0;
+  for (const float v : picture.data) sum += double(v);
+  EXPECT_GT(sum / double(picture.data.size()), 0.05);
+  EXPECT_EQ(luxel("render " + box + " --from " + (s.path / "none").string() + " -o x.png").code, 1);
+  EXPECT_EQ(luxel("render " + box + " --from " + (s.path / "b").string() + " -o x.bmp").code, 1);
+  EXPECT_THAT(luxel("render " + box + " --camera none --from " + (s.path / "b").string() + " -o " +
+                    (s.path / "y.png").string())
+                  .err,
+              HasSubstr("--camera none"));
+}
+
+TEST(SameBits, WithAnyNumberOfThreads) {
+  const ScratchFolder s;
+  const std::string options = "--resolution 128 --samples 64 --uv unwrap ";
+  const std::string scene = scene_file("spheres-and-cube.glb");
+  ASSERT_EQ(bake(scene, s.path / "1", options + "--threads 1").code, 0);
+  ASSERT_EQ(bake(scene, s.path / "2", options + "--threads 2").code, 0);
+  EXPECT_EQ(slurp(s.path / "1" / "lightmap.exr"), slurp(s.path / "2" / "lightmap.exr"));
+  EXPECT_EQ(slurp(s.path / "1" / "baked.glb"), slurp(s.path / "2" / "baked.glb"));
+}
+
+/// Sends a signal after `delay` and returns how long the program took to end, and its code.
+std::pair<double, int> interrupt(const std::string& arguments, const char* signal,
+                                 const char* delay) {
+  const auto start = std::chrono::steady_clock::now();
+  const CommandResult r =
+      luxel(arguments, std::string("timeout --preserve-status -s ") + signal + " " + delay);
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), r.code};
+}
+
+TEST(Interrupt, EndsWithinASecondAndLeavesNothing) {
+  for (const char* signal : {"INT", "TERM"}) {
+    const ScratchFolder s;
+    const auto [seconds, code] =
+        interrupt("bake " + scene_file("cornell-box.glb") +
+                      " --resolution 2048 --samples 4096 -o " + (s.path / "b").string(),
+                  signal, "2");
+    EXPECT_EQ(code, 130);
+    // Two seconds of work, one to stop; the rest is for a machine that is busy with other tests.
+    EXPECT_LT(seconds, 2 + 1 + 3);
+    EXPECT_FALSE(std::filesystem::exists(s.path / "b" / "lightmap.exr"));
+    EXPECT_FALSE(std::filesystem::exists(s.path / "b" / "bake.json"));
+  }
+}
+
+}  // namespace
+}  // namespace luxel::testing_support

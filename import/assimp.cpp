@@ -6,9 +6,21 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <map>
+#include <stdexcept>
 
 #include "image/color.h"
 #include "import/assimp_parts.h"
+
+namespace Assimp {
+/// Debian's Assimp is built with its assertions, and a wrong .fbx or .x that meets one would end
+/// the process. The library calls this function through the dynamic linker, which takes ours before
+/// its own; Importer::ReadFile catches what is thrown, and ours is then an error like others.
+void aiAssertViolation(const char* expression, const char* file, int line) {
+  const std::string_view path(file);
+  throw std::runtime_error(fmt::format("Assimp does not understand it ({} at {}:{})", expression,
+                                       path.substr(path.rfind('/') + 1), line));
+}
+}  // namespace Assimp
 
 namespace luxel::import {
 namespace {

@@ -10,6 +10,7 @@
 #include "image/codec.h"
 #include "import/import.h"
 #include "pipeline/memory.h"
+#include "pipeline/output_folder.h"
 #include "pipeline/version.h"
 #include "post/dilate.h"
 #include "post/refill.h"
@@ -135,36 +136,6 @@ nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Prog
           {"warnings", bake.warnings}};
 }
 
-/// The output folder. It is made and tried out before the work; when the work fails and the folder
-/// was not there before, it goes again.
-class OutputFolder {
- public:
-  explicit OutputFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
-  ~OutputFolder() {
-    std::error_code ignored;
-    if (made_ && !kept_) std::filesystem::remove(folder_, ignored);
-  }
-
-  Status prepare() {
-    std::error_code error;
-    made_ = std::filesystem::create_directories(folder_, error);
-    if (error || !std::filesystem::is_directory(folder_, error))
-      return fail(ErrorCode::io, "cannot make the output folder {}: {}", folder_.string(),
-                  error ? error.message() : "a file of this name is in the way");
-    const std::filesystem::path probe = folder_ / ".luxel-can-write";
-    LUXEL_TRY_STATUS(write_file_atomically(probe, {}));
-    std::filesystem::remove(probe, error);
-    return {};
-  }
-  void keep() { kept_ = true; }
-
- private:
-  std::filesystem::path folder_;
-  bool made_ = false, kept_ = false;
-};
-
 }  // namespace
 
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
@@ -184,9 +155,9 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(check(settings));
   OutputFolder folder(settings.output);
-  LUXEL_TRY_STATUS(folder.prepare());
+  LUXEL_TRY_STATUS(folder.try_out());
   LUXEL_TRY(const Bake result, bake_scene(settings, progress));
-  progress.begin("write files", 0);
+  progress.begin(kWriteStage, 0);
   std::vector<OutputFile> files;
   LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(result.lightmap));
   files.push_back({settings.output / "lightmap.exr", std::move(exr)});
@@ -198,6 +169,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   progress.finish();
   nlohmann::json json = report(settings, result, progress);
   files.push_back({settings.output / "bake.json", bytes_of(json.dump(2) + "\n")});
+  LUXEL_TRY_STATUS(folder.make());
   LUXEL_TRY_STATUS(write_files_atomically(files));
   folder.keep();
   return json;

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "atlas/atlas.h"
@@ -14,6 +15,9 @@
 #include "scene/scene.h"
 
 namespace luxel::pipeline {
+
+/// The stage in which files appear. It is short and better not cut off.
+inline constexpr std::string_view kWriteStage = "write files";
 
 /// A finished bake in memory, before anything is written.
 struct Bake {
@@ -29,7 +33,7 @@ struct Bake {
 };
 
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
-/// name in settings.output. Errors: whatever the stages say; settings out of range.
+/// name in or above settings.output. Errors: whatever the stages say; settings out of range.
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress);
 
 /// The whole of `luxel bake`: bake_scene, then lightmap.exr, baked.glb, preview.png and bake.json

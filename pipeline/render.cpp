@@ -5,6 +5,7 @@
 #include "display/tone_map.h"
 #include "image/codec.h"
 #include "import/import.h"
+#include "pipeline/bake.h"
 #include "scene/scene.h"
 #include "trace/ray_tracer.h"
 
@@ -69,6 +70,11 @@ Status check(const RenderSettings& s) {
   const std::string extension = s.output.extension().string();
   if (extension != ".png" && extension != ".exr")
     return fail(ErrorCode::bad_setting, "--output {} is neither .png nor .exr", s.output.string());
+  std::error_code ignored;
+  const std::filesystem::path folder = s.output.parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+    return fail(ErrorCode::bad_setting, "--output {}: there is no folder {}; make it first",
+                s.output.string(), folder.string());
   return {};
 }
 
@@ -96,7 +102,7 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   };
   LUXEL_TRY(const image::Image picture,
             display::draw(scene, tracer, camera, irradiance, params, progress));
-  progress.begin("write files", 0);
+  progress.begin(kWriteStage, 0);
   if (s.output.extension() == ".exr") {
     LUXEL_TRY(const std::vector<std::byte> exr, image::encode_exr(picture));
     LUXEL_TRY_STATUS(write_file_atomically(s.output, exr));

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "pipeline/memory.h"
+#include "pipeline/output_folder.h"
 #include "solve/gather/gather.h"
 
 namespace luxel::pipeline {
@@ -15,21 +16,31 @@ namespace {
 constexpr uint64_t kBytesPerElement = 64, kBytesPerSquareTexel = 20;
 /// A bake with fewer stored hits in memory than this would only wait for the disk.
 constexpr uint64_t kMinHitBytes = 16u << 20;
+/// What the process holds differs from run to run: by this much less than the size that is advised.
+constexpr uint64_t kResidentNoiseMb = 8;
+
+std::string size_text(uint64_t bytes) {
+  return bytes < 1u << 20 ? fmt::format("{} bytes", bytes) : fmt::format("{}M", bytes >> 20);
+}
 
 Result<uint64_t> memory_for_hits(const SolveInput& in, const BakeSettings& settings) {
   const uint64_t side = uint64_t(in.map.resolution);
   const uint64_t needed =
       resident_bytes() + kBytesPerElement * in.elements.size() + kBytesPerSquareTexel * side * side;
-  const uint64_t limit = settings.max_memory_bytes > 0
-                             ? settings.max_memory_bytes
-                             : resident_bytes() + available_bytes() / 5 * 4;
-  if (limit < needed + kMinHitBytes)
+  const uint64_t smallest_mb = ((needed + kMinHitBytes) >> 20) + 1 + kResidentNoiseMb;
+  if (settings.max_memory_bytes == 0) {
+    const uint64_t free = available_bytes() / 5 * 4;
+    if (resident_bytes() + free >= needed + kMinHitBytes) return resident_bytes() + free - needed;
+    return fail(ErrorCode::out_of_memory,
+                "{} x {} texels need {}M of memory, more than is free; lower --resolution", side,
+                side, smallest_mb);
+  }
+  if (settings.max_memory_bytes < needed + kMinHitBytes)
     return fail(
         ErrorCode::out_of_memory,
-        "--max-memory {}M is too small for this scene at {} x {}: the smallest that works is "
-        "{}M",
-        limit >> 20, side, side, ((needed + kMinHitBytes) >> 20) + 1);
-  return limit - needed;
+        "--max-memory {} is too small for this scene at {} x {}: the smallest that works is {}M",
+        size_text(settings.max_memory_bytes), side, side, smallest_mb);
+  return settings.max_memory_bytes - needed;
 }
 
 Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
@@ -41,7 +52,7 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   params.bounces = settings.bounces;
   params.seed = settings.seed;
   params.hit_memory_bytes = hit_memory;
-  params.scratch_folder = settings.output;
+  params.scratch_folder = nearest_folder(settings.output);
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   TexelLight out;

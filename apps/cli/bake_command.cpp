@@ -46,16 +46,18 @@ void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json&
 int run_bake(const BakeOptions& options) {
   const auto settings = settings_from(options);
   if (!settings) return report(settings.error());
-  return run_with_progress(options.common, [&](Progress& progress) {
-    const auto json = pipeline::bake(*settings, progress);
-    if (!json) return report(json.error());
-    print_warnings((*json)["warnings"].get<std::vector<std::string>>(), options.common);
-    if (options.common.json)
-      std::printf("%s\n", json->dump(2).c_str());
-    else if (!options.common.quiet)
-      print_summary(*settings, *json);
-    return int(kDone);
+  nlohmann::json json;
+  const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
+    LUXEL_TRY(json, pipeline::bake(*settings, progress));
+    return {};
   });
+  if (!done) return report(done.error());
+  print_warnings(json["warnings"].get<std::vector<std::string>>(), options.common);
+  if (options.common.json)
+    std::printf("%s\n", json.dump(2).c_str());
+  else if (!options.common.quiet)
+    print_summary(*settings, json);
+  return kDone;
 }
 
 }  // namespace

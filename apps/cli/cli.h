@@ -37,9 +37,9 @@ int report(const Error& error);
 void print_warnings(const std::vector<std::string>& warnings, const Common& common);
 
 /// Runs `work` while a second thread shows its progress on stderr and turns Ctrl-C into a request
-/// to stop. When the work does not stop within a second, the process ends with code 130; no file is
-/// half written then, because files appear whole under their names.
-int run_with_progress(const Common& common, const std::function<int(Progress&)>& work);
+/// to stop. When the work does not stop within a second, the process ends with code 130; nothing is
+/// half written then, because files and folders appear when everything else is done.
+Status run_with_progress(const Common& common, const std::function<Status(Progress&)>& work);
 
 /// A command registers itself in `app` and, when it was asked for, leaves what is to be done.
 using Action = std::function<int()>;

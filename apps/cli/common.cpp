@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "apps/cli/cli.h"
+#include "pipeline/bake.h"
 
 namespace luxel::cli {
 namespace {
@@ -27,15 +28,17 @@ std::string clock_text(double seconds) {
   return s < 60 ? fmt::format("{} s", s) : fmt::format("{}:{:02} min", s / 60, s % 60);
 }
 
-/// Shows stages on stderr: one line that is rewritten on a terminal, else one line per stage.
+/// Shows stages on stderr: one line that is rewritten on a terminal, and a line that stays for each
+/// finished stage.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
 
-  void show(const Progress::Snapshot& now) {
+  void show(const Progress& progress) {
+    const Progress::Snapshot now = progress.snapshot();
     if (quiet_ || now.stage_index < 0) return;
-    if (now.stage_index != last_.stage_index) end_stage();
-    last_ = now;
+    print_finished(progress, size_t(now.stage_index));
+    if (now.stage == "trace rays") rays_ = now.total;
     if (!terminal_) return;
     std::string line = now.stage;
     if (now.total > 0 && now.stage_seconds > 0) {
@@ -50,58 +53,69 @@ class ProgressLine {
     std::fflush(stderr);
   }
 
-  void end_stage() {
-    if (quiet_ || last_.stage_index < 0) return;
-    std::string line = fmt::format("{:<18}{:7.2f} s", last_.stage, last_.stage_seconds);
-    if (last_.stage == "trace rays" && last_.stage_seconds > 0)
-      line += fmt::format("   {:.1f} Mrays/s", double(last_.total) * 1e-6 / last_.stage_seconds);
-    std::fprintf(stderr, "%s%s\n", terminal_ ? "\r\033[K" : "", line.c_str());
-    last_ = {};
-  }
-
-  void catch_up(const Progress& progress) {
-    const auto stages = progress.stages();
-    if (last_.stage_index >= 0 && size_t(last_.stage_index) < stages.size())
-      last_.stage_seconds = stages[size_t(last_.stage_index)].seconds;
-    shown_ = std::max(shown_, last_.stage_index + 1);
+  /// The work has ended: shows the stages it has finished. After an error the last one is not.
+  void end(const Progress& progress, bool succeeded) {
+    if (quiet_) return;
+    const size_t begun = progress.stages().size();
+    print_finished(progress, succeeded || begun == 0 ? begun : begun - 1);
+    if (terminal_) std::fputs("\r\033[K", stderr);
   }
 
  private:
+  void print_finished(const Progress& progress, size_t count) {
+    const std::vector<Stage> stages = progress.stages();
+    for (; printed_ < count; ++printed_) {
+      const Stage& stage = stages[printed_];
+      std::string line = fmt::format("{:<18}{:7.2f} s", stage.name, stage.seconds);
+      if (stage.name == "trace rays" && rays_ > 0 && stage.seconds > 0)
+        line += fmt::format("   {:.1f} Mrays/s", double(rays_) * 1e-6 / stage.seconds);
+      std::fprintf(stderr, "%s%s\n", terminal_ ? "\r\033[K" : "", line.c_str());
+    }
+  }
+
   bool quiet_, terminal_;
-  int shown_ = 0;
-  Progress::Snapshot last_;
+  size_t printed_ = 0;
+  uint64_t rays_ = 0;
 };
 
-/// Waits for Ctrl-C at most a tenth of a second. True when it came.
-bool stop_requested() {
+sigset_t stop_signals() {
   sigset_t stop;
   sigemptyset(&stop);
   sigaddset(&stop, SIGINT);
   sigaddset(&stop, SIGTERM);
+  return stop;
+}
+
+/// Waits for Ctrl-C at most a tenth of a second. True when it came.
+bool stop_requested() {
+  const sigset_t stop = stop_signals();
   const timespec patience{0, 100'000'000};
   return sigtimedwait(&stop, nullptr, &patience) > 0;
 }
 
-void watch(Progress& progress, const std::atomic<bool>& done, bool quiet) {
+/// How the work stands: the worker writes it, the watcher waits for it.
+enum class Work { running, succeeded, failed };
+
+void watch(Progress& progress, const std::atomic<Work>& work, bool quiet) {
   using Clock = std::chrono::steady_clock;
   ProgressLine line(quiet);
   Clock::time_point asked{};
-  while (!done) {
+  while (work == Work::running) {
     if (stop_requested()) {
       if (asked == Clock::time_point{}) asked = Clock::now();
       progress.request_cancel();
     }
-    line.show(progress.snapshot());
+    line.show(progress);
     // Reading a file cannot be asked to stop; writing may finish, so that all files are there.
     const bool late =
-        asked != Clock::time_point{} && Clock::now() - asked > std::chrono::milliseconds(800);
-    if (late && progress.snapshot().stage != "write files") {
-      std::fputs("\nluxel: stopped by the user\n", stderr);
+        asked != Clock::time_point{} && Clock::now() - asked > std::chrono::milliseconds(700);
+    if (late && progress.snapshot().stage != pipeline::kWriteStage) {
+      line.end(progress, false);
+      std::fputs("luxel: stopped by the user\n", stderr);
       ::_exit(kInterrupted);
     }
   }
-  line.catch_up(progress);
-  line.end_stage();
+  line.end(progress, work == Work::succeeded);
 }
 
 }  // namespace
@@ -144,22 +158,24 @@ void print_warnings(const std::vector<std::string>& warnings, const Common& comm
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
-int run_with_progress(const Common& common, const std::function<int(Progress&)>& work) {
+Status run_with_progress(const Common& common, const std::function<Status(Progress&)>& work) {
+  // Only the watcher takes Ctrl-C; the threads that the work starts inherit this mask.
+  const sigset_t stop = stop_signals();
+  pthread_sigmask(SIG_BLOCK, &stop, nullptr);
   Progress progress;
-  std::atomic<bool> done{false};
-  std::thread watcher([&] { watch(progress, done, common.quiet); });
-  int code = kBadInput;
+  std::atomic<Work> state{Work::running};
+  std::thread watcher([&] { watch(progress, state, common.quiet); });
   try {
-    code = work(progress);
+    Status done = work(progress);
+    if (done) progress.finish();
+    state = done ? Work::succeeded : Work::failed;
+    watcher.join();
+    return done;
   } catch (...) {
-    done = true;
+    state = Work::failed;
     watcher.join();
     throw;
   }
-  progress.finish();
-  done = true;
-  watcher.join();
-  return code;
 }
 
 }  // namespace luxel::cli

@@ -1,5 +1,5 @@
 // The `luxel` command: argv in, exit code out. Each subcommand is a file beside this one.
-#include <csignal>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
@@ -8,11 +8,33 @@
 
 namespace {
 
+/// One sentence, and where the options are listed.
+std::string usage_message(const CLI::App* app, const CLI::Error& error) {
+  const std::vector<CLI::App*> chosen = app->get_subcommands();
+  const std::string command = chosen.empty() ? "luxel" : "luxel " + chosen.front()->get_name();
+  std::string text = error.what();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return fmt::format("luxel: {}; '{} --help' lists what there is\n", text, command);
+}
+
+bool is_command(const CLI::App& app, const std::string& name) {
+  const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
+  return std::any_of(commands.begin(), commands.end(),
+                     [&](const CLI::App* command) { return command->get_name() == name; });
+}
+
+/// The first argument when it should be a command and is none.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-' || is_command(app, argv[1])) return {};
+  return argv[1];
+}
+
 int run(int argc, char** argv) {
   using namespace luxel::cli;
   CLI::App app{
       "luxel: diffuse global illumination. A scene in, lightmaps out.\n"
-      "Try: luxel bake SCENE -o FOLDER"};
+      "Try: luxel bake SCENE -o FOLDER",
+      "luxel"};
   app.set_version_flag("--version", std::string("luxel ") + luxel::pipeline::kVersion);
   app.require_subcommand(1);
   Action action;
@@ -24,6 +46,12 @@ int run(int argc, char** argv) {
     std::fputs(app.help().c_str(), stderr);
     return kUsage;
   }
+  if (const std::string name = unknown_command(app, argc, argv); !name.empty()) {
+    std::fprintf(stderr, "luxel: there is no command '%s'; 'luxel --help' lists what there is\n",
+                 name.c_str());
+    return kUsage;
+  }
+  app.failure_message(usage_message);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -36,12 +64,6 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Only the thread that shows progress takes Ctrl-C; every thread inherits this mask.
-  sigset_t stop;
-  sigemptyset(&stop);
-  sigaddset(&stop, SIGINT);
-  sigaddset(&stop, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &stop, nullptr);
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {

@@ -40,19 +40,24 @@ Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
 int run_render(const RenderOptions& options) {
   const auto settings = settings_from(options);
   if (!settings) return report(settings.error());
-  return run_with_progress(options.common, [&](Progress& progress) {
+  pipeline::Rendered rendered;
+  const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     const ThreadLimit threads(options.common.threads);
-    const auto rendered = pipeline::render(*settings, progress);
-    if (!rendered) return report(rendered.error());
-    print_warnings(rendered->warnings, options.common);
-    if (options.common.json)
-      std::printf("%s\n", nlohmann::json{{"image", settings->output.string()},
-                                         {"width", rendered->width},
-                                         {"height", rendered->height}}
-                              .dump(2)
-                              .c_str());
-    return int(kDone);
+    LUXEL_TRY(rendered, pipeline::render(*settings, progress));
+    return {};
   });
+  if (!done) return report(done.error());
+  print_warnings(rendered.warnings, options.common);
+  const std::string image = settings->output.string();
+  if (options.common.json)
+    std::printf(
+        "%s\n",
+        nlohmann::json{{"image", image}, {"width", rendered.width}, {"height", rendered.height}}
+            .dump(2)
+            .c_str());
+  else if (!options.common.quiet)
+    std::fprintf(stderr, "wrote %s\n", image.c_str());
+  return kDone;
 }
 
 }  // namespace

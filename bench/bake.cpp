@@ -4,13 +4,13 @@
 
 #include <chrono>
 
-#include "apps/cli/bench.h"
 #include "atlas/atlas.h"
 #include "base/parallel.h"
+#include "bench/bench.h"
 #include "import/import.h"
 #include "pipeline/bake.h"
 
-namespace luxel::cli {
+namespace luxel::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -61,8 +61,8 @@ Result<nlohmann::json> bake_in_child(const pipeline::BakeSettings& settings) {
 
 }  // namespace
 
-Result<Table> bench_atlas(const std::filesystem::path& shared, const Common& common) {
-  const ThreadLimit limit(common.threads);
+Result<Table> measure_atlas(const std::filesystem::path& shared, int threads) {
+  const ThreadLimit limit(threads);
   Table table{"atlas",
               thread_count(),
               {"scene", "triangles", "atlas", "seconds", "charts", "utilisation", "mean L2 stretch",
@@ -108,10 +108,10 @@ Result<Table> bench_atlas(const std::filesystem::path& shared, const Common& com
   return table;
 }
 
-Result<Table> bench_memory(const std::filesystem::path& shared, const Common& common) {
+Result<Table> measure_memory(const std::filesystem::path& shared, int threads) {
   Table table{
       "memory",
-      common.threads == 0 ? thread_count() : common.threads,
+      threads == 0 ? thread_count() : threads,
       {"--max-memory", "peak memory, MiB", "seconds", "texels", "hits in the temporary file, MiB"},
       {},
       {},
@@ -129,7 +129,7 @@ Result<Table> bench_memory(const std::filesystem::path& shared, const Common& co
     settings.output = folder;
     settings.resolution = 2048;
     settings.samples = 64;
-    settings.threads = common.threads;
+    settings.threads = threads;
     if (*cap) {
       LUXEL_TRY(settings.max_memory_bytes, pipeline::parse_size(cap));
     }
@@ -150,4 +150,4 @@ Result<Table> bench_memory(const std::filesystem::path& shared, const Common& co
   return table;
 }
 
-}  // namespace luxel::cli
+}  // namespace luxel::bench

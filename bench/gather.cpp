@@ -5,10 +5,10 @@
 #include <atomic>
 #include <chrono>
 
-#include "apps/cli/bench.h"
 #include "atlas/atlas.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "bench/bench.h"
 #include "import/import.h"
 #include "pipeline/settings.h"
 #include "scene/procedural.h"
@@ -17,7 +17,7 @@
 #include "transport/elements.h"
 #include "transport/lights.h"
 
-namespace luxel::cli {
+namespace luxel::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -154,8 +154,8 @@ Result<scene::Scene> load(const NamedScene& named) {
 
 }  // namespace
 
-Result<Table> bench_rays(const std::filesystem::path& shared, const Common& common) {
-  const ThreadLimit limit(common.threads);
+Result<Table> measure_rays(const std::filesystem::path& shared, int threads) {
+  const ThreadLimit limit(threads);
   constexpr int kSamples = 64, kRounds = 5;
   Table table{"rays",
               thread_count(),
@@ -197,8 +197,8 @@ Result<Table> bench_rays(const std::filesystem::path& shared, const Common& comm
   return table;
 }
 
-Result<Table> bench_maps(const std::filesystem::path&, const Common& common) {
-  const ThreadLimit limit(common.threads);
+Result<Table> measure_maps(const std::filesystem::path&, int threads) {
+  const ThreadLimit limit(threads);
   // [Moreno05, table 5.1]: solution time on a GeForce 6800, 200 direct and 800 indirect samples.
   constexpr std::array<std::pair<int, double>, 4> kPaper{
       {{64, 8.276}, {128, 15.865}, {256, 37.971}, {512, 144.815}}};
@@ -230,7 +230,7 @@ Result<Table> bench_maps(const std::filesystem::path&, const Common& common) {
   return table;
 }
 
-Result<Table> bench_threads(const std::filesystem::path& shared, const Common&) {
+Result<Table> measure_threads(const std::filesystem::path& shared, int) {
   Table table{"threads", 2,  {"scene", "1 thread, s", "2 threads, s", "speed-up (median of 5)"},
               {},        {}, nlohmann::json::array()};
   std::vector<NamedScene> scenes{{"Cornell box", {}},
@@ -266,4 +266,4 @@ Result<Table> bench_threads(const std::filesystem::path& shared, const Common&) 
   return table;
 }
 
-}  // namespace luxel::cli
+}  // namespace luxel::bench

@@ -1,0 +1,50 @@
+// The benchmarks behind `luxel bench`: every speed and memory figure in docs/ comes from here.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+
+namespace luxel::bench {
+
+/// What a benchmark prints. A row whose scene is not on this machine is left out and noted.
+struct Table {
+  std::string name;
+  int threads = 0;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> notes;
+  nlohmann::json json;
+};
+
+std::string machine_name();
+std::string markdown(const Table& table);
+
+/// `shared` is the folder with scenes/; `threads` as everywhere, 0 = all.
+using BenchFunction = Result<Table> (*)(const std::filesystem::path& shared, int threads);
+
+/// Gather's rays per second against a bare loop of rtcIntersect1 over the same rays.
+Result<Table> measure_rays(const std::filesystem::path& shared, int threads);
+/// The Cornell box of [Moreno05, table 5.1] at four resolutions.
+Result<Table> measure_maps(const std::filesystem::path& shared, int threads);
+/// Charts, packing and texels of the shared scenes.
+Result<Table> measure_atlas(const std::filesystem::path& shared, int threads);
+/// Peak memory of a 2048 x 2048 bake of the largest scene, with and without --max-memory.
+Result<Table> measure_memory(const std::filesystem::path& shared, int threads);
+/// Gather with one and with two threads.
+Result<Table> measure_threads(const std::filesystem::path& shared, int threads);
+
+struct Bench {
+  std::string_view name;
+  BenchFunction run;
+};
+inline constexpr std::array kBenches{Bench{"rays", measure_rays}, Bench{"maps", measure_maps},
+                                     Bench{"atlas", measure_atlas}, Bench{"memory", measure_memory},
+                                     Bench{"threads", measure_threads}};
+
+}  // namespace luxel::bench

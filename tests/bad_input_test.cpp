@@ -1,6 +1,7 @@
 // Wrong files and wrong settings: one clear sentence, the right exit code, nothing written.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/command.h"
 
@@ -31,6 +32,9 @@ void expect_refused(const std::string& scene_and_options, int code, const std::s
   const CommandResult r = luxel("bake " + scene_and_options + " -o " + output.string());
   EXPECT_EQ(r.code, code) << scene_and_options << "\n" << r.err;
   EXPECT_THAT(r.err, HasSubstr(words)) << scene_and_options;
+  // The sentence is the last line, after those of the stages.
+  const size_t line = r.err.rfind('\n', r.err.size() - 2);
+  EXPECT_EQ(r.err.find("luxel: "), line == std::string::npos ? 0 : line + 1) << r.err;
   EXPECT_THAT(r.out, "") << scene_and_options;
   EXPECT_FALSE(std::filesystem::exists(output)) << scene_and_options;
 }
@@ -45,6 +49,36 @@ TEST(BadFiles, AreRefusedWithASentence) {
   const std::string whole = slurp(scene_file("cornell-box.glb"));
   expect_refused(s.write("cut.glb", whole.substr(0, whole.size() / 2)).string(), 1, "cut.glb");
   expect_refused(s.write("head.glb", whole.substr(0, 9)).string(), 1, "head.glb");
+}
+
+/// What stands before a command that root's rights must not help. As root, runs it as nobody.
+std::string without_rights() {
+  return ::geteuid() == 0 ? "setpriv --reuid 65534 --clear-groups" : "";
+}
+bool can_run_without_rights() { return luxel("--version", without_rights()).code == 0; }
+
+TEST(BadFiles, ThatMayNotBeReadAreRefused) {
+  if (!can_run_without_rights()) GTEST_SKIP() << "nobody else may run the program here";
+  const ScratchFolder s;
+  namespace fs = std::filesystem;
+  fs::permissions(s.path, fs::perms(0755));
+  const auto file = s.write("secret.glb", "x");
+  fs::permissions(file, fs::perms::none);
+  const CommandResult r = luxel("info " + file.string(), without_rights());
+  EXPECT_EQ(r.code, 1);
+  EXPECT_EQ(r.err, "luxel: cannot read " + file.string() + ": Permission denied\n");
+}
+
+// Debian's Assimp is built with its assertions: without care, a wrong file ends the process.
+TEST(BadFiles, OfOtherFormatsDoNotAbort) {
+  const ScratchFolder s;
+  for (const char* name : {"a.fbx", "a.dae", "a.x", "a.3ds", "a.blend", "a.stl", "a.lwo", "a.ase"})
+    for (const char* content :
+         {"hello", "<COLLADA/>", "xof 0303txt 0032\nMesh { 3; 0;0;0;,", "solid\nfacet\nvertex 1"}) {
+      const CommandResult r = luxel("info " + s.write(name, content).string());
+      EXPECT_EQ(r.code, 1) << name << " " << content << ": " << r.err;
+      EXPECT_THAT(r.err, HasSubstr(name));
+    }
 }
 
 TEST(BadFiles, WrongContentIsNamed) {
@@ -80,10 +114,33 @@ TEST(BadFiles, MissingAndCorruptTexturesAreNamed) {
   expect_refused(with_image("corrupt.png"), 1, "corrupt.png");
 }
 
-TEST(BadFiles, ATriangleWithoutAreaIsDroppedAndCounted) {
+TEST(BadFiles, OnlyTrianglesWithoutAreaAreNothing) {
   const ScratchFolder s;
   const auto file = s.write("flat.gltf", gltf_with("AAABAAIA", "AAABAAEA"));  // indices 0 1 1
   expect_refused(file.string(), 1, "triangle");
+}
+
+TEST(Repairs, ATriangleWithoutAreaIsDroppedAndCounted) {
+  const ScratchFolder s;
+  const auto file = s.write("some.obj", "v 0 0 0\nv 0 0 1\nv 1 0 1\nf 1 2 3\nf 1 2 2\nf 3 3 3\n");
+  const CommandResult r = luxel("bake " + file.string() + " --resolution 16 --samples 4 -o " +
+                                (s.path / "baked").string() + " --json");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.err, ::testing::ContainsRegex("warning: .*some.obj: 2 zero-area triangles dropped"))
+      << r.err;
+  EXPECT_THAT(r.out, HasSubstr("\"triangles\": 1"));
+}
+
+TEST(Repairs, AReflectanceOver99PercentIsClamped) {
+  const ScratchFolder s;
+  s.write("white.mtl", "newmtl snow\nKd 1 1 1\n");
+  const auto file =
+      s.write("white.obj", "mtllib white.mtl\nv 0 0 0\nv 0 0 1\nv 1 0 1\nusemtl snow\nf 1 2 3\n");
+  const CommandResult r = luxel("bake " + file.string() + " --resolution 16 --samples 4 -o " +
+                                (s.path / "baked").string());
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.err, ::testing::ContainsRegex("warning: .*white.obj: .*0.99 clamped.*snow"))
+      << r.err;
 }
 
 TEST(NoLight, IsSaidAndAWhiteBackgroundIsUsed) {
@@ -102,6 +159,12 @@ TEST(BadSettings, NameTheOptionAndTheValue) {
                                       {"--resolution 100000", "--resolution 100000"},
                                       {"--samples -5", "--samples -5"},
                                       {"--samples 0", "--samples 0"},
+                                      {"--resolution -5", "--resolution -5"},
+                                      {"--samples 99999999", "--samples 99999999"},
+                                      {"--bounces x", "'x'"},
+                                      {"--sun 10,95,1", "'10,95,1'"},
+                                      {"--max-memory 0", "'0'"},
+                                      {"--solver hemicube", "--solver hemicube"},
                                       {"--direct-samples 0", "--direct-samples 0"},
                                       {"--threads -1", "--threads -1"},
                                       {"--bounces -1", "--bounces '-1'"},
@@ -117,8 +180,27 @@ TEST(BadSettings, NameTheOptionAndTheValue) {
     expect_refused(box + " " + option, 1, words);
 }
 
-TEST(BadSettings, TooLittleMemorySaysHowMuchWorks) {
-  expect_refused(scene_file("cornell-box.glb") + " --max-memory 1M", 3, "smallest that works");
+/// What stands behind "that works is " in an error.
+std::string advice(const std::string& options) {
+  const ScratchFolder s;
+  const CommandResult r = luxel("bake " + options + " -o " + (s.path / "baked").string());
+  const std::string words = "that works is ";
+  const size_t at = r.err.find(words);
+  EXPECT_NE(at, std::string::npos) << r.err;
+  if (at == std::string::npos) return {};
+  return r.err.substr(at + words.size(), r.err.find('\n', at) - at - words.size());
+}
+
+TEST(BadSettings, AdviceWorks) {
+  const std::string box = scene_file("cornell-box.glb") + " --samples 4 ";
+  expect_refused(box + "--max-memory 10", 3, "--max-memory 10 bytes");
+  const ScratchFolder s;
+  const std::string out = " -o " + (s.path / "baked").string();
+  const std::string side = advice(box + "--resolution 2");
+  EXPECT_EQ(luxel("bake " + box + "--resolution " + side + out).code, 0) << side;
+  const std::string memory = advice(box + "--resolution 64 --max-memory 1M");
+  EXPECT_EQ(luxel("bake " + box + "--resolution 64 --max-memory " + memory + out).code, 0)
+      << memory;
 }
 
 TEST(Usage, IsWrongWithCodeTwo) {
@@ -126,6 +208,9 @@ TEST(Usage, IsWrongWithCodeTwo) {
   for (const char* arguments : {"", "bake", "paint x", "bake --frobnicate x -o y", "bake x",
                                 "bake x -o y --resolution abc", "render x -o y.png"})
     EXPECT_EQ(luxel(arguments).code, 2) << arguments;
+  EXPECT_THAT(luxel("paint x").err, HasSubstr("no command 'paint'"));
+  EXPECT_THAT(luxel("bake " + box + " -o y --frobnicate").err,
+              HasSubstr("--frobnicate; 'luxel bake --help'"));
   EXPECT_EQ(luxel("--help").code, 0);
   EXPECT_EQ(luxel("bake --help").code, 0);
   EXPECT_THAT(luxel("--version").out, HasSubstr("luxel"));
@@ -142,6 +227,23 @@ TEST(OutputFolder, ThatCannotBeMadeIsRefused) {
     EXPECT_THAT(r.err, HasSubstr("output folder")) << folder;
   }
   EXPECT_EQ(slurp(file), "text");
+}
+
+TEST(OutputFolder, ThatMayNotBeWrittenIsRefused) {
+  if (!can_run_without_rights()) GTEST_SKIP() << "nobody else may run the program here";
+  const ScratchFolder s;
+  const std::string triangle = s.write("one.gltf", gltf_with()).string();
+  namespace fs = std::filesystem;
+  fs::create_directory(s.path / "locked");
+  fs::permissions(s.path / "locked", fs::perms(0555));
+  fs::permissions(s.path, fs::perms(0755));
+  for (const char* folder : {"locked", "locked/new/folder"}) {
+    const CommandResult r =
+        luxel("bake " + triangle + " -o " + (s.path / folder).string(), without_rights());
+    EXPECT_EQ(r.code, 1) << folder;
+    EXPECT_THAT(r.err, HasSubstr("output folder " + (s.path / folder).string())) << folder;
+    EXPECT_THAT(r.err, HasSubstr("Permission denied")) << folder;
+  }
 }
 
 // A file system of 64 KiB: the files do not fit, none of them stays.

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -52,6 +53,15 @@ inline CommandResult luxel(const std::string& arguments, const std::string& befo
       std::system((before + " " LUXEL_BINARY " " + arguments + " >" + out + " 2>" + err).c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out), slurp(err)};
 }
+
+inline std::set<std::string> files_in(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+inline const std::set<std::string> kBakeFiles{"lightmap.exr", "baked.glb", "preview.png",
+                                              "bake.json"};
 
 inline std::string scene_file(const std::string& name) {
   return (std::filesystem::path(LUXEL_SOURCE_DIR) / "scenes" / name).string();

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -27,20 +26,12 @@ image::Image lightmap_of(const std::filesystem::path& folder) {
   return *image::decode_exr(*bytes, "lightmap.exr");
 }
 
-std::set<std::string> files_in(const std::filesystem::path& folder) {
-  std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    names.insert(entry.path().filename().string());
-  return names;
-}
-
 TEST(BakeOutputs, AreAllThereAndWhatTheContractSays) {
   const ScratchFolder s;
   const CommandResult r =
       bake(scene_file("cornell-box.glb"), s.path / "b", "--resolution 64 --samples 16 --json");
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_EQ(files_in(s.path / "b"),
-            (std::set<std::string>{"lightmap.exr", "baked.glb", "preview.png", "bake.json"}));
+  EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
   const auto json = nlohmann::json::parse(r.out);
   EXPECT_EQ(json, nlohmann::json::parse(slurp(s.path / "b" / "bake.json")));
   for (const char* key : {"settings", "version", "counts", "seconds", "mrays_per_s",
@@ -55,6 +46,29 @@ TEST(BakeOutputs, AreAllThereAndWhatTheContractSays) {
     for (int x = 0; x < map.width; ++x) coverage.insert(map.at(x, y)[3]);
   for (const float a : coverage) EXPECT_TRUE(a == 0 || a == 0.5f || a == 1) << a;
   EXPECT_TRUE(coverage.contains(1));
+}
+
+TEST(BakeOutputs, AStageIsALineWhenNobodyWatches) {
+  const ScratchFolder s;
+  const CommandResult r =
+      bake(scene_file("cornell-box.glb"), s.path / "b", "--resolution 32 --samples 4");
+  ASSERT_EQ(r.code, 0);
+  EXPECT_EQ(r.out, "");
+  for (const char* stage : {"import", "packing", "direct light", "trace rays", "bounces", "draw"})
+    EXPECT_THAT(r.err, ::testing::ContainsRegex(std::string(stage) + " +[0-9.]+ s")) << stage;
+  for (const std::string& name : kBakeFiles)
+    EXPECT_THAT(r.err, HasSubstr("wrote " + (s.path / "b" / name).string()));
+  EXPECT_EQ(r.err.find('\r'), std::string::npos);
+  EXPECT_EQ(r.err.find('\033'), std::string::npos);
+}
+
+TEST(BakeOutputs, AreReplacedByTheNextBake) {
+  const ScratchFolder s;
+  const std::string box = scene_file("cornell-box.glb");
+  ASSERT_EQ(bake(box, s.path / "b", "--resolution 32 --samples 4").code, 0);
+  ASSERT_EQ(bake(box, s.path / "b", "--resolution 64 --samples 4").code, 0);
+  EXPECT_EQ(lightmap_of(s.path / "b").width, 64);
+  EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
 }
 
 TEST(BakeOutputs, QuietSaysNothing) {
@@ -146,28 +160,21 @@ TEST(SameBits, WithAnyNumberOfThreads) {
   EXPECT_EQ(slurp(s.path / "1" / "baked.glb"), slurp(s.path / "2" / "baked.glb"));
 }
 
-/// Sends a signal after `delay` and returns how long the program took to end, and its code.
-std::pair<double, int> interrupt(const std::string& arguments, const char* signal,
-                                 const char* delay) {
-  const auto start = std::chrono::steady_clock::now();
-  const CommandResult r =
-      luxel(arguments, std::string("timeout --preserve-status -s ") + signal + " " + delay);
-  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), r.code};
-}
-
-TEST(Interrupt, EndsWithinASecondAndLeavesNothing) {
-  for (const char* signal : {"INT", "TERM"}) {
-    const ScratchFolder s;
-    const auto [seconds, code] =
-        interrupt("bake " + scene_file("cornell-box.glb") +
-                      " --resolution 2048 --samples 4096 -o " + (s.path / "b").string(),
-                  signal, "2");
-    EXPECT_EQ(code, 130);
-    // Two seconds of work, one to stop; the rest is for a machine that is busy with other tests.
-    EXPECT_LT(seconds, 2 + 1 + 3);
-    EXPECT_FALSE(std::filesystem::exists(s.path / "b" / "lightmap.exr"));
-    EXPECT_FALSE(std::filesystem::exists(s.path / "b" / "bake.json"));
-  }
+// At the smallest memory that is advised, hits go to the disk.
+TEST(SameBitsSlow, WithHitsOnTheDisk) {
+  const ScratchFolder s;
+  const std::string options = "--resolution 256 --samples 256 ";
+  const std::string scene = scene_file("cornell-box.glb");
+  const CommandResult refused = bake(scene, s.path / "none", options + "--max-memory 1M");
+  const size_t at = refused.err.find("that works is ");
+  ASSERT_NE(at, std::string::npos) << refused.err;
+  const std::string least = refused.err.substr(at + 14, refused.err.find('\n', at) - at - 14);
+  ASSERT_EQ(bake(scene, s.path / "memory", options).code, 0);
+  ASSERT_EQ(bake(scene, s.path / "disk", options + "--max-memory " + least).code, 0) << least;
+  const auto json = nlohmann::json::parse(slurp(s.path / "disk" / "bake.json"));
+  EXPECT_GT(json["scratch_bytes"], 1 << 20) << least;
+  EXPECT_EQ(slurp(s.path / "memory" / "lightmap.exr"), slurp(s.path / "disk" / "lightmap.exr"));
+  EXPECT_EQ(files_in(s.path), (std::set<std::string>{"memory", "disk"}));
 }
 
 }  // namespace

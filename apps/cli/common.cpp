@@ -10,6 +10,8 @@
 namespace luxel::cli {
 namespace {
 
+constexpr const char* kStopped = "stopped by the user";
+
 int exit_code(ErrorCode code) {
   switch (code) {
     case ErrorCode::out_of_memory:
@@ -111,7 +113,7 @@ void watch(Progress& progress, const std::atomic<Work>& work, bool quiet) {
         asked != Clock::time_point{} && Clock::now() - asked > std::chrono::milliseconds(700);
     if (late && progress.snapshot().stage != pipeline::kWriteStage) {
       line.end(progress, false);
-      std::fputs("luxel: stopped by the user\n", stderr);
+      std::fprintf(stderr, "luxel: %s\n", kStopped);
       ::_exit(kInterrupted);
     }
   }
@@ -148,7 +150,9 @@ Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text) {
 }
 
 int report(const Error& error) {
-  std::fprintf(stderr, "luxel: %s\n", error.message.c_str());
+  // Whichever stage was stopped: the user knows why.
+  const bool stopped = error.code == ErrorCode::cancelled;
+  std::fprintf(stderr, "luxel: %s\n", stopped ? kStopped : error.message.c_str());
   return exit_code(error.code);
 }
 
@@ -165,15 +169,18 @@ Status run_with_progress(const Common& common, const std::function<Status(Progre
   Progress progress;
   std::atomic<Work> state{Work::running};
   std::thread watcher([&] { watch(progress, state, common.quiet); });
+  const auto end = [&](Work how) {
+    state = how;
+    pthread_kill(watcher.native_handle(), SIGTERM);  // so that it looks at once
+    watcher.join();
+  };
   try {
     Status done = work(progress);
     if (done) progress.finish();
-    state = done ? Work::succeeded : Work::failed;
-    watcher.join();
+    end(done ? Work::succeeded : Work::failed);
     return done;
   } catch (...) {
-    state = Work::failed;
-    watcher.join();
+    end(Work::failed);
     throw;
   }
 }

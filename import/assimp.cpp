@@ -186,6 +186,12 @@ void add_cameras(const aiScene& in, const NodeTransforms& transforms, scene::Sce
   }
 }
 
+/// Assimp's readers of its own dump and of X3D trust every size in the file: a damaged one ends the
+/// process.
+bool is_trusting(std::string_view extension) {
+  return extension == ".assbin" || extension == ".x3d" || extension == ".x3db";
+}
+
 std::vector<std::string> known_extensions() {
   Assimp::Importer importer;
   aiString list;  // "*.3d;*.3ds;..."
@@ -197,6 +203,7 @@ std::vector<std::string> known_extensions() {
     if (end > at + 1) extensions.push_back(text.substr(at + 1, end - at - 1));
     at = end + 1;
   }
+  std::erase_if(extensions, is_trusting);
   std::sort(extensions.begin(), extensions.end());
   extensions.erase(std::unique(extensions.begin(), extensions.end()), extensions.end());
   return extensions;

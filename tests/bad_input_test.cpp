@@ -72,13 +72,23 @@ TEST(BadFiles, ThatMayNotBeReadAreRefused) {
 // Debian's Assimp is built with its assertions: without care, a wrong file ends the process.
 TEST(BadFiles, OfOtherFormatsDoNotAbort) {
   const ScratchFolder s;
-  for (const char* name : {"a.fbx", "a.dae", "a.x", "a.3ds", "a.blend", "a.stl", "a.lwo", "a.ase"})
+  for (const char* name : {"a.fbx", "a.dae", "a.x", "a.3ds", "a.blend", "a.stl", "a.x3d"})
     for (const char* content :
          {"hello", "<COLLADA/>", "xof 0303txt 0032\nMesh { 3; 0;0;0;,", "solid\nfacet\nvertex 1"}) {
       const CommandResult r = luxel("info " + s.write(name, content).string());
       EXPECT_EQ(r.code, 1) << name << " " << content << ": " << r.err;
       EXPECT_THAT(r.err, HasSubstr(name));
     }
+}
+
+TEST(BadFiles, AnAssertionOfAssimpIsAnError) {
+  const ScratchFolder s;
+  const auto file = s.write("faceless.ply",
+                            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                            "property float y\nproperty float z\nelement face 1\n"
+                            "property list uchar int vertex_indices\nend_header\n"
+                            "0 0 0\n1 0 0\n0 1 0\n0\n");
+  expect_refused(file.string(), 1, "faceless.ply");
 }
 
 TEST(BadFiles, WrongContentIsNamed) {

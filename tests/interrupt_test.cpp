@@ -58,7 +58,9 @@ void expect_stopped_cleanly(double seconds, int signal, const std::string& scene
   const std::string what = scene + " after " + std::to_string(seconds) + " s: " + stopped.err;
   ASSERT_TRUE(WIFEXITED(stopped.status)) << what;
   EXPECT_EQ(WEXITSTATUS(stopped.status), 130) << what;
-  EXPECT_LT(stopped.seconds_to_end, 1.0) << what;
+  // The program gives itself 0.8 s and ends then, whatever it does; the rest is for a machine whose
+  // cores are busy with other tests, and for the sanitizers.
+  EXPECT_LT(stopped.seconds_to_end, 2.5) << what;
   EXPECT_THAT(stopped.err, HasSubstr("luxel: stopped by the user\n"));
   EXPECT_TRUE(std::filesystem::is_empty(scratch.path)) << what;
 }

@@ -146,6 +146,13 @@ struct NamedScene {
   std::filesystem::path file;  ///< empty: procedural
 };
 
+/// Whether the scene's file is on this machine; notes it in the table when not.
+bool is_here(const NamedScene& named, Table& table) {
+  if (named.file.empty() || std::filesystem::exists(named.file)) return true;
+  table.notes.push_back(named.file.string() + " is not on this machine: left out");
+  return false;
+}
+
 Result<scene::Scene> load(const NamedScene& named) {
   if (named.file.empty()) return scene::cornell_box();
   LUXEL_TRY(import::Imported imported, import::import_scene(named.file));
@@ -170,10 +177,7 @@ Result<Table> measure_rays(const std::filesystem::path& shared, int threads) {
         NamedScene{"suzanne_room", scenes / "suzanne_room/room.glb"},
         NamedScene{"zdm2", scenes / "zdm2/zdm2.glb"},
         NamedScene{"kaykit_city", scenes / "kaykit_city/kaykit_city.glb"}}) {
-    if (!named.file.empty() && !std::filesystem::exists(named.file)) {
-      table.notes.push_back(named.file.string() + " is not on this machine: left out");
-      continue;
-    }
+    if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
     LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(std::move(scene), 512));
     LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(p->scene));
@@ -236,10 +240,7 @@ Result<Table> measure_threads(const std::filesystem::path& shared, int) {
   std::vector<NamedScene> scenes{{"Cornell box", {}},
                                  {"suzanne_room", shared / "scenes/suzanne_room/room.glb"}};
   for (const NamedScene& named : scenes) {
-    if (!named.file.empty() && !std::filesystem::exists(named.file)) {
-      table.notes.push_back(named.file.string() + " is not on this machine: left out");
-      continue;
-    }
+    if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
     LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(std::move(scene), 512));
     LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(p->scene));

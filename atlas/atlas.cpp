@@ -115,7 +115,6 @@ Error too_small(const scene::Scene& scene, const Faces& faces,
 }
 
 Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progress& progress) {
-  progress.begin("charts", 1);
   const Faces faces = make_faces(scene);
   const std::vector<ChartFaces> groups =
       grow_charts(faces, double(params.max_chart_angle_rad), progress);
@@ -132,8 +131,8 @@ Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progr
 
 Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, Progress& progress) {
   LUXEL_TRY_STATUS(check_params(params));
+  progress.begin("charts", 1);
   if (params.uv != UvMode::unwrap) {
-    progress.begin("charts", 1);
     Result<Atlas> kept = keep_uv1(scene, params.resolution, progress);
     if (kept || params.uv == UvMode::keep || kept.error().code == ErrorCode::cancelled) return kept;
   }

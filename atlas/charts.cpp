@@ -15,7 +15,7 @@ namespace {
 constexpr double kFlatAngle = 0.01;    ///< faces this close to a patch's first face are coplanar
 constexpr double kCreaseAngle = 0.75;  ///< light changes at a sharper edge: no chart crosses it
 constexpr double kOutlineWeight =
-    0.1;  ///< of a round outline against flatness: ragged charts pack badly
+    1;  ///< of a round outline against flatness: ragged charts pack badly and have long seams
 
 /// A size or cost in steps of one percent, so that symmetric candidates compare equal whatever the
 /// unit of length did to their last digits. What is as good as nothing is one step, too.

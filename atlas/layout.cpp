@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "atlas/directions.h"
 #include "base/check.h"
 #include "base/parallel.h"
 
@@ -11,45 +12,46 @@ namespace {
 
 using Corners = std::vector<std::array<Dvec2, 3>>;
 
-double total_area(const std::vector<FlatChart>& charts) {
-  double area = 0;
-  for (const FlatChart& c : charts)
-    for (const auto& t : c.corners) area += 0.5 * std::abs(cross(t[1] - t[0], t[2] - t[0]));
-  return area;
-}
-
 /// All coordinates up to the resolution have this unit in a float: sums of chart corners and chart
 /// places are exact, and so are the products in cover.cpp.
 double grid_unit(int resolution) {
   return std::ldexp(1.0, int(std::bit_width(unsigned(resolution))) - 23);
 }
 
+/// What could be placed at one density: corners and masks per chart and direction.
 struct Attempt {
-  std::vector<Corners> corners;
-  std::vector<Mask> masks;
+  std::vector<std::vector<Corners>> corners;
+  std::vector<Directions> masks;
 };
 
-Attempt make_attempt(const std::vector<FlatChart>& charts, double density, int resolution) {
+Attempt make_attempt(const std::vector<TurnedChart>& charts, double density, int resolution) {
   Attempt a;
   a.corners.resize(charts.size());
   a.masks.resize(charts.size());
   parallel_for(charts.size(), 32, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c) {
-      a.corners[c] = texel_corners(charts[c], density, resolution);
-      a.masks[c] = make_mask(a.corners[c]);
-    }
+    for (size_t c = begin; c < end; ++c)
+      for (const FlatChart& chart : charts[c]) {
+        // Only upright is a chart shortened to fit the square.
+        const bool fits = std::max(chart.size.x, chart.size.y) * density < resolution - 1;
+        if (!a.masks[c].empty() && !fits) continue;
+        a.corners[c].push_back(texel_corners(chart, density, resolution));
+        a.masks[c].push_back(all_turns(make_mask(a.corners[c].back())));
+      }
   });
   return a;
 }
 
 Layout place_charts(Attempt attempt, const Packing& packing, int resolution, double density) {
-  Layout layout{resolution, density, std::move(attempt.corners), {}};
+  Layout layout{resolution, density, {}, {}};
+  for (size_t c = 0; c < attempt.corners.size(); ++c)
+    layout.local.push_back(std::move(attempt.corners[c][size_t(packing.places[c].direction)]));
   layout.texels = layout.local;
   parallel_for(layout.texels.size(), 64, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) {
       const Place place = packing.places[c];
       const Dvec2 corner{double(place.x), double(place.y)};
-      double width = attempt.masks[c].width, height = attempt.masks[c].height;
+      const Mask& mask = attempt.masks[c][size_t(place.direction)].front();
+      double width = mask.width, height = mask.height;
       for (int turn = 0; turn < place.turns; ++turn) {
         for (auto& t : layout.texels[c])
           for (Dvec2& p : t) p = {p.y, width - p.x};
@@ -62,10 +64,22 @@ Layout place_charts(Attempt attempt, const Packing& packing, int resolution, dou
   return layout;
 }
 
-uint64_t mask_texels(const std::vector<Mask>& masks) {
+uint64_t mask_texels(const std::vector<Directions>& masks) {
   uint64_t n = 0;
-  for (const Mask& m : masks) n += m.texels;
+  for (const Directions& m : masks) n += m.front().front().texels;
   return n;
+}
+
+constexpr size_t kFewCharts = 2048;  ///< with which packing is quick, and a matter of luck
+
+/// With few charts it is luck which order packs denser: when one nearly fits, the other may.
+Packing pack_in_either_order(const std::vector<Directions>& masks, int side, int gutter,
+                             const Progress& progress) {
+  constexpr double kNearly = 0.85;
+  Packing packing = pack_masks(masks, side, gutter, Order::longest_side_first, progress);
+  if (packing.placed == 1 || packing.placed < kNearly || masks.size() > kFewCharts) return packing;
+  Packing other = pack_masks(masks, side, gutter, Order::largest_outline_first, progress);
+  return other.placed > packing.placed ? other : packing;
 }
 
 tl::unexpected<Error> cancelled() { return fail(ErrorCode::cancelled, "cancelled"); }
@@ -100,17 +114,19 @@ Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolu
   if (!holds_charts(resolution, charts.size(), gutter))
     return fail(ErrorCode::bad_setting, "resolution {}: too small for {} charts", resolution,
                 charts.size());
-  const double side_m = std::sqrt(total_area(charts));
+  const std::vector<TurnedChart> turned = directions_of(charts);
+  const double side_m = std::sqrt(flat_area(charts));
+  const double close_enough = charts.size() <= kFewCharts ? 1.006 : 1.012;
   double low = 0, high = INFINITY;  // densities that fit, and that do not
   double density = first_guess > 0 ? first_guess : 0.85 * resolution / side_m;
   Layout best;
   for (int round = 0; round < 60; ++round) {
     if (progress.cancelled()) return cancelled();
-    Attempt attempt = make_attempt(charts, density, resolution);
+    Attempt attempt = make_attempt(turned, density, resolution);
     const double fill = double(mask_texels(attempt.masks)) / (double(resolution) * resolution);
     Packing packing;
     if (fill <= 1)
-      packing = pack_masks(attempt.masks, resolution, gutter, progress);
+      packing = pack_in_either_order(attempt.masks, resolution, gutter, progress);
     else
       packing.placed = 0.9 / fill;
     double next;
@@ -127,7 +143,7 @@ Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolu
       const double most = round < 4 ? 0.985 : round < 8 ? 0.85 : 0.5;
       next = density * std::clamp(std::sqrt(packing.placed), 0.5, most);
     }
-    if (low > 0 && (high < low * 1.012 || round > 8)) break;
+    if (low > 0 && (high < low * close_enough || round > 8)) break;
     if (next >= high || next <= low) next = std::sqrt(low * high);
     density = next;
   }
@@ -137,15 +153,16 @@ Result<Layout> layout_in_square(const std::vector<FlatChart>& charts, int resolu
 
 Result<Layout> layout_at_density(const std::vector<FlatChart>& charts, double texels_per_metre,
                                  int gutter, Progress& progress) {
+  const std::vector<TurnedChart> turned = directions_of(charts);
   for (int n = 1; n <= kMaxResolution; n *= 2) {
     if (progress.cancelled()) return cancelled();
-    const double area = total_area(charts) * texels_per_metre * texels_per_metre;
+    const double area = flat_area(charts) * texels_per_metre * texels_per_metre;
     double longest = 0;
     for (const FlatChart& c : charts) longest = std::max({longest, c.size.x, c.size.y});
     if (area > double(n) * n || (n < kMaxResolution && longest * texels_per_metre > n)) continue;
-    Attempt attempt = make_attempt(charts, texels_per_metre, n);
+    Attempt attempt = make_attempt(turned, texels_per_metre, n);
     if (mask_texels(attempt.masks) > uint64_t(n) * uint64_t(n)) continue;
-    const Packing packing = pack_masks(attempt.masks, n, gutter, progress);
+    const Packing packing = pack_in_either_order(attempt.masks, n, gutter, progress);
     if (packing.placed == 1) return place_charts(std::move(attempt), packing, n, texels_per_metre);
   }
   if (progress.cancelled()) return cancelled();

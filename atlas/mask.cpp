@@ -55,17 +55,31 @@ Mask make_mask(const std::vector<std::array<Dvec2, 3>>& texels) {
 Mask turned(const Mask& mask) {
   Mask t;
   t.rows.resize(size_t(mask.width));
-  for (int j = 0; j < mask.height; ++j)
-    for (const Span run : mask.rows[size_t(j)])
-      for (int i = run.begin; i < run.end; ++i) {
-        auto& row = t.rows[size_t(mask.width - 1 - i)];
-        if (!row.empty() && row.back().end == j)
-          row.back().end = j + 1;
-        else
-          row.push_back({j, j + 1});
-      }
-  measure(t);
   t.width = mask.height;
+  t.height = mask.width;
+  t.texels = mask.texels;
+  // Only where a row differs from the one above does a column's run begin or end.
+  std::vector<int> begin(size_t(mask.width), -1);
+  std::vector<int> edges;
+  static const std::vector<Span> kNoRuns;
+  for (int j = 0; j <= mask.height; ++j) {
+    const auto& above = j > 0 ? mask.rows[size_t(j - 1)] : kNoRuns;
+    const auto& here = j < mask.height ? mask.rows[size_t(j)] : kNoRuns;
+    edges.clear();
+    for (const auto* runs : {&above, &here})
+      for (const Span run : *runs) edges.insert(edges.end(), {run.begin, run.end});
+    std::sort(edges.begin(), edges.end());
+    for (size_t e = 0; e + 1 < edges.size(); e += 2)
+      for (int i = edges[e]; i < edges[e + 1]; ++i) {
+        int& b = begin[size_t(i)];
+        if (b < 0) {
+          b = j;
+        } else {
+          t.rows[size_t(mask.width - 1 - i)].push_back({b, j});
+          b = -1;
+        }
+      }
+  }
   return t;
 }
 

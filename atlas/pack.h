@@ -21,9 +21,18 @@ Mask make_mask(const std::vector<std::array<Dvec2, 3>>& texels);
 /// The mask turned by a quarter: texel (i, j) goes to (j, width - 1 - i).
 Mask turned(const Mask& mask);
 
+/// A chart laid in one direction, in every quarter turn that makes a difference: two for shapes
+/// that nearly fill their rectangle, else four.
+using Turns = std::vector<Mask>;
+/// A chart in several directions, of which one is placed. The first one's size stands for the
+/// chart's.
+using Directions = std::vector<Turns>;
+Turns all_turns(Mask upright);
+
 struct Place {
   int x = 0, y = 0;
-  int turns = 0;  ///< quarter turns as turned() makes them
+  int turns = 0;      ///< quarter turns as turned() makes them
+  int direction = 0;  ///< which of the chart's directions
 };
 
 struct Packing {
@@ -32,9 +41,12 @@ struct Packing {
   double placed = 0;  ///< share of the mask texels that found room: 1 when all fit
 };
 
-/// Places masks, large ones first, each at the topmost place in a square where it keeps `gutter`
+enum class Order : uint8_t { longest_side_first, largest_outline_first };
+
+/// Places charts, large ones first, each at the topmost place in a square where it keeps `gutter`
 /// empty texels to the ones before it. Small charts so fill the holes in and between large ones.
 /// Stops at the first that finds no room, and when cancelled.
-Packing pack_masks(const std::vector<Mask>& masks, int side, int gutter, const Progress& progress);
+Packing pack_masks(const std::vector<Directions>& charts, int side, int gutter, Order order,
+                   const Progress& progress);
 
 }  // namespace luxel::atlas

@@ -26,7 +26,8 @@ struct HitTile {
   std::vector<StoredHit> hits;  ///< element after element; rays that met no light are left out
 };
 
-inline constexpr size_t kTileElements = 1024;
+/// Small enough that many threads end at about the same time.
+inline constexpr size_t kTileElements = 256;
 
 /// Keeps tiles in memory up to a limit and the rest in a temporary file, which has no name and is
 /// gone with the store, however the program ends.

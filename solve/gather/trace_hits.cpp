@@ -155,6 +155,7 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
     sort_hits(scene, atlas, work.hits, i, out, tile);
   };
 
+  constexpr uint64_t kRaysPerAdvance = 8192;
   progress.begin("trace rays", out.rays);
   std::mutex mutex;
   Status status;
@@ -162,10 +163,15 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
     Work work(samples);
     HitTile tile;
     tile.hits.reserve((end - begin) * samples);
+    uint64_t untold = 0;
     for (size_t i = begin; i < end; ++i) {
       if (progress.cancelled()) return;
       trace_element(i, work, tile);
-      progress.advance(samples);
+      // Not for every element: the counter is shared by all threads.
+      untold += samples;
+      if (untold < kRaysPerAdvance && i + 1 < end) continue;
+      progress.advance(untold);
+      untold = 0;
     }
     const Status put = out.store.put(begin / kTileElements, std::move(tile));
     if (!put) {

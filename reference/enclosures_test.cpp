@@ -66,7 +66,7 @@ TEST(SlowEnclosures, TheMeanLawHoldsInARoomWithALamp) {
     lamp.position = room.lower + Vec3{1, 3, 1.5f};
     lamp.intensity = gray(10000 / (4 * kPi));
     scene.lights.push_back(lamp);
-    const Points points = random_points(scene, 100000, 3);
+    const Points points = random_points(scene, 50000, 3);
     const Mean all = mean_over_random_points(solve(scene, points, {.samples = 4}));
     const double direct = 10000.0 / 96;
     EXPECT_NEAR(all.value - direct, std::stod(rows[0][k + 1]), 3 * all.error) << "rho " << rho;
@@ -91,7 +91,7 @@ TEST(SlowEnclosures, TheMeanLawHoldsForAnyEmissionAndBlockers) {
       area += a;
       power += a * kPiD * double(scene::emission_at(scene, {i, t, {}}).x);
     }
-  const Points points = random_points(scene, 200000, 4);
+  const Points points = random_points(scene, 100000, 4);
   const Mean mean = mean_over_random_points(solve(scene, points, {.samples = 4}));
   EXPECT_NEAR(mean.value, power / area / 0.3, 3 * mean.error);
   EXPECT_LT(mean.error, 0.004 * mean.value);
@@ -140,7 +140,7 @@ TEST(SlowEnclosures, ASphereWithZonesSharesItsLightEvenly) {
   const double h = area[0] / (1 - (area[0] * rho[0] + area[1] * rho[1] + area[2] * rho[2]));
   for (const uint32_t zone : {0u, 1u, 2u}) {
     const Points points = random_points(scene, 2000, 5 + zone, of_material(zone));
-    expect_unbiased(solve(scene, points, {.samples = 500}), std::vector<double>(2000, h), kFacets);
+    expect_unbiased(solve(scene, points, {.samples = 100}), std::vector<double>(2000, h), kFacets);
     const double b = (zone == 0 ? 1 : 0) + rho[zone] * h;
     // The zones are those of the reference within a facet.
     EXPECT_NEAR(b, zone == 0 ? 1.271186 : zone == 1 ? 0.169492 : 0.067797, 2e-4);
@@ -173,7 +173,7 @@ TEST(SlowEnclosures, AnIntegratingSphereGivesItsIlluminance) {
   const double expected = 1000 * double(rho) / (area * (1 - double(rho) * (1 - f)));
   // 123.48 lx on the sphere itself; the facets have 3e-4 less area.
   EXPECT_NEAR(expected, 123.482283, 0.1);
-  expect_unbiased(solve(scene, points, {.samples = 500}), std::vector<double>(2000, expected),
+  expect_unbiased(solve(scene, points, {.samples = 200}), std::vector<double>(2000, expected),
                   2 * kFacets);
 }
 
@@ -212,9 +212,9 @@ TEST(SlowEnclosures, ConcentricSpheresExchangeLight) {
     const Points on_inner = random_points(scene, 2000, 9, of_material(1));
     const Points on_outer = random_points(scene, 2000, 10, of_material(0));
     // B = e + rho E.
-    expect_unbiased(solve(scene, on_inner, {.samples = 400}),
+    expect_unbiased(solve(scene, on_inner, {.samples = 100}),
                     std::vector<double>(2000, (b1 - e1) / rho1), 2 * kFacets);
-    expect_unbiased(solve(scene, on_outer, {.samples = 400}),
+    expect_unbiased(solve(scene, on_outer, {.samples = 100}),
                     std::vector<double>(2000, (b2 - e2) / rho2), 2 * kFacets);
   }
 }
@@ -250,7 +250,7 @@ TEST(SlowEnclosures, TheFacesOfACubeReachTheContinuousLimit) {
   };
   const std::array<Chosen, 3> faces{floor, ceiling, side};
   for (size_t k = 0; k < 3; ++k) {
-    const Points points = random_points(scene, 400000, 11 + k, faces[k]);
+    const Points points = random_points(scene, 150000, 11 + k, faces[k]);
     const Mean e = mean_over_random_points(solve(scene, points, {.samples = 4}));
     EXPECT_NEAR((k == 0 ? 1 : 0) + 0.5 * e.value, limit[k], 3 * 0.5 * e.error + 5e-5);
     EXPECT_LT(0.5 * e.error, 5e-4);

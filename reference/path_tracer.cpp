@@ -44,8 +44,15 @@ Rgb error_of(const Sums& s, double n) {
 /// Receivers or pixels that one task works on. Depends on nothing but the number of samples.
 size_t grain_for(int samples) { return std::clamp<size_t>(kBatch / size_t(samples), 8, kBatch); }
 
-/// Goes through `count` receivers or pixels in tasks, and through their paths in batches of at most
-/// kBatch: start(i, sample) makes a path, finish(i, sums, n) takes what its n paths have summed to.
+/// Samples [first_sample, last_sample) of receivers or pixels [begin, end).
+struct Batch {
+  size_t begin, end, first_sample, last_sample;
+};
+
+/// Goes through `count` receivers or pixels in tasks, and through their paths in batches of about
+/// kBatch: start(batch, paths) makes a batch's paths, sample by sample of each receiver; each(i,
+/// path) sees every path of receiver i at its end; finish(i, sums, n) takes what its n paths have
+/// summed to.
 template <class Start, class Each, class Finish>
 Result<uint64_t> run_tasks(const World& world, size_t count, const PathParams& params,
                            Progress& progress, const Start& start, const Each& each,
@@ -61,8 +68,7 @@ Result<uint64_t> run_tasks(const World& world, size_t count, const PathParams& p
     for (size_t first = 0; first < samples && !progress.cancelled(); first += per_batch) {
       const size_t last = std::min(samples, first + per_batch);
       paths.clear();
-      for (size_t i = begin; i < end; ++i)
-        for (size_t s = first; s < last; ++s) paths.push_back(start(i, s));
+      start(Batch{begin, end, first, last}, paths);
       traced += follow(world, params.bounces, paths, work);
       for (size_t k = 0; k < paths.size(); ++k) {
         const size_t i = k / (last - first);
@@ -101,9 +107,12 @@ Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receiver
   out.irradiance.resize(count), out.standard_error.resize(count), out.luminance_error.resize(count);
   out.met_back.resize(count), out.met_double_sided_back.resize(count), out.enclosed.resize(count);
   progress.begin("trace paths", uint64_t(count) * uint64_t(params.samples));
-  const auto start = [&](size_t i, size_t s) {
-    const Receiver at{receivers.position[i], receivers.normal[i], receivers.geometric_normal[i]};
-    return path_from(world, at, path_seed(params.seed, i, s));
+  const auto start = [&](const Batch& batch, std::vector<Path>& paths) {
+    for (size_t i = batch.begin; i < batch.end; ++i) {
+      const Receiver at{receivers.position[i], receivers.normal[i], receivers.geometric_normal[i]};
+      for (size_t s = batch.first_sample; s < batch.last_sample; ++s)
+        paths.push_back(path_from(world, at, {path_seed(params.seed, i, s)}));
+    }
   };
   const auto each = [&](size_t i, const Path& path) {
     out.met_back[i] += path.first_hit == FirstHit::back;
@@ -127,8 +136,42 @@ Result<Picture> radiance_by_paths(const scene::Scene& scene, const trace::RayTra
                                   const scene::Camera& camera, int width, int height,
                                   const PathParams& params, Progress& progress) {
   LUXEL_CHECK(params.samples >= 1 && width > 0 && height > 0);
-  (void)scene, (void)tracer, (void)camera, (void)progress;
-  return fail(ErrorCode::unsupported, "not yet");
+  const World world = world_of(scene, tracer);
+  const trace::CameraRays camera_rays(camera, width, height);
+  const size_t count = size_t(width) * size_t(height);
+  Picture out;
+  out.radiance = image::Image(width, height, 4);
+  out.luminance_error.resize(count);
+  progress.begin("trace paths", uint64_t(count) * uint64_t(params.samples));
+  std::vector<uint32_t> covered(count);
+  const auto start = [&](const Batch& batch, std::vector<Path>& paths) {
+    std::vector<trace::Ray> rays;
+    std::vector<RandomStream> randoms;
+    for (size_t i = batch.begin; i < batch.end; ++i)
+      for (size_t s = batch.first_sample; s < batch.last_sample; ++s) {
+        RandomStream random{path_seed(params.seed, i, s)};
+        const Vec2 jitter = random.next2();
+        rays.push_back(camera_rays.through(float(i % size_t(width)) + jitter.x,
+                                           float(i / size_t(width)) + jitter.y));
+        randoms.push_back(random);
+      }
+    const std::vector<trace::Hit> hits = trace::visible_hits(scene, tracer, rays);
+    for (size_t k = 0; k < hits.size(); ++k)
+      paths.push_back(path_from_eye(world, hits[k], randoms[k]));
+  };
+  const auto each = [&](size_t i, const Path& path) { covered[i] += path.shows_surface; };
+  const auto finish = [&](size_t i, const Sums& sums, double n) {
+    const int x = int(i % size_t(width)), y = int(i / size_t(width));
+    out.radiance.set_rgb(x, y, mean_of(sums, n));
+    out.radiance.at(x, y)[3] = float(double(covered[i]) / n);
+    out.luminance_error[i] = float(standard_error(sums.l, sums.l2, n));
+  };
+  LUXEL_TRY(out.rays, run_tasks(world, count, params, progress, start, each, finish));
+  double sum = 0;
+  for (size_t i = 0; i < count; ++i)
+    sum += double(luminance(out.radiance.rgb(int(i % size_t(width)), int(i / size_t(width)))));
+  out.relative_error = relative_error(out.luminance_error, sum);
+  return out;
 }
 
 }  // namespace luxel::reference

@@ -171,18 +171,33 @@ World world_of(const scene::Scene& scene, const trace::RayTracer& tracer) {
           scene::world_bounds(scene).diagonal()};
 }
 
-Path path_from(const World& world, const Receiver& at, uint64_t seed) {
+Path path_from(const World& world, const Receiver& at, RandomStream random) {
   Path path;
   path.at = at;
   path.origin = trace::offset_origin(at.position, at.geometric_normal, world.diagonal_m);
-  path.random.seed = seed;
+  path.random = random;
+  return path;
+}
+
+Path path_from_eye(const World& world, const trace::Hit& hit, RandomStream random) {
+  if (!hit.found()) {
+    Path path;
+    path.throughput = {};
+    path.value = world.scene.background;
+    return path;
+  }
+  Path path = path_from(world, receiver_at(world.scene, world.surfaces, hit), random);
+  path.throughput = scene::reflectance_at(world.scene, hit.point());
+  path.value = scene::emission_at(world.scene, hit.point());
+  path.shows_surface = true;
   return path;
 }
 
 uint64_t follow(const World& world, int bounces, std::span<Path> paths, PathWork& work) {
   uint64_t rays = 0;
-  work.active.resize(paths.size());
-  std::iota(work.active.begin(), work.active.end(), 0u);
+  work.active.clear();
+  for (uint32_t i = 0; i < paths.size(); ++i)
+    if (max_component(paths[i].throughput) > 0) work.active.push_back(i);
   for (int depth = 0; !work.active.empty(); ++depth) {
     work.rays.clear(), work.emitter_rays.clear();
     work.shadow_rays.clear(), work.lamp_rays.clear();

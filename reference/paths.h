@@ -33,8 +33,12 @@ struct Path {
   Rgb value{};
   RandomStream random;
   FirstHit first_hit = FirstHit::other;  ///< what its first ray met
+  bool shows_surface = false;            ///< of paths from the eye
 };
-Path path_from(const World& world, const Receiver& at, uint64_t seed);
+Path path_from(const World& world, const Receiver& at, RandomStream random);
+/// A path from a camera's ray: its value is radiance, L + rho E / pi of the surface that the ray
+/// met, or the background's.
+Path path_from_eye(const World& world, const trace::Hit& hit, RandomStream random);
 
 /// A ray towards an emitter, and what its radiance is worth where it is seen.
 struct EmitterRay {
@@ -59,8 +63,8 @@ struct PathWork {
   std::vector<float> lamp_weights;
 };
 
-/// Follows all paths to their ends; their values are what they have gathered. `bounces` < 0: no
-/// limit. Returns the number of rays.
+/// Follows all paths that carry something to their ends, and adds what they gather to their values.
+/// `bounces` < 0: no limit. Returns the number of rays.
 uint64_t follow(const World& world, int bounces, std::span<Path> paths, PathWork& work);
 
 }  // namespace luxel::reference

@@ -1,8 +1,6 @@
 #include "reference/paths.h"
 
-#include <array>
 #include <cmath>
-#include <numeric>
 
 #include "base/warp.h"
 
@@ -67,42 +65,6 @@ void aim_at_lamp(const World& world, Path& path, uint32_t index, PathWork& work)
   work.lamp_rays.push_back({index, path.throughput * lamp.irradiance * (cosine / kPi)});
   const float t_max = std::isfinite(lamp.distance_m) ? lamp.distance_m * kArrived : INFINITY;
   work.shadow_rays.push_back({path.origin, 0, lamp.towards, t_max});
-}
-
-/// A cell of a 16 x 16 grid over the octahedral map of directions, in Morton order.
-uint8_t direction_cell(Vec3 d) {
-  const float scale = 1 / (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
-  float x = d.x * scale, y = d.y * scale;
-  if (d.z < 0) {
-    const float folded = (1 - std::abs(y)) * std::copysign(1.0f, x);
-    y = (1 - std::abs(x)) * std::copysign(1.0f, y);
-    x = folded;
-  }
-  const auto spread = [](float v) {
-    const uint32_t i = uint32_t(std::clamp(int((v + 1) * 8), 0, 15));
-    return (i & 1) | (i & 2) << 1 | (i & 4) << 2 | (i & 8) << 3;
-  };
-  return uint8_t(spread(x) | spread(y) << 1);
-}
-
-/// Traces work.rays into work.hits. Packets are made of rays with similar directions (a counting
-/// sort), which is faster; the order does not show in the result.
-void trace_sorted(const trace::RayTracer& tracer, PathWork& work) {
-  const size_t count = work.rays.size();
-  work.cell.resize(count), work.order.resize(count), work.sorted_rays.resize(count);
-  work.sorted_hits.resize(count), work.hits.resize(count);
-  std::array<uint32_t, 257> place{};
-  for (size_t i = 0; i < count; ++i) {
-    work.cell[i] = direction_cell(work.rays[i].direction);
-    ++place[work.cell[i] + 1u];
-  }
-  std::partial_sum(place.begin(), place.end(), place.begin());
-  for (size_t i = 0; i < count; ++i) {
-    const uint32_t to = place[work.cell[i]]++;
-    work.order[to] = uint32_t(i), work.sorted_rays[to] = work.rays[i];
-  }
-  tracer.closest_hits(work.sorted_rays, work.sorted_hits);
-  for (size_t i = 0; i < count; ++i) work.hits[work.order[i]] = work.sorted_hits[i];
 }
 
 void add_emitter_light(const World& world, const EmitterRay& ray, const trace::Hit& hit,
@@ -206,7 +168,8 @@ uint64_t follow(const World& world, int bounces, std::span<Path> paths, PathWork
       if (!world.emitters.triangles.empty()) aim_at_emitter(world, paths[i], i, work);
       if (!world.scene.lights.empty()) aim_at_lamp(world, paths[i], i, work);
     }
-    trace_sorted(world.tracer, work);
+    work.hits.resize(work.rays.size());
+    world.tracer.closest_hits(work.rays, work.hits);
     work.blocked.resize(work.shadow_rays.size());
     world.tracer.occluded(work.shadow_rays, work.blocked);
     rays += work.rays.size() + work.shadow_rays.size();

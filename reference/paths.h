@@ -56,10 +56,9 @@ struct PathWork {
   std::vector<uint32_t> active, next;
   std::vector<EmitterRay> emitter_rays;
   std::vector<LampRay> lamp_rays;
-  std::vector<trace::Ray> rays, sorted_rays, shadow_rays;
-  std::vector<trace::Hit> hits, sorted_hits;
-  std::vector<uint32_t> order;
-  std::vector<uint8_t> cell, blocked;
+  std::vector<trace::Ray> rays, shadow_rays;
+  std::vector<trace::Hit> hits;
+  std::vector<uint8_t> blocked;
   std::vector<float> lamp_weights;
 };
 

@@ -4,7 +4,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "display/camera_rays.h"
+#include "trace/camera_rays.h"
 
 namespace luxel::display {
 namespace {
@@ -22,7 +22,7 @@ Tile tile_of(size_t number, const DrawParams& params) {
 }
 
 /// The rays of a tile, pixel after pixel, n x n to each at the centres of a regular grid.
-std::vector<trace::Ray> tile_rays(const CameraRays& camera, const Tile& tile, int n) {
+std::vector<trace::Ray> tile_rays(const trace::CameraRays& camera, const Tile& tile, int n) {
   std::vector<trace::Ray> rays;
   rays.reserve(size_t((tile.x1 - tile.x0) * (tile.y1 - tile.y0) * n * n));
   for (int y = tile.y0; y < tile.y1; ++y)
@@ -62,7 +62,7 @@ Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tra
                           const scene::Camera& camera, const IrradianceAt& irradiance_at,
                           const DrawParams& params, Progress& progress) {
   LUXEL_CHECK(params.width > 0 && params.height > 0 && params.samples_per_axis > 0);
-  const CameraRays rays_of(camera, params.width, params.height);
+  const trace::CameraRays rays_of(camera, params.width, params.height);
   const size_t tiles =
       size_t((params.width + kTile - 1) / kTile) * size_t((params.height + kTile - 1) / kTile);
   image::Image picture(params.width, params.height, 4);
@@ -71,7 +71,7 @@ Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tra
     for (size_t number = begin; number < end && !progress.cancelled(); ++number) {
       const Tile tile = tile_of(number, params);
       std::vector<trace::Ray> rays = tile_rays(rays_of, tile, params.samples_per_axis);
-      const std::vector<trace::Hit> hits = visible_hits(scene, tracer, rays);
+      const std::vector<trace::Hit> hits = trace::visible_hits(scene, tracer, rays);
       const size_t per_pixel = size_t(params.samples_per_axis * params.samples_per_axis);
       size_t first = 0;
       for (int y = tile.y0; y < tile.y1; ++y)

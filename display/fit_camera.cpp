@@ -11,8 +11,8 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "display/camera_rays.h"
 #include "display/draw.h"
+#include "trace/camera_rays.h"
 
 namespace luxel::display {
 namespace {
@@ -90,7 +90,7 @@ bool is_surrounded(const scene::Scene& scene, const trace::RayTracer& tracer, Ve
     rays.push_back({eye, 0, {r * std::cos(phi), y, r * std::sin(phi)}, INFINITY});
   }
   int found = 0;
-  for (const trace::Hit& hit : visible_hits(scene, tracer, rays)) found += hit.found();
+  for (const trace::Hit& hit : trace::visible_hits(scene, tracer, rays)) found += hit.found();
   return 5 * found >= 3 * kDirections;
 }
 
@@ -131,12 +131,12 @@ View look(const scene::Scene& scene, const trace::RayTracer& tracer,
           const std::vector<uint32_t>& first, const Candidate& candidate, float aspect,
           float diagonal, std::vector<Seen>& scratch) {
   const int rows = kProbeRows, columns = std::clamp(int(float(rows) * aspect), 8, 4 * rows);
-  const CameraRays rays_of(candidate.camera, columns, rows);
+  const trace::CameraRays rays_of(candidate.camera, columns, rows);
   std::vector<trace::Ray> rays;
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; ++x)
       rays.push_back(rays_of.through(float(x) + 0.5f, float(y) + 0.5f));
-  const std::vector<trace::Hit> hits = visible_hits(scene, tracer, rays);
+  const std::vector<trace::Hit> hits = trace::visible_hits(scene, tracer, rays);
 
   View view;
   const float pixel = 4 * length(rays_of.right) * length(rays_of.up) / float(rows * columns);

@@ -112,7 +112,8 @@ nlohmann::json seconds_json(const Progress& progress) {
 
 nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Progress& progress) {
   const nlohmann::json seconds = seconds_json(progress);
-  const double tracing = seconds.value("direct light", 0.0) + seconds.value("trace rays", 0.0);
+  const double tracing = seconds.value("direct light", 0.0) + seconds.value("trace rays", 0.0) +
+                         seconds.value("trace paths", 0.0);
   return {{"version", kVersion},
           {"settings", to_json(settings)},
           {"counts",

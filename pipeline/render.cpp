@@ -6,6 +6,7 @@
 #include "image/codec.h"
 #include "import/import.h"
 #include "pipeline/bake.h"
+#include "reference/path_tracer.h"
 #include "scene/scene.h"
 #include "trace/ray_tracer.h"
 
@@ -13,6 +14,7 @@ namespace luxel::pipeline {
 namespace {
 
 constexpr int kMaxPictureSide = 16384;
+constexpr int kMaxPathSamples = 1 << 20;
 
 /// Bilinear lookup of the lightmap at a point of baked.glb, whose TEXCOORD_1 are its places. The
 /// gutter was dilated, so no weight needs to be renormalised.
@@ -70,6 +72,16 @@ Status check(const RenderSettings& s) {
   const std::string extension = s.output.extension().string();
   if (extension != ".png" && extension != ".exr")
     return fail(ErrorCode::bad_setting, "--output {} is neither .png nor .exr", s.output.string());
+  if (s.samples < 1 || s.samples > kMaxPathSamples)
+    return fail(ErrorCode::bad_setting, "--samples {} is outside 1 to {}", s.samples,
+                kMaxPathSamples);
+  if (s.technique == "path" && !s.from.empty())
+    return fail(ErrorCode::bad_setting,
+                "--technique path computes the light itself; leave --from {} out", s.from.string());
+  if (s.technique != "path" && s.from.empty())
+    return fail(ErrorCode::bad_setting,
+                "--technique {} draws a bake; name its folder with --from, or use --technique path",
+                s.technique);
   std::error_code ignored;
   const std::filesystem::path folder = s.output.parent_path();
   if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
@@ -78,21 +90,15 @@ Status check(const RenderSettings& s) {
   return {};
 }
 
-}  // namespace
-
-Result<Rendered> render(const RenderSettings& s, Progress& progress) {
-  LUXEL_TRY_STATUS(check(s));
-  progress.begin("import", 0);
-  LUXEL_TRY(import::Imported original, import::import_scene(s.scene));
+Result<image::Image> draw_bake(const RenderSettings& s, const scene::Scene& original,
+                               Progress& progress) {
   LUXEL_TRY(import::Imported baked, import::import_scene(s.from / "baked.glb"));
   LUXEL_TRY(const std::vector<std::byte> bytes, read_file(s.from / "lightmap.exr"));
   LUXEL_TRY(const image::Image lightmap,
             image::decode_exr(bytes, (s.from / "lightmap.exr").string()));
   scene::Scene& scene = baked.scene;
-  Rendered out{s.width, s.height, std::move(original.warnings)};
-  const std::string dark = add_outside_light(s.outside, original.scene);
-  scene.background = original.scene.background;
-  scene.cameras = original.scene.cameras;
+  scene.background = original.background;
+  scene.cameras = original.cameras;
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(const scene::Camera camera, choose_camera(s, scene, tracer));
   display::DrawParams params;
@@ -100,8 +106,33 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   const auto irradiance = [&](const scene::SurfacePoint& p) {
     return lightmap_at(scene, lightmap, p);
   };
-  LUXEL_TRY(const image::Image picture,
-            display::draw(scene, tracer, camera, irradiance, params, progress));
+  return display::draw(scene, tracer, camera, irradiance, params, progress);
+}
+
+Result<image::Image> draw_paths(const RenderSettings& s, const scene::Scene& scene, Rendered& out,
+                                Progress& progress) {
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  LUXEL_TRY(const scene::Camera camera, choose_camera(s, scene, tracer));
+  LUXEL_TRY(reference::Picture picture,
+            reference::radiance_by_paths(scene, tracer, camera, s.width, s.height,
+                                         {s.samples, s.bounces, s.seed}, progress));
+  out.rays = picture.rays, out.relative_error = picture.relative_error;
+  return std::move(picture.radiance);
+}
+
+}  // namespace
+
+Result<Rendered> render(const RenderSettings& s, Progress& progress) {
+  LUXEL_TRY_STATUS(check(s));
+  progress.begin("import", 0);
+  LUXEL_TRY(import::Imported original, import::import_scene(s.scene));
+  Rendered out;
+  out.width = s.width, out.height = s.height, out.warnings = std::move(original.warnings);
+  const std::string dark = add_outside_light(s.outside, original.scene);
+  const bool paths = s.technique == "path";
+  if (paths && !dark.empty()) out.warnings.push_back(dark);
+  LUXEL_TRY(const image::Image picture, paths ? draw_paths(s, original.scene, out, progress)
+                                              : draw_bake(s, original.scene, progress));
   progress.begin(kWriteStage, 0);
   if (s.output.extension() == ".exr") {
     LUXEL_TRY(const std::vector<std::byte> exr, image::encode_exr(picture));

@@ -1,4 +1,4 @@
-// A picture of a bake: what `luxel render --from DIR` does.
+// A picture of a bake or, by path tracing, of the scene itself: what `luxel render` does.
 #pragma once
 
 #include <filesystem>
@@ -14,20 +14,26 @@
 namespace luxel::pipeline {
 
 struct RenderSettings {
-  std::filesystem::path scene;   ///< for its cameras and background
-  std::filesystem::path from;    ///< folder of a bake: baked.glb and lightmap.exr are read
-  std::filesystem::path output;  ///< .png (tone-mapped) or .exr (radiance)
-  std::string technique = "lightmap";
-  std::string camera;  ///< by name; empty: the first, else a fitted one
+  std::filesystem::path scene;         ///< for its cameras and background
+  std::filesystem::path from;          ///< folder of a bake: baked.glb and lightmap.exr are read
+  std::filesystem::path output;        ///< .png (tone-mapped) or .exr (radiance)
+  std::string technique = "lightmap";  ///< or "path", which needs no bake
+  std::string camera;                  ///< by name; empty: the first, else a fitted one
   std::optional<Vec3> eye;
   Vec3 look_at{};
   double fov_deg = 45;
   int width = 960, height = 720;
   OutsideLight outside;
+  int samples = 64;   ///< path: paths per pixel
+  int bounces = -1;   ///< path: reflections between surfaces; < 0: all
+  uint64_t seed = 1;  ///< path
 };
 
 struct Rendered {
   int width = 0, height = 0;
+  uint64_t rays = 0;  ///< path
+  double relative_error =
+      0;  ///< path: root mean square of the pixels' standard errors over the mean
   std::vector<std::string> warnings;
 };
 

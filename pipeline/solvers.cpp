@@ -5,6 +5,7 @@
 
 #include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
+#include "reference/path_tracer.h"
 #include "solve/gather/gather.h"
 
 namespace luxel::pipeline {
@@ -66,7 +67,22 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   return out;
 }
 
-constexpr std::array kSolvers{Solver{"gather", solve_gather}};
+Result<TexelLight> solve_reference(const SolveInput& in, const BakeSettings& settings,
+                                   Progress& progress) {
+  const reference::PathParams params{settings.samples, settings.bounces, settings.seed};
+  LUXEL_TRY(reference::TexelPaths result,
+            reference::irradiance_by_paths(in.scene, reference::receivers(in.elements), in.tracer,
+                                           params, progress));
+  TexelLight out;
+  out.suspicious_texels = uint64_t(std::count(result.enclosed.begin(), result.enclosed.end(), 1));
+  out.hidden = std::move(result.enclosed);
+  out.irradiance = std::move(result.irradiance);
+  out.rays = result.rays;
+  out.relative_error = result.relative_error;
+  return out;
+}
+
+constexpr std::array kSolvers{Solver{"gather", solve_gather}, Solver{"reference", solve_reference}};
 
 }  // namespace
 

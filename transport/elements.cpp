@@ -68,17 +68,17 @@ Vec3 smooth_position(const scene::Scene& scene, const scene::SurfacePoint& p) {
 /// Lower than this part of the triangle's size a bulge is rounding.
 constexpr float kNoBulge = 1e-4f;
 
-void place_element(const scene::Scene& scene, const scene::SurfacePoint& p, size_t i, Elements& e) {
+}  // namespace
+
+SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p) {
   const Vec3 flat = scene::world_position(scene, p);
-  e.position[i] = smooth_position(scene, p);
-  e.normal[i] = scene::shading_normal(scene, p);
+  SmoothPoint out{smooth_position(scene, p), scene::shading_normal(scene, p), {}};
   const float size =
       std::sqrt(scene::area_m2(scene::world_triangle(scene, p.instance, p.triangle)));
-  const bool bulges = length(e.position[i] - flat) > kNoBulge * size;
-  e.geometric_normal[i] = bulges ? e.normal[i] : scene::front_normal(scene, p.instance, p.triangle);
+  const bool bulges = length(out.position - flat) > kNoBulge * size;
+  out.geometric_normal = bulges ? out.normal : scene::front_normal(scene, p.instance, p.triangle);
+  return out;
 }
-
-}  // namespace
 
 Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
                               const atlas::TexelMap& map) {
@@ -89,7 +89,9 @@ Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atl
     for (size_t i = begin; i < end; ++i) {
       const atlas::Texel& texel = map.texels[i];
       const scene::SurfacePoint& p = texel.sample;
-      place_element(scene, p, i, e);
+      const SmoothPoint at = smooth_point(scene, p);
+      e.position[i] = at.position, e.normal[i] = at.normal;
+      e.geometric_normal[i] = at.geometric_normal;
       e.reflectance[i] = varies_over_texels(scene::material_at(scene, p))
                              ? mean_reflectance(scene, atlas, texel)
                              : scene::reflectance_at(scene, p);

@@ -22,6 +22,13 @@ struct Elements {
   size_t size() const { return position.size(); }
 };
 
+/// A point of the front side, moved to the smooth surface that vertex normals bend over its
+/// triangle.
+struct SmoothPoint {
+  Vec3 position, normal, geometric_normal;  ///< as in Elements
+};
+SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p);
+
 /// One element per texel of the map, in its order. Where vertex normals say that the surface bulges
 /// over its triangle, the element lies on the bulge and its horizon is that of the shading normal:
 /// else facets would show at the border of light and shadow [Hanika21]. Reflectance is

@@ -69,7 +69,8 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_option("SCENE", s.scene, "glTF, OBJ, FBX, ... file")->required();
   bake->add_option("-o,--output", s.output, "Folder for the results; made when missing")
       ->required();
-  bake->add_option("--solver", s.solver, "How light is computed: gather")->capture_default_str();
+  bake->add_option("--solver", s.solver, "How light is computed: gather, or reference")
+      ->capture_default_str();
   auto* resolution =
       bake->add_option("--resolution", s.resolution, "Side of the lightmap in texels")
           ->capture_default_str();
@@ -80,7 +81,8 @@ void register_bake(CLI::App& app, Action& action) {
                    "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if valid")
       ->check(CLI::IsMember({"auto", "keep", "unwrap"}))
       ->capture_default_str();
-  bake->add_option("--samples", s.samples, "Indirect rays per texel")->capture_default_str();
+  bake->add_option("--samples", s.samples, "Indirect rays per texel; reference: paths")
+      ->capture_default_str();
   bake->add_option("--direct-samples", s.direct_samples,
                    "Shadow rays per texel towards area lights")
       ->capture_default_str();

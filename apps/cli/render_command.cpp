@@ -11,7 +11,7 @@ namespace {
 struct RenderOptions {
   Common common;
   OutsideText outside;
-  std::string size = "960x720", eye, look_at;
+  std::string size = "960x720", eye, look_at, bounces = "inf";
   pipeline::RenderSettings settings;
 };
 
@@ -33,6 +33,7 @@ Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
     LUXEL_TRY(s.eye, parse_point("--eye", options.eye));
     LUXEL_TRY(s.look_at, parse_point("--look-at", options.look_at));
   }
+  LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
   LUXEL_TRY(s.outside, parse_outside_light(options.outside));
   return s;
 }
@@ -49,28 +50,37 @@ int run_render(const RenderOptions& options) {
   if (!done) return report(done.error());
   print_warnings(rendered.warnings, options.common);
   const std::string image = settings->output.string();
-  if (options.common.json)
-    std::printf(
-        "%s\n",
-        nlohmann::json{{"image", image}, {"width", rendered.width}, {"height", rendered.height}}
-            .dump(2)
-            .c_str());
-  else if (!options.common.quiet)
+  const bool paths = settings->technique == "path";
+  if (options.common.json) {
+    nlohmann::json json{{"image", image}, {"width", rendered.width}, {"height", rendered.height}};
+    if (paths) json["rays"] = rendered.rays, json["relative_error"] = rendered.relative_error;
+    std::printf("%s\n", json.dump(2).c_str());
+  } else if (!options.common.quiet) {
+    if (paths)
+      std::fprintf(stderr, "%s\n",
+                   fmt::format("{} paths per pixel, {} rays, standard error {:.2f} %",
+                               settings->samples, rendered.rays, 100 * rendered.relative_error)
+                       .c_str());
     std::fprintf(stderr, "wrote %s\n", image.c_str());
+  }
   return kDone;
 }
 
 }  // namespace
 
 void register_render(CLI::App& app, Action& action) {
-  CLI::App* render = app.add_subcommand("render", "Draw a baked scene");
+  CLI::App* render =
+      app.add_subcommand("render", "Draw a baked scene, or trace its light path by path");
   auto options = std::make_shared<RenderOptions>();
   pipeline::RenderSettings& s = options->settings;
-  render->add_option("SCENE", s.scene, "The scene that was baked")->required();
+  render->add_option("SCENE", s.scene, "The scene; with --from, the one that was baked")
+      ->required();
   render->add_option("-o,--output", s.output, "Picture to write: .png or .exr")->required();
-  render->add_option("--from", s.from, "Folder that `luxel bake` left")->required();
-  render->add_option("--technique", s.technique, "What to draw: lightmap")
-      ->check(CLI::IsMember({"lightmap"}))
+  render->add_option("--from", s.from, "Folder that `luxel bake` left (lightmap)");
+  render
+      ->add_option("--technique", s.technique,
+                   "lightmap = draw a bake, path = trace paths, no bake needed")
+      ->check(CLI::IsMember({"lightmap", "path"}))
       ->capture_default_str();
   auto* camera = render->add_option("--camera", s.camera, "Name of a camera of the scene");
   auto* eye = render->add_option("--eye", options->eye, "Where the camera stands")
@@ -86,6 +96,10 @@ void register_render(CLI::App& app, Action& action) {
   render->add_option("--size", options->size, "Size of the picture")
       ->type_name("WxH")
       ->capture_default_str();
+  render->add_option("--samples", s.samples, "Paths per pixel (path)")->capture_default_str();
+  render->add_option("--bounces", options->bounces, "Reflections to count, or inf (path)")
+      ->capture_default_str();
+  render->add_option("--seed", s.seed, "Seed of all random numbers (path)")->capture_default_str();
   add_outside_light(*render, options->outside);
   add_common(*render, options->common);
   render->callback([options, &action] { action = [options] { return run_render(*options); }; });

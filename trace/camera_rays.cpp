@@ -1,15 +1,15 @@
-#include "display/camera_rays.h"
+#include "trace/camera_rays.h"
 
 #include <cmath>
 
 #include "base/check.h"
 
-namespace luxel::display {
+namespace luxel::trace {
 namespace {
 
 constexpr int kMaxSurfaces = 64;
 
-bool invisible(const scene::Scene& scene, const trace::Hit& hit) {
+bool invisible(const scene::Scene& scene, const Hit& hit) {
   return hit.found() && hit.back_face && !material_at(scene, hit.point()).double_sided;
 }
 
@@ -31,22 +31,22 @@ CameraRays::CameraRays(const scene::Camera& camera, int width_px, int height_px)
   forward = -normalize(column(m, 2));
 }
 
-trace::Ray CameraRays::through(float x, float y) const {
+Ray CameraRays::through(float x, float y) const {
   const Vec3 aside = right * (2 * x / width - 1) + up * (1 - 2 * y / height);
   if (orthographic) return {.origin = eye + aside, .direction = forward};
   return {.origin = eye, .direction = normalize(forward + aside)};
 }
 
-std::vector<trace::Hit> visible_hits(const scene::Scene& scene, const trace::RayTracer& tracer,
-                                     std::span<trace::Ray> rays) {
-  std::vector<trace::Hit> hits(rays.size());
+std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer,
+                              std::span<Ray> rays) {
+  std::vector<Hit> hits(rays.size());
   tracer.closest_hits(rays, hits);
   std::vector<size_t> open;
   for (size_t i = 0; i < hits.size(); ++i)
     if (invisible(scene, hits[i])) open.push_back(i);
 
-  std::vector<trace::Ray> on;
-  std::vector<trace::Hit> next;
+  std::vector<Ray> on;
+  std::vector<Hit> next;
   for (int step = 1; step < kMaxSurfaces && !open.empty(); ++step) {
     on.clear();
     for (const size_t i : open) {
@@ -67,4 +67,4 @@ std::vector<trace::Hit> visible_hits(const scene::Scene& scene, const trace::Ray
   return hits;
 }
 
-}  // namespace luxel::display
+}  // namespace luxel::trace

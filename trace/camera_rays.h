@@ -7,7 +7,7 @@
 #include "scene/scene.h"
 #include "trace/ray_tracer.h"
 
-namespace luxel::display {
+namespace luxel::trace {
 
 /// The rays of a camera for a picture of some size.
 struct CameraRays {
@@ -16,7 +16,7 @@ struct CameraRays {
 
   /// Through picture coordinates, (0, 0) = the top left corner, pixels have size 1. Directions are
   /// of unit length.
-  trace::Ray through(float x, float y) const;
+  Ray through(float x, float y) const;
 
   Vec3 eye, right, up, forward;  ///< right and up reach the picture's edges at distance 1 [m]
   bool orthographic = false;
@@ -25,7 +25,7 @@ struct CameraRays {
 
 /// What each ray meets first when the back faces of one-sided materials are invisible. Such a ray
 /// goes on behind the hit, through 64 surfaces at most; `rays` is left where it got to.
-std::vector<trace::Hit> visible_hits(const scene::Scene& scene, const trace::RayTracer& tracer,
-                                     std::span<trace::Ray> rays);
+std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer,
+                              std::span<Ray> rays);
 
-}  // namespace luxel::display
+}  // namespace luxel::trace

@@ -1,0 +1,301 @@
+// Direct light in closed form: every kind of light, and the cases that sampling gets wrong easily.
+#include <gtest/gtest.h>
+
+#include "reference/reference_test_support.h"
+#include "scene/procedural.h"
+#include "tests/reference_data.h"
+
+namespace luxel::reference {
+namespace {
+
+namespace shared = luxel::testing_support;
+using namespace testing;
+using Kind = scene::PunctualLight::Kind;
+
+constexpr double kPiD = 3.14159265358979323846;
+constexpr Rgb gray(float v) { return {v, v, v}; }
+const PathParams kDirect{.samples = 2000, .bounces = 0};
+
+Points one_point(Vec3 p, Vec3 n = {0, 1, 0}) {
+  Points points;
+  points.add(p, n);
+  return points;
+}
+
+/// 100 points on the floor y = 0 around the origin, facing up.
+Points floor_points() {
+  Points points;
+  for (int i = 0; i < 100; ++i)
+    points.add({0.2f * float(i % 10) - 0.9f, 0, 0.2f * float(i / 10) - 0.9f}, {0, 1, 0});
+  return points;
+}
+
+/// pi L F of a rectangle at height y, seen from floor_points().
+std::vector<double> rectangle_light(const Points& points, double x0, double x1, double z0,
+                                    double z1, double y, double radiance) {
+  std::vector<double> e;
+  for (const Vec3& p : points.position) {
+    const double x = double(p.x), z = double(p.z);
+    e.push_back(kPiD * radiance * rectangle_factor(x0 - x, x1 - x, z0 - z, z1 - z, y));
+  }
+  return e;
+}
+
+/// The exact factors at nine points of the Cornell box, past both blocks and in the empty box.
+TEST(Lights, TheExactCornellProbes) {
+  LUXEL_NEEDS_SHARED("reference/cornell-box.md");
+  const auto rows =
+      shared::markdown_rows("reference/cornell-box.md", "Exact direct light", "surface");
+  ASSERT_EQ(rows.size(), 9u);
+  for (const bool with_blocks : {false, true}) {
+    const scene::Scene scene = scene::cornell_box(scene::CornellColors::pbrt, with_blocks);
+    float radiance = 0;
+    for (const scene::Material& m : scene.materials) radiance = std::max(radiance, m.emission.x);
+    Points points;
+    std::vector<double> exact;
+    for (const auto& row : rows) {
+      const std::string& cell = row[with_blocks ? 4 : 3];
+      if (cell == "-") continue;
+      points.add(shared::parse_vec3(row[1]) * 1e-3f, shared::parse_vec3(row[2]));
+      exact.push_back(kPiD * double(radiance) * std::stod(cell));
+    }
+    // The lamp hangs as measured, to float precision in metres.
+    expect_unbiased(solve(scene, points, {.samples = 50000, .bounces = 0}), exact, 1e-5);
+  }
+}
+
+// Section 10: an emitter [0,1]^2 at height 2, a half plane x < 0.4 at height 1, a black floor. The
+// part of the emitter beyond max(0, 0.8 - x) is seen.
+TEST(Lights, APenumbraIsThatOfTheVisiblePart) {
+  scene::Scene scene;
+  scene::add_material(scene, "black", {});
+  scene::add_material(scene, "lamp", {}, gray(1 / kPi));
+  add_rectangle(scene, 0, 1, 0, 1, 2, false, 1);
+  add_rectangle(scene, -50, 0.4f, -50, 50, 1, false, 0);
+  Points points;
+  std::vector<double> exact;
+  for (int k = 0; k < 150; ++k) {
+    const double x = -0.3 + 0.01 * k, from = std::clamp(0.8 - x, 0.0, 1.0);
+    points.add({float(x), 0, 0.5f}, {0, 1, 0});
+    exact.push_back(rectangle_factor(from - x, 1 - x, -0.5, 0.5, 2));
+  }
+  EXPECT_NEAR(exact[70], 0.043362205218, 1e-9);  // x = 0.4 of the reference
+  expect_unbiased(solve(scene, points, {.samples = 4000, .bounces = 0}), exact);
+}
+
+// A lamp that is bright in one corner of its texture, at four times its mean.
+TEST(Lights, ATexturedLampShinesWhereItIsBright) {
+  scene::Scene scene;
+  scene::add_material(scene, "lamp", {}, gray(2));
+  scene::Texture texture;
+  texture.width = texture.height = 2;
+  texture.rgba.assign(16, 0);
+  for (const size_t i : {3u, 7u, 11u, 15u}) texture.rgba[i] = 255;
+  texture.rgba[0] = texture.rgba[1] = texture.rgba[2] = 255;  // (0, 0), the corner of low u and v
+  scene.textures.push_back(texture);
+  scene.materials[0].emission_texture = {.texture = 0, .filter = scene::Filter::nearest};
+  add_rectangle(scene, -0.5f, 0.5f, -0.5f, 0.5f, 1, false, 0);
+  for (const Vec3& p : scene.meshes[0].positions)
+    scene.meshes[0].uv0.push_back({p.x + 0.5f, p.z + 0.5f});
+  const Points points = floor_points();
+  expect_unbiased(solve(scene, points, kDirect), rectangle_light(points, -0.5, 0, -0.5, 0, 1, 2));
+}
+
+// The same with holes: what is cut out neither shines nor blocks.
+TEST(Lights, AMaskedLampShinesFromItsSolidPart) {
+  scene::Scene scene;
+  scene::add_material(scene, "lamp", {}, gray(2));
+  scene::Texture texture;
+  texture.width = 2, texture.height = 1;
+  texture.rgba = {255, 255, 255, 255, 255, 255, 255, 0};
+  scene.textures.push_back(texture);
+  scene.materials[0].base_color_texture = {.texture = 0, .filter = scene::Filter::nearest};
+  scene.materials[0].alpha_mode = scene::AlphaMode::mask;
+  add_rectangle(scene, -0.5f, 0.5f, -0.5f, 0.5f, 1, false, 0);
+  for (const Vec3& p : scene.meshes[0].positions)
+    scene.meshes[0].uv0.push_back({p.x + 0.5f, p.z + 0.5f});
+  // Behind the lamp, seen through its holes: another lamp, all of it solid.
+  scene::add_material(scene, "behind", {}, gray(3));
+  add_rectangle(scene, 2, 4, -0.5f, 0.5f, 2, false, 1);
+  const Points points = floor_points();
+  std::vector<double> exact = rectangle_light(points, -0.5, 0, -0.5, 0.5, 1, 2);
+  for (size_t i = 0; i < points.size(); ++i) {
+    // Seen from x, the solid half [-0.5, 0] hides no more than x + 2 (0 - x) <= 0.9 at height 2.
+    const double x = double(points.position[i].x), z = double(points.position[i].z);
+    exact[i] += kPiD * 3 * rectangle_factor(2 - x, 4 - x, -0.5 - z, 0.5 - z, 2);
+  }
+  expect_unbiased(solve(scene, points, kDirect), exact);
+}
+
+TEST(Lights, ADoubleSidedLampShinesToBothSidesAndAOneSidedToOne) {
+  for (const bool two_sided : {false, true}) {
+    scene::Scene scene;
+    scene::add_material(scene, "lamp", {}, gray(1));
+    scene.materials[0].double_sided = two_sided;
+    add_rectangle(scene, -0.5f, 0.5f, -0.5f, 0.5f, 1, true, 0);  // front up: away from the floor
+    Points points = floor_points();
+    std::vector<double> exact = rectangle_light(points, -0.5, 0.5, -0.5, 0.5, 1, two_sided);
+    points.add({0, 2, 0}, {0, -1, 0});
+    exact.push_back(kPiD * rectangle_factor(-0.5, 0.5, -0.5, 0.5, 1));
+    expect_unbiased(solve(scene, points, kDirect), exact);
+  }
+}
+
+// A mirroring instance keeps its front; a lamp's light must leave from it.
+TEST(Lights, AMirroredLampShinesFromItsFront) {
+  scene::Scene scene;
+  scene::add_material(scene, "lamp", {}, gray(1));
+  add_rectangle(scene, 0.1f, 0.5f, -0.5f, 0.5f, 1, false, 0);
+  scene.instances[0].world_from_object = scaling({-1, 1, 1});
+  const Points points = floor_points();
+  expect_unbiased(solve(scene, points, kDirect),
+                  rectangle_light(points, -0.5, -0.1, -0.5, 0.5, 1, 1));
+}
+
+// Walls that stand on the floor: seen at all angles, from a distance of nothing to far away.
+TEST(Lights, ALampThatTouchesTheReceiverIsSeenExactly) {
+  scene::Scene scene;
+  scene::add_material(scene, "lamp", {}, gray(1));
+  scene::Mesh wall;
+  const std::vector<Vec3> corners{{0, 0, -0.5f}, {0, 1, -0.5f}, {0, 1, 0.5f}, {0, 0, 0.5f}};
+  scene::add_quad(wall, {corners[0], corners[1], corners[2], corners[3]}, 0);
+  ASSERT_GT(scene::geometric_normal_area2({corners[0], corners[1], corners[2]}).x, 0);
+  scene::place(scene, std::move(wall));
+  Points points;
+  std::vector<double> exact;
+  for (int k = 0; k < 100; ++k) {
+    const Vec3 p{1e-3f * std::pow(1.08f, float(k)), 0, 0.1f};
+    points.add(p, {0, 1, 0});
+    exact.push_back(kPiD * std::abs(polygon_factor(p, {0, 1, 0}, corners)));
+  }
+  for (int k = 0; k < 10; ++k) {  // in the lamp's own plane, and behind it
+    points.add({0, 0, 0.6f + float(k)}, {0, 1, 0}), exact.push_back(0);
+    points.add({-0.1f * float(k + 1), 0, 0}, {0, 1, 0}), exact.push_back(0);
+  }
+  // Rays start 2^-18 of the scene's size above the floor: a hundredth of the nearest distance.
+  expect_unbiased(solve(scene, points, kDirect), exact, 2e-3);
+}
+
+scene::Scene lamp_scene(const scene::PunctualLight& lamp) {
+  scene::Scene scene;
+  scene::add_material(scene, "floor", gray(0.5f));
+  add_rectangle(scene, -5, 5, -5, 5, 0, true, 0);
+  scene.lights.push_back(lamp);
+  return scene;
+}
+
+double direct_at(const scene::Scene& scene, Vec3 p, Vec3 n = {0, 1, 0}, int samples = 16) {
+  return double(solve(scene, one_point(p, n), {.samples = samples, .bounces = 0}).irradiance[0].x);
+}
+
+TEST(Lights, PointLightsFallWithTheSquareAndEndAtTheirRange) {
+  scene::PunctualLight lamp;
+  lamp.position = {0, 2, 0};
+  lamp.intensity = {4, 8, 12};
+  EXPECT_NEAR(direct_at(lamp_scene(lamp), {0, 0, 0}), 1.0, 1e-5);
+  EXPECT_NEAR(direct_at(lamp_scene(lamp), {2, 0, 0}), 4 / 8.0 * std::sqrt(0.5), 1e-5);
+  EXPECT_EQ(direct_at(lamp_scene(lamp), {0, 0, 0}, {0, -1, 0}), 0);
+  EXPECT_EQ(direct_at(lamp_scene(lamp), {0, -1, 0}), 0);  // under the floor
+  lamp.range_m = 4;
+  EXPECT_NEAR(direct_at(lamp_scene(lamp), {0, 0, 0}), 1 - 1.0 / 16, 1e-5);
+  lamp.range_m = 2;
+  EXPECT_EQ(direct_at(lamp_scene(lamp), {0, 0, 0}), 0);
+}
+
+TEST(Lights, SpotLightsFadeBetweenTheirCones) {
+  scene::PunctualLight lamp;
+  lamp.kind = Kind::spot;
+  lamp.position = {0, 1, 0};
+  lamp.inner_cone_rad = 0.3f, lamp.outer_cone_rad = 0.6f;
+  const scene::Scene scene = lamp_scene(lamp);
+  for (const double angle : {0.0, 0.25, 0.4, 0.5, 0.59, 0.65}) {
+    const double ramp =
+        std::clamp((std::cos(angle) - std::cos(0.6)) / (std::cos(0.3) - std::cos(0.6)), 0.0, 1.0);
+    EXPECT_NEAR(direct_at(scene, {float(std::tan(angle)), 0, 0}),
+                ramp * ramp * std::pow(std::cos(angle), 3), 1e-4);
+  }
+}
+
+scene::PunctualLight sun(Vec3 direction, float radius) {
+  scene::PunctualLight light;
+  light.kind = Kind::directional;
+  light.direction = normalize(direction);
+  light.angular_radius_rad = radius;
+  light.intensity = gray(100);
+  return light;
+}
+
+TEST(Lights, ASunGivesItsIlluminanceTimesTheCosine) {
+  for (const float radius : {0.0f, 0.00465f, 0.3f})
+    EXPECT_NEAR(direct_at(lamp_scene(sun({1, -1, 0}, radius)), {0, 0, 0}, {0, 1, 0}, 100000),
+                100 * std::sqrt(0.5), radius > 0.1f ? 0.1 : 2e-3);
+  EXPECT_EQ(direct_at(lamp_scene(sun({1, 1, 0}, 0.00465f)), {0, 0, 0}), 0);
+}
+
+// A disc of angular radius a whose centre stands on the horizon: E = L times the integral of the
+// cosine sin(theta) sin(phi) over the upper half, which is 2 L times that of sin^2(theta) to a.
+TEST(Lights, ASunOnTheHorizonIsHalved) {
+  const float a = 0.1f;
+  const double sine = std::sin(0.1), radiance = 100 / (kPiD * sine * sine);
+  scene::Scene scene;
+  scene::add_material(scene, "far", {});
+  add_rectangle(scene, -1, 1, -1, 1, -9, true, 0);
+  scene.lights.push_back(sun({1, 0, 0}, a));
+  double integral = 0;
+  constexpr int kSteps = 2000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double theta = 0.1 * (i + 0.5) / kSteps;
+    integral += 2 * std::sin(theta) * std::sin(theta) * 0.1 / kSteps;
+  }
+  const TexelPaths e = solve(scene, one_point({0, 0, 0}), {.samples = 200000, .bounces = 0});
+  EXPECT_NEAR(double(e.irradiance[0].x), radiance * integral, 3 * double(e.standard_error[0].x));
+  EXPECT_LT(e.standard_error[0].x, 0.01f * e.irradiance[0].x);
+}
+
+TEST(Lights, AnEdgeThroughTheSunsCentreHidesHalfOfIt) {
+  scene::Scene scene = lamp_scene(sun({0, -1, 0}, 0.00465f));
+  add_rectangle(scene, 0, 5, -5, 5, 1, true, 0);
+  const TexelPaths e = solve(scene, one_point({0, 0, 0}), {.samples = 40000, .bounces = 0});
+  EXPECT_NEAR(e.irradiance[0].x, 50, 3 * e.standard_error[0].x);
+  EXPECT_NEAR(e.standard_error[0].x, 50 / std::sqrt(40000.0f), 1e-2f);
+}
+
+// Lamps are picked one at a time; their light must add up, whatever is in their way.
+TEST(Lights, ManyLampsAddUp) {
+  scene::Scene scene = lamp_scene(sun({0.3f, -1, 0.1f}, 0));
+  add_rectangle(scene, 1, 2, -2, 2, 1, true, 0);  // hides some lamps
+  const Points points = floor_points();
+  std::vector<double> exact(points.size(), 100 / std::sqrt(1 + 0.09 + 0.01));
+  for (size_t i = 0; i < points.size(); ++i) {
+    const float reach = points.position[i].x - 0.3f;  // where the sun's ray passes height 1
+    if (reach > 1 && reach < 2) exact[i] = 0;
+  }
+  for (int k = 0; k < 100; ++k) {
+    scene::PunctualLight lamp;
+    lamp.position = {0.07f * float(k) - 3.5f, 2, 0.3f};
+    lamp.intensity = gray(1 + float(k % 7));
+    scene.lights.push_back(lamp);
+    for (size_t i = 0; i < points.size(); ++i) {
+      const Vec3 d = lamp.position - points.position[i];
+      const float at_one = points.position[i].x + 0.5f * d.x;
+      if (at_one < 1 || at_one > 2)
+        exact[i] += double(lamp.intensity.x) * 2 / std::pow(double(length(d)), 3);
+    }
+  }
+  expect_unbiased(solve(scene, points, kDirect), exact);
+}
+
+// What a rectangle does not hide of a uniform sky.
+TEST(Lights, TheBackgroundIsSeenPastSurfaces) {
+  scene::Scene scene;
+  scene::add_material(scene, "roof", {});
+  add_rectangle(scene, -0.5f, 0.5f, -0.5f, 0.5f, 1, false, 0);
+  scene.background = gray(2);
+  const Points points = floor_points();
+  std::vector<double> exact = rectangle_light(points, -0.5, 0.5, -0.5, 0.5, 1, -2);
+  for (double& e : exact) e += 2 * kPiD;
+  expect_unbiased(solve(scene, points, kDirect), exact);
+}
+
+}  // namespace
+}  // namespace luxel::reference

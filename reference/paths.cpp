@@ -1,0 +1,192 @@
+#include "reference/paths.h"
+
+#include <cmath>
+
+#include "base/warp.h"
+
+namespace luxel::reference {
+namespace {
+
+/// Paths of fewer reflections than this are never ended by chance.
+constexpr int kSureBounces = 8;
+/// A ray towards a point of an emitter ends there, unless it met something before this part of it.
+constexpr float kArrived = 1 - 1e-5f, kBeyond = 1 + 1e-4f;
+
+Vec3 mirrored(Vec3 d, Vec3 normal) { return d - normal * (2 * dot(d, normal)); }
+
+/// The cosine with which light from `d` is gathered that surfaces have reflected: directions below
+/// the triangle's own horizon look at their mirror image above it, so that they see light, not the
+/// inside of the solid. Its integral over the hemisphere is pi.
+float folded_cosine(const Receiver& at, Vec3 d) {
+  const float cosine = std::max(0.0f, dot(d, at.normal));
+  if (at.normal == at.geometric_normal) return cosine;
+  return cosine + std::max(0.0f, dot(mirrored(d, at.geometric_normal), at.normal));
+}
+
+/// The power heuristic [Veach95, section 4] for a sample of density `own` that the other strategy
+/// would have found with density `other`.
+float mis_weight(float own, float other) {
+  const float ratio = other / own;
+  return 1 / (1 + ratio * ratio);
+}
+
+trace::Ray random_ray(Path& path) {
+  const Vec3 local = cosine_hemisphere_sample(path.random.next2());
+  Vec3 d = frame_around(path.at.normal).to_world(local);
+  if (dot(d, path.at.geometric_normal) < 0) d = mirrored(d, path.at.geometric_normal);
+  return {path.origin, 0, d, INFINITY};
+}
+
+/// Next-event estimation: one point of the emissive triangles, weighted against the chance that
+/// random_ray finds it.
+void aim_at_emitter(const World& world, Path& path, uint32_t index, PathWork& work) {
+  const EmitterPoint point = sample_emitters(world.emitters, path.random);
+  const Emitter& e = *point.emitter;
+  const Vec3 to_light = point.position - path.origin;
+  const float d2 = dot(to_light, to_light);
+  if (!(d2 > 0)) return;
+  const Vec3 d = to_light / std::sqrt(d2);
+  float light_cosine = -dot(d, e.front);
+  if (e.two_sided) light_cosine = std::abs(light_cosine);
+  const float cosine = dot(d, path.at.normal);
+  if (light_cosine <= 0 || cosine <= 0 || dot(d, path.at.geometric_normal) <= 0) return;
+  if (!scene::is_solid_at(world.scene, {e.instance, e.triangle, point.at})) return;
+  const float pdf = e.pdf_area * d2 / light_cosine;  // per steradian
+  const float weight = mis_weight(pdf, folded_cosine(path.at, d) / kPi);
+  work.emitter_rays.push_back({index, point, path.throughput * (cosine / kPi * weight / pdf)});
+  work.rays.push_back({path.origin, 0, to_light, kBeyond});
+}
+
+void aim_at_lamp(const World& world, Path& path, uint32_t index, PathWork& work) {
+  const LampSample lamp = sample_lamps(world.scene, path.at, path.random, work.lamp_weights);
+  const float cosine = dot(lamp.towards, path.at.normal);
+  if (max_component(lamp.irradiance) <= 0 || cosine <= 0) return;
+  if (dot(lamp.towards, path.at.geometric_normal) <= 0) return;
+  work.lamp_rays.push_back({index, path.throughput * lamp.irradiance * (cosine / kPi)});
+  const float t_max = std::isfinite(lamp.distance_m) ? lamp.distance_m * kArrived : INFINITY;
+  work.shadow_rays.push_back({path.origin, 0, lamp.towards, t_max});
+}
+
+void add_emitter_light(const World& world, const EmitterRay& ray, const trace::Hit& hit,
+                       std::span<Path> paths) {
+  const Emitter& e = *ray.point.emitter;
+  const bool same = hit.instance == e.instance && hit.triangle == e.triangle;
+  if (hit.found() && !same && hit.t < kArrived) return;
+  paths[ray.path].value +=
+      ray.factor * scene::emission_at(world.scene, {e.instance, e.triangle, ray.point.at});
+}
+
+/// Emission that a random ray has found, weighted against the chance that aim_at_emitter picks the
+/// same point. Emitted light counts with the plain cosine, while the ray's density is that of the
+/// folded one.
+void add_found_emission(const World& world, const trace::Hit& hit, Vec3 d, Path& path) {
+  const Rgb emission = scene::emission_at(world.scene, hit.point());
+  const float cosine = dot(d, path.at.normal);
+  if (max_component(emission) <= 0 || cosine <= 0) return;
+  const uint32_t number = world.surfaces.number(hit.instance, hit.triangle);
+  const float folded = folded_cosine(path.at, d);
+  const float pdf_area = world.emitters.pdf_area[number];
+  const float light_cosine = std::abs(dot(d, world.surfaces.front[number]));
+  if (pdf_area > 0 && light_cosine <= 0) return;
+  const float weight =
+      pdf_area > 0 ? mis_weight(folded / kPi, pdf_area * hit.t * hit.t / light_cosine) : 1.0f;
+  path.value += path.throughput * emission * (cosine / folded * weight);
+}
+
+/// Russian roulette: a path that carries little ends, or goes on for those that did.
+bool survives(Path& path, int reflections) {
+  const float carried = luminance(path.throughput);
+  if (!(carried > 0)) return false;
+  if (reflections <= kSureBounces || carried >= 1) return true;
+  if (path.random.next() >= carried) return false;
+  path.throughput = path.throughput / carried;
+  return true;
+}
+
+/// Takes the light that the path's ray has found and moves the path there. False when it ends.
+bool advance(const World& world, const trace::Ray& ray, const trace::Hit& hit, int depth,
+             int bounces, Path& path) {
+  if (!hit.found()) {
+    path.value += path.throughput * world.scene.background;
+    return false;
+  }
+  if (hit.back_face) {
+    const bool two_sided = scene::material_at(world.scene, hit.point()).double_sided;
+    if (depth == 0) path.first_hit = two_sided ? FirstHit::double_sided_back : FirstHit::back;
+    if (!two_sided) return false;
+  }
+  add_found_emission(world, hit, ray.direction, path);
+  if (depth == bounces) return false;
+  path.throughput = path.throughput * scene::reflectance_at(world.scene, hit.point());
+  if (!survives(path, depth + 1)) return false;
+  path.at = receiver_at(world.scene, world.surfaces, hit);
+  path.origin = trace::offset_origin(path.at.position, path.at.geometric_normal, world.diagonal_m);
+  return true;
+}
+
+}  // namespace
+
+World world_of(const scene::Scene& scene, const trace::RayTracer& tracer) {
+  Surfaces surfaces = surfaces_of(scene);
+  Emitters emitters = collect_emitters(scene, surfaces);
+  return {scene, tracer, std::move(surfaces), std::move(emitters),
+          scene::world_bounds(scene).diagonal()};
+}
+
+Path path_from(const World& world, const Receiver& at, RandomStream random) {
+  Path path;
+  path.at = at;
+  path.origin = trace::offset_origin(at.position, at.geometric_normal, world.diagonal_m);
+  path.random = random;
+  return path;
+}
+
+Path path_from_eye(const World& world, const trace::Hit& hit, RandomStream random) {
+  if (!hit.found()) {
+    Path path;
+    path.throughput = {};
+    path.value = world.scene.background;
+    return path;
+  }
+  Path path = path_from(world, receiver_at(world.scene, world.surfaces, hit), random);
+  path.throughput = scene::reflectance_at(world.scene, hit.point());
+  path.value = scene::emission_at(world.scene, hit.point());
+  path.shows_surface = true;
+  return path;
+}
+
+uint64_t follow(const World& world, int bounces, std::span<Path> paths, PathWork& work) {
+  uint64_t rays = 0;
+  work.active.clear();
+  for (uint32_t i = 0; i < paths.size(); ++i)
+    if (max_component(paths[i].throughput) > 0) work.active.push_back(i);
+  for (int depth = 0; !work.active.empty(); ++depth) {
+    work.rays.clear(), work.emitter_rays.clear();
+    work.shadow_rays.clear(), work.lamp_rays.clear();
+    for (const uint32_t i : work.active) work.rays.push_back(random_ray(paths[i]));
+    for (const uint32_t i : work.active) {
+      if (!world.emitters.triangles.empty()) aim_at_emitter(world, paths[i], i, work);
+      if (!world.scene.lights.empty()) aim_at_lamp(world, paths[i], i, work);
+    }
+    work.hits.resize(work.rays.size());
+    world.tracer.closest_hits(work.rays, work.hits);
+    work.blocked.resize(work.shadow_rays.size());
+    world.tracer.occluded(work.shadow_rays, work.blocked);
+    rays += work.rays.size() + work.shadow_rays.size();
+    const size_t count = work.active.size();
+    for (size_t k = 0; k < work.emitter_rays.size(); ++k)
+      add_emitter_light(world, work.emitter_rays[k], work.hits[count + k], paths);
+    for (size_t k = 0; k < work.lamp_rays.size(); ++k)
+      if (!work.blocked[k]) paths[work.lamp_rays[k].path].value += work.lamp_rays[k].light;
+    work.next.clear();
+    for (size_t k = 0; k < count; ++k) {
+      const uint32_t i = work.active[k];
+      if (advance(world, work.rays[k], work.hits[k], depth, bounces, paths[i]))
+        work.next.push_back(i);
+    }
+    work.active.swap(work.next);
+  }
+  return rays;
+}
+
+}  // namespace luxel::reference

@@ -1,6 +1,7 @@
 #include "image/flip.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/check.h"
@@ -50,11 +51,22 @@ Vec3 opponent_from_rgb(Rgb c) {
 }
 Rgb rgb_from_opponent(Vec3 o) { return multiply(kRgbFromXyz, {o.x + o.y, o.x, o.x - o.z}); }
 
+/// For x > 0, to a few roundings and several times as fast as std::cbrt. A third of the float's
+/// bits is within 4 % of the root; each step of Halley's method has the cube of the error before.
+float cube_root(float x) {
+  float y = std::bit_cast<float>(std::bit_cast<uint32_t>(x) / 3 + 0x2a510000u);
+  for (int i = 0; i < 2; ++i) {
+    const float cube = y * y * y;
+    y *= (cube + 2 * x) / (2 * cube + x);
+  }
+  return y;
+}
+
 /// CIE L*a*b*, with a and b scaled by L / 100: colours look more colourful when bright (Hunt).
 Vec3 hunt_lab_from_rgb(Rgb c) {
   constexpr float kDelta = 6.0f / 29;
   const auto f = [](float t) {
-    return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4.0f / 29;
+    return t > kDelta * kDelta * kDelta ? cube_root(t) : t / (3 * kDelta * kDelta) + 4.0f / 29;
   };
   const Vec3 xyz = multiply(kXyzFromRgb, c);
   const float fx = f(xyz.x), fy = f(xyz.y), fz = f(xyz.z);

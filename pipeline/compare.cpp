@@ -2,8 +2,12 @@
 
 #include <cmath>
 
+#include "base/file.h"
 #include "display/tone_map.h"
 #include "image/flip.h"
+#include "pipeline/bake.h"
+#include "pipeline/compare_report.h"
+#include "pipeline/output_folder.h"
 #include "pipeline/picture.h"
 
 namespace luxel::pipeline {
@@ -25,6 +29,9 @@ Status check(const CompareSettings& s) {
                   "{} is a folder without lightmap.exr; give a picture or what `luxel bake` left",
                   path.string());
   }
+  if (s.report && s.report->empty())
+    return fail(ErrorCode::bad_setting, "--report names no folder");
+  if (s.report) LUXEL_TRY_STATUS(OutputFolder(*s.report).try_out());
   if (s.exposure && !(std::isfinite(*s.exposure) && *s.exposure > 0))
     return fail(ErrorCode::bad_setting, "--exposure {} is not a positive number", *s.exposure);
   return {};
@@ -69,6 +76,28 @@ double psnr_of_display(const image::Image8& a, const image::Image8& b, const ima
   return rmse > 0 ? 20 * std::log10(255 / rmse) : INFINITY;
 }
 
+/// The previews of two bakes, when both are there and can be read.
+std::vector<image::Image8> previews_of(const CompareSettings& s) {
+  std::vector<image::Image8> out;
+  for (const fs::path& folder : {s.a, s.b}) {
+    std::error_code ignored;
+    if (!fs::exists(folder / "preview.png", ignored)) return {};
+    Result<Picture> preview = read_picture(folder / "preview.png");
+    if (!preview || preview->hdr()) return {};
+    out.push_back(std::move(preview->shown));
+  }
+  return out;
+}
+
+Result<fs::path> write_report(const fs::path& folder, const std::string& html) {
+  OutputFolder output(folder);
+  LUXEL_TRY_STATUS(output.make());
+  const fs::path file = folder / "report.html";
+  LUXEL_TRY_STATUS(write_file_atomically(file, std::as_bytes(std::span(html.data(), html.size()))));
+  output.keep();
+  return file;
+}
+
 nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
@@ -102,6 +131,12 @@ Result<Compared> compare(const CompareSettings& s, Progress& progress) {
   progress.begin("flip", 0);
   const image::Image flip = flip_map(a, b, covered);
   out.flip = image::mean_over(flip, covered);
+  if (!s.report) return out;
+
+  progress.begin(kWriteStage, 0);
+  const CompareImages images{
+      path_a.string(), path_b.string(), a, b, covered, shown_a, shown_b, flip, previews_of(s)};
+  LUXEL_TRY(out.report, write_report(*s.report, compare_report(out, images)));
   return out;
 }
 

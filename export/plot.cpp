@@ -102,13 +102,16 @@ void draw_axes(const Plot& plot, const Frame& f, Out out) {
                    mid_y, escape_xml(plot.y_label));
 }
 
-/// The points that can be drawn, in pixels. Far outside the frame they are moved to where numbers
-/// stay small; the clip hides them.
+/// In pixels. Far outside the frame points are moved to where numbers stay small; the clip hides
+/// them. A step whose height cannot be shown (0 on a logarithmic axis) lies on the ground.
 std::vector<std::array<double, 2>> pixels_of(const Series& s, const Frame& f) {
   std::vector<std::array<double, 2>> out;
-  for (const auto& p : s.points)
-    if (f.x.can_show(p[0]) && f.y.can_show(p[1]))
-      out.push_back({std::clamp(f.px(p[0]), -1e4, 1e4), std::clamp(f.py(p[1]), -1e4, 1e4)});
+  for (const auto& p : s.points) {
+    const bool ground = s.stroke == Stroke::steps && !f.y.can_show(p[1]);
+    if (!f.x.can_show(p[0]) || (!f.y.can_show(p[1]) && !ground)) continue;
+    const double y = ground ? f.bottom : f.py(p[1]);
+    out.push_back({std::clamp(f.px(p[0]), -1e4, 1e4), std::clamp(y, -1e4, 1e4)});
+  }
   return out;
 }
 

@@ -28,7 +28,8 @@ struct Plot {
 
 /// One <svg> element, to be put into a page or a file of its own: no script, nothing from
 /// elsewhere, light and dark after the reader's setting. Points that an axis cannot show (not
-/// finite; not positive on a logarithmic axis) are left out. The same text for the same plot.
+/// finite; not positive on a logarithmic axis) are left out; steps lie on the ground there. The
+/// same text for the same plot.
 std::string svg(const Plot& plot);
 
 /// `text` with the characters escaped that mean something in XML and HTML.

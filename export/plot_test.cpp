@@ -50,6 +50,21 @@ TEST(Plot, ANeverSeenPointIsLeftOut) {
   EXPECT_THAT(svg(plot), Not(testing::AnyOf(HasSubstr("nan"), HasSubstr("inf"))));
 }
 
+// Three steps of height 10, 0 and 10 on a logarithmic axis: the middle one goes down to the ground,
+// where the path starts.
+TEST(Plot, AnEmptyStepLiesOnTheGround) {
+  Plot plot{"", "", "", false, true, {{"", {{0, 10}, {1, 0}, {2, 10}}, Stroke::steps}}, {}, {}};
+  plot.x_range = {{0, 3}};
+  plot.y_range = {{1, 100}};
+  const std::string text = svg(plot);
+  const std::regex path(" d=\"M[0-9.]+ ([0-9.]+)V([0-9.]+)H[0-9.]+V([0-9.]+)H[0-9.]+V([0-9.]+)H");
+  std::smatch m;
+  ASSERT_TRUE(std::regex_search(text, m, path)) << text;
+  EXPECT_EQ(m[3], m[1]);
+  EXPECT_EQ(m[4], m[2]);
+  EXPECT_NE(m[2], m[1]);
+}
+
 TEST(Plot, EveryWordIsEscaped) {
   Plot plot = power_law();
   plot.title = "<script>";

@@ -91,7 +91,7 @@ Section histogram_section(const Compared& c, const CompareImages& in,
   difference.x_range = {{0, std::max(50.0, double(last + 1))}};
   difference.series = {steps("", counts, total)};
   return {"Histograms",
-          "Display values from 0 to 255, after one tone mapping for both.",
+          "Display values, from 0 to 255.",
           {plot_panel(brightness, "Brightness of A and B"),
            plot_panel(difference, "Pixel differences (logarithmic)")}};
 }

@@ -28,6 +28,14 @@ Result<std::vector<std::byte>> encode_exr(const Image& image);
 /// Channels R, G, B and, when present, A; a file without R, G, B is an error.
 Result<Image> decode_exr(std::span<const std::byte> bytes, std::string_view name);
 
+/// Radiance .hdr (RGBE) to three channels of linear light, divided by the file's EXPOSURE and
+/// COLORCORR; flat or with either run-length code, in any of the eight orientations. PRIMARIES and
+/// other header lines are ignored, as everywhere; the XYZ variant is an error.
+Result<Image> decode_hdr(std::span<const std::byte> bytes, std::string_view name);
+/// The first three channels, rounded to the 8 bits that share an exponent; negative values become
+/// 0.
+std::vector<std::byte> encode_hdr(const Image& image);
+
 /// Linear light to 8-bit sRGB, clamped to [0, 1]; channel 3, when present, stays linear.
 Image8 to_srgb8(const Image& linear);
 

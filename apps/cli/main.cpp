@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
   Action action;
   register_bake(app, action);
   register_render(app, action);
+  register_compare(app, action);
   register_info(app, action);
   register_bench(app, action);
   if (argc == 1) {

@@ -1,0 +1,164 @@
+#include "pipeline/compare.h"
+
+#include <cmath>
+
+#include "base/file.h"
+#include "display/tone_map.h"
+#include "image/flip.h"
+#include "pipeline/bake.h"
+#include "pipeline/compare_report.h"
+#include "pipeline/output_folder.h"
+#include "pipeline/picture.h"
+
+namespace luxel::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder stands for the lightmap of the bake in it.
+fs::path picture_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) ? path / "lightmap.exr" : path;
+}
+
+Status check(const CompareSettings& s) {
+  for (const fs::path& path : {s.a, s.b}) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored) && !fs::exists(picture_file(path), ignored))
+      return fail(ErrorCode::bad_input,
+                  "{} is a folder without lightmap.exr; give a picture or what `luxel bake` left",
+                  path.string());
+  }
+  if (s.report && s.report->empty())
+    return fail(ErrorCode::bad_setting, "--report names no folder");
+  if (s.report) LUXEL_TRY_STATUS(OutputFolder(*s.report).try_out());
+  if (s.exposure && !(std::isfinite(*s.exposure) && *s.exposure > 0))
+    return fail(ErrorCode::bad_setting, "--exposure {} is not a positive number", *s.exposure);
+  return {};
+}
+
+/// Equal files of one kind: light with light, display values with display values.
+Status check_kinds(const Picture& a, const fs::path& path_a, const Picture& b,
+                   const fs::path& path_b) {
+  if (a.hdr() == b.hdr()) return {};
+  const fs::path &light = a.hdr() ? path_a : path_b, &shown = a.hdr() ? path_b : path_a;
+  return fail(ErrorCode::bad_input,
+              "{} holds light and {} display values, whose tone mapping is not known; compare two "
+              "of EXR and HDR, or two of PNG and JPEG",
+              light.string(), shown.string());
+}
+
+/// Texels that only one of both covers were laid out, not lit, differently.
+void warn_of_coverage(const image::Image& a, const image::Image& b, uint64_t common,
+                      std::vector<std::string>& warnings) {
+  if (a.channels < 4) return;
+  uint64_t in_a = 0, in_b = 0;
+  for (size_t i = 3; i < a.data.size(); i += 4) in_a += a.data[i] >= 1, in_b += b.data[i] >= 1;
+  const uint64_t most = std::max(in_a, in_b);
+  if (double(common) < 0.99 * double(most))
+    warnings.push_back(fmt::format(
+        "A covers {} pixels, B {}, both only {}: the layouts differ, and pixels may show different "
+        "places",
+        in_a, in_b, common));
+}
+
+image::Image flip_map(const Picture& a, const Picture& b, const image::Mask& covered) {
+  const image::Image filled = image::with_uncovered_of(a.linear, b.linear, covered);
+  if (!b.hdr()) return image::flip(filled, b.linear);
+  return image::hdr_flip(filled, b.linear, image::flip_exposures(b.linear, covered));
+}
+
+/// [dB] of display values against 255.
+double psnr_of_display(const image::Image8& a, const image::Image8& b, const image::Mask& covered) {
+  image::Image fa(a.width, a.height, a.channels), fb = fa;
+  for (size_t i = 0; i < a.data.size(); ++i) fa.data[i] = a.data[i], fb.data[i] = b.data[i];
+  const double rmse = image::difference(fa, fb, covered).rmse;
+  return rmse > 0 ? 20 * std::log10(255 / rmse) : INFINITY;
+}
+
+/// The previews of two bakes, when both are there and can be read.
+std::vector<image::Image8> previews_of(const CompareSettings& s) {
+  std::vector<image::Image8> out;
+  for (const fs::path& folder : {s.a, s.b}) {
+    std::error_code ignored;
+    if (!fs::exists(folder / "preview.png", ignored)) return {};
+    Result<Picture> preview = read_picture(folder / "preview.png");
+    if (!preview || preview->hdr()) return {};
+    out.push_back(std::move(preview->shown));
+  }
+  return out;
+}
+
+Result<fs::path> write_report(const fs::path& folder, const std::string& html) {
+  OutputFolder output(folder);
+  LUXEL_TRY_STATUS(output.make());
+  const fs::path file = folder / "report.html";
+  LUXEL_TRY_STATUS(write_file_atomically(file, std::as_bytes(std::span(html.data(), html.size()))));
+  output.keep();
+  return file;
+}
+
+nlohmann::json number_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+}  // namespace
+
+Result<Compared> compare(const CompareSettings& s, Progress& progress) {
+  LUXEL_TRY_STATUS(check(s));
+  progress.begin("read", 0);
+  const fs::path path_a = picture_file(s.a), path_b = picture_file(s.b);
+  LUXEL_TRY(const Picture a, read_picture(path_a));
+  LUXEL_TRY(const Picture b, read_picture(path_b));
+  LUXEL_TRY_STATUS(check_kinds(a, path_a, b, path_b));
+  LUXEL_TRY(const image::Mask covered,
+            image::covered_pixels(a.linear, path_a.string(), b.linear, path_b.string()));
+
+  progress.begin("measure", 0);
+  Compared out;
+  out.hdr = b.hdr();
+  out.difference = image::difference(a.linear, b.linear, covered);
+  warn_of_coverage(a.linear, b.linear, out.difference.texels, out.warnings);
+  if (out.hdr) out.exposure = s.exposure.value_or(double(display::auto_exposure(b.linear)));
+  const image::Image8 shown_a = shown_at(a, float(out.exposure));
+  const image::Image8 shown_b = shown_at(b, float(out.exposure));
+  out.psnr_db = out.hdr ? out.difference.psnr_db : psnr_of_display(shown_a, shown_b, covered);
+  const image::Histogram differences =
+      image::histogram(image::pixel_differences(shown_a, shown_b), covered);
+  for (size_t k = 0; k < out.share_above.size(); ++k)
+    out.share_above[k] = image::share_above(differences, image::kDifferenceLevels[k]);
+
+  progress.begin("flip", 0);
+  const image::Image flip = flip_map(a, b, covered);
+  out.flip = image::mean_over(flip, covered);
+  if (!s.report) return out;
+
+  progress.begin(kWriteStage, 0);
+  const CompareImages images{
+      path_a.string(), path_b.string(), a, b, covered, shown_a, shown_b, flip, previews_of(s)};
+  LUXEL_TRY(out.report, write_report(*s.report, compare_report(out, images)));
+  return out;
+}
+
+nlohmann::json to_json(const Compared& c) {
+  const image::Difference& d = c.difference;
+  return {{"rmse", d.rmse},
+          {"rmse_over_mean", number_or_null(d.rmse_over_mean)},
+          {"relative_rmse", number_or_null(d.relative_rmse)},
+          {"bias", d.bias},
+          {"bias_over_mean", number_or_null(d.bias_over_mean)},
+          {"mean_abs", d.mean_abs},
+          {"max_abs", d.max_abs},
+          {"max_abs_at", d.max_at},
+          {"mean_of_b", d.mean},
+          {"psnr_db", number_or_null(c.psnr_db)},
+          {"flip", c.flip},
+          {"texels", d.texels},
+          {"share_above_10", c.share_above[0]},
+          {"share_above_25", c.share_above[1]},
+          {"share_above_40", c.share_above[2]},
+          {"exposure", c.exposure},
+          {"hdr", c.hdr}};
+}
+
+}  // namespace luxel::pipeline

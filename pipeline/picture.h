@@ -1,0 +1,23 @@
+// A picture from a file of any format that luxel reads.
+#pragma once
+
+#include <filesystem>
+
+#include "base/result.h"
+#include "image/codec.h"
+
+namespace luxel::pipeline {
+
+struct Picture {
+  image::Image linear;  ///< light, or display values decoded to light
+  image::Image8 shown;  ///< the display values of an 8-bit picture; empty for light
+  bool hdr() const { return shown.data.empty(); }
+};
+
+/// EXR, Radiance HDR, PNG or JPEG, told apart by their first bytes, not by their names.
+Result<Picture> read_picture(const std::filesystem::path& path);
+
+/// The picture as a screen shows it: its display values, or its light tone mapped.
+image::Image8 shown_at(const Picture& picture, float exposure);
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,248 @@
+// `luxel compare`: numbers, exit codes, refusals, and the page it writes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "image/codec.h"
+#include "tests/command.h"
+
+namespace luxel::testing_support {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string text_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// 16 x 8, grey; alpha of 1 when there are four channels.
+image::Image grey(float value, int channels = 3, int width = 16) {
+  image::Image image(width, 8, channels);
+  std::fill(image.data.begin(), image.data.end(), value);
+  if (channels == 4)
+    for (size_t i = 3; i < image.data.size(); i += 4) image.data[i] = 1;
+  return image;
+}
+std::string exr(const image::Image& image) { return text_of(*image::encode_exr(image)); }
+std::string hdr(const image::Image& image) { return text_of(image::encode_hdr(image)); }
+std::string png(uint8_t value) {
+  return text_of(image::encode_png({16, 8, 3, std::vector<uint8_t>(16 * 8 * 3, value)}));
+}
+
+CommandResult compare(const std::filesystem::path& a, const std::filesystem::path& b,
+                      const std::string& options = "") {
+  return luxel("compare " + a.string() + " " + b.string() + " " + options);
+}
+
+TEST(Compare, JsonHasTheKeysOfTheContractAndTheirValues) {
+  const ScratchFolder s;
+  const auto a = s.write("a.exr", exr(grey(0.75f))), b = s.write("b.exr", exr(grey(0.5f)));
+  const CommandResult r = compare(a, b, "--json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_DOUBLE_EQ(json["rmse"], 0.25);
+  EXPECT_DOUBLE_EQ(json["rmse_over_mean"], 0.5);
+  EXPECT_DOUBLE_EQ(json["relative_rmse"], 0.25 / 0.505);
+  EXPECT_DOUBLE_EQ(json["bias_over_mean"], 0.5);
+  EXPECT_DOUBLE_EQ(json["max_abs"], 0.25);
+  EXPECT_DOUBLE_EQ(json["psnr_db"], 20 * std::log10(2.0));
+  EXPECT_EQ(json["texels"], 128);
+  EXPECT_GT(json["flip"], 0.01);
+  EXPECT_LT(json["flip"], 1);
+  EXPECT_DOUBLE_EQ(json["share_above_10"], 1);
+  EXPECT_EQ(json["hdr"], true);
+}
+
+TEST(Compare, EqualPicturesHaveNoFiniteRatio) {
+  const ScratchFolder s;
+  const auto a = s.write("a.hdr", hdr(grey(0.5f)));
+  const auto json = nlohmann::json::parse(compare(a, a, "--json").out);
+  EXPECT_TRUE(json["psnr_db"].is_null());
+  for (const char* key : {"rmse", "relative_rmse", "bias", "max_abs", "flip", "share_above_10"})
+    EXPECT_EQ(json[key], 0) << key;
+  EXPECT_THAT(compare(a, a).out, HasSubstr("inf dB"));
+  EXPECT_EQ(compare(a, a, "--max-relative-rmse 0").code, 0);
+}
+
+// Two steps of 255: 20 log10(255 / 2) dB whatever the value; light is compared for the rest.
+TEST(Compare, DisplayValuesHaveThePsnrThatIsUsualForThem) {
+  const ScratchFolder s;
+  const auto a = s.write("a.png", png(102)), b = s.write("b.png", png(100));
+  const auto json = nlohmann::json::parse(compare(a, b, "--json").out);
+  EXPECT_NEAR(json["psnr_db"], 42.1102, 1e-4);
+  const auto light = [](double v) { return std::pow((v / 255 + 0.055) / 1.055, 2.4); };
+  EXPECT_NEAR(json["bias"], light(102) - light(100), 1e-6);
+  EXPECT_EQ(json["share_above_10"], 0);
+  EXPECT_EQ(json["hdr"], false);
+}
+
+// The same light in two formats; 0.5 is exact in both.
+TEST(Compare, FormatsAreKnownByTheirContent) {
+  const ScratchFolder s;
+  const auto a = s.write("a.hdr", exr(grey(0.5f))), b = s.write("b.bin", hdr(grey(0.5f)));
+  const CommandResult r = compare(a, b, "--max-relative-rmse 0");
+  EXPECT_EQ(r.code, 0) << r.err;
+}
+
+TEST(Compare, BeyondTheLimitIsCodeOne) {
+  const ScratchFolder s;
+  const auto a = s.write("a.exr", exr(grey(1.02f))), b = s.write("b.exr", exr(grey(1)));
+  EXPECT_EQ(compare(a, b, "--max-relative-rmse 0.0199").code, 0);
+  const CommandResult r = compare(a, b, "--json --max-relative-rmse 0.0197");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("luxel: the relative RMSE is 0.01980"));
+  EXPECT_THAT(r.err, HasSubstr("above --max-relative-rmse 0.0197"));
+  EXPECT_NEAR(nlohmann::json::parse(r.out)["relative_rmse"], 0.02 / 1.01, 1e-6);
+  const auto black = s.write("black.exr", exr(grey(0)));
+  EXPECT_EQ(compare(a, black, "--max-relative-rmse 1000").code, 1);
+  EXPECT_EQ(compare(a, b, "--quiet").out, "");
+}
+
+/// Compares and expects a refusal with `words`, in one sentence, with no report.
+void expect_refused(const std::filesystem::path& a, const std::filesystem::path& b,
+                    const std::string& words) {
+  const ScratchFolder scratch;
+  const auto folder = scratch.path / "report";
+  const CommandResult r = compare(a, b, "--quiet --json --report " + folder.string());
+  EXPECT_EQ(r.code, 1) << words;
+  EXPECT_THAT(r.err, testing::StartsWith("luxel: "));
+  EXPECT_THAT(r.err, HasSubstr(words));
+  EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+  EXPECT_EQ(r.out, "");
+  EXPECT_FALSE(std::filesystem::exists(folder)) << words;
+}
+
+TEST(Compare, WhatCannotBeReadIsRefused) {
+  const ScratchFolder s;
+  const auto good = s.write("good.exr", exr(grey(1)));
+  expect_refused(s.path / "none.exr", good, "none.exr: no such file");
+  expect_refused(good, s.write("empty.exr", ""), "empty.exr: this is no picture");
+  expect_refused(good, s.write("text.png", "hello"), "text.png: this is no picture");
+  expect_refused(s.write("half.exr", exr(grey(1)).substr(0, 300)), good, "half.exr: ");
+  expect_refused(s.write("half.hdr", hdr(grey(1)).substr(0, 70)), good,
+                 "half.hdr: the HDR file ends");
+  expect_refused(s.write("half.png", png(1).substr(0, 50)), good, "half.png: ");
+  expect_refused(s.path, good, "is a folder without lightmap.exr");
+}
+
+TEST(Compare, WhatDoesNotFitIsRefused) {
+  const ScratchFolder s;
+  const auto good = s.write("good.exr", exr(grey(1)));
+  expect_refused(s.write("wide.exr", exr(grey(1, 3, 17))), good, "has 17 x 8 pixels and ");
+  expect_refused(s.write("alpha.exr", exr(grey(1, 4))), good, "has 4 channels and ");
+  expect_refused(good, s.write("shown.png", png(9)), "shown.png display values");
+  image::Image empty = grey(1, 4);
+  for (size_t i = 3; i < empty.data.size(); i += 4) empty.data[i] = 0.5f;
+  expect_refused(s.write("dilated.exr", exr(empty)), s.write("full.exr", exr(grey(1, 4))),
+                 "no pixel in common");
+}
+
+TEST(Compare, APixelThatIsNoNumberIsNamed) {
+  const ScratchFolder s;
+  // One pixel cannot be compressed: its floats stand in the file as they are.
+  image::Image one(1, 1, 3);
+  one.set_rgb(0, 0, {1, 1234.5f, 1});
+  const auto good = s.write("good.exr", exr(one));
+  for (const float bad : {NAN, INFINITY}) {
+    std::string file = exr(one);
+    const float value = 1234.5f;
+    const size_t at = file.find(std::string(reinterpret_cast<const char*>(&value), 4));
+    ASSERT_NE(at, std::string::npos);
+    std::memcpy(file.data() + at, &bad, 4);
+    expect_refused(s.write("bad.exr", file), good, "bad.exr: pixel (0, 0)");
+    expect_refused(good, s.write("bad.exr", file), "bad.exr: pixel (0, 0)");
+  }
+}
+
+TEST(Compare, BadSettings) {
+  const ScratchFolder s;
+  const auto a = s.write("a.exr", exr(grey(1)));
+  EXPECT_EQ(luxel("compare " + a.string()).code, 2);
+  EXPECT_EQ(compare(a, a, "--max-relative-rmse -1").code, 2);
+  EXPECT_EQ(compare(a, a, "--max-relative-rmse few").code, 2);
+  for (const char* exposure : {"0", "-2", "nan", "inf"}) {
+    const CommandResult r = compare(a, a, std::string("--exposure ") + exposure);
+    EXPECT_EQ(r.code, 1) << exposure;
+    EXPECT_THAT(r.err, HasSubstr("is not a positive number"));
+  }
+}
+
+TEST(CompareReport, IntoAFolderThatCannotBeWritten) {
+  const ScratchFolder s;
+  const auto a = s.write("a.exr", exr(grey(1)));
+  const CommandResult in_the_way = compare(a, a, "--report " + a.string());
+  EXPECT_EQ(in_the_way.code, 1);
+  EXPECT_THAT(in_the_way.err, HasSubstr("is a file; choose another name"));
+  EXPECT_THAT(compare(a, a, "--report ''").err, HasSubstr("--report names no folder"));
+  if (::geteuid() == 0) return;  // root may write everywhere
+  const auto locked = s.path / "locked";
+  std::filesystem::create_directory(locked);
+  std::filesystem::permissions(locked, std::filesystem::perms(0555));
+  EXPECT_THAT(compare(a, a, "--report " + locked.string()).err, HasSubstr("Permission denied"));
+}
+
+std::string without(std::string text, const std::string& part) {
+  for (size_t at; (at = text.find(part)) != std::string::npos;) text.erase(at, part.size());
+  return text;
+}
+size_t count_of(const std::string& text, const std::string& part) {
+  size_t count = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(CompareReport, IsOnePageWithEverythingInside) {
+  const ScratchFolder s;
+  image::Image lit = grey(0.5f, 4);
+  for (int x = 0; x < 16; ++x) lit.set_rgb(x, 3, {0.1f * float(x), 0.5f, 0.5f});
+  lit.at(0, 0)[3] = 0;
+  const auto a = s.write("<a>.exr", exr(grey(0.5f, 4))), b = s.write("b.exr", exr(lit));
+  const CommandResult r = luxel("compare '" + a.string() + "' " + b.string() + " --report " +
+                                (s.path / "out/deep").string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(files_in(s.path / "out/deep"), std::set<std::string>{"report.html"});
+  EXPECT_THAT(r.err, HasSubstr("wrote " + (s.path / "out/deep/report.html").string()));
+  const std::string html = slurp(s.path / "out/deep/report.html");
+  for (const char* heading : {"Side by side", "Where they differ", "Histograms", "Contours",
+                              "Pixel differences", "Relative RMSE", "HDR-FLIP", "not compared"})
+    EXPECT_THAT(html, HasSubstr(heading));
+  EXPECT_EQ(count_of(html, "<img "), 9u);
+  EXPECT_EQ(count_of(html, "src=\"data:image/png;base64,iVBORw0KGgo"), 9u);
+  EXPECT_EQ(count_of(html, "<svg xmlns"), 2u);
+  EXPECT_THAT(html, HasSubstr("&lt;a&gt;.exr"));
+  // The name of SVG is the only thing that looks like a link.
+  const std::string rest = without(html, "xmlns=\"http://www.w3.org/2000/svg\"");
+  for (const char* outside : {"http", "<script", "<link", "url(", "@import", "<a>", "<iframe"})
+    EXPECT_THAT(rest, Not(HasSubstr(outside)));
+  // The same page again, and in place of the old one.
+  compare(b, b, "--report " + (s.path / "out/deep").string());
+  EXPECT_NE(slurp(s.path / "out/deep/report.html"), html);
+}
+
+TEST(CompareReport, OfTwoBakesShowsTheScenesToo) {
+  const ScratchFolder s;
+  for (const char* seed : {"1", "2"})
+    ASSERT_EQ(luxel("bake " + scene_file("cornell-box.glb") + " -o " + (s.path / seed).string() +
+                    " --resolution 64 --samples 8 --quiet --seed " + seed)
+                  .code,
+              0);
+  const CommandResult r =
+      compare(s.path / "1", s.path / "2", "--json --report " + (s.path / "r").string());
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_GT(json["texels"], 1000);
+  EXPECT_LT(json["texels"], 64 * 64);
+  EXPECT_GT(json["relative_rmse"], 0.01);
+  EXPECT_LT(std::abs(double(json["bias_over_mean"])), 0.02);
+  const std::string html = slurp(s.path / "r/report.html");
+  EXPECT_THAT(html, HasSubstr("The scenes"));
+  EXPECT_EQ(count_of(html, "<img "), 11u);
+}
+
+}  // namespace
+}  // namespace luxel::testing_support

@@ -5,49 +5,17 @@
 #include <atomic>
 #include <chrono>
 
-#include "atlas/atlas.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "bench/bench.h"
+#include "bench/prepared.h"
 #include "import/import.h"
-#include "pipeline/settings.h"
 #include "scene/procedural.h"
 #include "solve/gather/gather.h"
 #include "trace/ray_tracer.h"
-#include "transport/elements.h"
-#include "transport/lights.h"
 
 namespace luxel::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// A scene ready for gather. Members refer to each other: it is made in place and not moved.
-struct Prepared {
-  scene::Scene scene;
-  atlas::Atlas atlas;
-  atlas::TexelMap map;
-  transport::Elements elements;
-  transport::Lights lights;
-};
-
-Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution) {
-  auto p = std::make_unique<Prepared>();
-  p->scene = std::move(scene);
-  pipeline::add_outside_light({}, p->scene);
-  atlas::AtlasParams params;
-  params.resolution = resolution;
-  Progress progress;
-  LUXEL_TRY(p->atlas, atlas::make_atlas(p->scene, params, progress));
-  p->map = atlas::rasterise(p->scene, p->atlas);
-  p->elements = transport::elements_from_texels(p->scene, p->atlas, p->map);
-  p->lights = transport::collect_lights(p->scene);
-  return p;
-}
 
 /// The same triangles, in the world, in one Embree scene of this file's own: the yardstick.
 class BareEmbree {
@@ -132,12 +100,12 @@ double bare_rate(const Prepared& p, int samples) {
   return double(p.elements.size()) * samples / (double(nanoseconds) * 1e-9 / thread_count());
 }
 
-double gather_rate(const Prepared& p, const trace::RayTracer& tracer, int samples) {
+double gather_rate(const Prepared& p, int samples) {
   Progress progress;
   gather::TraceParams params;
   params.samples = samples;
   const auto start = Clock::now();
-  const auto hits = gather::trace_hits(p.scene, p.atlas, p.elements, tracer, params, progress);
+  const auto hits = gather::trace_hits(p.scene, p.atlas, p.elements, *p.tracer, params, progress);
   return hits ? double(hits->rays) / seconds_since(start) : 0.0;
 }
 
@@ -180,12 +148,11 @@ Result<Table> measure_rays(const std::filesystem::path& shared, int threads) {
     if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
     LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(std::move(scene), 512));
-    LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(p->scene));
     // In turn, so that a machine that speeds up or slows down does it to both.
     std::vector<double> bare, ours, ratio;
     for (int round = 0; round < kRounds; ++round) {
       bare.push_back(bare_rate(*p, kSamples));
-      ours.push_back(gather_rate(*p, tracer, kSamples));
+      ours.push_back(gather_rate(*p, kSamples));
       ratio.push_back(ours.back() / bare.back());
     }
     for (auto* values : {&bare, &ours, &ratio}) std::sort(values->begin(), values->end());
@@ -214,14 +181,13 @@ Result<Table> measure_maps(const std::filesystem::path&, int threads) {
               nlohmann::json::array()};
   for (const auto& [resolution, paper_s] : kPaper) {
     LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(scene::cornell_box(), resolution));
-    LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(p->scene));
     gather::GatherParams params;
     params.direct_samples = 200;
     params.samples = 800;
     Progress progress;
     const auto start = Clock::now();
     LUXEL_TRY(const gather::Gather result, gather::gather(p->scene, p->atlas, p->map, p->elements,
-                                                          p->lights, tracer, params, progress));
+                                                          p->lights, *p->tracer, params, progress));
     const double seconds = seconds_since(start);
     table.rows.push_back({fmt::format("{0} x {0}", resolution), fmt::format("{:.3f}", paper_s),
                           fmt::format("{:.3f}", seconds), fmt::format("{:.1f}", paper_s / seconds),
@@ -243,15 +209,14 @@ Result<Table> measure_threads(const std::filesystem::path& shared, int) {
     if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
     LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(std::move(scene), 512));
-    LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(p->scene));
     const auto run = [&](int threads) {
       const ThreadLimit limit(threads);
       gather::GatherParams params;
       params.samples = 64;
       Progress progress;
       const auto start = Clock::now();
-      const auto result = gather::gather(p->scene, p->atlas, p->map, p->elements, p->lights, tracer,
-                                         params, progress);
+      const auto result = gather::gather(p->scene, p->atlas, p->map, p->elements, p->lights,
+                                         *p->tracer, params, progress);
       return result ? seconds_since(start) : 0.0;
     };
     std::vector<double> one, two, ratio;

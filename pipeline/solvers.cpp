@@ -86,6 +86,8 @@ constexpr std::array kSolvers{Solver{"gather", solve_gather}, Solver{"reference"
 
 }  // namespace
 
+std::span<const Solver> solvers() { return kSolvers; }
+
 const Solver* find_solver(std::string_view name) {
   const auto found = std::find_if(kSolvers.begin(), kSolvers.end(),
                                   [&](const Solver& solver) { return solver.name == name; });

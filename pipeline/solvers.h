@@ -1,6 +1,7 @@
 // The table of solvers: the only place that names one by string.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,8 @@ struct Solver {
   SolveFunction solve;
 };
 
+/// All of them; the first is the default.
+std::span<const Solver> solvers();
 /// nullptr when there is no such solver.
 const Solver* find_solver(std::string_view name);
 /// "gather, ..."

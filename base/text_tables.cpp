@@ -1,0 +1,88 @@
+#include "base/text_tables.h"
+
+namespace luxel {
+inline namespace base {
+namespace {
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    lines.push_back(line);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+std::string trimmed(std::string_view cell) {
+  const size_t first = cell.find_first_not_of(' '), last = cell.find_last_not_of(' ');
+  return first == cell.npos ? "" : std::string(cell.substr(first, last - first + 1));
+}
+
+/// "| a | b |"
+TextRow markdown_cells(std::string_view line) {
+  TextRow cells;
+  line.remove_prefix(1);
+  while (!line.empty()) {
+    const size_t end = line.find('|');
+    if (end == line.npos) break;
+    cells.push_back(trimmed(line.substr(0, end)));
+    line.remove_prefix(end + 1);
+  }
+  return cells;
+}
+
+TextRow csv_cells(std::string_view line) {
+  TextRow cells(1);
+  bool quoted = false;
+  for (size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back() += line[++i];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  }
+  return cells;
+}
+
+}  // namespace
+
+std::vector<TextRow> csv_rows(std::string_view text) {
+  std::vector<TextRow> rows;
+  bool header = true;
+  for (const std::string_view line : lines_of(text)) {
+    if (line.empty() || line.front() == '#') continue;
+    if (!header) rows.push_back(csv_cells(line));
+    header = false;
+  }
+  return rows;
+}
+
+std::vector<TextRow> markdown_rows(std::string_view text, std::string_view section,
+                                   std::string_view first_header) {
+  std::vector<TextRow> rows;
+  bool in_section = false, in_table = false;
+  for (const std::string_view line : lines_of(text)) {
+    if (line.starts_with("#")) in_section = line.find(section) != line.npos;
+    if (!in_section) continue;
+    if (!line.starts_with("|")) {
+      if (in_table) break;
+      continue;
+    }
+    TextRow cells = markdown_cells(line);
+    if (cells.empty()) continue;
+    const bool header = cells.front() == first_header, rule = cells.front().starts_with("---");
+    if (in_table && !rule) rows.push_back(std::move(cells));
+    in_table |= header;
+  }
+  return rows;
+}
+
+}  // namespace base
+}  // namespace luxel

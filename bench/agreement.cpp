@@ -1,0 +1,67 @@
+#include "bench/agreement.h"
+
+#include <cmath>
+
+#include "base/check.h"
+
+namespace luxel::bench {
+
+Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed) {
+  Judged out;
+  Progress progress;
+  const auto start = Clock::now();
+  const reference::Receivers receivers = reference::receivers(p.elements);
+  reference::PathParams params{.samples = samples_each, .seed = seed};
+  LUXEL_TRY(reference::TexelPaths first,
+            reference::irradiance_by_paths(p.scene, receivers, *p.tracer, params, progress));
+  params.seed = hash64(seed, 1);
+  LUXEL_TRY(reference::TexelPaths second,
+            reference::irradiance_by_paths(p.scene, receivers, *p.tracer, params, progress));
+  out.seconds = seconds_since(start);
+  out.rays = first.rays + second.rays;
+  for (size_t i = 0; i < p.elements.size(); ++i) {
+    const Rgb a = first.standard_error[i], b = second.standard_error[i];
+    const Rgb s2 = a * a + b * b;
+    out.standard_error.push_back(0.5f * Rgb{std::sqrt(s2.x), std::sqrt(s2.y), std::sqrt(s2.z)});
+    out.hidden.push_back(first.enclosed[i] | second.enclosed[i]);
+  }
+  out.first = std::move(first.irradiance);
+  out.second = std::move(second.irradiance);
+  return out;
+}
+
+Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver_hidden,
+                    const Judged& judged) {
+  LUXEL_CHECK(solved.size() == judged.first.size());
+  const auto counts = [&](size_t i) {
+    return !judged.hidden[i] && (solver_hidden.empty() || !solver_hidden[i]);
+  };
+  Agreement out;
+  double mean = 0, difference = 0;
+  for (size_t i = 0; i < solved.size(); ++i) {
+    if (!counts(i)) continue;
+    ++out.texels;
+    const Rgb truth = judged.mean(i), d = solved[i] - truth;
+    mean += double(truth.x) + double(truth.y) + double(truth.z);
+    difference += double(d.x) + double(d.y) + double(d.z);
+  }
+  if (out.texels == 0 || mean <= 0) return out;
+  const double n = 3 * double(out.texels), floor = 0.01 * mean / n;
+  double squares = 0, noise = 0;
+  for (size_t i = 0; i < solved.size(); ++i) {
+    if (!counts(i)) continue;
+    for (const auto c : {&Rgb::x, &Rgb::y, &Rgb::z}) {
+      const double g = double(solved[i].*c);
+      const double a = double(judged.first[i].*c), b = double(judged.second[i].*c);
+      const double scale = 0.5 * (a + b) + floor, s = double(judged.standard_error[i].*c);
+      squares += (g - a) * (g - b) / (scale * scale);
+      noise += s * s / (scale * scale);
+    }
+  }
+  out.relative_rmse = std::sqrt(std::max(0.0, squares / n));
+  out.judge_noise = std::sqrt(noise / n);
+  out.bias_over_mean = difference / mean;
+  return out;
+}
+
+}  // namespace luxel::bench

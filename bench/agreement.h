@@ -1,0 +1,49 @@
+// Solvers against the path tracer, on small scenes.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/prepared.h"
+#include "reference/path_tracer.h"
+
+namespace luxel::bench {
+
+/// A scene on which every solver must agree with the path tracer.
+struct AgreementScene {
+  std::string name;
+  scene::Scene scene;
+  int resolution = 64;
+  std::string shows;  ///< what kind of light it is there for
+};
+/// Five of them: area light, lamp in a closed room, curved surfaces under a sky, every kind of lamp
+/// with textures and masks, sun through a window.
+std::vector<AgreementScene> agreement_scenes();
+
+/// The judge's answer, twice, from independent paths.
+struct Judged {
+  std::vector<Rgb> first, second;   ///< E per element
+  std::vector<uint8_t> hidden;      ///< inside a solid: not compared
+  std::vector<Rgb> standard_error;  ///< of the mean of both
+  double seconds = 0;
+  uint64_t rays = 0;
+
+  Rgb mean(size_t i) const { return 0.5f * (first[i] + second[i]); }
+};
+Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed);
+
+/// How far a solver's E lies from the truth. With D = g - truth and two independent, unbiased
+/// answers a and b of the judge, the mean of (g - a)(g - b) tends to the mean of D^2: the judge's
+/// own noise drops out. The denominator of the relative error is that of `luxel compare`, e + 0.01
+/// mean(e), from the mean of both answers.
+struct Agreement {
+  uint64_t texels = 0;
+  double relative_rmse = 0;   ///< of the solver alone; 0 where the noise leaves nothing
+  double bias_over_mean = 0;  ///< signed
+  double judge_noise = 0;  ///< what the judge's noise would add to relative_rmse, were it left in
+};
+Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver_hidden,
+                    const Judged& judged);
+
+}  // namespace luxel::bench

@@ -1,0 +1,37 @@
+#include "bench/prepared.h"
+
+#include "base/check.h"
+
+namespace luxel::bench {
+
+Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution) {
+  auto p = std::make_unique<Prepared>();
+  p->scene = std::move(scene);
+  pipeline::add_outside_light({}, p->scene);
+  atlas::AtlasParams params;
+  params.resolution = resolution;
+  Progress progress;
+  LUXEL_TRY(p->atlas, atlas::make_atlas(p->scene, params, progress));
+  p->map = atlas::rasterise(p->scene, p->atlas);
+  p->elements = transport::elements_from_texels(p->scene, p->atlas, p->map);
+  p->lights = transport::collect_lights(p->scene);
+  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(p->scene));
+  p->tracer.emplace(std::move(tracer));
+  return p;
+}
+
+Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSettings settings) {
+  const pipeline::Solver* found = pipeline::find_solver(solver);
+  LUXEL_CHECK(found != nullptr);
+  settings.solver = solver;
+  settings.output = std::filesystem::temp_directory_path();
+  settings.resolution = p.map.resolution;
+  Progress progress;
+  const auto start = Clock::now();
+  Timed out;
+  LUXEL_TRY(out.light, found->solve(p.input(), settings, progress));
+  out.seconds = seconds_since(start);
+  return out;
+}
+
+}  // namespace luxel::bench

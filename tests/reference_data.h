@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "base/vec_double.h"
 #include "tests/support.h"
 
 namespace luxel::testing_support {
@@ -52,6 +53,19 @@ inline std::vector<Vec3> parse_points(const std::string& text) {
   std::istringstream in(text);
   for (std::string part; std::getline(in, part, ';');) points.push_back(parse_vec3(part));
   return points;
+}
+
+/// The same in double precision.
+inline std::vector<DVec3> parse_polygon(const std::string& text) {
+  std::vector<DVec3> corners;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ';');) {
+    std::istringstream corner(part);
+    DVec3 p;
+    corner >> p.x >> p.y >> p.z;
+    corners.push_back(p);
+  }
+  return corners;
 }
 
 /// Rows of a CSV file with quoted cells; comment lines and the header are left out.

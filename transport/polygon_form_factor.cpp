@@ -80,7 +80,7 @@ ExchangeArea facing_exchange_area(PolygonView a, PolygonView b, double tolerance
   const PolygonView smaller = a_is_smaller ? a : b, larger = a_is_smaller ? b : a;
   if (s.distance > 3 * small)
     return {integral_of_point_factors(smaller, larger, rule_at(s.distance, small, tolerance)), 0};
-  const ExchangeArea contour = contour_exchange_area(a, b, tolerance);
+  const ExchangeArea contour = contour_exchange_area(smaller, larger, tolerance);
   if (contour.rounding <= 1e-9 * contour.value) return contour;
   // Slivers, and small polygons that touch large ones: no cancellation over the smaller area.
   return {integral_of_point_factors(smaller, larger, tanh_sinh_rule(TanhSinh::coarse)),

@@ -39,8 +39,8 @@ void shadow_planes(DVec3 point, const Blocker& blocker, double slack, std::vecto
   const double height = blocker.plane.height(point);
   if (std::abs(height) <= slack) return;
   const double side = height > 0 ? -1 : 1;
-  // Beyond the blocker's plane, and not on it.
-  planes.push_back({blocker.plane.normal * side, -height * side + slack});
+  // Beyond the blocker's plane.
+  planes.push_back({blocker.plane.normal * side, -height * side});
   const size_t count = blocker.corners.size();
   for (size_t i = 0; i < count; ++i) {
     const DVec3 across =

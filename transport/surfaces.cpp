@@ -9,7 +9,7 @@
 namespace luxel::transport {
 namespace {
 
-DVec3 transform_point(const Mat34& m, Vec3 p) {
+DVec3 world_point(const Mat34& m, Vec3 p) {
   const auto coordinate = [&](size_t i) {
     const auto& r = m.row[i];
     return double(r[0]) * p.x + double(r[1]) * p.y + double(r[2]) * p.z + double(r[3]);
@@ -27,7 +27,7 @@ std::vector<std::array<DVec3, 3>> world_triangles(const scene::Scene& scene, uin
   for (const auto& corners : mesh.triangles) {
     std::array<DVec3, 3> t;
     for (size_t k = 0; k < 3; ++k)
-      t[k] = transform_point(placed.world_from_object, mesh.positions[corners[k]]);
+      t[k] = world_point(placed.world_from_object, mesh.positions[corners[k]]);
     if (mirrors) std::swap(t[1], t[2]);
     triangles.push_back(t);
   }

@@ -125,17 +125,18 @@ std::array<Cell, 4> split(Work& work, const Cell& cell) {
           evaluate(work, {rp, qr, r}, cell.blockers), evaluate(work, {pq, qr, rp}, cell.blockers)};
 }
 
-/// A parent's error is what splitting changed; so is, to be safe, that of its sampled children
-/// together. Symmetry may hide a change: it never counts as less than a tenth of the guess before.
+/// What splitting changed is the parent's error, and at kinks, where the rule is at its worst, the
+/// children together have a fourth of it left. Symmetry may hide a change: the guess never falls to
+/// less than a tenth in one step.
 void share_error(const Cell& parent, std::span<Cell> children) {
   double sum = 0, sampled = 0;
   for (const Cell& child : children) {
     sum += child.value;
     sampled += child.blockers.empty() ? 0 : 1;
   }
-  const double change = std::max(std::abs(sum - parent.value), 0.1 * parent.error);
+  const double error = std::max(0.25 * std::abs(sum - parent.value), 0.1 * parent.error);
   for (Cell& child : children)
-    if (!child.blockers.empty()) child.error = std::max(change / sampled, child.unseen);
+    if (!child.blockers.empty()) child.error = std::max(error / sampled, child.unseen);
 }
 
 /// Along a blocker that stands on `a` the visible part of `b` jumps: `a` is cut there first.
@@ -161,7 +162,8 @@ std::vector<Polygon> cut_at_standing_blockers(const Polygon& a, const Work& work
 
 /// Splits the worst cell until the sum of errors is small against the sum of values.
 VisibleExchange refine(Work& work, std::span<const Polygon> pieces,
-                       std::span<const uint32_t> blockers, double unoccluded, uint32_t max_cells) {
+                       std::span<const uint32_t> blockers, double unoccluded,
+                       const VisibleParams& params) {
   std::priority_queue<Cell, std::vector<Cell>, SmallerError> open;
   VisibleExchange sum;
   const auto take = [&](Cell cell) {
@@ -176,9 +178,9 @@ VisibleExchange refine(Work& work, std::span<const Polygon> pieces,
       if (!cell.blockers.empty()) cell.error = unoccluded;
       take(std::move(cell));
     }
-  const double least = 1e-4 * work.tolerance * unoccluded;
+  const double least = work.tolerance * std::max(params.negligible_m2, 1e-4 * unoccluded);
   while (!open.empty() && sum.error > std::max(least, work.tolerance * sum.value) &&
-         sum.cells < max_cells) {
+         sum.cells < params.max_cells && !(params.progress && params.progress->cancelled())) {
     const Cell parent = open.top();
     open.pop();
     std::array<Cell, 4> children = split(work, parent);
@@ -215,7 +217,7 @@ VisibleExchange visible_exchange_area(PolygonView a, PolygonView b,
     return blockers[i].area_m2 > blockers[j].area_m2;
   });
   const std::vector<Polygon> pieces = cut_at_standing_blockers(front_a, work, reaching);
-  return refine(work, pieces, reaching, unoccluded.value, params.max_cells);
+  return refine(work, pieces, reaching, unoccluded.value, params);
 }
 
 FormFactor form_factor(PolygonView a, PolygonView b, std::span<const Polygon> blockers,

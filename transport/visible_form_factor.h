@@ -3,15 +3,19 @@
 
 #include <span>
 
+#include "base/progress.h"
 #include "transport/point_visibility.h"
 #include "transport/polygon_form_factor.h"
 
 namespace luxel::transport {
 
 struct VisibleParams {
-  double tolerance = 1e-5;        ///< relative error asked for
-  double slack_m = 0;             ///< corners closer to a plane lie on it; 0: double rounding
-  uint32_t max_cells = 1u << 15;  ///< pieces of `a` after which the work ends, tolerance or not
+  double tolerance = 1e-5;  ///< relative error asked for
+  double slack_m = 0;       ///< corners closer to a plane lie on it; 0: double rounding
+  /// Exchange areas below this [m^2] need no smaller absolute error than this one.
+  double negligible_m2 = 0;
+  uint32_t max_cells = 1u << 17;  ///< pieces of `a` after which the work ends, tolerance or not
+  const Progress* progress = nullptr;  ///< when cancelled, the work ends early
 };
 
 /// A_a F(a -> b) [m^2] with the error that was reached.

@@ -46,6 +46,7 @@ using Action = std::function<int()>;
 void register_info(CLI::App& app, Action& action);
 void register_bake(CLI::App& app, Action& action);
 void register_render(CLI::App& app, Action& action);
+void register_factors(CLI::App& app, Action& action);
 void register_bench(CLI::App& app, Action& action);
 
 }  // namespace luxel::cli

@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
   register_bake(app, action);
   register_render(app, action);
   register_info(app, action);
+  register_factors(app, action);
   register_bench(app, action);
   if (argc == 1) {
     std::fputs(app.help().c_str(), stderr);

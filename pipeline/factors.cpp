@@ -106,7 +106,7 @@ Result<transport::FactorMatrix> compute(const FactorSettings& s, const scene::Sc
                                         const transport::FactorSelection& selection,
                                         Progress& progress) {
   if (s.method == "analytic")
-    return transport::analytic_factors(surfaces, {.tolerance = s.tolerance.value_or(1e-5)},
+    return transport::analytic_factors(surfaces, {.tolerance = s.tolerance.value_or(1e-4)},
                                        selection, progress);
   progress.begin("build ray tracer", 1);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
@@ -120,9 +120,10 @@ Result<transport::FactorMatrix> compute(const FactorSettings& s, const scene::Sc
 
 std::string quoted(const std::string& name) {
   if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-  std::string out = "\"";
+  std::string out(1, '"');
   for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
+  out += '"';
+  return out;
 }
 
 std::vector<size_t> chosen(uint32_t only, size_t count) {

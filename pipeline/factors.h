@@ -17,7 +17,7 @@ struct FactorSettings {
   std::filesystem::path scene;
   std::filesystem::path output;     ///< a .csv; empty: nothing is written
   std::string method = "analytic";  ///< analytic, hemicube or rays
-  std::optional<double> tolerance;  ///< analytic: relative error past blockers; 1e-5
+  std::optional<double> tolerance;  ///< analytic: relative error past blockers; 1e-4
   /// rays: per surface, 262144; hemicube: points per surface, 256
   std::optional<int64_t> samples;
   std::optional<int> hemicube;  ///< hemicube: pixels along an edge of its top, even; 64

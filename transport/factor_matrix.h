@@ -38,7 +38,7 @@ struct FactorChecks {
 FactorChecks check_factors(const FactorMatrix& matrix);
 
 struct AnalyticParams {
-  double tolerance = 1e-5;  ///< relative error of pairs with something between them
+  double tolerance = 1e-4;  ///< relative error of pairs with something between them
 };
 /// In closed form, past blockers by subdivision (visible_form_factor.h). Each pair is computed once
 /// and serves both directions. Errors: cancelled.

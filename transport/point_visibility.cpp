@@ -50,16 +50,25 @@ void shadow_planes(DVec3 point, const Blocker& blocker, double slack, std::vecto
   }
 }
 
-/// Cuts the shadow out of the visible fragments; true when it falls on any.
-bool cut_out(double slack, VisibilityScratch& s) {
-  bool falls = false;
+/// True when the shadow falls on the polygon, whatever else does.
+bool falls_on(PolygonView polygon, double slack, VisibilityScratch& s) {
+  for (const Plane& plane : s.shadow)
+    if (lies_below(polygon, plane, slack)) return false;
+  s.rest.assign(polygon.begin(), polygon.end());
+  for (const Plane& plane : s.shadow) {
+    split(s.rest, plane, slack, s.inside, s.outside);
+    std::swap(s.rest, s.inside);
+    if (s.rest.empty()) return false;
+  }
+  return true;
+}
+
+/// Cuts the shadow out of the visible fragments.
+void cut_out(double slack, VisibilityScratch& s) {
   s.next.clear();
   for (size_t i = 0; i < s.visible.size(); ++i) {
     const PolygonView fragment = s.visible[i];
-    const bool misses = std::any_of(s.shadow.begin(), s.shadow.end(), [&](const Plane& plane) {
-      return lies_below(fragment, plane, slack);
-    });
-    if (misses) {
+    if (!falls_on(fragment, slack, s)) {
       s.next.add(fragment);
       continue;
     }
@@ -68,12 +77,9 @@ bool cut_out(double slack, VisibilityScratch& s) {
       split(s.rest, plane, slack, s.inside, s.outside);
       if (!s.outside.empty()) s.next.add(s.outside);
       std::swap(s.rest, s.inside);
-      if (s.rest.empty()) break;
     }
-    falls |= !s.rest.empty();
   }
-  if (falls) std::swap(s.visible, s.next);
-  return falls;
+  std::swap(s.visible, s.next);
 }
 
 }  // namespace
@@ -90,20 +96,21 @@ SeenFactor visible_point_factor(DVec3 point, DVec3 normal, PolygonView polygon,
                                 double slack, std::span<uint8_t> casts_shadow,
                                 VisibilityScratch& s) {
   s.visible.clear();
-  s.rest.clear();
+  s.polygon.clear();
   double reach = 0;
   for (const DVec3& p : polygon) {
-    s.rest.push_back(p - point);
-    reach = std::max(reach, dot(s.rest.back(), s.rest.back()));
+    s.polygon.push_back(p - point);
+    reach = std::max(reach, dot(s.polygon.back(), s.polygon.back()));
   }
-  s.visible.add(s.rest);
-  const double whole = point_to_polygon(DVec3{}, normal, s.rest);
+  s.visible.add(s.polygon);
+  const double whole = point_to_polygon(DVec3{}, normal, s.polygon);
   const double rounding = 1e-13 * std::sqrt(reach);
   bool shadowed = false;
   for (const uint32_t b : blockers) {
     shadow_planes(point, all[b], slack, s.shadow);
-    if (s.shadow.empty() || !cut_out(rounding, s)) continue;
+    if (s.shadow.empty() || !falls_on(s.polygon, rounding, s)) continue;
     casts_shadow[b] = 1, shadowed = true;
+    cut_out(rounding, s);
     if (s.visible.size() == 0) return {0, whole};
   }
   if (!shadowed) return {whole, whole};

@@ -38,7 +38,7 @@ struct Fragments {
 /// Memory that one evaluation leaves to the next; one per thread.
 struct VisibilityScratch {
   Fragments visible, next;
-  Polygon rest, inside, outside;
+  Polygon polygon, rest, inside, outside;
   std::vector<Plane> shadow;
 };
 
@@ -46,8 +46,9 @@ struct VisibilityScratch {
 /// sees, and to the whole polygon. `polygon` lies above the element's horizon. Each blocker's
 /// shadow, the cone from the point over the blocker, behind its plane, is cut out of the polygon;
 /// what is left is a set of convex fragments, each with Lambert's exact factor.
-/// casts_shadow[b] is set for each of `blockers` (indices into `all`) that hides something; entries
-/// of others stay as they are. Corners closer than `slack` to a blocker's plane lie on it.
+/// casts_shadow[b] is set for each of `blockers` (indices into `all`) whose shadow falls on the
+/// polygon; entries of others stay as they are. Corners closer than `slack` to a blocker's plane
+/// lie on it.
 struct SeenFactor {
   double visible = 0, whole = 0;
 };

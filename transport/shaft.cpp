@@ -1,5 +1,7 @@
 #include "transport/shaft.h"
 
+#include <algorithm>
+
 namespace luxel::transport {
 namespace {
 
@@ -27,6 +29,12 @@ void add_supports(PolygonView edges_of, PolygonView corners_of, Shaft& shaft) {
     for (const DVec3& corner : corners_of)
       add_support(edges_of[i], edges_of[(i + 1) % edges_of.size()], corner, edges_of, corners_of,
                   shaft);
+}
+
+double depth_below(const Plane& plane, PolygonView polygon) {
+  double depth = 0;
+  for (const DVec3& p : polygon) depth = std::max(depth, -plane.height(p));
+  return depth;
 }
 
 }  // namespace
@@ -61,13 +69,19 @@ bool is_outside(const Shaft& shaft, DVec3 lower, DVec3 upper) {
   return false;
 }
 
-double area_inside(const Shaft& shaft, PolygonView polygon) {
+Intrusion intrusion(const Shaft& shaft, PolygonView a, PolygonView b, PolygonView polygon) {
   Polygon inside(polygon.begin(), polygon.end());
   for (const Plane& plane : shaft.planes) {
     inside = clip_above(inside, {-plane.normal, -plane.offset}, shaft.slack);
-    if (inside.empty()) return 0;
+    if (inside.empty()) return {};
   }
-  return area_m2(inside);
+  Intrusion found{area_m2(inside), 1};
+  for (const Plane& plane : shaft.planes) {
+    const double d = depth_below(plane, inside);
+    const double widths = depth_below(plane, a) * depth_below(plane, b);
+    if (widths > 0) found.share = std::min(found.share, 8 * d * d / widths);
+  }
+  return found;
 }
 
 }  // namespace luxel::transport

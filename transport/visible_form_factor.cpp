@@ -16,7 +16,8 @@ struct Cell {
   Triangle corners;
   std::vector<uint32_t> blockers;  ///< that reach into its shaft; none: `value` is exact
   double value = 0, error = 0;
-  double unseen = 0;  ///< what blockers that no sample has seen may hide
+  double unseen = 0;      ///< what blockers that no sample has seen may hide
+  bool shadowed = false;  ///< a sample has seen one; else `value` is the whole
 };
 struct SmallerError {
   bool operator()(const Cell& a, const Cell& b) const { return a.error < b.error; }
@@ -88,9 +89,9 @@ bool keep_reaching(const Work& work, PolygonView a, const Shaft& shaft,
   return true;
 }
 
-/// A cell's value, and what blockers may hide of it that no sample has seen.
+/// A cell's value and, until splitting tells more, all of it as its error where there are shadows.
 Cell evaluate(Work& work, const Triangle& corners, std::span<const uint32_t> candidates) {
-  Cell cell{corners, {}, 0, 0, 0};
+  Cell cell{corners, {}, 0, 0, 0, false};
   const Shaft shaft = shaft_between(corners, work.b, work.slack);
   if (!keep_reaching(work, corners, shaft, candidates, cell.blockers)) {
     cell.blockers.clear();
@@ -111,10 +112,18 @@ Cell evaluate(Work& work, const Triangle& corners, std::span<const uint32_t> can
     cell.value += node.weight * area * seen.visible;
     whole += node.weight * area * seen.whole;
   }
-  for (const uint32_t b : cell.blockers)
-    if (!work.casts_shadow[b])
-      cell.unseen += std::min(whole, area_inside(shaft, work.blockers[b].corners));
-  cell.unseen = std::min(cell.unseen, cell.value);
+  bool shadowed = false;
+  for (const uint32_t b : cell.blockers) {
+    shadowed |= work.casts_shadow[b] != 0;
+    if (work.casts_shadow[b]) continue;
+    const Intrusion into = intrusion(shaft, corners, work.b, work.blockers[b].corners);
+    cell.unseen += std::min(whole * into.share, into.area_m2);
+  }
+  if (!shadowed)
+    cell.value = polygon_exchange_area(corners, work.b, 1e-3 * work.tolerance, work.slack).value;
+  cell.shadowed = shadowed;
+  cell.unseen = std::min(cell.unseen, cell.value);  // no more than is left can be hidden
+  cell.error = shadowed ? whole : cell.unseen;
   return cell;
 }
 
@@ -132,11 +141,11 @@ void share_error(const Cell& parent, std::span<Cell> children) {
   double sum = 0, sampled = 0;
   for (const Cell& child : children) {
     sum += child.value;
-    sampled += child.blockers.empty() ? 0 : 1;
+    sampled += child.shadowed ? 1 : 0;
   }
   const double error = std::max(0.25 * std::abs(sum - parent.value), 0.1 * parent.error);
   for (Cell& child : children)
-    if (!child.blockers.empty()) child.error = std::max(error / sampled, child.unseen);
+    if (child.shadowed) child.error = std::max(error / sampled, child.unseen);
 }
 
 /// Along a blocker that stands on `a` the visible part of `b` jumps: `a` is cut there first.
@@ -173,11 +182,8 @@ VisibleExchange refine(Work& work, std::span<const Polygon> pieces,
     if (!cell.blockers.empty()) open.push(std::move(cell));
   };
   for (const Polygon& piece : pieces)
-    for (size_t i = 2; i < piece.size(); ++i) {
-      Cell cell = evaluate(work, {piece[0], piece[i - 1], piece[i]}, blockers);
-      if (!cell.blockers.empty()) cell.error = unoccluded;
-      take(std::move(cell));
-    }
+    for (size_t i = 2; i < piece.size(); ++i)
+      take(evaluate(work, {piece[0], piece[i - 1], piece[i]}, blockers));
   const double least = work.tolerance * std::max(params.negligible_m2, 1e-4 * unoccluded);
   while (!open.empty() && sum.error > std::max(least, work.tolerance * sum.value) &&
          sum.cells < params.max_cells && !(params.progress && params.progress->cancelled())) {

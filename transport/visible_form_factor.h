@@ -10,7 +10,7 @@
 namespace luxel::transport {
 
 struct VisibleParams {
-  double tolerance = 1e-5;  ///< relative error asked for
+  double tolerance = 1e-4;  ///< relative error asked for
   double slack_m = 0;       ///< corners closer to a plane lie on it; 0: double rounding
   /// Exchange areas below this [m^2] need no smaller absolute error than this one.
   double negligible_m2 = 0;
@@ -29,7 +29,8 @@ struct VisibleExchange {
 /// no blocker reaches have the closed form, those that one blocker hides give nothing, and the
 /// others are sampled with the exact visibility of `b` from points. Cells of `a` are refined where
 /// the estimate is worst: the difference that splitting made, and for blockers that no sample has
-/// seen the area that they have in the cell's shaft (what passes an area S carries no more than S).
+/// seen how far they reach into the cell's shaft (and no more than their area there: what passes an
+/// area S carries no more than S).
 VisibleExchange visible_exchange_area(PolygonView a, PolygonView b,
                                       std::span<const Blocker> blockers,
                                       const VisibleParams& params);
@@ -39,6 +40,6 @@ struct FormFactor {
   double value = 0, error = 0;
 };
 FormFactor form_factor(PolygonView a, PolygonView b, std::span<const Polygon> blockers = {},
-                       double tolerance = 1e-5);
+                       double tolerance = 1e-4);
 
 }  // namespace luxel::transport

@@ -106,7 +106,7 @@ void register_factors(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"analytic", "hemicube", "rays"}))
       ->capture_default_str();
   factors->add_option("--tolerance", s.tolerance,
-                      "analytic: relative error where something stands between (1e-5)");
+                      "analytic: relative error where something stands between (1e-4)");
   factors->add_option("--samples", s.samples,
                       "rays: rays per surface (262144); hemicube: points per surface (256)");
   factors->add_option("--hemicube", s.hemicube, "hemicube: pixels along an edge of its top (64)");

@@ -46,10 +46,12 @@ SurfaceSample sample_surface(const SurfaceSampler& sampler, Vec2 u) {
 
 FourNumbers stratified_4d(uint32_t index, uint64_t seed) {
   LUXEL_CHECK(index < (1u << 24));
-  // The first Sobol coordinate of a point is its index with the bits reversed; Owen's scrambling of
-  // it, reversed again, is a permutation that maps aligned blocks to aligned blocks. [Burley20]
-  const float scrambled = sobol_owen_2d(index, hash64(seed, 2)).x;
-  const uint32_t shuffled = reversed_24(uint32_t(scrambled * 0x1p24f));
+  // Owen's scrambling of the index itself: a permutation in which each bit depends only on higher
+  // ones, so that aligned blocks of indices become aligned blocks, with all their strata
+  // [Burley20, section 5]. The first Sobol coordinate of a point is its index with the bits
+  // reversed, scrambled; from the reversed index it is what is wanted.
+  const float scrambled = sobol_owen_2d(reversed_24(index), hash64(seed, 2)).x;
+  const uint32_t shuffled = uint32_t(scrambled * 0x1p24f);
   return {sobol_owen_2d(index, hash64(seed, 0)), sobol_owen_2d(shuffled, hash64(seed, 1))};
 }
 

@@ -66,7 +66,7 @@ Result<uint32_t> surface_named(const transport::Surfaces& surfaces, const char* 
   std::string names;
   for (uint32_t i = 0; i < surfaces.surfaces.size(); ++i) {
     if (surfaces.surfaces[i].name == name) return i;
-    if (i < kMostNames) names += (i == 0 ? "" : ", ") + surfaces.surfaces[i].name;
+    if (i < kMostNames) names += fmt::format("{}{}", i == 0 ? "" : ", ", surfaces.surfaces[i].name);
   }
   if (surfaces.surfaces.size() > kMostNames)
     names += fmt::format(" and {} more", surfaces.surfaces.size() - kMostNames);
@@ -156,7 +156,7 @@ std::string factors_csv(const transport::FactorMatrix& matrix,
   const std::vector<size_t> rows = chosen(selection.from, matrix.size());
   const std::vector<size_t> columns = chosen(selection.to, matrix.size());
   std::string csv = "surface";
-  for (const size_t j : columns) csv += "," + quoted(matrix.names[j]);
+  for (const size_t j : columns) csv.append(",").append(quoted(matrix.names[j]));
   csv += "\n";
   for (const size_t i : rows) {
     csv += quoted(matrix.names[i]);

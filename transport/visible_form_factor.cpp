@@ -123,7 +123,9 @@ Cell evaluate(Work& work, const Triangle& corners, std::span<const uint32_t> can
     cell.value = polygon_exchange_area(corners, work.b, 1e-3 * work.tolerance, work.slack).value;
   cell.shadowed = shadowed;
   cell.unseen = std::min(cell.unseen, cell.value);  // no more than is left can be hidden
-  cell.error = shadowed ? whole : cell.unseen;
+  // Where all samples lie in the dark, light can only be near the corners.
+  const double guess = cell.value > 0 ? whole : 0.02 * whole;
+  cell.error = shadowed ? guess : cell.unseen;
   return cell;
 }
 

@@ -1,5 +1,8 @@
 #include "base/text_tables.h"
 
+#include <algorithm>
+#include <sstream>
+
 namespace luxel {
 inline namespace base {
 namespace {
@@ -82,6 +85,18 @@ std::vector<TextRow> markdown_rows(std::string_view text, std::string_view secti
     in_table |= header;
   }
   return rows;
+}
+
+std::vector<DVec3> parse_polygon(const std::string& text) {
+  std::vector<DVec3> corners;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ';');) {
+    std::istringstream corner(part);
+    DVec3 p;
+    corner >> p.x >> p.y >> p.z;
+    corners.push_back(p);
+  }
+  return corners;
 }
 
 }  // namespace base

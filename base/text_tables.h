@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/vec_double.h"
+
 namespace luxel {
 inline namespace base {
 
@@ -19,6 +21,9 @@ std::vector<TextRow> csv_rows(std::string_view text);
 /// there is none.
 std::vector<TextRow> markdown_rows(std::string_view text, std::string_view section,
                                    std::string_view first_header);
+
+/// "x y z; x y z; ..."; what is no number counts as 0.
+std::vector<DVec3> parse_polygon(const std::string& text);
 
 }  // namespace base
 }  // namespace luxel

@@ -106,15 +106,21 @@ scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, b
 
 using NodeTransforms = std::map<std::string, Mat34>;
 
-/// Instances in the order of the node tree; node lists of the same parts share one mesh. Returns
-/// where each named node is, which lights and cameras look up.
-NodeTransforms add_instances(const aiScene& in, bool srgb_colors, scene::Scene& out) {
+/// A node that draws something.
+struct DrawnNode {
+  std::string name;
+  std::vector<unsigned> parts;
+  Mat34 world;
+};
+
+/// The nodes that draw something, in the order of the tree, and where each named node is, which
+/// lights and cameras look up.
+std::vector<DrawnNode> drawn_nodes(const aiScene& in, NodeTransforms& transforms) {
   struct Visit {
     const aiNode* node;
     Mat34 parent;
   };
-  NodeTransforms transforms;
-  std::map<std::vector<unsigned>, uint32_t> known;
+  std::vector<DrawnNode> drawn;
   std::vector<Visit> stack{{in.mRootNode, {}}};
   while (!stack.empty()) {
     const auto [node, parent] = stack.back();
@@ -123,15 +129,41 @@ NodeTransforms add_instances(const aiScene& in, bool srgb_colors, scene::Scene& 
     transforms.emplace(node->mName.C_Str(), world);
     for (unsigned i = node->mNumChildren; i-- > 0;) stack.push_back({node->mChildren[i], world});
     if (node->mNumMeshes == 0) continue;
-    const std::vector<unsigned> parts(node->mMeshes, node->mMeshes + node->mNumMeshes);
-    const auto [mesh, is_new] = known.try_emplace(parts, uint32_t(out.meshes.size()));
-    if (is_new) {
-      out.meshes.push_back(merged_mesh(in, parts, srgb_colors));
-      out.meshes.back().name = node->mName.C_Str();
-    }
-    out.instances.push_back({node->mName.C_Str(), mesh->second, world});
+    drawn.push_back(
+        {node->mName.C_Str(), {node->mMeshes, node->mMeshes + node->mNumMeshes}, world});
   }
-  return transforms;
+  return drawn;
+}
+
+/// An .obj may open a group again, which Assimp makes another node of the same name; in the file it
+/// is the same group.
+void join_groups(std::vector<DrawnNode>& drawn) {
+  std::map<std::string, size_t> first;
+  std::vector<DrawnNode> joined;
+  for (DrawnNode& node : drawn) {
+    const auto [at, is_new] = first.try_emplace(node.name, joined.size());
+    if (is_new) {
+      joined.push_back(std::move(node));
+      continue;
+    }
+    std::vector<unsigned>& parts = joined[at->second].parts;
+    parts.insert(parts.end(), node.parts.begin(), node.parts.end());
+  }
+  drawn = std::move(joined);
+}
+
+/// Nodes that draw the same parts share one mesh.
+void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, bool srgb_colors,
+                   scene::Scene& out) {
+  std::map<std::vector<unsigned>, uint32_t> known;
+  for (const DrawnNode& node : drawn) {
+    const auto [mesh, is_new] = known.try_emplace(node.parts, uint32_t(out.meshes.size()));
+    if (is_new) {
+      out.meshes.push_back(merged_mesh(in, node.parts, srgb_colors));
+      out.meshes.back().name = node.name;
+    }
+    out.instances.push_back({node.name, mesh->second, node.world});
+  }
 }
 
 Mat34 transform_of(const NodeTransforms& transforms, const aiString& name) {
@@ -241,7 +273,10 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
                 one_sentence(importer.GetErrorString()));
 
   LUXEL_TRY_STATUS(read_assimp_materials(*in, source, with_color, imported));
-  const NodeTransforms transforms = add_instances(*in, has_display_colors(source), imported.scene);
+  NodeTransforms transforms;
+  std::vector<DrawnNode> drawn = drawn_nodes(*in, transforms);
+  if (source.extension == ".obj") join_groups(drawn);
+  add_instances(*in, drawn, has_display_colors(source), imported.scene);
   add_lights(*in, transforms, imported);
   add_cameras(*in, transforms, imported.scene);
   return imported;

@@ -8,56 +8,57 @@
 namespace luxel::transport {
 namespace {
 
-struct Dir3 {
-  double x, y, z;
-};
-double dot(const Dir3& a, const Dir3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Dir3 cross(const Dir3& a, const Dir3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-constexpr size_t kMaxCorners = 5;  // a quad cut by one plane
-
-/// The part of the polygon above the element's plane (Sutherland and Hodgman's clip). Returns the
-/// number of corners.
-size_t clip_to_horizon(std::span<const Dir3> polygon, const Dir3& normal,
-                       std::array<Dir3, kMaxCorners>& out) {
+/// Lambert's sum over the edges of a polygon whose corners arrive one after another.
+struct EdgeSum {
+  DVec3 normal;
+  DVec3 first, last;
   size_t count = 0;
-  for (size_t i = 0; i < polygon.size(); ++i) {
-    const Dir3& p = polygon[i];
-    const Dir3& q = polygon[(i + 1) % polygon.size()];
-    const double hp = dot(p, normal), hq = dot(q, normal);
-    if (hp >= 0) out[count++] = p;
-    if ((hp > 0 && hq < 0) || (hp < 0 && hq > 0)) {
-      const double t = hp / (hp - hq);
-      out[count++] = {p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.z + t * (q.z - p.z)};
-    }
+  double sum = 0;
+
+  void corner(DVec3 p) {
+    if (count++ == 0)
+      first = p;
+    else
+      edge(last, p);
+    last = p;
   }
-  return count;
-}
+  void edge(DVec3 p, DVec3 q) {
+    const DVec3 across = cross(p, q);
+    const double sine = length(across);
+    if (sine > 0) sum += std::atan2(sine, dot(p, q)) * dot(across, normal) / sine;
+  }
+  double closed() {
+    if (count < 3) return 0;
+    edge(last, first);
+    // Corners that are counter-clockwise seen from the point run clockwise about the direction to
+    // it.
+    return std::max(0.0, -sum / (2 * kPiDouble));
+  }
+};
 
 }  // namespace
 
 double point_to_polygon(Vec3 point, Vec3 normal, std::span<const Vec3> polygon) {
   LUXEL_CHECK(polygon.size() >= 3 && polygon.size() <= 4);
-  std::array<Dir3, 4> corners;
-  for (size_t i = 0; i < polygon.size(); ++i)
-    corners[i] = {double(polygon[i].x) - point.x, double(polygon[i].y) - point.y,
-                  double(polygon[i].z) - point.z};
-  const Dir3 n{normal.x, normal.y, normal.z};
-  std::array<Dir3, kMaxCorners> above;
-  const size_t count = clip_to_horizon({corners.data(), polygon.size()}, n, above);
-  if (count < 3) return 0;
-  double sum = 0;
-  for (size_t i = 0; i < count; ++i) {
-    const Dir3& p = above[i];
-    const Dir3& q = above[(i + 1) % count];
-    const Dir3 edge = cross(p, q);
-    const double sine = std::sqrt(dot(edge, edge));
-    if (sine > 0) sum += std::atan2(sine, dot(p, q)) * dot(edge, n) / sine;
+  std::array<DVec3, 4> corners;
+  for (size_t i = 0; i < polygon.size(); ++i) corners[i] = to_double(polygon[i]) - to_double(point);
+  return point_to_polygon(DVec3{}, to_double(normal), {corners.data(), polygon.size()});
+}
+
+double point_to_polygon(DVec3 point, DVec3 normal, PolygonView polygon) {
+  // What lies below the horizon is clipped away on the fly [Sutherland74].
+  EdgeSum edges{normal, {}, {}, 0, 0};
+  DVec3 p = polygon.empty() ? DVec3{} : polygon[0] - point;
+  const DVec3 first = p;
+  double hp = dot(p, normal);
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const DVec3 q = i + 1 < polygon.size() ? polygon[i + 1] - point : first;
+    const double hq = dot(q, normal);
+    if (hp >= 0) edges.corner(p);
+    if ((hp > 0 && hq < 0) || (hp < 0 && hq > 0)) edges.corner(p + (q - p) * (hp / (hp - hq)));
+    p = q, hp = hq;
   }
-  // Corners that are counter-clockwise seen from the point run clockwise about the direction to it.
-  return std::max(0.0, -sum / (2 * 3.14159265358979323846));
+  return edges.closed();
 }
 
 }  // namespace luxel::transport

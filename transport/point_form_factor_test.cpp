@@ -56,7 +56,7 @@ TEST(PointToPolygon, ClipsAtTheHorizon) {
 // The six faces of a cube around the point close its sphere: the factors of a half space sum to 1.
 TEST(PointToPolygon, AClosedCubeAroundThePointSumsToOne) {
   const Vec3 point{0.1f, -0.2f, 0.3f};
-  const Vec3 normal = normalize({1, 2, 3});
+  const Vec3 normal = normalize(Vec3{1, 2, 3});
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (const float side : {-1.0f, 1.0f}) {

@@ -47,6 +47,7 @@ void register_info(CLI::App& app, Action& action);
 void register_bake(CLI::App& app, Action& action);
 void register_render(CLI::App& app, Action& action);
 void register_compare(CLI::App& app, Action& action);
+void register_factors(CLI::App& app, Action& action);
 void register_bench(CLI::App& app, Action& action);
 
 }  // namespace luxel::cli

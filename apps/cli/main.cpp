@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
   register_render(app, action);
   register_compare(app, action);
   register_info(app, action);
+  register_factors(app, action);
   register_bench(app, action);
   if (argc == 1) {
     std::fputs(app.help().c_str(), stderr);

@@ -81,7 +81,7 @@ TEST(DirectLight, APointLightFallsWithTheSquareOfTheDistance) {
 TEST(DirectLight, ASunGivesItsIlluminanceTimesTheCosine) {
   scene::PunctualLight sun;
   sun.kind = scene::PunctualLight::Kind::directional;
-  sun.direction = normalize({1, -1, 0});
+  sun.direction = normalize(Vec3{1, -1, 0});
   sun.intensity = {100, 100, 100};
   sun.angular_radius_rad = 0.00465f;
   EXPECT_NEAR(direct_at(one_quad_scene(sun), {0, 0, 0}, {0, 1, 0}, 16).x, 100 * std::sqrt(0.5f),

@@ -1,0 +1,123 @@
+#include <cstdio>
+
+#include "apps/cli/cli.h"
+#include "base/parallel.h"
+#include "pipeline/factors.h"
+
+namespace luxel::cli {
+namespace {
+
+struct FactorOptions {
+  Common common;
+  pipeline::FactorSettings settings;
+};
+
+/// Row sums tell something only when rows are whole, reciprocity only when all rows are there.
+bool has_whole_rows(const pipeline::FactorReport& r) { return r.selection.to == scene::kNone; }
+bool is_whole(const pipeline::FactorReport& r) {
+  return has_whole_rows(r) && r.selection.from == scene::kNone;
+}
+
+/// A closed enclosure loses nothing: every row sums to 1 as well as the method can tell.
+bool is_closed(const pipeline::FactorReport& r) {
+  const double doubt = 4 * r.largest_error * std::sqrt(double(r.matrix.size()));
+  return r.checks.largest_row_error <= std::max(1e-4, doubt);
+}
+
+nlohmann::json report_json(const pipeline::FactorSettings& s, const pipeline::FactorReport& r) {
+  nlohmann::json surfaces = nlohmann::json::array();
+  for (size_t i = 0; i < r.matrix.size(); ++i) {
+    nlohmann::json surface{{"name", r.matrix.names[i]}, {"area_m2", r.matrix.area_m2[i]}};
+    const bool is_row = r.selection.from == scene::kNone || r.selection.from == i;
+    if (is_row && has_whole_rows(r)) {
+      surface["row_sum"] = r.checks.row_sum[i];
+      surface["escapes"] = 1 - r.checks.row_sum[i];
+    }
+    surfaces.push_back(std::move(surface));
+  }
+  nlohmann::json json{{"output", s.output.string()},      {"method", s.method},
+                      {"surfaces", std::move(surfaces)},  {"polygons", r.polygons},
+                      {"largest_error", r.largest_error}, {"warnings", r.warnings}};
+  if (is_whole(r)) {
+    json["reciprocity_error"] = r.checks.reciprocity_error;
+    json["largest_row_error"] = r.checks.largest_row_error;
+    json["closed"] = is_closed(r);
+  }
+  if (r.selection.from != scene::kNone && r.selection.to != scene::kNone)
+    json["factor"] = r.matrix.at(r.selection.from, r.selection.to);
+  if (r.smoothing) json["smoothing"] = *r.smoothing;
+  return json;
+}
+
+void print_surfaces(const pipeline::FactorReport& r) {
+  size_t width = 7;
+  for (const std::string& name : r.matrix.names) width = std::max(width, name.size());
+  std::printf("%-*s  %12s  %10s  %10s\n", int(width), "surface", "area [m^2]", "row sum",
+              "escapes");
+  for (size_t i = 0; i < r.matrix.size(); ++i)
+    if (r.selection.from == scene::kNone || r.selection.from == i)
+      std::printf("%-*s  %12.6g  %10.7f  %10.7f\n", int(width), r.matrix.names[i].c_str(),
+                  r.matrix.area_m2[i], r.checks.row_sum[i], 1 - r.checks.row_sum[i]);
+}
+
+void print_report(const pipeline::FactorReport& r) {
+  if (has_whole_rows(r)) print_surfaces(r);
+  if (r.selection.from != scene::kNone && r.selection.to != scene::kNone)
+    std::printf("F(%s -> %s) = %.12g\n", r.matrix.names[r.selection.from].c_str(),
+                r.matrix.names[r.selection.to].c_str(),
+                r.matrix.at(r.selection.from, r.selection.to));
+  std::printf("largest estimated error of a factor: %.1e\n", r.largest_error);
+  if (!is_whole(r)) return;
+  std::printf("largest reciprocity error |A_i F_ij - A_j F_ji| / min(A_i, A_j): %.1e\n",
+              r.checks.reciprocity_error);
+  std::printf("closure: %s; the largest |1 - row sum| is %.1e\n",
+              is_closed(r) ? "closed" : "open, light escapes", r.checks.largest_row_error);
+  if (r.smoothing) std::printf("smoothing changed a factor by at most %.1e\n", *r.smoothing);
+}
+
+int run_factors(const FactorOptions& options) {
+  pipeline::FactorReport report_of_factors;
+  const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
+    const ThreadLimit threads(options.common.threads);
+    LUXEL_TRY(report_of_factors, pipeline::view_factors(options.settings, progress));
+    return {};
+  });
+  if (!done) return report(done.error());
+  print_warnings(report_of_factors.warnings, options.common);
+  if (options.common.json)
+    std::printf("%s\n", report_json(options.settings, report_of_factors).dump(2).c_str());
+  else if (!options.common.quiet) {
+    print_report(report_of_factors);
+    std::fprintf(stderr, "wrote %s\n", options.settings.output.string().c_str());
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void register_factors(CLI::App& app, Action& action) {
+  CLI::App* factors = app.add_subcommand("factors", "View factors between a scene's surfaces");
+  auto options = std::make_shared<FactorOptions>();
+  pipeline::FactorSettings& s = options->settings;
+  factors->add_option("SCENE", s.scene, "The scene; each mesh instance or OBJ group is a surface")
+      ->required();
+  factors->add_option("-o,--output", s.output, "Table to write: .csv")->required();
+  factors->add_option("--method", s.method, "analytic, hemicube or rays")
+      ->check(CLI::IsMember({"analytic", "hemicube", "rays"}))
+      ->capture_default_str();
+  factors->add_option("--tolerance", s.tolerance,
+                      "analytic: relative error where something stands between (1e-4)");
+  factors->add_option("--samples", s.samples,
+                      "rays: rays per surface (262144); hemicube: points per surface (256)");
+  factors->add_option("--hemicube", s.hemicube, "hemicube: pixels along an edge of its top (64)");
+  factors->add_flag(
+      "--smooth", s.smooth,
+      "Correct the factors of a closed enclosure: rows sum to 1, A_i F_ij = A_j F_ji");
+  factors->add_option("--from", s.from, "Only from this surface")->type_name("NAME");
+  factors->add_option("--to", s.to, "Only to this surface")->type_name("NAME");
+  factors->add_option("--seed", s.seed, "Another seed, another noise")->capture_default_str();
+  add_common(*factors, options->common);
+  factors->callback([options, &action] { action = [options] { return run_factors(*options); }; });
+}
+
+}  // namespace luxel::cli

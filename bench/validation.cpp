@@ -1,0 +1,71 @@
+#include "bench/validation.h"
+
+#include <fmt/format.h>
+
+#include "base/parallel.h"
+#include "bench/bench.h"
+#include "bench/prepared.h"
+#include "pipeline/version.h"
+
+namespace luxel::bench {
+
+std::string markdown_table(const std::vector<std::string>& columns,
+                           const std::vector<std::vector<std::string>>& rows) {
+  std::string text;
+  const auto add = [&](const std::vector<std::string>& cells) {
+    for (const std::string& cell : cells) text += "| " + cell + " ";
+    text += "|\n";
+  };
+  add(columns);
+  add(std::vector<std::string>(columns.size(), "---"));
+  for (const auto& cells : rows) add(cells);
+  return text;
+}
+
+PageFile svg_file(std::string name, const std::string& svg) {
+  const auto* begin = reinterpret_cast<const std::byte*>(svg.data());
+  return {std::move(name), {begin, begin + svg.size()}};
+}
+
+PageFile png_file(std::string name, const image::Image8& picture) {
+  return {std::move(name), image::encode_png(picture)};
+}
+
+std::string show(const PageFile& file, std::string_view words) {
+  return fmt::format("![{}](images/validation-{})", words, file.name);
+}
+
+Result<Page> validate(const std::filesystem::path& shared, int threads) {
+  const ThreadLimit limit(threads);
+  const auto start = Clock::now();
+  Page page;
+  page.json = nlohmann::json::object();
+  std::string body;
+  const auto add = [&](std::string_view name, Result<Section> section) -> Status {
+    if (!section) return tl::unexpected(section.error());
+    body += section->markdown + "\n";
+    page.json[std::string(name)] = std::move(section->json);
+    for (PageFile& file : section->files) page.files.push_back(std::move(file));
+    return {};
+  };
+  LUXEL_TRY_STATUS(add("view_factors", validate_view_factors(shared)));
+  LUXEL_TRY_STATUS(add("exact_solutions", validate_exact_solutions(shared)));
+  LUXEL_TRY_STATUS(add("agreement", validate_agreement()));
+  LUXEL_TRY_STATUS(add("cornell_box", validate_cornell_box()));
+  page.markdown = fmt::format(
+      "# Validation\n\n"
+      "Is luxel right? Everything on this page was computed and written by one command, `luxel "
+      "bench "
+      "validation`:\nview factors against closed forms, solvers against exact solutions, and "
+      "solvers "
+      "against a brute-force path tracer that shares\nnothing with them but the scene and the ray "
+      "tracer ([reference.md](reference.md)).\n\n"
+      "This run: version {}, {}, {} threads, {:.0f} s. The exact values are those of "
+      "`shared/reference`.\n\n",
+      pipeline::kVersion, machine_name(), thread_count(), seconds_since(start));
+  page.markdown += body;
+  while (page.markdown.ends_with("\n\n")) page.markdown.pop_back();
+  return page;
+}
+
+}  // namespace luxel::bench

@@ -1,0 +1,48 @@
+// The page that shows that luxel is right: docs/validation.md, written by `luxel bench validation`.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "image/codec.h"
+
+namespace luxel::bench {
+
+/// A picture beside the page: its file is images/validation-NAME.
+struct PageFile {
+  std::string name;
+  std::vector<std::byte> bytes;
+};
+
+struct Section {
+  std::string markdown;  ///< begins with its heading
+  std::vector<PageFile> files;
+  nlohmann::json json;
+};
+
+/// `shared` is the folder with reference/. A section whose data is not there says so.
+Result<Section> validate_view_factors(const std::filesystem::path& shared);
+Result<Section> validate_exact_solutions(const std::filesystem::path& shared);
+Result<Section> validate_agreement();
+Result<Section> validate_cornell_box();
+
+struct Page {
+  std::string markdown;
+  std::vector<PageFile> files;
+  nlohmann::json json;
+};
+/// All sections. The first is the shortest, so that a reader sees soon whether it works.
+Result<Page> validate(const std::filesystem::path& shared, int threads);
+
+/// "| a | b |" lines of a table.
+std::string markdown_table(const std::vector<std::string>& columns,
+                           const std::vector<std::vector<std::string>>& rows);
+PageFile svg_file(std::string name, const std::string& svg);
+PageFile png_file(std::string name, const image::Image8& picture);
+/// The line that shows a file of the page.
+std::string show(const PageFile& file, std::string_view words);
+
+}  // namespace luxel::bench

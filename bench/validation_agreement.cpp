@@ -1,0 +1,48 @@
+// Five small scenes by every solver, against the path tracer.
+#include <fmt/format.h>
+
+#include "bench/agreement.h"
+#include "bench/validation.h"
+
+namespace luxel::bench {
+
+Result<Section> validate_agreement() {
+  Section section;
+  section.json = nlohmann::json::array();
+  std::vector<std::vector<std::string>> rows;
+  constexpr int kPaths = 512, kSamples = 1024, kDirect = 256;
+  for (AgreementScene& s : agreement_scenes()) {
+    LUXEL_TRY(const auto p, prepare(std::move(s.scene), s.resolution));
+    LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1));
+    for (const pipeline::Solver& solver : pipeline::solvers()) {
+      pipeline::BakeSettings settings;
+      settings.samples = solver.name == "reference" ? kPaths : kSamples;
+      settings.direct_samples = kDirect;
+      settings.seed = 7;
+      LUXEL_TRY(const Timed solved, solve(*p, solver.name, settings));
+      const Agreement a = agreement(solved.light.irradiance, solved.light.hidden, judged);
+      rows.push_back({s.name, s.shows, std::string(solver.name), std::to_string(a.texels),
+                      fmt::format("{:.2f} %", 100 * a.relative_rmse),
+                      fmt::format("{:+.3f} %", 100 * a.bias_over_mean),
+                      fmt::format("{:.1f}", solved.seconds)});
+      section.json.push_back({{"scene", s.name},
+                              {"solver", solver.name},
+                              {"relative_rmse", a.relative_rmse},
+                              {"bias_over_mean", a.bias_over_mean},
+                              {"seconds", solved.seconds}});
+    }
+  }
+  section.markdown = fmt::format(
+      "## Solvers against the path tracer\n\n"
+      "Five small scenes, one row per solver: a new solver adds its rows by itself. The judge is "
+      "two "
+      "independent runs of {} paths per texel;\nthe mean of (g - a)(g - b) over both leaves the "
+      "solver's own error, without the judge's noise. gather: {} rays, {} shadow rays. The path "
+      "tracer's own\nrow is a third run of {} paths: what is left there is its noise.\n\n{}",
+      kPaths, kSamples, kDirect, kPaths,
+      markdown_table({"scene", "shows", "solver", "texels", "relative RMSE", "bias", "seconds"},
+                     rows));
+  return section;
+}
+
+}  // namespace luxel::bench

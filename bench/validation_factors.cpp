@@ -1,0 +1,210 @@
+// View factors: every row of the exact table, by each method.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "base/text_tables.h"
+#include "bench/prepared.h"
+#include "bench/validation.h"
+#include "export/plot.h"
+#include "transport/point_form_factor.h"
+#include "transport/sampled_factors.h"
+#include "transport/visible_form_factor.h"
+
+namespace luxel::bench {
+namespace {
+
+using transport::Polygon;
+
+struct Row {
+  std::string name, note;
+  bool is_point = false;
+  Polygon a, b;
+  DVec3 normal;  ///< of the point a[0]
+  std::vector<Polygon> blockers;
+  double exact = 0;
+};
+
+std::vector<Row> read_rows(std::string_view csv) {
+  std::vector<Row> rows;
+  for (const TextRow& cells : csv_rows(csv)) {
+    if (cells.size() < 8) continue;
+    Row row{
+        cells[0], cells[7], cells[1] == "point", parse_polygon(cells[2]), parse_polygon(cells[3]),
+        {},       {},       std::stod(cells[5])};
+    if (row.is_point && row.a.size() == 2) row.normal = row.a[1];
+    std::istringstream blockers(cells[4]);
+    for (std::string part; std::getline(blockers, part, '|');)
+      row.blockers.push_back(parse_polygon(part));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+double analytic(const Row& row) {
+  if (row.is_point) return transport::point_to_polygon(row.a[0], row.normal, row.b);
+  return transport::form_factor(row.a, row.b, row.blockers, 1e-5).value;
+}
+
+Result<double> sampled(const Row& row, const transport::SampledParams& params) {
+  LUXEL_TRY(const transport::SampledFactor f,
+            row.is_point
+                ? transport::sampled_point_factor(row.a[0], row.normal, row.b, row.blockers, params)
+                : transport::sampled_form_factor(row.a, row.b, row.blockers, params));
+  return f.value;
+}
+
+/// Relative, or absolute where the exact factor is 0.
+double error_of(double value, const Row& row) {
+  return row.exact > 0 ? std::abs(value - row.exact) / row.exact : std::abs(value);
+}
+
+std::string error_text(double error) {
+  return error == 0 ? "0" : error < 1e-15 ? "< 1e-15" : fmt::format("{:.1e}", error);
+}
+
+/// Root mean square of the relative errors over the rows with a factor above 0.
+struct Rate {
+  std::vector<std::array<double, 2>> points;  ///< (rays per row, error)
+};
+
+Result<Rate> measure_rate(const std::vector<Row>& rows,
+                          const std::vector<transport::SampledParams>& steps) {
+  Rate rate;
+  for (const transport::SampledParams& params : steps) {
+    double sum = 0, count = 0;
+    for (const Row& row : rows) {
+      if (row.exact < 0.02 || row.is_point) continue;
+      LUXEL_TRY(const double value, sampled(row, params));
+      sum += error_of(value, row) * error_of(value, row), ++count;
+    }
+    const double rays = params.hemicube > 0
+                            ? 3.0 * params.hemicube * params.hemicube * params.samples
+                            : double(params.samples);
+    rate.points.push_back({rays, std::sqrt(sum / count)});
+  }
+  return rate;
+}
+
+/// Slope of a least-squares line in the double-logarithmic plot.
+double slope(const std::vector<std::array<double, 2>>& points) {
+  double mx = 0, my = 0, sxx = 0, sxy = 0;
+  const double n = double(points.size());
+  for (const auto& [x, y] : points) mx += std::log(x) / n, my += std::log(y) / n;
+  for (const auto& [x, y] : points) {
+    sxx += (std::log(x) - mx) * (std::log(x) - mx);
+    sxy += (std::log(x) - mx) * (std::log(y) - my);
+  }
+  return sxy / sxx;
+}
+
+/// Unoccluded pairs per second on one thread.
+double pairs_per_second(const std::vector<Row>& rows) {
+  const ThreadLimit one(1);
+  const auto start = Clock::now();
+  int pairs = 0;
+  double sum = 0;
+  while (seconds_since(start) < 1) {
+    for (const Row& row : rows)
+      if (!row.is_point && row.blockers.empty())
+        sum += transport::polygon_form_factor(row.a, row.b), ++pairs;
+  }
+  return sum > 0 ? pairs / seconds_since(start) : 0;
+}
+
+constexpr transport::SampledParams kHemicube{.samples = 64, .hemicube = 128};
+constexpr transport::SampledParams kRays{.samples = 1u << 18};
+
+struct Table {
+  std::vector<std::vector<std::string>> rows;
+  double open = 0, blocked = 0;  ///< largest errors of the analytic method
+  nlohmann::json json = nlohmann::json::array();
+};
+
+Result<Table> measure_rows(const std::vector<Row>& rows) {
+  Table table;
+  for (const Row& row : rows) {
+    const double a = error_of(analytic(row), row);
+    LUXEL_TRY(const double hemicube, sampled(row, kHemicube));
+    LUXEL_TRY(const double rays, sampled(row, kRays));
+    double& largest = row.blockers.empty() ? table.open : table.blocked;
+    largest = std::max(largest, a);
+    const double h = error_of(hemicube, row), r = error_of(rays, row);
+    table.rows.push_back({row.name, row.note, fmt::format("{:.12g}", row.exact), error_text(a),
+                          error_text(h), error_text(r)});
+    table.json.push_back({{"case", row.name},
+                          {"exact", row.exact},
+                          {"analytic_error", a},
+                          {"hemicube_error", h},
+                          {"rays_error", r}});
+  }
+  return table;
+}
+
+}  // namespace
+
+Result<Section> validate_view_factors(const std::filesystem::path& shared) {
+  Section section;
+  section.markdown = "## View factors against closed forms\n\n";
+  const auto file = shared / "reference" / "view-factors.csv";
+  const auto bytes = read_file(file);
+  if (!bytes) {
+    section.markdown += fmt::format("Left out: {} is not on this machine.\n", file.string());
+    return section;
+  }
+  const std::vector<Row> rows =
+      read_rows({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+  LUXEL_TRY(const Table table, measure_rows(rows));
+  std::vector<transport::SampledParams> hemicubes, rays;
+  for (const int n : {8, 16, 32, 64, 128, 256}) hemicubes.push_back({.samples = 64, .hemicube = n});
+  for (const uint32_t n : {8u, 10u, 12u, 14u, 16u, 18u}) rays.push_back({.samples = 1u << n});
+  LUXEL_TRY(const Rate hemicube_rate, measure_rate(rows, hemicubes));
+  LUXEL_TRY(const Rate ray_rate, measure_rate(rows, rays));
+  const double speed = pairs_per_second(rows);
+  export_::Plot plot{"View factors: error against rays",
+                     "rays per factor",
+                     "relative error, root mean square",
+                     true,
+                     true,
+                     {},
+                     {},
+                     {}};
+  plot.series = {{fmt::format("rays, slope {:.2f}", slope(ray_rate.points)), ray_rate.points},
+                 {fmt::format("hemicubes on 64 points, slope {:.2f}", slope(hemicube_rate.points)),
+                  hemicube_rate.points}};
+  section.files.push_back(svg_file("view-factors.svg", export_::svg(plot)));
+  section.markdown += fmt::format(
+      "`luxel factors` computes the fraction F(A -> B) of what A radiates that reaches B. All {} "
+      "rows "
+      "of the exact table, by its three\nmethods: analytic (contour integral; past blockers "
+      "adaptive, "
+      "asked for 1e-5), hemicubes of {} pixels on {} points, {} rays.\nErrors are relative, or "
+      "absolute "
+      "where F is 0. Largest analytic error: **{:.1e}** without blockers (goal 1e-6), **{:.1e}** "
+      "with "
+      "(goal 1e-4).\nSpeed without blockers: {:.0f} pairs per second on one thread (goal "
+      "1000).\n\n{}\n"
+      "{}\n\nRoot mean square over the {} rows of two polygons and F >= 0.02. Rays alone would "
+      "fall "
+      "with the power -0.5; points and directions\nare stratified together, which does better. "
+      "What "
+      "hemicubes tend to is the error of their 64 points.\n",
+      rows.size(), kHemicube.hemicube, kHemicube.samples, kRays.samples, table.open, table.blocked,
+      speed, markdown_table({"case", "", "exact F", "analytic", "hemicube", "rays"}, table.rows),
+      show(section.files.back(), "Error of sampled view factors against the number of rays"),
+      std::count_if(rows.begin(), rows.end(),
+                    [](const Row& r) { return r.exact >= 0.02 && !r.is_point; }));
+  section.json = {{"rows", table.json},
+                  {"largest_error_open", table.open},
+                  {"largest_error_blocked", table.blocked},
+                  {"pairs_per_second", speed},
+                  {"rays_slope", slope(ray_rate.points)},
+                  {"hemicube_slope", slope(hemicube_rate.points)}};
+  return section;
+}
+
+}  // namespace luxel::bench

@@ -1,0 +1,193 @@
+#include "pipeline/factors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "base/file.h"
+#include "import/import.h"
+#include "pipeline/bake.h"
+#include "trace/ray_tracer.h"
+#include "transport/sampled_factors.h"
+#include "transport/smooth_factors.h"
+
+namespace luxel::pipeline {
+namespace {
+
+constexpr size_t kMostSurfaces = 20000;  // two tables of doubles: 6 GiB
+constexpr int64_t kMostSamples = 1 << 24;
+constexpr int kMostPixels = 4096;
+
+/// A setting that the method would ignore is a misunderstanding.
+Status check_belongs(const FactorSettings& s, bool given, const char* option, const char* methods) {
+  if (!given || std::string_view(methods).find(s.method) != std::string_view::npos) return {};
+  return fail(ErrorCode::bad_setting, "{} has no meaning with --method {}; it belongs to {}",
+              option, s.method, methods);
+}
+
+Status check_output(const std::filesystem::path& output) {
+  std::error_code ignored;
+  if (output.empty()) return {};
+  const std::filesystem::path folder = output.parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+    return fail(ErrorCode::bad_setting, "--output {}: there is no folder {}; make it first",
+                output.string(), folder.string());
+  if (std::filesystem::is_directory(output, ignored))
+    return fail(ErrorCode::bad_setting, "--output {} is a folder; name a file in it",
+                output.string());
+  return {};
+}
+
+Status check(const FactorSettings& s) {
+  if (s.method != "analytic" && s.method != "hemicube" && s.method != "rays")
+    return fail(ErrorCode::bad_setting, "--method {} is none of analytic, hemicube, rays",
+                s.method);
+  LUXEL_TRY_STATUS(check_belongs(s, s.tolerance.has_value(), "--tolerance", "analytic"));
+  LUXEL_TRY_STATUS(check_belongs(s, s.samples.has_value(), "--samples", "hemicube, rays"));
+  LUXEL_TRY_STATUS(check_belongs(s, s.hemicube.has_value(), "--hemicube", "hemicube"));
+  if (s.tolerance && !(*s.tolerance >= 1e-9 && *s.tolerance <= 0.1))
+    return fail(ErrorCode::bad_setting, "--tolerance {} is outside 1e-9 to 0.1", *s.tolerance);
+  if (s.samples && (*s.samples < 1 || *s.samples > kMostSamples))
+    return fail(ErrorCode::bad_setting, "--samples {} is outside 1 to {}", *s.samples,
+                kMostSamples);
+  if (s.hemicube && (*s.hemicube < 2 || *s.hemicube > kMostPixels || *s.hemicube % 2 != 0))
+    return fail(ErrorCode::bad_setting, "--hemicube {} is not an even number from 2 to {}",
+                *s.hemicube, kMostPixels);
+  if (s.smooth && (!s.from.empty() || !s.to.empty()))
+    return fail(ErrorCode::bad_setting,
+                "--smooth needs the factors of all surfaces; leave --from and --to out");
+  return check_output(s.output);
+}
+
+Result<uint32_t> surface_named(const transport::Surfaces& surfaces, const char* option,
+                               const std::string& name) {
+  constexpr size_t kMostNames = 20;
+  if (name.empty()) return scene::kNone;
+  std::string names;
+  for (uint32_t i = 0; i < surfaces.surfaces.size(); ++i) {
+    if (surfaces.surfaces[i].name == name) return i;
+    if (i < kMostNames) names += fmt::format("{}{}", i == 0 ? "" : ", ", surfaces.surfaces[i].name);
+  }
+  if (surfaces.surfaces.size() > kMostNames)
+    names += fmt::format(" and {} more", surfaces.surfaces.size() - kMostNames);
+  return fail(ErrorCode::bad_setting, "{} '{}': there is no such surface; there are: {}", option,
+              name, names);
+}
+
+Result<transport::Surfaces> read_surfaces(const FactorSettings& s, const scene::Scene& scene,
+                                          FactorReport& report) {
+  transport::Surfaces surfaces = transport::surfaces_of(scene);
+  for (const std::string& warning : surfaces.warnings)
+    report.warnings.push_back(fmt::format("{}: {}", s.scene.string(), warning));
+  if (surfaces.surfaces.empty())
+    return fail(ErrorCode::bad_input,
+                "{}: no surface has an area; there is nothing between which "
+                "light could be exchanged",
+                s.scene.string());
+  if (surfaces.surfaces.size() > kMostSurfaces)
+    return fail(ErrorCode::out_of_memory,
+                "{}: {} surfaces make a table too large for memory, at most {} do; join meshes "
+                "that belong together",
+                s.scene.string(), surfaces.surfaces.size(), kMostSurfaces);
+  for (const transport::Surface& surface : surfaces.surfaces)
+    report.polygons += surface.polygons.size();
+  const bool masked =
+      std::any_of(scene.materials.begin(), scene.materials.end(),
+                  [](const scene::Material& m) { return m.alpha_mode == scene::AlphaMode::mask; });
+  if (masked && s.method == "analytic")
+    report.warnings.push_back(
+        fmt::format("{}: holes of alpha masks are taken for solid; --method rays sees through them",
+                    s.scene.string()));
+  return surfaces;
+}
+
+Result<transport::FactorMatrix> compute(const FactorSettings& s, const scene::Scene& scene,
+                                        const transport::Surfaces& surfaces,
+                                        const transport::FactorSelection& selection,
+                                        Progress& progress) {
+  if (s.method == "analytic")
+    return transport::analytic_factors(surfaces, {.tolerance = s.tolerance.value_or(1e-4)},
+                                       selection, progress);
+  progress.begin("build ray tracer", 1);
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  transport::SampledParams params;
+  params.seed = s.seed;
+  const bool by_rays = s.method == "rays";
+  params.samples = uint32_t(s.samples.value_or(by_rays ? 1 << 18 : 256));
+  params.hemicube = by_rays ? 0 : s.hemicube.value_or(64);
+  return transport::sampled_factors(scene, surfaces, tracer, params, selection, progress);
+}
+
+std::string quoted(const std::string& name) {
+  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+  std::string out(1, '"');
+  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  out += '"';
+  return out;
+}
+
+std::vector<size_t> chosen(uint32_t only, size_t count) {
+  if (only != scene::kNone) return {only};
+  std::vector<size_t> all(count);
+  for (size_t i = 0; i < count; ++i) all[i] = i;
+  return all;
+}
+
+/// The largest error among the entries asked for; an error for what no table may hold.
+Status judge(FactorReport& report) {
+  const transport::FactorMatrix& matrix = report.matrix;
+  for (const size_t i : chosen(report.selection.from, matrix.size()))
+    for (const size_t j : chosen(report.selection.to, matrix.size())) {
+      if (!std::isfinite(matrix.at(i, j)))
+        return fail(ErrorCode::bad_input,
+                    "the factor from '{}' to '{}' is not a finite number; their coordinates are "
+                    "too large",
+                    matrix.names[i], matrix.names[j]);
+      report.largest_error = std::max(report.largest_error, matrix.error[i * matrix.size() + j]);
+    }
+  report.checks = transport::check_factors(matrix);
+  return {};
+}
+
+}  // namespace
+
+std::string factors_csv(const transport::FactorMatrix& matrix,
+                        const transport::FactorSelection& selection) {
+  const std::vector<size_t> rows = chosen(selection.from, matrix.size());
+  const std::vector<size_t> columns = chosen(selection.to, matrix.size());
+  std::string csv = "surface";
+  for (const size_t j : columns) csv.append(",").append(quoted(matrix.names[j]));
+  csv += "\n";
+  for (const size_t i : rows) {
+    csv += quoted(matrix.names[i]);
+    for (const size_t j : columns) csv += fmt::format(",{:.17g}", matrix.at(i, j));
+    csv += "\n";
+  }
+  return csv;
+}
+
+Result<FactorReport> view_factors(const FactorSettings& settings, Progress& progress) {
+  LUXEL_TRY_STATUS(check(settings));
+  progress.begin("read scene", 1);
+  LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
+  FactorReport report;
+  report.warnings = std::move(imported.warnings);
+  LUXEL_TRY(const transport::Surfaces surfaces, read_surfaces(settings, imported.scene, report));
+  LUXEL_TRY(report.selection.from, surface_named(surfaces, "--from", settings.from));
+  LUXEL_TRY(report.selection.to, surface_named(surfaces, "--to", settings.to));
+  LUXEL_TRY(report.matrix, compute(settings, imported.scene, surfaces, report.selection, progress));
+  if (settings.smooth) {
+    progress.begin("smooth", 1);
+    LUXEL_TRY(report.smoothing, transport::smooth_factors(report.matrix));
+  }
+  LUXEL_TRY_STATUS(judge(report));
+  if (!settings.output.empty()) {
+    progress.begin(kWriteStage, 1);
+    const std::string csv = factors_csv(report.matrix, report.selection);
+    LUXEL_TRY_STATUS(
+        write_file_atomically(settings.output, std::as_bytes(std::span(csv.data(), csv.size()))));
+  }
+  return report;
+}
+
+}  // namespace luxel::pipeline

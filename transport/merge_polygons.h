@@ -1,0 +1,19 @@
+// Triangles of one plane, joined again to the convex polygons that they once were.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "transport/polygon.h"
+
+namespace luxel::transport {
+
+/// Joins neighbours (polygons with a common edge, corners equal bit by bit) that lie in one plane
+/// to within `slack` [m] and whose union is convex, greedily, until none are left; then drops
+/// corners on straight edges. Triangles without area are left out. The exchange of light is the
+/// same and costs a fourth or less for each pair of quads.
+std::vector<Polygon> merge_polygons(std::span<const std::array<DVec3, 3>> triangles, double slack);
+
+}  // namespace luxel::transport

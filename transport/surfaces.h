@@ -1,0 +1,30 @@
+// The named surfaces of a scene: what view factors are asked between.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "transport/polygon.h"
+
+namespace luxel::transport {
+
+/// An instance of a mesh: a glTF node, or an `o` or `g` group of an .obj. It radiates from the
+/// front of its triangles; both sides block.
+struct Surface {
+  std::string name;               ///< that of the instance; a second one of a name becomes name#2
+  uint32_t instance = 0;          ///< in Scene::instances
+  std::vector<Polygon> polygons;  ///< convex, in the world, counter-clockwise from the front
+  double area_m2 = 0;
+};
+
+struct Surfaces {
+  std::vector<Surface> surfaces;
+  std::vector<uint32_t> of_instance;  ///< per instance; scene::kNone when it has no area
+  double slack_m = 0;                 ///< how far rounding to float may have moved a corner
+  std::vector<std::string> warnings;  ///< surfaces that were left out
+};
+
+Surfaces surfaces_of(const scene::Scene& scene);
+
+}  // namespace luxel::transport

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "base/random.h"
 
 namespace luxel::bench {
 

@@ -1,5 +1,7 @@
 #include "bench/exact_cases.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,17 +1,22 @@
-// `luxel bench NAME`: the tables in docs/. The tables themselves: bench/.
+// `luxel bench NAME`: the tables and the page in docs/. What they measure: bench/.
 #include <cstdio>
 #include <cstdlib>
 
 #include "apps/cli/cli.h"
+#include "base/file.h"
 #include "bench/bench.h"
+#include "bench/validation.h"
 
 namespace luxel::cli {
 namespace {
+
+constexpr const char* kValidation = "validation";
 
 struct BenchOptions {
   Common common;
   std::string name;
   std::string shared;
+  std::string output = "docs";
 };
 
 std::filesystem::path default_shared() {
@@ -19,9 +24,33 @@ std::filesystem::path default_shared() {
   return "../shared";
 }
 
-int run_bench(const BenchOptions& options) {
-  const std::filesystem::path shared =
-      options.shared.empty() ? default_shared() : std::filesystem::path(options.shared);
+/// validation.md and its pictures, all of them or none.
+Status write_page(const bench::Page& page, const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder / "images", error);
+  if (error)
+    return fail(ErrorCode::io, "--output {}: cannot make the folder {}: {}", folder.string(),
+                (folder / "images").string(), error.message());
+  const auto* text = reinterpret_cast<const std::byte*>(page.markdown.data());
+  std::vector<OutputFile> files{{folder / "validation.md", {text, text + page.markdown.size()}}};
+  for (const bench::PageFile& file : page.files)
+    files.push_back({folder / "images" / ("validation-" + file.name), file.bytes});
+  return write_files_atomically(files);
+}
+
+int run_validation(const BenchOptions& options, const std::filesystem::path& shared) {
+  const auto page = bench::validate(shared, options.common.threads);
+  if (!page) return report(page.error());
+  const Status written = write_page(*page, options.output);
+  if (!written) return report(written.error());
+  if (options.common.json)
+    std::printf("%s\n", page->json.dump(2).c_str());
+  else
+    std::printf("%s", page->markdown.c_str());
+  return kDone;
+}
+
+int run_tables(const BenchOptions& options, const std::filesystem::path& shared) {
   for (const bench::Bench& table_of : bench::kBenches) {
     if (options.name != "all" && options.name != table_of.name) continue;
     const auto table = table_of.run(shared, options.common.threads);
@@ -34,16 +63,31 @@ int run_bench(const BenchOptions& options) {
   return kDone;
 }
 
+int run_bench(const BenchOptions& options) {
+  const std::filesystem::path shared =
+      options.shared.empty() ? default_shared() : std::filesystem::path(options.shared);
+  return options.name == kValidation ? run_validation(options, shared)
+                                     : run_tables(options, shared);
+}
+
 }  // namespace
 
 void register_bench(CLI::App& app, Action& action) {
-  CLI::App* bench = app.add_subcommand("bench", "Print the tables of docs/benchmarks.md");
+  CLI::App* bench = app.add_subcommand(
+      "bench", "Print the tables of docs/benchmarks.md, or write docs/validation.md");
   auto options = std::make_shared<BenchOptions>();
-  std::vector<std::string> names{"all"};
+  std::vector<std::string> names{"all", kValidation};
   for (const bench::Bench& b : bench::kBenches) names.emplace_back(b.name);
-  bench->add_option("NAME", options->name, "Which table")->check(CLI::IsMember(names))->required();
+  bench
+      ->add_option("NAME", options->name,
+                   "Which table; all of them; or validation: the page that holds luxel against "
+                   "exact answers and a path tracer (a quarter of an hour)")
+      ->check(CLI::IsMember(names))
+      ->required();
   bench->add_option("--shared", options->shared,
-                    "Folder with scenes/ (default: $LUXEL_SHARED, else ../shared)");
+                    "Folder with scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
+  bench->add_option("-o,--output", options->output,
+                    "validation: folder for validation.md and images/ (default: docs)");
   add_common(*bench, options->common);
   bench->callback([options, &action] { action = [options] { return run_bench(*options); }; });
 }

@@ -29,8 +29,9 @@ image::Image linear_of(const image::Image8& shown) {
 
 Result<Picture> read_picture(const std::filesystem::path& path) {
   LUXEL_TRY(const std::vector<std::byte> bytes, read_file(path));
-  const std::string name = path.string();
   Picture picture;
+  picture.name = path.string();
+  const std::string& name = picture.name;
   if (starts_with(bytes, "\x76\x2f\x31\x01")) {
     LUXEL_TRY(picture.linear, image::decode_exr(bytes, name));
   } else if (starts_with(bytes, "#?")) {

@@ -5,7 +5,9 @@
 
 #include <array>
 #include <cstring>
+#include <memory>
 #include <string>
+#include <type_traits>
 
 #include "image/codec.h"
 
@@ -82,9 +84,8 @@ std::string damage_of_jpeg(Bytes bytes) {
   return "it ends early";
 }
 
-}  // namespace
-
-Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name) {
+/// The bytes as stb takes them, after all checks that it does not make itself.
+Result<Bytes> checked(std::span<const std::byte> bytes, std::string_view name) {
   const Bytes data(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
   if (data.empty()) return fail(ErrorCode::bad_input, "{}: the picture is empty", name);
   const bool is_png = starts_with(data, kPngMagic);
@@ -96,7 +97,6 @@ Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view nam
   if (!damage.empty() || data.size() > size_t(INT32_MAX))
     return fail(ErrorCode::bad_input, "{}: the {} picture is damaged: {}", name,
                 is_png ? "PNG" : "JPEG", damage.empty() ? "it is over 2 GB" : damage);
-
   int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_memory(data.data(), int(data.size()), &width, &height, &channels))
     return fail(ErrorCode::bad_input, "{}: cannot decode the picture: {}", name,
@@ -104,14 +104,42 @@ Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view nam
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
     return fail(ErrorCode::bad_input, "{}: the picture has {} x {} pixels, must be 1 to {} a side",
                 name, width, height, kMaxSide);
-  stbi_uc* pixels =
-      stbi_load_from_memory(data.data(), int(data.size()), &width, &height, &channels, 4);
+  return data;
+}
+
+/// `load` is stb's reader for one depth: width, height and channels come back through it.
+template <class Load>
+auto load_rgba(const Load& load, Bytes data, int& width, int& height) {
+  int channels = 0;
+  auto* pixels = load(data.data(), int(data.size()), &width, &height, &channels, 4);
+  return std::unique_ptr<std::remove_pointer_t<decltype(pixels)>, void (*)(void*)>(pixels,
+                                                                                   stbi_image_free);
+}
+
+}  // namespace
+
+Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name) {
+  LUXEL_TRY(const Bytes data, checked(bytes, name));
+  Image8 image{0, 0, 4, {}};
+  const auto pixels = load_rgba(stbi_load_from_memory, data, image.width, image.height);
   if (pixels == nullptr)
     return fail(ErrorCode::bad_input, "{}: cannot decode the picture: {}", name,
                 stbi_failure_reason());
-  Image8 image{width, height, 4, {}};
-  image.data.assign(pixels, pixels + size_t(4) * size_t(width) * size_t(height));
-  stbi_image_free(pixels);
+  image.data.assign(pixels.get(),
+                    pixels.get() + size_t(4) * size_t(image.width) * size_t(image.height));
+  return image;
+}
+
+Result<Image> decode_display(std::span<const std::byte> bytes, std::string_view name) {
+  LUXEL_TRY(const Bytes data, checked(bytes, name));
+  int width = 0, height = 0;
+  const auto pixels = load_rgba(stbi_load_16_from_memory, data, width, height);
+  if (pixels == nullptr)
+    return fail(ErrorCode::bad_input, "{}: cannot decode the picture: {}", name,
+                stbi_failure_reason());
+  Image image(width, height, 4);
+  // stb gives 257 v for a byte v: v / 255 after the division.
+  for (size_t i = 0; i < image.data.size(); ++i) image.data[i] = float(pixels.get()[i]) / 65535.0f;
   return image;
 }
 

@@ -47,6 +47,35 @@ TEST(DecodeLdr, JpegComesBackNearly) {
   EXPECT_EQ(image->data[3], 255);
 }
 
+TEST(DecodeDisplay, BytesAreOver255) {
+  const std::string file = png();
+  const auto image = decode_display(std::as_bytes(std::span(file.data(), file.size())), "pic");
+  ASSERT_TRUE(image) << image.error().message;
+  ASSERT_EQ(image->data.size(), kPixels.size());
+  for (size_t i = 0; i < kPixels.size(); ++i) EXPECT_EQ(image->data[i], float(kPixels[i]) / 255);
+}
+
+// A file of 2 x 1 grey pixels of 16 bits, 0x0102 and 0xfffe: the header, a stored (not compressed)
+// block with the row's filter byte 0, and the end; checksums from Python's zlib.
+TEST(DecodeDisplay, SixteenBitsAreKept) {
+  const std::vector<uint8_t> file{
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
+      0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x10, 0x00, 0x00, 0x00, 0x00, 0x81,
+      0xd9, 0xfc, 0x15, 0x00, 0x00, 0x00, 0x10, 0x49, 0x44, 0x41, 0x54, 0x78, 0x01, 0x01, 0x05,
+      0x00, 0xfa, 0xff, 0x00, 0x01, 0x02, 0xff, 0xfe, 0x03, 0x0b, 0x02, 0x01, 0x06, 0x90, 0x21,
+      0x19, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+  const auto image = decode_display(std::as_bytes(std::span(file)), "pic");
+  ASSERT_TRUE(image) << image.error().message;
+  EXPECT_EQ(image->width, 2);
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(image->data[c], 258.0f / 65535);
+    EXPECT_EQ(image->data[4 + c], 65534.0f / 65535);
+  }
+  EXPECT_EQ(image->data[3], 1);
+  for (size_t length = 0; length < file.size(); ++length)
+    EXPECT_FALSE(decode_display(std::as_bytes(std::span(file).first(length)), "pic"));
+}
+
 TEST(DecodeLdr, EveryTruncationIsRefused) {
   for (const std::string& file : {png(), jpeg()})
     for (size_t length = 0; length < file.size(); ++length)

@@ -56,10 +56,9 @@ TEST(Exr, RowZeroIsOnTop) {
 }
 
 TEST(Exr, EveryTruncationIsASentence) {
-  const auto bytes = encode_exr(wild_image(19, 33, 4));
+  const auto bytes = encode_exr(wild_image(7, 18, 4));  // two blocks of scan lines
   ASSERT_TRUE(bytes);
-  const size_t step = std::max<size_t>(1, bytes->size() / 97);
-  for (size_t length = 0; length < bytes->size(); length += step) {
+  for (size_t length = 0; length < bytes->size(); ++length) {
     const auto image = decode_exr(std::span(*bytes).first(length), "half.exr");
     ASSERT_FALSE(image) << length;
     EXPECT_THAT(image.error().message, testing::StartsWith("half.exr: "));

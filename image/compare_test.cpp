@@ -67,6 +67,7 @@ TEST(Compare, AConstantOffset) {
   EXPECT_DOUBLE_EQ(d.relative_rmse, 0.25 / 0.505);  // 0.5 + 0.01 * 0.5
   EXPECT_DOUBLE_EQ(d.mean_abs, 0.25);
   EXPECT_DOUBLE_EQ(d.max_abs, 0.25);
+  EXPECT_EQ(d.max_at, (std::array{0, 0}));  // the first of equals
   EXPECT_DOUBLE_EQ(d.bias, 0.25);
   EXPECT_DOUBLE_EQ(d.bias_over_mean, 0.5);
   EXPECT_DOUBLE_EQ(d.peak, 0.5);

@@ -48,12 +48,18 @@ TEST(DisplayMeasures, ContoursOfAStepAndOverAGap) {
   const std::vector<uint8_t> values{0, 255, 255};
   EXPECT_THAT(contours(values, 3, {1, 1, 1}, kContourLevels), ElementsAre(0, 5, 0));
   EXPECT_THAT(contours(values, 3, {1, 0, 1}, kContourLevels), ElementsAre(0, 0, 0));
-  // the same from above to below, and no neighbour over the end of a row
   EXPECT_THAT(contours(values, 1, {1, 1, 1}, kContourLevels), ElementsAre(0, 5, 0));
-  const std::vector<uint8_t> rows{255, 0, 255, 0};
-  EXPECT_THAT(contours(std::vector<uint8_t>{0, 0, 255, 255}, 2, {1, 1, 1, 1}, kContourLevels),
-              ElementsAre(0, 0, 5, 5));
-  EXPECT_THAT(contours(rows, 2, {1, 0, 0, 1}, kContourLevels), ElementsAre(0, 0, 0, 0));
+  const std::vector<uint8_t> below{0, 0, 255, 255};
+  EXPECT_THAT(contours(below, 2, {1, 1, 1, 1}, kContourLevels), ElementsAre(0, 0, 5, 5));
+}
+
+// The last pixel of a row is no neighbour of the first of the next.
+TEST(DisplayMeasures, ContoursDoNotGoOverTheEndOfARow) {
+  const Mask all(4, 1);
+  EXPECT_THAT(contours(std::vector<uint8_t>{255, 0, 255, 255}, 2, all, kContourLevels),
+              ElementsAre(5, 0, 0, 5));
+  EXPECT_THAT(contours(std::vector<uint8_t>{255, 255, 0, 255}, 2, all, kContourLevels),
+              ElementsAre(5, 0, 0, 5));
 }
 
 }  // namespace

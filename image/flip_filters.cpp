@@ -11,7 +11,7 @@ namespace {
 constexpr double kPiExact = 3.14159265358979323846;
 
 /// A contrast sensitivity function's filter: a1 sqrt(pi / b1) exp(-pi^2 x^2 / b1) + the same with
-/// a2, b2, over x in degrees. [Andersson20, eq. 3 and table 1]
+/// a2, b2, over x in degrees. [Andersson20]
 struct Sensitivity {
   double a1, b1, a2, b2;
 };

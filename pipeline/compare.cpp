@@ -37,15 +37,13 @@ Status check(const CompareSettings& s) {
   return {};
 }
 
-/// Equal files of one kind: light with light, display values with display values.
-Status check_kinds(const Picture& a, const fs::path& path_a, const Picture& b,
-                   const fs::path& path_b) {
+/// Light with light, display values with display values.
+Status check_kinds(const Picture& a, const Picture& b) {
   if (a.hdr() == b.hdr()) return {};
-  const fs::path &light = a.hdr() ? path_a : path_b, &shown = a.hdr() ? path_b : path_a;
   return fail(ErrorCode::bad_input,
               "{} holds light and {} display values, whose tone mapping is not known; compare two "
               "of EXR and HDR, or two of PNG and JPEG",
-              light.string(), shown.string());
+              a.hdr() ? a.name : b.name, a.hdr() ? b.name : a.name);
 }
 
 /// Texels that only one of both covers were laid out, not lit, differently.
@@ -104,40 +102,45 @@ nlohmann::json number_or_null(double value) {
 
 }  // namespace
 
+Result<Measured> measure(const Picture& a, const Picture& b, std::optional<double> exposure,
+                         Progress& progress) {
+  progress.begin("measure", 0);
+  Measured out;
+  LUXEL_TRY_STATUS(check_kinds(a, b));
+  LUXEL_TRY(out.covered, image::covered_pixels(a.linear, a.name, b.linear, b.name));
+  Compared& n = out.numbers;
+  n.hdr = b.hdr();
+  n.difference = image::difference(a.linear, b.linear, out.covered);
+  warn_of_coverage(a.linear, b.linear, n.difference.texels, n.warnings);
+
+  if (n.hdr) n.exposure = exposure.value_or(double(display::auto_exposure(b.linear)));
+  out.shown_a = shown_at(a, float(n.exposure));
+  out.shown_b = shown_at(b, float(n.exposure));
+  n.psnr_db = n.hdr ? n.difference.psnr_db : psnr_of_display(out.shown_a, out.shown_b, out.covered);
+  const image::Histogram differences =
+      image::histogram(image::pixel_differences(out.shown_a, out.shown_b), out.covered);
+  for (size_t k = 0; k < n.share_above.size(); ++k)
+    n.share_above[k] = image::share_above(differences, image::kDifferenceLevels[k]);
+
+  progress.begin("flip", 0);
+  out.flip = flip_map(a, b, out.covered);
+  n.flip = image::mean_over(out.flip, out.covered);
+  return out;
+}
+
 Result<Compared> compare(const CompareSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check(s));
   progress.begin("read", 0);
-  const fs::path path_a = picture_file(s.a), path_b = picture_file(s.b);
-  LUXEL_TRY(const Picture a, read_picture(path_a));
-  LUXEL_TRY(const Picture b, read_picture(path_b));
-  LUXEL_TRY_STATUS(check_kinds(a, path_a, b, path_b));
-  LUXEL_TRY(const image::Mask covered,
-            image::covered_pixels(a.linear, path_a.string(), b.linear, path_b.string()));
-
-  progress.begin("measure", 0);
-  Compared out;
-  out.hdr = b.hdr();
-  out.difference = image::difference(a.linear, b.linear, covered);
-  warn_of_coverage(a.linear, b.linear, out.difference.texels, out.warnings);
-  if (out.hdr) out.exposure = s.exposure.value_or(double(display::auto_exposure(b.linear)));
-  const image::Image8 shown_a = shown_at(a, float(out.exposure));
-  const image::Image8 shown_b = shown_at(b, float(out.exposure));
-  out.psnr_db = out.hdr ? out.difference.psnr_db : psnr_of_display(shown_a, shown_b, covered);
-  const image::Histogram differences =
-      image::histogram(image::pixel_differences(shown_a, shown_b), covered);
-  for (size_t k = 0; k < out.share_above.size(); ++k)
-    out.share_above[k] = image::share_above(differences, image::kDifferenceLevels[k]);
-
-  progress.begin("flip", 0);
-  const image::Image flip = flip_map(a, b, covered);
-  out.flip = image::mean_over(flip, covered);
-  if (!s.report) return out;
-
-  progress.begin(kWriteStage, 0);
-  const CompareImages images{
-      path_a.string(), path_b.string(), a, b, covered, shown_a, shown_b, flip, previews_of(s)};
-  LUXEL_TRY(out.report, write_report(*s.report, compare_report(out, images)));
-  return out;
+  LUXEL_TRY(const Picture a, read_picture(picture_file(s.a)));
+  LUXEL_TRY(const Picture b, read_picture(picture_file(s.b)));
+  LUXEL_TRY(Measured measured, measure(a, b, s.exposure, progress));
+  if (s.report) {
+    progress.begin("report", 0);
+    const std::string html = compare_report(a, b, measured, previews_of(s));
+    progress.begin(kWriteStage, 0);
+    LUXEL_TRY(measured.numbers.report, write_report(*s.report, html));
+  }
+  return std::move(measured.numbers);
 }
 
 nlohmann::json to_json(const Compared& c) {

@@ -12,6 +12,7 @@
 #include "base/result.h"
 #include "image/compare.h"
 #include "image/display_measures.h"
+#include "pipeline/picture.h"
 
 namespace luxel::pipeline {
 
@@ -32,8 +33,21 @@ struct Compared {
   std::vector<std::string> warnings;
 };
 
-/// Errors: unreadable files, sizes or channels that differ, values that are not finite, no pixel
-/// covered in common, one picture of light and one of display values, an unwritable folder.
+/// The numbers, and the pictures that they were taken from.
+struct Measured {
+  Compared numbers;
+  image::Mask covered;
+  image::Image8 shown_a, shown_b;  ///< display values
+  image::Image flip;               ///< per pixel
+};
+
+/// Measures two pictures in memory. Errors: sizes or channels that differ, values that are not
+/// finite, no pixel covered in common, one picture of light and one of display values.
+Result<Measured> measure(const Picture& a, const Picture& b, std::optional<double> exposure,
+                         Progress& progress);
+
+/// Reads, measures and writes the report. Errors: those of measure(), unreadable files, settings
+/// out of range, an unwritable folder.
 Result<Compared> compare(const CompareSettings& settings, Progress& progress);
 
 /// The object of `luxel compare --json`. What is infinite or undefined is null.

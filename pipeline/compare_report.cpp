@@ -76,9 +76,9 @@ Panel plot_panel(export_::Plot plot, std::string caption) {
   return {std::move(caption), {}, export_::svg(plot), 0, {}};
 }
 
-Section histogram_section(const Compared& c, const CompareImages& in,
-                          std::span<const uint8_t> bright_a, std::span<const uint8_t> bright_b) {
-  const double total = double(c.difference.texels);
+Section histogram_section(const Measured& in, std::span<const uint8_t> bright_a,
+                          std::span<const uint8_t> bright_b) {
+  const double total = double(in.numbers.difference.texels);
   export_::Plot brightness{"", "brightness", "% of pixels", false, false, {}, {{0, 256}}, {}};
   brightness.series = {steps("A", image::histogram(bright_a, in.covered), total),
                        steps("B", image::histogram(bright_b, in.covered), total)};
@@ -96,9 +96,10 @@ Section histogram_section(const Compared& c, const CompareImages& in,
            plot_panel(difference, "Pixel differences (logarithmic)")}};
 }
 
-Section maps_section(const Compared& c, const CompareImages& in, std::vector<image::Image8>& out) {
+Section maps_section(const Picture& a, const Picture& b, const Measured& in,
+                     std::vector<image::Image8>& out) {
   const image::Image relative =
-      image::relative_error_map(in.a.linear, in.b.linear, in.covered, c.difference.mean);
+      image::relative_error_map(a.linear, b.linear, in.covered, in.numbers.difference.mean);
   const double top = round_up(image::quantile_over(relative, in.covered, 0.99));
   out.push_back(image::draw_map(relative, in.covered, 0, top));
   out.push_back(image::draw_map(in.flip, in.covered, 0, 1));
@@ -112,10 +113,10 @@ Section maps_section(const Compared& c, const CompareImages& in, std::vector<ima
             "",
             0,
             {ramp_legend(fmt::format("0 to {} and more", percent(top))), empty}},
-           {c.hdr ? "HDR-FLIP" : "FLIP", {}, "", 0, {ramp_legend("0 to 1"), empty}}}};
+           {in.numbers.hdr ? "HDR-FLIP" : "FLIP", {}, "", 0, {ramp_legend("0 to 1"), empty}}}};
 }
 
-Section contour_section(const CompareImages& in, std::span<const uint8_t> bright_a,
+Section contour_section(const Measured& in, std::span<const uint8_t> bright_a,
                         std::span<const uint8_t> bright_b, std::vector<image::Image8>& out) {
   std::vector<LegendEntry> legend;
   const size_t count = image::kContourLevels.size();
@@ -134,16 +135,15 @@ Section contour_section(const CompareImages& in, std::span<const uint8_t> bright
           {{"Contours of A", {}, "", 0, legend}, {"Contours of B", {}, "", 0, legend}}};
 }
 
-Section threshold_section(const Compared& c, const CompareImages& in,
-                          std::vector<image::Image8>& out) {
+Section threshold_section(const Measured& in, std::vector<image::Image8>& out) {
   const std::vector<uint8_t> differences = image::pixel_differences(in.shown_a, in.shown_b);
   Section section{
       "Pixel differences", "Black: pixels that differ by more than the level, of 255.", {}};
-  for (size_t k = 0; k < c.share_above.size(); ++k) {
+  for (size_t k = 0; k < in.numbers.share_above.size(); ++k) {
     const uint8_t level = image::kDifferenceLevels[k];
     out.push_back(image::draw_threshold(differences, in.shown_a.width, in.covered, level));
     section.panels.push_back(
-        {fmt::format("Above {}: {} of the pixels", level, percent(c.share_above[k])),
+        {fmt::format("Above {}: {} of the pixels", level, percent(in.numbers.share_above[k])),
          {},
          "",
          0,
@@ -170,11 +170,13 @@ void encode(std::vector<image::Image8>& pictures, std::vector<Section>& sections
 
 }  // namespace
 
-std::string compare_report(const Compared& c, const CompareImages& in) {
+std::string compare_report(const Picture& a, const Picture& b, const Measured& in,
+                           const std::vector<image::Image8>& previews) {
+  const Compared& c = in.numbers;
   export_::ReportPage page;
   page.title = "Comparison of two pictures";
-  page.lead = {fmt::format("A: {}", in.name_a), fmt::format("B, the reference: {}", in.name_b),
-               fmt::format("{} × {} pixels", in.b.linear.width, in.b.linear.height)};
+  page.lead = {fmt::format("A: {}", a.name), fmt::format("B, the reference: {}", b.name),
+               fmt::format("{} × {} pixels", b.linear.width, b.linear.height)};
   page.numbers = number_table(c);
   const std::vector<uint8_t> bright_a = image::brightness(in.shown_a);
   const std::vector<uint8_t> bright_b = image::brightness(in.shown_b);
@@ -184,15 +186,15 @@ std::string compare_report(const Compared& c, const CompareImages& in) {
       c.hdr ? fmt::format("Tone mapped, both with an exposure of {:.4g}.", c.exposure)
             : "As the files hold them.";
   page.sections.push_back({"Side by side", how, {{"A", {}, "", 0, {}}, {"B", {}, "", 0, {}}}});
-  if (in.previews.size() == 2) {
-    pictures.insert(pictures.end(), in.previews.begin(), in.previews.end());
+  if (previews.size() == 2) {
+    pictures.insert(pictures.end(), previews.begin(), previews.end());
     page.sections.push_back(
         {"The scenes", "preview.png of both bakes.", {{"A", {}, "", 0, {}}, {"B", {}, "", 0, {}}}});
   }
-  page.sections.push_back(maps_section(c, in, pictures));
-  page.sections.push_back(histogram_section(c, in, bright_a, bright_b));
+  page.sections.push_back(maps_section(a, b, in, pictures));
+  page.sections.push_back(histogram_section(in, bright_a, bright_b));
   page.sections.push_back(contour_section(in, bright_a, bright_b, pictures));
-  page.sections.push_back(threshold_section(c, in, pictures));
+  page.sections.push_back(threshold_section(in, pictures));
   encode(pictures, page.sections);
   return export_::html(page);
 }

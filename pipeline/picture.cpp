@@ -1,6 +1,5 @@
 #include "pipeline/picture.h"
 
-#include <array>
 #include <cstring>
 
 #include "base/file.h"
@@ -14,14 +13,20 @@ bool starts_with(std::span<const std::byte> bytes, std::string_view magic) {
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
-image::Image linear_of(const image::Image8& shown) {
-  std::array<float, 256> linear;
-  for (size_t v = 0; v < linear.size(); ++v) linear[v] = image::linear_from_srgb(float(v) / 255.0f);
-  image::Image out(shown.width, shown.height, shown.channels);
-  for (size_t i = 0; i < out.data.size(); ++i) {
-    const bool is_alpha = i % size_t(shown.channels) == 3;
-    out.data[i] = is_alpha ? float(shown.data[i]) / 255.0f : linear[shown.data[i]];
-  }
+/// Display values in [0, 1], decoded; alpha is linear already.
+void decode(image::Image& picture) {
+  std::vector<float> linear(65536);
+  for (size_t v = 0; v < linear.size(); ++v)
+    linear[v] = image::linear_from_srgb(float(v) / 65535.0f);
+  for (size_t i = 0; i < picture.data.size(); ++i)
+    if (i % size_t(picture.channels) != 3)
+      picture.data[i] = linear[size_t(picture.data[i] * 65535.0f + 0.5f)];
+}
+
+image::Image8 rounded(const image::Image& display) {
+  image::Image8 out{display.width, display.height, display.channels, {}};
+  out.data.reserve(display.data.size());
+  for (const float v : display.data) out.data.push_back(uint8_t(v * 255.0f + 0.5f));
   return out;
 }
 
@@ -29,15 +34,17 @@ image::Image linear_of(const image::Image8& shown) {
 
 Result<Picture> read_picture(const std::filesystem::path& path) {
   LUXEL_TRY(const std::vector<std::byte> bytes, read_file(path));
-  const std::string name = path.string();
   Picture picture;
+  picture.name = path.string();
+  const std::string& name = picture.name;
   if (starts_with(bytes, "\x76\x2f\x31\x01")) {
     LUXEL_TRY(picture.linear, image::decode_exr(bytes, name));
   } else if (starts_with(bytes, "#?")) {
     LUXEL_TRY(picture.linear, image::decode_hdr(bytes, name));
   } else if (starts_with(bytes, "\x89PNG") || starts_with(bytes, "\xff\xd8\xff")) {
-    LUXEL_TRY(picture.shown, image::decode_ldr(bytes, name));
-    picture.linear = linear_of(picture.shown);
+    LUXEL_TRY(picture.linear, image::decode_display(bytes, name));
+    picture.shown = rounded(picture.linear);
+    decode(picture.linear);
   } else {
     return fail(ErrorCode::bad_input,
                 "{}: this is no picture that luxel reads; give an EXR, HDR, PNG or JPEG file",

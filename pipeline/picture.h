@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "base/result.h"
 #include "image/codec.h"
@@ -9,8 +10,9 @@
 namespace luxel::pipeline {
 
 struct Picture {
+  std::string name;     ///< the file, for messages
   image::Image linear;  ///< light, or display values decoded to light
-  image::Image8 shown;  ///< the display values of an 8-bit picture; empty for light
+  image::Image8 shown;  ///< display values of a PNG or JPEG, in 8 bits; empty for light
   bool hdr() const { return shown.data.empty(); }
 };
 

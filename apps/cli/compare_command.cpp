@@ -20,7 +20,7 @@ void print_table(const pipeline::Compared& c) {
   const auto line = [](const char* name, double value, const char* unit) {
     std::printf("%-22s %12.6g%s\n", name, value, unit);
   };
-  line("texels compared", double(d.texels), "");
+  std::printf("%-22s %12llu\n", "pixels compared", static_cast<unsigned long long>(d.texels));
   line("mean of B", d.mean, "");
   line("RMSE", d.rmse, "");
   line("RMSE / mean", 100 * d.rmse_over_mean, " %");

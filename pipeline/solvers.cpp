@@ -13,7 +13,8 @@ namespace {
 
 /// What gather and the steps after it need besides the stored hits, per element and per texel of
 /// the square: direct light, two maps of irradiance, variances, two radiosity maps; later, when the
-/// hits are gone, the lightmap and its encoded files, which take less.
+/// hits are gone, the lightmap and its encoded files, which take less. Paths need about the same:
+/// three results of 12 bytes per element, and less per texel.
 constexpr uint64_t kBytesPerElement = 64, kBytesPerSquareTexel = 20;
 /// A bake with fewer stored hits in memory than this would only wait for the disk.
 constexpr uint64_t kMinHitBytes = 16u << 20;
@@ -24,19 +25,22 @@ std::string size_text(uint64_t bytes) {
   return bytes < 1u << 20 ? fmt::format("{} bytes", bytes) : fmt::format("{}M", bytes >> 20);
 }
 
-Result<uint64_t> memory_for_hits(const SolveInput& in, const BakeSettings& settings) {
+/// How many bytes a solver may use beyond what it needs at least. Fails when that is less than
+/// `spare`.
+Result<uint64_t> memory_to_spare(const SolveInput& in, const BakeSettings& settings,
+                                 uint64_t spare) {
   const uint64_t side = uint64_t(in.map.resolution);
   const uint64_t needed =
       resident_bytes() + kBytesPerElement * in.elements.size() + kBytesPerSquareTexel * side * side;
-  const uint64_t smallest_mb = ((needed + kMinHitBytes) >> 20) + 1 + kResidentNoiseMb;
+  const uint64_t smallest_mb = ((needed + spare) >> 20) + 1 + kResidentNoiseMb;
   if (settings.max_memory_bytes == 0) {
     const uint64_t free = available_bytes() / 5 * 4;
-    if (resident_bytes() + free >= needed + kMinHitBytes) return resident_bytes() + free - needed;
+    if (resident_bytes() + free >= needed + spare) return resident_bytes() + free - needed;
     return fail(ErrorCode::out_of_memory,
                 "{} x {} texels need {}M of memory, more than is free; lower --resolution", side,
                 side, smallest_mb);
   }
-  if (settings.max_memory_bytes < needed + kMinHitBytes)
+  if (settings.max_memory_bytes < needed + spare)
     return fail(
         ErrorCode::out_of_memory,
         "--max-memory {} is too small for this scene at {} x {}: the smallest that works is {}M",
@@ -46,7 +50,7 @@ Result<uint64_t> memory_for_hits(const SolveInput& in, const BakeSettings& setti
 
 Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
                                 Progress& progress) {
-  LUXEL_TRY(const uint64_t hit_memory, memory_for_hits(in, settings));
+  LUXEL_TRY(const uint64_t hit_memory, memory_to_spare(in, settings, kMinHitBytes));
   gather::GatherParams params;
   params.samples = settings.samples;
   params.direct_samples = settings.direct_samples;
@@ -69,6 +73,8 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
 
 Result<TexelLight> solve_reference(const SolveInput& in, const BakeSettings& settings,
                                    Progress& progress) {
+  if (const auto spare = memory_to_spare(in, settings, 0); !spare)
+    return tl::unexpected(spare.error());
   const reference::PathParams params{settings.samples, settings.bounces, settings.seed};
   LUXEL_TRY(reference::TexelPaths result,
             reference::irradiance_by_paths(in.scene, reference::receivers(in.elements), in.tracer,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "base/parallel.h"
 #include "base/warp.h"
 
 namespace luxel::reference {
@@ -10,9 +12,9 @@ namespace {
 
 constexpr double kLeastTexturedShare = 0.01;
 
-/// Mean luminance over the centres of 16 x 16 congruent parts of the triangle.
+/// Mean luminance over the centres of 8 x 8 congruent parts of the triangle.
 double mean_luminance(const scene::Scene& scene, uint32_t instance, uint32_t triangle) {
-  constexpr int kParts = 16;
+  constexpr int kParts = 8;
   double sum = 0;
   for (int j = 0; j < kParts; ++j)
     for (int i = 0; i < kParts - j; ++i) {
@@ -42,7 +44,7 @@ double fine_number(RandomStream& random) {
   return double(u.x) + double(u.y) * 0x1p-24;
 }
 
-/// A number of [0, 1) that stays below 1 after rounding.
+/// The triangle whose share of the chances u falls into; u in [0, 1).
 size_t pick(const std::vector<double>& below, double u) {
   const auto found = std::upper_bound(below.begin() + 1, below.end() - 1, u * below.back());
   return size_t(found - below.begin()) - 1;
@@ -92,34 +94,33 @@ void spread_over_disc(const scene::PunctualLight& sun, RandomStream& random, Lam
 }  // namespace
 
 Emitters collect_emitters(const scene::Scene& scene, const Surfaces& surfaces) {
-  Emitters out;
-  out.pdf_area.resize(surfaces.first_triangle.back());
-  out.chance_below.push_back(0);
+  std::vector<Emitter> candidates;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       const scene::Material& material = scene.materials[mesh.triangle_material[t]];
-      if (max_component(material.emission) <= 0) continue;
-      const Emitter emitter{scene::world_triangle(scene, i, t),
-                            surfaces.front[surfaces.number(i, t)],
-                            i,
-                            t,
-                            0,
-                            material.double_sided};
-      const double power = power_of(scene, emitter);
-      if (!(power > 0)) continue;
-      out.triangles.push_back(emitter);
-      out.chance_below.push_back(out.chance_below.back() + power);
+      if (max_component(material.emission) > 0)
+        candidates.push_back({scene::world_triangle(scene, i, t),
+                              surfaces.front[surfaces.number(i, t)], i, t, 0,
+                              material.double_sided});
     }
   }
-  const double total = out.chance_below.back();
-  for (size_t k = 0; k < out.triangles.size(); ++k) {
-    Emitter& e = out.triangles[k];
-    const double chance = (out.chance_below[k + 1] - out.chance_below[k]) / total;
+  std::vector<double> power(candidates.size());
+  parallel_for(candidates.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) power[k] = power_of(scene, candidates[k]);
+  });
+  const double total = std::accumulate(power.begin(), power.end(), 0.0);
+  Emitters out;
+  out.pdf_area.resize(surfaces.first_triangle.back());
+  out.chance_below.push_back(0);
+  for (size_t k = 0; k < candidates.size(); ++k) {
+    if (!(power[k] > 0)) continue;
+    Emitter& e = out.triangles.emplace_back(candidates[k]);
+    const double chance = power[k] / total;
     e.pdf_area = float(chance / double(scene::area_m2(e.corners)));
     out.pdf_area[surfaces.number(e.instance, e.triangle)] = e.pdf_area;
+    out.chance_below.push_back(out.chance_below.back() + chance);
   }
-  for (double& c : out.chance_below) c = total > 0 ? c / total : c;
   return out;
 }
 

@@ -41,8 +41,12 @@ Rgb error_of(const Sums& s, double n) {
           float(standard_error(s.b, s.b2, n))};
 }
 
-/// Receivers or pixels that one task works on. Depends on nothing but the number of samples.
-size_t grain_for(int samples) { return std::clamp<size_t>(kBatch / size_t(samples), 8, kBatch); }
+/// Receivers or pixels that one task works on: some batches' worth, so that buffers are reused, yet
+/// enough tasks for all threads. Depends on nothing but the size of the work.
+size_t grain_for(size_t count, int samples) {
+  const size_t full = std::clamp<size_t>(8 * kBatch / size_t(samples), 8, kBatch / 4);
+  return std::clamp<size_t>(count / 64, 1, full);
+}
 
 /// Samples [first_sample, last_sample) of receivers or pixels [begin, end).
 struct Batch {
@@ -59,7 +63,7 @@ Result<uint64_t> run_tasks(const World& world, size_t count, const PathParams& p
                            const Finish& finish) {
   std::atomic<uint64_t> rays{0};
   const size_t samples = size_t(params.samples);
-  parallel_for(count, grain_for(params.samples), [&](size_t begin, size_t end) {
+  parallel_for(count, grain_for(count, params.samples), [&](size_t begin, size_t end) {
     PathWork work;
     std::vector<Path> paths;
     std::vector<Sums> sums(end - begin);

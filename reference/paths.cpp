@@ -23,8 +23,8 @@ float folded_cosine(const Receiver& at, Vec3 d) {
   return cosine + std::max(0.0f, dot(mirrored(d, at.geometric_normal), at.normal));
 }
 
-/// The power heuristic [Veach95, section 4] for a sample of density `own` that the other strategy
-/// would have found with density `other`.
+/// The power heuristic with exponent 2 [Veach95] for a sample of density `own` that the other
+/// strategy would have found with density `other`.
 float mis_weight(float own, float other) {
   const float ratio = other / own;
   return 1 / (1 + ratio * ratio);

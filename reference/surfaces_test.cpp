@@ -83,7 +83,7 @@ TEST(SurfacesOfPaths, BentNormalsKeepReflectedLight) {
   const Vec3 floor{centre.x, scene::world_bounds(scene).lower.y, centre.z};
   for (const float angle : {0.0f, 0.2f, 0.8f, 1.3f}) {
     const Vec3 n{std::sin(angle), std::cos(angle), 0};
-    const TexelPaths e = at_bent_point(scene, floor, n, 100000);
+    const TexelPaths e = at_bent_point(scene, floor, n, 40000);
     const double exact = kPiD * ((1 + std::cos(double(angle))) / 2 + 0.6 / 0.4);
     EXPECT_NEAR(double(e.irradiance[0].x), exact, 3 * double(e.standard_error[0].x)) << angle;
     EXPECT_LT(e.standard_error[0].x, 0.01 * exact);

@@ -150,6 +150,69 @@ TEST(Render, DrawsABake) {
               HasSubstr("--camera none"));
 }
 
+TEST(Render, TracesPathsWithoutABake) {
+  const ScratchFolder s;
+  const std::string command =
+      "render " + scene_file("cornell-box.glb") + " --technique path --size 32x24 --samples 16 -o ";
+  const CommandResult png = luxel(command + (s.path / "x.png").string());
+  EXPECT_EQ(png.code, 0) << png.err;
+  EXPECT_THAT(png.err, HasSubstr("standard error"));
+  const CommandResult exr = luxel(command + (s.path / "x.exr").string() + " --json --threads 1");
+  EXPECT_EQ(exr.code, 0) << exr.err;
+  const auto json = nlohmann::json::parse(exr.out);
+  EXPECT_GT(json["relative_error"], 0.01);
+  EXPECT_LT(json["relative_error"], 1);
+  EXPECT_GT(json["rays"], 32 * 24 * 16);
+  ASSERT_EQ(luxel(command + (s.path / "y.exr").string() + " --threads 2").code, 0);
+  EXPECT_EQ(slurp(s.path / "x.exr"), slurp(s.path / "y.exr"));
+  // Half of the pixels see the lit box: 0.1 is a dim room, 17 the lamp itself.
+  const image::Image picture = *image::decode_exr(*read_file(s.path / "x.exr"), "x.exr");
+  double sum = 0;
+  for (const float v : picture.data) sum += double(v);
+  EXPECT_GT(sum / double(picture.data.size()), 0.1);
+}
+
+TEST(Render, SaysWhatATechniqueNeeds) {
+  const ScratchFolder s;
+  const std::string command =
+      "render " + scene_file("cornell-box.glb") + " -o " + (s.path / "x.png").string();
+  const CommandResult without = luxel(command);
+  EXPECT_EQ(without.code, 1);
+  EXPECT_THAT(without.err, HasSubstr("--from"));
+  const CommandResult with = luxel(command + " --technique path --from " + s.path.string());
+  EXPECT_EQ(with.code, 1);
+  EXPECT_THAT(with.err, HasSubstr("--from"));
+  const CommandResult none = luxel(command + " --technique path --samples 0");
+  EXPECT_EQ(none.code, 1);
+  EXPECT_THAT(none.err, HasSubstr("--samples 0"));
+  EXPECT_EQ(files_in(s.path), std::set<std::string>{});
+}
+
+// Two solvers that share no line of light transport leave nearly the same lightmap.
+TEST(BakeWithTheReference, AgreesWithGather) {
+  const ScratchFolder s;
+  const std::string scene = scene_file("spheres-and-cube.glb");
+  ASSERT_EQ(bake(scene, s.path / "g", "--resolution 64 --samples 256").code, 0);
+  const CommandResult r =
+      bake(scene, s.path / "r", "--resolution 64 --samples 256 --solver reference");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("estimated error"));
+  const auto json = nlohmann::json::parse(slurp(s.path / "r" / "bake.json"));
+  EXPECT_EQ(json["settings"]["solver"], "reference");
+  const image::Image a = *image::decode_exr(*read_file(s.path / "g" / "lightmap.exr"), "g");
+  const image::Image b = *image::decode_exr(*read_file(s.path / "r" / "lightmap.exr"), "r");
+  ASSERT_EQ(a.data.size(), b.data.size());
+  double sum = 0, difference2 = 0, n = 0;
+  for (size_t i = 0; i < a.data.size(); i += 4) {
+    if (a.data[i + 3] < 1) continue;
+    const double d = double(a.data[i + 1]) - double(b.data[i + 1]);
+    sum += double(a.data[i + 1]), difference2 += d * d, ++n;
+  }
+  // The paths' own noise, and as much again for gather's and for its texels.
+  const double relative = std::sqrt(difference2 / n) / (sum / n);
+  EXPECT_LT(relative, 2 * double(json["relative_error"]));
+}
+
 TEST(SameBits, WithAnyNumberOfThreads) {
   const ScratchFolder s;
   const std::string options = "--resolution 128 --samples 64 --uv unwrap ";

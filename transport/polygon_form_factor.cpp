@@ -66,7 +66,9 @@ Separation separation(PolygonView a, PolygonView b, const Plane& plane_a, const 
 /// Bernstein ellipse with rho = z + sqrt(z^2 + 1).
 std::span<const Node> rule_at(double distance, double radius, double tolerance) {
   const double z = distance / radius;
-  return gauss_rule(std::min(kMaxGaussNodes, gauss_nodes_for(z + std::sqrt(z * z + 1), tolerance)));
+  // Two more, because grazing light is less than the terms it is the sum of.
+  const int nodes = gauss_nodes_for(z + std::sqrt(z * z + 1), tolerance) + 2;
+  return gauss_rule(std::min(kMaxGaussNodes, nodes));
 }
 
 /// Polygons that lie wholly in front of each other.

@@ -171,31 +171,54 @@ std::vector<Polygon> cut_at_standing_blockers(const Polygon& a, const Work& work
   return pieces;
 }
 
+/// Errors of many cells at once. Those of sampled cells depend on where the edges of shadows happen
+/// to cross them: their signs are random, and they add up like the steps of a random walk, of which
+/// four standard deviations are taken. What may not have been seen has one sign.
+struct ErrorSum {
+  double unseen = 0, sampled = 0, squares = 0;
+
+  void add(const Cell& cell, double sign) {
+    if (!cell.shadowed) {
+      unseen += sign * cell.error;
+      return;
+    }
+    sampled += sign * cell.error;
+    squares += sign * cell.error * cell.error;
+  }
+  double total() const {
+    return std::max(0.0, unseen) +
+           std::max(0.0, std::min(sampled, 4 * std::sqrt(std::max(0.0, squares))));
+  }
+};
+
 /// Splits the worst cell until the sum of errors is small against the sum of values.
 VisibleExchange refine(Work& work, std::span<const Polygon> pieces,
                        std::span<const uint32_t> blockers, double unoccluded,
                        const VisibleParams& params) {
   std::priority_queue<Cell, std::vector<Cell>, SmallerError> open;
   VisibleExchange sum;
+  ErrorSum errors;
   const auto take = [&](Cell cell) {
     ++sum.cells;
     sum.value += cell.value;
-    sum.error += cell.error;
+    errors.add(cell, 1);
     if (!cell.blockers.empty()) open.push(std::move(cell));
   };
   for (const Polygon& piece : pieces)
     for (size_t i = 2; i < piece.size(); ++i)
       take(evaluate(work, {piece[0], piece[i - 1], piece[i]}, blockers));
   const double least = work.tolerance * std::max(params.negligible_m2, 1e-4 * unoccluded);
-  while (!open.empty() && sum.error > std::max(least, work.tolerance * sum.value) &&
+  while (!open.empty() && errors.total() > std::max(least, work.tolerance * sum.value) &&
          sum.cells < params.max_cells && !(params.progress && params.progress->cancelled())) {
     const Cell parent = open.top();
     open.pop();
     std::array<Cell, 4> children = split(work, parent);
     share_error(parent, children);
-    sum.value -= parent.value, sum.error -= parent.error;
+    sum.value -= parent.value;
+    errors.add(parent, -1);
     for (Cell& child : children) take(std::move(child));
   }
+  sum.error = errors.total();
   return sum;
 }
 

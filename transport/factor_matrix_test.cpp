@@ -1,0 +1,167 @@
+#include "transport/factor_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include "base/parallel.h"
+#include "scene/procedural.h"
+#include "scene/shapes.h"
+#include "trace/ray_tracer.h"
+#include "transport/polygon_test_support.h"
+#include "transport/sampled_factors.h"
+#include "transport/smooth_factors.h"
+
+namespace luxel::transport {
+namespace {
+
+scene::Scene room_of(const std::vector<Polygon>& faces) {
+  scene::Scene scene;
+  scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
+  for (size_t f = 0; f < faces.size(); ++f) {
+    scene::Mesh mesh;
+    mesh.name = "face " + std::to_string(f);
+    for (size_t i = 2; i < faces[f].size(); ++i)
+      scene::add_triangle(mesh, to_float(faces[f][0]), to_float(faces[f][i - 1]),
+                          to_float(faces[f][i]), 0);
+    scene::place(scene, std::move(mesh));
+  }
+  return scene;
+}
+
+FactorMatrix analytic(const scene::Scene& scene) {
+  Progress progress;
+  return *analytic_factors(surfaces_of(scene), {}, {}, progress);
+}
+
+FactorMatrix by_rays(const scene::Scene& scene, uint32_t samples, int hemicube = 0) {
+  Progress progress;
+  const auto tracer = trace::RayTracer::build(scene);
+  return *sampled_factors(scene, surfaces_of(scene), *tracer,
+                          {.samples = samples, .hemicube = hemicube}, {}, progress);
+}
+
+TEST(FactorMatrix, ConvexRoomsAreClosed) {
+  Dice dice;
+  for (int i = 0; i < 10; ++i) {
+    const FactorMatrix matrix = analytic(room_of(dice.convex_room(3 + i)));
+    const FactorChecks checks = check_factors(matrix);
+    EXPECT_LT(checks.largest_row_error, 2e-5);  // corners are floats; small faces feel it
+    EXPECT_LT(checks.reciprocity_error, 1e-15);
+  }
+}
+
+TEST(FactorMatrix, TheFurnaceBoxSeesItselfWhole) {
+  for (const int tessellation : {1, 4}) {
+    const FactorMatrix matrix =
+        analytic(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1}, tessellation));
+    ASSERT_EQ(matrix.size(), 1u);
+    EXPECT_NEAR(matrix.at(0, 0), 1, 1e-7);
+  }
+}
+
+// A box in a box: what the inner one radiates arrives at the outer one, which sees the rest of
+// itself past it: F_oi = A_i / A_o and F_oo = 1 - A_i / A_o.
+TEST(FactorMatrix, ABoxInABoxHasTheFactorsOfItsAreas) {
+  scene::Scene scene = scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1});
+  const Box3 bounds = scene::world_bounds(scene);
+  const Vec3 c = bounds.centre();
+  scene::Mesh box;
+  box.name = "box";
+  scene::add_box(box, c - Vec3{0.2f, 0.1f, 0.15f}, c + Vec3{0.1f, 0.2f, 0.1f}, 0);
+  scene::place(scene, box);
+  const FactorMatrix matrix = analytic(scene);
+  ASSERT_EQ(matrix.size(), 2u);
+  const double ratio = matrix.area_m2[1] / matrix.area_m2[0];
+  EXPECT_NEAR(matrix.at(1, 0), 1, 1e-4);
+  EXPECT_NEAR(matrix.at(1, 1), 0, 1e-9);
+  EXPECT_NEAR(matrix.at(0, 1), ratio, 1e-4 * ratio);
+  EXPECT_NEAR(matrix.at(0, 0), 1 - ratio, 1e-4);
+}
+
+TEST(FactorMatrix, HasTheSameBitsForAnyNumberOfThreads) {
+  const scene::Scene scene = scene::cornell_box();
+  std::vector<double> analytic_bits, ray_bits;
+  for (const int threads : {1, 2, 5}) {
+    const ThreadLimit limit(threads);
+    Progress progress;
+    const FactorMatrix matrix =
+        *analytic_factors(surfaces_of(scene), {.tolerance = 1e-2}, {}, progress);
+    const FactorMatrix rays = by_rays(scene, 4096);
+    if (threads == 1) analytic_bits = matrix.factor, ray_bits = rays.factor;
+    EXPECT_EQ(matrix.factor, analytic_bits);
+    EXPECT_EQ(rays.factor, ray_bits);
+  }
+}
+
+TEST(FactorMatrixSlow, TheCornellBoxIsTheSameByRays) {
+  const scene::Scene scene = scene::cornell_box();
+  const FactorMatrix exact = analytic(scene);
+  const FactorMatrix rays = by_rays(scene, 1u << 16), cubes = by_rays(scene, 64, 64);
+  for (size_t i = 0; i < exact.size(); ++i)
+    for (size_t j = 0; j < exact.size(); ++j) {
+      const double f = exact.at(i, j);
+      EXPECT_NEAR(rays.at(i, j), f, 3 * std::sqrt(f * (1 - f) / 65536) + 2e-5)
+          << exact.names[i] << " -> " << exact.names[j];
+      EXPECT_NEAR(cubes.at(i, j), f, 0.03) << exact.names[i] << " -> " << exact.names[j];
+    }
+}
+
+TEST(FactorMatrix, OneRowOrOneEntryIsThatOfTheWhole) {
+  const scene::Scene scene = scene::cornell_box(scene::CornellColors::pbrt, false);
+  const Surfaces surfaces = surfaces_of(scene);
+  Progress progress;
+  const FactorMatrix whole = *analytic_factors(surfaces, {}, {}, progress);
+  const FactorMatrix row = *analytic_factors(surfaces, {}, {.from = 1}, progress);
+  const FactorMatrix entry = *analytic_factors(surfaces, {}, {.from = 1, .to = 3}, progress);
+  for (size_t j = 0; j < whole.size(); ++j) EXPECT_EQ(row.at(1, j), whole.at(1, j));
+  EXPECT_EQ(entry.at(1, 3), whole.at(1, 3));
+  EXPECT_GT(entry.at(1, 3), 0.01);
+}
+
+TEST(FactorMatrix, CancelledWorkIsAnError) {
+  Progress progress;
+  progress.request_cancel();
+  const auto matrix = analytic_factors(surfaces_of(scene::cornell_box()), {}, {}, progress);
+  ASSERT_FALSE(matrix.has_value());
+  EXPECT_EQ(matrix.error().code, ErrorCode::cancelled);
+}
+
+TEST(SmoothFactors, RestoresBothLawsAndComesCloserToTheTruth) {
+  Dice dice;
+  const scene::Scene scene = room_of(dice.convex_room(6));
+  const FactorMatrix exact = analytic(scene);
+  FactorMatrix matrix = by_rays(scene, 4096);
+  // Rays of a closed room keep the sums; spoil them as a coarse method would.
+  for (double& f : matrix.factor) f *= 1 + 0.02 * dice.number();
+  const FactorMatrix before = matrix;
+  ASSERT_TRUE(smooth_factors(matrix).has_value());
+  const FactorChecks checks = check_factors(matrix);
+  EXPECT_LT(checks.largest_row_error, 1e-12);
+  EXPECT_LT(checks.reciprocity_error, 1e-12);
+  double error_before = 0, error_after = 0;
+  for (size_t k = 0; k < matrix.factor.size(); ++k) {
+    EXPECT_GE(matrix.factor[k], 0);
+    error_before += std::pow(before.factor[k] - exact.factor[k], 2);
+    error_after += std::pow(matrix.factor[k] - exact.factor[k], 2);
+  }
+  EXPECT_LT(error_after, 0.95 * error_before);
+}
+
+TEST(SmoothFactors, LeavesAConsistentMatrixAlone) {
+  Dice dice;
+  FactorMatrix matrix = analytic(room_of(dice.convex_room(6)));
+  ASSERT_TRUE(smooth_factors(matrix).has_value());
+  const FactorMatrix once = matrix;
+  const auto change = smooth_factors(matrix);
+  ASSERT_TRUE(change.has_value());
+  EXPECT_LT(*change, 1e-13);
+}
+
+TEST(SmoothFactors, RefusesOpenScenes) {
+  FactorMatrix matrix = analytic(scene::cornell_box(scene::CornellColors::pbrt, false));
+  const auto change = smooth_factors(matrix);
+  ASSERT_FALSE(change.has_value());
+  EXPECT_NE(change.error().message.find("'"), std::string::npos) << change.error().message;
+}
+
+}  // namespace
+}  // namespace luxel::transport

@@ -7,9 +7,8 @@
 
 namespace luxel::bench {
 
-Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed) {
+Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed, Progress& progress) {
   Judged out;
-  Progress progress;
   const auto start = Clock::now();
   const reference::Receivers receivers = reference::receivers(p.elements);
   reference::PathParams params{.samples = samples_each, .seed = seed};

@@ -147,7 +147,8 @@ Result<Table> measure_rays(const std::filesystem::path& shared, int threads) {
         NamedScene{"kaykit_city", scenes / "kaykit_city/kaykit_city.glb"}}) {
     if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
-    LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(std::move(scene), 512));
+    Progress layout;
+    LUXEL_TRY(const auto p, prepare(std::move(scene), 512, layout));
     // In turn, so that a machine that speeds up or slows down does it to both.
     std::vector<double> bare, ours, ratio;
     for (int round = 0; round < kRounds; ++round) {
@@ -180,11 +181,11 @@ Result<Table> measure_maps(const std::filesystem::path&, int threads) {
               {},
               nlohmann::json::array()};
   for (const auto& [resolution, paper_s] : kPaper) {
-    LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(scene::cornell_box(), resolution));
+    Progress progress;
+    LUXEL_TRY(const auto p, prepare(scene::cornell_box(), resolution, progress));
     gather::GatherParams params;
     params.direct_samples = 200;
     params.samples = 800;
-    Progress progress;
     const auto start = Clock::now();
     LUXEL_TRY(const gather::Gather result, gather::gather(p->scene, p->atlas, p->map, p->elements,
                                                           p->lights, *p->tracer, params, progress));
@@ -208,7 +209,8 @@ Result<Table> measure_threads(const std::filesystem::path& shared, int) {
   for (const NamedScene& named : scenes) {
     if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
-    LUXEL_TRY(const std::unique_ptr<Prepared> p, prepare(std::move(scene), 512));
+    Progress layout;
+    LUXEL_TRY(const auto p, prepare(std::move(scene), 512, layout));
     const auto run = [&](int threads) {
       const ThreadLimit limit(threads);
       gather::GatherParams params;

@@ -4,13 +4,12 @@
 
 namespace luxel::bench {
 
-Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution) {
+Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution, Progress& progress) {
   auto p = std::make_unique<Prepared>();
   p->scene = std::move(scene);
   pipeline::add_outside_light({}, p->scene);
   atlas::AtlasParams params;
   params.resolution = resolution;
-  Progress progress;
   LUXEL_TRY(p->atlas, atlas::make_atlas(p->scene, params, progress));
   p->map = atlas::rasterise(p->scene, p->atlas);
   p->elements = transport::elements_from_texels(p->scene, p->atlas, p->map);
@@ -20,13 +19,13 @@ Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution) {
   return p;
 }
 
-Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSettings settings) {
+Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSettings settings,
+                    Progress& progress) {
   const pipeline::Solver* found = pipeline::find_solver(solver);
   LUXEL_CHECK(found != nullptr);
   settings.solver = solver;
   settings.output = std::filesystem::temp_directory_path();
   settings.resolution = p.map.resolution;
-  Progress progress;
   const auto start = Clock::now();
   Timed out;
   LUXEL_TRY(out.light, found->solve(p.input(), settings, progress));

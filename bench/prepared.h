@@ -29,7 +29,7 @@ struct Prepared {
 
 /// Lays the scene out on a lightmap of `resolution` squared. A scene without any light gets a white
 /// background.
-Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution);
+Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution, Progress& progress);
 
 struct Timed {
   pipeline::TexelLight light;
@@ -37,6 +37,7 @@ struct Timed {
 };
 /// Runs a solver of the pipeline's table by name; settings' scene, output and resolution are not
 /// looked at.
-Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSettings settings);
+Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSettings settings,
+                    Progress& progress);
 
 }  // namespace luxel::bench

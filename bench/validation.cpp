@@ -35,8 +35,7 @@ std::string show(const PageFile& file, std::string_view words) {
   return fmt::format("![{}](images/validation-{})", words, file.name);
 }
 
-Result<Page> validate(const std::filesystem::path& shared, int threads) {
-  const ThreadLimit limit(threads);
+Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
   const auto start = Clock::now();
   Page page;
   page.json = nlohmann::json::object();
@@ -48,10 +47,10 @@ Result<Page> validate(const std::filesystem::path& shared, int threads) {
     for (PageFile& file : section->files) page.files.push_back(std::move(file));
     return {};
   };
-  LUXEL_TRY_STATUS(add("view_factors", validate_view_factors(shared)));
-  LUXEL_TRY_STATUS(add("exact_solutions", validate_exact_solutions(shared)));
-  LUXEL_TRY_STATUS(add("agreement", validate_agreement()));
-  LUXEL_TRY_STATUS(add("cornell_box", validate_cornell_box()));
+  LUXEL_TRY_STATUS(add("view_factors", validate_view_factors(shared, progress)));
+  LUXEL_TRY_STATUS(add("exact_solutions", validate_exact_solutions(shared, progress)));
+  LUXEL_TRY_STATUS(add("agreement", validate_agreement(progress)));
+  LUXEL_TRY_STATUS(add("cornell_box", validate_cornell_box(progress)));
   page.markdown = fmt::format(
       "# Validation\n\n"
       "Is luxel right? Everything on this page was computed and written by one command, `luxel "

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "base/result.h"
 #include "image/codec.h"
 
@@ -23,19 +24,20 @@ struct Section {
   nlohmann::json json;
 };
 
-/// `shared` is the folder with reference/. A section whose data is not there says so.
-Result<Section> validate_view_factors(const std::filesystem::path& shared);
-Result<Section> validate_exact_solutions(const std::filesystem::path& shared);
-Result<Section> validate_agreement();
-Result<Section> validate_cornell_box();
+/// `shared` is the folder with reference/. A section whose data is not there says so. Errors:
+/// cancelled, and what the solvers say.
+Result<Section> validate_view_factors(const std::filesystem::path& shared, Progress& progress);
+Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Progress& progress);
+Result<Section> validate_agreement(Progress& progress);
+Result<Section> validate_cornell_box(Progress& progress);
 
 struct Page {
   std::string markdown;
   std::vector<PageFile> files;
   nlohmann::json json;
 };
-/// All sections. The first is the shortest, so that a reader sees soon whether it works.
-Result<Page> validate(const std::filesystem::path& shared, int threads);
+/// All sections, a quarter of an hour on two cores.
+Result<Page> validate(const std::filesystem::path& shared, Progress& progress);
 
 /// "| a | b |" lines of a table.
 std::string markdown_table(const std::vector<std::string>& columns,

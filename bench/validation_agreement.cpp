@@ -6,20 +6,20 @@
 
 namespace luxel::bench {
 
-Result<Section> validate_agreement() {
+Result<Section> validate_agreement(Progress& progress) {
   Section section;
   section.json = nlohmann::json::array();
   std::vector<std::vector<std::string>> rows;
   constexpr int kPaths = 512, kSamples = 1024, kDirect = 256;
   for (AgreementScene& s : agreement_scenes()) {
-    LUXEL_TRY(const auto p, prepare(std::move(s.scene), s.resolution));
-    LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1));
+    LUXEL_TRY(const auto p, prepare(std::move(s.scene), s.resolution, progress));
+    LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1, progress));
     for (const pipeline::Solver& solver : pipeline::solvers()) {
       pipeline::BakeSettings settings;
       settings.samples = solver.name == "reference" ? kPaths : kSamples;
       settings.direct_samples = kDirect;
       settings.seed = 7;
-      LUXEL_TRY(const Timed solved, solve(*p, solver.name, settings));
+      LUXEL_TRY(const Timed solved, solve(*p, solver.name, settings, progress));
       const Agreement a = agreement(solved.light.irradiance, solved.light.hidden, judged);
       rows.push_back({s.name, s.shows, std::string(solver.name), std::to_string(a.texels),
                       fmt::format("{:.2f} %", 100 * a.relative_rmse),

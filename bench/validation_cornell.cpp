@@ -38,10 +38,10 @@ struct Curve {
 
 Result<Curve> measure_curve(const Prepared& p, const Judged& judged, std::string_view solver,
                             const std::vector<int>& samples,
-                            std::vector<std::vector<std::string>>& rows) {
+                            std::vector<std::vector<std::string>>& rows, Progress& progress) {
   Curve curve{std::string(solver), {}, {}};
   for (const int n : samples) {
-    LUXEL_TRY(const Timed solved, solve(p, solver, with_samples(n, 5)));
+    LUXEL_TRY(const Timed solved, solve(p, solver, with_samples(n, 5), progress));
     const Agreement a = agreement(solved.light.irradiance, solved.light.hidden, judged);
     rows.push_back({std::string(solver), std::to_string(n), fmt::format("{:.2f}", solved.seconds),
                     fmt::format("{:.3f} %", 100 * a.relative_rmse),
@@ -53,19 +53,24 @@ Result<Curve> measure_curve(const Prepared& p, const Judged& judged, std::string
 }
 
 export_::Plot error_plot(const std::string& title, const std::string& x_label) {
-  return {title, x_label, "relative RMSE", true, true, {}, {}, {}};
+  export_::Plot plot;
+  plot.title = title;
+  plot.x_label = x_label;
+  plot.y_label = "relative RMSE";
+  plot.log_x = plot.log_y = true;
+  return plot;
 }
 
-Status convergence(Section& section) {
+Status convergence(Section& section, Progress& progress) {
   constexpr int kResolution = 128, kPaths = 2048;
-  LUXEL_TRY(const auto p, prepare(scene::cornell_box(), kResolution));
-  LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1));
+  LUXEL_TRY(const auto p, prepare(scene::cornell_box(), kResolution, progress));
+  LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1, progress));
   std::vector<std::vector<std::string>> rows;
   export_::Plot samples = error_plot("Cornell box: error against samples", "samples per texel");
   export_::Plot seconds = error_plot("Cornell box: error against time", "seconds");
   for (const auto& [solver, steps] : {std::pair{"gather", std::vector{64, 256, 1024, 4096}},
                                       std::pair{"reference", std::vector{64, 256, 1024}}}) {
-    LUXEL_TRY(const Curve curve, measure_curve(*p, judged, solver, steps, rows));
+    LUXEL_TRY(const Curve curve, measure_curve(*p, judged, solver, steps, rows, progress));
     samples.series.push_back({solver, curve.by_samples});
     seconds.series.push_back({solver, curve.by_seconds});
   }
@@ -110,14 +115,13 @@ struct Round {
 };
 
 Result<reference::TexelPaths> judge_texels(const Prepared& p, std::span<const uint32_t> texels,
-                                           int paths, uint64_t seed) {
+                                           int paths, uint64_t seed, Progress& progress) {
   std::vector<Vec3> position, normal, geometric;
   for (const uint32_t i : texels) {
     position.push_back(p.elements.position[i]);
     normal.push_back(p.elements.normal[i]);
     geometric.push_back(p.elements.geometric_normal[i]);
   }
-  Progress progress;
   return reference::irradiance_by_paths(p.scene, {position, normal, geometric}, *p.tracer,
                                         {.samples = paths, .seed = seed}, progress);
 }
@@ -126,7 +130,7 @@ Result<reference::TexelPaths> judge_texels(const Prepared& p, std::span<const ui
 /// its own paths only: texels were chosen by the noise of the one before.
 Result<std::vector<Round>> judge_again(const Prepared& p, std::span<const Rgb> solved,
                                        const Screen& screen, const Judged& first,
-                                       std::vector<uint32_t>& left) {
+                                       std::vector<uint32_t>& left, Progress& progress) {
   std::vector<Round> rounds{{0, 4, 0, 0}, {2048, 6, 0, 0}, {16384, 8, 0, 0}, {131072, 10, 0, 0}};
   left.resize(solved.size());
   std::iota(left.begin(), left.end(), 0u);
@@ -135,7 +139,8 @@ Result<std::vector<Round>> judge_again(const Prepared& p, std::span<const Rgb> s
     round.texels = left.size();
     std::vector<Rgb> truth;
     if (r > 0) {
-      LUXEL_TRY(reference::TexelPaths judged, judge_texels(p, left, round.paths, 100 + r));
+      LUXEL_TRY(reference::TexelPaths judged,
+                judge_texels(p, left, round.paths, 100 + r, progress));
       truth = std::move(judged.irradiance);
     } else {
       for (const uint32_t i : left) truth.push_back(first.mean(i));
@@ -158,15 +163,15 @@ image::Image lightmap(const Prepared& p, std::span<const Rgb> irradiance) {
   return post::lightmap_from_texels(p.map, irradiance);
 }
 
-Status every_texel(const Prepared& p, const Timed& solved, Section& section) {
+Status every_texel(const Prepared& p, const Timed& solved, Section& section, Progress& progress) {
   constexpr int kPaths = 200;
-  LUXEL_TRY(const Judged judged, judge(p, kPaths, 2));
+  LUXEL_TRY(const Judged judged, judge(p, kPaths, 2, progress));
   std::vector<Rgb> truth;
   for (size_t i = 0; i < judged.first.size(); ++i) truth.push_back(judged.mean(i));
   const Screen screen{display::auto_exposure(lightmap(p, truth))};
   std::vector<uint32_t> left;
   LUXEL_TRY(const std::vector<Round> rounds,
-            judge_again(p, solved.light.irradiance, screen, judged, left));
+            judge_again(p, solved.light.irradiance, screen, judged, left, progress));
   const Agreement a = agreement(solved.light.irradiance, solved.light.hidden, judged);
   std::vector<std::vector<std::string>> rows;
   for (const Round& r : rounds)
@@ -233,7 +238,10 @@ void show_pictures(const Shown& ours, const Shown& judge, const image::Mask& all
     shares += fmt::format("{}{:.3f} % above {}", shares.empty() ? "" : ", ", 100 * share, level);
     section.json[fmt::format("pixels_above_{}", level)] = share;
   }
-  export_::Plot plot{"Brightness of the two pictures", "brightness", "pixels"};
+  export_::Plot plot;
+  plot.title = "Brightness of the two pictures";
+  plot.x_label = "brightness";
+  plot.y_label = "pixels";
   plot.series = {histogram_series("gather", image::histogram(ours.brightness, all)),
                  histogram_series("path tracer", image::histogram(judge.brightness, all))};
   files.push_back(svg_file("histogram.svg", export_::svg(plot)));
@@ -255,10 +263,9 @@ void show_pictures(const Shown& ours, const Shown& judge, const image::Mask& all
   for (PageFile& file : files) section.files.push_back(std::move(file));
 }
 
-Status pictures(const Prepared& p, const Timed& solved, Section& section) {
+Status pictures(const Prepared& p, const Timed& solved, Section& section, Progress& progress) {
   constexpr int kSide = 320, kPaths = 400, kRaysPerAxis = 8;
   const scene::Camera& camera = p.scene.cameras.front();
-  Progress progress;
   const transport::TexelField field{&p.atlas, &p.map, solved.light.irradiance};
   LUXEL_TRY(const image::Image ours,
             display::draw(
@@ -276,15 +283,15 @@ Status pictures(const Prepared& p, const Timed& solved, Section& section) {
 
 }  // namespace
 
-Result<Section> validate_cornell_box() {
+Result<Section> validate_cornell_box(Progress& progress) {
   Section section;
   section.json = nlohmann::json::object();
   section.markdown = "## The Cornell box\n\n";
-  LUXEL_TRY_STATUS(convergence(section));
-  LUXEL_TRY(const auto p, prepare(scene::cornell_box(), 512));
-  LUXEL_TRY(const Timed solved, solve(*p, "gather", with_samples(2000)));
-  LUXEL_TRY_STATUS(every_texel(*p, solved, section));
-  LUXEL_TRY_STATUS(pictures(*p, solved, section));
+  LUXEL_TRY_STATUS(convergence(section, progress));
+  LUXEL_TRY(const auto p, prepare(scene::cornell_box(), 512, progress));
+  LUXEL_TRY(const Timed solved, solve(*p, "gather", with_samples(2000), progress));
+  LUXEL_TRY_STATUS(every_texel(*p, solved, section, progress));
+  LUXEL_TRY_STATUS(pictures(*p, solved, section, progress));
   return section;
 }
 

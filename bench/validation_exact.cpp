@@ -73,12 +73,13 @@ std::string percent(double v) { return fmt::format("{:+.3f} %", 100 * v); }
 constexpr size_t kPoints = 40000;
 
 Status add_case(const ExactCase& c, std::string_view solver,
-                std::vector<std::vector<std::string>>& rows, nlohmann::json& json) {
-  LUXEL_TRY(const auto p, prepare(c.scene, c.resolution));
+                std::vector<std::vector<std::string>>& rows, nlohmann::json& json,
+                Progress& progress) {
+  LUXEL_TRY(const auto p, prepare(c.scene, c.resolution, progress));
   pipeline::BakeSettings settings;
   settings.samples = solver == "reference" ? 256 : 1024;
   settings.direct_samples = 256;
-  LUXEL_TRY(const Timed solved, solve(*p, solver, settings));
+  LUXEL_TRY(const Timed solved, solve(*p, solver, settings, progress));
   const auto points = random_points(p->scene, kPoints);
   for (const ExactPart& part : c.parts) {
     const Measured m = measure(*p, part, solved.light, points);
@@ -99,7 +100,7 @@ Status add_case(const ExactCase& c, std::string_view solver,
 
 }  // namespace
 
-Result<Section> validate_exact_solutions(const std::filesystem::path& shared) {
+Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Progress& progress) {
   Section section;
   const auto bytes = read_file(shared / "reference" / "exact-solutions.md");
   const std::string_view text =
@@ -108,7 +109,7 @@ Result<Section> validate_exact_solutions(const std::filesystem::path& shared) {
   section.json = nlohmann::json::array();
   for (const ExactCase& c : exact_cases(text))
     for (const pipeline::Solver& solver : pipeline::solvers())
-      LUXEL_TRY_STATUS(add_case(c, solver.name, rows, section.json));
+      LUXEL_TRY_STATUS(add_case(c, solver.name, rows, section.json, progress));
   section.markdown =
       "## Solvers against exact solutions\n\n"
       "E [W/m^2] of scenes whose light is known in closed form (`exact-solutions.md`; the number "

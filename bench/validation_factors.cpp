@@ -125,9 +125,10 @@ struct Table {
   nlohmann::json json = nlohmann::json::array();
 };
 
-Result<Table> measure_rows(const std::vector<Row>& rows) {
+Result<Table> measure_rows(const std::vector<Row>& rows, const Progress& progress) {
   Table table;
   for (const Row& row : rows) {
+    if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
     const double a = error_of(analytic(row), row);
     LUXEL_TRY(const double hemicube, sampled(row, kHemicube));
     LUXEL_TRY(const double rays, sampled(row, kRays));
@@ -147,7 +148,7 @@ Result<Table> measure_rows(const std::vector<Row>& rows) {
 
 }  // namespace
 
-Result<Section> validate_view_factors(const std::filesystem::path& shared) {
+Result<Section> validate_view_factors(const std::filesystem::path& shared, Progress& progress) {
   Section section;
   section.markdown = "## View factors against closed forms\n\n";
   const auto file = shared / "reference" / "view-factors.csv";
@@ -158,21 +159,19 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared) {
   }
   const std::vector<Row> rows =
       read_rows({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
-  LUXEL_TRY(const Table table, measure_rows(rows));
+  progress.begin("view factors", 0);
+  LUXEL_TRY(const Table table, measure_rows(rows, progress));
   std::vector<transport::SampledParams> hemicubes, rays;
   for (const int n : {8, 16, 32, 64, 128, 256}) hemicubes.push_back({.samples = 64, .hemicube = n});
   for (const uint32_t n : {8u, 10u, 12u, 14u, 16u, 18u}) rays.push_back({.samples = 1u << n});
   LUXEL_TRY(const Rate hemicube_rate, measure_rate(rows, hemicubes));
   LUXEL_TRY(const Rate ray_rate, measure_rate(rows, rays));
   const double speed = pairs_per_second(rows);
-  export_::Plot plot{"View factors: error against rays",
-                     "rays per factor",
-                     "relative error, root mean square",
-                     true,
-                     true,
-                     {},
-                     {},
-                     {}};
+  export_::Plot plot;
+  plot.title = "View factors: error against rays";
+  plot.x_label = "rays per factor";
+  plot.y_label = "relative error, root mean square";
+  plot.log_x = plot.log_y = true;
   plot.series = {{fmt::format("rays, slope {:.2f}", slope(ray_rate.points)), ray_rate.points},
                  {fmt::format("hemicubes on 64 points, slope {:.2f}", slope(hemicube_rate.points)),
                   hemicube_rate.points}};

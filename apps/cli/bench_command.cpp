@@ -4,6 +4,7 @@
 
 #include "apps/cli/cli.h"
 #include "base/file.h"
+#include "base/parallel.h"
 #include "bench/bench.h"
 #include "bench/validation.h"
 
@@ -39,14 +40,17 @@ Status write_page(const bench::Page& page, const std::filesystem::path& folder) 
 }
 
 int run_validation(const BenchOptions& options, const std::filesystem::path& shared) {
-  const auto page = bench::validate(shared, options.common.threads);
-  if (!page) return report(page.error());
-  const Status written = write_page(*page, options.output);
-  if (!written) return report(written.error());
+  const ThreadLimit limit(options.common.threads);
+  bench::Page page;
+  const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
+    LUXEL_TRY(page, bench::validate(shared, progress));
+    return write_page(page, options.output);
+  });
+  if (!done) return report(done.error());
   if (options.common.json)
-    std::printf("%s\n", page->json.dump(2).c_str());
+    std::printf("%s\n", page.json.dump(2).c_str());
   else
-    std::printf("%s", page->markdown.c_str());
+    std::printf("%s", page.markdown.c_str());
   return kDone;
 }
 

@@ -25,12 +25,6 @@ void aiAssertViolation(const char* expression, const char* file, int line) {
 namespace luxel::import {
 namespace {
 
-Vec3 vec3_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
-
-Mat34 mat34_of(const aiMatrix4x4& m) {
-  return {{{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}}};
-}
-
 /// PLY holds colours as 8-bit display values, or as linear floats.
 bool has_display_colors(const SourceFile& source) {
   const std::string_view header(reinterpret_cast<const char*>(source.bytes.data()),
@@ -104,18 +98,17 @@ scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, b
   return mesh;
 }
 
-using NodeTransforms = std::map<std::string, Mat34>;
-
 /// Instances in the order of the node tree; node lists of the same parts share one mesh. Returns
 /// where each named node is, which lights and cameras look up.
-NodeTransforms add_instances(const aiScene& in, bool srgb_colors, scene::Scene& out) {
+NodeTransforms add_instances(const aiScene& in, const Mat34& world_from_file, bool srgb_colors,
+                             scene::Scene& out) {
   struct Visit {
     const aiNode* node;
     Mat34 parent;
   };
   NodeTransforms transforms;
   std::map<std::vector<unsigned>, uint32_t> known;
-  std::vector<Visit> stack{{in.mRootNode, {}}};
+  std::vector<Visit> stack{{in.mRootNode, world_from_file}};
   while (!stack.empty()) {
     const auto [node, parent] = stack.back();
     stack.pop_back();
@@ -132,58 +125,6 @@ NodeTransforms add_instances(const aiScene& in, bool srgb_colors, scene::Scene& 
     out.instances.push_back({node->mName.C_Str(), mesh->second, world});
   }
   return transforms;
-}
-
-Mat34 transform_of(const NodeTransforms& transforms, const aiString& name) {
-  const auto found = transforms.find(name.C_Str());
-  return found == transforms.end() ? Mat34{} : found->second;
-}
-
-void add_lights(const aiScene& in, const NodeTransforms& transforms, Imported& out) {
-  using Kind = scene::PunctualLight::Kind;
-  for (unsigned i = 0; i < in.mNumLights; ++i) {
-    const aiLight& from = *in.mLights[i];
-    const bool known = from.mType == aiLightSource_POINT || from.mType == aiLightSource_SPOT ||
-                       from.mType == aiLightSource_DIRECTIONAL;
-    if (!known) {
-      out.warnings.push_back(
-          fmt::format("light '{}' is neither point, spot nor directional and is "
-                      "skipped",
-                      from.mName.C_Str()));
-      continue;
-    }
-    const Mat34 world = transform_of(transforms, from.mName);
-    scene::PunctualLight light;
-    light.name = from.mName.C_Str();
-    light.kind = from.mType == aiLightSource_POINT  ? Kind::point
-                 : from.mType == aiLightSource_SPOT ? Kind::spot
-                                                    : Kind::directional;
-    light.intensity = {from.mColorDiffuse.r, from.mColorDiffuse.g, from.mColorDiffuse.b};
-    light.position = transform_point(world, vec3_of(from.mPosition));
-    light.direction = normalize(transform_vector(world, vec3_of(from.mDirection)));
-    // Assimp's cone angles go from side to side, ours from the axis.
-    light.inner_cone_rad = 0.5f * from.mAngleInnerCone;
-    light.outer_cone_rad = 0.5f * from.mAngleOuterCone;
-    out.scene.lights.push_back(light);
-  }
-}
-
-void add_cameras(const aiScene& in, const NodeTransforms& transforms, scene::Scene& out) {
-  for (unsigned i = 0; i < in.mNumCameras; ++i) {
-    const aiCamera& from = *in.mCameras[i];
-    const Mat34 world = transform_of(transforms, from.mName);
-    const Vec3 forward = normalize(transform_vector(world, vec3_of(from.mLookAt)));
-    const Vec3 right = normalize(cross(forward, transform_vector(world, vec3_of(from.mUp))));
-    scene::Camera camera;
-    camera.name = from.mName.C_Str();
-    camera.world_from_camera = from_columns(right, cross(right, forward), -forward,
-                                            transform_point(world, vec3_of(from.mPosition)));
-    camera.aspect = from.mAspect;
-    const float aspect = from.mAspect > 0 ? from.mAspect : 1.0f;
-    camera.fov_y_rad = 2 * std::atan(std::tan(0.5f * from.mHorizontalFOV) / aspect);
-    camera.orthographic_height_m = 2 * from.mOrthographicWidth / aspect;  // its width is half of it
-    out.cameras.push_back(camera);
-  }
 }
 
 /// Assimp's readers of its own dump and of X3D trust every size in the file: a damaged one ends the
@@ -228,6 +169,7 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
     LUXEL_TRY(with_color, check_obj(source, imported.warnings));
   }
   if (source.extension == ".ply") LUXEL_TRY_STATUS(check_ply(source));
+  if (source.extension == ".x") LUXEL_TRY_STATUS(check_x(source));
 
   Assimp::Importer importer;
   // Points and lines are sorted out into meshes of their own and dropped.
@@ -241,9 +183,11 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
                 one_sentence(importer.GetErrorString()));
 
   LUXEL_TRY_STATUS(read_assimp_materials(*in, source, with_color, imported));
-  const NodeTransforms transforms = add_instances(*in, has_display_colors(source), imported.scene);
-  add_lights(*in, transforms, imported);
-  add_cameras(*in, transforms, imported.scene);
+  const NodeTransforms transforms =
+      add_instances(*in, world_from_file(*in, source, imported.warnings),
+                    has_display_colors(source), imported.scene);
+  add_assimp_lights(*in, source, transforms, imported);
+  add_assimp_cameras(*in, source, transforms, imported.scene);
   return imported;
 }
 

@@ -32,6 +32,12 @@ void add_assimp_lights(const aiScene& in, const SourceFile& source,
 void add_assimp_cameras(const aiScene& in, const SourceFile& source,
                         const NodeTransforms& transforms, scene::Scene& out);
 
+/// Is this error of Assimp's validation one that make_names_unique() can help?
+bool is_about_names(std::string_view error);
+/// Gives each light and camera of an .fbx, and its node, a name of its own. Warns of those that it
+/// has to drop.
+void make_names_unique(aiScene& scene, std::vector<std::string>& warnings);
+
 struct ColladaLens {
   float fov_y_rad = 0;            ///< 0: not stated
   float orthographic_height = 0;  ///< in the file's unit; 0: perspective

@@ -248,6 +248,30 @@ TEST(Fbx, LightsAndCameraAreInMetresToo) {
   EXPECT_NEAR(eye.fov_y_rad, 2 * std::atan(0.5f), 1e-5f);
 }
 
+TEST(Fbx, LightsMayShareNamesWithEachOtherAndWithSurfaces) {
+  const auto renamed = [](const std::string& from, const std::string& to) {
+    std::string text = room(centimetres_z_up());
+    for (size_t at; (at = text.find(from)) != text.npos;) text.replace(at, from.size(), to);
+    const size_t texture = text.find("C: \"OP\"");  // this test has no picture
+    return import_text("a.fbx", text.erase(texture, text.find('\n', texture) - texture));
+  };
+  for (const auto& imported :
+       {renamed("Model::beam\"", "Model::bulb\""), renamed("Model::floor\"", "Model::bulb\"")}) {
+    const scene::Scene scene = scene_of(imported);
+    ASSERT_EQ(scene.lights.size(), 2u);
+    expect_near(scene.lights[0].position, {0.1f, 2, -0.2f}, 1e-5f);
+    EXPECT_EQ(scene.lights[1].kind, scene::PunctualLight::Kind::spot);
+    expect_near(scene.lights[1].direction, {0, -1, 0}, 1e-5f);
+    EXPECT_EQ(scene.cameras.size(), 1u);
+    EXPECT_NEAR(drawn_area(scene), 3, 1e-5f);
+  }
+  // A light and a camera: which node is whose is not known.
+  const auto lost = renamed("Model::eye\"", "Model::bulb\"");
+  EXPECT_EQ(scene_of(lost).lights.size(), 1u);
+  EXPECT_THAT(all_of(lost->warnings), HasSubstr("light 'bulb' shares its name"));
+  EXPECT_THAT(all_of(lost->warnings), HasSubstr("camera 'bulb' shares its name"));
+}
+
 TEST(Fbx, EveryUnitAndAxisIsTurnedIntoOurs) {
   const auto area = [](const std::string& unit) {
     return drawn_area(scene_of(import_text("a.fbx", lone_square(settings(unit, 1, 2, 1)))));

@@ -184,6 +184,7 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   }
   if (source.extension == ".ply") LUXEL_TRY_STATUS(check_ply(source));
   if (source.extension == ".x") LUXEL_TRY_STATUS(check_x(source));
+  if (source.extension == ".dae") LUXEL_TRY_STATUS(check_collada(source));
 
   Assimp::Importer importer;
   // Points and lines are sorted out into meshes of their own and dropped.

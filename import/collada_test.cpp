@@ -219,5 +219,22 @@ TEST(Collada, ACameraHasThePlaceAndTheLensThatItsFileStates) {
   EXPECT_FLOAT_EQ(flat.aspect, 2);
 }
 
+TEST(Collada, AListThatIsShorterThanItsReaderThinksIsAnError) {
+  const std::pair<const char*, const char*> damages[] = {
+      {"count=\"12\"", "count=\"0\""},
+      {"count=\"12\"", "count=\"nan\""},
+      {"count=\"12\"", ""},
+      {"count=\"4\" stride=\"3\"", "count=\"1000000000\" stride=\"3\""},
+      {"count=\"4\" stride=\"3\"", "count=\"4\" stride=\"4\""},
+      {"count=\"4\" stride=\"3\"", "count=\"-1\" stride=\"3\""},
+      {"count=\"4\" stride=\"3\"", "count=\"4\" offset=\"1\" stride=\"3\""}};
+  for (const auto& [from, to] : damages) {
+    std::string text = document(kCentimetresZUp, kSquare, "");
+    const auto imported = import_text("a.dae", text.replace(text.find(from), strlen(from), to));
+    ASSERT_FALSE(imported) << to;
+    EXPECT_THAT(imported.error().message, HasSubstr("past the float_array 'pa'")) << to;
+  }
+}
+
 }  // namespace
 }  // namespace luxel::import

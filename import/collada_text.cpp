@@ -1,5 +1,6 @@
-// The lenses of a .dae file's cameras. Assimp keeps only a horizontal angle and loses a camera that
-// states its vertical one alone, or is orthographic.
+// What is looked up in the text of a .dae itself. The lenses of its cameras: Assimp keeps only a
+// horizontal angle and loses a camera that states its vertical one alone, or is orthographic. And
+// the sizes of its lists, which Assimp trusts.
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -81,7 +82,45 @@ ColladaLens lens_of(std::string_view camera) {
   return lens;
 }
 
+/// A whole number in an attribute; `otherwise` when the attribute is missing, none when it is
+/// wrong.
+std::optional<uint64_t> whole_number(std::string_view element, std::string_view name,
+                                     uint64_t otherwise) {
+  const std::string_view word = attribute(element, name);
+  if (word.empty()) return otherwise;
+  uint64_t value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  // 32 bits, as in Assimp, so that their products fit into 64.
+  if (error != std::errc() || end != word.data() + word.size() || value > UINT32_MAX) return {};
+  return value;
+}
+
 }  // namespace
+
+Status check_collada(const SourceFile& source) {
+  const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()),
+                              source.bytes.size());
+  std::map<std::string_view, uint64_t> sizes;
+  std::string_view rest = text;
+  while (const auto array = next_element(rest, "float_array"))
+    sizes[attribute(*array, "id")] = whole_number(*array, "count", 0).value_or(0);
+  rest = text;
+  while (const auto accessor = next_element(rest, "accessor")) {
+    std::string_view id = attribute(*accessor, "source");
+    if (id.starts_with('#')) id.remove_prefix(1);
+    const auto size = sizes.find(id);
+    if (size == sizes.end()) continue;  // of names, in skins
+    const auto count = whole_number(*accessor, "count", 0),
+               stride = whole_number(*accessor, "stride", 1),
+               offset = whole_number(*accessor, "offset", 0);
+    if (!count || !stride || !offset || *offset > size->second ||
+        (*stride > 0 && *count > (size->second - *offset) / *stride))
+      return fail(ErrorCode::bad_input,
+                  "{}: an accessor reads past the float_array '{}', which holds {} numbers",
+                  source.name, id, size->second);
+  }
+  return {};
+}
 
 std::vector<ColladaLens> read_collada_lenses(const SourceFile& source) {
   const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()),

@@ -25,12 +25,6 @@ void aiAssertViolation(const char* expression, const char* file, int line) {
 namespace luxel::import {
 namespace {
 
-Vec3 vec3_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
-
-Mat34 mat34_of(const aiMatrix4x4& m) {
-  return {{{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}}};
-}
-
 /// PLY holds colours as 8-bit display values, or as linear floats.
 bool has_display_colors(const SourceFile& source) {
   const std::string_view header(reinterpret_cast<const char*>(source.bytes.data()),
@@ -104,8 +98,6 @@ scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, b
   return mesh;
 }
 
-using NodeTransforms = std::map<std::string, Mat34>;
-
 /// A node that draws something.
 struct DrawnNode {
   std::string name;
@@ -115,13 +107,14 @@ struct DrawnNode {
 
 /// The nodes that draw something, in the order of the tree, and where each named node is, which
 /// lights and cameras look up.
-std::vector<DrawnNode> drawn_nodes(const aiScene& in, NodeTransforms& transforms) {
+std::vector<DrawnNode> drawn_nodes(const aiScene& in, const Mat34& world_from_file,
+                                   NodeTransforms& transforms) {
   struct Visit {
     const aiNode* node;
     Mat34 parent;
   };
   std::vector<DrawnNode> drawn;
-  std::vector<Visit> stack{{in.mRootNode, {}}};
+  std::vector<Visit> stack{{in.mRootNode, world_from_file}};
   while (!stack.empty()) {
     const auto [node, parent] = stack.back();
     stack.pop_back();
@@ -166,62 +159,24 @@ void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, bool 
   }
 }
 
-Mat34 transform_of(const NodeTransforms& transforms, const aiString& name) {
-  const auto found = transforms.find(name.C_Str());
-  return found == transforms.end() ? Mat34{} : found->second;
-}
-
-void add_lights(const aiScene& in, const NodeTransforms& transforms, Imported& out) {
-  using Kind = scene::PunctualLight::Kind;
-  for (unsigned i = 0; i < in.mNumLights; ++i) {
-    const aiLight& from = *in.mLights[i];
-    const bool known = from.mType == aiLightSource_POINT || from.mType == aiLightSource_SPOT ||
-                       from.mType == aiLightSource_DIRECTIONAL;
-    if (!known) {
-      out.warnings.push_back(
-          fmt::format("light '{}' is neither point, spot nor directional and is "
-                      "skipped",
-                      from.mName.C_Str()));
-      continue;
-    }
-    const Mat34 world = transform_of(transforms, from.mName);
-    scene::PunctualLight light;
-    light.name = from.mName.C_Str();
-    light.kind = from.mType == aiLightSource_POINT  ? Kind::point
-                 : from.mType == aiLightSource_SPOT ? Kind::spot
-                                                    : Kind::directional;
-    light.intensity = {from.mColorDiffuse.r, from.mColorDiffuse.g, from.mColorDiffuse.b};
-    light.position = transform_point(world, vec3_of(from.mPosition));
-    light.direction = normalize(transform_vector(world, vec3_of(from.mDirection)));
-    // Assimp's cone angles go from side to side, ours from the axis.
-    light.inner_cone_rad = 0.5f * from.mAngleInnerCone;
-    light.outer_cone_rad = 0.5f * from.mAngleOuterCone;
-    out.scene.lights.push_back(light);
-  }
-}
-
-void add_cameras(const aiScene& in, const NodeTransforms& transforms, scene::Scene& out) {
-  for (unsigned i = 0; i < in.mNumCameras; ++i) {
-    const aiCamera& from = *in.mCameras[i];
-    const Mat34 world = transform_of(transforms, from.mName);
-    const Vec3 forward = normalize(transform_vector(world, vec3_of(from.mLookAt)));
-    const Vec3 right = normalize(cross(forward, transform_vector(world, vec3_of(from.mUp))));
-    scene::Camera camera;
-    camera.name = from.mName.C_Str();
-    camera.world_from_camera = from_columns(right, cross(right, forward), -forward,
-                                            transform_point(world, vec3_of(from.mPosition)));
-    camera.aspect = from.mAspect;
-    const float aspect = from.mAspect > 0 ? from.mAspect : 1.0f;
-    camera.fov_y_rad = 2 * std::atan(std::tan(0.5f * from.mHorizontalFOV) / aspect);
-    camera.orthographic_height_m = 2 * from.mOrthographicWidth / aspect;  // its width is half of it
-    out.cameras.push_back(camera);
-  }
-}
-
 /// Assimp's readers of its own dump and of X3D trust every size in the file: a damaged one ends the
 /// process.
 bool is_trusting(std::string_view extension) {
   return extension == ".assbin" || extension == ".x3d" || extension == ".x3db";
+}
+
+const aiScene* read_file_with(Assimp::Importer& importer, const SourceFile& source,
+                              std::vector<std::string>& warnings) {
+  constexpr unsigned kSteps =
+      aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_ValidateDataStructure;
+  const std::string path = source.path.string();
+  const aiScene* in = importer.ReadFile(path, kSteps);
+  if (in != nullptr || source.extension != ".fbx" || !is_about_names(importer.GetErrorString()))
+    return in;
+  if (importer.ReadFile(path, 0) == nullptr) return nullptr;
+  // The scene is the importer's and not constant; GetScene() says so only for its users' sake.
+  make_names_unique(const_cast<aiScene&>(*importer.GetScene()), warnings);
+  return importer.ApplyPostProcessing(kSteps);
 }
 
 std::vector<std::string> known_extensions() {
@@ -260,25 +215,26 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
     LUXEL_TRY(with_color, check_obj(source, imported.warnings));
   }
   if (source.extension == ".ply") LUXEL_TRY_STATUS(check_ply(source));
+  if (source.extension == ".x") LUXEL_TRY_STATUS(check_x(source));
+  if (source.extension == ".dae") LUXEL_TRY_STATUS(check_collada(source));
 
   Assimp::Importer importer;
   // Points and lines are sorted out into meshes of their own and dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* in =
-      importer.ReadFile(source.path.string(), aiProcess_Triangulate | aiProcess_SortByPType |
-                                                  aiProcess_ValidateDataStructure);
+  const aiScene* in = read_file_with(importer, source, imported.warnings);
   if (in == nullptr || in->mRootNode == nullptr)
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
                 one_sentence(importer.GetErrorString()));
 
   LUXEL_TRY_STATUS(read_assimp_materials(*in, source, with_color, imported));
   NodeTransforms transforms;
-  std::vector<DrawnNode> drawn = drawn_nodes(*in, transforms);
+  std::vector<DrawnNode> drawn =
+      drawn_nodes(*in, world_from_file(*in, source, imported.warnings), transforms);
   if (source.extension == ".obj") join_groups(drawn);
   add_instances(*in, drawn, has_display_colors(source), imported.scene);
-  add_lights(*in, transforms, imported);
-  add_cameras(*in, transforms, imported.scene);
+  add_assimp_lights(*in, source, transforms, imported);
+  add_assimp_cameras(*in, source, transforms, imported.scene);
   return imported;
 }
 

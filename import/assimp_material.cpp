@@ -103,8 +103,9 @@ Result<scene::Material> read_material(Textures& textures, unsigned index) {
   aiString name;
   in.Get(AI_MATKEY_NAME, name);
   scene::Material out = default_material();
-  // What Assimp makes up for faces without a material.
+  // What Assimp makes up for faces without a material; that of an .x has no name.
   if (std::strcmp(name.C_Str(), AI_DEFAULT_MATERIAL_NAME) == 0) return out;
+  if (textures.source.extension == ".x" && name.length == 0) return out;
   out.name = name.C_Str();
   const std::string user = label("material", index, out.name);
   out.base_color = color_of(in, AI_MATKEY_COLOR_DIFFUSE, out.base_color);

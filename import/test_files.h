@@ -50,8 +50,8 @@ inline void append_to_string(void* text, void* data, int size) {
 }
 /// A picture of one colour, as a PNG file.
 inline std::string png_of(int width, int height, std::array<uint8_t, 4> rgba) {
-  std::vector<uint8_t> pixels;
-  for (int i = 0; i < width * height; ++i) pixels.insert(pixels.end(), rgba.begin(), rgba.end());
+  std::vector<uint8_t> pixels(4 * size_t(width) * size_t(height));
+  for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = rgba[i % 4];
   std::string png;
   stbi_write_png_to_func(append_to_string, &png, width, height, 4, pixels.data(), 4 * width);
   return png;

@@ -3,6 +3,8 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <map>
@@ -10,6 +12,7 @@
 
 #include "image/color.h"
 #include "import/assimp_parts.h"
+#include "import/obj_groups.h"
 
 namespace Assimp {
 /// Debian's Assimp is built with its assertions, and a wrong .fbx or .x that meets one would end
@@ -98,6 +101,21 @@ scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, b
   return mesh;
 }
 
+/// Gives Assimp a text of ours in the place of one file; other files it reads itself.
+class TextInsteadOfFile : public Assimp::DefaultIOSystem {
+ public:
+  TextInsteadOfFile(std::string path, const std::string& text)
+      : path_(std::move(path)), text_(text) {}
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    if (path_ != file) return DefaultIOSystem::Open(file, mode);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(text_.data()), text_.size());
+  }
+
+ private:
+  std::string path_;
+  const std::string& text_;
+};
+
 /// A node that draws something.
 struct DrawnNode {
   std::string name;
@@ -128,14 +146,15 @@ std::vector<DrawnNode> drawn_nodes(const aiScene& in, const Mat34& world_from_fi
   return drawn;
 }
 
-/// An .obj may open a group again, which Assimp makes another node of the same name; in the file it
-/// is the same group.
-void join_groups(std::vector<DrawnNode>& drawn) {
+/// Gives the groups of an .obj their names back. A group that is opened again became another node
+/// of the same number, and is the same group.
+void join_groups(const ObjGroups& groups, std::vector<DrawnNode>& drawn) {
   std::map<std::string, size_t> first;
   std::vector<DrawnNode> joined;
   for (DrawnNode& node : drawn) {
     const auto [at, is_new] = first.try_emplace(node.name, joined.size());
     if (is_new) {
+      node.name = name_of_group(groups, node.name);
       joined.push_back(std::move(node));
       continue;
     }
@@ -211,14 +230,18 @@ Status check_extension(const SourceFile& source) {
 Result<Imported> read_with_assimp(const SourceFile& source) {
   Imported imported;
   std::set<std::string> with_color;
-  if (source.extension == ".obj") {
+  ObjGroups groups;
+  const bool is_obj = source.extension == ".obj";
+  if (is_obj) {
     LUXEL_TRY(with_color, check_obj(source, imported.warnings));
+    groups = number_groups(source);
   }
   if (source.extension == ".ply") LUXEL_TRY_STATUS(check_ply(source));
   if (source.extension == ".x") LUXEL_TRY_STATUS(check_x(source));
   if (source.extension == ".dae") LUXEL_TRY_STATUS(check_collada(source));
 
   Assimp::Importer importer;
+  if (is_obj) importer.SetIOHandler(new TextInsteadOfFile(source.path.string(), groups.text));
   // Points and lines are sorted out into meshes of their own and dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -231,7 +254,7 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   NodeTransforms transforms;
   std::vector<DrawnNode> drawn =
       drawn_nodes(*in, world_from_file(*in, source, imported.warnings), transforms);
-  if (source.extension == ".obj") join_groups(drawn);
+  if (is_obj) join_groups(groups, drawn);
   add_instances(*in, drawn, has_display_colors(source), imported.scene);
   add_assimp_lights(*in, source, transforms, imported);
   add_assimp_cameras(*in, source, transforms, imported.scene);

@@ -7,20 +7,10 @@
 #include "base/file.h"
 #include "base/vec_double.h"
 #include "import/readers.h"
+#include "import/text_lines.h"
 
 namespace luxel::import {
 namespace {
-
-constexpr std::string_view kBlank = " \t\r";
-
-/// Takes the next word off the line; empty at its end.
-std::string_view next_word(std::string_view& line) {
-  const size_t start = std::min(line.find_first_not_of(kBlank), line.size());
-  const size_t end = std::min(line.find_first_of(kBlank, start), line.size());
-  const std::string_view word = line.substr(start, end - start);
-  line.remove_prefix(end);
-  return word;
-}
 
 /// How many of each the file has so far; faces may only refer back or, in the files of some
 /// exporters, ahead: indices are judged at the end.
@@ -141,24 +131,6 @@ Status check_corners(std::string_view rest, ObjScan& scan, size_t line, const st
   }
   note_bent_face(corners, line, scan);
   return {};
-}
-
-std::string_view text_of(const std::vector<std::byte>& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-/// The rest of a line without the blanks around it; names may hold blanks inside.
-std::string_view trimmed(std::string_view rest) {
-  const size_t start = std::min(rest.find_first_not_of(kBlank), rest.size());
-  return rest.substr(start, std::max(rest.find_last_not_of(kBlank) + 1, start) - start);
-}
-
-/// Takes the next line off the text.
-std::string_view next_line(std::string_view& text) {
-  const size_t end = std::min(text.find('\n'), text.size());
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return line;
 }
 
 /// The materials of an .mtl that state Kd.

@@ -207,7 +207,7 @@ VisibleExchange refine(Work& work, std::span<const Polygon> pieces,
   for (const Polygon& piece : pieces)
     for (size_t i = 2; i < piece.size(); ++i)
       take(evaluate(work, {piece[0], piece[i - 1], piece[i]}, blockers));
-  const double least = work.tolerance * std::max(params.negligible_m2, 1e-4 * unoccluded);
+  const double least = work.tolerance * std::max(params.negligible_m2, 1e-3 * unoccluded);
   while (!open.empty() && errors.total() > std::max(least, work.tolerance * sum.value) &&
          sum.cells < params.max_cells && !(params.progress && params.progress->cancelled())) {
     const Cell parent = open.top();

@@ -10,8 +10,9 @@
 namespace luxel::transport {
 
 struct VisibleParams {
-  double tolerance = 1e-4;  ///< relative error asked for
-  double slack_m = 0;       ///< corners closer to a plane lie on it; 0: double rounding
+  /// Relative error asked for; where less than a thousandth is left to see, that of the thousandth.
+  double tolerance = 1e-4;
+  double slack_m = 0;  ///< corners closer to a plane lie on it; 0: double rounding
   /// Exchange areas below this [m^2] need no smaller absolute error than this one.
   double negligible_m2 = 0;
   uint32_t max_cells = 1u << 17;  ///< pieces of `a` after which the work ends, tolerance or not

@@ -1,0 +1,202 @@
+// `luxel factors`: the table, what is printed, and what is refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tests/command.h"
+
+namespace luxel::testing_support {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kCube =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "g floor\nf 1 2 3 4\ng ceiling\nf 5 8 7 6\ng \"a, b\"\nf 1 5 6 2\no east\nf 2 6 7 3\n"
+    "o north wall\nf 3 7 8 4\ng west\nf 4 8 5 1\n";
+
+/// Cells of a CSV line as RFC 4180 writes them.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back() += line[++i];
+    else if (line[i] == '"')
+      quoted = !quoted;
+    else if (line[i] == ',' && !quoted)
+      cells.emplace_back();
+    else
+      cells.back() += line[i];
+  }
+  return cells;
+}
+
+using Table = std::map<std::string, std::map<std::string, double>>;
+Table read_table(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  std::string line;
+  std::getline(in, line);
+  const std::vector<std::string> header = cells_of(line);
+  EXPECT_EQ(header.front(), "surface");
+  Table table;
+  while (std::getline(in, line)) {
+    const std::vector<std::string> cells = cells_of(line);
+    EXPECT_EQ(cells.size(), header.size());
+    for (size_t j = 1; j < cells.size(); ++j) table[cells[0]][header[j]] = std::stod(cells[j]);
+  }
+  return table;
+}
+
+constexpr double kOpposite = 0.19982489569838738, kBeside = 0.20004377607540315;  // Howell
+
+TEST(Factors, OfACubeAreExactAndClosed) {
+  const ScratchFolder s;
+  const std::string cube = s.write("cube.obj", kCube).string(), csv = (s.path / "f.csv").string();
+  const CommandResult r = luxel("factors " + cube + " -o " + csv);
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.out, HasSubstr("closed"));
+  EXPECT_THAT(r.out, HasSubstr("reciprocity"));
+  EXPECT_THAT(slurp(csv), HasSubstr("\nfloor,0,0.199824895698"));
+  const Table table = read_table(csv);
+  ASSERT_EQ(table.size(), 6u);
+  EXPECT_NEAR(table.at("floor").at("ceiling"), kOpposite, 1e-12);
+  EXPECT_NEAR(table.at("floor").at("north wall"), kBeside, 1e-12);
+  EXPECT_NEAR(table.at("\"a, b\"").at("east"), kBeside, 1e-12);  // the quotes belong to its name
+  EXPECT_EQ(table.at("west").at("west"), 0);
+}
+
+TEST(Factors, JsonIsOneObjectOnStdout) {
+  const ScratchFolder s;
+  const std::string cube = s.write("cube.obj", kCube).string(), csv = (s.path / "f.csv").string();
+  const CommandResult r = luxel("factors " + cube + " -o " + csv + " --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const nlohmann::json json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json.at("surfaces").size(), 6u);
+  EXPECT_EQ(json.at("surfaces")[1].at("name"), "ceiling");
+  EXPECT_NEAR(json.at("surfaces")[1].at("area_m2").get<double>(), 1, 1e-12);
+  EXPECT_NEAR(json.at("surfaces")[1].at("row_sum").get<double>(), 1, 1e-12);
+  EXPECT_EQ(json.at("closed"), true);
+  EXPECT_LT(json.at("reciprocity_error").get<double>(), 1e-12);
+  EXPECT_EQ(json.at("output"), csv);
+}
+
+TEST(Factors, FromAndToLeaveOneEntry) {
+  const ScratchFolder s;
+  const std::string cube = s.write("cube.obj", kCube).string(), csv = (s.path / "f.csv").string();
+  const CommandResult r = luxel("factors " + cube + " -o " + csv + " --from floor --to ceiling");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.out, HasSubstr("F(floor -> ceiling) = 0.19982489569"));
+  const Table table = read_table(csv);
+  ASSERT_EQ(table.size(), 1u);
+  EXPECT_EQ(table.at("floor").size(), 1u);
+  EXPECT_NEAR(table.at("floor").at("ceiling"), kOpposite, 1e-12);
+}
+
+TEST(Factors, OtherMethodsComeCloseAndSmoothingKeepsTheLaws) {
+  const ScratchFolder s;
+  const std::string cube = s.write("cube.obj", kCube).string(), csv = (s.path / "f.csv").string();
+  for (const std::string& method :
+       {"rays --samples 65536", "hemicube --samples 64 --hemicube 32", "rays --smooth"}) {
+    const CommandResult r = luxel("factors " + cube + " -o " + csv + " --quiet --method " + method);
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_EQ(r.out, "");
+    const Table table = read_table(csv);
+    EXPECT_NEAR(table.at("floor").at("ceiling"), kOpposite, 0.008) << method;
+    EXPECT_NEAR(table.at("floor").at("east"), kBeside, 0.008) << method;
+    if (method.find("smooth") == std::string::npos) continue;
+    for (const auto& [name, row] : table) {
+      double sum = 0;
+      for (const auto& [other, factor] : row) {
+        sum += factor;
+        EXPECT_NEAR(factor, table.at(other).at(name), 1e-13);
+      }
+      EXPECT_NEAR(sum, 1, 1e-12) << name;
+    }
+  }
+}
+
+TEST(Factors, AGroupIsOneSurfaceWhateverItsMaterialsAndOrder) {
+  const ScratchFolder s;
+  s.write("m.mtl", "newmtl red\nKd 0.5 0 0\nnewmtl blue\nKd 0 0 0.5\n");
+  const std::string scene =
+      s.write("s.obj",
+              "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nv 0 0 1\n"
+              "v 2 0 1\nv 2 1 1\nv 0 1 1\ng floor\nusemtl red\nf 1 2 3 4\ng lid\nf 7 10 9 8\n"
+              "g floor\nusemtl blue\nf 2 5 6 3\n")
+          .string();
+  const std::string csv = (s.path / "f.csv").string();
+  const CommandResult r = luxel("factors " + scene + " -o " + csv);
+  ASSERT_EQ(r.code, 0) << r.err;
+  const Table table = read_table(csv);
+  ASSERT_EQ(table.size(), 2u);
+  EXPECT_NEAR(table.at("floor").at("lid"), 0.28587538485071472, 1e-12);  // 1 x 2 plates
+}
+
+TEST(Factors, BentQuadsAndSurfacesWithoutAreaAreSaid) {
+  const ScratchFolder s;
+  std::string text = kCube + "g thread\nf 1 2 2\n";
+  text.replace(text.find("v 1 1 1\n"), 8, "v 1 1 1.1\n");
+  const std::string scene = s.write("s.obj", text).string(), csv = (s.path / "f.csv").string();
+  const CommandResult r = luxel("factors " + scene + " -o " + csv);
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("'ceiling'"));
+  EXPECT_THAT(r.err, HasSubstr("one plane"));
+  const Table table = read_table(csv);
+  EXPECT_EQ(table.size(), 6u);
+  for (const auto& [name, row] : table)
+    for (const auto& [other, factor] : row) {
+      EXPECT_TRUE(std::isfinite(factor));
+      EXPECT_GE(factor, 0);
+    }
+  const std::string nothing =
+      s.write("n.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\ng thread\nf 1 2 3\n").string();
+  const CommandResult refused = luxel("factors " + nothing + " -o " + csv);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("n.obj"));
+}
+
+TEST(Factors, WrongRequestsAreRefusedAndLeaveNothing) {
+  const ScratchFolder s;
+  const std::string cube = s.write("cube.obj", kCube).string(), csv = (s.path / "f.csv").string();
+  const auto refused = [&](const std::string& arguments, int code, const std::string& words) {
+    const CommandResult r = luxel("factors " + arguments);
+    EXPECT_EQ(r.code, code) << arguments << "\n" << r.err;
+    EXPECT_THAT(r.err, HasSubstr(words)) << arguments;
+    EXPECT_EQ(r.out, "") << arguments;
+    EXPECT_EQ(files_in(s.path), (std::set<std::string>{"cube.obj"})) << arguments;
+  };
+  refused(cube + " -o " + csv + " --from flor", 1, "there are: floor, ceiling");
+  refused(cube + " -o " + csv + " --to nowhere", 1, "'nowhere'");
+  refused(cube + " -o " + csv + " --tolerance 0", 1, "--tolerance 0");
+  refused(cube + " -o " + csv + " --tolerance nan", 1, "--tolerance nan");
+  refused(cube + " -o " + csv + " --samples 5", 1, "--samples has no meaning");
+  refused(cube + " -o " + csv + " --method rays --samples 0", 1, "--samples 0");
+  refused(cube + " -o " + csv + " --method hemicube --hemicube 7", 1, "--hemicube 7");
+  refused(cube + " -o " + csv + " --smooth --from floor", 1, "--smooth");
+  refused(cube + " -o " + (s.path / "none" / "f.csv").string(), 1, "there is no folder");
+  refused(cube + " -o " + s.path.string(), 1, "is a folder");
+  refused((s.path / "none.obj").string() + " -o " + csv, 1, "no such file");
+  refused(cube + " -o " + csv + " --method fast", 2, "fast");
+  refused(cube, 2, "--output");
+  refused(scene_file("cornell-box-empty.glb") + " -o " + csv + " --smooth", 1, "closed enclosure");
+}
+
+TEST(Factors, NamesOfTheSameKindAreToldApart) {
+  const ScratchFolder s;
+  const std::string csv = (s.path / "f.csv").string();
+  const CommandResult r =
+      luxel("factors " + scene_file("cornell-box-empty.glb") + " -o " + csv + " --threads 1");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_THAT(r.out, HasSubstr("open"));
+  const Table table = read_table(csv);
+  EXPECT_EQ(table.count("back wall"), 1u);
+  EXPECT_NEAR(table.at("back wall").at("left wall"), 0.18, 0.05);
+}
+
+}  // namespace
+}  // namespace luxel::testing_support

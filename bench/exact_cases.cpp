@@ -119,7 +119,7 @@ ExactCase sphere_zones() {
   ExactCase c{"sphere in three zones",
               "3",
               scene::inward_sphere(1, kSphereLevels, gray(rho[0]), exitance(1)),
-              256,
+              160,
               {},
               kFacets};
   for (const size_t z : {1u, 2u}) scene::add_material(c.scene, "zone", gray(rho[z]));
@@ -137,7 +137,7 @@ ExactCase sphere_zones() {
 ExactCase integrating_sphere() {
   constexpr double kRho = 0.9;
   ExactCase c{
-      "integrating sphere", "3", scene::inward_sphere(2, kSphereLevels, gray(kRho), {}), 256, {},
+      "integrating sphere", "3", scene::inward_sphere(2, kSphereLevels, gray(kRho), {}), 160, {},
       2 * kFacets};
   scene::add_material(c.scene, "port", {});
   paint_zones(c.scene, {0.95, 0.05});
@@ -197,7 +197,7 @@ ExactCase concentric_spheres(bool inner_shines) {
                            : "concentric spheres, the outer shines",
               "5",
               scene::inward_sphere(2, kSphereLevels - 1, gray(rho2), exitance(e2)),
-              256,
+              160,
               {part("inner", of_material(1), (b1 - e1) / rho1, false),
                part("outer", of_material(0), (b2 - e2) / rho2, false)},
               4 * kFacets};

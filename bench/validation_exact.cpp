@@ -77,7 +77,7 @@ Status add_case(const ExactCase& c, std::string_view solver,
                 Progress& progress) {
   LUXEL_TRY(const auto p, prepare(c.scene, c.resolution, progress));
   pipeline::BakeSettings settings;
-  settings.samples = solver == "reference" ? 256 : 1024;
+  settings.samples = solver == "reference" ? 128 : 1024;
   settings.direct_samples = 256;
   LUXEL_TRY(const Timed solved, solve(*p, solver, settings, progress));
   const auto points = random_points(p->scene, kPoints);
@@ -121,7 +121,7 @@ Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Pr
       "is known\npointwise (where E is below a tenth of its mean, relative to that tenth). "
       "*model*: how "
       "far the scene itself is from the formula's (facets of a sphere). gather takes 1024 "
-      "rays\nand 256 shadow rays per texel, the path tracer (reference) 256 paths, without any "
+      "rays\nand 256 shadow rays per texel, the path tracer (reference) 128 paths, without any "
       "other "
       "help: its texels are noisy, its means must be right.\nSections 6 (one element per face) "
       "and 8 are about solvers with constant elements, of which there is none yet.\n\n" +

@@ -1,0 +1,106 @@
+// Every solver of the pipeline's table against the path tracer, on five small scenes.
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+#include "bench/agreement.h"
+
+namespace luxel::bench {
+namespace {
+
+/// What a solver may differ by, and why.
+struct Tolerance {
+  std::string_view solver, scene;
+  double relative_rmse, bias;
+  std::string_view reason;
+};
+
+/// A solver without a row here fails: whoever adds one says how good it is, and why not better.
+/// Biases: three to four times the standard error of the judge's mean (0.66 / sqrt(1024 paths *
+/// texels) or less), plus what the map's texels lose at edges.
+constexpr Tolerance kTolerances[] = {
+    {"gather", "Cornell box", 0.02, 0.002, "noise of 1024 rays; shadow edges within texels"},
+    {"gather", "lamp in a room", 0.02, 0.002, "noise of 1024 rays"},
+    {"gather", "spheres and cube", 0.02, 0.003, "noise of 1024 rays; facets of the spheres"},
+    {"gather", "every lamp", 0.03, 0.003, "noise; the mask's holes are seen by single rays"},
+    {"gather", "window", 0.04, 0.004, "noise: the window is small, and the sun's patch bright"},
+    {"reference", "Cornell box", 0.05, 0.003, "its own noise: 0.66 / sqrt(512) = 0.03 of the mean"},
+    {"reference", "lamp in a room", 0.05, 0.003, "its own noise"},
+    {"reference", "spheres and cube", 0.05, 0.003, "its own noise"},
+    {"reference", "every lamp", 0.08, 0.004, "its own noise"},
+    {"reference", "window", 0.1, 0.006, "its own noise: most paths miss the window"},
+};
+
+const Tolerance* tolerance_of(std::string_view solver, std::string_view scene) {
+  for (const Tolerance& t : kTolerances)
+    if (t.solver == solver && t.scene == scene) return &t;
+  return nullptr;
+}
+
+TEST(SlowAgreement, EverySolverAgreesWithThePathTracer) {
+  constexpr int kPaths = 512;
+  for (AgreementScene& s : agreement_scenes()) {
+    SCOPED_TRACE(s.name);
+    Progress progress;
+    const auto p = prepare(std::move(s.scene), 64, progress);
+    ASSERT_TRUE(p) << p.error().message;
+    const auto judged = judge(**p, kPaths, 1, progress);
+    ASSERT_TRUE(judged);
+    for (const pipeline::Solver& solver : pipeline::solvers()) {
+      SCOPED_TRACE(solver.name);
+      const Tolerance* tolerance = tolerance_of(solver.name, s.name);
+      ASSERT_NE(tolerance, nullptr) << "say above how well it agrees, and why";
+      pipeline::BakeSettings settings;
+      settings.samples = solver.name == "reference" ? kPaths : 1024;
+      settings.direct_samples = 256;
+      settings.seed = 7;
+      const auto solved = solve(**p, solver.name, settings, progress);
+      ASSERT_TRUE(solved) << solved.error().message;
+      const Agreement a = agreement(solved->light.irradiance, solved->light.hidden, *judged);
+      EXPECT_GT(a.texels, 1000u);
+      EXPECT_LE(a.relative_rmse, tolerance->relative_rmse) << tolerance->reason;
+      EXPECT_LE(std::abs(a.bias_over_mean), tolerance->bias) << tolerance->reason;
+      std::printf("%-18s %-10s relative RMSE %.4f  bias %+.4f  judge's noise %.4f\n",
+                  s.name.c_str(), std::string(solver.name).c_str(), a.relative_rmse,
+                  a.bias_over_mean, a.judge_noise);
+    }
+  }
+}
+
+// The measure itself: a known error is found through noise that is much larger.
+TEST(Agreement, FindsAKnownErrorBelowTheJudgesNoise) {
+  constexpr size_t kTexels = 200000;
+  RandomStream random{3};
+  const auto noise = [&] { return 0.4f * (random.next() - 0.5f); };  // deviation 0.115
+  Judged judged;
+  std::vector<Rgb> solved;
+  for (size_t i = 0; i < kTexels; ++i) {
+    const float truth = 1, d = i % 2 ? 0.03f : -0.01f;  // root mean square 0.02236, mean 0.01
+    judged.first.push_back(Rgb{1, 1, 1} * (truth + noise()));
+    judged.second.push_back(Rgb{1, 1, 1} * (truth + noise()));
+    judged.standard_error.push_back(Rgb{1, 1, 1} * 0.0816f);
+    judged.hidden.push_back(0);
+    solved.push_back(Rgb{1, 1, 1} * (truth + d));
+  }
+  const Agreement a = agreement(solved, {}, judged);
+  EXPECT_EQ(a.texels, kTexels);
+  // The denominator is noisy too (0.08): its square's mean is off by 2 %.
+  EXPECT_NEAR(a.relative_rmse, 0.02236 / 1.01, 0.0015);
+  EXPECT_NEAR(a.bias_over_mean, 0.01, 0.001);
+  EXPECT_NEAR(a.judge_noise, 0.0816 / 1.01, 0.003);
+}
+
+TEST(Agreement, LeavesOutWhatIsHidden) {
+  Judged judged;
+  judged.first = judged.second = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
+  judged.standard_error.resize(3);
+  judged.hidden = {0, 1, 0};
+  const std::vector<Rgb> solved{{1.1f, 1.1f, 1.1f}, {50, 50, 50}, {70, 70, 70}};
+  const std::vector<uint8_t> hidden{0, 0, 1};
+  const Agreement a = agreement(solved, hidden, judged);
+  EXPECT_EQ(a.texels, 1u);
+  EXPECT_NEAR(a.relative_rmse, 0.1 / 1.01, 1e-5);
+  EXPECT_NEAR(a.bias_over_mean, 0.1, 1e-6);
+}
+
+}  // namespace
+}  // namespace luxel::bench

@@ -53,7 +53,7 @@ Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver
     for (const auto c : {&Rgb::x, &Rgb::y, &Rgb::z}) {
       const double g = double(solved[i].*c);
       const double a = double(judged.first[i].*c), b = double(judged.second[i].*c);
-      const double scale = 0.5 * (a + b) + floor, s = double(judged.standard_error[i].*c);
+      const double scale = std::abs(g) + floor, s = double(judged.standard_error[i].*c);
       squares += (g - a) * (g - b) / (scale * scale);
       noise += s * s / (scale * scale);
     }

@@ -35,8 +35,9 @@ Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed, Progres
 
 /// How far a solver's E lies from the truth. With D = g - truth and two independent, unbiased
 /// answers a and b of the judge, the mean of (g - a)(g - b) tends to the mean of D^2: the judge's
-/// own noise drops out. The denominator of the relative error is that of `luxel compare`, e + 0.01
-/// mean(e), from the mean of both answers.
+/// own noise drops out. Relative errors are D / (g + 0.01 mean(g)): relative to the solver, because
+/// a noisy denominator that goes with a and b would bring their noise back; `luxel compare` divides
+/// by the reference, which differs in the second order of D.
 struct Agreement {
   uint64_t texels = 0;
   double relative_rmse = 0;   ///< of the solver alone; 0 where the noise leaves nothing

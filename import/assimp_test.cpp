@@ -52,6 +52,32 @@ TEST(Obj, GroupOfTwoMaterialsIsOneMesh) {
   EXPECT_NE(scene.meshes[0].triangle_material[0], scene.meshes[0].triangle_material[1]);
 }
 
+// Assimp alone cuts names of `o` at a blank and gives faces of one that is opened again to others.
+TEST(Obj, GroupsKeepTheirWholeNamesAndFacesWhereverTheyAreOpened) {
+  const TemporaryFolder folder;
+  const scene::Scene scene = scene_of(import_scene(
+      folder.write("a.obj",
+                   "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                   "o north wall\nf 1 2 3\no north door\nf 1 2 3\ng lock\nf 1 2 3\ng\nf 1 3 4\n"
+                   "o house\ng lock\nf 2 3 4\no north wall \r\nf 1 3 4\n")));
+  ASSERT_EQ(scene.instances.size(), 4u);
+  const std::vector<std::pair<std::string, size_t>> expected{
+      {"north wall", 2}, {"north door", 2}, {"lock", 1}, {"lock", 1}};
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(scene.instances[i].name, expected[i].first);
+    EXPECT_EQ(scene.meshes[scene.instances[i].mesh].triangles.size(), expected[i].second) << i;
+  }
+}
+
+TEST(Obj, BentFacesAreSaidWithTheirGroup) {
+  const TemporaryFolder folder;
+  const std::string flat = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 1 0.01\no roof\nf 1 2 3 4\n";
+  EXPECT_TRUE(import_scene(folder.write("a.obj", flat))->warnings.empty());
+  const auto bent = import_scene(folder.write("b.obj", flat + "o hall\nf 1 2 5 4\n"));
+  ASSERT_EQ(bent->warnings.size(), 1u);
+  EXPECT_THAT(bent->warnings[0], HasSubstr("line 9; in 'hall'"));
+}
+
 TEST(Obj, MissingMaterialFileIsAWarning) {
   const auto imported = import_text("a.obj", kTwoSquares);
   const scene::Scene scene = scene_of(imported);

@@ -39,6 +39,8 @@ inline std::vector<Vec3> parse_points(const std::string& text) {
   return points;
 }
 
+using base::parse_polygon;
+
 /// As base's csv_rows, of a file in the shared folder.
 inline std::vector<TextRow> csv_rows(const std::string& file) {
   return base::csv_rows(shared_text(file));

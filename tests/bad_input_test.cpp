@@ -20,7 +20,9 @@ std::string gltf_with(const std::string& from = "", const std::string& to = "") 
 "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],
 "buffers":[{"byteLength":42,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"}]})";
   const size_t at = from.empty() ? std::string::npos : text.find(from);
-  if (!from.empty()) EXPECT_NE(at, std::string::npos) << from;
+  if (!from.empty()) {
+    EXPECT_NE(at, std::string::npos) << from;
+  }
   if (at != std::string::npos) text.replace(at, from.size(), to);
   return text;
 }
@@ -215,8 +217,9 @@ TEST(BadSettings, AdviceWorks) {
 
 TEST(Usage, IsWrongWithCodeTwo) {
   const std::string box = scene_file("cornell-box.glb");
-  for (const char* arguments : {"", "bake", "paint x", "bake --frobnicate x -o y", "bake x",
-                                "bake x -o y --resolution abc", "render x -o y.png"})
+  for (const char* arguments :
+       {"", "bake", "paint x", "bake --frobnicate x -o y", "bake x", "bake x -o y --resolution abc",
+        "render x", "compare x", "factors x"})
     EXPECT_EQ(luxel(arguments).code, 2) << arguments;
   EXPECT_THAT(luxel("paint x").err, HasSubstr("no command 'paint'"));
   EXPECT_THAT(luxel("bake " + box + " -o y --frobnicate").err,
@@ -229,7 +232,7 @@ TEST(Usage, IsWrongWithCodeTwo) {
 TEST(OutputFolder, ThatCannotBeMadeIsRefused) {
   const ScratchFolder s;
   const auto file = s.write("in-the-way", "text");
-  for (const std::string folder :
+  for (const std::string& folder :
        {file.string(), (file / "below").string(), std::string("/proc/luxel")}) {
     const CommandResult r = luxel("bake " + scene_file("cornell-box.glb") +
                                   " --resolution 32 --samples 4 -o " + folder);

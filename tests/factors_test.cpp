@@ -100,7 +100,7 @@ TEST(Factors, FromAndToLeaveOneEntry) {
 TEST(Factors, OtherMethodsComeCloseAndSmoothingKeepsTheLaws) {
   const ScratchFolder s;
   const std::string cube = s.write("cube.obj", kCube).string(), csv = (s.path / "f.csv").string();
-  for (const std::string& method :
+  for (const std::string method :
        {"rays --samples 65536", "hemicube --samples 64 --hemicube 32", "rays --smooth"}) {
     const CommandResult r = luxel("factors " + cube + " -o " + csv + " --quiet --method " + method);
     ASSERT_EQ(r.code, 0) << r.err;

@@ -1,5 +1,7 @@
 #include "bench/agreement.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "base/check.h"
@@ -47,21 +49,32 @@ Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver
   }
   if (out.texels == 0 || mean <= 0) return out;
   const double n = 3 * double(out.texels), floor = 0.01 * mean / n;
-  double squares = 0, noise = 0;
+  double squares = 0, squares2 = 0, noise = 0;
   for (size_t i = 0; i < solved.size(); ++i) {
     if (!counts(i)) continue;
+    double texel = 0;
     for (const auto c : {&Rgb::x, &Rgb::y, &Rgb::z}) {
       const double g = double(solved[i].*c);
       const double a = double(judged.first[i].*c), b = double(judged.second[i].*c);
       const double scale = std::abs(g) + floor, s = double(judged.standard_error[i].*c);
-      squares += (g - a) * (g - b) / (scale * scale);
+      texel += (g - a) * (g - b) / (scale * scale);
       noise += s * s / (scale * scale);
     }
+    squares += texel, squares2 += texel * texel;
   }
   out.relative_rmse = std::sqrt(std::max(0.0, squares / n));
+  // Channels share their paths: the texel is what is independent.
+  const double texels = double(out.texels), mean_texel = squares / texels;
+  const double variance = std::max(0.0, squares2 / texels - mean_texel * mean_texel);
+  out.resolution = std::sqrt(2 * std::sqrt(variance / texels) / 3);
   out.judge_noise = std::sqrt(noise / n);
   out.bias_over_mean = difference / mean;
   return out;
+}
+
+std::string relative_rmse_text(const Agreement& a) {
+  return a.relative_rmse < a.resolution ? fmt::format("< {:.2f} %", 100 * a.resolution)
+                                        : fmt::format("{:.2f} %", 100 * a.relative_rmse);
 }
 
 }  // namespace luxel::bench

@@ -40,11 +40,16 @@ Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed, Progres
 /// by the reference, which differs in the second order of D.
 struct Agreement {
   uint64_t texels = 0;
-  double relative_rmse = 0;   ///< of the solver alone; 0 where the noise leaves nothing
+  double relative_rmse = 0;  ///< of the solver alone; 0 where the noise leaves nothing
+  /// A relative RMSE below this cannot be told from none: two standard errors of its square.
+  double resolution = 0;
   double bias_over_mean = 0;  ///< signed
   double judge_noise = 0;  ///< what the judge's noise would add to relative_rmse, were it left in
 };
 Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver_hidden,
                     const Judged& judged);
+
+/// "0.44 %", or "< 0.2 %" where nothing can be told.
+std::string relative_rmse_text(const Agreement& a);
 
 }  // namespace luxel::bench

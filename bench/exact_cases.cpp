@@ -61,7 +61,7 @@ ExactCase room_with_lamp(double rho) {
   ExactCase c{fmt::format("room with a lamp, rho {}", rho),
               "2",
               scene::furnace_box(gray(rho), {}),
-              96,
+              192,
               {part("mean of all", everywhere, 10000 / 96.0 / (1 - rho), false)}};
   c.scene.instances[0].world_from_object = scaling({4, 4, 4});
   scene::PunctualLight lamp;

@@ -22,8 +22,7 @@ Result<Section> validate_agreement(Progress& progress) {
       LUXEL_TRY(const Timed solved, solve(*p, solver.name, settings, progress));
       const Agreement a = agreement(solved.light.irradiance, solved.light.hidden, judged);
       rows.push_back({s.name, s.shows, std::string(solver.name), std::to_string(a.texels),
-                      fmt::format("{:.2f} %", 100 * a.relative_rmse),
-                      fmt::format("{:+.3f} %", 100 * a.bias_over_mean),
+                      relative_rmse_text(a), fmt::format("{:+.3f} %", 100 * a.bias_over_mean),
                       fmt::format("{:.1f}", solved.seconds)});
       section.json.push_back({{"scene", s.name},
                               {"solver", solver.name},

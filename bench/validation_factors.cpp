@@ -67,31 +67,29 @@ std::string error_text(double error) {
   return error == 0 ? "0" : error < 1e-15 ? "< 1e-15" : fmt::format("{:.1e}", error);
 }
 
-/// Root mean square of the relative errors over the rows with a factor above 0.
-struct Rate {
-  std::vector<std::array<double, 2>> points;  ///< (rays per row, error)
-};
+using Points = std::vector<std::array<double, 2>>;  ///< (rays per factor, error)
 
-Result<Rate> measure_rate(const std::vector<Row>& rows,
-                          const std::vector<transport::SampledParams>& steps) {
-  Rate rate;
+/// Root mean square of the relative errors: of rays over the polygon rows with F >= 0.02, of
+/// hemicubes over the point rows (between points of a surface, hemicubes are no better than rays).
+Result<Points> measure_rate(const std::vector<Row>& rows,
+                            const std::vector<transport::SampledParams>& steps) {
+  Points points;
   for (const transport::SampledParams& params : steps) {
+    const bool hemicube = params.hemicube > 0;
     double sum = 0, count = 0;
     for (const Row& row : rows) {
-      if (row.exact < 0.02 || row.is_point) continue;
+      if (row.is_point != hemicube || (!hemicube && row.exact < 0.02)) continue;
       LUXEL_TRY(const double value, sampled(row, params));
       sum += error_of(value, row) * error_of(value, row), ++count;
     }
-    const double rays = params.hemicube > 0
-                            ? 3.0 * params.hemicube * params.hemicube * params.samples
-                            : double(params.samples);
-    rate.points.push_back({rays, std::sqrt(sum / count)});
+    const double rays = hemicube ? 3.0 * params.hemicube * params.hemicube : double(params.samples);
+    points.push_back({rays, std::sqrt(sum / count)});
   }
-  return rate;
+  return points;
 }
 
 /// Slope of a least-squares line in the double-logarithmic plot.
-double slope(const std::vector<std::array<double, 2>>& points) {
+double slope(const Points& points) {
   double mx = 0, my = 0, sxx = 0, sxy = 0;
   const double n = double(points.size());
   for (const auto& [x, y] : points) mx += std::log(x) / n, my += std::log(y) / n;
@@ -162,19 +160,20 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
   progress.begin("view factors", 0);
   LUXEL_TRY(const Table table, measure_rows(rows, progress));
   std::vector<transport::SampledParams> hemicubes, rays;
-  for (const int n : {8, 16, 32, 64, 128, 256}) hemicubes.push_back({.samples = 64, .hemicube = n});
+  for (const int n : {8, 16, 32, 64, 128, 256, 512})
+    hemicubes.push_back({.samples = 1, .hemicube = n});
   for (const uint32_t n : {8u, 10u, 12u, 14u, 16u, 18u}) rays.push_back({.samples = 1u << n});
-  LUXEL_TRY(const Rate hemicube_rate, measure_rate(rows, hemicubes));
-  LUXEL_TRY(const Rate ray_rate, measure_rate(rows, rays));
+  LUXEL_TRY(const Points hemicube_rate, measure_rate(rows, hemicubes));
+  LUXEL_TRY(const Points ray_rate, measure_rate(rows, rays));
   const double speed = pairs_per_second(rows);
   export_::Plot plot;
   plot.title = "View factors: error against rays";
   plot.x_label = "rays per factor";
   plot.y_label = "relative error, root mean square";
   plot.log_x = plot.log_y = true;
-  plot.series = {{fmt::format("rays, slope {:.2f}", slope(ray_rate.points)), ray_rate.points},
-                 {fmt::format("hemicubes on 64 points, slope {:.2f}", slope(hemicube_rate.points)),
-                  hemicube_rate.points}};
+  plot.series = {
+      {fmt::format("rays, slope {:.2f}", slope(ray_rate)), ray_rate},
+      {fmt::format("hemicube over a point, slope {:.2f}", slope(hemicube_rate)), hemicube_rate}};
   section.files.push_back(svg_file("view-factors.svg", export_::svg(plot)));
   section.markdown += fmt::format(
       "`luxel factors` computes the fraction F(A -> B) of what A radiates that reaches B. All {} "
@@ -187,22 +186,26 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
       "with "
       "(goal 1e-4).\nSpeed without blockers: {:.0f} pairs per second on one thread (goal "
       "1000).\n\n{}\n"
-      "{}\n\nRoot mean square over the {} rows of two polygons and F >= 0.02. Rays alone would "
-      "fall "
-      "with the power -0.5; points and directions\nare stratified together, which does better. "
-      "What "
-      "hemicubes tend to is the error of their 64 points.\n",
+      "{}\n\nRays: root mean square over the {} rows of two polygons with F >= 0.02; expected is "
+      "the "
+      "power -0.5 or a little better, because points and directions are stratified.\nHemicubes: "
+      "over "
+      "the {} rows of a point, by one hemicube with 8 to 512 pixels along its edge; only pixels on "
+      "outlines are wrong, so n^-1.5, the power -0.75 of the rays, is\nexpected. Over the points "
+      "of a "
+      "surface hemicubes fall like rays.\n",
       rows.size(), kHemicube.hemicube, kHemicube.samples, kRays.samples, table.open, table.blocked,
       speed, markdown_table({"case", "", "exact F", "analytic", "hemicube", "rays"}, table.rows),
       show(section.files.back(), "Error of sampled view factors against the number of rays"),
       std::count_if(rows.begin(), rows.end(),
-                    [](const Row& r) { return r.exact >= 0.02 && !r.is_point; }));
+                    [](const Row& r) { return r.exact >= 0.02 && !r.is_point; }),
+      std::count_if(rows.begin(), rows.end(), [](const Row& r) { return r.is_point; }));
   section.json = {{"rows", table.json},
                   {"largest_error_open", table.open},
                   {"largest_error_blocked", table.blocked},
                   {"pairs_per_second", speed},
-                  {"rays_slope", slope(ray_rate.points)},
-                  {"hemicube_slope", slope(hemicube_rate.points)}};
+                  {"rays_slope", slope(ray_rate)},
+                  {"hemicube_slope", slope(hemicube_rate)}};
   return section;
 }
 

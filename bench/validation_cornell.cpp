@@ -192,9 +192,8 @@ Status every_texel(const Prepared& p, const Timed& solved, Section& section, Pro
       "RMSE over all of them, the judge's noise taken out: **{:.2f} %**; bias {:+.3f} %.\n\n",
       solved.seconds,
       markdown_table({"texels judged", "paths each", "accepted up to", "largest accepted"}, rows),
-      covered, a.texels, ptrdiff_t(left.size()) - covered, 100 * a.relative_rmse,
-      100 * a.bias_over_mean);
-  section.json["covered_texels_above_10"] = covered;
+      off, covered, ptrdiff_t(left.size()) - off, 100 * a.relative_rmse, 100 * a.bias_over_mean);
+  section.json["covered_texels_above_10"] = off;
   section.json["texels_above_10"] = left.size();
   section.json["relative_rmse"] = a.relative_rmse;
   section.json["bias_over_mean"] = a.bias_over_mean;

@@ -70,7 +70,7 @@ Measured measure(const Prepared& p, const ExactPart& part, const pipeline::Texel
 
 std::string percent(double v) { return fmt::format("{:+.3f} %", 100 * v); }
 
-constexpr size_t kPoints = 40000;
+constexpr size_t kPoints = 400000;  ///< their own noise in a mean: 0.1 % near a point light
 
 Status add_case(const ExactCase& c, std::string_view solver,
                 std::vector<std::vector<std::string>>& rows, nlohmann::json& json,

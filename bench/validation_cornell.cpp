@@ -172,8 +172,10 @@ Status every_texel(const Prepared& p, const Timed& solved, Section& section, Pro
   LUXEL_TRY(const std::vector<Round> rounds,
             judge_again(p, solved.light.irradiance, screen, judged, left, progress));
   const Agreement a = agreement(solved.light.irradiance, solved.light.hidden, judged);
-  const auto covered = std::count_if(left.begin(), left.end(),
-                                     [&](uint32_t i) { return p.map.texels[i].centre_covered; });
+  const auto is_covered = [&](uint32_t i) { return p.map.texels[i].centre_covered; };
+  const auto off = std::count_if(left.begin(), left.end(), is_covered);
+  size_t covered = 0;
+  for (uint32_t i = 0; i < p.map.texels.size(); ++i) covered += is_covered(i) && !judged.hidden[i];
   std::vector<std::vector<std::string>> rows;
   for (const Round& r : rounds)
     rows.push_back({std::to_string(r.texels), std::to_string(r.paths > 0 ? r.paths : 2 * kPaths),

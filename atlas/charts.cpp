@@ -14,8 +14,6 @@ namespace {
 
 constexpr double kFlatAngle = 0.01;    ///< faces this close to a patch's first face are coplanar
 constexpr double kCreaseAngle = 0.75;  ///< light changes at a sharper edge: no chart crosses it
-constexpr double kOutlineWeight =
-    1;  ///< of a round outline against flatness: ragged charts pack badly and have long seams
 
 /// A size or cost in steps of one percent, so that symmetric candidates compare equal whatever the
 /// unit of length did to their last digits. What is as good as nothing is one step, too.
@@ -159,8 +157,8 @@ class Merger {
     return true;
   }
 
-  /// The cost is the flatness that a merge loses, sum A (1 - n . axis) = A - |sum A n|, plus a
-  /// little for a long outline: it decides among equally flat pairs.
+  /// The cost is the flatness that a merge loses, sum A (1 - n . axis) = A - |sum A n|, plus the
+  /// smaller area times a measure of the outline: ragged charts pack badly and have long seams.
   void propose(uint32_t a, const Border& border) {
     if (border.soft <= border.hard) return;
     const Cluster &p = clusters_[a], &q = clusters_[border.other];
@@ -171,7 +169,7 @@ class Merger {
                         (q.area - length(q.normal_sum));
     const double outline = p.perimeter + q.perimeter - 2 * (border.soft + border.hard);
     const double shape = outline * outline / (16 * (p.area + q.area));
-    const double cost = (lost + kOutlineWeight * shape * std::min(p.area, q.area)) / total_area_;
+    const double cost = (lost + shape * std::min(p.area, q.area)) / total_area_;
     const uint32_t b = border.other;
     queue_.push({rounded(cost), std::min(a, b), std::max(a, b), clusters_[std::min(a, b)].version,
                  clusters_[std::max(a, b)].version});

@@ -24,8 +24,8 @@ struct Section {
   nlohmann::json json;
 };
 
-/// `shared` is the folder with reference/. A section whose data is not there says so. Errors:
-/// cancelled, and what the solvers say.
+/// `shared` is the folder with reference/. Errors: its files are not there, cancelled, and what the
+/// solvers say.
 Result<Section> validate_view_factors(const std::filesystem::path& shared, Progress& progress);
 Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Progress& progress);
 Result<Section> validate_agreement(Progress& progress);

@@ -1,6 +1,7 @@
 // Exact solutions by every solver of the pipeline's table.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/file.h"
@@ -70,6 +71,7 @@ Measured measure(const Prepared& p, const ExactPart& part, const pipeline::Texel
 
 std::string percent(double v) { return fmt::format("{:+.3f} %", 100 * v); }
 
+constexpr int kRays = 1024, kShadowRays = 256, kPaths = 128;
 constexpr size_t kPoints = 400000;  ///< their own noise in a mean: 0.1 % near a point light
 
 Status add_case(const ExactCase& c, std::string_view solver,
@@ -77,8 +79,8 @@ Status add_case(const ExactCase& c, std::string_view solver,
                 Progress& progress) {
   LUXEL_TRY(const auto p, prepare(c.scene, c.resolution, progress));
   pipeline::BakeSettings settings;
-  settings.samples = solver == "reference" ? 128 : 1024;
-  settings.direct_samples = 256;
+  settings.samples = solver == "reference" ? kPaths : kRays;
+  settings.direct_samples = kShadowRays;
   LUXEL_TRY(const Timed solved, solve(*p, solver, settings, progress));
   const auto points = random_points(p->scene, kPoints);
   for (const ExactPart& part : c.parts) {
@@ -102,33 +104,33 @@ Status add_case(const ExactCase& c, std::string_view solver,
 
 Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Progress& progress) {
   Section section;
-  const auto bytes = read_file(shared / "reference" / "exact-solutions.md");
-  const std::string_view text =
-      bytes ? std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()) : "";
+  LUXEL_TRY(const std::vector<std::byte> bytes,
+            read_file(shared / "reference" / "exact-solutions.md"));
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::vector<std::vector<std::string>> rows;
   section.json = nlohmann::json::array();
   for (const ExactCase& c : exact_cases(text))
     for (const pipeline::Solver& solver : pipeline::solvers())
       LUXEL_TRY_STATUS(add_case(c, solver.name, rows, section.json, progress));
-  section.markdown =
+  section.markdown = fmt::format(
       "## Solvers against exact solutions\n\n"
       "E [W/m^2] of scenes whose light is known in closed form (`exact-solutions.md`; the number "
       "is "
-      "its section). *mean*: of E over the part's surface,\nread from the lightmap at 40,000 "
-      "places; "
+      "its section). *mean*: of E over the part's surface, read from the lightmap\nat {} places; "
       "*error of a texel*: root mean square of the relative error at the texels themselves, where "
-      "E "
-      "is known\npointwise (where E is below a tenth of its mean, relative to that tenth). "
-      "*model*: how "
-      "far the scene itself is from the formula's (facets of a sphere). gather takes 1024 "
-      "rays\nand 256 shadow rays per texel, the path tracer (reference) 128 paths, without any "
-      "other "
-      "help: its texels are noisy, its means must be right.\nSections 6 (one element per face) "
-      "and 8 are about solvers with constant elements, of which there is none yet.\n\n" +
+      "E is "
+      "known pointwise (where E is below a tenth of its mean,\nrelative to that tenth). *model*: "
+      "how "
+      "far the scene itself is from the formula's (facets of a sphere). gather takes {} rays and "
+      "{} "
+      "shadow rays per texel, the path\ntracer (reference) {} paths, without any other help: its "
+      "texels are noisy, its means are not. Sections 6 (one element per face) and 8 are about "
+      "solvers "
+      "with constant\nelements, of which there is none yet.\n\n{}",
+      kPoints, kRays, kShadowRays, kPaths,
       markdown_table({"", "scene", "part", "solver", "exact E", "mean", "error of the mean",
                       "error of a texel", "model"},
-                     rows);
-  if (!bytes) section.markdown += "\nThe cube is left out: its reference is not on this machine.\n";
+                     rows));
   return section;
 }
 

@@ -1,6 +1,7 @@
 // View factors: every row of the exact table, by each method.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
@@ -149,14 +150,10 @@ Result<Table> measure_rows(const std::vector<Row>& rows, const Progress& progres
 Result<Section> validate_view_factors(const std::filesystem::path& shared, Progress& progress) {
   Section section;
   section.markdown = "## View factors against closed forms\n\n";
-  const auto file = shared / "reference" / "view-factors.csv";
-  const auto bytes = read_file(file);
-  if (!bytes) {
-    section.markdown += fmt::format("Left out: {} is not on this machine.\n", file.string());
-    return section;
-  }
+  LUXEL_TRY(const std::vector<std::byte> bytes,
+            read_file(shared / "reference" / "view-factors.csv"));
   const std::vector<Row> rows =
-      read_rows({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+      read_rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   progress.begin("view factors", 0);
   LUXEL_TRY(const Table table, measure_rows(rows, progress));
   std::vector<transport::SampledParams> hemicubes, rays;

@@ -52,7 +52,9 @@ float auto_exposure(const image::Image& radiance) {
 /// h shoulder(d / h) / d <= 1 keeps luminance and hue and brings m below 1.
 /// With all channels at most 1/2, Y <= m <= 1/2 and d / h = (m - Y) / (1 - Y) <= 1/2: unchanged.
 Rgb compress(Rgb exposed) {
-  const Rgb c = max(exposed, Rgb{});
+  // Beyond any screen, and far enough from overflow for what follows.
+  constexpr float kMost = 1e30f;
+  const Rgb c = min(max(exposed, Rgb{}), Rgb{kMost, kMost, kMost});
   const float y = luminance(c);
   if (!(y > 0)) return {};
   const float f = shoulder(y);

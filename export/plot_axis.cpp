@@ -24,9 +24,12 @@ std::string power_label(int exponent) {
 
 void add_linear_ticks(Axis& axis, double step) {
   const double first = std::ceil(axis.low / step - 1e-9);
-  for (double k = first; k * step <= axis.high + 1e-9 * step; ++k)
+  const int count = int((axis.high - first * step) / step + 1e-9) + 1;
+  for (int k = 0; k < count; ++k) {
+    const double value = (first + k) * step;
     // 0.30000000000000004 is 0.3, and -0 is 0.
-    axis.ticks.push_back({k * step, fmt::format("{:.6g}", k == 0 ? 0.0 : k * step)});
+    axis.ticks.push_back({value, fmt::format("{:.6g}", value == 0 ? 0.0 : value)});
+  }
 }
 
 /// Decades with their label; 2 .. 9 between them, of which 2 and 5 are labelled when there are few.
@@ -48,7 +51,8 @@ void add_log_ticks(Axis& axis) {
 
 Axis linear_axis(double low, double high, bool exact) {
   Axis axis;
-  if (!(high > low)) {
+  // Values that differ in their last digits only are one: ticks between them have no labels.
+  if (!(high - low > 1e-9 * std::max(std::abs(low), std::abs(high)))) {
     const double around = low == 0 ? 1 : 0.5 * std::abs(low);
     low -= around, high += around;
   }

@@ -120,5 +120,14 @@ TEST(PlotAxis, OneValueAndNonsenseGetARange) {
     }
 }
 
+TEST(PlotAxis, ValuesThatDifferInTheirLastDigitsAreOne) {
+  for (const double v : {1.0, -7.0, 1e17}) {
+    const Axis axis = make_axis(v, std::nextafter(v, INFINITY), false, false);
+    EXPECT_LT(axis.low, v);
+    EXPECT_GT(axis.high, v);
+    EXPECT_LT(axis.ticks.size(), 20u);
+  }
+}
+
 }  // namespace
 }  // namespace luxel::export_

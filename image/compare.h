@@ -35,7 +35,8 @@ struct Difference {
   double bias = 0;              ///< mean of d
   double bias_over_mean = 0;    ///< bias / |mean|
   double peak = 0;              ///< largest value of b, what PSNR is measured against
-  double psnr_db = 0;           ///< 20 log10(peak / rmse); infinite for equal images
+  double psnr_db =
+      0;  ///< 20 log10(peak / rmse); infinite for equal images, minus infinity for a black b
 };
 
 /// What is divided by the mean of a black reference is infinite, or 0 when nothing differs. Sums

@@ -67,14 +67,6 @@ Color8 false_color(double t) {
   return color_of(lightness, chroma, hue_deg * kPiExact / 180);
 }
 
-Image8 false_color_ramp(int width, int height) {
-  LUXEL_CHECK(width > 1 && height > 0);
-  const Mask all(size_t(width) * size_t(height), 1);
-  return paint(size_t(width), all, [&](size_t i) {
-    return false_color(double(i % size_t(width)) / double(width - 1));
-  });
-}
-
 Image8 draw_map(const Image& map, const Mask& covered, double low, double high) {
   LUXEL_CHECK(map.channels == 1 && map.data.size() == covered.size() && high > low);
   std::array<Color8, 256> table;

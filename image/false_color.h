@@ -16,8 +16,6 @@ using Color8 = std::array<uint8_t, 3>;  ///< display values of sRGB
 /// The colour of t in [0, 1] (clamped): from near black over violet, red and orange to pale yellow.
 /// The lightness grows linearly, so that the order of values is seen, in print too.
 Color8 false_color(double t);
-/// false_color from left to right, for a legend.
-Image8 false_color_ramp(int width, int height);
 
 /// A one-channel map in false colours, low dark and high bright; beyond them the end's colour.
 Image8 draw_map(const Image& map, const Mask& covered, double low, double high);

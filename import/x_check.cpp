@@ -235,7 +235,7 @@ Status check_x(const SourceFile& source) {
   std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   // Binary and packed files, and what is no .x at all, are left to Assimp.
-  if (!text.starts_with("xof ") || text.substr(8, 4) != "txt ") return {};
+  if (text.size() < 12 || !text.starts_with("xof ") || text.substr(8, 4) != "txt ") return {};
   Walk walk{source, {text, std::min(text.find('\n'), text.size())}};
   int depth = 0;
   for (std::string_view word; !(word = walk.words.next()).empty();) {

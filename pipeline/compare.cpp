@@ -32,8 +32,9 @@ Status check(const CompareSettings& s) {
   if (s.report && s.report->empty())
     return fail(ErrorCode::bad_setting, "--report names no folder");
   if (s.report) LUXEL_TRY_STATUS(OutputFolder(*s.report).try_out());
-  if (s.exposure && !(std::isfinite(*s.exposure) && *s.exposure > 0))
-    return fail(ErrorCode::bad_setting, "--exposure {} is not a positive number", *s.exposure);
+  if (s.exposure && !(*s.exposure >= 1e-20 && *s.exposure <= 1e20))
+    return fail(ErrorCode::bad_setting, "--exposure {} is not a number from 1e-20 to 1e20",
+                *s.exposure);
   return {};
 }
 

@@ -37,7 +37,17 @@ double round_up(double value) {
   return 10 * unit;
 }
 
-std::string percent(double share) { return fmt::format("{:.3g} %", 100 * share); }
+/// What a black reference leaves undefined.
+constexpr const char* kUndefined = "—";
+
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.3g} %", 100 * share) : kUndefined;
+}
+
+std::string decibels(double psnr) {
+  if (std::isfinite(psnr)) return fmt::format("{:.2f} dB", psnr);
+  return psnr > 0 ? "∞" : kUndefined;
+}
 
 std::vector<std::array<std::string, 3>> number_table(const Compared& c) {
   const image::Difference& d = c.difference;
@@ -54,7 +64,7 @@ std::vector<std::array<std::string, 3>> number_table(const Compared& c) {
        fmt::format("at pixel ({}, {})", d.max_at[0], d.max_at[1])},
       {"Bias", number(d.bias), "mean of A − B: above 0 when A is brighter"},
       {"Bias / mean", percent(d.bias_over_mean), ""},
-      {"PSNR", std::isfinite(c.psnr_db) ? fmt::format("{:.2f} dB", c.psnr_db) : "∞",
+      {"PSNR", decibels(c.psnr_db),
        c.hdr ? "against the largest value of B" : "of display values, against 255"},
       {c.hdr ? "HDR-FLIP" : "FLIP", number(c.flip), "0: no difference is seen, 1: the largest"}};
   for (size_t k = 0; k < c.share_above.size(); ++k)

@@ -17,6 +17,8 @@ namespace {
 constexpr size_t kMostSurfaces = 20000;  // two tables of doubles: 6 GiB
 constexpr int64_t kMostSamples = 1 << 24;
 constexpr int kMostPixels = 4096;
+/// Rays per surface where none are asked for; points of hemicubes.
+constexpr int64_t kRays = 1 << 18, kPoints = 256;
 
 /// A setting that the method would ignore is a misunderstanding.
 Status check_belongs(const FactorSettings& s, bool given, const char* option, const char* methods) {
@@ -113,7 +115,7 @@ Result<transport::FactorMatrix> compute(const FactorSettings& s, const scene::Sc
   transport::SampledParams params;
   params.seed = s.seed;
   const bool by_rays = s.method == "rays";
-  params.samples = uint32_t(s.samples.value_or(by_rays ? 1 << 18 : 256));
+  params.samples = uint32_t(s.samples.value_or(by_rays ? kRays : kPoints));
   params.hemicube = by_rays ? 0 : s.hemicube.value_or(64);
   return transport::sampled_factors(scene, surfaces, tracer, params, selection, progress);
 }
@@ -133,8 +135,22 @@ std::vector<size_t> chosen(uint32_t only, size_t count) {
   return all;
 }
 
+/// Whether every row sums to 1 within 4 standard errors of the sum (rays: of a share S of n rays),
+/// or within the sum of its estimated errors, but not closer than 1e-4.
+bool is_closed(const FactorSettings& s, const FactorReport& r) {
+  for (size_t i = 0; i < r.matrix.size(); ++i) {
+    const double sum = r.checks.row_sum[i];
+    double doubt = 0;
+    for (size_t j = 0; j < r.matrix.size(); ++j) doubt += r.matrix.error[i * r.matrix.size() + j];
+    if (s.method == "rays")
+      doubt = 4 * std::sqrt(std::max(0.0, sum * (1 - sum)) / double(s.samples.value_or(kRays)));
+    if (std::abs(1 - sum) > std::max(1e-4, doubt)) return false;
+  }
+  return true;
+}
+
 /// The largest error among the entries asked for; an error for what no table may hold.
-Status judge(FactorReport& report) {
+Status judge(const FactorSettings& settings, FactorReport& report) {
   const transport::FactorMatrix& matrix = report.matrix;
   for (const size_t i : chosen(report.selection.from, matrix.size()))
     for (const size_t j : chosen(report.selection.to, matrix.size())) {
@@ -146,6 +162,7 @@ Status judge(FactorReport& report) {
       report.largest_error = std::max(report.largest_error, matrix.error[i * matrix.size() + j]);
     }
   report.checks = transport::check_factors(matrix);
+  report.closed = is_closed(settings, report);
   return {};
 }
 
@@ -180,7 +197,7 @@ Result<FactorReport> view_factors(const FactorSettings& settings, Progress& prog
     progress.begin("smooth", 1);
     LUXEL_TRY(report.smoothing, transport::smooth_factors(report.matrix));
   }
-  LUXEL_TRY_STATUS(judge(report));
+  LUXEL_TRY_STATUS(judge(settings, report));
   if (!settings.output.empty()) {
     progress.begin(kWriteStage, 1);
     const std::string csv = factors_csv(report.matrix, report.selection);

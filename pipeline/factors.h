@@ -31,6 +31,7 @@ struct FactorReport {
   transport::FactorSelection selection;
   transport::FactorChecks checks;  ///< of the whole matrix; without meaning when `selection` is not
   double largest_error = 0;        ///< the largest estimated error of a factor
+  bool closed = false;             ///< every row sums to 1 as well as the method can tell
   size_t polygons = 0;
   std::optional<double> smoothing;  ///< the largest change of a factor
   std::vector<std::string> warnings;

@@ -33,7 +33,8 @@ struct Sums {
 /// error: it counts as wholly uncertain.
 double standard_error(double sum, double sum2, double n) {
   if (n < 2) return std::abs(sum);
-  return std::sqrt(std::max(0.0, sum2 - sum * sum / n) / (n - 1) / n);
+  const double variance = (sum2 - sum * sum / n) / (n - 1);
+  return variance < 0 ? 0 : std::sqrt(variance / n);
 }
 Rgb mean_of(const Sums& s, double n) { return {float(s.r / n), float(s.g / n), float(s.b / n)}; }
 Rgb error_of(const Sums& s, double n) {

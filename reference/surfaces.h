@@ -1,5 +1,4 @@
-// What paths meet: triangles with their front normals, and the chance that each is picked as a
-// lamp.
+// What paths meet: triangles with their front normals.
 #pragma once
 
 #include <cstdint>

@@ -165,11 +165,25 @@ TEST(Compare, BadSettings) {
   EXPECT_EQ(luxel("compare " + a.string()).code, 2);
   EXPECT_EQ(compare(a, a, "--max-relative-rmse -1").code, 2);
   EXPECT_EQ(compare(a, a, "--max-relative-rmse few").code, 2);
-  for (const char* exposure : {"0", "-2", "nan", "inf"}) {
+  EXPECT_EQ(compare(a, a, "--max-relative-rmse nan").code, 2);
+  for (const char* exposure : {"0", "-2", "nan", "inf", "1e300", "1e-320"}) {
     const CommandResult r = compare(a, a, std::string("--exposure ") + exposure);
     EXPECT_EQ(r.code, 1) << exposure;
-    EXPECT_THAT(r.err, HasSubstr("is not a positive number"));
+    EXPECT_THAT(r.err, HasSubstr("is not a number from 1e-20 to 1e20"));
   }
+}
+
+TEST(CompareReport, SaysWhatABlackReferenceLeavesUndefined) {
+  const ScratchFolder s;
+  const auto a = s.write("a.exr", exr(grey(1))), black = s.write("black.exr", exr(grey(0)));
+  const auto folder = s.path / "report";
+  EXPECT_EQ(compare(a, black, "--quiet --report " + folder.string()).code, 0);
+  const std::string page = slurp(folder / "report.html");
+  const size_t table = page.find("PSNR");
+  ASSERT_NE(table, std::string::npos);
+  EXPECT_THAT(page.substr(table, 60), HasSubstr("—"));
+  for (const char* word : {">inf", ">-inf", ">nan", "∞"})
+    EXPECT_EQ(page.find(word), page.npos) << word;
 }
 
 TEST(CompareReport, IntoAFolderThatCannotBeWritten) {

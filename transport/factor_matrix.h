@@ -38,7 +38,9 @@ struct FactorChecks {
 FactorChecks check_factors(const FactorMatrix& matrix);
 
 struct AnalyticParams {
-  double tolerance = 1e-4;  ///< relative error of pairs with something between them
+  /// Relative error of pairs of polygons with something between them; of factors below 1e-3 of the
+  /// smaller polygon, the error of one of that size.
+  double tolerance = 1e-4;
 };
 /// In closed form, past blockers by subdivision (visible_form_factor.h). Each pair is computed once
 /// and serves both directions. Errors: cancelled.

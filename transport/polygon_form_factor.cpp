@@ -85,8 +85,8 @@ ExchangeArea facing_exchange_area(PolygonView a, PolygonView b, double tolerance
   const ExchangeArea contour = contour_exchange_area(smaller, larger, tolerance);
   if (contour.rounding <= 1e-9 * contour.value) return contour;
   // Slivers, and small polygons that touch large ones: no cancellation over the smaller area.
-  return {integral_of_point_factors(smaller, larger, tanh_sinh_rule(TanhSinh::coarse)),
-          std::min(contour.rounding, 1e-9 * std::abs(contour.value))};
+  const double value = integral_of_point_factors(smaller, larger, tanh_sinh_rule(TanhSinh::coarse));
+  return {value, std::min(contour.rounding, 1e-7 * value)};
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <set>
+#include <map>
 
 #include "transport/merge_polygons.h"
 
@@ -34,14 +34,17 @@ std::vector<std::array<DVec3, 3>> world_triangles(const scene::Scene& scene, uin
   return triangles;
 }
 
+/// Names given so far, and the last number that each was given.
+using Names = std::map<std::string, int>;
+
 /// The instance's name, made different from those before it.
-std::string unique_name(const scene::Scene& scene, uint32_t instance,
-                        const std::set<std::string>& taken) {
+std::string unique_name(const scene::Scene& scene, uint32_t instance, Names& names) {
   std::string name = scene.instances[instance].name;
   if (name.empty()) name = scene.meshes[scene.instances[instance].mesh].name;
   if (name.empty()) name = fmt::format("surface {}", instance + 1);
   std::string candidate = name;
-  for (int n = 2; taken.contains(candidate); ++n) candidate = fmt::format("{}#{}", name, n);
+  while (!names.try_emplace(candidate, 1).second)
+    candidate = fmt::format("{}#{}", name, ++names[name]);
   return candidate;
 }
 
@@ -56,10 +59,9 @@ Surfaces surfaces_of(const scene::Scene& scene) {
   for (const Vec3 p : {bounds.lower, bounds.upper})
     largest = std::max(largest, double(max_component(max(p, -p))));
   out.slack_m = 4 * 0x1p-23 * largest;
-  std::set<std::string> taken;
+  Names names;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-    Surface surface{unique_name(scene, i, taken), i, {}, 0};
-    taken.insert(surface.name);
+    Surface surface{unique_name(scene, i, names), i, {}, 0};
     surface.polygons = merge_polygons(world_triangles(scene, i), out.slack_m);
     for (const Polygon& polygon : surface.polygons) surface.area_m2 += area_m2(polygon);
     if (!(surface.area_m2 > 0)) {

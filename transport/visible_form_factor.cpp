@@ -218,6 +218,7 @@ VisibleExchange refine(Work& work, std::span<const Polygon> pieces,
     errors.add(parent, -1);
     for (Cell& child : children) take(std::move(child));
   }
+  sum.value = std::max(0.0, sum.value);  // differences of what was split leave 1e-18
   sum.error = errors.total();
   return sum;
 }

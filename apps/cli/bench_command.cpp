@@ -7,6 +7,8 @@
 #include "base/parallel.h"
 #include "bench/bench.h"
 #include "bench/validation.h"
+#include "pipeline/bake.h"
+#include "pipeline/output_folder.h"
 
 namespace luxel::cli {
 namespace {
@@ -25,32 +27,35 @@ std::filesystem::path default_shared() {
   return "../shared";
 }
 
-/// validation.md and its pictures, all of them or none.
-Status write_page(const bench::Page& page, const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder / "images", error);
-  if (error)
-    return fail(ErrorCode::io, "--output {}: cannot make the folder {}: {}", folder.string(),
-                (folder / "images").string(), error.message());
+/// validation.md and its pictures.
+Status write_page(const bench::Page& page, const std::filesystem::path& folder,
+                  Progress& progress) {
+  progress.begin(pipeline::kWriteStage, 0);
+  pipeline::OutputFolder images(folder / "images");
+  LUXEL_TRY_STATUS(images.make());
   const auto* text = reinterpret_cast<const std::byte*>(page.markdown.data());
   std::vector<OutputFile> files{{folder / "validation.md", {text, text + page.markdown.size()}}};
   for (const bench::PageFile& file : page.files)
     files.push_back({folder / "images" / ("validation-" + file.name), file.bytes});
-  return write_files_atomically(files);
+  LUXEL_TRY_STATUS(write_files_atomically(files));
+  images.keep();
+  return {};
 }
 
 int run_validation(const BenchOptions& options, const std::filesystem::path& shared) {
   const ThreadLimit limit(options.common.threads);
+  const std::filesystem::path folder = options.output;
   bench::Page page;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
+    LUXEL_TRY_STATUS(pipeline::OutputFolder(folder / "images").try_out());
     LUXEL_TRY(page, bench::validate(shared, progress));
-    return write_page(page, options.output);
+    return write_page(page, folder, progress);
   });
   if (!done) return report(done.error());
   if (options.common.json)
     std::printf("%s\n", page.json.dump(2).c_str());
-  else
-    std::printf("%s", page.markdown.c_str());
+  else if (!options.common.quiet)
+    std::printf("wrote %s\n", (folder / "validation.md").c_str());
   return kDone;
 }
 

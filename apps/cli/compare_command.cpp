@@ -37,6 +37,11 @@ void print_table(const pipeline::Compared& c) {
 }
 
 int run_compare(const CompareOptions& options) {
+  if (options.max_relative_rmse && !(*options.max_relative_rmse >= 0)) {
+    std::fprintf(stderr, "luxel: --max-relative-rmse %g is not a number of 0 or more\n",
+                 *options.max_relative_rmse);
+    return kUsage;
+  }
   pipeline::Compared compared;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     const ThreadLimit threads(options.common.threads);
@@ -72,10 +77,8 @@ void register_compare(CLI::App& app, Action& action) {
   compare->add_option("IMAGE_B", s.b, "The reference, of the same kind")->required();
   compare->add_option("--report", s.report, "Folder in which to write report.html")
       ->type_name("DIR");
-  compare
-      ->add_option("--max-relative-rmse", options->max_relative_rmse,
-                   "End with code 1 when the relative RMSE is larger")
-      ->check(CLI::NonNegativeNumber);
+  compare->add_option("--max-relative-rmse", options->max_relative_rmse,
+                      "End with code 1 when the relative RMSE is larger");
   compare->add_option("--exposure", s.exposure,
                       "Factor before tone mapping, for light; default: chosen from B");
   add_common(*compare, options->common);

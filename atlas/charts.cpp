@@ -59,9 +59,9 @@ struct Border {
 };
 
 struct Cluster {
-  Dvec3 normal_sum;  ///< area-weighted
+  DVec3 normal_sum;  ///< area-weighted
   double area = 0, perimeter = 0;
-  std::vector<Dvec3> normals;   ///< of its patches
+  std::vector<DVec3> normals;   ///< of its patches
   std::vector<Border> borders;  ///< sorted by `other`
   std::vector<uint32_t> patches;
   uint32_t version = 0;
@@ -150,9 +150,9 @@ class Merger {
 
   /// Every patch of both stays within the largest angle of the common axis.
   bool fits(uint32_t a, uint32_t b) const {
-    const Dvec3 axis = normalize(clusters_[a].normal_sum + clusters_[b].normal_sum);
+    const DVec3 axis = normalize(clusters_[a].normal_sum + clusters_[b].normal_sum);
     for (const uint32_t c : {a, b})
-      for (const Dvec3& n : clusters_[c].normals)
+      for (const DVec3& n : clusters_[c].normals)
         if (dot(n, axis) < cos_max_) return false;
     return true;
   }
@@ -162,8 +162,8 @@ class Merger {
   void propose(uint32_t a, const Border& border) {
     if (border.soft <= border.hard) return;
     const Cluster &p = clusters_[a], &q = clusters_[border.other];
-    const Dvec3 sum = p.normal_sum + q.normal_sum;
-    const Dvec3 axis = normalize(sum);
+    const DVec3 sum = p.normal_sum + q.normal_sum;
+    const DVec3 axis = normalize(sum);
     if (dot(p.normals.front(), axis) < cos_max_ || dot(q.normals.front(), axis) < cos_max_) return;
     const double lost = (p.area + q.area - length(sum)) - (p.area - length(p.normal_sum)) -
                         (q.area - length(q.normal_sum));
@@ -237,8 +237,8 @@ std::vector<ChartFaces> collect_charts(const Faces& faces, const std::vector<uin
 
 }  // namespace
 
-Dvec3 chart_axis(const Faces& faces, const ChartFaces& chart) {
-  Dvec3 sum;
+DVec3 chart_axis(const Faces& faces, const ChartFaces& chart) {
+  DVec3 sum;
   for (const uint32_t f : chart) sum = sum + faces.normal[f] * faces.area[f];
   return normalize(sum);
 }

@@ -13,7 +13,7 @@ namespace luxel::atlas {
 using ChartFaces = std::vector<uint32_t>;
 
 /// The chart's axis: the mean normal, weighted by area.
-Dvec3 chart_axis(const Faces& faces, const ChartFaces& chart);
+DVec3 chart_axis(const Faces& faces, const ChartFaces& chart);
 
 /// Merges faces into flat patches, and patches into charts, the pair that loses least flatness
 /// first. [Garland01, section 3; the error is that of CohenSteiner04, section 3.2]

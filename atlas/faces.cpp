@@ -99,8 +99,8 @@ Faces make_faces(const scene::Scene& scene) {
       const double side = determinant(instance.world_from_object) < 0 ? -1 : 1;
       for (uint32_t t = 0; t < scene.meshes[instance.mesh].triangles.size(); ++t) {
         const scene::Triangle3 w = scene::world_triangle(scene, uint32_t(i), t);
-        const std::array<Dvec3, 3> c{to_double(w.a), to_double(w.b), to_double(w.c)};
-        const Dvec3 area2 = cross(c[1] - c[0], c[2] - c[0]) * side;
+        const std::array<DVec3, 3> c{to_double(w.a), to_double(w.b), to_double(w.c)};
+        const DVec3 area2 = cross(c[1] - c[0], c[2] - c[0]) * side;
         faces.corners[first[i] + t] = c;
         faces.normal[first[i] + t] = normalize(area2);
         faces.area[first[i] + t] = 0.5 * length(area2);

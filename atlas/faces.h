@@ -12,8 +12,8 @@ namespace luxel::atlas {
 
 /// All drawn triangles, numbered as scene::first_triangles does.
 struct Faces {
-  std::vector<std::array<Dvec3, 3>> corners;  ///< world, corner order of the mesh
-  std::vector<Dvec3> normal;                  ///< unit, front side
+  std::vector<std::array<DVec3, 3>> corners;  ///< world, corner order of the mesh
+  std::vector<DVec3> normal;                  ///< unit, front side
   std::vector<double> area;                   ///< m^2
   /// The face on the other side of edge (k, k + 1), or kNone at a border. Vertices are joined by
   /// exact position because files split them at creases and texture seams.

@@ -36,7 +36,7 @@ bool alone_in_patch(const Faces& faces, const std::vector<uint32_t>& patch, uint
 /// The chart across one of the face's soft edges that most faces around belong to; its own chart
 /// when none has more.
 uint32_t best_chart(const Faces& faces, const std::vector<uint32_t>& chart, uint32_t f,
-                    const std::vector<uint32_t>& around, const std::vector<Dvec3>& axis,
+                    const std::vector<uint32_t>& around, const std::vector<DVec3>& axis,
                     double cos_max) {
   const auto votes = [&](uint32_t c) {
     return std::count_if(around.begin(), around.end(), [&](uint32_t g) { return chart[g] == c; });
@@ -57,10 +57,10 @@ uint32_t best_chart(const Faces& faces, const std::vector<uint32_t>& chart, uint
 
 void smooth_outlines(const Faces& faces, const std::vector<uint32_t>& patch, double max_angle,
                      std::vector<uint32_t>& chart) {
-  std::vector<Dvec3> axis(faces.size());  // charts are numbered by one of their patches
+  std::vector<DVec3> axis(faces.size());  // charts are numbered by one of their patches
   for (uint32_t f = 0; f < faces.size(); ++f)
     axis[chart[f]] = axis[chart[f]] + faces.normal[f] * faces.area[f];
-  for (Dvec3& a : axis) a = normalize(a);
+  for (DVec3& a : axis) a = normalize(a);
   // The axis of a chart moves a little with its faces: leave room for that.
   const double cos_max = std::cos(0.95 * max_angle);
   std::vector<uint32_t> movable;

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/vec.h"
+#include "base/vec_double.h"
 
 namespace luxel::atlas {
 
@@ -20,25 +20,8 @@ inline double cross(Dvec2 a, Dvec2 b) { return a.x * b.y - a.y * b.x; }
 inline double length(Dvec2 a) { return std::sqrt(dot(a, a)); }
 inline Dvec2 to_double(Vec2 a) { return {a.x, a.y}; }
 
-struct Dvec3 {
-  double x = 0, y = 0, z = 0;
-};
-inline Dvec3 operator+(Dvec3 a, Dvec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Dvec3 operator-(Dvec3 a, Dvec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Dvec3 operator*(Dvec3 a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-inline double dot(Dvec3 a, Dvec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Dvec3 cross(Dvec3 a, Dvec3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline double length(Dvec3 a) { return std::sqrt(dot(a, a)); }
-inline Dvec3 normalize(Dvec3 a) {
-  const double l = length(a);
-  return l > 0 ? a * (1.0 / l) : Dvec3{};
-}
-inline Dvec3 to_double(Vec3 a) { return {a.x, a.y, a.z}; }
-
 /// The angle between two unit vectors.
-inline double angle_between(Dvec3 a, Dvec3 b) {
+inline double angle_between(DVec3 a, DVec3 b) {
   return std::atan2(length(cross(a, b)), dot(a, b));  // acos loses half its digits near 0
 }
 

@@ -15,9 +15,9 @@ using Corners = std::vector<std::array<Dvec2, 3>>;
 /// Two directions in the plane across an axis, right-handed seen against it. Walls stand upright
 /// (y is up in the world and grows downwards in a texture). The choice is far from any axis that a
 /// model is likely to have, so that rounding never turns a chart.
-std::pair<Dvec3, Dvec3> plane_directions(Dvec3 axis) {
-  const Dvec3 up = std::abs(axis.y) < 0.93 ? Dvec3{0, 1, 0} : Dvec3{0, 0, -1};
-  const Dvec3 x = normalize(cross(up, axis));
+std::pair<DVec3, DVec3> plane_directions(DVec3 axis) {
+  const DVec3 up = std::abs(axis.y) < 0.93 ? DVec3{0, 1, 0} : DVec3{0, 0, -1};
+  const DVec3 x = normalize(cross(up, axis));
   return {x, cross(x, axis)};
 }
 
@@ -179,15 +179,15 @@ std::vector<FlatChart> flatten_one(const Faces& faces, ChartFaces whole, double 
 }  // namespace
 
 FlatChart project_chart(const Faces& faces, ChartFaces chart) {
-  const Dvec3 axis = chart_axis(faces, chart);
+  const DVec3 axis = chart_axis(faces, chart);
   const auto [right, down] = plane_directions(axis);
-  const Dvec3 origin = faces.corners[chart.front()][0];
+  const DVec3 origin = faces.corners[chart.front()][0];
   FlatChart flat;
   flat.corners.resize(chart.size());
   double flat_area = 0, area = 0;
   for (size_t i = 0; i < chart.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
-      const Dvec3 p = faces.corners[chart[i]][k] - origin;
+      const DVec3 p = faces.corners[chart[i]][k] - origin;
       flat.corners[i][k] = {dot(p, right), dot(p, down)};
     }
     flat_area += 0.5 * std::abs(signed_area2(flat.corners[i]));

@@ -18,12 +18,12 @@ struct Measure {
 /// coordinates, the squared L2 stretch is (S_s . S_s + S_t . S_t) / 2.
 Measure measure(const scene::Triangle3& world, const std::array<Vec2, 3>& uv) {
   const Dvec2 a = to_double(uv[0]), b = to_double(uv[1]), c = to_double(uv[2]);
-  const Dvec3 p = to_double(world.a), q = to_double(world.b), r = to_double(world.c);
+  const DVec3 p = to_double(world.a), q = to_double(world.b), r = to_double(world.c);
   const double area2 = cross(b - a, c - a);
   Measure m{0.5 * length(cross(q - p, r - p)), 0.5 * std::abs(area2), 0};
   if (area2 == 0) return m;
-  const Dvec3 ds = (p * (b.y - c.y) + q * (c.y - a.y) + r * (a.y - b.y)) * (1 / area2);
-  const Dvec3 dt = (p * (c.x - b.x) + q * (a.x - c.x) + r * (b.x - a.x)) * (1 / area2);
+  const DVec3 ds = (p * (b.y - c.y) + q * (c.y - a.y) + r * (a.y - b.y)) * (1 / area2);
+  const DVec3 dt = (p * (c.x - b.x) + q * (a.x - c.x) + r * (b.x - a.x)) * (1 / area2);
   m.stretch2 = 0.5 * (dot(ds, ds) + dot(dt, dt));
   return m;
 }

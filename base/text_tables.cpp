@@ -99,5 +99,12 @@ std::vector<DVec3> parse_polygon(const std::string& text) {
   return corners;
 }
 
+std::vector<std::vector<DVec3>> parse_polygons(const std::string& text) {
+  std::vector<std::vector<DVec3>> polygons;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, '|');) polygons.push_back(parse_polygon(part));
+  return polygons;
+}
+
 }  // namespace base
 }  // namespace luxel

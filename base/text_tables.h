@@ -24,6 +24,8 @@ std::vector<TextRow> markdown_rows(std::string_view text, std::string_view secti
 
 /// "x y z; x y z; ..."; what is no number counts as 0.
 std::vector<DVec3> parse_polygon(const std::string& text);
+/// Polygons with vertical bars between them; none in an empty text.
+std::vector<std::vector<DVec3>> parse_polygons(const std::string& text);
 
 }  // namespace base
 }  // namespace luxel

@@ -8,20 +8,20 @@
 #include <numeric>
 
 #include "base/text_tables.h"
+#include "base/vec_double.h"
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 
 namespace luxel::bench {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 /// Sphere facets: 5 levels are 20,480 triangles, 1 degree across; their edges change E by less.
 constexpr int kSphereLevels = 5;
 constexpr double kFacets = 1e-3;
 
 constexpr Rgb gray(double v) { return {float(v), float(v), float(v)}; }
 /// Radiance that makes self-emitted radiosity e.
-constexpr Rgb exitance(double e) { return gray(e / kPiD); }
+constexpr Rgb exitance(double e) { return gray(e / kPiDouble); }
 
 using Contains = std::function<bool(const scene::Scene&, const scene::SurfacePoint&)>;
 
@@ -66,7 +66,7 @@ ExactCase room_with_lamp(double rho) {
   c.scene.instances[0].world_from_object = scaling({4, 4, 4});
   scene::PunctualLight lamp;
   lamp.position = scene::world_bounds(c.scene).lower + Vec3{1, 3, 1.5f};
-  lamp.intensity = gray(10000 / (4 * kPiD));
+  lamp.intensity = gray(10000 / (4 * kPiDouble));
   c.scene.lights.push_back(lamp);
   return c;
 }
@@ -147,7 +147,7 @@ ExactCase integrating_sphere() {
   beam.inner_cone_rad = 0.1f, beam.outer_cone_rad = 0.3f;
   // A squared ramp in the cosine between the cones: Phi = 2 pi I (1 - ci + (ci - co) / 3).
   const double co = std::cos(0.3), ci = std::cos(0.1);
-  beam.intensity = gray(1000 / (2 * kPiD * (1 - ci + (ci - co) / 3)));
+  beam.intensity = gray(1000 / (2 * kPiDouble * (1 - ci + (ci - co) / 3)));
   c.scene.lights.push_back(beam);
   const double area = area_of(c.scene, everywhere), f = area_of(c.scene, of_material(1)) / area;
   const Contains away = [](const scene::Scene& s, const scene::SurfacePoint& p) {
@@ -157,26 +157,14 @@ ExactCase integrating_sphere() {
   return c;
 }
 
-/// A horizontal rectangle with its front up or down, each a mesh of its own.
-void add_rectangle(scene::Scene& scene, std::array<float, 4> xxzz, float y, bool up,
-                   uint32_t material) {
-  const auto [x0, x1, z0, z1] = xxzz;
-  scene::Mesh mesh;
-  if (up)
-    scene::add_quad(mesh, {Vec3{x0, y, z0}, {x0, y, z1}, {x1, y, z1}, {x1, y, z0}}, material);
-  else
-    scene::add_quad(mesh, {Vec3{x0, y, z0}, {x1, y, z0}, {x1, y, z1}, {x0, y, z1}}, material);
-  scene::place(scene, std::move(mesh));
-}
-
 // Section 4: plates a thousand times as wide as their distance; within 200 of the middle the
 // missing rest is below (1/300)^2.
 ExactCase plates() {
   ExactCase c{"parallel plates", "4", {}, 128, {}, 2e-5};
   scene::add_material(c.scene, "lower", gray(0.5), exitance(1));
   scene::add_material(c.scene, "upper", gray(0.8), exitance(0.25));
-  add_rectangle(c.scene, {-500, 500, -500, 500}, 0, true, 0);
-  add_rectangle(c.scene, {-500, 500, -500, 500}, 1, false, 1);
+  scene::add_rectangle(c.scene, {-500, 500, -500, 500}, 0, true, 0);
+  scene::add_rectangle(c.scene, {-500, 500, -500, 500}, 1, false, 1);
   const auto middle = [](uint32_t plate) -> Contains {
     return [plate](const scene::Scene& s, const scene::SurfacePoint& p) {
       const Vec3 at = scene::world_position(s, p);
@@ -267,7 +255,7 @@ double rectangle_factor(double x0, double x1, double z0, double z1, double heigh
   const auto corner = [&](double x, double z) {
     const double a = x / height, b = z / height;
     const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
-    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * kPiD);
+    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * kPiDouble);
   };
   return corner(x1, z1) - corner(x0, z1) - corner(x1, z0) + corner(x0, z0);
 }
@@ -300,9 +288,9 @@ ExactCase penumbra() {
   ExactCase c{"penumbra of a straight edge", "10", {}, 256, {}};
   scene::add_material(c.scene, "black", {});
   scene::add_material(c.scene, "lamp", {}, exitance(1));
-  add_rectangle(c.scene, {-0.3f, 1.2f, 0.25f, 0.75f}, 0, true, 0);
-  add_rectangle(c.scene, {0, 1, 0, 1}, 2, false, 1);
-  add_rectangle(c.scene, {-2, 0.4f, -2, 2}, 1, false, 0);
+  scene::add_rectangle(c.scene, {-0.3f, 1.2f, 0.25f, 0.75f}, 0, true, 0);
+  scene::add_rectangle(c.scene, {0, 1, 0, 1}, 2, false, 1);
+  scene::add_rectangle(c.scene, {-2, 0.4f, -2, 2}, 1, false, 0);
   const Contains receiver = [](const scene::Scene&, const scene::SurfacePoint& p) {
     return p.instance == 0;
   };

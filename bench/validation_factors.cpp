@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -38,9 +37,7 @@ std::vector<Row> read_rows(std::string_view csv) {
         cells[0], cells[7], cells[1] == "point", parse_polygon(cells[2]), parse_polygon(cells[3]),
         {},       {},       std::stod(cells[5])};
     if (row.is_point && row.a.size() == 2) row.normal = row.a[1];
-    std::istringstream blockers(cells[4]);
-    for (std::string part; std::getline(blockers, part, '|');)
-      row.blockers.push_back(parse_polygon(part));
+    row.blockers = parse_polygons(cells[4]);
     rows.push_back(std::move(row));
   }
   return rows;

@@ -5,12 +5,11 @@
 
 #include "base/check.h"
 #include "base/vec.h"
+#include "base/vec_double.h"
 #include "image/color.h"
 
 namespace luxel::image {
 namespace {
-
-constexpr double kPiExact = 3.14159265358979323846;
 
 /// Oklab, a space in which lightness L in [0, 1] is even for the eye, to linear sRGB. [Ottosson20]
 std::array<double, 3> rgb_from_oklab(double lightness, double a, double b) {
@@ -62,9 +61,9 @@ Image8 paint(size_t width, const Mask& covered, const Function& color_at) {
 Color8 false_color(double t) {
   t = t > 0 ? std::min(t, 1.0) : 0.0;
   const double lightness = 0.14 + 0.83 * t;
-  const double chroma = 0.21 * std::sin(kPiExact * (0.12 + 0.72 * t));
+  const double chroma = 0.21 * std::sin(kPiDouble * (0.12 + 0.72 * t));
   const double hue_deg = 285 + 180 * t;  // violet, then through red (29) to yellow (105)
-  return color_of(lightness, chroma, hue_deg * kPiExact / 180);
+  return color_of(lightness, chroma, hue_deg * kPiDouble / 180);
 }
 
 Image8 draw_map(const Image& map, const Mask& covered, double low, double high) {
@@ -79,7 +78,7 @@ Image8 draw_map(const Image& map, const Mask& covered, double low, double high) 
 
 Color8 contour_color(size_t index, size_t count) {
   const double t = count > 1 ? double(index) / double(count - 1) : 0;
-  return color_of(0.55 + 0.2 * t, 0.2, (264 + 215 * t) * kPiExact / 180);
+  return color_of(0.55 + 0.2 * t, 0.2, (264 + 215 * t) * kPiDouble / 180);
 }
 
 Image8 draw_contours(std::span<const uint8_t> contours, std::span<const uint8_t> brightness,

@@ -2,6 +2,7 @@
 // extension to high dynamic range [Andersson21]. docs/compare.md has the equations.
 #pragma once
 
+#include "base/vec_double.h"
 #include "image/compare.h"
 #include "image/image.h"
 
@@ -10,7 +11,7 @@ namespace luxel::image {
 struct FlipParams {
   /// How large a pixel is seen. The papers' observer: 0.7 m from a screen 0.7 m and 3840 pixels
   /// wide.
-  double pixels_per_degree = 3840 * 3.14159265358979323846 / 180;
+  double pixels_per_degree = 3840 * kPiDouble / 180;
 };
 
 /// LDR-FLIP per pixel, one channel in [0, 1]. a and b are linear light with sRGB primaries (display

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/vec_double.h"
 #include "base/vectorize.h"
 
 namespace luxel::image {
 namespace {
-
-constexpr double kPiExact = 3.14159265358979323846;
 
 /// A contrast sensitivity function's filter: a1 sqrt(pi / b1) exp(-pi^2 x^2 / b1) + the same with
 /// a2, b2, over x in degrees. [Andersson20]
@@ -44,7 +43,7 @@ Kernel trimmed(const std::vector<double>& taps, double scale) {
 }
 
 double sigma_pixels(double b, double pixels_per_degree) {
-  return std::sqrt(b / (2 * kPiExact * kPiExact)) * pixels_per_degree;
+  return std::sqrt(b / (2 * kPiDouble * kPiDouble)) * pixels_per_degree;
 }
 
 Kernel gaussian(double b, double pixels_per_degree, int radius) {
@@ -84,7 +83,7 @@ FlipFilters make_flip_filters(double pixels_per_degree) {
   for (size_t i = 0; i < 2; ++i) {
     f.blue_yellow[i] = gaussian(b[i], pixels_per_degree, reach);
     const double sum = sum_of(gaussian_taps(sigma_pixels(b[i], pixels_per_degree), reach));
-    mass[i] = a[i] * std::sqrt(kPiExact / b[i]) * sum * sum;  // over the square of taps
+    mass[i] = a[i] * std::sqrt(kPiDouble / b[i]) * sum * sum;  // over the square of taps
   }
   for (size_t i = 0; i < 2; ++i) f.blue_yellow_weight[i] = float(mass[i] / (mass[0] + mass[1]));
 

@@ -48,6 +48,18 @@ Result<uint64_t> memory_to_spare(const SolveInput& in, const BakeSettings& setti
   return settings.max_memory_bytes - needed;
 }
 
+/// What gather and the path tracer call by the same names.
+template <class Solved>
+TexelLight texel_light(Solved&& solved) {
+  TexelLight out;
+  out.suspicious_texels = uint64_t(std::count(solved.enclosed.begin(), solved.enclosed.end(), 1));
+  out.hidden = std::move(solved.enclosed);
+  out.irradiance = std::move(solved.irradiance);
+  out.rays = solved.rays;
+  out.relative_error = solved.relative_error;
+  return out;
+}
+
 Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
                                 Progress& progress) {
   LUXEL_TRY(const uint64_t hit_memory, memory_to_spare(in, settings, kMinHitBytes));
@@ -60,13 +72,8 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   params.scratch_folder = nearest_folder(settings.output);
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
-  TexelLight out;
-  out.suspicious_texels = uint64_t(std::count(result.enclosed.begin(), result.enclosed.end(), 1));
-  out.hidden = std::move(result.enclosed);
-  out.irradiance = std::move(result.irradiance);
-  out.rays = result.rays;
+  TexelLight out = texel_light(std::move(result));
   out.sweeps = result.sweeps;
-  out.relative_error = result.relative_error;
   out.scratch_bytes = result.hit_bytes_in_file;
   return out;
 }
@@ -79,13 +86,7 @@ Result<TexelLight> solve_reference(const SolveInput& in, const BakeSettings& set
   LUXEL_TRY(reference::TexelPaths result,
             reference::irradiance_by_paths(in.scene, reference::receivers(in.elements), in.tracer,
                                            params, progress));
-  TexelLight out;
-  out.suspicious_texels = uint64_t(std::count(result.enclosed.begin(), result.enclosed.end(), 1));
-  out.hidden = std::move(result.enclosed);
-  out.irradiance = std::move(result.irradiance);
-  out.rays = result.rays;
-  out.relative_error = result.relative_error;
-  return out;
+  return texel_light(std::move(result));
 }
 
 constexpr std::array kSolvers{Solver{"gather", solve_gather}, Solver{"reference", solve_reference}};

@@ -15,7 +15,6 @@ namespace {
 namespace shared = luxel::testing_support;
 using namespace testing;
 
-constexpr double kPiD = 3.14159265358979323846;
 constexpr Rgb gray(float v) { return {v, v, v}; }
 /// Emission that makes self-emitted radiosity e.
 constexpr Rgb exitance(float e) { return gray(e / kPi); }
@@ -89,7 +88,7 @@ TEST(SlowEnclosures, TheMeanLawHoldsForAnyEmissionAndBlockers) {
     for (uint32_t t = 0; t < scene.meshes[i].triangles.size(); ++t) {
       const double a = double(scene::area_m2(scene::world_triangle(scene, i, t)));
       area += a;
-      power += a * kPiD * double(scene::emission_at(scene, {i, t, {}}).x);
+      power += a * kPiDouble * double(scene::emission_at(scene, {i, t, {}}).x);
     }
   const Points points = random_points(scene, 100000, 4);
   const Mean mean = mean_over_random_points(solve(scene, points, {.samples = 4}));
@@ -162,7 +161,7 @@ TEST(SlowEnclosures, AnIntegratingSphereGivesItsIlluminance) {
   beam.outer_cone_rad = 0.3f, beam.inner_cone_rad = 0.1f;
   // A squared ramp in the cosine between the cones: Phi = 2 pi I (1 - ci + (ci - co) / 3).
   const double co = std::cos(0.3), ci = std::cos(0.1);
-  beam.intensity = gray(float(1000 / (2 * kPiD * (1 - ci + (ci - co) / 3))));
+  beam.intensity = gray(float(1000 / (2 * kPiDouble * (1 - ci + (ci - co) / 3))));
   scene.lights.push_back(beam);
   const Points points = random_points(scene, 400, 8, [&](const auto& s, const auto& p) {
     return scene::world_position(s, p).x < 0;
@@ -184,8 +183,8 @@ TEST(Enclosures, ParallelPlatesExchangeLight) {
   scene::Scene scene;
   scene::add_material(scene, "lower", gray(0.5f), exitance(1));
   scene::add_material(scene, "upper", gray(0.8f), exitance(0.25f));
-  add_rectangle(scene, -500, 500, -500, 500, 0, true, 0);
-  add_rectangle(scene, -500, 500, -500, 500, 1, false, 1);
+  scene::add_rectangle(scene, {-500, 500, -500, 500}, 0, true, 0);
+  scene::add_rectangle(scene, {-500, 500, -500, 500}, 1, false, 1);
   Points points;
   std::vector<double> exact;
   const double b1 = (1 + 0.5 * 0.25) / (1 - 0.4), b2 = (0.25 + 0.8 * 1) / (1 - 0.4);
@@ -273,8 +272,8 @@ TEST(Enclosures, AManufacturedSolutionIsReproduced) {
       const uint32_t material =
           scene::add_material(scene, "cell", gray(0.5f), exitance(float(1 - 0.5 * mean)));
       const float h = 1.0f / kCells, x = float(i) * h, z = float(j) * h;
-      add_rectangle(scene, x, x + h, z, z + h, 0, true, material);
-      add_rectangle(scene, x, x + h, z, z + h, 1, false, material);
+      scene::add_rectangle(scene, {x, x + h, z, z + h}, 0, true, material);
+      scene::add_rectangle(scene, {x, x + h, z, z + h}, 1, false, material);
     }
   Points points;
   std::vector<double> exact;

@@ -12,7 +12,6 @@ namespace shared = luxel::testing_support;
 using namespace testing;
 using Kind = scene::PunctualLight::Kind;
 
-constexpr double kPiD = 3.14159265358979323846;
 constexpr Rgb gray(float v) { return {v, v, v}; }
 const PathParams kDirect{.samples = 2000, .bounces = 0};
 
@@ -36,7 +35,7 @@ std::vector<double> rectangle_light(const Points& points, double x0, double x1, 
   std::vector<double> e;
   for (const Vec3& p : points.position) {
     const double x = double(p.x), z = double(p.z);
-    e.push_back(kPiD * radiance * rectangle_factor(x0 - x, x1 - x, z0 - z, z1 - z, y));
+    e.push_back(kPiDouble * radiance * rectangle_factor(x0 - x, x1 - x, z0 - z, z1 - z, y));
   }
   return e;
 }
@@ -57,7 +56,7 @@ TEST(Lights, TheExactCornellProbes) {
       const std::string& cell = row[with_blocks ? 4 : 3];
       if (cell == "-") continue;
       points.add(shared::parse_vec3(row[1]) * 1e-3f, shared::parse_vec3(row[2]));
-      exact.push_back(kPiD * double(radiance) * std::stod(cell));
+      exact.push_back(kPiDouble * double(radiance) * std::stod(cell));
     }
     // The lamp hangs as measured, to float precision in metres.
     expect_unbiased(solve(scene, points, {.samples = 50000, .bounces = 0}), exact, 1e-5);
@@ -70,8 +69,8 @@ TEST(Lights, APenumbraIsThatOfTheVisiblePart) {
   scene::Scene scene;
   scene::add_material(scene, "black", {});
   scene::add_material(scene, "lamp", {}, gray(1 / kPi));
-  add_rectangle(scene, 0, 1, 0, 1, 2, false, 1);
-  add_rectangle(scene, -50, 0.4f, -50, 50, 1, false, 0);
+  scene::add_rectangle(scene, {0, 1, 0, 1}, 2, false, 1);
+  scene::add_rectangle(scene, {-50, 0.4f, -50, 50}, 1, false, 0);
   Points points;
   std::vector<double> exact;
   for (int k = 0; k < 150; ++k) {
@@ -94,7 +93,7 @@ TEST(Lights, ATexturedLampShinesWhereItIsBright) {
   texture.rgba[0] = texture.rgba[1] = texture.rgba[2] = 255;  // (0, 0), the corner of low u and v
   scene.textures.push_back(texture);
   scene.materials[0].emission_texture = {.texture = 0, .filter = scene::Filter::nearest};
-  add_rectangle(scene, -0.5f, 0.5f, -0.5f, 0.5f, 1, false, 0);
+  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, false, 0);
   for (const Vec3& p : scene.meshes[0].positions)
     scene.meshes[0].uv0.push_back({p.x + 0.5f, p.z + 0.5f});
   const Points points = floor_points();
@@ -111,18 +110,18 @@ TEST(Lights, AMaskedLampShinesFromItsSolidPart) {
   scene.textures.push_back(texture);
   scene.materials[0].base_color_texture = {.texture = 0, .filter = scene::Filter::nearest};
   scene.materials[0].alpha_mode = scene::AlphaMode::mask;
-  add_rectangle(scene, -0.5f, 0.5f, -0.5f, 0.5f, 1, false, 0);
+  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, false, 0);
   for (const Vec3& p : scene.meshes[0].positions)
     scene.meshes[0].uv0.push_back({p.x + 0.5f, p.z + 0.5f});
   // Behind the lamp, seen through its holes: another lamp, all of it solid.
   scene::add_material(scene, "behind", {}, gray(3));
-  add_rectangle(scene, 2, 4, -0.5f, 0.5f, 2, false, 1);
+  scene::add_rectangle(scene, {2, 4, -0.5f, 0.5f}, 2, false, 1);
   const Points points = floor_points();
   std::vector<double> exact = rectangle_light(points, -0.5, 0, -0.5, 0.5, 1, 2);
   for (size_t i = 0; i < points.size(); ++i) {
     // Seen from x, the solid half [-0.5, 0] hides no more than x + 2 (0 - x) <= 0.9 at height 2.
     const double x = double(points.position[i].x), z = double(points.position[i].z);
-    exact[i] += kPiD * 3 * rectangle_factor(2 - x, 4 - x, -0.5 - z, 0.5 - z, 2);
+    exact[i] += kPiDouble * 3 * rectangle_factor(2 - x, 4 - x, -0.5 - z, 0.5 - z, 2);
   }
   expect_unbiased(solve(scene, points, kDirect), exact);
 }
@@ -132,11 +131,12 @@ TEST(Lights, ADoubleSidedLampShinesToBothSidesAndAOneSidedToOne) {
     scene::Scene scene;
     scene::add_material(scene, "lamp", {}, gray(1));
     scene.materials[0].double_sided = two_sided;
-    add_rectangle(scene, -0.5f, 0.5f, -0.5f, 0.5f, 1, true, 0);  // front up: away from the floor
+    scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, true,
+                         0);  // front up: away from the floor
     Points points = floor_points();
     std::vector<double> exact = rectangle_light(points, -0.5, 0.5, -0.5, 0.5, 1, two_sided);
     points.add({0, 2, 0}, {0, -1, 0});
-    exact.push_back(kPiD * rectangle_factor(-0.5, 0.5, -0.5, 0.5, 1));
+    exact.push_back(kPiDouble * rectangle_factor(-0.5, 0.5, -0.5, 0.5, 1));
     expect_unbiased(solve(scene, points, kDirect), exact);
   }
 }
@@ -145,7 +145,7 @@ TEST(Lights, ADoubleSidedLampShinesToBothSidesAndAOneSidedToOne) {
 TEST(Lights, AMirroredLampShinesFromItsFront) {
   scene::Scene scene;
   scene::add_material(scene, "lamp", {}, gray(1));
-  add_rectangle(scene, 0.1f, 0.5f, -0.5f, 0.5f, 1, false, 0);
+  scene::add_rectangle(scene, {0.1f, 0.5f, -0.5f, 0.5f}, 1, false, 0);
   scene.instances[0].world_from_object = scaling({-1, 1, 1});
   const Points points = floor_points();
   expect_unbiased(solve(scene, points, kDirect),
@@ -166,7 +166,7 @@ TEST(Lights, ALampThatTouchesTheReceiverIsSeenExactly) {
   for (int k = 0; k < 100; ++k) {
     const Vec3 p{1e-3f * std::pow(1.08f, float(k)), 0, 0.1f};
     points.add(p, {0, 1, 0});
-    exact.push_back(kPiD * std::abs(polygon_factor(p, {0, 1, 0}, corners)));
+    exact.push_back(kPiDouble * std::abs(polygon_factor(p, {0, 1, 0}, corners)));
   }
   for (int k = 0; k < 10; ++k) {  // in the lamp's own plane, and behind it
     points.add({0, 0, 0.6f + float(k)}, {0, 1, 0}), exact.push_back(0);
@@ -179,7 +179,7 @@ TEST(Lights, ALampThatTouchesTheReceiverIsSeenExactly) {
 scene::Scene lamp_scene(const scene::PunctualLight& lamp) {
   scene::Scene scene;
   scene::add_material(scene, "floor", gray(0.5f));
-  add_rectangle(scene, -5, 5, -5, 5, 0, true, 0);
+  scene::add_rectangle(scene, {-5, 5, -5, 5}, 0, true, 0);
   scene.lights.push_back(lamp);
   return scene;
 }
@@ -236,10 +236,10 @@ TEST(Lights, ASunGivesItsIlluminanceTimesTheCosine) {
 // cosine sin(theta) sin(phi) over the upper half, which is 2 L times that of sin^2(theta) to a.
 TEST(Lights, ASunOnTheHorizonIsHalved) {
   const float a = 0.1f;
-  const double sine = std::sin(0.1), radiance = 100 / (kPiD * sine * sine);
+  const double sine = std::sin(0.1), radiance = 100 / (kPiDouble * sine * sine);
   scene::Scene scene;
   scene::add_material(scene, "far", {});
-  add_rectangle(scene, -1, 1, -1, 1, -9, true, 0);
+  scene::add_rectangle(scene, {-1, 1, -1, 1}, -9, true, 0);
   scene.lights.push_back(sun({1, 0, 0}, a));
   double integral = 0;
   constexpr int kSteps = 2000;
@@ -254,7 +254,7 @@ TEST(Lights, ASunOnTheHorizonIsHalved) {
 
 TEST(Lights, AnEdgeThroughTheSunsCentreHidesHalfOfIt) {
   scene::Scene scene = lamp_scene(sun({0, -1, 0}, 0.00465f));
-  add_rectangle(scene, 0, 5, -5, 5, 1, true, 0);
+  scene::add_rectangle(scene, {0, 5, -5, 5}, 1, true, 0);
   const TexelPaths e = solve(scene, one_point({0, 0, 0}), {.samples = 40000, .bounces = 0});
   EXPECT_NEAR(e.irradiance[0].x, 50, 3 * e.standard_error[0].x);
   EXPECT_NEAR(e.standard_error[0].x, 50 / std::sqrt(40000.0f), 1e-2f);
@@ -263,7 +263,7 @@ TEST(Lights, AnEdgeThroughTheSunsCentreHidesHalfOfIt) {
 // Lamps are picked one at a time; their light must add up, whatever is in their way.
 TEST(Lights, ManyLampsAddUp) {
   scene::Scene scene = lamp_scene(sun({0.3f, -1, 0.1f}, 0));
-  add_rectangle(scene, 1, 2, -2, 2, 1, true, 0);  // hides some lamps
+  scene::add_rectangle(scene, {1, 2, -2, 2}, 1, true, 0);  // hides some lamps
   const Points points = floor_points();
   std::vector<double> exact(points.size(), 100 / std::sqrt(1 + 0.09 + 0.01));
   for (size_t i = 0; i < points.size(); ++i) {
@@ -289,11 +289,11 @@ TEST(Lights, ManyLampsAddUp) {
 TEST(Lights, TheBackgroundIsSeenPastSurfaces) {
   scene::Scene scene;
   scene::add_material(scene, "roof", {});
-  add_rectangle(scene, -0.5f, 0.5f, -0.5f, 0.5f, 1, false, 0);
+  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, false, 0);
   scene.background = gray(2);
   const Points points = floor_points();
   std::vector<double> exact = rectangle_light(points, -0.5, 0.5, -0.5, 0.5, 1, -2);
-  for (double& e : exact) e += 2 * kPiD;
+  for (double& e : exact) e += 2 * kPiDouble;
   expect_unbiased(solve(scene, points, kDirect), exact);
 }
 

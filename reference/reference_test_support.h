@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "base/vec_double.h"
 #include "base/warp.h"
 #include "reference/path_tracer.h"
 #include "scene/shapes.h"
@@ -107,7 +108,7 @@ inline double polygon_factor(Vec3 point, Vec3 normal, const std::vector<Vec3>& c
     const double sine = double(length(c));
     if (sine > 0) sum += std::atan2(sine, double(dot(a, b))) * double(dot(normal, c)) / sine;
   }
-  return sum / (2 * 3.14159265358979323846);
+  return sum / (2 * kPiDouble);
 }
 
 /// The same for the rectangle [x0, x1] x [z0, z1] in the plane y = height above a point at the
@@ -116,20 +117,9 @@ inline double rectangle_factor(double x0, double x1, double z0, double z1, doubl
   const auto corner = [&](double x, double z) {
     const double a = x / height, b = z / height;
     const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
-    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * 3.14159265358979323846);
+    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * kPiDouble);
   };
   return corner(x1, z1) - corner(x0, z1) - corner(x1, z0) + corner(x0, z0);
-}
-
-/// A horizontal rectangle with its front up or down.
-inline void add_rectangle(scene::Scene& scene, float x0, float x1, float z0, float z1, float y,
-                          bool up, uint32_t material) {
-  scene::Mesh mesh;
-  if (up)
-    scene::add_quad(mesh, {Vec3{x0, y, z0}, {x0, y, z1}, {x1, y, z1}, {x1, y, z0}}, material);
-  else
-    scene::add_quad(mesh, {Vec3{x0, y, z0}, {x1, y, z0}, {x1, y, z1}, {x0, y, z1}}, material);
-  scene::place(scene, std::move(mesh));
 }
 
 }  // namespace luxel::reference::testing

@@ -129,8 +129,9 @@ TEST(Statistics, PickingEmittersOrMeetingThemByChanceGivesTheSame) {
   scene::Scene scene = scene::furnace_box(gray(0.6f), {});
   scene::add_material(scene, "lamp", gray(0.3f), {3, 2, 1});
   const Box3 room = scene::world_bounds(scene);
-  add_rectangle(scene, room.lower.x + 0.2f, room.lower.x + 0.6f, room.lower.z + 0.3f,
-                room.lower.z + 0.6f, room.upper.y - 0.1f, false, 1);
+  scene::add_rectangle(
+      scene, {room.lower.x + 0.2f, room.lower.x + 0.6f, room.lower.z + 0.3f, room.lower.z + 0.6f},
+      room.upper.y - 0.1f, false, 1);
   const auto tracer = trace::RayTracer::build(scene);
   const Vec3 n{0, 1, 0};
   const Receiver at{Vec3{room.centre().x, room.lower.y, room.centre().z}, n, n};

@@ -12,7 +12,6 @@ namespace {
 
 using namespace testing;
 
-constexpr double kPiD = 3.14159265358979323846;
 constexpr Rgb gray(float v) { return {v, v, v}; }
 
 scene::PunctualLight sun(Vec3 direction) {
@@ -27,7 +26,7 @@ scene::PunctualLight sun(Vec3 direction) {
 TEST(SurfacesOfPaths, EachSideOfASheetHasItsOwnLight) {
   scene::Scene scene;
   scene::add_material(scene, "sheet", gray(0.8f));
-  add_rectangle(scene, -100, 100, -100, 100, 1, true, 0);
+  scene::add_rectangle(scene, {-100, 100, -100, 100}, 1, true, 0);
   scene.lights.push_back(sun({0, -1, 0}));
   Points points;
   points.add({0, 0, 0}, {0, 1, 0});   // under the sheet, looking up at its back
@@ -61,7 +60,7 @@ TEST(SurfacesOfPaths, TheInsideOfADoubleSidedBoxIsAFurnace) {
   scene::place(scene, std::move(box));
   Points points = random_points(scene, 100, 1);
   for (Vec3& n : points.normal) n = -n;
-  expect_unbiased(solve(scene, points, {.samples = 500}), std::vector<double>(100, 2 * kPiD));
+  expect_unbiased(solve(scene, points, {.samples = 500}), std::vector<double>(100, 2 * kPiDouble));
 }
 
 TexelPaths at_bent_point(const scene::Scene& scene, Vec3 p, Vec3 n, int samples) {
@@ -84,7 +83,7 @@ TEST(SurfacesOfPaths, BentNormalsKeepReflectedLight) {
   for (const float angle : {0.0f, 0.2f, 0.8f, 1.3f}) {
     const Vec3 n{std::sin(angle), std::cos(angle), 0};
     const TexelPaths e = at_bent_point(scene, floor, n, 40000);
-    const double exact = kPiD * ((1 + std::cos(double(angle))) / 2 + 0.6 / 0.4);
+    const double exact = kPiDouble * ((1 + std::cos(double(angle))) / 2 + 0.6 / 0.4);
     EXPECT_NEAR(double(e.irradiance[0].x), exact, 3 * double(e.standard_error[0].x)) << angle;
     EXPECT_LT(e.standard_error[0].x, 0.01 * exact);
   }
@@ -94,14 +93,15 @@ TEST(SurfacesOfPaths, BentNormalsKeepTheLightOfTheSky) {
   scene::Scene scene;
   scene.background = gray(1);
   scene::add_material(scene, "far", {});
-  add_rectangle(scene, 100, 101, 100, 101, -100, true, 0);
-  EXPECT_NEAR(at_bent_point(scene, {}, normalize({1, 1, 0.3f}), 100).irradiance[0].x, kPiD, 1e-5);
+  scene::add_rectangle(scene, {100, 101, 100, 101}, -100, true, 0);
+  EXPECT_NEAR(at_bent_point(scene, {}, normalize(Vec3{1, 1, 0.3f}), 100).irradiance[0].x, kPiDouble,
+              1e-5);
 }
 
 // Lamps and emitters are seen with the plain cosine about the shading normal, and not from below
 // the triangle's own plane.
 TEST(SurfacesOfPaths, BentNormalsSeeLampsWithTheirCosineAboveTheTriangle) {
-  const Vec3 n = normalize({1, 1, 0});
+  const Vec3 n = normalize(Vec3{1, 1, 0});
   for (const Vec3 to_lamp : {Vec3{0.2f, 1, 0}, {1, 0.1f, 0}, {1, -0.1f, 0}, {-1, 0.9f, 0}}) {
     const Vec3 towards = normalize(to_lamp);
     const double cosine = towards.y > 0 ? std::max(0.0, double(dot(towards, n))) : 0;
@@ -169,7 +169,7 @@ TEST(PathPictures, PixelsAreMeansOfTheirSquares) {
   camera.fov_y_rad = 2 * std::atan(1.0f);
   const Picture picture = picture_of(scene, camera, {.samples = 10000});
   // The sky adds pi * 0.25 to E.
-  const double lit = 0.1 + 0.5 * (2 + 0.25 * kPiD) / kPiD;
+  const double lit = 0.1 + 0.5 * (2 + 0.25 * kPiDouble) / kPiDouble;
   EXPECT_NEAR(double(picture.radiance.rgb(3, 8).x), lit, 1e-4);
   EXPECT_EQ(picture.radiance.rgb(20, 8).x, 0.25f);
   EXPECT_EQ(picture.radiance.at(20, 8)[3], 0);

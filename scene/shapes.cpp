@@ -50,6 +50,17 @@ void place(Scene& scene, Mesh mesh, const Mat34& world_from_object) {
   scene.meshes.push_back(std::move(mesh));
 }
 
+void add_rectangle(Scene& scene, const std::array<float, 4>& sides, float y, bool up,
+                   uint32_t material) {
+  const auto [x0, x1, z0, z1] = sides;
+  Mesh mesh;
+  if (up)
+    add_quad(mesh, {Vec3{x0, y, z0}, {x0, y, z1}, {x1, y, z1}, {x1, y, z0}}, material);
+  else
+    add_quad(mesh, {Vec3{x0, y, z0}, {x1, y, z0}, {x1, y, z1}, {x0, y, z1}}, material);
+  place(scene, std::move(mesh));
+}
+
 uint32_t add_material(Scene& scene, std::string name, Rgb reflectance, Rgb emission) {
   Material material;
   material.name = std::move(name);

@@ -27,6 +27,9 @@ void add_box(Mesh& mesh, Vec3 lower, Vec3 upper, uint32_t material);
 
 /// Adds the mesh with one instance of the same name.
 void place(Scene& scene, Mesh mesh, const Mat34& world_from_object = {});
+/// A mesh of one horizontal rectangle, {x0, x1, z0, z1}, with its front up or down.
+void add_rectangle(Scene& scene, const std::array<float, 4>& sides, float y, bool up,
+                   uint32_t material);
 uint32_t add_material(Scene& scene, std::string name, Rgb reflectance, Rgb emission = {});
 
 /// A camera's pose: at `eye`, `target` in the middle of its picture, `up` upwards in it.

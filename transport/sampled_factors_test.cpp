@@ -101,10 +101,7 @@ TEST(SampledFactorsSlow, MatchTheExactTableWithinTheirError) {
   LUXEL_NEEDS_SHARED("reference/view-factors.csv");
   for (const auto& row : shared::csv_rows("reference/view-factors.csv")) {
     const Polygon a = shared::parse_polygon(row[2]), b = shared::parse_polygon(row[3]);
-    std::vector<Polygon> blockers;
-    std::istringstream parts(row[4]);
-    for (std::string part; std::getline(parts, part, '|');)
-      blockers.push_back(shared::parse_polygon(part));
+    const std::vector<Polygon> blockers = parse_polygons(row[4]);
     const double exact = std::stod(row[5]);
     const auto sample = [&](const SampledParams& params) {
       return row[1] == "poly" ? sampled_form_factor(a, b, blockers, params)

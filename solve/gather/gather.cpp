@@ -21,9 +21,9 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                       const atlas::TexelMap& map, const transport::Elements& elements,
                       const transport::Lights& lights, const trace::RayTracer& tracer,
                       const GatherParams& params, Progress& progress) {
-  const DirectParams direct_params{params.direct_samples, params.seed};
-  LUXEL_TRY(const DirectLight direct,
-            direct_light(scene, elements, lights, tracer, direct_params, progress));
+  const transport::DirectParams direct_params{params.direct_samples, params.seed};
+  LUXEL_TRY(const transport::DirectLight direct,
+            transport::direct_light(scene, elements, lights, tracer, direct_params, progress));
   const TraceParams trace_params{params.samples, params.seed, params.hit_memory_bytes,
                                  params.scratch_folder};
   LUXEL_TRY(TracedHits hits, trace_hits(scene, atlas, elements, tracer, trace_params, progress));

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "solve/gather/bounces.h"
-#include "solve/gather/direct_light.h"
 #include "solve/gather/trace_hits.h"
+#include "transport/direct_light.h"
 
 namespace luxel::gather {
 

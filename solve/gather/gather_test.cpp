@@ -236,8 +236,8 @@ TEST(Gather, ALightCanChangeWithoutTracingAgain) {
   auto hits = trace_hits(room->scene, room->atlas, room->elements, *room->tracer,
                          {64, 1, UINT64_MAX, "."}, progress);
   ASSERT_TRUE(hits);
-  const auto direct =
-      direct_light(room->scene, room->elements, room->lights, *room->tracer, {32, 1}, progress);
+  const auto direct = transport::direct_light(room->scene, room->elements, room->lights,
+                                              *room->tracer, {32, 1}, progress);
   std::vector<Rgb> half = direct->irradiance;
   for (Rgb& e : half) e *= 0.5f;
   const auto full =

@@ -11,11 +11,14 @@
 #include "transport/elements.h"
 #include "transport/lights.h"
 
-namespace luxel::gather {
+namespace luxel::transport {
 
 struct DirectParams {
   int samples = 64;  ///< shadow rays per element towards triangle lights, and towards each sun disc
   uint64_t seed = 1;
+  /// All elements look at the same points of a light: penumbrae without grain, in steps of
+  /// 1 / samples. For solvers whose elements are compared with their neighbours.
+  bool same_points = false;
 };
 
 struct DirectLight {
@@ -28,8 +31,8 @@ struct DirectLight {
 /// is seen by indirect rays). Each source's unshadowed irradiance is exact; only the visible share
 /// is sampled, so that where a source is seen whole, or not at all, the result has no noise.
 /// [Heitz18; docs/gather.md]. Errors: cancelled.
-Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Elements& elements,
-                                 const transport::Lights& lights, const trace::RayTracer& tracer,
+Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
                                  const DirectParams& params, Progress& progress);
 
-}  // namespace luxel::gather
+}  // namespace luxel::transport

@@ -1,4 +1,4 @@
-#include "solve/gather/direct_light.h"
+#include "transport/direct_light.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,12 +10,8 @@
 #include "transport/light_cut.h"
 #include "transport/spherical_triangle.h"
 
-namespace luxel::gather {
+namespace luxel::transport {
 namespace {
-
-using transport::CutEntry;
-using transport::Lights;
-using transport::TriangleLight;
 
 constexpr size_t kMaxCut = 32;
 constexpr size_t kMaxPunctual = 64;
@@ -76,10 +72,9 @@ struct LightPoint {
   float weight = 0, measure = 0;
 };
 
-LightPoint sample_solid_angle(const TriangleLight& light,
-                              const transport::SphericalTriangle& spherical, const Receiver& r,
-                              Vec2 u) {
-  const Vec3 d = transport::spherical_triangle_sample(spherical, u);
+LightPoint sample_solid_angle(const TriangleLight& light, const SphericalTriangle& spherical,
+                              const Receiver& r, Vec2 u) {
+  const Vec3 d = spherical_triangle_sample(spherical, u);
   const float along = dot(d, light.normal);
   const float t = along != 0 ? dot(light.a - r.position, light.normal) / along : 0.0f;
   const Vec3 p = r.position + d * t;
@@ -111,8 +106,7 @@ void shoot_at(const scene::Scene& scene, const TriangleLight& light, const Light
   constexpr float kEnd = 1 - 1e-4f;
   const Vec3 end =
       trace::offset_origin(point.target, front ? light.normal : -light.normal, diagonal_m);
-  const Rgb radiance =
-      light.textured ? transport::radiance_at(scene, light, point.at) : light.mean_radiance;
+  const Rgb radiance = light.textured ? radiance_at(scene, light, point.at) : light.mean_radiance;
   const float w = point.weight * factor;
   add_shot(work, r, {source, w, radiance * w}, end - r.origin, kEnd);
 }
@@ -121,7 +115,7 @@ void shoot_at(const scene::Scene& scene, const TriangleLight& light, const Light
 /// ratio: the sequence is followed until `count` points lie above it.
 void shoot_at_triangle(const scene::Scene& scene, const TriangleLight& light, uint32_t source,
                        uint32_t count, const Receiver& r, float diagonal_m, Work& work) {
-  const auto spherical = transport::spherical_triangle(r.position, light.a, light.b, light.c);
+  const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
   const bool by_angle = spherical.solid_angle > kMinSolidAngle;
   const uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
   uint32_t kept = 0;
@@ -136,9 +130,9 @@ void shoot_at_triangle(const scene::Scene& scene, const TriangleLight& light, ui
 }
 
 /// Shots at a group: a triangle in proportion to its power, a point on it by area.
-void shoot_at_group(const scene::Scene& scene, const Lights& lights,
-                    const transport::LightNode& node, uint32_t source, uint32_t count,
-                    const Receiver& r, float diagonal_m, Work& work) {
+void shoot_at_group(const scene::Scene& scene, const Lights& lights, const LightNode& node,
+                    uint32_t source, uint32_t count, const Receiver& r, float diagonal_m,
+                    Work& work) {
   const float low = lights.power_below[node.first];
   const float high = lights.power_below[node.first + node.count];
   RandomStream random{hash64(r.seed, node.first + (uint64_t(node.count) << 32))};
@@ -160,7 +154,7 @@ void shoot_at_group(const scene::Scene& scene, const Lights& lights,
 /// less than one gets one with that chance (systematic sampling), and counts for more then.
 void shoot_at_triangles(const scene::Scene& scene, const Lights& lights, int samples,
                         const Receiver& r, float diagonal_m, Work& work) {
-  transport::light_cut(lights, r.position, r.normal, kMaxCut, work.cut);
+  light_cut(lights, r.position, r.normal, kMaxCut, work.cut);
   float total = 0;
   for (const CutEntry& entry : work.cut) total += entry.importance;
   if (!(total > 0)) return;
@@ -177,7 +171,7 @@ void shoot_at_triangles(const scene::Scene& scene, const Lights& lights, int sam
     }
     if (count == 0) continue;
     const float chance = std::min(1.0f, deserved);
-    const transport::LightNode& node = lights.nodes[entry.node];
+    const LightNode& node = lights.nodes[entry.node];
     const uint32_t source = uint32_t(work.sources.size());
     Source s;
     s.exact = entry.exact;
@@ -210,7 +204,7 @@ void shoot_at_disc(const scene::PunctualLight& light, uint32_t source, int sampl
 
 void shoot_at_punctual(const scene::PunctualLight& light, float chance, int samples,
                        const Receiver& r, Work& work) {
-  const transport::PunctualIncidence in = transport::incidence_at(light, r.position);
+  const PunctualIncidence in = incidence_at(light, r.position);
   const float cosine = dot(in.towards, r.normal);
   const bool disc =
       light.kind == scene::PunctualLight::Kind::directional && light.angular_radius_rad > 0;
@@ -243,7 +237,7 @@ void shoot_at_lamps(const Lights& lights, int samples, const Receiver& r, Work& 
   std::vector<float> importance(count);
   float total = 0;
   for (size_t i = 0; i < count; ++i) {
-    const auto in = transport::incidence_at(lights.punctual[i], r.position);
+    const auto in = incidence_at(lights.punctual[i], r.position);
     importance[i] = luminance(in.irradiance) * std::max(0.0f, dot(in.towards, r.normal));
     total += importance[i];
   }
@@ -288,8 +282,8 @@ void resolve(const trace::RayTracer& tracer, Work& work, Rgb& irradiance, float&
 
 }  // namespace
 
-Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Elements& elements,
-                                 const transport::Lights& lights, const trace::RayTracer& tracer,
+Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
                                  const DirectParams& params, Progress& progress) {
   LUXEL_CHECK(params.samples >= 1);
   DirectLight out;
@@ -307,7 +301,7 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Ele
       const Receiver r{
           elements.position[i], elements.normal[i], elements.geometric_normal[i],
           trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
-          hash64(params.seed, i)};
+          hash64(params.seed, params.same_points ? 0 : i)};
       shoot_at_triangles(scene, lights, params.samples, r, diagonal_m, work);
       shoot_at_lamps(lights, params.samples, r, work);
       resolve(tracer, work, out.irradiance[i], out.variance[i]);
@@ -321,4 +315,4 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Ele
   return out;
 }
 
-}  // namespace luxel::gather
+}  // namespace luxel::transport

@@ -1,11 +1,11 @@
-#include "solve/gather/direct_light.h"
+#include "transport/direct_light.h"
 
 #include <gtest/gtest.h>
 
 #include "scene/procedural.h"
 #include "tests/reference_data.h"
 
-namespace luxel::gather {
+namespace luxel::transport {
 namespace {
 
 namespace shared = luxel::testing_support;
@@ -138,4 +138,4 @@ TEST(DirectLight, ManyLightsAreSampledWithoutBias) {
 }
 
 }  // namespace
-}  // namespace luxel::gather
+}  // namespace luxel::transport

@@ -111,7 +111,7 @@ Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Pr
     for (size_t k = 0; k < (*tile)->end.size(); ++k) {
       const size_t i = t * kTileElements + k;
       const uint32_t end = (*tile)->end[k];
-      const std::span<const StoredHit> own((*tile)->hits.data() + first, end - first);
+      const std::span<const StoredHit> own((*tile)->entries.data() + first, end - first);
       // Neighbours look at different rays, so that what a sparse sweep misses averages out.
       const size_t start = own.empty() ? 0 : std::min((i * 5) % sweep.stride, own.size() - 1);
       const Gathered g = gather_element(m, own, start, sweep.stride);

@@ -120,9 +120,9 @@ void sort_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
       continue;
     }
     if (hit.back_face) ++out.met_double_sided_back[element];
-    tile.hits.push_back(store(atlas, hit));
+    tile.entries.push_back(store(atlas, hit));
   }
-  tile.end.push_back(uint32_t(tile.hits.size()));
+  tile.end.push_back(uint32_t(tile.entries.size()));
 }
 
 }  // namespace
@@ -138,7 +138,7 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
                               const TraceParams& params, Progress& progress) {
   LUXEL_CHECK(params.samples >= 1 && params.samples <= 65535);
   const size_t samples = size_t(params.samples);
-  LUXEL_TRY(HitStore hit_store, HitStore::create(elements.size(), samples,
+  LUXEL_TRY(HitStore hit_store, HitStore::create(elements.size(), kTileElements, samples,
                                                  params.memory_limit_bytes, params.scratch_folder));
   TracedHits out{std::move(hit_store), params.samples, {}, {}, {}, 0};
   out.escaped.resize(elements.size());
@@ -162,7 +162,7 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
   parallel_for(elements.size(), kTileElements, [&](size_t begin, size_t end) {
     Work work(samples);
     HitTile tile;
-    tile.hits.reserve((end - begin) * samples);
+    tile.entries.reserve((end - begin) * samples);
     uint64_t untold = 0;
     for (size_t i = begin; i < end; ++i) {
       if (progress.cancelled()) return;

@@ -1,0 +1,48 @@
+// What every element sees, kept so that all passes after the first are sums without a new ray.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "solve/hemicube/look.h"
+#include "transport/row_store.h"
+
+namespace luxel::hemicube {
+
+/// A form factor in four bytes: `step` columns on from the entry before (the first from column 0),
+/// weight times the row's scale. Longer ways take entries of weight 0.
+struct RowEntry {
+  uint16_t step = 0, weight = 0;
+};
+static_assert(sizeof(RowEntry) == 4);
+
+/// The matrix of form factors, row by row. A factor errs by at most 1/131070 of the row's largest
+/// one; the sum of a row is exact.
+struct Rows {
+  transport::RowStore<RowEntry> store;
+  std::vector<float> scale;       ///< per element
+  std::vector<Rgb> emitted;       ///< per element: irradiance from emission and background
+  std::vector<uint8_t> hidden;    ///< per element: 1 inside a solid
+  std::vector<uint8_t> enclosed;  ///< per element: 1 where is_enclosed
+  LookSeconds seconds;
+};
+
+/// Appends a row to a tile; returns its scale.
+float append_row(const View& view, transport::RowTile<RowEntry>& tile);
+
+struct RowParams {
+  LookParams look;
+  uint64_t memory_limit_bytes = UINT64_MAX;  ///< the rest goes to a temporary file
+  std::filesystem::path scratch_folder = ".";
+};
+
+/// Looks from every element of `senders.receivers` at all of them. Errors: cancelled, disk full.
+Result<Rows> make_rows(const Senders& senders, const RowParams& params, Progress& progress);
+
+/// next_i = source_i + sum_j F_ij radiosity_j. All of one length. Errors: cancelled; the file
+/// cannot be read.
+Status sweep(const Rows& rows, std::span<const Rgb> source, std::span<const Rgb> radiosity,
+             std::span<Rgb> next, Progress& progress);
+
+}  // namespace luxel::hemicube

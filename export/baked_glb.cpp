@@ -100,9 +100,10 @@ Result<std::vector<std::byte>> write_baked(const scene::Scene& scene, const atla
   return finish_scene(glb, scene, std::move(roots));
 }
 
-Result<std::vector<std::byte>> write_scene(const scene::Scene& scene) {
+Result<std::vector<std::byte>> write_scene(const scene::Scene& scene, json luxel_extras) {
   Glb glb;
   MaterialBook book;
+  if (!luxel_extras.empty()) glb.json["asset"]["extras"]["luxel"] = std::move(luxel_extras);
   std::vector<size_t> index_of(scene.meshes.size(), SIZE_MAX);
   json roots = json::array();
   for (const scene::Instance& instance : scene.instances) {
@@ -129,9 +130,20 @@ Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas:
   }
 }
 
+Result<std::vector<std::byte>> vertex_lit_glb(const scene::Scene& scene, float intensity) {
+  try {
+    return write_scene(scene, {{"intensity", intensity},
+                               {"irradiance",
+                                "E [W/m^2] = intensity * COLOR_0, linear; where the "
+                                "scene had vertex colours, times those"}});
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::io, "the baked scene cannot be written as .glb: {}", e.what());
+  }
+}
+
 Result<std::vector<std::byte>> scene_glb(const scene::Scene& scene) {
   try {
-    return write_scene(scene);
+    return write_scene(scene, json::object());
   } catch (const std::exception& e) {
     return fail(ErrorCode::io, "the scene cannot be written as .glb: {}", e.what());
   }

@@ -21,6 +21,11 @@ namespace luxel::export_ {
 Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
                                          const image::Image& lightmap);
 
+/// A scene whose meshes carry light per vertex: `colors` is E / `intensity`, times the vertex
+/// colours that the materials had. Materials become unlit (KHR_materials_unlit), so that every
+/// viewer shows base colour times light.
+Result<std::vector<std::byte>> vertex_lit_glb(const scene::Scene& scene, float intensity);
+
 /// A scene without a lightmap as .glb (meshes shared by instances stay shared): how the procedural
 /// scenes are written to scenes/.
 Result<std::vector<std::byte>> scene_glb(const scene::Scene& scene);

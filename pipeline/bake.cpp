@@ -12,6 +12,7 @@
 #include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/version.h"
+#include "pipeline/vertex_lit.h"
 #include "post/dilate.h"
 #include "post/refill.h"
 #include "post/seams.h"
@@ -113,7 +114,7 @@ nlohmann::json seconds_json(const Progress& progress) {
 nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Progress& progress) {
   const nlohmann::json seconds = seconds_json(progress);
   const double tracing = seconds.value("direct light", 0.0) + seconds.value("trace rays", 0.0) +
-                         seconds.value("trace paths", 0.0);
+                         seconds.value("trace paths", 0.0) + seconds.value("hemicubes", 0.0);
   return {{"version", kVersion},
           {"settings", to_json(settings)},
           {"counts",
@@ -122,6 +123,7 @@ nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Prog
             {"rays", bake.light.rays},
             {"charts", bake.atlas.chart_count},
             {"sweeps", bake.light.sweeps},
+            {"elements", bake.light.elements},
             {"suspicious_texels", bake.light.suspicious_texels}}},
           {"atlas",
            {{"resolution", bake.atlas.resolution},
@@ -153,6 +155,16 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
   return bake;
 }
 
+namespace {
+
+Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& bake) {
+  if (!settings.vertex_colors) return export_::baked_glb(bake.scene, bake.atlas, bake.lightmap);
+  const VertexLit lit = vertex_lit(bake.scene, *bake.light.field);
+  return export_::vertex_lit_glb(lit.scene, lit.intensity);
+}
+
+}  // namespace
+
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(check(settings));
   OutputFolder folder(settings.output);
@@ -162,8 +174,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   std::vector<OutputFile> files;
   LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(result.lightmap));
   files.push_back({settings.output / "lightmap.exr", std::move(exr)});
-  LUXEL_TRY(std::vector<std::byte> glb,
-            export_::baked_glb(result.scene, result.atlas, result.lightmap));
+  LUXEL_TRY(std::vector<std::byte> glb, glb_of(settings, result));
   files.push_back({settings.output / "baked.glb", std::move(glb)});
   files.push_back({settings.output / "preview.png", image::encode_png(result.preview)});
   LUXEL_TRY_STATUS(not_cancelled(progress));

@@ -7,11 +7,13 @@
 
 #include "pipeline/solvers.h"
 #include "scene/validate.h"
+#include "solve/hemicube/hemicube.h"
 
 namespace luxel::pipeline {
 namespace {
 
 constexpr int kMaxSamples = 65535;
+constexpr int64_t kMaxElements = 1 << 26;
 /// Half the angle under which the sun is seen from the earth.
 constexpr float kSunAngularRadius = 0.00465f;
 
@@ -43,11 +45,41 @@ Status check_range(const char* option, int value, int low, int high) {
   return fail(ErrorCode::bad_setting, "{} {} is outside {} to {}", option, value, low, high);
 }
 
+/// What a hemicube of this size would hold before anything is seen.
+std::string hemicube_memory(int resolution) {
+  const double gib = double(hemicube::bytes_of_hemicube(resolution, 1)) / double(1u << 30);
+  return gib < 0.1 ? std::string() : fmt::format("; it would take {:.1f} GiB for its pixels", gib);
+}
+
 const char* name_of(atlas::UvMode mode) {
   return mode == atlas::UvMode::keep ? "keep" : mode == atlas::UvMode::unwrap ? "unwrap" : "auto";
 }
 
 }  // namespace
+
+Status check(const HemicubeSettings& s) {
+  if (s.elements != "vertex" && s.elements != "triangle")
+    return fail(ErrorCode::bad_setting, "--elements {} is neither vertex nor triangle", s.elements);
+  if (s.resolution < 2 || s.resolution > hemicube::kMaxResolution)
+    return fail(ErrorCode::bad_setting, "--hemicube {} is outside 2 to {} pixels{}", s.resolution,
+                hemicube::kMaxResolution, hemicube_memory(std::max(s.resolution, 0)));
+  if (s.resolution % 2 != 0)
+    return fail(ErrorCode::bad_setting,
+                "--hemicube {} is odd, and its sides are half as high as wide; give an even number",
+                s.resolution);
+  if (!std::isfinite(s.element_size_m) || s.element_size_m < 0)
+    return fail(ErrorCode::bad_setting, "--element-size {} is not a length; give metres > 0",
+                s.element_size_m);
+  if (s.max_elements < 0 || s.max_elements > kMaxElements)
+    return fail(ErrorCode::bad_setting, "--max-elements {} is outside 1 to {}", s.max_elements,
+                kMaxElements);
+  if (!(s.max_error >= 0) || s.max_error > 1e6)
+    return fail(ErrorCode::bad_setting,
+                "--max-error {} is not an error; give a part of the light, as 0.02, or 0 for no "
+                "refinement",
+                s.max_error);
+  return {};
+}
 
 Status check(const BakeSettings& s) {
   if (!find_solver(s.solver))
@@ -60,7 +92,12 @@ Status check(const BakeSettings& s) {
   if (!std::isfinite(s.texels_per_metre) || s.texels_per_metre < 0)
     return fail(ErrorCode::bad_setting, "--texels-per-metre {} is not a density; give a number > 0",
                 s.texels_per_metre);
-  return {};
+  if (s.vertex_colors && s.solver != "hemicube")
+    return fail(ErrorCode::bad_setting,
+                "--vertex-colors needs light per vertex, which --solver {} does not compute; use "
+                "--solver hemicube",
+                s.solver);
+  return check(s.hemicube);
 }
 
 nlohmann::json to_json(const BakeSettings& s) {
@@ -75,6 +112,14 @@ nlohmann::json to_json(const BakeSettings& s) {
                       {"seed", s.seed},
                       {"threads", s.threads}};
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
+  if (s.solver == "hemicube")
+    json["hemicube"] = {{"elements", s.hemicube.elements},
+                        {"resolution", s.hemicube.resolution},
+                        {"element_size_m", s.hemicube.element_size_m},
+                        {"max_elements", s.hemicube.max_elements},
+                        {"max_error", s.hemicube.max_error},
+                        {"smooth", s.hemicube.smooth},
+                        {"vertex_colors", s.vertex_colors}};
   if (const auto& b = s.outside.background) json["background"] = {b->x, b->y, b->z};
   if (const auto& sun = s.outside.sun)
     json["sun"] = {sun->azimuth_deg, sun->elevation_deg, sun->lux};

@@ -28,6 +28,16 @@ struct OutsideLight {
   std::optional<Sun> sun;
 };
 
+/// What only the hemicube solver reads.
+struct HemicubeSettings {
+  std::string elements = "vertex";  ///< or "triangle"
+  int resolution = 64;              ///< pixels along an edge of the hemicube's top, even
+  double element_size_m = 0;        ///< legs of the first triangles; 0: by max_elements
+  int64_t max_elements = 0;         ///< 0: 20,000, or more when the scene has many itself
+  double max_error = 0.02;          ///< cut where interpolation errs by more; 0: nowhere
+  bool smooth = false;              ///< triangle: interpolate between middles
+};
+
 struct BakeSettings {
   std::filesystem::path scene;
   std::filesystem::path output;  ///< a folder; made when missing
@@ -42,11 +52,15 @@ struct BakeSettings {
   uint64_t seed = 1;
   int threads = 0;  ///< 0: all cores
   OutsideLight outside;
+  HemicubeSettings hemicube;
+  bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
 };
 
 /// Checks every number against its range. Errors (bad_setting) name the option, the value, and what
 /// works.
 Status check(const BakeSettings& settings);
+
+Status check(const HemicubeSettings& settings);
 
 nlohmann::json to_json(const BakeSettings& settings);
 

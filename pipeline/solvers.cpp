@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "base/parallel.h"
 #include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
 #include "reference/path_tracer.h"
 #include "solve/gather/gather.h"
+#include "solve/hemicube/hemicube.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -89,9 +91,67 @@ Result<TexelLight> solve_reference(const SolveInput& in, const BakeSettings& set
   return texel_light(std::move(result));
 }
 
-constexpr std::array kSolvers{Solver{"gather", solve_gather}, Solver{"reference", solve_reference}};
+/// Its elements are few, and their light is stretched over their triangles: shadows get more rays.
+constexpr int kShadowRaysPerSample = 4;
+
+/// Whether the field has no light of its own at a texel.
+bool is_hidden_at(const hemicube::Solution& s, const scene::SurfacePoint& p) {
+  const hemicube::Place place = hemicube::locate(s.field.mesh, p);
+  if (s.field.receivers.kind == hemicube::ElementKind::triangle)
+    return s.enclosed[s.field.receivers.leaf_of_node[place.node]];
+  const auto& v = s.field.mesh.nodes[place.node].vertex;
+  return s.enclosed[v[0]] && s.enclosed[v[1]] && s.enclosed[v[2]];
+}
+
+TexelLight texel_light_of(hemicube::Solution&& solution, const atlas::TexelMap& map) {
+  TexelLight out;
+  out.irradiance.resize(map.texels.size()), out.hidden.resize(map.texels.size());
+  parallel_for(map.texels.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      out.irradiance[i] = hemicube::irradiance_at(solution.field, map.texels[i].sample);
+      out.hidden[i] = is_hidden_at(solution, map.texels[i].sample);
+    }
+  });
+  out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
+  out.rays = solution.rays, out.sweeps = solution.sweeps;
+  out.relative_error = solution.relative_error;
+  out.scratch_bytes = solution.row_bytes_in_file;
+  out.elements = solution.field.receivers.size();
+  out.field = std::move(solution.field);
+  return out;
+}
+
+Result<TexelLight> solve_hemicube(const SolveInput& in, const BakeSettings& settings,
+                                  Progress& progress) {
+  const uint64_t pixels = hemicube::bytes_of_hemicube(settings.hemicube.resolution, thread_count());
+  LUXEL_TRY(const uint64_t memory, memory_to_spare(in, settings, pixels + kMinHitBytes));
+  hemicube::HemicubeParams params = hemicube_params(settings);
+  params.row_memory_bytes = memory - pixels;
+  params.scratch_folder = nearest_folder(settings.output);
+  LUXEL_TRY(hemicube::Solution solution,
+            hemicube::solve(in.scene, in.lights, in.tracer, params, progress));
+  return texel_light_of(std::move(solution), in.map);
+}
+
+constexpr std::array kSolvers{Solver{"gather", solve_gather}, Solver{"hemicube", solve_hemicube},
+                              Solver{"reference", solve_reference}};
 
 }  // namespace
+
+hemicube::HemicubeParams hemicube_params(const BakeSettings& settings) {
+  hemicube::HemicubeParams params;
+  params.elements = settings.hemicube.elements == "triangle" ? hemicube::ElementKind::triangle
+                                                             : hemicube::ElementKind::vertex;
+  params.resolution = settings.hemicube.resolution;
+  params.element_size_m = float(settings.hemicube.element_size_m);
+  params.max_elements = size_t(settings.hemicube.max_elements);
+  params.max_error = float(settings.hemicube.max_error);
+  params.smooth = settings.hemicube.smooth;
+  params.direct_samples = std::min(kShadowRaysPerSample * settings.direct_samples, 65535);
+  params.bounces = settings.bounces;
+  params.seed = settings.seed;
+  return params;
+}
 
 std::span<const Solver> solvers() { return kSolvers; }
 

@@ -1,6 +1,7 @@
 // The table of solvers: the only place that names one by string.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "pipeline/settings.h"
+#include "solve/hemicube/hemicube.h"
 #include "trace/ray_tracer.h"
 #include "transport/elements.h"
 #include "transport/lights.h"
@@ -35,6 +37,9 @@ struct TexelLight {
   std::vector<uint8_t> hidden;     ///< per texel: 1 inside a solid, where E means nothing
   uint64_t suspicious_texels = 0;  ///< more than half of the rays met backs of one-sided surfaces
   uint64_t scratch_bytes = 0;      ///< in temporary files
+  uint64_t elements = 0;           ///< of the solver's own mesh, when it has one
+  /// The solver's own answer, when it is not per texel.
+  std::optional<hemicube::Field> field;
 };
 
 using SolveFunction = Result<TexelLight> (*)(const SolveInput&, const BakeSettings&, Progress&);
@@ -43,6 +48,9 @@ struct Solver {
   std::string_view name;
   SolveFunction solve;
 };
+
+/// What a bake's settings ask of the hemicube solver. Shadow rays are four times direct_samples.
+hemicube::HemicubeParams hemicube_params(const BakeSettings& settings);
 
 /// All of them; the first is the default.
 std::span<const Solver> solvers();

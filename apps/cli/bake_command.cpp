@@ -2,6 +2,7 @@
 
 #include "apps/cli/cli.h"
 #include "pipeline/bake.h"
+#include "pipeline/solvers.h"
 
 namespace luxel::cli {
 namespace {
@@ -69,7 +70,7 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_option("SCENE", s.scene, "glTF, OBJ, FBX, ... file")->required();
   bake->add_option("-o,--output", s.output, "Folder for the results; made when missing")
       ->required();
-  bake->add_option("--solver", s.solver, "How light is computed: gather, or reference")
+  bake->add_option("--solver", s.solver, "How light is computed: " + pipeline::solver_names())
       ->capture_default_str();
   auto* resolution =
       bake->add_option("--resolution", s.resolution, "Side of the lightmap in texels")
@@ -88,6 +89,22 @@ void register_bake(CLI::App& app, Action& action) {
       ->capture_default_str();
   bake->add_option("--bounces", options->bounces, "Reflections to count, or inf")
       ->capture_default_str();
+  pipeline::HemicubeSettings& h = s.hemicube;
+  bake->add_option("--elements", h.elements, "hemicube: light per vertex or per triangle")
+      ->capture_default_str();
+  bake->add_option("--hemicube", h.resolution, "hemicube: pixels along an edge of its top")
+      ->capture_default_str();
+  bake->add_option("--element-size", h.element_size_m,
+                   "hemicube: size of the first triangles in metres (default: by --max-elements)");
+  bake->add_option(
+      "--max-elements", h.max_elements,
+      "hemicube: vertices or triangles at most (default: 20000, more for large scenes)");
+  bake->add_option("--max-error", h.max_error,
+                   "hemicube: cut triangles over which the light is off by more; 0 cuts none")
+      ->capture_default_str();
+  bake->add_flag("--smooth", h.smooth, "hemicube: interpolate light that is per triangle");
+  bake->add_flag("--vertex-colors", s.vertex_colors,
+                 "hemicube: baked.glb gets light per vertex in COLOR_0 instead of the lightmap");
   bake->add_option("--max-memory", options->max_memory,
                    "Memory to stay under, as 900M or 1.5G (default: most of what is free)");
   bake->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();

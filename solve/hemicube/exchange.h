@@ -1,6 +1,7 @@
 // Light between elements: direct light once, then passes over the rows.
 #pragma once
 
+#include "solve/hemicube/projection.h"
 #include "solve/hemicube/refill.h"
 #include "solve/hemicube/rows.h"
 #include "transport/lights.h"
@@ -16,6 +17,19 @@ struct Emission {
 };
 Emission choose_emission(const transport::Lights& lights);
 
+/// Elements that were looked from together.
+struct Block {
+  /// Per row, the element: for light per vertex its vertex, per triangle its node, whatever the
+  /// mesh was cut into since.
+  std::vector<uint32_t> key;
+  Rows rows;
+  std::vector<Rgb> source;  ///< per row: E without any reflection
+};
+
+/// The number of the element with a key; kNone when its triangle was cut since.
+uint32_t element_of(const Receivers& receivers, uint32_t key);
+uint32_t key_of(const Receivers& receivers, uint32_t element);
+
 struct ExchangeParams {
   int bounces = -1;         ///< passes; < 0: until the light to come is below `tolerance`
   float tolerance = 1e-4f;  ///< root mean square over the elements, relative to the mean
@@ -26,11 +40,13 @@ struct Exchanged {
   int sweeps = 0;
 };
 
-/// E = E_0 + F rho E by Jacobi iteration: pass n gathers what pass n - 1 reflected [Rodriguez06,
-/// General Radiosity Algorithm]; elements inside solids take their neighbours' light after each.
-/// `direct` has one value per element, without what the rows hold. Errors: cancelled, disk.
-Result<Exchanged> exchange(const Receivers& receivers, const Rows& rows, const RefillPlan& plan,
-                           std::span<const Rgb> direct, const ExchangeParams& params,
+/// E = E_0 + F B, B being what the senders send of rho E, by Jacobi iteration: pass n gathers what
+/// pass n - 1 reflected [Rodriguez06, General Radiosity Algorithm]; elements inside solids take
+/// their neighbours' light after each. Starts at `start` when it is not empty and all bounces are
+/// wanted, else at E_0. Errors: cancelled, disk.
+Result<Exchanged> exchange(const Receivers& receivers, std::span<const Block> blocks,
+                           const Projection& projection, const RefillPlan& plan,
+                           std::span<const Rgb> start, const ExchangeParams& params,
                            Progress& progress);
 
 std::vector<Rgb> radiosity(const transport::Elements& elements, std::span<const Rgb> irradiance);

@@ -1,12 +1,11 @@
 #include "solve/hemicube/hemicube.h"
 
 #include <cmath>
+#include <numeric>
 
 #include "base/check.h"
 #include "solve/hemicube/exchange.h"
 #include "solve/hemicube/refine.h"
-#include "solve/hemicube/weld.h"
-#include "transport/direct_light.h"
 
 namespace luxel::hemicube {
 namespace {
@@ -82,41 +81,29 @@ Result<FirstMesh> first_mesh(const scene::Scene& scene, const HemicubeParams& pa
   return out;
 }
 
-Result<Solution> solve_first(const scene::Scene& scene, const Emission& emission,
-                             const trace::RayTracer& tracer, Mesh mesh,
-                             const HemicubeParams& params, Progress& progress) {
-  Solution s;
-  s.field.mesh = std::move(mesh);
-  s.field.receivers = make_receivers(scene, s.field.mesh, params.elements);
-  const transport::Elements& elements = s.field.receivers.elements;
-  LUXEL_TRY(const transport::DirectLight direct,
-            transport::direct_light(scene, elements, emission.exact, tracer,
-                                    {params.direct_samples, params.seed, true}, progress));
-  const Senders senders{scene, tracer, s.field.mesh, s.field.receivers, emission.by_pixels};
-  LUXEL_TRY(
-      Rows rows,
-      make_rows(senders, {{params.resolution}, params.row_memory_bytes, params.scratch_folder},
-                progress));
-  const RefillPlan plan = plan_refill(s.field.receivers.neighbours, rows.enclosed);
-  LUXEL_TRY(Exchanged exchanged, exchange(s.field.receivers, rows, plan, direct.irradiance,
+/// Looks from all elements of the first mesh and lets them exchange light.
+Status solve_first(const Refinement& in, const HemicubeParams& params, Progress& progress) {
+  Solution& s = in.solution;
+  std::vector<uint32_t> all(in.sending.size());
+  std::iota(all.begin(), all.end(), 0u);
+  LUXEL_TRY(Block block, make_block(in, in.sending, all, params, progress));
+  s.hidden = block.rows.hidden, s.enclosed = block.rows.enclosed;
+  in.blocks.push_back(std::move(block));
+  const RefillPlan plan = plan_refill(in.sending.neighbours, s.enclosed);
+  const Projection projection = project(in.sending_mesh, in.sending, in.sending_mesh, in.sending);
+  LUXEL_TRY(Exchanged exchanged, exchange(in.sending, in.blocks, projection, plan, {},
                                           {params.bounces, params.tolerance}, progress));
-  s.field.irradiance = std::move(exchanged.irradiance);
-  s.hidden = std::move(rows.hidden), s.enclosed = std::move(rows.enclosed);
-  s.sending_elements = elements.size();
+  s.field = {in.sending_mesh, in.sending, std::move(exchanged.irradiance)};
   s.sweeps = exchanged.sweeps;
-  s.rays =
-      direct.rays + elements.size() * 3 * size_t(params.resolution) * size_t(params.resolution);
-  s.row_bytes_in_file = rows.store.bytes_in_file();
-  s.row_bytes = rows.store.bytes_in_memory() + s.row_bytes_in_file;
-  s.seconds = rows.seconds;
-  return s;
+  s.sending_elements = in.sending.size();
+  return {};
 }
 
 }  // namespace
 
 uint64_t bytes_of_hemicube(int resolution, int threads) {
   // A pixel has a direction and two weights while it is made; each thread holds a batch of rays.
-  const uint64_t pixels = 3 * uint64_t(resolution) * uint64_t(resolution);
+  const uint64_t pixels = pixels_of(resolution);
   return pixels * 40 + uint64_t(threads) * std::min<uint64_t>(pixels, 16384) * 64;
 }
 
@@ -127,10 +114,16 @@ Result<Solution> solve(const scene::Scene& scene, const transport::Lights& light
               params.resolution % 2 == 0);
   LUXEL_TRY(FirstMesh first, first_mesh(scene, params, progress));
   const Emission emission = choose_emission(lights);
-  LUXEL_TRY(Solution s,
-            solve_first(scene, emission, tracer, std::move(first.mesh), params, progress));
-  if (params.max_error > 0)
-    LUXEL_TRY_STATUS(refine({s, emission, scene, tracer}, params, first.max_elements, progress));
+  const Receivers sending = make_receivers(scene, first.mesh, params.elements);
+  Solution s;
+  std::vector<Block> blocks;
+  const Refinement work{scene, tracer, emission, first.mesh, sending, s, blocks};
+  LUXEL_TRY_STATUS(solve_first(work, params, progress));
+  if (params.max_error > 0) LUXEL_TRY_STATUS(refine(work, params, first.max_elements, progress));
+  for (const Block& block : blocks) {
+    s.row_bytes_in_file += block.rows.store.bytes_in_file();
+    s.row_bytes += block.rows.store.bytes_in_memory() + block.rows.store.bytes_in_file();
+  }
   s.relative_error = relative_interpolation_error(s.field);
   if (params.smooth && params.elements == ElementKind::triangle) {
     s.field = smoothed(scene, s.field, s.enclosed);

@@ -35,7 +35,8 @@ TEST(Hemicube, FurnaceIsExactAtEveryElement) {
       for (const Rgb& irradiance : s.field.irradiance)
         worst = std::max(worst, std::abs(irradiance.x / expected - 1));
       EXPECT_LT(worst, 0.01f) << rho << " " << int(kind);
-      std::printf("rho %g kind %d elements %zu worst %g sweeps %d\n", double(rho), int(kind), s.field.irradiance.size(), double(worst), s.sweeps);
+      std::printf("rho %g kind %d elements %zu worst %g sweeps %d\n", double(rho), int(kind),
+                  s.field.irradiance.size(), double(worst), s.sweeps);
     }
 }
 
@@ -45,7 +46,12 @@ TEST(Hemicube, Cornell) {
   params.max_elements = 10000;
   const auto t = std::chrono::steady_clock::now();
   const Solution s = solved(box, params);
-  std::printf("elements %zu sending %zu triangles %zu rays %zu sweeps %d bytes %zu err %g vis %g sum %g wall %g\n", s.field.irradiance.size(), s.sending_elements, s.field.mesh.triangle_count, size_t(s.rays), s.sweeps, size_t(s.row_bytes), s.relative_error, s.seconds.visibility, s.seconds.summation, std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count());
+  std::printf(
+      "elements %zu sending %zu triangles %zu rays %zu sweeps %d bytes %zu err %g vis %g sum %g "
+      "wall %g\n",
+      s.field.irradiance.size(), s.sending_elements, s.field.mesh.triangle_count, size_t(s.rays),
+      s.sweeps, size_t(s.row_bytes), s.relative_error, s.seconds.visibility, s.seconds.summation,
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count());
 }
 
 }  // namespace

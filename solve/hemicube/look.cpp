@@ -209,10 +209,10 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
   return sum;
 }
 
-std::vector<Viewpoint> viewpoints(const transport::Elements& elements, size_t first, size_t end) {
+std::vector<Viewpoint> viewpoints(const transport::Elements& elements) {
   std::vector<Viewpoint> out;
-  out.reserve(end - first);
-  for (size_t i = first; i < end; ++i)
+  out.reserve(elements.size());
+  for (size_t i = 0; i < elements.size(); ++i)
     out.push_back({elements.position[i], elements.normal[i], elements.geometric_normal[i]});
   return out;
 }

@@ -50,6 +50,11 @@ struct LookSeconds {
   double summation = 0;   ///< everything else
 };
 
+/// Pixels of a hemicube: its top and four half sides.
+inline uint64_t pixels_of(int resolution) {
+  return 3 * uint64_t(resolution) * uint64_t(resolution);
+}
+
 struct LookParams {
   int resolution = 64;  ///< pixels along an edge of the hemicube's top, even
 };
@@ -64,6 +69,6 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
                          const std::function<Status(size_t, const View&)>& done,
                          Progress& progress);
 
-std::vector<Viewpoint> viewpoints(const transport::Elements& elements, size_t first, size_t end);
+std::vector<Viewpoint> viewpoints(const transport::Elements& elements);
 
 }  // namespace luxel::hemicube

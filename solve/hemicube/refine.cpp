@@ -115,43 +115,6 @@ std::vector<uint32_t> worst_first(const Field& field, float max_error, double sh
   return nodes;
 }
 
-/// Irradiance at elements that the mesh did not have before, gathered from the first ones.
-struct Gathering {
-  const Refinement& in;
-  const HemicubeParams& params;
-  const Senders& senders;
-  const std::vector<Rgb>& sent;  ///< radiosity of the senders' elements
-
-  Status fill(const Receivers& receivers, std::span<const uint32_t> wanted, Solution& out,
-              Progress& progress) const {
-    transport::Elements some;
-    for (const uint32_t i : wanted) {
-      some.position.push_back(receivers.elements.position[i]);
-      some.normal.push_back(receivers.elements.normal[i]);
-      some.geometric_normal.push_back(receivers.elements.geometric_normal[i]);
-      some.reflectance.push_back(receivers.elements.reflectance[i]);
-    }
-    LUXEL_TRY(const transport::DirectLight direct,
-              transport::direct_light(in.scene, some, in.emission.exact, in.tracer,
-                                      {params.direct_samples, params.seed, true}, progress));
-    progress.begin("hemicubes", wanted.size());
-    const auto gather = [&](size_t k, const View& view) -> Status {
-      Rgb e = direct.irradiance[k] + view.emitted;
-      for (size_t j = 0; params.bounces != 0 && j < view.element.size(); ++j)
-        e += sent[view.element[j]] * view.share[j];
-      out.field.irradiance[wanted[k]] = e;
-      out.hidden[wanted[k]] = is_hidden(view), out.enclosed[wanted[k]] = is_enclosed(view);
-      return {};
-    };
-    LUXEL_TRY(const LookSeconds seconds, look(senders, viewpoints(some, 0, some.size()),
-                                              {params.resolution}, gather, progress));
-    out.seconds.visibility += seconds.visibility, out.seconds.summation += seconds.summation;
-    out.rays +=
-        direct.rays + some.size() * 3 * size_t(params.resolution) * size_t(params.resolution);
-    return {};
-  }
-};
-
 /// Moves what is known of elements to the numbers they have in a finer mesh; returns the new ones.
 std::vector<uint32_t> carry_over(const Receivers& before, const Receivers& now, Solution& s) {
   std::vector<Rgb> irradiance(now.size());
@@ -199,37 +162,98 @@ double relative_interpolation_error(const Field& field) {
   return mean > 0 && area > 0 ? std::sqrt(sum / area) / mean : 0;
 }
 
+Result<Block> make_block(const Refinement& in, const Receivers& receivers,
+                         std::span<const uint32_t> elements, const HemicubeParams& params,
+                         Progress& progress) {
+  transport::Elements some;
+  std::vector<uint32_t> key;
+  for (const uint32_t i : elements) {
+    some.position.push_back(receivers.elements.position[i]);
+    some.normal.push_back(receivers.elements.normal[i]);
+    some.geometric_normal.push_back(receivers.elements.geometric_normal[i]);
+    some.reflectance.push_back(receivers.elements.reflectance[i]);
+    key.push_back(key_of(receivers, i));
+  }
+  LUXEL_TRY(transport::DirectLight direct,
+            transport::direct_light(in.scene, some, in.emission.exact, in.tracer,
+                                    {params.direct_samples, params.seed, true}, progress));
+  uint64_t used = 0;
+  for (const Block& block : in.blocks) used += block.rows.store.bytes_in_memory();
+  const uint64_t left = params.row_memory_bytes - std::min(params.row_memory_bytes, used);
+  const Senders senders{in.scene, in.tracer, in.sending_mesh, in.sending, in.emission.by_pixels};
+  LUXEL_TRY(Rows rows, make_rows(senders, viewpoints(some),
+                                 {{params.resolution}, left, params.scratch_folder}, progress));
+  for (size_t k = 0; k < key.size(); ++k) direct.irradiance[k] += rows.emitted[k];
+  in.solution.rays += direct.rays + pixels_of(params.resolution) * key.size();
+  in.solution.seconds.visibility += rows.seconds.visibility;
+  in.solution.seconds.summation += rows.seconds.summation;
+  return Block{std::move(key), std::move(rows), std::move(direct.irradiance)};
+}
+
+namespace {
+
+/// Cuts the worst triangles until there are about `goal` elements. False when there is nothing to
+/// cut.
+bool cut_worst(Field& field, const HemicubeParams& params, size_t goal, double shortest_m,
+               Bisector& bisector) {
+  const size_t before = field.mesh.nodes.size();
+  for (const uint32_t node : worst_first(field, params.max_error, shortest_m, bisector)) {
+    const size_t elements = params.elements == ElementKind::vertex ? field.mesh.vertices.size()
+                                                                   : field.mesh.triangle_count;
+    // A cut may need others before it: leave room for them.
+    if (elements + 8 >= goal) break;
+    bisector.cut(node);
+  }
+  return field.mesh.nodes.size() > before;
+}
+
+/// Light for the new elements, from what the senders sent before.
+Status light_new_elements(const Refinement& in, const HemicubeParams& params,
+                          std::span<const uint32_t> elements, std::span<const Rgb> sent,
+                          Progress& progress) {
+  Solution& s = in.solution;
+  LUXEL_TRY(Block block, make_block(in, s.field.receivers, elements, params, progress));
+  std::vector<Rgb> gathered = block.source;
+  if (params.bounces != 0)
+    LUXEL_TRY_STATUS(sweep(block.rows, block.source, sent, gathered, progress));
+  for (size_t k = 0; k < elements.size(); ++k) {
+    s.field.irradiance[elements[k]] = gathered[k];
+    s.hidden[elements[k]] = block.rows.hidden[k], s.enclosed[elements[k]] = block.rows.enclosed[k];
+  }
+  in.blocks.push_back(std::move(block));
+  refill(plan_refill(s.field.receivers.neighbours, s.enclosed), s.field.irradiance);
+  return {};
+}
+
+}  // namespace
+
 Status refine(const Refinement& in, const HemicubeParams& params, size_t max_elements,
               Progress& progress) {
   Solution& s = in.solution;
-  const Mesh sending_mesh = s.field.mesh;
-  const Receivers sending = s.field.receivers;
-  const std::vector<Rgb> sent = radiosity(sending.elements, s.field.irradiance);
-  const Senders senders{in.scene, in.tracer, sending_mesh, sending, in.emission.by_pixels};
-  const Gathering gathering{in, params, senders, sent};
+  const std::vector<Rgb> first_sent = radiosity(in.sending.elements, s.field.irradiance);
   Bisector bisector(s.field.mesh);
   const double shortest_m =
-      kSmallestPart * mean_longest_edge_m(s.field.mesh, sending.leaves, bisector);
+      kSmallestPart * mean_longest_edge_m(s.field.mesh, in.sending.leaves, bisector);
   for (int round = 0; round < kMaxRounds; ++round) {
     const size_t now = s.field.receivers.size();
     if (now >= max_elements) break;
-    const size_t goal =
-        std::min(max_elements, now + std::max<size_t>(64, size_t(kGrowth * double(now))));
-    const size_t before = s.field.mesh.nodes.size();
-    for (const uint32_t node : worst_first(s.field, params.max_error, shortest_m, bisector)) {
-      const size_t elements = params.elements == ElementKind::vertex ? s.field.mesh.vertices.size()
-                                                                     : s.field.mesh.triangle_count;
-      // A cut may need others before it: leave room for them.
-      if (elements + 8 >= goal) break;
-      bisector.cut(node);
-    }
-    if (s.field.mesh.nodes.size() == before) break;
+    const size_t more = std::max<size_t>(64, size_t(kGrowth * double(now)));
+    const size_t goal = std::min(max_elements, now + more);
+    if (!cut_worst(s.field, params, goal, shortest_m, bisector)) break;
     const Receivers old = std::move(s.field.receivers);
     s.field.receivers = make_receivers(in.scene, s.field.mesh, params.elements);
     const std::vector<uint32_t> unknown = carry_over(old, s.field.receivers, s);
-    LUXEL_TRY_STATUS(gathering.fill(s.field.receivers, unknown, s, progress));
-    refill(plan_refill(s.field.receivers.neighbours, s.enclosed), s.field.irradiance);
+    LUXEL_TRY_STATUS(light_new_elements(in, params, unknown, first_sent, progress));
   }
+  if (in.blocks.size() == 1) return {};
+  const Projection projection =
+      project(in.sending_mesh, in.sending, s.field.mesh, s.field.receivers);
+  const RefillPlan plan = plan_refill(s.field.receivers.neighbours, s.enclosed);
+  LUXEL_TRY(Exchanged exchanged,
+            exchange(s.field.receivers, in.blocks, projection, plan, s.field.irradiance,
+                     {params.bounces, params.tolerance}, progress));
+  s.field.irradiance = std::move(exchanged.irradiance);
+  s.sweeps += exchanged.sweeps;
   return {};
 }
 

@@ -16,17 +16,26 @@ std::vector<float> interpolation_errors(const Field& field);
 /// Root mean square of these over the area, over the mean irradiance.
 double relative_interpolation_error(const Field& field);
 
+/// What a refinement works on.
 struct Refinement {
-  Solution& solution;  ///< in: solved; out: with more elements
-  const Emission& emission;
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
+  const Emission& emission;
+  const Mesh& sending_mesh;  ///< the mesh that `blocks` were made on; it stays what is looked at
+  const Receivers& sending;
+  Solution& solution;          ///< in: solved; out: with more elements
+  std::vector<Block>& blocks;  ///< gets one more per round
 };
 
 /// Cuts triangles of the solution's field until interpolation errs by no more than params.max_error
-/// or there are max_elements. New elements look at the elements that the solution had before and
-/// gather their radiosity; they send none themselves. Errors: cancelled.
+/// or there are max_elements, then lets all elements exchange light once more. New elements look at
+/// the senders, and from then on the senders send on their behalf. Errors: cancelled, disk full.
 Status refine(const Refinement& in, const HemicubeParams& params, size_t max_elements,
               Progress& progress);
+
+/// Looks from some of the elements and gathers their direct light.
+Result<Block> make_block(const Refinement& in, const Receivers& receivers,
+                         std::span<const uint32_t> elements, const HemicubeParams& params,
+                         Progress& progress);
 
 }  // namespace luxel::hemicube

@@ -46,9 +46,9 @@ float append_row(const View& view, transport::RowTile<RowEntry>& tile) {
   return weights > 0 ? float(sum / double(weights)) : 0.0f;
 }
 
-Result<Rows> make_rows(const Senders& senders, const RowParams& params, Progress& progress) {
-  const transport::Elements& elements = senders.receivers.elements;
-  const size_t count = elements.size();
+Result<Rows> make_rows(const Senders& senders, std::span<const Viewpoint> from,
+                       const RowParams& params, Progress& progress) {
+  const size_t count = from.size();
   LUXEL_TRY(auto store, transport::RowStore<RowEntry>::create(
                             count, kTileElements, max_row_entries(senders, params.look.resolution),
                             params.memory_limit_bytes, params.scratch_folder));
@@ -65,8 +65,7 @@ Result<Rows> make_rows(const Senders& senders, const RowParams& params, Progress
     return rows.store.put(tile, std::move(open[tile]));
   };
   progress.begin("hemicubes", count);
-  LUXEL_TRY(rows.seconds,
-            look(senders, viewpoints(elements, 0, count), params.look, keep, progress));
+  LUXEL_TRY(rows.seconds, look(senders, from, params.look, keep, progress));
   return rows;
 }
 

@@ -17,14 +17,14 @@ struct RowEntry {
 };
 static_assert(sizeof(RowEntry) == 4);
 
-/// The matrix of form factors, row by row. A factor errs by at most 1/131070 of the row's largest
-/// one; the sum of a row is exact.
+/// A matrix of form factors, a row per viewpoint and a column per sender. A factor errs by at most
+/// 1/131070 of the row's largest one; the sum of a row is exact.
 struct Rows {
   transport::RowStore<RowEntry> store;
-  std::vector<float> scale;       ///< per element
-  std::vector<Rgb> emitted;       ///< per element: irradiance from emission and background
-  std::vector<uint8_t> hidden;    ///< per element: 1 inside a solid
-  std::vector<uint8_t> enclosed;  ///< per element: 1 where is_enclosed
+  std::vector<float> scale;       ///< per row
+  std::vector<Rgb> emitted;       ///< per row: irradiance from emission and background
+  std::vector<uint8_t> hidden;    ///< per row: 1 inside a solid
+  std::vector<uint8_t> enclosed;  ///< per row: 1 where is_enclosed
   LookSeconds seconds;
 };
 
@@ -37,11 +37,12 @@ struct RowParams {
   std::filesystem::path scratch_folder = ".";
 };
 
-/// Looks from every element of `senders.receivers` at all of them. Errors: cancelled, disk full.
-Result<Rows> make_rows(const Senders& senders, const RowParams& params, Progress& progress);
+/// Looks from every viewpoint at all senders. Errors: cancelled, disk full.
+Result<Rows> make_rows(const Senders& senders, std::span<const Viewpoint> from,
+                       const RowParams& params, Progress& progress);
 
-/// next_i = source_i + sum_j F_ij radiosity_j. All of one length. Errors: cancelled; the file
-/// cannot be read.
+/// next_i = source_i + sum_j F_ij radiosity_j; radiosity is per sender, the others per row. Errors:
+/// cancelled; the file cannot be read.
 Status sweep(const Rows& rows, std::span<const Rgb> source, std::span<const Rgb> radiosity,
              std::span<Rgb> next, Progress& progress);
 

@@ -11,6 +11,7 @@
 #include "base/vec_double.h"
 #include "scene/procedural.h"
 #include "scene/shapes.h"
+#include "transport/rectangle_factor.h"
 
 namespace luxel::bench {
 namespace {
@@ -23,15 +24,8 @@ constexpr Rgb gray(double v) { return {float(v), float(v), float(v)}; }
 /// Radiance that makes self-emitted radiosity e.
 constexpr Rgb exitance(double e) { return gray(e / kPiDouble); }
 
-using Contains = std::function<bool(const scene::Scene&, const scene::SurfacePoint&)>;
-
-bool everywhere(const scene::Scene&, const scene::SurfacePoint&) { return true; }
-
-Contains of_material(uint32_t material) {
-  return [material](const scene::Scene& scene, const scene::SurfacePoint& p) {
-    return scene.meshes[scene.instances[p.instance].mesh].triangle_material[p.triangle] == material;
-  };
-}
+using scene::everywhere, scene::of_material;
+using Contains = scene::Chosen;
 
 ExactPart part(std::string name, Contains contains, double irradiance, bool pointwise = true) {
   return {std::move(name), std::move(contains), [irradiance](Vec3) { return irradiance; },
@@ -249,22 +243,13 @@ ExactCase tetrahedron() {
   return c;
 }
 
-/// F of the rectangle [x0, x1] x [z0, z1] at `height` over a point at the origin that looks up
-/// (Howell B-3, four corners).
-double rectangle_factor(double x0, double x1, double z0, double z1, double height) {
-  const auto corner = [&](double x, double z) {
-    const double a = x / height, b = z / height;
-    const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
-    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * kPiDouble);
-  };
-  return corner(x1, z1) - corner(x0, z1) - corner(x1, z0) + corner(x0, z0);
-}
-
 // Section 9: emission e = 1 - rho F makes B = 1 everywhere, so E = F. Constant on each of 24 x 24
 // cells, at its mean: at distance 1 that changes E by less than 1e-5.
 ExactCase manufactured() {
   constexpr int kCells = 24;
-  const auto factor = [](double x, double z) { return rectangle_factor(-x, 1 - x, -z, 1 - z, 1); };
+  const auto factor = [](double x, double z) {
+    return transport::rectangle_factor(-x, 1 - x, -z, 1 - z, 1);
+  };
   ExactCase c{"manufactured solution", "9", {}, 256, {}, 2e-5};
   std::array<scene::Mesh, 2> plates;
   for (int j = 0; j < kCells; ++j)
@@ -296,7 +281,8 @@ ExactCase penumbra() {
   };
   c.parts = {{"receiver", receiver, [](Vec3 p) {
                 const double x = double(p.x), z = double(p.z);
-                return rectangle_factor(std::clamp(0.8 - x, 0.0, 1.0) - x, 1 - x, -z, 1 - z, 2);
+                return transport::rectangle_factor(std::clamp(0.8 - x, 0.0, 1.0) - x, 1 - x, -z,
+                                                   1 - z, 2);
               }}};
   return c;
 }

@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/surface_points.h"
 
 namespace luxel::bench {
 
 /// A part of a scene's surfaces on which E is known.
 struct ExactPart {
   std::string name;
-  std::function<bool(const scene::Scene&, const scene::SurfacePoint&)> contains;
+  scene::Chosen contains;
   /// E [W/m^2] of every channel at a place of the part; where `pointwise` is false, only the mean
   /// over the part is right.
   std::function<double(Vec3 position)> irradiance;

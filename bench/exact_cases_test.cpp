@@ -1,5 +1,6 @@
 #include "bench/exact_cases.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,6 +53,66 @@ TEST(ExactCases, TheCubeKeepsTheMeanLaw) {
   const double sum = cube.parts[0].irradiance({}) + cube.parts[1].irradiance({}) +
                      4 * cube.parts[2].irradiance({});
   EXPECT_NEAR(sum / 6, 1.0 / 6 / 0.5, 3e-5);
+}
+
+// Section 1: e, rho and B of the table.
+TEST(ExactCases, TheFurnacesAreThoseOfTheReference) {
+  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
+  const auto cases = exact_cases("");
+  const auto rows = shared::markdown_rows("reference/exact-solutions.md", "Furnace", "rho");
+  ASSERT_EQ(rows.size(), 2u);
+  for (const auto& row : rows) {
+    const ExactCase& c = case_named(cases, "furnace, rho " + row[0] + ", e " + row[1]);
+    EXPECT_NEAR(c.parts[0].irradiance({}), std::stod(row[2]), 1e-12);
+  }
+}
+
+// Section 2: "lx" holds the indirect part; 10 000 lm over 96 m^2 come directly.
+TEST(ExactCases, TheRoomsWithALampAreThoseOfTheReference) {
+  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
+  const auto cases = exact_cases("");
+  const auto rows = shared::markdown_rows("reference/exact-solutions.md", "Mean law", "rho");
+  ASSERT_EQ(rows.size(), 1u);
+  for (const auto& [rho, column] : {std::pair{"0.3", 3}, {"0.9", 6}}) {
+    const ExactCase& c = case_named(cases, std::string("lamp, rho ") + rho);
+    EXPECT_NEAR(c.parts[0].irradiance({}) - 10000.0 / 96, std::stod(rows[0][size_t(column)]), 1e-6);
+  }
+}
+
+// Sections 4 and 5 print B = e + rho E with as many digits as here.
+TEST(ExactCases, ThePlatesAndConcentricSpheresAreThoseOfTheReference) {
+  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
+  const std::string text = shared::shared_text("reference/exact-solutions.md");
+  const auto cases = exact_cases("");
+  const auto e = [&](const char* name, size_t part) {
+    return case_named(cases, name).parts[part].irradiance({});
+  };
+  const auto expect_in_text = [&](const std::string& numbers) {
+    EXPECT_NE(text.find(numbers), text.npos) << numbers;
+  };
+  expect_in_text(fmt::format("e = (1, 0.25): B = ({:.3f}, {:.2f})", 1 + 0.5 * e("plates", 0),
+                             0.25 + 0.8 * e("plates", 1)));
+  expect_in_text(fmt::format("e = (1, 0): B = ({:.12f}, {:.12f})",
+                             1 + 0.3 * e("the inner shines", 0), 0.7 * e("the inner shines", 1)));
+  expect_in_text(fmt::format("e = (0, 1): B = ({:.12f}, {:.12f})", 0.3 * e("the outer shines", 0),
+                             1 + 0.7 * e("the outer shines", 1)));
+}
+
+// Section 3: B of the zones; whole facets make up the areas to 1e-4.
+TEST(ExactCases, TheZonesOfTheSphereAreThoseOfTheReference) {
+  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
+  const std::string text = shared::shared_text("reference/exact-solutions.md");
+  const auto cases = exact_cases("");
+  const ExactCase& c = case_named(cases, "sphere in three zones");
+  const size_t at = text.find("e 1, 0, 0: B = ");
+  ASSERT_NE(at, text.npos);
+  std::istringstream numbers(text.substr(at + 15));
+  for (const auto& [e, rho] : {std::pair{1.0, 0.8}, {0.0, 0.5}, {0.0, 0.2}}) {
+    double b = 0;
+    char comma = 0;
+    numbers >> b >> comma;
+    EXPECT_NEAR(e + rho * c.parts[0].irradiance({}), b, 2e-4);
+  }
 }
 
 TEST(ExactCases, WithoutTheReferenceOnlyTheCubeIsMissing) {

@@ -204,7 +204,7 @@ double limit_of(double a, double b, double c) { return c - (c - b) * (c - b) / (
 
 // Section 6: rho = 0.5, the floor has e = 1. Means over the walls, to which the table of exact
 // Galerkin solutions with 4, 8 and 16 elements to a side tends. `rows` is that table.
-ExactCase cube(const std::vector<TextRow>& rows) {
+Result<ExactCase> cube(const std::vector<TextRow>& rows) {
   ExactCase c{"cube, one wall shines", "6", scene::furnace_box(gray(0.5), {}), 128, {}, 1e-4};
   scene::add_material(c.scene, "lamp", gray(0.5), exitance(1));
   const Box3 box = scene::world_bounds(c.scene);
@@ -215,9 +215,17 @@ ExactCase cube(const std::vector<TextRow>& rows) {
     return !floor(s, p) && !ceiling(s, p);
   };
   std::array<double, 3> limit{};
-  for (size_t k = 0; k < 3; ++k)
-    limit[k] =
-        limit_of(std::stod(rows[2][k + 1]), std::stod(rows[3][k + 1]), std::stod(rows[4][k + 1]));
+  for (size_t k = 0; k < 3; ++k) {
+    std::array<double, 3> of_size{};
+    for (size_t size = 0; size < 3; ++size) {
+      const TextRow& row = rows[2 + size];
+      if (row.size() < 4)
+        return fail(ErrorCode::bad_input, "exact-solutions.md, section 6: row '{}' is too short",
+                    row[0]);
+      LUXEL_TRY(of_size[size], parse_number(row[k + 1]));
+    }
+    limit[k] = limit_of(of_size[0], of_size[1], of_size[2]);
+  }
   c.parts = {part("the wall that shines", floor, (limit[0] - 1) / 0.5, false),
              part("opposite", ceiling, limit[1] / 0.5, false),
              part("sides", side, limit[2] / 0.5, false)};
@@ -289,7 +297,7 @@ ExactCase penumbra() {
 
 }  // namespace
 
-std::vector<ExactCase> exact_cases(std::string_view exact_solutions_md) {
+Result<std::vector<ExactCase>> exact_cases(std::string_view exact_solutions_md) {
   std::vector<ExactCase> cases;
   cases.push_back(furnace(0.5, 1));
   cases.push_back(furnace(0.9, 0.3));
@@ -302,7 +310,10 @@ std::vector<ExactCase> exact_cases(std::string_view exact_solutions_md) {
   cases.push_back(concentric_spheres(true));
   cases.push_back(concentric_spheres(false));
   const auto rows = markdown_rows(exact_solutions_md, "6 Cube", "n");
-  if (rows.size() >= 5) cases.push_back(cube(rows));
+  if (rows.size() >= 5) {
+    LUXEL_TRY(ExactCase shining, cube(rows));
+    cases.push_back(std::move(shining));
+  }
   cases.push_back(tetrahedron());
   cases.push_back(manufactured());
   cases.push_back(penumbra());

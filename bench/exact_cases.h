@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/result.h"
 #include "scene/surface_points.h"
 
 namespace luxel::bench {
@@ -31,8 +32,9 @@ struct ExactCase {
   double slack = 0;
 };
 
-/// `exact_solutions_md` is the text of that page; without it the cube, whose numbers are not in
-/// closed form, is left out.
-std::vector<ExactCase> exact_cases(std::string_view exact_solutions_md);
+/// `exact_solutions_md` is the text of that page; without the table of its section 6 the cube,
+/// whose numbers are not in closed form, is left out. Errors: cells of that table that are no
+/// numbers.
+Result<std::vector<ExactCase>> exact_cases(std::string_view exact_solutions_md);
 
 }  // namespace luxel::bench

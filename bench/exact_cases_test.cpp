@@ -24,7 +24,7 @@ const ExactCase& case_named(const std::vector<ExactCase>& cases, const std::stri
 TEST(ExactCases, ThePenumbraIsThatOfTheReference) {
   LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
   const std::string text = shared::shared_text("reference/exact-solutions.md");
-  const auto cases = exact_cases(text);
+  const auto cases = *exact_cases(text);
   const ExactPart& receiver = case_named(cases, "penumbra").parts.front();
   int checked = 0;
   std::string rest = text.substr(text.find("## 10"));
@@ -47,7 +47,7 @@ TEST(ExactCases, ThePenumbraIsThatOfTheReference) {
 
 TEST(ExactCases, TheCubeKeepsTheMeanLaw) {
   LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
-  const auto cases = exact_cases(shared::shared_text("reference/exact-solutions.md"));
+  const auto cases = *exact_cases(shared::shared_text("reference/exact-solutions.md"));
   const ExactCase& cube = case_named(cases, "cube");
   // Mean of E over six walls is mean(e) / (1 - rho); extrapolation leaves 1e-5.
   const double sum = cube.parts[0].irradiance({}) + cube.parts[1].irradiance({}) +
@@ -58,7 +58,7 @@ TEST(ExactCases, TheCubeKeepsTheMeanLaw) {
 // Section 1: e, rho and B of the table.
 TEST(ExactCases, TheFurnacesAreThoseOfTheReference) {
   LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
-  const auto cases = exact_cases("");
+  const auto cases = *exact_cases("");
   const auto rows = shared::markdown_rows("reference/exact-solutions.md", "Furnace", "rho");
   ASSERT_EQ(rows.size(), 2u);
   for (const auto& row : rows) {
@@ -70,7 +70,7 @@ TEST(ExactCases, TheFurnacesAreThoseOfTheReference) {
 // Section 2: "lx" holds the indirect part; 10 000 lm over 96 m^2 come directly.
 TEST(ExactCases, TheRoomsWithALampAreThoseOfTheReference) {
   LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
-  const auto cases = exact_cases("");
+  const auto cases = *exact_cases("");
   const auto rows = shared::markdown_rows("reference/exact-solutions.md", "Mean law", "rho");
   ASSERT_EQ(rows.size(), 1u);
   for (const auto& [rho, column] : {std::pair{"0.3", 3}, {"0.9", 6}}) {
@@ -83,7 +83,7 @@ TEST(ExactCases, TheRoomsWithALampAreThoseOfTheReference) {
 TEST(ExactCases, ThePlatesAndConcentricSpheresAreThoseOfTheReference) {
   LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
   const std::string text = shared::shared_text("reference/exact-solutions.md");
-  const auto cases = exact_cases("");
+  const auto cases = *exact_cases("");
   const auto e = [&](const char* name, size_t part) {
     return case_named(cases, name).parts[part].irradiance({});
   };
@@ -102,7 +102,7 @@ TEST(ExactCases, ThePlatesAndConcentricSpheresAreThoseOfTheReference) {
 TEST(ExactCases, TheZonesOfTheSphereAreThoseOfTheReference) {
   LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
   const std::string text = shared::shared_text("reference/exact-solutions.md");
-  const auto cases = exact_cases("");
+  const auto cases = *exact_cases("");
   const ExactCase& c = case_named(cases, "sphere in three zones");
   const size_t at = text.find("e 1, 0, 0: B = ");
   ASSERT_NE(at, text.npos);
@@ -116,10 +116,21 @@ TEST(ExactCases, TheZonesOfTheSphereAreThoseOfTheReference) {
 }
 
 TEST(ExactCases, WithoutTheReferenceOnlyTheCubeIsMissing) {
-  const auto cases = exact_cases("");
+  const auto cases = *exact_cases("");
   EXPECT_TRUE(std::none_of(cases.begin(), cases.end(),
                            [](const ExactCase& c) { return c.name.find("cube") == 0; }));
   EXPECT_GE(cases.size(), 13u);
+}
+
+TEST(ExactCases, ABrokenTableIsASentence) {
+  const std::string head = "## 6 Cube\n| n | a | b | c |\n|---|---|---|---|\n";
+  const std::string good = "| 1 | 1 | 1 | 1 |\n| 2 | 1 | 1 | 1 |\n| 4 | 1 | 1 | 1 |\n";
+  const auto no_number = exact_cases(head + good + "| 8 | 1 | x | 1 |\n| 16 | 1 | 1 | 1 |\n");
+  ASSERT_FALSE(no_number);
+  EXPECT_EQ(no_number.error().message, "'x' is not a number");
+  const auto too_short = exact_cases(head + good + "| 8 | 1 | 1 |\n| 16 | 1 | 1 | 1 |\n");
+  ASSERT_FALSE(too_short);
+  EXPECT_NE(too_short.error().message.find("row '8' is too short"), std::string::npos);
 }
 
 }  // namespace

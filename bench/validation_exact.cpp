@@ -47,7 +47,8 @@ Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Pr
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::vector<std::vector<std::string>> rows;
   section.json = nlohmann::json::array();
-  for (const ExactCase& c : exact_cases(text))
+  LUXEL_TRY(const std::vector<ExactCase> cases, exact_cases(text));
+  for (const ExactCase& c : cases)
     for (const pipeline::Solver& solver : pipeline::solvers())
       LUXEL_TRY_STATUS(add_case(c, solver.name, rows, section.json, progress));
   section.markdown = fmt::format(

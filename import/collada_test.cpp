@@ -227,12 +227,23 @@ TEST(Collada, AListThatIsShorterThanItsReaderThinksIsAnError) {
       {"count=\"4\" stride=\"3\"", "count=\"1000000000\" stride=\"3\""},
       {"count=\"4\" stride=\"3\"", "count=\"4\" stride=\"4\""},
       {"count=\"4\" stride=\"3\"", "count=\"-1\" stride=\"3\""},
-      {"count=\"4\" stride=\"3\"", "count=\"4\" offset=\"1\" stride=\"3\""}};
+      {"count=\"4\" stride=\"3\"", "count=\"4\" offset=\"1\" stride=\"3\""},
+      {"<param name=\"Y\"", "<param name=\"W\" type=\"float\"/><param name=\"Y\""}};
   for (const auto& [from, to] : damages) {
     std::string text = document(kCentimetresZUp, kSquare, "");
     const auto imported = import_text("a.dae", text.replace(text.find(from), strlen(from), to));
     ASSERT_FALSE(imported) << to;
     EXPECT_THAT(imported.error().message, HasSubstr("past the float_array 'pa'")) << to;
+  }
+}
+
+TEST(Collada, AttributesMayStandBehindAnyBlanks) {
+  for (const char* blanks : {"\tcount = ", "\n  count="}) {
+    std::string text = document(kCentimetresZUp, kSquare, draw("floor", "", "paint"));
+    const size_t at = text.find(" count=\"12\"");
+    ASSERT_NE(at, text.npos);
+    const auto imported = import_text("a.dae", text.replace(at, 7, blanks));
+    EXPECT_TRUE(imported) << imported.error().message;
   }
 }
 

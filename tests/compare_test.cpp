@@ -175,6 +175,36 @@ TEST(Compare, BadSettings) {
   }
 }
 
+TEST(Compare, AnExposureHasNoMeaningForDisplayValues) {
+  const ScratchFolder s;
+  const auto a = s.write("a.png", png(102));
+  const CommandResult r = compare(a, a, "--exposure 2");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("--exposure 2 has no meaning for display values"));
+  EXPECT_EQ(r.out, "");
+}
+
+// What has no alpha is covered everywhere; of a picture with holes the rest is compared.
+TEST(Compare, GreyAndRgbPicturesCoverEverything) {
+  const ScratchFolder s;
+  const auto file = [&](const std::string& name, int channels, uint8_t alpha) {
+    image::Image8 image{16, 8, channels, std::vector<uint8_t>(size_t(16 * 8 * channels), 100)};
+    if (channels % 2 == 0)
+      for (size_t pixel = 0; pixel < 16 * 8; ++pixel)
+        image.data[pixel * size_t(channels) + size_t(channels) - 1] = pixel < 28 ? alpha : 255;
+    return s.write(name, text_of(image::encode_png(image)));
+  };
+  const auto grey = file("grey.png", 1, 0), rgb = file("rgb.png", 3, 0);
+  for (const auto& other : {file("whole.png", 4, 255), rgb, file("grey-alpha.png", 2, 255)}) {
+    const auto json = nlohmann::json::parse(compare(grey, other, "--json").out);
+    EXPECT_EQ(json["texels"], 128) << other;
+    EXPECT_EQ(json["rmse"], 0) << other;
+  }
+  const auto holes = file("holes.png", 4, 254);
+  EXPECT_EQ(nlohmann::json::parse(compare(rgb, holes, "--json").out)["texels"], 100);
+  EXPECT_EQ(nlohmann::json::parse(compare(holes, grey, "--json").out)["texels"], 100);
+}
+
 TEST(CompareReport, SaysWhatABlackReferenceLeavesUndefined) {
   const ScratchFolder s;
   const auto a = s.write("a.exr", exr(grey(1))), black = s.write("black.exr", exr(grey(0)));

@@ -103,12 +103,12 @@ TEST(Factors, OtherMethodsComeCloseAndSmoothingKeepsTheLaws) {
   const ScratchFolder s;
   const std::string cube = s.write("cube.obj", kCube).string(), csv = (s.path / "f.csv").string();
   // A ray meets the wall or not: a standard error of sqrt(0.2 * 0.8 / samples), here four of them.
-  // What 64 hemicubes of 32 pixels see scatters with their places, F(point) by less than 0.08, and
-  // by a pixel's share of the edges.
+  // 64 hemicubes stand in strata of an eighth of a side, over which F(point) of the wall beside
+  // falls by 0.06: a deviation of 0.06 / sqrt(12) each, 0.002 in their mean, here three of it.
   const auto four_errors = [](double samples) { return 4 * std::sqrt(0.16 / samples); };
   for (const auto& [method, tolerance] : std::initializer_list<std::pair<std::string, double>>{
            {"rays --samples 65536", four_errors(65536)},
-           {"hemicube --samples 64 --hemicube 32", 0.002},
+           {"hemicube --samples 64 --hemicube 32", 0.006},
            {"rays --samples 16384 --smooth", four_errors(16384)}}) {
     const CommandResult r = luxel("factors " + cube + " -o " + csv + " --quiet --method " + method);
     ASSERT_EQ(r.code, 0) << r.err;

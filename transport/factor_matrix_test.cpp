@@ -101,8 +101,9 @@ TEST(FactorMatrixSlow, TheCornellBoxIsTheSameByRays) {
   const FactorMatrix rays = by_rays(scene, 1u << 16), cubes = by_rays(scene, 64, 64);
   // A ray meets a surface or not, and stratified rays scatter less than independent ones: 3 of
   // their standard errors, and 2e-5 for what the exact side may be off where F is next to nothing.
-  // A hemicube sees F(point), whose scatter over a surface is at most that of a coin,
-  // sqrt(f (1 - f)), from place to place: 64 places and 3 standard errors of a third of that.
+  // A hemicube sees F(point), in [0, 1] with the mean f: over a surface it scatters by less than a
+  // coin, sqrt(f (1 - f)), and the mean of 64 places in strata by much less than an eighth of that.
+  // 2e-4 is a pixel's share, for what is hardly seen.
   for (size_t i = 0; i < exact.size(); ++i)
     for (size_t j = 0; j < exact.size(); ++j) {
       const double f = exact.at(i, j);

@@ -58,6 +58,27 @@ Result<TemporaryFile> write_temporary(const std::filesystem::path& path,
   return temporary;
 }
 
+/// A second name for the file under `path`, if there is one, so that it can be brought back; where
+/// a file system knows no second names the file gives up its first. Returns 0 or an errno.
+int keep_old(const std::filesystem::path& path, TemporaryFile& old) {
+  std::string name = path.string() + ".replaced-" + std::to_string(::getpid());
+  if (::link(path.c_str(), name.c_str()) != 0) {
+    if (errno == ENOENT) return 0;
+    if (::rename(path.c_str(), name.c_str()) != 0) return errno;
+  }
+  old.name = std::move(name);
+  return 0;
+}
+
+/// Undoes a rename onto `path`. Of two names of one file rename() leaves both: the name of `old` is
+/// not cleared, so that it is removed in any case.
+void bring_back(const std::filesystem::path& path, const TemporaryFile& old) {
+  if (old.name.empty())
+    ::unlink(path.c_str());
+  else
+    ::rename(old.name.c_str(), path.c_str());
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
@@ -81,9 +102,16 @@ Status write_files_atomically(std::span<const OutputFile> files) {
     LUXEL_TRY(TemporaryFile temporary, write_temporary(file.path, file.bytes));
     temporaries.push_back(std::move(temporary));
   }
+  std::vector<TemporaryFile> old(files.size());
   for (size_t i = 0; i < files.size(); ++i) {
-    if (::rename(temporaries[i].name.c_str(), files[i].path.c_str()) != 0)
-      return write_error(files[i].path, errno);
+    int error = keep_old(files[i].path, old[i]);
+    if (error == 0 && ::rename(temporaries[i].name.c_str(), files[i].path.c_str()) != 0)
+      error = errno;
+    if (error != 0) {
+      if (!old[i].name.empty()) bring_back(files[i].path, old[i]);
+      for (size_t k = 0; k < i; ++k) bring_back(files[k].path, old[k]);
+      return write_error(files[i].path, error);
+    }
     temporaries[i].name.clear();
   }
   return {};

@@ -21,7 +21,8 @@ struct OutputFile {
 };
 
 /// Writes files that appear whole under their names, all of them or none: temporary neighbours are
-/// written and flushed to the disk, and only when the last one is safe are they renamed.
+/// written and flushed to the disk, and only when the last one is safe are they renamed. When a
+/// rename fails, what the ones before it replaced is brought back.
 /// Errors: unwritable folder (io), full disk (out_of_disk); the temporaries are removed.
 Status write_files_atomically(std::span<const OutputFile> files);
 Status write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);

@@ -113,6 +113,26 @@ TEST_F(AtomicFiles, AFolderInTheWayOfTheLastLeavesNone) {
   EXPECT_EQ(names(), (std::set<std::string>{"b"})) << "all of them or none";
 }
 
+// A file that something is mounted on can be written beside, but nothing can be renamed onto it.
+TEST_F(AtomicFiles, ARenameThatFailsBringsBackWhatWasReplaced) {
+  ASSERT_TRUE(write_file_atomically(folder_ / "a", bytes_of("old a")));
+  ASSERT_TRUE(write_file_atomically(folder_ / "c", bytes_of("old c")));
+  const fs::path busy = folder_ / "c";
+  if (::mount(busy.c_str(), busy.c_str(), nullptr, MS_BIND, nullptr) != 0)
+    GTEST_SKIP() << "cannot mount a file: " << std::strerror(errno);
+  const std::vector<OutputFile> files{{folder_ / "a", bytes_of("new a")},
+                                      {folder_ / "b", bytes_of("new b")},
+                                      {busy, bytes_of("new c")},
+                                      {folder_ / "d", bytes_of("new d")}};
+  const Status status = write_files_atomically(files);
+  EXPECT_EQ(::umount(busy.c_str()), 0);
+  ASSERT_FALSE(status);
+  EXPECT_NE(status.error().message.find("/c: "), std::string::npos);
+  EXPECT_EQ(text_of(folder_ / "a"), "old a");
+  EXPECT_EQ(text_of(folder_ / "c"), "old c");
+  EXPECT_EQ(names(), (std::set<std::string>{"a", "c"}));
+}
+
 TEST_F(AtomicFiles, AnUnwritableFolderIsAnErrorAndStaysAsItWas) {
   // Not even root makes files in /proc; into other folders root may write whatever they say.
   const Status proc = write_file_atomically("/proc/luxel-file-test", bytes_of("x"));

@@ -1,7 +1,8 @@
 #include "base/text_tables.h"
 
 #include <algorithm>
-#include <sstream>
+#include <charconv>
+#include <cmath>
 
 namespace luxel {
 inline namespace base {
@@ -17,6 +18,15 @@ std::vector<std::string_view> lines_of(std::string_view text) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return lines;
+}
+
+/// What stands between the separators: one part more than there are of them.
+std::vector<std::string_view> parts_of(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (size_t end; (end = text.find(separator)) != text.npos; text.remove_prefix(end + 1))
+    parts.push_back(text.substr(0, end));
+  parts.push_back(text);
+  return parts;
 }
 
 std::string trimmed(std::string_view cell) {
@@ -87,22 +97,37 @@ std::vector<TextRow> markdown_rows(std::string_view text, std::string_view secti
   return rows;
 }
 
-std::vector<DVec3> parse_polygon(const std::string& text) {
+Result<double> parse_number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    return fail(ErrorCode::bad_input, "'{}' is not a number", text);
+  return value;
+}
+
+Result<std::vector<DVec3>> parse_polygon(std::string_view text) {
   std::vector<DVec3> corners;
-  std::istringstream in(text);
-  for (std::string part; std::getline(in, part, ';');) {
-    std::istringstream corner(part);
-    DVec3 p;
-    corner >> p.x >> p.y >> p.z;
-    corners.push_back(p);
+  for (const std::string_view part : parts_of(text, ';')) {
+    std::vector<double> p;
+    for (const std::string_view word : parts_of(part, ' '))
+      if (!word.empty()) {
+        LUXEL_TRY(const double coordinate, parse_number(word));
+        p.push_back(coordinate);
+      }
+    if (p.size() != 3)
+      return fail(ErrorCode::bad_input, "'{}' is not a corner: it needs three numbers", part);
+    corners.push_back({p[0], p[1], p[2]});
   }
   return corners;
 }
 
-std::vector<std::vector<DVec3>> parse_polygons(const std::string& text) {
+Result<std::vector<std::vector<DVec3>>> parse_polygons(std::string_view text) {
   std::vector<std::vector<DVec3>> polygons;
-  std::istringstream in(text);
-  for (std::string part; std::getline(in, part, '|');) polygons.push_back(parse_polygon(part));
+  if (text.empty()) return polygons;
+  for (const std::string_view part : parts_of(text, '|')) {
+    LUXEL_TRY(std::vector<DVec3> polygon, parse_polygon(part));
+    polygons.push_back(std::move(polygon));
+  }
   return polygons;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/result.h"
 #include "base/vec_double.h"
 
 namespace luxel {
@@ -22,10 +23,12 @@ std::vector<TextRow> csv_rows(std::string_view text);
 std::vector<TextRow> markdown_rows(std::string_view text, std::string_view section,
                                    std::string_view first_header);
 
-/// "x y z; x y z; ..."; what is no number counts as 0.
-std::vector<DVec3> parse_polygon(const std::string& text);
+/// The whole cell as a finite number. Errors: anything else in it.
+Result<double> parse_number(std::string_view text);
+/// "x y z; x y z; ...": at least one corner. Errors: a corner that is not three numbers.
+Result<std::vector<DVec3>> parse_polygon(std::string_view text);
 /// Polygons with vertical bars between them; none in an empty text.
-std::vector<std::vector<DVec3>> parse_polygons(const std::string& text);
+Result<std::vector<std::vector<DVec3>>> parse_polygons(std::string_view text);
 
 }  // namespace base
 }  // namespace luxel

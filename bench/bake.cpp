@@ -2,18 +2,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
-
 #include "atlas/atlas.h"
 #include "base/parallel.h"
 #include "bench/bench.h"
+#include "bench/prepared.h"
 #include "import/import.h"
 #include "pipeline/bake.h"
 
 namespace luxel::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Two instances of the first instance's mesh, side by side: the 139,000 triangles of the goal.
 void double_up(scene::Scene& scene) {
@@ -90,7 +87,7 @@ Result<Table> measure_atlas(const std::filesystem::path& shared, int threads) {
     Progress progress;
     const auto start = Clock::now();
     LUXEL_TRY(const atlas::Atlas atlas, atlas::make_atlas(imported.scene, params, progress));
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const double seconds = seconds_since(start);
     const atlas::TexelMap map = atlas::rasterise(imported.scene, atlas);
     const atlas::AtlasStats s = atlas::atlas_stats(imported.scene, atlas, map);
     table.rows.push_back({c.name, fmt::format("{}", atlas.corners.size()),

@@ -11,6 +11,7 @@
 #include "base/vec_double.h"
 #include "scene/procedural.h"
 #include "scene/shapes.h"
+#include "transport/rectangle_factor.h"
 
 namespace luxel::bench {
 namespace {
@@ -23,15 +24,8 @@ constexpr Rgb gray(double v) { return {float(v), float(v), float(v)}; }
 /// Radiance that makes self-emitted radiosity e.
 constexpr Rgb exitance(double e) { return gray(e / kPiDouble); }
 
-using Contains = std::function<bool(const scene::Scene&, const scene::SurfacePoint&)>;
-
-bool everywhere(const scene::Scene&, const scene::SurfacePoint&) { return true; }
-
-Contains of_material(uint32_t material) {
-  return [material](const scene::Scene& scene, const scene::SurfacePoint& p) {
-    return scene.meshes[scene.instances[p.instance].mesh].triangle_material[p.triangle] == material;
-  };
-}
+using scene::everywhere, scene::of_material;
+using Contains = scene::Chosen;
 
 ExactPart part(std::string name, Contains contains, double irradiance, bool pointwise = true) {
   return {std::move(name), std::move(contains), [irradiance](Vec3) { return irradiance; },
@@ -210,7 +204,7 @@ double limit_of(double a, double b, double c) { return c - (c - b) * (c - b) / (
 
 // Section 6: rho = 0.5, the floor has e = 1. Means over the walls, to which the table of exact
 // Galerkin solutions with 4, 8 and 16 elements to a side tends. `rows` is that table.
-ExactCase cube(const std::vector<TextRow>& rows) {
+Result<ExactCase> cube(const std::vector<TextRow>& rows) {
   ExactCase c{"cube, one wall shines", "6", scene::furnace_box(gray(0.5), {}), 128, {}, 1e-4};
   scene::add_material(c.scene, "lamp", gray(0.5), exitance(1));
   const Box3 box = scene::world_bounds(c.scene);
@@ -221,9 +215,17 @@ ExactCase cube(const std::vector<TextRow>& rows) {
     return !floor(s, p) && !ceiling(s, p);
   };
   std::array<double, 3> limit{};
-  for (size_t k = 0; k < 3; ++k)
-    limit[k] =
-        limit_of(std::stod(rows[2][k + 1]), std::stod(rows[3][k + 1]), std::stod(rows[4][k + 1]));
+  for (size_t k = 0; k < 3; ++k) {
+    std::array<double, 3> of_size{};
+    for (size_t size = 0; size < 3; ++size) {
+      const TextRow& row = rows[2 + size];
+      if (row.size() < 4)
+        return fail(ErrorCode::bad_input, "exact-solutions.md, section 6: row '{}' is too short",
+                    row[0]);
+      LUXEL_TRY(of_size[size], parse_number(row[k + 1]));
+    }
+    limit[k] = limit_of(of_size[0], of_size[1], of_size[2]);
+  }
   c.parts = {part("the wall that shines", floor, (limit[0] - 1) / 0.5, false),
              part("opposite", ceiling, limit[1] / 0.5, false),
              part("sides", side, limit[2] / 0.5, false)};
@@ -249,22 +251,13 @@ ExactCase tetrahedron() {
   return c;
 }
 
-/// F of the rectangle [x0, x1] x [z0, z1] at `height` over a point at the origin that looks up
-/// (Howell B-3, four corners).
-double rectangle_factor(double x0, double x1, double z0, double z1, double height) {
-  const auto corner = [&](double x, double z) {
-    const double a = x / height, b = z / height;
-    const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
-    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * kPiDouble);
-  };
-  return corner(x1, z1) - corner(x0, z1) - corner(x1, z0) + corner(x0, z0);
-}
-
 // Section 9: emission e = 1 - rho F makes B = 1 everywhere, so E = F. Constant on each of 24 x 24
 // cells, at its mean: at distance 1 that changes E by less than 1e-5.
 ExactCase manufactured() {
   constexpr int kCells = 24;
-  const auto factor = [](double x, double z) { return rectangle_factor(-x, 1 - x, -z, 1 - z, 1); };
+  const auto factor = [](double x, double z) {
+    return transport::rectangle_factor(-x, 1 - x, -z, 1 - z, 1);
+  };
   ExactCase c{"manufactured solution", "9", {}, 256, {}, 2e-5};
   std::array<scene::Mesh, 2> plates;
   for (int j = 0; j < kCells; ++j)
@@ -296,14 +289,15 @@ ExactCase penumbra() {
   };
   c.parts = {{"receiver", receiver, [](Vec3 p) {
                 const double x = double(p.x), z = double(p.z);
-                return rectangle_factor(std::clamp(0.8 - x, 0.0, 1.0) - x, 1 - x, -z, 1 - z, 2);
+                return transport::rectangle_factor(std::clamp(0.8 - x, 0.0, 1.0) - x, 1 - x, -z,
+                                                   1 - z, 2);
               }}};
   return c;
 }
 
 }  // namespace
 
-std::vector<ExactCase> exact_cases(std::string_view exact_solutions_md) {
+Result<std::vector<ExactCase>> exact_cases(std::string_view exact_solutions_md) {
   std::vector<ExactCase> cases;
   cases.push_back(furnace(0.5, 1));
   cases.push_back(furnace(0.9, 0.3));
@@ -316,7 +310,10 @@ std::vector<ExactCase> exact_cases(std::string_view exact_solutions_md) {
   cases.push_back(concentric_spheres(true));
   cases.push_back(concentric_spheres(false));
   const auto rows = markdown_rows(exact_solutions_md, "6 Cube", "n");
-  if (rows.size() >= 5) cases.push_back(cube(rows));
+  if (rows.size() >= 5) {
+    LUXEL_TRY(ExactCase shining, cube(rows));
+    cases.push_back(std::move(shining));
+  }
   cases.push_back(tetrahedron());
   cases.push_back(manufactured());
   cases.push_back(penumbra());

@@ -6,14 +6,15 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/scene.h"
+#include "base/result.h"
+#include "scene/surface_points.h"
 
 namespace luxel::bench {
 
 /// A part of a scene's surfaces on which E is known.
 struct ExactPart {
   std::string name;
-  std::function<bool(const scene::Scene&, const scene::SurfacePoint&)> contains;
+  scene::Chosen contains;
   /// E [W/m^2] of every channel at a place of the part; where `pointwise` is false, only the mean
   /// over the part is right.
   std::function<double(Vec3 position)> irradiance;
@@ -31,8 +32,9 @@ struct ExactCase {
   double slack = 0;
 };
 
-/// `exact_solutions_md` is the text of that page; without it the cube, whose numbers are not in
-/// closed form, is left out.
-std::vector<ExactCase> exact_cases(std::string_view exact_solutions_md);
+/// `exact_solutions_md` is the text of that page; without the table of its section 6 the cube,
+/// whose numbers are not in closed form, is left out. Errors: cells of that table that are no
+/// numbers.
+Result<std::vector<ExactCase>> exact_cases(std::string_view exact_solutions_md);
 
 }  // namespace luxel::bench

@@ -29,16 +29,28 @@ struct Row {
   double exact = 0;
 };
 
-std::vector<Row> read_rows(std::string_view csv) {
+Result<Row> read_row(const TextRow& cells) {
+  if (cells.size() < 8) return fail(ErrorCode::bad_input, "it has fewer than 8 cells");
+  Row row;
+  row.name = cells[0], row.note = cells[7], row.is_point = cells[1] == "point";
+  LUXEL_TRY(row.a, parse_polygon(cells[2]));
+  LUXEL_TRY(row.b, parse_polygon(cells[3]));
+  LUXEL_TRY(row.blockers, parse_polygons(cells[4]));
+  LUXEL_TRY(row.exact, parse_number(cells[5]));
+  if (row.is_point && row.a.size() != 2)
+    return fail(ErrorCode::bad_input, "a point needs its place and its normal");
+  if (row.is_point) row.normal = row.a[1];
+  return row;
+}
+
+Result<std::vector<Row>> read_rows(std::string_view csv, const std::filesystem::path& file) {
   std::vector<Row> rows;
   for (const TextRow& cells : csv_rows(csv)) {
-    if (cells.size() < 8) continue;
-    Row row{
-        cells[0], cells[7], cells[1] == "point", parse_polygon(cells[2]), parse_polygon(cells[3]),
-        {},       {},       std::stod(cells[5])};
-    if (row.is_point && row.a.size() == 2) row.normal = row.a[1];
-    row.blockers = parse_polygons(cells[4]);
-    rows.push_back(std::move(row));
+    Result<Row> row = read_row(cells);
+    if (!row)
+      return fail(ErrorCode::bad_input, "{}: row '{}': {}", file.string(), cells[0],
+                  row.error().message);
+    rows.push_back(std::move(*row));
   }
   return rows;
 }
@@ -147,10 +159,10 @@ Result<Table> measure_rows(const std::vector<Row>& rows, const Progress& progres
 Result<Section> validate_view_factors(const std::filesystem::path& shared, Progress& progress) {
   Section section;
   section.markdown = "## View factors against closed forms\n\n";
-  LUXEL_TRY(const std::vector<std::byte> bytes,
-            read_file(shared / "reference" / "view-factors.csv"));
-  const std::vector<Row> rows =
-      read_rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const std::filesystem::path file = shared / "reference" / "view-factors.csv";
+  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
+  LUXEL_TRY(const std::vector<Row> rows,
+            read_rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file));
   progress.begin("view factors", 0);
   LUXEL_TRY(const Table table, measure_rows(rows, progress));
   std::vector<transport::SampledParams> hemicubes, rays;

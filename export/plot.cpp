@@ -120,7 +120,11 @@ void draw_steps(const std::vector<std::array<double, 2>>& points, const Frame& f
   fmt::format_to(out, "<path class=\"a c{}\" fill=\"currentColor\" d=\"M{:.1f} {:.1f}", color,
                  points.front()[0], f.bottom);
   for (size_t i = 0; i < points.size(); ++i) {
-    const double next = i + 1 < points.size() ? points[i + 1][0] : f.right;
+    // The last step is as wide as the one before; one alone goes on to the end.
+    const bool last = i + 1 == points.size();
+    const double next = !last               ? points[i + 1][0]
+                        : points.size() > 1 ? 2 * points[i][0] - points[i - 1][0]
+                                            : f.right;
     fmt::format_to(out, "V{:.1f}H{:.1f}", points[i][1], next);
   }
   fmt::format_to(out, "V{:.1f}Z\"/>", f.bottom);

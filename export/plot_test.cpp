@@ -65,6 +65,19 @@ TEST(Plot, AnEmptyStepLiesOnTheGround) {
   EXPECT_NE(m[2], m[1]);
 }
 
+// The last of two steps is as wide as the first and does not go on to the edge of the frame.
+TEST(Plot, TheLastStepIsAsWideAsTheOneBefore) {
+  Plot plot{"", "", "", false, false, {{"", {{0, 5}, {1, 7}}, Stroke::steps}}, {}, {}};
+  plot.x_range = {{0, 10}};
+  const std::string text = svg(plot);
+  const std::regex path(" d=\"M([0-9.]+) [0-9.]+V[0-9.]+H([0-9.]+)V[0-9.]+H([0-9.]+)V");
+  std::smatch m;
+  ASSERT_TRUE(std::regex_search(text, m, path)) << text;
+  const double step = std::stod(m[2]) - std::stod(m[1]);
+  EXPECT_GT(step, 10);
+  EXPECT_NEAR(std::stod(m[3]) - std::stod(m[2]), step, 0.11);  // tenths of a pixel
+}
+
 TEST(Plot, EveryWordIsEscaped) {
   Plot plot = power_law();
   plot.title = "<script>";

@@ -36,6 +36,12 @@ struct Sums {
   }
 };
 
+/// (d / (|b| + floor))^2. Where nothing differs nothing is divided: the reference may be black.
+double relative_square(double d, double b, double floor) {
+  const double relative = d == 0 ? 0 : d / (std::abs(b) + floor);
+  return relative * relative;
+}
+
 Sums sums_of_row(const Image& a, const Image& b, const Mask& covered, int y, double floor) {
   Sums s;
   for (int x = 0; x < a.width; ++x) {
@@ -47,8 +53,7 @@ Sums sums_of_row(const Image& a, const Image& b, const Mask& covered, int y, dou
       s.b += vb, s.d += d, s.abs_d += std::abs(d), s.d2 += d * d;
       s.max_b = std::max(s.max_b, vb);
       if (std::abs(d) > s.max_abs) s.max_abs = std::abs(d), s.max_x = x, s.max_y = y;
-      // Where nothing differs nothing is divided: the reference may be black.
-      if (d != 0) s.relative2 += (d / (std::abs(vb) + floor)) * (d / (std::abs(vb) + floor));
+      s.relative2 += relative_square(d, vb, floor);
     }
   }
   return s;
@@ -135,7 +140,7 @@ Image relative_error_map(const Image& a, const Image& b, const Mask& covered, do
         double sum = 0;
         for (int c = 0; c < 3; ++c) {
           const double vb = b.at(x, y)[c], d = double(a.at(x, y)[c]) - vb;
-          if (d != 0) sum += (d / (std::abs(vb) + floor)) * (d / (std::abs(vb) + floor));
+          sum += relative_square(d, vb, floor);
         }
         *map.at(x, y) = float(std::min(std::sqrt(sum / 3), 1e30));
       }

@@ -24,11 +24,12 @@ void set_lens(const ColladaLens& lens, float unit, scene::Camera& camera) {
   camera.orthographic_height_m = lens.orthographic_height * unit;
 }
 
+/// Assimp hands no orthographic lens over from the formats that come here: those of FBX files look
+/// like perspective ones.
 void set_lens(const aiCamera& from, scene::Camera& camera) {
   camera.aspect = from.mAspect;
   const float aspect = from.mAspect > 0 ? from.mAspect : 1.0f;
   camera.fov_y_rad = 2 * std::atan(std::tan(0.5f * from.mHorizontalFOV) / aspect);
-  camera.orthographic_height_m = 2 * from.mOrthographicWidth / aspect;  // its width is half of it
 }
 
 }  // namespace

@@ -117,18 +117,7 @@ Result<Imported> import_room(const std::string& asset = kCentimetresZUp,
 }
 
 TEST(Collada, CentimetresAndZUpBecomeMetresAndYUp) {
-  const scene::Scene scene = scene_of(import_room());
-  ASSERT_EQ(scene.instances.size(), 3u);
-  EXPECT_EQ(scene.instances[0].name, "floor");
-  EXPECT_NEAR(drawn_area(scene), 3, 1e-5f) << "three squares of 100 x 100 cm";
-  const scene::SurfacePoint a{0, 0, {0, 0}};
-  expect_near(scene::world_position(scene, a), {2, 1, 0}, 1e-5f);
-  expect_near(scene::world_position(scene, {0, 0, {0, 1}}), {3, 1, -1}, 1e-5f);
-  expect_near(scene::world_position(scene, {1, 0, {0, 1}}), {1, 1.5f, -1}, 1e-5f);
-  expect_near(scene::world_position(scene, {2, 0, {0, 1}}), {1, 4, 1}, 1e-5f);
-  expect_near(scene::front_normal(scene, 0, 0), {0, 1, 0}, 1e-5f);
-  expect_near(scene::front_normal(scene, 2, 0), {0, -1, 0}, 1e-5f);
-  expect_near(scene::shading_normal(scene, a), {0, 0.8f, -0.6f}, 1e-5f);
+  expect_room_in_metres(scene_of(import_room()));
 }
 
 TEST(Collada, EveryUnitAndAxisIsTurnedIntoOurs) {
@@ -227,12 +216,23 @@ TEST(Collada, AListThatIsShorterThanItsReaderThinksIsAnError) {
       {"count=\"4\" stride=\"3\"", "count=\"1000000000\" stride=\"3\""},
       {"count=\"4\" stride=\"3\"", "count=\"4\" stride=\"4\""},
       {"count=\"4\" stride=\"3\"", "count=\"-1\" stride=\"3\""},
-      {"count=\"4\" stride=\"3\"", "count=\"4\" offset=\"1\" stride=\"3\""}};
+      {"count=\"4\" stride=\"3\"", "count=\"4\" offset=\"1\" stride=\"3\""},
+      {"<param name=\"Y\"", "<param name=\"W\" type=\"float\"/><param name=\"Y\""}};
   for (const auto& [from, to] : damages) {
     std::string text = document(kCentimetresZUp, kSquare, "");
     const auto imported = import_text("a.dae", text.replace(text.find(from), strlen(from), to));
     ASSERT_FALSE(imported) << to;
     EXPECT_THAT(imported.error().message, HasSubstr("past the float_array 'pa'")) << to;
+  }
+}
+
+TEST(Collada, AttributesMayStandBehindAnyBlanks) {
+  for (const char* blanks : {"\tcount = ", "\n  count="}) {
+    std::string text = document(kCentimetresZUp, kSquare, draw("floor", "", "paint"));
+    const size_t at = text.find(" count=\"12\"");
+    ASSERT_NE(at, text.npos);
+    const auto imported = import_text("a.dae", text.replace(at, 7, blanks));
+    EXPECT_TRUE(imported) << imported.error().message;
   }
 }
 

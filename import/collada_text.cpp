@@ -30,15 +30,21 @@ std::optional<std::string_view> next_element(std::string_view& text, std::string
   return std::nullopt;
 }
 
+constexpr std::string_view kBlanks = " \t\r\n";
+
 /// The value of an attribute of the element's own tag; empty without one.
 std::string_view attribute(std::string_view element, std::string_view name) {
   const std::string_view tag = element.substr(0, element.find('>'));
-  const size_t at = tag.find(fmt::format(" {}=", name));
-  if (at == tag.npos) return {};
-  const size_t quote = at + name.size() + 2;
-  if (quote >= tag.size()) return {};
-  const size_t end = tag.find(tag[quote], quote + 1);
-  return end == tag.npos ? std::string_view() : tag.substr(quote + 1, end - quote - 1);
+  for (size_t at = 0; (at = tag.find(name, at + 1)) != tag.npos;) {
+    if (kBlanks.find(tag[at - 1]) == kBlanks.npos) continue;
+    const size_t equals = tag.find_first_not_of(kBlanks, at + name.size());
+    if (equals == tag.npos || tag[equals] != '=') continue;
+    const size_t quote = tag.find_first_not_of(kBlanks, equals + 1);
+    if (quote == tag.npos) return {};
+    const size_t end = tag.find(tag[quote], quote + 1);
+    return end == tag.npos ? std::string_view() : tag.substr(quote + 1, end - quote - 1);
+  }
+  return {};
 }
 
 /// The number in a child element; 0 when it is missing or no number.
@@ -95,6 +101,13 @@ std::optional<uint64_t> whole_number(std::string_view element, std::string_view 
   return value;
 }
 
+uint64_t params_of(std::string_view accessor) {
+  uint64_t count = 0;
+  accessor.remove_prefix(std::min(accessor.find('>'), accessor.size()));
+  while (next_element(accessor, "param")) ++count;
+  return count;
+}
+
 }  // namespace
 
 Status check_collada(const SourceFile& source) {
@@ -113,8 +126,10 @@ Status check_collada(const SourceFile& source) {
     const auto count = whole_number(*accessor, "count", 0),
                stride = whole_number(*accessor, "stride", 1),
                offset = whole_number(*accessor, "offset", 0);
+    // Each of `count` entries begins a stride after the one before and has one number per param.
+    const uint64_t entry = std::max(params_of(*accessor), stride.value_or(0));
     if (!count || !stride || !offset || *offset > size->second ||
-        (*stride > 0 && *count > (size->second - *offset) / *stride))
+        (*count > 0 && *offset + (*count - 1) * *stride + entry > size->second))
       return fail(ErrorCode::bad_input,
                   "{}: an accessor reads past the float_array '{}', which holds {} numbers",
                   source.name, id, size->second);

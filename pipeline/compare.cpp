@@ -108,6 +108,11 @@ Result<Measured> measure(const Picture& a, const Picture& b, std::optional<doubl
   progress.begin("measure", 0);
   Measured out;
   LUXEL_TRY_STATUS(check_kinds(a, b));
+  if (exposure && !b.hdr())
+    return fail(ErrorCode::bad_setting,
+                "--exposure {} has no meaning for display values, which are compared as the files "
+                "hold them; leave it out",
+                *exposure);
   LUXEL_TRY(out.covered, image::covered_pixels(a.linear, a.name, b.linear, b.name));
   Compared& n = out.numbers;
   n.hdr = b.hdr();

@@ -63,25 +63,6 @@ TEST(Lights, TheExactCornellProbes) {
   }
 }
 
-// Section 10: an emitter [0,1]^2 at height 2, a half plane x < 0.4 at height 1, a black floor. The
-// part of the emitter beyond max(0, 0.8 - x) is seen.
-TEST(Lights, APenumbraIsThatOfTheVisiblePart) {
-  scene::Scene scene;
-  scene::add_material(scene, "black", {});
-  scene::add_material(scene, "lamp", {}, gray(1 / kPi));
-  scene::add_rectangle(scene, {0, 1, 0, 1}, 2, false, 1);
-  scene::add_rectangle(scene, {-50, 0.4f, -50, 50}, 1, false, 0);
-  Points points;
-  std::vector<double> exact;
-  for (int k = 0; k < 150; ++k) {
-    const double x = -0.3 + 0.01 * k, from = std::clamp(0.8 - x, 0.0, 1.0);
-    points.add({float(x), 0, 0.5f}, {0, 1, 0});
-    exact.push_back(rectangle_factor(from - x, 1 - x, -0.5, 0.5, 2));
-  }
-  EXPECT_NEAR(exact[70], 0.043362205218, 1e-9);  // x = 0.4 of the reference
-  expect_unbiased(solve(scene, points, {.samples = 4000, .bounces = 0}), exact);
-}
-
 // A lamp that is bright in one corner of its texture, at four times its mean.
 TEST(Lights, ATexturedLampShinesWhereItIsBright) {
   scene::Scene scene;

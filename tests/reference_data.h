@@ -39,7 +39,17 @@ inline std::vector<Vec3> parse_points(const std::string& text) {
   return points;
 }
 
-using base::parse_polygon;
+/// As base's; a broken table fails the test.
+inline std::vector<DVec3> parse_polygon(const std::string& text) {
+  const auto polygon = base::parse_polygon(text);
+  EXPECT_TRUE(polygon) << polygon.error().message;
+  return polygon.value_or(std::vector<DVec3>{});
+}
+inline std::vector<std::vector<DVec3>> parse_polygons(const std::string& text) {
+  const auto polygons = base::parse_polygons(text);
+  EXPECT_TRUE(polygons) << polygons.error().message;
+  return polygons.value_or(std::vector<std::vector<DVec3>>{});
+}
 
 /// As base's csv_rows, of a file in the shared folder.
 inline std::vector<TextRow> csv_rows(const std::string& file) {

@@ -44,7 +44,9 @@ TEST(FactorMatrix, ConvexRoomsAreClosed) {
   for (int i = 0; i < 10; ++i) {
     const FactorMatrix matrix = analytic(room_of(dice.convex_room(3 + i)));
     const FactorChecks checks = check_factors(matrix);
-    EXPECT_LT(checks.largest_row_error, 2e-5);  // corners are floats; small faces feel it
+    // Corners are floats, 6e-8 of a side: rooms close to that over the size of their smallest face.
+    EXPECT_LT(checks.largest_row_error, 2e-5);
+    // One exchange area serves both directions: two divisions and two products are rounded.
     EXPECT_LT(checks.reciprocity_error, 1e-15);
   }
 }
@@ -54,7 +56,7 @@ TEST(FactorMatrix, TheFurnaceBoxSeesItselfWhole) {
     const FactorMatrix matrix =
         analytic(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1}, tessellation));
     ASSERT_EQ(matrix.size(), 1u);
-    EXPECT_NEAR(matrix.at(0, 0), 1, 1e-7);
+    EXPECT_NEAR(matrix.at(0, 0), 1, 1e-7);  // its corners, thirds and such, are floats
   }
 }
 
@@ -71,10 +73,11 @@ TEST(FactorMatrix, ABoxInABoxHasTheFactorsOfItsAreas) {
   const FactorMatrix matrix = analytic(scene);
   ASSERT_EQ(matrix.size(), 2u);
   const double ratio = matrix.area_m2[1] / matrix.area_m2[0];
-  EXPECT_NEAR(matrix.at(1, 0), 1, 1e-4);
-  EXPECT_NEAR(matrix.at(1, 1), 0, 1e-9);
-  EXPECT_NEAR(matrix.at(0, 1), ratio, 1e-4 * ratio);
-  EXPECT_NEAR(matrix.at(0, 0), 1 - ratio, 1e-4);
+  const double tolerance = AnalyticParams{}.tolerance;  // what is asked for, past blockers
+  EXPECT_NEAR(matrix.at(1, 0), 1, tolerance);
+  EXPECT_EQ(matrix.at(1, 1), 0);  // no face of a box lies in front of another
+  EXPECT_NEAR(matrix.at(0, 1), ratio, tolerance * ratio);
+  EXPECT_NEAR(matrix.at(0, 0), 1 - ratio, tolerance);
 }
 
 TEST(FactorMatrix, HasTheSameBitsForAnyNumberOfThreads) {
@@ -96,12 +99,18 @@ TEST(FactorMatrixSlow, TheCornellBoxIsTheSameByRays) {
   const scene::Scene scene = scene::cornell_box();
   const FactorMatrix exact = analytic(scene);
   const FactorMatrix rays = by_rays(scene, 1u << 16), cubes = by_rays(scene, 64, 64);
+  // A ray meets a surface or not, and stratified rays scatter less than independent ones: 3 of
+  // their standard errors, and 2e-5 for what the exact side may be off where F is next to nothing.
+  // A hemicube sees F(point), in [0, 1] with the mean f: over a surface it scatters by less than a
+  // coin, sqrt(f (1 - f)), and the mean of 64 places in strata by much less than an eighth of that.
+  // 2e-4 is a pixel's share, for what is hardly seen.
   for (size_t i = 0; i < exact.size(); ++i)
     for (size_t j = 0; j < exact.size(); ++j) {
       const double f = exact.at(i, j);
       EXPECT_NEAR(rays.at(i, j), f, 3 * std::sqrt(f * (1 - f) / 65536) + 2e-5)
           << exact.names[i] << " -> " << exact.names[j];
-      EXPECT_NEAR(cubes.at(i, j), f, 0.03) << exact.names[i] << " -> " << exact.names[j];
+      EXPECT_NEAR(cubes.at(i, j), f, std::sqrt(f * (1 - f) / 64) + 2e-4)
+          << exact.names[i] << " -> " << exact.names[j];
     }
 }
 
@@ -135,6 +144,7 @@ TEST(SmoothFactors, RestoresBothLawsAndComesCloserToTheTruth) {
   const FactorMatrix before = matrix;
   ASSERT_TRUE(smooth_factors(matrix).has_value());
   const FactorChecks checks = check_factors(matrix);
+  // Sums of a dozen factors, to their last bits; the loop ends where they no longer change.
   EXPECT_LT(checks.largest_row_error, 1e-12);
   EXPECT_LT(checks.reciprocity_error, 1e-12);
   double error_before = 0, error_after = 0;
@@ -143,6 +153,8 @@ TEST(SmoothFactors, RestoresBothLawsAndComesCloserToTheTruth) {
     error_before += std::pow(before.factor[k] - exact.factor[k], 2);
     error_after += std::pow(matrix.factor[k] - exact.factor[k], 2);
   }
+  // A projection onto the laws leaves the error within them. Of 6 x 6 entries the laws fix 21; the
+  // smallest part of the spoiled numbers that they could undo is not known, 5 % is sure.
   EXPECT_LT(error_after, 0.95 * error_before);
 }
 
@@ -153,7 +165,7 @@ TEST(SmoothFactors, LeavesAConsistentMatrixAlone) {
   const FactorMatrix once = matrix;
   const auto change = smooth_factors(matrix);
   ASSERT_TRUE(change.has_value());
-  EXPECT_LT(*change, 1e-13);
+  EXPECT_LT(*change, 1e-13);  // the last bits of sums of a dozen factors
 }
 
 TEST(SmoothFactors, RefusesOpenScenes) {

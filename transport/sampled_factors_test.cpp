@@ -101,7 +101,7 @@ TEST(SampledFactorsSlow, MatchTheExactTableWithinTheirError) {
   LUXEL_NEEDS_SHARED("reference/view-factors.csv");
   for (const auto& row : shared::csv_rows("reference/view-factors.csv")) {
     const Polygon a = shared::parse_polygon(row[2]), b = shared::parse_polygon(row[3]);
-    const std::vector<Polygon> blockers = parse_polygons(row[4]);
+    const std::vector<Polygon> blockers = shared::parse_polygons(row[4]);
     const double exact = std::stod(row[5]);
     const auto sample = [&](const SampledParams& params) {
       return row[1] == "poly" ? sampled_form_factor(a, b, blockers, params)

@@ -19,7 +19,7 @@ TEST(VisibleFormFactor, MatchesTheExactTable) {
     const Polygon a = shared::parse_polygon(row[2]), b = shared::parse_polygon(row[3]);
     const double exact = std::stod(row[5]);
     for (const double tolerance : {1e-3, 1e-4, 1e-5}) {
-      const FormFactor factor = form_factor(a, b, parse_polygons(row[4]), tolerance);
+      const FormFactor factor = form_factor(a, b, shared::parse_polygons(row[4]), tolerance);
       // 0 is exactly 0.
       EXPECT_NEAR(factor.value, exact, tolerance * exact) << row[0];
       EXPECT_LE(factor.error, tolerance * exact) << row[0];

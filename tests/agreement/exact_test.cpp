@@ -1,0 +1,87 @@
+// Every solver of the pipeline's table against every exact solution.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/exact_measure.h"
+#include "tests/reference_data.h"
+
+namespace luxel::bench {
+namespace {
+
+namespace shared = luxel::testing_support;
+
+constexpr MeasureEffort kEffort{.rays = 256,
+                                .shadow_rays = 64,
+                                .paths = 16,
+                                .lightmap_points = 100000,
+                                .path_points = 40000,
+                                .paths_per_point = 16};
+
+/// The path tracer has 21 parts to pass. Beyond 3 standard errors lies one in 370 by chance alone:
+/// 3 would fail one seed in 18; 4 fails one in 750.
+constexpr double kStandardErrors = 4;
+
+/// What a solver without a standard error of its own may differ by, and why: relative to E, beyond
+/// the slack of the case.
+struct Tolerance {
+  std::string_view solver, scene;  ///< beginning of the case's name; the first row that fits counts
+  double mean, texel_rms;
+  std::string_view reason;
+};
+
+/// A solver without a row here fails. About twice what was measured.
+constexpr Tolerance kTolerances[] = {
+    {"gather", "integrating sphere", 0.015, 0.07,
+     "the beam's spot is 0.7 % of the wall: two of 256 rays meet it, and 20 texels carry it"},
+    {"gather", "manufactured", 0.002, 0.12, "64 shadow rays over 576 emitters of a few grays"},
+    {"gather", "penumbra", 0.002, 0.14, "64 shadow rays, and steep where E is a tenth of its mean"},
+    {"gather", "", 0.0025, 0.01, "noise of 256 rays; texels blur where two walls meet"},
+};
+
+const Tolerance* tolerance_of(std::string_view solver, std::string_view scene) {
+  for (const Tolerance& t : kTolerances)
+    if (t.solver == solver && scene.starts_with(t.scene)) return &t;
+  return nullptr;
+}
+
+TEST(SlowExact, EverySolverReachesEveryExactSolution) {
+  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
+  const auto cases = *exact_cases(shared::shared_text("reference/exact-solutions.md"));
+  ASSERT_EQ(cases.size(), 14u);
+  double z_squares = 0, judged = 0;
+  for (const ExactCase& c : cases) {
+    Progress progress;
+    const auto p = prepare(c.scene, c.resolution, progress);
+    ASSERT_TRUE(p) << p.error().message;
+    for (const pipeline::Solver& solver : pipeline::solvers()) {
+      const auto measured = measure(**p, c, solver.name, kEffort, progress);
+      ASSERT_TRUE(measured) << measured.error().message;
+      for (size_t k = 0; k < c.parts.size(); ++k) {
+        const Measured& m = (*measured)[k];
+        SCOPED_TRACE(c.name + ", " + c.parts[k].name + ", " + std::string(solver.name));
+        const double beyond_slack = std::max(0.0, std::abs(m.mean - m.exact) - c.slack * m.exact);
+        if (m.standard_error > 0) {
+          const double z = beyond_slack / m.standard_error;
+          EXPECT_LE(z, kStandardErrors) << m.mean << " instead of " << m.exact;
+          // A standard error that hides everything would pass too.
+          EXPECT_LT(m.standard_error, 0.006 * m.exact);
+          z_squares += z * z, ++judged;
+          continue;
+        }
+        const Tolerance* tolerance = tolerance_of(solver.name, c.name);
+        ASSERT_NE(tolerance, nullptr) << "say above how exact it is, and why";
+        EXPECT_LE(beyond_slack, tolerance->mean * m.exact) << tolerance->reason;
+        EXPECT_LE(m.texel_rms, tolerance->texel_rms + c.slack) << tolerance->reason;
+      }
+    }
+  }
+  // Biases just below the limit in many cases: z^2 has the mean 1 (less where there is slack) and,
+  // over the parts, a deviation of sqrt(2 / 21) = 0.31.
+  EXPECT_EQ(judged, 21);
+  EXPECT_LT(z_squares / judged, 1 + 3 * 0.31);
+}
+
+}  // namespace
+}  // namespace luxel::bench

@@ -77,8 +77,8 @@ Result<uint32_t> surface_named(const transport::Surfaces& surfaces, const char* 
 }
 
 Result<transport::Surfaces> read_surfaces(const FactorSettings& s, const scene::Scene& scene,
-                                          FactorReport& report) {
-  transport::Surfaces surfaces = transport::surfaces_of(scene);
+                                          FactorReport& report, Progress& progress) {
+  LUXEL_TRY(transport::Surfaces surfaces, transport::surfaces_of(scene, progress));
   for (const std::string& warning : surfaces.warnings)
     report.warnings.push_back(fmt::format("{}: {}", s.scene.string(), warning));
   if (surfaces.surfaces.empty())
@@ -189,7 +189,8 @@ Result<FactorReport> view_factors(const FactorSettings& settings, Progress& prog
   LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
   FactorReport report;
   report.warnings = std::move(imported.warnings);
-  LUXEL_TRY(const transport::Surfaces surfaces, read_surfaces(settings, imported.scene, report));
+  LUXEL_TRY(const transport::Surfaces surfaces,
+            read_surfaces(settings, imported.scene, report, progress));
   LUXEL_TRY(report.selection.from, surface_named(surfaces, "--from", settings.from));
   LUXEL_TRY(report.selection.to, surface_named(surfaces, "--to", settings.to));
   LUXEL_TRY(report.matrix, compute(settings, imported.scene, surfaces, report.selection, progress));

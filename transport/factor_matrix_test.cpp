@@ -29,13 +29,13 @@ scene::Scene room_of(const std::vector<Polygon>& faces) {
 
 FactorMatrix analytic(const scene::Scene& scene) {
   Progress progress;
-  return *analytic_factors(surfaces_of(scene), {}, {}, progress);
+  return *analytic_factors(*surfaces_of(scene, progress), {}, {}, progress);
 }
 
 FactorMatrix by_rays(const scene::Scene& scene, uint32_t samples, int hemicube = 0) {
   Progress progress;
   const auto tracer = trace::RayTracer::build(scene);
-  return *sampled_factors(scene, surfaces_of(scene), *tracer,
+  return *sampled_factors(scene, *surfaces_of(scene, progress), *tracer,
                           {.samples = samples, .hemicube = hemicube}, {}, progress);
 }
 
@@ -84,7 +84,7 @@ TEST(FactorMatrix, HasTheSameBitsForAnyNumberOfThreads) {
     const ThreadLimit limit(threads);
     Progress progress;
     const FactorMatrix matrix =
-        *analytic_factors(surfaces_of(scene), {.tolerance = 1e-2}, {}, progress);
+        *analytic_factors(*surfaces_of(scene, progress), {.tolerance = 1e-2}, {}, progress);
     const FactorMatrix rays = by_rays(scene, 4096);
     if (threads == 1) analytic_bits = matrix.factor, ray_bits = rays.factor;
     EXPECT_EQ(matrix.factor, analytic_bits);
@@ -107,8 +107,8 @@ TEST(FactorMatrixSlow, TheCornellBoxIsTheSameByRays) {
 
 TEST(FactorMatrix, OneRowOrOneEntryIsThatOfTheWhole) {
   const scene::Scene scene = scene::cornell_box(scene::CornellColors::pbrt, false);
-  const Surfaces surfaces = surfaces_of(scene);
   Progress progress;
+  const Surfaces surfaces = *surfaces_of(scene, progress);
   const FactorMatrix whole = *analytic_factors(surfaces, {}, {}, progress);
   const FactorMatrix row = *analytic_factors(surfaces, {}, {.from = 1}, progress);
   const FactorMatrix entry = *analytic_factors(surfaces, {}, {.from = 1, .to = 3}, progress);
@@ -119,8 +119,9 @@ TEST(FactorMatrix, OneRowOrOneEntryIsThatOfTheWhole) {
 
 TEST(FactorMatrix, CancelledWorkIsAnError) {
   Progress progress;
+  const Surfaces surfaces = *surfaces_of(scene::cornell_box(), progress);
   progress.request_cancel();
-  const auto matrix = analytic_factors(surfaces_of(scene::cornell_box()), {}, {}, progress);
+  const auto matrix = analytic_factors(surfaces, {}, {}, progress);
   ASSERT_FALSE(matrix.has_value());
   EXPECT_EQ(matrix.error().code, ErrorCode::cancelled);
 }

@@ -35,11 +35,11 @@ Result<SampledFactor> sampled_form_factor(PolygonView a, PolygonView b,
                                           std::span<const Polygon> blockers,
                                           const SampledParams& params) {
   const scene::Scene scene = scene_of_polygons(a, b, blockers);
-  const Surfaces surfaces = surfaces_of(scene);
+  Progress progress;
+  LUXEL_TRY(const Surfaces surfaces, surfaces_of(scene, progress));
   const uint32_t from = surfaces.of_instance[0], to = surfaces.of_instance[1];
   if (from == scene::kNone || to == scene::kNone) return SampledFactor{};
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
-  Progress progress;
   LUXEL_TRY(const FactorMatrix matrix,
             sampled_factors(scene, surfaces, tracer, params, {.from = from}, progress));
   return SampledFactor{matrix.at(from, to), matrix.error[from * matrix.size() + to]};
@@ -49,7 +49,8 @@ Result<SampledFactor> sampled_point_factor(DVec3 point, DVec3 normal, PolygonVie
                                            std::span<const Polygon> blockers,
                                            const SampledParams& params) {
   const scene::Scene scene = scene_of_polygons({}, b, blockers);
-  const Surfaces surfaces = surfaces_of(scene);
+  Progress progress;
+  LUXEL_TRY(const Surfaces surfaces, surfaces_of(scene, progress));
   const uint32_t to = surfaces.of_instance[0];
   if (to == scene::kNone) return SampledFactor{};
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));

@@ -58,9 +58,11 @@ Result<SampledFactor> sampled_point_factor(DVec3 point, DVec3 normal, PolygonVie
   if (params.hemicube > 0) {
     std::vector<double> sums(surfaces.surfaces.size());
     const float turn = 2 * kPi * unit_float(uint32_t(hash64(params.seed)));
-    add_hemicube_factors(surfaces, tracer, make_hemicube(params.hemicube),
-                         {to_float(point), 0, up, INFINITY}, turn, sums);
-    return SampledFactor{sums[to], 0};
+    LUXEL_TRY(const Hemicube cube, make_hemicube(params.hemicube, progress));
+    add_hemicube_factors(surfaces, tracer, cube, {to_float(point), 0, up, INFINITY}, turn, sums,
+                         progress);
+    return SampledFactor{sums[to],
+                         standard_error_of_share(sums[to], double(cube.direction.size()))};
   }
   uint32_t count = 0;
   for (uint32_t k = 0; k < params.samples; ++k) {
@@ -70,7 +72,7 @@ Result<SampledFactor> sampled_point_factor(DVec3 point, DVec3 normal, PolygonVie
     count += hit.found() && !hit.back_face && surfaces.of_instance[hit.instance] == to;
   }
   const double share = double(count) / params.samples;
-  return SampledFactor{share, std::sqrt(share * (1 - share) / params.samples)};
+  return SampledFactor{share, standard_error_of_share(share, params.samples)};
 }
 
 }  // namespace luxel::transport

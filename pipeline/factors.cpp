@@ -176,8 +176,8 @@ std::vector<size_t> chosen(uint32_t only, size_t count) {
 /// or within the sum of its estimated errors, but not closer than 1e-4.
 bool is_closed(const FactorSettings& s, const FactorReport& r) {
   const transport::SampledParams params = sampled_params(s);
-  const double rays = double(params.samples) *
-                      (params.hemicube > 0 ? 3 * std::pow(double(params.hemicube), 2) : 1);
+  const double rays =
+      double(params.samples) * (params.hemicube > 0 ? 3 * std::pow(double(params.hemicube), 2) : 1);
   for (size_t i = 0; i < r.matrix.size(); ++i) {
     const double sum = r.checks.row_sum[i];
     double doubt = 0;
@@ -213,10 +213,9 @@ uint64_t factor_table_bytes(size_t surfaces, const FactorSettings& settings) {
   const uint64_t entries = uint64_t(surfaces) * surfaces, table = sizeof(double) * entries;
   // Factors and errors stay; with them at one time either rays, the exchange areas that are
   // smoothed, or the text of the table.
-  const uint64_t sampling =
-      settings.method == "analytic"
-          ? 0
-          : transport::sampled_factor_bytes(surfaces, sampled_params(settings));
+  const uint64_t sampling = settings.method == "analytic" ? 0
+                                                          : transport::sampled_factor_bytes(
+                                                                surfaces, sampled_params(settings));
   const uint64_t smoothing = settings.smooth ? table : 0;
   const bool is_part = !settings.from.empty() || !settings.to.empty();
   const uint64_t text = settings.output.empty() || is_part ? 0 : kBytesPerNumber * entries;

@@ -45,8 +45,8 @@ struct AnalyticParams {
   uint32_t max_cells = 1u << 17;  ///< pieces of a pair of polygons after which its work ends
 };
 /// In closed form, past blockers by subdivision (visible_form_factor.h). Each pair is computed once
-/// and serves both directions. A pair of surfaces in which max_cells ended the work leaves a warning
-/// that names it and the error reached. Errors: cancelled.
+/// and serves both directions. A pair of surfaces in which max_cells ended the work leaves a
+/// warning that names it and the error reached. Errors: cancelled.
 Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticParams& params,
                                       const FactorSelection& selection, Progress& progress);
 

@@ -18,7 +18,8 @@ struct Hemicube {
   std::vector<double> delta_factor;  ///< F(point -> pixel), exact; they sum to 1
 };
 
-/// `resolution` is even and at least 2. The stage "hemicube": 4096 takes seconds. Errors: cancelled.
+/// `resolution` is even and at least 2. The stage "hemicube": 4096 takes seconds. Errors:
+/// cancelled.
 Result<Hemicube> make_hemicube(int resolution, Progress& progress);
 
 }  // namespace luxel::transport

@@ -116,10 +116,9 @@ void row_by_hemicubes(const Row& row, const Hemicube& cube, std::span<double> fa
   const double count = double(row.samples), pixels = double(cube.direction.size());
   for (size_t j = 0; j < width; ++j) {
     factor[j] = std::clamp(spread[j].mean, 0.0, 1.0);  // rounding may reach beyond
-    error[j] = row.samples == 1
-                   ? standard_error_of_share(factor[j], 1)
-                   : std::max(std::sqrt(spread[j].squares / (count * (count - 1))),
-                              standard_error_of_share(factor[j], count * pixels));
+    error[j] = row.samples == 1 ? standard_error_of_share(factor[j], 1)
+                                : std::max(std::sqrt(spread[j].squares / (count * (count - 1))),
+                                           standard_error_of_share(factor[j], count * pixels));
   }
 }
 

@@ -100,8 +100,8 @@ TEST(StandardErrorOfShare, CoversTheTruthWhereHitsAreRare) {
 TEST(SampledFactors, OneHemicubeClaimsNoCertainty) {
   const double exact = polygon_form_factor(kFloor, kCeiling);
   for (uint64_t seed = 1; seed < 20; ++seed) {
-    const auto one = sampled_form_factor(kFloor, kCeiling, {},
-                                         {.samples = 1, .hemicube = 32, .seed = seed});
+    const auto one =
+        sampled_form_factor(kFloor, kCeiling, {}, {.samples = 1, .hemicube = 32, .seed = seed});
     EXPECT_GT(one->error, 0.1);
     EXPECT_NEAR(one->value, exact, 2 * one->error);
   }

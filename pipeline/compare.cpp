@@ -1,5 +1,6 @@
 #include "pipeline/compare.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/file.h"
@@ -65,6 +66,27 @@ void warn_of_coverage(const image::Image& a, const image::Image& b, uint64_t com
 Status check_not_stopped(const Progress& progress) {
   if (!progress.cancelled()) return {};
   return fail(ErrorCode::cancelled, "the comparison was stopped by the user");
+}
+
+/// The picture as a screen shows it: its display values, or its light tone mapped, by strips, so
+/// that large pictures can be stopped.
+Result<image::Image8> shown_in_strips(const Picture& picture, float exposure,
+                                      const Progress& progress) {
+  if (!picture.hdr()) return picture.shown;
+  constexpr int kRows = 256;
+  const image::Image& light = picture.linear;
+  const size_t row = size_t(light.width) * size_t(light.channels);
+  image::Image8 out{light.width, light.height, 3, {}};
+  out.data.reserve(3 * size_t(light.width) * size_t(light.height));
+  for (int y = 0; y < light.height; y += kRows) {
+    LUXEL_TRY_STATUS(check_not_stopped(progress));
+    image::Image strip(light.width, std::min(kRows, light.height - y), light.channels);
+    std::copy_n(light.data.begin() + std::ptrdiff_t(row * size_t(y)), strip.data.size(),
+                strip.data.begin());
+    const image::Image8 shown = display::tone_map(strip, exposure);
+    out.data.insert(out.data.end(), shown.data.begin(), shown.data.end());
+  }
+  return out;
 }
 
 Result<image::Image> flip_map(const Picture& a, const Picture& b, const image::Mask& covered,
@@ -136,9 +158,8 @@ Result<Measured> measure(const Picture& a, const Picture& b, std::optional<doubl
 
   if (n.hdr) n.exposure = exposure.value_or(double(display::auto_exposure(b.linear)));
   LUXEL_TRY_STATUS(check_not_stopped(progress));
-  out.shown_a = shown_at(a, float(n.exposure));
-  LUXEL_TRY_STATUS(check_not_stopped(progress));
-  out.shown_b = shown_at(b, float(n.exposure));
+  LUXEL_TRY(out.shown_a, shown_in_strips(a, float(n.exposure), progress));
+  LUXEL_TRY(out.shown_b, shown_in_strips(b, float(n.exposure), progress));
   LUXEL_TRY_STATUS(check_not_stopped(progress));
   n.psnr_db = n.hdr ? n.difference.psnr_db : psnr_of_display(out.shown_a, out.shown_b, out.covered);
   const image::Histogram differences =

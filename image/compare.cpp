@@ -59,9 +59,11 @@ Sums sums_of_row(const Image& a, const Image& b, const Mask& covered, int y, dou
   return s;
 }
 
-Sums sums_of(const Image& a, const Image& b, const Mask& covered, double floor) {
+Sums sums_of(const Image& a, const Image& b, const Mask& covered, double floor,
+             const Progress* progress) {
   std::vector<Sums> rows(size_t(a.height));
   parallel_for(rows.size(), 16, [&](size_t begin, size_t end) {
+    if (progress && progress->cancelled()) return;
     for (size_t y = begin; y < end; ++y) rows[y] = sums_of_row(a, b, covered, int(y), floor);
   });
   Sums total;
@@ -99,17 +101,19 @@ Result<Mask> covered_pixels(const Image& a, std::string_view name_a, const Image
   return covered;
 }
 
-Difference difference(const Image& a, const Image& b, const Mask& covered) {
+Difference difference(const Image& a, const Image& b, const Mask& covered,
+                      const Progress* progress) {
   LUXEL_CHECK(a.width == b.width && a.height == b.height && a.channels >= 3 && b.channels >= 3);
   LUXEL_CHECK(covered.size() == size_t(a.width) * size_t(a.height));
   Difference out;
   // The mean of b is needed before relative errors can be summed: two passes.
-  const Sums first = sums_of(a, b, covered, 1);
+  const Sums first = sums_of(a, b, covered, 1, progress);
+  if (progress && progress->cancelled()) return out;
   LUXEL_CHECK(first.texels > 0);
   const double n = 3 * double(first.texels);
   out.texels = first.texels;
   out.mean = first.b / n;
-  const Sums s = sums_of(a, b, covered, 0.01 * std::abs(out.mean));
+  const Sums s = sums_of(a, b, covered, 0.01 * std::abs(out.mean), progress);
   out.rmse = std::sqrt(s.d2 / n);
   out.rmse_over_mean = over(out.rmse, out.mean);
   out.relative_rmse = std::sqrt(s.relative2 / n);

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/progress.h"
 #include "base/result.h"
 #include "image/image.h"
 
@@ -41,8 +42,10 @@ struct Difference {
 
 /// What is divided by the mean of a black reference is infinite, or 0 when nothing differs. Sums
 /// are taken in double, per row and then over the rows, so any number of threads gives the same
-/// bits. a, b and the mask fit each other (covered_pixels says so).
-Difference difference(const Image& a, const Image& b, const Mask& covered);
+/// bits. a, b and the mask fit each other (covered_pixels says so). When `progress` is cancelled
+/// the work ends early, with numbers of no meaning.
+Difference difference(const Image& a, const Image& b, const Mask& covered,
+                      const Progress* progress = nullptr);
 
 /// covered_pixels and difference in one step.
 Result<Difference> compare(const Image& a, std::string_view name_a, const Image& b,

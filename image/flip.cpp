@@ -115,9 +115,12 @@ float flip_of_pixel(const FilteredRow& a, const FilteredRow& b, size_t x, float 
   return std::min(std::pow(color_error, 1 - feature_error), 1.0f);
 }
 
-OpponentImage opponent_image(const Image& image) {
+bool is_cancelled(const Progress* progress) { return progress && progress->cancelled(); }
+
+OpponentImage opponent_image(const Image& image, const Progress* progress) {
   OpponentImage out(image.width, image.height);
   parallel_for(size_t(image.height), 16, [&](size_t begin, size_t end) {
+    if (is_cancelled(progress)) return;
     for (int y = int(begin); y < int(end); ++y)
       for (int x = 0; x < image.width; ++x) {
         const Vec3 o = opponent_from_rgb(clamp01(image.rgb(x, y)));
@@ -147,16 +150,52 @@ double filmic_inverse(double t) {
   return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
 }
 
-Image exposed(const Image& image, double exposure) {
+Image exposed(const Image& image, double exposure, const Progress* progress) {
   Image out(image.width, image.height, 3);
   const double factor = std::exp2(exposure);
   parallel_for(size_t(image.height), 16, [&](size_t begin, size_t end) {
+    if (is_cancelled(progress)) return;
     for (int y = int(begin); y < int(end); ++y)
       for (int x = 0; x < image.width; ++x)
         for (int c = 0; c < 3; ++c) out.at(x, y)[c] = filmic(factor * double(image.at(x, y)[c]));
   });
   return out;
 }
+
+/// The luminances of the covered pixels by their rank, without sorting or storing them: the bits of
+/// floats of 0 or more are in the order of their values, so that the upper half of a rank's bits is
+/// found by counting, and then the lower half among those that share the upper one.
+struct CoveredLuminance {
+  const Image& image;
+  const Mask& covered;
+  const Progress* progress;
+
+  template <class Visit>
+  void visit_all(const Visit& visit) const {
+    for (int y = 0; y < image.height && !is_cancelled(progress); ++y)
+      for (int x = 0; x < image.width; ++x)
+        if (covered[size_t(y) * size_t(image.width) + size_t(x)])
+          // Adding 0 makes -0 to 0.
+          visit(std::bit_cast<uint32_t>(std::max(luminance(image.rgb(x, y)), 0.0f) + 0.0f));
+  }
+  size_t count() const {
+    return size_t(std::count_if(covered.begin(), covered.end(), [](uint8_t c) { return c != 0; }));
+  }
+  float at_rank(size_t rank) const {
+    const auto find = [&](const std::vector<size_t>& counts) {
+      uint32_t k = 0;
+      while (k + 1 < counts.size() && rank >= counts[k]) rank -= counts[k++];
+      return k;
+    };
+    std::vector<size_t> upper(1u << 16), lower(1u << 16);
+    visit_all([&](uint32_t bits) { ++upper[bits >> 16]; });
+    const uint32_t high = find(upper);
+    visit_all([&](uint32_t bits) {
+      if (bits >> 16 == high) ++lower[bits & 0xffff];
+    });
+    return std::bit_cast<float>(high << 16 | find(lower));
+  }
+};
 
 }  // namespace
 
@@ -165,38 +204,38 @@ Image flip(const Image& a, const Image& b, const FlipParams& params) {
   LUXEL_CHECK(a.channels >= 3 && b.channels >= 3);
   LUXEL_CHECK(params.pixels_per_degree > 0);
   const FlipFilters filters = make_flip_filters(params.pixels_per_degree);
-  const OpponentImage opponent_a = opponent_image(a), opponent_b = opponent_image(b);
+  const OpponentImage opponent_a = opponent_image(a, params.progress);
+  const OpponentImage opponent_b = opponent_image(b, params.progress);
   const float largest = largest_color_difference();
   Image map(a.width, a.height, 1);
   // A band shares the horizontally filtered rows of its neighbourhood.
   constexpr size_t kBand = 64;
   parallel_for(size_t(a.height), kBand, [&](size_t begin, size_t end) {
+    if (is_cancelled(params.progress)) return;
     const FilteredBand band_a(filters, opponent_a, int(begin), int(end));
     const FilteredBand band_b(filters, opponent_b, int(begin), int(end));
     FilteredRow row_a(a.width), row_b(a.width);
-    for (int y = int(begin); y < int(end); ++y) {
+    for (int y = int(begin); y < int(end) && !is_cancelled(params.progress); ++y) {
       band_a.filter_row(y, row_a);
       band_b.filter_row(y, row_b);
       for (int x = 0; x < a.width; ++x)
         *map.at(x, y) = flip_of_pixel(row_a, row_b, size_t(x), largest);
+      if (params.progress) params.progress->advance(1);
     }
   });
   return map;
 }
 
-FlipExposures flip_exposures(const Image& reference, const Mask& covered) {
+FlipExposures flip_exposures(const Image& reference, const Mask& covered,
+                             const Progress* progress) {
   LUXEL_CHECK(covered.size() == size_t(reference.width) * size_t(reference.height));
-  std::vector<float> values;
-  for (size_t i = 0; i < covered.size(); ++i) {
-    const float* p = reference.data.data() + i * size_t(reference.channels);
-    if (covered[i]) values.push_back(std::max(luminance({p[0], p[1], p[2]}), 0.0f));
-  }
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const double brightest = double(values.back());
+  const CoveredLuminance values{reference, covered, progress};
+  const size_t n = values.count();
+  if (n == 0) return {};
+  const double brightest = double(values.at_rank(n - 1));
   if (!(brightest > 0)) return {};
-  const size_t n = values.size();
-  const double median = 0.5 * (double(values[(n - 1) / 2]) + double(values[n / 2]));
+  const double median = 0.5 * (double(values.at_rank((n - 1) / 2)) + double(values.at_rank(n / 2)));
+  if (is_cancelled(progress)) return {};
   const double target = filmic_inverse(0.85);
   FlipExposures out;
   out.start = std::log2(target / brightest);
@@ -210,9 +249,10 @@ Image hdr_flip(const Image& a, const Image& b, const FlipExposures& exposures,
   LUXEL_CHECK(exposures.count >= 1);
   Image largest(a.width, a.height, 1);
   const double step = (exposures.stop - exposures.start) / std::max(exposures.count - 1, 1);
-  for (int i = 0; i < exposures.count; ++i) {
+  for (int i = 0; i < exposures.count && !is_cancelled(params.progress); ++i) {
     const double exposure = exposures.start + i * step;
-    const Image map = flip(exposed(a, exposure), exposed(b, exposure), params);
+    const Image map =
+        flip(exposed(a, exposure, params.progress), exposed(b, exposure, params.progress), params);
     for (size_t k = 0; k < map.data.size(); ++k)
       largest.data[k] = std::max(largest.data[k], map.data[k]);
   }

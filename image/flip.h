@@ -2,6 +2,7 @@
 // extension to high dynamic range [Andersson21]. docs/compare.md has the equations.
 #pragma once
 
+#include "base/progress.h"
 #include "base/vec_double.h"
 #include "image/compare.h"
 #include "image/image.h"
@@ -12,6 +13,9 @@ struct FlipParams {
   /// How large a pixel is seen. The papers' observer: 0.7 m from a screen 0.7 m and 3840 pixels
   /// wide.
   double pixels_per_degree = 3840 * kPiDouble / 180;
+  /// Advances by the rows, of each exposure. When it is cancelled the work ends early and the map
+  /// is not to be used.
+  Progress* progress = nullptr;
 };
 
 /// LDR-FLIP per pixel, one channel in [0, 1]. a and b are linear light with sRGB primaries (display
@@ -25,7 +29,9 @@ struct FlipExposures {
 };
 /// From the reference: the brightest covered luminance, and then the median, comes out at 0.85 of
 /// the tone mapper's range. A median of less than 2^-20 of the maximum counts as that.
-FlipExposures flip_exposures(const Image& reference, const Mask& covered);
+/// When `progress` is cancelled the work ends early, with exposures of no meaning.
+FlipExposures flip_exposures(const Image& reference, const Mask& covered,
+                             const Progress* progress = nullptr);
 
 /// HDR-FLIP per pixel: the largest LDR-FLIP over the exposures, each tone mapped by the papers'
 /// filmic curve. a and b hold radiance or irradiance; negative values count as 0.

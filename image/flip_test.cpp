@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "image/color.h"
 #include "image/flip_filters.h"
 
@@ -89,6 +90,39 @@ TEST(HdrFlip, ABrightSpotIsAsByDenseConvolution) {
   EXPECT_EQ(exposures.count, 8);
   expect_map(hdr_flip(a, b, exposures),
              {0.6021991, {0.953794, 0.665581, 0.864706, 0.857270, 0.200484, 0.292930}});
+}
+
+// A million exposures would take an hour.
+TEST(HdrFlip, StopsWhenAsked) {
+  const Image grey = uniform({0.5f, 0.5f, 0.5f}), dark = uniform({0.2f, 0.2f, 0.2f});
+  Progress progress;
+  progress.begin("flip", uint64_t(kHeight));
+  const Image whole = flip(grey, dark, {.progress = &progress});
+  EXPECT_EQ(progress.snapshot().done, uint64_t(kHeight));
+  progress.request_cancel();
+  hdr_flip(grey, dark, {-4, 4, 1000000}, {.progress = &progress});
+  EXPECT_EQ(progress.snapshot().done, uint64_t(kHeight));
+}
+
+// The ranks of luminances, against sorting them.
+TEST(FlipExposures, AreThoseOfTheBrightestAndTheMedian) {
+  for (const size_t count : {size_t(1), size_t(2), size_t(kWidth * kHeight)}) {
+    std::vector<float> sorted;
+    Mask covered(kWidth * kHeight, 0);
+    std::fill_n(covered.begin(), count, uint8_t(1));
+    const Image image = image_of([&](int x, int y) {
+      const uint64_t dice = hash64(uint64_t(x), uint64_t(y));
+      const float v = std::exp2(float(dice % 1000) * 0.02f - 10) * (dice % 7 == 0 ? -1.0f : 1.0f);
+      return Rgb{v, v, v};
+    });
+    for (size_t i = 0; i < count; ++i)
+      sorted.push_back(std::max(luminance(image.rgb(int(i) % kWidth, int(i) / kWidth)), 0.0f));
+    std::sort(sorted.begin(), sorted.end());
+    const double median = 0.5 * (double(sorted[(count - 1) / 2]) + double(sorted[count / 2]));
+    const FlipExposures found = flip_exposures(image, covered);
+    if (!(median > 0)) continue;
+    EXPECT_NEAR(found.stop - found.start, std::log2(double(sorted.back()) / median), 1e-9) << count;
+  }
 }
 
 // Flat fields: no edges, no points, and filters of sum 1 change nothing. Black to white is 100 in

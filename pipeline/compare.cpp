@@ -1,5 +1,6 @@
 #include "pipeline/compare.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/file.h"
@@ -61,10 +62,50 @@ void warn_of_coverage(const image::Image& a, const image::Image& b, uint64_t com
         in_a, in_b, common));
 }
 
-image::Image flip_map(const Picture& a, const Picture& b, const image::Mask& covered) {
+/// Work on a large picture ends early when it is cancelled; what it left is not looked at then.
+Status check_not_stopped(const Progress& progress) {
+  if (!progress.cancelled()) return {};
+  return fail(ErrorCode::cancelled, "the comparison was stopped by the user");
+}
+
+/// The picture as a screen shows it: its display values, or its light tone mapped, by strips, so
+/// that large pictures can be stopped.
+Result<image::Image8> shown_in_strips(const Picture& picture, float exposure,
+                                      const Progress& progress) {
+  if (!picture.hdr()) return picture.shown;
+  constexpr int kRows = 256;
+  const image::Image& light = picture.linear;
+  const size_t row = size_t(light.width) * size_t(light.channels);
+  image::Image8 out{light.width, light.height, 3, {}};
+  out.data.reserve(3 * size_t(light.width) * size_t(light.height));
+  for (int y = 0; y < light.height; y += kRows) {
+    LUXEL_TRY_STATUS(check_not_stopped(progress));
+    image::Image strip(light.width, std::min(kRows, light.height - y), light.channels);
+    std::copy_n(light.data.begin() + std::ptrdiff_t(row * size_t(y)), strip.data.size(),
+                strip.data.begin());
+    const image::Image8 shown = display::tone_map(strip, exposure);
+    out.data.insert(out.data.end(), shown.data.begin(), shown.data.end());
+  }
+  return out;
+}
+
+Result<image::Image> flip_map(const Picture& a, const Picture& b, const image::Mask& covered,
+                              Progress& progress) {
+  const uint64_t rows = uint64_t(b.linear.height);
+  const image::FlipParams params{.progress = &progress};
+  progress.begin(b.hdr() ? "exposures" : "flip", rows);
   const image::Image filled = image::with_uncovered_of(a.linear, b.linear, covered);
-  if (!b.hdr()) return image::flip(filled, b.linear);
-  return image::hdr_flip(filled, b.linear, image::flip_exposures(b.linear, covered));
+  image::Image map;
+  if (b.hdr()) {
+    const image::FlipExposures exposures = image::flip_exposures(b.linear, covered, &progress);
+    LUXEL_TRY_STATUS(check_not_stopped(progress));
+    progress.begin("flip", rows * uint64_t(exposures.count));
+    map = image::hdr_flip(filled, b.linear, exposures, params);
+  } else {
+    map = image::flip(filled, b.linear, params);
+  }
+  LUXEL_TRY_STATUS(check_not_stopped(progress));
+  return map;
 }
 
 /// [dB] of display values against 255.
@@ -116,20 +157,22 @@ Result<Measured> measure(const Picture& a, const Picture& b, std::optional<doubl
   LUXEL_TRY(out.covered, image::covered_pixels(a.linear, a.name, b.linear, b.name));
   Compared& n = out.numbers;
   n.hdr = b.hdr();
-  n.difference = image::difference(a.linear, b.linear, out.covered);
+  n.difference = image::difference(a.linear, b.linear, out.covered, &progress);
+  LUXEL_TRY_STATUS(check_not_stopped(progress));
   warn_of_coverage(a.linear, b.linear, n.difference.texels, n.warnings);
 
   if (n.hdr) n.exposure = exposure.value_or(double(display::auto_exposure(b.linear)));
-  out.shown_a = shown_at(a, float(n.exposure));
-  out.shown_b = shown_at(b, float(n.exposure));
+  LUXEL_TRY_STATUS(check_not_stopped(progress));
+  LUXEL_TRY(out.shown_a, shown_in_strips(a, float(n.exposure), progress));
+  LUXEL_TRY(out.shown_b, shown_in_strips(b, float(n.exposure), progress));
+  LUXEL_TRY_STATUS(check_not_stopped(progress));
   n.psnr_db = n.hdr ? n.difference.psnr_db : psnr_of_display(out.shown_a, out.shown_b, out.covered);
   const image::Histogram differences =
       image::histogram(image::pixel_differences(out.shown_a, out.shown_b), out.covered);
   for (size_t k = 0; k < n.share_above.size(); ++k)
     n.share_above[k] = image::share_above(differences, image::kDifferenceLevels[k]);
 
-  progress.begin("flip", 0);
-  out.flip = flip_map(a, b, out.covered);
+  LUXEL_TRY(out.flip, flip_map(a, b, out.covered, progress));
   n.flip = image::mean_over(out.flip, out.covered);
   return out;
 }

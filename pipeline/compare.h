@@ -43,7 +43,7 @@ struct Measured {
 
 /// Measures two pictures in memory. Errors: sizes or channels that differ, values that are not
 /// finite, no pixel covered in common, one picture of light and one of display values, an exposure
-/// for display values.
+/// for display values; cancelled.
 Result<Measured> measure(const Picture& a, const Picture& b, std::optional<double> exposure,
                          Progress& progress);
 

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "import/import.h"
 #include "pipeline/bake.h"
+#include "pipeline/memory.h"
 #include "trace/ray_tracer.h"
 #include "transport/sampled_factors.h"
 #include "transport/smooth_factors.h"
@@ -14,9 +15,10 @@
 namespace luxel::pipeline {
 namespace {
 
-constexpr size_t kMostSurfaces = 20000;  // two tables of doubles: 6 GiB
 constexpr int64_t kMostSamples = 1 << 24;
 constexpr int kMostPixels = 4096;
+/// Characters of a number of the table: 17 digits, a point, an exponent, and a comma.
+constexpr uint64_t kBytesPerNumber = 24;
 /// Rays per surface where none are asked for; points of hemicubes.
 constexpr int64_t kRays = 1 << 18, kPoints = 256;
 
@@ -76,9 +78,58 @@ Result<uint32_t> surface_named(const transport::Surfaces& surfaces, const char* 
               name, names);
 }
 
-Result<transport::Surfaces> read_surfaces(const FactorSettings& s, const scene::Scene& scene,
-                                          FactorReport& report) {
-  transport::Surfaces surfaces = transport::surfaces_of(scene);
+transport::SampledParams sampled_params(const FactorSettings& s) {
+  transport::SampledParams params;
+  params.seed = s.seed;
+  const bool by_rays = s.method == "rays";
+  params.samples = uint32_t(s.samples.value_or(by_rays ? kRays : kPoints));
+  params.hemicube = by_rays ? 0 : s.hemicube.value_or(64);
+  return params;
+}
+
+Status check_memory(const FactorSettings& s, size_t surfaces) {
+  const uint64_t mib = 1u << 20, needed = factor_table_bytes(surfaces, s);
+  const uint64_t held = resident_bytes();
+  const uint64_t free =
+      s.max_memory_bytes == 0 ? available_bytes() : std::max(s.max_memory_bytes, held) - held;
+  if (needed <= free) return {};
+  return fail(ErrorCode::out_of_memory,
+              "{}: the tables for {} surfaces{} need {} MiB of memory, and {} MiB are {}; join "
+              "meshes that belong together{}{}",
+              s.scene.string(), surfaces, s.smooth ? " with --smooth" : "", needed / mib + 1,
+              free / mib, s.max_memory_bytes == 0 ? "free" : "left of --max-memory",
+              s.method == "hemicube" ? ", lower --hemicube" : "",
+              s.smooth ? ", or leave --smooth out" : "");
+}
+
+/// A mask's shape is known to rays only, and its holes have no area to radiate from: luxel does not
+/// guess what was meant. By every method a surface is solid, and the names of those that were not
+/// are said.
+void fill_holes(const transport::Surfaces& surfaces, scene::Scene& scene, FactorReport& report) {
+  constexpr size_t kMostNames = 20;
+  const auto is_masked = [&](uint32_t material) {
+    return scene.materials[material].alpha_mode == scene::AlphaMode::mask;
+  };
+  std::vector<std::string> names;
+  for (const transport::Surface& surface : surfaces.surfaces) {
+    const scene::Mesh& mesh = scene.meshes[scene.instances[surface.instance].mesh];
+    if (std::any_of(mesh.triangle_material.begin(), mesh.triangle_material.end(), is_masked))
+      names.push_back(fmt::format("'{}'", surface.name));
+  }
+  for (scene::Material& material : scene.materials)
+    if (material.alpha_mode == scene::AlphaMode::mask)
+      material.alpha_mode = scene::AlphaMode::opaque;
+  if (names.empty()) return;
+  const size_t more = names.size() > kMostNames ? names.size() - kMostNames : 0;
+  names.resize(names.size() - more);
+  report.warnings.push_back(fmt::format(
+      "the holes of alpha masks count as solid, in the areas and for the light that passes: {}{}",
+      fmt::join(names, ", "), more ? fmt::format(" and {} more", more) : ""));
+}
+
+Result<transport::Surfaces> read_surfaces(const FactorSettings& s, scene::Scene& scene,
+                                          FactorReport& report, Progress& progress) {
+  LUXEL_TRY(transport::Surfaces surfaces, transport::surfaces_of(scene, progress));
   for (const std::string& warning : surfaces.warnings)
     report.warnings.push_back(fmt::format("{}: {}", s.scene.string(), warning));
   if (surfaces.surfaces.empty())
@@ -86,20 +137,10 @@ Result<transport::Surfaces> read_surfaces(const FactorSettings& s, const scene::
                 "{}: no surface has an area; there is nothing between which "
                 "light could be exchanged",
                 s.scene.string());
-  if (surfaces.surfaces.size() > kMostSurfaces)
-    return fail(ErrorCode::out_of_memory,
-                "{}: {} surfaces make a table too large for memory, at most {} do; join meshes "
-                "that belong together",
-                s.scene.string(), surfaces.surfaces.size(), kMostSurfaces);
+  LUXEL_TRY_STATUS(check_memory(s, surfaces.surfaces.size()));
   for (const transport::Surface& surface : surfaces.surfaces)
     report.polygons += surface.polygons.size();
-  const bool masked =
-      std::any_of(scene.materials.begin(), scene.materials.end(),
-                  [](const scene::Material& m) { return m.alpha_mode == scene::AlphaMode::mask; });
-  if (masked && s.method == "analytic")
-    report.warnings.push_back(
-        fmt::format("{}: holes of alpha masks are taken for solid; --method rays sees through them",
-                    s.scene.string()));
+  fill_holes(surfaces, scene, report);
   return surfaces;
 }
 
@@ -112,12 +153,8 @@ Result<transport::FactorMatrix> compute(const FactorSettings& s, const scene::Sc
                                        selection, progress);
   progress.begin("build ray tracer", 1);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
-  transport::SampledParams params;
-  params.seed = s.seed;
-  const bool by_rays = s.method == "rays";
-  params.samples = uint32_t(s.samples.value_or(by_rays ? kRays : kPoints));
-  params.hemicube = by_rays ? 0 : s.hemicube.value_or(64);
-  return transport::sampled_factors(scene, surfaces, tracer, params, selection, progress);
+  return transport::sampled_factors(scene, surfaces, tracer, sampled_params(s), selection,
+                                    progress);
 }
 
 std::string quoted(const std::string& name) {
@@ -135,15 +172,19 @@ std::vector<size_t> chosen(uint32_t only, size_t count) {
   return all;
 }
 
-/// Whether every row sums to 1 within 4 standard errors of the sum (rays: of a share S of n rays),
+/// Whether every row sums to 1 within 4 standard errors of the sum (a share S of n rays or pixels),
 /// or within the sum of its estimated errors, but not closer than 1e-4.
 bool is_closed(const FactorSettings& s, const FactorReport& r) {
+  const transport::SampledParams params = sampled_params(s);
+  const double rays =
+      double(params.samples) * (params.hemicube > 0 ? 3 * std::pow(double(params.hemicube), 2) : 1);
   for (size_t i = 0; i < r.matrix.size(); ++i) {
     const double sum = r.checks.row_sum[i];
     double doubt = 0;
-    for (size_t j = 0; j < r.matrix.size(); ++j) doubt += r.matrix.error[i * r.matrix.size() + j];
-    if (s.method == "rays")
-      doubt = 4 * std::sqrt(std::max(0.0, sum * (1 - sum)) / double(s.samples.value_or(kRays)));
+    if (s.method == "analytic")
+      for (size_t j = 0; j < r.matrix.size(); ++j) doubt += r.matrix.error[i * r.matrix.size() + j];
+    else
+      doubt = 4 * std::sqrt(std::max(0.0, sum * (1 - sum)) / rays);
     if (std::abs(1 - sum) > std::max(1e-4, doubt)) return false;
   }
   return true;
@@ -168,11 +209,26 @@ Status judge(const FactorSettings& settings, FactorReport& report) {
 
 }  // namespace
 
+uint64_t factor_table_bytes(size_t surfaces, const FactorSettings& settings) {
+  const uint64_t entries = uint64_t(surfaces) * surfaces, table = sizeof(double) * entries;
+  // Factors and errors stay; with them at one time either rays, the exchange areas that are
+  // smoothed, or the text of the table.
+  const uint64_t sampling = settings.method == "analytic" ? 0
+                                                          : transport::sampled_factor_bytes(
+                                                                surfaces, sampled_params(settings));
+  const uint64_t smoothing = settings.smooth ? table : 0;
+  const bool is_part = !settings.from.empty() || !settings.to.empty();
+  const uint64_t text = settings.output.empty() || is_part ? 0 : kBytesPerNumber * entries;
+  return 2 * table + std::max({sampling, smoothing, text});
+}
+
 std::string factors_csv(const transport::FactorMatrix& matrix,
                         const transport::FactorSelection& selection) {
   const std::vector<size_t> rows = chosen(selection.from, matrix.size());
   const std::vector<size_t> columns = chosen(selection.to, matrix.size());
-  std::string csv = "surface";
+  std::string csv;
+  csv.reserve(kBytesPerNumber * rows.size() * columns.size());
+  csv = "surface";
   for (const size_t j : columns) csv.append(",").append(quoted(matrix.names[j]));
   csv += "\n";
   for (const size_t i : rows) {
@@ -189,13 +245,15 @@ Result<FactorReport> view_factors(const FactorSettings& settings, Progress& prog
   LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
   FactorReport report;
   report.warnings = std::move(imported.warnings);
-  LUXEL_TRY(const transport::Surfaces surfaces, read_surfaces(settings, imported.scene, report));
+  LUXEL_TRY(const transport::Surfaces surfaces,
+            read_surfaces(settings, imported.scene, report, progress));
   LUXEL_TRY(report.selection.from, surface_named(surfaces, "--from", settings.from));
   LUXEL_TRY(report.selection.to, surface_named(surfaces, "--to", settings.to));
   LUXEL_TRY(report.matrix, compute(settings, imported.scene, surfaces, report.selection, progress));
+  report.warnings.insert(report.warnings.end(), report.matrix.warnings.begin(),
+                         report.matrix.warnings.end());
   if (settings.smooth) {
-    progress.begin("smooth", 1);
-    LUXEL_TRY(report.smoothing, transport::smooth_factors(report.matrix));
+    LUXEL_TRY(report.smoothing, transport::smooth_factors(report.matrix, progress));
   }
   LUXEL_TRY_STATUS(judge(settings, report));
   if (!settings.output.empty()) {

@@ -24,6 +24,7 @@ struct FactorSettings {
   bool smooth = false;
   std::string from, to;  ///< names of surfaces; empty: all
   uint64_t seed = 1;
+  uint64_t max_memory_bytes = 0;  ///< of the process; 0: what is free
 };
 
 struct FactorReport {
@@ -38,8 +39,12 @@ struct FactorReport {
 };
 
 /// Reads, computes, and writes the table. Errors: settings out of range, surfaces that do not
-/// exist, no surface with area, an output that cannot be written.
+/// exist, no surface with area, tables that do not fit into memory, an output that cannot be
+/// written.
 Result<FactorReport> view_factors(const FactorSettings& settings, Progress& progress);
+
+/// The largest sum of tables that the work holds at once [bytes].
+uint64_t factor_table_bytes(size_t surfaces, const FactorSettings& settings);
 
 /// The rows and columns asked for: first row `surface,NAME,NAME,...`, then NAME and the factors to
 /// each with 17 significant digits. Names with commas, quotes or line ends are quoted as RFC 4180

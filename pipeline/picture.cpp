@@ -3,7 +3,6 @@
 #include <cstring>
 
 #include "base/file.h"
-#include "display/tone_map.h"
 #include "image/color.h"
 
 namespace luxel::pipeline {
@@ -51,10 +50,6 @@ Result<Picture> read_picture(const std::filesystem::path& path) {
                 name);
   }
   return picture;
-}
-
-image::Image8 shown_at(const Picture& picture, float exposure) {
-  return picture.hdr() ? display::tone_map(picture.linear, exposure) : picture.shown;
 }
 
 }  // namespace luxel::pipeline

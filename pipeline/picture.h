@@ -19,7 +19,4 @@ struct Picture {
 /// EXR, Radiance HDR, PNG or JPEG, told apart by their first bytes, not by their names.
 Result<Picture> read_picture(const std::filesystem::path& path);
 
-/// The picture as a screen shows it: its display values, or its light tone mapped.
-image::Image8 shown_at(const Picture& picture, float exposure);
-
 }  // namespace luxel::pipeline

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/base64.h"
+#include "pipeline/factors.h"
 #include "tests/command.h"
 
 namespace luxel::testing_support {
@@ -192,6 +193,87 @@ TEST(Factors, WrongRequestsAreRefusedAndLeaveNothing) {
   refused(cube + " -o " + csv + " --method fast", 2, "fast");
   refused(cube, 2, "--output");
   refused(scene_file("cornell-box-empty.glb") + " -o " + csv + " --smooth", 1, "closed enclosure");
+}
+
+/// A floor, a ceiling 1 m above it, and between them a plate whose mask is one hole.
+std::string masked_scene() {
+  const auto square = [](float y, bool up) {
+    const std::array<std::array<float, 2>, 4> at{{{0, 0}, {0, 1}, {1, 1}, {1, 0}}};
+    std::vector<float> out;
+    for (const size_t k :
+         up ? std::array<size_t, 6>{0, 1, 2, 0, 2, 3} : std::array<size_t, 6>{0, 2, 1, 0, 3, 2})
+      out.insert(out.end(), {at[k][0], y, at[k][1]});
+    return base64(std::as_bytes(std::span(out)));
+  };
+  nlohmann::json gltf{{"asset", {{"version", "2.0"}}}, {"scene", 0}};
+  gltf["scenes"] = {{{"nodes", {0, 1, 2}}}};
+  gltf["materials"] = {{{"name", "plain"}},
+                       {{"name", "holes"},
+                        {"alphaMode", "MASK"},
+                        {"pbrMetallicRoughness", {{"baseColorFactor", {1.0, 1.0, 1.0, 0.1}}}}}};
+  const std::array<std::string, 3> names{"floor", "ceiling", "grille"};
+  const std::array<float, 3> height{0, 1, 0.5f};
+  for (size_t i = 0; i < 3; ++i) {
+    gltf["nodes"].push_back({{"name", names[i]}, {"mesh", i}});
+    gltf["meshes"].push_back(
+        {{"primitives", {{{"attributes", {{"POSITION", i}}}, {"material", i == 2 ? 1 : 0}}}}});
+    gltf["accessors"].push_back({{"bufferView", i},
+                                 {"componentType", 5126},
+                                 {"count", 6},
+                                 {"type", "VEC3"},
+                                 {"min", {0.0, height[i], 0.0}},
+                                 {"max", {1.0, height[i], 1.0}}});
+    gltf["bufferViews"].push_back({{"buffer", i}, {"byteOffset", 0}, {"byteLength", 72}});
+    gltf["buffers"].push_back(
+        {{"byteLength", 72},
+         {"uri", "data:application/octet-stream;base64," + square(height[i], i != 1)}});
+  }
+  return gltf.dump();
+}
+
+TEST(Factors, HolesOfMasksAreSolidByEveryMethodAndSaid) {
+  const ScratchFolder s;
+  const std::string scene = s.write("s.gltf", masked_scene()).string();
+  const std::string csv = (s.path / "f.csv").string();
+  // Howell's C-11 for squares at half their side; the ceiling lies behind the plate.
+  constexpr double kHalfApart = 0.41525327;
+  for (const std::string method :
+       {"analytic", "rays --samples 65536", "hemicube --samples 64 --hemicube 32"}) {
+    const CommandResult r = luxel("factors " + scene + " -o " + csv + " --method " + method);
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_THAT(r.err, HasSubstr("count as solid")) << method;
+    EXPECT_THAT(r.err, HasSubstr("'grille'")) << method;
+    EXPECT_THAT(r.err, Not(HasSubstr("'floor'"))) << method;
+    const Table table = read_table(csv);
+    EXPECT_EQ(table.at("floor").at("ceiling"), 0) << method;
+    EXPECT_NEAR(table.at("grille").at("ceiling"), kHalfApart, 0.01) << method;
+  }
+}
+
+TEST(Factors, TablesThatDoNotFitAreRefusedBeforeTheWork) {
+  const ScratchFolder s;
+  const std::string cube = s.write("cube.obj", kCube).string(), csv = (s.path / "f.csv").string();
+  const std::string limit = "factors " + cube + " -o " + csv + " --max-memory 700M";
+  EXPECT_EQ(luxel(limit + " --method hemicube --samples 1 --hemicube 64").code, 0);
+  std::filesystem::remove(csv);
+  const CommandResult r = luxel(limit + " --method hemicube --samples 1 --hemicube 4096");
+  EXPECT_EQ(r.code, 3);
+  EXPECT_THAT(r.err, HasSubstr("--max-memory"));
+  EXPECT_THAT(r.err, HasSubstr("MiB"));
+  EXPECT_FALSE(std::filesystem::exists(csv));
+  EXPECT_EQ(luxel("factors " + cube + " -o " + csv + " --max-memory 1 --smooth").code, 3);
+  EXPECT_EQ(luxel("factors " + cube + " -o " + csv + " --max-memory none").code, 1);
+}
+
+// Two tables of doubles stay; smoothing takes a third, the text of the table three more.
+TEST(Factors, SmoothingAndTextCountAsMemory) {
+  const uint64_t table = 8ull * 10000 * 10000;
+  pipeline::FactorSettings settings;
+  EXPECT_EQ(pipeline::factor_table_bytes(10000, settings), 2 * table);
+  settings.smooth = true;
+  EXPECT_EQ(pipeline::factor_table_bytes(10000, settings), 3 * table);
+  settings.output = "f.csv";
+  EXPECT_EQ(pipeline::factor_table_bytes(10000, settings), 5 * table);
 }
 
 /// Two nodes of one name share a unit square that faces up: one lies at y = 0, the other, turned

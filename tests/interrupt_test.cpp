@@ -81,6 +81,23 @@ TEST(InterruptSlow, WhileALargeSceneIsImportedAndLaidOut) {
   for (const double seconds : {0.03, 0.3, 0.8, 1.6}) expect_stopped_cleanly(seconds, SIGINT, scene);
 }
 
+TEST(InterruptSlow, WhileViewFactorsAreComputed) {
+  LUXEL_NEEDS_SHARED("scenes/zdm2/zdm2.glb");
+  const ScratchFolder scratch;
+  const std::string scene = (shared_folder() / "scenes/zdm2/zdm2.glb").string();
+  for (const std::string method : {"analytic", "rays", "hemicube"}) {
+    std::vector<std::string> arguments{"factors",  scene, "-o", (scratch.path / "f.csv").string(),
+                                       "--method", method};
+    if (method == "rays") arguments.insert(arguments.end(), {"--samples", "16777216"});
+    if (method == "hemicube") arguments.insert(arguments.end(), {"--hemicube", "4096"});
+    const Stopped stopped = stop_after(2, SIGINT, arguments);
+    ASSERT_TRUE(WIFEXITED(stopped.status)) << method;
+    EXPECT_EQ(WEXITSTATUS(stopped.status), 130) << method << stopped.err;
+    EXPECT_LT(stopped.seconds_to_end, 2.5) << method;
+    EXPECT_TRUE(std::filesystem::is_empty(scratch.path)) << method;
+  }
+}
+
 TEST(InterruptSlow, FilesOfAnEarlierBakeStay) {
   const ScratchFolder s;
   const std::string box = scene_file("cornell-box.glb"), output = (s.path / "b").string();

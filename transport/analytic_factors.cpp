@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/parallel.h"
 #include "transport/factor_matrix.h"
@@ -65,26 +68,48 @@ bool is_wanted(const Room& room, uint32_t p, uint32_t q, const FactorSelection& 
 }
 
 /// Adds the exchange of a batch of pairs to the matrix of exchange areas, in the order of the
-/// pairs, so that sums have the same bits for any number of threads.
+/// pairs, so that sums have the same bits for any number of threads. `rough` gets the pairs of
+/// surfaces whose work ended early.
 void add_batch(const Room& room, const std::vector<Pair>& batch, const AnalyticParams& params,
-               FactorMatrix& exchange, Progress& progress) {
+               FactorMatrix& exchange, std::set<Pair>& rough, Progress& progress) {
   std::vector<VisibleExchange> found(batch.size());
   parallel_for(batch.size(), 4, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end && !progress.cancelled(); ++k) {
       const auto [p, q] = batch[k];
       VisibleParams visible{.tolerance = params.tolerance, .slack_m = room.slack};
       visible.negligible_m2 = 1e-3 * std::min(room.blockers[p].area_m2, room.blockers[q].area_m2);
+      visible.max_cells = params.max_cells;
       visible.progress = &progress;
       found[k] = exchange_of(room, p, q, visible);
       progress.advance(1);
     }
   });
   for (size_t k = 0; k < batch.size(); ++k) {
-    const size_t i = room.surface[batch[k].first], j = room.surface[batch[k].second];
-    for (const size_t entry : {i * exchange.size() + j, j * exchange.size() + i}) {
+    const uint32_t i = room.surface[batch[k].first], j = room.surface[batch[k].second];
+    if (found[k].gave_up) rough.insert(std::minmax(i, j));
+    const size_t n = exchange.size();
+    for (const size_t entry : {i * n + j, j * n + i}) {
       exchange.factor[entry] += found[k].value;
       exchange.error[entry] += found[k].error;
     }
+  }
+}
+
+void warn_of_rough_pairs(const std::set<Pair>& rough, const AnalyticParams& params,
+                         FactorMatrix& matrix) {
+  constexpr size_t kMostWarnings = 20;
+  for (const auto& [i, j] : rough) {
+    if (matrix.warnings.size() == kMostWarnings) {
+      matrix.warnings.push_back(
+          fmt::format("{} more pairs of surfaces have a larger error than --tolerance {} asks for",
+                      rough.size() - kMostWarnings, params.tolerance));
+      return;
+    }
+    matrix.warnings.push_back(fmt::format(
+        "the factor between '{}' and '{}' is {:.6g} with an estimated error of {:.1e}, more than "
+        "--tolerance {} asks for: what stands between them is too intricate for {} pieces",
+        matrix.names[i], matrix.names[j], matrix.at(i, j), matrix.error[i * matrix.size() + j],
+        params.tolerance, params.max_cells));
   }
 }
 
@@ -98,8 +123,9 @@ Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticPa
   progress.begin("view factors", count * (count - 1) / 2);
   FactorMatrix matrix = empty_factor_matrix(surfaces);
   std::vector<Pair> batch;
+  std::set<Pair> rough;
   const auto flush = [&] {
-    add_batch(room, batch, params, matrix, progress);
+    add_batch(room, batch, params, matrix, rough, progress);
     batch.clear();
   };
   for (uint32_t p = 0; p < count && !progress.cancelled(); ++p) {
@@ -123,6 +149,7 @@ Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticPa
       matrix.at(i, j) /= matrix.area_m2[i];
       matrix.error[i * matrix.size() + j] /= matrix.area_m2[i];
     }
+  warn_of_rough_pairs(rough, params, matrix);
   return matrix;
 }
 

@@ -17,6 +17,7 @@ struct FactorMatrix {
   std::vector<double> area_m2;
   std::vector<double> factor;  ///< row i, column j at i * size() + j
   std::vector<double> error;   ///< estimated absolute error (analytic) or standard error (sampled)
+  std::vector<std::string> warnings;  ///< pairs whose error is larger than asked for
 
   size_t size() const { return area_m2.size(); }
   double& at(size_t i, size_t j) { return factor[i * size() + j]; }
@@ -41,9 +42,11 @@ struct AnalyticParams {
   /// Relative error of pairs of polygons with something between them; of factors below 1e-3 of the
   /// smaller polygon, the error of one of that size.
   double tolerance = 1e-4;
+  uint32_t max_cells = 1u << 17;  ///< pieces of a pair of polygons after which its work ends
 };
 /// In closed form, past blockers by subdivision (visible_form_factor.h). Each pair is computed once
-/// and serves both directions. Errors: cancelled.
+/// and serves both directions. A pair of surfaces in which max_cells ended the work leaves a
+/// warning that names it and the error reached. Errors: cancelled.
 Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticParams& params,
                                       const FactorSelection& selection, Progress& progress);
 

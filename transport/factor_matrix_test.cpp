@@ -29,13 +29,13 @@ scene::Scene room_of(const std::vector<Polygon>& faces) {
 
 FactorMatrix analytic(const scene::Scene& scene) {
   Progress progress;
-  return *analytic_factors(surfaces_of(scene), {}, {}, progress);
+  return *analytic_factors(*surfaces_of(scene, progress), {}, {}, progress);
 }
 
 FactorMatrix by_rays(const scene::Scene& scene, uint32_t samples, int hemicube = 0) {
   Progress progress;
   const auto tracer = trace::RayTracer::build(scene);
-  return *sampled_factors(scene, surfaces_of(scene), *tracer,
+  return *sampled_factors(scene, *surfaces_of(scene, progress), *tracer,
                           {.samples = samples, .hemicube = hemicube}, {}, progress);
 }
 
@@ -82,16 +82,22 @@ TEST(FactorMatrix, ABoxInABoxHasTheFactorsOfItsAreas) {
 
 TEST(FactorMatrix, HasTheSameBitsForAnyNumberOfThreads) {
   const scene::Scene scene = scene::cornell_box();
-  std::vector<double> analytic_bits, ray_bits;
+  std::vector<double> analytic_bits, ray_bits, cube_bits, cube_errors;
   for (const int threads : {1, 2, 5}) {
     const ThreadLimit limit(threads);
     Progress progress;
     const FactorMatrix matrix =
-        *analytic_factors(surfaces_of(scene), {.tolerance = 1e-2}, {}, progress);
+        *analytic_factors(*surfaces_of(scene, progress), {.tolerance = 1e-2}, {}, progress);
     const FactorMatrix rays = by_rays(scene, 4096);
-    if (threads == 1) analytic_bits = matrix.factor, ray_bits = rays.factor;
+    const FactorMatrix cubes = by_rays(scene, 150, 8);  // more points than are held at a time
+    if (threads == 1) {
+      analytic_bits = matrix.factor, ray_bits = rays.factor;
+      cube_bits = cubes.factor, cube_errors = cubes.error;
+    }
     EXPECT_EQ(matrix.factor, analytic_bits);
     EXPECT_EQ(rays.factor, ray_bits);
+    EXPECT_EQ(cubes.factor, cube_bits);
+    EXPECT_EQ(cubes.error, cube_errors);
   }
 }
 
@@ -114,10 +120,29 @@ TEST(FactorMatrixSlow, TheCornellBoxIsTheSameByRays) {
     }
 }
 
+// Sixteen pieces cannot follow the shadow of a turned plate between two squares.
+TEST(FactorMatrix, WorkThatEndsEarlyIsSaid) {
+  const Polygon floor{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  const Polygon ceiling{{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}};
+  const Polygon plate{{0.5, 0.2, 0.5}, {0.8, 0.5, 0.4}, {0.5, 0.8, 0.5}, {0.2, 0.5, 0.6}};
+  const scene::Scene scene = room_of({floor, ceiling, plate});
+  Progress progress;
+  const Surfaces surfaces = *surfaces_of(scene, progress);
+  const FactorMatrix fine = *analytic_factors(surfaces, {}, {}, progress);
+  EXPECT_TRUE(fine.warnings.empty());
+  const FactorMatrix rough = *analytic_factors(surfaces, {.max_cells = 16}, {}, progress);
+  ASSERT_EQ(rough.warnings.size(), 1u);
+  EXPECT_NE(rough.warnings[0].find("'face 0' and 'face 1'"), std::string::npos)
+      << rough.warnings[0];
+  EXPECT_GT(rough.error[1], 1e-4 * rough.at(0, 1));
+  EXPECT_NE(rough.warnings[0].find(fmt::format("{:.1e}", rough.error[1])), std::string::npos);
+  EXPECT_NEAR(rough.at(0, 1), fine.at(0, 1), rough.error[1]);
+}
+
 TEST(FactorMatrix, OneRowOrOneEntryIsThatOfTheWhole) {
   const scene::Scene scene = scene::cornell_box(scene::CornellColors::pbrt, false);
-  const Surfaces surfaces = surfaces_of(scene);
   Progress progress;
+  const Surfaces surfaces = *surfaces_of(scene, progress);
   const FactorMatrix whole = *analytic_factors(surfaces, {}, {}, progress);
   const FactorMatrix row = *analytic_factors(surfaces, {}, {.from = 1}, progress);
   const FactorMatrix entry = *analytic_factors(surfaces, {}, {.from = 1, .to = 3}, progress);
@@ -128,10 +153,43 @@ TEST(FactorMatrix, OneRowOrOneEntryIsThatOfTheWhole) {
 
 TEST(FactorMatrix, CancelledWorkIsAnError) {
   Progress progress;
+  const Surfaces surfaces = *surfaces_of(scene::cornell_box(), progress);
   progress.request_cancel();
-  const auto matrix = analytic_factors(surfaces_of(scene::cornell_box()), {}, {}, progress);
+  const auto matrix = analytic_factors(surfaces, {}, {}, progress);
   ASSERT_FALSE(matrix.has_value());
   EXPECT_EQ(matrix.error().code, ErrorCode::cancelled);
+}
+
+// The factors of a few hundred points are their mean however they are taken in batches: a second
+// half of the points alone would give others. The memory is that of one batch.
+TEST(FactorMatrix, HemicubesInBatchesHaveTheErrorTheyClaim) {
+  Dice dice;
+  const scene::Scene scene = room_of(dice.convex_room(3));
+  const FactorMatrix exact = analytic(scene);
+  const FactorMatrix cubes = by_rays(scene, 300, 16);
+  double worst = 0;
+  for (size_t k = 0; k < exact.factor.size(); ++k)
+    worst = std::max(worst, std::abs(cubes.factor[k] - exact.factor[k]) / cubes.error[k]);
+  EXPECT_LT(worst, 4);
+  const SampledParams few{.samples = 64, .hemicube = 64}, many{.samples = 1u << 24, .hemicube = 64};
+  EXPECT_EQ(sampled_factor_bytes(20000, few), sampled_factor_bytes(20000, many));
+  EXPECT_LT(sampled_factor_bytes(20000, many), 16u << 20);
+}
+
+FactorMatrix smoothed(FactorMatrix matrix) {
+  Progress progress;
+  EXPECT_TRUE(smooth_factors(matrix, progress).has_value());
+  return matrix;
+}
+
+TEST(SmoothFactors, StopsWhenAsked) {
+  Dice dice;
+  FactorMatrix matrix = analytic(room_of(dice.convex_room(6)));
+  Progress progress;
+  progress.request_cancel();
+  const auto change = smooth_factors(matrix, progress);
+  ASSERT_FALSE(change.has_value());
+  EXPECT_EQ(change.error().code, ErrorCode::cancelled);
 }
 
 TEST(SmoothFactors, RestoresBothLawsAndComesCloserToTheTruth) {
@@ -142,7 +200,7 @@ TEST(SmoothFactors, RestoresBothLawsAndComesCloserToTheTruth) {
   // Rays of a closed room keep the sums; spoil them as a coarse method would.
   for (double& f : matrix.factor) f *= 1 + 0.02 * dice.number();
   const FactorMatrix before = matrix;
-  ASSERT_TRUE(smooth_factors(matrix).has_value());
+  matrix = smoothed(matrix);
   const FactorChecks checks = check_factors(matrix);
   // Sums of a dozen factors, to their last bits; the loop ends where they no longer change.
   EXPECT_LT(checks.largest_row_error, 1e-12);
@@ -161,16 +219,18 @@ TEST(SmoothFactors, RestoresBothLawsAndComesCloserToTheTruth) {
 TEST(SmoothFactors, LeavesAConsistentMatrixAlone) {
   Dice dice;
   FactorMatrix matrix = analytic(room_of(dice.convex_room(6)));
-  ASSERT_TRUE(smooth_factors(matrix).has_value());
+  matrix = smoothed(matrix);
   const FactorMatrix once = matrix;
-  const auto change = smooth_factors(matrix);
+  Progress progress;
+  const auto change = smooth_factors(matrix, progress);
   ASSERT_TRUE(change.has_value());
   EXPECT_LT(*change, 1e-13);  // the last bits of sums of a dozen factors
 }
 
 TEST(SmoothFactors, RefusesOpenScenes) {
   FactorMatrix matrix = analytic(scene::cornell_box(scene::CornellColors::pbrt, false));
-  const auto change = smooth_factors(matrix);
+  Progress progress;
+  const auto change = smooth_factors(matrix, progress);
   ASSERT_FALSE(change.has_value());
   EXPECT_NE(change.error().message.find("'"), std::string::npos) << change.error().message;
 }

@@ -26,9 +26,13 @@ void add_pixel(const Face& face, double s, double t, double size, Hemicube& cube
 
 }  // namespace
 
-Hemicube make_hemicube(int resolution) {
+Result<Hemicube> make_hemicube(int resolution, Progress& progress) {
   LUXEL_CHECK(resolution >= 2 && resolution % 2 == 0);
+  const size_t n = size_t(resolution);
+  progress.begin("hemicube", 3 * n * n);
   Hemicube cube{resolution, {}, {}};
+  cube.direction.reserve(3 * n * n);
+  cube.delta_factor.reserve(3 * n * n);
   // right x up points to the centre of the cube.
   const std::array<Face, 5> faces{{{{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}},
                                    {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}},
@@ -38,9 +42,13 @@ Hemicube make_hemicube(int resolution) {
   const double size = 2.0 / resolution;
   for (size_t f = 0; f < faces.size(); ++f) {
     const int rows = f == 0 ? resolution : resolution / 2;
-    for (int row = 0; row < rows; ++row)
+    for (int row = 0; row < rows; ++row) {
+      if (progress.cancelled())
+        return fail(ErrorCode::cancelled, "the view factors were stopped by the user");
       for (int column = 0; column < resolution; ++column)
         add_pixel(faces[f], -1 + (column + 0.5) * size, 1 - (row + 0.5) * size, size, cube);
+      progress.advance(n);
+    }
   }
   // They sum to 1 but for rounding, which goes too.
   const double sum = std::accumulate(cube.delta_factor.begin(), cube.delta_factor.end(), 0.0);

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "base/progress.h"
+#include "base/result.h"
 #include "base/vec.h"
 
 namespace luxel::transport {
@@ -16,7 +18,8 @@ struct Hemicube {
   std::vector<double> delta_factor;  ///< F(point -> pixel), exact; they sum to 1
 };
 
-/// `resolution` is even and at least 2.
-Hemicube make_hemicube(int resolution);
+/// `resolution` is even and at least 2. The stage "hemicube": 4096 takes seconds. Errors:
+/// cancelled.
+Result<Hemicube> make_hemicube(int resolution, Progress& progress);
 
 }  // namespace luxel::transport

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.h"
+#include "base/result.h"
 #include "transport/polygon.h"
 
 namespace luxel::transport {
@@ -13,7 +15,9 @@ namespace luxel::transport {
 /// Joins neighbours (polygons with a common edge, corners equal bit by bit) that lie in one plane
 /// to within `slack` [m] and whose union is convex, greedily, until none are left; then drops
 /// corners on straight edges. Triangles without area are left out. The exchange of light is the
-/// same and costs a fourth or less for each pair of quads.
-std::vector<Polygon> merge_polygons(std::span<const std::array<DVec3, 3>> triangles, double slack);
+/// same and costs a fourth or less for each pair of quads. The time is nearly proportional to the
+/// number of triangles. Advances `progress` by one for each triangle. Errors: cancelled.
+Result<std::vector<Polygon>> merge_polygons(std::span<const std::array<DVec3, 3>> triangles,
+                                            double slack, Progress& progress);
 
 }  // namespace luxel::transport

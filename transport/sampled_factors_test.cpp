@@ -19,9 +19,14 @@ namespace shared = luxel::testing_support;
 const Polygon kFloor{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 const Polygon kCeiling{{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}};
 
+Hemicube hemicube_of(int resolution) {
+  Progress progress;
+  return *make_hemicube(resolution, progress);
+}
+
 TEST(Hemicube, PixelsShareTheHemisphere) {
   for (const int n : {2, 4, 16, 64}) {
-    const Hemicube cube = make_hemicube(n);
+    const Hemicube cube = hemicube_of(n);
     ASSERT_EQ(cube.direction.size(), size_t(3 * n * n));
     ASSERT_EQ(cube.delta_factor.size(), cube.direction.size());
     EXPECT_NEAR(std::accumulate(cube.delta_factor.begin(), cube.delta_factor.end(), 0.0), 1, 1e-14);
@@ -41,7 +46,7 @@ TEST(Hemicube, PixelsShareTheHemisphere) {
 // pixels. [Cohen85, section 3]
 TEST(Hemicube, SmallPixelsHaveCohensDeltaFactors) {
   const int n = 256;
-  const Hemicube cube = make_hemicube(n);
+  const Hemicube cube = hemicube_of(n);
   const double pixel = 4.0 / n / n;
   for (const size_t k : {size_t(0), size_t(300), size_t(n * n / 2 + 77), size_t(n * n + 12345),
                          size_t(3 * n * n - 999)}) {
@@ -53,6 +58,58 @@ TEST(Hemicube, SmallPixelsHaveCohensDeltaFactors) {
                 1e-3 * cube.delta_factor[k])
         << k;
   }
+}
+
+TEST(Hemicube, TheLargestOneStopsWhenAsked) {
+  Progress progress;
+  progress.request_cancel();
+  const auto cube = make_hemicube(4096, progress);
+  ASSERT_FALSE(cube.has_value());
+  EXPECT_EQ(cube.error().code, ErrorCode::cancelled);
+}
+
+// Between the bounds of the binomial distribution, and honest where nothing or everything was hit:
+// with the chance 3 / n for each of n rays, none hits in 5 of 100 cases.
+TEST(StandardErrorOfShare, IsThatOfTheBinomialAndNeverZero) {
+  EXPECT_NEAR(standard_error_of_share(0.3, 1e6), std::sqrt(0.3 * 0.7 / 1e6), 1e-8);
+  for (const double n : {64.0, 256.0, 262144.0})
+    for (const double share : {0.0, 1.0}) {
+      EXPECT_GT(2 * standard_error_of_share(share, n), 0.9 * 3 / (n + 4));
+      EXPECT_LT(2 * standard_error_of_share(share, n), 1.1 * 3 / n);
+    }
+}
+
+// Two hundred surveys of a small share by 64 rays: few are further off than twice the error, though
+// a quarter of them hits nothing at all.
+TEST(StandardErrorOfShare, CoversTheTruthWhereHitsAreRare) {
+  const double truth = 0.02;
+  int off = 0, empty = 0;
+  Dice dice;
+  for (int survey = 0; survey < 400; ++survey) {
+    int hits = 0;
+    for (int k = 0; k < 64; ++k) hits += std::abs(dice.number()) < truth;
+    empty += hits == 0;
+    const double share = hits / 64.0;
+    off += std::abs(share - truth) > 2 * standard_error_of_share(share, 64);
+  }
+  EXPECT_GT(empty, 60);
+  EXPECT_LT(off, 40);
+}
+
+// A point that stands for the whole surface knows nothing of the others.
+TEST(SampledFactors, OneHemicubeClaimsNoCertainty) {
+  const double exact = polygon_form_factor(kFloor, kCeiling);
+  for (uint64_t seed = 1; seed < 20; ++seed) {
+    const auto one =
+        sampled_form_factor(kFloor, kCeiling, {}, {.samples = 1, .hemicube = 32, .seed = seed});
+    EXPECT_GT(one->error, 0.1);
+    EXPECT_NEAR(one->value, exact, 2 * one->error);
+  }
+  const Polygon behind{{0, 1, -1}, {1, 1, -1}, {1, 0, -1}, {0, 0, -1}};
+  const auto none = sampled_form_factor(kFloor, behind, {}, {.samples = 16, .hemicube = 32});
+  EXPECT_EQ(none->value, 0);
+  EXPECT_GT(none->error, 0);
+  EXPECT_LT(none->error, 1e-4);
 }
 
 /// Root mean square over some seeds of a method's error at a level of effort.

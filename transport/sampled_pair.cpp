@@ -35,11 +35,11 @@ Result<SampledFactor> sampled_form_factor(PolygonView a, PolygonView b,
                                           std::span<const Polygon> blockers,
                                           const SampledParams& params) {
   const scene::Scene scene = scene_of_polygons(a, b, blockers);
-  const Surfaces surfaces = surfaces_of(scene);
+  Progress progress;
+  LUXEL_TRY(const Surfaces surfaces, surfaces_of(scene, progress));
   const uint32_t from = surfaces.of_instance[0], to = surfaces.of_instance[1];
   if (from == scene::kNone || to == scene::kNone) return SampledFactor{};
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
-  Progress progress;
   LUXEL_TRY(const FactorMatrix matrix,
             sampled_factors(scene, surfaces, tracer, params, {.from = from}, progress));
   return SampledFactor{matrix.at(from, to), matrix.error[from * matrix.size() + to]};
@@ -49,7 +49,8 @@ Result<SampledFactor> sampled_point_factor(DVec3 point, DVec3 normal, PolygonVie
                                            std::span<const Polygon> blockers,
                                            const SampledParams& params) {
   const scene::Scene scene = scene_of_polygons({}, b, blockers);
-  const Surfaces surfaces = surfaces_of(scene);
+  Progress progress;
+  LUXEL_TRY(const Surfaces surfaces, surfaces_of(scene, progress));
   const uint32_t to = surfaces.of_instance[0];
   if (to == scene::kNone) return SampledFactor{};
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
@@ -57,9 +58,11 @@ Result<SampledFactor> sampled_point_factor(DVec3 point, DVec3 normal, PolygonVie
   if (params.hemicube > 0) {
     std::vector<double> sums(surfaces.surfaces.size());
     const float turn = 2 * kPi * unit_float(uint32_t(hash64(params.seed)));
-    add_hemicube_factors(surfaces, tracer, make_hemicube(params.hemicube),
-                         {to_float(point), 0, up, INFINITY}, turn, sums);
-    return SampledFactor{sums[to], 0};
+    LUXEL_TRY(const Hemicube cube, make_hemicube(params.hemicube, progress));
+    add_hemicube_factors(surfaces, tracer, cube, {to_float(point), 0, up, INFINITY}, turn, sums,
+                         progress);
+    return SampledFactor{sums[to],
+                         standard_error_of_share(sums[to], double(cube.direction.size()))};
   }
   uint32_t count = 0;
   for (uint32_t k = 0; k < params.samples; ++k) {
@@ -69,7 +72,7 @@ Result<SampledFactor> sampled_point_factor(DVec3 point, DVec3 normal, PolygonVie
     count += hit.found() && !hit.back_face && surfaces.of_instance[hit.instance] == to;
   }
   const double share = double(count) / params.samples;
-  return SampledFactor{share, std::sqrt(share * (1 - share) / params.samples)};
+  return SampledFactor{share, standard_error_of_share(share, params.samples)};
 }
 
 }  // namespace luxel::transport

@@ -50,7 +50,8 @@ std::string unique_name(const scene::Scene& scene, uint32_t instance, Names& nam
 
 }  // namespace
 
-Surfaces surfaces_of(const scene::Scene& scene) {
+Result<Surfaces> surfaces_of(const scene::Scene& scene, Progress& progress) {
+  progress.begin("join polygons", scene::first_triangles(scene).back());
   Surfaces out;
   out.of_instance.assign(scene.instances.size(), scene::kNone);
   const Box3 bounds = scene::world_bounds(scene);
@@ -62,7 +63,7 @@ Surfaces surfaces_of(const scene::Scene& scene) {
   Names names;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     Surface surface{unique_name(scene, i, names), i, {}, 0};
-    surface.polygons = merge_polygons(world_triangles(scene, i), out.slack_m);
+    LUXEL_TRY(surface.polygons, merge_polygons(world_triangles(scene, i), out.slack_m, progress));
     for (const Polygon& polygon : surface.polygons) surface.area_m2 += area_m2(polygon);
     if (!(surface.area_m2 > 0)) {
       out.warnings.push_back(fmt::format("surface '{}' has no area and is left out", surface.name));

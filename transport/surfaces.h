@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
+#include "base/result.h"
 #include "scene/scene.h"
 #include "transport/polygon.h"
 
@@ -25,6 +27,8 @@ struct Surfaces {
   std::vector<std::string> warnings;  ///< surfaces that were left out
 };
 
-Surfaces surfaces_of(const scene::Scene& scene);
+/// Triangles of one plane are joined (merge_polygons.h); the stage "join polygons". Errors:
+/// cancelled.
+Result<Surfaces> surfaces_of(const scene::Scene& scene, Progress& progress);
 
 }  // namespace luxel::transport

@@ -208,8 +208,11 @@ VisibleExchange refine(Work& work, std::span<const Polygon> pieces,
     for (size_t i = 2; i < piece.size(); ++i)
       take(evaluate(work, {piece[0], piece[i - 1], piece[i]}, blockers));
   const double least = work.tolerance * std::max(params.negligible_m2, 1e-3 * unoccluded);
-  while (!open.empty() && errors.total() > std::max(least, work.tolerance * sum.value) &&
-         sum.cells < params.max_cells && !(params.progress && params.progress->cancelled())) {
+  const auto is_rough = [&] {
+    return !open.empty() && errors.total() > std::max(least, work.tolerance * sum.value);
+  };
+  while (is_rough() && sum.cells < params.max_cells &&
+         !(params.progress && params.progress->cancelled())) {
     const Cell parent = open.top();
     open.pop();
     std::array<Cell, 4> children = split(work, parent);
@@ -218,6 +221,7 @@ VisibleExchange refine(Work& work, std::span<const Polygon> pieces,
     errors.add(parent, -1);
     for (Cell& child : children) take(std::move(child));
   }
+  sum.gave_up = is_rough();
   sum.value = std::max(0.0, sum.value);  // differences of what was split leave 1e-18
   sum.error = errors.total();
   return sum;
@@ -243,7 +247,7 @@ VisibleExchange visible_exchange_area(PolygonView a, PolygonView b,
   if (!keep_reaching(work, front_a, shaft, candidates, reaching)) return {};
   const ExchangeArea unoccluded = polygon_exchange_area(
       front_a, work.b, reaching.empty() ? 1e-12 : 1e-3 * params.tolerance, work.slack);
-  if (reaching.empty()) return {unoccluded.value, unoccluded.rounding, 0};
+  if (reaching.empty()) return {unoccluded.value, unoccluded.rounding, 0, false};
   // Large blockers first: what they hide whole need not be cut.
   std::stable_sort(reaching.begin(), reaching.end(), [&](uint32_t i, uint32_t j) {
     return blockers[i].area_m2 > blockers[j].area_m2;

@@ -24,6 +24,7 @@ struct VisibleExchange {
   double value = 0;
   double error = 0;  ///< estimated absolute error [m^2]
   uint32_t cells = 0;
+  bool gave_up = false;  ///< at max_cells, with an error above the tolerance
 };
 
 /// Polygon a is cut into triangles until the estimated error is small enough. Triangles past which

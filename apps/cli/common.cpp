@@ -27,7 +27,9 @@ int exit_code(ErrorCode code) {
 
 std::string clock_text(double seconds) {
   const long s = long(seconds + 0.5);
-  return s < 60 ? fmt::format("{} s", s) : fmt::format("{}:{:02} min", s / 60, s % 60);
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
+  return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
 }
 
 /// Shows stages on stderr: one line that is rewritten on a terminal, and a line that stays for each
@@ -48,7 +50,8 @@ class ProgressLine {
       line += fmt::format("  {:3.0f} %", 100 * share);
       if (now.stage == "trace rays")
         line += fmt::format("  {:.1f} Mrays/s", double(now.done) * 1e-6 / now.stage_seconds);
-      if (share > 0.02)
+      // Long work has an estimate early, too.
+      if (share > 0.02 || (share > 0 && now.stage_seconds > 3))
         line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left";
     }
     std::fprintf(stderr, "\r\033[K%s", line.c_str());

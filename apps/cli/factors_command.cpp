@@ -3,6 +3,7 @@
 #include "apps/cli/cli.h"
 #include "base/parallel.h"
 #include "pipeline/factors.h"
+#include "pipeline/settings.h"
 
 namespace luxel::cli {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 struct FactorOptions {
   Common common;
   pipeline::FactorSettings settings;
+  std::string max_memory;
 };
 
 /// Row sums tell something only when rows are whole, reciprocity only when all rows are there.
@@ -70,10 +72,16 @@ void print_report(const pipeline::FactorReport& r) {
 }
 
 int run_factors(const FactorOptions& options) {
+  pipeline::FactorSettings settings = options.settings;
+  if (!options.max_memory.empty()) {
+    const Result<uint64_t> size = pipeline::parse_size(options.max_memory);
+    if (!size) return report(size.error());
+    settings.max_memory_bytes = *size;
+  }
   pipeline::FactorReport report_of_factors;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     const ThreadLimit threads(options.common.threads);
-    LUXEL_TRY(report_of_factors, pipeline::view_factors(options.settings, progress));
+    LUXEL_TRY(report_of_factors, pipeline::view_factors(settings, progress));
     return {};
   });
   if (!done) return report(done.error());
@@ -111,6 +119,8 @@ void register_factors(CLI::App& app, Action& action) {
       "Correct the factors of a closed enclosure: rows sum to 1, A_i F_ij = A_j F_ji");
   factors->add_option("--from", s.from, "Only from this surface")->type_name("NAME");
   factors->add_option("--to", s.to, "Only to this surface")->type_name("NAME");
+  factors->add_option("--max-memory", options->max_memory,
+                      "Memory for the whole process: bytes, 900M, 1.5G (what is free)");
   factors->add_option("--seed", s.seed, "Another seed, another noise")->capture_default_str();
   add_common(*factors, options->common);
   factors->callback([options, &action] { action = [options] { return run_factors(*options); }; });

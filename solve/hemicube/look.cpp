@@ -21,8 +21,8 @@ struct Pixel {
 };
 
 /// All pixels, in tiles of 4 x 4 of a face: a packet of rays that stay together.
-std::vector<Pixel> pixels_in_tiles(int resolution) {
-  const transport::Hemicube cube = transport::make_hemicube(resolution);
+Result<std::vector<Pixel>> pixels_in_tiles(int resolution, Progress& progress) {
+  LUXEL_TRY(const transport::Hemicube cube, transport::make_hemicube(resolution, progress));
   std::vector<Pixel> pixels;
   pixels.reserve(cube.direction.size());
   size_t first = 0;
@@ -95,9 +95,9 @@ struct Work {
 
 class Looker {
  public:
-  Looker(const Senders& senders, int resolution)
+  Looker(const Senders& senders, std::vector<Pixel> pixels)
       : s_(senders),
-        pixels_(pixels_in_tiles(resolution)),
+        pixels_(std::move(pixels)),
         diagonal_m_(scene::world_bounds(senders.scene).diagonal()) {
     for (const scene::Material& m : s_.scene.materials)
       sorts_.push_back({m.double_sided, max_component(m.emission) > 0 && s_.emission_by_pixels});
@@ -184,7 +184,8 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
                          const std::function<Status(size_t, const View&)>& done,
                          Progress& progress) {
   LUXEL_CHECK(params.resolution >= 2 && params.resolution % 2 == 0);
-  const Looker looker(senders, params.resolution);
+  LUXEL_TRY(std::vector<Pixel> pixels, pixels_in_tiles(params.resolution, progress));
+  const Looker looker(senders, std::move(pixels));
   std::mutex mutex;
   Status status;
   LookSeconds sum;

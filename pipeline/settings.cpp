@@ -75,7 +75,7 @@ Status check(const HemicubeSettings& s) {
                 kMaxElements);
   if (!(s.max_error >= 0) || s.max_error > 1e6)
     return fail(ErrorCode::bad_setting,
-                "--max-error {} is not an error; give a part of the light, as 0.02, or 0 for no "
+                "--max-error {} is not an error; give a part of the light, as 0.01, or 0 for no "
                 "refinement",
                 s.max_error);
   return {};

@@ -34,7 +34,7 @@ struct HemicubeSettings {
   int resolution = 64;              ///< pixels along an edge of the hemicube's top, even
   double element_size_m = 0;        ///< legs of the first triangles; 0: by max_elements
   int64_t max_elements = 0;         ///< 0: 20,000, or more when the scene has many itself
-  double max_error = 0.02;          ///< cut where interpolation errs by more; 0: nowhere
+  double max_error = 0.01;          ///< cut where interpolation errs by more; 0: nowhere
   bool smooth = false;              ///< triangle: interpolate between middles
 };
 

@@ -17,7 +17,7 @@ struct HemicubeParams {
   size_t max_elements = 0;
   /// Triangles are cut while linear interpolation over them errs by more than this part of the
   /// light there. 0: none is.
-  float max_error = 0.02f;
+  float max_error = 0.01f;
   int direct_samples = 256;  ///< shadow rays per element towards emissive surfaces
   int bounces = -1;          ///< < 0: until the light to come is below `tolerance`
   float tolerance = 1e-4f;   ///< root mean square over the elements, relative to the mean

@@ -8,7 +8,7 @@ namespace luxel::hemicube {
 namespace {
 
 /// How far into its triangles a vertex at the rim is looked at, in parts of its shortest edge.
-constexpr float kInset = 0.01f;
+constexpr float kInset = 0.1f;
 
 /// An edge of a leaf, by its vertices.
 struct LeafEdge {

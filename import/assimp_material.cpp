@@ -111,6 +111,8 @@ Result<scene::Material> read_material(Textures& textures, unsigned index) {
   out.base_color = color_of(in, AI_MATKEY_COLOR_DIFFUSE, out.base_color);
   out.base_color = color_of(in, AI_MATKEY_BASE_COLOR, out.base_color);
   out.emission = color_of(in, AI_MATKEY_COLOR_EMISSIVE, {});
+  out.specular = color_of(in, AI_MATKEY_COLOR_SPECULAR, out.specular);
+  in.Get(AI_MATKEY_SHININESS, out.sharpness);
   in.Get(AI_MATKEY_METALLIC_FACTOR, out.metallic);
   in.Get(AI_MATKEY_OPACITY, out.alpha);
   if (out.alpha < 1) out.alpha_mode = scene::AlphaMode::blend;

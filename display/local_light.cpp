@@ -82,11 +82,11 @@ Viewer::Viewer(const scene::Camera& camera)
 Vec3 Viewer::from(Vec3 position) const { return orthographic ? back : normalize(eye - position); }
 
 /// [Rodriguez06, eq. 4.10, 4.21, 4.26, 4.28]. The shaders of sections 5.3.4 to 5.4.3 print R with
-/// `vecLightWorld`, which is -L, in the place of eq. 4.22's vector towards the light; section 5.3.3
-/// itself warns of that mistake. With d = -L it gives 2 (N.d) N - d = -(2 (N.L) N - L), the mirror
-/// direction turned round, and its saturate() makes that d's own inverse, L, on every surface that
-/// is lit: the highlight would look back at the lamp. R below is eq. 4.22's. The saturate() inside
-/// R is kept as what it is for: where N.L <= 0 no light arrives, so none is mirrored.
+/// `vecLightWorld`, which is d = -L, in the place of eq. 4.22's vector towards the light; section
+/// 5.3.3 itself warns of that mistake. 2 (N.d) N - d is the mirror direction turned round, and with
+/// the saturate() that the print has around N.d it is just -d = L on every surface that is lit: the
+/// highlight would look back at the lamp. R below is eq. 4.22's. The saturate() is kept as what it
+/// is for: where N.L <= 0 no light arrives, so none is mirrored.
 Rgb local_color(LocalTechnique technique, const LocalSurface& surface, const LocalLights& lights,
                 Vec3 normal, Vec3 to_viewer) {
   const Terms terms = terms_of(technique);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "base/progress.h"
 #include "base/result.h"
@@ -14,7 +15,8 @@ namespace luxel::display {
 
 struct DrawParams {
   int width = 960, height = 720;
-  int samples_per_axis = 3;  ///< n x n rays per pixel
+  int samples_per_axis = 3;                      ///< n x n rays per pixel
+  std::optional<Rgb> background = std::nullopt;  ///< instead of the scene's
 };
 
 /// How the surface that a camera's ray met looks from there. Called by many threads at once.

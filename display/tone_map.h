@@ -27,7 +27,7 @@ float exposure_of_stops(double stops);
 /// white.
 Rgb compress(Rgb exposed);
 
-/// c / (k + c) in every channel, k > 0. [Moreno05, section 4.4.5] The paper's k of 0.1 to 0.02 is a
+/// c / (k + c) in every channel, k > 0. [Moreno05, section 4.4.2] The paper's k of 0.1 to 0.02 is a
 /// k of 1 with log2(1 / k) = 3.3 to 5.6 stops more.
 Rgb ratio_curve(Rgb exposed, float k = 1);
 

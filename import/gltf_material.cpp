@@ -97,8 +97,8 @@ float mean_channel(const scene::Scene& scene, const TextureRef& ref, size_t chan
   return rgba.empty() ? 1.0f : float(double(sum) * 4 / double(rgba.size()) / 255);
 }
 
-/// Phong's highlight from roughness, metallic and KHR_materials_specular; docs/display.md. One value
-/// per material: of the metallic-roughness texture the mean counts, of others the factor.
+/// Phong's highlight from roughness, metallic and KHR_materials_specular; docs/display.md. One
+/// value per material: of the metallic-roughness texture the mean counts, of others the factor.
 void set_highlight(const GltfReader& reader, const tinygltf::Material& in, scene::Material& m) {
   if (m.unlit) return;
   double weight = 1;

@@ -70,11 +70,11 @@ TEST(GltfMaterial, RoughnessAndMetallicBecomeAHighlight) {
       material({{"pbrMetallicRoughness",
                  {{"baseColorFactor", {0.2, 0.1, 0.05, 1}}, {"roughnessFactor", 0.5}}}});
   expect_near(metal.specular, Rgb{0.2f, 0.1f, 0.05f} * ((kHalfRough + 1) / 2), 1e-6f);
-  const scene::Material tinted = material(
-      {{"pbrMetallicRoughness", plastic},
-       {"extensions",
-        {{"KHR_materials_specular",
-          {{"specularFactor", 0.5}, {"specularColorFactor", {1, 2, 0}}}}}}});
+  const scene::Material tinted =
+      material({{"pbrMetallicRoughness", plastic},
+                {"extensions",
+                 {{"KHR_materials_specular",
+                   {{"specularFactor", 0.5}, {"specularColorFactor", {1, 2, 0}}}}}}});
   expect_near(tinted.specular, Rgb{1, 2, 0} * (0.02f * (kHalfRough + 1) / 2), 1e-6f);
 }
 

@@ -59,6 +59,7 @@ Result<image::Image> draw_quick_bake(const Subject& subject, const RenderSetting
   BakeSettings settings;
   settings.scene = s.scene, settings.outside = s.outside;
   settings.output = s.output.parent_path().empty() ? "." : s.output.parent_path();
+  settings.bounces = s.bounces.value_or(-1), settings.seed = s.seed.value_or(1);
   settings.resolution = kQuickResolution;
   settings.samples = kQuickSamples, settings.direct_samples = kQuickDirectSamples;
   LUXEL_TRY(const Bake bake, bake_scene(settings, progress));

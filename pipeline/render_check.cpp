@@ -31,7 +31,7 @@ Status check_output(const RenderSettings& s, const Technique* technique) {
   return {};
 }
 
-/// "path or ..."
+/// "c, ca, ...": the techniques that have a feature.
 std::string users_of(bool Technique::*feature) {
   std::string names;
   for (const Technique& technique : techniques())

@@ -69,7 +69,7 @@ constexpr std::array kTechniques{
               .draw = draw_local<LocalTechnique::ca>,
               .is_light = false},
     Technique{.name = "cad",
-              .help = "and diffuse light, per vertex",
+              .help = "ambient and diffuse light, per vertex",
               .draw = draw_local<LocalTechnique::cad>,
               .is_light = false,
               .has_lamps = true},

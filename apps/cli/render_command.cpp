@@ -105,8 +105,8 @@ int run_render(const RenderOptions& options) {
 std::string technique_help() {
   std::string help;
   for (const pipeline::Technique& t : pipeline::techniques())
-    help += fmt::format("{} = {}; ", t.name, t.help);
-  return help + "all = a sheet of all of these";
+    help += fmt::format("{} = {}\n", t.name, t.help);
+  return help + std::string(pipeline::kAllTechniques) + " = a sheet of all of these";
 }
 
 std::vector<std::string> technique_names() {
@@ -147,6 +147,7 @@ void register_render(CLI::App& app, Action& action) {
                       ->needs(eye);
   eye->needs(look_at);
   render->add_option("--fov-deg", s.fov_deg, "Vertical field of view")
+      ->needs(eye)
       ->check(CLI::Range(1.0, 170.0))
       ->capture_default_str();
   render

@@ -42,12 +42,12 @@ Rgb seen_radiance(const scene::Scene& scene, const scene::SurfacePoint& p,
 }
 
 /// Mean over a pixel's samples; summed in double so that equal samples give back their value.
-void write_pixel(const scene::Scene& scene, std::span<const trace::Hit> hits,
-                 const IrradianceAt& irradiance_at, float* pixel) {
+void write_pixel(Rgb background, std::span<const trace::Hit> hits, const SeenAt& seen_at,
+                 float* pixel) {
   double r = 0, g = 0, b = 0;
   size_t found = 0;
   for (const trace::Hit& hit : hits) {
-    const Rgb c = hit.found() ? seen_radiance(scene, hit.point(), irradiance_at) : scene.background;
+    const Rgb c = hit.found() ? seen_at(hit) : background;
     r += double(c.x), g += double(c.y), b += double(c.z);
     found += hit.found() ? 1 : 0;
   }
@@ -58,13 +58,14 @@ void write_pixel(const scene::Scene& scene, std::span<const trace::Hit> hits,
 
 }  // namespace
 
-Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tracer,
-                          const scene::Camera& camera, const IrradianceAt& irradiance_at,
-                          const DrawParams& params, Progress& progress) {
+Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer& tracer,
+                               const scene::Camera& camera, const SeenAt& seen_at,
+                               const DrawParams& params, Progress& progress) {
   LUXEL_CHECK(params.width > 0 && params.height > 0 && params.samples_per_axis > 0);
   const trace::CameraRays rays_of(camera, params.width, params.height);
   const size_t tiles =
       size_t((params.width + kTile - 1) / kTile) * size_t((params.height + kTile - 1) / kTile);
+  const Rgb background = params.background.value_or(scene.background);
   image::Image picture(params.width, params.height, 4);
   progress.begin("draw", tiles);
   parallel_for(tiles, 1, [&](size_t begin, size_t end) {
@@ -76,7 +77,7 @@ Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tra
       size_t first = 0;
       for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x, first += per_pixel)
-          write_pixel(scene, std::span(hits).subspan(first, per_pixel), irradiance_at,
+          write_pixel(background, std::span(hits).subspan(first, per_pixel), seen_at,
                       picture.at(x, y));
       progress.advance(1);
     }
@@ -84,6 +85,15 @@ Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tra
   progress.finish();
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "drawing was stopped");
   return picture;
+}
+
+Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tracer,
+                          const scene::Camera& camera, const IrradianceAt& irradiance_at,
+                          const DrawParams& params, Progress& progress) {
+  const auto seen_at = [&](const trace::Hit& hit) {
+    return seen_radiance(scene, hit.point(), irradiance_at);
+  };
+  return draw_seen(scene, tracer, camera, seen_at, params, progress);
 }
 
 }  // namespace luxel::display

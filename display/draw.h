@@ -1,7 +1,9 @@
-// A picture of a solution: what a camera sees when surfaces are lit only by a solver's answer.
+// Pictures of surfaces: what a camera sees when a function says how each point looks, above all
+// when surfaces are lit only by a solver's answer.
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "base/progress.h"
 #include "base/result.h"
@@ -13,15 +15,24 @@ namespace luxel::display {
 
 struct DrawParams {
   int width = 960, height = 720;
-  int samples_per_axis = 3;  ///< n x n rays per pixel
+  int samples_per_axis = 3;                      ///< n x n rays per pixel
+  std::optional<Rgb> background = std::nullopt;  ///< instead of the scene's
 };
+
+/// How the surface that a camera's ray met looks from there. Called by many threads at once.
+using SeenAt = std::function<Rgb(const trace::Hit&)>;
+
+/// What is seen per pixel, 4 channels (A = share of the pixel that shows a surface). Back faces of
+/// one-sided materials are invisible, as in a real-time engine, so a closed room can be looked into
+/// from outside. Where nothing is seen: the background.
+Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer& tracer,
+                               const scene::Camera& camera, const SeenAt& seen_at,
+                               const DrawParams& params, Progress& progress);
 
 /// E [W/m^2] of the front side at a surface point.
 using IrradianceAt = std::function<Rgb(const scene::SurfacePoint&)>;
 
-/// Radiance per pixel, 4 channels (A = share of the pixel that shows a surface): emitted plus
-/// rho E / pi. Back faces of one-sided materials are invisible, as in a real-time engine, so a
-/// closed room can be looked into from outside. Where nothing is seen: the background.
+/// draw_seen of radiance: emitted plus rho E / pi.
 Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tracer,
                           const scene::Camera& camera, const IrradianceAt& irradiance_at,
                           const DrawParams& params, Progress& progress);

@@ -81,6 +81,88 @@ TEST(Compress, BrightColoursMoveToWhite) {
   EXPECT_LT(saturation(compress({1000, 100, 100})), 0.01f);
 }
 
+/// A luminance at several levels through a curve.
+Rgb grey(float v) { return {v, v, v}; }
+
+TEST(Curves, GrowWithExposureAndNeverLeaveTheScreen) {
+  RandomStream random{5};
+  for (const NamedToneMap& tone_map : kToneMaps)
+    for (int i = 0; i < 200; ++i) {
+      const Rgb c = random_color(random, 1);
+      Rgb before = apply(tone_map.curve, {});
+      EXPECT_EQ(before, Rgb{}) << tone_map.name;
+      for (float exposure = 0.01f; exposure < 1000; exposure *= 1.1f) {
+        const Rgb now = apply(tone_map.curve, c * exposure);
+        EXPECT_LE(max_component(now), 1) << tone_map.name;
+        for (int k = 0; k < 3; ++k) EXPECT_GE(now[k], before[k] - 1e-6f) << tone_map.name;
+        before = now;
+      }
+    }
+}
+
+TEST(Curves, WhatIsNoLightIsBlackAndInfinityIsWhite) {
+  const float nan = std::nanf("");
+  for (const NamedToneMap& tone_map : kToneMaps) {
+    EXPECT_EQ(apply(tone_map.curve, {-1, -2, -1e30f}), Rgb{}) << tone_map.name;
+    EXPECT_EQ(apply(tone_map.curve, {nan, nan, nan}), Rgb{}) << tone_map.name;
+    EXPECT_NEAR(apply(tone_map.curve, grey(INFINITY)).y, 1, 1e-5f) << tone_map.name;
+  }
+}
+
+TEST(Curves, RatioIsTheHalfAtK) {
+  for (const float k : {0.02f, 0.1f, 1.0f}) {
+    const Rgb c = ratio_curve({k, 3 * k, 0}, k);
+    EXPECT_FLOAT_EQ(c.x, 0.5f);
+    EXPECT_FLOAT_EQ(c.y, 0.75f);
+    EXPECT_EQ(c.z, 0);
+    // k is an exposure.
+    EXPECT_NEAR(ratio_curve(grey(0.3f), k).x,
+                ratio_curve(grey(0.3f) * exposure_of_stops(std::log2(1 / double(k)))).x, 1e-6f);
+  }
+}
+
+TEST(Curves, ReinhardReaches1AtItsWhitePointAndKeepsTheHue) {
+  for (const float white : {1.0f, 4.0f, 20.0f}) {
+    EXPECT_NEAR(reinhard_curve(grey(white), white).x, 1, 1e-6f);
+    EXPECT_LT(reinhard_curve(grey(0.9f * white), white).x, 1);
+  }
+  EXPECT_FLOAT_EQ(reinhard_curve(grey(1), 4).y, (1 + 1.0f / 16) / 2);
+  EXPECT_NEAR(reinhard_curve(grey(2), 1e6f).y, 2.0f / 3, 1e-6f) << "a far white: L / (1 + L)";
+  const Rgb c = reinhard_curve({0.4f, 0.2f, 0.1f});
+  EXPECT_NEAR(c.x / c.y, 2, 1e-5f);
+  EXPECT_NEAR(c.y / c.z, 2, 1e-5f);
+}
+
+TEST(Curves, FilmicHasItsToeItsFitAndItsWhite) {
+  EXPECT_NEAR(filmic_curve(grey(1)).x, 2.54f / 3.16f, 1e-6f);
+  // 1 where 0.08 x^2 - 0.56 x - 0.14 = 0.
+  const float white = (0.56f + std::sqrt(0.56f * 0.56f + 4 * 0.08f * 0.14f)) / 0.16f;
+  EXPECT_NEAR(filmic_curve(grey(white)).x, 1, 1e-5f);
+  EXPECT_LT(filmic_curve(grey(0.95f * white)).x, 1);
+  EXPECT_LT(filmic_curve(grey(0.01f)).x / 0.01f, filmic_curve(grey(0.1f)).x / 0.1f) << "a toe";
+}
+
+TEST(Curves, AreFoundByName) {
+  EXPECT_EQ(find_tone_map("filmic"), ToneMap::filmic);
+  EXPECT_EQ(find_tone_map("Filmic"), std::nullopt);
+  EXPECT_EQ(apply(ToneMap::shoulder, grey(3)), compress(grey(3)));
+}
+
+TEST(Exposure, AStopDoublesTheLight) {
+  EXPECT_EQ(exposure_of_stops(0), 1);
+  EXPECT_EQ(exposure_of_stops(1), 2);
+  EXPECT_EQ(exposure_of_stops(-2), 0.25f);
+  image::Image radiance(1, 1, 3);
+  radiance.set_rgb(0, 0, grey(0.2f));
+  const auto shown = [&](double stops) {
+    const float v = float(tone_map(radiance, exposure_of_stops(stops), ToneMap::clamp).data[0]);
+    return image::linear_from_srgb(v / 255);
+  };
+  EXPECT_NEAR(shown(0), 0.2f, 0.003f);
+  EXPECT_NEAR(shown(1), 0.4f, 0.004f);
+  EXPECT_NEAR(shown(2), 0.8f, 0.006f);
+}
+
 image::Image two_tones(int dark, int bright, float low, float high) {
   image::Image image(dark + bright, 1, 4);
   for (int x = 0; x < dark + bright; ++x) {
@@ -95,6 +177,14 @@ TEST(AutoExposure, BringsThe90thPercentileTo06) {
   image::Image ramp(1001, 1, 3);
   for (int x = 0; x <= 1000; ++x) ramp.set_rgb(x, 0, {float(x), float(x), float(x)});
   EXPECT_NEAR(auto_exposure(ramp) * 900, 0.6f, 1e-4f);
+}
+
+TEST(AutoExposure, TakesThePercentileThatItIsTold) {
+  image::Image ramp(1001, 1, 3);
+  for (int x = 0; x <= 1000; ++x) ramp.set_rgb(x, 0, {float(x), float(x), float(x)});
+  EXPECT_NEAR(auto_exposure(ramp, 50) * 500, 0.6f, 1e-4f);
+  EXPECT_NEAR(auto_exposure(ramp, 100) * 1000, 0.6f, 1e-4f);
+  EXPECT_NEAR(auto_exposure(ramp, 0) * 1, 0.6f, 1e-4f) << "black at 0: the least that is not";
 }
 
 TEST(AutoExposure, SkipsEmptyPixels) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "image/codec.h"
+#include "scene/specular.h"
 
 namespace luxel::export_ {
 namespace {
@@ -125,6 +126,16 @@ void set_emission(Glb& glb, MaterialBook& book, const scene::Scene& scene, const
   glb.extensions_used.insert("KHR_materials_emissive_strength");
 }
 
+/// Phong's highlight of a material that is no metal, as import/ will find it again. Only where
+/// something was set: a scene that asks for no highlight is written without one.
+void set_highlight(Glb& glb, const scene::Material& m, json& out) {
+  if (!(max_component(m.specular) > 0) || m.metallic > 0) return;
+  const Rgb color = scene::f0_of(m.specular, m.sharpness) / scene::kDielectricF0;
+  out["pbrMetallicRoughness"]["roughnessFactor"] = scene::roughness_of(m.sharpness);
+  out["extensions"]["KHR_materials_specular"] = {{"specularColorFactor", rgb(color)}};
+  glb.extensions_used.insert("KHR_materials_specular");
+}
+
 json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
                    const scene::Material& m, TexcoordSlots slots) {
   json out = {{"pbrMetallicRoughness", surface(glb, book, scene, m, slots)}};
@@ -140,6 +151,8 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
     out["extensions"]["KHR_materials_unlit"] = json::object();
     glb.extensions_used.insert("KHR_materials_unlit");
   }
+  // What is baked is diffuse.
+  if (book.lightmap.is_null()) set_highlight(glb, m, out);
   if (!book.lightmap.is_null()) {
     out["extensions"]["MOZ_lightmap"] = book.lightmap;
     out["extras"]["luxel"]["lightmap"] = "lightmap.exr";

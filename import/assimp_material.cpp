@@ -98,6 +98,14 @@ Rgb color_of(const aiMaterial& in, const char* key, unsigned type, unsigned inde
   return in.Get(key, type, index, c) == aiReturn_SUCCESS ? Rgb{c.r, c.g, c.b} : fallback;
 }
 
+/// Assimp states a specular colour for Lambertian materials too, and makes up grey for Collada's.
+/// An .mtl often has Ks without the `illum` that would ask for it, and Assimp adds none.
+bool has_highlight(const aiMaterial& in, const SourceFile& source) {
+  int model = aiShadingMode_Gouraud;
+  in.Get(AI_MATKEY_SHADING_MODEL, model);
+  return source.extension == ".obj" || model == aiShadingMode_Phong || model == aiShadingMode_Blinn;
+}
+
 Result<scene::Material> read_material(Textures& textures, unsigned index) {
   const aiMaterial& in = *textures.in.mMaterials[index];
   aiString name;
@@ -111,6 +119,12 @@ Result<scene::Material> read_material(Textures& textures, unsigned index) {
   out.base_color = color_of(in, AI_MATKEY_COLOR_DIFFUSE, out.base_color);
   out.base_color = color_of(in, AI_MATKEY_BASE_COLOR, out.base_color);
   out.emission = color_of(in, AI_MATKEY_COLOR_EMISSIVE, {});
+  if (has_highlight(in, textures.source)) {
+    float factor = 1;  // FBX's SpecularFactor, which Assimp leaves to us, unlike the others
+    in.Get(AI_MATKEY_SHININESS_STRENGTH, factor);
+    out.specular = color_of(in, AI_MATKEY_COLOR_SPECULAR, out.specular) * factor;
+    in.Get(AI_MATKEY_SHININESS, out.sharpness);
+  }
   in.Get(AI_MATKEY_METALLIC_FACTOR, out.metallic);
   in.Get(AI_MATKEY_OPACITY, out.alpha);
   if (out.alpha < 1) out.alpha_mode = scene::AlphaMode::blend;

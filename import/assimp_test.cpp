@@ -38,6 +38,28 @@ TEST(Obj, GroupsBecomeMeshesAndKeEmits) {
     EXPECT_FLOAT_EQ(scene.meshes[0].uv0[v].y, scene.meshes[0].positions[v].y > 0 ? 0.0f : 0.75f);
 }
 
+TEST(Obj, KsAndNsAreTheHighlight) {
+  const TemporaryFolder folder;
+  folder.write("m.mtl",
+               "newmtl white\nKd 0.5 0.6 0.7\nKs 0.1 0.2 0.3\nNs 42\nillum 2\n\n"
+               "newmtl glow\nKd 0.1 0.1 0.1\n");
+  const scene::Scene scene = scene_of(import_scene(folder.write("a.obj", kTwoSquares)));
+  const scene::Material& white = scene::material_at(scene, {0, 0, {}});
+  expect_near(white.specular, {0.1f, 0.2f, 0.3f}, 1e-6f);
+  EXPECT_FLOAT_EQ(white.sharpness, 42);
+  EXPECT_EQ(scene::material_at(scene, {1, 0, {}}).specular, Rgb{}) << "no Ks: no highlight";
+}
+
+TEST(Obj, HighlightsThatAreNoNumbersAreRefusedOrClamped) {
+  const TemporaryFolder folder;
+  folder.write("m.mtl", "newmtl white\nKd 0.5 0.6 0.7\nKs -0.1 0.2 0.3\nNs -2\n");
+  const auto imported = import_scene(folder.write("a.obj", kTwoSquares));
+  const scene::Scene scene = scene_of(imported);
+  EXPECT_EQ(scene::material_at(scene, {0, 0, {}}).specular, (Rgb{0, 0.2f, 0.3f}));
+  EXPECT_EQ(scene::material_at(scene, {0, 0, {}}).sharpness, 0);
+  EXPECT_THAT(all_of(imported->warnings), HasSubstr("specular"));
+}
+
 TEST(Obj, GroupOfTwoMaterialsIsOneMesh) {
   const TemporaryFolder folder;
   folder.write("m.mtl", "newmtl a\nKd 0.1 0.1 0.1\nnewmtl b\nKd 0.2 0.2 0.2\n");

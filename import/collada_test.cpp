@@ -42,8 +42,9 @@ constexpr const char* kMaterials = R"(
   <effect id="fx_paint"><profile_COMMON>
     <newparam sid="surf"><surface type="2D"><init_from>pic</init_from></surface></newparam>
     <newparam sid="samp"><sampler2D><source>surf</source></sampler2D></newparam>
-    <technique sid="common"><lambert><diffuse><texture texture="samp" texcoord="map"/></diffuse>
-    </lambert></technique></profile_COMMON></effect>
+    <technique sid="common"><phong><diffuse><texture texture="samp" texcoord="map"/></diffuse>
+    <specular><color>0.1 0.2 0.3 1</color></specular><shininess><float>42</float></shininess>
+    </phong></technique></profile_COMMON></effect>
   <effect id="fx_glow"><profile_COMMON><technique sid="common"><lambert>
     <emission><color>17 12 4 1</color></emission><diffuse><color>0.1 0.2 0.3 1</color></diffuse>
     </lambert></technique></profile_COMMON></effect>
@@ -151,6 +152,9 @@ TEST(Collada, MaterialsTexturesAndCoordinates) {
   expect_near(scene::emission_at(scene, floor), {0, 0, 0}, 0);
   expect_near(scene::reflectance_at(scene, lamp), {0.1f, 0.2f, 0.3f}, 1e-5f);
   expect_near(scene::emission_at(scene, lamp), {17, 12, 4}, 1e-5f);
+  expect_near(scene::material_at(scene, floor).specular, {0.1f, 0.2f, 0.3f}, 1e-6f);
+  EXPECT_FLOAT_EQ(scene::material_at(scene, floor).sharpness, 42);
+  EXPECT_EQ(scene::material_at(scene, lamp).specular, Rgb{}) << "lambert; Assimp makes up 0.4";
   ASSERT_EQ(scene.textures.size(), 1u);
   EXPECT_EQ(scene.textures[0].width, 3);
   // The file's v grows upwards, ours downwards.

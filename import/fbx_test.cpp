@@ -116,8 +116,11 @@ constexpr const char* kLightsAndCamera = R"(
 
 constexpr const char* kMaterials = R"(
   Material: 400, "Material::paint", "" {
-    ShadingModel: "lambert"
+    ShadingModel: "phong"
     Properties70: {
+      P: "SpecularColor", "Color", "", "A",0.4,0.2,0.1
+      P: "SpecularFactor", "Number", "", "A",0.5
+      P: "ShininessExponent", "Number", "", "A",25
       P: "DiffuseColor", "Color", "", "A",0.5,0.6,0.7
       P: "DiffuseFactor", "Number", "", "A",0.5
     }
@@ -126,6 +129,7 @@ constexpr const char* kMaterials = R"(
     ShadingModel: "lambert"
     Properties70: {
       P: "DiffuseColor", "Color", "", "A",0.1,0.2,0.3
+      P: "SpecularColor", "Color", "", "A",0.4,0.2,0.1
       P: "EmissiveColor", "Color", "", "A",1,0.5,0.25
       P: "EmissiveFactor", "Number", "", "A",8
     }
@@ -204,6 +208,9 @@ TEST(Fbx, MaterialsTexturesAndCoordinates) {
   expect_near(scene::emission_at(scene, floor), {0, 0, 0}, 0);
   expect_near(scene::reflectance_at(scene, lamp), {0.1f, 0.2f, 0.3f}, 1e-5f);
   expect_near(scene::emission_at(scene, lamp), {8, 4, 2}, 1e-5f);
+  expect_near(scene::material_at(scene, floor).specular, {0.2f, 0.1f, 0.05f}, 1e-6f);
+  EXPECT_FLOAT_EQ(scene::material_at(scene, floor).sharpness, 25);
+  EXPECT_EQ(scene::material_at(scene, lamp).specular, Rgb{}) << "lambert";
   ASSERT_EQ(scene.textures.size(), 1u);
   EXPECT_EQ(scene.textures[0].width, 3);
   EXPECT_EQ(scene::material_at(scene, floor).base_color_texture.texture, 0u);

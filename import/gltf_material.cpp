@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "import/gltf_parts.h"
+#include "scene/specular.h"
 
 namespace luxel::import {
 namespace {
@@ -87,6 +88,34 @@ scene::AlphaMode alpha_mode_of(const std::string& mode) {
   return scene::AlphaMode::opaque;
 }
 
+/// The mean of one channel of a texture, in [0, 1]; 1 without a texture.
+float mean_channel(const scene::Scene& scene, const TextureRef& ref, size_t channel) {
+  if (ref.texture == scene::kNone) return 1;
+  const std::vector<uint8_t>& rgba = scene.textures[ref.texture].rgba;
+  uint64_t sum = 0;
+  for (size_t i = channel; i < rgba.size(); i += 4) sum += rgba[i];
+  return rgba.empty() ? 1.0f : float(double(sum) * 4 / double(rgba.size()) / 255);
+}
+
+/// Phong's highlight from roughness, metallic and KHR_materials_specular; docs/display.md. One
+/// value per material: of the metallic-roughness texture the mean counts, of others the factor.
+void set_highlight(const GltfReader& reader, const tinygltf::Material& in, scene::Material& m) {
+  if (m.unlit) return;
+  double weight = 1;
+  Rgb color{1, 1, 1};
+  if (const auto it = in.extensions.find("KHR_materials_specular"); it != in.extensions.end()) {
+    weight = number_in(it->second, "specularFactor", 1);
+    color = vec3_in(it->second, "specularColorFactor", color);
+  }
+  const scene::Scene& scene = reader.out.scene;
+  const float metallic = m.metallic * mean_channel(scene, m.metallic_texture, 2);
+  const float roughness = m.roughness * mean_channel(scene, m.metallic_texture, 1);
+  const Rgb dielectric = min(color * scene::kDielectricF0, Rgb{1, 1, 1}) * float(weight);
+  const Rgb f0 = dielectric * (1 - metallic) + m.base_color * metallic;
+  m.sharpness = scene::sharpness_of(roughness);
+  m.specular = scene::specular_of(f0, m.sharpness);
+}
+
 Result<scene::Material> read_material(GltfReader& reader, ImageLoader& images, size_t index) {
   const tinygltf::Material& in = reader.model.materials[index];
   const auto& pbr = in.pbrMetallicRoughness;
@@ -118,6 +147,7 @@ Result<scene::Material> read_material(GltfReader& reader, ImageLoader& images, s
     tinygltf::TextureInfo metallic = pbr.metallicRoughnessTexture;
     LUXEL_TRY(out.metallic_texture, read_ref(reader, images, metallic, user));
   }
+  set_highlight(reader, in, out);
   return out;
 }
 
@@ -150,6 +180,18 @@ Vec2 vec2_in(const tinygltf::Value& object, const char* key, Vec2 fallback) {
   const tinygltf::Value &x = value.Get(0), &y = value.Get(1);
   if (!x.IsNumber() || !y.IsNumber()) return fallback;
   return {float(x.GetNumberAsDouble()), float(y.GetNumberAsDouble())};
+}
+
+Rgb vec3_in(const tinygltf::Value& object, const char* key, Rgb fallback) {
+  if (!object.IsObject() || !object.Has(key)) return fallback;
+  const tinygltf::Value& value = object.Get(key);
+  if (!value.IsArray() || value.ArrayLen() < 3) return fallback;
+  std::array<float, 3> c{};
+  for (size_t k = 0; k < 3; ++k) {
+    if (!value.Get(k).IsNumber()) return fallback;
+    c[k] = float(value.Get(k).GetNumberAsDouble());
+  }
+  return {c[0], c[1], c[2]};
 }
 
 Status read_materials(GltfReader& reader) {

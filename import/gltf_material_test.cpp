@@ -55,6 +55,38 @@ TEST(GltfMaterial, FactorsModesAndStrength) {
   expect_near(scene::emission_at(scene, {0, 0, {0.2f, 0.2f}}), {8, 4, 2}, 1e-5f);
 }
 
+/// roughness 0.5: alpha = 1/4, Blinn's exponent 2 * 16 - 2 = 30, Phong's a quarter of it.
+constexpr float kHalfRough = 7.5f;
+
+TEST(GltfMaterial, RoughnessAndMetallicBecomeAHighlight) {
+  const auto material = [](nlohmann::json json) {
+    return scene_of(import_glb(square_with_material(std::move(json)))).materials[0];
+  };
+  const nlohmann::json plastic = {{"metallicFactor", 0}, {"roughnessFactor", 0.5}};
+  const scene::Material dielectric = material({{"pbrMetallicRoughness", plastic}});
+  EXPECT_FLOAT_EQ(dielectric.sharpness, kHalfRough);
+  expect_near(dielectric.specular, Rgb{1, 1, 1} * (0.04f * (kHalfRough + 1) / 2), 1e-6f);
+  const scene::Material metal =
+      material({{"pbrMetallicRoughness",
+                 {{"baseColorFactor", {0.2, 0.1, 0.05, 1}}, {"roughnessFactor", 0.5}}}});
+  expect_near(metal.specular, Rgb{0.2f, 0.1f, 0.05f} * ((kHalfRough + 1) / 2), 1e-6f);
+  const scene::Material tinted =
+      material({{"pbrMetallicRoughness", plastic},
+                {"extensions",
+                 {{"KHR_materials_specular",
+                   {{"specularFactor", 0.5}, {"specularColorFactor", {1, 2, 0}}}}}}});
+  expect_near(tinted.specular, Rgb{1, 2, 0} * (0.02f * (kHalfRough + 1) / 2), 1e-6f);
+}
+
+TEST(GltfMaterial, HighlightsOfTexturedMetalsTakeTheTexturesMean) {
+  Gltf gltf = square_with_material(
+      {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}});
+  add_texture(gltf, png_of(2, 2, {0, 128, 0, 255}));  // roughness 128 / 255, no metal
+  const scene::Material m = scene_of(import_glb(gltf)).materials[0];
+  EXPECT_NEAR(m.sharpness, kHalfRough, 0.2f);
+  EXPECT_NEAR(m.specular.x, 0.04f * (kHalfRough + 1) / 2, 0.01f) << "a metal would have 1";
+}
+
 TEST(GltfMaterial, DefaultReflectsAndMetalIsReported) {
   EXPECT_EQ(scene_of(import_glb(square_gltf())).materials[0].base_color, (Rgb{0.8f, 0.8f, 0.8f}));
   const auto metal = import_glb(square_with_material({{"name", "steel"}}));

@@ -37,6 +37,7 @@ Status read_nodes(GltfReader& reader);
 /// A number, or numbers, of an extension; the fallback when absent or of another kind.
 double number_in(const tinygltf::Value& object, const char* key, double fallback);
 Vec2 vec2_in(const tinygltf::Value& object, const char* key, Vec2 fallback);
+Rgb vec3_in(const tinygltf::Value& object, const char* key, Rgb fallback);
 inline Vec3 vec3_of(const std::vector<double>& v, Vec3 fallback) {
   return v.size() < 3 ? fallback : Vec3{float(v[0]), float(v[1]), float(v[2])};
 }

@@ -129,6 +129,8 @@ TEST(DirectX, MaterialsTexturesAndCoordinates) {
   ASSERT_EQ(scene.instances.size(), 2u);
   const scene::SurfacePoint floor{0, 0, {0.3f, 0.3f}}, lamp{1, 0, {0.3f, 0.3f}};
   EXPECT_EQ(scene::material_at(scene, floor).name, "paint");
+  expect_near(scene::material_at(scene, floor).specular, {0.1f, 0.1f, 0.1f}, 1e-6f);
+  EXPECT_FLOAT_EQ(scene::material_at(scene, floor).sharpness, 10);
   expect_near(scene::reflectance_at(scene, floor), {0.5f, 0.3f, 0.175f}, 1e-5f);
   expect_near(scene::reflectance_at(scene, lamp), {0.1f, 0.2f, 0.3f}, 1e-6f);
   expect_near(scene::emission_at(scene, floor), {0, 0, 0}, 0);

@@ -1,40 +1,19 @@
 #include "pipeline/render.h"
 
+#include <algorithm>
+
 #include "base/file.h"
+#include "display/contact_sheet.h"
 #include "display/draw.h"
-#include "display/tone_map.h"
 #include "image/codec.h"
 #include "import/import.h"
 #include "pipeline/bake.h"
-#include "reference/path_tracer.h"
-#include "scene/scene.h"
+#include "pipeline/render_check.h"
+#include "pipeline/techniques.h"
 #include "trace/ray_tracer.h"
 
 namespace luxel::pipeline {
 namespace {
-
-constexpr int kMaxPictureSide = 16384;
-constexpr int kMaxPathSamples = 1 << 20;
-
-/// Bilinear lookup of the lightmap at a point of baked.glb, whose TEXCOORD_1 are its places. The
-/// gutter was dilated, so no weight needs to be renormalised.
-Rgb lightmap_at(const scene::Scene& scene, const image::Image& lightmap,
-                const scene::SurfacePoint& p) {
-  const scene::Mesh& mesh = scene.meshes[scene.instances[p.instance].mesh];
-  if (mesh.uv1.empty()) return {};
-  const auto& t = mesh.triangles[p.triangle];
-  const Vec2 uv = interpolate(mesh.uv1[t[0]], mesh.uv1[t[1]], mesh.uv1[t[2]], p.at);
-  const float x = uv.x * float(lightmap.width) - 0.5f, y = uv.y * float(lightmap.height) - 0.5f;
-  const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
-  const float fx = x - float(x0), fy = y - float(y0);
-  Rgb sum{};
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i)
-      sum += lightmap.rgb(std::clamp(x0 + i, 0, lightmap.width - 1),
-                          std::clamp(y0 + j, 0, lightmap.height - 1)) *
-             ((i ? fx : 1 - fx) * (j ? fy : 1 - fy));
-  return sum;
-}
 
 scene::Camera camera_at(Vec3 eye, Vec3 look_at, float fov_y_rad) {
   const Vec3 back = normalize(eye - look_at);
@@ -65,82 +44,84 @@ Result<scene::Camera> choose_camera(const RenderSettings& s, const scene::Scene&
   return display::fit_camera(scene, tracer, float(s.width) / float(s.height));
 }
 
-Status check(const RenderSettings& s) {
-  if (s.width < 1 || s.height < 1 || s.width > kMaxPictureSide || s.height > kMaxPictureSide)
-    return fail(ErrorCode::bad_setting, "--size {}x{} is outside 1x1 to {}x{}", s.width, s.height,
-                kMaxPictureSide, kMaxPictureSide);
+/// Colours of a screen are shown as they are, light over the shoulder, unless it was said
+/// otherwise.
+image::Image8 shown(const Technique& technique, const RenderSettings& s, float exposure,
+                    const image::Image& picture) {
+  using display::ToneMap;
+  const ToneMap usual = technique.is_light ? ToneMap::shoulder : ToneMap::clamp;
+  return display::tone_map(picture, exposure, s.tone_map.value_or(usual));
+}
+
+float exposure_for(const Technique& technique, const RenderSettings& s,
+                   const image::Image& picture) {
+  const Exposure as_it_is{.automatic = false};
+  return exposure_factor(s.exposure.value_or(technique.is_light ? Exposure{} : as_it_is), picture);
+}
+
+/// The bytes of settings.output.
+Result<std::vector<std::byte>> one_picture(const Technique& technique, const Subject& subject,
+                                           const RenderSettings& s, Rendered& out,
+                                           Progress& progress) {
+  LUXEL_TRY(const image::Image picture, technique.draw(subject, s, out, progress));
+  out.width = picture.width, out.height = picture.height;
   const std::string extension = s.output.extension().string();
-  if (extension != ".png" && extension != ".exr")
-    return fail(ErrorCode::bad_setting, "--output {} is neither .png nor .exr", s.output.string());
-  if (s.samples < 1 || s.samples > kMaxPathSamples)
-    return fail(ErrorCode::bad_setting, "--samples {} is outside 1 to {}", s.samples,
-                kMaxPathSamples);
-  if (s.technique == "path" && !s.from.empty())
-    return fail(ErrorCode::bad_setting,
-                "--technique path computes the light itself; leave --from {} out", s.from.string());
-  if (s.technique != "path" && s.from.empty())
-    return fail(ErrorCode::bad_setting,
-                "--technique {} draws a bake; name its folder with --from, or use --technique path",
-                s.technique);
-  std::error_code ignored;
-  const std::filesystem::path folder = s.output.parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
-    return fail(ErrorCode::bad_setting, "--output {}: there is no folder {}; make it first",
-                s.output.string(), folder.string());
-  return {};
+  if (extension == ".exr") return image::encode_exr(picture);
+  if (extension == ".hdr") return image::encode_hdr(picture);
+  out.exposure = exposure_for(technique, s, picture);
+  return image::encode_png(shown(technique, s, out.exposure, picture));
 }
 
-Result<image::Image> draw_bake(const RenderSettings& s, const scene::Scene& original,
-                               Progress& progress) {
-  LUXEL_TRY(import::Imported baked, import::import_scene(s.from / "baked.glb"));
-  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(s.from / "lightmap.exr"));
-  LUXEL_TRY(const image::Image lightmap,
-            image::decode_exr(bytes, (s.from / "lightmap.exr").string()));
-  scene::Scene& scene = baked.scene;
-  scene.background = original.background;
-  scene.cameras = original.cameras;
-  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
-  LUXEL_TRY(const scene::Camera camera, choose_camera(s, scene, tracer));
-  display::DrawParams params;
-  params.width = s.width, params.height = s.height;
-  const auto irradiance = [&](const scene::SurfacePoint& p) {
-    return lightmap_at(scene, lightmap, p);
-  };
-  return display::draw(scene, tracer, camera, irradiance, params, progress);
-}
-
-Result<image::Image> draw_paths(const RenderSettings& s, const scene::Scene& scene, Rendered& out,
-                                Progress& progress) {
-  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
-  LUXEL_TRY(const scene::Camera camera, choose_camera(s, scene, tracer));
-  LUXEL_TRY(reference::Picture picture,
-            reference::radiance_by_paths(scene, tracer, camera, s.width, s.height,
-                                         {s.samples, s.bounces, s.seed}, progress));
-  out.rays = picture.rays, out.relative_error = picture.relative_error;
-  return std::move(picture.radiance);
+/// Pictures of light share the exposure of the first, so that they can be held against each other.
+/// A technique that cannot be drawn is left out, and the reason is a warning; but what the user
+/// named must be there.
+Result<std::vector<std::byte>> contact_sheet(const Subject& subject, const RenderSettings& s,
+                                             Rendered& out, Progress& progress) {
+  std::vector<display::Tile> tiles;
+  std::optional<float> exposure_of_light;
+  for (const Technique& technique : techniques()) {
+    const Result<image::Image> picture = technique.draw(subject, s, out, progress);
+    if (!picture) {
+      const bool asked_for = technique.needs_bake && !s.from.empty();
+      if (asked_for || picture.error().code == ErrorCode::cancelled)
+        return tl::unexpected(picture.error());
+      out.warnings.push_back(
+          fmt::format("{} is left out: {}", technique.name, picture.error().message));
+      continue;
+    }
+    float exposure = exposure_for(technique, s, *picture);
+    if (technique.is_light) {
+      if (!exposure_of_light) exposure_of_light = exposure;
+      exposure = out.exposure = *exposure_of_light;
+    }
+    out.tiles.emplace_back(technique.name);
+    tiles.push_back({std::string(technique.name), shown(technique, s, exposure, *picture)});
+  }
+  const image::Image8 sheet = display::contact_sheet(tiles);
+  out.width = sheet.width, out.height = sheet.height;
+  return image::encode_png(sheet);
 }
 
 }  // namespace
 
 Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check(s));
+  const Technique* technique = find_technique(s.technique);  // none: all
   progress.begin("import", 0);
-  LUXEL_TRY(import::Imported original, import::import_scene(s.scene));
+  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
   Rendered out;
-  out.width = s.width, out.height = s.height, out.warnings = std::move(original.warnings);
-  const std::string dark = add_outside_light(s.outside, original.scene);
-  const bool paths = s.technique == "path";
-  if (paths && !dark.empty()) out.warnings.push_back(dark);
-  LUXEL_TRY(const image::Image picture, paths ? draw_paths(s, original.scene, out, progress)
-                                              : draw_bake(s, original.scene, progress));
+  out.warnings = std::move(imported.warnings);
+  const std::string dark = add_outside_light(s.outside, imported.scene);
+  const bool computes_light = !technique || (technique->is_light && !technique->needs_bake);
+  if (computes_light && !dark.empty()) out.warnings.push_back(dark);
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(imported.scene));
+  LUXEL_TRY(const scene::Camera camera, choose_camera(s, imported.scene, tracer));
+  const Subject subject{imported.scene, tracer, camera};
+  LUXEL_TRY(const std::vector<std::byte> bytes,
+            technique ? one_picture(*technique, subject, s, out, progress)
+                      : contact_sheet(subject, s, out, progress));
   progress.begin(kWriteStage, 0);
-  if (s.output.extension() == ".exr") {
-    LUXEL_TRY(const std::vector<std::byte> exr, image::encode_exr(picture));
-    LUXEL_TRY_STATUS(write_file_atomically(s.output, exr));
-  } else {
-    const image::Image8 shown = display::tone_map(picture, display::auto_exposure(picture));
-    LUXEL_TRY_STATUS(write_file_atomically(s.output, image::encode_png(shown)));
-  }
+  LUXEL_TRY_STATUS(write_file_atomically(s.output, bytes));
   return out;
 }
 

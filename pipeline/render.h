@@ -1,4 +1,5 @@
-// A picture of a bake or, by path tracing, of the scene itself: what `luxel render` does.
+// A picture of a scene by one of several techniques, or a sheet of all of them: what `luxel render`
+// does.
 #pragma once
 
 #include <filesystem>
@@ -9,36 +10,48 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "base/vec.h"
+#include "display/tone_map.h"
+#include "pipeline/exposure.h"
 #include "pipeline/settings.h"
 
 namespace luxel::pipeline {
 
+/// The name that stands for a contact sheet of all techniques.
+inline constexpr std::string_view kAllTechniques = "all";
+
+inline constexpr int kDefaultPathSamples = 64;
+
+/// What is not set has a default; what is set and means nothing to the technique is an error.
 struct RenderSettings {
-  std::filesystem::path scene;         ///< for its cameras and background
+  std::filesystem::path scene;         ///< what is drawn; for a bake its cameras and background
   std::filesystem::path from;          ///< folder of a bake: baked.glb and lightmap.exr are read
-  std::filesystem::path output;        ///< .png (tone-mapped) or .exr (radiance)
-  std::string technique = "lightmap";  ///< or "path", which needs no bake
+  std::filesystem::path output;        ///< .png (display values), .exr or .hdr (radiance)
+  std::string technique = "lightmap";  ///< a name of pipeline/techniques.h, or kAllTechniques
   std::string camera;                  ///< by name; empty: the first, else a fitted one
   std::optional<Vec3> eye;
   Vec3 look_at{};
   double fov_deg = 45;
-  int width = 960, height = 720;
+  int width = 960, height = 720;  ///< of a contact sheet: each tile's
   OutsideLight outside;
-  int samples = 64;   ///< path: paths per pixel
-  int bounces = -1;   ///< path: reflections between surfaces; < 0: all
-  uint64_t seed = 1;  ///< path
+  std::optional<Exposure> exposure;          ///< automatic for light, 0 stops for colours
+  std::optional<display::ToneMap> tone_map;  ///< shoulder for light, clamp for colours
+  std::optional<int> samples;                ///< paths per pixel, 64
+  std::optional<int> bounces;                ///< reflections between surfaces; < 0: all, -1
+  std::optional<uint64_t> seed;              ///< 1
 };
 
 struct Rendered {
   int width = 0, height = 0;
-  uint64_t rays = 0;  ///< path
+  float exposure = 1;  ///< the factor that light was shown with
+  uint64_t rays = 0;   ///< path
   double relative_error =
       0;  ///< path: root mean square of the pixels' standard errors over the mean
+  std::vector<std::string> tiles;  ///< of a contact sheet: the techniques, in reading order
   std::vector<std::string> warnings;
 };
 
-/// Errors: settings out of range, no such camera, a folder without a bake, a lightmap that does not
-/// fit the scene.
+/// Errors: settings out of range or without meaning for the technique, no such camera, a folder
+/// without a bake, a lightmap that does not fit the scene.
 Result<Rendered> render(const RenderSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

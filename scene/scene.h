@@ -58,6 +58,9 @@ struct Material {
   float alpha_cutoff = 0.5f;  ///< mask: alpha below it is a hole
   bool double_sided = false;
   bool unlit = false;  ///< KHR_materials_unlit; baked as a diffuse surface like any other
+  /// Phong's highlight, for display/local_light.h alone: global illumination here is diffuse.
+  Rgb specular{0, 0, 0};  ///< C_s of [Rodriguez06, eq. 4.26]
+  float sharpness = 20;   ///< its exponent n, >= 0
 };
 
 /// Indexed triangles. Attribute arrays are either empty or as long as `positions`.

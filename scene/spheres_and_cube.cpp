@@ -80,6 +80,11 @@ Scene spheres_and_cube() {
   const uint32_t red = add_material(scene, "red", {0.7f, 0.08f, 0.06f});
   const uint32_t yellow = add_material(scene, "yellow", {0.75f, 0.65f, 0.08f});
   const uint32_t light = add_material(scene, "light", {0, 0, 0}, {10, 10, 10});
+  // Glossy paint, for those who look at display/local_light.h; the bake is diffuse.
+  for (const uint32_t sphere_paint : {red, yellow}) {
+    scene.materials[sphere_paint].specular = {0.4f, 0.4f, 0.4f};
+    scene.materials[sphere_paint].sharpness = 30;
+  }
 
   place_open_box(scene, gray, green, light);
   place(scene, sphere("red sphere", 0.38f, red), translation({-0.45f, 0.65f, -0.1f}));

@@ -78,6 +78,7 @@ Status check_materials(Scene& scene, Report& report) {
     const bool finite = luxel::is_finite(m.base_color) && luxel::is_finite(m.emission) &&
                         std::isfinite(m.alpha) && std::isfinite(m.metallic) &&
                         std::isfinite(m.roughness) && std::isfinite(m.alpha_cutoff) &&
+                        luxel::is_finite(m.specular) && std::isfinite(m.sharpness) &&
                         is_finite(m.base_color_texture) && is_finite(m.metallic_texture) &&
                         is_finite(m.emission_texture);
     if (!finite)
@@ -89,14 +90,17 @@ Status check_materials(Scene& scene, Report& report) {
     m.alpha = std::clamp(m.alpha, 0.0f, 1.0f);
     m.metallic = std::clamp(m.metallic, 0.0f, 1.0f);
     m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
+    m.specular = max(m.specular, Rgb{});
+    m.sharpness = std::max(m.sharpness, 0.0f);
     if (m.base_color != before.base_color || m.emission != before.emission ||
-        m.alpha != before.alpha || m.metallic != before.metallic || m.roughness != before.roughness)
+        m.alpha != before.alpha || m.metallic != before.metallic || m.roughness != before.roughness ||
+        m.specular != before.specular || m.sharpness != before.sharpness)
       clamped.push_back(name);
   }
   if (!clamped.empty())
     report.warn(
-        "factors outside their range clamped (negative colour or emission; alpha, metallic "
-        "or roughness outside 0 to 1): {}",
+        "factors outside their range clamped (negative colour, emission, specular or "
+        "sharpness; alpha, metallic or roughness outside 0 to 1): {}",
         listed(clamped));
   return {};
 }

@@ -127,6 +127,17 @@ TEST(BakedGlb, ReadsBackWithTheSameTrianglesAndBakesAgain) {
   }
 }
 
+// What is baked is diffuse: highlights of the local techniques stay out of it.
+TEST(BakedGlb, HasNoHighlights) {
+  const ScratchFolder s;
+  ASSERT_THAT(slurp(scene_file("spheres-and-cube.glb")), HasSubstr("KHR_materials_specular"));
+  ASSERT_EQ(
+      bake(scene_file("spheres-and-cube.glb"), s.path / "b", "--resolution 64 --samples 1").code,
+      0);
+  EXPECT_THAT(slurp(s.path / "b" / "baked.glb"),
+              ::testing::Not(HasSubstr("KHR_materials_specular")));
+}
+
 TEST(Render, DrawsABake) {
   const ScratchFolder s;
   const std::string box = scene_file("cornell-box.glb");

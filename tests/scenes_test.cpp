@@ -44,5 +44,20 @@ TEST(Scenes, FilesReadBackAsTheSameTrianglesAndLight) {
   }
 }
 
+TEST(Scenes, FilesKeepTheHighlightsThatWereSet) {
+  const auto imported = import::import_scene(scenes_folder() / "spheres-and-cube.glb");
+  ASSERT_TRUE(imported) << imported.error().message;
+  const scene::Scene expected = scene::spheres_and_cube();
+  int glossy = 0;
+  for (const scene::Material& a : expected.materials)
+    for (const scene::Material& b : imported->scene.materials) {
+      if (a.name != b.name || !(max_component(a.specular) > 0)) continue;
+      ++glossy;
+      EXPECT_NEAR(a.sharpness, b.sharpness, 1e-3f * a.sharpness);
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(a.specular[k], b.specular[k], 1e-3f);
+    }
+  EXPECT_EQ(glossy, 2);
+}
+
 }  // namespace
 }  // namespace luxel

@@ -4,6 +4,7 @@
 #include "apps/cli/cli.h"
 #include "base/parallel.h"
 #include "pipeline/render.h"
+#include "pipeline/techniques.h"
 
 namespace luxel::cli {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 struct RenderOptions {
   Common common;
   OutsideText outside;
-  std::string size = "960x720", eye, look_at, bounces = "inf";
+  std::string size, eye, look_at, bounces, exposure, tone_map;
   pipeline::RenderSettings settings;
 };
 
@@ -23,19 +24,66 @@ Result<Vec3> parse_point(const char* option, const std::string& text) {
   return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option, text);
 }
 
+Status parse_size(const RenderOptions& options, pipeline::RenderSettings& s) {
+  if (s.technique == pipeline::kAllTechniques) s.width = 320, s.height = 240;
+  char rest = 0;
+  if (options.size.empty() ||
+      std::sscanf(options.size.c_str(), "%dx%d%c", &s.width, &s.height, &rest) == 2)
+    return {};
+  return fail(ErrorCode::bad_setting, "--size '{}' is not WIDTHxHEIGHT, as in 960x720",
+              options.size);
+}
+
+Result<display::ToneMap> parse_tone_map(const std::string& name) {
+  if (const auto curve = display::find_tone_map(name)) return *curve;
+  std::string names;
+  for (const auto& known : display::kToneMaps)
+    names += (names.empty() ? "" : ", ") + std::string(known.name);
+  return fail(ErrorCode::bad_setting, "--tone-map {} is not known; there is: {}", name, names);
+}
+
 Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
   pipeline::RenderSettings s = options.settings;
-  char rest = 0;
-  if (std::sscanf(options.size.c_str(), "%dx%d%c", &s.width, &s.height, &rest) != 2)
-    return fail(ErrorCode::bad_setting, "--size '{}' is not WIDTHxHEIGHT, as in 960x720",
-                options.size);
+  LUXEL_TRY_STATUS(parse_size(options, s));
   if (!options.eye.empty()) {
     LUXEL_TRY(s.eye, parse_point("--eye", options.eye));
     LUXEL_TRY(s.look_at, parse_point("--look-at", options.look_at));
   }
-  LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
+  if (!options.bounces.empty()) {
+    LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
+  }
+  if (!options.exposure.empty()) {
+    LUXEL_TRY(s.exposure, pipeline::parse_exposure(options.exposure));
+  }
+  if (!options.tone_map.empty()) {
+    LUXEL_TRY(s.tone_map, parse_tone_map(options.tone_map));
+  }
   LUXEL_TRY(s.outside, parse_outside_light(options.outside));
   return s;
+}
+
+void print_json(const pipeline::RenderSettings& s, const pipeline::Rendered& rendered) {
+  nlohmann::json json{{"image", s.output.string()},
+                      {"technique", s.technique},
+                      {"width", rendered.width},
+                      {"height", rendered.height}};
+  if (s.output.extension() == ".png") json["exposure"] = rendered.exposure;
+  if (rendered.rays > 0)
+    json["rays"] = rendered.rays, json["relative_error"] = rendered.relative_error;
+  if (!rendered.tiles.empty()) json["tiles"] = rendered.tiles;
+  std::printf("%s\n", json.dump(2).c_str());
+}
+
+void print_report(const pipeline::RenderSettings& s, const pipeline::Rendered& rendered,
+                  const Common& common) {
+  if (common.quiet) return;
+  if (rendered.rays > 0)
+    std::fprintf(stderr, "%s\n",
+                 fmt::format("{} paths per pixel, {} rays, standard error {:.2f} %",
+                             s.samples.value_or(pipeline::kDefaultPathSamples), rendered.rays,
+                             100 * rendered.relative_error)
+                     .c_str());
+  std::fprintf(stderr, "wrote %s\n", s.output.string().c_str());
 }
 
 int run_render(const RenderOptions& options) {
@@ -49,39 +97,47 @@ int run_render(const RenderOptions& options) {
   });
   if (!done) return report(done.error());
   print_warnings(rendered.warnings, options.common);
-  const std::string image = settings->output.string();
-  const bool paths = settings->technique == "path";
-  if (options.common.json) {
-    nlohmann::json json{{"image", image}, {"width", rendered.width}, {"height", rendered.height}};
-    if (paths) json["rays"] = rendered.rays, json["relative_error"] = rendered.relative_error;
-    std::printf("%s\n", json.dump(2).c_str());
-  } else if (!options.common.quiet) {
-    if (paths)
-      std::fprintf(stderr, "%s\n",
-                   fmt::format("{} paths per pixel, {} rays, standard error {:.2f} %",
-                               settings->samples, rendered.rays, 100 * rendered.relative_error)
-                       .c_str());
-    std::fprintf(stderr, "wrote %s\n", image.c_str());
-  }
+  options.common.json ? print_json(*settings, rendered)
+                      : print_report(*settings, rendered, options.common);
   return kDone;
+}
+
+std::string technique_help() {
+  std::string help;
+  for (const pipeline::Technique& t : pipeline::techniques())
+    help += fmt::format("{} = {}\n", t.name, t.help);
+  return help + std::string(pipeline::kAllTechniques) + " = a sheet of all of these";
+}
+
+std::vector<std::string> technique_names() {
+  std::vector<std::string> names;
+  for (const pipeline::Technique& t : pipeline::techniques()) names.emplace_back(t.name);
+  names.emplace_back(pipeline::kAllTechniques);
+  return names;
 }
 
 }  // namespace
 
 void register_render(CLI::App& app, Action& action) {
   CLI::App* render =
-      app.add_subcommand("render", "Draw a baked scene, or trace its light path by path");
+      app.add_subcommand("render", "Draw a scene by one of several techniques, or by all of them");
   auto options = std::make_shared<RenderOptions>();
   pipeline::RenderSettings& s = options->settings;
   render->add_option("SCENE", s.scene, "The scene; with --from, the one that was baked")
       ->required();
-  render->add_option("-o,--output", s.output, "Picture to write: .png or .exr")->required();
+  render->add_option("-o,--output", s.output, "Picture to write: .png, .exr or .hdr")->required();
   render->add_option("--from", s.from, "Folder that `luxel bake` left (lightmap)");
-  render
-      ->add_option("--technique", s.technique,
-                   "lightmap = draw a bake, path = trace paths, no bake needed")
-      ->check(CLI::IsMember({"lightmap", "path"}))
+  render->add_option("--technique", s.technique, technique_help())
+      ->check(CLI::IsMember(technique_names()))
       ->capture_default_str();
+  render
+      ->add_option("--exposure", options->exposure,
+                   "Brightness: auto, auto:PERCENTILE or stops (auto for light, else 0)")
+      ->type_name("auto|STOPS");
+  render
+      ->add_option("--tone-map", options->tone_map,
+                   "Light to the screen (shoulder for light, else clamp)")
+      ->type_name("shoulder|ratio|reinhard|filmic|clamp");
   auto* camera = render->add_option("--camera", s.camera, "Name of a camera of the scene");
   auto* eye = render->add_option("--eye", options->eye, "Where the camera stands")
                   ->type_name("X,Y,Z")
@@ -91,15 +147,16 @@ void register_render(CLI::App& app, Action& action) {
                       ->needs(eye);
   eye->needs(look_at);
   render->add_option("--fov-deg", s.fov_deg, "Vertical field of view")
+      ->needs(eye)
       ->check(CLI::Range(1.0, 170.0))
       ->capture_default_str();
-  render->add_option("--size", options->size, "Size of the picture")
-      ->type_name("WxH")
-      ->capture_default_str();
-  render->add_option("--samples", s.samples, "Paths per pixel (path)")->capture_default_str();
-  render->add_option("--bounces", options->bounces, "Reflections to count, or inf (path)")
-      ->capture_default_str();
-  render->add_option("--seed", s.seed, "Seed of all random numbers (path)")->capture_default_str();
+  render
+      ->add_option("--size", options->size,
+                   "Size of the picture (960x720), or of each tile with all (320x240)")
+      ->type_name("WxH");
+  render->add_option("--samples", s.samples, "Paths per pixel (path; 64)");
+  render->add_option("--bounces", options->bounces, "Reflections to count, or inf (path; inf)");
+  render->add_option("--seed", s.seed, "Seed of all random numbers (path; 1)");
   add_outside_light(*render, options->outside);
   add_common(*render, options->common);
   render->callback([options, &action] { action = [options] { return run_render(*options); }; });

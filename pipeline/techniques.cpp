@@ -1,0 +1,129 @@
+#include "pipeline/techniques.h"
+
+#include <algorithm>
+#include <array>
+
+#include "display/local_light.h"
+#include "display/normals_view.h"
+#include "pipeline/draw_bake.h"
+#include "reference/path_tracer.h"
+
+namespace luxel::pipeline {
+namespace {
+
+using display::LocalTechnique;
+
+/// Colours of a screen before a background that a screen can show.
+display::DrawParams params_for_colors(const Subject& subject, const RenderSettings& settings) {
+  display::DrawParams params;
+  params.width = settings.width, params.height = settings.height;
+  params.background = min(subject.scene.background, Rgb{1, 1, 1});
+  return params;
+}
+
+template <LocalTechnique technique>
+Result<image::Image> draw_local(const Subject& subject, const RenderSettings& settings, Rendered&,
+                                Progress& progress) {
+  const display::LocalLights lights = display::local_lights(subject.scene, subject.camera);
+  const display::Viewer viewer(subject.camera);
+  const auto seen_at = [&](const trace::Hit& hit) {
+    return display::local_light_at(subject.scene, hit, technique, lights, viewer);
+  };
+  return display::draw_seen(subject.scene, subject.tracer, subject.camera, seen_at,
+                            params_for_colors(subject, settings), progress);
+}
+
+Result<image::Image> draw_normals(const Subject& subject, const RenderSettings& settings, Rendered&,
+                                  Progress& progress) {
+  return display::draw_normals(subject.scene, subject.tracer, subject.camera,
+                               params_for_colors(subject, settings), progress);
+}
+
+/// TO BE FILLED IN with the solution of solve/hemicube: draw it through display::draw and its
+/// irradiance_at, as draw_lightmap does. A contact sheet leaves a technique that is `unsupported`
+/// out and says so.
+Result<image::Image> draw_radiosity(const Subject&, const RenderSettings&, Rendered&, Progress&) {
+  return fail(ErrorCode::unsupported,
+              "--technique radiosity is not in this build; use --technique lightmap or path");
+}
+
+Result<image::Image> draw_paths(const Subject& subject, const RenderSettings& s, Rendered& out,
+                                Progress& progress) {
+  reference::PathParams params;
+  params.samples = s.samples.value_or(kDefaultPathSamples);
+  params.bounces = s.bounces.value_or(-1), params.seed = s.seed.value_or(1);
+  LUXEL_TRY(reference::Picture picture,
+            reference::radiance_by_paths(subject.scene, subject.tracer, subject.camera, s.width,
+                                         s.height, params, progress));
+  out.rays = picture.rays, out.relative_error = picture.relative_error;
+  return std::move(picture.radiance);
+}
+
+constexpr std::array kTechniques{
+    Technique{.name = "c",
+              .help = "the material's colour",
+              .draw = draw_local<LocalTechnique::c>,
+              .is_light = false},
+    Technique{.name = "ca",
+              .help = "colour under ambient light",
+              .draw = draw_local<LocalTechnique::ca>,
+              .is_light = false},
+    Technique{.name = "cad",
+              .help = "ambient and diffuse light, per vertex",
+              .draw = draw_local<LocalTechnique::cad>,
+              .is_light = false,
+              .has_lamps = true},
+    Technique{.name = "cas",
+              .help = "ambient and specular light, per vertex",
+              .draw = draw_local<LocalTechnique::cas>,
+              .is_light = false,
+              .has_lamps = true},
+    Technique{.name = "cads",
+              .help = "ambient, diffuse and specular light, per vertex",
+              .draw = draw_local<LocalTechnique::cads>,
+              .is_light = false,
+              .has_lamps = true},
+    Technique{.name = "cas-pixel",
+              .help = "cas per pixel",
+              .draw = draw_local<LocalTechnique::cas_pixel>,
+              .is_light = false,
+              .has_lamps = true},
+    Technique{.name = "cads-pixel",
+              .help = "cads per pixel",
+              .draw = draw_local<LocalTechnique::cads_pixel>,
+              .is_light = false,
+              .has_lamps = true},
+    Technique{.name = "normals",
+              .help = "shading normals as red lines",
+              .draw = draw_normals,
+              .is_light = false},
+    Technique{.name = "radiosity",
+              .help = "solve by hemicubes and draw",
+              .draw = draw_radiosity,
+              .has_lamps = true},
+    Technique{.name = "lightmap", .help = "draw a bake", .draw = draw_lightmap, .needs_bake = true},
+    Technique{.name = "path",
+              .help = "trace paths",
+              .draw = draw_paths,
+              .traces_paths = true,
+              .counts_bounces = true,
+              .has_lamps = true},
+};
+
+}  // namespace
+
+std::span<const Technique> techniques() { return kTechniques; }
+
+const Technique* find_technique(std::string_view name) {
+  const auto found = std::find_if(kTechniques.begin(), kTechniques.end(),
+                                  [name](const Technique& t) { return t.name == name; });
+  return found == kTechniques.end() ? nullptr : &*found;
+}
+
+std::string technique_names() {
+  std::string names;
+  for (const Technique& technique : kTechniques) names += std::string(technique.name) + ", ";
+  return names + std::string(kAllTechniques);
+}
+
+}  // namespace luxel::pipeline

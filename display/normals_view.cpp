@@ -20,7 +20,9 @@ constexpr Rgb kRed{0.85f, 0.02f, 0.02f};
 constexpr float kStep = 0.5f;  ///< between the points of a line [pixels]
 
 struct Line {
-  Vec3 from, to;
+  Vec3 from, normal;
+  float length_m = 0;
+  Vec3 to() const { return from + normal * length_m; }
 };
 
 /// Whether draw_seen would show this triangle's side.
@@ -30,33 +32,38 @@ bool is_seen(const scene::Scene& scene, const scene::SurfacePoint& p, Vec3 posit
          dot(front_normal(scene, p.instance, p.triangle), viewer.from(position)) > 0;
 }
 
+/// Lines no longer than the triangle's longest edge: fine meshes keep their shape under them.
 void add_lines(const scene::Scene& scene, uint32_t instance, uint32_t triangle,
-               const Viewer& viewer, float length_m, std::vector<Line>& lines) {
+               const Viewer& viewer, float most_m, std::vector<Line>& lines) {
   constexpr std::array<Barycentric, 3> at{{{0, 0}, {1, 0}, {0, 1}}};
+  const scene::Triangle3 t = world_triangle(scene, instance, triangle);
+  const float edge = std::max({length(t.b - t.a), length(t.c - t.b), length(t.a - t.c)});
   for (const Barycentric corner : at) {
     const scene::SurfacePoint p{instance, triangle, corner};
     const Vec3 from = world_position(scene, p);
     if (is_seen(scene, p, from, viewer))
-      lines.push_back({from, from + shading_normal(scene, p) * length_m});
+      lines.push_back({from, shading_normal(scene, p), std::min(most_m, edge)});
   }
 }
 
-/// The normals of the corners of visible sides, each place and direction once.
-std::vector<Line> normal_lines(const scene::Scene& scene, const Viewer& viewer, float length_m) {
+/// The normals of the corners of visible sides, of each place and direction the longest line.
+std::vector<Line> normal_lines(const scene::Scene& scene, const Viewer& viewer, float most_m) {
   const size_t triangles = scene::first_triangles(scene).back();
   const size_t nth = std::max<size_t>(1, (triangles + kMostTriangles - 1) / kMostTriangles);
   std::vector<Line> lines;
   size_t number = 0;
   for (uint32_t i = 0; i < scene.instances.size(); ++i)
     for (uint32_t t = 0; t < scene.meshes[scene.instances[i].mesh].triangles.size(); ++t)
-      if (number++ % nth == 0) add_lines(scene, i, t, viewer, length_m, lines);
-  const auto key = [](const Line& l) {
-    return std::tuple(l.from.x, l.from.y, l.from.z, l.to.x, l.to.y, l.to.z);
+      if (number++ % nth == 0) add_lines(scene, i, t, viewer, most_m, lines);
+  const auto place = [](const Line& l) {
+    return std::tuple(l.from.x, l.from.y, l.from.z, l.normal.x, l.normal.y, l.normal.z);
   };
-  std::sort(lines.begin(), lines.end(),
-            [&](const Line& a, const Line& b) { return key(a) < key(b); });
-  const auto repeated = std::unique(lines.begin(), lines.end(),
-                                    [&](const Line& a, const Line& b) { return key(a) == key(b); });
+  std::sort(lines.begin(), lines.end(), [&](const Line& a, const Line& b) {
+    return std::pair(place(a), -a.length_m) < std::pair(place(b), -b.length_m);
+  });
+  const auto repeated = std::unique(lines.begin(), lines.end(), [&](const Line& a, const Line& b) {
+    return place(a) == place(b);
+  });
   lines.erase(repeated, lines.end());
   return lines;
 }
@@ -84,12 +91,12 @@ struct Dot {
 /// The part of a line in the picture as dots, and at most the picture's own size in dots: a corner
 /// right beside the camera makes no endless line.
 void add_dots(const trace::CameraRays& camera, const Line& line, std::vector<Dot>& dots) {
-  const auto a = place_of(camera, line.from), b = place_of(camera, line.to);
+  const auto a = place_of(camera, line.from), b = place_of(camera, line.to());
   if (!a || !b) return;
   const float most = 2 * (camera.width + camera.height) / kStep;
   const int count = 1 + int(std::min(length(*b - *a) / kStep, most));
   for (int i = 0; i <= count; ++i) {
-    const Vec3 point = line.from + (line.to - line.from) * (float(i) / float(count));
+    const Vec3 point = line.from + line.normal * (line.length_m * float(i) / float(count));
     const auto place = place_of(camera, point);
     if (!place || place->x < -1 || place->y < -1 || place->x > camera.width + 1 ||
         place->y > camera.height + 1)

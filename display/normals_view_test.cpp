@@ -75,6 +75,22 @@ TEST(NormalsView, LinesBehindASurfaceAreHiddenAndThoseOfUnseenSidesAreNotDrawn) 
   EXPECT_EQ(red_in_the_middle(behind), 0);
 }
 
+TEST(NormalsView, LinesOfSmallTrianglesAreNoLongerThanTheirEdges) {
+  Stage stage;
+  scene::Mesh& mesh = stage.scene.meshes[0];
+  // A tiny triangle of edge 0.05 in a scene of the same diagonal: 2.5 pixels instead of 5.7.
+  mesh.positions.insert(mesh.positions.end(), {{0, 0, 0.5f}, {0.05f, 0, 0.5f}, {0, 0.03f, 0.5f}});
+  mesh.triangles.push_back({4, 5, 6});
+  mesh.triangle_material.push_back(0);
+  const image::Image picture = stage.draw();
+  int leftmost = 200;
+  for (int y = 90; y < 110; ++y)
+    for (int x = 0; x < 200; ++x)
+      if (is_red(picture, x, y)) leftmost = std::min(leftmost, x);
+  const double edge = std::sqrt(0.05 * 0.05 + 0.03 * 0.03);
+  EXPECT_NEAR(leftmost + 0.5, 100 - 50 * (0.5 + edge), 1.01);
+}
+
 TEST(NormalsView, ACameraAmongTheCornersIsNoTrouble) {
   Stage stage;
   stage.camera.orthographic_height_m = 0;

@@ -15,8 +15,8 @@ TEST(Specular, RoughnessAndSharpnessAreInverse) {
   EXPECT_EQ(sharpness_of(0), 10000) << "clamped: a mirror shows nothing here";
 }
 
-// For light along the normal the paper's term, radiance per irradiance C_s / pi (R.V)^n, summed over
-// the hemisphere of eyes is F0.
+// For light along the normal the paper's term, radiance per irradiance C_s / pi (R.V)^n, summed
+// over the hemisphere of eyes is F0.
 TEST(Specular, TheLobeReflectsF0) {
   for (const float n : {1.0f, 7.5f, 40.0f}) {
     const Rgb c = specular_of({0.04f, 0.02f, 0.01f}, n);

@@ -93,8 +93,9 @@ Status check_materials(Scene& scene, Report& report) {
     m.specular = max(m.specular, Rgb{});
     m.sharpness = std::max(m.sharpness, 0.0f);
     if (m.base_color != before.base_color || m.emission != before.emission ||
-        m.alpha != before.alpha || m.metallic != before.metallic || m.roughness != before.roughness ||
-        m.specular != before.specular || m.sharpness != before.sharpness)
+        m.alpha != before.alpha || m.metallic != before.metallic ||
+        m.roughness != before.roughness || m.specular != before.specular ||
+        m.sharpness != before.sharpness)
       clamped.push_back(name);
   }
   if (!clamped.empty())

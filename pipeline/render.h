@@ -38,6 +38,7 @@ struct RenderSettings {
   std::optional<int> samples;                ///< paths per pixel, 64
   std::optional<int> bounces;                ///< reflections between surfaces; < 0: all, -1
   std::optional<uint64_t> seed;              ///< 1
+  std::optional<HemicubeSettings> hemicube;  ///< radiosity
 };
 
 struct Rendered {

@@ -50,6 +50,9 @@ Status check_used(const RenderSettings& s, const Technique& technique) {
                             {"--samples", s.samples.has_value(), &Technique::traces_paths},
                             {"--seed", s.seed.has_value(), &Technique::traces_paths},
                             {"--bounces", s.bounces.has_value(), &Technique::counts_bounces},
+                            {"--elements, --hemicube, --element-size, --max-elements, --max-error "
+                             "and --smooth",
+                             s.hemicube.has_value(), &Technique::has_elements},
                             {"--sun", s.outside.sun.has_value(), &Technique::has_lamps}};
   for (const Option& option : options)
     if (option.given && !(technique.*option.used))
@@ -78,6 +81,7 @@ Status check(const RenderSettings& s) {
   if (s.samples && (*s.samples < 1 || *s.samples > kMaxPathSamples))
     return fail(ErrorCode::bad_setting, "--samples {} is outside 1 to {}", *s.samples,
                 kMaxPathSamples);
+  if (s.hemicube) LUXEL_TRY_STATUS(check(*s.hemicube));
   LUXEL_TRY_STATUS(check_output(s, technique));
   if (technique) return check_used(s, *technique);
   return {};

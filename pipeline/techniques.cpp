@@ -6,6 +6,7 @@
 #include "display/local_light.h"
 #include "display/normals_view.h"
 #include "pipeline/draw_bake.h"
+#include "pipeline/solvers.h"
 #include "reference/path_tracer.h"
 
 namespace luxel::pipeline {
@@ -39,12 +40,21 @@ Result<image::Image> draw_normals(const Subject& subject, const RenderSettings& 
                                params_for_colors(subject, settings), progress);
 }
 
-/// TO BE FILLED IN with the solution of solve/hemicube: draw it through display::draw and its
-/// irradiance_at, as draw_lightmap does. A contact sheet leaves a technique that is `unsupported`
-/// out and says so.
-Result<image::Image> draw_radiosity(const Subject&, const RenderSettings&, Rendered&, Progress&) {
-  return fail(ErrorCode::unsupported,
-              "--technique radiosity is not in this build; use --technique lightmap or path");
+/// The hemicube solver's own answer, without a lightmap in between.
+Result<image::Image> draw_radiosity(const Subject& subject, const RenderSettings& settings,
+                                    Rendered&, Progress& progress) {
+  BakeSettings bake;
+  bake.hemicube = settings.hemicube.value_or(HemicubeSettings{});
+  bake.bounces = settings.bounces.value_or(-1);
+  LUXEL_TRY(const hemicube::Solution solution,
+            hemicube::solve(subject.scene, transport::collect_lights(subject.scene), subject.tracer,
+                            hemicube_params(bake), progress));
+  display::DrawParams params;
+  params.width = settings.width, params.height = settings.height;
+  const auto irradiance = [&](const scene::SurfacePoint& p) {
+    return hemicube::irradiance_at(solution.field, p);
+  };
+  return display::draw(subject.scene, subject.tracer, subject.camera, irradiance, params, progress);
 }
 
 Result<image::Image> draw_paths(const Subject& subject, const RenderSettings& s, Rendered& out,
@@ -100,6 +110,8 @@ constexpr std::array kTechniques{
     Technique{.name = "radiosity",
               .help = "solve by hemicubes and draw",
               .draw = draw_radiosity,
+              .counts_bounces = true,
+              .has_elements = true,
               .has_lamps = true},
     Technique{.name = "lightmap", .help = "draw a bake", .draw = draw_lightmap, .needs_bake = true},
     Technique{.name = "path",

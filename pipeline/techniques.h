@@ -33,6 +33,7 @@ struct Technique {
   bool needs_bake = false;      ///< --from
   bool traces_paths = false;    ///< --samples, --seed
   bool counts_bounces = false;  ///< --bounces
+  bool has_elements = false;    ///< --elements, --hemicube, ...
   bool has_lamps = false;       ///< --sun
 };
 

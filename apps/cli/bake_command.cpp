@@ -11,12 +11,20 @@ struct BakeOptions {
   Common common;
   OutsideText outside;
   std::string uv = "auto", bounces = "inf", max_memory;
+  HemicubeOptions hemicube;
   pipeline::BakeSettings settings;
 };
 
 Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   pipeline::BakeSettings s = options.settings;
   s.threads = options.common.threads;
+  s.hemicube = options.hemicube.settings;
+  if (options.hemicube.given() && s.solver != "hemicube")
+    return fail(ErrorCode::bad_setting,
+                "--solver {} has no elements of its own; leave --elements, --hemicube, "
+                "--element-size, --max-elements, --max-error and --smooth out, or use --solver "
+                "hemicube",
+                s.solver);
   s.uv = options.uv == "keep"     ? atlas::UvMode::keep
          : options.uv == "unwrap" ? atlas::UvMode::unwrap
                                   : atlas::UvMode::automatic;
@@ -89,20 +97,7 @@ void register_bake(CLI::App& app, Action& action) {
       ->capture_default_str();
   bake->add_option("--bounces", options->bounces, "Reflections to count, or inf")
       ->capture_default_str();
-  pipeline::HemicubeSettings& h = s.hemicube;
-  bake->add_option("--elements", h.elements, "hemicube: light per vertex or per triangle")
-      ->capture_default_str();
-  bake->add_option("--hemicube", h.resolution, "hemicube: pixels along an edge of its top")
-      ->capture_default_str();
-  bake->add_option("--element-size", h.element_size_m,
-                   "hemicube: size of the first triangles in metres (default: by --max-elements)");
-  bake->add_option(
-      "--max-elements", h.max_elements,
-      "hemicube: vertices or triangles at most (default: 20000, more for large scenes)");
-  bake->add_option("--max-error", h.max_error,
-                   "hemicube: cut triangles over which the light is off by more; 0 cuts none")
-      ->capture_default_str();
-  bake->add_flag("--smooth", h.smooth, "hemicube: interpolate light that is per triangle");
+  add_hemicube(*bake, options->hemicube);
   bake->add_flag("--vertex-colors", s.vertex_colors,
                  "hemicube: baked.glb gets light per vertex in COLOR_0 instead of the lightmap");
   bake->add_option("--max-memory", options->max_memory,

@@ -32,6 +32,16 @@ struct OutsideText {
 void add_outside_light(CLI::App& command, OutsideText& text);
 Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text);
 
+/// Options of the hemicube solver.
+struct HemicubeOptions {
+  pipeline::HemicubeSettings settings;
+  std::vector<CLI::Option*> options;
+
+  /// Whether any was given.
+  bool given() const;
+};
+void add_hemicube(CLI::App& command, HemicubeOptions& hemicube);
+
 /// Prints the error's sentence to stderr and returns its exit code.
 int report(const Error& error);
 void print_warnings(const std::vector<std::string>& warnings, const Common& common);

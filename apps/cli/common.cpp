@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <thread>
@@ -130,6 +131,31 @@ void add_common(CLI::App& command, Common& common) {
       ->capture_default_str();
   command.add_flag("--quiet", common.quiet, "No progress, no warnings");
   command.add_flag("--json", common.json, "One JSON object on stdout, everything else on stderr");
+}
+
+bool HemicubeOptions::given() const {
+  return std::any_of(options.begin(), options.end(),
+                     [](const CLI::Option* o) { return o->count() > 0; });
+}
+
+void add_hemicube(CLI::App& command, HemicubeOptions& hemicube) {
+  pipeline::HemicubeSettings& s = hemicube.settings;
+  const std::string group = "Hemicube radiosity";
+  hemicube.options = {
+      command.add_option("--elements", s.elements, "Light per vertex or per triangle")
+          ->capture_default_str(),
+      command.add_option("--hemicube", s.resolution, "Pixels along an edge of the hemicube's top")
+          ->capture_default_str(),
+      command.add_option("--element-size", s.element_size_m,
+                         "Size of the first triangles in metres (default: by --max-elements)"),
+      command.add_option("--max-elements", s.max_elements,
+                         "Vertices or triangles at most (default: 20000, more for large scenes)"),
+      command
+          .add_option("--max-error", s.max_error,
+                      "Cut triangles over which the light is off by more; 0 cuts none")
+          ->capture_default_str(),
+      command.add_flag("--smooth", s.smooth, "Interpolate light that is per triangle")};
+  for (CLI::Option* option : hemicube.options) option->group(group);
 }
 
 void add_outside_light(CLI::App& command, OutsideText& text) {

@@ -13,6 +13,7 @@ struct RenderOptions {
   Common common;
   OutsideText outside;
   std::string size, eye, look_at, bounces, exposure, tone_map;
+  HemicubeOptions hemicube;
   pipeline::RenderSettings settings;
 };
 
@@ -58,6 +59,7 @@ Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
   if (!options.tone_map.empty()) {
     LUXEL_TRY(s.tone_map, parse_tone_map(options.tone_map));
   }
+  if (options.hemicube.given()) s.hemicube = options.hemicube.settings;
   LUXEL_TRY(s.outside, parse_outside_light(options.outside));
   return s;
 }
@@ -157,6 +159,7 @@ void register_render(CLI::App& app, Action& action) {
   render->add_option("--samples", s.samples, "Paths per pixel (path; 64)");
   render->add_option("--bounces", options->bounces, "Reflections to count, or inf (path; inf)");
   render->add_option("--seed", s.seed, "Seed of all random numbers (path; 1)");
+  add_hemicube(*render, options->hemicube);
   add_outside_light(*render, options->outside);
   add_common(*render, options->common);
   render->callback([options, &action] { action = [options] { return run_render(*options); }; });

@@ -64,7 +64,6 @@ Result<Rows> make_rows(const Senders& senders, std::span<const Viewpoint> from,
     if (i + 1 != count && (i + 1) % kTileElements != 0) return {};
     return rows.store.put(tile, std::move(open[tile]));
   };
-  progress.begin("hemicubes", count);
   LUXEL_TRY(rows.seconds, look(senders, from, params.look, keep, progress));
   return rows;
 }

@@ -10,7 +10,7 @@ Result<Section> validate_agreement(Progress& progress) {
   Section section;
   section.json = nlohmann::json::array();
   std::vector<std::vector<std::string>> rows;
-  constexpr int kPaths = 512, kSamples = 1024, kDirect = 256;
+  constexpr int kPaths = 512, kSamples = 1024, kDirect = 256, kElements = 10000;
   for (AgreementScene& s : agreement_scenes()) {
     LUXEL_TRY(const auto p, prepare(std::move(s.scene), s.resolution, progress));
     LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1, progress));
@@ -19,6 +19,7 @@ Result<Section> validate_agreement(Progress& progress) {
       settings.samples = solver.name == "reference" ? kPaths : kSamples;
       settings.direct_samples = kDirect;
       settings.seed = 7;
+      settings.hemicube.max_elements = kElements;
       LUXEL_TRY(const Timed solved, solve(*p, solver.name, settings, progress));
       const Agreement a = agreement(solved.light.irradiance, solved.light.hidden, judged);
       rows.push_back({s.name, s.shows, std::string(solver.name), std::to_string(a.texels),
@@ -36,9 +37,10 @@ Result<Section> validate_agreement(Progress& progress) {
       "Five small scenes, one row per solver: a new solver adds its rows by itself. The judge is "
       "two "
       "independent runs of {} paths per texel;\nthe mean of (g - a)(g - b) over both leaves the "
-      "solver's own error, without the judge's noise. gather: {} rays, {} shadow rays. The path "
-      "tracer's own\nrow is a third run of {} paths: what is left there is its noise.\n\n{}",
-      kPaths, kSamples, kDirect, kPaths,
+      "solver's own error, without the judge's noise. gather: {} rays, {} shadow rays; "
+      "hemicube: up to {} vertices. The path tracer's own\nrow is a third run of {} paths: what is "
+      "left there is its noise.\n\n{}",
+      kPaths, kSamples, kDirect, kElements, kPaths,
       markdown_table({"scene", "shows", "solver", "texels", "relative RMSE", "bias", "seconds"},
                      rows));
   return section;

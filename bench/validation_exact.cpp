@@ -58,14 +58,16 @@ Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Pr
       "places; *error of a texel*: root mean square of the relative error at the texels "
       "themselves, where E is known pointwise (where E is below a tenth of its mean,\nrelative to "
       "that tenth). *model*: how far the scene itself is from the formula's (facets of a sphere). "
-      "gather takes {} rays and {} shadow rays per texel, the path\ntracer (reference) {} paths, "
+      "gather takes {} rays and {} shadow rays per texel, hemicube\n{} vertices at most (more "
+      "where "
+      "the scene has more) and {} pixels, the path tracer (reference) {} paths, "
       "without any other help: its texels are noisy. Its mean is that of {} paths from each of {} "
       "places over the scene, with no lightmap\nbetween: it must lie within 4 of the *standard "
       "errors* that it prints itself (3 would be exceeded by chance in one of 370 rows, and there "
-      "are more than 20).\nSections 6 (one element per face) and 8 are about solvers with constant "
-      "elements, of which there is none yet.\n\n{}",
-      kEffort.lightmap_points, kEffort.rays, kEffort.shadow_rays, kEffort.paths,
-      kEffort.paths_per_point, kEffort.path_points,
+      "are more than 20).\nSections 6 (one element per face) and 8 are about solvers whose form "
+      "factors are means over areas; hemicube looks from points.\n\n{}",
+      kEffort.lightmap_points, kEffort.rays, kEffort.shadow_rays, kEffort.elements,
+      kEffort.hemicube, kEffort.paths, kEffort.paths_per_point, kEffort.path_points,
       markdown_table({"", "scene", "part", "solver", "exact E", "mean", "error of the mean",
                       "standard error", "error of a texel", "model"},
                      rows));

@@ -186,6 +186,7 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
   LUXEL_CHECK(params.resolution >= 2 && params.resolution % 2 == 0);
   LUXEL_TRY(std::vector<Pixel> pixels, pixels_in_tiles(params.resolution, progress));
   const Looker looker(senders, std::move(pixels));
+  progress.begin("hemicubes", from.size());
   std::mutex mutex;
   Status status;
   LookSeconds sum;

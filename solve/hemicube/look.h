@@ -63,7 +63,7 @@ struct LookParams {
 inline constexpr size_t kTileElements = 16;
 
 /// Calls done(i, view) for every viewpoint, from many threads; the view is only valid during the
-/// call. Stage "hemicubes". Errors: cancelled, or what done returns.
+/// call. The stage "hemicubes". Errors: cancelled, or what done returns.
 Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from,
                          const LookParams& params,
                          const std::function<Status(size_t, const View&)>& done,

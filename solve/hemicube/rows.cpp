@@ -11,7 +11,7 @@ namespace luxel::hemicube {
 namespace {
 
 constexpr uint32_t kMaxStep = 65535;
-constexpr float kMaxWeight = 65535;
+constexpr double kMaxWeight = 65535;
 
 /// Four floats in one register: R, G, B and nothing.
 typedef float Float4 __attribute__((vector_size(16)));
@@ -32,15 +32,17 @@ float append_row(const View& view, transport::RowTile<RowEntry>& tile) {
   for (const float share : view.share) largest = std::max(largest, share), sum += double(share);
   uint64_t weights = 0;
   uint32_t column = 0;
-  for (size_t k = 0; k < view.share.size(); ++k) {
-    const uint32_t weight =
-        largest > 0 ? uint32_t(std::lround(view.share[k] / largest * kMaxWeight)) : 0;
+  double owed = 0;  // by the rounding of the ones before
+  for (size_t k = 0; k < view.share.size() && largest > 0; ++k) {
+    const double exact = double(view.share[k]) / double(largest) * kMaxWeight + owed;
+    const double weight = std::min(std::floor(exact + 0.5), kMaxWeight);
+    owed = exact - weight;
     if (weight == 0) continue;
     uint32_t step = view.element[k] - column;
     for (; step > kMaxStep; step -= kMaxStep) tile.entries.push_back({uint16_t(kMaxStep), 0});
     tile.entries.push_back({uint16_t(step), uint16_t(weight)});
     column = view.element[k];
-    weights += weight;
+    weights += uint64_t(weight);
   }
   tile.end.push_back(uint32_t(tile.entries.size()));
   return weights > 0 ? float(sum / double(weights)) : 0.0f;

@@ -17,8 +17,10 @@ struct RowEntry {
 };
 static_assert(sizeof(RowEntry) == 4);
 
-/// A matrix of form factors, a row per viewpoint and a column per sender. A factor errs by at most
-/// 1/131070 of the row's largest one; the sum of a row is exact.
+/// A matrix of form factors, a row per viewpoint and a column per sender. A factor errs by about
+/// 1/65535 of the row's largest one at most; the sum of a row is exact, and that of neighbours errs
+/// no more than one of them: what rounding takes from one the next gets, so that many small factors
+/// do not vanish.
 struct Rows {
   transport::RowStore<RowEntry> store;
   std::vector<float> scale;       ///< per row

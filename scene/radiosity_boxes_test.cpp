@@ -39,7 +39,9 @@ TEST(RadiosityBox, LampIsAFifthOfTheCeilingInItsMiddle) {
   EXPECT_NEAR(area, 0.4 * 0.4, 1e-6);
   EXPECT_LT(length(box.centre() - Vec3{0, 2, 0}), 1e-6f);
   for (uint32_t i = 0; i < scene.instances.size(); ++i)
-    if (i != light) EXPECT_EQ(max_component(emission_at(scene, {i, 0, {}})), 0.0f);
+    if (i != light) {
+      EXPECT_EQ(max_component(emission_at(scene, {i, 0, {}})), 0.0f);
+    }
 }
 
 // Red on the left of the picture, and no front of a wall between the camera and the room.

@@ -28,6 +28,19 @@ Scene furnace_box(Rgb reflectance, Rgb emission, int tessellation = 1);
 /// background; 478 triangles. [Moreno05, section 5.2, figure 5.8]
 Scene spheres_and_cube();
 
+/// The empty box that [Rodriguez06, section 5.8] measures on: a closed cube 2 m wide (1 unit of the
+/// paper = 1 cm), one wall red, one green, seen from inside, with a square lamp of radiosity
+/// (100.4, 96.8, 90) in the middle of its ceiling. Each wall is a grid of 5 x 5 quads; the ceiling
+/// is cut by the lamp's edges into nine grids that share no vertex. Cut further, into n^2 quads per
+/// wall, that makes 6 (n + 1)^2 + 4 n + 8 vertices: 774, 2734, 10254 and 15814 for the paper's
+/// tessellation factors 20, 10, 5 and 4, which stand for quads 0.2, 0.1, 0.05 and 0.04 m wide.
+Scene radiosity_box();
+
+/// The same box with a sphere under the lamp and a torus above it, both smooth. The paper gives no
+/// sizes; the tessellation is ours, such that the vertices are 3.5 times those of the empty box at
+/// factor 20, as the paper's times are: 203 s and 58 s. [Rodriguez06, plate C.10]
+Scene radiosity_box_with_shapes();
+
 /// A sphere of radius `radius_m` seen from inside (normals point inwards), latitude-longitude-free:
 /// an icosahedron subdivided `levels` times; flat shading. One material.
 Scene inward_sphere(float radius_m, int levels, Rgb reflectance, Rgb emission);

@@ -5,13 +5,15 @@
 #include <map>
 #include <set>
 #include <sstream>
-#include <tuple>
 
 #include "scene/shapes.h"
 #include "tests/reference_data.h"
+#include "tests/surfaces.h"
 
 namespace luxel::scene {
 namespace {
+
+using namespace testing_support;
 
 const char* const kFacts = "reference/cornell-box.md";
 
@@ -57,64 +59,6 @@ DVec vector_area(const std::vector<DVec>& p) {
 }
 
 DVec wide(Vec3 v) { return {v.x, v.y, v.z}; }
-
-uint32_t instance_named(const Scene& scene, const std::string& name) {
-  for (uint32_t i = 0; i < scene.instances.size(); ++i)
-    if (scene.instances[i].name == name) return i;
-  ADD_FAILURE() << "no instance " << name;
-  return 0;
-}
-
-/// The triangles of all instances, corners counter-clockwise from the front.
-std::vector<Triangle3> triangles_of(const Scene& scene) {
-  std::vector<Triangle3> all;
-  for (uint32_t i = 0; i < scene.instances.size(); ++i)
-    for (uint32_t t = 0; t < scene.meshes[scene.instances[i].mesh].triangles.size(); ++t)
-      all.push_back(world_triangle(scene, i, t));
-  return all;
-}
-
-double total_area(const std::vector<Triangle3>& triangles) {
-  double sum = 0;
-  for (const Triangle3& t : triangles) sum += double(area_m2(t));
-  return sum;
-}
-
-using Key = std::tuple<float, float, float>;
-Key key(Vec3 p) { return {p.x, p.y, p.z}; }
-
-/// Closed and consistently wound: every directed edge occurs once, and so does its opposite.
-void expect_closed(const std::vector<Triangle3>& triangles) {
-  std::map<std::pair<Key, Key>, int> edges;
-  for (const Triangle3& t : triangles) {
-    ++edges[{key(t.a), key(t.b)}];
-    ++edges[{key(t.b), key(t.c)}];
-    ++edges[{key(t.c), key(t.a)}];
-  }
-  for (const auto& [edge, count] : edges) {
-    ASSERT_EQ(count, 1);
-    ASSERT_EQ(edges.count({edge.second, edge.first}), 1u);
-  }
-}
-
-/// Volume inside a closed surface by the divergence theorem; positive when it faces outwards.
-double signed_volume(const std::vector<Triangle3>& triangles) {
-  double volume = 0;
-  for (const Triangle3& t : triangles) volume += double(dot(t.a, cross(t.b, t.c))) / 6;
-  return volume;
-}
-
-void expect_consistent(const Scene& scene) {
-  for (const Mesh& mesh : scene.meshes) {
-    EXPECT_EQ(mesh.triangle_material.size(), mesh.triangles.size());
-    EXPECT_TRUE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
-    for (const auto& t : mesh.triangles)
-      for (const uint32_t v : t) ASSERT_LT(v, mesh.positions.size());
-    for (const uint32_t m : mesh.triangle_material) ASSERT_LT(m, scene.materials.size());
-  }
-  for (const Instance& instance : scene.instances) ASSERT_LT(instance.mesh, scene.meshes.size());
-  for (const Triangle3& t : triangles_of(scene)) EXPECT_GT(area_m2(t), 0);
-}
 
 // Every quad of the published list is there with all four corners, in the right material and facing
 // the lit side: the vector area of each surface's rows equals that of its triangles.

@@ -45,6 +45,35 @@ void add_box(Mesh& mesh, Vec3 lower, Vec3 upper, uint32_t material) {
     add_quad(mesh, {corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3])}, material);
 }
 
+Mesh sphere(std::string name, float radius_m, int slices, int stacks, uint32_t material) {
+  Mesh mesh;
+  mesh.name = std::move(name);
+  mesh.normals.push_back({0, 1, 0});
+  for (int ring = 1; ring < stacks; ++ring)
+    for (int slice = 0; slice < slices; ++slice) {
+      const float theta = kPi * float(ring) / float(stacks);
+      const float phi = 2 * kPi * float(slice) / float(slices);
+      mesh.normals.push_back(normalize(
+          {std::sin(theta) * std::cos(phi), std::cos(theta), -std::sin(theta) * std::sin(phi)}));
+    }
+  mesh.normals.push_back({0, -1, 0});
+  for (const Vec3& n : mesh.normals) mesh.positions.push_back(n * radius_m);
+
+  const auto at = [&](int ring, int slice) { return uint32_t(1 + (ring - 1) * slices + slice); };
+  const auto bottom = uint32_t(mesh.normals.size() - 1);
+  for (int slice = 0; slice < slices; ++slice) {
+    const int next = (slice + 1) % slices;
+    mesh.triangles.push_back({0, at(1, slice), at(1, next)});
+    for (int ring = 1; ring + 1 < stacks; ++ring) {
+      mesh.triangles.push_back({at(ring, slice), at(ring + 1, slice), at(ring + 1, next)});
+      mesh.triangles.push_back({at(ring, slice), at(ring + 1, next), at(ring, next)});
+    }
+    mesh.triangles.push_back({bottom, at(stacks - 1, next), at(stacks - 1, slice)});
+  }
+  mesh.triangle_material.assign(mesh.triangles.size(), material);
+  return mesh;
+}
+
 void place(Scene& scene, Mesh mesh, const Mat34& world_from_object) {
   scene.instances.push_back({mesh.name, uint32_t(scene.meshes.size()), world_from_object});
   scene.meshes.push_back(std::move(mesh));

@@ -24,6 +24,10 @@ void add_quad(Mesh& mesh, const Quad& quad, uint32_t material);
 void add_quad_with_hole(Mesh& mesh, const Quad& quad, const Quad& hole, uint32_t material);
 /// The six faces of an axis-aligned box, seen from outside, corners shared.
 void add_box(Mesh& mesh, Vec3 lower, Vec3 upper, uint32_t material);
+/// A sphere around the origin with smooth normals: one vertex at each pole (index 0 on top, the
+/// last one below), stacks - 1 rings of `slices` vertices between them; 2 slices (stacks - 1)
+/// triangles.
+Mesh sphere(std::string name, float radius_m, int slices, int stacks, uint32_t material);
 
 /// Adds the mesh with one instance of the same name.
 void place(Scene& scene, Mesh mesh, const Mat34& world_from_object = {});

@@ -10,37 +10,6 @@ namespace {
 // lamp's 2 and 2 for each of the other four walls: 478.
 constexpr int kSlices = 16, kStacks = 8;
 
-/// A sphere around the origin with smooth normals: one vertex at each pole (index 0 on top, the
-/// last one below), kStacks - 1 rings of kSlices vertices between them.
-Mesh sphere(const char* name, float radius_m, uint32_t material) {
-  Mesh mesh;
-  mesh.name = name;
-  mesh.normals.push_back({0, 1, 0});
-  for (int ring = 1; ring < kStacks; ++ring)
-    for (int slice = 0; slice < kSlices; ++slice) {
-      const float theta = kPi * float(ring) / float(kStacks);
-      const float phi = 2 * kPi * float(slice) / float(kSlices);
-      mesh.normals.push_back(normalize(
-          {std::sin(theta) * std::cos(phi), std::cos(theta), -std::sin(theta) * std::sin(phi)}));
-    }
-  mesh.normals.push_back({0, -1, 0});
-  for (const Vec3& n : mesh.normals) mesh.positions.push_back(n * radius_m);
-
-  const auto at = [](int ring, int slice) { return uint32_t(1 + (ring - 1) * kSlices + slice); };
-  const auto bottom = uint32_t(mesh.normals.size() - 1);
-  for (int slice = 0; slice < kSlices; ++slice) {
-    const int next = (slice + 1) % kSlices;
-    mesh.triangles.push_back({0, at(1, slice), at(1, next)});
-    for (int ring = 1; ring + 1 < kStacks; ++ring) {
-      mesh.triangles.push_back({at(ring, slice), at(ring + 1, slice), at(ring + 1, next)});
-      mesh.triangles.push_back({at(ring, slice), at(ring + 1, next), at(ring, next)});
-    }
-    mesh.triangles.push_back({bottom, at(kStacks - 1, next), at(kStacks - 1, slice)});
-  }
-  mesh.triangle_material.assign(mesh.triangles.size(), material);
-  return mesh;
-}
-
 /// A box 2 m wide and high, 2 m deep, its floor at y = 0, open towards +z.
 void place_open_box(Scene& scene, uint32_t gray, uint32_t green, uint32_t light) {
   const Vec3 a{-1, 0, -1}, b{1, 0, -1}, c{1, 0, 1}, d{-1, 0, 1};  // the floor, from the back left
@@ -87,8 +56,10 @@ Scene spheres_and_cube() {
   }
 
   place_open_box(scene, gray, green, light);
-  place(scene, sphere("red sphere", 0.38f, red), translation({-0.45f, 0.65f, -0.1f}));
-  place(scene, sphere("yellow sphere", 0.32f, yellow), translation({0.5f, 1.25f, -0.35f}));
+  place(scene, sphere("red sphere", 0.38f, kSlices, kStacks, red),
+        translation({-0.45f, 0.65f, -0.1f}));
+  place(scene, sphere("yellow sphere", 0.32f, kSlices, kStacks, yellow),
+        translation({0.5f, 1.25f, -0.35f}));
   Mesh cube;
   cube.name = "cube";
   add_box(cube, {-0.25f, -0.25f, -0.25f}, {0.25f, 0.25f, 0.25f}, gray);

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "bench/bench.h"
+#include "bench/hemicube.h"
 #include "bench/validation.h"
 #include "pipeline/bake.h"
 #include "pipeline/output_folder.h"
@@ -13,7 +14,7 @@
 namespace luxel::cli {
 namespace {
 
-constexpr const char* kValidation = "validation";
+constexpr const char *kValidation = "validation", *kHemicube = "hemicube";
 
 struct BenchOptions {
   Common common;
@@ -59,6 +60,39 @@ int run_validation(const BenchOptions& options, const std::filesystem::path& sha
   return kDone;
 }
 
+/// The plots and the numbers behind them.
+Status write_hemicube(const bench::HemicubePage& page, const std::filesystem::path& folder) {
+  pipeline::OutputFolder images(folder / "images");
+  LUXEL_TRY_STATUS(images.make());
+  const auto* text = reinterpret_cast<const std::byte*>(page.csv.data());
+  std::vector<OutputFile> files{{folder / "hemicube.csv", {text, text + page.csv.size()}}};
+  for (const bench::PageFile& file : page.pictures)
+    files.push_back({folder / "images" / ("hemicube-" + file.name), file.bytes});
+  LUXEL_TRY_STATUS(write_files_atomically(files));
+  images.keep();
+  return {};
+}
+
+/// Files are written when it was asked for by name, not with all tables.
+int run_hemicube(const BenchOptions& options, const std::filesystem::path& shared) {
+  const ThreadLimit limit(options.common.threads);
+  const std::filesystem::path folder = options.output;
+  const bool write = options.name == kHemicube;
+  bench::HemicubePage page;
+  const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
+    if (write) LUXEL_TRY_STATUS(pipeline::OutputFolder(folder / "images").try_out());
+    LUXEL_TRY(page, bench::measure_hemicube(shared, progress));
+    return write ? write_hemicube(page, folder) : Status{};
+  });
+  if (!done) return report(done.error());
+  if (options.common.json) {
+    std::printf("%s\n", page.json.dump(2).c_str());
+    return kDone;
+  }
+  for (const bench::Table& table : page.tables) std::printf("%s\n", bench::markdown(table).c_str());
+  return kDone;
+}
+
 int run_tables(const BenchOptions& options, const std::filesystem::path& shared) {
   for (const bench::Bench& table_of : bench::kBenches) {
     if (options.name != "all" && options.name != table_of.name) continue;
@@ -75,8 +109,11 @@ int run_tables(const BenchOptions& options, const std::filesystem::path& shared)
 int run_bench(const BenchOptions& options) {
   const std::filesystem::path shared =
       options.shared.empty() ? default_shared() : std::filesystem::path(options.shared);
-  return options.name == kValidation ? run_validation(options, shared)
-                                     : run_tables(options, shared);
+  if (options.name == kValidation) return run_validation(options, shared);
+  // First of all: it measures memory in a child process, which must not miss this one's threads.
+  if (options.name == kHemicube || options.name == "all")
+    if (const int code = run_hemicube(options, shared); code != kDone) return code;
+  return options.name == kHemicube ? int(kDone) : run_tables(options, shared);
 }
 
 }  // namespace
@@ -85,7 +122,7 @@ void register_bench(CLI::App& app, Action& action) {
   CLI::App* bench = app.add_subcommand(
       "bench", "Print the tables of docs/benchmarks.md, or write docs/validation.md");
   auto options = std::make_shared<BenchOptions>();
-  std::vector<std::string> names{"all", kValidation};
+  std::vector<std::string> names{"all", kValidation, kHemicube};
   for (const bench::Bench& b : bench::kBenches) names.emplace_back(b.name);
   bench
       ->add_option("NAME", options->name,
@@ -95,8 +132,9 @@ void register_bench(CLI::App& app, Action& action) {
       ->required();
   bench->add_option("--shared", options->shared,
                     "Folder with scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
-  bench->add_option("-o,--output", options->output,
-                    "validation: folder for validation.md and images/ (default: docs)");
+  bench->add_option(
+      "-o,--output", options->output,
+      "validation, hemicube: folder for the page or the .csv, and images/ (default: docs)");
   add_common(*bench, options->common);
   bench->callback([options, &action] { action = [options] { return run_bench(*options); }; });
 }

@@ -2,11 +2,9 @@
 #include "bench/hemicube.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "base/parallel.h"
+#include "bench/child.h"
 #include "export/plot.h"
 #include "scene/procedural.h"
 
@@ -18,21 +16,17 @@ constexpr double kPaperEmpty_s = 58, kPaperShapes_s = 203;
 constexpr float kFactor20_m = 0.20f, kFactor4_m = 0.04f;
 constexpr int kHemicube = 64, kPasses = 10;
 
-/// Peak memory of a process that only solves the finest box. A child's own peak begins at what its
-/// parent holds, so this comes first.
+/// Peak memory of a process that only solves the finest box.
 Result<uint64_t> peak_bytes_of_finest() {
-  const pid_t child = ::fork();
-  if (child < 0) return fail(ErrorCode::io, "cannot start a process");
-  if (child == 0) {
-    Progress progress;
-    const auto run = run_box("", scene::radiosity_box(), kFactor4_m, kHemicube, kPasses, progress);
-    ::_exit(run ? 0 : 1);
-  }
-  int status = 0;
-  rusage usage{};
-  if (::wait4(child, &status, 0, &usage) != child || status != 0)
-    return fail(ErrorCode::io, "the process that measures memory failed");
-  return uint64_t(usage.ru_maxrss) * 1024;
+  LUXEL_TRY(const ChildOutcome child, run_in_child([] {
+              Progress progress;
+              const auto run =
+                  run_box("", scene::radiosity_box(), kFactor4_m, kHemicube, kPasses, progress);
+              return run ? std::string() : run.error().message;
+            }));
+  if (!child.text.empty())
+    return fail(ErrorCode::bad_input, "the finest box failed: {}", child.text);
+  return child.peak_resident_bytes;
 }
 
 std::string mib(uint64_t bytes) { return fmt::format("{:.1f}", double(bytes) / double(1u << 20)); }

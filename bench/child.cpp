@@ -1,8 +1,11 @@
 #include "bench/child.h"
 
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <csignal>
 
 namespace luxel::bench {
 
@@ -15,6 +18,8 @@ Result<ChildOutcome> run_in_child(const std::function<std::string()>& work) {
     return fail(ErrorCode::io, "cannot start a process");
   }
   if (child == 0) {
+    // Ctrl-C may end the parent while this works on.
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     ::close(channel[0]);
     const std::string text = work();
     const ssize_t written = ::write(channel[1], text.data(), text.size());

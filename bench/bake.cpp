@@ -1,10 +1,10 @@
 // luxel bench atlas, memory: what a bake of the shared scenes takes.
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "atlas/atlas.h"
 #include "base/parallel.h"
 #include "bench/bench.h"
+#include "bench/child.h"
 #include "bench/prepared.h"
 #include "import/import.h"
 #include "pipeline/bake.h"
@@ -28,31 +28,17 @@ struct AtlasCase {
   bool twice = false;
 };
 
-/// Runs one bake in a process of its own, so that its peak memory is its own. Returns its
-/// bake.json.
+/// Runs one bake in a process of its own. Returns its bake.json.
 Result<nlohmann::json> bake_in_child(const pipeline::BakeSettings& settings) {
-  int channel[2];
-  if (::pipe(channel) != 0) return fail(ErrorCode::io, "cannot make a pipe");
-  const pid_t child = ::fork();
-  if (child < 0) return fail(ErrorCode::io, "cannot start a process");
-  if (child == 0) {
-    ::close(channel[0]);
-    Progress progress;
-    const auto json = pipeline::bake(settings, progress);
-    const std::string text = json ? json->dump() : nlohmann::json(json.error().message).dump();
-    const ssize_t written = ::write(channel[1], text.data(), text.size());
-    ::_exit(written == ssize_t(text.size()) ? 0 : 1);
-  }
-  ::close(channel[1]);
-  std::string text;
-  char buffer[4096];
-  for (ssize_t n; (n = ::read(channel[0], buffer, sizeof buffer)) > 0;)
-    text.append(buffer, size_t(n));
-  ::close(channel[0]);
-  ::waitpid(child, nullptr, 0);
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  LUXEL_TRY(const ChildOutcome child, run_in_child([&] {
+              Progress progress;
+              const auto json = pipeline::bake(settings, progress);
+              return json ? json->dump() : nlohmann::json(json.error().message).dump();
+            }));
+  const auto json = nlohmann::json::parse(child.text, nullptr, false);
   if (!json.is_object())
-    return fail(ErrorCode::bad_input, "the bake of {} failed: {}", settings.scene.string(), text);
+    return fail(ErrorCode::bad_input, "the bake of {} failed: {}", settings.scene.string(),
+                child.text);
   return json;
 }
 

@@ -17,7 +17,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 PRINT = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(?:std::)?"
                    r"(printf|fprintf|vprintf|puts|fputs|putchar|perror|exit|_exit|quick_exit|abort)\s*\(")
 PRINT_EXCEPT = {"base/check.cpp",  # says which contract broke, then aborts
-                "bench/bake.cpp"}  # ends the child process that it forked to measure
+                "bench/child.cpp"}  # ends the child process that it forked to measure
 TBB_ONLY = {"base/parallel.h", "base/parallel.cpp"}
 
 

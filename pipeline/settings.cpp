@@ -67,7 +67,9 @@ Status check(const HemicubeSettings& s) {
     return fail(ErrorCode::bad_setting,
                 "--hemicube {} is odd, and its sides are half as high as wide; give an even number",
                 s.resolution);
-  if (!std::isfinite(s.element_size_m) || s.element_size_m < 0)
+  // The solver has floats; what is nothing to them would be taken for the default.
+  const float size_m = float(s.element_size_m);
+  if (!std::isfinite(size_m) || size_m < 0 || (size_m == 0 && s.element_size_m != 0))
     return fail(ErrorCode::bad_setting, "--element-size {} is not a length; give metres > 0",
                 s.element_size_m);
   if (s.max_elements < 0 || s.max_elements > kMaxElements)

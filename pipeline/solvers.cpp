@@ -133,8 +133,10 @@ Result<TexelLight> solve_hemicube(const SolveInput& in, const BakeSettings& sett
   return texel_light_of(std::move(solution), in.map);
 }
 
-constexpr std::array kSolvers{Solver{"gather", solve_gather}, Solver{"hemicube", solve_hemicube},
-                              Solver{"reference", solve_reference}};
+constexpr std::array kSolvers{
+    Solver{.name = "gather", .solve = solve_gather, .samples = true, .direct_samples = true},
+    Solver{.name = "hemicube", .solve = solve_hemicube, .direct_samples = true, .hemicube = true},
+    Solver{.name = "reference", .solve = solve_reference, .samples = true}};
 
 }  // namespace
 

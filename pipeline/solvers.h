@@ -47,6 +47,8 @@ using SolveFunction = Result<TexelLight> (*)(const SolveInput&, const BakeSettin
 struct Solver {
   std::string_view name;
   SolveFunction solve;
+  /// What it looks at of the settings.
+  bool samples = false, direct_samples = false, hemicube = false;
 };
 
 /// What a bake's settings ask of the hemicube solver. Shadow rays are four times direct_samples.

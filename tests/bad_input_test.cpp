@@ -176,7 +176,6 @@ TEST(BadSettings, NameTheOptionAndTheValue) {
                                       {"--bounces x", "'x'"},
                                       {"--sun 10,95,1", "'10,95,1'"},
                                       {"--max-memory 0", "'0'"},
-                                      {"--solver hemicube", "--solver hemicube"},
                                       {"--direct-samples 0", "--direct-samples 0"},
                                       {"--threads -1", "--threads -1"},
                                       {"--bounces -1", "--bounces '-1'"},

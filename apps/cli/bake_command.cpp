@@ -1,4 +1,6 @@
+#include <array>
 #include <cstdio>
+#include <set>
 
 #include "apps/cli/cli.h"
 #include "pipeline/bake.h"
@@ -13,9 +15,51 @@ struct BakeOptions {
   std::string uv = "auto", bounces = "inf", max_memory;
   HemicubeOptions hemicube;
   pipeline::BakeSettings settings;
+  std::set<std::string> given;  ///< of kSolverOptions
 };
 
+/// Options that only some solvers look at.
+struct SolverOption {
+  const char* name;
+  bool pipeline::Solver::*used;
+};
+constexpr std::array kSolverOptions{
+    SolverOption{"--samples", &pipeline::Solver::samples},
+    SolverOption{"--direct-samples", &pipeline::Solver::direct_samples},
+    SolverOption{"--elements", &pipeline::Solver::hemicube},
+    SolverOption{"--hemicube", &pipeline::Solver::hemicube},
+    SolverOption{"--element-size", &pipeline::Solver::hemicube},
+    SolverOption{"--max-elements", &pipeline::Solver::hemicube},
+    SolverOption{"--max-error", &pipeline::Solver::hemicube},
+    SolverOption{"--smooth", &pipeline::Solver::hemicube}};
+
+/// "gather, ...": the solvers that look at an option.
+std::string users_of(bool pipeline::Solver::*used) {
+  std::string names;
+  for (const pipeline::Solver& solver : pipeline::solvers())
+    if (solver.*used) names += (names.empty() ? "" : ", ") + std::string(solver.name);
+  return names;
+}
+
+/// What a solver would not look at must not be given: its user expects something of it.
+Status check_used(const BakeOptions& options) {
+  const pipeline::BakeSettings& s = options.settings;
+  const pipeline::Solver* solver = pipeline::find_solver(s.solver);
+  if (!solver) return {};  // the bake says so
+  for (const SolverOption& option : kSolverOptions)
+    if (options.given.contains(option.name) && !(solver->*option.used))
+      return fail(ErrorCode::bad_setting,
+                  "--solver {} does not use {}; leave {} out (it is for {})", s.solver, option.name,
+                  option.name, users_of(option.used));
+  if (s.hemicube.smooth && s.hemicube.elements == "vertex")
+    return fail(ErrorCode::bad_setting,
+                "--smooth is for light per triangle; add --elements triangle, or leave it out, for "
+                "light per vertex is smooth");
+  return {};
+}
+
 Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
+  LUXEL_TRY_STATUS(check_used(options));
   pipeline::BakeSettings s = options.settings;
   s.threads = options.common.threads;
   s.hemicube = options.hemicube.settings;
@@ -105,7 +149,11 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();
   add_outside_light(*bake, options->outside);
   add_common(*bake, options->common);
-  bake->callback([options, &action] { action = [options] { return run_bake(*options); }; });
+  bake->callback([options, bake, &action] {
+    for (const SolverOption& option : kSolverOptions)
+      if (bake->count(option.name) > 0) options->given.insert(option.name);
+    action = [options] { return run_bake(*options); };
+  });
 }
 
 }  // namespace luxel::cli

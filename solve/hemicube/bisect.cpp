@@ -50,7 +50,7 @@ Bisector::Longest Bisector::longest(uint32_t node) const {
 
 double Bisector::longest_edge2(uint32_t node) const { return longest(node).length2; }
 
-void Bisector::cut(uint32_t node) {
+void Bisector::cut(uint32_t node, size_t most) {
   // Each step goes to a triangle whose longest edge is longer than the one before: it ends.
   std::vector<uint32_t> path{node};
   while (!path.empty()) {
@@ -63,10 +63,14 @@ void Bisector::cut(uint32_t node) {
     uint32_t first = kNone;
     for (const uint32_t other : triangles_at_.at(edge))
       if (first == kNone && longest(other).edge != edge) first = other;
-    if (first != kNone)
+    if (first != kNone) {
       path.push_back(first);
-    else
-      cut_all_at(edge);
+      continue;
+    }
+    const size_t count = triangles_at_.at(edge).size();
+    if (count > most) return;
+    most -= count;
+    cut_all_at(edge);
   }
 }
 

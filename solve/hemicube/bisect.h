@@ -13,8 +13,9 @@ class Bisector {
   explicit Bisector(Mesh& mesh);
 
   /// Cuts a triangle at its longest edge, and before it whatever must be cut so that no vertex ends
-  /// up on another triangle's edge [Rivara84]. Nothing happens to one that is cut already.
-  void cut(uint32_t node);
+  /// up on another triangle's edge [Rivara84]. Nothing happens to one that is cut already. Stops
+  /// before more than `most` triangles would be cut; the mesh is whole then, too.
+  void cut(uint32_t node, size_t most = SIZE_MAX);
   /// The square of the longest edge's length [m^2].
   double longest_edge2(uint32_t node) const;
 

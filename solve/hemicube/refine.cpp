@@ -192,17 +192,17 @@ Result<Block> make_block(const Refinement& in, const Receivers& receivers,
 
 namespace {
 
-/// Cuts the worst triangles until there are about `goal` elements. False when there is nothing to
-/// cut.
+/// Cuts the worst triangles until there are `goal` elements, or nearly so. False when there is
+/// nothing to cut.
 bool cut_worst(Field& field, const HemicubeParams& params, size_t goal, double shortest_m,
                Bisector& bisector) {
   const size_t before = field.mesh.nodes.size();
   for (const uint32_t node : worst_first(field, params.max_error, shortest_m, bisector)) {
     const size_t elements = params.elements == ElementKind::vertex ? field.mesh.vertices.size()
                                                                    : field.mesh.triangle_count;
-    // A cut may need others before it: leave room for them.
-    if (elements + 8 >= goal) break;
-    bisector.cut(node);
+    if (elements >= goal) break;
+    // Each triangle that is cut is one triangle more, and one vertex at most.
+    bisector.cut(node, goal - elements);
   }
   return field.mesh.nodes.size() > before;
 }

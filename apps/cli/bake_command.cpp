@@ -51,7 +51,8 @@ Status check_used(const BakeOptions& options) {
       return fail(ErrorCode::bad_setting,
                   "--solver {} does not use {}; leave {} out (it is for {})", s.solver, option.name,
                   option.name, users_of(option.used));
-  if (s.hemicube.smooth && s.hemicube.elements == "vertex")
+  const pipeline::HemicubeSettings& hemicube = options.hemicube.settings;
+  if (hemicube.smooth && hemicube.elements == "vertex")
     return fail(ErrorCode::bad_setting,
                 "--smooth is for light per triangle; add --elements triangle, or leave it out, for "
                 "light per vertex is smooth");
@@ -63,12 +64,6 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   pipeline::BakeSettings s = options.settings;
   s.threads = options.common.threads;
   s.hemicube = options.hemicube.settings;
-  if (options.hemicube.given() && s.solver != "hemicube")
-    return fail(ErrorCode::bad_setting,
-                "--solver {} has no elements of its own; leave --elements, --hemicube, "
-                "--element-size, --max-elements, --max-error and --smooth out, or use --solver "
-                "hemicube",
-                s.solver);
   s.uv = options.uv == "keep"     ? atlas::UvMode::keep
          : options.uv == "unwrap" ? atlas::UvMode::unwrap
                                   : atlas::UvMode::automatic;

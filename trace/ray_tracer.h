@@ -30,6 +30,12 @@ struct Hit {
   scene::SurfacePoint point() const { return {instance, triangle, at}; }
 };
 
+/// What the tracer may expect of 16 rays that follow each other in a batch.
+enum class Packets : uint8_t {
+  any,
+  bundles  ///< one origin and nearly one direction, like neighbouring pixels: twice as fast
+};
+
 /// Two levels: a mesh with several instances is stored once, with its instances on top, in scenes
 /// of more than a million drawn triangles; smaller scenes and single instances lie in the top
 /// level, where rays meet one tight hierarchy. Holes of alpha masks do not block. Both sides of
@@ -45,7 +51,8 @@ class RayTracer {
 
   /// hits[i] is what rays[i] meets first. Rays are traced in packets of neighbours: rays with
   /// nearby origins and directions next to each other run faster. Sizes are equal.
-  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits) const;
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
+                    Packets packets = Packets::any) const;
   Hit closest_hit(const Ray& ray) const;
   /// blocked[i] is 1 when anything solid lies on rays[i] within (t_min, t_max).
   void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const;

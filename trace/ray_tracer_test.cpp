@@ -131,5 +131,54 @@ TEST(OffsetOrigin, LeavesTheSurfaceAtAnyScale) {
   }
 }
 
+/// Packets of neighbouring directions from one place, across octants and along axes, too; the last
+/// packet is not full.
+std::vector<Ray> bundle_from(Vec3 origin, RandomStream& random) {
+  std::vector<Ray> rays;
+  for (int k = 0; k < 64; ++k) {
+    const bool along_axes = k % 8 == 0;
+    const Vec3 centre =
+        along_axes ? Vec3{k % 16 == 0 ? 1.0f : 0, 0, k % 16 == 0 ? 0 : -1.0f}
+                   : Vec3{random.next() - 0.5f, random.next() - 0.5f, random.next() - 0.5f};
+    for (int i = 0; i < 16; ++i) {
+      const Vec3 step{float(i % 4) - 1.5f, float(i / 4) - 1.5f, along_axes ? 0.0f : float(i % 3)};
+      rays.push_back({origin, 0, centre + step * 0.05f, INFINITY});
+    }
+  }
+  rays.resize(rays.size() - 5);
+  return rays;
+}
+
+// Embree's traversal for bundles must end, and meet what the other one meets.
+TEST(RayTracer, BundlesMeetWhatSingleRaysMeet) {
+  scene::Scene scene = scene::spheres_and_cube();
+  scene::Mesh soup;
+  RandomStream random{11};
+  const auto place = [&] { return Vec3{random.next(), random.next(), random.next()} * 4; };
+  for (uint32_t t = 0; t < 2000; ++t) {
+    const Vec3 a = place();
+    soup.positions.insert(soup.positions.end(), {a, a + place() * 0.05f, a + place() * 0.05f});
+    soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    soup.triangle_material.push_back(0);
+  }
+  scene.meshes.push_back(soup);
+  scene.instances.push_back({"soup", uint32_t(scene.meshes.size() - 1), {}});
+  const auto tracer = RayTracer::build(scene);
+  size_t other = 0, count = 0;
+  for (int n = 0; n < 400; ++n) {
+    const std::vector<Ray> rays = bundle_from(place(), random);
+    std::vector<Hit> bundled(rays.size()), single(rays.size());
+    tracer->closest_hits(rays, bundled, Packets::bundles);
+    tracer->closest_hits(rays, single);
+    for (size_t i = 0; i < rays.size(); ++i, ++count)
+      // A ray through an edge may meet either side of it; the place is the same.
+      if (bundled[i].found() != single[i].found() ||
+          (single[i].found() && std::abs(bundled[i].t - single[i].t) > 1e-4f * single[i].t))
+        ++other;
+  }
+  EXPECT_GT(count, 400000u);
+  EXPECT_LE(other, count / 100000) << "rays along edges";
+}
+
 }  // namespace
 }  // namespace luxel::trace

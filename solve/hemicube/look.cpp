@@ -117,7 +117,7 @@ class Looker {
       aim(std::span(pixels_).subspan(first, std::min(kBatch, pixels_.size() - first)), frame,
           origin, from.geometric_normal, work);
       const auto aimed = Clock::now();
-      s_.tracer.closest_hits(work.rays, work.hits);
+      s_.tracer.closest_hits(work.rays, work.hits, trace::Packets::bundles);
       const auto traced = Clock::now();
       for (size_t k = 0; k < work.hits.size(); ++k) count(work.hits[k], work.factor[k], work);
       work.seconds.visibility += seconds(traced - aimed);

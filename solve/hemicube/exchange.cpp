@@ -52,48 +52,24 @@ std::vector<Rgb> radiosity(const transport::Elements& elements, std::span<const 
   return out;
 }
 
-uint32_t element_of(const Receivers& receivers, uint32_t key) {
-  return receivers.kind == ElementKind::vertex ? key : receivers.leaf_of_node[key];
-}
-
-uint32_t key_of(const Receivers& receivers, uint32_t element) {
-  return receivers.kind == ElementKind::vertex ? element : receivers.leaves[element];
-}
-
-namespace {
-
-/// Writes what a block's rows have to the elements they belong to.
-void scatter(const Receivers& receivers, const Block& block, std::span<const Rgb> values,
-             std::span<Rgb> out) {
-  for (size_t k = 0; k < values.size(); ++k)
-    if (const uint32_t i = element_of(receivers, block.key[k]); i != kNone) out[i] = values[k];
-}
-
-}  // namespace
-
-Result<Exchanged> exchange(const Receivers& receivers, std::span<const Block> blocks,
-                           const Projection& projection, const RefillPlan& plan,
+Result<Exchanged> exchange(const Receivers& receivers, const Rows& rows,
+                           std::span<const Rgb> source, const RefillPlan& plan,
                            std::span<const Rgb> start, const ExchangeParams& params,
                            Progress& progress) {
   Exchanged out;
-  out.irradiance.resize(receivers.size());
-  for (const Block& block : blocks) scatter(receivers, block, block.source, out.irradiance);
-  if (!start.empty() && params.bounces < 0) out.irradiance.assign(start.begin(), start.end());
+  const std::span<const Rgb> first = !start.empty() && params.bounces < 0 ? start : source;
+  out.irradiance.assign(first.begin(), first.end());
   refill(plan, out.irradiance);
   float largest = 0;
   for (const Rgb& rho : receivers.elements.reflectance)
     largest = std::max(largest, max_component(rho));
-  std::vector<Rgb> next(receivers.size()), values;
+  std::vector<Rgb> next(receivers.size());
   double before = 0;
   const int sweeps = params.bounces < 0 ? kMaxSweeps : params.bounces;
   progress.begin("bounces", 0);
   while (out.sweeps < sweeps) {
-    const std::vector<Rgb> b = sent(projection, radiosity(receivers.elements, out.irradiance));
-    for (const Block& block : blocks) {
-      values.resize(block.key.size());
-      LUXEL_TRY_STATUS(sweep(block.rows, block.source, b, values, progress));
-      scatter(receivers, block, values, next);
-    }
+    const std::vector<Rgb> sent = radiosity(receivers.elements, out.irradiance);
+    LUXEL_TRY_STATUS(sweep(rows, source, sent, next, progress));
     refill(plan, next);
     const double change = rms_change(receivers, next, out.irradiance);
     out.irradiance.swap(next);

@@ -1,7 +1,6 @@
 // Light between elements: direct light once, then passes over the rows.
 #pragma once
 
-#include "solve/hemicube/projection.h"
 #include "solve/hemicube/refill.h"
 #include "solve/hemicube/rows.h"
 #include "transport/lights.h"
@@ -17,19 +16,6 @@ struct Emission {
 };
 Emission choose_emission(const transport::Lights& lights);
 
-/// Elements that were looked from together.
-struct Block {
-  /// Per row, the element: for light per vertex its vertex, per triangle its node, whatever the
-  /// mesh was cut into since.
-  std::vector<uint32_t> key;
-  Rows rows;
-  std::vector<Rgb> source;  ///< per row: E without any reflection
-};
-
-/// The number of the element with a key; kNone when its triangle was cut since.
-uint32_t element_of(const Receivers& receivers, uint32_t key);
-uint32_t key_of(const Receivers& receivers, uint32_t element);
-
 struct ExchangeParams {
   int bounces = -1;         ///< passes; < 0: until the light to come is below `tolerance`
   float tolerance = 1e-4f;  ///< root mean square over the elements, relative to the mean
@@ -40,12 +26,12 @@ struct Exchanged {
   int sweeps = 0;
 };
 
-/// E = E_0 + F B, B being what the senders send of rho E, by Jacobi iteration: pass n gathers what
-/// pass n - 1 reflected [Rodriguez06, General Radiosity Algorithm]; elements inside solids take
-/// their neighbours' light after each. Starts at `start` when it is not empty and all bounces are
-/// wanted, else at E_0. Errors: cancelled, disk.
-Result<Exchanged> exchange(const Receivers& receivers, std::span<const Block> blocks,
-                           const Projection& projection, const RefillPlan& plan,
+/// E = E_0 + F B with B = rho E, by Jacobi iteration: pass n gathers what pass n - 1 reflected
+/// [Rodriguez06, General Radiosity Algorithm]; elements inside solids take their neighbours' light
+/// after each. `rows` has a row for each element, and `source` its E_0. Starts at `start` when it
+/// is not empty and all bounces are wanted, else at E_0. Errors: cancelled, disk.
+Result<Exchanged> exchange(const Receivers& receivers, const Rows& rows,
+                           std::span<const Rgb> source, const RefillPlan& plan,
                            std::span<const Rgb> start, const ExchangeParams& params,
                            Progress& progress);
 

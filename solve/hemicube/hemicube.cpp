@@ -13,7 +13,6 @@ namespace {
 constexpr size_t kDefaultElements = 20000;
 /// How many of the elements the first mesh may have when more are to be cut where they are needed.
 constexpr double kFirstShare = 0.35;
-
 size_t element_count(const Mesh& mesh, ElementKind kind) {
   return kind == ElementKind::vertex ? mesh.vertices.size() : mesh.triangle_count;
 }
@@ -81,22 +80,38 @@ Result<FirstMesh> first_mesh(const scene::Scene& scene, const HemicubeParams& pa
   return out;
 }
 
-/// Looks from all elements of the first mesh and lets them exchange light.
-Status solve_first(const Refinement& in, const HemicubeParams& params, Progress& progress) {
-  Solution& s = in.solution;
-  std::vector<uint32_t> all(in.sending.size());
-  std::iota(all.begin(), all.end(), 0u);
-  LUXEL_TRY(Block block, make_block(in, in.sending, all, params, progress));
-  s.hidden = block.rows.hidden, s.enclosed = block.rows.enclosed;
-  in.blocks.push_back(std::move(block));
-  const RefillPlan plan = plan_refill(in.sending.neighbours, s.enclosed);
-  const Projection projection = project(in.sending_mesh, in.sending, in.sending_mesh, in.sending);
-  LUXEL_TRY(Exchanged exchanged, exchange(in.sending, in.blocks, projection, plan, {},
-                                          {params.bounces, params.tolerance}, progress));
-  s.field = {in.sending_mesh, in.sending, std::move(exchanged.irradiance)};
+/// Lets all elements of the solution's field look at its own mesh and exchange light, from the
+/// light it has on, if any.
+Status exchange_light(const scene::Scene& scene, const trace::RayTracer& tracer,
+                      const Emission& emission, const HemicubeParams& params, Solution& s,
+                      Progress& progress) {
+  const Receivers& receivers = s.field.receivers;
+  LUXEL_TRY(const Sight sight, look_from({scene, tracer, emission, s.field.mesh, receivers},
+                                         receivers.elements, params, s, progress));
+  s.hidden = sight.rows.hidden, s.enclosed = sight.rows.enclosed;
+  s.row_bytes_in_file = sight.rows.store.bytes_in_file();
+  s.row_bytes = sight.rows.store.bytes_in_memory() + s.row_bytes_in_file;
+  LUXEL_TRY(
+      Exchanged exchanged,
+      exchange(receivers, sight.rows, sight.source, plan_refill(receivers.neighbours, s.enclosed),
+               s.field.irradiance, {params.bounces, params.tolerance}, progress));
+  s.field.irradiance = std::move(exchanged.irradiance);
   s.sweeps = exchanged.sweeps;
-  s.sending_elements = in.sending.size();
   return {};
+}
+
+/// Where the mesh is to be cut shows in coarse hemicubes, too. The light that it ends with is a
+/// start only: fine receivers beside a crease see steep light across it as coarse triangles have
+/// it.
+Status refine_roughly(const scene::Scene& scene, const trace::RayTracer& tracer,
+                      const Emission& emission, const HemicubeParams& params, size_t max_elements,
+                      Solution& s, Progress& progress) {
+  HemicubeParams rough = params;
+  rough.resolution = std::max(2, params.resolution / 4 * 2);
+  LUXEL_TRY_STATUS(exchange_light(scene, tracer, emission, rough, s, progress));
+  const Field coarse = s.field;
+  return refine({scene, tracer, emission, coarse.mesh, coarse.receivers}, rough, max_elements, s,
+                progress);
 }
 
 }  // namespace
@@ -114,16 +129,13 @@ Result<Solution> solve(const scene::Scene& scene, const transport::Lights& light
               params.resolution % 2 == 0);
   LUXEL_TRY(FirstMesh first, first_mesh(scene, params, progress));
   const Emission emission = choose_emission(lights);
-  const Receivers sending = make_receivers(scene, first.mesh, params.elements);
   Solution s;
-  std::vector<Block> blocks;
-  const Refinement work{scene, tracer, emission, first.mesh, sending, s, blocks};
-  LUXEL_TRY_STATUS(solve_first(work, params, progress));
-  if (params.max_error > 0) LUXEL_TRY_STATUS(refine(work, params, first.max_elements, progress));
-  for (const Block& block : blocks) {
-    s.row_bytes_in_file += block.rows.store.bytes_in_file();
-    s.row_bytes += block.rows.store.bytes_in_memory() + block.rows.store.bytes_in_file();
-  }
+  s.field.receivers = make_receivers(scene, first.mesh, params.elements);
+  s.field.mesh = std::move(first.mesh);
+  if (params.max_error > 0)
+    LUXEL_TRY_STATUS(
+        refine_roughly(scene, tracer, emission, params, first.max_elements, s, progress));
+  LUXEL_TRY_STATUS(exchange_light(scene, tracer, emission, params, s, progress));
   s.relative_error = relative_interpolation_error(s.field);
   if (params.smooth && params.elements == ElementKind::triangle) {
     s.field = smoothed(scene, s.field, s.enclosed);

@@ -36,9 +36,8 @@ struct Solution {
   Field field;
   std::vector<uint8_t> hidden;    ///< per element of the field: 1 inside a solid
   std::vector<uint8_t> enclosed;  ///< per element: 1 where is_enclosed
-  size_t sending_elements = 0;    ///< that exchange light; the others only receive
   uint64_t rays = 0;
-  int sweeps = 0;
+  int sweeps = 0;  ///< of the last exchange
   uint64_t row_bytes = 0, row_bytes_in_file = 0;
   /// Estimated root mean square error of the interpolation over the mean irradiance.
   double relative_error = 0;
@@ -46,8 +45,8 @@ struct Solution {
 };
 
 /// Cuts the scene's triangles, looks from each element, exchanges light until it settles, then cuts
-/// on where it varies: those new elements receive from the first ones, which send on their behalf,
-/// too [Cohen86, substructuring]. Errors: settings, cancelled, disk full.
+/// on where it varies, and lets all elements of the finished mesh look and exchange light anew.
+/// Errors: settings, cancelled, disk full.
 Result<Solution> solve(const scene::Scene& scene, const transport::Lights& lights,
                        const trace::RayTracer& tracer, const HemicubeParams& params,
                        Progress& progress);

@@ -162,32 +162,22 @@ double relative_interpolation_error(const Field& field) {
   return mean > 0 && area > 0 ? std::sqrt(sum / area) / mean : 0;
 }
 
-Result<Block> make_block(const Refinement& in, const Receivers& receivers,
-                         std::span<const uint32_t> elements, const HemicubeParams& params,
-                         Progress& progress) {
-  transport::Elements some;
-  std::vector<uint32_t> key;
-  for (const uint32_t i : elements) {
-    some.position.push_back(receivers.elements.position[i]);
-    some.normal.push_back(receivers.elements.normal[i]);
-    some.geometric_normal.push_back(receivers.elements.geometric_normal[i]);
-    some.reflectance.push_back(receivers.elements.reflectance[i]);
-    key.push_back(key_of(receivers, i));
-  }
+Result<Sight> look_from(const Surroundings& around, const transport::Elements& elements,
+                        const HemicubeParams& params, Solution& solution, Progress& progress) {
   LUXEL_TRY(transport::DirectLight direct,
-            transport::direct_light(in.scene, some, in.emission.exact, in.tracer,
+            transport::direct_light(around.scene, elements, around.emission.exact, around.tracer,
                                     {params.direct_samples, params.seed, true}, progress));
-  uint64_t used = 0;
-  for (const Block& block : in.blocks) used += block.rows.store.bytes_in_memory();
-  const uint64_t left = params.row_memory_bytes - std::min(params.row_memory_bytes, used);
-  const Senders senders{in.scene, in.tracer, in.sending_mesh, in.sending, in.emission.by_pixels};
-  LUXEL_TRY(Rows rows, make_rows(senders, viewpoints(some),
-                                 {{params.resolution}, left, params.scratch_folder}, progress));
-  for (size_t k = 0; k < key.size(); ++k) direct.irradiance[k] += rows.emitted[k];
-  in.solution.rays += direct.rays + pixels_of(params.resolution) * key.size();
-  in.solution.seconds.visibility += rows.seconds.visibility;
-  in.solution.seconds.summation += rows.seconds.summation;
-  return Block{std::move(key), std::move(rows), std::move(direct.irradiance)};
+  const Senders senders{around.scene, around.tracer, around.mesh, around.senders,
+                        around.emission.by_pixels};
+  LUXEL_TRY(
+      Rows rows,
+      make_rows(senders, viewpoints(elements),
+                {{params.resolution}, params.row_memory_bytes, params.scratch_folder}, progress));
+  for (size_t k = 0; k < elements.size(); ++k) direct.irradiance[k] += rows.emitted[k];
+  solution.rays += direct.rays + pixels_of(params.resolution) * elements.size();
+  solution.seconds.visibility += rows.seconds.visibility;
+  solution.seconds.summation += rows.seconds.summation;
+  return Sight{std::move(rows), std::move(direct.irradiance)};
 }
 
 namespace {
@@ -207,33 +197,42 @@ bool cut_worst(Field& field, const HemicubeParams& params, size_t goal, double s
   return field.mesh.nodes.size() > before;
 }
 
-/// Light for the new elements, from what the senders sent before.
-Status light_new_elements(const Refinement& in, const HemicubeParams& params,
+transport::Elements some_of(const transport::Elements& all, std::span<const uint32_t> chosen) {
+  transport::Elements out;
+  for (const uint32_t i : chosen) {
+    out.position.push_back(all.position[i]);
+    out.normal.push_back(all.normal[i]);
+    out.geometric_normal.push_back(all.geometric_normal[i]);
+    out.reflectance.push_back(all.reflectance[i]);
+  }
+  return out;
+}
+
+/// Light for new elements, from what the mesh around sends.
+Status light_new_elements(const Surroundings& around, const HemicubeParams& params,
                           std::span<const uint32_t> elements, std::span<const Rgb> sent,
-                          Progress& progress) {
-  Solution& s = in.solution;
-  LUXEL_TRY(Block block, make_block(in, s.field.receivers, elements, params, progress));
-  std::vector<Rgb> gathered = block.source;
+                          Solution& s, Progress& progress) {
+  LUXEL_TRY(const Sight sight,
+            look_from(around, some_of(s.field.receivers.elements, elements), params, s, progress));
+  std::vector<Rgb> gathered = sight.source;
   if (params.bounces != 0)
-    LUXEL_TRY_STATUS(sweep(block.rows, block.source, sent, gathered, progress));
+    LUXEL_TRY_STATUS(sweep(sight.rows, sight.source, sent, gathered, progress));
   for (size_t k = 0; k < elements.size(); ++k) {
     s.field.irradiance[elements[k]] = gathered[k];
-    s.hidden[elements[k]] = block.rows.hidden[k], s.enclosed[elements[k]] = block.rows.enclosed[k];
+    s.hidden[elements[k]] = sight.rows.hidden[k], s.enclosed[elements[k]] = sight.rows.enclosed[k];
   }
-  in.blocks.push_back(std::move(block));
   refill(plan_refill(s.field.receivers.neighbours, s.enclosed), s.field.irradiance);
   return {};
 }
 
 }  // namespace
 
-Status refine(const Refinement& in, const HemicubeParams& params, size_t max_elements,
-              Progress& progress) {
-  Solution& s = in.solution;
-  const std::vector<Rgb> first_sent = radiosity(in.sending.elements, s.field.irradiance);
+Status refine(const Surroundings& around, const HemicubeParams& params, size_t max_elements,
+              Solution& s, Progress& progress) {
+  const std::vector<Rgb> sent = radiosity(around.senders.elements, s.field.irradiance);
   Bisector bisector(s.field.mesh);
   const double shortest_m =
-      kSmallestPart * mean_longest_edge_m(s.field.mesh, in.sending.leaves, bisector);
+      kSmallestPart * mean_longest_edge_m(s.field.mesh, around.senders.leaves, bisector);
   for (int round = 0; round < kMaxRounds; ++round) {
     const size_t now = s.field.receivers.size();
     if (now >= max_elements) break;
@@ -241,19 +240,10 @@ Status refine(const Refinement& in, const HemicubeParams& params, size_t max_ele
     const size_t goal = std::min(max_elements, now + more);
     if (!cut_worst(s.field, params, goal, shortest_m, bisector)) break;
     const Receivers old = std::move(s.field.receivers);
-    s.field.receivers = make_receivers(in.scene, s.field.mesh, params.elements);
+    s.field.receivers = make_receivers(around.scene, s.field.mesh, params.elements);
     const std::vector<uint32_t> unknown = carry_over(old, s.field.receivers, s);
-    LUXEL_TRY_STATUS(light_new_elements(in, params, unknown, first_sent, progress));
+    LUXEL_TRY_STATUS(light_new_elements(around, params, unknown, sent, s, progress));
   }
-  if (in.blocks.size() == 1) return {};
-  const Projection projection =
-      project(in.sending_mesh, in.sending, s.field.mesh, s.field.receivers);
-  const RefillPlan plan = plan_refill(s.field.receivers.neighbours, s.enclosed);
-  LUXEL_TRY(Exchanged exchanged,
-            exchange(s.field.receivers, in.blocks, projection, plan, s.field.irradiance,
-                     {params.bounces, params.tolerance}, progress));
-  s.field.irradiance = std::move(exchanged.irradiance);
-  s.sweeps += exchanged.sweeps;
   return {};
 }
 

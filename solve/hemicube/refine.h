@@ -16,26 +16,30 @@ std::vector<float> interpolation_errors(const Field& field);
 /// Root mean square of these over the area, over the mean irradiance.
 double relative_interpolation_error(const Field& field);
 
-/// What a refinement works on.
-struct Refinement {
+/// What looking needs.
+struct Surroundings {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
   const Emission& emission;
-  const Mesh& sending_mesh;  ///< the mesh that `blocks` were made on; it stays what is looked at
-  const Receivers& sending;
-  Solution& solution;          ///< in: solved; out: with more elements
-  std::vector<Block>& blocks;  ///< gets one more per round
+  const Mesh& mesh;          ///< what is looked at
+  const Receivers& senders;  ///< its elements
 };
 
-/// Cuts triangles of the solution's field until interpolation errs by no more than params.max_error
-/// or there are max_elements, then lets all elements exchange light once more. New elements look at
-/// the senders, and from then on the senders send on their behalf. Errors: cancelled, disk full.
-Status refine(const Refinement& in, const HemicubeParams& params, size_t max_elements,
-              Progress& progress);
+/// What elements see, and the light that reaches them without any reflection.
+struct Sight {
+  Rows rows;
+  std::vector<Rgb> source;  ///< per row: E_0
+};
 
-/// Looks from some of the elements and gathers their direct light.
-Result<Block> make_block(const Refinement& in, const Receivers& receivers,
-                         std::span<const uint32_t> elements, const HemicubeParams& params,
-                         Progress& progress);
+/// Looks from elements of a mesh, their own or a finer one, and gathers their direct light. Counts
+/// rays and seconds in `solution`. Errors: cancelled, disk full.
+Result<Sight> look_from(const Surroundings& around, const transport::Elements& elements,
+                        const HemicubeParams& params, Solution& solution, Progress& progress);
+
+/// Cuts triangles of a solution until interpolation errs by no more than params.max_error or there
+/// are max_elements. In: a field over the mesh around, solved. New elements gather the light that
+/// its elements send. Errors: cancelled, disk full.
+Status refine(const Surroundings& around, const HemicubeParams& params, size_t max_elements,
+              Solution& solution, Progress& progress);
 
 }  // namespace luxel::hemicube

@@ -118,6 +118,10 @@ TEST(Refine, NeverMakesMoreElementsThanAllowed) {
     }
 }
 
+bool was_cut_on(const Solution& s) {
+  return s.field.mesh.nodes.size() > s.field.mesh.triangle_count;
+}
+
 TEST(Refine, AnErrorOfZeroCutsNothing) {
   const scene::Scene scene = sharp_shadow();
   for (const ElementKind kind : kKinds) {
@@ -125,9 +129,9 @@ TEST(Refine, AnErrorOfZeroCutsNothing) {
     params.elements = kind, params.resolution = 4, params.max_elements = 2000;
     params.max_error = 0;
     const Solution s = solved(scene, params);
-    EXPECT_EQ(s.field.irradiance.size(), s.sending_elements);
-    EXPECT_GT(s.sending_elements, 1000u);  // all of them are in the first mesh
-    EXPECT_LE(s.sending_elements, 2000u);
+    EXPECT_FALSE(was_cut_on(s));
+    EXPECT_GT(s.field.irradiance.size(), 1000u);  // all of them are in the first mesh
+    EXPECT_LE(s.field.irradiance.size(), 2000u);
   }
 }
 
@@ -137,7 +141,7 @@ TEST(Refine, ConstantLightIsNotCut) {
     HemicubeParams params;
     params.elements = kind, params.resolution = 8, params.max_elements = 1000;
     const Solution s = solved(box, params);
-    EXPECT_EQ(s.field.irradiance.size(), s.sending_elements);
+    EXPECT_FALSE(was_cut_on(s));
     EXPECT_LT(s.relative_error, 1e-3);
   }
 }

@@ -8,6 +8,7 @@
 #include "pipeline/solvers.h"
 #include "scene/validate.h"
 #include "solve/hemicube/hemicube.h"
+#include "solve/matrix/patches.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -83,6 +84,11 @@ Status check(const HemicubeSettings& s) {
   return {};
 }
 
+Status check(const MatrixSettings& s) {
+  LUXEL_TRY_STATUS(check_range("--patches", s.patches, 1, int64_t(matrix::kMaxPatches)));
+  return check_range("--rays", s.rays, 1, kMaxSamples);
+}
+
 Status check(const BakeSettings& s) {
   if (!find_solver(s.solver))
     return fail(ErrorCode::bad_setting, "--solver {} is not known; there is: {}", s.solver,
@@ -99,6 +105,7 @@ Status check(const BakeSettings& s) {
                 "--vertex-colors needs light per vertex, which --solver {} does not compute; use "
                 "--solver hemicube",
                 s.solver);
+  LUXEL_TRY_STATUS(check(s.matrix));
   return check(s.hemicube);
 }
 
@@ -122,6 +129,8 @@ nlohmann::json to_json(const BakeSettings& s) {
                         {"max_error", s.hemicube.max_error},
                         {"smooth", s.hemicube.smooth},
                         {"vertex_colors", s.vertex_colors}};
+  if (s.solver == "matrix")
+    json["matrix"] = {{"patches", s.matrix.patches}, {"rays", s.matrix.rays}};
   if (const auto& b = s.outside.background) json["background"] = {b->x, b->y, b->z};
   if (const auto& sun = s.outside.sun)
     json["sun"] = {sun->azimuth_deg, sun->elevation_deg, sun->lux};

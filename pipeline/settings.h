@@ -38,6 +38,12 @@ struct HemicubeSettings {
   bool smooth = false;              ///< triangle: interpolate between middles
 };
 
+/// What only the matrix solver reads.
+struct MatrixSettings {
+  int64_t patches = 8192;  ///< about so many pieces of surface exchange light
+  int rays = 2048;         ///< per patch, to find what it sees
+};
+
 struct BakeSettings {
   std::filesystem::path scene;
   std::filesystem::path output;  ///< a folder; made when missing
@@ -53,6 +59,7 @@ struct BakeSettings {
   int threads = 0;  ///< 0: all cores
   OutsideLight outside;
   HemicubeSettings hemicube;
+  MatrixSettings matrix;
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
 };
 
@@ -61,6 +68,7 @@ struct BakeSettings {
 Status check(const BakeSettings& settings);
 
 Status check(const HemicubeSettings& settings);
+Status check(const MatrixSettings& settings);
 
 nlohmann::json to_json(const BakeSettings& settings);
 

@@ -9,6 +9,8 @@
 #include "reference/path_tracer.h"
 #include "solve/gather/gather.h"
 #include "solve/hemicube/hemicube.h"
+#include "solve/matrix/matrix.h"
+#include "transport/direct_light.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -133,9 +135,44 @@ Result<TexelLight> solve_hemicube(const SolveInput& in, const BakeSettings& sett
   return texel_light_of(std::move(solution), in.map);
 }
 
+/// Direct light for each texel, indirect light for each patch.
+Result<TexelLight> solve_matrix(const SolveInput& in, const BakeSettings& settings,
+                                Progress& progress) {
+  const matrix::MatrixParams params = matrix_params(settings);
+  const uint64_t needed =
+      matrix::bytes_of_preparation(params.patches.count, params.factors.rays_per_patch);
+  if (const auto spare = memory_to_spare(in, settings, needed); !spare)
+    return tl::unexpected(spare.error());
+  LUXEL_TRY(const matrix::Prepared prepared,
+            matrix::prepare(in.scene, in.tracer, params, progress));
+  LUXEL_TRY(const matrix::Solution solution,
+            matrix::solve(in.scene, in.lights, in.tracer, prepared, params, progress));
+  LUXEL_TRY(const matrix::Transfer map,
+            matrix::make_transfer(prepared.work, in.tracer,
+                                  {in.elements.position, in.elements.geometric_normal}, progress));
+  LUXEL_TRY(transport::DirectLight direct,
+            transport::direct_light(in.scene, in.elements, in.lights, in.tracer,
+                                    {settings.direct_samples, settings.seed, false}, progress));
+  TexelLight out;
+  out.irradiance.resize(in.elements.size()), out.hidden.resize(in.elements.size());
+  matrix::transfer(map, solution.indirect, out.irradiance);
+  parallel_for(in.elements.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      out.irradiance[i] += direct.irradiance[i];
+      out.hidden[i] =
+          matrix::is_hidden(in.scene, in.tracer, prepared.work, in.map.texels[i].sample);
+    }
+  });
+  out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
+  out.rays = solution.rays + direct.rays, out.sweeps = solution.sweeps;
+  out.elements = prepared.work.patches.size();
+  return out;
+}
+
 constexpr std::array kSolvers{
     Solver{.name = "gather", .solve = solve_gather, .samples = true, .direct_samples = true},
     Solver{.name = "hemicube", .solve = solve_hemicube, .direct_samples = true, .hemicube = true},
+    Solver{.name = "matrix", .solve = solve_matrix, .direct_samples = true, .matrix = true},
     Solver{.name = "reference", .solve = solve_reference, .samples = true}};
 
 }  // namespace
@@ -152,6 +189,16 @@ hemicube::HemicubeParams hemicube_params(const BakeSettings& settings) {
   params.direct_samples = std::min(kShadowRaysPerSample * settings.direct_samples, 65535);
   params.bounces = settings.bounces;
   params.seed = settings.seed;
+  return params;
+}
+
+matrix::MatrixParams matrix_params(const BakeSettings& settings) {
+  matrix::MatrixParams params;
+  params.patches.count = size_t(settings.matrix.patches);
+  params.factors.rays_per_patch = settings.matrix.rays;
+  params.direct_samples = settings.direct_samples;
+  params.bounces = settings.bounces;
+  params.seed = params.patches.seed = params.factors.seed = settings.seed;
   return params;
 }
 

@@ -12,6 +12,7 @@
 #include "base/result.h"
 #include "pipeline/settings.h"
 #include "solve/hemicube/hemicube.h"
+#include "solve/matrix/matrix.h"
 #include "trace/ray_tracer.h"
 #include "transport/elements.h"
 #include "transport/lights.h"
@@ -48,11 +49,14 @@ struct Solver {
   std::string_view name;
   SolveFunction solve;
   /// What it looks at of the settings.
-  bool samples = false, direct_samples = false, hemicube = false;
+  bool samples = false, direct_samples = false, hemicube = false, matrix = false;
 };
 
 /// What a bake's settings ask of the hemicube solver. Shadow rays are four times direct_samples.
 hemicube::HemicubeParams hemicube_params(const BakeSettings& settings);
+
+/// What they ask of the matrix solver.
+matrix::MatrixParams matrix_params(const BakeSettings& settings);
 
 /// All of them; the first is the default.
 std::span<const Solver> solvers();

@@ -31,7 +31,9 @@ constexpr std::array kSolverOptions{
     SolverOption{"--element-size", &pipeline::Solver::hemicube},
     SolverOption{"--max-elements", &pipeline::Solver::hemicube},
     SolverOption{"--max-error", &pipeline::Solver::hemicube},
-    SolverOption{"--smooth", &pipeline::Solver::hemicube}};
+    SolverOption{"--smooth", &pipeline::Solver::hemicube},
+    SolverOption{"--patches", &pipeline::Solver::matrix},
+    SolverOption{"--rays", &pipeline::Solver::matrix}};
 
 /// "gather, ...": the solvers that look at an option.
 std::string users_of(bool pipeline::Solver::*used) {
@@ -137,6 +139,13 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_option("--bounces", options->bounces, "Reflections to count, or inf")
       ->capture_default_str();
   add_hemicube(*bake, options->hemicube);
+  const char* matrix = "Matrix radiosity";
+  bake->add_option("--patches", s.matrix.patches, "About so many pieces of surface exchange light")
+      ->capture_default_str()
+      ->group(matrix);
+  bake->add_option("--rays", s.matrix.rays, "Per patch, to find what it sees")
+      ->capture_default_str()
+      ->group(matrix);
   bake->add_flag("--vertex-colors", s.vertex_colors,
                  "hemicube: baked.glb gets light per vertex in COLOR_0 instead of the lightmap");
   bake->add_option("--max-memory", options->max_memory,

@@ -44,8 +44,8 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
 
 /// Makes A_i F_ij = A_j F_ji: both are estimates of the same exchange, so their mean has less
 /// noise. Then scales S_ij = A_i F_ij to d_i S_ij d_j so that each row has the sum that its rays
-/// found, which is at most 1 and known far better than any factor [Knight08, section 3: symmetric
-/// scaling], as far as a few passes reach; rows never sum to more than 1.
+/// found, which is at most 1 and known far better than any factor [Knight13], as far as it can
+/// have; rows never sum to more than 1.
 FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2);
 
 double row_sum(const FormFactors& factors, size_t row);

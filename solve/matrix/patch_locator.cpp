@@ -65,21 +65,23 @@ std::span<const PatchLocator::Part> PatchLocator::parts_in(uint64_t voxel) const
   return std::span(parts_).subspan(found->second.first, found->second.count);
 }
 
-uint32_t PatchLocator::locate(Vec3 position, Vec3 normal, uint32_t material,
-                              const trace::RayTracer& tracer) const {
+const PatchLocator::Part* PatchLocator::part_at(Vec3 position, Vec3 normal, uint32_t material,
+                                                const trace::RayTracer& tracer,
+                                                bool with_hidden) const {
   const uint64_t voxel = voxel_of(grid_, position);
   const auto fits = [&](const Part& part) {
-    return part.material == material && dot(part.seed.normal, normal) > kSameDirection;
+    return part.material == material && dot(part.seed.normal, normal) > kSameDirection &&
+           (with_hidden || part.patch != kNone);
   };
   const Part* only = nullptr;
   int count = 0;
   for (const Part& part : parts_in(voxel))
     if (fits(part)) only = &part, ++count;
-  if (count == 1) return only->patch;
+  if (count == 1) return only;
   if (count > 1)
     for (const Part& part : parts_in(voxel))
       if (fits(part) && see_each_other(tracer, {position, normal}, part.seed, grid_.voxel_m))
-        return part.patch;
+        return &part;
   // No point of the voxel's own: the nearest of what is alike around, else of what faces the same
   // way at all.
   for (const bool strict : {true, false}) {
@@ -88,13 +90,27 @@ uint32_t PatchLocator::locate(Vec3 position, Vec3 normal, uint32_t material,
     around(voxel, 1, [&](uint64_t at) {
       for (const Part& part : parts_in(at)) {
         const Vec3 d = part.seed.position - position;
-        if ((strict ? fits(part) : dot(part.seed.normal, normal) > 0) && dot(d, d) < least)
-          least = dot(d, d), nearest = &part;
+        const bool alike =
+            strict ? fits(part)
+                   : dot(part.seed.normal, normal) > 0 && (with_hidden || part.patch != kNone);
+        if (alike && dot(d, d) < least) least = dot(d, d), nearest = &part;
       }
     });
-    if (nearest) return nearest->patch;
+    if (nearest) return nearest;
   }
-  return kNone;
+  return nullptr;
+}
+
+uint32_t PatchLocator::locate(Vec3 position, Vec3 normal, uint32_t material,
+                              const trace::RayTracer& tracer) const {
+  const Part* part = part_at(position, normal, material, tracer, false);
+  return part ? part->patch : kNone;
+}
+
+bool PatchLocator::is_hidden(Vec3 position, Vec3 normal, uint32_t material,
+                             const trace::RayTracer& tracer) const {
+  const Part* part = part_at(position, normal, material, tracer, true);
+  return part && part->patch == kNone;
 }
 
 void PatchLocator::near(Vec3 position, int reach, std::vector<uint32_t>& patches) const {

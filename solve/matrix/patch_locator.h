@@ -50,6 +50,9 @@ class PatchLocator {
   /// is near. Parts of one voxel that look alike are told apart by sight of their seeds.
   uint32_t locate(Vec3 position, Vec3 normal, uint32_t material,
                   const trace::RayTracer& tracer) const;
+  /// Whether a place lies inside a solid, where no light comes or goes.
+  bool is_hidden(Vec3 position, Vec3 normal, uint32_t material,
+                 const trace::RayTracer& tracer) const;
   /// Patches in the voxels within `reach` steps of a place, each once, ascending.
   void near(Vec3 position, int reach, std::vector<uint32_t>& patches) const;
 
@@ -58,6 +61,8 @@ class PatchLocator {
     uint32_t first = 0, count = 0;
   };
   std::span<const Part> parts_in(uint64_t voxel) const;
+  const Part* part_at(Vec3 position, Vec3 normal, uint32_t material, const trace::RayTracer& tracer,
+                      bool with_hidden) const;
 
   VoxelGrid grid_;
   std::unordered_map<uint64_t, Range> range_of_voxel_;

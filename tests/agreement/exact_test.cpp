@@ -47,6 +47,7 @@ constexpr Tolerance kTolerances[] = {
     {"hemicube", "integrating sphere", 0.003, 0.015, "the spot's border cuts through facets"},
     {"hemicube", "penumbra", 0.001, 0.035, "linear where the exact curve bends"},
     {"hemicube", "", 0.003, 0.006, "light falls off beside corners faster than lines can"},
+    {"matrix", "", 0.005, 0.02, "x"},
     {"gather", "", 0.0025, 0.01, "noise of 256 rays; texels blur where two walls meet"},
 };
 

@@ -1,0 +1,145 @@
+#include "solve/matrix/matrix.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "transport/direct_light.h"
+
+namespace luxel::matrix {
+namespace {
+
+/// Points of a patch from which its direct light is taken, at most.
+constexpr size_t kDirectPoints = 16;
+constexpr int kMaxSweeps = 4000;
+
+/// Some points of every patch as elements, patch after patch.
+struct Probes {
+  transport::Elements elements;
+  std::vector<size_t> first;  ///< per patch, one extra entry
+};
+
+Probes probes_of(const Patches& patches) {
+  Probes out;
+  for (size_t i = 0; i < patches.size(); ++i) {
+    out.first.push_back(out.elements.size());
+    const auto points = patches.points_of(i);
+    const size_t count = std::min(points.size(), kDirectPoints);
+    for (size_t k = 0; k < count; ++k) {
+      const PatchPoint& p = points[k * points.size() / count];
+      out.elements.position.push_back(p.position);
+      out.elements.normal.push_back(p.normal);
+      out.elements.geometric_normal.push_back(p.normal);
+      out.elements.reflectance.push_back(patches.elements.reflectance[i]);
+    }
+  }
+  out.first.push_back(out.elements.size());
+  return out;
+}
+
+/// E = F B, row by row.
+void multiply(const FormFactors& factors, std::span<const Rgb> radiosity,
+              std::span<Rgb> irradiance) {
+  parallel_for(factors.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      Rgb sum{};
+      for (uint64_t k = factors.first[i]; k < factors.first[i + 1]; ++k)
+        sum += factors.factor[k] * radiosity[factors.column[k]];
+      irradiance[i] = sum;
+    }
+  });
+}
+
+double mean_square(std::span<const Rgb> values, std::span<const float> area_m2) {
+  double sum = 0, area = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    sum += double(dot(values[i], values[i])) * double(area_m2[i]) / 3;
+    area += double(area_m2[i]);
+  }
+  return area > 0 ? sum / area : 0;
+}
+
+/// The sum of all changes still to come when each is q times the one before.
+double light_to_come(double change, double before, double largest_reflectance) {
+  const double q =
+      before > 0 ? std::min(change / before, largest_reflectance) : largest_reflectance;
+  return change * q / (1 - q);
+}
+
+}  // namespace
+
+uint64_t bytes_of_preparation(size_t patches, int rays_per_patch) {
+  // A ray meets at most one patch anew; the traced rows, their transpose and their mean, which has
+  // up to twice as many entries, of a column and a factor each. A patch sees all others at most.
+  const uint64_t entries =
+      uint64_t(patches) * std::min<uint64_t>(patches, uint64_t(rays_per_patch));
+  return entries * 4 * 8 + uint64_t(patches) * 4096;
+}
+
+bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer, const PatchWork& work,
+               const scene::SurfacePoint& p) {
+  const scene::Mesh& mesh = scene.meshes[scene.instances[p.instance].mesh];
+  return work.locator.is_hidden(scene::world_position(scene, p),
+                                scene::front_normal(scene, p.instance, p.triangle),
+                                mesh.triangle_material[p.triangle], tracer);
+}
+
+Result<Prepared> prepare(const scene::Scene& scene, const trace::RayTracer& tracer,
+                         const MatrixParams& params, Progress& progress) {
+  Prepared out;
+  LUXEL_TRY(out.work, make_patches(scene, tracer, params.patches, progress));
+  LUXEL_TRY(TracedFactors traced, trace_factors(scene, tracer, out.work, params.factors, progress));
+  out.factors = reciprocal(traced.factors, out.work.patches.area_m2);
+  out.sky = std::move(traced.sky);
+  out.rays = traced.rays;
+  return out;
+}
+
+Result<Solution> solve(const scene::Scene& scene, const transport::Lights& lights,
+                       const trace::RayTracer& tracer, const Prepared& prepared,
+                       const MatrixParams& params, Progress& progress) {
+  const Patches& patches = prepared.work.patches;
+  const size_t n = patches.size();
+  const Probes probes = probes_of(patches);
+  const int samples = std::max(1, params.direct_samples / int(kDirectPoints));
+  LUXEL_TRY(const transport::DirectLight direct,
+            transport::direct_light(scene, probes.elements, lights, tracer,
+                                    {samples, params.seed, false}, progress));
+  Solution out;
+  out.direct.resize(n), out.indirect.resize(n);
+  std::vector<Rgb> sky(n), change(n), sent(n);
+  for (size_t i = 0; i < n; ++i) {
+    const auto count = float(probes.first[i + 1] - probes.first[i]);
+    for (size_t k = probes.first[i]; k < probes.first[i + 1]; ++k)
+      out.direct[i] += direct.irradiance[k] / count;
+    sky[i] = lights.background * (kPi * prepared.sky[i]);
+    out.indirect[i] = sky[i];
+    change[i] = out.direct[i] + sky[i];
+  }
+  float largest = 0;
+  for (const Rgb& rho : patches.elements.reflectance)
+    largest = std::max(largest, max_component(rho));
+  progress.begin("bounces", 0);
+  double before = 0;
+  const int sweeps = params.bounces < 0 ? kMaxSweeps : params.bounces;
+  std::vector<Rgb> all = change;
+  while (out.sweeps < sweeps) {
+    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    for (size_t i = 0; i < n; ++i) sent[i] = patches.elements.reflectance[i] * change[i];
+    multiply(prepared.factors, sent, change);
+    for (size_t i = 0; i < n; ++i) out.indirect[i] += change[i], all[i] += change[i];
+    ++out.sweeps;
+    progress.advance(1);
+    const double now = std::sqrt(mean_square(change, patches.area_m2));
+    if (params.bounces < 0 &&
+        light_to_come(now, before, double(largest)) <=
+            double(params.tolerance) * std::sqrt(mean_square(all, patches.area_m2)))
+      break;
+    before = now;
+  }
+  out.rays = prepared.rays + direct.rays;
+  return out;
+}
+
+}  // namespace luxel::matrix

@@ -157,14 +157,15 @@ TEST(AllBounces, OfBlackSurfacesAreTheFirst) {
 TEST(CoarseScene, KnowsClustersAndTheirAreas) {
   const Room room = cornell(400);
   const CoarseScene coarse =
-      make_coarse_scene(room.factors, room.tree, room.area_m2, room.reflectance, 64);
+      make_coarse_scene(room.factors, room.tree, room.area_m2, room.reflectance, 30);
   // The cut goes a whole depth at a time: fewer than twice as many as asked for.
-  EXPECT_GE(coarse.count(), 64u);
-  EXPECT_LT(coarse.count(), 128u);
+  EXPECT_GE(coarse.count(), 30u);
+  EXPECT_LT(coarse.count(), 60u);
   std::vector<double> area(coarse.count());
   for (size_t i = 0; i < room.area_m2.size(); ++i)
     area[coarse.cluster_of[i]] += double(room.area_m2[i]);
-  for (size_t s = 0; s < area.size(); ++s) EXPECT_NEAR(area[s], coarse.area_m2[s], 1e-5 * area[s]);
+  // Sums of a dozen floats.
+  for (size_t s = 0; s < area.size(); ++s) EXPECT_NEAR(area[s], coarse.area_m2[s], 1e-6 * area[s]);
   for (const auto& channel : coarse.response)
     EXPECT_EQ(channel.size(), coarse.count() * coarse.count());
 }

@@ -202,6 +202,33 @@ TEST(Hierarchical, PatchesAtOnePlaceAreNoTrouble) {
   for (const Rgb& e : product(*h, std::vector<Rgb>(50, Rgb{1, 1, 1}))) EXPECT_NEAR(e.x, 1, 1e-3);
 }
 
+TEST(Hierarchical, ALeafKeepsItsRowsAndEntries) {
+  // One leaf of eight patches: all near. 255 steps to the largest entry; what rounding takes from
+  // one entry goes to the next, so that an entry is off by a step, a row by half a one.
+  const size_t n = kLeafSize;
+  const std::vector<float> area(n, 1.0f);
+  const std::vector<Vec3> position = testing::random_light(n, 9), normal(n, Vec3{0, 1, 0});
+  FormFactors f = testing::sphere_factors(area);
+  const std::vector<Rgb> random = testing::random_light(n * n, 10);
+  for (size_t i = 0; i < n; ++i)
+    for (size_t j = 0; j < n; ++j)
+      f.factor[i * n + j] = random[std::min(i, j) * n + std::max(i, j)].x / float(n);
+  Progress progress;
+  const auto h = compress(f, make_cluster_tree(position, normal, kLeafSize), position, area,
+                          {0, kNoNoise}, progress);
+  ASSERT_TRUE(h);
+  // 1 % for the floats' own rounding.
+  const float step = 1.01f * *std::max_element(f.factor.begin(), f.factor.end()) / 255;
+  const std::vector<Rgb> rows = product(*h, std::vector<Rgb>(n, Rgb{1, 1, 1}));
+  for (uint32_t j = 0; j < n; ++j) {
+    EXPECT_NEAR(rows[j].x, row_sum(f, j), step / 2);
+    std::vector<Rgb> one(n);
+    one[j] = {1, 0, 0};
+    const std::vector<Rgb> column = product(*h, one);
+    for (size_t i = 0; i < n; ++i) EXPECT_NEAR(column[i].x, f.factor[i * n + j], step);
+  }
+}
+
 TEST(Hierarchical, AnEmptyMatrixSendsNothing) {
   const Cut cut(testing::plate(), 100);
   const Hierarchical h = compressed(cut, cut.reciprocal_factors(16), {});

@@ -192,6 +192,17 @@ TEST(PatchLocator, FindsEachPatchFromItsPoints) {
   }
 }
 
+TEST(PatchLocator, TellsTheFloorsBesideAWallApart) {
+  const Cut cut(testing::floor_with_wall(), 120);
+  for (int k = 0; k < 200; ++k)
+    for (const float x : {-0.02f, 0.02f}) {
+      const Vec3 at{x, 0, (float(k) + 0.5f) / 200};
+      const uint32_t patch = cut.work.locator.locate(at, {0, 1, 0}, 0, cut.tracer);
+      ASSERT_NE(patch, kNone);
+      EXPECT_GT(x * cut.patches().centroid[patch].x, 0) << at.x << ", " << at.z;
+    }
+}
+
 Result<PatchWork> try_to_cut(const scene::Scene& scene, size_t count, bool cancelled = false) {
   const auto tracer = trace::RayTracer::build(scene);
   Progress progress;

@@ -327,7 +327,10 @@ PatchWork assemble(std::span<const Sample> samples, std::span<const Part> parts,
 
 Result<PatchWork> make_patches(const scene::Scene& scene, const trace::RayTracer& tracer,
                                const PatchParams& params, Progress& progress) {
-  LUXEL_CHECK(params.count >= 1 && params.count <= kMaxPatches && params.points_per_patch >= 1);
+  LUXEL_CHECK(params.points_per_patch >= 1);
+  if (params.count < 1 || params.count > kMaxPatches)
+    return fail(ErrorCode::bad_setting, "{} patches are asked for; ask for 1 to {}", params.count,
+                kMaxPatches);
   if (scene::first_triangles(scene).back() == 0)
     return fail(ErrorCode::bad_input, "the scene has no triangle to make patches of");
   const std::vector<Sample> samples =

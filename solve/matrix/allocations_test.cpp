@@ -1,0 +1,73 @@
+// What runs per frame asks for no memory. This program's operator new counts.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "solve/matrix/bounces.h"
+#include "solve/matrix/matrix_test_support.h"
+#include "solve/matrix/transfer.h"
+
+namespace {
+std::atomic<uint64_t> allocations{0};
+}  // namespace
+
+// Arrays come here as well: the library's operator new[] calls this one.
+void* operator new(size_t bytes) {
+  ++allocations;
+  if (void* p = std::malloc(bytes > 0 ? bytes : 1)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, size_t) noexcept { std::free(p); }
+
+namespace luxel::matrix {
+namespace {
+
+using testing::Cut;
+
+/// How often `run` allocates, once all threads have been at work.
+template <class Run>
+uint64_t allocations_of(const Run& run) {
+  for (int warm_up = 0; warm_up < 3; ++warm_up) run();
+  const uint64_t before = allocations;
+  for (int k = 0; k < 10; ++k) run();
+  return allocations - before;
+}
+
+TEST(Allocations, AreCounted) {
+  EXPECT_EQ(allocations_of([] { std::vector<int>(100).at(7) = 1; }), 10u);
+}
+
+TEST(Allocations, ThereAreNonePerFrame) {
+  const Cut cut(scene::cornell_box(), 2000, 24);
+  const Patches& p = cut.patches();
+  const FormFactors factors = cut.reciprocal_factors(256);
+  Progress progress;
+  const auto matrix = compress(factors, cut.work.tree, p.centroid, p.area_m2, {}, progress);
+  const auto map =
+      make_transfer(cut.work, cut.tracer, {p.elements.position, p.elements.normal}, progress);
+  ASSERT_TRUE(matrix && map);
+  const CoarseScene coarse =
+      make_coarse_scene(factors, cut.work.tree, p.area_m2, p.elements.reflectance, 128);
+  HierarchicalWork work = make_work(*matrix);
+  BounceWork bounces = make_bounce_work(cut.size(), coarse.count());
+  std::vector<Rgb> e(cut.size()), of_place(cut.size());
+  const Multiply product = [&](std::span<const Rgb> b, std::span<Rgb> out) {
+    multiply(*matrix, b, out, work);
+  };
+  EXPECT_EQ(allocations_of([&] { multiply(*matrix, p.emission, e, work); }), 0u);
+  EXPECT_EQ(allocations_of(
+                [&] { count_bounces(product, p.elements.reflectance, p.emission, 3, e, bounces); }),
+            0u);
+  EXPECT_EQ(allocations_of([&] {
+              all_bounces(product, coarse, p.elements.reflectance, p.area_m2, p.emission, 3, e,
+                          bounces);
+            }),
+            0u);
+  EXPECT_EQ(allocations_of([&] { transfer(*map, e, of_place); }), 0u);
+}
+
+}  // namespace
+}  // namespace luxel::matrix

@@ -166,6 +166,7 @@ Result<TexelLight> solve_matrix(const SolveInput& in, const BakeSettings& settin
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
   out.rays = solution.rays + direct.rays, out.sweeps = solution.sweeps;
   out.elements = prepared.work.patches.size();
+  out.relative_error = solution.relative_error;
   return out;
 }
 

@@ -34,10 +34,9 @@ struct TracedFactors {
   uint64_t rays = 0;
 };
 
-/// F_ij = the share of rays from i that meet the front of j first (the back, too, where it is
-/// double-sided). The standard error of a factor is at most sqrt(F / rays), and that of the light
-/// gathered over many patches far less. Backs of one-sided surfaces send nothing. Errors:
-/// cancelled.
+/// F_ij = the share of rays from i that meet the patch j first. The standard error of a factor is
+/// at most sqrt(F / rays), and that of the light gathered over many patches far less. Backs of
+/// one-sided surfaces send nothing. Errors: cancelled.
 Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayTracer& tracer,
                                     const PatchWork& work, const FactorParams& params,
                                     Progress& progress);

@@ -42,6 +42,7 @@ struct Solution {
   std::vector<Rgb> indirect;  ///< per patch: E from the background and from all other patches
   uint64_t rays = 0;
   int sweeps = 0;
+  double relative_error = 0;  ///< of the rays, an upper bound: root mean square over the mean light
 };
 
 /// E = pi L sky + F (rho (D + E)), by repeated products [Shcherbakov17, eq. 3, 4]. Errors:

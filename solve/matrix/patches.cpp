@@ -24,7 +24,7 @@ struct Sample {
 };
 
 /// Points spread evenly. Each stands for its part of the exact area of its instance's material, so
-/// that a small lamp has the power it has.
+/// that a small lamp has the power it has. Both sides of double-sided surfaces have points.
 std::vector<Sample> spread(const scene::Scene& scene, size_t count, uint64_t seed) {
   std::vector<scene::SurfacePoint> points = scene::points_uniform_in_area(scene, count, seed);
   const auto key = [&](uint32_t instance, uint32_t triangle) {
@@ -57,12 +57,16 @@ std::vector<Sample> spread(const scene::Scene& scene, size_t count, uint64_t see
     const Vec3 normal = scene::front_normal(scene, p.instance, p.triangle);
     if (dot(normal, normal) == 0 || !scene::is_solid_at(scene, p)) continue;
     const uint64_t k = key(p.instance, p.triangle);
-    const Surface& s = surfaces[k];
-    out.push_back({{scene::world_position(scene, p), normal},
-                   uint32_t(k),
-                   float(s.area_m2 / double(s.points)),
-                   scene::reflectance_at(scene, p),
-                   scene::emission_at(scene, p) * kPi});
+    const Surface& surface = surfaces[k];
+    Sample sample{{scene::world_position(scene, p), normal},
+                  uint32_t(k),
+                  float(surface.area_m2 / double(surface.points)),
+                  scene::reflectance_at(scene, p),
+                  scene::emission_at(scene, p) * kPi};
+    out.push_back(sample);
+    if (!scene::material_at(scene, p).double_sided) continue;
+    sample.at.normal = -normal;
+    out.push_back(sample);
   }
   return out;
 }

@@ -24,8 +24,8 @@ struct PatchParams {
 };
 
 /// Pieces of surface, each of one material, nearly flat, of about the same size, and such that its
-/// parts see each other: the two sides of a wall, or the floors on both sides of it, are different
-/// patches.
+/// parts see each other: the two sides of a wall (of a double-sided surface, too), or the floors on
+/// both sides of it, are different patches.
 struct Patches {
   /// Middle of each patch (on the surface, the point nearest to its centroid), mean normal, mean
   /// reflectance.

@@ -153,18 +153,17 @@ TEST(Patches, ReflectWhatTheirTextureDoes) {
   EXPECT_NEAR(mean, 0.4, 0.008);
 }
 
-/// The patch found below (x, 1 m, z) in the Cornell box's floor.
-uint32_t patch_of_floor(const Cut& cut, float x, float z) {
-  return cut.work.locator.locate({x, 0, z}, {0, 1, 0}, 0, cut.tracer);
+bool is_hidden_on_floor(const Cut& cut, float x, float z) {
+  return cut.work.locator.is_hidden({x, 0, z}, {0, 1, 0}, 0, cut.tracer);
 }
 
 TEST(Patches, FloorInsideASolidIsInNone) {
   const Cut cut(scene::cornell_box(), 1000);
   // The middles of the blocks' footprints (docs/cornell-box.md), and places beside them.
-  EXPECT_EQ(patch_of_floor(cut, 0.1855f, 0.169f), kNone);
-  EXPECT_EQ(patch_of_floor(cut, 0.3685f, 0.35125f), kNone);
-  EXPECT_NE(patch_of_floor(cut, 0.05f, 0.05f), kNone);
-  EXPECT_NE(patch_of_floor(cut, 0.5f, 0.05f), kNone);
+  EXPECT_TRUE(is_hidden_on_floor(cut, 0.1855f, 0.169f));
+  EXPECT_TRUE(is_hidden_on_floor(cut, 0.3685f, 0.35125f));
+  EXPECT_FALSE(is_hidden_on_floor(cut, 0.05f, 0.05f));
+  EXPECT_FALSE(is_hidden_on_floor(cut, 0.5f, 0.05f));
   double floor = 0;
   for (size_t k = 0; k < cut.size(); ++k)
     if (cut.patches().centroid[k].y < 1e-4f && cut.patches().elements.normal[k].y > 0.9f)

@@ -15,6 +15,9 @@ constexpr float kReach = 2.2f;
 constexpr int kVoxels = 2;
 /// Patches that face away by more than 60 degrees have light of their own.
 constexpr float kAlike = 0.5f;
+/// Patches off the plane of the place count less, at this many voxels hardly: another step of the
+/// surface has another horizon.
+constexpr float kOffPlane = 0.7f;
 /// Of the slopes, against noise and extrapolation where patches lie on one side only.
 constexpr double kStiffness = 0.02;
 /// A fit with a weight below this leaves what it was fitted to.
@@ -67,13 +70,14 @@ void find_shares(const PatchWork& work, const trace::RayTracer& tracer, Vec3 pos
   for (const uint32_t p : w.near) {
     if (dot(patches.elements.normal[p], normal) < kAlike) continue;
     const Vec3 d = patches.centroid[p] - position;
+    const float off = dot(d, normal) / (kOffPlane * patches.voxel_m);
     const float part = 1 - dot(d, d) / (reach_m * reach_m);
     if (dot(d, d) < least) least = dot(d, d), nearest = p;
     if (part <= 0 || !see_each_other(tracer, {position, normal},
                                      {patches.elements.position[p], patches.elements.normal[p]},
                                      patches.voxel_m))
       continue;
-    w.shares.push_back({p, part * part});
+    w.shares.push_back({p, part * part / (1 + off * off * off * off)});
   }
   if (!w.shares.empty())
     fit_plane(patches.centroid, position, normal, reach_m, w.shares);

@@ -47,7 +47,9 @@ constexpr Tolerance kTolerances[] = {
     {"hemicube", "integrating sphere", 0.003, 0.015, "the spot's border cuts through facets"},
     {"hemicube", "penumbra", 0.001, 0.035, "linear where the exact curve bends"},
     {"hemicube", "", 0.003, 0.006, "light falls off beside corners faster than lines can"},
-    {"matrix", "", 0.005, 0.02, "x"},
+    {"matrix", "manufactured", 0.002, 0.12, "64 shadow rays over 576 emitters of a few grays"},
+    {"matrix", "penumbra", 0.002, 0.14, "64 shadow rays, and steep where E is a tenth of its mean"},
+    {"matrix", "", 0.004, 0.015, "light bends within patches, and texels blur, where walls meet"},
     {"gather", "", 0.0025, 0.01, "noise of 256 rays; texels blur where two walls meet"},
 };
 

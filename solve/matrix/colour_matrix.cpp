@@ -24,14 +24,20 @@ constexpr Eigen::Index kBlock = 128;
 
 using Lanes [[gnu::vector_size(4 * kLanes)]] = float;
 
-/// out += sum_k factor_k panel_(column k), for all columns of a panel.
+/// One row of some columns of a matrix; whole lines of the cache.
+struct alignas(64) PanelRow {
+  float value[kPanel] = {};
+};
+using Panel = std::vector<PanelRow>;
+
+/// out += sum_k factor_k panel_(column k).
 LUXEL_VECTOR_CLONES
-void add_row(std::span<const uint32_t> column, std::span<const float> factor, const float* panel,
+void add_row(std::span<const uint32_t> column, std::span<const float> factor, const PanelRow* panel,
              float* out) {
   Lanes sum[kPanel / kLanes] = {};
   for (size_t k = 0; k < column.size(); ++k) {
     const float f = factor[k];
-    const float* x = panel + size_t(column[k]) * kPanel;
+    const float* x = panel[column[k]].value;
     for (size_t v = 0; v < kPanel / kLanes; ++v) {
       Lanes lanes;
       std::memcpy(&lanes, x + v * kLanes, sizeof lanes);
@@ -42,16 +48,17 @@ void add_row(std::span<const uint32_t> column, std::span<const float> factor, co
     for (size_t l = 0; l < kLanes; ++l) out[v * kLanes + l] += sum[v][l];
 }
 
-/// Columns [begin, end) of F, kPanel numbers per row.
-void fill_panel(const FormFactors& factors, size_t begin, size_t end, std::vector<float>& panel) {
-  std::fill(panel.begin(), panel.end(), 0.0f);
+/// Columns [begin, end) of F.
+Panel panel_of(const FormFactors& factors, size_t begin, size_t end) {
+  Panel panel(factors.size());
   for (size_t i = 0; i < factors.size(); ++i) {
     const auto columns = factors.columns_of(i);
     const auto values = factors.factors_of(i);
     const auto from = std::lower_bound(columns.begin(), columns.end(), uint32_t(begin));
     for (auto k = size_t(from - columns.begin()); k < columns.size() && columns[k] < end; ++k)
-      panel[i * kPanel + columns[k] - begin] = values[k];
+      panel[i].value[columns[k] - begin] = values[k];
   }
+  return panel;
 }
 
 /// K by Horner's rule, X <- F + F rho X, on columns [begin, end). A panel stays in the cache from
@@ -60,19 +67,18 @@ void fill_panel(const FormFactors& factors, size_t begin, size_t end, std::vecto
 void reflect_panel(const FormFactors& factors, std::span<const Rgb> reflectance, int channel,
                    int bounces, size_t begin, size_t end, std::vector<float>& out) {
   const size_t n = factors.size();
-  std::vector<float> first(n * kPanel), now, sent(n * kPanel);
-  fill_panel(factors, begin, end, first);
-  now = first;
+  const Panel first = panel_of(factors, begin, end);
+  Panel now = first, sent(n);
   for (int h = 1; h < bounces; ++h) {
     for (size_t i = 0; i < n; ++i)
       for (size_t j = 0; j < kPanel; ++j)
-        sent[i * kPanel + j] = reflectance[i][channel] * now[i * kPanel + j];
+        sent[i].value[j] = reflectance[i][channel] * now[i].value[j];
     now = first;
     for (size_t i = 0; i < n; ++i)
-      add_row(factors.columns_of(i), factors.factors_of(i), sent.data(), now.data() + i * kPanel);
+      add_row(factors.columns_of(i), factors.factors_of(i), sent.data(), now[i].value);
   }
   for (size_t i = 0; i < n; ++i)
-    std::copy_n(now.data() + i * kPanel, end - begin, out.data() + i * n + begin);
+    std::copy_n(now[i].value, end - begin, out.data() + i * n + begin);
 }
 
 Status reflect(const FormFactors& factors, std::span<const Rgb> reflectance, int channel,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "scene/scene.h"
 #include "solve/matrix/bounces.h"
 #include "solve/matrix/dense.h"
 #include "solve/matrix/hierarchical.h"
@@ -38,7 +39,8 @@ struct Target {
   Kind kind = Kind::none;
   uint32_t width = 0, height = 0;              ///< of the map, for texels
   std::vector<std::array<uint16_t, 2>> texel;  ///< per place, for texels: x, y in the map
-  std::vector<Vec3> position, normal;          ///< per place
+  std::vector<Vec3> position;                  ///< per place [m]
+  std::vector<Vec3> normal, geometric_normal;  ///< per place: for cosines; of the surface
   Transfer transfer;                           ///< from patches to places
 };
 
@@ -60,7 +62,10 @@ struct RelightData {
   std::vector<PatchPoint> probe;      ///< where its direct light is taken
 
   std::vector<std::string> material_name;
-  int32_t bounces = -1;  ///< products; < 0: all
+  std::vector<scene::PunctualLight> lights;  ///< as baked
+  Rgb background{};                          ///< as baked [W/(sr m^2)]
+  int32_t bounces = -1;    ///< products; < 0: all
+  double codec_error = 0;  ///< relative, of trial lights: RelightParams::max_error
   Codec codec;
   Target target;
   Occluders occluders;

@@ -6,27 +6,36 @@
 #include <new>
 
 #include "solve/matrix/bounces.h"
+#include "solve/matrix/lxr_test_support.h"
 #include "solve/matrix/matrix_test_support.h"
 #include "solve/matrix/transfer.h"
 
 namespace {
 std::atomic<uint64_t> allocations{0};
+std::atomic<size_t> largest{0};
+
+void count(size_t bytes) {
+  ++allocations;
+  for (size_t before = largest; before < bytes && !largest.compare_exchange_weak(before, bytes);) {
+  }
+}
 }  // namespace
 
+// None inline: the compiler would see malloc() of one meet the delete of another, and warn.
 // Arrays come here as well: the library's operator new[] calls this one.
-void* operator new(size_t bytes) {
-  ++allocations;
+[[gnu::noinline]] void* operator new(size_t bytes) {
+  count(bytes);
   if (void* p = std::malloc(bytes > 0 ? bytes : 1)) return p;
   throw std::bad_alloc();
 }
 // Sorting asks this one, and gives back to the operator delete below: a sanitizer wants both ours.
-void* operator new(size_t bytes, const std::nothrow_t&) noexcept {
-  ++allocations;
+[[gnu::noinline]] void* operator new(size_t bytes, const std::nothrow_t&) noexcept {
+  count(bytes);
   return std::malloc(bytes > 0 ? bytes : 1);
 }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, const std::nothrow_t&) noexcept { std::free(p); }
-void operator delete(void* p, size_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, const std::nothrow_t&) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, size_t) noexcept { std::free(p); }
 
 namespace luxel::matrix {
 namespace {
@@ -73,6 +82,22 @@ TEST(Allocations, ThereAreNonePerFrame) {
             }),
             0u);
   EXPECT_EQ(allocations_of([&] { transfer(*map, e, of_place); }), 0u);
+}
+
+TEST(Allocations, OfADamagedFileAreNoLargerThanItJustifies) {
+  // Every eight bytes in turn are taken for a length, with right checksums. 700 are fewer than the
+  // bytes that are left, but too many elements of 12 bytes.
+  const std::vector<std::byte> file = encode_lxr(testing::small_data());
+  for (const uint64_t length :
+       {uint64_t(700), uint64_t(1) << 32, uint64_t(1) << 60, (uint64_t(1) << 62) + 1, UINT64_MAX})
+    for (size_t at = 32; at < file.size(); at += 8) {
+      std::vector<std::byte> damaged = file;
+      testing::put_at(damaged, at, length);
+      testing::mend(damaged);
+      largest = 0;
+      const auto data = decode_lxr(damaged, "a.lxr");
+      EXPECT_LE(largest, 2 * file.size()) << length << " at " << at;
+    }
 }
 
 }  // namespace

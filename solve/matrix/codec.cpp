@@ -1,5 +1,7 @@
 #include "solve/matrix/codec.h"
 
+#include <algorithm>
+
 namespace luxel::matrix {
 namespace {
 
@@ -22,31 +24,61 @@ void iterate(const Multiply& product, const CoarseScene& coarse, const Sent& sen
                 irradiance, work);
 }
 
+/// Calls the function for the codec that there is.
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+
 }  // namespace
 
 CodecWork make_work(const Codec& codec, size_t patches) {
   CodecWork work;
-  if (const auto* h = std::get_if<HierarchicalCodec>(&codec)) {
-    work.hierarchical = make_work(h->matrix);
-    work.bounces = make_bounce_work(patches, h->coarse.count());
-  }
+  std::visit(Overloaded{[&](const HierarchicalCodec& c) {
+                          work.hierarchical = make_work(c.matrix);
+                          work.bounces = make_bounce_work(patches, c.coarse.count());
+                        },
+                        [&](const DenseCodec& c) {
+                          work.dense = make_dense_work(patches);
+                          work.bounces = make_bounce_work(patches, c.coarse.count());
+                        },
+                        [&](const Bc1Codec& c) { work.bc1 = make_bc1_work(c.matrix); }},
+             codec);
   return work;
 }
 
 void irradiance_of(const Codec& codec, const Sent& sent, std::span<Rgb> irradiance,
                    CodecWork& work) {
-  if (const auto* h = std::get_if<HierarchicalCodec>(&codec)) {
-    const auto product = [h, &work](std::span<const Rgb> b, std::span<Rgb> e) {
-      multiply(h->matrix, b, e, work.hierarchical);
-    };
-    iterate(product, h->coarse, sent, irradiance, work.bounces);
+  if (sent.bounces == 0) {
+    std::fill(irradiance.begin(), irradiance.end(), Rgb{});
+    return;
   }
+  std::visit(
+      Overloaded{
+          [&](const HierarchicalCodec& c) {
+            const auto product = [&c, &work](std::span<const Rgb> b, std::span<Rgb> e) {
+              multiply(c.matrix, b, e, work.hierarchical);
+            };
+            iterate(product, c.coarse, sent, irradiance, work.bounces);
+          },
+          [&](const DenseCodec& c) {
+            const auto product = [&c, &work](std::span<const Rgb> b, std::span<Rgb> e) {
+              multiply(c.matrix, b, e, work.dense);
+            };
+            iterate(product, c.coarse, sent, irradiance, work.bounces);
+          },
+          [&](const Bc1Codec& c) { multiply(c.matrix, sent.radiosity, irradiance, work.bc1); }},
+      codec);
 }
 
 uint64_t bytes_of(const Codec& codec) {
-  if (const auto* h = std::get_if<HierarchicalCodec>(&codec))
-    return bytes_of(h->matrix) + bytes_of(h->coarse);
-  return 0;
+  return std::visit(
+      Overloaded{[](const HierarchicalCodec& c) { return bytes_of(c.matrix) + bytes_of(c.coarse); },
+                 [](const DenseCodec& c) { return bytes_of(c.matrix) + bytes_of(c.coarse); },
+                 [](const Bc1Codec& c) { return bytes_of(c.matrix); }},
+      codec);
 }
 
 }  // namespace luxel::matrix

@@ -5,9 +5,11 @@
 
 namespace luxel::matrix {
 
-/// Room for one answer of a codec.
+/// Room for one answer of a codec; what it does not use is empty.
 struct CodecWork {
   HierarchicalWork hierarchical;
+  DenseWork dense;
+  Bc1Work bc1;
   BounceWork bounces;
 };
 CodecWork make_work(const Codec& codec, size_t patches);

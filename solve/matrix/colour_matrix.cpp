@@ -77,8 +77,7 @@ void reflect_panel(const FormFactors& factors, std::span<const Rgb> reflectance,
     for (size_t i = 0; i < n; ++i)
       add_row(factors.columns_of(i), factors.factors_of(i), sent.data(), now[i].value);
   }
-  for (size_t i = 0; i < n; ++i)
-    std::copy_n(now[i].value, end - begin, out.data() + i * n + begin);
+  for (size_t i = 0; i < n; ++i) std::copy_n(now[i].value, end - begin, out.data() + i * n + begin);
 }
 
 Status reflect(const FormFactors& factors, std::span<const Rgb> reflectance, int channel,

@@ -96,24 +96,55 @@ double error_of(const Codec& codec, const Trials& trials, const Patches& patches
   return std::sqrt(sum / double(trials.sent.size()));
 }
 
+/// What codecs are made of.
+struct Transport {
+  const Prepared& prepared;
+  const CoarseScene& coarse;
+  const Trials& trials;
+  const RelightParams& params;
+};
+
 /// The coarsest hierarchy that keeps to params.max_error, as far as can be.
-Result<Codec> hierarchical_codec(const Prepared& prepared, const CoarseScene& coarse,
-                                 const RelightParams& params, double& error, Progress& progress) {
-  const Patches& patches = prepared.work.patches;
-  LUXEL_TRY(const Trials trials, make_trials(prepared.factors, coarse, patches, params, progress));
+Result<Codec> hierarchical_codec(const Transport& t, Progress& progress) {
+  const Patches& patches = t.prepared.work.patches;
   HierarchicalParams tried;
-  tried.rays_per_patch = params.factors.rays_per_patch;
+  tried.rays_per_patch = t.params.factors.rays_per_patch;
   // What is lost is about in proportion to what blocks may lose: five steps from the first guess
   // span more than a factor of ten.
-  tried.block_error = 0.1f * params.max_error;
+  tried.block_error = 0.1f * t.params.max_error;
   for (int step = 0;; ++step) {
-    LUXEL_TRY(Hierarchical matrix, compress(prepared.factors, prepared.work.tree, patches.centroid,
-                                            patches.area_m2, tried, progress));
-    Codec codec = HierarchicalCodec{std::move(matrix), coarse};
-    error = error_of(codec, trials, patches, params.bounces);
-    if (error <= double(params.max_error) || step == 5) return codec;
-    tried.block_error *= std::clamp(0.9f * params.max_error / float(error), 0.3f, 0.8f);
+    LUXEL_TRY(Hierarchical matrix, compress(t.prepared.factors, t.prepared.work.tree,
+                                            patches.centroid, patches.area_m2, tried, progress));
+    Codec codec = HierarchicalCodec{std::move(matrix), t.coarse};
+    const double error = error_of(codec, t.trials, patches, t.params.bounces);
+    if (error <= double(t.params.max_error) || step == 5) return codec;
+    tried.block_error *= std::clamp(0.9f * t.params.max_error / float(error), 0.3f, 0.8f);
   }
+}
+
+Result<Codec> bc1_codec(const Transport& t, Progress& progress) {
+  const Patches& patches = t.prepared.work.patches;
+  const int bounces = t.params.bounces == 0 ? 1 : t.params.bounces;
+  LUXEL_TRY(const ColourMatrix all,
+            make_reflections(t.prepared.factors, patches.elements.reflectance, patches.area_m2,
+                             bounces, progress));
+  LUXEL_TRY(Bc1 matrix, make_bc1(all, {}, progress));
+  return Bc1Codec{std::move(matrix)};
+}
+
+Result<Codec> codec_of(const Transport& t, Progress& progress) {
+  const size_t patches = t.prepared.work.patches.size();
+  const CodecKind kind = t.params.codec;
+  if (kind != CodecKind::hierarchical && patches > kMaxDensePatches)
+    return fail(ErrorCode::bad_setting,
+                "{} patches are too many for a codec that looks at all pairs, which takes {} at "
+                "most; ask for fewer, or for the hierarchical codec",
+                patches, kMaxDensePatches);
+  progress.begin("codec", 0);
+  if (kind == CodecKind::hierarchical) return hierarchical_codec(t, progress);
+  if (kind == CodecKind::bc1) return bc1_codec(t, progress);
+  const Precision precision = kind == CodecKind::dense32 ? Precision::single : Precision::half;
+  return DenseCodec{make_dense(t.prepared.factors, precision), t.coarse};
 }
 
 }  // namespace
@@ -133,7 +164,9 @@ Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::Ra
   const CoarseScene coarse =
       make_coarse_scene(prepared.factors, prepared.work.tree, patches.area_m2,
                         patches.elements.reflectance, kCoarseClusters);
-  LUXEL_TRY(out.codec, hierarchical_codec(prepared, coarse, params, out.codec_error, progress));
+  LUXEL_TRY(const Trials trials, make_trials(prepared.factors, coarse, patches, params, progress));
+  LUXEL_TRY(out.codec, codec_of({prepared, coarse, trials, params}, progress));
+  out.codec_error = error_of(out.codec, trials, patches, params.bounces);
   LUXEL_TRY(target.transfer, make_transfer(prepared.work, tracer,
                                            {target.position, target.geometric_normal}, progress));
   out.target = std::move(target);

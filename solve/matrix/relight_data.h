@@ -10,6 +10,7 @@
 
 #include "base/vec.h"
 #include "scene/scene.h"
+#include "solve/matrix/bc1.h"
 #include "solve/matrix/bounces.h"
 #include "solve/matrix/dense.h"
 #include "solve/matrix/hierarchical.h"
@@ -30,8 +31,13 @@ struct HierarchicalCodec {
   CoarseScene coarse;  ///< for all bounces
 };
 
+/// All bounces, or those that were asked for, in one product [Shcherbakov17].
+struct Bc1Codec {
+  Bc1 matrix;
+};
+
 /// One codec's matrix: irradiance from what patches send.
-using Codec = std::variant<HierarchicalCodec, DenseCodec>;
+using Codec = std::variant<HierarchicalCodec, DenseCodec, Bc1Codec>;
 
 /// Places whose light is wanted.
 struct Target {

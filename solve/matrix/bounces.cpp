@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <map>
+#include <numeric>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -26,22 +28,58 @@ std::vector<uint32_t> cut_of(const ClusterTree& tree, size_t wanted) {
   return cut;
 }
 
+/// Patches that light can go between, over others, have the same number: the least of theirs.
+std::vector<uint32_t> components_of(const FormFactors& factors) {
+  std::vector<uint32_t> root(factors.size());
+  std::iota(root.begin(), root.end(), 0u);
+  const auto root_of = [&](uint32_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  for (uint32_t i = 0; i < factors.size(); ++i)
+    for (const uint32_t j : factors.columns_of(i)) {
+      const uint32_t a = root_of(i), b = root_of(j);
+      root[std::max(a, b)] = std::min(a, b);
+    }
+  for (uint32_t i = 0; i < factors.size(); ++i) root[i] = root_of(i);
+  // Those that see no other do no harm wherever they are.
+  for (uint32_t i = 0; i < factors.size(); ++i)
+    if (factors.columns_of(i).empty()) root[i] = 0;
+  return root;
+}
+
+/// Numbers the clusters of a cut, each component of the scene for itself: what is inside a closed
+/// box must not share a cluster with what is outside. Returns how many.
+uint32_t number_clusters(const FormFactors& factors, const ClusterTree& tree,
+                         std::span<const uint32_t> cut, std::vector<uint32_t>& cluster_of) {
+  const std::vector<uint32_t> component = components_of(factors);
+  cluster_of.resize(factors.size());
+  uint32_t count = 0;
+  std::map<uint32_t, uint32_t> number;
+  for (const uint32_t c : cut) {
+    number.clear();
+    for (uint32_t i = tree.clusters[c].first; i < tree.clusters[c].end; ++i) {
+      const auto [entry, is_new] = number.try_emplace(component[i], count);
+      count += is_new;
+      cluster_of[i] = entry->second;
+    }
+  }
+  return count;
+}
+
 }  // namespace
 
 CoarseScene make_coarse_scene(const FormFactors& factors, const ClusterTree& tree,
                               std::span<const float> area_m2, std::span<const Rgb> reflectance,
                               size_t clusters) {
-  const std::vector<uint32_t> cut = cut_of(tree, clusters);
-  const auto m = Eigen::Index(cut.size());
   CoarseScene out;
-  out.cluster_of.resize(factors.size());
-  out.area_m2.assign(cut.size(), 0.0f);
-  for (uint32_t s = 0; s < cut.size(); ++s)
-    for (uint32_t i = tree.clusters[cut[s]].first; i < tree.clusters[cut[s]].end; ++i)
-      out.cluster_of[i] = s, out.area_m2[s] += area_m2[i];
+  const uint32_t count = number_clusters(factors, tree, cut_of(tree, clusters), out.cluster_of);
+  const auto m = Eigen::Index(count);
+  out.area_m2.assign(count, 0.0f);
+  for (size_t i = 0; i < factors.size(); ++i) out.area_m2[out.cluster_of[i]] += area_m2[i];
   // F_ST = sum A_i F_ij / A_S, and the mean reflectance of T.
   Eigen::MatrixXd exchange = Eigen::MatrixXd::Zero(m, m);
-  std::vector<std::array<double, 3>> reflected(cut.size(), {0, 0, 0});
+  std::vector<std::array<double, 3>> reflected(count, {0, 0, 0});
   for (size_t i = 0; i < factors.size(); ++i) {
     const auto columns = factors.columns_of(i);
     const auto values = factors.factors_of(i);

@@ -22,7 +22,8 @@ struct CoarseScene {
   size_t count() const { return area_m2.size(); }
 };
 
-/// About `clusters` of them. `factors` are reciprocal.
+/// About `clusters` of them, and no cluster with parts between which no light goes. `factors` are
+/// reciprocal.
 CoarseScene make_coarse_scene(const FormFactors& factors, const ClusterTree& tree,
                               std::span<const float> area_m2, std::span<const Rgb> reflectance,
                               size_t clusters);
@@ -46,7 +47,8 @@ void count_bounces(const Multiply& multiply, std::span<const Rgb> reflectance,
 /// The limit, by `sweeps` products. What is still missing after a sweep is reflected between the
 /// clusters without end, and one more sweep makes it smooth: a two-grid iteration for equations of
 /// the second kind [Atkinson76; Hackbusch81], which loses far less per sweep than a bounce brings.
-/// Two sweeps are enough for a picture. Allocates nothing.
+/// Two sweeps are enough for a room; more where neighbouring patches see different rooms. Allocates
+/// nothing.
 void all_bounces(const Multiply& multiply, const CoarseScene& coarse,
                  std::span<const Rgb> reflectance, std::span<const float> area_m2,
                  std::span<const Rgb> sent, int sweeps, std::span<Rgb> irradiance,

@@ -5,22 +5,19 @@
 namespace luxel::matrix {
 namespace {
 
-/// Sweeps of the two-grid iteration: each loses some thirty times less than the one before, so what
-/// is left after two is less than what a codec may lose.
-constexpr int kSweeps = 2;
-
 uint64_t bytes_of(const CoarseScene& coarse) {
   uint64_t bytes = 4 * (coarse.cluster_of.size() + coarse.area_m2.size());
   for (const auto& channel : coarse.response) bytes += 4 * channel.size();
   return bytes;
 }
 
-void iterate(const Multiply& product, const CoarseScene& coarse, const Sent& sent,
+template <class Iterated>
+void iterate(const Iterated& codec, const Multiply& product, const Sent& sent,
              std::span<Rgb> irradiance, BounceWork& work) {
   if (sent.bounces >= 0)
     count_bounces(product, sent.reflectance, sent.radiosity, sent.bounces, irradiance, work);
   else
-    all_bounces(product, coarse, sent.reflectance, sent.area_m2, sent.radiosity, kSweeps,
+    all_bounces(product, codec.coarse, sent.reflectance, sent.area_m2, sent.radiosity, codec.sweeps,
                 irradiance, work);
 }
 
@@ -61,13 +58,13 @@ void irradiance_of(const Codec& codec, const Sent& sent, std::span<Rgb> irradian
             const auto product = [&c, &work](std::span<const Rgb> b, std::span<Rgb> e) {
               multiply(c.matrix, b, e, work.hierarchical);
             };
-            iterate(product, c.coarse, sent, irradiance, work.bounces);
+            iterate(c, product, sent, irradiance, work.bounces);
           },
           [&](const DenseCodec& c) {
             const auto product = [&c, &work](std::span<const Rgb> b, std::span<Rgb> e) {
               multiply(c.matrix, b, e, work.dense);
             };
-            iterate(product, c.coarse, sent, irradiance, work.bounces);
+            iterate(c, product, sent, irradiance, work.bounces);
           },
           [&](const Bc1Codec& c) { multiply(c.matrix, sent.radiosity, irradiance, work.bc1); }},
       codec);

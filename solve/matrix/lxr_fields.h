@@ -50,13 +50,13 @@ void fields(Archive& a, Is<CoarseScene> auto& x) {
 }
 template <class Archive>
 void fields(Archive& a, Is<HierarchicalCodec> auto& x) {
-  auto& [matrix, coarse] = x;
-  a(matrix, coarse);
+  auto& [matrix, coarse, sweeps] = x;
+  a(matrix, coarse, sweeps);
 }
 template <class Archive>
 void fields(Archive& a, Is<DenseCodec> auto& x) {
-  auto& [matrix, coarse] = x;
-  a(matrix, coarse);
+  auto& [matrix, coarse, sweeps] = x;
+  a(matrix, coarse, sweeps);
 }
 template <class Archive>
 void fields(Archive& a, Is<Bc1::Kept> auto& x) {

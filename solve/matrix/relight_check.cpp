@@ -11,6 +11,9 @@ namespace {
 /// Sides of lightmaps: a player makes room for width x height texels.
 constexpr uint32_t kLargestMap = 16384;
 
+/// Sweeps of an update: a file cannot ask for hours.
+constexpr double kMostSweeps = 64;
+
 Status length_is(std::string_view what, size_t length, size_t wanted) {
   if (length == wanted) return {};
   return fail(ErrorCode::bad_input, "{}: there are {}, there must be {}", what, length, wanted);
@@ -165,11 +168,13 @@ Status check(const CoarseScene& coarse, size_t patches) {
 
 Status check(const HierarchicalCodec& codec, size_t patches) {
   LUXEL_TRY_STATUS(check(codec.matrix, patches));
+  LUXEL_TRY_STATUS(within("sweeps", std::array{double(codec.sweeps)}, 1, kMostSweeps));
   return check(codec.coarse, patches);
 }
 
 Status check(const DenseCodec& codec, size_t patches) {
   LUXEL_TRY_STATUS(check(codec.matrix, patches));
+  LUXEL_TRY_STATUS(within("sweeps", std::array{double(codec.sweeps)}, 1, kMostSweeps));
   return check(codec.coarse, patches);
 }
 

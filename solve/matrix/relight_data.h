@@ -23,12 +23,14 @@ namespace luxel::matrix {
 struct DenseCodec {
   Dense matrix;
   CoarseScene coarse;  ///< for all bounces
+  int32_t sweeps = 2;  ///< of all_bounces
 };
 
 /// F as an H^2-matrix; bounces are iterated.
 struct HierarchicalCodec {
   Hierarchical matrix;
   CoarseScene coarse;  ///< for all bounces
+  int32_t sweeps = 2;  ///< of all_bounces
 };
 
 /// All bounces, or those that were asked for, in one product [Shcherbakov17].

@@ -20,6 +20,28 @@ namespace {
 /// Rows that a task takes.
 constexpr size_t kRows = 16;
 
+/// Steps of a fitted range, and what no row may lose more than.
+constexpr size_t kLongestRange = 25;
+constexpr float kLostShare = 0.002f;
+
+/// Divides each column by its mean, which is returned. Columns of nothing stay.
+std::vector<Rgb> even_columns(ColourMatrix& matrix) {
+  const size_t n = matrix.n;
+  std::vector<std::array<double, 3>> sum(n);
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t i = 0; i < n; ++i)
+      for (size_t j = 0; j < n; ++j) sum[j][c] += double(matrix.channel[c][i * n + j]);
+  std::vector<Rgb> mean(n);
+  for (size_t j = 0; j < n; ++j) {
+    const auto of = [&](size_t c) { return sum[j][c] > 0 ? float(sum[j][c] / double(n)) : 1.0f; };
+    mean[j] = {of(0), of(1), of(2)};
+  }
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t i = 0; i < n; ++i)
+      for (size_t j = 0; j < n; ++j) matrix.channel[c][i * n + j] /= mean[j][int(c)];
+  return mean;
+}
+
 /// The columns of each row that are kept, ascending.
 using KeptColumns = std::vector<std::vector<uint32_t>>;
 
@@ -85,12 +107,39 @@ std::array<float, 3> largest_of_rest(const ColourMatrix& matrix, const Picture& 
   return {all.x, all.y, all.z};
 }
 
-Picture picture_of(const ColourMatrix& matrix, const KeptColumns& kept, const Bc1Params& params) {
+/// The shortest range that loses no row and channel more than kLostShare of its sum.
+float fitted_range(const ColourMatrix& matrix, const Picture& picture) {
+  const size_t n = matrix.n;
+  std::vector<size_t> of_row(n, 1);
+  parallel_for(n, kRows, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      for (size_t c = 0; c < 3; ++c) {
+        // The sums of entries between e^-(k + 1) and e^-k of the maximum.
+        std::array<float, kLongestRange + 1> sum{};
+        float all = 0;
+        for (size_t j = 0; j < n; ++j) {
+          const float entry = matrix.channel[c][i * n + j];
+          all += entry;
+          if (picture.is_kept(i, j) || !(entry > 0)) continue;
+          const float fall = std::log(picture.largest[c] / entry);
+          sum[std::min(size_t(fall), kLongestRange)] += entry;
+        }
+        float lost = 0;
+        size_t range = kLongestRange + 1;
+        while (range > 1 && lost + sum[range - 1] <= kLostShare * all) lost += sum[--range];
+        of_row[i] = std::max(of_row[i], std::min(range, kLongestRange));
+      }
+  });
+  return float(n > 0 ? *std::max_element(of_row.begin(), of_row.end()) : 1);
+}
+
+Picture picture_of(const ColourMatrix& matrix, const KeptColumns& kept, Bc1Params& params) {
   const size_t n = matrix.n;
   Picture out{n, std::vector<uint8_t>(4 * n * n, 255), {}};
   for (size_t i = 0; i < n; ++i)
     for (const uint32_t j : kept[i]) out.at(i, j)[3] = 0;
   out.largest = largest_of_rest(matrix, out);
+  if (params.log_range == 0) params.log_range = fitted_range(matrix, out);
   parallel_for(n, kRows, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       for (size_t j = 0; j < n; ++j)
@@ -150,38 +199,77 @@ uint64_t encode(Pixels& pixels) {
   return (block & 0xffff) == (block >> 16 & 0xffff) ? block & 0xffffffff : block;
 }
 
-Status encode_blocks(const Picture& picture, Bc1Params::Hole hole, Bc1& out, Progress& progress) {
+/// What blocks so far lack of their entries' sums, channel by channel, as parts of the maxima. A
+/// flat block errs by up to a whole step of 5 bits in all entries, and so do its neighbours, which
+/// are alike; each makes up for what those before it lost, as in error diffusion.
+struct Carry {
+  std::array<float, 256> value;  ///< of a byte
+  float log_range = 0;
+  std::array<float, 3> lacking{};
+
+  /// Raises or lowers what is to be encoded, at most thrice.
+  void lift(Pixels& pixels) const {
+    for (size_t c = 0; c < 3; ++c) {
+      float sum = 0;
+      for (size_t k = 0; k < 16; ++k)
+        if (pixels[4 * k + 3] != 0) sum += value[pixels[4 * k + c]];
+      if (!(sum > 0)) continue;
+      const float factor = std::clamp(1 + lacking[c] / sum, 1.0f / 3, 3.0f);
+      const long step = std::lround(std::log(factor) / log_range * 255);
+      for (size_t k = 0; k < 16; ++k)
+        if (uint8_t& byte = pixels[4 * k + c]; byte > 0)
+          byte = uint8_t(std::clamp(byte + step, 1l, 255l));
+    }
+  }
+  void count(const Pixels& wanted, uint64_t block) {
+    const std::array<BlockColor, 4> colors = block_colors(block);
+    for (size_t k = 0; k < 16; ++k)
+      for (size_t c = 0; c < 3 && wanted[4 * k + 3] != 0; ++c)
+        lacking[c] += value[wanted[4 * k + c]] - value[colors[block_index(block, k / 4, k % 4)][c]];
+  }
+};
+
+void encode_block_row(const Picture& picture, const Bc1Params& params, size_t block_row, Bc1& out) {
+  const size_t wide = out.blocks_per_row();
+  Carry carry{byte_values(params.log_range), params.log_range, {}};
+  for (size_t c = 0; c < wide; ++c) {
+    const Pixels wanted = pixels_of(picture, out, 4 * block_row, 4 * c);
+    Pixels pixels = wanted;
+    if (params.keep_sums) carry.lift(pixels);
+    if (params.hole == Bc1Params::Hole::neighbours) fill_holes(pixels);
+    out.blocks[block_row * wide + c] = encode(pixels);
+    if (params.keep_sums) carry.count(wanted, out.blocks[block_row * wide + c]);
+  }
+}
+
+Status encode_blocks(const Picture& picture, const Bc1Params& params, Bc1& out,
+                     Progress& progress) {
   const size_t wide = out.blocks_per_row();
   out.blocks.resize(wide * wide);
   std::atomic<bool> cancelled = false;
   parallel_for(wide, 4, [&](size_t begin, size_t end) {
     if (progress.cancelled()) cancelled = true;
     if (cancelled) return;
-    for (size_t r = begin; r < end; ++r)
-      for (size_t c = 0; c < wide; ++c) {
-        Pixels pixels = pixels_of(picture, out, 4 * r, 4 * c);
-        if (hole == Bc1Params::Hole::neighbours) fill_holes(pixels);
-        out.blocks[r * wide + c] = encode(pixels);
-      }
+    for (size_t r = begin; r < end; ++r) encode_block_row(picture, params, r, out);
     progress.advance(end - begin);
   });
   if (cancelled) return fail(ErrorCode::cancelled, "cancelled");
   return {};
 }
 
-/// By how much the decoded rest of one row is to be scaled, and with it decoded.
+/// By how much the decoded rest of one row is to be scaled: even light is to arrive as it did.
 void scale_row(const ColourMatrix& matrix, const Picture& picture, const Bc1Params& params,
-               size_t place, Bc1& out) {
+               std::span<const Rgb> mean, size_t place, Bc1& out) {
   const size_t n = matrix.n, i = out.row[place];
   out.row_scale[place] = {1, 1, 1};
   std::vector<Rgb> rest(n);
   decode_row(out, place, rest);
   std::array<float, 3> scale = picture.largest;
-  for (size_t c = 0; c < 3 && params.keep_row_sums; ++c) {
+  for (size_t c = 0; c < 3 && params.keep_sums; ++c) {
     double want = 0, got = 0;
     for (size_t j = 0; j < n; ++j) {
       const bool kept = picture.is_kept(i, j);
-      if (!kept) want += double(matrix.channel[c][i * n + j]);
+      if (!kept) want += double(matrix.channel[c][i * n + j]) * double(mean[j][int(c)]);
       if (!kept || params.hole == Bc1Params::Hole::zero) got += double(rest[j][int(c)]);
     }
     if (got > 0) scale[c] = float(want / got);
@@ -196,9 +284,10 @@ std::vector<uint32_t> inverse(std::span<const uint32_t> order) {
   return out;
 }
 
-/// Scales the rest, and keeps what is to be kept: the entry, or what the rest lacks of it.
+/// Scales the rest, and keeps what is to be kept: the entry, or what the rest lacks of it, in units
+/// of the columns' means as `matrix` is.
 void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns& kept,
-          const Bc1Params& params, Bc1& out) {
+          const Bc1Params& params, std::span<const Rgb> mean, Bc1& out) {
   const size_t n = matrix.n;
   out.row_scale.assign(n, {});
   for (size_t c = 0; c < 3; ++c)
@@ -216,13 +305,14 @@ void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns&
   parallel_for(n, kRows, [&](size_t begin, size_t end) {
     std::vector<Rgb> rest(n);
     for (size_t place = begin; place < end; ++place) {
-      scale_row(matrix, picture, params, place, out);
+      scale_row(matrix, picture, params, mean, place, out);
       if (params.hole == Bc1Params::Hole::neighbours) decode_row(out, place, rest);
       const size_t row = out.row[place];
       Bc1::Kept* entry = entries.data() + first[place];
       for (const uint32_t j : kept[row]) {
         for (size_t c = 0; c < 3; ++c) {
-          const float lacking = matrix.channel[c][row * n + j] - rest[j][int(c)];
+          const float there = rest[j][int(c)] / mean[j][int(c)];
+          const float lacking = matrix.channel[c][row * n + j] - there;
           entry->value[c] = half_from_float(lacking / out.kept_unit[c]);
         }
         entry++->place = uint16_t(place_of[j]);
@@ -236,7 +326,14 @@ void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns&
 
 }  // namespace
 
-Result<Bc1> make_bc1(const ColourMatrix& matrix, const Bc1Params& params, Progress& progress) {
+Bc1Params paper_params() {
+  Bc1Params params;
+  params.log_range = 25, params.hole = Bc1Params::Hole::zero;
+  params.keep_sums = params.even_columns = false;
+  return params;
+}
+
+Result<Bc1> make_bc1(ColourMatrix matrix, Bc1Params params, Progress& progress) {
   const size_t n = matrix.n;
   if (n > kMaxBc1Patches)
     return fail(ErrorCode::bad_setting, "bc1 holds up to {} patches, not {}: ask for fewer",
@@ -244,18 +341,22 @@ Result<Bc1> make_bc1(const ColourMatrix& matrix, const Bc1Params& params, Progre
   if (!(params.kept >= 0 && params.kept < 1))
     return fail(ErrorCode::bad_setting, "the share of entries kept is {}; from 0 to below 1",
                 params.kept);
-  if (!(params.log_range > 0 && params.log_range <= 80))
-    return fail(ErrorCode::bad_setting, "the logarithms' range is {}; above 0, up to 80",
+  if (!(params.log_range >= 0 && params.log_range <= 80))
+    return fail(ErrorCode::bad_setting, "the logarithms' range is {}; 0 (to be fitted) to 80",
                 params.log_range);
   Bc1 out;
-  out.n = uint32_t(n), out.log_range = params.log_range;
+  out.n = uint32_t(n);
   progress.begin("bc1", out.blocks_per_row());
+  const std::vector<Rgb> mean =
+      params.even_columns ? even_columns(matrix) : std::vector<Rgb>(n, Rgb{1, 1, 1});
   const KeptColumns kept = choose_kept(matrix, params.kept);
   const Picture picture = picture_of(matrix, kept, params);
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  out.log_range = params.log_range;
   choose_order(picture, params.order, out);
-  LUXEL_TRY_STATUS(encode_blocks(picture, params.hole, out, progress));
-  keep(matrix, picture, kept, params, out);
+  LUXEL_TRY_STATUS(encode_blocks(picture, params, out, progress));
+  for (const uint32_t j : out.column) out.column_scale.push_back(mean[j]);
+  keep(matrix, picture, kept, params, mean, out);
   return out;
 }
 

@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <new>
 
+#include "solve/matrix/bc1.h"
 #include "solve/matrix/bounces.h"
+#include "solve/matrix/colour_matrix.h"
 #include "solve/matrix/lxr_test_support.h"
 #include "solve/matrix/matrix_test_support.h"
 #include "solve/matrix/transfer.h"
@@ -98,6 +100,26 @@ TEST(Allocations, OfADamagedFileAreNoLargerThanItJustifies) {
       const auto data = decode_lxr(damaged, "a.lxr");
       EXPECT_LE(largest, 2 * file.size()) << length << " at " << at;
     }
+}
+
+TEST(Allocations, ThereAreNonePerProductOfEntries) {
+  const Cut cut(scene::cornell_box(), 300);
+  const Patches& p = cut.patches();
+  const FormFactors factors = cut.reciprocal_factors(256);
+  Progress progress;
+  const auto colour = make_reflections(factors, p.elements.reflectance, p.area_m2, 2, progress);
+  ASSERT_TRUE(colour);
+  const auto bc1 = make_bc1(*colour, {}, progress);
+  ASSERT_TRUE(bc1);
+  DenseWork work = make_dense_work(cut.size());
+  Bc1Work bc1_work = make_bc1_work(*bc1);
+  std::vector<Rgb> e(cut.size());
+  for (const Precision precision : {Precision::single, Precision::half}) {
+    const Dense dense = make_dense(factors, precision);
+    EXPECT_EQ(allocations_of([&] { multiply(dense, p.emission, e, work); }), 0u);
+  }
+  EXPECT_EQ(allocations_of([&] { multiply(*colour, p.emission, e, work); }), 0u);
+  EXPECT_EQ(allocations_of([&] { multiply(*bc1, p.emission, e, bc1_work); }), 0u);
 }
 
 }  // namespace

@@ -56,12 +56,14 @@ bool is_valid(const Bc1& m) {
   const size_t n = m.n;
   const auto finite = [](float x) { return std::isfinite(x); };
   return n <= kMaxBc1Patches && m.log_range > 0 && finite(m.log_range) && m.row.size() == n &&
-         m.column.size() == n && m.row_scale.size() == n && m.first_kept.size() == n + 1 &&
+         m.column.size() == n && m.row_scale.size() == n && m.column_scale.size() == n &&
+         m.first_kept.size() == n + 1 &&
          m.blocks.size() == m.blocks_per_row() * m.blocks_per_row() && m.first_kept.front() == 0 &&
          m.first_kept.back() == m.kept.size() &&
          std::is_sorted(m.first_kept.begin(), m.first_kept.end()) && is_permutation(m.row) &&
          is_permutation(m.column) &&
-         std::all_of(m.row_scale.begin(), m.row_scale.end(), [](Rgb s) { return is_finite(s); }) &&
+         std::all_of(m.row_scale.begin(), m.row_scale.end(), is_finite) &&
+         std::all_of(m.column_scale.begin(), m.column_scale.end(), is_finite) &&
          std::all_of(m.kept_unit.begin(), m.kept_unit.end(), finite) &&
          std::all_of(m.blocks.begin(), m.blocks.end(), is_readable) &&
          std::all_of(m.kept.begin(), m.kept.end(), [n](const Bc1::Kept& k) {
@@ -78,22 +80,23 @@ void decode_row(const Bc1& m, size_t place, std::span<Rgb> out) {
     const std::array<BlockColor, 4> colors = block_colors(blocks[k]);
     for (size_t j = 4 * k; j < std::min<size_t>(4 * k + 4, m.n); ++j) {
       const BlockColor& color = colors[block_index(blocks[k], place % 4, j % 4)];
-      out[m.column[j]] =
-          m.row_scale[place] * Rgb{value[color[0]], value[color[1]], value[color[2]]};
+      out[m.column[j]] = m.row_scale[place] * m.column_scale[j] *
+                         Rgb{value[color[0]], value[color[1]], value[color[2]]};
     }
   }
   for (uint32_t k = m.first_kept[place]; k < m.first_kept[place + 1]; ++k) {
     const Bc1::Kept& kept = m.kept[k];
-    out[m.column[kept.place]] += Rgb{float_from_half(kept.value[0]) * m.kept_unit[0],
-                                     float_from_half(kept.value[1]) * m.kept_unit[1],
-                                     float_from_half(kept.value[2]) * m.kept_unit[2]};
+    out[m.column[kept.place]] +=
+        m.column_scale[kept.place] * Rgb{float_from_half(kept.value[0]) * m.kept_unit[0],
+                                         float_from_half(kept.value[1]) * m.kept_unit[1],
+                                         float_from_half(kept.value[2]) * m.kept_unit[2]};
   }
 }
 
 uint64_t bytes_of(const Bc1& m) {
   return 8 * (m.blocks.size() + m.kept.size()) +
          4 * (m.row.size() + m.column.size() + m.first_kept.size()) +
-         sizeof(Rgb) * m.row_scale.size();
+         sizeof(Rgb) * (m.row_scale.size() + m.column_scale.size());
 }
 
 }  // namespace luxel::matrix

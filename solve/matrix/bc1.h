@@ -19,18 +19,28 @@
 
 namespace luxel::matrix {
 
+/// What they start as is not all in the paper, but costs no more bytes or time: see paper_params().
 struct Bc1Params {
-  float kept = 0.04f;       ///< the part of each row and channel that is kept exact, [0, 1)
-  float log_range = 25.0f;  ///< e^-log_range of the maximum is the least that 8 bits tell from 0
+  float kept = 0.04f;  ///< the part of each row and channel that is kept exact, [0, 1)
+  /// e^-log_range of the maximum is the least that 8 bits tell from 0, up to 80 (the paper: 25).
+  /// 0: as few as lose no row more than 0.2 % of what it sums to; steps are the finer.
+  float log_range = 0;
   enum class Order { as_is, rows, rows_and_columns };
   Order order = Order::rows_and_columns;
   /// What stands in the picture where an entry is kept: 0 (the paper), or what is near it in its
   /// block, so that the block's other entries keep their levels; then the difference is kept.
   enum class Hole { zero, neighbours };
   Hole hole = Hole::neighbours;
-  /// Scales each row and channel of the rest so that it adds up as it did (the paper does not).
-  bool keep_row_sums = true;
+  /// Blocks make up for what those before them in their row lost, and each row and channel of the
+  /// rest is scaled so that it adds up as it did (the paper does neither).
+  bool keep_sums = true;
+  /// Divides columns by their means first, so that patches of all sizes and colours look alike, and
+  /// those that much light comes from are known as well as others (the paper does not).
+  bool even_columns = true;
 };
+
+/// All as the paper says.
+Bc1Params paper_params();
 
 /// K = rest + kept. "Place" r of the rest is row `row[r]` of K, place c its column `column[c]`.
 struct Bc1 {
@@ -39,6 +49,7 @@ struct Bc1 {
   std::vector<uint32_t> row, column;  ///< permutations of 0..n-1
   /// Per place of a row: by how much the rest is scaled, the channel's maximum included.
   std::vector<Rgb> row_scale;
+  std::vector<Rgb> column_scale;  ///< per place of a column: by how much what it sends is scaled
   /// 4 x 4 places each, block rows one after another, blocks_per_row() each, as Direct3D 10 defines
   /// BC1: 5:6:5 bits of colour 0 and 1, then 2 bits per entry. All in four-colour mode (colour 0 >
   /// colour 1), or of one colour.
@@ -59,8 +70,9 @@ struct Bc1 {
 /// Columns have 16 bits.
 inline constexpr uint32_t kMaxBc1Patches = 65536;
 
-/// Errors: too many patches, a share outside [0, 1), cancelled.
-Result<Bc1> make_bc1(const ColourMatrix& matrix, const Bc1Params& params, Progress& progress);
+/// Takes a copy of the matrix to work on, which may be moved in. Errors: too many patches, a share
+/// outside [0, 1), a range that cannot be, cancelled.
+Result<Bc1> make_bc1(ColourMatrix matrix, Bc1Params params, Progress& progress);
 
 /// Whether a matrix from elsewhere may be multiplied: sizes, permutations, columns, blocks' modes,
 /// numbers that are finite.

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "solve/matrix/bc1.h"
 #include "solve/matrix/bc1_block.h"
+#include "solve/matrix/bc1_picture.h"
 #include "solve/matrix/half.h"
 #include "solve/matrix/reorder.h"
 
@@ -19,89 +20,6 @@ namespace {
 
 /// Rows that a task takes.
 constexpr size_t kRows = 16;
-
-/// The columns of each row that are kept, ascending.
-using KeptColumns = std::vector<std::vector<uint32_t>>;
-
-/// The largest `share` of every row and channel; of equal ones the first.
-KeptColumns choose_kept(const ColourMatrix& matrix, float share) {
-  const size_t n = matrix.n;
-  const auto count = std::ptrdiff_t(std::ceil(double(share) * double(n)));
-  KeptColumns out(n);
-  parallel_for(n, kRows, [&](size_t begin, size_t end) {
-    std::vector<uint32_t> order(n);
-    for (size_t i = begin; i < end; ++i) {
-      for (size_t c = 0; c < 3; ++c) {
-        const float* entry = matrix.channel[c].data() + i * n;
-        std::iota(order.begin(), order.end(), 0u);
-        std::nth_element(order.begin(), order.begin() + count, order.end(),
-                         [&](uint32_t a, uint32_t b) {
-                           return entry[a] != entry[b] ? entry[a] > entry[b] : a < b;
-                         });
-        out[i].insert(out[i].end(), order.begin(), order.begin() + count);
-      }
-      std::sort(out[i].begin(), out[i].end());
-      out[i].erase(std::unique(out[i].begin(), out[i].end()), out[i].end());
-    }
-  });
-  return out;
-}
-
-/// The rest in 8 bits: RGBA, row by row. A is 0 where the entry is kept, else 255.
-struct Picture {
-  size_t n = 0;
-  std::vector<uint8_t> rgba;
-  std::array<float, 3> largest{};  ///< per channel, of the rest
-
-  uint8_t* at(size_t row, size_t column) { return rgba.data() + 4 * (row * n + column); }
-  const uint8_t* at(size_t row, size_t column) const {
-    return rgba.data() + 4 * (row * n + column);
-  }
-  bool is_kept(size_t row, size_t column) const { return at(row, column)[3] == 0; }
-};
-
-uint8_t byte_of(float value, float largest, float log_range) {
-  if (!(value > 0)) return 0;
-  const float level = (std::log(value / largest) / log_range + 1) * 255;
-  return uint8_t(std::clamp(std::lround(level), 0l, 255l));
-}
-
-/// The largest entry of every channel that is not kept.
-std::array<float, 3> largest_of_rest(const ColourMatrix& matrix, const Picture& picture) {
-  const size_t n = matrix.n;
-  std::vector<Rgb> of_row(n);
-  parallel_for(n, kRows, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      std::array<float, 3> largest{};
-      for (size_t c = 0; c < 3; ++c)
-        for (size_t j = 0; j < n; ++j)
-          if (!picture.is_kept(i, j))
-            largest[c] = std::max(largest[c], matrix.channel[c][i * n + j]);
-      of_row[i] = {largest[0], largest[1], largest[2]};
-    }
-  });
-  Rgb all{};
-  for (const Rgb& row : of_row) all = max(all, row);
-  return {all.x, all.y, all.z};
-}
-
-Picture picture_of(const ColourMatrix& matrix, const KeptColumns& kept, const Bc1Params& params) {
-  const size_t n = matrix.n;
-  Picture out{n, std::vector<uint8_t>(4 * n * n, 255), {}};
-  for (size_t i = 0; i < n; ++i)
-    for (const uint32_t j : kept[i]) out.at(i, j)[3] = 0;
-  out.largest = largest_of_rest(matrix, out);
-  parallel_for(n, kRows, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      for (size_t j = 0; j < n; ++j)
-        for (size_t c = 0; c < 3; ++c)
-          out.at(i, j)[c] =
-              params.hole == Bc1Params::Hole::zero && out.is_kept(i, j)
-                  ? uint8_t(0)
-                  : byte_of(matrix.channel[c][i * n + j], out.largest[c], params.log_range);
-  });
-  return out;
-}
 
 /// Distances between columns are the same whatever the order of the rows, so the second order does
 /// not wait for the first.
@@ -150,38 +68,77 @@ uint64_t encode(Pixels& pixels) {
   return (block & 0xffff) == (block >> 16 & 0xffff) ? block & 0xffffffff : block;
 }
 
-Status encode_blocks(const Picture& picture, Bc1Params::Hole hole, Bc1& out, Progress& progress) {
+/// What blocks so far lack of their entries' sums, channel by channel, as parts of the maxima. A
+/// flat block errs by up to a whole step of 5 bits in all entries, and so do its neighbours, which
+/// are alike; each makes up for what those before it lost, as in error diffusion.
+struct Carry {
+  std::array<float, 256> value;  ///< of a byte
+  float log_range = 0;
+  std::array<float, 3> lacking{};
+
+  /// Raises or lowers what is to be encoded, at most thrice.
+  void lift(Pixels& pixels) const {
+    for (size_t c = 0; c < 3; ++c) {
+      float sum = 0;
+      for (size_t k = 0; k < 16; ++k)
+        if (pixels[4 * k + 3] != 0) sum += value[pixels[4 * k + c]];
+      if (!(sum > 0)) continue;
+      const float factor = std::clamp(1 + lacking[c] / sum, 1.0f / 3, 3.0f);
+      const long step = std::lround(std::log(factor) / log_range * 255);
+      for (size_t k = 0; k < 16; ++k)
+        if (uint8_t& byte = pixels[4 * k + c]; byte > 0)
+          byte = uint8_t(std::clamp(byte + step, 1l, 255l));
+    }
+  }
+  void count(const Pixels& wanted, uint64_t block) {
+    const std::array<BlockColor, 4> colors = block_colors(block);
+    for (size_t k = 0; k < 16; ++k)
+      for (size_t c = 0; c < 3 && wanted[4 * k + 3] != 0; ++c)
+        lacking[c] += value[wanted[4 * k + c]] - value[colors[block_index(block, k / 4, k % 4)][c]];
+  }
+};
+
+void encode_block_row(const Picture& picture, const Bc1Params& params, size_t block_row, Bc1& out) {
+  const size_t wide = out.blocks_per_row();
+  Carry carry{byte_values(params.log_range), params.log_range, {}};
+  for (size_t c = 0; c < wide; ++c) {
+    const Pixels wanted = pixels_of(picture, out, 4 * block_row, 4 * c);
+    Pixels pixels = wanted;
+    if (params.keep_sums) carry.lift(pixels);
+    if (params.hole == Bc1Params::Hole::neighbours) fill_holes(pixels);
+    out.blocks[block_row * wide + c] = encode(pixels);
+    if (params.keep_sums) carry.count(wanted, out.blocks[block_row * wide + c]);
+  }
+}
+
+Status encode_blocks(const Picture& picture, const Bc1Params& params, Bc1& out,
+                     Progress& progress) {
   const size_t wide = out.blocks_per_row();
   out.blocks.resize(wide * wide);
   std::atomic<bool> cancelled = false;
   parallel_for(wide, 4, [&](size_t begin, size_t end) {
     if (progress.cancelled()) cancelled = true;
     if (cancelled) return;
-    for (size_t r = begin; r < end; ++r)
-      for (size_t c = 0; c < wide; ++c) {
-        Pixels pixels = pixels_of(picture, out, 4 * r, 4 * c);
-        if (hole == Bc1Params::Hole::neighbours) fill_holes(pixels);
-        out.blocks[r * wide + c] = encode(pixels);
-      }
+    for (size_t r = begin; r < end; ++r) encode_block_row(picture, params, r, out);
     progress.advance(end - begin);
   });
   if (cancelled) return fail(ErrorCode::cancelled, "cancelled");
   return {};
 }
 
-/// By how much the decoded rest of one row is to be scaled, and with it decoded.
+/// By how much the decoded rest of one row is to be scaled: even light is to arrive as it did.
 void scale_row(const ColourMatrix& matrix, const Picture& picture, const Bc1Params& params,
-               size_t place, Bc1& out) {
+               std::span<const Rgb> mean, size_t place, Bc1& out) {
   const size_t n = matrix.n, i = out.row[place];
   out.row_scale[place] = {1, 1, 1};
   std::vector<Rgb> rest(n);
   decode_row(out, place, rest);
   std::array<float, 3> scale = picture.largest;
-  for (size_t c = 0; c < 3 && params.keep_row_sums; ++c) {
+  for (size_t c = 0; c < 3 && params.keep_sums; ++c) {
     double want = 0, got = 0;
     for (size_t j = 0; j < n; ++j) {
       const bool kept = picture.is_kept(i, j);
-      if (!kept) want += double(matrix.channel[c][i * n + j]);
+      if (!kept) want += double(matrix.channel[c][i * n + j]) * double(mean[j][int(c)]);
       if (!kept || params.hole == Bc1Params::Hole::zero) got += double(rest[j][int(c)]);
     }
     if (got > 0) scale[c] = float(want / got);
@@ -196,9 +153,10 @@ std::vector<uint32_t> inverse(std::span<const uint32_t> order) {
   return out;
 }
 
-/// Scales the rest, and keeps what is to be kept: the entry, or what the rest lacks of it.
+/// Scales the rest, and keeps what is to be kept: the entry, or what the rest lacks of it, in units
+/// of the columns' means as `matrix` is.
 void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns& kept,
-          const Bc1Params& params, Bc1& out) {
+          const Bc1Params& params, std::span<const Rgb> mean, Bc1& out) {
   const size_t n = matrix.n;
   out.row_scale.assign(n, {});
   for (size_t c = 0; c < 3; ++c)
@@ -216,13 +174,14 @@ void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns&
   parallel_for(n, kRows, [&](size_t begin, size_t end) {
     std::vector<Rgb> rest(n);
     for (size_t place = begin; place < end; ++place) {
-      scale_row(matrix, picture, params, place, out);
+      scale_row(matrix, picture, params, mean, place, out);
       if (params.hole == Bc1Params::Hole::neighbours) decode_row(out, place, rest);
       const size_t row = out.row[place];
       Bc1::Kept* entry = entries.data() + first[place];
       for (const uint32_t j : kept[row]) {
         for (size_t c = 0; c < 3; ++c) {
-          const float lacking = matrix.channel[c][row * n + j] - rest[j][int(c)];
+          const float there = rest[j][int(c)] / mean[j][int(c)];
+          const float lacking = matrix.channel[c][row * n + j] - there;
           entry->value[c] = half_from_float(lacking / out.kept_unit[c]);
         }
         entry++->place = uint16_t(place_of[j]);
@@ -236,7 +195,14 @@ void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns&
 
 }  // namespace
 
-Result<Bc1> make_bc1(const ColourMatrix& matrix, const Bc1Params& params, Progress& progress) {
+Bc1Params paper_params() {
+  Bc1Params params;
+  params.log_range = 25, params.hole = Bc1Params::Hole::zero;
+  params.keep_sums = params.even_columns = false;
+  return params;
+}
+
+Result<Bc1> make_bc1(ColourMatrix matrix, Bc1Params params, Progress& progress) {
   const size_t n = matrix.n;
   if (n > kMaxBc1Patches)
     return fail(ErrorCode::bad_setting, "bc1 holds up to {} patches, not {}: ask for fewer",
@@ -244,18 +210,22 @@ Result<Bc1> make_bc1(const ColourMatrix& matrix, const Bc1Params& params, Progre
   if (!(params.kept >= 0 && params.kept < 1))
     return fail(ErrorCode::bad_setting, "the share of entries kept is {}; from 0 to below 1",
                 params.kept);
-  if (!(params.log_range > 0 && params.log_range <= 80))
-    return fail(ErrorCode::bad_setting, "the logarithms' range is {}; above 0, up to 80",
+  if (!(params.log_range >= 0 && params.log_range <= 80))
+    return fail(ErrorCode::bad_setting, "the logarithms' range is {}; 0 (to be fitted) to 80",
                 params.log_range);
   Bc1 out;
-  out.n = uint32_t(n), out.log_range = params.log_range;
+  out.n = uint32_t(n);
   progress.begin("bc1", out.blocks_per_row());
+  const std::vector<Rgb> mean =
+      params.even_columns ? even_columns(matrix) : std::vector<Rgb>(n, Rgb{1, 1, 1});
   const KeptColumns kept = choose_kept(matrix, params.kept);
   const Picture picture = picture_of(matrix, kept, params);
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  out.log_range = params.log_range;
   choose_order(picture, params.order, out);
-  LUXEL_TRY_STATUS(encode_blocks(picture, params.hole, out, progress));
-  keep(matrix, picture, kept, params, out);
+  LUXEL_TRY_STATUS(encode_blocks(picture, params, out, progress));
+  for (const uint32_t j : out.column) out.column_scale.push_back(mean[j]);
+  keep(matrix, picture, kept, params, mean, out);
   return out;
 }
 

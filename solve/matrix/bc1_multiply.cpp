@@ -227,7 +227,7 @@ void multiply(const Bc1& m, std::span<const Rgb> radiosity, std::span<Rgb> irrad
   const Input in{work.five.data(), work.six.data(), work.light.plane.data(), work.light.stride,
                  work.color.data()};
   for (size_t place = 0; place < m.n; ++place) {
-    const Rgb b = radiosity[m.column[place]];
+    const Rgb b = m.column_scale[place] * radiosity[m.column[place]];
     work.color[place] = {b.x, b.y, b.z, 0};
     for (size_t c = 0; c < 3; ++c) work.light.plane[c * in.stride + place] = b[int(c)];
   }

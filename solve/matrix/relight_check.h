@@ -13,8 +13,10 @@ Status check(const RelightData& data);
 // Of its parts. `patches` is their number.
 Status check(const HierarchicalCodec& codec, size_t patches);
 Status check(const DenseCodec& codec, size_t patches);
+Status check(const LowRankCodec& codec, size_t patches);
 Status check(const Hierarchical& matrix, size_t patches);
 Status check(const Dense& matrix, size_t patches);
+Status check(const LowRank& matrix, size_t patches);
 Status check(const CoarseScene& coarse, size_t patches);
 Status check(const Transfer& map, size_t places, size_t patches);
 Status check(const Target& target, size_t patches);

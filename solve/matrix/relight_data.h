@@ -13,6 +13,7 @@
 #include "solve/matrix/bounces.h"
 #include "solve/matrix/dense.h"
 #include "solve/matrix/hierarchical.h"
+#include "solve/matrix/lowrank.h"
 #include "solve/matrix/patches.h"
 #include "solve/matrix/transfer.h"
 
@@ -30,8 +31,13 @@ struct HierarchicalCodec {
   CoarseScene coarse;  ///< for all bounces
 };
 
-/// One codec's matrix: irradiance from what patches send.
-using Codec = std::variant<HierarchicalCodec, DenseCodec>;
+/// F by its leading eigenvectors; bounces are one product.
+struct LowRankCodec {
+  LowRank matrix;
+};
+
+/// One codec's matrix: irradiance from what patches send. A file knows codecs by their place here.
+using Codec = std::variant<HierarchicalCodec, DenseCodec, LowRankCodec>;
 
 /// Places whose light is wanted.
 struct Target {

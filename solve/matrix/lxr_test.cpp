@@ -267,7 +267,7 @@ TEST(Lxr, MendedDamageIsAnErrorOrOtherData) {
           EXPECT_EQ(encode_lxr(*data), damaged) << "byte " << at;
         }
       }
-    EXPECT_GT(errors, file.size() / 4);
+    EXPECT_GE(errors, 3u * 4u * 7u);  // the tags of seven chunks, at least
   }
 }
 

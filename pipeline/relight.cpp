@@ -25,6 +25,7 @@ struct CodecName {
   matrix::CodecKind kind;
 };
 constexpr std::array kCodecs{CodecName{"hierarchical", matrix::CodecKind::hierarchical},
+                             CodecName{"lowrank", matrix::CodecKind::lowrank},
                              CodecName{"bc1", matrix::CodecKind::bc1},
                              CodecName{"dense32", matrix::CodecKind::dense32},
                              CodecName{"dense16", matrix::CodecKind::dense16}};

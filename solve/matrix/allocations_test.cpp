@@ -84,6 +84,13 @@ TEST(Allocations, ThereAreNonePerFrame) {
             }),
             0u);
   EXPECT_EQ(allocations_of([&] { transfer(*map, e, of_place); }), 0u);
+  const auto spectrum = spectrum_of(factors, p.area_m2, {40, 0, 1}, progress);
+  ASSERT_TRUE(spectrum);
+  const auto low = make_low_rank(*spectrum, 40, p.area_m2, p.elements.reflectance, progress);
+  ASSERT_TRUE(low);
+  LowRankWork low_work = make_work(*low);
+  for (const int count : {-1, 3})
+    EXPECT_EQ(allocations_of([&] { irradiance_of(*low, p.emission, count, e, low_work); }), 0u);
 }
 
 TEST(Allocations, OfADamagedFileAreNoLargerThanItJustifies) {

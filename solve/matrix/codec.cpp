@@ -41,7 +41,8 @@ CodecWork make_work(const Codec& codec, size_t patches) {
                           work.dense = make_dense_work(patches);
                           work.bounces = make_bounce_work(patches, c.coarse.count());
                         },
-                        [&](const Bc1Codec& c) { work.bc1 = make_bc1_work(c.matrix); }},
+                        [&](const Bc1Codec& c) { work.bc1 = make_bc1_work(c.matrix); },
+                        [&](const LowRankCodec& c) { work.low_rank = make_work(c.matrix); }},
              codec);
   return work;
 }
@@ -66,7 +67,10 @@ void irradiance_of(const Codec& codec, const Sent& sent, std::span<Rgb> irradian
             };
             iterate(c, product, sent, irradiance, work.bounces);
           },
-          [&](const Bc1Codec& c) { multiply(c.matrix, sent.radiosity, irradiance, work.bc1); }},
+          [&](const Bc1Codec& c) { multiply(c.matrix, sent.radiosity, irradiance, work.bc1); },
+          [&](const LowRankCodec& c) {
+            irradiance_of(c.matrix, sent.radiosity, sent.bounces, irradiance, work.low_rank);
+          }},
       codec);
 }
 
@@ -74,7 +78,8 @@ uint64_t bytes_of(const Codec& codec) {
   return std::visit(
       Overloaded{[](const HierarchicalCodec& c) { return bytes_of(c.matrix) + bytes_of(c.coarse); },
                  [](const DenseCodec& c) { return bytes_of(c.matrix) + bytes_of(c.coarse); },
-                 [](const Bc1Codec& c) { return bytes_of(c.matrix); }},
+                 [](const Bc1Codec& c) { return bytes_of(c.matrix); },
+                 [](const LowRankCodec& c) { return bytes_of(c.matrix); }},
       codec);
 }
 

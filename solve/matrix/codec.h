@@ -10,6 +10,7 @@ struct CodecWork {
   HierarchicalWork hierarchical;
   DenseWork dense;
   Bc1Work bc1;
+  LowRankWork low_rank;
   BounceWork bounces;
 };
 CodecWork make_work(const Codec& codec, size_t patches);

@@ -74,6 +74,16 @@ void fields(Archive& a, Is<Bc1Codec> auto& x) {
   a(matrix);
 }
 template <class Archive>
+void fields(Archive& a, Is<LowRank> auto& x) {
+  auto& [root_area_m, vector, eigenvalue, reflected, all_bounces] = x;
+  a(root_area_m, vector, eigenvalue, reflected, all_bounces);
+}
+template <class Archive>
+void fields(Archive& a, Is<LowRankCodec> auto& x) {
+  auto& [matrix] = x;
+  a(matrix);
+}
+template <class Archive>
 void fields(Archive& a, Is<Transfer> auto& x) {
   auto& [first, patch, weight] = x;
   a(first, patch, weight);

@@ -139,6 +139,19 @@ inline DenseCodec small_dense(bool half) {
   return codec;
 }
 
+inline LowRankCodec small_low_rank() {
+  LowRank m;
+  for (int i = 0; i < 10; ++i) m.root_area_m.push_back(1 + 0.125f * float(i));
+  for (int k = 0; k < 160; ++k) m.vector.push_back(int16_t(400 * (k - 80)));
+  for (int k = 0; k < 16; ++k) m.eigenvalue.push_back(1.0f / float(k + 1));
+  for (size_t channel = 0; channel < 3; ++channel)
+    for (int k = 0; k < 256; ++k) {
+      m.reflected[channel].push_back(float(k) + float(channel));
+      m.all_bounces[channel].push_back(-float(k) - float(channel));
+    }
+  return {m};
+}
+
 inline RelightData small_data() { return small_data(small_hierarchical()); }
 
 }  // namespace luxel::matrix::testing

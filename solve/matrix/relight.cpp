@@ -205,16 +205,38 @@ Result<Codec> bc1_codec(const Transport& t, Progress& progress) {
   return Bc1Codec{std::move(matrix)};
 }
 
+/// The most eigenvectors: the small matrices of so many take as long as the large ones.
+constexpr uint32_t kMostRank = 768;
+
+/// The fewest eigenvectors, up to a factor of two, that keep to params.max_error, as far as can be.
+Result<Codec> low_rank_codec(const Transport& t, Progress& progress) {
+  const Patches& patches = t.prepared.work.patches;
+  SpectrumParams wanted;
+  wanted.count = uint32_t(std::min<size_t>(kMostRank, patches.size()));
+  wanted.seed = t.params.patches.seed;
+  LUXEL_TRY(const Spectrum spectrum,
+            spectrum_of(t.prepared.factors, patches.area_m2, wanted, progress));
+  for (size_t rank = 48;; rank *= 2) {
+    rank = std::min(rank, spectrum.count());
+    LUXEL_TRY(LowRank matrix, make_low_rank(spectrum, rank, patches.area_m2,
+                                            patches.elements.reflectance, progress));
+    Codec codec = LowRankCodec{std::move(matrix)};
+    const double error = error_of(codec, t.trials, patches, t.params.bounces);
+    if (error <= double(t.params.max_error) || rank == spectrum.count()) return codec;
+  }
+}
+
 Result<Codec> codec_of(const Transport& t, Progress& progress) {
   const size_t patches = t.prepared.work.patches.size();
   const CodecKind kind = t.params.codec;
-  if (kind != CodecKind::hierarchical && patches > kMaxDensePatches)
+  if (kind != CodecKind::hierarchical && kind != CodecKind::lowrank && patches > kMaxDensePatches)
     return fail(ErrorCode::bad_setting,
                 "{} patches are too many for a codec that looks at all pairs, which takes {} at "
                 "most; ask for fewer, or for the hierarchical codec",
                 patches, kMaxDensePatches);
   progress.begin("codec", 0);
   if (kind == CodecKind::hierarchical) return hierarchical_codec(t, progress);
+  if (kind == CodecKind::lowrank) return low_rank_codec(t, progress);
   if (kind == CodecKind::bc1) return bc1_codec(t, progress);
   const Precision precision = kind == CodecKind::dense32 ? Precision::single : Precision::half;
   return DenseCodec{make_dense(t.prepared.factors, precision), t.coarse, t.trials.sweeps};

@@ -8,7 +8,7 @@
 
 namespace luxel::matrix {
 
-enum class CodecKind : uint8_t { hierarchical, bc1, dense32, dense16 };
+enum class CodecKind : uint8_t { hierarchical, lowrank, bc1, dense32, dense16 };
 
 /// A matrix of all pairs takes 4 to 12 bytes each, and several of them while it is made.
 inline constexpr size_t kMaxDensePatches = 20000;

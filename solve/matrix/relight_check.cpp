@@ -154,6 +154,22 @@ Status check(const Dense& m, size_t patches) {
   return {};
 }
 
+Status check(const LowRank& m, size_t patches) {
+  LUXEL_TRY_STATUS(length_is("roots of areas", m.root_area_m.size(), patches));
+  LUXEL_TRY_STATUS(positive("roots of areas", m.root_area_m));
+  if (m.rank() % kRankLanes != 0)
+    return fail(ErrorCode::bad_input, "eigenvalues: there are {}, must be a multiple of {}",
+                m.rank(), kRankLanes);
+  LUXEL_TRY_STATUS(finite("eigenvalues", m.eigenvalue));
+  LUXEL_TRY_STATUS(length_is("entries of eigenvectors", m.vector.size(), patches * m.rank()));
+  for (const auto* matrices : {&m.reflected, &m.all_bounces})
+    for (const std::vector<float>& channel : *matrices) {
+      LUXEL_TRY_STATUS(length_is("bounces of eigenvectors", channel.size(), m.rank() * m.rank()));
+      LUXEL_TRY_STATUS(finite("bounces of eigenvectors", channel));
+    }
+  return {};
+}
+
 Status check(const CoarseScene& coarse, size_t patches) {
   LUXEL_TRY_STATUS(length_is("coarse clusters of patches", coarse.cluster_of.size(), patches));
   LUXEL_TRY_STATUS(below("coarse clusters of patches", coarse.cluster_of, coarse.count()));
@@ -184,6 +200,8 @@ Status check(const Bc1Codec& codec, size_t patches) {
   return fail(ErrorCode::bad_input,
               "its BC1 matrix has lengths, orders or numbers that no such matrix has");
 }
+
+Status check(const LowRankCodec& codec, size_t patches) { return check(codec.matrix, patches); }
 
 Status check(const Transfer& map, size_t places, size_t patches) {
   if (places == 0 && map.first.empty()) return length_is("transfer", map.patch.size(), 0);

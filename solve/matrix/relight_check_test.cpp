@@ -84,6 +84,26 @@ std::vector<Wrong> wrong_codecs() {
   };
 }
 
+LowRank& low_rank(RelightData& d) {
+  d.codec = testing::small_low_rank();
+  return std::get<LowRankCodec>(d.codec).matrix;
+}
+
+std::vector<Wrong> wrong_low_ranks() {
+  return {
+      {"roots of areas: there are 9", [](RelightData& d) { low_rank(d).root_area_m.pop_back(); }},
+      {"roots of areas: number 2", [](RelightData& d) { low_rank(d).root_area_m[2] = 0; }},
+      {"eigenvalues: there are 15", [](RelightData& d) { low_rank(d).eigenvalue.pop_back(); }},
+      {"eigenvalues: number 15", [](RelightData& d) { low_rank(d).eigenvalue[15] = kNan; }},
+      {"entries of eigenvectors: there are 159",
+       [](RelightData& d) { low_rank(d).vector.pop_back(); }},
+      {"bounces of eigenvectors: there are 255",
+       [](RelightData& d) { low_rank(d).reflected[2].pop_back(); }},
+      {"bounces of eigenvectors: number 7",
+       [](RelightData& d) { low_rank(d).all_bounces[1][7] = kNan; }},
+  };
+}
+
 std::vector<Wrong> wrong_places() {
   return {
       {"target: kind 3", [](RelightData& d) { d.target.kind = Target::Kind(3); }},
@@ -115,7 +135,7 @@ std::vector<Wrong> wrong_places() {
 
 TEST(Check, FindsWhatChecksumsDoNot) {
   EXPECT_TRUE(check(small_data()));
-  for (const auto& list : {wrong_patches(), wrong_codecs(), wrong_places()})
+  for (const auto& list : {wrong_patches(), wrong_codecs(), wrong_low_ranks(), wrong_places()})
     for (const Wrong& wrong : list) {
       RelightData data = small_data();
       wrong.make(data);

@@ -14,6 +14,7 @@
 #include "solve/matrix/bounces.h"
 #include "solve/matrix/dense.h"
 #include "solve/matrix/hierarchical.h"
+#include "solve/matrix/lowrank.h"
 #include "solve/matrix/patches.h"
 #include "solve/matrix/transfer.h"
 
@@ -38,8 +39,13 @@ struct Bc1Codec {
   Bc1 matrix;
 };
 
-/// One codec's matrix: irradiance from what patches send.
-using Codec = std::variant<HierarchicalCodec, DenseCodec, Bc1Codec>;
+/// F by its leading eigenvectors; bounces are one product.
+struct LowRankCodec {
+  LowRank matrix;
+};
+
+/// One codec's matrix: irradiance from what patches send. A file knows codecs by their place here.
+using Codec = std::variant<HierarchicalCodec, DenseCodec, Bc1Codec, LowRankCodec>;
 
 /// Places whose light is wanted.
 struct Target {

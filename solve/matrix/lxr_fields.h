@@ -65,8 +65,9 @@ void fields(Archive& a, Is<Bc1::Kept> auto& x) {
 }
 template <class Archive>
 void fields(Archive& a, Is<Bc1> auto& x) {
-  auto& [n, log_range, row, column, row_scale, blocks, kept_unit, first_kept, kept] = x;
-  a(n, log_range, row, column, row_scale, blocks, kept_unit, first_kept, kept);
+  auto& [n, log_range, row, column, row_scale, column_scale, blocks, kept_unit, first_kept, kept] =
+      x;
+  a(n, log_range, row, column, row_scale, column_scale, blocks, kept_unit, first_kept, kept);
 }
 template <class Archive>
 void fields(Archive& a, Is<Bc1Codec> auto& x) {

@@ -122,7 +122,7 @@ inline HierarchicalCodec small_hierarchical() {
   for (const Rgb& c : random_light(10, 4)) m.phi.push_back({c.x, c.y, c.z});
   for (int i = 0; i < 10; ++i) m.area_m2.push_back(1 + 0.125f * float(i));
   m.first_far = {0, 0, 1, 2}, m.first_near = {0, 0, 1, 2};
-  m.far = {{2, 0.5f, {1, -2, 3}}, {1, 0.25f, {-4, 5, -6}}};
+  m.far = {{{1, -2, 3}, 0.5f, 2}, {{-4, 5, -6}, 0.25f, 1}};
   m.near = {{1, 0, 0.125f}, {2, 40, 0.0625f}};
   for (int k = 0; k < 80; ++k) m.entries.push_back(uint8_t(3 * k));
   codec.coarse = small_coarse();

@@ -35,11 +35,13 @@ void expect_same(const HierarchicalCodec& a, const HierarchicalCodec& b) {
   EXPECT_TRUE(same(m.far, n.far) && same(m.first_near, n.first_near));
   EXPECT_TRUE(same(m.near, n.near) && same(m.entries, n.entries));
   expect_same(a.coarse, b.coarse);
+  EXPECT_EQ(a.sweeps, b.sweeps);
 }
 void expect_same(const DenseCodec& a, const DenseCodec& b) {
   EXPECT_EQ(a.matrix.n, b.matrix.n);
   EXPECT_TRUE(same(a.matrix.single, b.matrix.single) && same(a.matrix.half, b.matrix.half));
   expect_same(a.coarse, b.coarse);
+  EXPECT_EQ(a.sweeps, b.sweeps);
 }
 void expect_same(const LowRankCodec& a, const LowRankCodec& b) {
   const LowRank &m = a.matrix, &n = b.matrix;
@@ -49,6 +51,13 @@ void expect_same(const LowRankCodec& a, const LowRankCodec& b) {
     EXPECT_TRUE(same(m.reflected[c], n.reflected[c]));
     EXPECT_TRUE(same(m.all_bounces[c], n.all_bounces[c]));
   }
+}
+void expect_same(const Bc1Codec& a, const Bc1Codec& b) {
+  const Bc1 &m = a.matrix, &n = b.matrix;
+  EXPECT_TRUE(m.n == n.n && same(m.log_range, n.log_range) && same(m.kept_unit, n.kept_unit));
+  EXPECT_TRUE(same(m.row, n.row) && same(m.column, n.column) && same(m.row_scale, n.row_scale));
+  EXPECT_TRUE(same(m.column_scale, n.column_scale) && same(m.blocks, n.blocks));
+  EXPECT_TRUE(same(m.first_kept, n.first_kept) && same(m.kept, n.kept));
 }
 void expect_same(const Target& a, const Target& b) {
   EXPECT_EQ(a.kind, b.kind);
@@ -100,7 +109,7 @@ TEST(Lxr, ComesBackBitForBit) {
   RelightData data = small_data();
   data.position[3].x = -0.0f, data.position[4].x = 1e-44f;  // a denormal
   for (const Codec& codec : {data.codec, Codec(small_dense(false)), Codec(small_dense(true)),
-                             Codec(testing::small_low_rank())}) {
+                             Codec(testing::small_low_rank()), Codec(testing::small_bc1())}) {
     data.codec = codec;
     const auto back = decode_lxr(encode_lxr(data), "a.lxr");
     ASSERT_TRUE(back) << back.error().message;
@@ -252,8 +261,8 @@ TEST(Lxr, SaysWhereAListIsTooLong) {
 
 TEST(Lxr, MendedDamageIsAnErrorOrOtherData) {
   // No damage may be read as something that is written differently.
-  for (const Codec& codec :
-       {small_data().codec, Codec(small_dense(true)), Codec(testing::small_low_rank())}) {
+  for (const Codec& codec : {small_data().codec, Codec(small_dense(true)),
+                             Codec(testing::small_low_rank()), Codec(testing::small_bc1())}) {
     const Bytes file = encode_lxr(small_data(codec));
     size_t errors = 0;
     for (size_t at = 12; at < file.size(); ++at)

@@ -152,6 +152,21 @@ inline LowRankCodec small_low_rank() {
   return {m};
 }
 
+/// 10 patches are 3 x 3 blocks; all of one colour, which is a mode that may be read.
+inline Bc1Codec small_bc1() {
+  Bc1 m;
+  m.n = 10, m.log_range = 20;
+  for (uint32_t k = 0; k < 10; ++k) {
+    m.row.push_back((7 * k) % 10), m.column.push_back((3 * k) % 10);
+    m.row_scale.push_back({float(k), 1, 2}), m.column_scale.push_back({1, float(k), 0.5f});
+  }
+  for (uint64_t k = 0; k < 9; ++k) m.blocks.push_back(k << 16 | k);
+  m.kept_unit = {0.25f, 0.5f, 1};
+  m.kept = {{{0x3c00, 0, 0x3800}, 4}, {{0x3400, 0x3c00, 0}, 9}};
+  m.first_kept = {0, 0, 1, 1, 1, 1, 1, 1, 2, 2, 2};
+  return {m};
+}
+
 inline RelightData small_data() { return small_data(small_hierarchical()); }
 
 }  // namespace luxel::matrix::testing

@@ -133,9 +133,29 @@ std::vector<Wrong> wrong_places() {
   };
 }
 
+Bc1& bc1(RelightData& d) {
+  d.codec = testing::small_bc1();
+  return std::get<Bc1Codec>(d.codec).matrix;
+}
+
+std::vector<Wrong> wrong_bc1s() {
+  return {{"rows of the BC1 matrix: there are 9", [](RelightData& d) { bc1(d).n = 9; }},
+          {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).row[3] = 0; }},
+          {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).column[2] = 10; }},
+          {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).kept[1].place = 10; }},
+          {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).kept[0].value[1] = 0x7c00; }},
+          {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).first_kept[4] = 2; }},
+          {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).blocks.pop_back(); }},
+          {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).row_scale[9].y = kNan; }},
+          {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).log_range = 0; }},
+          {"sweeps", [](RelightData& d) { std::get<HierarchicalCodec>(d.codec).sweeps = 0; }},
+          {"sweeps", [](RelightData& d) { std::get<HierarchicalCodec>(d.codec).sweeps = 65; }}};
+}
+
 TEST(Check, FindsWhatChecksumsDoNot) {
   EXPECT_TRUE(check(small_data()));
-  for (const auto& list : {wrong_patches(), wrong_codecs(), wrong_low_ranks(), wrong_places()})
+  for (const auto& list :
+       {wrong_patches(), wrong_codecs(), wrong_low_ranks(), wrong_bc1s(), wrong_places()})
     for (const Wrong& wrong : list) {
       RelightData data = small_data();
       wrong.make(data);

@@ -141,7 +141,8 @@ void scale_row(const ColourMatrix& matrix, const Picture& picture, const Bc1Para
       if (!kept) want += double(matrix.channel[c][i * n + j]) * double(mean[j][int(c)]);
       if (!kept || params.hole == Bc1Params::Hole::zero) got += double(rest[j][int(c)]);
     }
-    if (got > 0) scale[c] = float(want / got);
+    // A row of which 8 bits hold next to nothing must not grow without bounds.
+    if (got > 0) scale[c] *= std::clamp(float(want / got) / scale[c], 0.25f, 4.0f);
   }
   out.row_scale[place] = {scale[0], scale[1], scale[2]};
 }
@@ -162,7 +163,7 @@ void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns&
   for (size_t c = 0; c < 3; ++c)
     for (const float entry : matrix.channel[c])
       out.kept_unit[c] = std::max(out.kept_unit[c], entry);
-  // Halves reach from 6e-8 to 65,504, and a difference is at most some times the entry.
+  // Halves reach from 6e-8 to 65,504; the rest is at most 4 times the largest.
   for (float& unit : out.kept_unit) unit = unit > 0 ? unit / 8192 : 1.0f;
   // Nothing is kept yet, so that rows are decoded without it.
   out.first_kept.assign(n + 1, 0);

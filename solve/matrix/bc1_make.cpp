@@ -145,7 +145,7 @@ void scale_row(const ColourMatrix& matrix, const Picture& picture, const Bc1Para
       if (!kept || params.hole == Bc1Params::Hole::zero) got += double(rest[j][int(c)]);
     }
     // A row of which 8 bits hold next to nothing must not grow without bounds.
-    if (got > 0) scale[c] *= std::clamp(float(want / got) / scale[c], 0.25f, 4.0f);
+    if (got > 0 && scale[c] > 0) scale[c] *= std::clamp(float(want / got) / scale[c], 0.25f, 4.0f);
   }
   out.row_scale[place] = {scale[0], scale[1], scale[2]};
 }

@@ -18,7 +18,7 @@ constexpr float kLostShare = 0.002f;
 uint8_t byte_of(float value, float largest, float log_range) {
   if (!(value > 0)) return 0;
   const float level = (std::log(value / largest) / log_range + 1) * 255;
-  return uint8_t(std::clamp(std::lround(level), 0l, 255l));
+  return uint8_t(std::lround(std::clamp(level, 0.0f, 255.0f)));  // infinite if the rest is none
 }
 
 /// The largest entry of every channel that is not kept.

@@ -181,6 +181,21 @@ TEST(Bc1, ZeroIsZero) {
   for (const Rgb& e : decoded(compressed(k, {}))) ASSERT_EQ(e, Rgb{});
 }
 
+TEST(Bc1, MayBeAllKept) {
+  // One entry per row, which is kept: nothing is left for the rest to be divided by.
+  ColourMatrix k;
+  k.n = 32;
+  for (auto& channel : k.channel) {
+    channel.assign(32 * 32, 0.0f);
+    for (size_t i = 0; i < 32; ++i) channel[i * 32 + i * 5 % 32] = 0.5f;
+  }
+  for (const Bc1Params& params : {Bc1Params{}, paper_params()}) {
+    const std::vector<Rgb> got = decoded(compressed(k, params));
+    for (size_t e = 0; e < got.size(); ++e)
+      EXPECT_NEAR(got[e].x, k.channel[0][e], 0x1p-11f) << e;  // a half
+  }
+}
+
 TEST(Bc1, AConstantKernelIsExact) {
   // Inside a sphere K_ij = A_j / A: columns over their means are all 1, the top level.
   std::vector<float> area;

@@ -20,7 +20,7 @@ constexpr size_t kRows = 16;
 constexpr size_t kPanel = 64;
 constexpr size_t kLanes = 8;
 /// Columns and rows of the blocks that the direct solution works on.
-constexpr Eigen::Index kBlock = 64;
+constexpr Eigen::Index kBlock = 256;
 
 using Lanes [[gnu::vector_size(4 * kLanes)]] = float;
 
@@ -173,8 +173,12 @@ Status reflect_for_ever(const Matrix& s, std::span<const Rgb> reflectance,
   l.diagonal().array() += 1.0f;
   LUXEL_TRY_STATUS(factorise(l, progress));
   const auto solve = [&](Eigen::Index first, Eigen::Index count) {
-    auto columns = y.middleCols(first, count);
-    l.triangularView<Eigen::Lower>().solveInPlace(columns);
+    for (Eigen::Index k = 0; k < n && !progress.cancelled(); k += kBlock) {
+      const Eigen::Index rows = std::min(kBlock, n - k);
+      auto block = y.block(k, first, rows, count);
+      block.noalias() -= l.block(k, 0, rows, k) * y.block(0, first, k, count);
+      l.block(k, k, rows, rows).triangularView<Eigen::Lower>().solveInPlace(block);
+    }
   };
   const auto sum = [&](Eigen::Index first, Eigen::Index count) {
     for (Eigen::Index row = first; row < n && !progress.cancelled(); row += kBlock) {

@@ -1,6 +1,8 @@
 // Loops that the compiler turns into vector code.
 #pragma once
 
+#include <cstdint>
+
 /// Compiles a function twice, for AVX2 and for any processor, and chooses when the program is
 /// loaded. Without fused multiply-add, which the build forbids, both give the same bits. The
 /// sanitizers run before the choice can be made, so they get one version.
@@ -10,3 +12,36 @@
 #else
 #define LUXEL_VECTOR_CLONES
 #endif
+
+namespace luxel {
+inline namespace base {
+
+/// Eight numbers that are added and multiplied at once (GCC's and Clang's vector types), for the
+/// few loops that compilers do not see through. Inside LUXEL_VECTOR_CLONES they are one register,
+/// elsewhere two. By reference only: how values are passed depends on the processor.
+using Float8 = float __attribute__((vector_size(32)));
+using Int8x8 = uint8_t __attribute__((vector_size(8)));
+using Int16x8 = int16_t __attribute__((vector_size(16)));
+using Int32x8 = int32_t __attribute__((vector_size(32)));
+
+[[gnu::always_inline]] inline void load8(const float* from, Float8& to) {
+  __builtin_memcpy(&to, from, sizeof to);
+}
+// Widened step by step: GCC 12 takes numbers one by one otherwise.
+[[gnu::always_inline]] inline void load8(const uint8_t* from, Float8& to) {
+  Int8x8 v;
+  __builtin_memcpy(&v, from, sizeof v);
+  to = __builtin_convertvector(
+      __builtin_convertvector(__builtin_convertvector(v, Int16x8), Int32x8), Float8);
+}
+[[gnu::always_inline]] inline void load8(const int16_t* from, Float8& to) {
+  Int16x8 v;
+  __builtin_memcpy(&v, from, sizeof v);
+  to = __builtin_convertvector(__builtin_convertvector(v, Int32x8), Float8);
+}
+[[gnu::always_inline]] inline void store8(const Float8& from, float* to) {
+  __builtin_memcpy(to, &from, sizeof from);
+}
+
+}  // namespace base
+}  // namespace luxel

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "bench/agreement.h"
@@ -61,7 +62,7 @@ export_::Plot error_plot(const std::string& title, const std::string& x_label) {
 }
 
 Status convergence(Section& section, Progress& progress) {
-  constexpr int kResolution = 128, kPaths = 2048;
+  constexpr int kResolution = 128, kPaths = 1536;
   LUXEL_TRY(const auto p, prepare(scene::cornell_box(), kResolution, progress));
   LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1, progress));
   std::vector<std::vector<std::string>> rows;
@@ -108,10 +109,13 @@ struct Screen {
 /// A texel passes when its difference from the judge and three of the judge's standard errors are
 /// together below this many steps; else it is judged again with more paths.
 constexpr float kMostSteps = 10;
+/// The most paths that a texel is judged with, a power of two.
+constexpr int kMostPaths = 1 << 17;
 
 struct Round {
   int paths = 0;      ///< per texel
-  size_t texels = 0;  ///< that were judged in this round
+  size_t texels = 0;  ///< that were judged with so many
+  size_t passed = 0;
   float largest = 0;  ///< difference of those that passed
 };
 
@@ -127,46 +131,76 @@ Result<reference::TexelPaths> judge_texels(const Prepared& p, std::span<const ui
                                         {.samples = paths, .seed = seed}, progress);
 }
 
-/// The texels that have not passed after the last round. Each round uses its own paths only: texels
-/// were chosen by the noise of the one before. Twice as many each time: a texel that needs n takes
-/// less than 4 n in all.
+/// A texel that has not passed, and how it was judged last.
+struct Doubtful {
+  uint32_t texel = 0;
+  int paths = 0;
+  float noise = 0;  ///< three standard errors [steps]
+};
+
+/// Paths after which a texel's noise leaves room for a difference, by what its noise was; in powers
+/// of two, so that many texels share a number.
+int paths_for(const Doubtful& doubtful) {
+  constexpr float kNoise = 0.6f * kMostSteps;
+  const float wanted =
+      std::max(2.0f * float(doubtful.paths),
+               float(doubtful.paths) * (doubtful.noise / kNoise) * (doubtful.noise / kNoise));
+  return 1 << int(std::ceil(std::log2(std::min(wanted, float(kMostPaths)))));
+}
+
+/// Adds the texels that do not pass to `next`.
+void sort_out(const Screen& screen, std::span<const Rgb> solved, std::span<const uint32_t> texels,
+              const reference::TexelPaths& judged, Round& round, std::vector<Doubtful>& next) {
+  for (size_t k = 0; k < texels.size(); ++k) {
+    const Rgb truth = judged.irradiance[k];
+    const float steps = screen.steps(solved[texels[k]], truth);
+    const float noise = screen.steps(truth, truth + 3 * judged.standard_error[k]);
+    ++round.texels;
+    if (steps + noise < kMostSteps)
+      ++round.passed, round.largest = std::max(round.largest, steps);
+    else
+      next.push_back({texels[k], round.paths, noise});
+  }
+}
+
+/// Judges until all texels pass or have had kMostPaths; those are `left`. Every time a texel gets
+/// new paths and no others count: it was chosen by the noise of those before.
 Result<std::vector<Round>> judge_again(const Prepared& p, std::span<const Rgb> solved,
                                        const Screen& screen, const Judged& first, int first_paths,
                                        std::vector<uint32_t>& left, Progress& progress) {
-  std::vector<Round> rounds;
-  for (int paths = first_paths; paths < 200000; paths *= 2) rounds.push_back({paths});
-  left.clear();
-  for (uint32_t i = 0; i < solved.size(); ++i)
-    if (!first.hidden[i]) left.push_back(i);
-  for (size_t r = 0; r < rounds.size(); ++r) {
-    if (left.empty()) {
-      rounds.resize(r);
-      break;
-    }
-    Round& round = rounds[r];
-    round.texels = left.size();
-    reference::TexelPaths judged;
-    if (r > 0) {
-      LUXEL_TRY(judged, judge_texels(p, left, round.paths, 100 + r, progress));
-    } else {
-      for (const uint32_t i : left) {
-        judged.irradiance.push_back(first.mean(i));
-        judged.standard_error.push_back(first.standard_error[i]);
-      }
-    }
-    std::vector<uint32_t> next;
-    for (size_t k = 0; k < left.size(); ++k) {
-      const Rgb truth = judged.irradiance[k];
-      const float steps = screen.steps(solved[left[k]], truth);
-      const float noise = screen.steps(truth, truth + 3 * judged.standard_error[k]);
-      if (steps + noise < kMostSteps)
-        round.largest = std::max(round.largest, steps);
-      else
-        next.push_back(left[k]);
-    }
-    left = std::move(next);
+  reference::TexelPaths judged;
+  std::vector<uint32_t> texels;
+  for (uint32_t i = 0; i < solved.size(); ++i) {
+    if (first.hidden[i]) continue;
+    texels.push_back(i);
+    judged.irradiance.push_back(first.mean(i));
+    judged.standard_error.push_back(first.standard_error[i]);
   }
-  return rounds;
+  std::map<int, Round> rounds{{first_paths, {first_paths}}};
+  std::map<int, std::vector<uint32_t>> waiting;  // by the paths they are to have
+  left.clear();
+  const auto put = [&](std::vector<Doubtful>& doubtful) {
+    for (const Doubtful& d : doubtful)
+      if (d.paths >= kMostPaths)
+        left.push_back(d.texel);
+      else
+        waiting[paths_for(d)].push_back(d.texel);
+    doubtful.clear();
+  };
+  std::vector<Doubtful> next;
+  sort_out(screen, solved, texels, judged, rounds[first_paths], next);
+  put(next);
+  while (!waiting.empty()) {
+    const auto [paths, chosen] = *waiting.begin();
+    waiting.erase(waiting.begin());
+    LUXEL_TRY(judged, judge_texels(p, chosen, paths, 100 + uint64_t(paths), progress));
+    rounds[paths].paths = paths;
+    sort_out(screen, solved, chosen, judged, rounds[paths], next);
+    put(next);
+  }
+  std::vector<Round> out;
+  for (const auto& [paths, round] : rounds) out.push_back(round);
+  return out;
 }
 
 image::Image lightmap(const Prepared& p, std::span<const Rgb> irradiance) {
@@ -189,8 +223,8 @@ Status every_texel(const Prepared& p, const Timed& solved, Section& section, Pro
   for (uint32_t i = 0; i < p.map.texels.size(); ++i) covered += is_covered(i) && !judged.hidden[i];
   std::vector<std::vector<std::string>> rows;
   for (const Round& r : rounds)
-    rows.push_back(
-        {std::to_string(r.texels), std::to_string(r.paths), fmt::format("{:.0f}", r.largest)});
+    rows.push_back({std::to_string(r.paths), std::to_string(r.texels), std::to_string(r.passed),
+                    fmt::format("{:.0f}", r.largest)});
   section.markdown += fmt::format(
       "### Every texel\n\nThe paper's setting: 512 x 512 texels, 200 direct and 2000 indirect "
       "samples "
@@ -208,8 +242,7 @@ Status every_texel(const Prepared& p, const Timed& solved, Section& section, Pro
       "noise "
       "taken out: **{:.2f} %**; bias {:+.3f} %.\n\n",
       solved.seconds, kMostSteps,
-      markdown_table({"texels judged", "paths each", "largest difference of those that pass"},
-                     rows),
+      markdown_table({"paths each", "texels judged", "passed", "their largest difference"}, rows),
       off, covered, a.texels - covered, ptrdiff_t(left.size()) - off, 100 * a.relative_rmse,
       100 * a.bias_over_mean);
   section.json["covered_texels_above_10"] = off;
@@ -284,7 +317,7 @@ void show_pictures(const Shown& ours, const Shown& judge, const image::Mask& all
 }
 
 Status pictures(const Prepared& p, const Timed& solved, Section& section, Progress& progress) {
-  constexpr int kSide = 320, kPaths = 500, kRaysPerAxis = 8;
+  constexpr int kSide = 320, kPaths = 300, kRaysPerAxis = 8;
   const scene::Camera& camera = p.scene.cameras.front();
   const transport::TexelField field{&p.atlas, &p.map, solved.light.irradiance};
   LUXEL_TRY(const image::Image ours,

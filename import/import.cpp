@@ -23,17 +23,13 @@ Result<Imported> read_scene(const SourceFile& source) {
   return read_with_assimp(source);
 }
 
-}  // namespace
-
-Result<Imported> import_scene(const std::filesystem::path& path) {
-  SourceFile source{path, path.string(), lower_case(path.extension().string()), {}};
-  LUXEL_TRY(source.bytes, read_file(path));
+Result<Imported> read_checked(const SourceFile& source) {
   LUXEL_TRY_STATUS(check_extension(source));
   if (source.bytes.empty()) return fail(ErrorCode::bad_input, "{}: the file is empty", source.name);
   // Third-party readers throw; nothing of it leaves this room.
   try {
     LUXEL_TRY(Imported imported, read_scene(source));
-    if (imported.scene.name.empty()) imported.scene.name = path.stem().string();
+    if (imported.scene.name.empty()) imported.scene.name = source.path.stem().string();
     LUXEL_TRY(std::vector<std::string> repairs, scene::validate(imported.scene, source.name));
     imported.warnings.insert(imported.warnings.end(), repairs.begin(), repairs.end());
     return imported;
@@ -43,6 +39,18 @@ Result<Imported> import_scene(const std::filesystem::path& path) {
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
                 one_sentence(e.what()));
   }
+}
+
+}  // namespace
+
+Result<Imported> import_scene(const std::filesystem::path& path) {
+  SourceFile source{path, path.string(), lower_case(path.extension().string()), {}};
+  LUXEL_TRY(source.bytes, read_file(path));
+  return read_checked(source);
+}
+
+Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name) {
+  return read_checked({name, name, ".glb", std::move(bytes)});
 }
 
 }  // namespace luxel::import

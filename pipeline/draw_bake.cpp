@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "display/draw.h"
+#include "display/lightmap_lookup.h"
 #include "image/codec.h"
 #include "import/import.h"
 #include "pipeline/bake.h"
@@ -12,26 +13,6 @@ namespace {
 
 /// Of the bake that is made for a tile: seconds, not minutes.
 constexpr int kQuickResolution = 256, kQuickSamples = 64, kQuickDirectSamples = 16;
-
-/// Bilinear lookup of the lightmap at a point of baked.glb, whose TEXCOORD_1 are its places. The
-/// gutter was dilated, so no weight needs to be renormalised.
-Rgb lightmap_at(const scene::Scene& scene, const image::Image& lightmap,
-                const scene::SurfacePoint& p) {
-  const scene::Mesh& mesh = scene.meshes[scene.instances[p.instance].mesh];
-  if (mesh.uv1.empty()) return {};
-  const auto& t = mesh.triangles[p.triangle];
-  const Vec2 uv = interpolate(mesh.uv1[t[0]], mesh.uv1[t[1]], mesh.uv1[t[2]], p.at);
-  const float x = uv.x * float(lightmap.width) - 0.5f, y = uv.y * float(lightmap.height) - 0.5f;
-  const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
-  const float fx = x - float(x0), fy = y - float(y0);
-  Rgb sum{};
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i)
-      sum += lightmap.rgb(std::clamp(x0 + i, 0, lightmap.width - 1),
-                          std::clamp(y0 + j, 0, lightmap.height - 1)) *
-             ((i ? fx : 1 - fx) * (j ? fy : 1 - fy));
-  return sum;
-}
 
 display::DrawParams size_of(const RenderSettings& settings) {
   display::DrawParams params;
@@ -49,7 +30,7 @@ Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettin
   scene.background = subject.scene.background;
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   const auto irradiance = [&](const scene::SurfacePoint& p) {
-    return lightmap_at(scene, lightmap, p);
+    return display::lightmap_at(scene, lightmap, p);
   };
   return display::draw(scene, tracer, subject.camera, irradiance, size_of(s), progress);
 }

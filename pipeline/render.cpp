@@ -8,41 +8,13 @@
 #include "image/codec.h"
 #include "import/import.h"
 #include "pipeline/bake.h"
+#include "pipeline/camera.h"
 #include "pipeline/render_check.h"
 #include "pipeline/techniques.h"
 #include "trace/ray_tracer.h"
 
 namespace luxel::pipeline {
 namespace {
-
-scene::Camera camera_at(Vec3 eye, Vec3 look_at, float fov_y_rad) {
-  const Vec3 back = normalize(eye - look_at);
-  const Vec3 up = std::abs(back.y) > 0.999f ? Vec3{0, 0, -1} : Vec3{0, 1, 0};
-  const Vec3 right = normalize(cross(up, back));
-  scene::Camera camera;
-  camera.name = "eye";
-  camera.world_from_camera = from_columns(right, cross(back, right), back, eye);
-  camera.fov_y_rad = fov_y_rad;
-  return camera;
-}
-
-Result<scene::Camera> choose_camera(const RenderSettings& s, const scene::Scene& scene,
-                                    const trace::RayTracer& tracer) {
-  if (s.eye) {
-    if (*s.eye == s.look_at)
-      return fail(ErrorCode::bad_setting, "--eye and --look-at are the same point");
-    return camera_at(*s.eye, s.look_at, float(s.fov_deg) * kPi / 180);
-  }
-  std::string names;
-  for (const scene::Camera& camera : scene.cameras) {
-    if (s.camera.empty() || camera.name == s.camera) return camera;
-    names += (names.empty() ? "" : ", ") + camera.name;
-  }
-  if (!s.camera.empty())
-    return fail(ErrorCode::bad_setting, "--camera {} is not in {}; there is: {}", s.camera,
-                s.scene.string(), names.empty() ? "none" : names);
-  return display::fit_camera(scene, tracer, float(s.width) / float(s.height));
-}
 
 /// Colours of a screen are shown as they are, light over the shoulder, unless it was said
 /// otherwise.
@@ -115,7 +87,9 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   const bool computes_light = !technique || (technique->is_light && !technique->needs_bake);
   if (computes_light && !dark.empty()) out.warnings.push_back(dark);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(imported.scene));
-  LUXEL_TRY(const scene::Camera camera, choose_camera(s, imported.scene, tracer));
+  LUXEL_TRY(const scene::Camera camera,
+            choose_camera({s.camera, s.eye, s.look_at, s.fov_deg, float(s.width) / float(s.height)},
+                          imported.scene, tracer, s.scene.string()));
   const Subject subject{imported.scene, tracer, camera};
   LUXEL_TRY(const std::vector<std::byte> bytes,
             technique ? one_picture(*technique, subject, s, out, progress)

@@ -58,6 +58,7 @@ void register_bake(CLI::App& app, Action& action);
 void register_render(CLI::App& app, Action& action);
 void register_compare(CLI::App& app, Action& action);
 void register_factors(CLI::App& app, Action& action);
+void register_relight(CLI::App& app, Action& action);
 void register_bench(CLI::App& app, Action& action);
 
 }  // namespace luxel::cli

@@ -263,4 +263,17 @@ FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2
   return s;
 }
 
+void multiply(const FormFactors& factors, std::span<const Rgb> radiosity,
+              std::span<Rgb> irradiance) {
+  LUXEL_CHECK(radiosity.size() == factors.size() && irradiance.size() == factors.size());
+  parallel_for(factors.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      Rgb sum{};
+      for (uint64_t k = factors.first[i]; k < factors.first[i + 1]; ++k)
+        sum += factors.factor[k] * radiosity[factors.column[k]];
+      irradiance[i] = sum;
+    }
+  });
+}
+
 }  // namespace luxel::matrix

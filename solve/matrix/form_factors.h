@@ -49,4 +49,8 @@ FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2
 
 double row_sum(const FormFactors& factors, size_t row);
 
+/// E = F B, row by row.
+void multiply(const FormFactors& factors, std::span<const Rgb> radiosity,
+              std::span<Rgb> irradiance);
+
 }  // namespace luxel::matrix

@@ -355,7 +355,7 @@ Hierarchical::Far quantised(const Found::Far& far) {
   float largest = 0;
   for (const Values& row : far.coupling)
     for (const float v : row) largest = std::max(largest, std::abs(v));
-  Hierarchical::Far out{far.block.sender, largest / 32767, {}};
+  Hierarchical::Far out{{}, largest / 32767, far.block.sender};
   if (largest > 0)
     for (size_t a = 0; a < kFunctions; ++a)
       for (size_t b = 0; b < kFunctions; ++b)

@@ -28,9 +28,9 @@ inline constexpr uint32_t kLanes = 4;
 /// (moments of B), one over the blocks, and one down. Patches are in the order of the tree.
 struct Hierarchical {
   struct Far {
-    uint32_t sender = 0;  ///< cluster
-    float scale = 0;      ///< C_ab = scale * coefficient[kLanes * b + a], a the receiver's function
     std::array<int16_t, kLanes * kFunctions> coefficient{};
+    float scale = 0;      ///< C_ab = scale * coefficient[kLanes * b + a], a the receiver's function
+    uint32_t sender = 0;  ///< cluster
   };
   struct Near {
     uint32_t sender = 0;  ///< a leaf
@@ -68,10 +68,16 @@ Result<Hierarchical> compress(const FormFactors& factors, const ClusterTree& tre
 
 /// Moments of a cluster's light, channel by channel.
 using Moments = std::array<float, 3 * kLanes>;
+/// As many lanes as a far block has 16-bit words.
+inline constexpr uint32_t kWords = 16;
+static_assert(sizeof(Hierarchical::Far) == 2 * kWords);
+/// Moments as far blocks read them: channel by channel each kLanes times, then zeros.
+using SpreadMoments = std::array<float, 3 * kWords>;
 
 /// Room for one product.
 struct HierarchicalWork {
   std::vector<Moments> sent, received;  ///< per cluster
+  std::vector<SpreadMoments> spread;    ///< per cluster
 };
 HierarchicalWork make_work(const Hierarchical& matrix);
 

@@ -25,8 +25,8 @@ void fields(Archive& a, Is<Cluster> auto& x) {
 }
 template <class Archive>
 void fields(Archive& a, Is<Hierarchical::Far> auto& x) {
-  auto& [sender, scale, coefficient] = x;
-  a(sender, scale, coefficient);
+  auto& [coefficient, scale, sender] = x;
+  a(coefficient, scale, sender);
 }
 template <class Archive>
 void fields(Archive& a, Is<Hierarchical::Near> auto& x) {
@@ -57,6 +57,21 @@ template <class Archive>
 void fields(Archive& a, Is<DenseCodec> auto& x) {
   auto& [matrix, coarse] = x;
   a(matrix, coarse);
+}
+template <class Archive>
+void fields(Archive& a, Is<Bc1::Kept> auto& x) {
+  auto& [value, place] = x;
+  a(value, place);
+}
+template <class Archive>
+void fields(Archive& a, Is<Bc1> auto& x) {
+  auto& [n, log_range, row, column, row_scale, blocks, kept_unit, first_kept, kept] = x;
+  a(n, log_range, row, column, row_scale, blocks, kept_unit, first_kept, kept);
+}
+template <class Archive>
+void fields(Archive& a, Is<Bc1Codec> auto& x) {
+  auto& [matrix] = x;
+  a(matrix);
 }
 template <class Archive>
 void fields(Archive& a, Is<LowRank> auto& x) {

@@ -122,7 +122,7 @@ inline HierarchicalCodec small_hierarchical() {
   for (const Rgb& c : random_light(10, 4)) m.phi.push_back({c.x, c.y, c.z});
   for (int i = 0; i < 10; ++i) m.area_m2.push_back(1 + 0.125f * float(i));
   m.first_far = {0, 0, 1, 2}, m.first_near = {0, 0, 1, 2};
-  m.far = {{2, 0.5f, {1, -2, 3}}, {1, 0.25f, {-4, 5, -6}}};
+  m.far = {{{1, -2, 3}, 0.5f, 2}, {{-4, 5, -6}, 0.25f, 1}};
   m.near = {{1, 0, 0.125f}, {2, 40, 0.0625f}};
   for (int k = 0; k < 80; ++k) m.entries.push_back(uint8_t(3 * k));
   codec.coarse = small_coarse();
@@ -137,6 +137,19 @@ inline DenseCodec small_dense(bool half) {
     else
       codec.matrix.single.push_back(0.001f * float(k));
   return codec;
+}
+
+inline Bc1Codec small_bc1() {
+  Bc1 m;
+  m.n = 10, m.kept_unit = {0.5f, 0.25f, 2};
+  for (uint32_t k = 0; k < 10; ++k) {
+    m.row.push_back(9 - k), m.column.push_back((k + 3) % 10);
+    m.row_scale.push_back({0.125f * float(k), 0.5f, 1});
+  }
+  for (uint64_t k = 0; k < 9; ++k) m.blocks.push_back((1000 * k + 7) << 32 | k << 16 | (k + 5));
+  m.first_kept = {0, 2, 2, 2, 2, 2, 2, 2, 2, 2, 3};
+  m.kept = {{{0x3c00, 0x3800, 0}, 1}, {{1, 2, 3}, 9}, {{0x8001, 0, 0x7bff}, 4}};
+  return {m};
 }
 
 inline LowRankCodec small_low_rank() {

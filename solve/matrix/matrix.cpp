@@ -41,19 +41,6 @@ Probes probes_of(const Patches& patches) {
   return out;
 }
 
-/// E = F B, row by row.
-void multiply(const FormFactors& factors, std::span<const Rgb> radiosity,
-              std::span<Rgb> irradiance) {
-  parallel_for(factors.size(), 64, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      Rgb sum{};
-      for (uint64_t k = factors.first[i]; k < factors.first[i + 1]; ++k)
-        sum += factors.factor[k] * radiosity[factors.column[k]];
-      irradiance[i] = sum;
-    }
-  });
-}
-
 double mean_square(std::span<const Rgb> values, std::span<const float> area_m2) {
   double sum = 0, area = 0;
   for (size_t i = 0; i < values.size(); ++i) {

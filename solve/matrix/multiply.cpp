@@ -44,14 +44,37 @@ void send_up(const Hierarchical& m, std::span<Moments> sent) {
       add_product(m.up[c].data(), sent[c].data(), 1.0f, sent[p].data());
 }
 
+void spread(std::span<const Moments> sent, size_t begin, size_t end, std::span<SpreadMoments> out) {
+  for (size_t c = begin; c < end; ++c)
+    for (uint32_t channel = 0; channel < 3; ++channel)
+      for (uint32_t k = 0; k < kWords; ++k)
+        out[c][kWords * channel + k] =
+            k < kLanes * kFunctions ? sent[c][kLanes * channel + k / kLanes] : 0.0f;
+}
+
+/// A block is read as a whole, 16 words at once: its last four words, which are its scale and its
+/// sender, meet zeros.
 LUXEL_VECTOR_CLONES
-void receive_far(const Hierarchical& m, std::span<const Moments> sent, size_t begin, size_t end,
-                 std::span<Moments> received) {
+void receive_far(const Hierarchical& m, std::span<const SpreadMoments> sent, size_t begin,
+                 size_t end, std::span<Moments> received) {
   for (size_t c = begin; c < end; ++c) {
-    float sum[3 * kLanes] = {};
-    for (uint32_t k = m.first_far[c]; k < m.first_far[c + 1]; ++k)
-      add_product(m.far[k].coefficient.data(), sent[m.far[k].sender].data(), m.far[k].scale, sum);
-    std::copy(std::begin(sum), std::end(sum), received[c].begin());
+    Float8 low[3] = {}, high[3] = {};  // functions b = 0, 1 and b = 2, channel by channel
+    for (uint32_t k = m.first_far[c]; k < m.first_far[c + 1]; ++k) {
+      const Hierarchical::Far& far = m.far[k];
+      const float* from = sent[far.sender].data();
+      const auto* word = reinterpret_cast<const int16_t*>(&far);
+      Float8 c_low, c_high, x_low, x_high;
+      load8(word, c_low), load8(word + 8, c_high);
+      c_low *= far.scale, c_high *= far.scale;
+      for (uint32_t channel = 0; channel < 3; ++channel) {
+        load8(from + kWords * channel, x_low), load8(from + kWords * channel + 8, x_high);
+        low[channel] += c_low * x_low, high[channel] += c_high * x_high;
+      }
+    }
+    for (uint32_t channel = 0; channel < 3; ++channel)
+      for (uint32_t a = 0; a < kLanes; ++a)
+        received[c][kLanes * channel + a] =
+            low[channel][a] + low[channel][kLanes + a] + high[channel][a];
   }
 }
 
@@ -69,24 +92,24 @@ void hand_down(const Hierarchical& m, std::span<Moments> received) {
         }
 }
 
-/// Adds what a leaf's patches receive from near ones.
+/// What a leaf's patches receive from near ones, channel by channel.
 LUXEL_VECTOR_CLONES
 void receive_near(const Hierarchical& m, size_t leaf, std::span<const Rgb> radiosity,
-                  float (*sums)[kLeafSize]) {
+                  float (*out)[kLeafSize]) {
+  static_assert(kLeafSize == 8);
+  Float8 red = {}, green = {}, blue = {};
   for (uint32_t k = m.first_near[leaf]; k < m.first_near[leaf + 1]; ++k) {
     const Hierarchical::Near& near = m.near[k];
     const Cluster& sender = m.clusters[near.sender];
     const uint8_t* entry = m.entries.data() + near.entry;
     for (uint32_t j = sender.first; j < sender.end; ++j, entry += kLeafSize) {
       const Rgb b = radiosity[j] * near.scale;
-      for (uint32_t i = 0; i < kLeafSize; ++i) {
-        const float f = float(entry[i]);
-        sums[0][i] += f * b.x;
-        sums[1][i] += f * b.y;
-        sums[2][i] += f * b.z;
-      }
+      Float8 f;
+      load8(entry, f);
+      red += f * b.x, green += f * b.y, blue += f * b.z;
     }
   }
+  store8(red, out[0]), store8(green, out[1]), store8(blue, out[2]);
 }
 
 void receive_leaves(const Hierarchical& m, std::span<const Rgb> radiosity,
@@ -112,6 +135,7 @@ void receive_leaves(const Hierarchical& m, std::span<const Rgb> radiosity,
 HierarchicalWork make_work(const Hierarchical& matrix) {
   HierarchicalWork work;
   work.sent.resize(matrix.clusters.size()), work.received.resize(matrix.clusters.size());
+  work.spread.resize(matrix.clusters.size());
   return work;
 }
 
@@ -124,8 +148,10 @@ void multiply(const Hierarchical& m, std::span<const Rgb> radiosity, std::span<R
   };
   parallel_for(clusters, 512, std::ref(send));
   send_up(m, work.sent);
+  const auto widen = [&](size_t begin, size_t end) { spread(work.sent, begin, end, work.spread); };
+  parallel_for(clusters, 512, std::ref(widen));
   const auto far = [&](size_t begin, size_t end) {
-    receive_far(m, work.sent, begin, end, work.received);
+    receive_far(m, work.spread, begin, end, work.received);
   };
   parallel_for(clusters, 64, std::ref(far));
   hand_down(m, work.received);

@@ -281,6 +281,7 @@ void append_patch(std::span<const Sample> samples, const Part& part, Patches& pa
   patches.centroid.push_back(centroid);
   patches.area_m2.push_back(part.area_m2);
   patches.emission.push_back(emission);
+  patches.material.push_back(samples[part.samples.front()].material);
 }
 
 /// Numbers patches in the order of their tree: neighbours are near each other in memory.

@@ -33,6 +33,7 @@ struct Patches {
   std::vector<Vec3> centroid;  ///< mean position, maybe off the surface [m]
   std::vector<float> area_m2;
   std::vector<Rgb> emission;          ///< mean radiosity of its own, B_e = pi L [W/m^2]
+  std::vector<uint32_t> material;     ///< of the scene
   std::vector<uint32_t> first_point;  ///< per patch, one extra entry: its part of `points`
   std::vector<PatchPoint> points;     ///< spread evenly over the patches
   float voxel_m = 0;                  ///< edge of the voxels that surfaces were cut by

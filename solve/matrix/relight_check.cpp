@@ -189,6 +189,13 @@ Status check(const DenseCodec& codec, size_t patches) {
   return check(codec.coarse, patches);
 }
 
+Status check(const Bc1Codec& codec, size_t patches) {
+  LUXEL_TRY_STATUS(length_is("rows of the BC1 matrix", codec.matrix.n, patches));
+  if (is_valid(codec.matrix)) return {};
+  return fail(ErrorCode::bad_input,
+              "its BC1 matrix has lengths, orders or numbers that no such matrix has");
+}
+
 Status check(const LowRankCodec& codec, size_t patches) { return check(codec.matrix, patches); }
 
 Status check(const Transfer& map, size_t places, size_t patches) {

@@ -13,6 +13,7 @@ Status check(const RelightData& data);
 // Of its parts. `patches` is their number.
 Status check(const HierarchicalCodec& codec, size_t patches);
 Status check(const DenseCodec& codec, size_t patches);
+Status check(const Bc1Codec& codec, size_t patches);
 Status check(const LowRankCodec& codec, size_t patches);
 Status check(const Hierarchical& matrix, size_t patches);
 Status check(const Dense& matrix, size_t patches);

@@ -10,6 +10,7 @@
 
 #include "base/vec.h"
 #include "scene/scene.h"
+#include "solve/matrix/bc1.h"
 #include "solve/matrix/bounces.h"
 #include "solve/matrix/dense.h"
 #include "solve/matrix/hierarchical.h"
@@ -31,13 +32,18 @@ struct HierarchicalCodec {
   CoarseScene coarse;  ///< for all bounces
 };
 
+/// All bounces, or those that were asked for, in one product [Shcherbakov17].
+struct Bc1Codec {
+  Bc1 matrix;
+};
+
 /// F by its leading eigenvectors; bounces are one product.
 struct LowRankCodec {
   LowRank matrix;
 };
 
 /// One codec's matrix: irradiance from what patches send. A file knows codecs by their place here.
-using Codec = std::variant<HierarchicalCodec, DenseCodec, LowRankCodec>;
+using Codec = std::variant<HierarchicalCodec, DenseCodec, Bc1Codec, LowRankCodec>;
 
 /// Places whose light is wanted.
 struct Target {
@@ -70,7 +76,7 @@ struct RelightData {
   std::vector<std::string> material_name;
   std::vector<scene::PunctualLight> lights;  ///< as baked
   Rgb background{};                          ///< as baked [W/(sr m^2)]
-  int32_t bounces = -1;    ///< products; < 0: all
+  int32_t bounces = -1;                      ///< products; < 0: all
   double codec_error = 0;  ///< relative, of trial lights: RelightParams::max_error
   Codec codec;
   Target target;

@@ -1,0 +1,190 @@
+// `luxel relight`: a scene's light transport into one file, and that file played.
+#include <cstdio>
+
+#include "apps/cli/cli.h"
+#include "base/parallel.h"
+#include "pipeline/play.h"
+#include "pipeline/relight.h"
+
+namespace luxel::cli {
+namespace {
+
+struct RelightOptions {
+  Common common;
+  OutsideText outside;
+  std::string uv = "auto", bounces = "inf", max_memory;
+  pipeline::RelightSettings settings;
+  std::filesystem::path lxr, script, output;
+  std::vector<CLI::Option*> of_making;  ///< options that playing does not look at
+};
+
+Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
+  pipeline::RelightSettings s = options.settings;
+  s.output = options.output, s.threads = options.common.threads;
+  s.uv = options.uv == "keep"     ? atlas::UvMode::keep
+         : options.uv == "unwrap" ? atlas::UvMode::unwrap
+                                  : atlas::UvMode::automatic;
+  LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
+  if (!options.max_memory.empty()) {
+    LUXEL_TRY(s.max_memory_bytes, pipeline::parse_size(options.max_memory));
+  }
+  LUXEL_TRY(s.outside, parse_outside_light(options.outside));
+  return s;
+}
+
+void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& json) {
+  std::fprintf(
+      stderr, "%s\n",
+      fmt::format("{} patches, {} places, {:.1f} s; matrix {:.2f} MB, loses {:.2f} %",
+                  json["counts"]["patches"].get<uint64_t>(),
+                  json["counts"]["places"].get<uint64_t>(), json["seconds"]["total"].get<double>(),
+                  1e-6 * json["bytes"]["matrix"].get<double>(),
+                  100 * json["codec_error"].get<double>())
+          .c_str());
+  std::fprintf(stderr, "wrote %s (%.2f MB)\n", s.output.string().c_str(),
+               1e-6 * json["bytes"]["file"].get<double>());
+}
+
+int run_making(const RelightOptions& options) {
+  const auto settings = settings_from(options);
+  if (!settings) return report(settings.error());
+  nlohmann::json json;
+  const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
+    LUXEL_TRY(json, pipeline::relight(*settings, progress));
+    return {};
+  });
+  if (!done) return report(done.error());
+  print_warnings(json["warnings"].get<std::vector<std::string>>(), options.common);
+  if (options.common.json)
+    std::printf("%s\n", json.dump(2).c_str());
+  else if (!options.common.quiet)
+    print_summary(*settings, json);
+  return kDone;
+}
+
+nlohmann::json json_of(const pipeline::Played& played) {
+  nlohmann::json frames = nlohmann::json::array();
+  for (const pipeline::FrameTimes& f : played.frames)
+    frames.push_back({{"time_s", f.time_s},
+                      {"direct_ms", f.direct_ms},
+                      {"bounces_ms", f.bounces_ms},
+                      {"places_ms", f.places_ms},
+                      {"update_ms", f.update_ms()},
+                      {"draw_ms", f.draw_ms}});
+  return {{"width", played.width}, {"height", played.height}, {"frames", frames}};
+}
+
+void print_played(const pipeline::PlaySettings& s, const pipeline::Played& played) {
+  double update = 0, draw = 0;
+  for (const pipeline::FrameTimes& f : played.frames) update += f.update_ms(), draw += f.draw_ms;
+  const double count = double(played.frames.size());
+  std::fprintf(stderr, "%zu frames: %.2f ms to relight and %.0f ms to draw, on average\n",
+               played.frames.size(), update / count, draw / count);
+  std::fprintf(stderr, "wrote %s to %s, and %s\n", (s.output / "frame-0000.png").string().c_str(),
+               fmt::format("frame-{:04}.png", played.frames.size() - 1).c_str(),
+               (s.output / "frames.csv").string().c_str());
+}
+
+int run_playing(const RelightOptions& options) {
+  for (const CLI::Option* option : options.of_making)
+    if (option->count() > 0)
+      return report(Error{ErrorCode::bad_setting,
+                          fmt::format("{} is for making a file, not for --play; leave it out",
+                                      option->get_name())});
+  if (options.script.empty())
+    return report(Error{ErrorCode::bad_setting,
+                        "--play needs --script FILE.json, which says how the lamps move"});
+  const pipeline::PlaySettings settings{options.lxr, options.script, options.output,
+                                        options.common.threads};
+  pipeline::Played played;
+  const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
+    LUXEL_TRY(played, pipeline::play(settings, progress));
+    return {};
+  });
+  if (!done) return report(done.error());
+  print_warnings(played.warnings, options.common);
+  if (options.common.json)
+    std::printf("%s\n", json_of(played).dump(2).c_str());
+  else if (!options.common.quiet)
+    print_played(settings, played);
+  return kDone;
+}
+
+int run_relight(const RelightOptions& options) {
+  if (!options.lxr.empty()) return run_playing(options);
+  if (options.settings.scene.empty())
+    return report(Error{ErrorCode::bad_setting,
+                        "give a SCENE to make a file of, or --play FILE.lxr to show one"});
+  if (!options.script.empty())
+    return report(
+        Error{ErrorCode::bad_setting, "--script is for --play FILE.lxr; leave it out here"});
+  return run_making(options);
+}
+
+void add_making(CLI::App& relight, RelightOptions& options) {
+  pipeline::RelightSettings& s = options.settings;
+  std::vector<CLI::Option*>& all = options.of_making;
+  all.push_back(relight
+                    .add_option("--target", s.target,
+                                "Where light is wanted: texels of a lightmap, vertices, none")
+                    ->capture_default_str());
+  auto* resolution = relight.add_option("--resolution", s.resolution, "Side of the lightmap")
+                         ->capture_default_str();
+  all.push_back(resolution);
+  all.push_back(relight
+                    .add_option("--texels-per-metre", s.texels_per_metre,
+                                "Density; the side becomes the smallest power of two that holds "
+                                "the scene")
+                    ->excludes(resolution));
+  all.push_back(
+      relight
+          .add_option("--uv", options.uv,
+                      "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if valid")
+          ->check(CLI::IsMember({"auto", "keep", "unwrap"}))
+          ->capture_default_str());
+  all.push_back(relight
+                    .add_option("--patches", s.matrix.patches,
+                                "About so many pieces of surface exchange light")
+                    ->capture_default_str());
+  all.push_back(relight.add_option("--rays", s.matrix.rays, "Per patch, to find what it sees")
+                    ->capture_default_str());
+  all.push_back(
+      relight.add_option("--codec", s.codec, "How it is kept: " + pipeline::codec_names())
+          ->capture_default_str());
+  all.push_back(relight
+                    .add_option("--max-error", s.max_error,
+                                "What the codec may lose of indirect light, root mean square")
+                    ->capture_default_str());
+  all.push_back(relight.add_option("--bounces", options.bounces, "Reflections to count, or inf")
+                    ->capture_default_str());
+  all.push_back(relight.add_option("--max-memory", options.max_memory,
+                                   "Memory to stay under, as 900M or 1.5G (default: most of what "
+                                   "is free)"));
+  all.push_back(
+      relight.add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str());
+}
+
+}  // namespace
+
+void register_relight(CLI::App& app, Action& action) {
+  CLI::App* relight = app.add_subcommand(
+      "relight", "Prepare a scene for light that moves (.lxr), or play such a file");
+  auto options = std::make_shared<RelightOptions>();
+  auto* scene =
+      relight->add_option("SCENE", options->settings.scene, "glTF, OBJ, FBX, ... file to prepare");
+  relight
+      ->add_option("-o,--output", options->output,
+                   "File to write, .lxr; with --play: folder for the frames")
+      ->required();
+  add_making(*relight, *options);
+  relight->add_option("--play", options->lxr, "Draw this .lxr file, frame by frame")
+      ->type_name("FILE.lxr")
+      ->excludes(scene);
+  relight->add_option("--script", options->script, "How lamps move (docs/relight.md)")
+      ->type_name("FILE.json");
+  add_outside_light(*relight, options->outside);
+  add_common(*relight, options->common);
+  relight->callback([options, &action] { action = [options] { return run_relight(*options); }; });
+}
+
+}  // namespace luxel::cli

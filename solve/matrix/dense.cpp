@@ -1,0 +1,134 @@
+#include "solve/matrix/dense.h"
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "base/vectorize.h"
+#include "solve/matrix/half.h"
+
+namespace luxel::matrix {
+namespace {
+
+/// Rows that a task takes.
+constexpr size_t kRows = 16;
+/// Halves that are made floats at a time: they stay in the nearest cache.
+constexpr size_t kChunk = 1024;
+constexpr size_t kLanes = 8;
+
+using Lanes [[gnu::vector_size(4 * kLanes)]] = float;
+
+/// Adds what two rows of `n` numbers receive from three planes of light, `stride` apart, to
+/// sums[row][channel]. Two rows share what is read of the light.
+LUXEL_VECTOR_CLONES
+void add_two_rows(const float* row0, const float* row1, size_t n, const float* plane, size_t stride,
+                  float (*sums)[3]) {
+  Lanes sum[2][3] = {};
+  size_t j = 0;
+  for (; j + kLanes <= n; j += kLanes) {
+    Lanes f0, f1;
+    std::memcpy(&f0, row0 + j, sizeof f0), std::memcpy(&f1, row1 + j, sizeof f1);
+    for (size_t c = 0; c < 3; ++c) {
+      Lanes b;
+      std::memcpy(&b, plane + c * stride + j, sizeof b);
+      sum[0][c] += f0 * b, sum[1][c] += f1 * b;
+    }
+  }
+  for (size_t c = 0; c < 3; ++c) {
+    for (size_t l = 0; l < kLanes; ++l) sums[0][c] += sum[0][c][l], sums[1][c] += sum[1][c][l];
+    for (size_t k = j; k < n; ++k) {
+      const float b = plane[c * stride + k];
+      sums[0][c] += row0[k] * b, sums[1][c] += row1[k] * b;
+    }
+  }
+}
+
+/// The same for rows of halves.
+void add_two_rows(const uint16_t* row0, const uint16_t* row1, size_t n, const float* plane,
+                  size_t stride, float (*sums)[3]) {
+  float chunk[2][kChunk];
+  for (size_t j = 0; j < n; j += kChunk) {
+    const size_t count = std::min(kChunk, n - j);
+    floats_from_halves(row0 + j, count, chunk[0]);
+    floats_from_halves(row1 + j, count, chunk[1]);
+    add_two_rows(chunk[0], chunk[1], count, plane + j, stride, sums);
+  }
+}
+
+}  // namespace
+
+Dense make_dense(const FormFactors& factors, Precision precision) {
+  Dense out;
+  const size_t n = factors.size();
+  out.n = uint32_t(n);
+  precision == Precision::single ? out.single.resize(n * n) : out.half.resize(n * n);
+  for (size_t i = 0; i < n; ++i)
+    for (uint64_t k = factors.first[i]; k < factors.first[i + 1]; ++k) {
+      const size_t entry = i * n + factors.column[k];
+      if (precision == Precision::single)
+        out.single[entry] = factors.factor[k];
+      else
+        out.half[entry] = half_from_float(factors.factor[k]);
+    }
+  return out;
+}
+
+DenseWork make_dense_work(size_t patches) {
+  const size_t stride = (patches + 15) / 16 * 16;
+  return {std::vector<float>(3 * stride), stride};
+}
+
+void split_channels(std::span<const Rgb> light, DenseWork& work) {
+  LUXEL_CHECK(work.stride >= light.size());
+  float* plane = work.plane.data();
+  for (size_t j = 0; j < light.size(); ++j) {
+    plane[j] = light[j].x;
+    plane[work.stride + j] = light[j].y;
+    plane[2 * work.stride + j] = light[j].z;
+  }
+}
+
+LUXEL_VECTOR_CLONES
+float inner_product(const float* row, const float* plane, size_t n) {
+  Lanes sum[4] = {};
+  size_t j = 0;
+  for (; j + 4 * kLanes <= n; j += 4 * kLanes)
+    for (size_t v = 0; v < 4; ++v) {
+      Lanes f, b;
+      std::memcpy(&f, row + j + v * kLanes, sizeof f);
+      std::memcpy(&b, plane + j + v * kLanes, sizeof b);
+      sum[v] += f * b;
+    }
+  const Lanes all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  float out = 0;
+  for (size_t l = 0; l < kLanes; ++l) out += all[l];
+  for (; j < n; ++j) out += row[j] * plane[j];
+  return out;
+}
+
+void multiply(const Dense& m, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
+              DenseWork& work) {
+  const size_t n = m.n;
+  LUXEL_CHECK(radiosity.size() == n && irradiance.size() == n && work.stride >= n);
+  split_channels(radiosity, work);
+  const auto rows = [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; i += 2) {
+      const size_t next = std::min(i + 1, end - 1);
+      float sums[2][3] = {};
+      const float* b = work.plane.data();
+      if (m.half.empty())
+        add_two_rows(m.single.data() + i * n, m.single.data() + next * n, n, b, work.stride, sums);
+      else
+        add_two_rows(m.half.data() + i * n, m.half.data() + next * n, n, b, work.stride, sums);
+      irradiance[i] = {sums[0][0], sums[0][1], sums[0][2]};
+      irradiance[next] = {sums[1][0], sums[1][1], sums[1][2]};
+    }
+  };
+  parallel_for(n, kRows, std::ref(rows));
+}
+
+uint64_t bytes_of(const Dense& m) { return 4 * m.single.size() + 2 * m.half.size(); }
+
+}  // namespace luxel::matrix

@@ -2,82 +2,22 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <optional>
-#include <thread>
-
-#include "base/parallel.h"
-#include "solve/matrix/codec.h"
 #include "solve/matrix/matrix.h"
-#include "solve/matrix/matrix_test_support.h"
-#include "solve/matrix/relight.h"
+#include "solve/matrix/relighter_test_support.h"
 
 namespace luxel::matrix {
 namespace {
 
+using testing::floor_places;
+using testing::kAllCodecs;
+using testing::kLeft;
+using testing::kRight;
+using testing::point_at;
 using testing::relative_error;
-using Kind = scene::PunctualLight::Kind;
-
-constexpr std::array kAllCodecs{CodecKind::hierarchical, CodecKind::lowrank, CodecKind::bc1,
-                                CodecKind::dense32, CodecKind::dense16};
-
-RelightParams small(CodecKind codec, float max_error = 0.01f) {
-  RelightParams params;
-  params.patches.count = 300;
-  params.factors.rays_per_patch = 512;
-  params.codec = codec, params.max_error = max_error;
-  return params;
-}
-
-/// A scene and what relights it.
-struct Stage {
-  scene::Scene scene;
-  trace::RayTracer tracer;
-  RelightParams params;
-
-  explicit Stage(scene::Scene s, const RelightParams& p = small(CodecKind::dense32, 1e-4f))
-      : scene(std::move(s)), tracer(*trace::RayTracer::build(scene)), params(p) {}
-
-  RelightData data(Target target = {}) const {
-    Progress progress;
-    auto out = make_relight_data(scene, tracer, std::move(target), params, progress);
-    EXPECT_TRUE(out) << out.error().message;
-    return out ? std::move(*out) : RelightData{};
-  }
-};
-
-Relighter relighter_of(RelightData data, const RelighterParams& params = {}) {
-  auto made = Relighter::make(std::move(data), params);
-  EXPECT_TRUE(made) << made.error().message;
-  return std::move(*made);
-}
-
-Relit relit(Relighter& relighter, const RelightLights& lights) {
-  relighter.update(lights);
-  return relighter.latest();
-}
-
-scene::PunctualLight point_at(Vec3 position, Rgb intensity) {
-  scene::PunctualLight lamp;
-  lamp.position = position, lamp.intensity = intensity;
-  return lamp;
-}
-/// Both hang free in the Cornell box.
-const scene::PunctualLight kLeft = point_at({0.45f, 0.4f, 0.15f}, {1, 0.5f, 0.25f});
-const scene::PunctualLight kRight = point_at({0.1f, 0.45f, 0.4f}, {0.25f, 1, 0.5f});
-
-/// Squares on the floor, facing up.
-Target floor_places(float side_m) {
-  Target target;
-  target.kind = Target::Kind::vertices;
-  for (int j = 0; j < 8; ++j)
-    for (int i = 0; i < 8; ++i)
-      target.position.push_back(
-          {side_m * (float(i) + 0.5f) / 8, 0, side_m * (float(j) + 0.5f) / 8});
-  target.normal.assign(target.position.size(), {0, 1, 0});
-  target.geometric_normal = target.normal;
-  return target;
-}
+using testing::relighter_of;
+using testing::relit;
+using testing::small;
+using testing::Stage;
 
 /// I cos / d^2 at a place, unless a ray to the lamp meets something before it.
 Rgb plain_light_at(const Stage& stage, const PatchPoint& at, const scene::PunctualLight& lamp) {
@@ -295,95 +235,6 @@ TEST(Relighter, DirectLightAtPlacesIsThatOfLamps) {
   EXPECT_LT(dark, 40u);
   Relighter without = relighter_of(stage.data(floor_places(0.54f)));
   EXPECT_TRUE(relit(without, {{&kLeft, 1}}).direct_at_place.empty());
-}
-
-TEST(Relighter, SameBitsForAnyNumberOfThreads) {
-  for (const CodecKind codec : kAllCodecs) {
-    const RelightData data = Stage(scene::cornell_box(), small(codec)).data(floor_places(0.5f));
-    const auto with = [&](int threads) {
-      const ThreadLimit limit(threads);
-      Relighter relighter = relighter_of(data, {true});
-      return relit(relighter, {{&kLeft, 1}, {}, {1, 1, 1}});
-    };
-    const Relit one = with(1);
-    for (const int threads : {2, 7}) {
-      const Relit other = with(threads);
-      EXPECT_EQ(one.direct, other.direct) << int(codec);
-      EXPECT_EQ(one.indirect, other.indirect) << int(codec);
-      EXPECT_EQ(one.direct_at_place, other.direct_at_place) << int(codec);
-      EXPECT_EQ(one.indirect_at_place, other.indirect_at_place) << int(codec);
-    }
-  }
-}
-
-TEST(Relighter, AResultStaysUntilTheNextIsAskedFor) {
-  Relighter relighter = relighter_of(Stage(scene::cornell_box()).data());
-  EXPECT_EQ(relighter.latest().update, 0u);
-  for (const Rgb& e : relighter.latest().indirect) EXPECT_EQ(e, Rgb{});
-  relighter.update({{&kLeft, 1}});
-  const Relit& held = relighter.latest();
-  const Relit copy = held;
-  EXPECT_EQ(copy.update, 1u);
-  // As many updates as there are results to write to, and more.
-  for (int k = 0; k < 5; ++k) {
-    relighter.update({{&kRight, 1}});
-    EXPECT_EQ(held.update, 1u);
-    EXPECT_EQ(held.direct, copy.direct);
-    EXPECT_EQ(held.indirect, copy.indirect);
-  }
-  const Relit& next = relighter.latest();
-  EXPECT_EQ(next.update, 6u);
-  EXPECT_NE(next.indirect, copy.indirect);
-  EXPECT_EQ(&relighter.latest(), &next);  // nothing new since
-}
-
-/// Update k is lit by a lamp of 2^(k mod 8) times the first one's intensity. Powers of two scale
-/// floats without rounding, so every number of a whole result is scaled exactly.
-float scale_of(uint64_t update) { return std::ldexp(1.0f, int(update % 8)); }
-
-bool is_scaled(const Relit& now, const Relit& base) {
-  const float scale = scale_of(now.update);
-  const auto same = [scale](std::span<const Rgb> a, std::span<const Rgb> b) {
-    for (size_t i = 0; i < a.size(); ++i)
-      if (!(a[i] == b[i] * scale)) return false;
-    return a.size() == b.size();
-  };
-  return same(now.direct, base.direct) && same(now.indirect, base.indirect) &&
-         same(now.indirect_at_place, base.indirect_at_place);
-}
-
-TEST(Relighter, OneThreadReadsWhatAnotherUpdates) {
-  constexpr uint64_t kUpdates = 400;
-  const Stage stage(scene::cornell_box(), small(CodecKind::hierarchical));
-  Relighter relighter = relighter_of(stage.data(floor_places(0.5f)));
-  const std::vector<Rgb> dark(relighter.data().material_name.size());
-  const auto update = [&](uint64_t k) {
-    const auto lamp = point_at(kLeft.position, kLeft.intensity * scale_of(k));
-    relighter.update({{&lamp, 1}, dark});
-  };
-  update(1);
-  Relit base = relighter.latest();
-  for (auto* list : {&base.direct, &base.indirect, &base.indirect_at_place})
-    for (Rgb& e : *list) e = e * (1 / scale_of(1));
-  std::atomic<bool> reading{false};
-  uint64_t last = 0, different = 0, torn = 0, back = 0;
-  std::thread reader([&] {
-    while (last < kUpdates) {
-      const Relit& now = relighter.latest();
-      torn += !is_scaled(now, base);
-      back += now.update<last, different += now.update> last;
-      last = now.update;
-      reading = true;
-    }
-  });
-  while (!reading) std::this_thread::yield();
-  for (uint64_t k = 2; k <= kUpdates; ++k) update(k);
-  reader.join();
-  EXPECT_EQ(torn, 0u);
-  EXPECT_EQ(back, 0u);
-  EXPECT_EQ(last, kUpdates);
-  // Both ran at once: more than the first and the last update was seen.
-  EXPECT_GT(different, 2u);
 }
 
 TEST(MakeRelightData, RefusesWhatCannotBe) {

@@ -102,10 +102,10 @@ void distribute_factors(const matrix::FormFactors& factors, PaperRuns& runs) {
 }
 
 /// Figures 3 and 4.
-void distribute_rest(const matrix::ColourMatrix& k, PaperRuns& runs) {
+void distribute_rest(const matrix::ColourMatrix& k, const Progress& progress, PaperRuns& runs) {
   matrix::Bc1Params params = matrix::paper_params();
   const matrix::Picture picture =
-      matrix::picture_of(k, matrix::choose_kept(k, params.kept), params);
+      matrix::picture_of(k, matrix::choose_kept(k, params.kept, progress), params, progress);
   runs.logarithms = {-30, 0.5, std::vector<double>(60)};
   runs.bytes = {0, 4, std::vector<double>(64)};
   for (size_t i = 0; i < k.n; ++i)
@@ -263,7 +263,7 @@ Result<PaperRuns> run_paper(size_t patches, Progress& progress) {
   PaperRuns runs;
   LUXEL_TRY(const Room room, make_room(patches, runs, progress));
   distribute_factors(room.factors(), runs);
-  distribute_rest(room.k, runs);
+  distribute_rest(room.k, progress, runs);
   LUXEL_TRY(const matrix::Bc1 paper, matrix::make_bc1(room.k, matrix::paper_params(), progress));
   const auto start = Clock::now();
   LUXEL_TRY(const matrix::Bc1 ours, matrix::make_bc1(room.k, {}, progress));

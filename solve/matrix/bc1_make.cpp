@@ -23,15 +23,18 @@ constexpr size_t kRows = 16;
 
 /// Distances between columns are the same whatever the order of the rows, so the second order does
 /// not wait for the first.
-void choose_order(const Picture& picture, Bc1Params::Order order, Bc1& out) {
+void choose_order(const Picture& picture, Bc1Params::Order order, const Progress& progress,
+                  Bc1& out) {
   const size_t n = picture.n;
   out.row.resize(n), out.column.resize(n);
   std::iota(out.row.begin(), out.row.end(), 0u);
   std::iota(out.column.begin(), out.column.end(), 0u);
   if (order == Bc1Params::Order::as_is || n == 0) return;
-  out.row = greedy_order(project({picture.rgba.data(), n, n, n, 1}), kProjected);
+  out.row =
+      greedy_order(project({picture.rgba.data(), n, n, n, 1}, progress), kProjected, progress);
   if (order == Bc1Params::Order::rows) return;
-  out.column = greedy_order(project({picture.rgba.data(), n, n, 1, n}), kProjected);
+  out.column =
+      greedy_order(project({picture.rgba.data(), n, n, 1, n}, progress), kProjected, progress);
 }
 
 /// 16 entries of a block. Beyond the last row and column the last is repeated.
@@ -141,7 +144,8 @@ void scale_row(const ColourMatrix& matrix, const Picture& picture, const Bc1Para
       if (!kept) want += double(matrix.channel[c][i * n + j]) * double(mean[j][int(c)]);
       if (!kept || params.hole == Bc1Params::Hole::zero) got += double(rest[j][int(c)]);
     }
-    if (got > 0) scale[c] = float(want / got);
+    // A row of which 8 bits hold next to nothing must not grow without bounds.
+    if (got > 0 && scale[c] > 0) scale[c] *= std::clamp(float(want / got) / scale[c], 0.25f, 4.0f);
   }
   out.row_scale[place] = {scale[0], scale[1], scale[2]};
 }
@@ -156,13 +160,13 @@ std::vector<uint32_t> inverse(std::span<const uint32_t> order) {
 /// Scales the rest, and keeps what is to be kept: the entry, or what the rest lacks of it, in units
 /// of the columns' means as `matrix` is.
 void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns& kept,
-          const Bc1Params& params, std::span<const Rgb> mean, Bc1& out) {
+          const Bc1Params& params, std::span<const Rgb> mean, const Progress& progress, Bc1& out) {
   const size_t n = matrix.n;
   out.row_scale.assign(n, {});
   for (size_t c = 0; c < 3; ++c)
     for (const float entry : matrix.channel[c])
       out.kept_unit[c] = std::max(out.kept_unit[c], entry);
-  // Halves reach from 6e-8 to 65,504, and a difference is at most some times the entry.
+  // Halves reach from 6e-8 to 65,504; the rest is at most 4 times the largest.
   for (float& unit : out.kept_unit) unit = unit > 0 ? unit / 8192 : 1.0f;
   // Nothing is kept yet, so that rows are decoded without it.
   out.first_kept.assign(n + 1, 0);
@@ -173,7 +177,7 @@ void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns&
   const std::vector<uint32_t> place_of = inverse(out.column);
   parallel_for(n, kRows, [&](size_t begin, size_t end) {
     std::vector<Rgb> rest(n);
-    for (size_t place = begin; place < end; ++place) {
+    for (size_t place = begin; place < end && !progress.cancelled(); ++place) {
       scale_row(matrix, picture, params, mean, place, out);
       if (params.hole == Bc1Params::Hole::neighbours) decode_row(out, place, rest);
       const size_t row = out.row[place];
@@ -218,14 +222,15 @@ Result<Bc1> make_bc1(ColourMatrix matrix, Bc1Params params, Progress& progress) 
   progress.begin("bc1", out.blocks_per_row());
   const std::vector<Rgb> mean =
       params.even_columns ? even_columns(matrix) : std::vector<Rgb>(n, Rgb{1, 1, 1});
-  const KeptColumns kept = choose_kept(matrix, params.kept);
-  const Picture picture = picture_of(matrix, kept, params);
+  const KeptColumns kept = choose_kept(matrix, params.kept, progress);
+  const Picture picture = picture_of(matrix, kept, params, progress);
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
   out.log_range = params.log_range;
-  choose_order(picture, params.order, out);
+  choose_order(picture, params.order, progress, out);
   LUXEL_TRY_STATUS(encode_blocks(picture, params, out, progress));
   for (const uint32_t j : out.column) out.column_scale.push_back(mean[j]);
-  keep(matrix, picture, kept, params, mean, out);
+  keep(matrix, picture, kept, params, mean, progress, out);
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
   return out;
 }
 

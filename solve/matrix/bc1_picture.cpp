@@ -18,7 +18,7 @@ constexpr float kLostShare = 0.002f;
 uint8_t byte_of(float value, float largest, float log_range) {
   if (!(value > 0)) return 0;
   const float level = (std::log(value / largest) / log_range + 1) * 255;
-  return uint8_t(std::clamp(std::lround(level), 0l, 255l));
+  return uint8_t(std::lround(std::clamp(level, 0.0f, 255.0f)));  // infinite if the rest is none
 }
 
 /// The largest entry of every channel that is not kept.
@@ -41,11 +41,11 @@ std::array<float, 3> largest_of_rest(const ColourMatrix& matrix, const Picture& 
 }
 
 /// The shortest range that loses no row and channel more than kLostShare of its sum.
-float fitted_range(const ColourMatrix& matrix, const Picture& picture) {
+float fitted_range(const ColourMatrix& matrix, const Picture& picture, const Progress& progress) {
   const size_t n = matrix.n;
   std::vector<size_t> of_row(n, 1);
   parallel_for(n, kRows, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
+    for (size_t i = begin; i < end && !progress.cancelled(); ++i)
       for (size_t c = 0; c < 3; ++c) {
         // The sums of entries between e^-(k + 1) and e^-k of the maximum.
         std::array<float, kLongestRange + 1> sum{};
@@ -85,13 +85,13 @@ std::vector<Rgb> even_columns(ColourMatrix& matrix) {
   return mean;
 }
 
-KeptColumns choose_kept(const ColourMatrix& matrix, float share) {
+KeptColumns choose_kept(const ColourMatrix& matrix, float share, const Progress& progress) {
   const size_t n = matrix.n;
   const auto count = std::ptrdiff_t(std::ceil(double(share) * double(n)));
   KeptColumns out(n);
   parallel_for(n, kRows, [&](size_t begin, size_t end) {
     std::vector<uint32_t> order(n);
-    for (size_t i = begin; i < end; ++i) {
+    for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       for (size_t c = 0; c < 3; ++c) {
         const float* entry = matrix.channel[c].data() + i * n;
         std::iota(order.begin(), order.end(), 0u);
@@ -108,15 +108,16 @@ KeptColumns choose_kept(const ColourMatrix& matrix, float share) {
   return out;
 }
 
-Picture picture_of(const ColourMatrix& matrix, const KeptColumns& kept, Bc1Params& params) {
+Picture picture_of(const ColourMatrix& matrix, const KeptColumns& kept, Bc1Params& params,
+                   const Progress& progress) {
   const size_t n = matrix.n;
   Picture out{n, std::vector<uint8_t>(4 * n * n, 255), {}};
   for (size_t i = 0; i < n; ++i)
     for (const uint32_t j : kept[i]) out.at(i, j)[3] = 0;
   out.largest = largest_of_rest(matrix, out);
-  if (params.log_range == 0) params.log_range = fitted_range(matrix, out);
+  if (params.log_range == 0) params.log_range = fitted_range(matrix, out, progress);
   parallel_for(n, kRows, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
+    for (size_t i = begin; i < end && !progress.cancelled(); ++i)
       for (size_t j = 0; j < n; ++j)
         for (size_t c = 0; c < 3; ++c)
           out.at(i, j)[c] =

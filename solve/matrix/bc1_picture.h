@@ -15,7 +15,8 @@ std::vector<Rgb> even_columns(ColourMatrix& matrix);
 /// The columns of each row that are kept, ascending.
 using KeptColumns = std::vector<std::vector<uint32_t>>;
 /// The largest `share` of every row and channel; of equal ones the first.
-KeptColumns choose_kept(const ColourMatrix& matrix, float share);
+/// Unfinished when cancelled.
+KeptColumns choose_kept(const ColourMatrix& matrix, float share, const Progress& progress);
 
 /// The rest in 8 bits: RGBA, row by row. A is 0 where the entry is kept, else 255.
 struct Picture {
@@ -30,7 +31,8 @@ struct Picture {
   bool is_kept(size_t row, size_t column) const { return at(row, column)[3] == 0; }
 };
 
-/// Fits params.log_range where it is 0.
-Picture picture_of(const ColourMatrix& matrix, const KeptColumns& kept, Bc1Params& params);
+/// Fits params.log_range where it is 0. Unfinished when cancelled.
+Picture picture_of(const ColourMatrix& matrix, const KeptColumns& kept, Bc1Params& params,
+                   const Progress& progress);
 
 }  // namespace luxel::matrix

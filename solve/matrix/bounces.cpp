@@ -2,8 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <map>
-#include <numeric>
+#include <utility>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -28,41 +27,91 @@ std::vector<uint32_t> cut_of(const ClusterTree& tree, size_t wanted) {
   return cut;
 }
 
-/// Patches that light can go between, over others, have the same number: the least of theirs.
-std::vector<uint32_t> components_of(const FormFactors& factors) {
-  std::vector<uint32_t> root(factors.size());
-  std::iota(root.begin(), root.end(), 0u);
-  const auto root_of = [&](uint32_t i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
+/// What each patch sees of each cluster of a cut, ascending.
+struct Views {
+  struct Share {
+    uint32_t cluster = 0;
+    float factor = 0;
   };
-  for (uint32_t i = 0; i < factors.size(); ++i)
-    for (const uint32_t j : factors.columns_of(i)) {
-      const uint32_t a = root_of(i), b = root_of(j);
-      root[std::max(a, b)] = std::min(a, b);
+  std::vector<Share> share;
+  std::vector<size_t> first;  ///< per patch, one extra entry
+
+  std::span<const Share> of(size_t patch) const {
+    return std::span(share).subspan(first[patch], first[patch + 1] - first[patch]);
+  }
+};
+
+Views views_of(const FormFactors& factors, std::span<const uint32_t> cluster_of, size_t clusters) {
+  Views out;
+  std::vector<float> sum(clusters);
+  std::vector<uint32_t> seen;
+  for (size_t i = 0; i < factors.size(); ++i) {
+    out.first.push_back(out.share.size());
+    const auto columns = factors.columns_of(i);
+    for (size_t k = 0; k < columns.size(); ++k) {
+      const uint32_t c = cluster_of[columns[k]];
+      if (sum[c] == 0) seen.push_back(c);
+      sum[c] += factors.factors_of(i)[k];
     }
-  for (uint32_t i = 0; i < factors.size(); ++i) root[i] = root_of(i);
-  // Those that see no other do no harm wherever they are.
-  for (uint32_t i = 0; i < factors.size(); ++i)
-    if (factors.columns_of(i).empty()) root[i] = 0;
-  return root;
+    std::sort(seen.begin(), seen.end());
+    for (const uint32_t c : seen) out.share.push_back({c, std::exchange(sum[c], 0.0f)});
+    seen.clear();
+  }
+  out.first.push_back(out.share.size());
+  return out;
 }
 
-/// Numbers the clusters of a cut, each component of the scene for itself: what is inside a closed
-/// box must not share a cluster with what is outside. Returns how many.
-uint32_t number_clusters(const FormFactors& factors, const ClusterTree& tree,
-                         std::span<const uint32_t> cut, std::vector<uint32_t>& cluster_of) {
-  const std::vector<uint32_t> component = components_of(factors);
+/// How much of what the one sees the other sees as well: sum of the smaller factors.
+float common_view(std::span<const Views::Share> a, std::span<const Views::Share> b) {
+  float sum = 0;
+  for (size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+    if (a[i].cluster == b[j].cluster) sum += std::min(a[i].factor, b[j].factor);
+    const bool next_a = a[i].cluster <= b[j].cluster, next_b = b[j].cluster <= a[i].cluster;
+    i += next_a, j += next_b;
+  }
+  return sum;
+}
+
+/// Two patches of a cluster whose views share less than this are not alike; a cluster is split into
+/// no more parts than are worth their room.
+constexpr float kAlikeViews = 0.35f;
+constexpr size_t kMostParts = 3;
+
+/// The part that a patch joins: the first that it is like; when there can be no more parts, the one
+/// it is most like. model.size(): a new one.
+size_t part_of(const Views& views, uint32_t patch, std::span<const uint32_t> model) {
+  const auto view = views.of(patch);
+  if (view.empty()) return 0;  // does no harm wherever it is
+  size_t best = 0;
+  float most = -1;
+  for (size_t part = 0; part < model.size(); ++part) {
+    const float common = common_view(view, views.of(model[part]));
+    if (common >= kAlikeViews) return part;
+    if (common > most) most = common, best = part;
+  }
+  return model.size() < kMostParts ? model.size() : best;
+}
+
+/// Splits clusters whose patches see different things: the floors on both sides of a wall, what is
+/// inside and what is outside of a box. Returns how many clusters there are.
+uint32_t split_by_view(const FormFactors& factors, const ClusterTree& tree,
+                       std::span<const uint32_t> cut, std::vector<uint32_t>& cluster_of) {
   cluster_of.resize(factors.size());
+  for (uint32_t s = 0; s < cut.size(); ++s)
+    for (uint32_t i = tree.clusters[cut[s]].first; i < tree.clusters[cut[s]].end; ++i)
+      cluster_of[i] = s;
+  const Views views = views_of(factors, cluster_of, cut.size());
   uint32_t count = 0;
-  std::map<uint32_t, uint32_t> number;
+  std::vector<uint32_t> model;  // of each part of a cluster, one of its patches
   for (const uint32_t c : cut) {
-    number.clear();
-    for (uint32_t i = tree.clusters[c].first; i < tree.clusters[c].end; ++i) {
-      const auto [entry, is_new] = number.try_emplace(component[i], count);
-      count += is_new;
-      cluster_of[i] = entry->second;
+    const Cluster& cluster = tree.clusters[c];
+    model.clear();
+    for (uint32_t i = cluster.first; i < cluster.end; ++i) {
+      const size_t part = part_of(views, i, model);
+      if (part == model.size()) model.push_back(i);
+      cluster_of[i] = count + uint32_t(part);
     }
+    count += uint32_t(model.size());
   }
   return count;
 }
@@ -73,7 +122,7 @@ CoarseScene make_coarse_scene(const FormFactors& factors, const ClusterTree& tre
                               std::span<const float> area_m2, std::span<const Rgb> reflectance,
                               size_t clusters) {
   CoarseScene out;
-  const uint32_t count = number_clusters(factors, tree, cut_of(tree, clusters), out.cluster_of);
+  const uint32_t count = split_by_view(factors, tree, cut_of(tree, clusters), out.cluster_of);
   const auto m = Eigen::Index(count);
   out.area_m2.assign(count, 0.0f);
   for (size_t i = 0; i < factors.size(); ++i) out.area_m2[out.cluster_of[i]] += area_m2[i];

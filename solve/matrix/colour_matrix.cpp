@@ -20,7 +20,7 @@ constexpr size_t kRows = 16;
 constexpr size_t kPanel = 64;
 constexpr size_t kLanes = 8;
 /// Columns and rows of the blocks that the direct solution works on.
-constexpr Eigen::Index kBlock = 128;
+constexpr Eigen::Index kBlock = 256;
 
 using Lanes [[gnu::vector_size(4 * kLanes)]] = float;
 
@@ -108,6 +108,56 @@ Matrix symmetric(const FormFactors& factors, std::span<const float> area_m2) {
   return out;
 }
 
+/// Calls body(first, size) for blocks of [begin, n) until cancelled. Whether it was not.
+bool for_blocks(Eigen::Index begin, Eigen::Index n, Progress& progress,
+                const std::function<void(Eigen::Index, Eigen::Index)>& body) {
+  std::atomic<bool> cancelled = false;
+  parallel_for(size_t(n - begin), size_t(kBlock), [&](size_t first, size_t end) {
+    if (progress.cancelled()) cancelled = true;
+    if (!cancelled) body(begin + Eigen::Index(first), Eigen::Index(end - first));
+  });
+  return !cancelled;
+}
+
+/// The lower triangle of a matrix becomes L, L L^T = matrix; block column by block column.
+Status factorise(Matrix& matrix, Progress& progress) {
+  const Eigen::Index n = matrix.rows();
+  for (Eigen::Index k = 0; k < n; k += kBlock) {
+    const Eigen::Index wide = std::min(kBlock, n - k);
+    const auto update = [&](Eigen::Index row, Eigen::Index rows) {
+      matrix.block(row, k, rows, wide).noalias() -=
+          matrix.block(row, 0, rows, k) * matrix.block(k, 0, wide, k).transpose();
+    };
+    if (!for_blocks(k, n, progress, update)) return fail(ErrorCode::cancelled, "cancelled");
+    const Eigen::LLT<Matrix> corner(matrix.block(k, k, wide, wide));
+    if (corner.info() != Eigen::Success)
+      return fail(ErrorCode::bad_input,
+                  "bounces without end have no limit: reflectances of nearly 1 in a closed scene; "
+                  "lower them, or count the bounces");
+    matrix.block(k, k, wide, wide) = corner.matrixL();
+    const auto solve = [&](Eigen::Index row, Eigen::Index rows) {
+      auto block = matrix.block(row, k, rows, wide);
+      corner.matrixU().solveInPlace<Eigen::OnTheRight>(block);
+    };
+    if (!for_blocks(k + wide, n, progress, solve)) return fail(ErrorCode::cancelled, "cancelled");
+  }
+  return {};
+}
+
+/// Rows [row, row + rows) of columns [first, first + count) of K from those of sqrt(A) K / sqrt(A),
+/// which is symmetric.
+void store_tile(const Matrix& tile, Eigen::Index row, Eigen::Index first,
+                std::span<const float> area_m2, std::vector<float>& out) {
+  const size_t n = area_m2.size();
+  for (Eigen::Index j = 0; j < tile.cols(); ++j)
+    for (Eigen::Index i = 0; i < tile.rows(); ++i) {
+      const auto a = size_t(row + i), b = size_t(first + j);
+      const float ratio = std::sqrt(area_m2[b] / area_m2[a]);
+      out[a * n + b] = tile(i, j) * ratio;
+      if (a > b) out[b * n + a] = tile(i, j) / ratio;
+    }
+}
+
 /// The limit. With S' and R = sqrt(rho),
 ///   sqrt(A) K / sqrt(A) = S' + S' R (1 + M + M^2 + ...) R S',   M = R S' R,
 /// and 1 - M = L L^T is positive definite: M is similar to F rho, whose rows sum to less than 1. So
@@ -119,41 +169,29 @@ Status reflect_for_ever(const Matrix& s, std::span<const Rgb> reflectance,
   Eigen::VectorXf root(n);
   for (Eigen::Index i = 0; i < n; ++i) root[i] = std::sqrt(reflectance[size_t(i)][channel]);
   Matrix y = root.asDiagonal() * s;
-  Matrix system = -(y * root.asDiagonal());
-  system.diagonal().array() += 1.0f;
-  const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);  // in place
-  if (factor.info() != Eigen::Success)
-    return fail(ErrorCode::bad_input,
-                "bounces without end have no limit: reflectances of nearly 1 in a closed scene; "
-                "lower them, or count the bounces");
-  std::atomic<bool> cancelled = false;
-  const auto poll = [&] {
-    if (progress.cancelled()) cancelled = true;
-    return bool(cancelled);
-  };
-  parallel_for(size_t(n), size_t(kBlock), [&](size_t begin, size_t end) {
-    if (!poll()) {
-      auto columns = y.middleCols(Eigen::Index(begin), Eigen::Index(end - begin));
-      factor.matrixL().solveInPlace(columns);
+  Matrix l = -(y * root.asDiagonal());
+  l.diagonal().array() += 1.0f;
+  LUXEL_TRY_STATUS(factorise(l, progress));
+  const auto solve = [&](Eigen::Index first, Eigen::Index count) {
+    for (Eigen::Index k = 0; k < n && !progress.cancelled(); k += kBlock) {
+      const Eigen::Index rows = std::min(kBlock, n - k);
+      auto block = y.block(k, first, rows, count);
+      block.noalias() -= l.block(k, 0, rows, k) * y.block(0, first, k, count);
+      l.block(k, k, rows, rows).triangularView<Eigen::Lower>().solveInPlace(block);
     }
-  });
-  parallel_for(size_t(n), size_t(kBlock), [&](size_t begin, size_t end) {
-    const auto first = Eigen::Index(begin), count = Eigen::Index(end - begin);
-    for (Eigen::Index row = first; row < n && !poll(); row += kBlock) {
+  };
+  const auto sum = [&](Eigen::Index first, Eigen::Index count) {
+    for (Eigen::Index row = first; row < n && !progress.cancelled(); row += kBlock) {
       const Eigen::Index rows = std::min(kBlock, n - row);
       const Matrix tile = s.block(row, first, rows, count) +
                           y.middleCols(row, rows).transpose() * y.middleCols(first, count);
-      for (Eigen::Index j = 0; j < count; ++j)
-        for (Eigen::Index i = 0; i < rows; ++i) {
-          const auto a = size_t(row + i), b = size_t(first + j);
-          const float ratio = std::sqrt(area_m2[b] / area_m2[a]);
-          out[a * size_t(n) + b] = tile(i, j) * ratio;
-          if (a > b) out[b * size_t(n) + a] = tile(i, j) / ratio;
-        }
+      store_tile(tile, row, first, area_m2, out);
     }
-    progress.advance(end - begin);
-  });
-  if (cancelled) return fail(ErrorCode::cancelled, "cancelled");
+    progress.advance(uint64_t(count));
+  };
+  if (!for_blocks(0, n, progress, solve) || !for_blocks(0, n, progress, sum) ||
+      progress.cancelled())
+    return fail(ErrorCode::cancelled, "cancelled");
   return {};
 }
 

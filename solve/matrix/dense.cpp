@@ -9,6 +9,10 @@
 #include "base/vectorize.h"
 #include "solve/matrix/half.h"
 
+#if LUXEL_X86_VECTORS
+#include <immintrin.h>
+#endif
+
 namespace luxel::matrix {
 namespace {
 
@@ -45,14 +49,47 @@ void add_two_rows(const float* row0, const float* row1, size_t n, const float* p
   }
 }
 
+#if LUXEL_X86_VECTORS
 /// The same for rows of halves.
+__attribute__((target("avx2,f16c"))) void add_two_rows_f16c(const uint16_t* row0,
+                                                            const uint16_t* row1, size_t n,
+                                                            const float* plane, size_t stride,
+                                                            float (*sums)[3]) {
+  __m256 sum[2][3] = {};
+  size_t j = 0;
+  for (; j + kLanes <= n; j += kLanes) {
+    const __m256 f0 = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i*)(row0 + j)));
+    const __m256 f1 = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i*)(row1 + j)));
+    for (size_t c = 0; c < 3; ++c) {
+      const __m256 b = _mm256_loadu_ps(plane + c * stride + j);
+      sum[0][c] = _mm256_add_ps(sum[0][c], _mm256_mul_ps(f0, b));
+      sum[1][c] = _mm256_add_ps(sum[1][c], _mm256_mul_ps(f1, b));
+    }
+  }
+  for (size_t c = 0; c < 3; ++c) {
+    for (size_t l = 0; l < kLanes; ++l) sums[0][c] += sum[0][c][l], sums[1][c] += sum[1][c][l];
+    for (size_t k = j; k < n; ++k) {
+      const float b = plane[c * stride + k];
+      sums[0][c] += float_from_half(row0[k]) * b, sums[1][c] += float_from_half(row1[k]) * b;
+    }
+  }
+}
+#endif
+
+/// The same for rows of halves, a chunk at a time.
 void add_two_rows(const uint16_t* row0, const uint16_t* row1, size_t n, const float* plane,
-                  size_t stride, float (*sums)[3]) {
-  float chunk[2][kChunk];
+                  size_t stride, Instructions instructions, float (*sums)[3]) {
   for (size_t j = 0; j < n; j += kChunk) {
     const size_t count = std::min(kChunk, n - j);
-    floats_from_halves(row0 + j, count, chunk[0]);
-    floats_from_halves(row1 + j, count, chunk[1]);
+#if LUXEL_X86_VECTORS
+    if (instructions >= Instructions::avx2) {
+      add_two_rows_f16c(row0 + j, row1 + j, count, plane + j, stride, sums);
+      continue;
+    }
+#endif
+    float chunk[2][kChunk];
+    for (size_t k = 0; k < count; ++k)
+      chunk[0][k] = float_from_half(row0[j + k]), chunk[1][k] = float_from_half(row1[j + k]);
     add_two_rows(chunk[0], chunk[1], count, plane + j, stride, sums);
   }
 }
@@ -110,6 +147,11 @@ float inner_product(const float* row, const float* plane, size_t n) {
 
 void multiply(const Dense& m, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
               DenseWork& work) {
+  multiply(m, radiosity, irradiance, work, instructions());
+}
+
+void multiply(const Dense& m, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
+              DenseWork& work, Instructions instructions) {
   const size_t n = m.n;
   LUXEL_CHECK(radiosity.size() == n && irradiance.size() == n && work.stride >= n);
   split_channels(radiosity, work);
@@ -121,7 +163,8 @@ void multiply(const Dense& m, std::span<const Rgb> radiosity, std::span<Rgb> irr
       if (m.half.empty())
         add_two_rows(m.single.data() + i * n, m.single.data() + next * n, n, b, work.stride, sums);
       else
-        add_two_rows(m.half.data() + i * n, m.half.data() + next * n, n, b, work.stride, sums);
+        add_two_rows(m.half.data() + i * n, m.half.data() + next * n, n, b, work.stride,
+                     instructions, sums);
       irradiance[i] = {sums[0][0], sums[0][1], sums[0][2]};
       irradiance[next] = {sums[1][0], sums[1][1], sums[1][2]};
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solve/matrix/form_factors.h"
+#include "solve/matrix/instructions.h"
 
 namespace luxel::matrix {
 
@@ -29,9 +30,12 @@ struct DenseWork {
 };
 DenseWork make_dense_work(size_t patches);
 
-/// E = F B. Allocates nothing.
+/// E = F B. Allocates nothing. The same bits on all processors.
 void multiply(const Dense& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
               DenseWork& work);
+/// By instructions that this processor has, for tests.
+void multiply(const Dense& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
+              DenseWork& work, Instructions instructions);
 
 uint64_t bytes_of(const Dense& matrix);
 

@@ -4,11 +4,6 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "solve/matrix/instructions.h"
-
-#if LUXEL_X86_VECTORS
-#include <immintrin.h>
-#endif
 
 namespace luxel::matrix {
 
@@ -28,24 +23,6 @@ float float_from_half(uint16_t half) {
   const float value = size < 0x0400 ? float(size) * 0x1p-24f
                                     : std::bit_cast<float>((size << 13) + ((127u - 15u) << 23));
   return half & 0x8000 ? -value : value;
-}
-
-#if LUXEL_X86_VECTORS
-__attribute__((target("avx2,f16c"))) static size_t convert_eights(const uint16_t* half,
-                                                                  size_t count, float* out) {
-  size_t k = 0;
-  for (; k + 8 <= count; k += 8)
-    _mm256_storeu_ps(out + k, _mm256_cvtph_ps(_mm_loadu_si128((const __m128i*)(half + k))));
-  return k;
-}
-#endif
-
-void floats_from_halves(const uint16_t* half, size_t count, float* out) {
-  size_t k = 0;
-#if LUXEL_X86_VECTORS
-  if (instructions() >= Instructions::avx2) k = convert_eights(half, count, out);
-#endif
-  for (; k < count; ++k) out[k] = float_from_half(half[k]);
 }
 
 }  // namespace luxel::matrix

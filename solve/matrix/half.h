@@ -1,7 +1,6 @@
 // Half-precision numbers, IEEE 754 binary16, as stored: two bytes of what memory has to deliver.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
 namespace luxel::matrix {
@@ -11,8 +10,7 @@ inline constexpr float kLargestHalf = 65504;
 /// Rounds to nearest, ties to even; |x| <= kLargestHalf.
 uint16_t half_from_float(float x);
 
-/// Finite halves to floats, exactly.
+/// Exactly; the half is finite.
 float float_from_half(uint16_t half);
-void floats_from_halves(const uint16_t* half, size_t count, float* out);
 
 }  // namespace luxel::matrix

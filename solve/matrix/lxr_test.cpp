@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "solve/matrix/codec.h"
 #include "solve/matrix/lxr_test_support.h"
 
 namespace luxel::matrix {
@@ -43,6 +44,14 @@ void expect_same(const DenseCodec& a, const DenseCodec& b) {
   expect_same(a.coarse, b.coarse);
   EXPECT_EQ(a.sweeps, b.sweeps);
 }
+void expect_same(const Bc1Codec& a, const Bc1Codec& b) {
+  const Bc1 &m = a.matrix, &n = b.matrix;
+  EXPECT_TRUE(m.n == n.n && same(m.log_range, n.log_range) && same(m.kept_unit, n.kept_unit));
+  EXPECT_TRUE(same(m.row, n.row) && same(m.column, n.column) && same(m.row_scale, n.row_scale));
+  EXPECT_TRUE(same(m.column_scale, n.column_scale));
+  EXPECT_TRUE(same(m.blocks, n.blocks) && same(m.first_kept, n.first_kept));
+  EXPECT_TRUE(same(m.kept, n.kept));
+}
 void expect_same(const LowRankCodec& a, const LowRankCodec& b) {
   const LowRank &m = a.matrix, &n = b.matrix;
   EXPECT_TRUE(same(m.root_area_m, n.root_area_m) && same(m.vector, n.vector));
@@ -51,13 +60,6 @@ void expect_same(const LowRankCodec& a, const LowRankCodec& b) {
     EXPECT_TRUE(same(m.reflected[c], n.reflected[c]));
     EXPECT_TRUE(same(m.all_bounces[c], n.all_bounces[c]));
   }
-}
-void expect_same(const Bc1Codec& a, const Bc1Codec& b) {
-  const Bc1 &m = a.matrix, &n = b.matrix;
-  EXPECT_TRUE(m.n == n.n && same(m.log_range, n.log_range) && same(m.kept_unit, n.kept_unit));
-  EXPECT_TRUE(same(m.row, n.row) && same(m.column, n.column) && same(m.row_scale, n.row_scale));
-  EXPECT_TRUE(same(m.column_scale, n.column_scale) && same(m.blocks, n.blocks));
-  EXPECT_TRUE(same(m.first_kept, n.first_kept) && same(m.kept, n.kept));
 }
 void expect_same(const Target& a, const Target& b) {
   EXPECT_EQ(a.kind, b.kind);
@@ -109,7 +111,7 @@ TEST(Lxr, ComesBackBitForBit) {
   RelightData data = small_data();
   data.position[3].x = -0.0f, data.position[4].x = 1e-44f;  // a denormal
   for (const Codec& codec : {data.codec, Codec(small_dense(false)), Codec(small_dense(true)),
-                             Codec(testing::small_low_rank()), Codec(testing::small_bc1())}) {
+                             Codec(testing::small_bc1()), Codec(testing::small_low_rank())}) {
     data.codec = codec;
     const auto back = decode_lxr(encode_lxr(data), "a.lxr");
     ASSERT_TRUE(back) << back.error().message;
@@ -259,10 +261,19 @@ TEST(Lxr, SaysWhereAListIsTooLong) {
                         " elements of 12 bytes or more"));
 }
 
+/// What a player does with it; the sanitizers watch.
+void play(const RelightData& data) {
+  CodecWork work = make_work(data.codec, data.size());
+  std::vector<Rgb> e(data.size()), of_place(data.target.transfer.size());
+  const int bounces = std::min(data.bounces, 3);
+  irradiance_of(data.codec, {data.emission, data.reflectance, data.area_m2, bounces}, e, work);
+  transfer(data.target.transfer, e, of_place);
+}
+
 TEST(Lxr, MendedDamageIsAnErrorOrOtherData) {
-  // No damage may be read as something that is written differently.
+  // No damage may be read as something that is written differently, or that cannot be played.
   for (const Codec& codec : {small_data().codec, Codec(small_dense(true)),
-                             Codec(testing::small_low_rank()), Codec(testing::small_bc1())}) {
+                             Codec(testing::small_bc1()), Codec(testing::small_low_rank())}) {
     const Bytes file = encode_lxr(small_data(codec));
     size_t errors = 0;
     for (size_t at = 12; at < file.size(); ++at)
@@ -274,6 +285,7 @@ TEST(Lxr, MendedDamageIsAnErrorOrOtherData) {
         errors += !data;
         if (data) {
           EXPECT_EQ(encode_lxr(*data), damaged) << "byte " << at;
+          play(*data);
         }
       }
     EXPECT_GE(errors, 3u * 4u * 7u);  // the tags of seven chunks, at least

@@ -139,6 +139,20 @@ inline DenseCodec small_dense(bool half) {
   return codec;
 }
 
+inline Bc1Codec small_bc1() {
+  Bc1 m;
+  m.n = 10, m.kept_unit = {0.5f, 0.25f, 2};
+  for (uint32_t k = 0; k < 10; ++k) {
+    m.row.push_back(9 - k), m.column.push_back((k + 3) % 10);
+    m.row_scale.push_back({0.125f * float(k), 0.5f, 1});
+    m.column_scale.push_back({1, float(k), 0.5f});
+  }
+  for (uint64_t k = 0; k < 9; ++k) m.blocks.push_back((1000 * k + 7) << 32 | k << 16 | (k + 5));
+  m.first_kept = {0, 2, 2, 2, 2, 2, 2, 2, 2, 2, 3};
+  m.kept = {{{0x3c00, 0x3800, 0}, 1}, {{1, 2, 3}, 9}, {{0x8001, 0, 0x7bff}, 4}};
+  return {m};
+}
+
 inline LowRankCodec small_low_rank() {
   LowRank m;
   for (int i = 0; i < 10; ++i) m.root_area_m.push_back(1 + 0.125f * float(i));
@@ -149,21 +163,6 @@ inline LowRankCodec small_low_rank() {
       m.reflected[channel].push_back(float(k) + float(channel));
       m.all_bounces[channel].push_back(-float(k) - float(channel));
     }
-  return {m};
-}
-
-/// 10 patches are 3 x 3 blocks; all of one colour, which is a mode that may be read.
-inline Bc1Codec small_bc1() {
-  Bc1 m;
-  m.n = 10, m.log_range = 20;
-  for (uint32_t k = 0; k < 10; ++k) {
-    m.row.push_back((7 * k) % 10), m.column.push_back((3 * k) % 10);
-    m.row_scale.push_back({float(k), 1, 2}), m.column_scale.push_back({1, float(k), 0.5f});
-  }
-  for (uint64_t k = 0; k < 9; ++k) m.blocks.push_back(k << 16 | k);
-  m.kept_unit = {0.25f, 0.5f, 1};
-  m.kept = {{{0x3c00, 0, 0x3800}, 4}, {{0x3400, 0x3c00, 0}, 9}};
-  m.first_kept = {0, 0, 1, 1, 1, 1, 1, 1, 2, 2, 2};
   return {m};
 }
 

@@ -14,9 +14,9 @@ namespace {
 
 /// Places of a patch at which its direct light is taken.
 constexpr size_t kProbes = 8;
-/// Clusters of the coarse scene: two sweeps err by less than codecs do. Linear functions over fewer
-/// clusters were tried: they do no better for as many numbers.
-constexpr size_t kCoarseClusters = 512;
+/// Clusters of the coarse scene, before those are split whose patches see different things. Linear
+/// functions over fewer clusters were tried: they do no better for as many numbers.
+constexpr size_t kCoarseClusters = 300;
 
 void take_patches(const Patches& patches, RelightData& out) {
   out.position = patches.elements.position, out.normal = patches.elements.normal;
@@ -87,7 +87,7 @@ double relative_square(std::span<const Rgb> got, std::span<const Rgb> wanted,
 /// Sweeps that leave nothing to be seen in single precision.
 constexpr int kManySweeps = 12;
 /// The part of params.max_error that unfinished bounces may have.
-constexpr double kPartOfSweeps = 0.5;
+constexpr double kPartOfSweeps = 0.6;
 
 /// With the factors themselves.
 class Exact {

@@ -144,7 +144,7 @@ std::vector<Wrong> wrong_bc1s() {
           {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).column[2] = 10; }},
           {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).kept[1].place = 10; }},
           {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).kept[0].value[1] = 0x7c00; }},
-          {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).first_kept[4] = 2; }},
+          {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).first_kept[4] = 1; }},
           {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).blocks.pop_back(); }},
           {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).row_scale[9].y = kNan; }},
           {"BC1 matrix has lengths", [](RelightData& d) { bc1(d).log_range = 0; }},

@@ -45,7 +45,7 @@ struct LowRankCodec {
 };
 
 /// One codec's matrix: irradiance from what patches send. A file knows codecs by their place here.
-using Codec = std::variant<HierarchicalCodec, DenseCodec, LowRankCodec, Bc1Codec>;
+using Codec = std::variant<HierarchicalCodec, DenseCodec, Bc1Codec, LowRankCodec>;
 
 /// Places whose light is wanted.
 struct Target {

@@ -53,13 +53,14 @@ void project_rows(const std::array<const uint8_t*, kRows>& row, size_t length, s
 
 }  // namespace
 
-std::vector<uint32_t> greedy_order(std::span<const float> points, size_t dimensions) {
+std::vector<uint32_t> greedy_order(std::span<const float> points, size_t dimensions,
+                                   const Progress& progress) {
   LUXEL_CHECK(dimensions > 0 && points.size() % dimensions == 0);
   const size_t n = points.size() / dimensions;
   std::vector<uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
   // order[0, k) is the path, the rest what is left, ascending.
-  for (size_t k = 1; k < n; ++k) {
+  for (size_t k = 1; k < n && !progress.cancelled(); ++k) {
     const float* here = points.data() + order[k - 1] * dimensions;
     size_t nearest = k;
     float least = INFINITY;
@@ -73,12 +74,13 @@ std::vector<uint32_t> greedy_order(std::span<const float> points, size_t dimensi
   return order;
 }
 
-std::vector<float> project(const ByteRows& rows) {
+std::vector<float> project(const ByteRows& rows, const Progress& progress) {
   std::vector<float> out(rows.count * kProjected), signs(3 * rows.length * kDimensions);
   for (size_t first = 0; first < kProjected; first += kDimensions) {
     for (size_t k = 0; k < signs.size(); ++k)
       signs[k] = hash64(kSeed + first, k / 64) >> (k % 64) & 1 ? 1.0f : -1.0f;
     parallel_for(rows.count, kRows, [&](size_t begin, size_t end) {
+      if (progress.cancelled()) return;
       std::array<const uint8_t*, kRows> row;
       for (size_t r = 0; r < kRows; ++r)
         row[r] = rows.data + 4 * std::min(begin + r, end - 1) * rows.row_step;

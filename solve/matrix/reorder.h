@@ -5,12 +5,15 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.h"
+
 namespace luxel::matrix {
 
 /// The greedy path of [Shcherbakov17, section 3.5]: starts at point 0 and goes on to the nearest
 /// point not yet met, by Euclidean distance; the first of equally near ones. Of
-/// `points.size() / dimensions` points. n^2 / 2 distances.
-std::vector<uint32_t> greedy_order(std::span<const float> points, size_t dimensions);
+/// `points.size() / dimensions` points. n^2 / 2 distances. Stops short when cancelled.
+std::vector<uint32_t> greedy_order(std::span<const float> points, size_t dimensions,
+                                   const Progress& progress);
 
 /// Rows or columns of a picture of bytes, as points of a space of kProjected dimensions.
 struct ByteRows {
@@ -23,7 +26,7 @@ struct ByteRows {
 /// many random ones to within sqrt(2 / 128) = 12 %. [Johnson84; Achlioptas03: signs will do]
 inline constexpr size_t kProjected = 128;
 
-/// kProjected numbers per row.
-std::vector<float> project(const ByteRows& rows);
+/// kProjected numbers per row. Stops short when cancelled.
+std::vector<float> project(const ByteRows& rows, const Progress& progress);
 
 }  // namespace luxel::matrix

@@ -33,8 +33,8 @@ Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Sce
     names += (names.empty() ? "" : ", ") + camera.name;
   }
   if (!choice.name.empty())
-    return fail(ErrorCode::bad_setting, "--camera {} is not in {}; there is: {}", choice.name, file,
-                names.empty() ? "none" : names);
+    return fail(ErrorCode::bad_setting, "{} {} is not in {}; there is: {}", choice.asked,
+                choice.name, file, names.empty() ? "none" : names);
   return display::fit_camera(scene, tracer, choice.aspect);
 }
 

@@ -46,6 +46,13 @@ Result<double> number(const Node& node, double least, double most) {
   return node.value.get<double>();
 }
 
+Result<int> whole_number(const Node& node, int least, int most) {
+  const auto value = number(node, least, most);
+  if (!value || *value != std::floor(*value))
+    return wrong(node, fmt::format("a whole number from {} to {}", least, most));
+  return int(*value);
+}
+
 Result<Vec3> triple(const Node& node) {
   const bool good = node.value.is_array() && node.value.size() == 3 &&
                     std::all_of(node.value.begin(), node.value.end(),
@@ -192,16 +199,14 @@ Status read_camera(const Node& node, LightScript& out) {
 
 Status read_size(const Node& node, LightScript& out) {
   if (!node.value.is_array() || node.value.size() != 2) return wrong(node, "[width, height]");
-  LUXEL_TRY(const double width, number(node.at(size_t(0)), 1, 8192));
-  LUXEL_TRY(const double height, number(node.at(size_t(1)), 1, 8192));
-  out.width = int(width), out.height = int(height);
+  LUXEL_TRY(out.width, whole_number(node.at(size_t(0)), 1, 8192));
+  LUXEL_TRY(out.height, whole_number(node.at(size_t(1)), 1, 8192));
   return {};
 }
 
 Status read_timing(const Node& root, LightScript& out) {
   if (root.has("frames")) {
-    LUXEL_TRY(const double frames, number(root.at("frames"), 1, 100000));
-    out.frames = int(frames);
+    LUXEL_TRY(out.frames, whole_number(root.at("frames"), 1, 100000));
   }
   if (root.has("frames_per_second")) {
     LUXEL_TRY(out.frames_per_second, number(root.at("frames_per_second"), 0.001, 1000));
@@ -258,9 +263,16 @@ Vec3 value_at(const Track& track, double time_s) {
 }
 
 Result<LightScript> parse_light_script(const std::string& text, const std::string& name) {
-  json document = json::parse(text, nullptr, false);
-  if (document.is_discarded())
-    return fail(ErrorCode::bad_input, "{}: it is not JSON; look for a missing comma or bracket",
+  // Deeper than any script: dump() would recurse until the stack ends.
+  bool too_deep = false;
+  const auto look = [&too_deep](int depth, json::parse_event_t, json&) {
+    too_deep = too_deep || depth > 32;
+    return true;
+  };
+  const json document = json::parse(text, look, false);
+  if (document.is_discarded() || too_deep)
+    return fail(ErrorCode::bad_input,
+                "{}: it is not JSON that could be a script; look for a missing comma or bracket",
                 name);
   const Node root{document, name};
   constexpr std::array<std::string_view, 9> known{"frames",      "frames_per_second", "size",

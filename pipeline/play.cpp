@@ -85,6 +85,7 @@ class PlaceLight {
 Result<scene::Camera> camera_of(const LightScript& script, const scene::Scene& scene,
                                 const trace::RayTracer& tracer, const std::string& file) {
   CameraChoice choice;
+  choice.asked = "the script's camera";
   if (const auto* name = std::get_if<std::string>(&script.camera)) choice.name = *name;
   if (const auto* view = std::get_if<LightScript::View>(&script.camera))
     choice.eye = view->eye, choice.look_at = view->look_at, choice.fov_deg = view->fov_deg;

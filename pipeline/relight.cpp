@@ -39,7 +39,14 @@ Result<matrix::CodecKind> codec_of(const std::string& name) {
 
 Status check(const RelightSettings& s) {
   LUXEL_TRY_STATUS(check(s.matrix));
-  if (const auto codec = codec_of(s.codec); !codec) return tl::unexpected(codec.error());
+  LUXEL_TRY(const matrix::CodecKind codec, codec_of(s.codec));
+  const bool all_pairs =
+      codec != matrix::CodecKind::hierarchical && codec != matrix::CodecKind::lowrank;
+  if (all_pairs && size_t(s.matrix.patches) > matrix::kMaxDensePatches)
+    return fail(ErrorCode::bad_setting,
+                "--patches {} are too many for --codec {}, which looks at all pairs of up to {}; "
+                "ask for fewer, or for --codec hierarchical",
+                s.matrix.patches, s.codec, matrix::kMaxDensePatches);
   if (std::find(kTargets.begin(), kTargets.end(), s.target) == kTargets.end())
     return fail(ErrorCode::bad_setting,
                 "--target {} is not known; there is: texels, vertices, none", s.target);

@@ -12,7 +12,8 @@ import re
 import sys
 import tempfile
 
-OUTSIDE = ("tests", "tools")  # may include every room but apps
+OUTSIDE = ("tests", "tools")  # may include every room but the programs
+PROGRAMS = ("apps", "examples")  # may print and exit; nothing includes them
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 PRINT = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(?:std::)?"
                    r"(printf|fprintf|vprintf|puts|fputs|putchar|perror|exit|_exit|quick_exit|abort)\s*\(")
@@ -87,14 +88,14 @@ def include_faults(table, path, room, code):
         elif target in OUTSIDE:
             if room not in OUTSIDE and not path.endswith("_test.cpp"):
                 yield f"{where}: {room} includes {target}/; only tests may"
-        elif target.startswith("apps") and target != room:
-            yield f"{where}: {room} includes {target}; nothing includes apps"
+        elif target.startswith(PROGRAMS) and target != room:
+            yield f"{where}: {room} includes {target}; nothing includes a program"
         elif room not in OUTSIDE and target not in table.may_include(room):
             yield f"{where}: {room} may not include {target} (table of rooms in ARCHITECTURE.md)"
 
 
 def print_faults(path, room, code):
-    if room.startswith("apps") or room in OUTSIDE or path in PRINT_EXCEPT or path.endswith("_test.cpp"):
+    if room.startswith(PROGRAMS) or room in OUTSIDE or path in PRINT_EXCEPT or path.endswith("_test.cpp"):
         return
     code = without_comments_and_strings(code)
     for match in PRINT.finditer(code):
@@ -142,7 +143,8 @@ GOOD = {
     "ARCHITECTURE.md": "| room | holds | may include |\n|---|---|---|\n| base | b | - |\n"
                        "| scene | s | base |\n| transport | t | scene |\n| solve/a | a | transport |\n"
                        "| solve/b | b | transport |\n| later (planned) | l | solve/a |\n"
-                       "| pipeline | p | all of the above |\n| apps/cli | c | pipeline |\n",
+                       "| pipeline | p | all of the above |\n| examples/e | e | all of the above |\n"
+                       "| apps/cli | c | pipeline |\n",
     "base/CMakeLists.txt": "luxel_room(base LIBS fmt::fmt)",
     "base/parallel.cpp": "#include <tbb/parallel_for.h>",
     "base/check.cpp": "std::fprintf(stderr, text); std::abort();",
@@ -157,6 +159,8 @@ GOOD = {
     "pipeline/p.cpp": '#include "solve/a/a.h"',
     "apps/cli/CMakeLists.txt": "add_executable(luxel main.cpp)",
     "apps/cli/main.cpp": '#include "pipeline/p.h"\n#include "base/vec.h"\nint main() { std::exit(printf("")); }',
+    "examples/e/CMakeLists.txt": "add_executable(example main.cpp)",
+    "examples/e/main.cpp": '#include "solve/a/a.h"\nint main() { std::printf("x"); }',
     "tests/agree_test.cpp": '#include "solve/a/a.h"\n#include "solve/b/b.h"',
 }
 # Each changes the good tree into one with exactly one fault, whose line contains the text.
@@ -164,8 +168,9 @@ BAD = [
     ("solve/b/b.cpp", '#include "solve/a/a.h"', "solve/b may not include solve/a"),
     ("scene/s.cpp", '\n#include "transport/t.h"', "scene/s.cpp:2: scene may not include transport"),
     ("base/b.cpp", '#  include "scene/scene.h"', "base may not include scene"),
-    ("pipeline/q.cpp", '#include "apps/cli/cli.h"', "nothing includes apps"),
-    ("tests/cli_test.cpp", '#include "apps/cli/cli.h"', "nothing includes apps"),
+    ("pipeline/q.cpp", '#include "apps/cli/cli.h"', "nothing includes a program"),
+    ("tests/e_test.cpp", '#include "examples/e/e.h"', "nothing includes a program"),
+    ("tests/cli_test.cpp", '#include "apps/cli/cli.h"', "nothing includes a program"),
     ("scene/s.cpp", '#include "tests/support.h"', "only tests may"),
     ("scene/s.cpp", "#include <tbb/task_group.h>", "only base/parallel.* may"),
     ("scene/s_test.cpp", "#include <oneapi/tbb/mutex.h>", "only base/parallel.* may"),

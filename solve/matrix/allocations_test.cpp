@@ -10,6 +10,8 @@
 #include "solve/matrix/colour_matrix.h"
 #include "solve/matrix/lxr_test_support.h"
 #include "solve/matrix/matrix_test_support.h"
+#include "solve/matrix/relight.h"
+#include "solve/matrix/relighter.h"
 #include "solve/matrix/transfer.h"
 
 namespace {
@@ -91,6 +93,36 @@ TEST(Allocations, ThereAreNonePerFrame) {
   LowRankWork low_work = make_work(*low);
   for (const int count : {-1, 3})
     EXPECT_EQ(allocations_of([&] { irradiance_of(*low, p.emission, count, e, low_work); }), 0u);
+}
+
+TEST(Allocations, ThereAreNonePerUpdate) {
+  const Cut cut(scene::cornell_box(), 300);
+  Target target;
+  target.kind = Target::Kind::vertices;
+  target.position.assign(100, {0.5f, 0, 0.05f});
+  target.normal.assign(100, {0, 1, 0}), target.geometric_normal = target.normal;
+  using enum CodecKind;
+  for (const CodecKind codec : {hierarchical, lowrank, bc1, dense32, dense16}) {
+    RelightParams params;
+    params.patches.count = 300, params.factors.rays_per_patch = 256, params.codec = codec;
+    Progress progress;
+    auto data = make_relight_data(cut.scene, cut.tracer, target, params, progress);
+    ASSERT_TRUE(data);
+    auto relighter = Relighter::make(std::move(*data), {true});
+    ASSERT_TRUE(relighter);
+    std::array<scene::PunctualLight, 2> lamps;
+    const std::vector<Rgb> emission(cut.scene.materials.size(), {1, 2, 3});
+    float brightest = 0;
+    EXPECT_EQ(allocations_of([&] {
+                lamps[0].position = lamps[0].position + Vec3{0.02f, 0.02f, 0.02f};
+                relighter->update({lamps, emission, {1, 1, 1}});
+                for (const Rgb& e : relighter->latest().indirect)
+                  brightest = std::max(brightest, e.x);
+              }),
+              0u)
+        << int(codec);
+    EXPECT_GT(brightest, 0) << int(codec);
+  }
 }
 
 TEST(Allocations, OfADamagedFileAreNoLargerThanItJustifies) {

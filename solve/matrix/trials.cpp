@@ -11,23 +11,38 @@
 namespace luxel::matrix {
 namespace {
 
-/// Of some rays the longest: a lamp in a narrow gap lights little but the gap.
-constexpr int kRaysPerTrial = 8;
+/// Of some places the one with most room around: what a lamp close to a surface lights is little
+/// but a spot, and the noise of the few rays that went there.
+constexpr int kPlacesPerTrial = 4;
+constexpr uint32_t kLooks = 64;
+
+/// How far the nearest surface is, by rays in all directions.
+float room_around(const trace::RayTracer& tracer, Vec3 place) {
+  float nearest = INFINITY;
+  for (uint32_t k = 0; k < kLooks; ++k) {
+    const Vec2 u = sobol_owen_2d(k, 1);
+    const float z = 1 - 2 * u.x, r = std::sqrt(std::max(0.0f, 1 - z * z)), phi = 2 * kPi * u.y;
+    const Vec3 towards{r * std::cos(phi), r * std::sin(phi), z};
+    nearest = std::min(nearest, tracer.closest_hit({place, 0, towards, INFINITY}).t);
+  }
+  return nearest;
+}
 
 scene::PunctualLight trial_lamp(const trace::RayTracer& tracer, const Patches& patches,
                                 float diagonal_m, uint64_t seed) {
   RandomStream random{seed};
   scene::PunctualLight lamp;
-  float longest = 0;
-  for (int k = 0; k < kRaysPerTrial; ++k) {
+  float most = 0;
+  for (int k = 0; k < kPlacesPerTrial; ++k) {
     const auto i = std::min(size_t(random.next() * float(patches.size())), patches.size() - 1);
     const Vec3 normal = patches.elements.normal[i];
     const Vec3 from = trace::offset_origin(patches.elements.position[i], normal, diagonal_m);
     const Vec3 towards = frame_around(normal).to_world(cosine_hemisphere_sample(random.next2()));
     const float hit_m = tracer.closest_hit({from, 0, towards, INFINITY}).t;
-    const float part = 0.3f + 0.4f * random.next();
-    if (!(hit_m < INFINITY) || hit_m <= longest) continue;
-    longest = hit_m, lamp.position = from + towards * (hit_m * part);
+    const Vec3 place =
+        from + towards * (std::min(hit_m, diagonal_m) * (0.3f + 0.4f * random.next()));
+    if (const float room = room_around(tracer, place); room > most && room < INFINITY)
+      most = room, lamp.position = place;
   }
   return lamp;
 }

@@ -47,7 +47,7 @@ Table codecs_table(const CodecRuns& runs) {
       "product. K holds all bounces: one product per update. F^c holds one: `products` of it, "
       "plainly\niterated, err by no more than the codec. The goals are 40 times smaller and 30 "
       "times faster at an error below 1 %. Time to make a codec is from the factors; that of low "
-      "ranks\nholds the spectrum of 768, that of bc1 all bounces as a dense matrix.",
+      "ranks\nholds the spectrum of all, that of bc1 all bounces as a dense matrix.",
       megabytes(runs.colour_bytes), runs.colour_ms));
   return t;
 }

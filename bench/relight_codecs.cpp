@@ -1,5 +1,6 @@
 // Every codec on the same factors of the Cornell box.
 #include <algorithm>
+#include <array>
 
 #include "bench/prepared.h"
 #include "bench/relight.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr size_t kPatches = 8192;
 constexpr int kRays = 8192, kRounds = 9;
+constexpr std::array<uint32_t, 4> kRanks{48, 96, 192, 384};
 /// Of F^c, plainly iterated: they err by less than any codec.
 constexpr int kProducts = 24;
 
@@ -80,11 +82,11 @@ Status make_by_error(const Room& room, std::vector<Made>& all, Progress& progres
 
 Status make_by_rank(const Room& room, std::vector<Made>& all, Progress& progress) {
   const auto start = Clock::now();
-  LUXEL_TRY(
-      const matrix::Spectrum spectrum,
-      matrix::spectrum_of(room.prepared.factors, room.patches().area_m2, {.count = 768}, progress));
+  LUXEL_TRY(const matrix::Spectrum spectrum,
+            matrix::spectrum_of(room.prepared.factors, room.patches().area_m2,
+                                {.count = kRanks.back()}, progress));
   const double spectrum_s = seconds_since(start);
-  for (const size_t rank : {48, 96, 192, 384, 768}) {
+  for (const size_t rank : kRanks) {
     const auto begin = Clock::now();
     LUXEL_TRY(matrix::LowRank low,
               matrix::make_low_rank(spectrum, rank, room.patches().area_m2,

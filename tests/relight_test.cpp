@@ -131,7 +131,7 @@ TEST(RelightCommand, RefusesWhatCannotBeMade) {
         std::pair{"--patches 0", "--patches 0 is outside 1 to"},
         std::pair{"--rays 0", "--rays 0 is outside 1 to"},
         std::pair{"--resolution 0", "--resolution 0 is outside"},
-        std::pair{"--texels-per-metre 0", "--texels-per-metre 0 is not a density"},
+        std::pair{"--texels-per-metre -1", "--texels-per-metre -1 is not a density"},
         std::pair{"--max-memory 1M", "1 MiB may be used; ask for fewer"},
         std::pair{"--script moves.json", "--script is for --play FILE.lxr"}}) {
     const CommandResult r =

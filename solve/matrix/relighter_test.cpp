@@ -110,11 +110,11 @@ TEST(Relighter, TheFurnaceGlowsEvenly) {
       const std::vector<float> one(list->size(), 1.0f);
       // What lamps may lose is 1 %, root mean square; light from everywhere loses less.
       EXPECT_LT(relative_error(*list, even, one), 0.01) << int(codec);
-      // Rows sum to 1 within 1e-3 (see Reciprocal.KeepsRowSums), which 1 / (1 - rho) doubles; half
+      // Rows sum to 1 within 1e-3 (see Reciprocal.KeepsRowSums), which 1 / (1 - rho) doubles; 0.6
       // of max_error more may be missing after the sweeps.
       for (const Rgb& e : *list)
         for (int c = 0; c < 3 && codec == CodecKind::dense32; ++c)
-          EXPECT_NEAR(e[c], want[c], 7e-3f * want[c]);
+          EXPECT_NEAR(e[c], want[c], 8e-3f * want[c]);
     }
     for (const Rgb& e : got.direct) EXPECT_EQ(e, Rgb{});
   }
@@ -198,7 +198,7 @@ TEST(Relighter, TheSkyIsReflectedByWhatSeesIt) {
   const RelightData& d = relighter.data();
   const Answer want = plain_answer(stage, d, {}, {0.5f, 1, 2}, 100);
   const Relit got = relit(relighter, {{}, {}, {0.5f, 1, 2}});
-  // Sweeps end at half of max_error, 1e-4, for the light of lamps; the sky is no worse.
+  // Sweeps end at 0.6 of max_error, 1e-4, for the light of lamps; the sky is no worse.
   EXPECT_LT(relative_error(got.indirect, want.indirect, d.area_m2), 1e-4);
 }
 

@@ -48,7 +48,8 @@ Result<CodecRuns> run_codecs(Progress& progress);
 /// The hierarchy of so many patches of the Cornell box.
 struct SizeRun {
   size_t patches = 0;
-  int rays = 0;  ///< per patch
+  int rays = 0;    ///< per patch
+  int sweeps = 2;  ///< as many as leave less than 0.5 %
   uint64_t bytes = 0;
   double ms = 0, error = 0;  ///< as of CodecRun
   std::vector<Stage> stages;

@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "bench/bench.h"
+#include "bench/relight_paper.h"
 #include "bench/validation.h"
 #include "scene/scene.h"
 
@@ -47,7 +48,8 @@ Result<CodecRuns> run_codecs(Progress& progress);
 /// The hierarchy of so many patches of the Cornell box.
 struct SizeRun {
   size_t patches = 0;
-  int rays = 0;  ///< per patch
+  int rays = 0;    ///< per patch
+  int sweeps = 2;  ///< as many as leave less than 0.5 %
   uint64_t bytes = 0;
   double ms = 0, error = 0;  ///< as of CodecRun
   std::vector<Stage> stages;
@@ -87,12 +89,22 @@ struct JudgeSettings {
 Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
                                     const JudgeSettings& settings, Progress& progress);
 
+struct RelightRuns {
+  PaperTables paper;
+  CodecRuns codecs;
+  std::vector<SizeRun> sizes;
+  std::vector<JudgedRelight> judged;
+  std::vector<std::string> missing;  ///< scenes that are not on this machine
+};
+
 struct RelightPage {
   std::vector<Table> tables;
   std::vector<PageFile> pictures;  ///< images/relight-NAME
   std::string csv;                 ///< codecs and sizes, a row each
   nlohmann::json json;
 };
+RelightPage page_of(RelightRuns runs);
+
 /// All of it, some seven minutes on two cores. `shared` is the folder with scenes/.
 Result<RelightPage> measure_relight(const std::filesystem::path& shared, Progress& progress);
 

@@ -71,7 +71,7 @@ Status make_by_error(const Room& room, std::vector<Made>& all, Progress& progres
     all.push_back(made_of(room, std::move(name), std::move(setting), std::move(codec), make_s));
     return {};
   };
-  for (const float max_error : {0.03f, 0.02f, 0.01f, 0.007f, 0.005f})
+  for (const float max_error : {0.03f, 0.02f, 0.01f, 0.005f})
     LUXEL_TRY_STATUS(add("hierarchical", fmt::format("--max-error {}", max_error),
                          Kind::hierarchical, max_error));
   LUXEL_TRY_STATUS(add("bc1", "", Kind::bc1, 0.01f));

@@ -14,7 +14,9 @@ const float kSizesBlockError = 0.001f;
 namespace {
 
 /// 65,536 patches of so many rays take 4 GB while they are prepared.
-constexpr int kRays = 2048, kRounds = 9, kSweeps = 2;
+constexpr int kRays = 2048, kRounds = 9;
+/// What unfinished bounces may err by: half of the goal.
+constexpr double kErrorOfSweeps = 0.005;
 /// A converged answer by the factors of 65,536 patches takes seconds.
 constexpr int kTrials = 2;
 
@@ -37,8 +39,9 @@ Result<SizeRun> run_size(const scene::Scene& scene, const trace::RayTracer& trac
       .patches = patches.size(), .rays = kRays, .stages = stages_from(progress, first_stage)};
   LUXEL_TRY(const matrix::Trials trials,
             make_trials(scene, tracer, prepared, coarse, {.count = kTrials}, progress));
+  run.sweeps = enough_sweeps(prepared, coarse, trials, kErrorOfSweeps);
   const matrix::Codec codec =
-      matrix::HierarchicalCodec{std::move(hierarchy), std::move(coarse), kSweeps};
+      matrix::HierarchicalCodec{std::move(hierarchy), std::move(coarse), run.sweeps};
   run.bytes = bytes_of(codec), run.error = error_of(codec, trials, patches, -1);
   matrix::CodecWork work = make_work(codec, patches.size());
   std::vector<Rgb> e(patches.size());

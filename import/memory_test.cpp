@@ -6,7 +6,6 @@
 namespace luxel::import {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 std::vector<std::byte> in_memory(const std::string& text) {

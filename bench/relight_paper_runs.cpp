@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "bench/prepared.h"
 #include "bench/relight_paper.h"
+#include "bench/timing.h"
 #include "scene/procedural.h"
 #include "solve/matrix/bc1_picture.h"
 #include "solve/matrix/bounces.h"
@@ -18,7 +19,6 @@ namespace luxel::bench {
 namespace {
 
 constexpr int kBounces = 5;
-/// Rounds of all methods in turn, so that a machine that slows down does so to all.
 constexpr int kRounds = 15;
 
 /// In the air of the Cornell box, near walls, near the blocks' tops, in corners.
@@ -184,27 +184,6 @@ Status measure_errors(const matrix::ColourMatrix& k, PaperRuns& runs, Progress& 
   return {};
 }
 
-double median(std::vector<double>& values) {
-  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
-
-/// Median milliseconds of each task, all in turn.
-std::vector<double> time_in_turn(const std::vector<std::function<void()>>& tasks) {
-  std::vector<std::vector<double>> ms(tasks.size());
-  for (int round = -2; round < kRounds; ++round)
-    for (size_t k = 0; k < tasks.size(); ++k) {
-      tasks[k]();  // so that the caches hold this task's memory, as they do frame after frame
-      const auto start = Clock::now();
-      tasks[k]();
-      if (round >= 0) ms[k].push_back(1e3 * seconds_since(start));
-    }
-  std::vector<double> out;
-  for (std::vector<double>& values : ms) out.push_back(median(values));
-  return out;
-}
-
 /// Figures 11 and 12.
 void measure_speed(const Room& room, const matrix::Bc1& bc1, PaperRuns& runs) {
   const matrix::Dense single = make_dense(room.factors(), matrix::Precision::single);
@@ -230,7 +209,7 @@ void measure_speed(const Room& room, const matrix::Bc1& bc1, PaperRuns& runs) {
   });
   tasks.push_back([&] { multiply(room.k, room.sent[0], e, work); });
   tasks.push_back([&] { multiply(bc1, room.sent[0], e, bc1_work); });
-  const std::vector<double> ms = time_in_turn(tasks);
+  const std::vector<double> ms = time_in_turn(tasks, kRounds);
   std::copy_n(ms.begin(), kBounces, runs.ms.single.begin());
   runs.ms.half = ms[5], runs.ms.colour = ms[6], runs.ms.reflections = ms[7], runs.ms.bc1 = ms[8];
   runs.single_bytes = bytes_of(single), runs.half_bytes = bytes_of(half);

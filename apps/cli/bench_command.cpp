@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "bench/bench.h"
 #include "bench/hemicube.h"
+#include "bench/relight.h"
 #include "bench/validation.h"
 #include "pipeline/bake.h"
 #include "pipeline/output_folder.h"
@@ -14,7 +15,7 @@
 namespace luxel::cli {
 namespace {
 
-constexpr const char *kValidation = "validation", *kHemicube = "hemicube";
+constexpr const char *kValidation = "validation", *kHemicube = "hemicube", *kRelight = "relight";
 
 struct BenchOptions {
   Common common;
@@ -60,29 +61,34 @@ int run_validation(const BenchOptions& options, const std::filesystem::path& sha
   return kDone;
 }
 
-/// The plots and the numbers behind them.
-Status write_hemicube(const bench::HemicubePage& page, const std::filesystem::path& folder) {
+/// The plots and the numbers behind them: NAME.csv, images/NAME-*. `Page` is a HemicubePage or a
+/// RelightPage.
+template <class Page>
+Status write_plots(const Page& page, const std::string& name, const std::filesystem::path& folder) {
   pipeline::OutputFolder images(folder / "images");
   LUXEL_TRY_STATUS(images.make());
   const auto* text = reinterpret_cast<const std::byte*>(page.csv.data());
-  std::vector<OutputFile> files{{folder / "hemicube.csv", {text, text + page.csv.size()}}};
+  std::vector<OutputFile> files{{folder / (name + ".csv"), {text, text + page.csv.size()}}};
   for (const bench::PageFile& file : page.pictures)
-    files.push_back({folder / "images" / ("hemicube-" + file.name), file.bytes});
+    files.push_back({folder / "images" / (name + "-" + file.name), file.bytes});
   LUXEL_TRY_STATUS(write_files_atomically(files));
   images.keep();
   return {};
 }
 
 /// Files are written when it was asked for by name, not with all tables.
-int run_hemicube(const BenchOptions& options, const std::filesystem::path& shared) {
+template <class Page>
+int run_page(const BenchOptions& options, const std::string& name,
+             const std::filesystem::path& shared,
+             Result<Page> (*measure)(const std::filesystem::path&, Progress&)) {
   const ThreadLimit limit(options.common.threads);
   const std::filesystem::path folder = options.output;
-  const bool write = options.name == kHemicube;
-  bench::HemicubePage page;
+  const bool write = options.name == name;
+  Page page;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     if (write) LUXEL_TRY_STATUS(pipeline::OutputFolder(folder / "images").try_out());
-    LUXEL_TRY(page, bench::measure_hemicube(shared, progress));
-    return write ? write_hemicube(page, folder) : Status{};
+    LUXEL_TRY(page, measure(shared, progress));
+    return write ? write_plots(page, name, folder) : Status{};
   });
   if (!done) return report(done.error());
   if (options.common.json) {
@@ -110,10 +116,17 @@ int run_bench(const BenchOptions& options) {
   const std::filesystem::path shared =
       options.shared.empty() ? default_shared() : std::filesystem::path(options.shared);
   if (options.name == kValidation) return run_validation(options, shared);
+  const bool all = options.name == "all";
   // First of all: it measures memory in a child process, which must not miss this one's threads.
-  if (options.name == kHemicube || options.name == "all")
-    if (const int code = run_hemicube(options, shared); code != kDone) return code;
-  return options.name == kHemicube ? int(kDone) : run_tables(options, shared);
+  if (options.name == kHemicube || all)
+    if (const int code = run_page(options, kHemicube, shared, bench::measure_hemicube);
+        code != kDone || !all)
+      return code;
+  if (options.name == kRelight || all)
+    if (const int code = run_page(options, kRelight, shared, bench::measure_relight);
+        code != kDone || !all)
+      return code;
+  return run_tables(options, shared);
 }
 
 }  // namespace
@@ -122,7 +135,7 @@ void register_bench(CLI::App& app, Action& action) {
   CLI::App* bench = app.add_subcommand(
       "bench", "Print the tables of docs/benchmarks.md, or write docs/validation.md");
   auto options = std::make_shared<BenchOptions>();
-  std::vector<std::string> names{"all", kValidation, kHemicube};
+  std::vector<std::string> names{"all", kValidation, kHemicube, kRelight};
   for (const bench::Bench& b : bench::kBenches) names.emplace_back(b.name);
   bench
       ->add_option("NAME", options->name,
@@ -132,9 +145,9 @@ void register_bench(CLI::App& app, Action& action) {
       ->required();
   bench->add_option("--shared", options->shared,
                     "Folder with scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
-  bench->add_option(
-      "-o,--output", options->output,
-      "validation, hemicube: folder for the page or the .csv, and images/ (default: docs)");
+  bench->add_option("-o,--output", options->output,
+                    "validation, hemicube, relight: folder for the page or the .csv, and images/ "
+                    "(default: docs)");
   add_common(*bench, options->common);
   bench->callback([options, &action] { action = [options] { return run_bench(*options); }; });
 }

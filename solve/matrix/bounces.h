@@ -22,8 +22,8 @@ struct CoarseScene {
   size_t count() const { return area_m2.size(); }
 };
 
-/// About `clusters` of them, and more where patches of a cluster see different things. `factors` are
-/// reciprocal.
+/// About `clusters` of them, and more where patches of a cluster see different things. `factors`
+/// are reciprocal.
 CoarseScene make_coarse_scene(const FormFactors& factors, const ClusterTree& tree,
                               std::span<const float> area_m2, std::span<const Rgb> reflectance,
                               size_t clusters);

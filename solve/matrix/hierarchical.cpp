@@ -17,8 +17,6 @@ constexpr double kThin = 1e-3;
 /// Clusters whose centres are nearer than this part of their radii's sum touch or overlap: what
 /// they exchange is not smooth, even where it seems so.
 constexpr float kTouching = 0.75f;
-/// A block's loss is noise when it is less than this many times what noise makes on average.
-constexpr double kNoise = 0.25;
 
 /// Where a cluster lies.
 struct Ball {
@@ -251,7 +249,7 @@ bool leaves_are_smooth(const Source& s, const Block& block, const Coupling& coup
     energy += double(exchange) * double(exchange) / area2;
     noise += variance_of(s, i, j, exchange);
   });
-  return energy - square_sum(coupling) <= limit_of(s, block) + kNoise * noise;
+  return energy - square_sum(coupling) <= limit_of(s, block) + double(s.params.noise) * noise;
 }
 
 /// The larger of two clusters is halved, both when they are about as large.
@@ -275,7 +273,7 @@ bool is_smooth(const Source& s, const Block& block, const Coupling& coupling,
   double energy = 0;
   for (const auto& row : parts.part)
     for (const Coupling& part : row) energy += square_sum(part);
-  return energy - square_sum(coupling) <= limit_of(s, block) + kNoise * parts.noise;
+  return energy - square_sum(coupling) <= limit_of(s, block) + double(s.params.noise) * parts.noise;
 }
 
 void visit(const Source& s, const Block& block, const Coupling& coupling, Found& out) {

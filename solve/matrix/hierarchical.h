@@ -55,9 +55,11 @@ struct Hierarchical {
 
 struct HierarchicalParams {
   /// A block passes through its clusters when what that loses, in the norm in which all light of a
-  /// cluster is 1, is below this, or cannot be told from the noise of the rays.
+  /// cluster is 1, is below this, or less than `noise` times what the noise of the rays makes of
+  /// it.
   float block_error = 0.003f;
   int rays_per_patch = 2048;  ///< that `factors` were made with: their noise
+  float noise = 0.25f;
 };
 
 /// `factors` are reciprocal, in the order of `tree` (whose `order` is 0, 1, 2, ...). Errors:

@@ -1,0 +1,99 @@
+// What relighting costs and how far it errs: codecs, sizes, preparation, and the path tracer's
+// word.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "bench/bench.h"
+#include "bench/validation.h"
+#include "scene/scene.h"
+
+namespace luxel::bench {
+
+/// A codec that holds the Cornell box's light.
+struct CodecRun {
+  std::string codec, setting;
+  size_t patches = 0;
+  uint64_t bytes = 0;
+  double ms = 0;      ///< median: from what patches send to E of all bounces
+  double error = 0;   ///< of trial lamps, relative root mean square, by area
+  double make_s = 0;  ///< from the factors
+  /// Products of F^c, plainly iterated, that err by no more.
+  int products = 0;
+};
+
+struct CodecRuns {
+  size_t patches = 0;
+  int rays = 0;  ///< per patch
+  std::vector<CodecRun> runs;
+  /// The yardstick: a matrix of patches x patches x 3 floats, and one product with it.
+  uint64_t colour_bytes = 0;
+  double colour_ms = 0;
+
+  /// How many times smaller a run is than the yardstick; how many times faster than one product,
+  /// which is what all bounces take where K is stored, and than iterating F^c.
+  double smaller(const CodecRun& r) const { return double(colour_bytes) / double(r.bytes); }
+  double faster(const CodecRun& r) const { return colour_ms / r.ms; }
+  double faster_than_iterated(const CodecRun& r) const { return r.products * colour_ms / r.ms; }
+};
+/// Errors: cancelled, and what the solver says.
+Result<CodecRuns> run_codecs(Progress& progress);
+
+/// The hierarchy of so many patches of the Cornell box.
+struct SizeRun {
+  size_t patches = 0;
+  int rays = 0;  ///< per patch
+  uint64_t bytes = 0;
+  double ms = 0, error = 0;  ///< as of CodecRun
+  std::vector<Stage> stages;
+};
+/// block_error is the same for all. Errors: cancelled, and what the solver says.
+Result<std::vector<SizeRun>> run_sizes(Progress& progress);
+/// HierarchicalParams::block_error of run_sizes.
+extern const float kSizesBlockError;
+
+/// A point light, and how far the relighter's indirect light is from the truth.
+struct JudgedLight {
+  Vec3 position;
+  double relative = 0;    ///< root mean square error over that of the light
+  double resolution = 0;  ///< what cannot be told from 0: two standard errors of its square
+  double per_texel = 0;   ///< as Agreement::relative_rmse
+  double bias = 0;        ///< signed, over the mean
+  double noise = 0;       ///< the judge's own, over the root mean square of the light
+};
+
+struct JudgedRelight {
+  std::string scene;
+  size_t patches = 0, texels = 0;
+  int paths = 0;  ///< of the judge, per texel
+  double codec_error = 0;
+  std::vector<Stage> stages;  ///< of the preparation
+  std::vector<JudgedLight> lights;
+};
+
+struct JudgeSettings {
+  int resolution = 128;
+  size_t texels = 512;  ///< of the map, about so many
+  int paths = 4096;     ///< per texel, half of them per independent answer
+  size_t lights = 10;
+};
+/// Lights stand at random in the air of the scene, whose own light is not looked at. Errors: no air
+/// is found, cancelled, and what the solvers say.
+Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
+                                    const JudgeSettings& settings, Progress& progress);
+
+struct RelightPage {
+  std::vector<Table> tables;
+  std::vector<PageFile> pictures;  ///< images/relight-NAME
+  std::string csv;                 ///< codecs and sizes, a row each
+  nlohmann::json json;
+};
+/// All of it, some seven minutes on two cores. `shared` is the folder with scenes/.
+Result<RelightPage> measure_relight(const std::filesystem::path& shared, Progress& progress);
+
+}  // namespace luxel::bench

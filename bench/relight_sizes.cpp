@@ -1,0 +1,65 @@
+// The hierarchy from four thousand patches to sixty-four.
+#include "bench/prepared.h"
+#include "bench/relight.h"
+#include "bench/timing.h"
+#include "scene/procedural.h"
+#include "solve/matrix/codec.h"
+#include "solve/matrix/relight.h"
+#include "solve/matrix/trials.h"
+
+namespace luxel::bench {
+
+const float kSizesBlockError = 0.001f;
+
+namespace {
+
+/// 65,536 patches of so many rays take 4 GB while they are prepared.
+constexpr int kRays = 2048, kRounds = 9, kSweeps = 2;
+/// A converged answer by the factors of 65,536 patches takes seconds.
+constexpr int kTrials = 2;
+
+Result<SizeRun> run_size(const scene::Scene& scene, const trace::RayTracer& tracer, size_t count,
+                         Progress& progress) {
+  const size_t first_stage = progress.stages().size();
+  LUXEL_TRY(
+      const matrix::Prepared prepared,
+      matrix::prepare(scene, tracer, {{.count = count}, {.rays_per_patch = kRays}}, progress));
+  const matrix::Patches& patches = prepared.work.patches;
+  const std::vector<Rgb>& rho = patches.elements.reflectance;
+  LUXEL_TRY(matrix::Hierarchical hierarchy,
+            matrix::compress(prepared.factors, prepared.work.tree, patches.centroid,
+                             patches.area_m2, {kSizesBlockError, kRays}, progress));
+  progress.begin("coarse scene", 0);
+  matrix::CoarseScene coarse = make_coarse_scene(prepared.factors, prepared.work.tree,
+                                                 patches.area_m2, rho, matrix::kCoarseClusters);
+  progress.finish();
+  SizeRun run{
+      .patches = patches.size(), .rays = kRays, .stages = stages_from(progress, first_stage)};
+  LUXEL_TRY(const matrix::Trials trials,
+            make_trials(scene, tracer, prepared, coarse, {.count = kTrials}, progress));
+  const matrix::Codec codec =
+      matrix::HierarchicalCodec{std::move(hierarchy), std::move(coarse), kSweeps};
+  run.bytes = bytes_of(codec), run.error = error_of(codec, trials, patches, -1);
+  matrix::CodecWork work = make_work(codec, patches.size());
+  std::vector<Rgb> e(patches.size());
+  run.ms = time_in_turn({[&] {
+                          irradiance_of(codec, {trials.sent[0], rho, patches.area_m2, -1}, e, work);
+                        }},
+                        kRounds)[0];
+  return run;
+}
+
+}  // namespace
+
+Result<std::vector<SizeRun>> run_sizes(Progress& progress) {
+  const scene::Scene scene = scene::cornell_box();
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  std::vector<SizeRun> out;
+  for (const size_t count : {4096, 8192, 16384, 32768, 65536}) {
+    LUXEL_TRY(SizeRun run, run_size(scene, tracer, count, progress));
+    out.push_back(std::move(run));
+  }
+  return out;
+}
+
+}  // namespace luxel::bench

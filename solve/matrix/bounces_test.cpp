@@ -190,8 +190,8 @@ TEST(AllBounces, HardlyPassAClosedWall) {
   // 0.7^100 = 3e-16 of the light is still to come.
   const std::vector<Rgb> limit = room.counted(100);
   size_t dark = 0;
-  for (const Rgb& e : limit) dark += e == Rgb{};
-  EXPECT_GT(dark, 50u);  // 6 x 0.4^2 of 8.9 m^2 are inside
+  for (const Rgb& e : limit) dark += e.x < 1e-5f;  // of 0.05: a trace passes its edges
+  EXPECT_GT(dark, 50u);                            // 6 x 0.4^2 of 8.9 m^2 are inside
   double before = 1;
   for (int sweeps = 1; sweeps <= 6; ++sweeps) {
     // With as many clusters as relighting asks for. As without the box: what clusters let through

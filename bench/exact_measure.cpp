@@ -80,7 +80,8 @@ Result<std::vector<Measured>> measure(const Prepared& p, const ExactCase& c,
   settings.hemicube.max_elements =
       std::max(effort.elements, 3 * int64_t(p.atlas.corners.size()) + 64);
   const bool many = settings.hemicube.max_elements > 4 * effort.elements;
-  settings.hemicube.resolution = many ? effort.hemicube / 2 : effort.hemicube;
+  settings.hemicube.resolution = many ? 16 : effort.hemicube;
+  settings.matrix.patches = effort.patches;
   LUXEL_TRY(const Timed solved, solve(p, solver, settings, progress));
   Answers answers;
   if (by_paths) {

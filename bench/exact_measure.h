@@ -22,7 +22,8 @@ struct MeasureEffort {
   int rays = 1024, shadow_rays = 256;  ///< gather's, per texel
   int paths = 128;                     ///< per texel
   int64_t elements = 5000;             ///< hemicube's, at most; scenes that have more keep theirs
-  int hemicube = 64;                   ///< pixels along an edge; half where elements abound
+  int hemicube = 64;                   ///< pixels along an edge; 16 where elements abound
+  int64_t patches = 4096;              ///< of the matrix
   size_t lightmap_points = 400000;     ///< where a lightmap is read for its mean
   size_t path_points = 50000;          ///< where paths begin for their mean, over the whole scene
   int paths_per_point = 32;

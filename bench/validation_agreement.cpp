@@ -10,7 +10,7 @@ Result<Section> validate_agreement(Progress& progress) {
   Section section;
   section.json = nlohmann::json::array();
   std::vector<std::vector<std::string>> rows;
-  constexpr int kPaths = 512, kSamples = 1024, kDirect = 256, kElements = 10000;
+  constexpr int kPaths = 384, kSamples = 1024, kDirect = 256, kElements = 10000;
   for (AgreementScene& s : agreement_scenes()) {
     LUXEL_TRY(const auto p, prepare(std::move(s.scene), s.resolution, progress));
     LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1, progress));

@@ -62,7 +62,7 @@ export_::Plot error_plot(const std::string& title, const std::string& x_label) {
 }
 
 Status convergence(Section& section, Progress& progress) {
-  constexpr int kResolution = 128, kPaths = 1536;
+  constexpr int kResolution = 128, kPaths = 1024;
   LUXEL_TRY(const auto p, prepare(scene::cornell_box(), kResolution, progress));
   LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1, progress));
   std::vector<std::vector<std::string>> rows;
@@ -208,7 +208,7 @@ image::Image lightmap(const Prepared& p, std::span<const Rgb> irradiance) {
 }
 
 Status every_texel(const Prepared& p, const Timed& solved, Section& section, Progress& progress) {
-  constexpr int kPaths = 200;
+  constexpr int kPaths = 128;
   LUXEL_TRY(const Judged judged, judge(p, kPaths, 2, progress));
   std::vector<Rgb> truth;
   for (size_t i = 0; i < judged.first.size(); ++i) truth.push_back(judged.mean(i));
@@ -317,7 +317,7 @@ void show_pictures(const Shown& ours, const Shown& judge, const image::Mask& all
 }
 
 Status pictures(const Prepared& p, const Timed& solved, Section& section, Progress& progress) {
-  constexpr int kSide = 320, kPaths = 300, kRaysPerAxis = 8;
+  constexpr int kSide = 320, kPaths = 200, kRaysPerAxis = 8;
   const scene::Camera& camera = p.scene.cameras.front();
   const transport::TexelField field{&p.atlas, &p.map, solved.light.irradiance};
   LUXEL_TRY(const image::Image ours,

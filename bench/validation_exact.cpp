@@ -60,7 +60,8 @@ Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Pr
       "that tenth). *model*: how far the scene itself is from the formula's (facets of a sphere). "
       "gather takes {} rays and {} shadow rays per texel, hemicube\n{} vertices at most (more "
       "where "
-      "the scene has more) and {} pixels (half of that in scenes of many facets), the path "
+      "the scene has more) and {} pixels (16 in scenes of many facets), matrix about {} patches, "
+      "the path "
       "tracer (reference) {} paths, "
       "without any other help: its texels are noisy. Its mean is that of {} paths from each of {} "
       "places over the scene, with no lightmap\nbetween: it must lie within 4 of the *standard "
@@ -68,7 +69,8 @@ Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Pr
       "are more than 20).\nSections 6 (one element per face) and 8 are about solvers whose form "
       "factors are means over areas; hemicube looks from points.\n\n{}",
       kEffort.lightmap_points, kEffort.rays, kEffort.shadow_rays, kEffort.elements,
-      kEffort.hemicube, kEffort.paths, kEffort.paths_per_point, kEffort.path_points,
+      kEffort.hemicube, kEffort.patches, kEffort.paths, kEffort.paths_per_point,
+      kEffort.path_points,
       markdown_table({"", "scene", "part", "solver", "exact E", "mean", "error of the mean",
                       "standard error", "error of a texel", "model"},
                      rows));

@@ -17,6 +17,7 @@ constexpr MeasureEffort kEffort{.rays = 256,
                                 .paths = 16,
                                 .elements = 2500,
                                 .hemicube = 32,
+                                .patches = 8192,
                                 .lightmap_points = 100000,
                                 .path_points = 40000,
                                 .paths_per_point = 16};

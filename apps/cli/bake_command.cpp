@@ -66,9 +66,7 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   pipeline::BakeSettings s = options.settings;
   s.threads = options.common.threads;
   s.hemicube = options.hemicube.settings;
-  s.uv = options.uv == "keep"     ? atlas::UvMode::keep
-         : options.uv == "unwrap" ? atlas::UvMode::unwrap
-                                  : atlas::UvMode::automatic;
+  s.uv = uv_mode(options.uv);
   LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
   if (!options.max_memory.empty()) {
     LUXEL_TRY(s.max_memory_bytes, pipeline::parse_size(options.max_memory));
@@ -96,18 +94,9 @@ void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json&
 int run_bake(const BakeOptions& options) {
   const auto settings = settings_from(options);
   if (!settings) return report(settings.error());
-  nlohmann::json json;
-  const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
-    LUXEL_TRY(json, pipeline::bake(*settings, progress));
-    return {};
-  });
-  if (!done) return report(done.error());
-  print_warnings(json["warnings"].get<std::vector<std::string>>(), options.common);
-  if (options.common.json)
-    std::printf("%s\n", json.dump(2).c_str());
-  else if (!options.common.quiet)
-    print_summary(*settings, json);
-  return kDone;
+  return run_and_print(
+      options.common, [&](Progress& progress) { return pipeline::bake(*settings, progress); },
+      [&](const nlohmann::json& json) { print_summary(*settings, json); });
 }
 
 }  // namespace
@@ -127,10 +116,7 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_option("--texels-per-metre", s.texels_per_metre,
                    "Density; the side becomes the smallest power of two that holds the scene")
       ->excludes(resolution);
-  bake->add_option("--uv", options->uv,
-                   "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if valid")
-      ->check(CLI::IsMember({"auto", "keep", "unwrap"}))
-      ->capture_default_str();
+  add_uv(*bake, options->uv);
   bake->add_option("--samples", s.samples, "Indirect rays per texel; reference: paths")
       ->capture_default_str();
   bake->add_option("--direct-samples", s.direct_samples,

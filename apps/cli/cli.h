@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "atlas/atlas.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "pipeline/settings.h"
@@ -42,6 +43,10 @@ struct HemicubeOptions {
 };
 void add_hemicube(CLI::App& command, HemicubeOptions& hemicube);
 
+/// --uv, as text until the command runs.
+CLI::Option* add_uv(CLI::App& command, std::string& text);
+atlas::UvMode uv_mode(const std::string& text);
+
 /// Prints the error's sentence to stderr and returns its exit code.
 int report(const Error& error);
 void print_warnings(const std::vector<std::string>& warnings, const Common& common);
@@ -50,6 +55,12 @@ void print_warnings(const std::vector<std::string>& warnings, const Common& comm
 /// to stop. When the work does not stop within a second, the process ends with code 130; nothing is
 /// half written then, because files and folders appear when everything else is done.
 Status run_with_progress(const Common& common, const std::function<Status(Progress&)>& work);
+
+/// Runs work that ends in a JSON object with its `warnings`; prints those, and the object or, when
+/// it was not asked for, a summary of it. Returns the exit code.
+int run_and_print(const Common& common,
+                  const std::function<Result<nlohmann::json>(Progress&)>& work,
+                  const std::function<void(const nlohmann::json&)>& summary);
 
 /// A command registers itself in `app` and, when it was asked for, leaves what is to be done.
 using Action = std::function<int()>;

@@ -214,4 +214,35 @@ Status run_with_progress(const Common& common, const std::function<Status(Progre
   }
 }
 
+int run_and_print(const Common& common,
+                  const std::function<Result<nlohmann::json>(Progress&)>& work,
+                  const std::function<void(const nlohmann::json&)>& summary) {
+  nlohmann::json json;
+  const Status done = run_with_progress(common, [&](Progress& progress) -> Status {
+    LUXEL_TRY(json, work(progress));
+    return {};
+  });
+  if (!done) return report(done.error());
+  print_warnings(json["warnings"].get<std::vector<std::string>>(), common);
+  if (common.json)
+    std::printf("%s\n", json.dump(2).c_str());
+  else if (!common.quiet)
+    summary(json);
+  return kDone;
+}
+
+CLI::Option* add_uv(CLI::App& command, std::string& text) {
+  return command
+      .add_option("--uv", text,
+                  "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if valid")
+      ->check(CLI::IsMember({"auto", "keep", "unwrap"}))
+      ->capture_default_str();
+}
+
+atlas::UvMode uv_mode(const std::string& text) {
+  return text == "keep"     ? atlas::UvMode::keep
+         : text == "unwrap" ? atlas::UvMode::unwrap
+                            : atlas::UvMode::automatic;
+}
+
 }  // namespace luxel::cli

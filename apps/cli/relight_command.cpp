@@ -21,9 +21,7 @@ struct RelightOptions {
 Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
   pipeline::RelightSettings s = options.settings;
   s.output = options.output, s.threads = options.common.threads;
-  s.uv = options.uv == "keep"     ? atlas::UvMode::keep
-         : options.uv == "unwrap" ? atlas::UvMode::unwrap
-                                  : atlas::UvMode::automatic;
+  s.uv = uv_mode(options.uv);
   LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
   if (!options.max_memory.empty()) {
     LUXEL_TRY(s.max_memory_bytes, pipeline::parse_size(options.max_memory));
@@ -48,18 +46,9 @@ void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& jso
 int run_making(const RelightOptions& options) {
   const auto settings = settings_from(options);
   if (!settings) return report(settings.error());
-  nlohmann::json json;
-  const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
-    LUXEL_TRY(json, pipeline::relight(*settings, progress));
-    return {};
-  });
-  if (!done) return report(done.error());
-  print_warnings(json["warnings"].get<std::vector<std::string>>(), options.common);
-  if (options.common.json)
-    std::printf("%s\n", json.dump(2).c_str());
-  else if (!options.common.quiet)
-    print_summary(*settings, json);
-  return kDone;
+  return run_and_print(
+      options.common, [&](Progress& progress) { return pipeline::relight(*settings, progress); },
+      [&](const nlohmann::json& json) { print_summary(*settings, json); });
 }
 
 nlohmann::json json_of(const pipeline::Played& played) {
@@ -136,12 +125,7 @@ void add_making(CLI::App& relight, RelightOptions& options) {
                                 "Density; the side becomes the smallest power of two that holds "
                                 "the scene")
                     ->excludes(resolution));
-  all.push_back(
-      relight
-          .add_option("--uv", options.uv,
-                      "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if valid")
-          ->check(CLI::IsMember({"auto", "keep", "unwrap"}))
-          ->capture_default_str());
+  all.push_back(add_uv(relight, options.uv));
   all.push_back(relight
                     .add_option("--patches", s.matrix.patches,
                                 "About so many pieces of surface exchange light")

@@ -96,6 +96,11 @@ Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
+OutputFile text_file(std::filesystem::path path, std::string_view text) {
+  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+  return {std::move(path), {begin, begin + text.size()}};
+}
+
 Status write_files_atomically(std::span<const OutputFile> files) {
   std::vector<TemporaryFile> temporaries;
   for (const OutputFile& file : files) {

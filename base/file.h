@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -19,6 +20,9 @@ struct OutputFile {
   std::filesystem::path path;
   std::vector<std::byte> bytes;
 };
+
+/// A file of text.
+OutputFile text_file(std::filesystem::path path, std::string_view text);
 
 /// Writes files that appear whole under their names, all of them or none: temporary neighbours are
 /// written and flushed to the disk, and only when the last one is safe are they renamed. When a

@@ -22,6 +22,12 @@ inline Vec2 cosine_hemisphere_invert(Vec3 direction) {
   return {phi < 0 ? phi + 1 : phi, direction.x * direction.x + direction.y * direction.y};
 }
 
+/// A direction uniform over the sphere.
+inline Vec3 uniform_sphere_sample(Vec2 u) {
+  const float z = 1 - 2 * u.x, r = std::sqrt(std::max(0.0f, 1 - z * z)), phi = 2 * kPi * u.y;
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
 /// Barycentric coordinates of a point uniform on a triangle, continuous in u. [Heitz19]
 inline Barycentric triangle_sample(Vec2 u) {
   if (u.y > u.x) {

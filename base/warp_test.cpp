@@ -22,6 +22,26 @@ TEST(CosineHemisphere, InvertUndoesSample) {
     }
 }
 
+// Of the uniform distribution the mean is 0 and E[d d^T] = 1 / 3. A mean over a grid of midpoints
+// of 256 squared errs by its cells' squares, 1e-5; float adds 1e-6.
+TEST(UniformSphere, HasTheMomentsOfTheSphere) {
+  constexpr int kSide = 256;
+  double first[3] = {}, second[3][3] = {};
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j) {
+      const Vec3 d = uniform_sphere_sample({(float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide});
+      const double v[3] = {double(d.x), double(d.y), double(d.z)};
+      for (int a = 0; a < 3; ++a) {
+        first[a] += v[a] / (kSide * kSide);
+        for (int b = 0; b < 3; ++b) second[a][b] += v[a] * v[b] / (kSide * kSide);
+      }
+    }
+  for (int a = 0; a < 3; ++a) {
+    EXPECT_NEAR(first[a], 0, 2e-5);
+    for (int b = 0; b < 3; ++b) EXPECT_NEAR(second[a][b], a == b ? 1.0 / 3 : 0, 2e-5);
+  }
+}
+
 // The chance of a bin, from the density alone, integrated by the midpoint rule over cos(theta) and
 // phi (solid angle = d cos d phi), against the share of samples in it. A bin with chance p holds
 // n p samples with a standard deviation of at most sqrt(n p); five of those, for 80 bins, give a

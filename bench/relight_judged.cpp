@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/warp.h"
 #include "bench/agreement.h"
 #include "bench/relight.h"
 #include "bench/timing.h"
@@ -18,19 +19,13 @@ constexpr uint64_t kSeed = 7;
 /// the rays around it meet surfaces, none their backs.
 constexpr float kClear = 0.04f, kMet = 0.6f;
 
-/// Uniform over the sphere.
-Vec3 direction_of(Vec2 u) {
-  const float y = 1 - 2 * u.x, r = std::sqrt(std::max(0.0f, 1 - y * y)), phi = 2 * kPi * u.y;
-  return {r * std::cos(phi), y, r * std::sin(phi)};
-}
-
 bool is_in_the_air(const trace::RayTracer& tracer, Vec3 position, float diagonal_m) {
   constexpr int kRays = 256;
   RandomStream random{kSeed};
   int met = 0;
   for (int k = 0; k < kRays; ++k) {
     const trace::Hit hit =
-        tracer.closest_hit({position, 0, direction_of(random.next2()), INFINITY});
+        tracer.closest_hit({position, 0, uniform_sphere_sample(random.next2()), INFINITY});
     if (hit.found() && (hit.back_face || hit.t < kClear * diagonal_m)) return false;
     met += hit.found();
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/file.h"
 #include "base/parallel.h"
 #include "bench/bench.h"
 #include "bench/prepared.h"
@@ -23,8 +24,7 @@ std::string markdown_table(const std::vector<std::string>& columns,
 }
 
 PageFile svg_file(std::string name, const std::string& svg) {
-  const auto* begin = reinterpret_cast<const std::byte*>(svg.data());
-  return {std::move(name), {begin, begin + svg.size()}};
+  return {name, text_file(name, svg).bytes};
 }
 
 PageFile png_file(std::string name, const image::Image8& picture) {

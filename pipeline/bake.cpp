@@ -11,6 +11,7 @@
 #include "import/import.h"
 #include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
+#include "pipeline/stage_seconds.h"
 #include "pipeline/version.h"
 #include "pipeline/vertex_lit.h"
 #include "post/dilate.h"
@@ -95,24 +96,8 @@ Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progre
   return {};
 }
 
-std::vector<std::byte> bytes_of(const std::string& text) {
-  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
-  return {begin, begin + text.size()};
-}
-
-nlohmann::json seconds_json(const Progress& progress) {
-  nlohmann::json seconds = nlohmann::json::object();
-  double total = 0;
-  for (const Stage& stage : progress.stages()) {
-    seconds[stage.name] = seconds.value(stage.name, 0.0) + stage.seconds;
-    total += stage.seconds;
-  }
-  seconds["total"] = total;
-  return seconds;
-}
-
 nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Progress& progress) {
-  const nlohmann::json seconds = seconds_json(progress);
+  const nlohmann::json seconds = stage_seconds(progress);
   const double tracing = seconds.value("direct light", 0.0) + seconds.value("trace rays", 0.0) +
                          seconds.value("trace paths", 0.0) + seconds.value("hemicubes", 0.0);
   return {{"version", kVersion},
@@ -180,7 +165,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(not_cancelled(progress));
   progress.finish();
   nlohmann::json json = report(settings, result, progress);
-  files.push_back({settings.output / "bake.json", bytes_of(json.dump(2) + "\n")});
+  files.push_back(text_file(settings.output / "bake.json", json.dump(2) + "\n"));
   LUXEL_TRY_STATUS(folder.make());
   LUXEL_TRY_STATUS(write_files_atomically(files));
   folder.keep();

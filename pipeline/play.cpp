@@ -26,15 +26,14 @@ namespace {
 /// As many rays along a pixel's side as make edges smooth.
 constexpr int kRaysPerAxis = 2;
 
-double now_ms() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return std::chrono::duration<double, std::milli>(now).count();
+using Clock = std::chrono::steady_clock;
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 /// What is drawn.
-struct Stage {
-  scene::Scene scene;               ///< of the file; its materials glow as the script says
-  std::vector<Rgb> baked_emission;  ///< of its materials
+struct View {
+  scene::Scene scene;  ///< of the file; its materials glow as the script says
   std::optional<trace::RayTracer> tracer;
   scene::Camera camera;
   float diagonal_m = 0;
@@ -93,8 +92,8 @@ Result<scene::Camera> camera_of(const LightScript& script, const scene::Scene& s
   return choose_camera(choice, scene, tracer, file);
 }
 
-Result<std::unique_ptr<Stage>> set_up(const PlaySettings& s, const matrix::RelightData& data,
-                                      const LightScript& script, Played& out) {
+Result<std::unique_ptr<View>> set_up(const PlaySettings& s, const matrix::RelightData& data,
+                                     const LightScript& script, Played& out) {
   const std::string name = s.lxr.string();
   if (data.scene_glb.empty() || data.target.kind == matrix::Target::Kind::none)
     return fail(ErrorCode::bad_input,
@@ -102,17 +101,15 @@ Result<std::unique_ptr<Stage>> set_up(const PlaySettings& s, const matrix::Relig
                 "with --target texels or vertices",
                 name);
   LUXEL_TRY(import::Imported imported, import::import_glb(data.scene_glb, name));
-  auto stage = std::make_unique<Stage>();
-  stage->scene = std::move(imported.scene);
-  stage->scene.background = data.background;
-  for (const scene::Material& m : stage->scene.materials)
-    stage->baked_emission.push_back(m.emission);
-  LUXEL_TRY(stage->tracer, trace::RayTracer::build(stage->scene));
-  LUXEL_TRY(stage->camera, camera_of(script, stage->scene, *stage->tracer, name));
-  const Box3 bounds = scene::world_bounds(stage->scene);
-  stage->diagonal_m = length(bounds.upper - bounds.lower);
+  auto view = std::make_unique<View>();
+  view->scene = std::move(imported.scene);
+  view->scene.background = data.background;
+  LUXEL_TRY(view->tracer, trace::RayTracer::build(view->scene));
+  LUXEL_TRY(view->camera, camera_of(script, view->scene, *view->tracer, name));
+  const Box3 bounds = scene::world_bounds(view->scene);
+  view->diagonal_m = length(bounds.upper - bounds.lower);
   out.width = script.width, out.height = script.height;
-  return stage;
+  return view;
 }
 
 /// Everything that shines in a frame.
@@ -122,23 +119,12 @@ struct FrameLights {
   Rgb background{};
 };
 
-/// Radiance per material as baked: the mean over its patches.
-std::vector<Rgb> baked_radiance(const matrix::RelightData& data) {
-  std::vector<Rgb> sum(data.material_name.size());
-  std::vector<float> area(sum.size());
-  for (size_t i = 0; i < data.size(); ++i)
-    sum[data.material[i]] += data.emission[i] * (data.area_m2[i] / kPi),
-        area[data.material[i]] += data.area_m2[i];
-  for (size_t m = 0; m < sum.size(); ++m)
-    if (area[m] > 0) sum[m] = sum[m] / area[m];
-  return sum;
-}
-
-FrameLights lights_at(const LightScript& script, const matrix::RelightData& data, double time_s) {
+FrameLights lights_at(const LightScript& script, const matrix::RelightData& data,
+                      const std::vector<Rgb>& baked_radiance, double time_s) {
   FrameLights out;
   out.lamps = lamps_at(script, time_s);
   if (script.keep_lights) out.lamps.insert(out.lamps.end(), data.lights.begin(), data.lights.end());
-  out.emission = baked_radiance(data);
+  out.emission = baked_radiance;
   for (const LightScript::Glow& glow : script.glows)
     for (size_t m = 0; m < out.emission.size(); ++m)
       if (data.material_name[m] == glow.material) out.emission[m] = value_at(glow.radiance, time_s);
@@ -161,64 +147,64 @@ Status check_names(const LightScript& script, const matrix::RelightData& data,
 }
 
 /// What cameras see of glowing surfaces and of the sky.
-void show_lights(const LightScript& script, const FrameLights& lights, double time_s,
-                 Stage& stage) {
-  stage.scene.background = lights.background;
+void show_lights(const LightScript& script, const FrameLights& lights, double time_s, View& view) {
+  view.scene.background = lights.background;
   for (const LightScript::Glow& glow : script.glows)
-    for (size_t m = 0; m < stage.scene.materials.size(); ++m)
-      if (stage.scene.materials[m].name == glow.material)
-        stage.scene.materials[m].emission = value_at(glow.radiance, time_s);
+    for (size_t m = 0; m < view.scene.materials.size(); ++m)
+      if (view.scene.materials[m].name == glow.material)
+        view.scene.materials[m].emission = value_at(glow.radiance, time_s);
 }
 
-Result<image::Image> draw_frame(const Stage& stage, const PlaceLight& indirect,
+Result<image::Image> draw_frame(const View& view, const PlaceLight& indirect,
                                 const FrameLights& lights, const LightScript& script,
                                 Progress& progress) {
   const auto irradiance = [&](const scene::SurfacePoint& p) {
-    const Vec3 position = scene::world_position(stage.scene, p);
-    const Vec3 normal = scene::shading_normal(stage.scene, p);
-    const Vec3 geometric = scene::front_normal(stage.scene, p.instance, p.triangle);
+    const Vec3 position = scene::world_position(view.scene, p);
+    const Vec3 normal = scene::shading_normal(view.scene, p);
+    const Vec3 geometric = scene::front_normal(view.scene, p.instance, p.triangle);
     return indirect.at(p) + matrix::live_light_at({{&position, 1}, {&normal, 1}, {&geometric, 1}},
-                                                  0, lights.lamps, *stage.tracer, stage.diagonal_m);
+                                                  0, lights.lamps, *view.tracer, view.diagonal_m);
   };
   display::DrawParams params;
   params.width = script.width, params.height = script.height;
   params.samples_per_axis = kRaysPerAxis;
-  return display::draw(stage.scene, *stage.tracer, stage.camera, irradiance, params, progress);
+  return display::draw(view.scene, *view.tracer, view.camera, irradiance, params, progress);
 }
 
-std::vector<std::byte> csv_of(const std::vector<FrameTimes>& frames) {
+std::string csv_of(const std::vector<FrameTimes>& frames) {
   std::string text = "frame,time_s,direct_ms,bounces_ms,places_ms,update_ms,draw_ms\n";
   for (size_t k = 0; k < frames.size(); ++k) {
     const FrameTimes& f = frames[k];
     text += fmt::format("{},{:.6g},{:.3f},{:.3f},{:.3f},{:.3f},{:.1f}\n", k, f.time_s, f.direct_ms,
                         f.bounces_ms, f.places_ms, f.update_ms(), f.draw_ms);
   }
-  const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
-  return {bytes, bytes + text.size()};
+  return text;
 }
 
 /// Updates, draws and times all frames.
 Result<std::vector<OutputFile>> draw_frames(const PlaySettings& s, const LightScript& script,
-                                            matrix::Relighter& relighter, Stage& stage, Played& out,
+                                            matrix::Relighter& relighter, View& view, Played& out,
                                             Progress& progress) {
   const matrix::RelightData& data = relighter.data();
-  PlaceLight indirect(stage.scene, data.target);
+  PlaceLight indirect(view.scene, data.target);
   if (!indirect.fits())
     return fail(ErrorCode::bad_input, "{}: its vertices are not those of its scene; make it again",
                 s.lxr.string());
+  std::vector<Rgb> baked_radiance = matrix::mean_emission_of(data);
+  for (Rgb& emission : baked_radiance) emission = emission / kPi;
   std::vector<OutputFile> files;
   float exposure = 1;
   for (int k = 0; k < script.frames; ++k) {
     const double time_s = k / script.frames_per_second;
-    const FrameLights lights = lights_at(script, data, time_s);
+    const FrameLights lights = lights_at(script, data, baked_radiance, time_s);
     relighter.update({lights.lamps, lights.emission, lights.background});
     indirect.set(relighter.latest().indirect_at_place);
-    show_lights(script, lights, time_s, stage);
-    const double start = now_ms();
-    LUXEL_TRY(const image::Image picture, draw_frame(stage, indirect, lights, script, progress));
+    show_lights(script, lights, time_s, view);
+    const Clock::time_point start = Clock::now();
+    LUXEL_TRY(const image::Image picture, draw_frame(view, indirect, lights, script, progress));
     const matrix::Relighter::Seconds seconds = relighter.seconds();
     out.frames.push_back({time_s, 1e3 * seconds.direct, 1e3 * seconds.bounces, 1e3 * seconds.places,
-                          now_ms() - start});
+                          milliseconds_since(start)});
     if (k == 0) exposure = exposure_factor(script.exposure, picture);
     files.push_back({s.output / fmt::format("frame-{:04}.png", k),
                      image::encode_png(display::tone_map(picture, exposure))});
@@ -240,12 +226,11 @@ Result<Played> play(const PlaySettings& s, Progress& progress) {
   LUXEL_TRY(matrix::RelightData data, matrix::read_lxr(s.lxr));
   LUXEL_TRY_STATUS(check_names(script, data, s.script.string()));
   Played out;
-  LUXEL_TRY(const std::unique_ptr<Stage> stage, set_up(s, data, script, out));
+  LUXEL_TRY(const std::unique_ptr<View> view, set_up(s, data, script, out));
   LUXEL_TRY(matrix::Relighter relighter, matrix::Relighter::make(std::move(data), {}));
-  LUXEL_TRY(std::vector<OutputFile> files,
-            draw_frames(s, script, relighter, *stage, out, progress));
+  LUXEL_TRY(std::vector<OutputFile> files, draw_frames(s, script, relighter, *view, out, progress));
   progress.begin(kWriteStage, 0);
-  files.push_back({s.output / "frames.csv", csv_of(out.frames)});
+  files.push_back(text_file(s.output / "frames.csv", csv_of(out.frames)));
   LUXEL_TRY_STATUS(folder.make());
   LUXEL_TRY_STATUS(write_files_atomically(files));
   folder.keep();

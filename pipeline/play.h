@@ -27,7 +27,6 @@ struct FrameTimes {
 struct Played {
   int width = 0, height = 0;
   std::vector<FrameTimes> frames;
-  std::vector<std::string> warnings;
 };
 
 /// Direct light is drawn per pixel, with a shadow ray for each lamp; indirect light comes from the

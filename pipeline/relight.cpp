@@ -10,6 +10,7 @@
 #include "import/import.h"
 #include "pipeline/bake.h"
 #include "pipeline/memory.h"
+#include "pipeline/stage_seconds.h"
 #include "pipeline/version.h"
 #include "post/dilate.h"
 #include "solve/matrix/codec.h"
@@ -40,9 +41,7 @@ Result<matrix::CodecKind> codec_of(const std::string& name) {
 Status check(const RelightSettings& s) {
   LUXEL_TRY_STATUS(check(s.matrix));
   LUXEL_TRY(const matrix::CodecKind codec, codec_of(s.codec));
-  const bool all_pairs =
-      codec != matrix::CodecKind::hierarchical && codec != matrix::CodecKind::lowrank;
-  if (all_pairs && size_t(s.matrix.patches) > matrix::kMaxDensePatches)
+  if (matrix::looks_at_all_pairs(codec) && size_t(s.matrix.patches) > matrix::kMaxDensePatches)
     return fail(ErrorCode::bad_setting,
                 "--patches {} are too many for --codec {}, which looks at all pairs of up to {}; "
                 "ask for fewer, or for --codec hierarchical",
@@ -135,13 +134,6 @@ Status fits(const RelightSettings& s) {
 
 nlohmann::json report(const RelightSettings& s, const matrix::RelightData& data, uint64_t bytes,
                       const std::vector<std::string>& warnings, const Progress& progress) {
-  nlohmann::json seconds = nlohmann::json::object();
-  double total = 0;
-  for (const Stage& stage : progress.stages()) {
-    seconds[stage.name] = seconds.value(stage.name, 0.0) + stage.seconds;
-    total += stage.seconds;
-  }
-  seconds["total"] = total;
   return {{"version", kVersion},
           {"settings",
            {{"patches", s.matrix.patches},
@@ -156,7 +148,7 @@ nlohmann::json report(const RelightSettings& s, const matrix::RelightData& data,
             {"triangles", data.occluders.triangle.size()}}},
           {"bytes", {{"file", bytes}, {"matrix", matrix::bytes_of(data.codec)}}},
           {"codec_error", data.codec_error},
-          {"seconds", seconds},
+          {"seconds", stage_seconds(progress)},
           {"peak_memory_bytes", peak_resident_bytes()},
           {"warnings", warnings}};
 }

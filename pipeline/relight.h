@@ -18,7 +18,7 @@ struct RelightSettings {
   float texels_per_metre = 0;     ///< texels: > 0: chooses the resolution
   atlas::UvMode uv = atlas::UvMode::automatic;
   MatrixSettings matrix{.rays = 8192};  ///< the codec tells noise from light when there is little
-  std::string codec = "hierarchical";   ///< a name of codecs()
+  std::string codec = "hierarchical";   ///< one of codec_names()
   double max_error = 0.01;              ///< what the codec may lose
   int bounces = -1;                     ///< < 0: all
   uint64_t max_memory_bytes = 0;        ///< 0: four fifths of what is free

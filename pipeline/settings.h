@@ -38,7 +38,7 @@ struct HemicubeSettings {
   bool smooth = false;              ///< triangle: interpolate between middles
 };
 
-/// What only the matrix solver reads.
+/// What the matrix solver and relighting read.
 struct MatrixSettings {
   int64_t patches = 8192;  ///< about so many pieces of surface exchange light
   int rays = 2048;         ///< per patch, to find what it sees

@@ -88,14 +88,16 @@ struct Merging {
   }
 };
 
-void add_triangle(const std::array<DVec3, 3>& triangle, Merging& m) {
+/// False when the triangle has no area.
+bool add_triangle(const std::array<DVec3, 3>& triangle, Merging& m) {
   const Plane plane = plane_of(triangle);
-  if (plane.normal == DVec3{}) return;
+  if (plane.normal == DVec3{}) return false;
   const uint32_t first = uint32_t(m.edges.size());
   for (uint32_t k = 0; k < 3; ++k)
     m.edges.push_back({m.corners.index_of(triangle[k]), first + (k + 1) % 3, first + (k + 2) % 3});
   const DVec3 area = area_vector(triangle);
   m.faces.push_back({kNone, first, area, plane, length(area)});
+  return true;
 }
 
 /// Makes twins of edges between the same corners in opposite directions, in one plane. Where more
@@ -252,14 +254,17 @@ Polygon straightened(uint32_t face, const Merging& m) {
 
 }  // namespace
 
-Result<std::vector<Polygon>> merge_polygons(std::span<const std::array<DVec3, 3>> triangles,
-                                            double slack, Progress& progress) {
+Result<MergedPolygons> merge_polygons(std::span<const std::array<DVec3, 3>> triangles, double slack,
+                                      Progress& progress) {
+  MergedPolygons out;
+  out.of_triangle.assign(triangles.size(), kNoPolygon);
+  std::vector<uint32_t> triangle_of;  // per face
   Merging m;
   m.slack = slack;
-  for (const std::array<DVec3, 3>& triangle : triangles) {
+  for (uint32_t t = 0; t < triangles.size(); ++t) {
     if (progress.cancelled())
       return fail(ErrorCode::cancelled, "the joining of polygons was stopped by the user");
-    add_triangle(triangle, m);
+    if (add_triangle(triangles[t], m)) triangle_of.push_back(t);
   }
   LUXEL_TRY_STATUS(find_twins(m, progress));
   for (uint32_t f = 0; f < m.faces.size(); ++f) {
@@ -267,13 +272,17 @@ Result<std::vector<Polygon>> merge_polygons(std::span<const std::array<DVec3, 3>
     progress.advance(1);
   }
   progress.advance(triangles.size() - m.faces.size());  // those without area
-  std::vector<Polygon> polygons;
+  std::vector<uint32_t> polygon_of(m.faces.size());
   for (uint32_t f = 0; f < m.faces.size(); ++f) {
     if (progress.cancelled())
       return fail(ErrorCode::cancelled, "the joining of polygons was stopped by the user");
-    if (m.faces[f].merged_into == kNone) polygons.push_back(straightened(f, m));
+    if (m.faces[f].merged_into != kNone) continue;
+    polygon_of[f] = uint32_t(out.polygons.size());
+    out.polygons.push_back(straightened(f, m));
   }
-  return polygons;
+  for (uint32_t f = 0; f < m.faces.size(); ++f)
+    out.of_triangle[triangle_of[f]] = polygon_of[m.face_of(3 * f)];
+  return out;
 }
 
 }  // namespace luxel::transport

@@ -36,7 +36,7 @@ std::vector<Triangle> grid(int n, const Height& height) {
 
 std::vector<Polygon> merged_of(const std::vector<Triangle>& triangles, double slack = 1e-9) {
   Progress progress;
-  return *merge_polygons(triangles, slack, progress);
+  return merge_polygons(triangles, slack, progress)->polygons;
 }
 
 Surfaces surfaces_in(const scene::Scene& scene) {

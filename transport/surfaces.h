@@ -1,6 +1,7 @@
 // The named surfaces of a scene: what view factors are asked between.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,13 @@
 #include "transport/polygon.h"
 
 namespace luxel::transport {
+
+/// How far rounding to float may have moved a corner [m]; 0 without any.
+double rounding_m(const scene::Scene& scene);
+
+/// An instance's triangles in the world, corners counter-clockwise from the front also where the
+/// instance mirrors.
+std::vector<std::array<DVec3, 3>> world_triangles(const scene::Scene& scene, uint32_t instance);
 
 /// An instance of a mesh: a glTF node, or an `o` or `g` group of an .obj. It radiates from the
 /// front of its triangles; both sides block.
@@ -23,7 +31,7 @@ struct Surface {
 struct Surfaces {
   std::vector<Surface> surfaces;
   std::vector<uint32_t> of_instance;  ///< per instance; scene::kNone when it has no area
-  double slack_m = 0;                 ///< how far rounding to float may have moved a corner
+  double slack_m = 0;                 ///< rounding_m of the scene
   std::vector<std::string> warnings;  ///< surfaces that were left out
 };
 

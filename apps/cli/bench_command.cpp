@@ -35,8 +35,7 @@ Status write_page(const bench::Page& page, const std::filesystem::path& folder,
   progress.begin(pipeline::kWriteStage, 0);
   pipeline::OutputFolder images(folder / "images");
   LUXEL_TRY_STATUS(images.make());
-  const auto* text = reinterpret_cast<const std::byte*>(page.markdown.data());
-  std::vector<OutputFile> files{{folder / "validation.md", {text, text + page.markdown.size()}}};
+  std::vector<OutputFile> files{text_file(folder / "validation.md", page.markdown)};
   for (const bench::PageFile& file : page.files)
     files.push_back({folder / "images" / ("validation-" + file.name), file.bytes});
   LUXEL_TRY_STATUS(write_files_atomically(files));
@@ -67,8 +66,7 @@ template <class Page>
 Status write_plots(const Page& page, const std::string& name, const std::filesystem::path& folder) {
   pipeline::OutputFolder images(folder / "images");
   LUXEL_TRY_STATUS(images.make());
-  const auto* text = reinterpret_cast<const std::byte*>(page.csv.data());
-  std::vector<OutputFile> files{{folder / (name + ".csv"), {text, text + page.csv.size()}}};
+  std::vector<OutputFile> files{text_file(folder / (name + ".csv"), page.csv)};
   for (const bench::PageFile& file : page.pictures)
     files.push_back({folder / "images" / (name + "-" + file.name), file.bytes});
   LUXEL_TRY_STATUS(write_files_atomically(files));

@@ -91,7 +91,6 @@ int run_playing(const RelightOptions& options) {
     return {};
   });
   if (!done) return report(done.error());
-  print_warnings(played.warnings, options.common);
   if (options.common.json)
     std::printf("%s\n", json_of(played).dump(2).c_str());
   else if (!options.common.quiet)

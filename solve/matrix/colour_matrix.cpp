@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <functional>
 
 #include "base/check.h"
@@ -22,8 +21,6 @@ constexpr size_t kLanes = 8;
 /// Columns and rows of the blocks that the direct solution works on.
 constexpr Eigen::Index kBlock = 256;
 
-using Lanes [[gnu::vector_size(4 * kLanes)]] = float;
-
 /// One row of some columns of a matrix; whole lines of the cache.
 struct alignas(64) PanelRow {
   float value[kPanel] = {};
@@ -34,13 +31,13 @@ using Panel = std::vector<PanelRow>;
 LUXEL_VECTOR_CLONES
 void add_row(std::span<const uint32_t> column, std::span<const float> factor, const PanelRow* panel,
              float* out) {
-  Lanes sum[kPanel / kLanes] = {};
+  Float8 sum[kPanel / kLanes] = {};
   for (size_t k = 0; k < column.size(); ++k) {
     const float f = factor[k];
     const float* x = panel[column[k]].value;
     for (size_t v = 0; v < kPanel / kLanes; ++v) {
-      Lanes lanes;
-      std::memcpy(&lanes, x + v * kLanes, sizeof lanes);
+      Float8 lanes;
+      load8(x + v * kLanes, lanes);
       sum[v] += f * lanes;
     }
   }

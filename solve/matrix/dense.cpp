@@ -1,7 +1,6 @@
 #include "solve/matrix/dense.h"
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
 
 #include "base/check.h"
@@ -22,21 +21,19 @@ constexpr size_t kRows = 16;
 constexpr size_t kChunk = 1024;
 constexpr size_t kLanes = 8;
 
-using Lanes [[gnu::vector_size(4 * kLanes)]] = float;
-
 /// Adds what two rows of `n` numbers receive from three planes of light, `stride` apart, to
 /// sums[row][channel]. Two rows share what is read of the light.
 LUXEL_VECTOR_CLONES
 void add_two_rows(const float* row0, const float* row1, size_t n, const float* plane, size_t stride,
                   float (*sums)[3]) {
-  Lanes sum[2][3] = {};
+  Float8 sum[2][3] = {};
   size_t j = 0;
   for (; j + kLanes <= n; j += kLanes) {
-    Lanes f0, f1;
-    std::memcpy(&f0, row0 + j, sizeof f0), std::memcpy(&f1, row1 + j, sizeof f1);
+    Float8 f0, f1;
+    load8(row0 + j, f0), load8(row1 + j, f1);
     for (size_t c = 0; c < 3; ++c) {
-      Lanes b;
-      std::memcpy(&b, plane + c * stride + j, sizeof b);
+      Float8 b;
+      load8(plane + c * stride + j, b);
       sum[0][c] += f0 * b, sum[1][c] += f1 * b;
     }
   }
@@ -129,16 +126,16 @@ void split_channels(std::span<const Rgb> light, DenseWork& work) {
 
 LUXEL_VECTOR_CLONES
 float inner_product(const float* row, const float* plane, size_t n) {
-  Lanes sum[4] = {};
+  Float8 sum[4] = {};
   size_t j = 0;
   for (; j + 4 * kLanes <= n; j += 4 * kLanes)
     for (size_t v = 0; v < 4; ++v) {
-      Lanes f, b;
-      std::memcpy(&f, row + j + v * kLanes, sizeof f);
-      std::memcpy(&b, plane + j + v * kLanes, sizeof b);
+      Float8 f, b;
+      load8(row + j + v * kLanes, f);
+      load8(plane + j + v * kLanes, b);
       sum[v] += f * b;
     }
-  const Lanes all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  const Float8 all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
   float out = 0;
   for (size_t l = 0; l < kLanes; ++l) out += all[l];
   for (; j < n; ++j) out += row[j] * plane[j];

@@ -5,140 +5,40 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "solve/matrix/cluster_functions.h"
 
 namespace luxel::matrix {
 namespace {
 
-using Values = std::array<float, kFunctions>;
 using Coupling = std::array<Values, kFunctions>;
 
-/// A direction in which patches spread by less than this part of the widest is none.
-constexpr double kThin = 1e-3;
 /// Clusters whose centres are nearer than this part of their radii's sum touch or overlap: what
 /// they exchange is not smooth, even where it seems so.
 constexpr float kTouching = 0.75f;
-
-/// Where a cluster lies.
-struct Ball {
-  Vec3 centre;
-  float radius_m = 0;
-};
-
-Ball ball_of(const Cluster& cluster, std::span<const Vec3> position,
-             std::span<const float> area_m2) {
-  Ball ball;
-  float area = 0;
-  for (uint32_t i = cluster.first; i < cluster.end; ++i)
-    ball.centre += position[i] * area_m2[i], area += area_m2[i];
-  ball.centre = ball.centre / std::max(area, 1e-30f);
-  for (uint32_t i = cluster.first; i < cluster.end; ++i)
-    ball.radius_m = std::max(ball.radius_m, length(position[i] - ball.centre));
-  return ball;
-}
-
-using Powers = std::array<double, 4>;  ///< of 1, x, y, z
-using Gram = std::array<Powers, 4>;    ///< their inner products over a cluster
-
-/// Combinations of the powers that are orthonormal: 1, then the widest directions. Zero where there
-/// are none.
-std::array<Powers, kFunctions> orthonormal(const Gram& gram) {
-  const auto inner = [&](const Powers& f, const Powers& g) {
-    double sum = 0;
-    for (size_t a = 0; a < 4; ++a)
-      for (size_t b = 0; b < 4; ++b) sum += f[a] * gram[a][b] * g[b];
-    return sum;
-  };
-  Gram rest{};  // each power less its part in the functions there are
-  for (size_t f = 0; f < 4; ++f) rest[f][f] = 1;
-  std::array<Powers, kFunctions> out{};
-  double widest = 0;
-  for (size_t k = 0; k < kFunctions; ++k) {
-    size_t next = k == 0 ? 0 : 1;
-    for (size_t f = 2; f < 4 && k > 0; ++f)
-      if (inner(rest[f], rest[f]) > inner(rest[next], rest[next])) next = f;
-    const double norm2 = inner(rest[next], rest[next]);
-    if (k == 1) widest = norm2;
-    if (!(norm2 > 0) || (k > 0 && norm2 <= std::max(kThin * widest, 1e-6 * gram[0][0]))) break;
-    for (size_t b = 0; b < 4; ++b) out[k][b] = rest[next][b] / std::sqrt(norm2);
-    for (Powers& f : rest) {
-      const double part = inner(f, out[k]);
-      for (size_t b = 0; b < 4; ++b) f[b] -= part * out[k][b];
-    }
-  }
-  return out;
-}
 
 /// What compression reads.
 struct Source {
   const FormFactors& factors;
   std::span<const Cluster> clusters;
   std::span<const float> area_m2;
-  std::vector<Ball> ball;          ///< per cluster
+  ClusterFunctions functions;
   std::vector<double> cluster_m2;  ///< per cluster
   double leaf_m2 = 0;              ///< of a mean leaf
-  /// Per depth and patch, the functions of the patch's cluster there.
-  std::vector<std::vector<Values>> phi;
   HierarchicalParams params;
 };
-
-/// The powers of a cluster's patches as its halves' functions see them (a leaf's: themselves), so
-/// that its own functions are combinations of those.
-std::vector<Powers> powers_of(const Source& s, const Cluster& cluster, const Ball& ball,
-                              std::span<const Vec3> position) {
-  std::vector<Powers> power(cluster.size());
-  for (uint32_t i = cluster.first; i < cluster.end; ++i) {
-    const Vec3 d = (position[i] - ball.centre) / std::max(ball.radius_m, 1e-30f);
-    power[i - cluster.first] = {1, double(d.x), double(d.y), double(d.z)};
-  }
-  for (uint32_t c = cluster.child; c != 0 && c < cluster.child + 2; ++c) {
-    const Cluster& half = s.clusters[c];
-    const std::vector<Values>& phi = s.phi[half.depth];
-    std::array<Powers, kFunctions> part{};  // of the powers in the half's functions
-    for (uint32_t i = half.first; i < half.end; ++i)
-      for (size_t a = 0; a < kFunctions; ++a)
-        for (size_t f = 0; f < 4; ++f)
-          part[a][f] += double(s.area_m2[i]) * double(phi[i][a]) * power[i - cluster.first][f];
-    for (uint32_t i = half.first; i < half.end; ++i)
-      for (size_t f = 0; f < 4; ++f) {
-        double sum = 0;
-        for (size_t a = 0; a < kFunctions; ++a) sum += double(phi[i][a]) * part[a][f];
-        power[i - cluster.first][f] = sum;
-      }
-  }
-  return power;
-}
-
-void add_functions(const Cluster& cluster, std::span<const Powers> power, Source& s) {
-  Gram gram{};
-  for (uint32_t i = 0; i < cluster.size(); ++i)
-    for (size_t a = 0; a < 4; ++a)
-      for (size_t b = 0; b < 4; ++b)
-        gram[a][b] += double(s.area_m2[cluster.first + i]) * power[i][a] * power[i][b];
-  const std::array<Powers, kFunctions> function = orthonormal(gram);
-  for (uint32_t i = 0; i < cluster.size(); ++i)
-    for (size_t a = 0; a < kFunctions; ++a) {
-      double sum = 0;
-      for (size_t f = 0; f < 4; ++f) sum += function[a][f] * power[i][f];
-      s.phi[cluster.depth][cluster.first + i][a] = float(sum);
-    }
-}
 
 Source make_source(const FormFactors& factors, std::span<const Cluster> clusters,
                    std::span<const Vec3> position, std::span<const float> area_m2,
                    const HierarchicalParams& params) {
-  Source s{factors, clusters, area_m2, {}, {}, 0, {}, params};
-  uint32_t depth = 0, leaves = 0;
+  Source s{factors, clusters, area_m2, make_functions(clusters, position, area_m2), {}, 0, params};
+  uint32_t leaves = 0;
   for (const Cluster& c : clusters) {
-    depth = std::max(depth, c.depth), leaves += c.is_leaf();
+    leaves += c.is_leaf();
     double area = 0;
     for (uint32_t i = c.first; i < c.end; ++i) area += double(area_m2[i]);
     s.cluster_m2.push_back(area);
-    s.ball.push_back(ball_of(c, position, area_m2));
   }
   s.leaf_m2 = s.cluster_m2.front() / leaves;
-  s.phi.assign(depth + 1, std::vector<Values>(position.size()));
-  for (size_t c = clusters.size(); c-- > 0;)  // halves come after what they are halves of
-    add_functions(clusters[c], powers_of(s, clusters[c], s.ball[c], position), s);
   return s;
 }
 
@@ -195,8 +95,8 @@ double variance_of(const Source& s, uint32_t i, uint32_t j, float exchange) {
 
 Coupled couple(const Source& s, const Block& block, const Parts& rows, const Parts& columns) {
   Coupled out;
-  const auto& row_phi = s.phi[s.clusters[rows.cluster[0]].depth];
-  const auto& column_phi = s.phi[s.clusters[columns.cluster[0]].depth];
+  const std::vector<Values>& row_phi = s.functions.phi[s.clusters[rows.cluster[0]].depth];
+  const std::vector<Values>& column_phi = s.functions.phi[s.clusters[columns.cluster[0]].depth];
   for_entries(s, block, [&](uint32_t i, uint32_t j, float exchange) {
     const size_t r = i >= rows.middle, c = j >= columns.middle;
     const Values& f = row_phi[i];
@@ -229,8 +129,8 @@ struct Found {
 };
 
 bool touching(const Source& s, const Block& block) {
-  const Ball& a = s.ball[block.receiver];
-  const Ball& b = s.ball[block.sender];
+  const Ball& a = s.functions.ball[block.receiver];
+  const Ball& b = s.functions.ball[block.sender];
   return length(a.centre - b.centre) < kTouching * (a.radius_m + b.radius_m);
 }
 
@@ -259,7 +159,8 @@ struct Halving {
 Halving halving_of(const Source& s, const Block& block) {
   const Cluster& r = s.clusters[block.receiver];
   const Cluster& c = s.clusters[block.sender];
-  const float row_m = s.ball[block.receiver].radius_m, column_m = s.ball[block.sender].radius_m;
+  const float row_m = s.functions.ball[block.receiver].radius_m,
+              column_m = s.functions.ball[block.sender].radius_m;
   const bool rows = !r.is_leaf() && (c.is_leaf() || row_m > 0.6f * column_m);
   const bool columns = !c.is_leaf() && (r.is_leaf() || column_m > 0.6f * row_m);
   return {rows, columns};
@@ -362,22 +263,6 @@ Hierarchical::Far quantised(const Found::Far& far) {
   return out;
 }
 
-/// The functions of clusters in terms of those of their halves.
-std::vector<Hierarchical::Up> make_up(const Source& s) {
-  std::vector<Hierarchical::Up> up(s.clusters.size(), Hierarchical::Up{});
-  for (const Cluster& parent : s.clusters) {
-    const auto& own = s.phi[parent.depth];
-    for (uint32_t child = parent.child; child != 0 && child < parent.child + 2; ++child) {
-      const auto& part = s.phi[parent.depth + 1];
-      for (size_t a = 0; a < kFunctions; ++a)
-        for (size_t b = 0; b < kFunctions; ++b)
-          for (uint32_t i = s.clusters[child].first; i < s.clusters[child].end; ++i)
-            up[child][kLanes * b + a] += s.area_m2[i] * own[i][a] * part[i][b];
-    }
-  }
-  return up;
-}
-
 /// Blocks of all tasks, receiver by receiver.
 void append_blocks(const Source& s, std::vector<Found>& found, Hierarchical& out) {
   std::vector<Found::Far> far;
@@ -406,11 +291,11 @@ Hierarchical assemble(const Source& s, std::vector<Found>& found) {
   Hierarchical out;
   out.clusters.assign(s.clusters.begin(), s.clusters.end());
   out.area_m2.assign(s.area_m2.begin(), s.area_m2.end());
-  out.up = make_up(s);
+  out.up = make_up(s.functions, s.clusters, s.area_m2);
   out.phi.resize(s.area_m2.size());
   for (const Cluster& c : s.clusters)
     if (c.is_leaf())
-      for (uint32_t i = c.first; i < c.end; ++i) out.phi[i] = s.phi[c.depth][i];
+      for (uint32_t i = c.first; i < c.end; ++i) out.phi[i] = s.functions.phi[c.depth][i];
   append_blocks(s, found, out);
   return out;
 }

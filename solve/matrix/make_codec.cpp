@@ -70,7 +70,7 @@ Result<Codec> low_rank_codec(const CodecInput& t, const RelightParams& params, P
 Result<Codec> make_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
   const size_t patches = t.prepared.work.patches.size();
   const CodecKind kind = params.codec;
-  if (kind != CodecKind::hierarchical && kind != CodecKind::lowrank && patches > kMaxDensePatches)
+  if (looks_at_all_pairs(kind) && patches > kMaxDensePatches)
     return fail(ErrorCode::bad_setting,
                 "{} patches are too many for a codec that looks at all pairs, which takes {} at "
                 "most; ask for fewer, or for the hierarchical codec",

@@ -10,14 +10,12 @@
 namespace luxel::matrix {
 namespace {
 
-/// Points of a patch from which its direct light is taken, at most.
-constexpr size_t kDirectPoints = 8;
 /// The visible share of a light is a ratio of sums, which few shadow rays overestimate: 16 by 0.2
 /// %.
 constexpr int kLeastSamples = 64;
 constexpr int kMaxSweeps = 4000;
 
-/// Some points of every patch as elements, patch after patch.
+/// The probes of every patch as elements, patch after patch.
 struct Probes {
   transport::Elements elements;
   std::vector<size_t> first;  ///< per patch, one extra entry
@@ -27,10 +25,8 @@ Probes probes_of(const Patches& patches) {
   Probes out;
   for (size_t i = 0; i < patches.size(); ++i) {
     out.first.push_back(out.elements.size());
-    const auto points = patches.points_of(i);
-    const size_t count = std::min(points.size(), kDirectPoints);
-    for (size_t k = 0; k < count; ++k) {
-      const PatchPoint& p = points[k * points.size() / count];
+    for (size_t k = 0; k < patches.probes_of(i); ++k) {
+      const PatchPoint& p = patches.probe(i, k);
       out.elements.position.push_back(p.position);
       out.elements.normal.push_back(p.normal);
       out.elements.geometric_normal.push_back(p.normal);
@@ -115,7 +111,7 @@ Result<Solution> solve(const scene::Scene& scene, const transport::Lights& light
   const Patches& patches = prepared.work.patches;
   const size_t n = patches.size();
   const Probes probes = probes_of(patches);
-  const int samples = std::max(kLeastSamples, params.direct_samples / int(kDirectPoints));
+  const int samples = std::max(kLeastSamples, params.direct_samples / int(Patches::kProbes));
   LUXEL_TRY(const transport::DirectLight direct,
             transport::direct_light(scene, probes.elements, lights, tracer,
                                     {samples, params.seed, false}, progress));

@@ -1,6 +1,7 @@
 // The scene in a few thousand patches: what exchanges light. [Shcherbakov17, section 3.2]
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -42,6 +43,13 @@ struct Patches {
   std::span<const PatchPoint> points_of(size_t patch) const {
     return {points.data() + first_point[patch], first_point[patch + 1] - first_point[patch]};
   }
+  /// Where its direct light is taken: of at most kProbes points, spread over the patch, the k-th.
+  size_t probes_of(size_t patch) const { return std::min(points_of(patch).size(), kProbes); }
+  const PatchPoint& probe(size_t patch, size_t k) const {
+    const auto all = points_of(patch);
+    return all[k * all.size() / probes_of(patch)];
+  }
+  static constexpr size_t kProbes = 8;
 };
 
 /// Leaves of the tree over the patches.

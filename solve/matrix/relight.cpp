@@ -8,18 +8,13 @@
 namespace luxel::matrix {
 namespace {
 
-/// Places of a patch at which its direct light is taken.
-constexpr size_t kProbes = 8;
-
 void take_patches(const Patches& patches, RelightData& out) {
   out.position = patches.elements.position, out.normal = patches.elements.normal;
   out.reflectance = patches.elements.reflectance;
   out.area_m2 = patches.area_m2, out.emission = patches.emission, out.material = patches.material;
   for (size_t i = 0; i < patches.size(); ++i) {
     out.first_probe.push_back(uint32_t(out.probe.size()));
-    const auto points = patches.points_of(i);
-    const size_t count = std::min(points.size(), kProbes);
-    for (size_t k = 0; k < count; ++k) out.probe.push_back(points[k * points.size() / count]);
+    for (size_t k = 0; k < patches.probes_of(i); ++k) out.probe.push_back(patches.probe(i, k));
   }
   out.first_probe.push_back(uint32_t(out.probe.size()));
 }

@@ -12,6 +12,9 @@ enum class CodecKind : uint8_t { hierarchical, lowrank, bc1, dense32, dense16 };
 
 /// A matrix of all pairs takes 4 to 12 bytes each, and several of them while it is made.
 inline constexpr size_t kMaxDensePatches = 20000;
+constexpr bool looks_at_all_pairs(CodecKind kind) {
+  return kind != CodecKind::hierarchical && kind != CodecKind::lowrank;
+}
 
 /// Clusters of the coarse scene, before those are split whose patches see different things. Linear
 /// functions over fewer clusters were tried: they do no better for as many numbers.

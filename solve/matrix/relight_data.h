@@ -89,4 +89,7 @@ struct RelightData {
   size_t size() const { return area_m2.size(); }
 };
 
+/// Area-weighted mean of B_e per material.
+std::vector<Rgb> mean_emission_of(const RelightData& data);
+
 }  // namespace luxel::matrix

@@ -13,8 +13,9 @@
 namespace luxel::matrix {
 namespace {
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+using Clock = std::chrono::steady_clock;
+double seconds_between(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double>(end - start).count();
 }
 
 scene::Scene scene_of(const Occluders& occluders) {
@@ -26,18 +27,6 @@ scene::Scene scene_of(const Occluders& occluders) {
   scene.meshes.push_back(std::move(mesh));
   scene.instances.push_back({"occluders", 0, {}});
   return scene;
-}
-
-/// Area-weighted mean of B_e per material.
-std::vector<Rgb> mean_emission_of(const RelightData& data) {
-  std::vector<Rgb> mean(data.material_name.size());
-  std::vector<float> area(mean.size());
-  for (size_t i = 0; i < data.size(); ++i)
-    mean[data.material[i]] += data.emission[i] * data.area_m2[i],
-        area[data.material[i]] += data.area_m2[i];
-  for (size_t m = 0; m < mean.size(); ++m)
-    if (area[m] > 0) mean[m] = mean[m] / area[m];
-  return mean;
 }
 
 /// B_e of a patch whose material's mean radiosity is to be `wanted` and was `mean`.
@@ -147,13 +136,14 @@ void Relighter::update(const RelightLights& lights) {
   Impl& my = *impl_;
   LUXEL_CHECK(lights.emission.empty() || lights.emission.size() == my.data.material_name.size());
   Relit& out = my.result[my.back];
-  const double start = now_s();
+  const Clock::time_point start = Clock::now();
   my.direct_light(lights, out);
-  const double direct = now_s();
+  const Clock::time_point direct = Clock::now();
   my.bounces(lights, out);
-  const double bounced = now_s();
+  const Clock::time_point bounced = Clock::now();
   my.light_places(lights, out);
-  my.seconds = {direct - start, bounced - direct, now_s() - bounced};
+  my.seconds = {seconds_between(start, direct), seconds_between(direct, bounced),
+                seconds_between(bounced, Clock::now())};
   out.update = ++my.updates;
   // Release: the reader sees all of `out`. Acquire: its last look at what comes back is over.
   my.back = my.middle.exchange(my.back | Impl::kFresh, std::memory_order_acq_rel) & ~Impl::kFresh;

@@ -32,17 +32,16 @@ float distance2(const float* a, const float* b, size_t dimensions) {
 
 /// Rows and dimensions that are projected together: as many sums as there are registers for.
 constexpr size_t kRows = 4, kDimensions = 16, kLanes = 8;
-using Lanes [[gnu::vector_size(4 * kLanes)]] = float;
 
 /// sum_t pixel_t sign_t of four rows. `signs`: kDimensions per pixel and channel.
 LUXEL_VECTOR_CLONES
 void project_rows(const std::array<const uint8_t*, kRows>& row, size_t length, size_t step,
                   const float* signs, float (*out)[kDimensions]) {
-  Lanes sum[kRows][2] = {};
+  Float8 sum[kRows][2] = {};
   for (size_t t = 0; t < length; ++t)
     for (size_t c = 0; c < 3; ++c, signs += kDimensions) {
-      Lanes sign[2];
-      std::memcpy(sign, signs, sizeof sign);
+      Float8 sign[2];
+      load8(signs, sign[0]), load8(signs + kLanes, sign[1]);
       for (size_t r = 0; r < kRows; ++r) {
         const auto value = float(row[r][4 * t * step + c]);
         sum[r][0] += value * sign[0], sum[r][1] += value * sign[1];

@@ -20,9 +20,7 @@ constexpr uint32_t kLooks = 64;
 float room_around(const trace::RayTracer& tracer, Vec3 place) {
   float nearest = INFINITY;
   for (uint32_t k = 0; k < kLooks; ++k) {
-    const Vec2 u = sobol_owen_2d(k, 1);
-    const float z = 1 - 2 * u.x, r = std::sqrt(std::max(0.0f, 1 - z * z)), phi = 2 * kPi * u.y;
-    const Vec3 towards{r * std::cos(phi), r * std::sin(phi), z};
+    const Vec3 towards = uniform_sphere_sample(sobol_owen_2d(k, 1));
     nearest = std::min(nearest, tracer.closest_hit({place, 0, towards, INFINITY}).t);
   }
   return nearest;

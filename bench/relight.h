@@ -83,6 +83,7 @@ struct JudgeSettings {
   size_t texels = 512;  ///< of the map, about so many
   int paths = 4096;     ///< per texel, half of them per independent answer
   size_t lights = 10;
+  size_t patches = 8192;
 };
 /// Lights stand at random in the air of the scene, whose own light is not looked at. Errors: no air
 /// is found, cancelled, and what the solvers say.

@@ -114,6 +114,7 @@ Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
   out.scene = std::move(name), out.texels = target.position.size(), out.paths = settings.paths;
   const size_t first_stage = progress.stages().size();
   matrix::RelightParams params;
+  params.patches.count = settings.patches;
   params.factors.rays_per_patch = 8192;
   LUXEL_TRY(matrix::RelightData data,
             matrix::make_relight_data(p->scene, *p->tracer, std::move(target), params, progress));

@@ -138,14 +138,15 @@ struct Doubtful {
   float noise = 0;  ///< three standard errors [steps]
 };
 
-/// Paths after which a texel's noise leaves room for a difference, by what its noise was; in powers
-/// of two, so that many texels share a number.
+/// Paths after which a texel's noise leaves room for a difference of some steps, by what its noise
+/// was; in powers of the square root of two, so that many texels share a number.
 int paths_for(const Doubtful& doubtful) {
-  constexpr float kNoise = 0.6f * kMostSteps;
+  constexpr float kNoise = 0.75f * kMostSteps;
   const float wanted =
       std::max(2.0f * float(doubtful.paths),
                float(doubtful.paths) * (doubtful.noise / kNoise) * (doubtful.noise / kNoise));
-  return 1 << int(std::ceil(std::log2(std::min(wanted, float(kMostPaths)))));
+  const float steps = std::ceil(2 * std::log2(std::min(wanted, float(kMostPaths))));
+  return std::min(kMostPaths, int(std::lround(std::exp2(steps / 2))));
 }
 
 /// Adds the texels that do not pass to `next`.
@@ -208,7 +209,7 @@ image::Image lightmap(const Prepared& p, std::span<const Rgb> irradiance) {
 }
 
 Status every_texel(const Prepared& p, const Timed& solved, Section& section, Progress& progress) {
-  constexpr int kPaths = 128;
+  constexpr int kPaths = 64;
   LUXEL_TRY(const Judged judged, judge(p, kPaths, 2, progress));
   std::vector<Rgb> truth;
   for (size_t i = 0; i < judged.first.size(); ++i) truth.push_back(judged.mean(i));

@@ -10,6 +10,7 @@ packages=(
   libtinygltf-dev nlohmann-json3-dev # glTF, JSON
   libassimp-dev                      # OBJ, FBX, Collada, ...
   libeigen3-dev                      # least squares
+  libcgal-dev                        # exact predicates, constrained Delaunay triangulation
   zlib1g-dev                         # checksums
   libcli11-dev libfmt-dev libexpected-dev
   libgtest-dev libgmock-dev          # tests

@@ -1,0 +1,45 @@
+// The scene as flat convex polygons: what is subdivided, what shines, what blocks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "scene/scene.h"
+#include "transport/point_visibility.h"
+
+namespace luxel::hierarchical {
+
+using transport::Plane;
+using transport::Polygon;
+using transport::PolygonView;
+
+inline constexpr uint32_t kNone = scene::kNone;
+
+/// Triangles of one instance and material in one plane, joined where the union is convex
+/// (transport/merge_polygons.h). A triangle whose vertex normals bend is a face of its own.
+struct Face {
+  Polygon corners;  ///< counter-clockwise from the front [m]
+  Plane plane;
+  uint32_t instance = 0, material = 0;
+  uint32_t triangle = 0;   ///< of the mesh: one of them
+  bool two_sided = false;  ///< its back shows the light of its front
+  bool curved = false;     ///< light depends on vertex normals
+};
+
+struct Faces {
+  std::vector<Face> faces;
+  std::vector<uint32_t> first_triangle;    ///< per instance, as scene::first_triangles
+  std::vector<uint32_t> face_of_triangle;  ///< per drawn triangle; kNone for one without area
+  double slack_m = 0;                      ///< corners nearer to a plane lie in it
+  std::vector<std::string> warnings;
+
+  size_t size() const { return faces.size(); }
+};
+
+/// Warns of faces that lie on each other and of those that pass through each other, by the names of
+/// their instances. Errors: cancelled.
+Result<Faces> make_faces(const scene::Scene& scene, Progress& progress);
+
+}  // namespace luxel::hierarchical

@@ -1,0 +1,62 @@
+// Small scenes and whole solutions for the tests of this room.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+
+#include "scene/procedural.h"
+#include "scene/shapes.h"
+#include "solve/hierarchical/solve.h"
+
+namespace luxel::hierarchical::testing {
+
+inline void add_polygon(scene::Scene& scene, const std::string& name,
+                        const std::vector<DVec3>& corners, uint32_t material) {
+  scene::Mesh mesh;
+  mesh.name = name;
+  for (size_t k = 1; k + 1 < corners.size(); ++k)
+    scene::add_triangle(mesh, to_float(corners[0]), to_float(corners[k]), to_float(corners[k + 1]),
+                        material);
+  scene::place(scene, std::move(mesh));
+}
+
+/// A scene with what its solution needs; it stays where it was made.
+struct Solved {
+  scene::Scene scene;
+  std::optional<trace::RayTracer> tracer;
+  Solution solution;
+};
+
+inline std::unique_ptr<Solved> solved(scene::Scene scene, const SolveParams& params = {}) {
+  auto out = std::make_unique<Solved>();
+  out->scene = std::move(scene);
+  out->tracer = *trace::RayTracer::build(out->scene);
+  Progress progress;
+  auto solution = solve(out->scene, *out->tracer, params, progress);
+  EXPECT_TRUE(solution) << solution.error().message;
+  if (solution) out->solution = std::move(*solution);
+  return out;
+}
+
+/// What a scene without openings absorbs over what it emits: 1.
+inline double absorbed_over_emitted(const Solution& s) {
+  double absorbed = 0, emitted = 0;
+  for (size_t e = 0; e < s.tree.elements.size(); ++e) {
+    if (!s.tree.elements[e].is_leaf()) continue;
+    const ElementLight& l = s.light.elements[e];
+    absorbed += s.tree.elements[e].area_m2 *
+                double(luminance((Rgb{1, 1, 1} - l.reflectance) * l.irradiance));
+    emitted += s.tree.elements[e].area_m2 * double(luminance(l.emission));
+  }
+  return absorbed / emitted;
+}
+
+inline size_t leaf_count(const Tree& tree) {
+  size_t count = 0;
+  for (const Element& e : tree.elements) count += e.is_leaf();
+  return count;
+}
+
+}  // namespace luxel::hierarchical::testing

@@ -1,0 +1,308 @@
+#include "solve/hierarchical/light_mesh.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/parallel.h"
+#include "solve/hierarchical/outlines.h"
+#include "solve/hierarchical/surface.h"
+#include "solve/hierarchical/triangulate.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+/// Corners nearer than this part of a leaf's size are one.
+constexpr double kNearCorners = 1e-4;
+/// Where another face touches a sample point, it is moved by this part of the way to its triangle's
+/// middle: irradiance there is the limit from inside [Hardt96, section 6.3].
+constexpr double kNudge = 1e-3;
+
+/// A face while it is meshed.
+struct FaceWork {
+  FacePlane plane;
+  std::vector<size_t> leaves;               ///< elements
+  std::vector<std::vector<Vec2d>> outline;  ///< per leaf
+  std::vector<ActiveLine> lines;
+  std::vector<std::vector<Segment2>> pieces;  ///< per leaf, clipped to it
+};
+
+void add_leaves(const Tree& tree, size_t element, std::vector<size_t>& out) {
+  if (tree.elements[element].is_leaf()) {
+    out.push_back(element);
+    return;
+  }
+  for (uint32_t c = tree.elements[element].child, end = c + 4; c < end; ++c)
+    add_leaves(tree, c, out);
+}
+
+struct Maker {
+  const Solution& s;
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  const MeshParams& params;
+  double slack_m;  ///< corners nearer than this are one
+};
+
+FaceWork prepare_face(const Maker& m, uint32_t face, double least_weight) {
+  FaceWork w;
+  w.plane = plane_coordinates(m.s.faces.faces[face]);
+  for (uint32_t r = m.s.tree.first_root[face]; r < m.s.tree.first_root[face + 1]; ++r)
+    add_leaves(m.s.tree, r, w.leaves);
+  for (const size_t leaf : w.leaves) {
+    w.outline.emplace_back();
+    for (const DVec3& p : m.s.tree.elements[leaf].polygon())
+      w.outline.back().push_back(w.plane.to_plane(p));
+  }
+  if (m.params.discontinuities) {
+    const auto found = find_discontinuities(m.s, m.scene, m.tracer, face, m.params.discontinuity);
+    std::vector<double> weight;
+    for (const Discontinuity& d : found) weight.push_back(weight_of(d, m.s, m.scene));
+    w.lines = choose_active(found, weight, least_weight, w.plane, w.outline,
+                            m.params.discontinuity.max_per_leaf, m.slack_m);
+  }
+  for (const auto& outline : w.outline) {
+    w.pieces.emplace_back();
+    for (const ActiveLine& line : w.lines)
+      if (Segment2 inside = line.piece; clip_to(outline, m.slack_m, inside))
+        w.pieces.back().push_back(inside);
+  }
+  return w;
+}
+
+/// Corners of leaves and ends of lines.
+void add_points(const Maker& m, const FaceWork& w, uint32_t face, EdgePoints& of_face,
+                EdgePoints& of_outlines) {
+  const Face& f = m.s.faces.faces[face];
+  const auto add = [&](DVec3 p) {
+    of_face.add(p);
+    if (depth_inside(f.corners, f.plane.normal, p) <= m.slack_m) of_outlines.add(p);
+  };
+  for (size_t k = 0; k < w.leaves.size(); ++k) {
+    for (const DVec3& p : m.s.tree.elements[w.leaves[k]].polygon()) add(p);
+    for (const Segment2& piece : w.pieces[k])
+      add(w.plane.from_plane(piece.a)), add(w.plane.from_plane(piece.b));
+  }
+}
+
+/// A leaf's corners with all that its neighbours have on its edges.
+std::vector<Vec2d> full_outline(const Maker& m, const FaceWork& w, uint32_t face, size_t leaf,
+                                const EdgePoints& of_face, const EdgePoints& of_outlines) {
+  const Face& f = m.s.faces.faces[face];
+  const PolygonView polygon = m.s.tree.elements[leaf].polygon();
+  std::vector<Vec2d> out;
+  for (size_t k = 0; k < polygon.size(); ++k) {
+    const DVec3 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
+    out.push_back(w.plane.to_plane(a));
+    const bool is_outer = depth_inside(f.corners, f.plane.normal, (a + b) * 0.5) <= m.slack_m;
+    EdgePoints both(m.slack_m);
+    for (const DVec3& p : of_face.along(a, b)) both.add(p);
+    if (is_outer)
+      for (const DVec3& p : of_outlines.along(a, b)) both.add(p);
+    both.sort();
+    for (const DVec3& p : both.along(a, b)) {
+      const double t = dot(p - a, b - a) / dot(b - a, b - a);  // on the edge itself
+      out.push_back(w.plane.to_plane(a + (b - a) * t));
+    }
+  }
+  return out;
+}
+
+bool lies_on(const Segment2& s, Vec2d a, Vec2d b, double slack_m) {
+  const Vec2d d = s.b - s.a;
+  const double size = std::sqrt(dot(d, d));
+  for (const Vec2d p : {a, b}) {
+    const double t = dot(p - s.a, d) / size;
+    if (std::abs(cross(d, p - s.a)) > slack_m * size || t < -slack_m || t > size + slack_m)
+      return false;
+  }
+  return true;
+}
+
+/// Triangulates the leaves of a face into `mesh`.
+void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints& of_outlines,
+              std::vector<std::vector<LightTriangle>>& of_element, LightMesh& mesh) {
+  EdgePoints of_face(m.slack_m), unused(m.slack_m);
+  add_points(m, w, face, of_face, unused);
+  of_face.sort();
+  Welder welder(m.slack_m);
+  std::vector<DVec3> places;
+  const auto base = uint32_t(mesh.vertices.size());
+  for (size_t k = 0; k < w.leaves.size(); ++k) {
+    const double least_m =
+        std::max(2 * m.slack_m, kNearCorners * std::sqrt(m.s.tree.elements[w.leaves[k]].area_m2));
+    const Triangulation t = triangulate(full_outline(m, w, face, w.leaves[k], of_face, of_outlines),
+                                        w.pieces[k], least_m);
+    std::vector<uint32_t> vertex;
+    for (const Vec2d p : t.points)
+      vertex.push_back(base + welder.index_of(w.plane.from_plane(p), places));
+    for (const auto& corners : t.triangles) {
+      LightTriangle out;
+      out.face = face, out.leaf = uint32_t(w.leaves[k]);
+      for (size_t c = 0; c < 3; ++c) {
+        out.vertex[c] = vertex[corners[c]];
+        for (const Segment2& piece : w.pieces[k])
+          out.edge_is_line[c] |=
+              lies_on(piece, t.points[corners[c]], t.points[corners[(c + 1) % 3]], 2 * least_m);
+      }
+      if (out.vertex[0] != out.vertex[1] && out.vertex[1] != out.vertex[2] &&
+          out.vertex[2] != out.vertex[0])
+        of_element[w.leaves[k]].push_back(out);
+    }
+  }
+  mesh.vertices.insert(mesh.vertices.end(), places.begin(), places.end());
+  mesh.lines += w.lines.size();
+}
+
+Status triangulate_all(const Maker& m, LightMesh& mesh, Progress& progress) {
+  const size_t faces = m.s.faces.size();
+  std::vector<FaceWork> work(faces);
+  const double least_weight = least_weight_of(m.s, m.params.discontinuity);
+  progress.begin("discontinuities", faces);
+  parallel_for(faces, 1, [&](size_t begin, size_t end) {
+    for (size_t f = begin; f < end && !progress.cancelled(); ++f)
+      work[f] = prepare_face(m, uint32_t(f), least_weight);
+    progress.advance(end - begin);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  progress.begin("triangulate", faces);
+  EdgePoints of_outlines(m.slack_m), unused(m.slack_m);
+  for (uint32_t f = 0; f < faces; ++f) add_points(m, work[f], f, unused, of_outlines);
+  of_outlines.sort();
+  std::vector<std::vector<LightTriangle>> of_element(m.s.tree.elements.size());
+  for (uint32_t f = 0; f < faces; ++f) {
+    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    add_face(m, work[f], f, of_outlines, of_element, mesh);
+    progress.advance(1);
+  }
+  for (const auto& triangles : of_element) {
+    mesh.first_of_element.push_back(uint32_t(mesh.triangles.size()));
+    mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+  }
+  mesh.first_of_element.push_back(uint32_t(mesh.triangles.size()));
+  return {};
+}
+
+/// Points whose irradiance is asked for, each once where it can be shared.
+struct Samples {
+  std::vector<Receiver> receivers;
+  std::vector<std::array<uint32_t, 6>> of_triangle;
+};
+
+bool is_touched(const Maker& m, uint32_t face, DVec3 p) {
+  static thread_local std::vector<uint32_t> found;
+  find_touching(m.s.blockers, p, 2 * m.slack_m, found);
+  const DVec3 normal = m.s.faces.faces[face].plane.normal;
+  for (const uint32_t f : found)
+    if (f != face && length(luxel::cross(m.s.faces.faces[f].plane.normal, normal)) > 1e-6)
+      return true;
+  return false;
+}
+
+Samples collect_samples(const Maker& m, const LightMesh& mesh) {
+  Samples out;
+  constexpr uint32_t kTouched = kNone - 1;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> known;  // (vertex, vertex): itself or an edge
+  for (const LightTriangle& t : mesh.triangles) {
+    const std::array<DVec3, 3> c{mesh.vertices[t.vertex[0]], mesh.vertices[t.vertex[1]],
+                                 mesh.vertices[t.vertex[2]]};
+    const DVec3 middle = (c[0] + c[1] + c[2]) * (1.0 / 3);
+    auto& samples = out.of_triangle.emplace_back();
+    // In the order of interpolant_of: corner, middle of its edge, next corner, ...
+    constexpr std::array<std::pair<int, int>, 6> kPlaces{
+        {{0, 0}, {0, 1}, {1, 1}, {1, 2}, {2, 2}, {2, 0}}};
+    for (size_t k = 0; k < 6; ++k) {
+      const auto [i, j] = kPlaces[k];
+      const uint32_t a = t.vertex[size_t(i)], b = t.vertex[size_t(j)];
+      const DVec3 p = (c[size_t(i)] + c[size_t(j)]) * 0.5;
+      const auto [entry, is_new] = known.try_emplace(std::minmax(a, b), kTouched);
+      if (is_new && !is_touched(m, t.face, p)) {
+        entry->second = uint32_t(out.receivers.size());
+        out.receivers.push_back(receiver_at(m.s, m.scene, m.tracer, t.face, p));
+      }
+      samples[k] = entry->second;
+      if (samples[k] != kTouched) continue;
+      samples[k] = uint32_t(out.receivers.size());
+      out.receivers.push_back(
+          receiver_at(m.s, m.scene, m.tracer, t.face, p + (middle - p) * kNudge));
+    }
+  }
+  return out;
+}
+
+Status measure_error(const Maker& m, LightMesh& mesh, Progress& progress) {
+  constexpr std::array<std::array<float, 2>, 4> kAt{
+      {{1 / 3.0f, 1 / 3.0f}, {0.15f, 0.15f}, {0.7f, 0.15f}, {0.15f, 0.7f}}};
+  std::vector<Receiver> receivers;
+  for (const LightTriangle& t : mesh.triangles)
+    for (const auto& at : kAt) {
+      const DVec3 a = mesh.vertices[t.vertex[0]], b = mesh.vertices[t.vertex[1]],
+                  c = mesh.vertices[t.vertex[2]];
+      receivers.push_back(receiver_at(m.s, m.scene, m.tracer, t.face,
+                                      a + (b - a) * double(at[0]) + (c - a) * double(at[1])));
+    }
+  LUXEL_TRY(const std::vector<Rgb> e,
+            irradiance_at(m.s, m.scene, m.tracer, receivers, m.params.point, progress));
+  mesh.error.assign(mesh.triangles.size(), 0.0f);
+  for (size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (size_t k = 0; k < kAt.size(); ++k) {
+      const Rgb d = e[kAt.size() * t + k] - value_of(mesh.interpolant[t], kAt[k][0], kAt[k][1]);
+      mesh.error[t] = std::max({mesh.error[t], max_component(d), max_component(-d)});
+    }
+  mesh.samples += receivers.size();
+  return {};
+}
+
+}  // namespace
+
+Interpolant interpolant_of(const std::array<Rgb, 6>& r) {
+  return {2 * r[0] - 4 * r[1] + 2 * r[2], 4 * r[0] - 4 * r[1] + 4 * r[3] - 4 * r[5],
+          -3 * r[0] + 4 * r[1] - r[2],    2 * r[0] + 2 * r[4] - 4 * r[5],
+          -3 * r[0] - r[4] + 4 * r[5],    r[0]};
+}
+
+Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
+                                  const trace::RayTracer& tracer, const MeshParams& params,
+                                  Progress& progress) {
+  const Maker m{s, scene, tracer, params,
+                std::max(4 * s.faces.slack_m, 1e-7 * double(s.diagonal_m))};
+  LightMesh mesh;
+  LUXEL_TRY_STATUS(triangulate_all(m, mesh, progress));
+  const Samples samples = collect_samples(m, mesh);
+  mesh.samples = samples.receivers.size();
+  LUXEL_TRY(const std::vector<Rgb> e,
+            irradiance_at(s, scene, tracer, samples.receivers, params.point, progress));
+  for (const auto& of : samples.of_triangle)
+    mesh.interpolant.push_back(
+        interpolant_of({e[of[0]], e[of[1]], e[of[2]], e[of[3]], e[of[4]], e[of[5]]}));
+  if (params.measure_error) LUXEL_TRY_STATUS(measure_error(m, mesh, progress));
+  return mesh;
+}
+
+MeshPlace locate(const Solution& s, const LightMesh& mesh, uint32_t face, DVec3 place) {
+  const size_t leaf = leaf_at(s.tree, s.faces, face, place);
+  MeshPlace best;
+  double deepest = -INFINITY;
+  for (uint32_t t = mesh.first_of_element[leaf]; t < mesh.first_of_element[leaf + 1]; ++t) {
+    const auto& v = mesh.triangles[t].vertex;
+    const DVec3 a = mesh.vertices[v[0]], e1 = mesh.vertices[v[1]] - a, e2 = mesh.vertices[v[2]] - a;
+    const double a11 = dot(e1, e1), a12 = dot(e1, e2), a22 = dot(e2, e2),
+                 det = a11 * a22 - a12 * a12;
+    if (!(det > 0)) continue;
+    const double b1 = dot(e1, place - a), b2 = dot(e2, place - a);
+    const double u = (a22 * b1 - a12 * b2) / det, w = (a11 * b2 - a12 * b1) / det;
+    const double depth = std::min({u, w, 1 - u - w});
+    if (depth > deepest) deepest = depth, best = {t, float(u), float(w)};
+  }
+  best.s = std::clamp(best.s, 0.0f, 1.0f), best.t = std::clamp(best.t, 0.0f, 1 - best.s);
+  return best;
+}
+
+Rgb irradiance_at(const Solution& s, const LightMesh& mesh, const scene::Scene& scene,
+                  const scene::SurfacePoint& p) {
+  const Place place = place_of(scene, s.faces, p);
+  if (place.face == kNone || mesh.triangles.empty()) return {};
+  const MeshPlace at = locate(s, mesh, place.face, place.position);
+  return max(Rgb{}, value_of(mesh.interpolant[at.triangle], at.s, at.t));
+}
+
+}  // namespace luxel::hierarchical

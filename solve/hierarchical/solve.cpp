@@ -1,0 +1,146 @@
+#include "solve/hierarchical/solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/hierarchical/lamps.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+constexpr int kMostIterations = 24, kMostSweeps = 2000;
+/// Of the mean irradiance, when nobody says more.
+constexpr double kUsualEps = 0.01;
+constexpr double kLeastPart = 1.0 / (1 << 18);
+
+double area_of(const Tree& tree) {
+  double area = 0;
+  for (size_t e = 0; e < tree.first_root.back(); ++e) area += tree.elements[e].area_m2;
+  return area;
+}
+
+double mean_irradiance(const Tree& tree, const Light& light) {
+  double sum = 0, area = 0;
+  for (size_t e = 0; e < tree.first_root.back(); ++e) {
+    sum += tree.elements[e].area_m2 * double(max_component(light.elements[e].irradiance));
+    area += tree.elements[e].area_m2;
+  }
+  return area > 0 ? sum / area : 0;
+}
+
+/// Root mean square of the differences of roots and leaves, over the mean.
+double change_of(const Tree& tree, const Light& light, std::span<const Rgb> before) {
+  double sum = 0, all = 0;
+  for (size_t e = 0; e < tree.elements.size(); ++e) {
+    if (!tree.elements[e].is_leaf()) continue;
+    const Rgb d = light.elements[e].irradiance - before[e];
+    sum += tree.elements[e].area_m2 * double(dot(d, d));
+    all += tree.elements[e].area_m2 *
+           double(dot(light.elements[e].irradiance, light.elements[e].irradiance));
+  }
+  return all > 0 ? std::sqrt(sum / all) : 0;
+}
+
+struct Work {
+  Solution& s;
+  const Exchange x;
+  Lamps lamps;
+  std::vector<uint8_t> lit;
+  Refined state;
+};
+
+/// Jacobi's iteration with the links there are.
+Status iterate(Work& w, const SolveParams& params, Progress& progress) {
+  std::vector<Rgb> before;
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    before.resize(w.s.tree.elements.size());
+    for (size_t e = 0; e < before.size(); ++e) before[e] = w.s.light.elements[e].irradiance;
+    gather(w.x, w.s.links.of, w.s.light);
+    push_pull(w.s.faces, w.s.tree, w.s.light);
+    ++w.s.sweeps;
+    if (change_of(w.s.tree, w.s.light, before) < params.tolerance) break;
+  }
+  return {};
+}
+
+/// From emission alone: so many reflections and no more.
+void count_bounces(Work& w, int bounces) {
+  for (ElementLight& l : w.s.light.elements)
+    l.received = {}, l.irradiance = {}, l.radiosity = l.emission;
+  for (ClusterLight& l : w.s.light.clusters) l.received = {};
+  std::vector<Rgb> lamps;  // light that lamps send is there from the first reflection on
+  for (ElementLight& l : w.s.light.elements) lamps.push_back(l.lamps), l.lamps = {};
+  push_pull(w.s.faces, w.s.tree, w.s.light);
+  for (size_t e = 0; e < lamps.size(); ++e) w.s.light.elements[e].lamps = lamps[e];
+  for (int k = 0; k <= bounces; ++k) {
+    gather(w.x, w.s.links.of, w.s.light);
+    push_pull(w.s.faces, w.s.tree, w.s.light);
+  }
+}
+
+Status run(Work& w, const SolveParams& params, Progress& progress) {
+  RefineParams refine_params{params.eps.value_or(0), w.s.min_area_m2, params.max_elements,
+                             params.max_links};
+  for (const Element& e : w.s.tree.elements)
+    w.s.light.elements.push_back(bare_light(w.state.scene, w.x, e));
+  w.s.light.clusters.resize(w.s.tree.clusters.size());
+  push_pull(w.s.faces, w.s.tree, w.s.light);
+  w.s.links.of.resize(w.s.tree.size());
+  if (!params.eps) {
+    // A first guess, from the power there is; it is made better when light has arrived.
+    const Totals totals = totals_of(w.s);
+    refine_params.eps = 0.1 * double(max_component(totals.emission));
+  }
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.lamps,
+                                {refine_params.eps > 0 ? refine_params.eps : INFINITY,
+                                 w.s.min_area_m2, params.max_elements, params.max_links},
+                                w.lit, progress));
+  LUXEL_TRY_STATUS(link_all(w.state, w.x, refine_params, progress));
+  for (w.s.iterations = 0; w.s.iterations < kMostIterations; ++w.s.iterations) {
+    LUXEL_TRY_STATUS(iterate(w, params, progress));
+    if (!params.eps) refine_params.eps = kUsualEps * mean_irradiance(w.s.tree, w.s.light);
+    w.s.eps = refine_params.eps;
+    const size_t leaves = w.s.tree.elements.size();
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.lamps, refine_params, w.lit, progress));
+    LUXEL_TRY(const size_t refined, refine(w.state, w.x, refine_params, progress));
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.lamps, refine_params, w.lit, progress));
+    if (refined == 0 && leaves == w.s.tree.elements.size()) break;
+  }
+  LUXEL_TRY_STATUS(iterate(w, params, progress));
+  if (params.bounces >= 0) count_bounces(w, params.bounces);
+  return {};
+}
+
+}  // namespace
+
+Totals totals_of(const Solution& s) {
+  Totals out;
+  for (size_t e = 0; e < s.tree.first_root.back(); ++e) {
+    const auto area = float(s.tree.elements[e].area_m2);
+    const ElementLight& l = s.light.elements[e];
+    out.area_m2 += s.tree.elements[e].area_m2;
+    out.irradiance += l.irradiance * area, out.radiosity += l.radiosity * area;
+    out.emission += l.emission * area;
+  }
+  const float scale = out.area_m2 > 0 ? float(1 / out.area_m2) : 0;
+  out.irradiance = out.irradiance * scale, out.radiosity = out.radiosity * scale;
+  out.emission = out.emission * scale;
+  return out;
+}
+
+Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,
+                       const SolveParams& params, Progress& progress) {
+  Solution s;
+  LUXEL_TRY(s.faces, make_faces(scene, progress));
+  s.tree = make_tree(s.faces);
+  s.blockers = make_blockers(s.faces);
+  s.diagonal_m = scene::world_bounds(scene).diagonal();
+  s.mean_area_m2 = area_of(s.tree) / double(std::max<size_t>(1, s.tree.first_root.back()));
+  s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;
+  Work work{s, s.exchange(tracer), lamps_of(scene), {}, {scene, s.tree, s.light, s.links}};
+  LUXEL_TRY_STATUS(run(work, params, progress));
+  return s;
+}
+
+}  // namespace luxel::hierarchical

@@ -1,0 +1,135 @@
+#include "solve/hierarchical/tree.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/check.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+Element make_element(PolygonView corners, uint32_t face, uint32_t parent) {
+  LUXEL_CHECK(corners.size() == 3 || corners.size() == 4);
+  Element e;
+  std::copy(corners.begin(), corners.end(), e.corner.begin());
+  e.corners = uint32_t(corners.size());
+  e.face = face, e.parent = parent;
+  e.area_m2 = transport::area_m2(corners);
+  e.centre = transport::mean_corner(corners);
+  e.radius_m = transport::radius_about(e.centre, corners);
+  return e;
+}
+
+/// A convex polygon as quadrilaterals and at most one triangle, all with its first corner.
+void add_roots(const Face& face, uint32_t index, std::vector<Element>& out) {
+  const Polygon& p = face.corners;
+  for (size_t k = 1; k + 1 < p.size(); k += 2) {
+    std::vector<DVec3> piece{p[0], p[k], p[k + 1]};
+    if (k + 2 < p.size()) piece.push_back(p[k + 2]);
+    out.push_back(make_element(piece, index, kNone));
+  }
+}
+
+struct Bounds {
+  DVec3 lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
+  void add(DVec3 p) {
+    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
+    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
+  }
+};
+
+double along(DVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+/// Clusters over `roots`, depth first; returns the id of the one over all. Halves have as many
+/// roots each, so depths differ by one at most.
+uint32_t add_clusters(Tree& tree, std::span<uint32_t> roots, size_t cluster_count) {
+  if (roots.size() == 1) return uint32_t(cluster_count + roots[0]);
+  Bounds bounds, centres;
+  double area = 0;
+  for (const uint32_t r : roots) {
+    for (const DVec3& p : tree.elements[r].polygon()) bounds.add(p);
+    centres.add(tree.elements[r].centre);
+    area += tree.elements[r].area_m2;
+  }
+  const DVec3 size = centres.upper - centres.lower;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const auto key = [&](uint32_t r) { return std::pair(along(tree.elements[r].centre, axis), r); };
+  const size_t half = roots.size() / 2;
+  std::nth_element(roots.begin(), roots.begin() + std::ptrdiff_t(half), roots.end(),
+                   [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+  const auto id = uint32_t(tree.clusters.size());
+  Cluster cluster;
+  cluster.lower = bounds.lower, cluster.upper = bounds.upper;
+  cluster.centre = (bounds.lower + bounds.upper) * 0.5;
+  cluster.radius_m = 0.5 * length(bounds.upper - bounds.lower);
+  cluster.area_m2 = area;
+  tree.clusters.push_back(cluster);
+  const uint32_t low = add_clusters(tree, roots.first(half), cluster_count);
+  const uint32_t high = add_clusters(tree, roots.subspan(half), cluster_count);
+  tree.clusters[id].child = {low, high};
+  return id;
+}
+
+}  // namespace
+
+Tree make_tree(const Faces& faces) {
+  Tree tree;
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    tree.first_root.push_back(uint32_t(tree.elements.size()));
+    add_roots(faces.faces[f], f, tree.elements);
+  }
+  tree.first_root.push_back(uint32_t(tree.elements.size()));
+  std::vector<uint32_t> roots(tree.elements.size());
+  std::iota(roots.begin(), roots.end(), 0u);
+  if (!roots.empty()) {
+    tree.clusters.reserve(roots.size() - 1);
+    add_clusters(tree, roots, roots.size() - 1);
+  }
+  return tree;
+}
+
+void divide(Tree& tree, size_t index) {
+  LUXEL_CHECK(tree.elements[index].is_leaf());
+  const Element e = tree.elements[index];
+  const uint32_t n = e.corners;
+  std::array<DVec3, 4> middle;
+  for (uint32_t k = 0; k < n; ++k) middle[k] = (e.corner[k] + e.corner[(k + 1) % n]) * 0.5;
+  tree.elements[index].child = uint32_t(tree.elements.size());
+  const auto add = [&](std::initializer_list<DVec3> corners) {
+    tree.elements.push_back(
+        make_element({corners.begin(), corners.size()}, e.face, uint32_t(index)));
+  };
+  for (uint32_t k = 0; k < n; ++k)
+    if (n == 4)
+      add({e.corner[k], middle[k], e.centre, middle[(k + 3) % 4]});
+    else
+      add({e.corner[k], middle[k], middle[(k + 2) % 3]});
+  if (n == 3) add({middle[0], middle[1], middle[2]});
+}
+
+double depth_inside(PolygonView polygon, DVec3 normal, DVec3 point) {
+  double depth = INFINITY;
+  for (size_t k = 0; k < polygon.size(); ++k) {
+    const DVec3 edge = polygon[(k + 1) % polygon.size()] - polygon[k];
+    const double size = length(edge);
+    if (size > 0) depth = std::min(depth, dot(cross(normal, edge), point - polygon[k]) / size);
+  }
+  return depth;
+}
+
+size_t leaf_at(const Tree& tree, const Faces& faces, uint32_t face, DVec3 point) {
+  const DVec3 normal = faces.faces[face].plane.normal;
+  const auto deepest = [&](size_t first, size_t count) {
+    size_t best = first;
+    double depth = -INFINITY;
+    for (size_t e = first; e < first + count; ++e)
+      if (const double d = depth_inside(tree.elements[e].polygon(), normal, point); d > depth)
+        depth = d, best = e;
+    return best;
+  };
+  size_t at = deepest(tree.first_root[face], tree.first_root[face + 1] - tree.first_root[face]);
+  while (!tree.elements[at].is_leaf()) at = deepest(tree.elements[at].child, 4);
+  return at;
+}
+
+}  // namespace luxel::hierarchical

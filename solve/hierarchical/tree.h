@@ -1,0 +1,62 @@
+// Elements: faces and the parts that they are divided into, four by four, under clusters of faces.
+#pragma once
+
+#include <array>
+
+#include "solve/hierarchical/faces.h"
+
+namespace luxel::hierarchical {
+
+/// A quadrilateral or a triangle of a face: the whole of it, one of the pieces of a face with more
+/// corners, or one of the four parts of another element.
+struct Element {
+  std::array<DVec3, 4> corner;
+  uint32_t corners = 4;  ///< 3 or 4
+  uint32_t face = 0;
+  uint32_t parent = kNone;
+  uint32_t child = kNone;  ///< the first of four in a row; kNone: a leaf
+  double area_m2 = 0;
+  DVec3 centre;
+  double radius_m = 0;
+
+  PolygonView polygon() const { return {corner.data(), corners}; }
+  bool is_leaf() const { return child == kNone; }
+};
+
+/// Two clusters or elements, by their ids, and what they fill.
+struct Cluster {
+  std::array<uint32_t, 2> child{};
+  DVec3 lower, upper;
+  DVec3 centre;
+  double radius_m = 0;
+  double area_m2 = 0;  ///< of all surfaces below
+};
+
+/// Clusters and elements have ids in common: clusters first, whose number is settled, then elements
+/// as they come. Id 0 is the root: a cluster, or the only element.
+struct Tree {
+  std::vector<Cluster> clusters;
+  std::vector<Element> elements;
+  std::vector<uint32_t> first_root;  ///< per face its elements that nothing divides; one extra
+                                     ///< entry. Roots come first of all elements.
+
+  size_t size() const { return clusters.size() + elements.size(); }
+  bool is_cluster(uint32_t id) const { return id < clusters.size(); }
+  const Element& element(uint32_t id) const { return elements[id - clusters.size()]; }
+  uint32_t id_of(size_t element) const { return uint32_t(clusters.size() + element); }
+};
+
+Tree make_tree(const Faces& faces);
+
+/// Divides a leaf by the middles of its edges: a quadrilateral into four that meet in its centre, a
+/// triangle into three at its corners and one between. The parts are convex and fill it.
+void divide(Tree& tree, size_t element);
+
+/// The leaf of a face in which a point of its plane lies, or lies next to.
+size_t leaf_at(const Tree& tree, const Faces& faces, uint32_t face, DVec3 point);
+
+/// How far inside of a convex polygon of this plane a point lies: the least height over its edges
+/// [m], negative outside.
+double depth_inside(PolygonView polygon, DVec3 normal, DVec3 point);
+
+}  // namespace luxel::hierarchical

@@ -20,7 +20,7 @@ struct Measured {
 
 struct MeasureEffort {
   int rays = 1024, shadow_rays = 256;  ///< gather's, per texel
-  int paths = 64;                     ///< per texel
+  int paths = 64;                      ///< per texel
   int64_t elements = 5000;             ///< hemicube's, at most; scenes that have more keep theirs
   int hemicube = 64;                   ///< pixels along an edge; 16 where elements abound
   int64_t patches = 4096;              ///< of the matrix

@@ -12,8 +12,11 @@ constexpr size_t kPaperPatches = 4096;
 /// Rooms that people made: smooth things close together; furniture, beams and windows.
 struct RealScene {
   const char *name, *file;
+  size_t patches;
 };
-constexpr RealScene kRealScenes[]{{"suzanne_room", "room.glb"}, {"living_room", "living_room.glb"}};
+constexpr RealScene kRealScenes[]{{"suzanne_room", "room.glb", 8192},
+                                  {"suzanne_room", "room.glb", 32768},
+                                  {"living_room", "living_room.glb", 8192}};
 
 Status judge_all(const std::filesystem::path& shared, RelightRuns& runs, Progress& progress) {
   LUXEL_TRY(JudgedRelight box, judge_relight("Cornell box", scene::cornell_box(), {}, progress));
@@ -25,7 +28,10 @@ Status judge_all(const std::filesystem::path& shared, RelightRuns& runs, Progres
       continue;
     }
     LUXEL_TRY(import::Imported room, import::import_scene(file));
-    LUXEL_TRY(JudgedRelight judged, judge_relight(real.name, std::move(room.scene), {}, progress));
+    JudgeSettings settings;
+    settings.patches = real.patches;
+    LUXEL_TRY(JudgedRelight judged,
+              judge_relight(real.name, std::move(room.scene), settings, progress));
     runs.judged.push_back(std::move(judged));
   }
   return {};

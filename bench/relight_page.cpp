@@ -90,9 +90,10 @@ Table preparation_table(const std::vector<JudgedRelight>& judged) {
 }
 
 Table judged_table(const JudgedRelight& j) {
-  Table t = table("relight against the path tracer: " + j.scene,
-                  {"point light at", "relative RMSE", "texel by texel", "bias", "judge's noise"});
-  double relative = 0, per_texel = 0;
+  Table t =
+      table(fmt::format("relight against the path tracer: {}, {} patches", j.scene, j.patches),
+            {"point light at", "relative RMSE", "texel by texel", "bias", "judge's noise"});
+  double relative = 0, per_texel = 0, squares = 0, texel_squares = 0;
   for (const JudgedLight& l : j.lights) {
     t.rows.push_back(
         {fmt::format("({:.2f}, {:.2f}, {:.2f})", l.position.x, l.position.y, l.position.z),
@@ -100,7 +101,11 @@ Table judged_table(const JudgedRelight& j) {
                                    : percent(l.relative),
          percent(l.per_texel), fmt::format("{:+.2f} %", 100 * l.bias), percent(l.noise)});
     relative = std::max(relative, l.relative), per_texel = std::max(per_texel, l.per_texel);
+    squares += l.relative * l.relative / double(j.lights.size());
+    texel_squares += l.per_texel * l.per_texel / double(j.lights.size());
   }
+  t.rows.push_back(
+      {"root mean square", percent(std::sqrt(squares)), percent(std::sqrt(texel_squares)), "", ""});
   t.rows.push_back({"largest", percent(relative), percent(per_texel), "", ""});
   t.notes.push_back(fmt::format(
       "Indirect light at {} texels, {} patches (codec error {}), infinite bounces, against {} "

@@ -318,7 +318,7 @@ void show_pictures(const Shown& ours, const Shown& judge, const image::Mask& all
 }
 
 Status pictures(const Prepared& p, const Timed& solved, Section& section, Progress& progress) {
-  constexpr int kSide = 320, kPaths = 200, kRaysPerAxis = 8;
+  constexpr int kSide = 320, kPaths = 400, kRaysPerAxis = 8;
   const scene::Camera& camera = p.scene.cameras.front();
   const transport::TexelField field{&p.atlas, &p.map, solved.light.irradiance};
   LUXEL_TRY(const image::Image ours,

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "base/random.h"
 #include "bench/agreement.h"
 #include "bench/validation.h"
 #include "display/draw.h"
@@ -131,73 +132,69 @@ Result<reference::TexelPaths> judge_texels(const Prepared& p, std::span<const ui
                                         {.samples = paths, .seed = seed}, progress);
 }
 
-/// A texel that has not passed, and how it was judged last.
-struct Doubtful {
-  uint32_t texel = 0;
+/// What is known of a texel's light: the mean of all its paths and its standard error.
+struct Known {
+  Rgb mean, standard_error;
   int paths = 0;
-  float noise = 0;  ///< three standard errors [steps]
+
+  void add(Rgb new_mean, Rgb new_error, int new_paths) {
+    const auto n = float(paths), m = float(new_paths), all = n + m;
+    mean = (mean * n + new_mean * m) / all;
+    const auto joined = [&](float e, float f) { return std::hypot(e * n, f * m) / all; };
+    standard_error = {joined(standard_error.x, new_error.x), joined(standard_error.y, new_error.y),
+                      joined(standard_error.z, new_error.z)};
+    paths += new_paths;
+  }
 };
 
-/// Paths after which a texel's noise leaves room for a difference of some steps, by what its noise
-/// was; in powers of the square root of two, so that many texels share a number.
-int paths_for(const Doubtful& doubtful) {
+/// Paths after which a texel's noise [steps] leaves room for a difference of some steps; in powers
+/// of the square root of two, so that many texels share a number.
+int paths_for(float noise, int paths) {
   constexpr float kNoise = 0.75f * kMostSteps;
   const float wanted =
-      std::max(2.0f * float(doubtful.paths),
-               float(doubtful.paths) * (doubtful.noise / kNoise) * (doubtful.noise / kNoise));
+      std::max(1.4f * float(paths), float(paths) * (noise / kNoise) * (noise / kNoise));
   const float steps = std::ceil(2 * std::log2(std::min(wanted, float(kMostPaths))));
   return std::min(kMostPaths, int(std::lround(std::exp2(steps / 2))));
 }
 
-/// Adds the texels that do not pass to `next`.
-void sort_out(const Screen& screen, std::span<const Rgb> solved, std::span<const uint32_t> texels,
-              const reference::TexelPaths& judged, Round& round, std::vector<Doubtful>& next) {
-  for (size_t k = 0; k < texels.size(); ++k) {
-    const Rgb truth = judged.irradiance[k];
-    const float steps = screen.steps(solved[texels[k]], truth);
-    const float noise = screen.steps(truth, truth + 3 * judged.standard_error[k]);
-    ++round.texels;
-    if (steps + noise < kMostSteps)
-      ++round.passed, round.largest = std::max(round.largest, steps);
-    else
-      next.push_back({texels[k], round.paths, noise});
-  }
-}
-
-/// Judges until all texels pass or have had kMostPaths; those are `left`. Every time a texel gets
-/// new paths and no others count: it was chosen by the noise of those before.
+/// Judges until all texels pass or have had kMostPaths; those are `left`. What made a texel fail
+/// stays in its mean, so that it does not pass by chance sooner than one with new paths alone.
 Result<std::vector<Round>> judge_again(const Prepared& p, std::span<const Rgb> solved,
                                        const Screen& screen, const Judged& first, int first_paths,
                                        std::vector<uint32_t>& left, Progress& progress) {
-  reference::TexelPaths judged;
-  std::vector<uint32_t> texels;
+  std::vector<Known> known(solved.size());
+  std::map<int, Round> rounds;  // by the paths that texels have had
+  std::map<std::pair<int, int>, std::vector<uint32_t>> waiting;  // by those wanted and those had
+  left.clear();
+  const auto sort_out = [&](uint32_t i) {
+    const Known& k = known[i];
+    const float steps = screen.steps(solved[i], k.mean);
+    const float noise = screen.steps(k.mean, k.mean + 3 * k.standard_error);
+    Round& round = rounds[k.paths];
+    round.paths = k.paths, ++round.texels;
+    if (steps + noise < kMostSteps)
+      ++round.passed, round.largest = std::max(round.largest, steps);
+    else if (k.paths >= kMostPaths)
+      left.push_back(i);
+    else
+      waiting[{paths_for(noise, k.paths), k.paths}].push_back(i);
+  };
   for (uint32_t i = 0; i < solved.size(); ++i) {
     if (first.hidden[i]) continue;
-    texels.push_back(i);
-    judged.irradiance.push_back(first.mean(i));
-    judged.standard_error.push_back(first.standard_error[i]);
+    known[i] = {first.mean(i), first.standard_error[i], first_paths};
+    sort_out(i);
   }
-  std::map<int, Round> rounds{{first_paths, {first_paths}}};
-  std::map<int, std::vector<uint32_t>> waiting;  // by the paths they are to have
-  left.clear();
-  const auto put = [&](std::vector<Doubtful>& doubtful) {
-    for (const Doubtful& d : doubtful)
-      if (d.paths >= kMostPaths)
-        left.push_back(d.texel);
-      else
-        waiting[paths_for(d)].push_back(d.texel);
-    doubtful.clear();
-  };
-  std::vector<Doubtful> next;
-  sort_out(screen, solved, texels, judged, rounds[first_paths], next);
-  put(next);
   while (!waiting.empty()) {
     const auto [paths, chosen] = *waiting.begin();
     waiting.erase(waiting.begin());
-    LUXEL_TRY(judged, judge_texels(p, chosen, paths, 100 + uint64_t(paths), progress));
-    rounds[paths].paths = paths;
-    sort_out(screen, solved, chosen, judged, rounds[paths], next);
-    put(next);
+    const int more = paths.first - paths.second;
+    LUXEL_TRY(const reference::TexelPaths judged,
+              judge_texels(p, chosen, more, hash64(uint64_t(paths.first), uint64_t(paths.second)),
+                           progress));
+    for (size_t k = 0; k < chosen.size(); ++k) {
+      known[chosen[k]].add(judged.irradiance[k], judged.standard_error[k], more);
+      sort_out(chosen[k]);
+    }
   }
   std::vector<Round> out;
   for (const auto& [paths, round] : rounds) out.push_back(round);
@@ -232,9 +229,8 @@ Status every_texel(const Prepared& p, const Timed& solved, Section& section, Pro
       "([Moreno05, section 5.1]); gather took {:.0f} s. Irradiance of both is tone\nmapped with "
       "one "
       "exposure. A texel passes when its difference from the path tracer plus three of the path "
-      "tracer's standard errors is below {:.0f} of 255; the others are judged\nagain with more "
-      "paths, "
-      "new ones each time:\n\n{}\n"
+      "tracer's standard errors is below {:.0f} of 255; the others get\nmore "
+      "paths, which join those before:\n\n{}\n"
       "Covered texels (alpha 1: their centre lies on a surface) that do not pass: **{}** of {}; "
       "the "
       "paper has 0.2 % of its pixels above 40. Of the {} texels that a surface only\ntouches, "

@@ -52,6 +52,7 @@ Result<std::vector<std::byte>> contact_sheet(const Subject& subject, const Rende
   std::vector<display::Tile> tiles;
   std::optional<float> exposure_of_light;
   for (const Technique& technique : techniques()) {
+    if (!technique.on_sheet) continue;
     const Result<image::Image> picture = technique.draw(subject, s, out, progress);
     if (!picture) {
       const bool asked_for = technique.needs_bake && !s.from.empty();

@@ -33,12 +33,13 @@ struct RenderSettings {
   double fov_deg = 45;
   int width = 960, height = 720;  ///< of a contact sheet: each tile's
   OutsideLight outside;
-  std::optional<Exposure> exposure;          ///< automatic for light, 0 stops for colours
-  std::optional<display::ToneMap> tone_map;  ///< shoulder for light, clamp for colours
-  std::optional<int> samples;                ///< paths per pixel, 64
-  std::optional<int> bounces;                ///< reflections between surfaces; < 0: all, -1
-  std::optional<uint64_t> seed;              ///< 1
-  std::optional<HemicubeSettings> hemicube;  ///< radiosity
+  std::optional<Exposure> exposure;                  ///< automatic for light, 0 stops for colours
+  std::optional<display::ToneMap> tone_map;          ///< shoulder for light, clamp for colours
+  std::optional<int> samples;                        ///< paths per pixel, 64
+  std::optional<int> bounces;                        ///< reflections between surfaces; < 0: all, -1
+  std::optional<uint64_t> seed;                      ///< 1
+  std::optional<HemicubeSettings> hemicube;          ///< radiosity
+  std::optional<HierarchicalSettings> hierarchical;  ///< flat, gouraud, ...
 };
 
 struct Rendered {

@@ -53,6 +53,9 @@ Status check_used(const RenderSettings& s, const Technique& technique) {
                             {"--elements, --hemicube, --element-size, --max-elements, --max-error "
                              "and --smooth",
                              s.hemicube.has_value(), &Technique::has_elements},
+                            {"--eps, --min-area, --no-discontinuities, --max-leaf-lines and "
+                             "--min-weight",
+                             s.hierarchical.has_value(), &Technique::has_links},
                             {"--sun", s.outside.sun.has_value(), &Technique::has_lamps}};
   for (const Option& option : options)
     if (option.given && !(technique.*option.used))
@@ -82,6 +85,7 @@ Status check(const RenderSettings& s) {
     return fail(ErrorCode::bad_setting, "--samples {} is outside 1 to {}", *s.samples,
                 kMaxPathSamples);
   if (s.hemicube) LUXEL_TRY_STATUS(check(*s.hemicube));
+  if (s.hierarchical) LUXEL_TRY_STATUS(check(*s.hierarchical));
   LUXEL_TRY_STATUS(check_output(s, technique));
   if (technique) return check_used(s, *technique);
   return {};

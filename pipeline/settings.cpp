@@ -89,6 +89,18 @@ Status check(const MatrixSettings& s) {
   return check_range("--rays", s.rays, 1, kMaxSamples);
 }
 
+Status check(const HierarchicalSettings& s) {
+  if (s.eps && !(*s.eps >= 0 && std::isfinite(*s.eps)))
+    return fail(ErrorCode::bad_setting, "--eps {} is not an error; give W/m^2 >= 0", *s.eps);
+  if (!(s.min_area_m2 >= 0 && std::isfinite(s.min_area_m2)))
+    return fail(ErrorCode::bad_setting, "--min-area {} is not an area; give m^2 >= 0",
+                s.min_area_m2);
+  if (s.min_weight && !(*s.min_weight >= 0 && std::isfinite(*s.min_weight)))
+    return fail(ErrorCode::bad_setting, "--min-weight {} is not a weight; give W/m^2 per m >= 0",
+                *s.min_weight);
+  return check_range("--max-leaf-lines", s.max_leaf_lines, 0, 1000);
+}
+
 Status check(const BakeSettings& s) {
   if (!find_solver(s.solver))
     return fail(ErrorCode::bad_setting, "--solver {} is not known; there is: {}", s.solver,

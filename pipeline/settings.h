@@ -44,6 +44,15 @@ struct MatrixSettings {
   int rays = 2048;         ///< per patch, to find what it sees
 };
 
+/// What hierarchical radiosity reads: pictures and probes.
+struct HierarchicalSettings {
+  std::optional<double> eps;    ///< how much a link may err [W/m^2]; nothing: by the light there is
+  double min_area_m2 = 0;       ///< elements are not divided below; 0: by the scene
+  bool discontinuities = true;  ///< edges of shadows become edges of the mesh
+  int max_leaf_lines = 10;      ///< discontinuities through an element, at most
+  std::optional<double> min_weight;  ///< weaker ones are left out [W/m^2 per m]
+};
+
 struct BakeSettings {
   std::filesystem::path scene;
   std::filesystem::path output;  ///< a folder; made when missing
@@ -69,6 +78,7 @@ Status check(const BakeSettings& settings);
 
 Status check(const HemicubeSettings& settings);
 Status check(const MatrixSettings& settings);
+Status check(const HierarchicalSettings& settings);
 
 nlohmann::json to_json(const BakeSettings& settings);
 

@@ -6,6 +6,7 @@
 #include "display/local_light.h"
 #include "display/normals_view.h"
 #include "pipeline/draw_bake.h"
+#include "pipeline/draw_hierarchical.h"
 #include "pipeline/solvers.h"
 #include "reference/path_tracer.h"
 
@@ -69,6 +70,17 @@ Result<image::Image> draw_paths(const Subject& subject, const RenderSettings& s,
   return std::move(picture.radiance);
 }
 
+/// Pictures of one solution: a contact sheet would show six nearly alike.
+constexpr Technique hierarchical(std::string_view name, std::string_view help, DrawFunction draw) {
+  return {.name = name,
+          .help = help,
+          .draw = draw,
+          .counts_bounces = true,
+          .has_links = true,
+          .has_lamps = true,
+          .on_sheet = false};
+}
+
 constexpr std::array kTechniques{
     Technique{.name = "c",
               .help = "the material's colour",
@@ -113,6 +125,12 @@ constexpr std::array kTechniques{
               .counts_bounces = true,
               .has_elements = true,
               .has_lamps = true},
+    hierarchical("flat", "hierarchical radiosity: one value per element", draw_flat),
+    hierarchical("gouraud", "exact light at elements' corners, linear between", draw_gouraud),
+    hierarchical("gouraud-disc", "the same, cut along the edges of shadows", draw_gouraud_disc),
+    hierarchical("interpolant", "quadratic light, one ray per pixel", draw_interpolant),
+    hierarchical("lerpshade", "quadratic light, four rays per pixel", draw_lerpshade),
+    hierarchical("rayshade", "exact light at every pixel", draw_rayshade),
     Technique{.name = "lightmap", .help = "draw a bake", .draw = draw_lightmap, .needs_bake = true},
     Technique{.name = "path",
               .help = "trace paths",

@@ -34,7 +34,9 @@ struct Technique {
   bool traces_paths = false;    ///< --samples, --seed
   bool counts_bounces = false;  ///< --bounces
   bool has_elements = false;    ///< --elements, --hemicube, ...
+  bool has_links = false;       ///< --eps, --min-area, ...
   bool has_lamps = false;       ///< --sun
+  bool on_sheet = true;         ///< one of a contact sheet's pictures
 };
 
 /// All of them, in the order of a contact sheet: that of the paper's plates, then what luxel adds.

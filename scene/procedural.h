@@ -41,6 +41,10 @@ Scene radiosity_box();
 /// factor 20, as the paper's times are: 203 s and 58 s. [Rodriguez06, plate C.10]
 Scene radiosity_box_with_shapes();
 
+/// An office: a room of 5 x 4 x 2.8 m with a desk and a screen on it, a chair, a shelf, and two
+/// ceiling lights of 1.2 x 0.3 m; 61 polygons in all, two cameras. [Hardt96, figure 7-1]
+Scene office();
+
 /// A sphere of radius `radius_m` seen from inside (normals point inwards), latitude-longitude-free:
 /// an icosahedron subdivided `levels` times; flat shading. One material.
 Scene inward_sphere(float radius_m, int levels, Rgb reflectance, Rgb emission);

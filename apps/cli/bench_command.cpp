@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "bench/bench.h"
 #include "bench/hemicube.h"
+#include "bench/hierarchical.h"
 #include "bench/relight.h"
 #include "bench/validation.h"
 #include "pipeline/bake.h"
@@ -15,7 +16,8 @@
 namespace luxel::cli {
 namespace {
 
-constexpr const char *kValidation = "validation", *kHemicube = "hemicube", *kRelight = "relight";
+constexpr const char *kValidation = "validation", *kHemicube = "hemicube", *kRelight = "relight",
+                     *kHierarchical = "hierarchical";
 
 struct BenchOptions {
   Common common;
@@ -60,8 +62,8 @@ int run_validation(const BenchOptions& options, const std::filesystem::path& sha
   return kDone;
 }
 
-/// The plots and the numbers behind them: NAME.csv, images/NAME-*. `Page` is a HemicubePage or a
-/// RelightPage.
+/// The plots and the numbers behind them: NAME.csv, images/NAME-*. `Page` is what a
+/// measure_ function below gives.
 template <class Page>
 Status write_plots(const Page& page, const std::string& name, const std::filesystem::path& folder) {
   pipeline::OutputFolder images(folder / "images");
@@ -124,6 +126,10 @@ int run_bench(const BenchOptions& options) {
     if (const int code = run_page(options, kRelight, shared, bench::measure_relight);
         code != kDone || !all)
       return code;
+  if (options.name == kHierarchical || all)
+    if (const int code = run_page(options, kHierarchical, shared, bench::measure_hierarchical);
+        code != kDone || !all)
+      return code;
   return run_tables(options, shared);
 }
 
@@ -133,7 +139,7 @@ void register_bench(CLI::App& app, Action& action) {
   CLI::App* bench = app.add_subcommand(
       "bench", "Print the tables of docs/benchmarks.md, or write docs/validation.md");
   auto options = std::make_shared<BenchOptions>();
-  std::vector<std::string> names{"all", kValidation, kHemicube, kRelight};
+  std::vector<std::string> names{"all", kValidation, kHemicube, kRelight, kHierarchical};
   for (const bench::Bench& b : bench::kBenches) names.emplace_back(b.name);
   bench
       ->add_option("NAME", options->name,
@@ -143,9 +149,10 @@ void register_bench(CLI::App& app, Action& action) {
       ->required();
   bench->add_option("--shared", options->shared,
                     "Folder with scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
-  bench->add_option("-o,--output", options->output,
-                    "validation, hemicube, relight: folder for the page or the .csv, and images/ "
-                    "(default: docs)");
+  bench->add_option(
+      "-o,--output", options->output,
+      "validation, hemicube, relight, hierarchical: folder for the page or the .csv, and images/ "
+      "(default: docs)");
   add_common(*bench, options->common);
   bench->callback([options, &action] { action = [options] { return run_bench(*options); }; });
 }

@@ -43,6 +43,13 @@ struct HemicubeOptions {
 };
 void add_hemicube(CLI::App& command, HemicubeOptions& hemicube);
 
+/// "x,y,z".
+Result<Vec3> parse_point(const char* option, const std::string& text);
+
+/// Options of the hierarchical solver.
+std::vector<CLI::Option*> add_hierarchical(CLI::App& command,
+                                           pipeline::HierarchicalSettings& settings);
+
 /// --uv, as text until the command runs.
 CLI::Option* add_uv(CLI::App& command, std::string& text);
 atlas::UvMode uv_mode(const std::string& text);
@@ -65,6 +72,7 @@ int run_and_print(const Common& common,
 /// A command registers itself in `app` and, when it was asked for, leaves what is to be done.
 using Action = std::function<int()>;
 void register_info(CLI::App& app, Action& action);
+void register_probe(CLI::App& app, Action& action);
 void register_bake(CLI::App& app, Action& action);
 void register_render(CLI::App& app, Action& action);
 void register_compare(CLI::App& app, Action& action);

@@ -158,6 +158,35 @@ void add_hemicube(CLI::App& command, HemicubeOptions& hemicube) {
   for (CLI::Option* option : hemicube.options) option->group(group);
 }
 
+Result<Vec3> parse_point(const char* option, const std::string& text) {
+  Vec3 p;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%f,%f,%f%c", &p.x, &p.y, &p.z, &rest) == 3 && is_finite(p))
+    return p;
+  return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option, text);
+}
+
+std::vector<CLI::Option*> add_hierarchical(CLI::App& command, pipeline::HierarchicalSettings& s) {
+  std::vector<CLI::Option*> options{
+      command.add_option(
+          "--eps", s.eps,
+          "How much the light over a link may be off, in W/m^2 on an element of mean "
+          "size (default: a hundredth of the mean light)"),
+      command.add_option("--min-area", s.min_area_m2,
+                         "Elements are not divided below this, in m^2 (default: by the scene)"),
+      command.add_flag("!--no-discontinuities", s.discontinuities,
+                       "Do not mesh along the edges of shadows"),
+      command
+          .add_option("--max-leaf-lines", s.max_leaf_lines,
+                      "Edges of shadows through an element, at most")
+          ->capture_default_str(),
+      command.add_option("--min-weight", s.min_weight,
+                         "Edges over which light changes by less are left out, in W/m^2 per m "
+                         "(default: by the light there is)")};
+  for (CLI::Option* option : options) option->group("Hierarchical radiosity");
+  return options;
+}
+
 void add_outside_light(CLI::App& command, OutsideText& text) {
   command.add_option("--background", text.background, "Radiance of the surroundings as r,g,b")
       ->type_name("R,G,B");

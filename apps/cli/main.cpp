@@ -43,6 +43,7 @@ int run(int argc, char** argv) {
   register_compare(app, action);
   register_info(app, action);
   register_factors(app, action);
+  register_probe(app, action);
   register_relight(app, action);
   register_bench(app, action);
   if (argc == 1) {

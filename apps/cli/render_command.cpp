@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -14,16 +15,10 @@ struct RenderOptions {
   OutsideText outside;
   std::string size, eye, look_at, bounces, exposure, tone_map;
   HemicubeOptions hemicube;
+  pipeline::HierarchicalSettings hierarchical;
+  std::vector<CLI::Option*> hierarchical_options;
   pipeline::RenderSettings settings;
 };
-
-Result<Vec3> parse_point(const char* option, const std::string& text) {
-  Vec3 p;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%f,%f,%f%c", &p.x, &p.y, &p.z, &rest) == 3 && is_finite(p))
-    return p;
-  return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option, text);
-}
 
 Status parse_size(const RenderOptions& options, pipeline::RenderSettings& s) {
   if (s.technique == pipeline::kAllTechniques) s.width = 320, s.height = 240;
@@ -60,6 +55,9 @@ Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
     LUXEL_TRY(s.tone_map, parse_tone_map(options.tone_map));
   }
   if (options.hemicube.given()) s.hemicube = options.hemicube.settings;
+  if (std::any_of(options.hierarchical_options.begin(), options.hierarchical_options.end(),
+                  [](const CLI::Option* o) { return o->count() > 0; }))
+    s.hierarchical = options.hierarchical;
   LUXEL_TRY(s.outside, parse_outside_light(options.outside));
   return s;
 }
@@ -160,6 +158,7 @@ void register_render(CLI::App& app, Action& action) {
   render->add_option("--bounces", options->bounces, "Reflections to count, or inf (path; inf)");
   render->add_option("--seed", s.seed, "Seed of all random numbers (path; 1)");
   add_hemicube(*render, options->hemicube);
+  options->hierarchical_options = add_hierarchical(*render, options->hierarchical);
   add_outside_light(*render, options->outside);
   add_common(*render, options->common);
   render->callback([options, &action] { action = [options] { return run_render(*options); }; });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/hierarchical/segments.h"
 #include "transport/point_form_factor.h"
 
 namespace luxel::hierarchical {
@@ -14,10 +15,6 @@ constexpr double kShort = 1e-5;
 constexpr int kLooks = 4;
 /// What a lamp without area counts as when sources are compared by size [m].
 constexpr double kLampSize = 0.01;
-
-struct Segment {
-  DVec3 a, b;
-};
 
 /// What one face is looked at with.
 struct View {
@@ -47,34 +44,6 @@ float radiosity_of(const Solution& s, uint32_t face) {
     area += s.tree.elements[r].area_m2;
   }
   return area > 0 ? float(sum / area) : 0;
-}
-
-/// The part of a segment for which low <= value <= high, where value is linear along it.
-bool clip_linear(Segment& segment, double at_a, double at_b, double low, double high) {
-  double t0 = 0, t1 = 1;
-  const double slope = at_b - at_a;
-  for (const auto& [limit, sign] : {std::pair{low, 1.0}, std::pair{high, -1.0}}) {
-    const double inside = sign * (at_a - limit), change = sign * slope;
-    if (change == 0 && inside < 0) return false;
-    if (change > 0) t0 = std::max(t0, -inside / change);
-    if (change < 0) t1 = std::min(t1, -inside / change);
-  }
-  if (!(t0 < t1)) return false;
-  const Segment all = segment;
-  segment = {all.a + (all.b - all.a) * t0, all.a + (all.b - all.a) * t1};
-  return true;
-}
-
-/// The part of a segment of the polygon's plane that lies inside.
-bool clip_to(PolygonView polygon, DVec3 normal, Segment& segment) {
-  for (size_t k = 0; k < polygon.size(); ++k) {
-    const DVec3 edge = polygon[(k + 1) % polygon.size()] - polygon[k];
-    const DVec3 inwards = normalize(cross(normal, edge));
-    if (!clip_linear(segment, dot(inwards, segment.a - polygon[k]),
-                     dot(inwards, segment.b - polygon[k]), 0, INFINITY))
-      return false;
-  }
-  return true;
 }
 
 /// Where the ray from a point over another one meets the plane: the first is higher.
@@ -203,18 +172,6 @@ void add_shadows(const View& v, const Source& source, std::span<const uint32_t> 
                polygon[k]);
     }
   }
-}
-
-/// The line in which two planes meet, as a long segment about a point near `about`.
-bool meet(const Plane& p, const Plane& q, DVec3 about, double reach, Segment& out) {
-  const DVec3 d = cross(p.normal, q.normal);
-  const double size2 = dot(d, d);
-  if (size2 < 1e-16) return false;
-  const DVec3 on = (cross(q.normal, d) * p.offset + cross(d, p.normal) * q.offset) * (1 / size2);
-  const DVec3 unit = normalize(d);
-  const DVec3 middle = on + unit * dot(about - on, unit);
-  out = {middle - unit * reach, middle + unit * reach};
-  return true;
 }
 
 void add_horizon(const View& v, const Source& source, const Face& face) {

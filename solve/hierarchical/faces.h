@@ -33,13 +33,11 @@ struct Faces {
   std::vector<uint32_t> first_triangle;    ///< per instance, as scene::first_triangles
   std::vector<uint32_t> face_of_triangle;  ///< per drawn triangle; kNone for one without area
   double slack_m = 0;                      ///< corners nearer to a plane lie in it
-  std::vector<std::string> warnings;
 
   size_t size() const { return faces.size(); }
 };
 
-/// Warns of faces that lie on each other and of those that pass through each other, by the names of
-/// their instances. Errors: cancelled.
+/// Errors: cancelled.
 Result<Faces> make_faces(const scene::Scene& scene, Progress& progress);
 
 }  // namespace luxel::hierarchical

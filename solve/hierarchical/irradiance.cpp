@@ -154,22 +154,23 @@ class Gathering {
     }
   }
 
-  /// Radiosity is linear over a part: its mean does, where the part is far, or differs little.
+  /// Radiosity is linear over a part. As the point sees it, its mean is that of Gauss's points,
+  /// each with the weight of the kernel there, where the part is far or differs little; else its
+  /// quarters are looked at.
   void add_part(const Part& part, const transport::SeenFactor& seen,
                 std::span<const uint32_t> blockers, int cuts) {
-    Rgb mean{}, least{INFINITY, INFINITY, INFINITY}, most{};
+    Rgb least{INFINITY, INFINITY, INFINITY}, most{};
     DVec3 middle;
     for (uint32_t k = 0; k < part.corners; ++k) {
-      mean += part.radiosity[k] * (1 / float(part.corners));
       least = min(least, part.radiosity[k]), most = max(most, part.radiosity[k]);
       middle += part.corner[k] * (1.0 / part.corners);
     }
     const double size = length(part.corner[0] - middle);
-    const double distance = std::max(length(middle - at_.position), 1e-9);
-    const double doubt = double(max_component(most - least)) * seen.whole *
-                         std::min(1.0, size / distance) * (blockers.empty() ? 0.3 : 1.0);
-    if (doubt <= limit_ || cuts == kMostCuts) {
-      sum_ += max(mean, Rgb{}) * float(seen.visible);
+    const double nearness = size / std::max(length(middle - at_.position), 1e-9);
+    const double unsure = 0.2 * seen.whole * std::min(1.0, nearness * nearness) +
+                          0.5 * std::min(seen.visible, seen.whole - seen.visible);
+    if (double(max_component(most - least)) * unsure <= limit_ || cuts == kMostCuts) {
+      sum_ += max(radiosity_seen(part, middle), Rgb{}) * float(seen.visible);
       return;
     }
     for (uint32_t k = 0; k < 4; ++k) {
@@ -179,6 +180,25 @@ class Gathering {
       const transport::SeenFactor there = look(polygon, blockers);
       if (there.visible > 0) add_part(quarter, there, blockers, cuts + 1);
     }
+  }
+
+  /// The mean radiosity of a part, weighted by cos / r^2 on the way to the receiver.
+  Rgb radiosity_seen(const Part& part, DVec3 middle) const {
+    // From the middle to Gauss's points: 1 / sqrt 3 of the way to a quadrilateral's corners, half
+    // of it to a triangle's.
+    const double inside = part.corners == 4 ? 0.57735027 : 0.5;
+    Rgb mean{}, sum{};
+    for (uint32_t k = 0; k < part.corners; ++k)
+      mean += part.radiosity[k] * (1 / float(part.corners));
+    float weight = 0;
+    for (uint32_t k = 0; k < part.corners; ++k) {
+      const DVec3 d = middle + (part.corner[k] - middle) * inside - at_.position;
+      const double r2 = dot(d, d);
+      // The source's own cosine is a height over r, and the height is the same for all points.
+      const auto w = float(std::max(0.0, dot(d, at_.normal)) / (r2 * r2));
+      sum += (mean + (part.radiosity[k] - mean) * float(inside)) * w, weight += w;
+    }
+    return weight > 0 ? sum / weight : mean;
   }
 
   /// As divide() cuts.
@@ -291,6 +311,27 @@ std::vector<Seen> sources_at(const Solution& s, const trace::RayTracer& tracer,
   std::stable_sort(out.begin(), out.end(), [](const Seen& a, const Seen& b) {
     return luminance(a.irradiance) > luminance(b.irradiance);
   });
+  return out;
+}
+
+Backprojection backproject(const Solution& s, const Receiver& receiver, uint32_t face) {
+  Backprojection out;
+  const Face& f = s.faces.faces[face];
+  const Plane horizon{receiver.geometric_normal, dot(receiver.geometric_normal, receiver.position)};
+  out.source = transport::clip_above(f.corners, horizon, s.blockers.slack_m * 1e-3);
+  if (out.source.empty()) return out;
+  if (f.plane.height(receiver.position) < 0) std::reverse(out.source.begin(), out.source.end());
+  std::vector<uint32_t> blockers;
+  find_before(s.blockers, receiver.position, out.source, blockers);
+  std::erase(blockers, face), std::erase(blockers, receiver.face);
+  std::vector<uint8_t> casts(s.blockers.all.size());
+  transport::VisibilityScratch scratch;
+  transport::visible_point_factor(receiver.position, receiver.normal, out.source, s.blockers.all,
+                                  blockers, s.blockers.slack_m * 1e-3, casts, scratch);
+  for (size_t k = 0; k < scratch.visible.size(); ++k) {
+    out.visible.emplace_back();
+    for (const DVec3& p : scratch.visible[k]) out.visible.back().push_back(p + receiver.position);
+  }
   return out;
 }
 

@@ -43,8 +43,15 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& solution, const scene::Sc
 std::vector<Seen> sources_at(const Solution& solution, const trace::RayTracer& tracer,
                              const Receiver& receiver, const PointParams& params);
 
-/// The receiver at a place of a face, `inwards_m` above it, where vertex normals say so on the
-/// smooth surface.
+/// The backprojection of a receiver onto a face: the part of it above the receiver's horizon, and
+/// what of that the receiver sees, as convex pieces, in the world.
+struct Backprojection {
+  Polygon source;
+  std::vector<Polygon> visible;
+};
+Backprojection backproject(const Solution& solution, const Receiver& receiver, uint32_t face);
+
+/// The receiver at a place of a face, where vertex normals say so on the smooth surface.
 Receiver receiver_at(const Solution& solution, const scene::Scene& scene,
                      const trace::RayTracer& tracer, uint32_t face, DVec3 place);
 

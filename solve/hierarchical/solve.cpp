@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solve/hierarchical/lamps.h"
+#include "solve/hierarchical/overlaps.h"
 
 namespace luxel::hierarchical {
 namespace {
@@ -135,11 +136,17 @@ Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer
   LUXEL_TRY(s.faces, make_faces(scene, progress));
   s.tree = make_tree(s.faces);
   s.blockers = make_blockers(s.faces);
+  s.warnings = overlap_warnings(scene, s.faces, s.blockers);
   s.diagonal_m = scene::world_bounds(scene).diagonal();
   s.mean_area_m2 = area_of(s.tree) / double(std::max<size_t>(1, s.tree.first_root.back()));
   s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;
   Work work{s, s.exchange(tracer), lamps_of(scene), {}, {scene, s.tree, s.light, s.links}};
   LUXEL_TRY_STATUS(run(work, params, progress));
+  if (s.links.bounded)
+    s.warnings.push_back(fmt::format(
+        "refinement ended at {} elements and {} links, before all errors were below {:.3g} W/m^2; "
+        "ask for a larger --eps or --min-area",
+        s.tree.elements.size(), s.links.count, s.eps));
   return s;
 }
 

@@ -26,8 +26,9 @@ struct Solution {
   Links links;
   Blockers blockers;
   double eps = 0, min_area_m2 = 0;
-  int iterations = 0;  ///< refinements
-  int sweeps = 0;      ///< gathers
+  std::vector<std::string> warnings;  ///< overlaps.h; a bound that ended the refinement
+  int iterations = 0;                 ///< refinements
+  int sweeps = 0;                     ///< gathers
   float diagonal_m = 0;
   double mean_area_m2 = 1;
 

@@ -17,14 +17,21 @@ namespace {
 constexpr int kPlacesPerTrial = 16;
 constexpr uint32_t kLooks = 64;
 
-/// How far the nearest surface is, by rays in all directions.
+/// So many of the rays from a place inside of a room meet something. From outside little light
+/// comes back, and what is lost of it says nothing.
+constexpr float kInside = 0.6f;
+
+/// How far the nearest surface is, by rays in all directions; outside of rooms a thousandth of
+/// that.
 float room_around(const trace::RayTracer& tracer, Vec3 place) {
   float nearest = INFINITY;
+  uint32_t met = 0;
   for (uint32_t k = 0; k < kLooks; ++k) {
     const Vec3 towards = uniform_sphere_sample(sobol_owen_2d(k, 1));
-    nearest = std::min(nearest, tracer.closest_hit({place, 0, towards, INFINITY}).t);
+    const trace::Hit hit = tracer.closest_hit({place, 0, towards, INFINITY});
+    nearest = std::min(nearest, hit.t), met += hit.found();
   }
-  return nearest;
+  return float(met) >= kInside * kLooks ? nearest : nearest * 1e-3f;
 }
 
 scene::PunctualLight trial_lamp(const trace::RayTracer& tracer, const Patches& patches,

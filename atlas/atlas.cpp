@@ -62,7 +62,7 @@ Atlas write_atlas(const scene::Scene& scene, const std::vector<FlatChart>& chart
       const uint32_t f = charts[c].faces[i];
       atlas.chart[f] = c;
       for (int k = 0; k < 3; ++k) {
-        const Dvec2 p = layout.texels[c][i][k];
+        const DVec2 p = layout.texels[c][i][k];
         atlas.corners[f][k] = {float(p.x), float(p.y)};
       }
     }

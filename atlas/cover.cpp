@@ -6,7 +6,7 @@ namespace luxel::atlas {
 namespace {
 
 /// Twice the area of (a, b, p): positive when p lies on the inner side of edge a-b.
-double side_of(Dvec2 a, Dvec2 b, Dvec2 p) { return cross(b - a, p - a); }
+double side_of(DVec2 a, DVec2 b, DVec2 p) { return cross(b - a, p - a); }
 
 double low_y(const UvTriangle& t) {
   return std::min({t.corner[0].y, t.corner[1].y, t.corner[2].y});
@@ -25,8 +25,8 @@ double high_x(const UvTriangle& t) {
 bool touches(const UvTriangle& t, int i, int j) {
   if (!(low_x(t) < i + 1 && high_x(t) > i && low_y(t) < j + 1 && high_y(t) > j)) return false;
   for (int k = 0; k < 3; ++k) {
-    const Dvec2 a = t.corner[k], b = t.corner[(k + 1) % 3];
-    const Dvec2 innermost{b.y > a.y ? double(i) : i + 1.0, b.x > a.x ? j + 1.0 : double(j)};
+    const DVec2 a = t.corner[k], b = t.corner[(k + 1) % 3];
+    const DVec2 innermost{b.y > a.y ? double(i) : i + 1.0, b.x > a.x ? j + 1.0 : double(j)};
     if (side_of(a, b, innermost) <= 0) return false;
   }
   return true;
@@ -37,7 +37,7 @@ std::pair<double, double> x_range(const UvTriangle& t, double y0, double y1) {
   double low = INFINITY, high = -INFINITY;
   const auto add = [&](double x) { low = std::min(low, x), high = std::max(high, x); };
   for (int k = 0; k < 3; ++k) {
-    const Dvec2 a = t.corner[k], b = t.corner[(k + 1) % 3];
+    const DVec2 a = t.corner[k], b = t.corner[(k + 1) % 3];
     if (a.y >= y0 && a.y <= y1) add(a.x);
     for (const double y : {y0, y1})
       if ((a.y < y) != (b.y < y)) add(a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)));
@@ -46,7 +46,7 @@ std::pair<double, double> x_range(const UvTriangle& t, double y0, double y1) {
 }
 
 bool holds_centre(const UvTriangle& t, int i, int j, CentreRule rule) {
-  const Dvec2 centre{i + 0.5, j + 0.5};
+  const DVec2 centre{i + 0.5, j + 0.5};
   for (int k = 0; k < 3; ++k) {
     const double s = side_of(t.corner[k], t.corner[(k + 1) % 3], centre);
     if (s < 0 || (s == 0 && rule == CentreRule::strictly_inside)) return false;
@@ -66,7 +66,7 @@ constexpr double kSlack = 1e-7;  // texels; far above the rounding of x_range
 
 }  // namespace
 
-UvTriangle uv_triangle(const std::array<Dvec2, 3>& corners) {
+UvTriangle uv_triangle(const std::array<DVec2, 3>& corners) {
   UvTriangle t{corners, cross(corners[1] - corners[0], corners[2] - corners[0])};
   if (t.area2 < 0) {
     std::swap(t.corner[1], t.corner[2]);
@@ -99,8 +99,8 @@ Span centre_texels(const UvTriangle& t, int row, CentreRule rule) {
 
 bool holds_texel(const UvTriangle& t, int i, int j) {
   for (int k = 0; k < 3; ++k) {
-    const Dvec2 a = t.corner[k], b = t.corner[(k + 1) % 3];
-    const Dvec2 outermost{b.y > a.y ? i + 1.0 : double(i), b.x > a.x ? double(j) : j + 1.0};
+    const DVec2 a = t.corner[k], b = t.corner[(k + 1) % 3];
+    const DVec2 outermost{b.y > a.y ? i + 1.0 : double(i), b.x > a.x ? double(j) : j + 1.0};
     if (side_of(a, b, outermost) < 0) return false;
   }
   return true;
@@ -108,16 +108,16 @@ bool holds_texel(const UvTriangle& t, int i, int j) {
 
 Clip clip_to_texel(const UvTriangle& t, int column, int row) {
   // Relative to the texel's corner, where the digits are. [Sutherland74]
-  std::array<Dvec2, 9> polygon, next;
+  std::array<DVec2, 9> polygon, next;
   size_t count = 3;
-  for (size_t k = 0; k < 3; ++k) polygon[k] = t.corner[k] - Dvec2{double(column), double(row)};
+  for (size_t k = 0; k < 3; ++k) polygon[k] = t.corner[k] - DVec2{double(column), double(row)};
   for (int side = 0; side < 4; ++side) {
-    const auto inside = [&](Dvec2 p) {
+    const auto inside = [&](DVec2 p) {
       return side == 0 ? p.x : side == 1 ? 1 - p.x : side == 2 ? p.y : 1 - p.y;
     };
     size_t kept = 0;
     for (size_t k = 0; k < count; ++k) {
-      const Dvec2 a = polygon[k], b = polygon[(k + 1) % count];
+      const DVec2 a = polygon[k], b = polygon[(k + 1) % count];
       const double da = inside(a), db = inside(b);
       if (da >= 0) next[kept++] = a;
       if ((da > 0 && db < 0) || (da < 0 && db > 0)) next[kept++] = a + (b - a) * (da / (da - db));
@@ -126,14 +126,14 @@ Clip clip_to_texel(const UvTriangle& t, int column, int row) {
     count = kept;
   }
   Clip clip;
-  Dvec2 sum;
+  DVec2 sum;
   for (size_t k = 2; k < count; ++k) {
     const double area2 = cross(polygon[k - 1] - polygon[0], polygon[k] - polygon[0]);
     clip.area += 0.5 * area2;
     sum = sum + (polygon[0] + polygon[k - 1] + polygon[k]) * (area2 / 6);
   }
   if (clip.area <= 0) return {};
-  clip.centroid = sum * (1 / clip.area) + Dvec2{double(column), double(row)};
+  clip.centroid = sum * (1 / clip.area) + DVec2{double(column), double(row)};
   return clip;
 }
 

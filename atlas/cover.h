@@ -13,10 +13,10 @@ namespace luxel::atlas {
 
 /// A triangle in texels whose corners turn so that its area is positive.
 struct UvTriangle {
-  std::array<Dvec2, 3> corner;
+  std::array<DVec2, 3> corner;
   double area2 = 0;  ///< twice the area; 0: a segment or a point
 };
-UvTriangle uv_triangle(const std::array<Dvec2, 3>& corners);
+UvTriangle uv_triangle(const std::array<DVec2, 3>& corners);
 
 /// Texels [begin, end) of a row, or rows of a triangle.
 struct Span {
@@ -38,7 +38,7 @@ bool holds_texel(const UvTriangle& t, int column, int row);
 /// The part of a triangle that lies in a texel; empty when they share no area.
 struct Clip {
   double area = 0;
-  Dvec2 centroid;
+  DVec2 centroid;
 };
 Clip clip_to_texel(const UvTriangle& t, int column, int row);
 

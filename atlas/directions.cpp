@@ -24,16 +24,16 @@ double area_of(const FlatChart& chart) {
 /// The chart turned left, its rectangle at the origin again.
 FlatChart turned_chart(const FlatChart& chart, double angle) {
   FlatChart t = chart;
-  const Dvec2 d{std::cos(angle), std::sin(angle)};
-  Dvec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+  const DVec2 d{std::cos(angle), std::sin(angle)};
+  DVec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
   for (auto& corners : t.corners)
-    for (Dvec2& p : corners) {
+    for (DVec2& p : corners) {
       p = {dot(d, p), cross(d, p)};
       low = {std::min(low.x, p.x), std::min(low.y, p.y)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     }
   for (auto& corners : t.corners)
-    for (Dvec2& p : corners) p = p - low;
+    for (DVec2& p : corners) p = p - low;
   t.size = high - low;
   return t;
 }
@@ -45,7 +45,7 @@ std::vector<uint32_t> blobs_to_turn(const std::vector<FlatChart>& charts) {
   std::vector<uint32_t> blobs;
   double blob_area = 0;
   for (uint32_t c = 0; c < charts.size(); ++c) {
-    const Dvec2 size = charts[c].size;
+    const DVec2 size = charts[c].size;
     const double shortest = std::min(size.x, size.y);
     area[c] = area_of(charts[c]);
     if (area[c] >= kBlobFill * size.x * size.y || shortest * shortest < kSmall * total) continue;

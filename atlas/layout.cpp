@@ -10,7 +10,7 @@
 namespace luxel::atlas {
 namespace {
 
-using Corners = std::vector<std::array<Dvec2, 3>>;
+using Corners = std::vector<std::array<DVec2, 3>>;
 
 /// All coordinates up to the resolution have this unit in a float: sums of chart corners and chart
 /// places are exact, and so are the products in cover.cpp.
@@ -49,16 +49,16 @@ Layout place_charts(Attempt attempt, const Packing& packing, int resolution, dou
   parallel_for(layout.texels.size(), 64, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) {
       const Place place = packing.places[c];
-      const Dvec2 corner{double(place.x), double(place.y)};
+      const DVec2 corner{double(place.x), double(place.y)};
       const Mask& mask = attempt.masks[c][size_t(place.direction)].front();
       double width = mask.width, height = mask.height;
       for (int turn = 0; turn < place.turns; ++turn) {
         for (auto& t : layout.texels[c])
-          for (Dvec2& p : t) p = {p.y, width - p.x};
+          for (DVec2& p : t) p = {p.y, width - p.x};
         std::swap(width, height);
       }
       for (auto& t : layout.texels[c])
-        for (Dvec2& p : t) p = p + corner;
+        for (DVec2& p : t) p = p + corner;
     }
   });
   return layout;
@@ -100,7 +100,7 @@ Corners texel_corners(const FlatChart& chart, double density, int resolution) {
   const double sy = height > 0 ? shortened(height, width) * density : density;
   Corners texels = chart.corners;
   for (auto& t : texels)
-    for (Dvec2& p : t) p = {std::round(p.x * sx / unit) * unit, std::round(p.y * sy / unit) * unit};
+    for (DVec2& p : t) p = {std::round(p.x * sx / unit) * unit, std::round(p.y * sy / unit) * unit};
   return texels;
 }
 

@@ -13,13 +13,13 @@ namespace luxel::atlas {
 struct Layout {
   int resolution = 0;
   double texels_per_metre = 0;
-  std::vector<std::vector<std::array<Dvec2, 3>>>
+  std::vector<std::vector<std::array<DVec2, 3>>>
       local;  ///< per chart, per face: texels from its place
-  std::vector<std::vector<std::array<Dvec2, 3>>> texels;  ///< the same on the atlas
+  std::vector<std::vector<std::array<DVec2, 3>>> texels;  ///< the same on the atlas
 };
 
 /// Corners of a chart in texels: scaled, slivers shortened, on the fixed-point grid.
-std::vector<std::array<Dvec2, 3>> texel_corners(const FlatChart& chart, double texels_per_metre,
+std::vector<std::array<DVec2, 3>> texel_corners(const FlatChart& chart, double texels_per_metre,
                                                 int resolution);
 
 /// Whether a square has room for as many charts when each shrinks to a single texel.

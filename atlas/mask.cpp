@@ -30,7 +30,7 @@ void measure(Mask& mask) {
 
 }  // namespace
 
-Mask make_mask(const std::vector<std::array<Dvec2, 3>>& texels) {
+Mask make_mask(const std::vector<std::array<DVec2, 3>>& texels) {
   Mask mask;
   for (const auto& corners : texels) {
     const UvTriangle t = uv_triangle(corners);

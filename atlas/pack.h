@@ -17,7 +17,7 @@ struct Mask {
 };
 
 /// Texels touched by any triangle; all corners are at or right of and below the origin.
-Mask make_mask(const std::vector<std::array<Dvec2, 3>>& texels);
+Mask make_mask(const std::vector<std::array<DVec2, 3>>& texels);
 /// The mask turned by a quarter: texel (i, j) goes to (j, width - 1 - i).
 Mask turned(const Mask& mask);
 

@@ -10,7 +10,7 @@
 namespace luxel::atlas {
 namespace {
 
-using Corners = std::vector<std::array<Dvec2, 3>>;
+using Corners = std::vector<std::array<DVec2, 3>>;
 
 /// Two directions in the plane across an axis, right-handed seen against it. Walls stand upright
 /// (y is up in the world and grows downwards in a texture). The choice is far from any axis that a
@@ -22,20 +22,20 @@ std::pair<DVec3, DVec3> plane_directions(DVec3 axis) {
 }
 
 /// The corners of the convex hull, counter-clockwise. [Andrew79]
-std::vector<Dvec2> convex_hull(const Corners& corners) {
-  std::vector<Dvec2> points;
+std::vector<DVec2> convex_hull(const Corners& corners) {
+  std::vector<DVec2> points;
   for (const auto& triangle : corners)
     points.insert(points.end(), triangle.begin(), triangle.end());
-  const auto before = [](Dvec2 a, Dvec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
+  const auto before = [](DVec2 a, DVec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
   std::sort(points.begin(), points.end(), before);
-  std::vector<Dvec2> hull(2 * points.size());
+  std::vector<DVec2> hull(2 * points.size());
   size_t count = 0;
-  const auto add = [&](Dvec2 p, size_t least) {
+  const auto add = [&](DVec2 p, size_t least) {
     while (count >= least && cross(hull[count - 1] - hull[count - 2], p - hull[count - 1]) <= 0)
       --count;
     hull[count++] = p;
   };
-  for (const Dvec2 p : points) add(p, 2);
+  for (const DVec2 p : points) add(p, 2);
   const size_t lower = count + 1;
   for (size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
   hull.resize(count > 1 ? count - 1 : count);
@@ -44,18 +44,18 @@ std::vector<Dvec2> convex_hull(const Corners& corners) {
 
 /// The direction (at most 45 degrees off x) along which the smallest rectangle around a hull lies.
 /// One of its sides lies on a hull edge. [Freeman75]
-Dvec2 best_direction(const std::vector<Dvec2>& hull) {
-  Dvec2 best{1, 0};
+DVec2 best_direction(const std::vector<DVec2>& hull) {
+  DVec2 best{1, 0};
   double best_area = INFINITY, best_turn = 0;
   for (size_t i = 0; i < hull.size(); ++i) {
-    Dvec2 d = hull[(i + 1) % hull.size()] - hull[i];
+    DVec2 d = hull[(i + 1) % hull.size()] - hull[i];
     const double l = length(d);
     if (!(l > 0)) continue;
     d = d * (1 / l);
     if (std::abs(d.y) > std::abs(d.x)) d = {d.y, -d.x};
     if (d.x < 0) d = {-d.x, -d.y};
     double x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY;
-    for (const Dvec2 p : hull) {
+    for (const DVec2 p : hull) {
       const double x = dot(d, p), y = cross(d, p);
       x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
     }
@@ -71,7 +71,7 @@ Dvec2 best_direction(const std::vector<Dvec2>& hull) {
   return best;
 }
 
-double signed_area2(const std::array<Dvec2, 3>& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+double signed_area2(const std::array<DVec2, 3>& t) { return cross(t[1] - t[0], t[2] - t[0]); }
 
 /// Which faces of a chart already hold a texel centre; a bit per texel of its rectangle.
 struct Occupancy {
@@ -92,7 +92,7 @@ struct Occupancy {
 Occupancy empty_occupancy(const Corners& texels) {
   double x = 1, y = 1;
   for (const auto& t : texels)
-    for (const Dvec2 p : t) x = std::max(x, p.x), y = std::max(y, p.y);
+    for (const DVec2 p : t) x = std::max(x, p.x), y = std::max(y, p.y);
   Occupancy o{int(x) + 1, int(y) + 1, {}};
   o.taken.resize(size_t(o.width) * size_t(o.height));
   return o;
@@ -136,7 +136,7 @@ std::vector<ChartFaces> cut_in_half(const Faces& faces, const FlatChart& chart) 
   const double middle = 0.5 * (wide ? chart.size.x : chart.size.y);
   ChartFaces near_side, far_side;
   for (size_t i = 0; i < chart.faces.size(); ++i) {
-    const Dvec2 sum = chart.corners[i][0] + chart.corners[i][1] + chart.corners[i][2];
+    const DVec2 sum = chart.corners[i][0] + chart.corners[i][1] + chart.corners[i][2];
     ((wide ? sum.x : sum.y) < 3 * middle ? near_side : far_side).push_back(chart.faces[i]);
   }
   if (near_side.empty() || far_side.empty()) return {};
@@ -148,7 +148,7 @@ std::vector<ChartFaces> cut_in_half(const Faces& faces, const FlatChart& chart) 
 Corners scaled(const Corners& corners, double scale) {
   Corners result = corners;
   for (auto& t : result)
-    for (Dvec2& p : t) p = p * scale;
+    for (DVec2& p : t) p = p * scale;
   return result;
 }
 
@@ -193,17 +193,17 @@ FlatChart project_chart(const Faces& faces, ChartFaces chart) {
     flat_area += 0.5 * std::abs(signed_area2(flat.corners[i]));
     area += faces.area[chart[i]];
   }
-  const Dvec2 d = best_direction(convex_hull(flat.corners));
+  const DVec2 d = best_direction(convex_hull(flat.corners));
   const double scale = flat_area > 0 ? std::sqrt(area / flat_area) : 1;
-  Dvec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+  DVec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
   for (auto& triangle : flat.corners)
-    for (Dvec2& p : triangle) {
-      p = Dvec2{dot(d, p), cross(d, p)} * scale;
+    for (DVec2& p : triangle) {
+      p = DVec2{dot(d, p), cross(d, p)} * scale;
       low = {std::min(low.x, p.x), std::min(low.y, p.y)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     }
   for (auto& triangle : flat.corners)
-    for (Dvec2& p : triangle) p = p - low;
+    for (DVec2& p : triangle) p = p - low;
   flat.size = high - low;
   flat.faces = std::move(chart);
   return flat;

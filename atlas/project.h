@@ -14,8 +14,8 @@ namespace luxel::atlas {
 /// size.y]. Its area is that of the surface, so that all charts have one density.
 struct FlatChart {
   ChartFaces faces;
-  std::vector<std::array<Dvec2, 3>> corners;  ///< per face
-  Dvec2 size;
+  std::vector<std::array<DVec2, 3>> corners;  ///< per face
+  DVec2 size;
 };
 
 /// Projects a chart along its axis, scales it to the surface's area and turns it into the smallest
@@ -26,7 +26,7 @@ FlatChart project_chart(const Faces& faces, ChartFaces chart);
 /// surface) covers too; empty for a chart that does not overlap itself. `texels` are the chart's
 /// corners.
 ChartFaces overlapping_faces(const Faces& faces, const FlatChart& chart,
-                             const std::vector<std::array<Dvec2, 3>>& texels);
+                             const std::vector<std::array<DVec2, 3>>& texels);
 
 /// Projects charts and cuts those that fold over themselves, and those longer than max_length as
 /// far as whole triangles go. `texels_per_metre` is about the density that the chart will get.

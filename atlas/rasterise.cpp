@@ -39,11 +39,11 @@ std::vector<std::vector<uint32_t>> bin_triangles(const Atlas& atlas) {
 
 /// The centroid of a triangle's share of a texel as barycentric coordinates of its corners, which
 /// keep the mesh's order. Strictly inside.
-Barycentric sample_in(const std::array<Dvec2, 3>& c, const UvTriangle& t, int column, int row) {
-  const Dvec2 centre{column + 0.5, row + 0.5};
+Barycentric sample_in(const std::array<DVec2, 3>& c, const UvTriangle& t, int column, int row) {
+  const DVec2 centre{column + 0.5, row + 0.5};
   double u = 1.0 / 3, v = 1.0 / 3;
   if (t.area2 > 0) {
-    Dvec2 p = centre;
+    DVec2 p = centre;
     if (!holds_texel(t, column, row)) {
       const Clip clip = clip_to_texel(t, column, row);
       p = clip.area > 0 ? clip.centroid : (c[0] + c[1] + c[2]) * (1.0 / 3);
@@ -56,7 +56,7 @@ Barycentric sample_in(const std::array<Dvec2, 3>& c, const UvTriangle& t, int co
     int k = 0;
     for (int e = 1; e < 3; ++e)
       if (length(c[(e + 1) % 3] - c[e]) > length(c[(k + 1) % 3] - c[k])) k = e;
-    const Dvec2 a = c[k], along = c[(k + 1) % 3] - a;
+    const DVec2 a = c[k], along = c[(k + 1) % 3] - a;
     const double l2 = dot(along, along);
     const double s = l2 > 0 ? std::clamp(dot(centre - a, along) / l2, 0.0, 1.0) : 0.5;
     std::array<double, 3> weight{};
@@ -115,7 +115,7 @@ std::vector<Texel> band_texels(const Atlas& atlas, const std::vector<Owner>& own
   const int n = atlas.resolution;
   std::vector<Texel> texels;
   uint32_t cached = kNone, instance = 0;
-  std::array<Dvec2, 3> corners;
+  std::array<DVec2, 3> corners;
   UvTriangle triangle;
   for (size_t k = 0; k < owners.size(); ++k) {
     const Owner& o = owners[k];

@@ -21,11 +21,11 @@ Atlas atlas_of(int resolution, std::vector<std::array<Vec2, 3>> corners) {
 TEST(Rasterise, ClipsSumToTheTrianglesArea) {
   RandomStream random{3};
   for (int k = 0; k < 200; ++k) {
-    std::array<Dvec2, 3> c;
-    for (Dvec2& p : c) p = to_double(random.next2() * 9.0f);
+    std::array<DVec2, 3> c;
+    for (DVec2& p : c) p = to_double(random.next2() * 9.0f);
     const UvTriangle t = uv_triangle(c);
     double area = 0;
-    Dvec2 moment;
+    DVec2 moment;
     const Span rows = touched_rows(t);
     for (int j = rows.begin; j < rows.end; ++j) {
       const Span s = touched_texels(t, j);
@@ -37,7 +37,7 @@ TEST(Rasterise, ClipsSumToTheTrianglesArea) {
       }
     }
     EXPECT_NEAR(area, t.area2 / 2, 1e-9);
-    const Dvec2 centroid = (c[0] + c[1] + c[2]) * (1.0 / 3);
+    const DVec2 centroid = (c[0] + c[1] + c[2]) * (1.0 / 3);
     EXPECT_NEAR(moment.x, centroid.x * area, 1e-8);
     EXPECT_NEAR(moment.y, centroid.y * area, 1e-8);
   }

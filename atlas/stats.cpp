@@ -17,7 +17,7 @@ struct Measure {
 /// [Sander01, section 3]: with S_s and S_t the derivatives of the surface by the texture
 /// coordinates, the squared L2 stretch is (S_s . S_s + S_t . S_t) / 2.
 Measure measure(const scene::Triangle3& world, const std::array<Vec2, 3>& uv) {
-  const Dvec2 a = to_double(uv[0]), b = to_double(uv[1]), c = to_double(uv[2]);
+  const DVec2 a = to_double(uv[0]), b = to_double(uv[1]), c = to_double(uv[2]);
   const DVec3 p = to_double(world.a), q = to_double(world.b), r = to_double(world.c);
   const double area2 = cross(b - a, c - a);
   Measure m{0.5 * length(cross(q - p, r - p)), 0.5 * std::abs(area2), 0};

@@ -33,13 +33,13 @@ struct OutsideText {
 void add_outside_light(CLI::App& command, OutsideText& text);
 Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text);
 
+/// Whether any of them was given.
+bool any_given(const std::vector<CLI::Option*>& options);
+
 /// Options of the hemicube solver.
 struct HemicubeOptions {
   pipeline::HemicubeSettings settings;
   std::vector<CLI::Option*> options;
-
-  /// Whether any was given.
-  bool given() const;
 };
 void add_hemicube(CLI::App& command, HemicubeOptions& hemicube);
 

@@ -133,7 +133,7 @@ void add_common(CLI::App& command, Common& common) {
   command.add_flag("--json", common.json, "One JSON object on stdout, everything else on stderr");
 }
 
-bool HemicubeOptions::given() const {
+bool any_given(const std::vector<CLI::Option*>& options) {
   return std::any_of(options.begin(), options.end(),
                      [](const CLI::Option* o) { return o->count() > 0; });
 }

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -54,10 +53,8 @@ Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
   if (!options.tone_map.empty()) {
     LUXEL_TRY(s.tone_map, parse_tone_map(options.tone_map));
   }
-  if (options.hemicube.given()) s.hemicube = options.hemicube.settings;
-  if (std::any_of(options.hierarchical_options.begin(), options.hierarchical_options.end(),
-                  [](const CLI::Option* o) { return o->count() > 0; }))
-    s.hierarchical = options.hierarchical;
+  if (any_given(options.hemicube.options)) s.hemicube = options.hemicube.settings;
+  if (any_given(options.hierarchical_options)) s.hierarchical = options.hierarchical;
   LUXEL_TRY(s.outside, parse_outside_light(options.outside));
   return s;
 }

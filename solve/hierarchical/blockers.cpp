@@ -24,6 +24,14 @@ transport::Shaft cone_over(DVec3 point, PolygonView polygon, double slack_m) {
   return shaft;
 }
 
+/// Faces that reach into a shaft, ascending.
+void find_in(const Blockers& blockers, const transport::Shaft& shaft,
+             std::vector<uint32_t>& found) {
+  transport::polygons_near(blockers.tree, shaft, found);
+  std::erase_if(found,
+                [&](uint32_t k) { return transport::is_outside(shaft, blockers.all[k].corners); });
+}
+
 }  // namespace
 
 Blockers make_blockers(const Faces& faces) {
@@ -49,17 +57,13 @@ void filter_between(const Blockers& blockers, PolygonView a, PolygonView b,
 void find_between(const Blockers& blockers, PolygonView a, PolygonView b,
                   std::vector<uint32_t>& found) {
   const transport::Shaft shaft = transport::shaft_between(a, b, blockers.slack_m);
-  transport::polygons_near(blockers.tree, shaft, found);
-  std::erase_if(found,
-                [&](uint32_t k) { return transport::is_outside(shaft, blockers.all[k].corners); });
+  find_in(blockers, shaft, found);
 }
 
 void find_before(const Blockers& blockers, DVec3 point, PolygonView polygon,
                  std::vector<uint32_t>& found) {
   const transport::Shaft shaft = cone_over(point, polygon, blockers.slack_m);
-  transport::polygons_near(blockers.tree, shaft, found);
-  std::erase_if(found,
-                [&](uint32_t k) { return transport::is_outside(shaft, blockers.all[k].corners); });
+  find_in(blockers, shaft, found);
 }
 
 void find_near(const Blockers& blockers, PolygonView polygon, std::vector<uint32_t>& found) {

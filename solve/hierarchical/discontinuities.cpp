@@ -20,7 +20,7 @@ constexpr double kLampSize = 0.01;
 struct View {
   const Solution& s;
   const trace::RayTracer& tracer;
-  const DiscontinuityParams& params;
+  Ranking ranking;
   uint32_t receiver = 0;
   const Face& face;
   double size_m = 0;
@@ -63,7 +63,7 @@ struct Ray3 {
 double geometric_factor(const View& v, const Ray3& ray, DVec3 source_normal, double source_size_m) {
   const double sb = length(ray.source - ray.blocker);
   const double br = std::max(length(ray.blocker - ray.receiver), 1e-6 * v.size_m);
-  if (v.params.ranking == Ranking::nearness) return sb / br;
+  if (v.ranking == Ranking::nearness) return sb / br;
   const DVec3 d = ray.source - ray.receiver;
   const double distance = std::max(length(d), 1e-9);
   const double cos_r = std::max(0.0, dot(d, v.face.plane.normal) / distance);
@@ -187,9 +187,8 @@ void add_horizon(const View& v, const Source& source, const Face& face) {
   if (length(line.b - line.a) < kShort * v.size_m) return;
   const DVec3 to = transport::mean_corner(face.corners);
   const double distance = std::max(length(to - (line.a + line.b) * 0.5), 1e-9);
-  const double geometric = v.params.ranking == Ranking::nearness
-                               ? 1
-                               : std::min(1.0, source.size_m / distance) / distance;
+  const double geometric =
+      v.ranking == Ranking::nearness ? 1 : std::min(1.0, source.size_m / distance) / distance;
   if (geometric * double(source.radiosity) < source.least_weight) return;
   v.out.push_back({line.a, line.b, DiscontinuityKind::horizon, source.number, kNone, geometric});
 }
@@ -272,14 +271,19 @@ void add_lamps(const View& v, const scene::Scene& scene, double least_weight, do
 
 }  // namespace
 
-double least_weight_of(const Solution& s, const DiscontinuityParams& params) {
-  if (params.least_weight) return *params.least_weight;
-  if (params.ranking == Ranking::slope)
-    return 0.02 * double(max_component(totals_of(s).irradiance)) / std::sqrt(s.mean_area_m2);
-  float most = 0;
-  for (size_t e = 0; e < s.tree.first_root.back(); ++e)
-    most = std::max(most, s.light.elements[e].most);
-  return 0.05 * double(most);
+DiscontinuityLimits limits_of(const Solution& s, const DiscontinuityParams& params) {
+  const double mean = double(max_component(totals_of(s).irradiance));
+  DiscontinuityLimits out{0, params.least_light * mean};
+  if (params.least_weight) {
+    out.weight = *params.least_weight;
+  } else if (params.ranking == Ranking::slope) {
+    out.weight = 0.02 * mean / std::sqrt(s.mean_area_m2);
+  } else {
+    float most = 0;
+    for (uint32_t f = 0; f < s.faces.size(); ++f) most = std::max(most, most_of(s, f));
+    out.weight = 0.05 * double(most);
+  }
+  return out;
 }
 
 double weight_of(const Discontinuity& d, const Solution& s, const scene::Scene& scene) {
@@ -294,15 +298,15 @@ double weight_of(const Discontinuity& d, const Solution& s, const scene::Scene& 
 
 std::vector<Discontinuity> find_discontinuities(const Solution& s, const scene::Scene& scene,
                                                 const trace::RayTracer& tracer, uint32_t receiver,
-                                                const DiscontinuityParams& params) {
+                                                Ranking ranking,
+                                                const DiscontinuityLimits& limits) {
   std::vector<Discontinuity> out;
   const Face& face = s.faces.faces[receiver];
   if (face.curved) return out;
-  const View v{s, tracer, params, receiver, face, std::sqrt(transport::area_m2(face.corners)), out};
-  const double least_light = params.least_light * double(max_component(totals_of(s).irradiance));
-  const double least_weight = least_weight_of(s, params);
-  add_faces(v, least_weight, least_light);
-  add_lamps(v, scene, least_weight, least_light);
+  const View v{s,  tracer, ranking, receiver, face, std::sqrt(transport::area_m2(face.corners)),
+               out};
+  add_faces(v, limits.weight, limits.light);
+  add_lamps(v, scene, limits.weight, limits.light);
   std::vector<uint32_t> near;
   find_near(s.blockers, face.corners, near);
   std::erase(near, receiver);

@@ -42,13 +42,19 @@ struct DiscontinuityParams {
   uint32_t max_per_leaf = 10;  ///< lines through a leaf, at most [Hardt96, maxLeafDSets]
 };
 
+/// What the parameters mean for a solution: computed once, for all its faces.
+struct DiscontinuityLimits {
+  double weight = 0;  ///< the least
+  double light = 0;   ///< the least that a source brings [W/m^2]
+};
+DiscontinuityLimits limits_of(const Solution& solution, const DiscontinuityParams& params);
+
 /// All that fall on a face, each with its geometric factor, of those whose weight can be above the
 /// least. VE and EV are clipped to where the ray over the blocker's edge sees the source.
 std::vector<Discontinuity> find_discontinuities(const Solution& solution, const scene::Scene& scene,
                                                 const trace::RayTracer& tracer, uint32_t receiver,
-                                                const DiscontinuityParams& params);
+                                                Ranking ranking, const DiscontinuityLimits& limits);
 
 double weight_of(const Discontinuity& d, const Solution& solution, const scene::Scene& scene);
-double least_weight_of(const Solution& solution, const DiscontinuityParams& params);
 
 }  // namespace luxel::hierarchical

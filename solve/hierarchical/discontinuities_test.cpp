@@ -9,20 +9,12 @@ namespace {
 using testing::Solved;
 using testing::solved;
 
-/// A floor, a lamp 1 m wide 2.5 m above it, a screen 1 m above it whose edge is x = 0.25 m.
-scene::Scene lamp_and_screen() {
-  scene::Scene scene;
-  const uint32_t gray = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
-  const uint32_t lamp = scene::add_material(scene, "lamp", {0, 0, 0}, {30, 30, 30});
-  scene::add_rectangle(scene, {-2.5f, 2.5f, -2.5f, 2.5f}, 0, true, gray);
-  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 2.5f, false, lamp);
-  scene::add_rectangle(scene, {-1.5f, 0.25f, -1, 1}, 1, true, gray);
-  return scene;
-}
+/// A lamp 1 m wide: each of its corners throws a shadow of its own.
+scene::Scene lamp_and_screen() { return testing::lamp_and_screen(0.5f, 30); }
 
 std::vector<Discontinuity> on_floor(const Solved& s, const DiscontinuityParams& params = {}) {
   return find_discontinuities(s.solution, s.scene, *s.tracer, s.solution.faces.face_of_triangle[0],
-                              params);
+                              params.ranking, limits_of(s.solution, params));
 }
 
 /// How many lie on x = `x`, and the longest reach of their z.
@@ -140,12 +132,12 @@ TEST(DSets, TheStrongestAreActiveInAllLeavesOrInNone) {
     all[k].a = {0.5, y, 0}, all[k].b = {3.5, y, 0};
   }
   const auto polygon = [&](double x0, double x1) {
-    std::vector<Vec2d> out;
+    std::vector<DVec2> out;
     for (const DVec3 p : {DVec3{x0, 0, 0}, {x1, 0, 0}, {x1, 2, 0}, {x0, 2, 0}})
       out.push_back(plane.to_plane(p));
     return out;
   };
-  const std::vector<std::vector<Vec2d>> leaves{polygon(0, 2), polygon(2, 4)};
+  const std::vector<std::vector<DVec2>> leaves{polygon(0, 2), polygon(2, 4)};
   const std::vector<double> weight{1, 3, 2};
   const auto active = choose_active(all, weight, 0.5, plane, leaves, 2, 1e-6);
   ASSERT_EQ(active.size(), 2u);

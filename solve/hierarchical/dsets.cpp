@@ -7,16 +7,14 @@
 namespace luxel::hierarchical {
 namespace {
 
-double norm(Vec2d a) { return std::sqrt(dot(a, a)); }
-
 /// A line without ends: its direction with angle in [0, pi), its distance from the origin.
 struct Line {
-  Vec2d direction;
+  DVec2 direction;
   double offset = 0;
 };
 Line line_of(const Segment2& s) {
-  const Vec2d d = s.b - s.a;
-  Vec2d unit = d * (1 / norm(d));
+  const DVec2 d = s.b - s.a;
+  DVec2 unit = d * (1 / length(d));
   if (unit.y < 0 || (unit.y == 0 && unit.x < 0)) unit = unit * -1;
   return {unit, cross(unit, s.a)};
 }
@@ -28,7 +26,7 @@ bool on_line(const Line& line, const Segment2& s, double slack_m) {
 
 /// Pieces of a line that overlap or touch, joined.
 std::vector<ActiveLine> joined(std::vector<ActiveLine> pieces, const Line& line, double slack_m) {
-  const auto at = [&](Vec2d p) { return dot(line.direction, p); };
+  const auto at = [&](DVec2 p) { return dot(line.direction, p); };
   for (ActiveLine& p : pieces)
     if (at(p.piece.a) > at(p.piece.b)) std::swap(p.piece.a, p.piece.b);
   std::sort(pieces.begin(), pieces.end(), [&](const ActiveLine& p, const ActiveLine& q) {
@@ -45,7 +43,7 @@ std::vector<ActiveLine> joined(std::vector<ActiveLine> pieces, const Line& line,
     out.push_back(p);
   }
   // On one line exactly, so that neighbouring leaves cut it at the same places.
-  const Vec2d foot = Vec2d{line.direction.y, -line.direction.x} * -line.offset;
+  const DVec2 foot = DVec2{line.direction.y, -line.direction.x} * -line.offset;
   for (ActiveLine& p : out) {
     p.piece.a = foot + line.direction * at(p.piece.a);
     p.piece.b = foot + line.direction * at(p.piece.b);
@@ -64,33 +62,33 @@ FacePlane plane_coordinates(const Face& face) {
       most = l, longest = k;
   const DVec3 u =
       normalize(face.corners[(longest + 1) % face.corners.size()] - face.corners[longest]);
-  return {transport::mean_corner(face.corners), u, normalize(luxel::cross(face.plane.normal, u))};
+  return {transport::mean_corner(face.corners), u, normalize(cross(face.plane.normal, u))};
 }
 
-bool clip_to(std::span<const Vec2d> polygon, double least_m, Segment2& segment) {
+bool clip_to(std::span<const DVec2> polygon, double least_m, Segment2& segment) {
   double t0 = 0, t1 = 1;
-  const Vec2d d = segment.b - segment.a;
+  const DVec2 d = segment.b - segment.a;
   for (size_t k = 0; k < polygon.size(); ++k) {
-    const Vec2d edge = polygon[(k + 1) % polygon.size()] - polygon[k];
-    const double size = norm(edge);
+    const DVec2 edge = polygon[(k + 1) % polygon.size()] - polygon[k];
+    const double size = length(edge);
     if (!(size > 0)) continue;
     const double inside = cross(edge, segment.a - polygon[k]) / size,
                  change = cross(edge, d) / size;
-    if (std::abs(change) <= 1e-12 * norm(d)) {
+    if (std::abs(change) <= 1e-12 * length(d)) {
       if (inside <= least_m * 1e-3) return false;  // along the border, or outside
       continue;
     }
     if (change > 0) t0 = std::max(t0, -inside / change);
     if (change < 0) t1 = std::min(t1, -inside / change);
   }
-  if (!((t1 - t0) * norm(d) > least_m)) return false;
+  if (!((t1 - t0) * length(d) > least_m)) return false;
   const Segment2 all = segment;
   segment = {all.a + d * t0, all.a + d * t1};
   // A line that runs along the border within rounding is none inside.
-  const Vec2d middle = (segment.a + segment.b) * 0.5;
+  const DVec2 middle = (segment.a + segment.b) * 0.5;
   for (size_t k = 0; k < polygon.size(); ++k) {
-    const Vec2d edge = polygon[(k + 1) % polygon.size()] - polygon[k];
-    if (cross(edge, middle - polygon[k]) <= least_m * 1e-3 * norm(edge)) return false;
+    const DVec2 edge = polygon[(k + 1) % polygon.size()] - polygon[k];
+    if (cross(edge, middle - polygon[k]) <= least_m * 1e-3 * length(edge)) return false;
   }
   return true;
 }
@@ -105,7 +103,7 @@ std::vector<DSet> make_dsets(std::span<const Discontinuity> discontinuities, con
   std::vector<Item> items;
   for (uint32_t k = 0; k < discontinuities.size(); ++k) {
     const Segment2 s{plane.to_plane(discontinuities[k].a), plane.to_plane(discontinuities[k].b)};
-    items.push_back({k, s, norm(s.b - s.a)});
+    items.push_back({k, s, length(s.b - s.a)});
   }
   // The direction of long ones is known best.
   std::stable_sort(items.begin(), items.end(),
@@ -122,9 +120,9 @@ std::vector<DSet> make_dsets(std::span<const Discontinuity> discontinuities, con
     }
     DSet& set = out[found];
     set.members.push_back(item.index);
-    const Vec2d d = lines[found].direction;
+    const DVec2 d = lines[found].direction;
     if (dot(d, set.line.a) > dot(d, set.line.b)) std::swap(set.line.a, set.line.b);
-    for (const Vec2d p : {item.segment.a, item.segment.b}) {
+    for (const DVec2 p : {item.segment.a, item.segment.b}) {
       if (dot(d, p) < dot(d, set.line.a)) set.line.a = p;
       if (dot(d, p) > dot(d, set.line.b)) set.line.b = p;
     }
@@ -135,7 +133,7 @@ std::vector<DSet> make_dsets(std::span<const Discontinuity> discontinuities, con
 std::vector<ActiveLine> choose_active(std::span<const Discontinuity> discontinuities,
                                       std::span<const double> weight, double least_weight,
                                       const FacePlane& plane,
-                                      std::span<const std::vector<Vec2d>> leaves,
+                                      std::span<const std::vector<DVec2>> leaves,
                                       uint32_t max_per_leaf, double slack_m) {
   const std::vector<DSet> sets = make_dsets(discontinuities, plane, slack_m);
   std::vector<uint32_t> set_of(discontinuities.size());

@@ -1,30 +1,22 @@
 // Which discontinuities divide the leaves of a face. [Hardt96, section 5.5]
 #pragma once
 
+#include "base/vec2_double.h"
 #include "solve/hierarchical/discontinuities.h"
 
 namespace luxel::hierarchical {
-
-struct Vec2d {
-  double x = 0, y = 0;
-};
-inline Vec2d operator+(Vec2d a, Vec2d b) { return {a.x + b.x, a.y + b.y}; }
-inline Vec2d operator-(Vec2d a, Vec2d b) { return {a.x - b.x, a.y - b.y}; }
-inline Vec2d operator*(Vec2d a, double s) { return {a.x * s, a.y * s}; }
-inline double dot(Vec2d a, Vec2d b) { return a.x * b.x + a.y * b.y; }
-inline double cross(Vec2d a, Vec2d b) { return a.x * b.y - a.y * b.x; }
 
 /// Coordinates in a face's plane [m].
 struct FacePlane {
   DVec3 origin, u, v;
 
-  Vec2d to_plane(DVec3 p) const { return {luxel::dot(p - origin, u), luxel::dot(p - origin, v)}; }
-  DVec3 from_plane(Vec2d p) const { return origin + u * p.x + v * p.y; }
+  DVec2 to_plane(DVec3 p) const { return {dot(p - origin, u), dot(p - origin, v)}; }
+  DVec3 from_plane(DVec2 p) const { return origin + u * p.x + v * p.y; }
 };
 FacePlane plane_coordinates(const Face& face);
 
 struct Segment2 {
-  Vec2d a, b;
+  DVec2 a, b;
 };
 
 /// A line with discontinuities: those that lie on it to within rounding [Hardt96, "DSet"].
@@ -48,11 +40,11 @@ struct ActiveLine {
 std::vector<ActiveLine> choose_active(std::span<const Discontinuity> discontinuities,
                                       std::span<const double> weight, double least_weight,
                                       const FacePlane& plane,
-                                      std::span<const std::vector<Vec2d>> leaves,
+                                      std::span<const std::vector<DVec2>> leaves,
                                       uint32_t max_per_leaf, double slack_m);
 
 /// The part of a segment inside a convex counter-clockwise polygon; false when it is shorter than
 /// `least_m` or only touches.
-bool clip_to(std::span<const Vec2d> polygon, double least_m, Segment2& segment);
+bool clip_to(std::span<const DVec2> polygon, double least_m, Segment2& segment);
 
 }  // namespace luxel::hierarchical

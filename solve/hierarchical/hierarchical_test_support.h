@@ -22,6 +22,20 @@ inline void add_polygon(scene::Scene& scene, const std::string& name,
   scene::place(scene, std::move(mesh));
 }
 
+/// A floor of 5 m, a square lamp 2.5 m above it, and 1 m above it a screen whose edge is x = 0.25
+/// m.
+inline scene::Scene lamp_and_screen(float lamp_half_m, float radiance) {
+  scene::Scene scene;
+  const uint32_t gray = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
+  const uint32_t lamp =
+      scene::add_material(scene, "lamp", {0, 0, 0}, {radiance, radiance, radiance});
+  scene::add_rectangle(scene, {-2.5f, 2.5f, -2.5f, 2.5f}, 0, true, gray);
+  scene::add_rectangle(scene, {-lamp_half_m, lamp_half_m, -lamp_half_m, lamp_half_m}, 2.5f, false,
+                       lamp);
+  scene::add_rectangle(scene, {-1.5f, 0.25f, -1, 1}, 1, true, gray);
+  return scene;
+}
+
 /// A scene with what its solution needs; it stays where it was made.
 struct Solved {
   scene::Scene scene;

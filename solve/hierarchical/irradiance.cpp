@@ -174,7 +174,8 @@ class Gathering {
       return;
     }
     for (uint32_t k = 0; k < 4; ++k) {
-      const Part quarter = quarter_of(part, k);
+      const Part quarter{part_of(part.corner, part.corners, k),
+                         part_of(part.radiosity, part.corners, k), part.corners};
       const Polygon polygon = above_horizon(quarter);
       if (polygon.empty()) continue;
       const transport::SeenFactor there = look(polygon, blockers);
@@ -199,30 +200,6 @@ class Gathering {
       sum += (mean + (part.radiosity[k] - mean) * float(inside)) * w, weight += w;
     }
     return weight > 0 ? sum / weight : mean;
-  }
-
-  /// As divide() cuts.
-  static Part quarter_of(const Part& p, uint32_t part) {
-    Part out;
-    out.corners = p.corners;
-    const auto set = [&](uint32_t to, uint32_t a, uint32_t b) {
-      out.corner[to] = (p.corner[a] + p.corner[b]) * 0.5;
-      out.radiosity[to] = (p.radiosity[a] + p.radiosity[b]) * 0.5f;
-    };
-    const uint32_t n = p.corners;
-    if (part == 3 && n == 3) {
-      set(0, 0, 1), set(1, 1, 2), set(2, 2, 0);
-      return out;
-    }
-    set(0, part, part), set(1, part, (part + 1) % n);
-    if (n == 3) {
-      set(2, part, (part + 2) % n);
-      return out;
-    }
-    set(3, part, (part + 3) % 4);
-    out.corner[2] = (p.corner[0] + p.corner[1] + p.corner[2] + p.corner[3]) * 0.25;
-    out.radiosity[2] = (p.radiosity[0] + p.radiosity[1] + p.radiosity[2] + p.radiosity[3]) * 0.25f;
-    return out;
   }
 
   const Solution& s_;

@@ -5,15 +5,6 @@
 namespace luxel::hierarchical {
 namespace {
 
-/// Corner values of a part (divide()) from those of the whole.
-template <class T>
-std::array<T, 4> part_of(const std::array<T, 4>& v, uint32_t n, uint32_t part) {
-  const auto middle = [&](uint32_t k) { return (v[k % n] + v[(k + 1) % n]) * 0.5f; };
-  if (n == 4) return {v[part], middle(part), (v[0] + v[1] + v[2] + v[3]) * 0.25f, middle(part + 3)};
-  if (part == 3) return {middle(0), middle(1), middle(2)};
-  return {v[part], middle(part), middle(part + 2)};
-}
-
 /// Children come after their parents, clusters and elements alike.
 void push(const Faces& faces, const Tree& tree, std::span<Cosines> from_above, Light& light) {
   const auto hand_down = [&](const Cosines& light_here, uint32_t id) {

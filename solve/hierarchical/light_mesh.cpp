@@ -21,7 +21,7 @@ constexpr double kNudge = 1e-3;
 struct FaceWork {
   FacePlane plane;
   std::vector<size_t> leaves;               ///< elements
-  std::vector<std::vector<Vec2d>> outline;  ///< per leaf
+  std::vector<std::vector<DVec2>> outline;  ///< per leaf
   std::vector<ActiveLine> lines;
   std::vector<std::vector<Segment2>> pieces;  ///< per leaf, clipped to it
 };
@@ -43,7 +43,7 @@ struct Maker {
   double slack_m;  ///< corners nearer than this are one
 };
 
-FaceWork prepare_face(const Maker& m, uint32_t face, double least_weight) {
+FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& limits) {
   FaceWork w;
   w.plane = plane_coordinates(m.s.faces.faces[face]);
   for (uint32_t r = m.s.tree.first_root[face]; r < m.s.tree.first_root[face + 1]; ++r)
@@ -54,10 +54,11 @@ FaceWork prepare_face(const Maker& m, uint32_t face, double least_weight) {
       w.outline.back().push_back(w.plane.to_plane(p));
   }
   if (m.params.discontinuities) {
-    const auto found = find_discontinuities(m.s, m.scene, m.tracer, face, m.params.discontinuity);
+    const auto found =
+        find_discontinuities(m.s, m.scene, m.tracer, face, m.params.discontinuity.ranking, limits);
     std::vector<double> weight;
     for (const Discontinuity& d : found) weight.push_back(weight_of(d, m.s, m.scene));
-    w.lines = choose_active(found, weight, least_weight, w.plane, w.outline,
+    w.lines = choose_active(found, weight, limits.weight, w.plane, w.outline,
                             m.params.discontinuity.max_per_leaf, m.slack_m);
   }
   for (const auto& outline : w.outline) {
@@ -69,27 +70,22 @@ FaceWork prepare_face(const Maker& m, uint32_t face, double least_weight) {
   return w;
 }
 
-/// Corners of leaves and ends of lines.
-void add_points(const Maker& m, const FaceWork& w, uint32_t face, EdgePoints& of_face,
-                EdgePoints& of_outlines) {
-  const Face& f = m.s.faces.faces[face];
-  const auto add = [&](DVec3 p) {
-    of_face.add(p);
-    if (depth_inside(f.corners, f.plane.normal, p) <= m.slack_m) of_outlines.add(p);
-  };
+/// Calls visit(point) for corners of leaves and ends of lines.
+template <class Visit>
+void for_points(const Maker& m, const FaceWork& w, const Visit& visit) {
   for (size_t k = 0; k < w.leaves.size(); ++k) {
-    for (const DVec3& p : m.s.tree.elements[w.leaves[k]].polygon()) add(p);
+    for (const DVec3& p : m.s.tree.elements[w.leaves[k]].polygon()) visit(p);
     for (const Segment2& piece : w.pieces[k])
-      add(w.plane.from_plane(piece.a)), add(w.plane.from_plane(piece.b));
+      visit(w.plane.from_plane(piece.a)), visit(w.plane.from_plane(piece.b));
   }
 }
 
 /// A leaf's corners with all that its neighbours have on its edges.
-std::vector<Vec2d> full_outline(const Maker& m, const FaceWork& w, uint32_t face, size_t leaf,
+std::vector<DVec2> full_outline(const Maker& m, const FaceWork& w, uint32_t face, size_t leaf,
                                 const EdgePoints& of_face, const EdgePoints& of_outlines) {
   const Face& f = m.s.faces.faces[face];
   const PolygonView polygon = m.s.tree.elements[leaf].polygon();
-  std::vector<Vec2d> out;
+  std::vector<DVec2> out;
   for (size_t k = 0; k < polygon.size(); ++k) {
     const DVec3 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
     out.push_back(w.plane.to_plane(a));
@@ -107,10 +103,10 @@ std::vector<Vec2d> full_outline(const Maker& m, const FaceWork& w, uint32_t face
   return out;
 }
 
-bool lies_on(const Segment2& s, Vec2d a, Vec2d b, double slack_m) {
-  const Vec2d d = s.b - s.a;
+bool lies_on(const Segment2& s, DVec2 a, DVec2 b, double slack_m) {
+  const DVec2 d = s.b - s.a;
   const double size = std::sqrt(dot(d, d));
-  for (const Vec2d p : {a, b}) {
+  for (const DVec2 p : {a, b}) {
     const double t = dot(p - s.a, d) / size;
     if (std::abs(cross(d, p - s.a)) > slack_m * size || t < -slack_m || t > size + slack_m)
       return false;
@@ -121,8 +117,8 @@ bool lies_on(const Segment2& s, Vec2d a, Vec2d b, double slack_m) {
 /// Triangulates the leaves of a face into `mesh`.
 void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints& of_outlines,
               std::vector<std::vector<LightTriangle>>& of_element, LightMesh& mesh) {
-  EdgePoints of_face(m.slack_m), unused(m.slack_m);
-  add_points(m, w, face, of_face, unused);
+  EdgePoints of_face(m.slack_m);
+  for_points(m, w, [&](DVec3 p) { of_face.add(p); });
   of_face.sort();
   Welder welder(m.slack_m);
   std::vector<DVec3> places;
@@ -133,7 +129,7 @@ void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints
     const Triangulation t = triangulate(full_outline(m, w, face, w.leaves[k], of_face, of_outlines),
                                         w.pieces[k], least_m);
     std::vector<uint32_t> vertex;
-    for (const Vec2d p : t.points)
+    for (const DVec2 p : t.points)
       vertex.push_back(base + welder.index_of(w.plane.from_plane(p), places));
     for (const auto& corners : t.triangles) {
       LightTriangle out;
@@ -156,17 +152,22 @@ void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints
 Status triangulate_all(const Maker& m, LightMesh& mesh, Progress& progress) {
   const size_t faces = m.s.faces.size();
   std::vector<FaceWork> work(faces);
-  const double least_weight = least_weight_of(m.s, m.params.discontinuity);
+  const DiscontinuityLimits limits = limits_of(m.s, m.params.discontinuity);
   progress.begin("discontinuities", faces);
   parallel_for(faces, 1, [&](size_t begin, size_t end) {
     for (size_t f = begin; f < end && !progress.cancelled(); ++f)
-      work[f] = prepare_face(m, uint32_t(f), least_weight);
+      work[f] = prepare_face(m, uint32_t(f), limits);
     progress.advance(end - begin);
   });
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
   progress.begin("triangulate", faces);
-  EdgePoints of_outlines(m.slack_m), unused(m.slack_m);
-  for (uint32_t f = 0; f < faces; ++f) add_points(m, work[f], f, unused, of_outlines);
+  EdgePoints of_outlines(m.slack_m);
+  for (uint32_t f = 0; f < faces; ++f) {
+    const Face& face = m.s.faces.faces[f];
+    for_points(m, work[f], [&](DVec3 p) {
+      if (depth_inside(face.corners, face.plane.normal, p) <= m.slack_m) of_outlines.add(p);
+    });
+  }
   of_outlines.sort();
   std::vector<std::vector<LightTriangle>> of_element(m.s.tree.elements.size());
   for (uint32_t f = 0; f < faces; ++f) {
@@ -193,8 +194,7 @@ bool is_touched(const Maker& m, uint32_t face, DVec3 p) {
   find_touching(m.s.blockers, p, 2 * m.slack_m, found);
   const DVec3 normal = m.s.faces.faces[face].plane.normal;
   for (const uint32_t f : found)
-    if (f != face && length(luxel::cross(m.s.faces.faces[f].plane.normal, normal)) > 1e-6)
-      return true;
+    if (f != face && length(cross(m.s.faces.faces[f].plane.normal, normal)) > 1e-6) return true;
   return false;
 }
 

@@ -41,7 +41,7 @@ TEST(Interpolant, IsEveryQuadraticFromItsSixSamples) {
 }
 
 TEST(Triangulate, LinesBecomeEdges) {
-  const std::array<Vec2d, 5> outline{Vec2d{0, 0}, {2, 0}, {2, 1}, {1, 1}, {0, 1}};
+  const std::array<DVec2, 5> outline{DVec2{0, 0}, {2, 0}, {2, 1}, {1, 1}, {0, 1}};
   const std::array<Segment2, 2> lines{Segment2{{0.5, 0}, {1, 1}}, {{0, 0.5}, {2, 0.25}}};
   const Triangulation t = triangulate(outline, lines, 1e-6);
   double area = 0;
@@ -117,22 +117,11 @@ TEST(LightMesh, TheFurnaceGlowsEvenly) {
     EXPECT_NEAR(irradiance_at(s->solution, mesh, s->scene, p).x, 2, 0.01);
 }
 
-/// A floor of 5 m, a small lamp above it, and a screen with a straight edge over x = 0 between.
-scene::Scene sharp_shadow() {
-  scene::Scene scene;
-  const uint32_t gray = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
-  const uint32_t lamp = scene::add_material(scene, "lamp", {0, 0, 0}, {5000, 5000, 5000});
-  scene::add_rectangle(scene, {-2.5f, 2.5f, -2.5f, 2.5f}, 0, true, gray);
-  scene::add_rectangle(scene, {-0.005f, 0.005f, -0.005f, 0.005f}, 2.5f, false, lamp);
-  scene::add_rectangle(scene, {-1.5f, 0.25f, -1, 1}, 1, true, gray);
-  return scene;
-}
-
 // The shadow of the edge at x = 0.25 m, 1 m high, ends at 0.25 / (1 - 1/2.5) = 0.41667 m: its
 // penumbra, from the lamp's both sides at -+5 mm, is 2 * 5 mm / 1.5 = 6.7 mm wide about it. Half of
 // the light beside it is reached within a millimetre of its middle.
 TEST(LightMesh, ShadowsEndWhereTheyDo) {
-  const auto s = solved(sharp_shadow(), {.eps = 5});
+  const auto s = solved(testing::lamp_and_screen(0.005f, 5000), {.eps = 5});
   const LightMesh mesh = mesh_of(*s);
   const auto at = [&](double x) {
     const uint32_t floor = s->solution.faces.face_of_triangle[0];

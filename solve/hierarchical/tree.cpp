@@ -91,20 +91,11 @@ Tree make_tree(const Faces& faces) {
 void divide(Tree& tree, size_t index) {
   LUXEL_CHECK(tree.elements[index].is_leaf());
   const Element e = tree.elements[index];
-  const uint32_t n = e.corners;
-  std::array<DVec3, 4> middle;
-  for (uint32_t k = 0; k < n; ++k) middle[k] = (e.corner[k] + e.corner[(k + 1) % n]) * 0.5;
   tree.elements[index].child = uint32_t(tree.elements.size());
-  const auto add = [&](std::initializer_list<DVec3> corners) {
-    tree.elements.push_back(
-        make_element({corners.begin(), corners.size()}, e.face, uint32_t(index)));
-  };
-  for (uint32_t k = 0; k < n; ++k)
-    if (n == 4)
-      add({e.corner[k], middle[k], e.centre, middle[(k + 3) % 4]});
-    else
-      add({e.corner[k], middle[k], middle[(k + 2) % 3]});
-  if (n == 3) add({middle[0], middle[1], middle[2]});
+  for (uint32_t part = 0; part < 4; ++part) {
+    const std::array<DVec3, 4> corner = part_of(e.corner, e.corners, part);
+    tree.elements.push_back(make_element({corner.data(), e.corners}, e.face, uint32_t(index)));
+  }
 }
 
 double depth_inside(PolygonView polygon, DVec3 normal, DVec3 point) {

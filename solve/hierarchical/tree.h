@@ -52,6 +52,16 @@ Tree make_tree(const Faces& faces);
 /// triangle into three at its corners and one between. The parts are convex and fill it.
 void divide(Tree& tree, size_t element);
 
+/// What a part that divide() makes has at its corners, of what is linear over the whole: places, or
+/// light.
+template <class T>
+std::array<T, 4> part_of(const std::array<T, 4>& v, uint32_t n, uint32_t part) {
+  const auto middle = [&](uint32_t k) { return (v[k % n] + v[(k + 1) % n]) * 0.5f; };
+  if (n == 4) return {v[part], middle(part), (v[0] + v[1] + v[2] + v[3]) * 0.25f, middle(part + 3)};
+  if (part == 3) return {middle(0), middle(1), middle(2)};
+  return {v[part], middle(part), middle(part + 2)};
+}
+
 /// The leaf of a face in which a point of its plane lies, or lies next to.
 size_t leaf_at(const Tree& tree, const Faces& faces, uint32_t face, DVec3 point);
 

@@ -18,22 +18,22 @@ using Delaunay =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::Exact_predicates_tag>;
 
 /// The point, or one that is there already within `least_m`.
-Vec2d snapped(Vec2d p, double least_m, std::vector<Vec2d>& points) {
-  for (const Vec2d& q : points)
+DVec2 snapped(DVec2 p, double least_m, std::vector<DVec2>& points) {
+  for (const DVec2& q : points)
     if (dot(p - q, p - q) <= least_m * least_m) return q;
   points.push_back(p);
   return p;
 }
 
 /// Twice the signed area.
-double area2(Vec2d a, Vec2d b, Vec2d c) { return cross(b - a, c - a); }
+double area2(DVec2 a, DVec2 b, DVec2 c) { return cross(b - a, c - a); }
 
 /// On the outline's straight edges rounding leaves flat triangles outside of it: all three corners
 /// on one edge.
 bool is_flat(const Triangulation& t, const std::array<uint32_t, 3>& corners, double least_m) {
   double longest = 0;
   for (size_t k = 0; k < 3; ++k) {
-    const Vec2d d = t.points[corners[(k + 1) % 3]] - t.points[corners[k]];
+    const DVec2 d = t.points[corners[(k + 1) % 3]] - t.points[corners[k]];
     longest = std::max(longest, dot(d, d));
   }
   return area2(t.points[corners[0]], t.points[corners[1]], t.points[corners[2]]) <=
@@ -42,16 +42,16 @@ bool is_flat(const Triangulation& t, const std::array<uint32_t, 3>& corners, dou
 
 }  // namespace
 
-Triangulation triangulate(std::span<const Vec2d> outline, std::span<const Segment2> lines,
+Triangulation triangulate(std::span<const DVec2> outline, std::span<const Segment2> lines,
                           double least_m) {
-  std::vector<Vec2d> points;
-  std::vector<Vec2d> border;
-  for (const Vec2d p : outline) {
-    const Vec2d q = snapped(p, least_m, points);
+  std::vector<DVec2> points;
+  std::vector<DVec2> border;
+  for (const DVec2 p : outline) {
+    const DVec2 q = snapped(p, least_m, points);
     if (border.empty() || q.x != border.back().x || q.y != border.back().y) border.push_back(q);
   }
   Delaunay mesh;
-  const auto insert = [&](Vec2d a, Vec2d b) {
+  const auto insert = [&](DVec2 a, DVec2 b) {
     if (a.x != b.x || a.y != b.y)
       mesh.insert_constraint(Kernel::Point_2(a.x, a.y), Kernel::Point_2(b.x, b.y));
   };

@@ -62,6 +62,7 @@ Status solve(const BakeSettings& settings, const trace::RayTracer& tracer, Bake&
   const transport::Lights lights = transport::collect_lights(bake.scene);
   const SolveInput input{bake.scene, bake.atlas, bake.map, elements, lights, tracer};
   LUXEL_TRY(bake.light, find_solver(settings.solver)->solve(input, settings, progress));
+  bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};
 }
 

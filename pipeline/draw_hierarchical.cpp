@@ -4,6 +4,7 @@
 #include "display/draw.h"
 #include "display/quadratic_view.h"
 #include "pipeline/hierarchical.h"
+#include "pipeline/overlays.h"
 #include "solve/hierarchical/surface.h"
 #include "trace/camera_rays.h"
 
@@ -20,9 +21,16 @@ HierarchicalSettings settings_of(const RenderSettings& s) {
   return s.hierarchical.value_or(HierarchicalSettings{});
 }
 
-Result<Solution> solve(const Subject& subject, const RenderSettings& s, Progress& progress) {
-  return hierarchical::solve(subject.scene, subject.tracer,
-                             solve_params(settings_of(s), s.bounces.value_or(-1)), progress);
+/// The solution; what is wrong with the scene, and the overlay, go to `out`.
+Result<Solution> solve(const Subject& subject, const RenderSettings& s, Rendered& out,
+                       Progress& progress) {
+  LUXEL_TRY(Solution solution,
+            hierarchical::solve(subject.scene, subject.tracer,
+                                solve_params(settings_of(s), s.bounces.value_or(-1)), progress));
+  out.warnings.insert(out.warnings.end(), solution.warnings.begin(), solution.warnings.end());
+  LUXEL_TRY(out.overlay, overlay_lines(s.overlays, solution, subject.scene, subject.tracer,
+                                       light_mesh_params(settings_of(s)), progress));
+  return solution;
 }
 
 Result<LightMesh> mesh_of(const Subject& subject, const Solution& solution, const RenderSettings& s,
@@ -79,8 +87,8 @@ image::Image picture_of(const Subject& subject, const RenderSettings& s,
 }
 
 Result<image::Image> draw_linear(const Subject& subject, const RenderSettings& s,
-                                 bool discontinuities, Progress& progress) {
-  LUXEL_TRY(const Solution solution, solve(subject, s, progress));
+                                 bool discontinuities, Rendered& out, Progress& progress) {
+  LUXEL_TRY(const Solution solution, solve(subject, s, out, progress));
   LUXEL_TRY(const LightMesh mesh, mesh_of(subject, solution, s, discontinuities, progress));
   const auto irradiance = [&](const scene::SurfacePoint& p) -> Rgb {
     const hierarchical::Place place = hierarchical::place_of(subject.scene, solution.faces, p);
@@ -113,9 +121,9 @@ display::QuadraticMesh quadratic_mesh(const scene::Scene& scene, const Solution&
   return out;
 }
 
-Result<image::Image> draw_flat(const Subject& subject, const RenderSettings& s, Rendered&,
+Result<image::Image> draw_flat(const Subject& subject, const RenderSettings& s, Rendered& out,
                                Progress& progress) {
-  LUXEL_TRY(const Solution solution, solve(subject, s, progress));
+  LUXEL_TRY(const Solution solution, solve(subject, s, out, progress));
   const auto irradiance = [&](const scene::SurfacePoint& p) -> Rgb {
     const hierarchical::Place place = hierarchical::place_of(subject.scene, solution.faces, p);
     if (place.face == hierarchical::kNone) return {};
@@ -127,19 +135,19 @@ Result<image::Image> draw_flat(const Subject& subject, const RenderSettings& s, 
                        progress);
 }
 
-Result<image::Image> draw_gouraud(const Subject& subject, const RenderSettings& s, Rendered&,
+Result<image::Image> draw_gouraud(const Subject& subject, const RenderSettings& s, Rendered& out,
                                   Progress& progress) {
-  return draw_linear(subject, s, false, progress);
+  return draw_linear(subject, s, false, out, progress);
 }
 
-Result<image::Image> draw_gouraud_disc(const Subject& subject, const RenderSettings& s, Rendered&,
-                                       Progress& progress) {
-  return draw_linear(subject, s, true, progress);
+Result<image::Image> draw_gouraud_disc(const Subject& subject, const RenderSettings& s,
+                                       Rendered& out, Progress& progress) {
+  return draw_linear(subject, s, true, out, progress);
 }
 
-Result<image::Image> draw_interpolant(const Subject& subject, const RenderSettings& s, Rendered&,
-                                      Progress& progress) {
-  LUXEL_TRY(const Solution solution, solve(subject, s, progress));
+Result<image::Image> draw_interpolant(const Subject& subject, const RenderSettings& s,
+                                      Rendered& out, Progress& progress) {
+  LUXEL_TRY(const Solution solution, solve(subject, s, out, progress));
   LUXEL_TRY(const LightMesh mesh, mesh_of(subject, solution, s, true, progress));
   LUXEL_TRY(const display::QuadraticView view,
             display::QuadraticView::make(quadratic_mesh(subject.scene, solution, mesh)));
@@ -147,9 +155,9 @@ Result<image::Image> draw_interpolant(const Subject& subject, const RenderSettin
   return view.draw(subject.camera, s.width, s.height);
 }
 
-Result<image::Image> draw_lerpshade(const Subject& subject, const RenderSettings& s, Rendered&,
+Result<image::Image> draw_lerpshade(const Subject& subject, const RenderSettings& s, Rendered& out,
                                     Progress& progress) {
-  LUXEL_TRY(const Solution solution, solve(subject, s, progress));
+  LUXEL_TRY(const Solution solution, solve(subject, s, out, progress));
   LUXEL_TRY(const LightMesh mesh, mesh_of(subject, solution, s, true, progress));
   const auto irradiance = [&](const scene::SurfacePoint& p) {
     return hierarchical::irradiance_at(solution, mesh, subject.scene, p);
@@ -158,9 +166,9 @@ Result<image::Image> draw_lerpshade(const Subject& subject, const RenderSettings
                        progress);
 }
 
-Result<image::Image> draw_rayshade(const Subject& subject, const RenderSettings& s, Rendered&,
+Result<image::Image> draw_rayshade(const Subject& subject, const RenderSettings& s, Rendered& out,
                                    Progress& progress) {
-  LUXEL_TRY(const Solution solution, solve(subject, s, progress));
+  LUXEL_TRY(const Solution solution, solve(subject, s, out, progress));
   const std::vector<trace::Hit> hits = hits_of(subject, s);
   std::vector<hierarchical::Receiver> receivers;
   std::vector<size_t> hit_of;

@@ -25,6 +25,20 @@ image::Image8 shown(const Technique& technique, const RenderSettings& s, float e
   return display::tone_map(picture, exposure, s.tone_map.value_or(usual));
 }
 
+/// Lines over a picture, as a screen shows them.
+void lay_over(const Subject& subject, std::span<const display::Line> lines, image::Image8& picture,
+              Progress& progress) {
+  const image::Image drawn = display::draw_lines(subject.scene, subject.tracer, subject.camera,
+                                                 picture.width, picture.height, lines, progress);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const float share = drawn.at(x, y)[3];
+      uint8_t* pixel = picture.data.data() + picture.channels * (y * picture.width + x);
+      for (int c = 0; c < 3; ++c)
+        pixel[c] = uint8_t(float(pixel[c]) * (1 - share) + 255 * drawn.at(x, y)[c] * share + 0.5f);
+    }
+}
+
 float exposure_for(const Technique& technique, const RenderSettings& s,
                    const image::Image& picture) {
   const Exposure as_it_is{.automatic = false};
@@ -41,7 +55,9 @@ Result<std::vector<std::byte>> one_picture(const Technique& technique, const Sub
   if (extension == ".exr") return image::encode_exr(picture);
   if (extension == ".hdr") return image::encode_hdr(picture);
   out.exposure = exposure_for(technique, s, picture);
-  return image::encode_png(shown(technique, s, out.exposure, picture));
+  image::Image8 on_screen = shown(technique, s, out.exposure, picture);
+  if (!out.overlay.empty()) lay_over(subject, out.overlay, on_screen, progress);
+  return image::encode_png(on_screen);
 }
 
 /// Pictures of light share the exposure of the first, so that they can be held against each other.

@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "base/vec.h"
+#include "display/lines.h"
 #include "display/tone_map.h"
 #include "pipeline/exposure.h"
 #include "pipeline/settings.h"
@@ -40,6 +41,7 @@ struct RenderSettings {
   std::optional<uint64_t> seed;                      ///< 1
   std::optional<HemicubeSettings> hemicube;          ///< radiosity
   std::optional<HierarchicalSettings> hierarchical;  ///< flat, gouraud, ...
+  std::vector<std::string> overlays;                 ///< the same; names of pipeline/overlays.h
 };
 
 struct Rendered {
@@ -50,6 +52,7 @@ struct Rendered {
       0;  ///< path: root mean square of the pixels' standard errors over the mean
   std::vector<std::string> tiles;  ///< of a contact sheet: the techniques, in reading order
   std::vector<std::string> warnings;
+  std::vector<display::Line> overlay;  ///< to be drawn over the picture
 };
 
 /// Errors: settings out of range or without meaning for the technique, no such camera, a folder

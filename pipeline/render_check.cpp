@@ -16,8 +16,9 @@ Status check_output(const RenderSettings& s, const Technique* technique) {
   if (!technique && !png)
     return fail(ErrorCode::bad_setting,
                 "--output {}: a contact sheet shows colours of a screen; name it .png", name);
-  for (const auto& [option, given] :
-       {std::pair{"--exposure", s.exposure.has_value()}, {"--tone-map", s.tone_map.has_value()}})
+  for (const auto& [option, given] : {std::pair{"--exposure", s.exposure.has_value()},
+                                      {"--tone-map", s.tone_map.has_value()},
+                                      {"--overlay", !s.overlays.empty()}})
     if (given && !png)
       return fail(ErrorCode::bad_setting,
                   "{} means nothing for {}, which holds the light as it is; leave it out, or write "
@@ -56,6 +57,7 @@ Status check_used(const RenderSettings& s, const Technique& technique) {
                             {"--eps, --min-area, --no-discontinuities, --max-leaf-lines and "
                              "--min-weight",
                              s.hierarchical.has_value(), &Technique::has_links},
+                            {"--overlay", !s.overlays.empty(), &Technique::has_links},
                             {"--sun", s.outside.sun.has_value(), &Technique::has_lamps}};
   for (const Option& option : options)
     if (option.given && !(technique.*option.used))

@@ -118,6 +118,7 @@ Status check(const BakeSettings& s) {
                 "--solver hemicube",
                 s.solver);
   LUXEL_TRY_STATUS(check(s.matrix));
+  LUXEL_TRY_STATUS(check(s.hierarchical));
   return check(s.hemicube);
 }
 
@@ -143,6 +144,15 @@ nlohmann::json to_json(const BakeSettings& s) {
                         {"vertex_colors", s.vertex_colors}};
   if (s.solver == "matrix")
     json["matrix"] = {{"patches", s.matrix.patches}, {"rays", s.matrix.rays}};
+  if (s.solver == "hierarchical") {
+    const HierarchicalSettings& h = s.hierarchical;
+    json["hierarchical"] = {{"min_area_m2", h.min_area_m2},
+                            {"discontinuities", h.discontinuities},
+                            {"max_leaf_lines", h.max_leaf_lines}};
+    json["hierarchical"]["eps"] = h.eps ? nlohmann::json(*h.eps) : nlohmann::json("auto");
+    json["hierarchical"]["min_weight"] =
+        h.min_weight ? nlohmann::json(*h.min_weight) : nlohmann::json("auto");
+  }
   if (const auto& b = s.outside.background) json["background"] = {b->x, b->y, b->z};
   if (const auto& sun = s.outside.sun)
     json["sun"] = {sun->azimuth_deg, sun->elevation_deg, sun->lux};

@@ -44,7 +44,7 @@ struct MatrixSettings {
   int rays = 2048;         ///< per patch, to find what it sees
 };
 
-/// What hierarchical radiosity reads: pictures and probes.
+/// What hierarchical radiosity reads.
 struct HierarchicalSettings {
   std::optional<double> eps;    ///< how much a link may err [W/m^2]; nothing: by the light there is
   double min_area_m2 = 0;       ///< elements are not divided below; 0: by the scene
@@ -69,6 +69,7 @@ struct BakeSettings {
   OutsideLight outside;
   HemicubeSettings hemicube;
   MatrixSettings matrix;
+  HierarchicalSettings hierarchical;
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
 };
 

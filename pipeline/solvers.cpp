@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/parallel.h"
+#include "pipeline/hierarchical.h"
 #include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
 #include "reference/path_tracer.h"
 #include "solve/gather/gather.h"
 #include "solve/hemicube/hemicube.h"
+#include "solve/hierarchical/enclosed.h"
+#include "solve/hierarchical/surface.h"
 #include "solve/matrix/matrix.h"
 #include "transport/direct_light.h"
 
@@ -170,10 +174,64 @@ Result<TexelLight> solve_matrix(const SolveInput& in, const BakeSettings& settin
   return out;
 }
 
+/// Texels at which the interpolants are held against exact irradiance.
+constexpr size_t kCheckedTexels = 400;
+
+/// Root mean square difference between interpolated and exact irradiance over the mean.
+Result<double> interpolation_error(const SolveInput& in, const hierarchical::Solution& solution,
+                                   std::span<const Rgb> interpolated, Progress& progress) {
+  std::vector<hierarchical::Receiver> receivers;
+  std::vector<size_t> texels;
+  const size_t step = std::max<size_t>(1, in.map.texels.size() / kCheckedTexels);
+  for (size_t i = step / 2; i < in.map.texels.size(); i += step) {
+    const hierarchical::Place place =
+        hierarchical::place_of(in.scene, solution.faces, in.map.texels[i].sample);
+    if (place.face == hierarchical::kNone) continue;
+    receivers.push_back(
+        hierarchical::receiver_at(solution, in.scene, in.tracer, place.face, place.position));
+    texels.push_back(i);
+  }
+  LUXEL_TRY(const std::vector<Rgb> exact,
+            hierarchical::irradiance_at(solution, in.scene, in.tracer, receivers, {}, progress));
+  double squares = 0, sum = 0;
+  for (size_t k = 0; k < texels.size(); ++k) {
+    const double d = double(luminance(interpolated[texels[k]] - exact[k]));
+    squares += d * d, sum += double(luminance(exact[k]));
+  }
+  return sum > 0 ? std::sqrt(squares * double(texels.size())) / sum : 0;
+}
+
+Result<TexelLight> solve_hierarchical(const SolveInput& in, const BakeSettings& settings,
+                                      Progress& progress) {
+  if (const auto spare = memory_to_spare(in, settings, 0); !spare)
+    return tl::unexpected(spare.error());
+  LUXEL_TRY(const hierarchical::Solution solution,
+            hierarchical::solve(in.scene, in.tracer,
+                                solve_params(settings.hierarchical, settings.bounces), progress));
+  LUXEL_TRY(const hierarchical::LightMesh mesh,
+            hierarchical::make_light_mesh(solution, in.scene, in.tracer,
+                                          light_mesh_params(settings.hierarchical), progress));
+  TexelLight out;
+  out.irradiance.resize(in.map.texels.size()), out.hidden.resize(in.map.texels.size());
+  parallel_for(in.map.texels.size(), 1024, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      out.irradiance[i] =
+          hierarchical::irradiance_at(solution, mesh, in.scene, in.map.texels[i].sample);
+  });
+  out.hidden = hierarchical::find_enclosed(in.scene, in.tracer, in.elements.position,
+                                           in.elements.geometric_normal, out.irradiance);
+  out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
+  out.sweeps = solution.sweeps, out.elements = mesh.triangles.size();
+  out.warnings = solution.warnings;
+  LUXEL_TRY(out.relative_error, interpolation_error(in, solution, out.irradiance, progress));
+  return out;
+}
+
 constexpr std::array kSolvers{
     Solver{.name = "gather", .solve = solve_gather, .samples = true, .direct_samples = true},
     Solver{.name = "hemicube", .solve = solve_hemicube, .direct_samples = true, .hemicube = true},
     Solver{.name = "matrix", .solve = solve_matrix, .direct_samples = true, .matrix = true},
+    Solver{.name = "hierarchical", .solve = solve_hierarchical, .hierarchical = true},
     Solver{.name = "reference", .solve = solve_reference, .samples = true}};
 
 }  // namespace

@@ -39,6 +39,7 @@ struct TexelLight {
   uint64_t suspicious_texels = 0;  ///< more than half of the rays met backs of one-sided surfaces
   uint64_t scratch_bytes = 0;      ///< in temporary files
   uint64_t elements = 0;           ///< of the solver's own mesh, when it has one
+  std::vector<std::string> warnings;
   /// The solver's own answer, when it is not per texel.
   std::optional<hemicube::Field> field;
 };
@@ -49,7 +50,8 @@ struct Solver {
   std::string_view name;
   SolveFunction solve;
   /// What it looks at of the settings.
-  bool samples = false, direct_samples = false, hemicube = false, matrix = false;
+  bool samples = false, direct_samples = false, hemicube = false, matrix = false,
+       hierarchical = false;
 };
 
 /// What a bake's settings ask of the hemicube solver. Shadow rays are four times direct_samples.

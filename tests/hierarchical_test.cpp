@@ -1,4 +1,4 @@
-// Hierarchical radiosity from outside: pictures, probes, and what they refuse.
+// Hierarchical radiosity from outside: bakes, pictures, probes, and what they refuse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +12,49 @@ namespace luxel::testing_support {
 namespace {
 
 using ::testing::HasSubstr;
+
+CommandResult bake(const std::filesystem::path& output, const std::string& options) {
+  return luxel("bake " + scene_file("cornell-box.glb") +
+               " --solver hierarchical --resolution 64 -o " + output.string() + " " + options);
+}
+
+TEST(HierarchicalBake, SaysWhatItUsed) {
+  const ScratchFolder s;
+  const CommandResult r = bake(s.path / "b", "--eps 0.1 --max-leaf-lines 4 --json");
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
+  const auto json = nlohmann::json::parse(r.out);
+  EXPECT_EQ(json["settings"]["hierarchical"]["eps"], 0.1);
+  EXPECT_EQ(json["settings"]["hierarchical"]["max_leaf_lines"], 4);
+  EXPECT_GT(uint64_t(json["counts"]["elements"]), 300u);
+  EXPECT_GT(double(json["relative_error"]), 0);
+  EXPECT_LT(double(json["relative_error"]), 0.05);
+  for (const char* stage : {"join polygons", "link", "refine", "discontinuities", "irradiance"})
+    EXPECT_TRUE(json["seconds"].contains(stage)) << stage;
+}
+
+TEST(HierarchicalBake, GivesTheSameBitsWithAnyNumberOfThreads) {
+  const ScratchFolder s;
+  ASSERT_EQ(bake(s.path / "1", "--eps 0.2 --threads 1").code, 0);
+  ASSERT_EQ(bake(s.path / "2", "--eps 0.2 --threads 2").code, 0);
+  EXPECT_EQ(slurp(s.path / "1" / "lightmap.exr"), slurp(s.path / "2" / "lightmap.exr"));
+}
+
+TEST(HierarchicalBake, RefusesWhatCannotWork) {
+  const ScratchFolder s;
+  for (const auto& [options, sentence] :
+       {std::pair{"--eps -1", "--eps -1 is not an error"},
+        std::pair{"--min-area -1", "--min-area -1 is not an area"},
+        std::pair{"--min-weight -1", "--min-weight -1 is not a weight"},
+        std::pair{"--max-leaf-lines 2000", "--max-leaf-lines 2000 is outside 0 to 1000"},
+        std::pair{"--samples 16", "does not use --samples"},
+        std::pair{"--patches 16", "does not use --patches"}}) {
+    const CommandResult r = bake(s.path / "b", options);
+    EXPECT_EQ(r.code, 1) << options << r.err;
+    EXPECT_THAT(r.err, HasSubstr(sentence)) << options;
+    EXPECT_FALSE(std::filesystem::exists(s.path / "b")) << options;
+  }
+}
 
 /// Overlapping, crossing, duplicated, sliver and flat polygons: an .obj of the worst.
 constexpr const char* kBadPolygons = R"(

@@ -33,7 +33,12 @@ constexpr std::array kSolverOptions{
     SolverOption{"--max-error", &pipeline::Solver::hemicube},
     SolverOption{"--smooth", &pipeline::Solver::hemicube},
     SolverOption{"--patches", &pipeline::Solver::matrix},
-    SolverOption{"--rays", &pipeline::Solver::matrix}};
+    SolverOption{"--rays", &pipeline::Solver::matrix},
+    SolverOption{"--eps", &pipeline::Solver::hierarchical},
+    SolverOption{"--min-area", &pipeline::Solver::hierarchical},
+    SolverOption{"--no-discontinuities", &pipeline::Solver::hierarchical},
+    SolverOption{"--max-leaf-lines", &pipeline::Solver::hierarchical},
+    SolverOption{"--min-weight", &pipeline::Solver::hierarchical}};
 
 /// "gather, ...": the solvers that look at an option.
 std::string users_of(bool pipeline::Solver::*used) {
@@ -132,6 +137,7 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_option("--rays", s.matrix.rays, "Per patch, to find what it sees")
       ->capture_default_str()
       ->group(matrix);
+  add_hierarchical(*bake, s.hierarchical);
   bake->add_flag("--vertex-colors", s.vertex_colors,
                  "hemicube: baked.glb gets light per vertex in COLOR_0 instead of the lightmap");
   bake->add_option("--max-memory", options->max_memory,

@@ -3,6 +3,7 @@
 
 #include "apps/cli/cli.h"
 #include "base/parallel.h"
+#include "pipeline/overlays.h"
 #include "pipeline/render.h"
 #include "pipeline/techniques.h"
 
@@ -12,7 +13,7 @@ namespace {
 struct RenderOptions {
   Common common;
   OutsideText outside;
-  std::string size, eye, look_at, bounces, exposure, tone_map;
+  std::string size, eye, look_at, bounces, exposure, tone_map, overlay;
   HemicubeOptions hemicube;
   pipeline::HierarchicalSettings hierarchical;
   std::vector<CLI::Option*> hierarchical_options;
@@ -55,6 +56,7 @@ Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
   }
   if (any_given(options.hemicube.options)) s.hemicube = options.hemicube.settings;
   if (any_given(options.hierarchical_options)) s.hierarchical = options.hierarchical;
+  LUXEL_TRY(s.overlays, pipeline::parse_overlays(options.overlay));
   LUXEL_TRY(s.outside, parse_outside_light(options.outside));
   return s;
 }
@@ -156,6 +158,11 @@ void register_render(CLI::App& app, Action& action) {
   render->add_option("--seed", s.seed, "Seed of all random numbers (path; 1)");
   add_hemicube(*render, options->hemicube);
   options->hierarchical_options = add_hierarchical(*render, options->hierarchical);
+  render
+      ->add_option("--overlay", options->overlay,
+                   "Lines over pictures of hierarchical radiosity: " + pipeline::overlay_names())
+      ->type_name("NAME,NAME,...")
+      ->group("Hierarchical radiosity");
   add_outside_light(*render, options->outside);
   add_common(*render, options->common);
   render->callback([options, &action] { action = [options] { return run_render(*options); }; });

@@ -15,6 +15,8 @@ namespace {
 /// Beyond so many faces the background is looked for by rays instead of as what no face hides.
 constexpr size_t kMostFacesBeforeSky = 4096;
 constexpr uint32_t kSkyRays = 1024;
+/// What a cluster's surfaces hide of each other, at most, as a share of its light.
+constexpr double kOwnShadow = 0.1;
 /// Elements are taken apart for their light no further than this often.
 constexpr int kMostCuts = 6;
 
@@ -57,35 +59,33 @@ class Gathering {
     const DVec3 highest{n.x > 0 ? c.upper.x : c.lower.x, n.y > 0 ? c.upper.y : c.lower.y,
                         n.z > 0 ? c.upper.z : c.lower.z};
     if (horizon_.height(highest) <= s_.blockers.slack_m) return;
-    if (!count_all_ && !list_ && is_faint(id)) return;
+    if (!count_all_ && !list_ && is_far(id)) return;
     for (const uint32_t child : c.child) visit(child);
   }
 
-  /// Takes a cluster as one far lamp when that is little.
-  bool is_faint(uint32_t id) {
+  /// Takes a cluster as one lamp where it is so far, and so little comes from it, that its size
+  /// makes no difference, and nothing else stands before it.
+  bool is_far(uint32_t id) {
     const Cluster& c = s_.tree.clusters[id];
     const DVec3 d = c.centre - at_.position;
-    const double distance = length(d);
-    if (distance < 3 * c.radius_m) return false;
+    const double distance = length(d), part = c.radius_m / distance;
+    if (part > 0.25) return false;
     const Vec3 direction = to_float(d * (1 / distance));
-    const Rgb light =
-        s_.light.clusters[id].sent.at(-direction) * float(1 / (kPiDouble * distance * distance));
-    if (double(max_component(light)) > limit_) return false;
+    const Rgb light = max(Rgb{}, s_.light.clusters[id].sent.at(-direction)) *
+                      float(1 / (kPiDouble * distance * distance));
+    if (double(max_component(light)) * (kOwnShadow + 2 * part * part) > limit_) return false;
     const double cosine = dot(d, at_.normal) / distance;
-    if (cosine <= 0) return true;
-    RandomStream random{hash64(id, 77)};
-    uint32_t below = id;
-    while (s_.tree.is_cluster(below)) below = s_.tree.clusters[below].child[random.next() < 0.5f];
-    const Element& e = s_.tree.element(below);
-    const Plane& plane = s_.faces.faces[e.face].plane;
-    const DVec3 side = plane.height(at_.position) >= 0 ? plane.normal : -plane.normal;
-    const Vec3 from =
-        trace::offset_origin(to_float(at_.position), to_float(at_.geometric_normal), s_.diagonal_m);
-    const Vec3 to = trace::offset_origin(to_float(e.centre), to_float(side), s_.diagonal_m);
-    const trace::Ray ray{from, 0, to - from, 1};
-    uint8_t blocked = 0;
-    tracer_.occluded({&ray, 1}, {&blocked, 1});
-    if (!blocked) sum_ += light * float(cosine);
+    if (cosine < part) return false;  // the horizon may cut it
+    find_in_cone(s_.blockers, at_.position, c.centre, c.radius_m, first_);
+    for (const uint32_t f : first_)
+      if (f != at_.face && !is_part_of(f, c)) return false;
+    sum_ += light * float(cosine);
+    return true;
+  }
+
+  bool is_part_of(uint32_t face, const Cluster& c) const {
+    for (uint32_t r = s_.tree.first_root[face]; r < s_.tree.first_root[face + 1]; ++r)
+      if (s_.tree.rank[r] < c.first || s_.tree.rank[r] >= c.end) return false;
     return true;
   }
 
@@ -106,13 +106,10 @@ class Gathering {
     if (polygon.empty()) return;
     find_before(s_.blockers, at_.position, polygon, first_);
     std::erase(first_, e.face), std::erase(first_, at_.face);
-    for (const uint32_t b : first_) casts_[b] = 0;
     const transport::SeenFactor seen = look(polygon, first_);
     covered_ += seen.visible;
     if (!(seen.visible > 0) || !shines) return;
-    std::vector<uint32_t> blockers;  // those that matter
-    for (const uint32_t b : first_)
-      if (casts_[b]) blockers.push_back(b);
+    const std::vector<uint32_t> blockers = casters(first_);
     const Rgb before = sum_;
     add_element(id - s_.tree.clusters.size(), seen, blockers);
     if (list_) list_->push_back({e.face, seen.visible, seen.whole, sum_ - before});
@@ -129,8 +126,18 @@ class Gathering {
       const double whole = transport::point_to_polygon(at_.position, at_.normal, polygon);
       return {whole, whole};
     }
+    for (const uint32_t b : blockers) casts_[b] = 0;
     return transport::visible_point_factor(at_.position, at_.normal, polygon, s_.blockers.all,
                                            blockers, s_.blockers.slack_m * 1e-3, casts_, scratch_);
+  }
+
+  /// Of the blockers of the last look those whose shadows fell on what was looked at: no others'
+  /// fall on a part of it.
+  std::vector<uint32_t> casters(std::span<const uint32_t> blockers) const {
+    std::vector<uint32_t> out;
+    for (const uint32_t b : blockers)
+      if (casts_[b]) out.push_back(b);
+    return out;
   }
 
   /// An element, from what is seen of it: as a whole, or its parts.
@@ -150,7 +157,7 @@ class Gathering {
       const Polygon polygon = above_horizon(part);
       if (polygon.empty()) continue;
       const transport::SeenFactor there = look(polygon, blockers);
-      if (there.visible > 0) add_element(c, there, blockers);
+      if (there.visible > 0) add_element(c, there, casters(blockers));
     }
   }
 
@@ -179,7 +186,7 @@ class Gathering {
       const Polygon polygon = above_horizon(quarter);
       if (polygon.empty()) continue;
       const transport::SeenFactor there = look(polygon, blockers);
-      if (there.visible > 0) add_part(quarter, there, blockers, cuts + 1);
+      if (there.visible > 0) add_part(quarter, there, casters(blockers), cuts + 1);
     }
   }
 

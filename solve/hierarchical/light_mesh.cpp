@@ -116,13 +116,11 @@ bool lies_on(const Segment2& s, DVec2 a, DVec2 b, double slack_m) {
 
 /// Triangulates the leaves of a face into `mesh`.
 void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints& of_outlines,
-              std::vector<std::vector<LightTriangle>>& of_element, LightMesh& mesh) {
+              Welder& welder, std::vector<std::vector<LightTriangle>>& of_element,
+              LightMesh& mesh) {
   EdgePoints of_face(m.slack_m);
   for_points(m, w, [&](DVec3 p) { of_face.add(p); });
   of_face.sort();
-  Welder welder(m.slack_m);
-  std::vector<DVec3> places;
-  const auto base = uint32_t(mesh.vertices.size());
   for (size_t k = 0; k < w.leaves.size(); ++k) {
     const double least_m =
         std::max(2 * m.slack_m, kNearCorners * std::sqrt(m.s.tree.elements[w.leaves[k]].area_m2));
@@ -130,7 +128,7 @@ void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints
                                         w.pieces[k], least_m);
     std::vector<uint32_t> vertex;
     for (const DVec2 p : t.points)
-      vertex.push_back(base + welder.index_of(w.plane.from_plane(p), places));
+      vertex.push_back(welder.index_of(w.plane.from_plane(p), mesh.vertices));
     for (const auto& corners : t.triangles) {
       LightTriangle out;
       out.face = face, out.leaf = uint32_t(w.leaves[k]);
@@ -145,7 +143,6 @@ void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints
         of_element[w.leaves[k]].push_back(out);
     }
   }
-  mesh.vertices.insert(mesh.vertices.end(), places.begin(), places.end());
   mesh.lines += w.lines.size();
 }
 
@@ -170,9 +167,15 @@ Status triangulate_all(const Maker& m, LightMesh& mesh, Progress& progress) {
   }
   of_outlines.sort();
   std::vector<std::vector<LightTriangle>> of_element(m.s.tree.elements.size());
+  std::map<uint32_t, Welder> of_instance;
   for (uint32_t f = 0; f < faces; ++f) {
     if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
-    add_face(m, work[f], f, of_outlines, of_element, mesh);
+    // Faces of a curved surface share their vertices, and with them the light there.
+    const Face& face = m.s.faces.faces[f];
+    Welder own(m.slack_m);
+    Welder& welder =
+        face.curved ? of_instance.try_emplace(face.instance, m.slack_m).first->second : own;
+    add_face(m, work[f], f, of_outlines, welder, of_element, mesh);
     progress.advance(1);
   }
   for (const auto& triangles : of_element) {
@@ -189,13 +192,16 @@ struct Samples {
   std::vector<std::array<uint32_t, 6>> of_triangle;
 };
 
+/// Whether another face meets this one there at an angle; neighbours on a curved surface do not.
 bool is_touched(const Maker& m, uint32_t face, DVec3 p) {
   static thread_local std::vector<uint32_t> found;
   find_touching(m.s.blockers, p, 2 * m.slack_m, found);
-  const DVec3 normal = m.s.faces.faces[face].plane.normal;
-  for (const uint32_t f : found)
-    if (f != face && length(cross(m.s.faces.faces[f].plane.normal, normal)) > 1e-6) return true;
-  return false;
+  const Face& own = m.s.faces.faces[face];
+  return std::any_of(found.begin(), found.end(), [&](uint32_t f) {
+    const Face& other = m.s.faces.faces[f];
+    if (f == face || (own.curved && other.curved && own.instance == other.instance)) return false;
+    return length(cross(other.plane.normal, own.plane.normal)) > 1e-6;
+  });
 }
 
 Samples collect_samples(const Maker& m, const LightMesh& mesh) {

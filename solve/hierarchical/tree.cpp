@@ -42,8 +42,11 @@ double along(DVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z
 
 /// Clusters over `roots`, depth first; returns the id of the one over all. Halves have as many
 /// roots each, so depths differ by one at most.
-uint32_t add_clusters(Tree& tree, std::span<uint32_t> roots, size_t cluster_count) {
-  if (roots.size() == 1) return uint32_t(cluster_count + roots[0]);
+uint32_t add_clusters(Tree& tree, std::span<uint32_t> roots, uint32_t first, size_t cluster_count) {
+  if (roots.size() == 1) {
+    tree.rank[roots[0]] = first;
+    return uint32_t(cluster_count + roots[0]);
+  }
   Bounds bounds, centres;
   double area = 0;
   for (const uint32_t r : roots) {
@@ -63,9 +66,11 @@ uint32_t add_clusters(Tree& tree, std::span<uint32_t> roots, size_t cluster_coun
   cluster.centre = (bounds.lower + bounds.upper) * 0.5;
   cluster.radius_m = 0.5 * length(bounds.upper - bounds.lower);
   cluster.area_m2 = area;
+  cluster.first = first, cluster.end = first + uint32_t(roots.size());
   tree.clusters.push_back(cluster);
-  const uint32_t low = add_clusters(tree, roots.first(half), cluster_count);
-  const uint32_t high = add_clusters(tree, roots.subspan(half), cluster_count);
+  const uint32_t low = add_clusters(tree, roots.first(half), first, cluster_count);
+  const uint32_t high =
+      add_clusters(tree, roots.subspan(half), first + uint32_t(half), cluster_count);
   tree.clusters[id].child = {low, high};
   return id;
 }
@@ -83,7 +88,8 @@ Tree make_tree(const Faces& faces) {
   std::iota(roots.begin(), roots.end(), 0u);
   if (!roots.empty()) {
     tree.clusters.reserve(roots.size() - 1);
-    add_clusters(tree, roots, roots.size() - 1);
+    tree.rank.resize(roots.size());
+    add_clusters(tree, roots, 0, roots.size() - 1);
   }
   return tree;
 }

@@ -29,7 +29,8 @@ struct Cluster {
   DVec3 lower, upper;
   DVec3 centre;
   double radius_m = 0;
-  double area_m2 = 0;  ///< of all surfaces below
+  double area_m2 = 0;           ///< of all surfaces below
+  uint32_t first = 0, end = 0;  ///< the ranks of the roots below
 };
 
 /// Clusters and elements have ids in common: clusters first, whose number is settled, then elements
@@ -37,6 +38,7 @@ struct Cluster {
 struct Tree {
   std::vector<Cluster> clusters;
   std::vector<Element> elements;
+  std::vector<uint32_t> rank;  ///< per root its place in the order in which clusters hold them
   std::vector<uint32_t> first_root;  ///< per face its elements that nothing divides; one extra
                                      ///< entry. Roots come first of all elements.
 

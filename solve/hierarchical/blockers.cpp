@@ -77,28 +77,6 @@ void find_near(const Blockers& blockers, PolygonView polygon, std::vector<uint32
   transport::polygons_near(blockers.tree, box, found);
 }
 
-void find_in_cone(const Blockers& blockers, DVec3 point, DVec3 centre, double radius_m,
-                  std::vector<uint32_t>& found) {
-  const DVec3 d = centre - point;
-  const double distance = length(d);
-  const DVec3 axis = d * (1 / distance);
-  const DVec3 u =
-      normalize(std::abs(axis.x) < 0.5 ? cross(axis, DVec3{1, 0, 0}) : cross(axis, DVec3{0, 1, 0}));
-  const DVec3 v = cross(axis, u);
-  // Four planes through the point that touch the ball.
-  const double sine = std::min(1.0, radius_m / distance), cosine = std::sqrt(1 - sine * sine);
-  transport::Shaft cone{{}, blockers.slack_m};
-  for (const DVec3 side : {u, -u, v, -v}) {
-    const DVec3 normal = side * cosine - axis * sine;
-    cone.planes.push_back({normal, dot(normal, point)});
-  }
-  cone.planes.push_back({axis, dot(axis, centre) + radius_m});
-  cone.planes.push_back({-axis, -dot(axis, point)});
-  transport::polygons_near(blockers.tree, cone, found);
-  std::erase_if(found,
-                [&](uint32_t k) { return transport::is_outside(cone, blockers.all[k].corners); });
-}
-
 void find_touching(const Blockers& blockers, DVec3 point, double slack_m,
                    std::vector<uint32_t>& found) {
   const std::array<DVec3, 1> there{point};

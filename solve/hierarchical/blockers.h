@@ -29,10 +29,6 @@ void find_before(const Blockers& blockers, DVec3 point, PolygonView polygon,
 /// Faces whose boxes meet that of a polygon, ascending.
 void find_near(const Blockers& blockers, PolygonView polygon, std::vector<uint32_t>& found);
 
-/// Faces that reach into the cone from a point over a ball, up to its far side, ascending.
-void find_in_cone(const Blockers& blockers, DVec3 point, DVec3 centre, double radius_m,
-                  std::vector<uint32_t>& found);
-
 /// Faces that pass within `slack_m` of a point, ascending.
 void find_touching(const Blockers& blockers, DVec3 point, double slack_m,
                    std::vector<uint32_t>& found);

@@ -39,7 +39,7 @@ struct LightMesh {
 struct MeshParams {
   bool discontinuities = true;
   DiscontinuityParams discontinuity;
-  PointParams point;
+  PointParams point = {5e-4};
   bool measure_error = false;  ///< at four more points of each triangle
 };
 

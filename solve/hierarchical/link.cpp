@@ -39,9 +39,7 @@ Points points_of(const Element& e) {
   constexpr double low = 0.21132487, high = 1 - low;
   out.count = 4;
   constexpr double s[4] = {low, high, high, low}, t[4] = {low, low, high, high};
-  for (uint32_t k = 0; k < 4; ++k)
-    out.at[k] =
-        (c[0] * (1 - s[k]) + c[1] * s[k]) * (1 - t[k]) + (c[3] * (1 - s[k]) + c[2] * s[k]) * t[k];
+  for (uint32_t k = 0; k < 4; ++k) out.at[k] = linear_at(c, 4, s[k], t[k]);
   out.at[4] = e.centre;
   return out;
 }
@@ -61,8 +59,7 @@ DVec3 point_in(const Element& e, Vec2 u) {
     const double root = std::sqrt(double(u.x)), v = double(u.y);
     return c[0] * (1 - root) + (c[1] * (1 - v) + c[2] * v) * root;
   }
-  const double s = double(u.x), t = double(u.y);
-  return (c[0] * (1 - s) + c[1] * s) * (1 - t) + (c[3] * (1 - s) + c[2] * s) * t;
+  return linear_at(c, 4, u.x, u.y);
 }
 
 Vec3 lifted(const Exchange& x, DVec3 p, DVec3 normal) {

@@ -175,12 +175,9 @@ ElementLight bare_light(const scene::Scene& scene, const Exchange& x, const Elem
   for (int j = 0; j < kGrid; ++j)
     for (int i = 0; i < kGrid; ++i) {
       const double s = (i + 0.5) / kGrid, t = (j + 0.5) / kGrid;
-      const auto& c = e.corner;
       if (e.corners == 3 && s + t > 1) continue;
-      const DVec3 place =
-          e.corners == 3 ? c[0] * (1 - s - t) + c[1] * s + c[2] * t
-                         : (c[0] * (1 - s) + c[1] * s) * (1 - t) + (c[3] * (1 - s) + c[2] * s) * t;
-      const scene::SurfacePoint p = surface_point(scene, x.faces, x.tracer, e.face, place);
+      const scene::SurfacePoint p =
+          surface_point(scene, x.faces, x.tracer, e.face, linear_at(e.corner, e.corners, s, t));
       out.reflectance += scene::reflectance_at(scene, p);
       out.emission += scene::emission_at(scene, p) * kPi;
       count += 1;

@@ -64,6 +64,14 @@ std::array<T, 4> part_of(const std::array<T, 4>& v, uint32_t n, uint32_t part) {
   return {v[part], middle(part), middle(part + 2)};
 }
 
+/// What is bilinear over a quadrilateral, s and t along its first and last edge, or linear over a
+/// triangle, s and t the weights of its second and third corner, from its values at the corners.
+template <class T, class Number>
+T linear_at(const std::array<T, 4>& v, uint32_t n, Number s, Number t) {
+  if (n == 3) return v[0] * (1 - s - t) + v[1] * s + v[2] * t;
+  return (v[0] * (1 - s) + v[1] * s) * (1 - t) + (v[3] * (1 - s) + v[2] * s) * t;
+}
+
 /// The leaf of a face in which a point of its plane lies, or lies next to.
 size_t leaf_at(const Tree& tree, const Faces& faces, uint32_t face, DVec3 point);
 

@@ -69,6 +69,11 @@ double texel_rms(const Prepared& p, const ExactPart& part, const pipeline::Texel
 
 }  // namespace
 
+bool is_ready_for(std::string_view solver, const ExactCase& c) {
+  if (solver != "hierarchical") return true;
+  return c.name.find("sphere") == std::string::npos && c.name != "parallel plates";
+}
+
 Result<std::vector<Measured>> measure(const Prepared& p, const ExactCase& c,
                                       std::string_view solver, const MeasureEffort& effort,
                                       Progress& progress) {

@@ -29,6 +29,12 @@ struct MeasureEffort {
   int paths_per_point = 32;
 };
 
+/// Whether a solver can be asked for a case yet. The hierarchical solver cannot for the spheres,
+/// whose 10,000 facets and more it links by the million, in minutes; nor for the plates a thousand
+/// times as wide as their distance: light that falls off at their very border spoils interpolants
+/// over halves of a plate, as triangles are not divided by what they show.
+bool is_ready_for(std::string_view solver, const ExactCase& c);
+
 /// One for each part of the case. `p` is the case's scene at its resolution. A solver's mean is
 /// read from its lightmap; only the path tracer, whose mean must be exact, begins its paths at
 /// places of its own, so that no texel blurs it and its printed standard error is the whole error.

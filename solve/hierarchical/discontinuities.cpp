@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solve/hierarchical/segments.h"
+#include "solve/hierarchical/contacts.h"
 #include "transport/point_form_factor.h"
 
 namespace luxel::hierarchical {
@@ -196,25 +196,9 @@ void add_horizon(const View& v, const Source& source, const Face& face) {
 /// Edges of other faces that lie in the receiver, and lines where others pass through it.
 void add_contacts(const View& v, std::span<const uint32_t> others) {
   for (const uint32_t other : others) {
-    const Face& face = v.s.faces.faces[other];
-    if (length(cross(face.plane.normal, v.face.plane.normal)) < 1e-9) continue;
-    double low = INFINITY, high = -INFINITY;
-    for (const DVec3& p : face.corners)
-      low = std::min(low, v.height(p)), high = std::max(high, v.height(p));
-    const double slack = v.s.blockers.slack_m;
-    if (low > slack || high <= slack) continue;  // above, or behind the front
-    Segment line;
-    if (!meet(v.face.plane, face.plane, transport::mean_corner(face.corners),
-              4 * (v.size_m + transport::radius_about(v.face.corners[0], face.corners)), line))
-      continue;
-    Polygon grown;  // so that an edge in the plane is inside for certain
-    const DVec3 middle = transport::mean_corner(face.corners);
-    for (const DVec3& p : face.corners) grown.push_back(p + normalize(p - middle) * (2 * slack));
-    if (!clip_to(grown, face.plane.normal, line) ||
-        !clip_to(v.face.corners, v.face.plane.normal, line))
-      continue;
-    if (length(line.b - line.a) < kShort * v.size_m) continue;
-    v.out.push_back({line.a, line.b, DiscontinuityKind::contact, kNone, other, INFINITY});
+    const auto line = contact_of(v.s.faces, v.receiver, other, v.s.blockers.slack_m);
+    if (!line || length(line->b - line->a) < kShort * v.size_m) continue;
+    v.out.push_back({line->a, line->b, DiscontinuityKind::contact, kNone, other, INFINITY});
   }
 }
 
@@ -277,7 +261,7 @@ DiscontinuityLimits limits_of(const Solution& s, const DiscontinuityParams& para
   if (params.least_weight) {
     out.weight = *params.least_weight;
   } else if (params.ranking == Ranking::slope) {
-    out.weight = 0.02 * mean / std::sqrt(s.mean_area_m2);
+    out.weight = 0.02 * mean / std::sqrt(s.unit_area_m2);
   } else {
     float most = 0;
     for (uint32_t f = 0; f < s.faces.size(); ++f) most = std::max(most, most_of(s, f));

@@ -1,5 +1,7 @@
 #include "solve/hierarchical/faces.h"
 
+#include <algorithm>
+
 #include <map>
 
 #include "transport/merge_polygons.h"
@@ -27,7 +29,9 @@ Face make_face(const scene::Scene& scene, PolygonView corners, uint32_t instance
   Face face{{corners.begin(), corners.end()}, transport::plane_of(corners)};
   face.instance = instance, face.triangle = triangle, face.curved = curved;
   face.material = mesh.triangle_material[triangle];
-  face.two_sided = scene.materials[face.material].double_sided;
+  const scene::Material& material = scene.materials[face.material];
+  face.two_sided = material.double_sided;
+  face.has_holes = material.alpha_mode == scene::AlphaMode::mask;
   return face;
 }
 
@@ -75,6 +79,11 @@ Status add_instance(const scene::Scene& scene, uint32_t instance, Faces& out, Pr
 }
 
 }  // namespace
+
+bool has_holes(const Faces& faces, std::span<const uint32_t> some) {
+  return std::any_of(some.begin(), some.end(),
+                     [&](uint32_t f) { return faces.faces[f].has_holes; });
+}
 
 Result<Faces> make_faces(const scene::Scene& scene, Progress& progress) {
   Faces out;

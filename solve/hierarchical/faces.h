@@ -1,6 +1,7 @@
 // The scene as flat convex polygons: what is subdivided, what shines, what blocks.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct Face {
   uint32_t triangle = 0;   ///< of the mesh: one of them
   bool two_sided = false;  ///< its back shows the light of its front
   bool curved = false;     ///< light depends on vertex normals
+  bool has_holes = false;  ///< a mask: what it hides only rays can tell
 };
 
 struct Faces {
@@ -36,6 +38,9 @@ struct Faces {
 
   size_t size() const { return faces.size(); }
 };
+
+/// Whether any of some faces has holes.
+bool has_holes(const Faces& faces, std::span<const uint32_t> some);
 
 /// Errors: cancelled.
 Result<Faces> make_faces(const scene::Scene& scene, Progress& progress);

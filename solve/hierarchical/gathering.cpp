@@ -7,16 +7,17 @@
 namespace luxel::hierarchical {
 namespace {
 
-/// How far the light of a cluster may be off, as a share of it, because it is that of moments: see
-/// Cosines.
-constexpr double kMomentError = 0.1;
+/// Rays to a cluster find surfaces that turn their backs, too.
+constexpr double kRaysForSides = 2;
+constexpr double kMostClusterRays = 16;
 /// A cluster must not be larger than this at its distance.
 constexpr double kMostRadius = 0.25;
 /// Elements are taken apart for their light no further than this often.
 constexpr int kMostCuts = 6;
 /// So few rays cost less than to find out what stands in between.
 constexpr double kFewRays = 8;
-/// What cutting the shadow of one of k blockers out of a source costs, in rays: about kCutCost k.
+constexpr double kMostRays = 4096;
+/// What cutting the shadows of k blockers out of a source costs, in rays: about kCutCost k^2.
 constexpr double kCutCost = 0.5;
 
 }  // namespace
@@ -57,22 +58,18 @@ double Gathering::rays_for(double light) const {
   return std::max(1.0, std::ceil(std::pow(0.5 * light / params_.limit, 4.0 / 3)));
 }
 
-/// Takes a cluster as one lamp where it is so far, and so little comes from it, that its size makes
-/// no difference.
+/// Takes a cluster by rays where it is so far, and so little comes from it, that few of them do.
 bool Gathering::take_cluster(uint32_t id) {
   const Cluster& c = s_.tree.clusters[id];
   const DVec3 d = c.centre - at_.position;
   const double distance = length(d), part = c.radius_m / distance;
   if (part > kMostRadius) return false;
-  const Rgb light = max(Rgb{}, s_.light.clusters[id].sent.at(to_float(d * (-1 / distance)))) *
-                    float(1 / (kPiDouble * distance * distance));
-  const double most = double(max_component(light));
-  if (most * (kMomentError + 2 * part * part) > params_.limit) return false;
-  const double cosine = dot(d, at_.normal) / distance;
-  if (std::min(cosine, dot(d, at_.geometric_normal) / distance) < part)
-    return false;  // the horizon may cut it
-  const double share = most > 0 ? glances_.at_cluster(at_, id, uint32_t(rays_for(most))).share : 0;
-  sum_ += light * float(cosine * share);
+  const double power = glances_.power_of(id);
+  if (power == 0) return true;
+  const double most = power / (kPiDouble * distance * distance);
+  const double rays = kRaysForSides * rays_for(most);
+  if (rays > kMostClusterRays) return false;
+  sum_ += glances_.from_cluster(at_, id, uint32_t(rays));
   return true;
 }
 
@@ -100,10 +97,14 @@ void Gathering::visit_root(uint32_t id) {
   find_before(s_.blockers, at_.position, polygon, first_);
   std::erase(first_, e.face), std::erase(first_, at_.face);
   const auto count = double(first_.size());
-  if (rays < kCutCost * count * count)
+  const Rgb light_before = sum_;
+  const double covered_before = covered_;
+  if (rays < kCutCost * count * count || has_holes(s_.faces, first_))
     look_by_rays(index, whole, shines);
   else
     look_exactly(index, polygon, shines);
+  const double seen = covered_ - covered_before;
+  if (list_ && seen > 0 && shines) list_->push_back({e.face, seen, whole, sum_ - light_before});
 }
 
 void Gathering::look_exactly(size_t index, PolygonView polygon, bool shines) {
@@ -111,10 +112,7 @@ void Gathering::look_exactly(size_t index, PolygonView polygon, bool shines) {
   covered_ += seen.visible;
   if (!(seen.visible > 0) || !shines) return;
   const std::vector<uint32_t> blockers = casters(first_);
-  const Rgb before = sum_;
   add_element(index, seen, blockers);
-  if (list_)
-    list_->push_back({s_.tree.elements[index].face, seen.visible, seen.whole, sum_ - before});
 }
 
 /// `whole`: the factor to the element, were nothing in between.
@@ -131,7 +129,8 @@ void Gathering::look_by_rays(size_t index, double whole, bool shines) {
     return;
   }
   const double rays = rays_for(whole * ((shines ? double(light.most) : 0) + params_.sky));
-  const Glances::Glance glance = glances_.at_element(at_, index, uint32_t(rays));
+  const Glances::Glance glance =
+      glances_.at_element(at_, index, uint32_t(std::min(rays, kMostRays)));
   covered_ += whole * glance.share;
   if (shines) sum_ += glance.radiosity * float(whole);
 }

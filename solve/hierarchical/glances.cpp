@@ -13,10 +13,8 @@ RaySources ray_sources(const Solution& s) {
   for (uint32_t r = 0; r < roots; ++r) out.root_of_rank[s.tree.rank[r]] = r;
   for (const uint32_t r : out.root_of_rank) {
     const Element& e = s.tree.elements[r];
-    const double sides = s.faces.faces[e.face].two_sided ? 2 : 1;
     out.power_before.push_back(out.power_before.back() +
-                               sides * e.area_m2 *
-                                   double(max_component(s.light.elements[r].radiosity)));
+                               e.area_m2 * double(max_component(s.light.elements[r].radiosity)));
   }
   return out;
 }
@@ -36,28 +34,38 @@ Glances::Place Glances::place_on(size_t element, uint32_t k) const {
   return {linear_at(c, 4, u.x, u.y), e.face, linear_at(b, 4, u.x, u.y), length(cross(du, dv))};
 }
 
-/// A ray, unless the place is below the horizon or turns its back. From far away all directions,
-/// and distances, are as good as the same.
-void Glances::aim(const Receiver& from, const Place& place, bool is_far) {
+/// Adds a ray, and returns cos cos / r^2 of its ends; 0, and no ray, where the place is below the
+/// horizon or turns its back.
+double Glances::aim(const Receiver& from, const Place& place) {
   const DVec3 d = place.position - from.position;
-  const double r2 = dot(d, d), r = std::sqrt(r2);
+  const double r2 = dot(d, d);
   const Face& face = s_.faces.faces[place.face];
   const double facing = -dot(d, face.plane.normal);
-  const double weight = is_far ? std::abs(facing) / r
-                               : std::abs(facing) * dot(d, from.normal) / (r2 * r2) * place.area;
-  if (dot(d, from.geometric_normal) <= 0 || (facing <= 0 && !face.two_sided) || !(weight > 0))
-    return;
+  const double kernel = std::abs(facing) * dot(d, from.normal) / (r2 * r2);
+  if (dot(d, from.geometric_normal) <= 0 || (facing <= 0 && !face.two_sided) || !(kernel > 0))
+    return 0;
   const DVec3 side = facing > 0 ? face.plane.normal : -face.plane.normal;
   const Vec3 begin =
       trace::offset_origin(to_float(from.position), to_float(from.geometric_normal), s_.diagonal_m);
   const Vec3 end = trace::offset_origin(to_float(place.position), to_float(side), s_.diagonal_m);
   rays_.push_back({begin, 0, end - begin, 1});
-  weight_.push_back(float(weight)), radiosity_.push_back(place.radiosity);
+  return kernel;
 }
 
-Glances::Glance Glances::look() {
+void Glances::look() {
   blocked_.resize(rays_.size());
   tracer_.occluded(rays_, blocked_);
+}
+
+Glances::Glance Glances::at_element(const Receiver& from, size_t element, uint32_t rays) {
+  rays_.clear(), weight_.clear(), radiosity_.clear();
+  for (uint32_t k = 0; k < rays; ++k) {
+    const Place place = place_on(element, k);
+    const double kernel = aim(from, place);
+    if (kernel > 0)
+      weight_.push_back(float(kernel * place.area)), radiosity_.push_back(place.radiosity);
+  }
+  look();
   float all = 0, seen = 0;
   Rgb light{};
   for (size_t k = 0; k < rays_.size(); ++k) {
@@ -65,25 +73,32 @@ Glances::Glance Glances::look() {
     if (blocked_[k]) continue;
     seen += weight_[k], light += radiosity_[k] * weight_[k];
   }
-  rays_.clear(), weight_.clear(), radiosity_.clear();
   return all > 0 ? Glance{double(seen / all), max(light / all, Rgb{})} : Glance{};
 }
 
-Glances::Glance Glances::at_element(const Receiver& from, size_t element, uint32_t rays) {
-  for (uint32_t k = 0; k < rays; ++k) aim(from, place_on(element, k), false);
-  return look();
-}
-
-Glances::Glance Glances::at_cluster(const Receiver& from, uint32_t cluster, uint32_t rays) {
+Rgb Glances::from_cluster(const Receiver& from, uint32_t cluster, uint32_t rays) {
+  rays_.clear(), radiosity_.clear();
   const Cluster& c = s_.tree.clusters[cluster];
   const auto begin = sources_.power_before.begin() + c.first;
   const auto end = sources_.power_before.begin() + c.end;
+  const double each = (*end - *begin) / rays;
   for (uint32_t k = 0; k < rays; ++k) {
-    const double at = *begin + (*end - *begin) * ((k + 0.5) / rays);
-    const auto rank = size_t(std::upper_bound(begin + 1, end, at) - begin) - 1 + c.first;
-    aim(from, place_on(sources_.root_of_rank[std::min<size_t>(rank, c.end - 1)], k), true);
+    const auto rank =
+        size_t(std::upper_bound(begin + 1, end, *begin + each * (k + 0.5)) - begin) - 1 + c.first;
+    const uint32_t root = sources_.root_of_rank[std::min<size_t>(rank, c.end - 1)];
+    const Place place = place_on(root, k);
+    const double kernel = aim(from, place);
+    if (kernel > 0)
+      radiosity_.push_back(
+          place.radiosity *
+          float(kernel * each /
+                (kPiDouble * double(max_component(s_.light.elements[root].radiosity)))));
   }
-  return look();
+  look();
+  Rgb light{};
+  for (size_t k = 0; k < rays_.size(); ++k)
+    if (!blocked_[k]) light += max(radiosity_[k], Rgb{});
+  return light;
 }
 
 }  // namespace luxel::hierarchical

@@ -9,7 +9,7 @@ namespace luxel::hierarchical {
 /// power asks for.
 struct RaySources {
   std::vector<uint32_t> root_of_rank;
-  std::vector<double> power_before;  ///< what all before a rank send [W]; one extra entry
+  std::vector<double> power_before;  ///< B A of all before a rank [W]; one extra entry
 };
 RaySources ray_sources(const Solution& solution);
 
@@ -27,7 +27,13 @@ class Glances {
     Rgb radiosity{};
   };
   Glance at_element(const Receiver& from, size_t element, uint32_t rays);
-  Glance at_cluster(const Receiver& from, uint32_t cluster, uint32_t rays);
+  /// E from a cluster [W/m^2], small as it looks from the point: each ray stands for as much power.
+  Rgb from_cluster(const Receiver& from, uint32_t cluster, uint32_t rays);
+  /// B A of the surfaces of a cluster [W].
+  double power_of(uint32_t cluster) const {
+    const Cluster& c = s_.tree.clusters[cluster];
+    return sources_.power_before[c.end] - sources_.power_before[c.first];
+  }
 
  private:
   struct Place {
@@ -37,8 +43,8 @@ class Glances {
     double area = 1;  ///< that it stands for, up to a factor
   };
   Place place_on(size_t element, uint32_t k) const;
-  void aim(const Receiver& from, const Place& place, bool is_far);
-  Glance look();
+  double aim(const Receiver& from, const Place& place);
+  void look();
 
   const Solution& s_;
   const trace::RayTracer& tracer_;

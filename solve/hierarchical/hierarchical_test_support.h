@@ -54,6 +54,13 @@ inline std::unique_ptr<Solved> solved(scene::Scene scene, const SolveParams& par
   return out;
 }
 
+/// A tree of whole faces, without cuts.
+inline Tree tree_of(const Faces& faces) {
+  std::vector<std::vector<Polygon>> pieces;
+  for (const Face& face : faces.faces) pieces.push_back({face.corners});
+  return make_tree(pieces);
+}
+
 /// What a scene without openings absorbs over what it emits: 1.
 inline double absorbed_over_emitted(const Solution& s) {
   double absorbed = 0, emitted = 0;

@@ -83,8 +83,16 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
 
 std::vector<Seen> sources_at(const Solution& s, const trace::RayTracer& tracer,
                              const Receiver& receiver, const PointParams& params) {
-  std::vector<Seen> out;
-  Gathering(s, tracer, ray_sources(s), {limit_of(s, params), 0}).from_faces(receiver, &out);
+  std::vector<Seen> parts, out;
+  Gathering(s, tracer, ray_sources(s), {limit_of(s, params), 0}).from_faces(receiver, &parts);
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Seen& a, const Seen& b) { return a.face < b.face; });
+  for (const Seen& part : parts) {
+    if (out.empty() || out.back().face != part.face)
+      out.push_back({.face = part.face, .irradiance = {}});
+    out.back().visible += part.visible, out.back().whole += part.whole;
+    out.back().irradiance += part.irradiance;
+  }
   std::stable_sort(out.begin(), out.end(), [](const Seen& a, const Seen& b) {
     return luminance(a.irradiance) > luminance(b.irradiance);
   });

@@ -10,18 +10,79 @@
 namespace luxel::hierarchical {
 namespace {
 
-/// Points of a leaf at which lamps are looked for: corners of a smaller copy of it, and its middle.
-constexpr double kInside = 0.6;
-constexpr uint32_t kSkyRays = 64;
+constexpr uint32_t kSkyRays = 256;
+/// Light is not known better than what so many rays bring: differences below that are none.
+constexpr float kUnsureRays = 4;
+/// Points of a face of mean area at which lamps are looked for, at least, so that no patch of sun
+/// is missed.
+constexpr double kPoints = 64;
 
-void add_points(const Element& e, DVec3 normal, transport::Elements& out) {
-  const auto add = [&](DVec3 p) {
-    out.position.push_back(to_float(p));
-    out.normal.push_back(to_float(normal)), out.geometric_normal.push_back(to_float(normal));
+/// Where lamps are looked for on a leaf: at Gauss's points, which are corners of a smaller copy of
+/// it, and on a grid, as fine as the leaf is large.
+struct Probe {
+  uint32_t corners = 4;
+  std::vector<std::array<double, 2>> at;  ///< s and t of linear_at
+
+  /// From the middle to Gauss's points: so far of the way to the corners.
+  double inside() const { return corners == 4 ? 0.57735027 : 0.5; }
+};
+
+Probe probe_of(const Element& e, double unit_area_m2) {
+  Probe out{e.corners, {}};
+  const double h = out.inside() / (e.corners == 4 ? 2 : 3);
+  if (e.corners == 4)
+    out.at = {{0.5 - h, 0.5 - h}, {0.5 + h, 0.5 - h}, {0.5 + h, 0.5 + h}, {0.5 - h, 0.5 + h}};
+  else
+    out.at = {
+        {1 / 3.0 - h, 1 / 3.0 - h}, {1 / 3.0 + 2 * h, 1 / 3.0 - h}, {1 / 3.0 - h, 1 / 3.0 + 2 * h}};
+  const double points = std::min(1.0, e.area_m2 / unit_area_m2) * kPoints;
+  // An odd number of points a side, so that the middle is one of them.
+  const int n = 1 + 2 * int(std::sqrt(points) / 2);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      double s = (i + 0.5) / n, t = (j + 0.5) / n;
+      if (e.corners == 3) t *= 1 - s, s = n == 1 ? 1 / 3.0 : s, t = n == 1 ? 1 / 3.0 : t;
+      out.at.push_back({s, t});
+    }
+  return out;
+}
+
+/// The function through Gauss's points, given by its corners, bent as far up as it would be
+/// negative; and how far it is off elsewhere.
+struct Fit {
+  std::array<Rgb, 4> corner{};
+  float error = 0;
+};
+Fit fit_of(const Probe& probe, std::span<const Rgb> light) {
+  Fit out;
+  const uint32_t n = probe.corners;
+  Rgb mean{}, twist{};
+  for (uint32_t k = 0; k < n; ++k) mean += light[k] / float(n);
+  if (n == 4) twist = (light[0] - light[1] + light[2] - light[3]) * 0.25f;
+  const auto inside = float(probe.inside());
+  float shrink = 1;  // of what differs from the mean
+  for (uint32_t k = 0; k < n; ++k) {
+    const Rgb bent = twist * (k % 2 == 0 ? 1.0f : -1.0f);
+    out.corner[k] = (light[k] - mean - bent) / inside + bent / (inside * inside);
+    for (const auto c : {&Rgb::x, &Rgb::y, &Rgb::z})
+      if (mean.*c + out.corner[k].*c < 0) shrink = std::min(shrink, -mean.*c / out.corner[k].*c);
+  }
+  for (uint32_t k = 0; k < n; ++k) out.corner[k] = mean + out.corner[k] * shrink;
+  for (size_t i = 0; i < probe.at.size(); ++i) {
+    const Rgb d = linear_at(out.corner, n, float(probe.at[i][0]), float(probe.at[i][1])) - light[i];
+    out.error = std::max({out.error, max_component(d), max_component(-d)});
+  }
+  return out;
+}
+
+void add_points(const Element& e, const Faces& faces, const Probe& probe,
+                transport::Elements& out) {
+  const Vec3 normal = to_float(faces.faces[e.face].plane.normal);
+  for (const auto& [s, t] : probe.at) {
+    out.position.push_back(to_float(linear_at(e.corner, e.corners, s, t)));
+    out.normal.push_back(normal), out.geometric_normal.push_back(normal);
     out.reflectance.push_back({});
-  };
-  for (uint32_t k = 0; k < e.corners; ++k) add(e.centre + (e.corner[k] - e.centre) * kInside);
-  add(e.centre);
+  }
 }
 
 /// E of the background at each point.
@@ -59,34 +120,31 @@ Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
   for (;;) {
     lit.resize(state.tree.elements.size());
     std::vector<size_t> leaves;
+    std::vector<Probe> probes;
     transport::Elements points;
     for (size_t e = 0; e < lit.size(); ++e) {
       if (lit[e] || !state.tree.elements[e].is_leaf()) continue;
       lit[e] = 1;
       leaves.push_back(e);
-      const Element& element = state.tree.elements[e];
-      add_points(element, x.faces.faces[element.face].plane.normal, points);
+      probes.push_back(probe_of(state.tree.elements[e], x.unit_area_m2));
+      add_points(state.tree.elements[e], x.faces, probes.back(), points);
     }
     if (leaves.empty()) return {};
-    LUXEL_TRY(const transport::DirectLight direct,
+    LUXEL_TRY(transport::DirectLight direct,
               transport::direct_light(state.scene, points, lamps.punctual, x.tracer, {64, 1, true},
                                       progress));
     const std::vector<Rgb> sky = sky_light(x, points, lamps.background);
-    size_t k = 0;
-    for (const size_t e : leaves) {
-      const uint32_t count = state.tree.elements[e].corners + 1;
-      Rgb sum{};
-      float least = INFINITY, most = 0;
-      for (const size_t end = k + count; k < end; ++k) {
-        const Rgb light = direct.irradiance[k] + sky[k];
-        sum += light / float(count);
-        least = std::min(least, max_component(light)), most = std::max(most, max_component(light));
-      }
-      state.light.elements[e].lamps = sum;
-      if (double(most - least) > params.eps &&
-          state.tree.elements[e].area_m2 > 4 * params.min_area_m2 &&
-          state.tree.elements.size() + 4 <= params.max_elements)
-        divide_element(state, x, e);
+    for (size_t i = 0; i < sky.size(); ++i) direct.irradiance[i] += sky[i];
+    std::span<const Rgb> light = direct.irradiance;
+    for (size_t k = 0; k < leaves.size(); ++k) {
+      const Fit fit = fit_of(probes[k], light.first(probes[k].at.size()));
+      light = light.subspan(probes[k].at.size());
+      state.light.elements[leaves[k]].lamps = fit.corner;
+      const float unsure = max_component(lamps.background) * kPi * (kUnsureRays / kSkyRays);
+      const double area = state.tree.elements[leaves[k]].area_m2;
+      if (double(fit.error - unsure) * area / x.unit_area_m2 > params.eps &&
+          area > 4 * params.min_area_m2 && state.tree.elements.size() + 4 <= params.max_elements)
+        divide_element(state, x, leaves[k]);
     }
   }
 }

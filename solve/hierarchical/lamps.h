@@ -15,7 +15,8 @@ struct Lamps {
 Lamps lamps_of(const scene::Scene& scene);
 
 /// Sets ElementLight::lamps of all leaves that have none yet (`lit` counts elements, in order),
-/// dividing leaves over which it differs by more than eps.
+/// dividing leaves over which it is farther than eps from linear. As with links, large leaves count
+/// for more: see error_of.
 Status light_leaves(Refined& state, const Exchange& exchange, const Lamps& lamps,
                     const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress);
 

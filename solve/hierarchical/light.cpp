@@ -76,7 +76,7 @@ void pull_leaf(const Element& element, ElementLight& l) {
   l.irradiance = l.radiosity = {};
   l.most = l.rough = 0;
   for (uint32_t k = 0; k < element.corners; ++k) {
-    const Rgb e = l.lamps + l.arriving[k];
+    const Rgb e = l.lamps[k] + l.arriving[k];
     l.shining[k] = l.emission + l.reflectance * e;
     l.irradiance += e * (1 / float(element.corners));
     l.radiosity += l.shining[k] * (1 / float(element.corners));

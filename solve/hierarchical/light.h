@@ -47,7 +47,7 @@ struct ElementLight {
   Rgb reflectance;
   Rgb emission;                 ///< B_e [W/m^2]
   std::array<Rgb, 4> received;  ///< E over the links of this element at its corners
-  Rgb lamps;                    ///< E from lamps without area and from the background, leaves only
+  std::array<Rgb, 4> lamps;     ///< of leaves: E at the corners from lamps without area and the sky
   std::array<Rgb, 4> arriving;  ///< E at the corners, over the links of this and all above it
   std::array<Rgb, 4> shining;   ///< B at the corners, linear between them
   Rgb irradiance;               ///< E over all links, a mean [W/m^2]

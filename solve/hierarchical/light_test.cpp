@@ -52,7 +52,7 @@ struct Two {
       face.corners = p, face.plane = transport::plane_of(p);
       faces.faces.push_back(face);
     }
-    tree = make_tree(faces);
+    tree = testing::tree_of(faces);
     for (const size_t e : {0, 1}) divide(tree, e);
     for (size_t e = 2; e < 6; ++e) divide(tree, e);
     divide(tree, 6), divide(tree, 9);
@@ -104,7 +104,7 @@ TEST(PushPull, KeepsPowerWhateverTheFunction) {
       two.light.elements[e].received[k] = {v, v, v};
       sent += element.area_m2 * double(v) / element.corners;
     }
-    if (element.is_leaf()) two.light.elements[e].lamps = {1, 1, 1}, sent += element.area_m2;
+    if (element.is_leaf()) two.light.elements[e].lamps.fill({1, 1, 1}), sent += element.area_m2;
   }
   push_pull(two.faces, two.tree, two.light);
   double arrived = 0;

@@ -90,7 +90,8 @@ void find_blockers(const Exchange& x, const Element& r, const Element& s, const 
   else
     find_between(x.blockers, r.polygon(), s.polygon(), link.blockers);
   std::erase(link.blockers, r.face), std::erase(link.blockers, s.face);
-  if (link.blockers.size() > kMostBlockers) link.blockers.clear(), link.crowded = true;
+  if (link.blockers.size() > kMostBlockers || has_holes(x.faces, link.blockers))
+    link.blockers.clear(), link.crowded = true;
 }
 
 /// What an element's points see of another one, and its middle.
@@ -313,7 +314,7 @@ float error_of(const Link& link, uint32_t receiver, const Exchange& x, const Lig
   }
   const double area = x.tree.is_cluster(receiver) ? x.tree.clusters[receiver].area_m2
                                                   : x.tree.element(receiver).area_m2;
-  return error * float(area / x.mean_area_m2);
+  return error * float(area / x.unit_area_m2);
 }
 
 void gather(const Exchange& x, std::span<const std::vector<Link>> links, Light& light) {

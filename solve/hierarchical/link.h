@@ -34,7 +34,7 @@ struct Exchange {
   const Blockers& blockers;
   const trace::RayTracer& tracer;
   float diagonal_m = 0;
-  double mean_area_m2 = 1;  ///< of the tree's roots
+  double unit_area_m2 = 1;  ///< errors count in full on receivers of this size
 };
 
 /// A link from `source` to `receiver`, different ids of the tree. `parent` is a link between the
@@ -45,8 +45,8 @@ Link make_link(const Exchange& exchange, uint32_t receiver, uint32_t source, con
 
 /// What the source sends to a receiver over a link: E [W/m^2].
 Rgb irradiance_of(const Link& link, const Exchange& exchange, const Light& light);
-/// By how much that may be wrong over the receiver [W/m^2], times the receiver's area over the mean
-/// area of elements that nothing divides: large receivers count for more.
+/// By how much that may be wrong over the receiver [W/m^2], times the receiver's area over the
+/// unit: large receivers count for more.
 float error_of(const Link& link, uint32_t receiver, const Exchange& exchange, const Light& light);
 
 /// One step of Jacobi's iteration: what all links bring, to ElementLight::received and

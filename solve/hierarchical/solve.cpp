@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/hierarchical/contacts.h"
 #include "solve/hierarchical/lamps.h"
 #include "solve/hierarchical/overlaps.h"
 
@@ -12,6 +13,9 @@ namespace {
 constexpr int kMostIterations = 24, kMostSweeps = 2000;
 /// Of the mean irradiance, when nobody says more.
 constexpr double kUsualEps = 0.01;
+/// Errors count in full on receivers of a face's mean size, but of no more faces than so many: what
+/// is asked for must not depend on how finely a surface is cut into triangles.
+constexpr size_t kMostUnits = 1024;
 constexpr double kLeastPart = 1.0 / (1 << 18);
 
 double area_of(const Tree& tree) {
@@ -70,7 +74,8 @@ void count_bounces(Work& w, int bounces) {
   for (ElementLight& l : w.s.light.elements)
     l.received = {}, l.irradiance = {}, l.radiosity = l.emission;
   for (ClusterLight& l : w.s.light.clusters) l.received = {};
-  std::vector<Rgb> lamps;  // light that lamps send is there from the first reflection on
+  std::vector<std::array<Rgb, 4>>
+      lamps;  // light that lamps send is there from the first reflection on
   for (ElementLight& l : w.s.light.elements) lamps.push_back(l.lamps), l.lamps = {};
   push_pull(w.s.faces, w.s.tree, w.s.light);
   for (size_t e = 0; e < lamps.size(); ++e) w.s.light.elements[e].lamps = lamps[e];
@@ -134,11 +139,11 @@ Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer
                        const SolveParams& params, Progress& progress) {
   Solution s;
   LUXEL_TRY(s.faces, make_faces(scene, progress));
-  s.tree = make_tree(s.faces);
   s.blockers = make_blockers(s.faces);
+  s.tree = make_tree(cut_at_contacts(s.faces, s.blockers));
   s.warnings = overlap_warnings(scene, s.faces, s.blockers);
   s.diagonal_m = scene::world_bounds(scene).diagonal();
-  s.mean_area_m2 = area_of(s.tree) / double(std::max<size_t>(1, s.tree.first_root.back()));
+  s.unit_area_m2 = area_of(s.tree) / double(std::clamp<size_t>(s.faces.size(), 1, kMostUnits));
   s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;
   Work work{s, s.exchange(tracer), lamps_of(scene), {}, {scene, s.tree, s.light, s.links}};
   LUXEL_TRY_STATUS(run(work, params, progress));

@@ -30,10 +30,10 @@ struct Solution {
   int iterations = 0;                 ///< refinements
   int sweeps = 0;                     ///< gathers
   float diagonal_m = 0;
-  double mean_area_m2 = 1;
+  double unit_area_m2 = 1;
 
   Exchange exchange(const trace::RayTracer& tracer) const {
-    return {faces, tree, blockers, tracer, diagonal_m, mean_area_m2};
+    return {faces, tree, blockers, tracer, diagonal_m, unit_area_m2};
   }
 };
 

@@ -51,7 +51,7 @@ TEST(HierarchicalSolve, ClosedRoomsAbsorbWhatTheyEmit) {
 // The same with a sphere and a torus of 3,872 facets, which are lit as clusters: a hundredth, as
 // issue and page promise.
 TEST(HierarchicalSolve, ClustersKeepEnergyWithinAHundredth) {
-  const auto s = solved(scene::radiosity_box_with_shapes(), {.eps = 0.03});
+  const auto s = solved(scene::radiosity_box_with_shapes(), {.eps = 0.01});
   EXPECT_NEAR(absorbed_over_emitted(s->solution), 1, 0.01);
   EXPECT_LT(s->solution.links.count, 1'500'000u);  // all pairs would be 15,000,000
 }

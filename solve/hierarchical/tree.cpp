@@ -21,12 +21,11 @@ Element make_element(PolygonView corners, uint32_t face, uint32_t parent) {
 }
 
 /// A convex polygon as quadrilaterals and at most one triangle, all with its first corner.
-void add_roots(const Face& face, uint32_t index, std::vector<Element>& out) {
-  const Polygon& p = face.corners;
+void add_roots(PolygonView p, uint32_t face, std::vector<Element>& out) {
   for (size_t k = 1; k + 1 < p.size(); k += 2) {
     std::vector<DVec3> piece{p[0], p[k], p[k + 1]};
     if (k + 2 < p.size()) piece.push_back(p[k + 2]);
-    out.push_back(make_element(piece, index, kNone));
+    out.push_back(make_element(piece, face, kNone));
   }
 }
 
@@ -77,11 +76,11 @@ uint32_t add_clusters(Tree& tree, std::span<uint32_t> roots, uint32_t first, siz
 
 }  // namespace
 
-Tree make_tree(const Faces& faces) {
+Tree make_tree(std::span<const std::vector<Polygon>> pieces) {
   Tree tree;
-  for (uint32_t f = 0; f < faces.size(); ++f) {
+  for (uint32_t f = 0; f < pieces.size(); ++f) {
     tree.first_root.push_back(uint32_t(tree.elements.size()));
-    add_roots(faces.faces[f], f, tree.elements);
+    for (const Polygon& piece : pieces[f]) add_roots(piece, f, tree.elements);
   }
   tree.first_root.push_back(uint32_t(tree.elements.size()));
   std::vector<uint32_t> roots(tree.elements.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "solve/hierarchical/faces.h"
 
@@ -48,7 +49,8 @@ struct Tree {
   uint32_t id_of(size_t element) const { return uint32_t(clusters.size() + element); }
 };
 
-Tree make_tree(const Faces& faces);
+/// From the convex pieces of each face: see contacts.h.
+Tree make_tree(std::span<const std::vector<Polygon>> pieces);
 
 /// Divides a leaf by the middles of its edges: a quadrilateral into four that meet in its centre, a
 /// triangle into three at its corners and one between. The parts are convex and fill it.

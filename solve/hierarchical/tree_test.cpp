@@ -46,7 +46,7 @@ TEST(Tree, RootsFillTheirFace) {
   }
   ASSERT_GT(largest, 5u);
   const Faces faces = faces_of(scene);
-  const Tree tree = make_tree(faces);
+  const Tree tree = testing::tree_of(faces);
   for (uint32_t f = 0; f < faces.size(); ++f) {
     double area = 0;
     for (uint32_t r = tree.first_root[f]; r < tree.first_root[f + 1]; ++r)
@@ -57,7 +57,7 @@ TEST(Tree, RootsFillTheirFace) {
 
 TEST(Tree, ClustersHoldAllRootsOnce) {
   const Faces faces = faces_of(scene::spheres_and_cube());
-  const Tree tree = make_tree(faces);
+  const Tree tree = testing::tree_of(faces);
   ASSERT_EQ(tree.clusters.size() + 1, tree.elements.size());
   std::vector<int> seen(tree.size());
   for (const Cluster& c : tree.clusters)
@@ -83,7 +83,7 @@ TEST(Tree, PartsAreConvexAndFillTheWhole) {
     if (trial % 2) face.corners[2] = face.corners[0] + (face.corners[2] - face.corners[0]) * 1.4;
     face.plane = transport::plane_of(face.corners);
     faces.faces.push_back(face);
-    Tree tree = make_tree(faces);
+    Tree tree = testing::tree_of(faces);
     divide(tree, 0);
     for (size_t e = 1; e < 5; ++e) divide(tree, e);
     ASSERT_EQ(tree.elements.size(), 21u);

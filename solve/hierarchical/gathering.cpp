@@ -58,6 +58,11 @@ double Gathering::rays_for(double light) const {
   return std::max(1.0, std::ceil(std::pow(0.5 * light / params_.limit, 4.0 / 3)));
 }
 
+/// What an element brings at most, and what it hides of the sky [W/m^2].
+double Gathering::at_stake(size_t index, double whole, bool shines) const {
+  return whole * ((shines ? double(s_.light.elements[index].most) : 0) + params_.sky);
+}
+
 /// Takes a cluster by rays where it is so far, and so little comes from it, that few of them do.
 bool Gathering::take_cluster(uint32_t id) {
   const Cluster& c = s_.tree.clusters[id];
@@ -88,8 +93,7 @@ void Gathering::visit_root(uint32_t id) {
   if (polygon.empty()) return;
   const double whole = transport::point_to_polygon(at_.position, at_.normal, polygon);
   if (!(whole > 0)) return;
-  const double rays =
-      list_ ? INFINITY : rays_for(whole * ((shines ? double(most) : 0) + params_.sky));
+  const double rays = list_ ? INFINITY : rays_for(at_stake(index, whole, shines));
   if (rays <= kFewRays) {
     look_by_rays(index, whole, shines);
     return;
@@ -102,13 +106,14 @@ void Gathering::visit_root(uint32_t id) {
   if (rays < kCutCost * count * count || has_holes(s_.faces, first_))
     look_by_rays(index, whole, shines);
   else
-    look_exactly(index, polygon, shines);
+    look_exactly(index, polygon, whole, shines);
   const double seen = covered_ - covered_before;
   if (list_ && seen > 0 && shines) list_->push_back({e.face, seen, whole, sum_ - light_before});
 }
 
-void Gathering::look_exactly(size_t index, PolygonView polygon, bool shines) {
-  const transport::SeenFactor seen = look(polygon, first_);
+void Gathering::look_exactly(size_t index, PolygonView polygon, double whole, bool shines) {
+  const transport::SeenFactor seen =
+      first_.empty() ? transport::SeenFactor{whole, whole} : look(polygon, first_);
   covered_ += seen.visible;
   if (!(seen.visible > 0) || !shines) return;
   const std::vector<uint32_t> blockers = casters(first_);
@@ -128,7 +133,7 @@ void Gathering::look_by_rays(size_t index, double whole, bool shines) {
     }
     return;
   }
-  const double rays = rays_for(whole * ((shines ? double(light.most) : 0) + params_.sky));
+  const double rays = rays_for(at_stake(index, whole, shines));
   const Glances::Glance glance =
       glances_.at_element(at_, index, uint32_t(std::min(rays, kMostRays)));
   covered_ += whole * glance.share;

@@ -34,9 +34,10 @@ class Gathering {
   void visit(uint32_t id);
   bool take_cluster(uint32_t id);
   void visit_root(uint32_t id);
-  void look_exactly(size_t index, PolygonView polygon, bool shines);
+  void look_exactly(size_t index, PolygonView polygon, double whole, bool shines);
   void look_by_rays(size_t index, double whole, bool shines);
   double rays_for(double light) const;
+  double at_stake(size_t index, double whole, bool shines) const;
   Polygon above_horizon(PolygonView polygon) const;
   transport::SeenFactor look(PolygonView polygon, std::span<const uint32_t> blockers);
   std::vector<uint32_t> casters(std::span<const uint32_t> blockers) const;

@@ -64,10 +64,11 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
   const bool has_sky = max_component(lamps.background) > 0;
   const bool count_all = has_sky && s.faces.size() <= kMostFacesBeforeSky;
   const double whole_sky = kPiDouble * double(max_component(lamps.background));
+  const GatheringParams gathered{limit_of(s, params), count_all ? whole_sky : 0};
   const RaySources sources = ray_sources(s);
   progress.begin("irradiance", receivers.size());
   parallel_for(receivers.size(), 32, [&](size_t begin, size_t end) {
-    Gathering gathering(s, tracer, sources, {limit_of(s, params), count_all ? whole_sky : 0});
+    Gathering gathering(s, tracer, sources, gathered);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       out[i] += gathering.from_faces(receivers[i], nullptr);
       if (!has_sky) continue;

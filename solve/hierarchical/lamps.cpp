@@ -13,8 +13,8 @@ namespace {
 constexpr uint32_t kSkyRays = 256;
 /// Light is not known better than what so many rays bring: differences below that are none.
 constexpr float kUnsureRays = 4;
-/// Points of a face of mean area at which lamps are looked for, at least, so that no patch of sun
-/// is missed.
+/// Points of a leaf of the unit's area at which lamps are looked for, at least, so that no patch of
+/// sun is missed.
 constexpr double kPoints = 64;
 
 /// Where lamps are looked for on a leaf: at Gauss's points, which are corners of a smaller copy of
@@ -40,9 +40,13 @@ Probe probe_of(const Element& e, double unit_area_m2) {
   const int n = 1 + 2 * int(std::sqrt(points) / 2);
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
-      double s = (i + 0.5) / n, t = (j + 0.5) / n;
-      if (e.corners == 3) t *= 1 - s, s = n == 1 ? 1 / 3.0 : s, t = n == 1 ? 1 / 3.0 : t;
-      out.at.push_back({s, t});
+      const double s = (i + 0.5) / n, t = (j + 0.5) / n;
+      if (e.corners == 4)
+        out.at.push_back({s, t});
+      else if (n == 1)
+        out.at.push_back({1 / 3.0, 1 / 3.0});
+      else
+        out.at.push_back({s, t * (1 - s)});
     }
   return out;
 }

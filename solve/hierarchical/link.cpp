@@ -300,7 +300,7 @@ Rgb irradiance_of(const Link& link, const Exchange& x, const Light& light) {
 }
 
 /// [Hanrahan91] compares B F A, the power over a link, with a limit. Here the limit is eps on an
-/// element of mean size, so that eps is what it is in [Hardt96]: W/m^2.
+/// element of the unit's area, so that eps is what it is in [Hardt96]: W/m^2.
 float error_of(const Link& link, uint32_t receiver, const Exchange& x, const Light& light) {
   if (std::isinf(link.spread)) return INFINITY;
   float error = 0;

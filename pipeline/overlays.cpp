@@ -158,11 +158,12 @@ Result<std::vector<display::Line>> overlay_lines(std::span<const std::string> na
   if (wants("links")) add_links(s, tracer, out);
   if (wants("discontinuities")) add_discontinuities(s, scene, tracer, params.discontinuity, out);
   if (!wants("triangulation") && !wants("error") && !wants("samples")) return out;
-  h::MeshParams with_error = params;
-  with_error.measure_error = wants("error");
-  LUXEL_TRY(const h::LightMesh mesh, h::make_light_mesh(s, scene, tracer, with_error, progress));
+  LUXEL_TRY(h::LightMesh mesh, h::make_light_mesh(s, scene, tracer, params, progress));
   if (wants("triangulation")) add_triangulation(mesh, out);
-  if (wants("error")) add_error(s, mesh, out);
+  if (wants("error")) {
+    LUXEL_TRY_STATUS(h::measure_error(s, scene, tracer, params.point, mesh, progress));
+    add_error(s, mesh, out);
+  }
   if (wants("samples")) add_samples(s, mesh, out);
   return out;
 }

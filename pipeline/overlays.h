@@ -8,7 +8,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "display/lines.h"
-#include "solve/hierarchical/light_mesh.h"
+#include "solve/hierarchical/represent.h"
 
 namespace luxel::pipeline {
 

@@ -12,6 +12,7 @@
 #include "solve/gather/gather.h"
 #include "solve/hemicube/hemicube.h"
 #include "solve/hierarchical/enclosed.h"
+#include "solve/hierarchical/represent.h"
 #include "solve/hierarchical/surface.h"
 #include "solve/matrix/matrix.h"
 #include "transport/direct_light.h"
@@ -205,12 +206,12 @@ Result<TexelLight> solve_hierarchical(const SolveInput& in, const BakeSettings& 
                                       Progress& progress) {
   if (const auto spare = memory_to_spare(in, settings, 0); !spare)
     return tl::unexpected(spare.error());
-  LUXEL_TRY(const hierarchical::Solution solution,
+  LUXEL_TRY(hierarchical::Solution solution,
             hierarchical::solve(in.scene, in.tracer,
                                 solve_params(settings.hierarchical, settings.bounces), progress));
   LUXEL_TRY(const hierarchical::LightMesh mesh,
-            hierarchical::make_light_mesh(solution, in.scene, in.tracer,
-                                          light_mesh_params(settings.hierarchical), progress));
+            hierarchical::represent(solution, in.scene, in.tracer,
+                                    light_mesh_params(settings.hierarchical), {}, progress));
   TexelLight out;
   out.irradiance.resize(in.map.texels.size()), out.hidden.resize(in.map.texels.size());
   parallel_for(in.map.texels.size(), 1024, [&](size_t begin, size_t end) {

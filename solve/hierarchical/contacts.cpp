@@ -33,28 +33,63 @@ std::vector<Segment> lines_of_cuts(const Faces& faces, const Blockers& blockers,
   return out;
 }
 
-/// Cuts every piece that a segment runs through, along its whole line.
-void cut(const Face& face, const Segment& segment, double slack_m, std::vector<Polygon>& pieces) {
-  const DVec3 across = normalize(cross(face.plane.normal, segment.b - segment.a));
-  const Plane left{across, dot(across, segment.a)}, right{-across, -left.offset};
-  const double area = transport::area_m2(face.corners);
-  std::vector<Polygon> out;
-  for (const Polygon& piece : pieces) {
-    Segment inside = segment;
-    const Polygon a = transport::clip_above(piece, left, slack_m);
-    const Polygon b = transport::clip_above(piece, right, slack_m);
-    const bool is_cut = clip_to(piece, face.plane.normal, inside) &&
-                        length(inside.b - inside.a) > kShortCut * std::sqrt(area) && !a.empty() &&
-                        !b.empty() &&
-                        std::min(transport::area_m2(a), transport::area_m2(b)) > kSmallPiece * area;
-    if (!is_cut) {
-      out.push_back(piece);
-      continue;
-    }
-    out.push_back(a), out.push_back(b);
-  }
-  pieces = std::move(out);
+/// A piece in two. The better the rounder the thinner half is, and the fewer other lines are cut.
+struct Cut {
+  Polygon left, right;
+  double score = 0;
+};
+
+/// The area over that of the square on the longest way through it.
+double roundness(PolygonView p) {
+  double longest = 0;
+  for (const DVec3& a : p)
+    for (const DVec3& b : p) longest = std::max(longest, dot(b - a, b - a));
+  return transport::area_m2(p) / longest;
 }
+
+/// All the lines of a face, and what is too small to be cut.
+struct Cutter {
+  DVec3 normal;
+  std::vector<Segment> lines;
+  double least_length_m = 0, least_area_m2 = 0, slack_m = 0;
+
+  bool crosses(PolygonView piece, Segment other, const Plane& left) const {
+    if (!clip_to(piece, normal, other)) return false;
+    const double a = left.height(other.a), b = left.height(other.b);
+    return std::min(a, b) < -least_length_m && std::max(a, b) > least_length_m;
+  }
+
+  /// Along the whole line of a segment; nothing where it does not run through the piece.
+  Cut along(PolygonView piece, const Segment& segment) const {
+    Segment inside = segment;
+    if (!clip_to(piece, normal, inside) || length(inside.b - inside.a) <= least_length_m) return {};
+    const DVec3 across = normalize(cross(normal, segment.b - segment.a));
+    const Plane left{across, dot(across, segment.a)}, right{-across, -left.offset};
+    Cut cut{transport::clip_above(piece, left, slack_m),
+            transport::clip_above(piece, right, slack_m)};
+    if (cut.left.empty() || cut.right.empty() ||
+        std::min(transport::area_m2(cut.left), transport::area_m2(cut.right)) <= least_area_m2)
+      return {};
+    const auto crossed = std::count_if(lines.begin(), lines.end(), [&](const Segment& other) {
+      return crosses(piece, other, left);
+    });
+    cut.score = std::min(roundness(cut.left), roundness(cut.right)) / double(1 + crossed);
+    return cut;
+  }
+
+  /// A cut goes through the whole piece, so the best comes first: what stands in the middle of a
+  /// floor would else leave strips as thin as itself from wall to wall.
+  void cut(const Polygon& piece, std::vector<Polygon>& out) const {
+    Cut best;
+    for (const Segment& line : lines)
+      if (Cut found = along(piece, line); found.score > best.score) best = std::move(found);
+    if (best.left.empty()) {
+      out.push_back(piece);
+      return;
+    }
+    cut(best.left, out), cut(best.right, out);
+  }
+};
 
 }  // namespace
 
@@ -87,10 +122,14 @@ std::vector<std::vector<Polygon>> cut_at_contacts(const Faces& faces, const Bloc
   parallel_for(faces.size(), 16, [&](size_t begin, size_t end) {
     for (size_t f = begin; f < end; ++f) {
       const Face& face = faces.faces[f];
-      out[f] = {face.corners};
-      if (face.curved) continue;
-      for (const Segment& line : lines_of_cuts(faces, blockers, uint32_t(f)))
-        cut(face, line, blockers.slack_m, out[f]);
+      if (face.curved) {
+        out[f] = {face.corners};
+        continue;
+      }
+      const double area = transport::area_m2(face.corners);
+      Cutter{face.plane.normal, lines_of_cuts(faces, blockers, uint32_t(f)),
+             kShortCut * std::sqrt(area), kSmallPiece * area, blockers.slack_m}
+          .cut(face.corners, out[f]);
     }
   });
   return out;

@@ -165,25 +165,39 @@ std::vector<uint32_t> Gathering::casters(std::span<const uint32_t> blockers) con
   return out;
 }
 
+/// Calls take(what is seen, by whom it is hidden) for a part of what was looked at, where anything
+/// is.
+template <class Take>
+void Gathering::look_again(PolygonView part, std::span<const uint32_t> blockers, const Take& take) {
+  const Polygon polygon = above_horizon(part);
+  if (polygon.empty()) return;
+  const transport::SeenFactor there = look(polygon, blockers);
+  if (there.visible > 0) take(there, casters(blockers));
+}
+
 /// An element, from what is seen of it: as a whole, or its parts.
 void Gathering::add_element(size_t index, const transport::SeenFactor& seen,
                             std::span<const uint32_t> blockers) {
   const Element& e = s_.tree.elements[index];
   const ElementLight& light = s_.light.elements[index];
-  if (e.is_leaf() || double(light.rough) * seen.whole <= params_.limit) {
-    Part part;
-    part.corner = e.corner, part.corners = e.corners, part.radiosity = light.shining;
-    add_part(part, seen, blockers, 0);
+  // Leaves' pieces have the same light in the mean.
+  const double nearness = e.is_leaf() ? e.radius_m / length(e.centre - at_.position) : 1;
+  if (double(light.rough) * seen.whole * std::min(1.0, nearness) <= params_.limit) {
+    add_part({e.corner, light.shining, e.corners}, seen, blockers, 0);
     return;
   }
-  for (uint32_t c = e.child; c < e.child + 4; ++c) {
-    Part part;
-    part.corner = s_.tree.elements[c].corner, part.corners = e.corners;
-    const Polygon polygon = above_horizon(part.polygon());
-    if (polygon.empty()) continue;
-    const transport::SeenFactor there = look(polygon, blockers);
-    if (there.visible > 0) add_element(c, there, casters(blockers));
+  if (e.is_leaf()) {
+    for (uint32_t k = s_.light.first_piece[index]; k < s_.light.first_piece[index + 1]; ++k) {
+      const Part part{s_.light.pieces[k].corner, s_.light.pieces[k].radiosity, 3};
+      look_again(part.polygon(), blockers, [&](const auto& there, const auto& casters) {
+        add_part(part, there, casters, 0);
+      });
+    }
+    return;
   }
+  for (uint32_t c = e.child; c < e.child + 4; ++c)
+    look_again(s_.tree.elements[c].polygon(), blockers,
+               [&](const auto& there, const auto& casters) { add_element(c, there, casters); });
 }
 
 /// Radiosity is linear over a part. As the point sees it, its mean is that of Gauss's points,
@@ -208,10 +222,9 @@ void Gathering::add_part(const Part& part, const transport::SeenFactor& seen,
   for (uint32_t k = 0; k < 4; ++k) {
     const Part quarter{part_of(part.corner, part.corners, k),
                        part_of(part.radiosity, part.corners, k), part.corners};
-    const Polygon polygon = above_horizon(quarter.polygon());
-    if (polygon.empty()) continue;
-    const transport::SeenFactor there = look(polygon, blockers);
-    if (there.visible > 0) add_part(quarter, there, casters(blockers), cuts + 1);
+    look_again(quarter.polygon(), blockers, [&](const auto& there, const auto& casters) {
+      add_part(quarter, there, casters, cuts + 1);
+    });
   }
 }
 

@@ -40,6 +40,8 @@ class Gathering {
   double at_stake(size_t index, double whole, bool shines) const;
   Polygon above_horizon(PolygonView polygon) const;
   transport::SeenFactor look(PolygonView polygon, std::span<const uint32_t> blockers);
+  template <class Take>
+  void look_again(PolygonView part, std::span<const uint32_t> blockers, const Take& take);
   std::vector<uint32_t> casters(std::span<const uint32_t> blockers) const;
   void add_element(size_t index, const transport::SeenFactor& seen,
                    std::span<const uint32_t> blockers);

@@ -143,7 +143,7 @@ Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
     for (size_t k = 0; k < leaves.size(); ++k) {
       const Fit fit = fit_of(probes[k], light.first(probes[k].at.size()));
       light = light.subspan(probes[k].at.size());
-      state.light.elements[leaves[k]].lamps = fit.corner;
+      state.light.elements[leaves[k]].unlinked = fit.corner;
       const float unsure = max_component(lamps.background) * kPi * (kUnsureRays / kSkyRays);
       const double area = state.tree.elements[leaves[k]].area_m2;
       if (double(fit.error - unsure) * area / x.unit_area_m2 > params.eps &&

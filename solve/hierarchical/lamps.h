@@ -14,7 +14,7 @@ struct Lamps {
 };
 Lamps lamps_of(const scene::Scene& scene);
 
-/// Sets ElementLight::lamps of all leaves that have none yet (`lit` counts elements, in order),
+/// Sets ElementLight::unlinked of all leaves that have none yet (`lit` counts elements, in order),
 /// dividing leaves over which it is farther than eps from linear. As with links, large leaves count
 /// for more: see error_of.
 Status light_leaves(Refined& state, const Exchange& exchange, const Lamps& lamps,

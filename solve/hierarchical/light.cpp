@@ -27,8 +27,8 @@ void push(const Faces& faces, const Tree& tree, std::span<Cosines> from_above, L
     const uint32_t parent = tree.elements[e].parent;
     const uint32_t n = tree.elements[e].corners;
     if (parent != kNone)
-      l.arriving =
-          part_of(light.elements[parent].arriving, n, uint32_t(e) - tree.elements[parent].child);
+      l.arriving = part_of(light.elements[parent].arriving, n,
+                           uint32_t(e) - tree.elements[parent].child, tree.elements[parent].parts);
     for (uint32_t k = 0; k < n; ++k) l.arriving[k] += l.received[k];
   }
 }
@@ -57,7 +57,7 @@ std::array<Rgb, 4> whole_of(const Light& light, const Element& e) {
     std::array<float, 4> unit{};  // 1 at the corner k
     unit[k] = 1;
     for (uint32_t part = 0; part < 4; ++part) {
-      const std::array<float, 4> there = part_of(unit, n, part);
+      const std::array<float, 4> there = part_of(unit, n, part, e.parts);
       const std::array<Rgb, 4>& value = light.elements[e.child + part].shining;
       for (uint32_t a = 0; a < n; ++a)
         for (uint32_t b = 0; b < n; ++b)
@@ -74,9 +74,9 @@ std::array<Rgb, 4> whole_of(const Light& light, const Element& e) {
 
 void pull_leaf(const Element& element, ElementLight& l) {
   l.irradiance = l.radiosity = {};
-  l.most = l.rough = 0;
+  l.rough = l.bend;
   for (uint32_t k = 0; k < element.corners; ++k) {
-    const Rgb e = l.lamps[k] + l.arriving[k];
+    const Rgb e = l.unlinked[k] + l.arriving[k];
     l.shining[k] = l.emission + l.reflectance * e;
     l.irradiance += e * (1 / float(element.corners));
     l.radiosity += l.shining[k] * (1 / float(element.corners));
@@ -102,7 +102,7 @@ void pull_elements(const Tree& tree, Light& light) {
       l.irradiance += below.irradiance * float(size), l.radiosity += below.radiosity * float(size);
       area += size;
       l.most = std::max(l.most, below.most);
-      const std::array<Rgb, 4> linear = part_of(l.shining, element.corners, part);
+      const std::array<Rgb, 4> linear = part_of(l.shining, element.corners, part, element.parts);
       float off = 0;
       for (uint32_t k = 0; k < element.corners; ++k)
         off = std::max({off, max_component(below.shining[k] - linear[k]),

@@ -47,18 +47,29 @@ struct ElementLight {
   Rgb reflectance;
   Rgb emission;                 ///< B_e [W/m^2]
   std::array<Rgb, 4> received;  ///< E over the links of this element at its corners
-  std::array<Rgb, 4> lamps;     ///< of leaves: E at the corners from lamps without area and the sky
+  /// Of leaves: E at the corners that no link brings, from lamps without area and the sky; and what
+  /// exact light differs by from what links bring (feedback.h).
+  std::array<Rgb, 4> unlinked;
   std::array<Rgb, 4> arriving;  ///< E at the corners, over the links of this and all above it
   std::array<Rgb, 4> shining;   ///< B at the corners, linear between them
   Rgb irradiance;               ///< E over all links, a mean [W/m^2]
   Rgb radiosity;                ///< B, a mean [W/m^2]
   float most = 0;               ///< the largest component of B over the leaves below
   float rough = 0;              ///< how far that is from linear, at most, over the leaves below
+  float bend = 0;               ///< of leaves: how far their pieces are from linear
+};
+
+/// A triangle of a leaf, with B at its corners: finer than linear over the leaf.
+struct LightPiece {
+  std::array<DVec3, 4> corner;  ///< three
+  std::array<Rgb, 4> radiosity;
 };
 
 struct Light {
   std::vector<ClusterLight> clusters;
   std::vector<ElementLight> elements;
+  std::vector<LightPiece> pieces;     ///< of leaves, where exact light is known
+  std::vector<uint32_t> first_piece;  ///< per element, one extra entry; or nothing
 };
 
 /// Sends `received` to the leaves, B = B_e + rho E there, and means back up. [Hanrahan91, PushPull]

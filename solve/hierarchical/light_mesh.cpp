@@ -1,9 +1,11 @@
 #include "solve/hierarchical/light_mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "solve/hierarchical/outlines.h"
 #include "solve/hierarchical/surface.h"
 #include "solve/hierarchical/triangulate.h"
@@ -235,29 +237,6 @@ Samples collect_samples(const Maker& m, const LightMesh& mesh) {
   return out;
 }
 
-Status measure_error(const Maker& m, LightMesh& mesh, Progress& progress) {
-  constexpr std::array<std::array<float, 2>, 4> kAt{
-      {{1 / 3.0f, 1 / 3.0f}, {0.15f, 0.15f}, {0.7f, 0.15f}, {0.15f, 0.7f}}};
-  std::vector<Receiver> receivers;
-  for (const LightTriangle& t : mesh.triangles)
-    for (const auto& at : kAt) {
-      const DVec3 a = mesh.vertices[t.vertex[0]], b = mesh.vertices[t.vertex[1]],
-                  c = mesh.vertices[t.vertex[2]];
-      receivers.push_back(receiver_at(m.s, m.scene, m.tracer, t.face,
-                                      a + (b - a) * double(at[0]) + (c - a) * double(at[1])));
-    }
-  LUXEL_TRY(const std::vector<Rgb> e,
-            irradiance_at(m.s, m.scene, m.tracer, receivers, m.params.point, progress));
-  mesh.error.assign(mesh.triangles.size(), 0.0f);
-  for (size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (size_t k = 0; k < kAt.size(); ++k) {
-      const Rgb d = e[kAt.size() * t + k] - value_of(mesh.interpolant[t], kAt[k][0], kAt[k][1]);
-      mesh.error[t] = std::max({mesh.error[t], max_component(d), max_component(-d)});
-    }
-  mesh.samples += receivers.size();
-  return {};
-}
-
 }  // namespace
 
 Interpolant interpolant_of(const std::array<Rgb, 6>& r) {
@@ -266,21 +245,50 @@ Interpolant interpolant_of(const std::array<Rgb, 6>& r) {
           -3 * r[0] - r[4] + 4 * r[5],    r[0]};
 }
 
+size_t KnownLight::Hash::operator()(const Key& key) const {
+  uint64_t h = key.face;
+  for (const double x : {key.place.x, key.place.y, key.place.z})
+    h = hash64(h, std::bit_cast<uint64_t>(x));
+  return h;
+}
+
+Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& scene,
+                                       const trace::RayTracer& tracer,
+                                       std::span<const Receiver> receivers,
+                                       const PointParams& params, KnownLight& known,
+                                       uint64_t& looked, Progress& progress) {
+  const auto key_of = [](const Receiver& r) { return KnownLight::Key{r.face, r.position}; };
+  std::vector<Receiver> asked;
+  for (const Receiver& r : receivers)
+    if (known.at.try_emplace(key_of(r)).second) asked.push_back(r);
+  LUXEL_TRY(const std::vector<Rgb> e, irradiance_at(s, scene, tracer, asked, params, progress));
+  looked += asked.size();
+  for (size_t k = 0; k < asked.size(); ++k) known.at[key_of(asked[k])] = e[k];
+  std::vector<Rgb> out;
+  for (const Receiver& r : receivers) out.push_back(known.at.at(key_of(r)));
+  return out;
+}
+
 Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
                                   Progress& progress) {
+  KnownLight none;
+  return make_light_mesh(s, scene, tracer, params, none, progress);
+}
+
+Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
+                                  const trace::RayTracer& tracer, const MeshParams& params,
+                                  KnownLight& known, Progress& progress) {
   const Maker m{s, scene, tracer, params,
                 std::max(4 * s.faces.slack_m, 1e-7 * double(s.diagonal_m))};
   LightMesh mesh;
   LUXEL_TRY_STATUS(triangulate_all(m, mesh, progress));
   const Samples samples = collect_samples(m, mesh);
-  mesh.samples = samples.receivers.size();
-  LUXEL_TRY(const std::vector<Rgb> e,
-            irradiance_at(s, scene, tracer, samples.receivers, params.point, progress));
+  LUXEL_TRY(const std::vector<Rgb> e, irradiance_at(s, scene, tracer, samples.receivers,
+                                                    params.point, known, mesh.samples, progress));
   for (const auto& of : samples.of_triangle)
     mesh.interpolant.push_back(
         interpolant_of({e[of[0]], e[of[1]], e[of[2]], e[of[3]], e[of[4]], e[of[5]]}));
-  if (params.measure_error) LUXEL_TRY_STATUS(measure_error(m, mesh, progress));
   return mesh;
 }
 

@@ -104,7 +104,7 @@ TEST(PushPull, KeepsPowerWhateverTheFunction) {
       two.light.elements[e].received[k] = {v, v, v};
       sent += element.area_m2 * double(v) / element.corners;
     }
-    if (element.is_leaf()) two.light.elements[e].lamps.fill({1, 1, 1}), sent += element.area_m2;
+    if (element.is_leaf()) two.light.elements[e].unlinked.fill({1, 1, 1}), sent += element.area_m2;
   }
   push_pull(two.faces, two.tree, two.light);
   double arrived = 0;

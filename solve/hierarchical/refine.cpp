@@ -178,9 +178,10 @@ ElementLight bare_light(const scene::Scene& scene, const Exchange& x, const Elem
       if (e.corners == 3 && s + t > 1) continue;
       const scene::SurfacePoint p =
           surface_point(scene, x.faces, x.tracer, e.face, linear_at(e.corner, e.corners, s, t));
+      count += 1;
+      if (!scene::is_solid_at(scene, p)) continue;  // a hole of a mask sends nothing
       out.reflectance += scene::reflectance_at(scene, p);
       out.emission += scene::emission_at(scene, p) * kPi;
-      count += 1;
     }
   out.reflectance = out.reflectance / count, out.emission = out.emission / count;
   return out;

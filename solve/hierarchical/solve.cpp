@@ -54,35 +54,25 @@ struct Work {
   Refined state;
 };
 
-/// Jacobi's iteration with the links there are.
-Status iterate(Work& w, const SolveParams& params, Progress& progress) {
-  std::vector<Rgb> before;
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
-    before.resize(w.s.tree.elements.size());
-    for (size_t e = 0; e < before.size(); ++e) before[e] = w.s.light.elements[e].irradiance;
-    gather(w.x, w.s.links.of, w.s.light);
-    push_pull(w.s.faces, w.s.tree, w.s.light);
-    ++w.s.sweeps;
-    if (change_of(w.s.tree, w.s.light, before) < params.tolerance) break;
-  }
-  return {};
-}
-
-/// From emission alone: so many reflections and no more.
+/// From emission alone: so many reflections and no more. Points gather what has been reflected one
+/// time less than the last gather brings.
 void count_bounces(Work& w, int bounces) {
-  for (ElementLight& l : w.s.light.elements)
-    l.received = {}, l.irradiance = {}, l.radiosity = l.emission;
+  std::vector<ElementLight>& light = w.s.light.elements;
+  for (ElementLight& l : light) l.received = {}, l.irradiance = {}, l.radiosity = l.emission;
   for (ClusterLight& l : w.s.light.clusters) l.received = {};
-  std::vector<std::array<Rgb, 4>>
-      lamps;  // light that lamps send is there from the first reflection on
-  for (ElementLight& l : w.s.light.elements) lamps.push_back(l.lamps), l.lamps = {};
+  std::vector<std::array<Rgb, 4>> unlinked;  // it is there from the first reflection on
+  for (ElementLight& l : light) unlinked.push_back(l.unlinked), l.unlinked = {};
   push_pull(w.s.faces, w.s.tree, w.s.light);
-  for (size_t e = 0; e < lamps.size(); ++e) w.s.light.elements[e].lamps = lamps[e];
+  for (size_t e = 0; e < light.size(); ++e) light[e].unlinked = unlinked[e];
+  std::vector<ElementLight> before;
   for (int k = 0; k <= bounces; ++k) {
+    before = light;
     gather(w.x, w.s.links.of, w.s.light);
     push_pull(w.s.faces, w.s.tree, w.s.light);
   }
+  for (size_t e = 0; e < light.size(); ++e)
+    light[e].shining = before[e].shining, light[e].most = before[e].most,
+    light[e].rough = before[e].rough;
 }
 
 Status run(Work& w, const SolveParams& params, Progress& progress) {
@@ -104,7 +94,7 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
                                 w.lit, progress));
   LUXEL_TRY_STATUS(link_all(w.state, w.x, refine_params, progress));
   for (w.s.iterations = 0; w.s.iterations < kMostIterations; ++w.s.iterations) {
-    LUXEL_TRY_STATUS(iterate(w, params, progress));
+    LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
     if (!params.eps) refine_params.eps = kUsualEps * mean_irradiance(w.s.tree, w.s.light);
     w.s.eps = refine_params.eps;
     const size_t leaves = w.s.tree.elements.size();
@@ -113,12 +103,28 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
     LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.lamps, refine_params, w.lit, progress));
     if (refined == 0 && leaves == w.s.tree.elements.size()) break;
   }
-  LUXEL_TRY_STATUS(iterate(w, params, progress));
-  if (params.bounces >= 0) count_bounces(w, params.bounces);
+  LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
+  w.s.all_bounces = params.bounces < 0;
+  if (!w.s.all_bounces) count_bounces(w, params.bounces);
   return {};
 }
 
 }  // namespace
+
+Status iterate(Solution& s, const trace::RayTracer& tracer, double tolerance, Progress& progress) {
+  const Exchange x = s.exchange(tracer);
+  std::vector<Rgb> before;
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    before.resize(s.tree.elements.size());
+    for (size_t e = 0; e < before.size(); ++e) before[e] = s.light.elements[e].irradiance;
+    gather(x, s.links.of, s.light);
+    push_pull(s.faces, s.tree, s.light);
+    ++s.sweeps;
+    if (change_of(s.tree, s.light, before) < tolerance) break;
+  }
+  return {};
+}
 
 Totals totals_of(const Solution& s) {
   Totals out;

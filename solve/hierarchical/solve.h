@@ -14,7 +14,8 @@ struct SolveParams {
   std::optional<double> eps;
   double min_area_m2 = 0;  ///< elements are not divided below this; 0: the scene's area / 2^18
   size_t max_elements = 1u << 20, max_links = 1u << 25;
-  int bounces = -1;         ///< reflections; < 0: all
+  int bounces = -1;  ///< reflections; < 0: all. Counted, `shining` is what has been reflected
+                     ///< one time less than `irradiance`: what points gather
   double tolerance = 1e-4;  ///< of the iteration, relative to the mean
 };
 
@@ -31,6 +32,7 @@ struct Solution {
   int sweeps = 0;                     ///< gathers
   float diagonal_m = 0;
   double unit_area_m2 = 1;
+  bool all_bounces = true;
 
   Exchange exchange(const trace::RayTracer& tracer) const {
     return {faces, tree, blockers, tracer, diagonal_m, unit_area_m2};
@@ -42,6 +44,11 @@ struct Solution {
 /// arrives at leaves straight away. Errors: cancelled.
 Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,
                        const SolveParams& params, Progress& progress);
+
+/// Jacobi's iteration with the links there are, until a sweep changes less than `tolerance` of the
+/// mean. Errors: cancelled.
+Status iterate(Solution& solution, const trace::RayTracer& tracer, double tolerance,
+               Progress& progress);
 
 /// Area-weighted means over all faces [W/m^2], and their area.
 struct Totals {

@@ -8,11 +8,24 @@
 namespace luxel::hierarchical {
 namespace {
 
+/// A quadrilateral longer than this many times its width is divided across: quarters are as long.
+constexpr double kLong = 3;
+
+Parts parts_of(PolygonView p) {
+  if (p.size() == 3) return Parts::quarters;
+  const double first = length(p[1] - p[0]) + length(p[2] - p[3]),
+               last = length(p[2] - p[1]) + length(p[3] - p[0]);
+  return first > kLong * last   ? Parts::along_first
+         : last > kLong * first ? Parts::along_last
+                                : Parts::quarters;
+}
+
 Element make_element(PolygonView corners, uint32_t face, uint32_t parent) {
   LUXEL_CHECK(corners.size() == 3 || corners.size() == 4);
   Element e;
   std::copy(corners.begin(), corners.end(), e.corner.begin());
   e.corners = uint32_t(corners.size());
+  e.parts = parts_of(corners);
   e.face = face, e.parent = parent;
   e.area_m2 = transport::area_m2(corners);
   e.centre = transport::mean_corner(corners);
@@ -98,7 +111,7 @@ void divide(Tree& tree, size_t index) {
   const Element e = tree.elements[index];
   tree.elements[index].child = uint32_t(tree.elements.size());
   for (uint32_t part = 0; part < 4; ++part) {
-    const std::array<DVec3, 4> corner = part_of(e.corner, e.corners, part);
+    const std::array<DVec3, 4> corner = part_of(e.corner, e.corners, part, e.parts);
     tree.elements.push_back(make_element({corner.data(), e.corners}, e.face, uint32_t(index)));
   }
 }

@@ -8,11 +8,16 @@
 
 namespace luxel::hierarchical {
 
+/// How an element is divided into four: by the middles of its edges; or, a long quadrilateral,
+/// across, into a row along its first edge or its last one.
+enum class Parts : uint8_t { quarters, along_first, along_last };
+
 /// A quadrilateral or a triangle of a face: the whole of it, one of the pieces of a face with more
 /// corners, or one of the four parts of another element.
 struct Element {
   std::array<DVec3, 4> corner;
   uint32_t corners = 4;  ///< 3 or 4
+  Parts parts = Parts::quarters;
   uint32_t face = 0;
   uint32_t parent = kNone;
   uint32_t child = kNone;  ///< the first of four in a row; kNone: a leaf
@@ -52,14 +57,26 @@ struct Tree {
 /// From the convex pieces of each face: see contacts.h.
 Tree make_tree(std::span<const std::vector<Polygon>> pieces);
 
-/// Divides a leaf by the middles of its edges: a quadrilateral into four that meet in its centre, a
-/// triangle into three at its corners and one between. The parts are convex and fill it.
+/// Divides a leaf as its `parts` say: by the middles of its edges a quadrilateral into four that
+/// meet in its centre, a triangle into three at its corners and one between. The parts are convex
+/// and fill it.
 void divide(Tree& tree, size_t element);
 
 /// What a part that divide() makes has at its corners, of what is linear over the whole: places, or
 /// light.
 template <class T>
-std::array<T, 4> part_of(const std::array<T, 4>& v, uint32_t n, uint32_t part) {
+std::array<T, 4> part_of(const std::array<T, 4>& v, uint32_t n, uint32_t part,
+                         Parts parts = Parts::quarters) {
+  if (parts != Parts::quarters) {
+    const bool first = parts == Parts::along_first;
+    const auto between = [&](const T& a, const T& b, uint32_t k) {
+      return a * (1 - 0.25f * float(k)) + b * (0.25f * float(k));
+    };
+    const auto near = [&](uint32_t k) { return between(v[0], first ? v[1] : v[3], k); };
+    const auto far = [&](uint32_t k) { return between(first ? v[3] : v[1], v[2], k); };
+    if (first) return {near(part), near(part + 1), far(part + 1), far(part)};
+    return {near(part), far(part), far(part + 1), near(part + 1)};
+  }
   const auto middle = [&](uint32_t k) { return (v[k % n] + v[(k + 1) % n]) * 0.5f; };
   if (n == 4) return {v[part], middle(part), (v[0] + v[1] + v[2] + v[3]) * 0.25f, middle(part + 3)};
   if (part == 3) return {middle(0), middle(1), middle(2)};

@@ -1,0 +1,126 @@
+#include "solve/hierarchical/represent.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/hierarchical/feedback.h"
+#include "solve/hierarchical/lamps.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+/// A triangle whose samples are off a plane by less than this part of what its interpolant may be
+/// off by is not looked at.
+constexpr double kFlat = 0.25;
+/// Light at points only says what to divide and to correct before the last mesh: it may be so much
+/// less exact.
+constexpr double kRougher = 4;
+
+struct Looked {
+  const Solution& s;
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  const PointParams& params;
+};
+
+double area_of(const LightMesh& mesh, const LightTriangle& t) {
+  const DVec3 a = mesh.vertices[t.vertex[0]];
+  return 0.5 * length(cross(mesh.vertices[t.vertex[1]] - a, mesh.vertices[t.vertex[2]] - a));
+}
+
+/// How far the middles of edges are from the means of their ends, at most.
+float bend_of(const Interpolant& r) {
+  const Rgb a = value_of(r, 0, 0), b = value_of(r, 1, 0), c = value_of(r, 0, 1);
+  float bend = 0;
+  for (const Rgb& d :
+       {value_of(r, 0.5f, 0) - (a + b) * 0.5f, value_of(r, 0.5f, 0.5f) - (b + c) * 0.5f,
+        value_of(r, 0, 0.5f) - (c + a) * 0.5f})
+    bend = std::max({bend, max_component(d), max_component(-d)});
+  return bend;
+}
+
+Status measure(const Looked& at, std::span<const size_t> triangles, KnownLight& known,
+               LightMesh& mesh, Progress& progress) {
+  std::vector<Receiver> receivers;
+  for (const size_t k : triangles) {
+    const LightTriangle& t = mesh.triangles[k];
+    const DVec3 middle =
+        (mesh.vertices[t.vertex[0]] + mesh.vertices[t.vertex[1]] + mesh.vertices[t.vertex[2]]) *
+        (1.0 / 3);
+    receivers.push_back(receiver_at(at.s, at.scene, at.tracer, t.face, middle));
+  }
+  LUXEL_TRY(const std::vector<Rgb> e, irradiance_at(at.s, at.scene, at.tracer, receivers, at.params,
+                                                    known, mesh.samples, progress));
+  mesh.error.assign(mesh.triangles.size(), 0.0f);
+  for (size_t i = 0; i < triangles.size(); ++i) {
+    const Rgb d = e[i] - value_of(mesh.interpolant[triangles[i]], 1 / 3.0f, 1 / 3.0f);
+    mesh.error[triangles[i]] = std::max(max_component(d), max_component(-d));
+  }
+  return {};
+}
+
+/// The leaves whose interpolants are off by more than eps.
+std::vector<size_t> leaves_off(const Solution& s, const LightMesh& mesh, double eps) {
+  std::vector<size_t> out;
+  for (size_t e = 0; e < s.tree.elements.size(); ++e) {
+    double squares = 0;
+    for (uint32_t t = mesh.first_of_element[e]; t < mesh.first_of_element[e + 1]; ++t)
+      squares += double(mesh.error[t]) * double(mesh.error[t]) * area_of(mesh, mesh.triangles[t]);
+    if (squares > eps * eps * s.unit_area_m2 && s.tree.elements[e].area_m2 > 4 * s.min_area_m2)
+      out.push_back(e);
+  }
+  return out;
+}
+
+/// Divides leaves; their parts get the light that arrives at the whole, and lamps' anew.
+Status divide_all(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+                  std::span<const size_t> leaves, size_t max_elements, Progress& progress) {
+  const Exchange x = s.exchange(tracer);
+  Refined state{scene, s.tree, s.light, s.links};
+  std::vector<uint8_t> lit(s.tree.elements.size(), 1);
+  for (const size_t leaf : leaves)
+    if (s.tree.elements.size() + 4 <= max_elements) divide_element(state, x, leaf);
+  LUXEL_TRY_STATUS(light_leaves(state, x, lamps_of(scene),
+                                {INFINITY, s.min_area_m2, max_elements, 0}, lit, progress));
+  push_pull(s.faces, s.tree, s.light);
+  return {};
+}
+
+}  // namespace
+
+Status measure_error(const Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+                     const PointParams& params, LightMesh& mesh, Progress& progress) {
+  std::vector<size_t> all(mesh.triangles.size());
+  for (size_t t = 0; t < all.size(); ++t) all[t] = t;
+  KnownLight none;
+  return measure({s, scene, tracer, params}, all, none, mesh, progress);
+}
+
+Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+                            const MeshParams& mesh_params, const RepresentParams& params,
+                            Progress& progress) {
+  const double eps = params.eps.value_or(s.eps);
+  KnownLight known;
+  MeshParams rough_params = mesh_params;
+  rough_params.point.tolerance *= kRougher;
+  for (int round = 0;; ++round) {
+    LUXEL_TRY(LightMesh mesh, make_light_mesh(s, scene, tracer, rough_params, known, progress));
+    std::vector<size_t> bent;
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+      if (double(bend_of(mesh.interpolant[t])) *
+              std::sqrt(area_of(mesh, mesh.triangles[t]) / s.unit_area_m2) >
+          kFlat * eps)
+        bent.push_back(t);
+    LUXEL_TRY_STATUS(measure({s, scene, tracer, rough_params.point}, bent, known, mesh, progress));
+    const std::vector<size_t> leaves = leaves_off(s, mesh, eps);
+    if (leaves.empty() || round == params.max_rounds ||
+        s.tree.elements.size() + 4 > params.max_elements) {
+      LUXEL_TRY_STATUS(feed_back(s, tracer, mesh, progress));
+      break;
+    }
+    LUXEL_TRY_STATUS(divide_all(s, scene, tracer, leaves, params.max_elements, progress));
+  }
+  return make_light_mesh(s, scene, tracer, mesh_params, progress);
+}
+
+}  // namespace luxel::hierarchical

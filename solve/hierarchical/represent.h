@@ -1,0 +1,31 @@
+// Refinement by what interpolants show, after that by what links carry. [Hardt96, section 4.4.2]
+#pragma once
+
+#include "solve/hierarchical/light_mesh.h"
+
+namespace luxel::hierarchical {
+
+struct RepresentParams {
+  /// How far interpolants may be off over an element [W/m^2]; nothing: as far as links may.
+  std::optional<double> eps;
+  int max_rounds = 8;
+  size_t max_elements = 1u << 20;
+};
+
+/// The light mesh, after dividing leaves as long as their interpolants are off: the root of the sum
+/// of squares of each triangle's error, at its middle, times the triangle's area over the unit, is
+/// held against eps. The thesis takes the largest error alone, which divides on and on along
+/// whatever edge of a shadow the mesh does not follow; here short edges count for little. Nor do we
+/// look where the six samples of a triangle lie on a plane: no two features of light fit that well.
+/// Light at points that earlier rounds looked at is kept, so each costs only what it divides.
+/// Errors: cancelled.
+Result<LightMesh> represent(Solution& solution, const scene::Scene& scene,
+                            const trace::RayTracer& tracer, const MeshParams& mesh_params,
+                            const RepresentParams& params, Progress& progress);
+
+/// Sets LightMesh::error, at the middles of all triangles. Errors: cancelled.
+Status measure_error(const Solution& solution, const scene::Scene& scene,
+                     const trace::RayTracer& tracer, const PointParams& params, LightMesh& mesh,
+                     Progress& progress);
+
+}  // namespace luxel::hierarchical

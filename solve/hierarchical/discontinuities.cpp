@@ -13,8 +13,6 @@ namespace {
 constexpr double kShort = 1e-5;
 /// Points of a line from which its source is looked for.
 constexpr int kLooks = 4;
-/// What a lamp without area counts as when sources are compared by size [m].
-constexpr double kLampSize = 0.01;
 
 /// What one face is looked at with.
 struct View {
@@ -64,14 +62,16 @@ double geometric_factor(const View& v, const Ray3& ray, DVec3 source_normal, dou
   const double sb = length(ray.source - ray.blocker);
   const double br = std::max(length(ray.blocker - ray.receiver), 1e-6 * v.size_m);
   if (v.ranking == Ranking::nearness) return sb / br;
+  // No faster than all of it within a ten-thousandth of the receiver: lamps without area jump.
+  const double fastest = 1 / (1e-4 * v.size_m);
+  if (source_normal == DVec3{}) return fastest;
   const DVec3 d = ray.source - ray.receiver;
   const double distance = std::max(length(d), 1e-9);
   const double cos_r = std::max(0.0, dot(d, v.face.plane.normal) / distance);
-  const double cos_s = source_normal == DVec3{} ? 1 : std::abs(dot(d, source_normal)) / distance;
-  // No faster than all of it within a ten-thousandth of the receiver.
+  const double cos_s = std::abs(dot(d, source_normal)) / distance;
   const double whole = std::min(
       1.0, cos_r * cos_s * source_size_m * source_size_m / (kPiDouble * distance * distance));
-  return std::min(whole / source_size_m * sb / br, whole / (1e-4 * v.size_m));
+  return whole * std::min(1 / source_size_m * sb / br, fastest);
 }
 
 /// Whether a ray runs free but for the blocker's edge in its middle.
@@ -244,7 +244,7 @@ void add_lamps(const View& v, const scene::Scene& scene, double least_weight, do
       place = middle - to_double(lamp.direction) * (1e4 * double(v.s.diagonal_m));
     if (v.height(place) <= 0 || double(e) < least_light) continue;
     const std::array<DVec3, 1> corner{place};
-    const Source source{kLampSource + k, corner, {}, kLampSize, e, least_weight};
+    const Source source{kLampSource + k, corner, {}, 0, e, least_weight};
     std::vector<uint32_t> blockers;
     Polygon cone = v.face.corners;
     find_before(v.s.blockers, place, cone, blockers);

@@ -1,6 +1,7 @@
 #include "solve/hierarchical/feedback.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Dense>
 
@@ -145,6 +146,17 @@ void add_pieces(Solution& s, const LightMesh& mesh, std::span<const std::array<R
   }
 }
 
+/// Root mean square over the leaves.
+double change_of(const Solution& s, std::span<const Rgb> before) {
+  double squares = 0, area = 0;
+  for (size_t e = 0; e < s.tree.elements.size(); ++e) {
+    if (!s.tree.elements[e].is_leaf()) continue;
+    const double d = double(luminance(s.light.elements[e].irradiance - before[e]));
+    squares += s.tree.elements[e].area_m2 * d * d, area += s.tree.elements[e].area_m2;
+  }
+  return area > 0 ? std::sqrt(squares / area) : 0;
+}
+
 }  // namespace
 
 std::array<Rgb, 3> linear_of(const Interpolant& r) {
@@ -164,15 +176,17 @@ std::array<Rgb, 3> linear_of(const Interpolant& r) {
   return out;
 }
 
-Status feed_back(Solution& s, const trace::RayTracer& tracer, const LightMesh& mesh,
-                 Progress& progress) {
-  if (!s.all_bounces) return {};
+Result<double> feed_back(Solution& s, const trace::RayTracer& tracer, const LightMesh& mesh,
+                         Progress& progress) {
+  if (!s.all_bounces) return 0.0;
+  std::vector<Rgb> before;
+  for (const ElementLight& l : s.light.elements) before.push_back(l.irradiance);
   const std::vector<std::array<Rgb, 4>> exact = correct(s, mesh);
   LUXEL_TRY_STATUS(iterate(s, tracer, kTolerance, progress));
-  for (ElementLight& l : s.light.elements) l.bend = 0;
+  drop_pieces(s.light);
   add_pieces(s, mesh, exact);
   push_pull(s.faces, s.tree, s.light);
-  return {};
+  return change_of(s, before);
 }
 
 }  // namespace luxel::hierarchical

@@ -35,11 +35,13 @@ float sky_by_rays(const Solution& s, const trace::RayTracer& tracer, const Recei
   return float(std::count(blocked.begin(), blocked.end(), 0)) / kSkyRays;
 }
 
+bool is_sharp(const scene::PunctualLight& lamp) { return lamp.angular_radius_rad == 0; }
+
 /// E of lamps without area.
 Result<std::vector<Rgb>> from_lamps(const scene::Scene& scene, const trace::RayTracer& tracer,
-                                    const Lamps& lamps, std::span<const Receiver> receivers,
-                                    Progress& progress) {
-  if (lamps.punctual.punctual.empty()) return std::vector<Rgb>(receivers.size());
+                                    const transport::Lights& lamps,
+                                    std::span<const Receiver> receivers, Progress& progress) {
+  if (lamps.punctual.empty()) return std::vector<Rgb>(receivers.size());
   transport::Elements points;
   for (const Receiver& r : receivers) {
     points.position.push_back(to_float(r.position));
@@ -47,9 +49,8 @@ Result<std::vector<Rgb>> from_lamps(const scene::Scene& scene, const trace::RayT
     points.geometric_normal.push_back(to_float(r.geometric_normal));
     points.reflectance.push_back({});
   }
-  LUXEL_TRY(
-      transport::DirectLight direct,
-      transport::direct_light(scene, points, lamps.punctual, tracer, {256, 1, true}, progress));
+  LUXEL_TRY(transport::DirectLight direct,
+            transport::direct_light(scene, points, lamps, tracer, {256, 1, true}, progress));
   return std::move(direct.irradiance);
 }
 
@@ -59,8 +60,9 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
                                        const trace::RayTracer& tracer,
                                        std::span<const Receiver> receivers,
                                        const PointParams& params, Progress& progress) {
-  const Lamps lamps = lamps_of(scene);
-  LUXEL_TRY(std::vector<Rgb> out, from_lamps(scene, tracer, lamps, receivers, progress));
+  Lamps lamps = lamps_of(scene);
+  if (!params.sharp_lamps) std::erase_if(lamps.punctual.punctual, is_sharp);
+  LUXEL_TRY(std::vector<Rgb> out, from_lamps(scene, tracer, lamps.punctual, receivers, progress));
   const bool has_sky = max_component(lamps.background) > 0;
   const bool count_all = has_sky && s.faces.size() <= kMostFacesBeforeSky;
   const double whole_sky = kPiDouble * double(max_component(lamps.background));
@@ -80,6 +82,15 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
   });
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
   return out;
+}
+
+Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
+                                             const trace::RayTracer& tracer,
+                                             std::span<const Receiver> receivers,
+                                             Progress& progress) {
+  transport::Lights lamps = lamps_of(scene).punctual;
+  std::erase_if(lamps.punctual, [](const auto& lamp) { return !is_sharp(lamp); });
+  return from_lamps(scene, tracer, lamps, receivers, progress);
 }
 
 std::vector<Seen> sources_at(const Solution& s, const trace::RayTracer& tracer,

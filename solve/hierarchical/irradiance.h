@@ -19,6 +19,9 @@ struct PointParams {
   /// How exact: sources are taken apart, or from afar, so that each is wrong by less than this part
   /// of the scene's mean irradiance.
   double tolerance = 1e-4;
+  /// With the light of sharp lamps: points and directions, whose shadows have no penumbra. Without,
+  /// light is continuous but where faces touch.
+  bool sharp_lamps = true;
 };
 
 /// What a point sees of a face.
@@ -37,6 +40,12 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& solution, const scene::Sc
                                        const trace::RayTracer& tracer,
                                        std::span<const Receiver> receivers,
                                        const PointParams& params, Progress& progress);
+
+/// E of sharp lamps alone. Errors: cancelled.
+Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
+                                             const trace::RayTracer& tracer,
+                                             std::span<const Receiver> receivers,
+                                             Progress& progress);
 
 /// The same at one receiver, without lamps and background, face by face: those that it sees at
 /// all, the brightest first.

@@ -136,6 +136,11 @@ void pull_clusters(const Faces& faces, const Tree& tree, Light& light) {
 
 }  // namespace
 
+void drop_pieces(Light& light) {
+  light.pieces.clear(), light.first_piece.clear();
+  for (ElementLight& l : light.elements) l.bend = 0;
+}
+
 void push_pull(const Faces& faces, const Tree& tree, Light& light) {
   std::vector<Cosines> from_above(tree.clusters.size());
   push(faces, tree, from_above, light);

@@ -72,6 +72,9 @@ struct Light {
   std::vector<uint32_t> first_piece;  ///< per element, one extra entry; or nothing
 };
 
+/// As if exact light was not known.
+void drop_pieces(Light& light);
+
 /// Sends `received` to the leaves, B = B_e + rho E there, and means back up. [Hanrahan91, PushPull]
 void push_pull(const Faces& faces, const Tree& tree, Light& light);
 

@@ -188,10 +188,12 @@ Status triangulate_all(const Maker& m, LightMesh& mesh, Progress& progress) {
   return {};
 }
 
-/// Points whose irradiance is asked for, each once where it can be shared.
+/// Where irradiance is asked for: each place once for the light that is the same on both sides of
+/// its edge, and for each triangle's side of it for that of sharp lamps, whose shadows end there.
 struct Samples {
   std::vector<Receiver> receivers;
   std::vector<std::array<uint32_t, 6>> of_triangle;
+  std::vector<Receiver> inside;  ///< six per triangle
 };
 
 /// Whether another face meets this one there at an angle; neighbours on a curved surface do not.
@@ -222,6 +224,8 @@ Samples collect_samples(const Maker& m, const LightMesh& mesh) {
       const auto [i, j] = kPlaces[k];
       const uint32_t a = t.vertex[size_t(i)], b = t.vertex[size_t(j)];
       const DVec3 p = (c[size_t(i)] + c[size_t(j)]) * 0.5;
+      const DVec3 inside = p + (middle - p) * kNudge;
+      out.inside.push_back(receiver_at(m.s, m.scene, m.tracer, t.face, inside));
       const auto [entry, is_new] = known.try_emplace(std::minmax(a, b), kTouched);
       if (is_new && !is_touched(m, t.face, p)) {
         entry->second = uint32_t(out.receivers.size());
@@ -230,8 +234,7 @@ Samples collect_samples(const Maker& m, const LightMesh& mesh) {
       samples[k] = entry->second;
       if (samples[k] != kTouched) continue;
       samples[k] = uint32_t(out.receivers.size());
-      out.receivers.push_back(
-          receiver_at(m.s, m.scene, m.tracer, t.face, p + (middle - p) * kNudge));
+      out.receivers.push_back(out.inside.back());
     }
   }
   return out;
@@ -256,13 +259,12 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
                                        const trace::RayTracer& tracer,
                                        std::span<const Receiver> receivers,
                                        const PointParams& params, KnownLight& known,
-                                       uint64_t& looked, Progress& progress) {
+                                       Progress& progress) {
   const auto key_of = [](const Receiver& r) { return KnownLight::Key{r.face, r.position}; };
   std::vector<Receiver> asked;
   for (const Receiver& r : receivers)
     if (known.at.try_emplace(key_of(r)).second) asked.push_back(r);
   LUXEL_TRY(const std::vector<Rgb> e, irradiance_at(s, scene, tracer, asked, params, progress));
-  looked += asked.size();
   for (size_t k = 0; k < asked.size(); ++k) known.at[key_of(asked[k])] = e[k];
   std::vector<Rgb> out;
   for (const Receiver& r : receivers) out.push_back(known.at.at(key_of(r)));
@@ -284,11 +286,18 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
   LightMesh mesh;
   LUXEL_TRY_STATUS(triangulate_all(m, mesh, progress));
   const Samples samples = collect_samples(m, mesh);
-  LUXEL_TRY(const std::vector<Rgb> e, irradiance_at(s, scene, tracer, samples.receivers,
-                                                    params.point, known, mesh.samples, progress));
-  for (const auto& of : samples.of_triangle)
-    mesh.interpolant.push_back(
-        interpolant_of({e[of[0]], e[of[1]], e[of[2]], e[of[3]], e[of[4]], e[of[5]]}));
+  PointParams continuous = params.point;
+  continuous.sharp_lamps = false;
+  LUXEL_TRY(const std::vector<Rgb> e,
+            irradiance_at(s, scene, tracer, samples.receivers, continuous, known, progress));
+  LUXEL_TRY(const std::vector<Rgb> sharp,
+            sharp_irradiance_at(scene, tracer, samples.inside, progress));
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    std::array<Rgb, 6> value;
+    for (size_t k = 0; k < 6; ++k) value[k] = e[samples.of_triangle[t][k]] + sharp[6 * t + k];
+    mesh.interpolant.push_back(interpolant_of(value));
+  }
+  mesh.samples = known.at.size();
   return mesh;
 }
 

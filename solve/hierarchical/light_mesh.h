@@ -34,7 +34,7 @@ struct LightMesh {
   std::vector<uint32_t> first_of_element;  ///< per element of the tree, its triangles; one extra
   std::vector<Interpolant> interpolant;    ///< per triangle, E [W/m^2]
   std::vector<float> error;  ///< per triangle: how far it was found to be off; or none
-  uint64_t samples = 0;      ///< points whose irradiance was computed
+  uint64_t samples = 0;      ///< points whose light of faces was computed
   size_t lines = 0;          ///< active pieces
 };
 
@@ -56,13 +56,12 @@ struct KnownLight {
   };
   std::unordered_map<Key, Rgb, Hash> at;
 };
-/// As irradiance_at() of irradiance.h, for those that are not known yet; `looked` grows by their
-/// number.
+/// As irradiance_at() of irradiance.h, for those that are not known yet.
 Result<std::vector<Rgb>> irradiance_at(const Solution& solution, const scene::Scene& scene,
                                        const trace::RayTracer& tracer,
                                        std::span<const Receiver> receivers,
                                        const PointParams& params, KnownLight& known,
-                                       uint64_t& looked, Progress& progress);
+                                       Progress& progress);
 
 /// Triangulates all leaves and builds their interpolants. Errors: cancelled.
 Result<LightMesh> make_light_mesh(const Solution& solution, const scene::Scene& scene,

@@ -52,16 +52,6 @@ double corner_weight(uint32_t corners, uint32_t a, uint32_t k) {
   return apart == 0 ? near * near : apart == 2 ? far * far : near * far;
 }
 
-/// A point of an element for two numbers in [0, 1).
-DVec3 point_in(const Element& e, Vec2 u) {
-  const auto& c = e.corner;
-  if (e.corners == 3) {
-    const double root = std::sqrt(double(u.x)), v = double(u.y);
-    return c[0] * (1 - root) + (c[1] * (1 - v) + c[2] * v) * root;
-  }
-  return linear_at(c, 4, u.x, u.y);
-}
-
 Vec3 lifted(const Exchange& x, DVec3 p, DVec3 normal) {
   return trace::offset_origin(to_float(p), to_float(normal), x.diagonal_m);
 }

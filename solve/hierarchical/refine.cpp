@@ -1,12 +1,18 @@
 #include "solve/hierarchical/refine.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "solve/hierarchical/surface.h"
 
 namespace luxel::hierarchical {
 namespace {
+
+/// Points of an element of the unit's area, and of small ones, at which textures are looked at.
+/// They are scattered: a grid would see no more than some squares of a checkerboard.
+constexpr double kTexturePoints = 1024, kLeastTexturePoints = 32;
 
 /// A link to be divided.
 struct Open {
@@ -24,6 +30,12 @@ bool has_texture(const scene::Scene& scene, const Face& face) {
   return m.base_color_texture.texture != kNone || m.metallic_texture.texture != kNone ||
          m.emission_texture.texture != kNone ||
          !scene.meshes[scene.instances[face.instance].mesh].colors.empty();
+}
+
+/// Another one for each place, whatever is divided first.
+uint64_t seed_of(const Element& e) {
+  return hash64(std::bit_cast<uint64_t>(e.centre.x),
+                hash64(std::bit_cast<uint64_t>(e.centre.y), std::bit_cast<uint64_t>(e.centre.z)));
 }
 
 /// A link that says nothing yet.
@@ -170,32 +182,38 @@ ElementLight bare_light(const scene::Scene& scene, const Exchange& x, const Elem
     out.emission = scene::emission_at(scene, p) * kPi;
     return out;
   }
-  constexpr int kGrid = 6;
-  float count = 0;
-  for (int j = 0; j < kGrid; ++j)
-    for (int i = 0; i < kGrid; ++i) {
-      const double s = (i + 0.5) / kGrid, t = (j + 0.5) / kGrid;
-      if (e.corners == 3 && s + t > 1) continue;
-      const scene::SurfacePoint p =
-          surface_point(scene, x.faces, x.tracer, e.face, linear_at(e.corner, e.corners, s, t));
-      count += 1;
-      if (!scene::is_solid_at(scene, p)) continue;  // a hole of a mask sends nothing
-      out.reflectance += scene::reflectance_at(scene, p);
-      out.emission += scene::emission_at(scene, p) * kPi;
-    }
-  out.reflectance = out.reflectance / count, out.emission = out.emission / count;
+  const auto count = uint32_t(
+      std::clamp(kTexturePoints * e.area_m2 / x.unit_area_m2, kLeastTexturePoints, kTexturePoints));
+  for (uint32_t k = 0; k < count; ++k) {
+    const DVec3 place = point_in(e, sobol_owen_2d(k, seed_of(e)));
+    std::optional<scene::SurfacePoint> p;
+    if (face.has_holes)
+      p = solid_point(x.faces, x.tracer, e.face, place);  // a hole sends nothing
+    else
+      p = surface_point(scene, x.faces, x.tracer, e.face, place);
+    if (!p) continue;
+    out.reflectance += scene::reflectance_at(scene, *p);
+    out.emission += scene::emission_at(scene, *p) * kPi;
+  }
+  out.reflectance = out.reflectance / float(count), out.emission = out.emission / float(count);
   return out;
 }
 
 void divide_element(Refined& state, const Exchange& x, size_t element) {
   divide(state.tree, element);
-  const ElementLight& from = state.light.elements[element];
-  const Rgb irradiance = from.irradiance, radiosity = from.radiosity;
-  for (uint32_t c = state.tree.elements[element].child; c < state.tree.elements.size(); ++c) {
-    ElementLight l = bare_light(state.scene, x, state.tree.elements[c]);
-    l.irradiance = irradiance, l.radiosity = radiosity;
-    l.shining.fill(radiosity);
-    l.most = max_component(radiosity);
+  const ElementLight from = state.light.elements[element];
+  const Element whole = state.tree.elements[element];
+  for (uint32_t part = 0; part < 4; ++part) {
+    ElementLight l = bare_light(state.scene, x, state.tree.elements[whole.child + part]);
+    const auto of = [&](const std::array<Rgb, 4>& v) {
+      return part_of(v, whole.corners, part, whole.parts);
+    };
+    l.arriving = of(from.arriving), l.unlinked = of(from.unlinked), l.shining = of(from.shining);
+    for (uint32_t k = 0; k < whole.corners; ++k) {
+      l.irradiance += (l.arriving[k] + l.unlinked[k]) / float(whole.corners);
+      l.radiosity += l.shining[k] / float(whole.corners);
+    }
+    l.most = max_component(l.radiosity);
     state.light.elements.push_back(l);
     state.links.of.emplace_back();
   }

@@ -40,7 +40,7 @@ Status link_all(Refined& state, const Exchange& exchange, const RefineParams& pa
 /// Divides the links that have more error than eps by now. Returns how many did.
 Result<size_t> refine(Refined& state, const Exchange& exchange, const RefineParams& params,
                       Progress& progress);
-/// Divides a leaf and gives its parts their light.
+/// Divides a leaf. Its parts have its light, and reflectance and emission of their own.
 void divide_element(Refined& state, const Exchange& exchange, size_t element);
 
 }  // namespace luxel::hierarchical

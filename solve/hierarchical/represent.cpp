@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "solve/hierarchical/feedback.h"
-#include "solve/hierarchical/lamps.h"
 
 namespace luxel::hierarchical {
 namespace {
@@ -12,9 +11,15 @@ namespace {
 /// A triangle whose samples are off a plane by less than this part of what its interpolant may be
 /// off by is not looked at.
 constexpr double kFlat = 0.25;
+/// Of what links may be off by.
+constexpr double kUsualPart = 0.25;
 /// Light at points only says what to divide and to correct before the last mesh: it may be so much
 /// less exact.
 constexpr double kRougher = 4;
+/// When light has changed by no more than so many eps, the next change would be half of eps: each
+/// is a fifth of the one before, or less.
+constexpr double kSettled = 2.5;
+constexpr int kMostFeedbacks = 4;
 
 struct Looked {
   const Solution& s;
@@ -49,14 +54,31 @@ Status measure(const Looked& at, std::span<const size_t> triangles, KnownLight& 
         (1.0 / 3);
     receivers.push_back(receiver_at(at.s, at.scene, at.tracer, t.face, middle));
   }
-  LUXEL_TRY(const std::vector<Rgb> e, irradiance_at(at.s, at.scene, at.tracer, receivers, at.params,
-                                                    known, mesh.samples, progress));
+  PointParams continuous = at.params;
+  continuous.sharp_lamps = false;
+  LUXEL_TRY(const std::vector<Rgb> e,
+            irradiance_at(at.s, at.scene, at.tracer, receivers, continuous, known, progress));
+  LUXEL_TRY(const std::vector<Rgb> sharp,
+            sharp_irradiance_at(at.scene, at.tracer, receivers, progress));
   mesh.error.assign(mesh.triangles.size(), 0.0f);
   for (size_t i = 0; i < triangles.size(); ++i) {
-    const Rgb d = e[i] - value_of(mesh.interpolant[triangles[i]], 1 / 3.0f, 1 / 3.0f);
+    const Rgb d = e[i] + sharp[i] - value_of(mesh.interpolant[triangles[i]], 1 / 3.0f, 1 / 3.0f);
     mesh.error[triangles[i]] = std::max(max_component(d), max_component(-d));
   }
   return {};
+}
+
+/// The triangles that may be off.
+Status measure_bent(const Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+                    const PointParams& params, double eps, KnownLight& known, LightMesh& mesh,
+                    Progress& progress) {
+  std::vector<size_t> bent;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (double(bend_of(mesh.interpolant[t])) *
+            std::sqrt(area_of(mesh, mesh.triangles[t]) / s.unit_area_m2) >
+        kFlat * eps)
+      bent.push_back(t);
+  return measure({s, scene, tracer, params}, bent, known, mesh, progress);
 }
 
 /// The leaves whose interpolants are off by more than eps.
@@ -72,17 +94,25 @@ std::vector<size_t> leaves_off(const Solution& s, const LightMesh& mesh, double 
   return out;
 }
 
-/// Divides leaves; their parts get the light that arrives at the whole, and lamps' anew.
-Status divide_all(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
-                  std::span<const size_t> leaves, size_t max_elements, Progress& progress) {
+void divide_all(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+                std::span<const size_t> leaves, size_t max_elements) {
   const Exchange x = s.exchange(tracer);
   Refined state{scene, s.tree, s.light, s.links};
-  std::vector<uint8_t> lit(s.tree.elements.size(), 1);
-  for (const size_t leaf : leaves)
-    if (s.tree.elements.size() + 4 <= max_elements) divide_element(state, x, leaf);
-  LUXEL_TRY_STATUS(light_leaves(state, x, lamps_of(scene),
-                                {INFINITY, s.min_area_m2, max_elements, 0}, lit, progress));
-  push_pull(s.faces, s.tree, s.light);
+  drop_pieces(s.light);  // theirs are the elements there were
+  for (const size_t leaf : leaves) {
+    if (s.tree.elements.size() + 4 > max_elements) break;
+    divide_element(state, x, leaf);
+  }
+}
+
+/// Feeds back, and gathers anew, until that changes light no more.
+Status settle(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+              const MeshParams& params, double eps, LightMesh mesh, Progress& progress) {
+  for (int k = 0; k < kMostFeedbacks; ++k) {
+    LUXEL_TRY(const double change, feed_back(s, tracer, mesh, progress));
+    if (change <= kSettled * eps) break;
+    LUXEL_TRY(mesh, make_light_mesh(s, scene, tracer, params, progress));
+  }
   return {};
 }
 
@@ -99,28 +129,21 @@ Status measure_error(const Solution& s, const scene::Scene& scene, const trace::
 Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
                             const MeshParams& mesh_params, const RepresentParams& params,
                             Progress& progress) {
-  const double eps = params.eps.value_or(s.eps);
+  const double eps = params.eps.value_or(s.eps * kUsualPart);
+  MeshParams rough = mesh_params;
+  rough.point.tolerance *= kRougher;
   KnownLight known;
-  MeshParams rough_params = mesh_params;
-  rough_params.point.tolerance *= kRougher;
   for (int round = 0;; ++round) {
-    LUXEL_TRY(LightMesh mesh, make_light_mesh(s, scene, tracer, rough_params, known, progress));
-    std::vector<size_t> bent;
-    for (size_t t = 0; t < mesh.triangles.size(); ++t)
-      if (double(bend_of(mesh.interpolant[t])) *
-              std::sqrt(area_of(mesh, mesh.triangles[t]) / s.unit_area_m2) >
-          kFlat * eps)
-        bent.push_back(t);
-    LUXEL_TRY_STATUS(measure({s, scene, tracer, rough_params.point}, bent, known, mesh, progress));
+    LUXEL_TRY(LightMesh mesh, make_light_mesh(s, scene, tracer, rough, known, progress));
+    LUXEL_TRY_STATUS(measure_bent(s, scene, tracer, rough.point, eps, known, mesh, progress));
     const std::vector<size_t> leaves = leaves_off(s, mesh, eps);
     if (leaves.empty() || round == params.max_rounds ||
         s.tree.elements.size() + 4 > params.max_elements) {
-      LUXEL_TRY_STATUS(feed_back(s, tracer, mesh, progress));
-      break;
+      LUXEL_TRY_STATUS(settle(s, scene, tracer, rough, eps, std::move(mesh), progress));
+      return make_light_mesh(s, scene, tracer, mesh_params, progress);
     }
-    LUXEL_TRY_STATUS(divide_all(s, scene, tracer, leaves, params.max_elements, progress));
+    divide_all(s, scene, tracer, leaves, params.max_elements);
   }
-  return make_light_mesh(s, scene, tracer, mesh_params, progress);
 }
 
 }  // namespace luxel::hierarchical

@@ -6,7 +6,8 @@
 namespace luxel::hierarchical {
 
 struct RepresentParams {
-  /// How far interpolants may be off over an element [W/m^2]; nothing: as far as links may.
+  /// How far interpolants may be off over an element of the unit's area [W/m^2]; nothing: a quarter
+  /// of what links may.
   std::optional<double> eps;
   int max_rounds = 8;
   size_t max_elements = 1u << 20;
@@ -15,10 +16,10 @@ struct RepresentParams {
 /// The light mesh, after dividing leaves as long as their interpolants are off: the root of the sum
 /// of squares of each triangle's error, at its middle, times the triangle's area over the unit, is
 /// held against eps. The thesis takes the largest error alone, which divides on and on along
-/// whatever edge of a shadow the mesh does not follow; here short edges count for little. Nor do we
-/// look where the six samples of a triangle lie on a plane: no two features of light fit that well.
-/// Light at points that earlier rounds looked at is kept, so each costs only what it divides.
-/// Errors: cancelled.
+/// whatever edge of a shadow the mesh does not follow; here short edges count for little. Triangles
+/// whose six samples lie on a plane are not looked at. Light of earlier rounds is kept, so each
+/// costs only what it divides. In the end the solution learns from the interpolants (feedback.h),
+/// and the last mesh is made from what it is then. Errors: cancelled.
 Result<LightMesh> represent(Solution& solution, const scene::Scene& scene,
                             const trace::RayTracer& tracer, const MeshParams& mesh_params,
                             const RepresentParams& params, Progress& progress);

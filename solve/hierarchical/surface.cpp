@@ -17,18 +17,23 @@ Barycentric barycentric_in(const scene::Triangle3& t, Vec3 p) {
 
 }  // namespace
 
+std::optional<scene::SurfacePoint> solid_point(const Faces& faces, const trace::RayTracer& tracer,
+                                               uint32_t face, DVec3 place) {
+  const Vec3 normal = to_float(faces.faces[face].plane.normal);
+  const auto reach = float(8 * faces.slack_m);
+  const trace::Hit hit =
+      tracer.closest_hit({to_float(place) + normal * reach, 0, -normal, 2 * reach});
+  if (!hit.found() ||
+      faces.face_of_triangle[faces.first_triangle[hit.instance] + hit.triangle] != face)
+    return std::nullopt;
+  return hit.point();
+}
+
 scene::SurfacePoint surface_point(const scene::Scene& scene, const Faces& faces,
                                   const trace::RayTracer& tracer, uint32_t face, DVec3 place) {
   const Face& f = faces.faces[face];
-  if (!f.curved) {
-    const Vec3 normal = to_float(f.plane.normal);
-    const auto reach = float(8 * faces.slack_m);
-    const trace::Hit hit =
-        tracer.closest_hit({to_float(place) + normal * reach, 0, -normal, 2 * reach});
-    if (hit.found() &&
-        faces.face_of_triangle[faces.first_triangle[hit.instance] + hit.triangle] == face)
-      return hit.point();
-  }
+  if (!f.curved)
+    if (const auto point = solid_point(faces, tracer, face, place)) return *point;
   const scene::Triangle3 t = scene::world_triangle(scene, f.instance, f.triangle);
   return {f.instance, f.triangle, barycentric_in(t, to_float(place))};
 }

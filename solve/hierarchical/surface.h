@@ -1,10 +1,16 @@
 // From places on faces to surface points of the scene, and back.
 #pragma once
 
+#include <optional>
+
 #include "solve/hierarchical/tree.h"
 #include "trace/ray_tracer.h"
 
 namespace luxel::hierarchical {
+
+/// The point of the scene at a place of a face; nothing in a hole of a mask.
+std::optional<scene::SurfacePoint> solid_point(const Faces& faces, const trace::RayTracer& tracer,
+                                               uint32_t face, DVec3 place);
 
 /// The point of the scene's triangles at a place of a face: on a curved face in closed form, on
 /// others what a short ray meets there.

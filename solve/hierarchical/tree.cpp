@@ -116,6 +116,15 @@ void divide(Tree& tree, size_t index) {
   }
 }
 
+DVec3 point_in(const Element& e, Vec2 u) {
+  const auto& c = e.corner;
+  if (e.corners == 3) {
+    const double root = std::sqrt(double(u.x)), v = double(u.y);
+    return c[0] * (1 - root) + (c[1] * (1 - v) + c[2] * v) * root;
+  }
+  return linear_at(c, 4, u.x, u.y);
+}
+
 double depth_inside(PolygonView polygon, DVec3 normal, DVec3 point) {
   double depth = INFINITY;
   for (size_t k = 0; k < polygon.size(); ++k) {

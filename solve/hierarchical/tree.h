@@ -91,6 +91,9 @@ T linear_at(const std::array<T, 4>& v, uint32_t n, Number s, Number t) {
   return (v[0] * (1 - s) + v[1] * s) * (1 - t) + (v[3] * (1 - s) + v[2] * s) * t;
 }
 
+/// A point of an element for two numbers in [0, 1).
+DVec3 point_in(const Element& e, Vec2 u);
+
 /// The leaf of a face in which a point of its plane lies, or lies next to.
 size_t leaf_at(const Tree& tree, const Faces& faces, uint32_t face, DVec3 point);
 

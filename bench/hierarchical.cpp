@@ -11,6 +11,7 @@
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 #include "scene/surface_points.h"
+#include "solve/hierarchical/represent.h"
 #include "solve/hierarchical/surface.h"
 
 namespace luxel::bench {
@@ -47,7 +48,7 @@ Result<std::unique_ptr<Run>> run(scene::Scene scene, std::optional<double> eps,
   LUXEL_TRY(out->solution, h::solve(out->scene, *out->tracer, params, progress));
   out->solve_s = seconds_since(start);
   const auto begin_mesh = Clock::now();
-  LUXEL_TRY(out->mesh, h::make_light_mesh(out->solution, out->scene, *out->tracer, {}, progress));
+  LUXEL_TRY(out->mesh, h::represent(out->solution, out->scene, *out->tracer, {}, {}, progress));
   out->mesh_s = seconds_since(begin_mesh);
   return out;
 }

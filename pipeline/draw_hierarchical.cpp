@@ -5,6 +5,7 @@
 #include "display/quadratic_view.h"
 #include "pipeline/hierarchical.h"
 #include "pipeline/overlays.h"
+#include "solve/hierarchical/represent.h"
 #include "solve/hierarchical/surface.h"
 #include "trace/camera_rays.h"
 
@@ -21,23 +22,29 @@ HierarchicalSettings settings_of(const RenderSettings& s) {
   return s.hierarchical.value_or(HierarchicalSettings{});
 }
 
-/// The solution; what is wrong with the scene, and the overlay, go to `out`.
-Result<Solution> solve(const Subject& subject, const RenderSettings& s, Rendered& out,
-                       Progress& progress) {
-  LUXEL_TRY(Solution solution,
+/// Light as a picture needs it; stays where it was made.
+struct Lit {
+  Solution solution;
+  LightMesh mesh;  ///< nothing where the picture needs none
+};
+
+/// What is wrong with the scene, and the overlay, go to `out`.
+Result<Lit> light_up(const Subject& subject, const RenderSettings& s, bool needs_mesh,
+                     Rendered& out, Progress& progress) {
+  Lit lit;
+  LUXEL_TRY(lit.solution,
             hierarchical::solve(subject.scene, subject.tracer,
                                 solve_params(settings_of(s), s.bounces.value_or(-1)), progress));
-  out.warnings.insert(out.warnings.end(), solution.warnings.begin(), solution.warnings.end());
-  LUXEL_TRY(out.overlay, overlay_lines(s.overlays, solution, subject.scene, subject.tracer,
-                                       light_mesh_params(settings_of(s)), progress));
-  return solution;
-}
-
-Result<LightMesh> mesh_of(const Subject& subject, const Solution& solution, const RenderSettings& s,
-                          bool discontinuities, Progress& progress) {
-  hierarchical::MeshParams params = light_mesh_params(settings_of(s));
-  params.discontinuities = params.discontinuities && discontinuities;
-  return hierarchical::make_light_mesh(solution, subject.scene, subject.tracer, params, progress);
+  const std::vector<std::string>& warnings = lit.solution.warnings;
+  out.warnings.insert(out.warnings.end(), warnings.begin(), warnings.end());
+  const hierarchical::MeshParams params = light_mesh_params(settings_of(s));
+  if (needs_mesh || overlay_needs_mesh(s.overlays)) {
+    LUXEL_TRY(lit.mesh, hierarchical::represent(lit.solution, subject.scene, subject.tracer, params,
+                                                {}, progress));
+  }
+  LUXEL_TRY(out.overlay, overlay_lines(s.overlays, lit.solution, lit.mesh, subject.scene,
+                                       subject.tracer, params, progress));
+  return lit;
 }
 
 display::DrawParams draw_params(const RenderSettings& s) {
@@ -87,9 +94,8 @@ image::Image picture_of(const Subject& subject, const RenderSettings& s,
 }
 
 Result<image::Image> draw_linear(const Subject& subject, const RenderSettings& s,
-                                 bool discontinuities, Rendered& out, Progress& progress) {
-  LUXEL_TRY(const Solution solution, solve(subject, s, out, progress));
-  LUXEL_TRY(const LightMesh mesh, mesh_of(subject, solution, s, discontinuities, progress));
+                                 const Solution& solution, const LightMesh& mesh,
+                                 Progress& progress) {
   const auto irradiance = [&](const scene::SurfacePoint& p) -> Rgb {
     const hierarchical::Place place = hierarchical::place_of(subject.scene, solution.faces, p);
     if (place.face == hierarchical::kNone) return {};
@@ -123,7 +129,8 @@ display::QuadraticMesh quadratic_mesh(const scene::Scene& scene, const Solution&
 
 Result<image::Image> draw_flat(const Subject& subject, const RenderSettings& s, Rendered& out,
                                Progress& progress) {
-  LUXEL_TRY(const Solution solution, solve(subject, s, out, progress));
+  LUXEL_TRY(const Lit lit, light_up(subject, s, false, out, progress));
+  const Solution& solution = lit.solution;
   const auto irradiance = [&](const scene::SurfacePoint& p) -> Rgb {
     const hierarchical::Place place = hierarchical::place_of(subject.scene, solution.faces, p);
     if (place.face == hierarchical::kNone) return {};
@@ -137,30 +144,34 @@ Result<image::Image> draw_flat(const Subject& subject, const RenderSettings& s, 
 
 Result<image::Image> draw_gouraud(const Subject& subject, const RenderSettings& s, Rendered& out,
                                   Progress& progress) {
-  return draw_linear(subject, s, false, out, progress);
+  LUXEL_TRY(const Lit lit, light_up(subject, s, true, out, progress));
+  hierarchical::MeshParams params = light_mesh_params(settings_of(s));
+  params.discontinuities = false;
+  LUXEL_TRY(const LightMesh whole, hierarchical::make_light_mesh(lit.solution, subject.scene,
+                                                                 subject.tracer, params, progress));
+  return draw_linear(subject, s, lit.solution, whole, progress);
 }
 
 Result<image::Image> draw_gouraud_disc(const Subject& subject, const RenderSettings& s,
                                        Rendered& out, Progress& progress) {
-  return draw_linear(subject, s, true, out, progress);
+  LUXEL_TRY(const Lit lit, light_up(subject, s, true, out, progress));
+  return draw_linear(subject, s, lit.solution, lit.mesh, progress);
 }
 
 Result<image::Image> draw_interpolant(const Subject& subject, const RenderSettings& s,
                                       Rendered& out, Progress& progress) {
-  LUXEL_TRY(const Solution solution, solve(subject, s, out, progress));
-  LUXEL_TRY(const LightMesh mesh, mesh_of(subject, solution, s, true, progress));
+  LUXEL_TRY(const Lit lit, light_up(subject, s, true, out, progress));
   LUXEL_TRY(const display::QuadraticView view,
-            display::QuadraticView::make(quadratic_mesh(subject.scene, solution, mesh)));
+            display::QuadraticView::make(quadratic_mesh(subject.scene, lit.solution, lit.mesh)));
   progress.begin("draw", 0);
   return view.draw(subject.camera, s.width, s.height);
 }
 
 Result<image::Image> draw_lerpshade(const Subject& subject, const RenderSettings& s, Rendered& out,
                                     Progress& progress) {
-  LUXEL_TRY(const Solution solution, solve(subject, s, out, progress));
-  LUXEL_TRY(const LightMesh mesh, mesh_of(subject, solution, s, true, progress));
+  LUXEL_TRY(const Lit lit, light_up(subject, s, true, out, progress));
   const auto irradiance = [&](const scene::SurfacePoint& p) {
-    return hierarchical::irradiance_at(solution, mesh, subject.scene, p);
+    return hierarchical::irradiance_at(lit.solution, lit.mesh, subject.scene, p);
   };
   return display::draw(subject.scene, subject.tracer, subject.camera, irradiance, draw_params(s),
                        progress);
@@ -168,7 +179,8 @@ Result<image::Image> draw_lerpshade(const Subject& subject, const RenderSettings
 
 Result<image::Image> draw_rayshade(const Subject& subject, const RenderSettings& s, Rendered& out,
                                    Progress& progress) {
-  LUXEL_TRY(const Solution solution, solve(subject, s, out, progress));
+  LUXEL_TRY(const Lit lit, light_up(subject, s, true, out, progress));
+  const Solution& solution = lit.solution;
   const std::vector<trace::Hit> hits = hits_of(subject, s);
   std::vector<hierarchical::Receiver> receivers;
   std::vector<size_t> hit_of;

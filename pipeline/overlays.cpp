@@ -99,14 +99,15 @@ DVec3 normal_of(const h::Solution& s, const h::LightTriangle& t) {
   return s.faces.faces[t.face].plane.normal;
 }
 
-void add_error(const h::Solution& s, const h::LightMesh& mesh, Lines& out) {
+void add_error(const h::Solution& s, const h::LightMesh& mesh, std::span<const float> error,
+               Lines& out) {
   std::vector<Stick> sticks;
   for (size_t k = 0; k < mesh.triangles.size(); ++k) {
     const h::LightTriangle& t = mesh.triangles[k];
     const DVec3 middle =
         (mesh.vertices[t.vertex[0]] + mesh.vertices[t.vertex[1]] + mesh.vertices[t.vertex[2]]) *
         (1.0 / 3);
-    sticks.push_back({middle, normal_of(s, t), mesh.error[k]});
+    sticks.push_back({middle, normal_of(s, t), error[k]});
   }
   add_sticks(s, sticks, kRed, out);
 }
@@ -146,8 +147,15 @@ Result<std::vector<std::string>> parse_overlays(std::string_view text) {
   return out;
 }
 
+bool overlay_needs_mesh(std::span<const std::string> names) {
+  return std::any_of(names.begin(), names.end(), [](const std::string& name) {
+    return name == "triangulation" || name == "error" || name == "samples";
+  });
+}
+
 Result<std::vector<display::Line>> overlay_lines(std::span<const std::string> names,
-                                                 const h::Solution& s, const scene::Scene& scene,
+                                                 const h::Solution& s, const h::LightMesh& mesh,
+                                                 const scene::Scene& scene,
                                                  const trace::RayTracer& tracer,
                                                  const h::MeshParams& params, Progress& progress) {
   Lines out;
@@ -157,14 +165,13 @@ Result<std::vector<display::Line>> overlay_lines(std::span<const std::string> na
   if (wants("mesh")) add_mesh(s, out);
   if (wants("links")) add_links(s, tracer, out);
   if (wants("discontinuities")) add_discontinuities(s, scene, tracer, params.discontinuity, out);
-  if (!wants("triangulation") && !wants("error") && !wants("samples")) return out;
-  LUXEL_TRY(h::LightMesh mesh, h::make_light_mesh(s, scene, tracer, params, progress));
   if (wants("triangulation")) add_triangulation(mesh, out);
-  if (wants("error")) {
-    LUXEL_TRY_STATUS(h::measure_error(s, scene, tracer, params.point, mesh, progress));
-    add_error(s, mesh, out);
-  }
   if (wants("samples")) add_samples(s, mesh, out);
+  if (wants("error")) {
+    LUXEL_TRY(const std::vector<float> error,
+              h::measure_error(s, scene, tracer, params.point, mesh, progress));
+    add_error(s, mesh, error, out);
+  }
   return out;
 }
 

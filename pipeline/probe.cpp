@@ -8,6 +8,7 @@
 #include "import/import.h"
 #include "pipeline/bake.h"
 #include "pipeline/hierarchical.h"
+#include "solve/hierarchical/represent.h"
 #include "solve/hierarchical/surface.h"
 
 namespace luxel::pipeline {
@@ -129,7 +130,7 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   if (std::string dark = add_outside_light(s.outside, scene); !dark.empty())
     out.warnings.push_back(std::move(dark));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
-  LUXEL_TRY(const hierarchical::Solution solution,
+  LUXEL_TRY(hierarchical::Solution solution,
             hierarchical::solve(scene, tracer, solve_params(s.hierarchical, -1), progress));
   out.warnings.insert(out.warnings.end(), solution.warnings.begin(), solution.warnings.end());
   const Nearest nearest = nearest_face(solution.faces, s);
@@ -142,8 +143,8 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   const hierarchical::Receiver at = hierarchical::receiver_at(solution, scene, tracer, nearest.face,
                                                               inwards(face, nearest.place));
   LUXEL_TRY(const hierarchical::LightMesh mesh,
-            hierarchical::make_light_mesh(solution, scene, tracer,
-                                          light_mesh_params(s.hierarchical), progress));
+            hierarchical::represent(solution, scene, tracer, light_mesh_params(s.hierarchical), {},
+                                    progress));
   LUXEL_TRY(const std::vector<Rgb> exact,
             hierarchical::irradiance_at(solution, scene, tracer, {&at, 1}, {1e-6}, progress));
   const hierarchical::MeshPlace place =

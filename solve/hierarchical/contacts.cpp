@@ -9,8 +9,28 @@ namespace luxel::hierarchical {
 namespace {
 
 constexpr size_t kMostCuts = 32;
-constexpr double kShortCut = 0.02;    ///< of a face's size
+constexpr double kShort = 0.02;       ///< of a face's size: shorter contacts alone are none
+constexpr double kShortCut = 2e-3;    ///< of a face's size
 constexpr double kSmallPiece = 1e-4;  ///< of a face's area
+
+bool meet_at_ends(const Segment& s, const Segment& t, double slack_m) {
+  for (const DVec3& p : {s.a, s.b})
+    for (const DVec3& q : {t.a, t.b})
+      if (length(p - q) <= slack_m) return true;
+  return false;
+}
+
+/// The long ones, and the short ones between them: the ends of a panel's foot.
+void leave_out_short(double short_m, double slack_m, std::vector<Segment>& lines) {
+  std::vector<Segment> kept;
+  for (const Segment& s : lines)
+    if (length(s.b - s.a) >= short_m ||
+        std::any_of(lines.begin(), lines.end(), [&](const Segment& t) {
+          return length(t.b - t.a) >= short_m && meet_at_ends(s, t, slack_m);
+        }))
+      kept.push_back(s);
+  lines = std::move(kept);
+}
 
 /// The longest contacts first.
 std::vector<Segment> lines_of_cuts(const Faces& faces, const Blockers& blockers, uint32_t index) {
@@ -26,6 +46,7 @@ std::vector<Segment> lines_of_cuts(const Faces& faces, const Blockers& blockers,
     const DVec3 middle = (line->a + line->b) * 0.5;
     if (depth_inside(face.corners, face.plane.normal, middle) > 1e-3 * size_m) out.push_back(*line);
   }
+  leave_out_short(kShort * size_m, 8 * blockers.slack_m, out);
   std::stable_sort(out.begin(), out.end(), [](const Segment& a, const Segment& b) {
     return length(a.b - a.a) > length(b.b - b.a);
   });

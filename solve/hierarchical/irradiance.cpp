@@ -14,25 +14,29 @@ namespace {
 
 /// Beyond so many faces the background is looked for by rays instead of as what no face hides.
 constexpr size_t kMostFacesBeforeSky = 256;
-constexpr uint32_t kSkyRays = 1024;
+/// The rays are so many over the tolerance, but no fewer than keep their steps below what
+/// interpolants may be off by.
+constexpr double kSkyRays = 0.5;
+constexpr double kLeastSkyRays = 1024, kMostSkyRays = 8192;
 
 double limit_of(const Solution& s, const PointParams& params) {
   return params.tolerance * double(max_component(totals_of(s).irradiance));
 }
 
 /// E of the background by rays, the same directions everywhere.
-float sky_by_rays(const Solution& s, const trace::RayTracer& tracer, const Receiver& at) {
+float sky_by_rays(const Solution& s, const trace::RayTracer& tracer, const Receiver& at,
+                  uint32_t count) {
   const Vec3 n = to_float(at.normal), g = to_float(at.geometric_normal);
   const auto frame = frame_around(n);
   const Vec3 from = trace::offset_origin(to_float(at.position), g, s.diagonal_m);
   std::vector<trace::Ray> rays;
-  for (uint32_t k = 0; k < kSkyRays; ++k) {
+  for (uint32_t k = 0; k < count; ++k) {
     const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 5)));
     if (dot(d, g) > 0) rays.push_back({from, 0, d, INFINITY});
   }
   std::vector<uint8_t> blocked(rays.size());
   tracer.occluded(rays, blocked);
-  return float(std::count(blocked.begin(), blocked.end(), 0)) / kSkyRays;
+  return float(std::count(blocked.begin(), blocked.end(), 0)) / float(count);
 }
 
 bool is_sharp(const scene::PunctualLight& lamp) { return lamp.angular_radius_rad == 0; }
@@ -68,6 +72,8 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
   const double whole_sky = kPiDouble * double(max_component(lamps.background));
   const GatheringParams gathered{limit_of(s, params), count_all ? whole_sky : 0};
   const RaySources sources = ray_sources(s);
+  const auto sky_rays =
+      uint32_t(std::clamp(kSkyRays / params.tolerance, kLeastSkyRays, kMostSkyRays));
   progress.begin("irradiance", receivers.size());
   parallel_for(receivers.size(), 32, [&](size_t begin, size_t end) {
     Gathering gathering(s, tracer, sources, gathered);
@@ -75,7 +81,7 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
       out[i] += gathering.from_faces(receivers[i], nullptr);
       if (!has_sky) continue;
       const double sky = count_all ? std::max(0.0, 1 - gathering.covered())
-                                   : double(sky_by_rays(s, tracer, receivers[i]));
+                                   : double(sky_by_rays(s, tracer, receivers[i], sky_rays));
       out[i] += lamps.background * (kPi * float(sky));
     }
     progress.advance(end - begin);

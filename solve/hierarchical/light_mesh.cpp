@@ -1,11 +1,9 @@
 #include "solve/hierarchical/light_mesh.h"
 
 #include <algorithm>
-#include <bit>
 #include <map>
 
 #include "base/parallel.h"
-#include "base/random.h"
 #include "solve/hierarchical/outlines.h"
 #include "solve/hierarchical/surface.h"
 #include "solve/hierarchical/triangulate.h"
@@ -248,29 +246,6 @@ Interpolant interpolant_of(const std::array<Rgb, 6>& r) {
           -3 * r[0] - r[4] + 4 * r[5],    r[0]};
 }
 
-size_t KnownLight::Hash::operator()(const Key& key) const {
-  uint64_t h = key.face;
-  for (const double x : {key.place.x, key.place.y, key.place.z})
-    h = hash64(h, std::bit_cast<uint64_t>(x));
-  return h;
-}
-
-Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& scene,
-                                       const trace::RayTracer& tracer,
-                                       std::span<const Receiver> receivers,
-                                       const PointParams& params, KnownLight& known,
-                                       Progress& progress) {
-  const auto key_of = [](const Receiver& r) { return KnownLight::Key{r.face, r.position}; };
-  std::vector<Receiver> asked;
-  for (const Receiver& r : receivers)
-    if (known.at.try_emplace(key_of(r)).second) asked.push_back(r);
-  LUXEL_TRY(const std::vector<Rgb> e, irradiance_at(s, scene, tracer, asked, params, progress));
-  for (size_t k = 0; k < asked.size(); ++k) known.at[key_of(asked[k])] = e[k];
-  std::vector<Rgb> out;
-  for (const Receiver& r : receivers) out.push_back(known.at.at(key_of(r)));
-  return out;
-}
-
 Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
                                   Progress& progress) {
@@ -286,10 +261,8 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
   LightMesh mesh;
   LUXEL_TRY_STATUS(triangulate_all(m, mesh, progress));
   const Samples samples = collect_samples(m, mesh);
-  PointParams continuous = params.point;
-  continuous.sharp_lamps = false;
-  LUXEL_TRY(const std::vector<Rgb> e,
-            irradiance_at(s, scene, tracer, samples.receivers, continuous, known, progress));
+  LUXEL_TRY(const std::vector<Rgb> e, continuous_irradiance_at(s, scene, tracer, samples.receivers,
+                                                               params.point, known, progress));
   LUXEL_TRY(const std::vector<Rgb> sharp,
             sharp_irradiance_at(scene, tracer, samples.inside, progress));
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {

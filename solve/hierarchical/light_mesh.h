@@ -2,10 +2,8 @@
 // discontinuities. [Hardt96, chapters 3 and 5]
 #pragma once
 
-#include <unordered_map>
-
 #include "solve/hierarchical/dsets.h"
-#include "solve/hierarchical/irradiance.h"
+#include "solve/hierarchical/known_light.h"
 
 namespace luxel::hierarchical {
 
@@ -33,9 +31,8 @@ struct LightMesh {
   std::vector<LightTriangle> triangles;    ///< by leaf
   std::vector<uint32_t> first_of_element;  ///< per element of the tree, its triangles; one extra
   std::vector<Interpolant> interpolant;    ///< per triangle, E [W/m^2]
-  std::vector<float> error;  ///< per triangle: how far it was found to be off; or none
-  uint64_t samples = 0;      ///< points whose light of faces was computed
-  size_t lines = 0;          ///< active pieces
+  uint64_t samples = 0;                    ///< points whose light of faces was computed
+  size_t lines = 0;                        ///< active pieces
 };
 
 struct MeshParams {
@@ -43,25 +40,6 @@ struct MeshParams {
   DiscontinuityParams discontinuity;
   PointParams point = {5e-4};
 };
-
-/// Exact light at places of faces that were looked at before, bit by bit the same.
-struct KnownLight {
-  struct Key {
-    uint32_t face = 0;
-    DVec3 place;
-    bool operator==(const Key&) const = default;
-  };
-  struct Hash {
-    size_t operator()(const Key& key) const;
-  };
-  std::unordered_map<Key, Rgb, Hash> at;
-};
-/// As irradiance_at() of irradiance.h, for those that are not known yet.
-Result<std::vector<Rgb>> irradiance_at(const Solution& solution, const scene::Scene& scene,
-                                       const trace::RayTracer& tracer,
-                                       std::span<const Receiver> receivers,
-                                       const PointParams& params, KnownLight& known,
-                                       Progress& progress);
 
 /// Triangulates all leaves and builds their interpolants. Errors: cancelled.
 Result<LightMesh> make_light_mesh(const Solution& solution, const scene::Scene& scene,

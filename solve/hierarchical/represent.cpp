@@ -44,8 +44,9 @@ float bend_of(const Interpolant& r) {
   return bend;
 }
 
-Status measure(const Looked& at, std::span<const size_t> triangles, KnownLight& known,
-               LightMesh& mesh, Progress& progress) {
+/// Per triangle; 0 for those that are not asked for.
+Result<std::vector<float>> measure(const Looked& at, std::span<const size_t> triangles,
+                                   KnownLight& known, const LightMesh& mesh, Progress& progress) {
   std::vector<Receiver> receivers;
   for (const size_t k : triangles) {
     const LightTriangle& t = mesh.triangles[k];
@@ -54,41 +55,35 @@ Status measure(const Looked& at, std::span<const size_t> triangles, KnownLight& 
         (1.0 / 3);
     receivers.push_back(receiver_at(at.s, at.scene, at.tracer, t.face, middle));
   }
-  PointParams continuous = at.params;
-  continuous.sharp_lamps = false;
-  LUXEL_TRY(const std::vector<Rgb> e,
-            irradiance_at(at.s, at.scene, at.tracer, receivers, continuous, known, progress));
+  LUXEL_TRY(const std::vector<Rgb> e, continuous_irradiance_at(at.s, at.scene, at.tracer, receivers,
+                                                               at.params, known, progress));
   LUXEL_TRY(const std::vector<Rgb> sharp,
             sharp_irradiance_at(at.scene, at.tracer, receivers, progress));
-  mesh.error.assign(mesh.triangles.size(), 0.0f);
+  std::vector<float> error(mesh.triangles.size());
   for (size_t i = 0; i < triangles.size(); ++i) {
     const Rgb d = e[i] + sharp[i] - value_of(mesh.interpolant[triangles[i]], 1 / 3.0f, 1 / 3.0f);
-    mesh.error[triangles[i]] = std::max(max_component(d), max_component(-d));
+    error[triangles[i]] = std::max(max_component(d), max_component(-d));
   }
-  return {};
+  return error;
 }
 
-/// The triangles that may be off.
-Status measure_bent(const Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
-                    const PointParams& params, double eps, KnownLight& known, LightMesh& mesh,
-                    Progress& progress) {
+/// Leaves whose interpolants are off by more than eps, looked for where triangles are bent.
+Result<std::vector<size_t>> leaves_off(const Looked& at, double eps, KnownLight& known,
+                                       const LightMesh& mesh, Progress& progress) {
+  const double unit_m2 = at.s.unit_area_m2;
   std::vector<size_t> bent;
   for (size_t t = 0; t < mesh.triangles.size(); ++t)
     if (double(bend_of(mesh.interpolant[t])) *
-            std::sqrt(area_of(mesh, mesh.triangles[t]) / s.unit_area_m2) >
+            std::sqrt(area_of(mesh, mesh.triangles[t]) / unit_m2) >
         kFlat * eps)
       bent.push_back(t);
-  return measure({s, scene, tracer, params}, bent, known, mesh, progress);
-}
-
-/// The leaves whose interpolants are off by more than eps.
-std::vector<size_t> leaves_off(const Solution& s, const LightMesh& mesh, double eps) {
+  LUXEL_TRY(const std::vector<float> error, measure(at, bent, known, mesh, progress));
   std::vector<size_t> out;
-  for (size_t e = 0; e < s.tree.elements.size(); ++e) {
+  for (size_t e = 0; e < at.s.tree.elements.size(); ++e) {
     double squares = 0;
     for (uint32_t t = mesh.first_of_element[e]; t < mesh.first_of_element[e + 1]; ++t)
-      squares += double(mesh.error[t]) * double(mesh.error[t]) * area_of(mesh, mesh.triangles[t]);
-    if (squares > eps * eps * s.unit_area_m2 && s.tree.elements[e].area_m2 > 4 * s.min_area_m2)
+      squares += double(error[t]) * double(error[t]) * area_of(mesh, mesh.triangles[t]);
+    if (squares > eps * eps * unit_m2 && at.s.tree.elements[e].area_m2 > 4 * at.s.min_area_m2)
       out.push_back(e);
   }
   return out;
@@ -118,8 +113,9 @@ Status settle(Solution& s, const scene::Scene& scene, const trace::RayTracer& tr
 
 }  // namespace
 
-Status measure_error(const Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
-                     const PointParams& params, LightMesh& mesh, Progress& progress) {
+Result<std::vector<float>> measure_error(const Solution& s, const scene::Scene& scene,
+                                         const trace::RayTracer& tracer, const PointParams& params,
+                                         const LightMesh& mesh, Progress& progress) {
   std::vector<size_t> all(mesh.triangles.size());
   for (size_t t = 0; t < all.size(); ++t) all[t] = t;
   KnownLight none;
@@ -135,8 +131,8 @@ Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace:
   KnownLight known;
   for (int round = 0;; ++round) {
     LUXEL_TRY(LightMesh mesh, make_light_mesh(s, scene, tracer, rough, known, progress));
-    LUXEL_TRY_STATUS(measure_bent(s, scene, tracer, rough.point, eps, known, mesh, progress));
-    const std::vector<size_t> leaves = leaves_off(s, mesh, eps);
+    LUXEL_TRY(const std::vector<size_t> leaves,
+              leaves_off({s, scene, tracer, rough.point}, eps, known, mesh, progress));
     if (leaves.empty() || round == params.max_rounds ||
         s.tree.elements.size() + 4 > params.max_elements) {
       LUXEL_TRY_STATUS(settle(s, scene, tracer, rough, eps, std::move(mesh), progress));

@@ -24,9 +24,9 @@ Result<LightMesh> represent(Solution& solution, const scene::Scene& scene,
                             const trace::RayTracer& tracer, const MeshParams& mesh_params,
                             const RepresentParams& params, Progress& progress);
 
-/// Sets LightMesh::error, at the middles of all triangles. Errors: cancelled.
-Status measure_error(const Solution& solution, const scene::Scene& scene,
-                     const trace::RayTracer& tracer, const PointParams& params, LightMesh& mesh,
-                     Progress& progress);
+/// How far interpolants are off at the middles of their triangles [W/m^2]. Errors: cancelled.
+Result<std::vector<float>> measure_error(const Solution& solution, const scene::Scene& scene,
+                                         const trace::RayTracer& tracer, const PointParams& params,
+                                         const LightMesh& mesh, Progress& progress);
 
 }  // namespace luxel::hierarchical

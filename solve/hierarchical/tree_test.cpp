@@ -102,5 +102,33 @@ TEST(Tree, PartsAreConvexAndFillTheWhole) {
   }
 }
 
+// Long ones in a row, so that parts are rounder: 8 x 1 m becomes 2 x 1 m, and then as usual.
+TEST(Tree, LongElementsAreDividedAcross) {
+  for (const bool upright : {false, true}) {
+    Faces faces;
+    Face face;
+    const double x = upright ? 1 : 8, y = upright ? 8 : 1;
+    face.corners = {{0, 0, 0}, {x, 0, 0}, {x, y, 0}, {0, y, 0}};
+    face.plane = transport::plane_of(face.corners);
+    faces.faces.push_back(face);
+    Tree tree = testing::tree_of(faces);
+    divide(tree, 0);
+    divide(tree, 3);
+    double area = 0;
+    for (size_t e = 1; e < 5; ++e) {
+      const Element& part = tree.elements[e];
+      const DVec3 middle{upright ? 0.5 : 2 * double(e) - 1, upright ? 2 * double(e) - 1 : 0.5, 0};
+      EXPECT_LT(length(part.centre - middle), 1e-12) << e;
+      EXPECT_NEAR(part.area_m2, 2, 1e-12);
+      EXPECT_GT(dot(transport::plane_of(part.polygon()).normal, DVec3{0, 0, 1}), 0.999);
+      EXPECT_EQ(leaf_at(tree, faces, 0, part.centre + DVec3{0.1, 0.1, 0}), e == 3 ? 7 : e);
+      area += part.area_m2;
+    }
+    EXPECT_NEAR(area, 8, 1e-12);
+    for (size_t e = 5; e < 9; ++e)
+      EXPECT_NEAR(tree.elements[e].radius_m, std::sqrt(1 + 0.25) / 2, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace luxel::hierarchical

@@ -10,18 +10,23 @@
 namespace luxel::bench {
 
 Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed, Progress& progress) {
+  return judge(p.scene, *p.tracer, reference::receivers(p.elements), samples_each, seed, progress);
+}
+
+Result<Judged> judge(const scene::Scene& scene, const trace::RayTracer& tracer,
+                     const reference::Receivers& receivers, int samples_each, uint64_t seed,
+                     Progress& progress) {
   Judged out;
   const auto start = Clock::now();
-  const reference::Receivers receivers = reference::receivers(p.elements);
   reference::PathParams params{.samples = samples_each, .seed = seed};
   LUXEL_TRY(reference::TexelPaths first,
-            reference::irradiance_by_paths(p.scene, receivers, *p.tracer, params, progress));
+            reference::irradiance_by_paths(scene, receivers, tracer, params, progress));
   params.seed = hash64(seed, 1);
   LUXEL_TRY(reference::TexelPaths second,
-            reference::irradiance_by_paths(p.scene, receivers, *p.tracer, params, progress));
+            reference::irradiance_by_paths(scene, receivers, tracer, params, progress));
   out.seconds = seconds_since(start);
   out.rays = first.rays + second.rays;
-  for (size_t i = 0; i < p.elements.size(); ++i) {
+  for (size_t i = 0; i < receivers.size(); ++i) {
     const Rgb a = first.standard_error[i], b = second.standard_error[i];
     const Rgb s2 = a * a + b * b;
     out.standard_error.push_back(0.5f * Rgb{std::sqrt(s2.x), std::sqrt(s2.y), std::sqrt(s2.z)});

@@ -32,6 +32,10 @@ struct Judged {
   Rgb mean(size_t i) const { return 0.5f * (first[i] + second[i]); }
 };
 Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed, Progress& progress);
+/// The same at any places.
+Result<Judged> judge(const scene::Scene& scene, const trace::RayTracer& tracer,
+                     const reference::Receivers& receivers, int samples_each, uint64_t seed,
+                     Progress& progress);
 
 /// How far a solver's E lies from the truth. With D = g - truth and two independent, unbiased
 /// answers a and b of the judge, the mean of (g - a)(g - b) tends to the mean of D^2: the judge's

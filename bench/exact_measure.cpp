@@ -71,7 +71,7 @@ double texel_rms(const Prepared& p, const ExactPart& part, const pipeline::Texel
 
 bool is_ready_for(std::string_view solver, const ExactCase& c) {
   if (solver != "hierarchical") return true;
-  return c.name.find("sphere") == std::string::npos && c.name != "parallel plates";
+  return c.name.find("sphere") == std::string::npos;
 }
 
 Result<std::vector<Measured>> measure(const Prepared& p, const ExactCase& c,

@@ -30,9 +30,7 @@ struct MeasureEffort {
 };
 
 /// Whether a solver can be asked for a case yet. The hierarchical solver cannot for the spheres,
-/// whose 10,000 facets and more it links by the million, in minutes; nor for the plates a thousand
-/// times as wide as their distance: light that falls off at their very border spoils interpolants
-/// over halves of a plate, as triangles are not divided by what they show.
+/// whose 10,000 facets and more it links by the million, in minutes.
 bool is_ready_for(std::string_view solver, const ExactCase& c);
 
 /// One for each part of the case. `p` is the case's scene at its resolution. A solver's mean is

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "bench/agreement.h"
+#include "bench/prepared.h"
 #include "bench/timing.h"
 #include "pipeline/draw_hierarchical.h"
 #include "scene/procedural.h"
@@ -143,12 +143,12 @@ Result<Table> growth_table(Progress& progress) {
   return t;
 }
 
-/// A table's rows, its name in front of each.
+/// A table's rows, its name in front of each; cells are quoted, for some hold commas.
 std::string csv_of(const Table& t) {
   std::string text;
   const auto add = [&](const std::vector<std::string>& cells) {
     text += t.name.substr(t.name.find(": ") + 2);
-    for (const std::string& cell : cells) text += "," + cell;
+    for (const std::string& cell : cells) text += ",\"" + cell + "\"";
     text += "\n";
   };
   add(t.columns);
@@ -200,6 +200,8 @@ Result<HierarchicalPage> measure_hierarchical(const std::filesystem::path&, Prog
   page.tables.push_back(std::move(table));
   LUXEL_TRY(Table exact, exact_table(*office, progress));
   page.tables.push_back(std::move(exact));
+  LUXEL_TRY(std::vector<Table> judged, hierarchical_judged(progress));
+  for (Table& t : judged) page.tables.push_back(std::move(t));
   LUXEL_TRY(Table growth, growth_table(progress));
   page.tables.push_back(std::move(growth));
   for (const Table& t : page.tables) {

@@ -17,6 +17,9 @@ namespace luxel::bench {
 /// n x n cells of 3 m with a desk, a chair and a lamp each, in one hall; 86 n^2 + 12 triangles.
 scene::Scene open_plan_office(int n);
 
+/// Against the path tracer, against rays at points, energy, and what linear functions are for.
+Result<std::vector<Table>> hierarchical_judged(Progress& progress);
+
 struct HierarchicalPage {
   std::vector<Table> tables;
   std::vector<PageFile> pictures;

@@ -15,6 +15,8 @@ hierarchical::MeshParams light_mesh_params(const HierarchicalSettings& settings)
   params.discontinuities = settings.discontinuities;
   params.discontinuity.max_per_leaf = uint32_t(settings.max_leaf_lines);
   params.discontinuity.least_weight = settings.min_weight;
+  params.discontinuity.ranking = settings.ranking == "nearness" ? hierarchical::Ranking::nearness
+                                                                : hierarchical::Ranking::slope;
   return params;
 }
 

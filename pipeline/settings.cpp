@@ -98,6 +98,9 @@ Status check(const HierarchicalSettings& s) {
   if (s.min_weight && !(*s.min_weight >= 0 && std::isfinite(*s.min_weight)))
     return fail(ErrorCode::bad_setting, "--min-weight {} is not a weight; give W/m^2 per m >= 0",
                 *s.min_weight);
+  if (s.ranking != "slope" && s.ranking != "nearness")
+    return fail(ErrorCode::bad_setting, "--ranking {} is not known; there is: slope, nearness",
+                s.ranking);
   return check_range("--max-leaf-lines", s.max_leaf_lines, 0, 1000);
 }
 
@@ -148,7 +151,8 @@ nlohmann::json to_json(const BakeSettings& s) {
     const HierarchicalSettings& h = s.hierarchical;
     json["hierarchical"] = {{"min_area_m2", h.min_area_m2},
                             {"discontinuities", h.discontinuities},
-                            {"max_leaf_lines", h.max_leaf_lines}};
+                            {"max_leaf_lines", h.max_leaf_lines},
+                            {"ranking", h.ranking}};
     json["hierarchical"]["eps"] = h.eps ? nlohmann::json(*h.eps) : nlohmann::json("auto");
     json["hierarchical"]["min_weight"] =
         h.min_weight ? nlohmann::json(*h.min_weight) : nlohmann::json("auto");

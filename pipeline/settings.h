@@ -50,7 +50,8 @@ struct HierarchicalSettings {
   double min_area_m2 = 0;       ///< elements are not divided below; 0: by the scene
   bool discontinuities = true;  ///< edges of shadows become edges of the mesh
   int max_leaf_lines = 10;      ///< discontinuities through an element, at most
-  std::optional<double> min_weight;  ///< weaker ones are left out [W/m^2 per m]
+  std::optional<double> min_weight;  ///< weaker ones are left out [W/m^2 per m; nearness W/m^2]
+  std::string ranking = "slope";     ///< or nearness: which discontinuities come first
 };
 
 struct BakeSettings {

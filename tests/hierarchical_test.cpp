@@ -46,6 +46,7 @@ TEST(HierarchicalBake, RefusesWhatCannotWork) {
        {std::pair{"--eps -1", "--eps -1 is not an error"},
         std::pair{"--min-area -1", "--min-area -1 is not an area"},
         std::pair{"--min-weight -1", "--min-weight -1 is not a weight"},
+        std::pair{"--ranking size", "--ranking size is not known; there is: slope, nearness"},
         std::pair{"--max-leaf-lines 2000", "--max-leaf-lines 2000 is outside 0 to 1000"},
         std::pair{"--samples 16", "does not use --samples"},
         std::pair{"--patches 16", "does not use --patches"}}) {

@@ -38,7 +38,8 @@ constexpr std::array kSolverOptions{
     SolverOption{"--min-area", &pipeline::Solver::hierarchical},
     SolverOption{"--no-discontinuities", &pipeline::Solver::hierarchical},
     SolverOption{"--max-leaf-lines", &pipeline::Solver::hierarchical},
-    SolverOption{"--min-weight", &pipeline::Solver::hierarchical}};
+    SolverOption{"--min-weight", &pipeline::Solver::hierarchical},
+    SolverOption{"--ranking", &pipeline::Solver::hierarchical}};
 
 /// "gather, ...": the solvers that look at an option.
 std::string users_of(bool pipeline::Solver::*used) {

@@ -181,8 +181,13 @@ std::vector<CLI::Option*> add_hierarchical(CLI::App& command, pipeline::Hierarch
                       "Edges of shadows through an element, at most")
           ->capture_default_str(),
       command.add_option("--min-weight", s.min_weight,
-                         "Edges over which light changes by less are left out, in W/m^2 per m "
-                         "(default: by the light there is)")};
+                         "Edges over which light changes by less are left out, in W/m^2 per m; "
+                         "with --ranking nearness in W/m^2 (default: by the light there is)"),
+      command
+          .add_option("--ranking", s.ranking,
+                      "Which edges of shadows come first: slope, by how much light changes per "
+                      "metre; nearness, by how near to the surface what throws them is")
+          ->capture_default_str()};
   for (CLI::Option* option : options) option->group("Hierarchical radiosity");
   return options;
 }

@@ -12,25 +12,6 @@ namespace {
 
 constexpr double kTolerance = 1e-4;  ///< of the iteration
 
-/// s and t at which linear_at gives a place of the element.
-std::array<double, 2> place_in(const Element& e, DVec3 place) {
-  const auto& c = e.corner;
-  std::array<double, 2> at{1 / 3.0, 1 / 3.0};
-  // Newton's method: at once on triangles and parallelograms, after some steps on what they are cut
-  // into where others stand on them.
-  for (int step = 0; step < 8; ++step) {
-    const auto [s, t] = at;
-    const DVec3 u = e.corners == 3 ? c[1] - c[0] : (c[1] - c[0]) * (1 - t) + (c[2] - c[3]) * t;
-    const DVec3 v = e.corners == 3 ? c[2] - c[0] : (c[3] - c[0]) * (1 - s) + (c[2] - c[1]) * s;
-    const DVec3 d = place - linear_at(c, e.corners, s, t);
-    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), det = uu * vv - uv * uv;
-    if (!(det > 0)) break;
-    at[0] = std::clamp(s + (vv * dot(d, u) - uv * dot(d, v)) / det, 0.0, 1.0);
-    at[1] = std::clamp(t + (uu * dot(d, v) - uv * dot(d, u)) / det, 0.0, 1.0);
-  }
-  return at;
-}
-
 /// Sums of weighted squares: the linear function over an element nearest to what is added.
 struct Fit {
   Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();

@@ -63,15 +63,8 @@ inline Tree tree_of(const Faces& faces) {
 
 /// What a scene without openings absorbs over what it emits: 1.
 inline double absorbed_over_emitted(const Solution& s) {
-  double absorbed = 0, emitted = 0;
-  for (size_t e = 0; e < s.tree.elements.size(); ++e) {
-    if (!s.tree.elements[e].is_leaf()) continue;
-    const ElementLight& l = s.light.elements[e];
-    absorbed += s.tree.elements[e].area_m2 *
-                double(luminance((Rgb{1, 1, 1} - l.reflectance) * l.irradiance));
-    emitted += s.tree.elements[e].area_m2 * double(luminance(l.emission));
-  }
-  return absorbed / emitted;
+  const Totals totals = totals_of(s);
+  return double(luminance(totals.absorbed)) / double(luminance(totals.emission));
 }
 
 inline size_t leaf_count(const Tree& tree) {

@@ -17,6 +17,9 @@ constexpr double kNearCorners = 1e-4;
 /// middle: irradiance there is the limit from inside [Hardt96, section 6.3].
 constexpr double kNudge = 1e-3;
 
+/// Discontinuities are kept down to this part of the least weight: light may get brighter.
+constexpr double kWeaker = 0.5;
+
 /// A face while it is meshed.
 struct FaceWork {
   FacePlane plane;
@@ -43,7 +46,9 @@ struct Maker {
   double slack_m;  ///< corners nearer than this are one
 };
 
-FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& limits) {
+/// `found`: of the face, or nothing yet.
+FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& limits,
+                      std::optional<std::vector<Discontinuity>>& found) {
   FaceWork w;
   w.plane = plane_coordinates(m.s.faces.faces[face]);
   for (uint32_t r = m.s.tree.first_root[face]; r < m.s.tree.first_root[face + 1]; ++r)
@@ -54,11 +59,12 @@ FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& 
       w.outline.back().push_back(w.plane.to_plane(p));
   }
   if (m.params.discontinuities) {
-    const auto found =
-        find_discontinuities(m.s, m.scene, m.tracer, face, m.params.discontinuity.ranking, limits);
+    if (!found)
+      found = find_discontinuities(m.s, m.scene, m.tracer, face, m.params.discontinuity.ranking,
+                                   {kWeaker * limits.weight, limits.light});
     std::vector<double> weight;
-    for (const Discontinuity& d : found) weight.push_back(weight_of(d, m.s, m.scene));
-    w.lines = choose_active(found, weight, limits.weight, w.plane, w.outline,
+    for (const Discontinuity& d : *found) weight.push_back(weight_of(d, m.s, m.scene));
+    w.lines = choose_active(*found, weight, limits.weight, w.plane, w.outline,
                             m.params.discontinuity.max_per_leaf, m.slack_m);
   }
   for (const auto& outline : w.outline) {
@@ -146,14 +152,15 @@ void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints
   mesh.lines += w.lines.size();
 }
 
-Status triangulate_all(const Maker& m, LightMesh& mesh, Progress& progress) {
+Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& progress) {
   const size_t faces = m.s.faces.size();
   std::vector<FaceWork> work(faces);
   const DiscontinuityLimits limits = limits_of(m.s, m.params.discontinuity);
+  known.of_face.resize(faces);
   progress.begin("discontinuities", faces);
   parallel_for(faces, 1, [&](size_t begin, size_t end) {
     for (size_t f = begin; f < end && !progress.cancelled(); ++f)
-      work[f] = prepare_face(m, uint32_t(f), limits);
+      work[f] = prepare_face(m, uint32_t(f), limits, known.of_face[f]);
     progress.advance(end - begin);
   });
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
@@ -249,20 +256,21 @@ Interpolant interpolant_of(const std::array<Rgb, 6>& r) {
 Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
                                   Progress& progress) {
-  KnownLight none;
+  Known none;
   return make_light_mesh(s, scene, tracer, params, none, progress);
 }
 
 Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
-                                  KnownLight& known, Progress& progress) {
+                                  Known& known, Progress& progress) {
   const Maker m{s, scene, tracer, params,
                 std::max(4 * s.faces.slack_m, 1e-7 * double(s.diagonal_m))};
   LightMesh mesh;
-  LUXEL_TRY_STATUS(triangulate_all(m, mesh, progress));
+  LUXEL_TRY_STATUS(triangulate_all(m, known, mesh, progress));
   const Samples samples = collect_samples(m, mesh);
-  LUXEL_TRY(const std::vector<Rgb> e, continuous_irradiance_at(s, scene, tracer, samples.receivers,
-                                                               params.point, known, progress));
+  LUXEL_TRY(const std::vector<Rgb> e,
+            continuous_irradiance_at(s, scene, tracer, samples.receivers, params.point, known.light,
+                                     progress));
   LUXEL_TRY(const std::vector<Rgb> sharp,
             sharp_irradiance_at(scene, tracer, samples.inside, progress));
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -270,7 +278,7 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
     for (size_t k = 0; k < 6; ++k) value[k] = e[samples.of_triangle[t][k]] + sharp[6 * t + k];
     mesh.interpolant.push_back(interpolant_of(value));
   }
-  mesh.samples = known.at.size();
+  mesh.samples = known.light.at.size();
   return mesh;
 }
 

@@ -45,10 +45,17 @@ struct MeshParams {
 Result<LightMesh> make_light_mesh(const Solution& solution, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
                                   Progress& progress);
-/// The same with light that earlier meshes of the scene looked at.
+/// What meshes of one scene share: light at places, and discontinuities. Of those the geometric
+/// part of the weight is kept, and the radiometric one follows the light there is [Hardt96,
+/// sections 5.4 and 5.5.8].
+struct Known {
+  KnownLight light;
+  std::vector<std::optional<std::vector<Discontinuity>>> of_face;  ///< what was looked for
+};
+/// The same with what earlier meshes found.
 Result<LightMesh> make_light_mesh(const Solution& solution, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
-                                  KnownLight& known, Progress& progress);
+                                  Known& known, Progress& progress);
 
 /// The triangle that holds a place of a face, or the nearest one of its leaf.
 struct MeshPlace {

@@ -173,10 +173,14 @@ Link link_elements(const Exchange& x, uint32_t receiver, uint32_t source, const 
   const double mean = near && !s_face.two_sided ? closed_form(kClosedFormTolerance) / r.area_m2
                                                 : there.whole_sum / there.count;
   link.factor = float(mean) * link.visible;
-  set_receiver(there, link);
+  if (x.basis == Basis::constant)
+    link.to.fill(link.factor);
+  else
+    set_receiver(there, link);
   Views back;
   back.count = s.corners;
   if (!s_face.two_sided) back = look(x, s, r, link, scratch);
+  if (x.basis != Basis::linear) back.visible_sum = 0;  // corners count alike
   set_source(back, link);
   link.spread = float(spread_of(there));
   if (back.visible_sum > 0)

@@ -27,6 +27,14 @@ struct Link {
 /// Beyond so many, points look at all of them no longer: rays decide.
 inline constexpr size_t kMostBlockers = 48;
 
+/// What light is over elements. Linear pays (docs/hierarchical.md); the others are there to show
+/// it.
+enum class Basis : uint8_t {
+  constant,          ///< as [Hanrahan91; Hardt96] have it
+  linear_receivers,  ///< what arrives is linear, what is sent constant
+  linear
+};
+
 /// What links are made from.
 struct Exchange {
   const Faces& faces;
@@ -35,6 +43,7 @@ struct Exchange {
   const trace::RayTracer& tracer;
   float diagonal_m = 0;
   double unit_area_m2 = 1;  ///< errors count in full on receivers of this size
+  Basis basis = Basis::linear;
 };
 
 /// A link from `source` to `receiver`, different ids of the tree. `parent` is a link between the

@@ -102,11 +102,13 @@ void divide_all(Solution& s, const scene::Scene& scene, const trace::RayTracer& 
 
 /// Feeds back, and gathers anew, until that changes light no more.
 Status settle(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
-              const MeshParams& params, double eps, LightMesh mesh, Progress& progress) {
+              const MeshParams& params, double eps, Known& known, LightMesh mesh,
+              Progress& progress) {
   for (int k = 0; k < kMostFeedbacks; ++k) {
     LUXEL_TRY(const double change, feed_back(s, tracer, mesh, progress));
     if (change <= kSettled * eps) break;
-    LUXEL_TRY(mesh, make_light_mesh(s, scene, tracer, params, progress));
+    known.light.at.clear();
+    LUXEL_TRY(mesh, make_light_mesh(s, scene, tracer, params, known, progress));
   }
   return {};
 }
@@ -128,15 +130,16 @@ Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace:
   const double eps = params.eps.value_or(s.eps * kUsualPart);
   MeshParams rough = mesh_params;
   rough.point.tolerance *= kRougher;
-  KnownLight known;
+  Known known;
   for (int round = 0;; ++round) {
     LUXEL_TRY(LightMesh mesh, make_light_mesh(s, scene, tracer, rough, known, progress));
     LUXEL_TRY(const std::vector<size_t> leaves,
-              leaves_off({s, scene, tracer, rough.point}, eps, known, mesh, progress));
+              leaves_off({s, scene, tracer, rough.point}, eps, known.light, mesh, progress));
     if (leaves.empty() || round == params.max_rounds ||
         s.tree.elements.size() + 4 > params.max_elements) {
-      LUXEL_TRY_STATUS(settle(s, scene, tracer, rough, eps, std::move(mesh), progress));
-      return make_light_mesh(s, scene, tracer, mesh_params, progress);
+      LUXEL_TRY_STATUS(settle(s, scene, tracer, rough, eps, known, std::move(mesh), progress));
+      known.light.at.clear();
+      return make_light_mesh(s, scene, tracer, mesh_params, known, progress);
     }
     divide_all(s, scene, tracer, leaves, params.max_elements);
   }

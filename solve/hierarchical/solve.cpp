@@ -135,7 +135,14 @@ Totals totals_of(const Solution& s) {
     out.irradiance += l.irradiance * area, out.radiosity += l.radiosity * area;
     out.emission += l.emission * area;
   }
+  for (size_t e = 0; e < s.tree.elements.size(); ++e) {
+    const ElementLight& l = s.light.elements[e];
+    if (s.tree.elements[e].is_leaf())
+      out.absorbed +=
+          (Rgb{1, 1, 1} - l.reflectance) * l.irradiance * float(s.tree.elements[e].area_m2);
+  }
   const float scale = out.area_m2 > 0 ? float(1 / out.area_m2) : 0;
+  out.absorbed = out.absorbed * scale;
   out.irradiance = out.irradiance * scale, out.radiosity = out.radiosity * scale;
   out.emission = out.emission * scale;
   return out;
@@ -148,6 +155,7 @@ Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer
   s.blockers = make_blockers(s.faces);
   s.tree = make_tree(cut_at_contacts(s.faces, s.blockers));
   s.warnings = overlap_warnings(scene, s.faces, s.blockers);
+  s.basis = params.basis;
   s.diagonal_m = scene::world_bounds(scene).diagonal();
   s.unit_area_m2 = area_of(s.tree) / double(std::clamp<size_t>(s.faces.size(), 1, kMostUnits));
   s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;

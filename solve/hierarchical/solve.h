@@ -17,6 +17,7 @@ struct SolveParams {
   int bounces = -1;  ///< reflections; < 0: all. Counted, `shining` is what has been reflected
                      ///< one time less than `irradiance`: what points gather
   double tolerance = 1e-4;  ///< of the iteration, relative to the mean
+  Basis basis = Basis::linear;
 };
 
 /// The solution. Parts refer to each other by index, and it can be moved.
@@ -33,9 +34,10 @@ struct Solution {
   float diagonal_m = 0;
   double unit_area_m2 = 1;
   bool all_bounces = true;
+  Basis basis = Basis::linear;
 
   Exchange exchange(const trace::RayTracer& tracer) const {
-    return {faces, tree, blockers, tracer, diagonal_m, unit_area_m2};
+    return {faces, tree, blockers, tracer, diagonal_m, unit_area_m2, basis};
   }
 };
 
@@ -54,6 +56,7 @@ Status iterate(Solution& solution, const trace::RayTracer& tracer, double tolera
 struct Totals {
   double area_m2 = 0;
   Rgb irradiance, radiosity, emission;
+  Rgb absorbed;  ///< over leaves; as much as is emitted where nothing gets out
 };
 Totals totals_of(const Solution& solution);
 

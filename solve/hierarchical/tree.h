@@ -94,6 +94,9 @@ T linear_at(const std::array<T, 4>& v, uint32_t n, Number s, Number t) {
 /// A point of an element for two numbers in [0, 1).
 DVec3 point_in(const Element& e, Vec2 u);
 
+/// s and t at which linear_at gives a place of an element's plane, or the nearest ones inside.
+std::array<double, 2> place_in(const Element& e, DVec3 place);
+
 /// The leaf of a face in which a point of its plane lies, or lies next to.
 size_t leaf_at(const Tree& tree, const Faces& faces, uint32_t face, DVec3 point);
 

@@ -1,0 +1,210 @@
+// What the hierarchical solution is held against: paths, rays, the law that energy is kept.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "base/warp.h"
+#include "bench/agreement.h"
+#include "bench/hierarchical.h"
+#include "scene/procedural.h"
+#include "scene/surface_points.h"
+#include "solve/hierarchical/represent.h"
+#include "solve/hierarchical/surface.h"
+#include "trace/camera_rays.h"
+
+namespace luxel::bench {
+namespace {
+
+namespace h = luxel::hierarchical;
+
+constexpr int kPaths = 1024;
+constexpr int kLightmap = 96;  ///< texels a side
+constexpr int kPictureWidth = 160, kPictureHeight = 120;
+constexpr size_t kPoints = 200;
+constexpr uint32_t kRays = 1'000'000;
+
+Table new_table(std::string name, std::vector<std::string> columns) {
+  return {std::move(name), thread_count(), std::move(columns), {}, {}, nlohmann::json::array()};
+}
+
+std::vector<std::string> agreement_row(std::string scene, std::string what, const Agreement& a,
+                                       double seconds) {
+  return {std::move(scene),
+          std::move(what),
+          fmt::format("{}", a.texels),
+          relative_rmse_text(a),
+          fmt::format("{:.2f} %", 100 * a.resolution),
+          fmt::format("{:+.2f} %", 100 * a.bias_over_mean),
+          fmt::format("{:.1f}", seconds)};
+}
+
+Result<std::vector<std::string>> lightmap_row(std::string name, scene::Scene scene,
+                                              std::optional<double> eps, Progress& progress) {
+  LUXEL_TRY(const auto p, prepare(std::move(scene), kLightmap, progress));
+  LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1, progress));
+  pipeline::BakeSettings settings;
+  settings.hierarchical.eps = eps;
+  LUXEL_TRY(const Timed solved, solve(*p, "hierarchical", settings, progress));
+  return agreement_row(std::move(name), "lightmap",
+                       agreement(solved.light.irradiance, solved.light.hidden, judged),
+                       solved.seconds);
+}
+
+/// What a camera sees: light where the rays through pixels' middles end.
+Result<std::vector<std::string>> picture_row(std::string name, const scene::Scene& scene,
+                                             std::optional<double> eps, Progress& progress) {
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  const auto start = Clock::now();
+  h::SolveParams params;
+  params.eps = eps;
+  LUXEL_TRY(h::Solution solution, h::solve(scene, tracer, params, progress));
+  LUXEL_TRY(const h::LightMesh mesh, h::represent(solution, scene, tracer, {}, {}, progress));
+  const double seconds = seconds_since(start);
+  const trace::CameraRays camera(scene.cameras.front(), kPictureWidth, kPictureHeight);
+  std::vector<trace::Ray> rays;
+  for (int y = 0; y < kPictureHeight; ++y)
+    for (int x = 0; x < kPictureWidth; ++x)
+      rays.push_back(camera.through(float(x) + 0.5f, float(y) + 0.5f));
+  std::vector<Vec3> position, normal;
+  std::vector<Rgb> solved;
+  for (const trace::Hit& hit : trace::visible_hits(scene, tracer, rays)) {
+    if (!hit.found()) continue;
+    position.push_back(scene::world_position(scene, hit.point()));
+    normal.push_back(scene::front_normal(scene, hit.instance, hit.triangle));
+    solved.push_back(h::irradiance_at(solution, mesh, scene, hit.point()));
+  }
+  LUXEL_TRY(const Judged judged,
+            judge(scene, tracer, {position, normal, normal}, kPaths, 1, progress));
+  return agreement_row(std::move(name), "picture", agreement(solved, {}, judged), seconds);
+}
+
+Result<Table> path_table(Progress& progress) {
+  Table t = new_table("hierarchical: against the path tracer",
+                      {"scene", "as", "places", "relative RMSE", "told from", "bias", "s"});
+  for (const auto& [name, scene, eps] :
+       {std::tuple{"office", scene::office(), std::optional<double>(0.1)},
+        std::tuple{"Cornell box", scene::cornell_box(), std::optional<double>()}}) {
+    LUXEL_TRY(auto lightmap, lightmap_row(name, scene, eps, progress));
+    LUXEL_TRY(auto picture, picture_row(name, scene, eps, progress));
+    t.rows.push_back(std::move(lightmap)), t.rows.push_back(std::move(picture));
+  }
+  t.notes.push_back(
+      fmt::format("Office at eps 0.1, Cornell box at the default. Lightmaps of {0} x {0}; pictures "
+                  "of {1} x {2}, "
+                  "light at the middles of pixels; twice {3} paths at each place, whose noise is "
+                  "taken out. The "
+                  "goal: below 2 %. s: the solver.",
+                  kLightmap, kPictureWidth, kPictureHeight, kPaths));
+  return t;
+}
+
+/// How far exact light is from what rays bring that meet the same radiosity, in their standard
+/// errors.
+double standard_errors_off(const h::Solution& s, const scene::Scene& scene,
+                           const trace::RayTracer& tracer, const h::Receiver& at, Rgb exact,
+                           uint64_t seed) {
+  const auto frame = frame_around(to_float(at.normal));
+  const Vec3 from =
+      trace::offset_origin(to_float(at.position), to_float(at.geometric_normal), s.diagonal_m);
+  RandomStream random{seed};
+  double sum = 0, squares = 0;
+  for (uint32_t k = 0; k < kRays; ++k) {
+    const Vec3 d = frame.to_world(cosine_hemisphere_sample(random.next2()));
+    const trace::Hit hit = tracer.closest_hit({from, 0, d, INFINITY});
+    if (!hit.found() || hit.back_face) continue;
+    const h::Place place = h::place_of(scene, s.faces, hit.point());
+    if (place.face == h::kNone) continue;
+    const size_t leaf = h::leaf_at(s.tree, s.faces, place.face, place.position);
+    const h::Element& e = s.tree.elements[leaf];
+    const auto [u, v] = h::place_in(e, place.position);
+    const double value = double(
+        luminance(h::linear_at(s.light.elements[leaf].shining, e.corners, float(u), float(v))));
+    sum += value, squares += value * value;
+  }
+  const double mean = sum / kRays;
+  const double error = std::sqrt((squares / kRays - mean * mean) / kRays);
+  return error > 0 ? (double(luminance(exact)) - mean) / error : 0;
+}
+
+Result<Table> rays_table(Progress& progress) {
+  const scene::Scene scene = scene::office();
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  h::SolveParams params;
+  params.eps = 0.1;
+  LUXEL_TRY(const h::Solution s, h::solve(scene, tracer, params, progress));
+  std::vector<h::Receiver> receivers;
+  for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kPoints, 17)) {
+    const h::Place place = h::place_of(scene, s.faces, p);
+    receivers.push_back(h::receiver_at(s, scene, tracer, place.face, place.position));
+  }
+  LUXEL_TRY(const std::vector<Rgb> exact,
+            h::irradiance_at(s, scene, tracer, receivers, {1e-6}, progress));
+  std::vector<double> off(receivers.size());
+  parallel_for(receivers.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k)
+      off[k] = standard_errors_off(s, scene, tracer, receivers[k], exact[k], hash64(k, 3));
+  });
+  double squares = 0, within_one = 0, within_two = 0, worst = 0;
+  for (const double z : off) {
+    squares += z * z / double(off.size());
+    within_one += (std::abs(z) < 1) / double(off.size());
+    within_two += (std::abs(z) < 2) / double(off.size());
+    worst = std::max(worst, std::abs(z));
+  }
+  Table t = new_table("hierarchical: exact light against rays",
+                      {"", "root mean square", "within one", "within two", "most"});
+  t.rows = {{"measured", fmt::format("{:.2f}", std::sqrt(squares)),
+             fmt::format("{:.0f} %", 100 * within_one), fmt::format("{:.0f} %", 100 * within_two),
+             fmt::format("{:.2f}", worst)},
+            {"of a normal law", "1", "68 %", "95 %", "2.8 expected"}};
+  t.notes.push_back(
+      fmt::format("Differences at {} random points of the office in standard errors of {} rays, "
+                  "each of which brings the solution's radiosity where it ends.",
+                  kPoints, kRays));
+  return t;
+}
+
+double kept(const h::Solution& s) {
+  const h::Totals totals = h::totals_of(s);
+  return double(luminance(totals.absorbed)) / double(luminance(totals.emission));
+}
+
+/// Absorbed over emitted in a closed room, with the functions that light may be over elements.
+Result<Table> energy_table(Progress& progress) {
+  Table t = new_table("hierarchical: energy and functions over elements",
+                      {"light", "links", "absorbed / emitted"});
+  const scene::Scene scene = scene::radiosity_box();
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  for (const auto& [name, basis] : {std::pair{"constant", h::Basis::constant},
+                                    std::pair{"linear on receivers", h::Basis::linear_receivers},
+                                    std::pair{"linear", h::Basis::linear}}) {
+    h::SolveParams params;
+    params.eps = 0.1, params.basis = basis;
+    LUXEL_TRY(h::Solution s, h::solve(scene, tracer, params, progress));
+    t.rows.push_back({name, fmt::format("{}", s.links.count), fmt::format("{:.4f}", kept(s))});
+    if (basis != h::Basis::linear) continue;
+    LUXEL_TRY(const h::LightMesh mesh, h::represent(s, scene, tracer, {}, {}, progress));
+    t.rows.push_back({"linear, exact light fed back", fmt::format("{}", s.links.count),
+                      fmt::format("{:.4f}", kept(s))});
+  }
+  t.notes.push_back(
+      "The closed box of docs/hemicube.md, its lamp beside the ceiling; eps 0.1. The "
+      "goal: within 1 %.");
+  return t;
+}
+
+}  // namespace
+
+Result<std::vector<Table>> hierarchical_judged(Progress& progress) {
+  std::vector<Table> out;
+  LUXEL_TRY(Table energy, energy_table(progress));
+  LUXEL_TRY(Table rays, rays_table(progress));
+  LUXEL_TRY(Table paths, path_table(progress));
+  out.push_back(std::move(energy)), out.push_back(std::move(rays)), out.push_back(std::move(paths));
+  return out;
+}
+
+}  // namespace luxel::bench

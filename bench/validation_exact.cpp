@@ -69,7 +69,7 @@ Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Pr
       "errors* that it prints itself (3 would be exceeded by chance in one of 370 rows, and there "
       "are more than 20).\nSections 6 (one element per face) and 8 are about solvers whose form "
       "factors are means over areas; hemicube looks from points. hierarchical is not asked for "
-      "spheres and plates yet.\n\n{}",
+      "spheres yet.\n\n{}",
       kEffort.lightmap_points, kEffort.rays, kEffort.shadow_rays, kEffort.elements,
       kEffort.hemicube, kEffort.patches, kEffort.paths, kEffort.paths_per_point,
       kEffort.path_points,

@@ -198,7 +198,7 @@ Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& 
 struct Samples {
   std::vector<Receiver> receivers;
   std::vector<std::array<uint32_t, 6>> of_triangle;
-  std::vector<Receiver> inside;  ///< six per triangle
+  std::vector<Receiver> inside;  ///< six per triangle; none in scenes without lamps
 };
 
 /// Whether another face meets this one there at an angle; neighbours on a curved surface do not.
@@ -229,8 +229,10 @@ Samples collect_samples(const Maker& m, const LightMesh& mesh) {
       const auto [i, j] = kPlaces[k];
       const uint32_t a = t.vertex[size_t(i)], b = t.vertex[size_t(j)];
       const DVec3 p = (c[size_t(i)] + c[size_t(j)]) * 0.5;
-      const DVec3 inside = p + (middle - p) * kNudge;
-      out.inside.push_back(receiver_at(m.s, m.scene, m.tracer, t.face, inside));
+      const auto inside = [&] {
+        return receiver_at(m.s, m.scene, m.tracer, t.face, p + (middle - p) * kNudge);
+      };
+      if (!m.scene.lights.empty()) out.inside.push_back(inside());
       const auto [entry, is_new] = known.try_emplace(std::minmax(a, b), kTouched);
       if (is_new && !is_touched(m, t.face, p)) {
         entry->second = uint32_t(out.receivers.size());
@@ -239,7 +241,7 @@ Samples collect_samples(const Maker& m, const LightMesh& mesh) {
       samples[k] = entry->second;
       if (samples[k] != kTouched) continue;
       samples[k] = uint32_t(out.receivers.size());
-      out.receivers.push_back(out.inside.back());
+      out.receivers.push_back(inside());
     }
   }
   return out;
@@ -275,7 +277,10 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
             sharp_irradiance_at(scene, tracer, samples.inside, progress));
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     std::array<Rgb, 6> value;
-    for (size_t k = 0; k < 6; ++k) value[k] = e[samples.of_triangle[t][k]] + sharp[6 * t + k];
+    for (size_t k = 0; k < 6; ++k) {
+      value[k] = e[samples.of_triangle[t][k]];
+      if (!sharp.empty()) value[k] += sharp[6 * t + k];
+    }
     mesh.interpolant.push_back(interpolant_of(value));
   }
   mesh.samples = known.light.at.size();

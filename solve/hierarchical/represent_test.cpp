@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/parallel.h"
 #include "solve/hierarchical/hierarchical_test_support.h"
 #include "solve/hierarchical/surface.h"
 
@@ -112,6 +113,18 @@ TEST(Represent, ShadowsOfSharpLampsJump) {
     EXPECT_NEAR(floor_light(*s, mesh, edge - 5e-4, 0.1), 0, 0.01 * whole) << sun;
     EXPECT_NEAR(floor_light(*s, mesh, edge + 5e-4, 0.1), whole, 0.01 * whole) << sun;
   }
+}
+
+TEST(Represent, SameBitsForAnyNumberOfThreads) {
+  std::vector<LightMesh> meshes;
+  for (const int threads : {1, 3}) {
+    const ThreadLimit limit(threads);
+    const auto s = solved(scene::cornell_box(), {.eps = 0.05});
+    meshes.push_back(represented(*s));
+  }
+  ASSERT_EQ(meshes[0].triangles.size(), meshes[1].triangles.size());
+  for (size_t t = 0; t < meshes[0].triangles.size(); ++t)
+    EXPECT_EQ(meshes[0].interpolant[t], meshes[1].interpolant[t]) << t;
 }
 
 // In a furnace light that has been reflected no more than n times is e (1 + rho + ... + rho^n):

@@ -16,6 +16,9 @@ constexpr double kUsualPart = 0.25;
 /// Light at points only says what to divide and to correct before the last mesh: it may be so much
 /// less exact.
 constexpr double kRougher = 4;
+/// Sources may be wrong at points by this part of what interpolants may be off by; but no less than
+/// that of the mean light.
+constexpr double kExacter = 0.2, kExactest = 1e-5;
 /// When light has changed by no more than so many eps, the next change would be half of eps: each
 /// is a fifth of the one before, or less.
 constexpr double kSettled = 2.5;
@@ -127,9 +130,15 @@ Result<std::vector<float>> measure_error(const Solution& s, const scene::Scene& 
 Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
                             const MeshParams& mesh_params, const RepresentParams& params,
                             Progress& progress) {
-  const double eps = params.eps.value_or(s.eps * kUsualPart);
-  MeshParams rough = mesh_params;
+  const double mean = double(max_component(totals_of(s).irradiance));
+  MeshParams fine = mesh_params;
+  double eps = params.eps.value_or(s.eps * kUsualPart);
+  if (mean > 0)
+    fine.point.tolerance = std::clamp(
+        kExacter * eps / mean, std::min(kExactest, fine.point.tolerance), fine.point.tolerance);
+  MeshParams rough = fine;
   rough.point.tolerance *= kRougher;
+  eps = std::max(eps, rough.point.tolerance * mean);
   Known known;
   for (int round = 0;; ++round) {
     LUXEL_TRY(LightMesh mesh, make_light_mesh(s, scene, tracer, rough, known, progress));
@@ -139,7 +148,7 @@ Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace:
         s.tree.elements.size() + 4 > params.max_elements) {
       LUXEL_TRY_STATUS(settle(s, scene, tracer, rough, eps, known, std::move(mesh), progress));
       known.light.at.clear();
-      return make_light_mesh(s, scene, tracer, mesh_params, known, progress);
+      return make_light_mesh(s, scene, tracer, fine, known, progress);
     }
     divide_all(s, scene, tracer, leaves, params.max_elements);
   }

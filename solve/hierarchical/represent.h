@@ -18,8 +18,9 @@ struct RepresentParams {
 /// held against eps. The thesis takes the largest error alone, which divides on and on along
 /// whatever edge of a shadow the mesh does not follow; here short edges count for little. Triangles
 /// whose six samples lie on a plane are not looked at. Light of earlier rounds is kept, so each
-/// costs only what it divides. In the end the solution learns from the interpolants (feedback.h),
-/// and the last mesh is made from what it is then. Errors: cancelled.
+/// costs only what it divides. The smaller eps is, the more exact is light at points; it is no
+/// smaller than what that can tell. In the end the solution learns from the interpolants
+/// (feedback.h), and the last mesh is made from what it is then. Errors: cancelled.
 Result<LightMesh> represent(Solution& solution, const scene::Scene& scene,
                             const trace::RayTracer& tracer, const MeshParams& mesh_params,
                             const RepresentParams& params, Progress& progress);

@@ -13,6 +13,8 @@ namespace {
 constexpr int kMostIterations = 24, kMostSweeps = 2000;
 /// Of the mean irradiance, when nobody says more.
 constexpr double kUsualEps = 0.01;
+/// Nobody gets less: exact light at points is not known better, and links without end would be.
+constexpr double kLeastEps = 1e-4;
 /// Errors count in full on receivers of a face's mean size, but of no more faces than so many: what
 /// is asked for must not depend on how finely a surface is cut into triangles.
 constexpr size_t kMostUnits = 1024;
@@ -76,18 +78,15 @@ void count_bounces(Work& w, int bounces) {
 }
 
 Status run(Work& w, const SolveParams& params, Progress& progress) {
-  RefineParams refine_params{params.eps.value_or(0), w.s.min_area_m2, params.max_elements,
-                             params.max_links};
+  RefineParams refine_params{0, w.s.min_area_m2, params.max_elements, params.max_links};
   for (const Element& e : w.s.tree.elements)
     w.s.light.elements.push_back(bare_light(w.state.scene, w.x, e));
   w.s.light.clusters.resize(w.s.tree.clusters.size());
   push_pull(w.s.faces, w.s.tree, w.s.light);
   w.s.links.of.resize(w.s.tree.size());
-  if (!params.eps) {
-    // A first guess, from the power there is; it is made better when light has arrived.
-    const Totals totals = totals_of(w.s);
-    refine_params.eps = 0.1 * double(max_component(totals.emission));
-  }
+  // A first guess, from the power there is; it is made better when light has arrived.
+  const double power = double(max_component(totals_of(w.s).emission));
+  refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * power) : 0.1 * power;
   LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.lamps,
                                 {refine_params.eps > 0 ? refine_params.eps : INFINITY,
                                  w.s.min_area_m2, params.max_elements, params.max_links},
@@ -95,7 +94,8 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
   LUXEL_TRY_STATUS(link_all(w.state, w.x, refine_params, progress));
   for (w.s.iterations = 0; w.s.iterations < kMostIterations; ++w.s.iterations) {
     LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
-    if (!params.eps) refine_params.eps = kUsualEps * mean_irradiance(w.s.tree, w.s.light);
+    const double mean = mean_irradiance(w.s.tree, w.s.light);
+    refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * mean) : kUsualEps * mean;
     w.s.eps = refine_params.eps;
     const size_t leaves = w.s.tree.elements.size();
     LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.lamps, refine_params, w.lit, progress));
@@ -161,6 +161,10 @@ Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer
   s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;
   Work work{s, s.exchange(tracer), lamps_of(scene), {}, {scene, s.tree, s.light, s.links}};
   LUXEL_TRY_STATUS(run(work, params, progress));
+  if (params.eps && *params.eps < s.eps)
+    s.warnings.push_back(
+        fmt::format("--eps {} is below a ten-thousandth of the mean light; {:.3g} W/m^2 was used",
+                    *params.eps, s.eps));
   if (s.links.bounded)
     s.warnings.push_back(fmt::format(
         "refinement ended at {} elements and {} links, before all errors were below {:.3g} W/m^2; "

@@ -10,7 +10,8 @@
 namespace luxel::hierarchical {
 
 struct SolveParams {
-  /// How much a link may err [W/m^2]; nothing: a hundredth of the mean irradiance.
+  /// How much a link may err [W/m^2]; nothing: a hundredth of the mean irradiance. No less than a
+  /// ten-thousandth of it, whatever is asked for.
   std::optional<double> eps;
   double min_area_m2 = 0;  ///< elements are not divided below this; 0: the scene's area / 2^18
   size_t max_elements = 1u << 20, max_links = 1u << 25;

@@ -165,6 +165,16 @@ TEST(HierarchicalSolve, AnEpsOfZeroEnds) {
   EXPECT_LT(leaf_count(s->solution.tree), 3000u);
 }
 
+// Less than a ten-thousandth of the mean light nobody gets, and is told so.
+TEST(HierarchicalSolve, SaysWhatEpsItUsedInsteadOfZero) {
+  const auto s = solved(scene::cornell_box(), {.eps = 0.0});
+  const double mean = double(max_component(totals_of(s->solution).irradiance));
+  EXPECT_NEAR(s->solution.eps, 1e-4 * mean, 0.1 * 1e-4 * mean);  // of the brightest channel
+  ASSERT_EQ(s->solution.warnings.size(), 1u);
+  EXPECT_TRUE(s->solution.warnings[0].starts_with("--eps 0 is below")) << s->solution.warnings[0];
+  EXPECT_FALSE(s->solution.links.bounded);
+}
+
 TEST(HierarchicalSolve, StopsWhenAsked) {
   const scene::Scene scene = scene::cornell_box();
   const auto tracer = *trace::RayTracer::build(scene);

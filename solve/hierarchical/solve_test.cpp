@@ -1,8 +1,12 @@
 #include "solve/hierarchical/solve.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/parallel.h"
 #include "solve/hierarchical/hierarchical_test_support.h"
 #include "tests/reference_data.h"
+#include "transport/point_form_factor.h"
 #include "transport/polygon_form_factor.h"
 
 namespace luxel::hierarchical {
@@ -93,6 +97,36 @@ TEST(HierarchicalSolve, LinksHaveTheFactorsOfTheirPairs) {
       ++compared;
     }
   EXPECT_GT(compared, 500u);
+}
+
+// What a link brings is the function through what Gauss's points see, whatever the mean: on a floor
+// beside a shining wall a corner at the wall gets many times as much as one far from it.
+TEST(HierarchicalSolve, LinksBringWhatPointsSee) {
+  scene::Scene scene;
+  const uint32_t dark = scene::add_material(scene, "dark", gray(0));
+  testing::add_polygon(scene, "floor", {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}, dark);
+  testing::add_polygon(scene, "wall", {{-0.2, 0, 0}, {-0.2, 1, 0}, {-0.2, 1, 1}, {-0.2, 0, 1}},
+                       dark);
+  const auto s = solved(std::move(scene));
+  const Exchange x = s->solution.exchange(*s->tracer);
+  transport::VisibilityScratch scratch;
+  const Link link = make_link(x, x.tree.id_of(0), x.tree.id_of(1), nullptr, scratch);
+  ASSERT_GT(link.factor, 0);
+  const Element &floor = x.tree.elements[0], &wall = x.tree.elements[1];
+  const double low = 0.5 - 0.5 / std::sqrt(3.0), high = 1 - low;
+  std::array<double, 4> seen, brought;
+  double mean = 0;
+  for (size_t k = 0; k < 4; ++k) {
+    const double u = k == 0 || k == 3 ? low : high, v = k < 2 ? low : high;
+    seen[k] =
+        transport::point_to_polygon(linear_at(floor.corner, 4, u, v), {0, 1, 0}, wall.polygon());
+    brought[k] = double(linear_at(link.to, 4, float(u), float(v)));
+    mean += seen[k] / 4;
+  }
+  EXPECT_GT(*std::max_element(seen.begin(), seen.end()),
+            2 * *std::min_element(seen.begin(), seen.end()));
+  for (size_t k = 0; k < 4; ++k)
+    EXPECT_NEAR(brought[k] / double(link.factor), seen[k] / mean, 1e-4) << k;
 }
 
 TEST(HierarchicalSolve, HidesWhatABlockerHides) {

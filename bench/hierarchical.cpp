@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "base/parallel.h"
 #include "bench/prepared.h"
 #include "bench/timing.h"
 #include "pipeline/draw_hierarchical.h"
@@ -23,10 +22,6 @@ namespace h = luxel::hierarchical;
 constexpr double kPaperEps = 0.1, kPaperSolution_s = 120, kPaperInterpolants_s = 9000,
                  kPaperFrames = 2.3;
 constexpr size_t kPoints = 100000;
-
-Table new_table(std::string name, std::vector<std::string> columns) {
-  return {std::move(name), thread_count(), std::move(columns), {}, {}, nlohmann::json::array()};
-}
 
 /// A scene, solved and meshed. Stays where it was made.
 struct Run {

@@ -26,10 +26,6 @@ constexpr int kPictureWidth = 160, kPictureHeight = 120;
 constexpr size_t kPoints = 200;
 constexpr uint32_t kRays = 1'000'000;
 
-Table new_table(std::string name, std::vector<std::string> columns) {
-  return {std::move(name), thread_count(), std::move(columns), {}, {}, nlohmann::json::array()};
-}
-
 std::vector<std::string> agreement_row(std::string scene, std::string what, const Agreement& a,
                                        double seconds) {
   return {std::move(scene),
@@ -167,11 +163,6 @@ Result<Table> rays_table(Progress& progress) {
   return t;
 }
 
-double kept(const h::Solution& s) {
-  const h::Totals totals = h::totals_of(s);
-  return double(luminance(totals.absorbed)) / double(luminance(totals.emission));
-}
-
 /// Absorbed over emitted in closed rooms, by what light may be over elements.
 Result<Table> energy_table(Progress& progress) {
   Table t =
@@ -188,10 +179,10 @@ Result<Table> energy_table(Progress& progress) {
       params.eps = eps, params.basis = basis;
       LUXEL_TRY(h::Solution s, h::solve(scene, tracer, params, progress));
       row[2] += fmt::format("{}{}", row[2].empty() ? "" : " / ", s.links.count);
-      row.push_back(fmt::format("{:.4f}", kept(s)));
+      row.push_back(fmt::format("{:.4f}", h::absorbed_over_emitted(s)));
       if (basis != h::Basis::linear) continue;
       LUXEL_TRY(const h::LightMesh mesh, h::represent(s, scene, tracer, {}, {}, progress));
-      row.push_back(fmt::format("{:.4f}", kept(s)));
+      row.push_back(fmt::format("{:.4f}", h::absorbed_over_emitted(s)));
     }
     t.rows.push_back(std::move(row));
   }

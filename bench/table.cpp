@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "base/parallel.h"
 #include "bench/bench.h"
 
 namespace luxel::bench {
+
+Table new_table(std::string name, std::vector<std::string> columns) {
+  return {std::move(name), thread_count(), std::move(columns), {}, {}, nlohmann::json::array()};
+}
 
 std::string machine_name() {
   std::string model = "unknown processor";

@@ -104,10 +104,7 @@ void add_error(const h::Solution& s, const h::LightMesh& mesh, std::span<const f
   std::vector<Stick> sticks;
   for (size_t k = 0; k < mesh.triangles.size(); ++k) {
     const h::LightTriangle& t = mesh.triangles[k];
-    const DVec3 middle =
-        (mesh.vertices[t.vertex[0]] + mesh.vertices[t.vertex[1]] + mesh.vertices[t.vertex[2]]) *
-        (1.0 / 3);
-    sticks.push_back({middle, normal_of(s, t), error[k]});
+    sticks.push_back({h::middle_of(mesh, t), normal_of(s, t), error[k]});
   }
   add_sticks(s, sticks, kRed, out);
 }

@@ -31,29 +31,19 @@ struct Fit {
 
   /// Bent as far towards the mean as it would be negative.
   std::array<Rgb, 4> corners(uint32_t n) const {
-    if (n == 3) {
-      Fit three = *this;
-      three.squares(3, 3) = 1;
-      return three.solved(3);
-    }
-    return solved(4);
-  }
-
- private:
-  std::array<Rgb, 4> solved(uint32_t n) const {
-    const Eigen::Matrix<double, 4, 3> at = squares.ldlt().solve(moments);
+    Eigen::Matrix4d all = squares;
+    if (n == 3) all(3, 3) = 1;  // a corner that is not there
+    const Eigen::Matrix<double, 4, 3> at = all.ldlt().solve(moments);
     std::array<Rgb, 4> out{};
     if (!at.allFinite()) return out;
-    for (uint32_t c = 0; c < 3; ++c) {
+    for (const auto& [c, channel] :
+         {std::pair{0, &Rgb::x}, std::pair{1, &Rgb::y}, std::pair{2, &Rgb::z}}) {
       double mean = 0, shrink = 1;
       for (uint32_t k = 0; k < n; ++k) mean += at(k, c) / n;
       mean = std::max(mean, 0.0);
       for (uint32_t k = 0; k < n; ++k)
         if (at(k, c) < 0) shrink = std::min(shrink, mean / (mean - at(k, c)));
-      for (uint32_t k = 0; k < n; ++k)
-        (c == 0   ? out[k].x
-         : c == 1 ? out[k].y
-                  : out[k].z) = float(mean + (at(k, c) - mean) * shrink);
+      for (uint32_t k = 0; k < n; ++k) out[k].*channel = float(mean + (at(k, c) - mean) * shrink);
     }
     return out;
   }
@@ -62,7 +52,7 @@ struct Fit {
 /// A leaf's exact light as the linear function nearest to it.
 std::array<Rgb, 4> fit_of(const Element& e, const LightMesh& mesh, uint32_t first, uint32_t end) {
   Fit fit;
-  // Middles of the edges of each triangle's quarters: exact for cubic functions, and nearly for
+  // Middles of the edges of each triangle's quarters: exact for quadratic functions, and nearly for
   // what a leaf's are times a quadratic one.
   constexpr std::array<std::array<float, 2>, 12> kAt{{{0.25f, 0},
                                                       {0.25f, 0.25f},
@@ -115,7 +105,8 @@ void add_pieces(Solution& s, const LightMesh& mesh, std::span<const std::array<R
     ElementLight& l = s.light.elements[t.leaf];
     const std::array<Rgb, 3> there = linear_of(mesh.interpolant[k]);
     LightPiece piece;
-    for (uint32_t c = 0; c < 3; ++c) {
+    for (const auto& [c, channel] :
+         {std::pair{0, &Rgb::x}, std::pair{1, &Rgb::y}, std::pair{2, &Rgb::z}}) {
       piece.corner[c] = mesh.vertices[t.vertex[c]];
       const auto [x, y] = place_in(e, piece.corner[c]);
       const auto u = float(x), v = float(y);

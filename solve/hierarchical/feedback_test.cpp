@@ -46,7 +46,7 @@ TEST(FeedBack, CorrectsLinksThatAreWrong) {
       for (float& to : link.to) to *= 0.9f;
     }
   ASSERT_TRUE(iterate(s->solution, *s->tracer, 1e-5, progress));
-  EXPECT_LT(testing::absorbed_over_emitted(s->solution), 0.87);
+  EXPECT_LT(absorbed_over_emitted(s->solution), 0.87);
   double change = INFINITY;
   for (int k = 0; k < 4; ++k) {
     const auto mesh = make_light_mesh(s->solution, s->scene, *s->tracer, {}, progress);
@@ -57,7 +57,7 @@ TEST(FeedBack, CorrectsLinksThatAreWrong) {
     change = *changed;
   }
   // Interpolants over these elements lose half a hundredth, which only dividing them would mend.
-  EXPECT_NEAR(testing::absorbed_over_emitted(s->solution), 1, 0.01);
+  EXPECT_NEAR(absorbed_over_emitted(s->solution), 1, 0.01);
 }
 
 }  // namespace

@@ -61,12 +61,6 @@ inline Tree tree_of(const Faces& faces) {
   return make_tree(pieces);
 }
 
-/// What a scene without openings absorbs over what it emits: 1.
-inline double absorbed_over_emitted(const Solution& s) {
-  const Totals totals = totals_of(s);
-  return double(luminance(totals.absorbed)) / double(luminance(totals.emission));
-}
-
 inline size_t leaf_count(const Tree& tree) {
   size_t count = 0;
   for (const Element& e : tree.elements) count += e.is_leaf();

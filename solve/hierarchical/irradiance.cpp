@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "base/random.h"
-#include "base/warp.h"
 #include "solve/hierarchical/gathering.h"
 #include "solve/hierarchical/surface.h"
 #include "transport/direct_light.h"
@@ -21,22 +19,6 @@ constexpr double kLeastSkyRays = 1024, kMostSkyRays = 8192;
 
 double limit_of(const Solution& s, const PointParams& params) {
   return params.tolerance * double(max_component(totals_of(s).irradiance));
-}
-
-/// E of the background by rays, the same directions everywhere.
-float sky_by_rays(const Solution& s, const trace::RayTracer& tracer, const Receiver& at,
-                  uint32_t count) {
-  const Vec3 n = to_float(at.normal), g = to_float(at.geometric_normal);
-  const auto frame = frame_around(n);
-  const Vec3 from = trace::offset_origin(to_float(at.position), g, s.diagonal_m);
-  std::vector<trace::Ray> rays;
-  for (uint32_t k = 0; k < count; ++k) {
-    const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 5)));
-    if (dot(d, g) > 0) rays.push_back({from, 0, d, INFINITY});
-  }
-  std::vector<uint8_t> blocked(rays.size());
-  tracer.occluded(rays, blocked);
-  return float(std::count(blocked.begin(), blocked.end(), 0)) / float(count);
 }
 
 bool is_sharp(const scene::PunctualLight& lamp) { return lamp.angular_radius_rad == 0; }
@@ -74,14 +56,18 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
   const RaySources sources = ray_sources(s);
   const auto sky_rays =
       uint32_t(std::clamp(kSkyRays / params.tolerance, kLeastSkyRays, kMostSkyRays));
+  const auto share_of_sky = [&](const Receiver& r) {
+    return visible_sky(tracer, to_float(r.position), to_float(r.normal),
+                       to_float(r.geometric_normal), s.diagonal_m, sky_rays);
+  };
   progress.begin("irradiance", receivers.size());
   parallel_for(receivers.size(), 32, [&](size_t begin, size_t end) {
     Gathering gathering(s, tracer, sources, gathered);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       out[i] += gathering.from_faces(receivers[i], nullptr);
       if (!has_sky) continue;
-      const double sky = count_all ? std::max(0.0, 1 - gathering.covered())
-                                   : double(sky_by_rays(s, tracer, receivers[i], sky_rays));
+      const double sky =
+          count_all ? std::max(0.0, 1 - gathering.covered()) : double(share_of_sky(receivers[i]));
       out[i] += lamps.background * (kPi * float(sky));
     }
     progress.advance(end - begin);

@@ -94,22 +94,28 @@ std::vector<Rgb> sky_light(const Exchange& x, const transport::Elements& points,
   std::vector<Rgb> out(points.size());
   if (max_component(radiance) == 0) return out;
   parallel_for(points.size(), 64, [&](size_t begin, size_t end) {
-    std::vector<trace::Ray> rays(kSkyRays);
-    std::vector<uint8_t> blocked(kSkyRays);
-    for (size_t i = begin; i < end; ++i) {
-      const auto frame = frame_around(points.normal[i]);
-      const Vec3 from = trace::offset_origin(points.position[i], points.normal[i], x.diagonal_m);
-      for (uint32_t k = 0; k < kSkyRays; ++k)
-        rays[k] = {from, 0, frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 5)))};
-      x.tracer.occluded(rays, blocked);
-      const auto hidden = float(std::count(blocked.begin(), blocked.end(), 1));
-      out[i] = radiance * (kPi * (1 - hidden / kSkyRays));
-    }
+    for (size_t i = begin; i < end; ++i)
+      out[i] = radiance * (kPi * visible_sky(x.tracer, points.position[i], points.normal[i],
+                                             points.normal[i], x.diagonal_m, kSkyRays));
   });
   return out;
 }
 
 }  // namespace
+
+float visible_sky(const trace::RayTracer& tracer, Vec3 position, Vec3 normal, Vec3 geometric_normal,
+                  float diagonal_m, uint32_t count) {
+  const auto frame = frame_around(normal);
+  const Vec3 from = trace::offset_origin(position, geometric_normal, diagonal_m);
+  std::vector<trace::Ray> rays;
+  for (uint32_t k = 0; k < count; ++k) {
+    const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 5)));
+    if (dot(d, geometric_normal) > 0) rays.push_back({from, 0, d, INFINITY});
+  }
+  std::vector<uint8_t> blocked(rays.size());
+  tracer.occluded(rays, blocked);
+  return float(std::count(blocked.begin(), blocked.end(), 0)) / float(count);
+}
 
 Lamps lamps_of(const scene::Scene& scene) {
   Lamps out;

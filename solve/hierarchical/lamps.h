@@ -14,6 +14,11 @@ struct Lamps {
 };
 Lamps lamps_of(const scene::Scene& scene);
 
+/// The share of the sky that a point sees, weighted by the cosine about `normal`: by so many rays,
+/// the same directions everywhere.
+float visible_sky(const trace::RayTracer& tracer, Vec3 position, Vec3 normal, Vec3 geometric_normal,
+                  float diagonal_m, uint32_t count);
+
 /// Sets ElementLight::unlinked of all leaves that have none yet (`lit` counts elements, in order),
 /// dividing leaves over which it is farther than eps from linear. As with links, large leaves count
 /// for more: see error_of.

@@ -220,7 +220,7 @@ Samples collect_samples(const Maker& m, const LightMesh& mesh) {
   for (const LightTriangle& t : mesh.triangles) {
     const std::array<DVec3, 3> c{mesh.vertices[t.vertex[0]], mesh.vertices[t.vertex[1]],
                                  mesh.vertices[t.vertex[2]]};
-    const DVec3 middle = (c[0] + c[1] + c[2]) * (1.0 / 3);
+    const DVec3 middle = middle_of(mesh, t);
     auto& samples = out.of_triangle.emplace_back();
     // In the order of interpolant_of: corner, middle of its edge, next corner, ...
     constexpr std::array<std::pair<int, int>, 6> kPlaces{

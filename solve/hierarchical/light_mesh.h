@@ -35,6 +35,11 @@ struct LightMesh {
   size_t lines = 0;                        ///< active pieces
 };
 
+inline DVec3 middle_of(const LightMesh& mesh, const LightTriangle& t) {
+  return (mesh.vertices[t.vertex[0]] + mesh.vertices[t.vertex[1]] + mesh.vertices[t.vertex[2]]) *
+         (1.0 / 3);
+}
+
 struct MeshParams {
   bool discontinuities = true;
   DiscontinuityParams discontinuity;

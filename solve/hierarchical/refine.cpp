@@ -184,8 +184,9 @@ ElementLight bare_light(const scene::Scene& scene, const Exchange& x, const Elem
   }
   const auto count = uint32_t(
       std::clamp(kTexturePoints * e.area_m2 / x.unit_area_m2, kLeastTexturePoints, kTexturePoints));
+  const uint64_t seed = seed_of(e);
   for (uint32_t k = 0; k < count; ++k) {
-    const DVec3 place = point_in(e, sobol_owen_2d(k, seed_of(e)));
+    const DVec3 place = point_in(e, sobol_owen_2d(k, seed));
     std::optional<scene::SurfacePoint> p;
     if (face.has_holes)
       p = solid_point(x.faces, x.tracer, e.face, place);  // a hole sends nothing

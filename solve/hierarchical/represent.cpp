@@ -53,10 +53,7 @@ Result<std::vector<float>> measure(const Looked& at, std::span<const size_t> tri
   std::vector<Receiver> receivers;
   for (const size_t k : triangles) {
     const LightTriangle& t = mesh.triangles[k];
-    const DVec3 middle =
-        (mesh.vertices[t.vertex[0]] + mesh.vertices[t.vertex[1]] + mesh.vertices[t.vertex[2]]) *
-        (1.0 / 3);
-    receivers.push_back(receiver_at(at.s, at.scene, at.tracer, t.face, middle));
+    receivers.push_back(receiver_at(at.s, at.scene, at.tracer, t.face, middle_of(mesh, t)));
   }
   LUXEL_TRY(const std::vector<Rgb> e, continuous_irradiance_at(at.s, at.scene, at.tracer, receivers,
                                                                at.params, known, progress));

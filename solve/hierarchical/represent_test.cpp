@@ -74,7 +74,7 @@ TEST(Represent, KeepsEnergy) {
     const auto s = solved(scene::radiosity_box(), {.eps = eps});
     (void)represented(*s);
     // A quarter of a hundredth is what interpolants may be off by.
-    EXPECT_NEAR(testing::absorbed_over_emitted(s->solution), 1, 0.004);
+    EXPECT_NEAR(absorbed_over_emitted(s->solution), 1, 0.004);
   }
 }
 

@@ -68,7 +68,7 @@ void count_bounces(Work& w, int bounces) {
   for (size_t e = 0; e < light.size(); ++e) light[e].unlinked = unlinked[e];
   std::vector<ElementLight> before;
   for (int k = 0; k <= bounces; ++k) {
-    before = light;
+    if (k == bounces) before = light;
     gather(w.x, w.s.links.of, w.s.light);
     push_pull(w.s.faces, w.s.tree, w.s.light);
   }
@@ -135,17 +135,22 @@ Totals totals_of(const Solution& s) {
     out.irradiance += l.irradiance * area, out.radiosity += l.radiosity * area;
     out.emission += l.emission * area;
   }
-  for (size_t e = 0; e < s.tree.elements.size(); ++e) {
-    const ElementLight& l = s.light.elements[e];
-    if (s.tree.elements[e].is_leaf())
-      out.absorbed +=
-          (Rgb{1, 1, 1} - l.reflectance) * l.irradiance * float(s.tree.elements[e].area_m2);
-  }
   const float scale = out.area_m2 > 0 ? float(1 / out.area_m2) : 0;
-  out.absorbed = out.absorbed * scale;
   out.irradiance = out.irradiance * scale, out.radiosity = out.radiosity * scale;
   out.emission = out.emission * scale;
   return out;
+}
+
+double absorbed_over_emitted(const Solution& s) {
+  double absorbed = 0, emitted = 0;
+  for (size_t e = 0; e < s.tree.elements.size(); ++e) {
+    if (!s.tree.elements[e].is_leaf()) continue;
+    const ElementLight& l = s.light.elements[e];
+    absorbed += s.tree.elements[e].area_m2 *
+                double(luminance((Rgb{1, 1, 1} - l.reflectance) * l.irradiance));
+    emitted += s.tree.elements[e].area_m2 * double(luminance(l.emission));
+  }
+  return absorbed / emitted;
 }
 
 Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,

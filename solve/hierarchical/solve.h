@@ -57,8 +57,9 @@ Status iterate(Solution& solution, const trace::RayTracer& tracer, double tolera
 struct Totals {
   double area_m2 = 0;
   Rgb irradiance, radiosity, emission;
-  Rgb absorbed;  ///< over leaves; as much as is emitted where nothing gets out
 };
 Totals totals_of(const Solution& solution);
+/// Luminance that all leaves absorb over what they emit: 1 where nothing gets out.
+double absorbed_over_emitted(const Solution& solution);
 
 }  // namespace luxel::hierarchical

@@ -12,7 +12,6 @@
 namespace luxel::hierarchical {
 namespace {
 
-using testing::absorbed_over_emitted;
 using testing::leaf_count;
 using testing::solved;
 

@@ -126,6 +126,26 @@ scene::Scene window() {
   return s;
 }
 
+/// A map of the sky: bright above, dim below, and a sun of two pixels that is 20,000 times as
+/// bright, where window() has its own.
+scene::Environment sky_map() {
+  scene::Environment map{128, 64, {}, 0.3f};
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x)
+      map.radiance.push_back(Rgb{0.5f, 0.7f, 1} * (y < 32 ? 1.5f - float(y) / 40 : 0.25f));
+  const size_t sun = scene::pixel_towards(map, normalize(Vec3{-0.4f, 0.7f, 1}));
+  map.radiance[sun] = map.radiance[sun + 1] = {9000, 8000, 6000};
+  return map;
+}
+
+/// window() under a map of the sky.
+scene::Scene window_to_a_sky_map() {
+  scene::Scene s = window();
+  s.lights.clear(), s.background = {};
+  s.environment = sky_map();
+  return s;
+}
+
 }  // namespace
 
 std::vector<AgreementScene> agreement_scenes() {
@@ -134,7 +154,8 @@ std::vector<AgreementScene> agreement_scenes() {
           {"spheres and cube", scene::spheres_and_cube(), 128, "smooth surfaces, a background"},
           {"every lamp", every_lamp(), 128,
            "point, spot and sun, an emissive texture, a textured floor, a mask with holes"},
-          {"window", window(), 96, "sky and a broad sun through an opening"}};
+          {"window", window(), 96, "sky and a broad sun through an opening"},
+          {"sky map", window_to_a_sky_map(), 96, "the same under an environment with a sun"}};
 }
 
 }  // namespace luxel::bench

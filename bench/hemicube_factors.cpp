@@ -87,7 +87,8 @@ Status measure_squares(const Squares& s, std::vector<FactorErrors>& out, Progres
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(const hemicube::Mesh mesh, hemicube::make_mesh(scene, {}, progress));
   const auto receivers = hemicube::make_receivers(scene, mesh, hemicube::ElementKind::triangle);
-  const hemicube::Senders senders{scene, tracer, mesh, receivers};
+  const transport::Surroundings around;
+  const hemicube::Senders senders{scene, tracer, mesh, receivers, around};
   const DVec3 normal = normalize(transport::area_vector(s.a));
   const std::vector<Point> points = gauss_points(s, normal);
   std::vector<hemicube::Viewpoint> from;

@@ -7,7 +7,7 @@ namespace luxel::bench {
 Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution, Progress& progress) {
   auto p = std::make_unique<Prepared>();
   p->scene = std::move(scene);
-  pipeline::add_outside_light({}, p->scene);
+  LUXEL_TRY_STATUS(pipeline::add_outside_light({}, p->scene));
   atlas::AtlasParams params;
   params.resolution = resolution;
   LUXEL_TRY(p->atlas, atlas::make_atlas(p->scene, params, progress));

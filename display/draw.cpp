@@ -41,15 +41,18 @@ Rgb seen_radiance(const scene::Scene& scene, const scene::SurfacePoint& p,
   return emission_at(scene, p) + reflectance_at(scene, p) * irradiance_at(p) * (1.0f / kPi);
 }
 
+/// What is seen in a direction in which there is no surface.
+using Behind = std::function<Rgb(Vec3)>;
+
 /// Mean over a pixel's samples; summed in double so that equal samples give back their value.
-void write_pixel(Rgb background, std::span<const trace::Hit> hits, const SeenAt& seen_at,
-                 float* pixel) {
+void write_pixel(std::span<const trace::Hit> hits, std::span<const trace::Ray> rays,
+                 const SeenAt& seen_at, const Behind& behind, float* pixel) {
   double r = 0, g = 0, b = 0;
   size_t found = 0;
-  for (const trace::Hit& hit : hits) {
-    const Rgb c = hit.found() ? seen_at(hit) : background;
+  for (size_t k = 0; k < hits.size(); ++k) {
+    const Rgb c = hits[k].found() ? seen_at(hits[k]) : behind(rays[k].direction);
     r += double(c.x), g += double(c.y), b += double(c.z);
-    found += hit.found() ? 1 : 0;
+    found += hits[k].found() ? 1 : 0;
   }
   const double count = double(hits.size());
   pixel[0] = float(r / count), pixel[1] = float(g / count), pixel[2] = float(b / count);
@@ -65,7 +68,10 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
   const trace::CameraRays rays_of(camera, params.width, params.height);
   const size_t tiles =
       size_t((params.width + kTile - 1) / kTile) * size_t((params.height + kTile - 1) / kTile);
-  const Rgb background = params.background.value_or(scene.background);
+  const Behind behind = [&](Vec3 direction) {
+    const float most = params.brightest_behind;
+    return min(scene::smooth_surroundings_towards(scene, direction), Rgb{most, most, most});
+  };
   image::Image picture(params.width, params.height, 4);
   progress.begin("draw", tiles);
   parallel_for(tiles, 1, [&](size_t begin, size_t end) {
@@ -77,8 +83,8 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
       size_t first = 0;
       for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x, first += per_pixel)
-          write_pixel(background, std::span(hits).subspan(first, per_pixel), seen_at,
-                      picture.at(x, y));
+          write_pixel(std::span(hits).subspan(first, per_pixel),
+                      std::span(rays).subspan(first, per_pixel), seen_at, behind, picture.at(x, y));
       progress.advance(1);
     }
   });

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 
 #include "base/progress.h"
 #include "base/result.h"
@@ -15,8 +14,8 @@ namespace luxel::display {
 
 struct DrawParams {
   int width = 960, height = 720;
-  int samples_per_axis = 3;                      ///< n x n rays per pixel
-  std::optional<Rgb> background = std::nullopt;  ///< instead of the scene's
+  int samples_per_axis = 3;           ///< n x n rays per pixel
+  float brightest_behind = INFINITY;  ///< what is seen of the surroundings is cut off there
 };
 
 /// How the surface that a camera's ray met looks from there. Called by many threads at once.
@@ -24,7 +23,7 @@ using SeenAt = std::function<Rgb(const trace::Hit&)>;
 
 /// What is seen per pixel, 4 channels (A = share of the pixel that shows a surface). Back faces of
 /// one-sided materials are invisible, as in a real-time engine, so a closed room can be looked into
-/// from outside. Where nothing is seen: the background.
+/// from outside. Where no surface is seen: the surroundings.
 Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer& tracer,
                                const scene::Camera& camera, const SeenAt& seen_at,
                                const DrawParams& params, Progress& progress);

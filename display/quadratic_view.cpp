@@ -21,6 +21,7 @@ scene::Scene scene_of(const QuadraticMesh& mesh) {
   for (const uint8_t two_sided : mesh.two_sided) out.triangle_material.push_back(two_sided ? 1 : 0);
   scene.meshes.push_back(std::move(out));
   scene.instances.push_back({"triangles", 0, {}});
+  scene.background = mesh.background, scene.environment = mesh.environment;
   return scene;
 }
 
@@ -35,8 +36,8 @@ struct QuadraticView::Impl {
   scene::Scene scene;  ///< the tracer refers to it
   std::optional<trace::RayTracer> tracer;
 
-  Rgb radiance_of(const trace::Hit& hit) const {
-    if (!hit.found()) return mesh.background;
+  Rgb radiance_of(const trace::Hit& hit, Vec3 direction) const {
+    if (!hit.found()) return scene::smooth_surroundings_towards(scene, direction);
     const Rgb e = max(Rgb{}, value_of(mesh.irradiance[hit.triangle], hit.at));
     return mesh.emission[hit.triangle] + mesh.reflectance[hit.triangle] * e * (1 / kPi);
   }
@@ -77,7 +78,7 @@ image::Image QuadraticView::draw(const scene::Camera& camera, int width, int hei
       size_t k = 0;
       for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x, ++k) {
-          const Rgb c = impl_->radiance_of(hits[k]);
+          const Rgb c = impl_->radiance_of(hits[k], rays[k].direction);
           float* pixel = picture.at(x, y);
           pixel[0] = c.x, pixel[1] = c.y, pixel[2] = c.z, pixel[3] = hits[k].found() ? 1.0f : 0.0f;
         }

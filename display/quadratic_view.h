@@ -22,7 +22,8 @@ struct QuadraticMesh {
   std::vector<Rgb> reflectance;  ///< one per triangle: textures are means here
   std::vector<Rgb> emission;     ///< radiance
   std::vector<uint8_t> two_sided;
-  Rgb background{};
+  Rgb background{};  ///< radiance behind them, and the map of the surroundings
+  scene::Environment environment;
 };
 
 class QuadraticView {

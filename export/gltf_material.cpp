@@ -126,6 +126,16 @@ void set_emission(Glb& glb, MaterialBook& book, const scene::Scene& scene, const
   glb.extensions_used.insert("KHR_materials_emissive_strength");
 }
 
+void set_transmission(Glb& glb, MaterialBook& book, const scene::Scene& scene,
+                      const scene::Material& m, TexcoordSlots slots, json& out) {
+  if (!(m.transmission > 0)) return;
+  json& extension = out["extensions"]["KHR_materials_transmission"];
+  extension = {{"transmissionFactor", m.transmission}};
+  set_if(extension, "transmissionTexture",
+         texture_info(glb, book, scene, m.transmission_texture, slots));
+  glb.extensions_used.insert("KHR_materials_transmission");
+}
+
 /// Phong's highlight of a material that is no metal, as import/ will find it again. Only where
 /// something was set: a scene that asks for no highlight is written without one.
 void set_highlight(Glb& glb, const scene::Material& m, json& out) {
@@ -141,6 +151,7 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
   json out = {{"pbrMetallicRoughness", surface(glb, book, scene, m, slots)}};
   if (!m.name.empty()) out["name"] = m.name;
   set_emission(glb, book, scene, m, slots, out);
+  set_transmission(glb, book, scene, m, slots, out);
   if (m.alpha_mode == scene::AlphaMode::blend) out["alphaMode"] = "BLEND";
   if (m.alpha_mode == scene::AlphaMode::mask) {
     out["alphaMode"] = "MASK";
@@ -168,8 +179,7 @@ size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, u
   const scene::Material& m = scene.materials[material];
   // Slots that no texture asks for make no difference, and no second copy of the material.
   std::array<bool, 2> used{};
-  for (const scene::TextureRef* ref :
-       {&m.base_color_texture, &m.metallic_texture, &m.emission_texture})
+  for (const scene::TextureRef* ref : scene::textures_of(m))
     if (ref->texture != scene::kNone) used[ref->uv_set == 1 ? 1 : 0] = true;
   for (size_t set = 0; set < 2; ++set)
     if (!used[set]) slots[set] = -1;

@@ -53,8 +53,7 @@ std::vector<T> picked(const std::vector<T>& values, std::span<const uint32_t> so
 }
 
 bool needs_uv_set(const scene::Material& m, int set) {
-  for (const scene::TextureRef* ref :
-       {&m.base_color_texture, &m.metallic_texture, &m.emission_texture})
+  for (const scene::TextureRef* ref : scene::textures_of(m))
     if (ref->texture != scene::kNone && (ref->uv_set == 1) == (set == 1)) return true;
   return false;
 }

@@ -116,6 +116,25 @@ void set_highlight(const GltfReader& reader, const tinygltf::Material& in, scene
   m.specular = scene::specular_of(f0, m.sharpness);
 }
 
+/// A texture that an extension names, of which tinygltf knows nothing; index -1 where there is
+/// none.
+Result<tinygltf::TextureInfo> texture_in(const GltfReader& reader, const tinygltf::Value& extension,
+                                         const char* key, const std::string& user) {
+  tinygltf::TextureInfo info;
+  if (!extension.IsObject() || !extension.Has(key)) return info;
+  const tinygltf::Value& value = extension.Get(key);
+  const double index = number_in(value, "index", -1), set = number_in(value, "texCoord", 0);
+  if (!(index >= 0 && index < double(reader.model.textures.size())) || !(set >= 0 && set < 1e6))
+    return fail(ErrorCode::bad_input,
+                "{}: {} of {} has texture index {}, but there are {} textures", reader.source.name,
+                key, user, index, reader.model.textures.size());
+  info.index = int(index), info.texCoord = int(set);
+  if (value.Has("extensions") && value.Get("extensions").IsObject())
+    for (const std::string& name : value.Get("extensions").Keys())
+      info.extensions[name] = value.Get("extensions").Get(name);
+  return info;
+}
+
 Result<scene::Material> read_material(GltfReader& reader, ImageLoader& images, size_t index) {
   const tinygltf::Material& in = reader.model.materials[index];
   const auto& pbr = in.pbrMetallicRoughness;
@@ -139,6 +158,12 @@ Result<scene::Material> read_material(GltfReader& reader, ImageLoader& images, s
     strength = number_in(it->second, "emissiveStrength", 1);
   out.emission = vec3_of(in.emissiveFactor, {}) * float(strength);
 
+  if (const auto it = in.extensions.find("KHR_materials_transmission"); it != in.extensions.end()) {
+    out.transmission = float(number_in(it->second, "transmissionFactor", 0));
+    LUXEL_TRY(const tinygltf::TextureInfo info,
+              texture_in(reader, it->second, "transmissionTexture", user));
+    LUXEL_TRY(out.transmission_texture, read_ref(reader, images, info, user));
+  }
   LUXEL_TRY(out.base_color_texture, read_ref(reader, images, pbr.baseColorTexture, user));
   if (max_component(out.emission) > 0) {
     LUXEL_TRY(out.emission_texture, read_ref(reader, images, in.emissiveTexture, user));

@@ -38,8 +38,9 @@ Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>
   progress.begin("import", 0);
   LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
   warnings = std::move(imported.warnings);
-  const std::string dark = add_outside_light(settings.outside, imported.scene);
-  if (!dark.empty()) warnings.push_back(dark);
+  LUXEL_TRY(const std::vector<std::string> light,
+            add_outside_light(settings.outside, imported.scene));
+  warnings.insert(warnings.end(), light.begin(), light.end());
   LUXEL_TRY_STATUS(not_cancelled(progress));
   return std::move(imported.scene);
 }

@@ -27,7 +27,7 @@ Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettin
   LUXEL_TRY(const image::Image lightmap,
             image::decode_exr(bytes, (s.from / "lightmap.exr").string()));
   scene::Scene& scene = baked.scene;
-  scene.background = subject.scene.background;
+  scene.background = subject.scene.background, scene.environment = subject.scene.environment;
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   const auto irradiance = [&](const scene::SurfacePoint& p) {
     return display::lightmap_at(scene, lightmap, p);

@@ -54,6 +54,13 @@ display::DrawParams draw_params(const RenderSettings& s) {
   return params;
 }
 
+/// The k-th of a pixel's rays.
+trace::Ray sample_ray(const trace::CameraRays& camera, int width, size_t pixel, int k) {
+  const size_t x = pixel % size_t(width), y = pixel / size_t(width);
+  return camera.through(float(x) + (float(k % kRaysPerAxis) + 0.5f) / kRaysPerAxis,
+                        float(y) + (float(k / kRaysPerAxis) + 0.5f) / kRaysPerAxis);
+}
+
 /// What the rays of all pixels meet, pixel after pixel.
 std::vector<trace::Hit> hits_of(const Subject& subject, const RenderSettings& s) {
   const trace::CameraRays camera(subject.camera, s.width, s.height);
@@ -62,10 +69,9 @@ std::vector<trace::Hit> hits_of(const Subject& subject, const RenderSettings& s)
   parallel_for(size_t(s.height), 1, [&](size_t begin, size_t end) {
     for (size_t y = begin; y < end; ++y) {
       std::vector<trace::Ray> rays;
-      for (int x = 0; x < s.width; ++x)
+      for (size_t x = 0; x < size_t(s.width); ++x)
         for (int k = 0; k < n * n; ++k)
-          rays.push_back(camera.through(float(x) + (float(k % n) + 0.5f) / n,
-                                        float(y) + (float(k / n) + 0.5f) / n));
+          rays.push_back(sample_ray(camera, s.width, y * size_t(s.width) + x, k));
       const std::vector<trace::Hit> row = trace::visible_hits(subject.scene, subject.tracer, rays);
       std::copy(row.begin(), row.end(), hits.begin() + std::ptrdiff_t(y * row.size()));
     }
@@ -76,11 +82,13 @@ std::vector<trace::Hit> hits_of(const Subject& subject, const RenderSettings& s)
 /// The mean radiance of each pixel's hits.
 image::Image picture_of(const Subject& subject, const RenderSettings& s,
                         std::span<const trace::Hit> hits, std::span<const Rgb> irradiance) {
+  const trace::CameraRays camera(subject.camera, s.width, s.height);
   image::Image picture(s.width, s.height, 4);
   constexpr size_t n2 = size_t(kRaysPerAxis * kRaysPerAxis);
   for (size_t pixel = 0; pixel * n2 < hits.size(); ++pixel)
     for (size_t k = pixel * n2; k < (pixel + 1) * n2; ++k) {
-      Rgb c = subject.scene.background;
+      const Vec3 direction = sample_ray(camera, s.width, pixel, int(k % n2)).direction;
+      Rgb c = scene::smooth_surroundings_towards(subject.scene, direction);
       if (hits[k].found()) {
         const scene::SurfacePoint p = hits[k].point();
         c = scene::emission_at(subject.scene, p) +
@@ -116,7 +124,7 @@ display::QuadraticMesh quadratic_mesh(const scene::Scene& scene, const Solution&
   display::QuadraticMesh out;
   for (const DVec3& p : mesh.vertices) out.vertices.push_back(to_float(p));
   out.irradiance = mesh.interpolant;
-  out.background = scene.background;
+  out.background = scene.background, out.environment = scene.environment;
   for (const hierarchical::LightTriangle& t : mesh.triangles) {
     const hierarchical::ElementLight& light = solution.light.elements[t.leaf];
     out.triangles.push_back(t.vertex);

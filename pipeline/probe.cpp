@@ -127,8 +127,8 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   scene::Scene& scene = imported.scene;
   Probed out;
   out.warnings = std::move(imported.warnings);
-  if (std::string dark = add_outside_light(s.outside, scene); !dark.empty())
-    out.warnings.push_back(std::move(dark));
+  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(s.outside, scene));
+  out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(hierarchical::Solution solution,
             hierarchical::solve(scene, tracer, solve_params(s.hierarchical, -1), progress));

@@ -170,7 +170,7 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   scene::Scene& scene = imported.scene;
   std::vector<std::string> warnings = std::move(imported.warnings);
   // A scene without light is no mistake here: its lamps come later.
-  if (s.outside.background || s.outside.sun) add_outside_light(s.outside, scene);
+  if (s.outside.background || s.outside.sun) LUXEL_TRY_STATUS(add_outside_light(s.outside, scene));
   LUXEL_TRY_STATUS(fits(s));
   LUXEL_TRY(Wanted wanted, wanted_of(scene, s, progress));
   progress.begin("build ray tracer", 0);

@@ -100,9 +100,9 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
   Rendered out;
   out.warnings = std::move(imported.warnings);
-  const std::string dark = add_outside_light(s.outside, imported.scene);
+  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(s.outside, imported.scene));
   const bool computes_light = !technique || (technique->is_light && !technique->needs_bake);
-  if (computes_light && !dark.empty()) out.warnings.push_back(dark);
+  if (computes_light) out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(imported.scene));
   LUXEL_TRY(const scene::Camera camera,
             choose_camera({s.camera, s.eye, s.look_at, s.fov_deg, float(s.width) / float(s.height)},

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "import/environment.h"
 #include "pipeline/solvers.h"
 #include "scene/validate.h"
 #include "solve/hemicube/hemicube.h"
@@ -158,6 +159,9 @@ nlohmann::json to_json(const BakeSettings& s) {
         h.min_weight ? nlohmann::json(*h.min_weight) : nlohmann::json("auto");
   }
   if (const auto& b = s.outside.background) json["background"] = {b->x, b->y, b->z};
+  if (const auto& e = s.outside.environment)
+    json["environment"] = {
+        {"file", e->file.string()}, {"rotation_deg", e->rotation_deg}, {"scale", e->scale}};
   if (const auto& sun = s.outside.sun)
     json["sun"] = {sun->azimuth_deg, sun->elevation_deg, sun->lux};
   return json;
@@ -169,6 +173,29 @@ Result<Rgb> parse_background(std::string_view text) {
     return fail(ErrorCode::bad_setting,
                 "--background '{}' is not a radiance; give three numbers >= 0 as r,g,b", text);
   return Rgb{float((*v)[0]), float((*v)[1]), float((*v)[2])};
+}
+
+Result<EnvironmentSetting> parse_environment(std::string_view text) {
+  // From the end: a file's name may hold commas.
+  std::vector<double> numbers;
+  std::string_view file = text;
+  while (numbers.size() < 2) {
+    const size_t comma = file.rfind(',');
+    if (comma == std::string_view::npos) break;
+    const auto value = parse_number(file.substr(comma + 1));
+    if (!value) break;
+    numbers.insert(numbers.begin(), *value);
+    file = file.substr(0, comma);
+  }
+  EnvironmentSetting out{std::string(file)};
+  if (numbers.size() > 0) out.rotation_deg = float(numbers[0]);
+  if (numbers.size() > 1) out.scale = float(numbers[1]);
+  if (file.empty() || !(out.scale >= 0))
+    return fail(ErrorCode::bad_setting,
+                "--environment '{}' is not FILE,rotate_deg,scale; the scale is >= 0, as in "
+                "--environment sky.hdr,90,0.5",
+                text);
+  return out;
 }
 
 Result<Sun> parse_sun(std::string_view text) {
@@ -218,13 +245,24 @@ scene::PunctualLight sun_light(const Sun& sun) {
   return light;
 }
 
-std::string add_outside_light(const OutsideLight& outside, scene::Scene& scene) {
+Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,
+                                                   scene::Scene& scene) {
+  std::vector<std::string> warnings;
+  if (const auto& e = outside.environment) {
+    LUXEL_TRY(import::ImportedEnvironment imported,
+              import::read_environment(e->file, e->rotation_deg * kPi / 180, e->scale));
+    scene.environment = std::move(imported.map);
+    scene.background = {};
+    warnings = std::move(imported.warnings);
+  }
   if (outside.background) scene.background = *outside.background;
   if (outside.sun && outside.sun->lux > 0) scene.lights.push_back(sun_light(*outside.sun));
-  if (scene::has_light(scene)) return {};
+  if (scene::has_light(scene)) return warnings;
   scene.background = {1, 1, 1};
-  return "the scene has no light: lit by a white background of radiance 1; --background and --sun "
-         "give others";
+  warnings.push_back(
+      "the scene has no light: lit by a white background of radiance 1; --background, "
+      "--environment and --sun give others");
+  return warnings;
 }
 
 }  // namespace luxel::pipeline

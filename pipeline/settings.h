@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "atlas/atlas.h"
 #include "base/result.h"
@@ -22,8 +23,16 @@ struct Sun {
   float lux = 0;             ///< E on a surface that faces it [W/m^2 or lux]
 };
 
+/// A picture of the surroundings.
+struct EnvironmentSetting {
+  std::filesystem::path file;
+  float rotation_deg = 0;  ///< about the vertical, as a compass turns
+  float scale = 1;         ///< of its radiance
+};
+
 /// Light from outside the scene's file.
 struct OutsideLight {
+  std::optional<EnvironmentSetting> environment;
   std::optional<Rgb> background;  ///< radiance of the surroundings; replaces the file's
   std::optional<Sun> sun;
 };
@@ -86,6 +95,8 @@ nlohmann::json to_json(const BakeSettings& settings);
 
 /// "r,g,b", three numbers >= 0.
 Result<Rgb> parse_background(std::string_view text);
+/// "FILE", "FILE,rotate_deg" or "FILE,rotate_deg,scale".
+Result<EnvironmentSetting> parse_environment(std::string_view text);
 /// "azimuth_deg,elevation_deg,lux".
 Result<Sun> parse_sun(std::string_view text);
 /// "1500000", "900M", "1.5G": bytes; K, M, G, T are powers of 1024.
@@ -96,8 +107,10 @@ Result<int> parse_bounces(std::string_view text);
 /// The sun's disc is half a degree wide: its shadows have penumbrae.
 scene::PunctualLight sun_light(const Sun& sun);
 
-/// Adds outside light to a scene. A scene that then has no light at all gets a white background of
-/// radiance 1; the returned sentence says so (empty otherwise).
-std::string add_outside_light(const OutsideLight& outside, scene::Scene& scene);
+/// Adds outside light to a scene; an environment without a background beside it replaces the file's
+/// background. A scene that then has no light at all gets a white background of radiance 1. Returns
+/// warnings; that one comes last. Errors: those of import::read_environment.
+Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,
+                                                   scene::Scene& scene);
 
 }  // namespace luxel::pipeline

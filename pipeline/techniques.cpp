@@ -19,7 +19,7 @@ using display::LocalTechnique;
 display::DrawParams params_for_colors(const Subject& subject, const RenderSettings& settings) {
   display::DrawParams params;
   params.width = settings.width, params.height = settings.height;
-  params.background = min(subject.scene.background, Rgb{1, 1, 1});
+  params.brightest_behind = 1;
   return params;
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/vec_double.h"
 #include "base/warp.h"
 
 namespace luxel::reference {
@@ -45,7 +46,7 @@ double fine_number(RandomStream& random) {
 }
 
 /// The triangle whose share of the chances u falls into; u in [0, 1).
-size_t pick(const std::vector<double>& below, double u) {
+size_t pick(std::span<const double> below, double u) {
   const auto found = std::upper_bound(below.begin() + 1, below.end() - 1, u * below.back());
   return size_t(found - below.begin()) - 1;
 }
@@ -128,6 +129,44 @@ EmitterPoint sample_emitters(const Emitters& emitters, RandomStream& random) {
   const Emitter& e = emitters.triangles[pick(emitters.chance_below, fine_number(random))];
   const Barycentric at = triangle_sample(random.next2());
   return {&e, at, interpolate(e.corners.a, e.corners.b, e.corners.c, at)};
+}
+
+SkySampler sky_sampler(const scene::Environment& map) {
+  SkySampler out;
+  if (map.empty()) return out;
+  const size_t width = size_t(map.width);
+  out.row_below.push_back(0);
+  for (int y = 0; y < map.height; ++y) {
+    double sum = 0;
+    out.column_below.push_back(0);
+    for (size_t x = 0; x < width; ++x) {
+      sum += double(luminance(map.radiance[size_t(y) * width + x]));
+      out.column_below.push_back(sum);
+    }
+    out.row_below.push_back(out.row_below.back() + sum * scene::pixel_solid_angle(map, y));
+  }
+  return out;
+}
+
+SkyPoint sample_sky(const scene::Environment& map, const SkySampler& sampler,
+                    RandomStream& random) {
+  const size_t row = pick(sampler.row_below, fine_number(random));
+  const auto columns =
+      std::span(sampler.column_below).subspan(row * size_t(map.width + 1), size_t(map.width + 1));
+  const size_t column = pick(columns, fine_number(random));
+  const Vec2 u = random.next2();
+  // Uniform in azimuth and in the cosine of the polar angle.
+  const double from = std::cos(kPiDouble * double(row) / map.height);
+  const double to = std::cos(kPiDouble * double(row + 1) / map.height);
+  const double theta = std::acos(from + (to - from) * double(u.y));
+  const Vec3 d = scene::direction_of(
+      map, {(float(column) + u.x) / float(map.width), float(theta / kPiDouble)});
+  return {d, sky_pdf(map, sampler, d)};
+}
+
+float sky_pdf(const scene::Environment& map, const SkySampler& sampler, Vec3 direction) {
+  if (!(sampler.power() > 0)) return 0;
+  return float(double(luminance(scene::radiance_towards(map, direction))) / sampler.power());
 }
 
 LampSample sample_lamps(const scene::Scene& scene, const Receiver& at, RandomStream& random,

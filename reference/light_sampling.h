@@ -39,6 +39,24 @@ struct EmitterPoint {
 };
 EmitterPoint sample_emitters(const Emitters& emitters, RandomStream& random);
 
+/// The scene's environment by brightness: rows, then pixels of a row, each in proportion to what
+/// they send. Independent of how solvers divide it.
+struct SkySampler {
+  std::vector<double> row_below;     ///< power of the rows before each; one extra entry
+  std::vector<double> column_below;  ///< per row: width + 1 sums of luminance
+  double power() const { return row_below.empty() ? 0 : row_below.back(); }
+};
+SkySampler sky_sampler(const scene::Environment& map);
+
+/// A direction of the map with its density per steradian; u in [0, 1)^2.
+struct SkyPoint {
+  Vec3 direction;
+  float pdf = 0;
+};
+SkyPoint sample_sky(const scene::Environment& map, const SkySampler& sampler, RandomStream& random);
+/// The density with which sample_sky finds a direction [1/sr].
+float sky_pdf(const scene::Environment& map, const SkySampler& sampler, Vec3 direction);
+
 /// Light of one lamp without area, as it would arrive unshadowed: one sample of it.
 struct LampSample {
   Rgb irradiance;  ///< on a surface that faces `towards`, divided by the chance to be picked

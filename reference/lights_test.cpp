@@ -278,5 +278,51 @@ TEST(Lights, TheBackgroundIsSeenPastSurfaces) {
   expect_unbiased(solve(scene, points, kDirect), exact);
 }
 
+/// A sky whose upper half is 1 and lower half 0.3, with a sun of one pixel, of 2 pi / 64 by
+/// pi / 32, near the zenith.
+scene::Environment half_sky(float sun) {
+  scene::Environment map{64, 32, std::vector<Rgb>(64 * 32, gray(0.3f)), 0.5f};
+  std::fill(map.radiance.begin(), map.radiance.begin() + 64 * 16, gray(1));
+  map.radiance[5 * 64 + 9] = gray(sun);
+  return map;
+}
+
+// Up: pi + (sun - 1) omega cos(theta). On a wall: the cosine of the azimuth comes in, too.
+TEST(Lights, AMapOfTheSky) {
+  scene::Scene scene;
+  scene::add_material(scene, "far away", gray(0.5f));
+  scene::add_rectangle(scene, {900, 901, 900, 901}, -500, false, 0);
+  for (const float sun : {1.0f, 40.0f, 80000.0f}) {
+    scene.environment = half_sky(sun);
+    // The integrals over the pixel's cap: of cos(theta), and of sin(theta) times the azimuth's
+    // cosine.
+    const double t0 = kPiDouble * 5 / 32, t1 = kPiDouble * 6 / 32, across = 2 * kPiDouble / 64;
+    const double up = across * (std::pow(std::sin(t1), 2) - std::pow(std::sin(t0), 2)) / 2;
+    const double p0 = across * 9 - kPiDouble + 0.5, p1 = p0 + across;
+    const double east =
+        (std::sin(p1) - std::sin(p0)) * ((t1 - t0) / 2 - (std::sin(2 * t1) - std::sin(2 * t0)) / 4);
+    Points points;
+    points.add({0, 0, 0}, {0, 1, 0}), points.add({0, 0, 0}, {-1, 0, 0});
+    points.add({0, 0, 0}, {0, -1, 0});
+    expect_unbiased(solve(scene, points, kDirect),
+                    {kPiDouble + (double(sun) - 1) * up,
+                     kPiDouble * 1.3 / 2 - (double(sun) - 1) * east, kPiDouble * 0.3},
+                    1e-6);
+  }
+}
+
+// With its bounce: a white sky over a plane of reflectance rho, seen by a plate that looks down
+// from high above, brings the plate rho pi.
+TEST(Lights, GroundUnderAMapReflectsIt) {
+  scene::Scene scene;
+  scene::add_material(scene, "ground", gray(0.5f));
+  scene::add_rectangle(scene, {-4000, 4000, -4000, 4000}, 0, true, 0);
+  scene.environment = half_sky(1);
+  Points points;
+  points.add({0, 1, 0}, {0, -1, 0});
+  // What is beyond the plane's edge is a 4000th of the hemisphere, squared.
+  expect_unbiased(solve(scene, points, {.samples = 2000}), {kPiDouble * 0.5}, 1e-4);
+}
+
 }  // namespace
 }  // namespace luxel::reference

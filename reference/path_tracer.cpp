@@ -162,7 +162,7 @@ Result<Picture> radiance_by_paths(const scene::Scene& scene, const trace::RayTra
       }
     const std::vector<trace::Hit> hits = trace::visible_hits(scene, tracer, rays);
     for (size_t k = 0; k < hits.size(); ++k)
-      paths.push_back(path_from_eye(world, hits[k], randoms[k]));
+      paths.push_back(path_from_eye(world, rays[k].direction, hits[k], randoms[k]));
   };
   const auto each = [&](size_t i, const Path& path) { covered[i] += path.shows_surface; };
   const auto finish = [&](size_t i, const Sums& sums, double n) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/warp.h"
+#include "transport/surroundings.h"
 
 namespace luxel::reference {
 namespace {
@@ -14,13 +15,9 @@ constexpr float kArrived = 1 - 1e-5f, kBeyond = 1 + 1e-4f;
 
 Vec3 mirrored(Vec3 d, Vec3 normal) { return d - normal * (2 * dot(d, normal)); }
 
-/// The cosine with which light from `d` is gathered that surfaces have reflected: directions below
-/// the triangle's own horizon look at their mirror image above it, so that they see light, not the
-/// inside of the solid. Its integral over the hemisphere is pi.
+/// The cosine with which light from `d` is gathered that surfaces have reflected, or the sky.
 float folded_cosine(const Receiver& at, Vec3 d) {
-  const float cosine = std::max(0.0f, dot(d, at.normal));
-  if (at.normal == at.geometric_normal) return cosine;
-  return cosine + std::max(0.0f, dot(mirrored(d, at.geometric_normal), at.normal));
+  return transport::folded_cosine(d, at.normal, at.geometric_normal);
 }
 
 /// The power heuristic with exponent 2 [Veach95] for a sample of density `own` that the other
@@ -50,10 +47,13 @@ void aim_at_emitter(const World& world, Path& path, uint32_t index, PathWork& wo
   if (e.two_sided) light_cosine = std::abs(light_cosine);
   const float cosine = dot(d, path.at.normal);
   if (light_cosine <= 0 || cosine <= 0 || dot(d, path.at.geometric_normal) <= 0) return;
-  if (!scene::is_solid_at(world.scene, {e.instance, e.triangle, point.at})) return;
+  const float coverage =
+      scene::passage_at(world.scene, {e.instance, e.triangle, point.at}).coverage;
+  if (coverage <= 0) return;
   const float pdf = e.pdf_area * d2 / light_cosine;  // per steradian
   const float weight = mis_weight(pdf, folded_cosine(path.at, d) / kPi);
-  work.emitter_rays.push_back({index, point, path.throughput * (cosine / kPi * weight / pdf)});
+  work.emitter_rays.push_back(
+      {index, point, path.throughput * (coverage * cosine / kPi * weight / pdf)});
   work.rays.push_back({path.origin, 0, to_light, kBeyond});
 }
 
@@ -67,13 +67,52 @@ void aim_at_lamp(const World& world, Path& path, uint32_t index, PathWork& work)
   work.shadow_rays.push_back({path.origin, 0, lamp.towards, t_max});
 }
 
-void add_emitter_light(const World& world, const EmitterRay& ray, const trace::Hit& hit,
+/// One direction of the environment, weighted against the chance that random_ray finds it.
+void aim_at_sky(const World& world, Path& path, uint32_t index, PathWork& work) {
+  const SkyPoint sky = sample_sky(world.scene.environment, world.sky, path.random);
+  if (!(sky.pdf > 0) || dot(sky.direction, path.at.geometric_normal) <= 0) return;
+  const float cosine = folded_cosine(path.at, sky.direction);
+  const float weight = mis_weight(sky.pdf, cosine / kPi);
+  const Rgb light = scene::radiance_towards(world.scene.environment, sky.direction);
+  work.lamp_rays.push_back({index, path.throughput * light * (cosine / kPi * weight / sky.pdf)});
+  work.shadow_rays.push_back({path.origin, 0, sky.direction, INFINITY});
+}
+
+/// What a random ray sees that has left the scene.
+void add_found_sky(const World& world, Vec3 d, Path& path) {
+  Rgb light = world.scene.background;
+  if (world.sky.power() > 0) {
+    const float pdf = sky_pdf(world.scene.environment, world.sky, d);
+    light += scene::radiance_towards(world.scene.environment, d) *
+             mis_weight(folded_cosine(path.at, d) / kPi, pdf);
+  }
+  path.value += path.throughput * light;
+}
+
+void add_emitter_light(const World& world, const EmitterRay& ray, const trace::Hit& hit, Rgb tint,
                        std::span<Path> paths) {
   const Emitter& e = *ray.point.emitter;
   const bool same = hit.instance == e.instance && hit.triangle == e.triangle;
   if (hit.found() && !same && hit.t < kArrived) return;
   paths[ray.path].value +=
-      ray.factor * scene::emission_at(world.scene, {e.instance, e.triangle, ray.point.at});
+      ray.factor * tint * scene::emission_at(world.scene, {e.instance, e.triangle, ray.point.at});
+}
+
+/// All rays of a bounce. Where nothing colours light, tints are 1 and shares 0 or 1.
+void trace(const World& world, PathWork& work) {
+  work.hits.resize(work.rays.size());
+  world.tracer.closest_hits(work.rays, work.hits);
+  work.tint.assign(work.rays.size(), {1, 1, 1});
+  work.arriving.resize(work.shadow_rays.size());
+  if (world.tracer.has_tints()) {
+    world.tracer.tint(work.rays, work.hits, work.tint);
+    world.tracer.transmitted(work.shadow_rays, work.arriving);
+    return;
+  }
+  work.blocked.resize(work.shadow_rays.size());
+  world.tracer.occluded(work.shadow_rays, work.blocked);
+  for (size_t k = 0; k < work.blocked.size(); ++k)
+    work.arriving[k] = work.blocked[k] ? Rgb{} : Rgb{1, 1, 1};
 }
 
 /// Emission that a random ray has found, weighted against the chance that aim_at_emitter picks the
@@ -107,15 +146,17 @@ bool survives(Path& path, int reflections) {
 bool advance(const World& world, const trace::Ray& ray, const trace::Hit& hit, int depth,
              int bounces, Path& path) {
   if (!hit.found()) {
-    path.value += path.throughput * world.scene.background;
+    add_found_sky(world, ray.direction, path);
     return false;
   }
   if (hit.back_face) {
-    const bool two_sided = scene::material_at(world.scene, hit.point()).double_sided;
+    const scene::Material& material = scene::material_at(world.scene, hit.point());
+    const bool two_sided = scene::reflects_from_behind(material);
     if (depth == 0) path.first_hit = two_sided ? FirstHit::double_sided_back : FirstHit::back;
     if (!two_sided) return false;
   }
-  add_found_emission(world, hit, ray.direction, path);
+  if (!hit.back_face || scene::material_at(world.scene, hit.point()).double_sided)
+    add_found_emission(world, hit, ray.direction, path);
   if (depth == bounces) return false;
   path.throughput = path.throughput * scene::reflectance_at(world.scene, hit.point());
   if (!survives(path, depth + 1)) return false;
@@ -129,7 +170,11 @@ bool advance(const World& world, const trace::Ray& ray, const trace::Hit& hit, i
 World world_of(const scene::Scene& scene, const trace::RayTracer& tracer) {
   Surfaces surfaces = surfaces_of(scene);
   Emitters emitters = collect_emitters(scene, surfaces);
-  return {scene, tracer, std::move(surfaces), std::move(emitters),
+  return {scene,
+          tracer,
+          std::move(surfaces),
+          std::move(emitters),
+          sky_sampler(scene.environment),
           scene::world_bounds(scene).diagonal()};
 }
 
@@ -141,11 +186,11 @@ Path path_from(const World& world, const Receiver& at, RandomStream random) {
   return path;
 }
 
-Path path_from_eye(const World& world, const trace::Hit& hit, RandomStream random) {
+Path path_from_eye(const World& world, Vec3 direction, const trace::Hit& hit, RandomStream random) {
   if (!hit.found()) {
     Path path;
     path.throughput = {};
-    path.value = world.scene.background;
+    path.value = scene::smooth_surroundings_towards(world.scene, direction);
     return path;
   }
   Path path = path_from(world, receiver_at(world.scene, world.surfaces, hit), random);
@@ -167,20 +212,20 @@ uint64_t follow(const World& world, int bounces, std::span<Path> paths, PathWork
     for (const uint32_t i : work.active) {
       if (!world.emitters.triangles.empty()) aim_at_emitter(world, paths[i], i, work);
       if (!world.scene.lights.empty()) aim_at_lamp(world, paths[i], i, work);
+      if (world.sky.power() > 0) aim_at_sky(world, paths[i], i, work);
     }
-    work.hits.resize(work.rays.size());
-    world.tracer.closest_hits(work.rays, work.hits);
-    work.blocked.resize(work.shadow_rays.size());
-    world.tracer.occluded(work.shadow_rays, work.blocked);
+    trace(world, work);
     rays += work.rays.size() + work.shadow_rays.size();
     const size_t count = work.active.size();
     for (size_t k = 0; k < work.emitter_rays.size(); ++k)
-      add_emitter_light(world, work.emitter_rays[k], work.hits[count + k], paths);
+      add_emitter_light(world, work.emitter_rays[k], work.hits[count + k], work.tint[count + k],
+                        paths);
     for (size_t k = 0; k < work.lamp_rays.size(); ++k)
-      if (!work.blocked[k]) paths[work.lamp_rays[k].path].value += work.lamp_rays[k].light;
+      paths[work.lamp_rays[k].path].value += work.lamp_rays[k].light * work.arriving[k];
     work.next.clear();
     for (size_t k = 0; k < count; ++k) {
       const uint32_t i = work.active[k];
+      paths[i].throughput = paths[i].throughput * work.tint[k];
       if (advance(world, work.rays[k], work.hits[k], depth, bounces, paths[i]))
         work.next.push_back(i);
     }

@@ -18,6 +18,7 @@ struct World {
   const trace::RayTracer& tracer;
   Surfaces surfaces;
   Emitters emitters;
+  SkySampler sky;
   float diagonal_m = 0;
 };
 World world_of(const scene::Scene& scene, const trace::RayTracer& tracer);
@@ -37,8 +38,8 @@ struct Path {
 };
 Path path_from(const World& world, const Receiver& at, RandomStream random);
 /// A path from a camera's ray: its value is radiance, L + rho E / pi of the surface that the ray
-/// met, or the background's.
-Path path_from_eye(const World& world, const trace::Hit& hit, RandomStream random);
+/// met, or that of the surroundings.
+Path path_from_eye(const World& world, Vec3 direction, const trace::Hit& hit, RandomStream random);
 
 /// A ray towards an emitter, and what its radiance is worth where it is seen.
 struct EmitterRay {
@@ -55,10 +56,11 @@ struct LampRay {
 struct PathWork {
   std::vector<uint32_t> active, next;
   std::vector<EmitterRay> emitter_rays;
-  std::vector<LampRay> lamp_rays;
+  std::vector<LampRay> lamp_rays;  ///< towards the sky, too
   std::vector<trace::Ray> rays, shadow_rays;
   std::vector<trace::Hit> hits;
   std::vector<uint8_t> blocked;
+  std::vector<Rgb> tint, arriving;  ///< of rays; share of shadow rays' light
   std::vector<float> lamp_weights;
 };
 

@@ -142,6 +142,53 @@ bool is_solid_at(const Scene& scene, const SurfacePoint& p) {
   return base_color_at(scene, p)[3] >= material.alpha_cutoff;
 }
 
+bool lets_light_through(const Material& material) {
+  return material.alpha_mode != AlphaMode::opaque || material.transmission > 0;
+}
+
+bool tints_light(const Material& material) {
+  return material.alpha_mode == AlphaMode::blend || material.transmission > 0;
+}
+
+bool reflects_from_behind(const Material& material) {
+  return material.double_sided || tints_light(material);
+}
+
+Passage passage_at(const Scene& scene, const SurfacePoint& p) {
+  const Material& material = material_at(scene, p);
+  if (!lets_light_through(material)) return {};
+  const auto c = base_color_at(scene, p);
+  const auto channel = [&](size_t k) { return std::clamp(c[k], 0.0f, 1.0f); };
+  const Rgb color{channel(0), channel(1), channel(2)};
+  if (material.alpha_mode == AlphaMode::mask && c[3] < material.alpha_cutoff) return {0, {1, 1, 1}};
+  Passage out;
+  if (material.alpha_mode == AlphaMode::blend) {
+    out.coverage = channel(3);
+    out.tint = Rgb{1, 1, 1} - (Rgb{1, 1, 1} - color) * out.coverage;
+  }
+  if (material.transmission > 0) {
+    const float metallic =
+        material.metallic * texture_at(scene, p, material.metallic_texture, false)[2];
+    const float through = material.transmission * (1 - std::clamp(metallic, 0.0f, 1.0f)) *
+                          texture_at(scene, p, material.transmission_texture, false)[0];
+    // Of what the blend does not cover all goes on; of the rest, `through` does, coloured.
+    const float open = 1 - out.coverage, glass = out.coverage * std::clamp(through, 0.0f, 1.0f);
+    if (open + glass > 0) out.tint = (out.tint * open + color * glass) / (open + glass);
+    out.coverage = 1 - open - glass;
+  }
+  return out;
+}
+
+Rgb surroundings_towards(const Scene& scene, Vec3 direction) {
+  if (scene.environment.empty()) return scene.background;
+  return scene.background + radiance_towards(scene.environment, direction);
+}
+
+Rgb smooth_surroundings_towards(const Scene& scene, Vec3 direction) {
+  if (scene.environment.empty()) return scene.background;
+  return scene.background + smooth_radiance_towards(scene.environment, direction);
+}
+
 std::vector<uint32_t> first_triangles(const Scene& scene) {
   std::vector<uint32_t> first{0};
   for (const Instance& instance : scene.instances)

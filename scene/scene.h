@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "scene/environment.h"
 
 namespace luxel::scene {
 
@@ -56,12 +57,19 @@ struct Material {
   TextureRef emission_texture;    ///< multiplies emission
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;  ///< mask: alpha below it is a hole
+  float transmission = 0;     ///< KHR_materials_transmission: share that goes straight through
+  TextureRef transmission_texture;  ///< its red channel, linear, multiplies transmission
   bool double_sided = false;
   bool unlit = false;  ///< KHR_materials_unlit; baked as a diffuse surface like any other
   /// Phong's highlight, for display/local_light.h alone: global illumination here is diffuse.
   Rgb specular{0, 0, 0};  ///< C_s of [Rodriguez06, eq. 4.26]
   float sharpness = 20;   ///< its exponent n, >= 0
 };
+
+/// Everything that a material looks up.
+inline std::array<const TextureRef*, 4> textures_of(const Material& m) {
+  return {&m.base_color_texture, &m.metallic_texture, &m.emission_texture, &m.transmission_texture};
+}
 
 /// Indexed triangles. Attribute arrays are either empty or as long as `positions`.
 struct Mesh {
@@ -112,6 +120,7 @@ struct Scene {
   std::vector<PunctualLight> lights;
   std::vector<Camera> cameras;
   Rgb background{0, 0, 0};  ///< radiance seen by rays that leave the scene
+  Environment environment;  ///< what they see besides; empty: nothing
 };
 
 /// A point of a surface: which instance, which triangle of its mesh, where in it.
@@ -141,8 +150,30 @@ const Material& material_at(const Scene& scene, const SurfacePoint& p);
 Rgb reflectance_at(const Scene& scene, const SurfacePoint& p);
 /// Emitted radiance L [W/(sr m^2)] of the front side (of both when double-sided).
 Rgb emission_at(const Scene& scene, const SurfacePoint& p);
-/// False in the holes of an alpha mask. Blend counts as opaque here (coloured shadow: later).
+/// False in the holes of an alpha mask.
 bool is_solid_at(const Scene& scene, const SurfacePoint& p);
+
+/// Light that goes straight through a surface: of what falls on a point the share 1 - coverage goes
+/// on, in the colour `tint`; the rest meets an opaque surface with reflectance_at. A blended
+/// material of opacity a and colour c covers a, and tints by 1 - a (1 - c), so that faint glass is
+/// clear and dense glass coloured; a transmissive one of factor t covers 1 - t and tints by its
+/// base colour, without Fresnel's loss. Holes of masks cover nothing.
+struct Passage {
+  float coverage = 1;
+  Rgb tint{1, 1, 1};
+};
+Passage passage_at(const Scene& scene, const SurfacePoint& p);
+/// Whether light can go straight through some of a material, holes of masks included; and whether
+/// it may come out coloured.
+bool lets_light_through(const Material& material);
+bool tints_light(const Material& material);
+/// Whether the back reflects light, too: double-sided materials, and those that light goes through,
+/// for rays leave a pane of glass through the back of its far side.
+bool reflects_from_behind(const Material& material);
+/// Radiance that a ray sees which leaves the scene: background plus environment.
+Rgb surroundings_towards(const Scene& scene, Vec3 direction);
+/// The same for pictures, in which the map's pixels are not to be seen.
+Rgb smooth_surroundings_towards(const Scene& scene, Vec3 direction);
 /// Texture colour times vertex colour times factor, linear, alpha in the fourth value.
 std::array<float, 4> base_color_at(const Scene& scene, const SurfacePoint& p);
 

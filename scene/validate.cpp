@@ -21,6 +21,8 @@ Result<std::vector<std::string>> validate(Scene& scene, const std::string& file)
 
 bool has_light(const Scene& scene) {
   if (max_component(scene.background) > 0) return true;
+  for (const Rgb& l : scene.environment.radiance)
+    if (max_component(l) > 0) return true;
   for (const PunctualLight& light : scene.lights)
     if (max_component(light.intensity) > 0) return true;
   for (const Instance& instance : scene.instances)

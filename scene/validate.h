@@ -18,7 +18,7 @@ namespace luxel::scene {
 /// range (names mesh and triangle).
 Result<std::vector<std::string>> validate(Scene& scene, const std::string& file);
 
-/// Whether anything shines: emissive triangles, lights, background.
+/// Whether anything shines: emissive triangles, lights, background, environment.
 bool has_light(const Scene& scene);
 
 }  // namespace luxel::scene

@@ -75,12 +75,12 @@ Status check_materials(Scene& scene, Report& report) {
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     Material& m = scene.materials[i];
     const std::string name = label("material", i, m.name);
-    const bool finite = luxel::is_finite(m.base_color) && luxel::is_finite(m.emission) &&
-                        std::isfinite(m.alpha) && std::isfinite(m.metallic) &&
-                        std::isfinite(m.roughness) && std::isfinite(m.alpha_cutoff) &&
-                        luxel::is_finite(m.specular) && std::isfinite(m.sharpness) &&
-                        is_finite(m.base_color_texture) && is_finite(m.metallic_texture) &&
-                        is_finite(m.emission_texture);
+    const bool finite =
+        luxel::is_finite(m.base_color) && luxel::is_finite(m.emission) && std::isfinite(m.alpha) &&
+        std::isfinite(m.metallic) && std::isfinite(m.roughness) && std::isfinite(m.alpha_cutoff) &&
+        luxel::is_finite(m.specular) && std::isfinite(m.sharpness) &&
+        std::isfinite(m.transmission) &&
+        std::ranges::all_of(textures_of(m), [](const auto* ref) { return is_finite(*ref); });
     if (!finite)
       return fail(ErrorCode::bad_input, "{}: {}: one of its numbers is not finite", report.file,
                   name);
@@ -90,18 +90,19 @@ Status check_materials(Scene& scene, Report& report) {
     m.alpha = std::clamp(m.alpha, 0.0f, 1.0f);
     m.metallic = std::clamp(m.metallic, 0.0f, 1.0f);
     m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
+    m.transmission = std::clamp(m.transmission, 0.0f, 1.0f);
     m.specular = max(m.specular, Rgb{});
     m.sharpness = std::max(m.sharpness, 0.0f);
     if (m.base_color != before.base_color || m.emission != before.emission ||
         m.alpha != before.alpha || m.metallic != before.metallic ||
         m.roughness != before.roughness || m.specular != before.specular ||
-        m.sharpness != before.sharpness)
+        m.sharpness != before.sharpness || m.transmission != before.transmission)
       clamped.push_back(name);
   }
   if (!clamped.empty())
     report.warn(
         "factors outside their range clamped (negative colour, emission, specular or "
-        "sharpness; alpha, metallic or roughness outside 0 to 1): {}",
+        "sharpness; alpha, metallic, roughness or transmission outside 0 to 1): {}",
         listed(clamped));
   return {};
 }

@@ -63,9 +63,8 @@ Status check_references(const Scene& scene, const Report& report) {
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& m = scene.materials[i];
     const std::string where = report.file + ": " + label("material", i, m.name);
-    LUXEL_TRY_STATUS(check_texture_ref(scene, m.base_color_texture, where));
-    LUXEL_TRY_STATUS(check_texture_ref(scene, m.metallic_texture, where));
-    LUXEL_TRY_STATUS(check_texture_ref(scene, m.emission_texture, where));
+    for (const TextureRef* ref : textures_of(m))
+      LUXEL_TRY_STATUS(check_texture_ref(scene, *ref, where));
   }
   for (size_t i = 0; i < scene.textures.size(); ++i) {
     const Texture& t = scene.textures[i];

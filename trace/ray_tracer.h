@@ -38,9 +38,11 @@ enum class Packets : uint8_t {
 
 /// Two levels: a mesh with several instances is stored once, with its instances on top, in scenes
 /// of more than a million drawn triangles; smaller scenes and single instances lie in the top
-/// level, where rays meet one tight hierarchy. Holes of alpha masks do not block. Both sides of
-/// every triangle block. Queries are const and may run on many threads at once. `scene` is kept by
-/// reference and must outlive the tracer.
+/// level, where rays meet one tight hierarchy. Both sides of every triangle block. Holes of alpha
+/// masks do not; blended and transmissive surfaces (scene::Passage) let rays through by chance, the
+/// share 1 - coverage of them: which ones follows from the bits of the ray and of the place it
+/// meets, so that many rays see the right mean and the same ray always the same. Queries are const
+/// and may run on many threads at once. `scene` is kept by reference and must outlive the tracer.
 class RayTracer {
  public:
   /// `max_flat_triangles`: drawn triangles above which meshes are shared between instances.
@@ -56,6 +58,15 @@ class RayTracer {
   Hit closest_hit(const Ray& ray) const;
   /// blocked[i] is 1 when anything solid lies on rays[i] within (t_min, t_max).
   void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const;
+
+  /// Whether there are surfaces that colour the light they let through.
+  bool has_tints() const;
+  /// Multiplies by the tints of what each ray that closest_hits has traced has passed on its way to
+  /// its hit, or to its end: call it where has_tints().
+  void tint(std::span<const Ray> rays, std::span<const Hit> hits, std::span<Rgb> light) const;
+  /// The share of light that arrives from t_max, per channel: 0 where something opaque stands,
+  /// the product of (1 - coverage) tint of all that lets light through. No chance is involved.
+  void transmitted(std::span<const Ray> rays, std::span<Rgb> share) const;
 
  private:
   struct Impl;

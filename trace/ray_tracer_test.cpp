@@ -180,5 +180,135 @@ TEST(RayTracer, BundlesMeetWhatSingleRaysMeet) {
   EXPECT_LE(other, count / 100000) << "rays along edges";
 }
 
+/// Panes one behind the other, at z = -1, -2, ..., 2 m wide, over two triangles each.
+scene::Scene panes(const std::vector<scene::Material>& materials) {
+  scene::Scene scene;
+  for (const scene::Material& material : materials) {
+    const float z = -1 - float(scene.meshes.size());
+    scene.materials.push_back(material);
+    scene::Mesh mesh;
+    mesh.positions = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    mesh.triangle_material.assign(2, uint32_t(scene.meshes.size()));
+    scene.meshes.push_back(mesh);
+    scene.instances.push_back({"pane", uint32_t(scene.meshes.size() - 1), {}});
+  }
+  return scene;
+}
+
+scene::Material film(Rgb color, float alpha) {
+  scene::Material m;
+  m.alpha_mode = scene::AlphaMode::blend;
+  m.base_color = color, m.alpha = alpha;
+  return m;
+}
+
+scene::Material glass(Rgb color, float transmission) {
+  scene::Material m;
+  m.base_color = color, m.transmission = transmission;
+  return m;
+}
+
+std::vector<Ray> rays_through_panes(size_t count, float t_max) {
+  RandomStream random{3};
+  std::vector<Ray> rays;
+  for (size_t k = 0; k < count; ++k) {
+    const Vec2 u = random.next2(), v = random.next2();
+    const Vec3 from{u.x - 0.5f, u.y - 0.5f, 0};
+    rays.push_back({from, 0, {0.1f * (v.x - 0.5f), 0.1f * (v.y - 0.5f), -1}, t_max});
+  }
+  return rays;
+}
+
+// (1 - coverage) tint of each pane: of the film 0.75 (1 - 0.25 (1 - c)), of the glass 0.8 c.
+TEST(RayTracer, LightComesThroughGlassInItsColour) {
+  const scene::Scene scene = panes({film({1, 0.5f, 0}, 0.25f), glass({0.5f, 1, 1}, 0.8f)});
+  const auto tracer = RayTracer::build(scene);
+  EXPECT_TRUE(tracer->has_tints());
+  for (const auto& [t_max, expected] :
+       {std::pair{1.5f, Rgb{0.75f, 0.75f * 0.875f, 0.75f * 0.75f}},
+        {5.0f, Rgb{0.75f * 0.4f, 0.75f * 0.875f * 0.8f, 0.75f * 0.75f * 0.8f}}}) {
+    const std::vector<Ray> rays = rays_through_panes(1000, t_max);
+    std::vector<Rgb> share(rays.size());
+    tracer->transmitted(rays, share);
+    for (const Rgb& s : share) EXPECT_LE(length(s - expected), 1e-6f);
+  }
+}
+
+TEST(RayTracer, NothingComesThroughAWallBehindGlass) {
+  const scene::Scene scene = panes({film({1, 1, 1}, 0.1f), {}, film({1, 1, 1}, 0)});
+  const auto tracer = RayTracer::build(scene);
+  const std::vector<Ray> rays = rays_through_panes(100, 10);
+  std::vector<Rgb> share(rays.size());
+  tracer->transmitted(rays, share);
+  for (const Rgb& s : share) EXPECT_EQ(s, (Rgb{}));
+}
+
+// As many rays stop as the pane covers, and those that go on carry the tints of what they passed.
+TEST(RayTracer, RaysStopAtGlassByItsCoverage) {
+  const scene::Scene scene = panes({film({1, 0.5f, 0}, 0.25f), glass({0.5f, 1, 1}, 0.8f), {}});
+  const auto tracer = RayTracer::build(scene);
+  constexpr size_t kRays = 40000;
+  const std::vector<Ray> rays = rays_through_panes(kRays, INFINITY);
+  std::vector<Hit> hits(kRays);
+  tracer->closest_hits(rays, hits);
+  std::vector<Rgb> tint(kRays, {1, 1, 1});
+  tracer->tint(rays, hits, tint);
+  std::array<double, 3> stopped{};
+  const Rgb film_tint{1, 0.875f, 0.75f};
+  for (size_t k = 0; k < kRays; ++k) {
+    ASSERT_TRUE(hits[k].found());
+    stopped[hits[k].instance] += 1.0 / kRays;
+    const Rgb expected = hits[k].instance == 0   ? Rgb{1, 1, 1}
+                         : hits[k].instance == 1 ? film_tint
+                                                 : film_tint * Rgb{0.5f, 1, 1};
+    EXPECT_LE(length(tint[k] - expected), 1e-6f);
+  }
+  // Four standard deviations of a share of 40,000 rays: 0.0100.
+  EXPECT_NEAR(stopped[0], 0.25, 0.01);
+  EXPECT_NEAR(stopped[1], 0.75 * 0.2, 0.01);
+  EXPECT_NEAR(stopped[2], 0.75 * 0.8, 0.01);
+  std::vector<Hit> again(kRays);
+  tracer->closest_hits(rays, again);
+  for (size_t k = 0; k < kRays; ++k) ASSERT_EQ(hits[k].instance, again[k].instance);
+}
+
+// High quality trees divide long triangles among boxes, which must not tint twice.
+TEST(RayTracer, ATriangleTintsOnce) {
+  scene::Scene scene = panes({film({0, 0, 0}, 0.5f)});
+  // A long, thin, slanted triangle among many small ones.
+  scene::Mesh& mesh = scene.meshes[0];
+  RandomStream random{5};
+  for (uint32_t k = 0; k < 3000; ++k) {
+    const auto base = uint32_t(mesh.positions.size());
+    const Vec3 at{4 * random.next() - 2, 4 * random.next() - 2, 3 + random.next()};
+    mesh.positions.insert(mesh.positions.end(),
+                          {at, at + Vec3{0.01f, 0, 0.01f}, at + Vec3{0, 0.01f, 0}});
+    mesh.triangles.push_back({base, base + 1, base + 2});
+    mesh.triangle_material.push_back(0);
+  }
+  const auto base = uint32_t(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(),
+                        {Vec3{-3, -3, -4}, Vec3{3, 2.9f, 4.1f}, Vec3{3, 3, 4}});
+  mesh.triangles.push_back({base, base + 1, base + 2});
+  mesh.triangle_material.push_back(0);
+  const auto tracer = RayTracer::build(scene);
+  size_t met = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const float along = random.next(), across = random.next() * along;
+    const Vec3 target = Vec3{-3, -3, -4} + Vec3{6, 5.9f, 8.1f} * along +
+                        Vec3{0, 0.1f, -0.1f} * across;
+    const Vec3 away = normalize(Vec3{0.3f, -1, 0.7f} + Vec3{random.next(), 0, random.next()} * 0.1f);
+    const Ray ray{target + away * 0.2f, 0, -away, 0.4f};
+    Rgb share;
+    tracer->transmitted({&ray, 1}, {&share, 1});
+    if (share.x == 1) continue;  // past its edge by rounding
+    ++met;
+    // Half of 0.5 for each surface: a quarter, or a sixteenth past one of the small ones.
+    EXPECT_TRUE(share.x == 0.25f || share.x == 0.0625f) << share.x;
+  }
+  EXPECT_GT(met, 3800u);
+}
+
 }  // namespace
 }  // namespace luxel::trace

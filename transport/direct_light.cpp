@@ -38,7 +38,7 @@ struct Source {
   bool exact = false;
   float sum_weight = 0;
   uint32_t shots = 0;
-  Rgb sum;
+  Rgb sum{};
   float sum_luminance2 = 0;
   Rgb tint{1, 1, 1};     ///< multiplies the sum
   float unshadowed = 0;  ///< luminance, for the variance of exact sources
@@ -51,6 +51,7 @@ struct Work {
   std::vector<Shot> shots;
   std::vector<trace::Ray> rays;
   std::vector<uint8_t> blocked;
+  std::vector<Rgb> arriving;  ///< share of each shot's light
 };
 
 /// Adds a shot whose shadow ray ends at `target`, or, with t_max infinite, goes on for ever. A
@@ -253,16 +254,56 @@ void shoot_at_lamps(const Lights& lights, int samples, const Receiver& r, Work& 
   }
 }
 
-/// Traces the shots and adds the sources up.
-void resolve(const trace::RayTracer& tracer, Work& work, Rgb& irradiance, float& variance) {
+/// Peaks of the environment, in proportion to their power. Blocked like everything else that is far
+/// away; the mean of w V, for nothing is known exactly but the density.
+void shoot_at_peaks(const scene::Scene& scene, const Surroundings& around, int samples,
+                    const Receiver& r, Work& work) {
+  if (around.peak.empty()) return;
+  const uint32_t source = uint32_t(work.sources.size());
+  work.sources.push_back({.scale = 1 / float(samples)});
+  for (int k = 0; k < samples; ++k) {
+    const PeakSample peak =
+        sample_peaks(scene, around, sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x13)));
+    const float w = folded_cosine(peak.direction, r.normal, r.geometric_normal);
+    add_shot(work, r, {source, w, peak.radiance_over_pdf * w}, peak.direction, INFINITY);
+  }
+}
+
+/// The soft light of the surroundings, by rays with the density of the cosine.
+void shoot_at_soft_sky(const scene::Scene& scene, const Surroundings& around, int samples,
+                       const Receiver& r, Work& work) {
+  if (samples == 0 || (around.limit == INFINITY && max_component(around.background) <= 0)) return;
+  const uint32_t source = uint32_t(work.sources.size());
+  work.sources.push_back({.scale = kPi / float(samples)});
+  const Frame frame = frame_around(r.normal);
+  for (int k = 0; k < samples; ++k) {
+    const Vec2 u = sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x14));
+    Vec3 d = frame.to_world(cosine_hemisphere_sample(u));
+    const float above = dot(d, r.geometric_normal);
+    if (above < 0) d += r.geometric_normal * (-2 * above);
+    add_shot(work, r, {source, 1, soft_radiance(scene, around, d)}, d, INFINITY);
+  }
+}
+
+void trace_shots(const trace::RayTracer& tracer, Work& work) {
+  work.arriving.resize(work.rays.size());
+  if (tracer.has_tints()) return tracer.transmitted(work.rays, work.arriving);
   work.blocked.resize(work.rays.size());
   tracer.occluded(work.rays, work.blocked);
+  for (size_t k = 0; k < work.rays.size(); ++k)
+    work.arriving[k] = work.blocked[k] ? Rgb{} : Rgb{1, 1, 1};
+}
+
+/// Traces the shots and adds the sources up.
+void resolve(const trace::RayTracer& tracer, Work& work, Rgb& irradiance, float& variance) {
+  trace_shots(tracer, work);
   for (size_t k = 0; k < work.shots.size(); ++k) {
-    if (work.blocked[k]) continue;
+    if (max_component(work.arriving[k]) <= 0) continue;
     const Shot& shot = work.shots[k];
     Source& source = work.sources[shot.source];
-    source.sum += shot.radiance;
-    const float l = luminance(shot.radiance);
+    const Rgb arrived = shot.radiance * work.arriving[k];
+    source.sum += arrived;
+    const float l = luminance(arrived);
     source.sum_luminance2 += l * l;
   }
   for (const Source& s : work.sources) {
@@ -304,6 +345,8 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elem
           hash64(params.seed, params.same_points ? 0 : i)};
       shoot_at_triangles(scene, lights, params.samples, r, diagonal_m, work);
       shoot_at_lamps(lights, params.samples, r, work);
+      shoot_at_peaks(scene, lights.around, params.samples, r, work);
+      shoot_at_soft_sky(scene, lights.around, params.sky_samples, r, work);
       resolve(tracer, work, out.irradiance[i], out.variance[i]);
       traced += work.rays.size();
     }

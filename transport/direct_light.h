@@ -19,6 +19,9 @@ struct DirectParams {
   /// All elements look at the same points of a light: penumbrae without grain, in steps of
   /// 1 / samples. For solvers whose elements are compared with their neighbours.
   bool same_points = false;
+  /// Rays per element towards the soft light of the surroundings. 0: the caller's own rays see it;
+  /// the peaks of an environment count in any case.
+  int sky_samples = 0;
 };
 
 struct DirectLight {
@@ -27,10 +30,11 @@ struct DirectLight {
   uint64_t rays = 0;
 };
 
-/// E at every element from emissive triangles, point, spot and directional lights (the background
-/// is seen by indirect rays). Each source's unshadowed irradiance is exact; only the visible share
-/// is sampled, so that where a source is seen whole, or not at all, the result has no noise.
-/// [Heitz18; docs/gather.md]. Errors: cancelled.
+/// E at every element from emissive triangles, point, spot and directional lights, peaks of the
+/// environment, and the rest of the surroundings where sky_samples asks for it. Each source's
+/// unshadowed irradiance is exact; only the visible share is sampled, so that where a source is
+/// seen whole, or not at all, the result has no noise. [Heitz18; docs/gather.md]. Errors:
+/// cancelled.
 Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elements,
                                  const Lights& lights, const trace::RayTracer& tracer,
                                  const DirectParams& params, Progress& progress);

@@ -137,5 +137,55 @@ TEST(DirectLight, ManyLightsAreSampledWithoutBias) {
   EXPECT_NEAR(e.z / expected, 3.0, 0.048);
 }
 
+/// L = 1 + cos(theta) over both hemispheres, and a sun of one pixel at 30 degrees from the zenith
+/// over +X, of 2 pi / 128 by pi / 64.
+scene::Environment gradient_with_sun(float sun) {
+  scene::Environment map{128, 64, {}, 0};
+  for (int y = 0; y < map.height; ++y) {
+    const float theta = kPi * (float(y) + 0.5f) / 64;
+    map.radiance.insert(map.radiance.end(), 128, Rgb{1, 1, 1} * (1 + std::cos(theta)));
+  }
+  map.radiance[10 * 128 + 64] += Rgb{sun, sun, sun};
+  return map;
+}
+
+Rgb under_sky(const scene::Scene& scene, Vec3 position, Vec3 normal, DirectParams params) {
+  auto tracer = trace::RayTracer::build(scene);
+  Progress progress;
+  const auto light = direct_light(scene, element_at(position, normal),
+                                  transport::collect_lights(scene), *tracer, params, progress);
+  EXPECT_TRUE(light);
+  return light->irradiance[0];
+}
+
+// E = integral of (1 + c) c 2 pi dc = pi + 2 pi / 3; looking down pi - 2 pi / 3.
+TEST(DirectLight, ASkyOfKnownGradient) {
+  scene::Scene scene = one_quad_scene({});
+  scene.lights.clear();
+  scene.environment = gradient_with_sun(0);
+  const DirectParams params{16, 1, false, 1 << 14};
+  // Pixels are 2.8 degrees high: constant over each, the gradient's integral is off by
+  // (pi / 64)^2 / 24 of it.
+  EXPECT_NEAR(under_sky(scene, {0, 1, 0}, {0, 1, 0}, params).x, kPi * 5 / 3, 2e-3f);
+  scene.instances[0].world_from_object.row[1][3] = 50;  // out of sight of what looks down
+  EXPECT_NEAR(under_sky(scene, {0, 1, 0}, {0, -1, 0}, params).x, kPi / 3, 2e-3f);
+}
+
+// The sun's pixel alone: L times its solid angle times the cosine, and nothing behind a plate.
+TEST(DirectLight, APeakOfTheSkyIsAimedAt) {
+  scene::Scene scene = one_quad_scene({});
+  scene.lights.clear();
+  scene.environment = gradient_with_sun(1e5f);
+  const Surroundings around = surroundings_of(scene);
+  const double theta = kPiDouble * 10.5 / 64, half = kPiDouble / 128;
+  const double omega = 2 * kPiDouble / 128 * 2 * std::sin(theta) * std::sin(half);
+  const double radiance = 1e5 + 1 + std::cos(theta) - double(around.limit);
+  // The cosine averages to its middle over the pixel to half^2 / 6.
+  const double expected = radiance * omega * std::cos(theta);
+  EXPECT_NEAR(under_sky(scene, {0, 1, 0}, {0, 1, 0}, {64, 1}).x, expected, 5e-4 * expected);
+  scene.instances[0].world_from_object.row[1][3] = 2;
+  EXPECT_EQ(under_sky(scene, {0, 1, 0}, {0, 1, 0}, {64, 1}), (Rgb{}));
+}
+
 }  // namespace
 }  // namespace luxel::transport

@@ -23,7 +23,8 @@ TriangleLight light_from_triangle(const scene::Scene& scene, uint32_t instance, 
   light.area_m2 = scene::area_m2(t);
   light.instance = instance, light.triangle = triangle;
   const scene::Material& material = scene::material_at(scene, {instance, triangle, {}});
-  light.textured = material.emission_texture.texture != scene::kNone;
+  light.textured =
+      material.emission_texture.texture != scene::kNone || scene::lets_light_through(material);
   light.two_sided = material.double_sided;
   if (!light.textured) {
     light.mean_radiance = material.emission;
@@ -74,13 +75,14 @@ void build_node(std::vector<TriangleLight>& lights, std::vector<LightNode>& node
 
 Rgb radiance_at(const scene::Scene& scene, const TriangleLight& light, Barycentric at) {
   if (light.flipped) std::swap(at.u, at.v);
-  return scene::emission_at(scene, {light.instance, light.triangle, at});
+  const scene::SurfacePoint p{light.instance, light.triangle, at};
+  return scene::emission_at(scene, p) * scene::passage_at(scene, p).coverage;
 }
 
 Lights collect_lights(const scene::Scene& scene) {
   Lights lights;
   lights.punctual = scene.lights;
-  lights.background = scene.background;
+  lights.around = surroundings_of(scene);
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -6,6 +6,7 @@
 
 #include "base/vec.h"
 #include "scene/scene.h"
+#include "transport/surroundings.h"
 
 namespace luxel::transport {
 
@@ -18,7 +19,7 @@ struct TriangleLight {
   uint32_t instance = 0, triangle = 0;
   bool flipped =
       false;  ///< b and c are swapped against the mesh's corner order (mirrored instance)
-  bool textured = false;
+  bool textured = false;  ///< its radiance varies, also because holes or glass send none
   bool two_sided = false;
 };
 
@@ -35,14 +36,14 @@ struct Lights {
   std::vector<float> power_below;        ///< sum of powers before each triangle; one extra entry
   std::vector<LightNode> nodes;          ///< binary, depth first; node 0 is the root
   std::vector<scene::PunctualLight> punctual;
-  Rgb background{};  ///< radiance of rays that leave the scene
+  Surroundings around;  ///< what rays see that leave the scene
 };
 
 /// Finds the emissive triangles, averages their textures and builds the hierarchy. A light with no
 /// power is left out.
 Lights collect_lights(const scene::Scene& scene);
 
-/// Emitted radiance at a point of a triangle light.
+/// Emitted radiance at a point of a triangle light, as the mean over what covers it and what not.
 Rgb radiance_at(const scene::Scene& scene, const TriangleLight& light, Barycentric at);
 
 /// Irradiance on a surface that faces the light squarely at `position`, nothing in between

@@ -28,7 +28,7 @@ void add_common(CLI::App& command, Common& common);
 
 /// Options for light from outside the file, as text until the command runs.
 struct OutsideText {
-  std::string background, sun;
+  std::string background, environment, sun;
 };
 void add_outside_light(CLI::App& command, OutsideText& text);
 Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text);

@@ -196,6 +196,10 @@ void add_outside_light(CLI::App& command, OutsideText& text) {
   command.add_option("--background", text.background, "Radiance of the surroundings as r,g,b")
       ->type_name("R,G,B");
   command
+      .add_option("--environment", text.environment,
+                  "Equirectangular .hdr or .exr of the surroundings, turned and scaled")
+      ->type_name("FILE[,ROTATE_DEG[,SCALE]]");
+  command
       .add_option("--sun", text.sun,
                   "A sun: bearing (0 = -Z, 90 = +X), elevation, illuminance facing it")
       ->type_name("AZIMUTH_DEG,ELEVATION_DEG,LUX");
@@ -205,6 +209,9 @@ Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text) {
   pipeline::OutsideLight outside;
   if (!text.background.empty()) {
     LUXEL_TRY(outside.background, pipeline::parse_background(text.background));
+  }
+  if (!text.environment.empty()) {
+    LUXEL_TRY(outside.environment, pipeline::parse_environment(text.environment));
   }
   if (!text.sun.empty()) {
     LUXEL_TRY(outside.sun, pipeline::parse_sun(text.sun));

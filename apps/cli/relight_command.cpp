@@ -27,6 +27,10 @@ Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
     LUXEL_TRY(s.max_memory_bytes, pipeline::parse_size(options.max_memory));
   }
   LUXEL_TRY(s.outside, parse_outside_light(options.outside));
+  if (s.outside.environment)
+    return fail(ErrorCode::bad_setting,
+                "relight does not take --environment yet: its sky is one colour that may change; "
+                "use --background");
   return s;
 }
 

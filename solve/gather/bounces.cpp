@@ -42,14 +42,17 @@ void fill(RadiosityMap& m, const atlas::TexelMap& map, const transport::Elements
 }
 
 inline Float4 lookup(const RadiosityMap& m, const StoredHit& hit) {
-  constexpr float kUnit = 1.0f / 65535.0f;
-  const float fx = float(hit.fx) * kUnit, fy = float(hit.fy) * kUnit;
-  const Float4* upper = m.texels.data() + hit.base;
+  constexpr float kUnit = 1.0f / float(StoredHit::kSteps);
+  const float fx = float(hit.fx()) * kUnit, fy = float(hit.fy()) * kUnit;
+  const Float4* upper = m.texels.data() + hit.base();
   const Float4* lower = upper + m.stride;
   const Float4 sum =
       (upper[0] * (1 - fx) + upper[1] * fx) * (1 - fy) + (lower[0] * (1 - fx) + lower[1] * fx) * fy;
   // Coverage is zero only where all texels around the hit are hidden.
-  return sum[3] > 0 ? sum * (1.0f / sum[3]) : Float4{};
+  const Float4 mean = sum[3] > 0 ? sum * (1.0f / sum[3]) : Float4{};
+  if (hit.tint() == kNoTint) return mean;
+  const Rgb tint = unpack_tint(hit.tint());
+  return mean * Float4{tint.x, tint.y, tint.z, 1};
 }
 
 struct Gathered {
@@ -78,18 +81,16 @@ struct Sweep {
   std::span<const Rgb> source;    ///< E_0
   std::span<const Rgb> previous;  ///< E of the sweep before
   std::span<Rgb> next;
-  std::span<float> variance;  ///< of the gathered part and the background
+  std::span<float> variance;  ///< of the gathered part and the sky
   size_t stride = 1;          ///< only every stride-th ray is looked at
-  float background = 0;       ///< luminance that an escaped ray sees, as radiosity
   std::vector<double> change2;
 };
 
 /// Variance of the mean over an element's rays, taken as independent.
-float variance_of_mean(const Gathered& g, const TracedHits& hits, size_t element,
-                       float background) {
-  const float n = float(hits.samples), escaped = float(hits.escaped[element]);
-  const float sum = luminance({g.sum[0], g.sum[1], g.sum[2]}) + escaped * background;
-  const float sum2 = g.sum_luminance2 + escaped * background * background;
+float variance_of_mean(const Gathered& g, const TracedHits& hits, size_t element) {
+  const float n = float(hits.samples);
+  const float sum = luminance({g.sum[0], g.sum[1], g.sum[2]}) + kPi * luminance(hits.sky[element]);
+  const float sum2 = g.sum_luminance2 + kPi * kPi * hits.sky_luminance2[element];
   return std::max(0.0f, sum2 / n - (sum / n) * (sum / n)) / n;
 }
 
@@ -118,7 +119,7 @@ Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Pr
       first = end;
       const Rgb gathered = Rgb{g.sum[0], g.sum[1], g.sum[2]} * per_ray;
       sweep.next[i] = sweep.source[i] + gathered;
-      if (sweep.stride == 1) sweep.variance[i] = variance_of_mean(g, hits, i, sweep.background);
+      if (sweep.stride == 1) sweep.variance[i] = variance_of_mean(g, hits, i);
       const Rgb d = sweep.next[i] - sweep.previous[i];
       sweep.change2[t] += double(dot(d, d));
     }
@@ -163,14 +164,13 @@ double light_to_come(double change, double change_before, const ReflectanceRange
 }  // namespace
 
 Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& elements,
-                       const TracedHits& hits, std::span<const Rgb> direct, Rgb background,
+                       const TracedHits& hits, std::span<const Rgb> direct,
                        const BounceParams& params, Progress& progress) {
   const size_t n = elements.size();
   LUXEL_CHECK(direct.size() == n && map.texels.size() == n && hits.escaped.size() == n);
-  // E_0: what arrives without any reflection. A ray that escapes sees the background.
+  // E_0: what arrives without any reflection. A ray that escapes sees the sky.
   std::vector<Rgb> source(direct.begin(), direct.end());
-  for (size_t i = 0; i < n; ++i)
-    source[i] += background * (kPi * float(hits.escaped[i]) / float(hits.samples));
+  for (size_t i = 0; i < n; ++i) source[i] += hits.sky[i] * (kPi / float(hits.samples));
   Bounced out;
   out.irradiance = source;
   out.variance.assign(n, 0.0f);
@@ -180,8 +180,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   // Returns the root mean square change, relative to the mean irradiance.
   const auto run = [&](size_t stride) -> Result<double> {
     fill(radiosity, map, elements, hits, out.irradiance);
-    Sweep sweep{source, out.irradiance, next, out.variance, stride, kPi * luminance(background),
-                {}};
+    Sweep sweep{source, out.irradiance, next, out.variance, stride, {}};
     LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
     out.irradiance.swap(next);
     ++out.sweeps;

@@ -26,8 +26,9 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
             transport::direct_light(scene, elements, lights, tracer, direct_params, progress));
   const TraceParams trace_params{params.samples, params.seed, params.hit_memory_bytes,
                                  params.scratch_folder};
-  LUXEL_TRY(TracedHits hits, trace_hits(scene, atlas, elements, tracer, trace_params, progress));
-  LUXEL_TRY(Bounced bounced, bounce(map, elements, hits, direct.irradiance, lights.background,
+  LUXEL_TRY(TracedHits hits,
+            trace_hits(scene, atlas, elements, lights.around, tracer, trace_params, progress));
+  LUXEL_TRY(Bounced bounced, bounce(map, elements, hits, direct.irradiance,
                                     {params.bounces, params.tolerance}, progress));
   Gather out;
   out.relative_error = relative_error(bounced.irradiance, direct.variance, bounced.variance);

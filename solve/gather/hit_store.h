@@ -1,17 +1,34 @@
 // The rays of all elements, traced once: for every ray, which place of the lightmap it met.
 #pragma once
 
+#include "base/vec.h"
 #include "transport/row_store.h"
 
 namespace luxel::gather {
 
-/// Where a ray met the lightmap: the upper left of the four texels around the point, and how far
-/// the point is towards the lower right one, in 1/65535 of a texel.
+/// Where a ray met the lightmap, and how what it passed on the way coloured it: in 8 bytes, because
+/// bounces read nothing else.
 struct StoredHit {
-  uint32_t base = 0;  ///< index into a map with a border of one texel: (y + 1) * (side + 2) + x + 1
-  uint16_t fx = 0, fy = 0;
+  uint64_t bits = 0;
+
+  static constexpr uint32_t kSteps = 4095;  ///< parts of a texel
+  /// `base`: the upper left of the four texels around the point, as an index into a map with a
+  /// border of one texel, (y + 1) * (side + 2) + x + 1 < 2^29. `fx`, `fy`: how far the point is
+  /// towards the lower right one, in 1/kSteps. `tint`: a Tint.
+  static StoredHit pack(uint32_t base, uint32_t fx, uint32_t fy, uint32_t tint) {
+    return {uint64_t(base) << 35 | uint64_t(fx) << 23 | uint64_t(fy) << 11 | tint};
+  }
+  uint32_t base() const { return uint32_t(bits >> 35); }
+  uint32_t fx() const { return uint32_t(bits >> 23) & kSteps; }
+  uint32_t fy() const { return uint32_t(bits >> 11) & kSteps; }
+  uint32_t tint() const { return uint32_t(bits) & 2047; }
 };
-static_assert(sizeof(StoredHit) == 8);
+
+/// A colour in 11 bits: 16 steps of red and green, 8 of blue. Rounded up or down by chance, so that
+/// the mean over rays is the colour itself.
+inline constexpr uint32_t kNoTint = 2047;
+uint32_t pack_tint(Rgb color, uint64_t seed);
+Rgb unpack_tint(uint32_t tint);
 
 /// Rays that met no light are left out.
 using HitTile = transport::RowTile<StoredHit>;

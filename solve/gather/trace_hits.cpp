@@ -23,6 +23,7 @@ struct Work {
   std::vector<uint8_t> cell;
   std::vector<trace::Ray> rays;
   std::vector<trace::Hit> hits;
+  std::vector<Rgb> tint;  ///< of what rays have passed; empty where nothing has a colour
 
   explicit Work(size_t samples)
       : u(samples),
@@ -93,34 +94,47 @@ void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, W
   }
 }
 
-StoredHit store(const atlas::Atlas& atlas, const trace::Hit& hit) {
+StoredHit store(const atlas::Atlas& atlas, const trace::Hit& hit, uint32_t tint) {
   const auto& corners = atlas.corners[atlas.triangle_number(hit.instance, hit.triangle)];
   const Vec2 at = interpolate(corners[0], corners[1], corners[2], hit.at);
   const float limit = float(atlas.resolution);
   const float x = std::clamp(at.x, 0.0f, limit) + 0.5f, y = std::clamp(at.y, 0.0f, limit) + 0.5f;
   const uint32_t x0 = uint32_t(x), y0 = uint32_t(y);  // with the border of one texel
-  return {y0 * uint32_t(atlas.resolution + 2) + x0, uint16_t((x - float(x0)) * 65535.0f + 0.5f),
-          uint16_t((y - float(y0)) * 65535.0f + 0.5f)};
+  constexpr float kSteps = float(StoredHit::kSteps);
+  return StoredHit::pack(y0 * uint32_t(atlas.resolution + 2) + x0,
+                         uint32_t((x - float(x0)) * kSteps + 0.5f),
+                         uint32_t((y - float(y0)) * kSteps + 0.5f), tint);
 }
 
-bool is_double_sided(const scene::Scene& scene, const trace::Hit& hit) {
-  return scene::material_at(scene, hit.point()).double_sided;
-}
+/// What rays meet, and what they see beyond.
+struct World {
+  const scene::Scene& scene;
+  const atlas::Atlas& atlas;
+  const transport::Surroundings& around;
+};
 
 /// Counts what an element's rays met, and keeps the hits that bring light.
-void sort_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
-               std::span<const trace::Hit> hits, size_t element, TracedHits& out, HitTile& tile) {
-  for (const trace::Hit& hit : hits) {
+void sort_hits(const World& world, const Work& work, size_t element, TracedHits& out,
+               HitTile& tile) {
+  for (size_t k = 0; k < work.hits.size(); ++k) {
+    const trace::Hit& hit = work.hits[k];
     if (!hit.found()) {
       ++out.escaped[element];
+      Rgb l = transport::soft_radiance(world.scene, world.around, work.rays[k].direction);
+      if (!work.tint.empty()) l = l * work.tint[k];
+      out.sky[element] += l;
+      out.sky_luminance2[element] += luminance(l) * luminance(l);
       continue;
     }
-    if (hit.back_face && !is_double_sided(scene, hit)) {
+    if (hit.back_face &&
+        !scene::reflects_from_behind(scene::material_at(world.scene, hit.point()))) {
       ++out.met_back[element];
       continue;
     }
     if (hit.back_face) ++out.met_double_sided_back[element];
-    tile.entries.push_back(store(atlas, hit));
+    const uint32_t tint =
+        work.tint.empty() ? kNoTint : pack_tint(work.tint[k], hash64(element, k ^ 0x7147u));
+    tile.entries.push_back(store(world.atlas, hit, tint));
   }
   tile.end.push_back(uint32_t(tile.entries.size()));
 }
@@ -134,25 +148,33 @@ void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed
 }
 
 Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
-                              const transport::Elements& elements, const trace::RayTracer& tracer,
+                              const transport::Elements& elements,
+                              const transport::Surroundings& around, const trace::RayTracer& tracer,
                               const TraceParams& params, Progress& progress) {
   LUXEL_CHECK(params.samples >= 1 && params.samples <= 65535);
   const size_t samples = size_t(params.samples);
   LUXEL_TRY(HitStore hit_store, HitStore::create(elements.size(), kTileElements, samples,
                                                  params.memory_limit_bytes, params.scratch_folder));
-  TracedHits out{std::move(hit_store), params.samples, {}, {}, {}, 0};
+  TracedHits out{std::move(hit_store), params.samples, {}, {}, {}, {}, {}, 0};
   out.escaped.resize(elements.size());
   out.met_back.resize(elements.size());
   out.met_double_sided_back.resize(elements.size());
+  out.sky.resize(elements.size());
+  out.sky_luminance2.resize(elements.size());
   out.rays = uint64_t(elements.size()) * samples;
   const float diagonal_m = scene::world_bounds(scene).diagonal();
+  const World world{scene, atlas, around};
   const auto trace_element = [&](size_t i, Work& work, HitTile& tile) {
     const Vec3 origin =
         trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
     fill_rays(origin, elements.normal[i], elements.geometric_normal[i],
               hash64(params.seed ^ 0x6a7e, i), work, work.rays);
     tracer.closest_hits(work.rays, work.hits);
-    sort_hits(scene, atlas, work.hits, i, out, tile);
+    if (tracer.has_tints()) {
+      work.tint.assign(samples, {1, 1, 1});
+      tracer.tint(work.rays, work.hits, work.tint);
+    }
+    sort_hits(world, work, i, out, tile);
   };
 
   constexpr uint64_t kRaysPerAdvance = 8192;

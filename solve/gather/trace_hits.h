@@ -12,6 +12,7 @@
 #include "solve/gather/hit_store.h"
 #include "trace/ray_tracer.h"
 #include "transport/elements.h"
+#include "transport/surroundings.h"
 
 namespace luxel::gather {
 
@@ -31,6 +32,10 @@ struct TracedHits {
   /// Backs of double-sided surfaces send the light of their front (docs/gather.md); they are
   /// counted too.
   std::vector<uint16_t> escaped, met_back, met_double_sided_back;
+  /// Per element, what its escaped rays saw of the surroundings' soft light: the sum of radiances,
+  /// and of their squared luminances.
+  std::vector<Rgb> sky;
+  std::vector<float> sky_luminance2;
   uint64_t rays = 0;
 };
 
@@ -51,7 +56,8 @@ inline bool is_enclosed(const TracedHits& hits, size_t element) {
 /// cosine-distributed about the shading normal [Moreno05, eq. 3.7]. Directions below the triangle
 /// itself are mirrored to above it. Errors: cancelled, disk full.
 Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
-                              const transport::Elements& elements, const trace::RayTracer& tracer,
+                              const transport::Elements& elements,
+                              const transport::Surroundings& around, const trace::RayTracer& tracer,
                               const TraceParams& params, Progress& progress);
 
 /// The rays of one element, in the order in which they are traced: sorted so that neighbours in a

@@ -100,7 +100,7 @@ class Looker {
         pixels_(std::move(pixels)),
         diagonal_m_(scene::world_bounds(senders.scene).diagonal()) {
     for (const scene::Material& m : s_.scene.materials)
-      sorts_.push_back({m.double_sided, max_component(m.emission) > 0 && s_.emission_by_pixels});
+      sorts_.push_back({scene::reflects_from_behind(m), max_component(m.emission) > 0 && s_.emission_by_pixels});
   }
 
   size_t pixel_count() const { return pixels_.size(); }
@@ -119,7 +119,8 @@ class Looker {
       const auto aimed = Clock::now();
       s_.tracer.closest_hits(work.rays, work.hits, trace::Packets::bundles);
       const auto traced = Clock::now();
-      for (size_t k = 0; k < work.hits.size(); ++k) count(work.hits[k], work.factor[k], work);
+      for (size_t k = 0; k < work.hits.size(); ++k)
+        count(work.hits[k], work.rays[k].direction, work.factor[k], work);
       work.seconds.visibility += seconds(traced - aimed);
       work.seconds.summation += seconds(Clock::now() - traced) + seconds(aimed - start);
     }
@@ -146,9 +147,10 @@ class Looker {
     work.hits.resize(work.rays.size());
   }
 
-  void count(const trace::Hit& hit, float factor, Work& work) const {
+  void count(const trace::Hit& hit, Vec3 direction, float factor, Work& work) const {
     if (!hit.found()) {
-      work.view.emitted += s_.scene.background * (kPi * factor);
+      work.view.emitted +=
+          transport::soft_radiance(s_.scene, s_.around, direction) * (kPi * factor);
       return;
     }
     const scene::Instance& instance = s_.scene.instances[hit.instance];

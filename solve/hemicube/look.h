@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "solve/hemicube/receivers.h"
 #include "trace/ray_tracer.h"
+#include "transport/surroundings.h"
 
 namespace luxel::hemicube {
 
@@ -17,6 +18,7 @@ struct Senders {
   const trace::RayTracer& tracer;
   const Mesh& mesh;
   const Receivers& receivers;
+  const transport::Surroundings& around;  ///< their soft light is seen by pixels, too
   /// The light of emissive surfaces is taken from the pixels that see them. False when it is
   /// computed otherwise and would count twice.
   bool emission_by_pixels = false;
@@ -35,7 +37,7 @@ struct View {
   /// over these times the vertices' radiosity is the sum over pixels of the linear radiosity there.
   std::vector<uint32_t> element;
   std::vector<float> share;
-  Rgb emitted{};             ///< irradiance from emissive surfaces and the background [W/m^2]
+  Rgb emitted{};             ///< irradiance from emissive surfaces and the sky [W/m^2]
   float back = 0;            ///< share of backs of one-sided surfaces, which are black
   float two_sided_back = 0;  ///< share of backs of two-sided surfaces, which shine like their front
 };

@@ -167,7 +167,11 @@ Result<Sight> look_from(const Surroundings& around, const transport::Elements& e
   LUXEL_TRY(transport::DirectLight direct,
             transport::direct_light(around.scene, elements, around.emission.exact, around.tracer,
                                     {params.direct_samples, params.seed, true}, progress));
-  const Senders senders{around.scene, around.tracer, around.mesh, around.senders,
+  const Senders senders{around.scene,
+                        around.tracer,
+                        around.mesh,
+                        around.senders,
+                        around.emission.exact.around,
                         around.emission.by_pixels};
   LUXEL_TRY(
       Rows rows,

@@ -21,15 +21,17 @@ struct Looked {
   Mesh mesh;
   Receivers receivers;
   trace::RayTracer tracer;
+  transport::Surroundings around;
 
   Looked(scene::Scene s, ElementKind kind, float size)
       : scene(std::move(s)),
         mesh(mesh_of(scene, size)),
         receivers(make_receivers(scene, mesh, kind)),
-        tracer(*trace::RayTracer::build(scene)) {}
+        tracer(*trace::RayTracer::build(scene)),
+        around(transport::surroundings_of(scene)) {}
 
   Senders senders(bool emission_by_pixels = false) const {
-    return {scene, tracer, mesh, receivers, emission_by_pixels};
+    return {scene, tracer, mesh, receivers, around, emission_by_pixels};
   }
 
   std::vector<View> views(std::span<const Viewpoint> from, int resolution,

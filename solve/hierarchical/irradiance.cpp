@@ -27,7 +27,8 @@ bool is_sharp(const scene::PunctualLight& lamp) { return lamp.angular_radius_rad
 Result<std::vector<Rgb>> from_lamps(const scene::Scene& scene, const trace::RayTracer& tracer,
                                     const transport::Lights& lamps,
                                     std::span<const Receiver> receivers, Progress& progress) {
-  if (lamps.punctual.empty()) return std::vector<Rgb>(receivers.size());
+  if (lamps.punctual.empty() && lamps.around.peak.empty())
+    return std::vector<Rgb>(receivers.size());
   transport::Elements points;
   for (const Receiver& r : receivers) {
     points.position.push_back(to_float(r.position));
@@ -47,17 +48,18 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
                                        std::span<const Receiver> receivers,
                                        const PointParams& params, Progress& progress) {
   Lamps lamps = lamps_of(scene);
-  if (!params.sharp_lamps) std::erase_if(lamps.punctual.punctual, is_sharp);
-  LUXEL_TRY(std::vector<Rgb> out, from_lamps(scene, tracer, lamps.punctual, receivers, progress));
-  const bool has_sky = max_component(lamps.background) > 0;
-  const bool count_all = has_sky && s.faces.size() <= kMostFacesBeforeSky;
-  const double whole_sky = kPiDouble * double(max_component(lamps.background));
+  if (!params.sharp_lamps) std::erase_if(lamps.lights.punctual, is_sharp);
+  LUXEL_TRY(std::vector<Rgb> out, from_lamps(scene, tracer, lamps.lights, receivers, progress));
+  // A sky of one radiance is what no face hides; one that varies is looked at.
+  const bool count_all =
+      lamps.has_sky && scene.environment.empty() && s.faces.size() <= kMostFacesBeforeSky;
+  const double whole_sky = kPiDouble * double(max_component(scene.background));
   const GatheringParams gathered{limit_of(s, params), count_all ? whole_sky : 0};
   const RaySources sources = ray_sources(s);
   const auto sky_rays =
       uint32_t(std::clamp(kSkyRays / params.tolerance, kLeastSkyRays, kMostSkyRays));
-  const auto share_of_sky = [&](const Receiver& r) {
-    return visible_sky(tracer, to_float(r.position), to_float(r.normal),
+  const auto sky_at = [&](const Receiver& r) {
+    return soft_sky_at(scene, lamps.lights.around, tracer, to_float(r.position), to_float(r.normal),
                        to_float(r.geometric_normal), s.diagonal_m, sky_rays);
   };
   progress.begin("irradiance", receivers.size());
@@ -65,10 +67,9 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
     Gathering gathering(s, tracer, sources, gathered);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       out[i] += gathering.from_faces(receivers[i], nullptr);
-      if (!has_sky) continue;
-      const double sky =
-          count_all ? std::max(0.0, 1 - gathering.covered()) : double(share_of_sky(receivers[i]));
-      out[i] += lamps.background * (kPi * float(sky));
+      if (!lamps.has_sky) continue;
+      out[i] += count_all ? scene.background * (kPi * float(std::max(0.0, 1 - gathering.covered())))
+                          : sky_at(receivers[i]);
     }
     progress.advance(end - begin);
   });
@@ -80,7 +81,8 @@ Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
                                              const trace::RayTracer& tracer,
                                              std::span<const Receiver> receivers,
                                              Progress& progress) {
-  transport::Lights lamps = lamps_of(scene).punctual;
+  transport::Lights lamps;
+  lamps.punctual = scene.lights;
   std::erase_if(lamps.punctual, [](const auto& lamp) { return !is_sharp(lamp); });
   return from_lamps(scene, tracer, lamps, receivers, progress);
 }

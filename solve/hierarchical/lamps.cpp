@@ -89,22 +89,24 @@ void add_points(const Element& e, const Faces& faces, const Probe& probe,
   }
 }
 
-/// E of the background at each point.
-std::vector<Rgb> sky_light(const Exchange& x, const transport::Elements& points, Rgb radiance) {
+/// E of the soft sky at each point.
+std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x, const Lamps& lamps,
+                           const transport::Elements& points) {
   std::vector<Rgb> out(points.size());
-  if (max_component(radiance) == 0) return out;
+  if (!lamps.has_sky) return out;
   parallel_for(points.size(), 64, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      out[i] = radiance * (kPi * visible_sky(x.tracer, points.position[i], points.normal[i],
-                                             points.normal[i], x.diagonal_m, kSkyRays));
+      out[i] = soft_sky_at(scene, lamps.lights.around, x.tracer, points.position[i],
+                           points.normal[i], points.normal[i], x.diagonal_m, kSkyRays);
   });
   return out;
 }
 
 }  // namespace
 
-float visible_sky(const trace::RayTracer& tracer, Vec3 position, Vec3 normal, Vec3 geometric_normal,
-                  float diagonal_m, uint32_t count) {
+Rgb soft_sky_at(const scene::Scene& scene, const transport::Surroundings& around,
+                const trace::RayTracer& tracer, const Vec3& position, Vec3 normal,
+                Vec3 geometric_normal, float diagonal_m, uint32_t count) {
   const auto frame = frame_around(normal);
   const Vec3 from = trace::offset_origin(position, geometric_normal, diagonal_m);
   std::vector<trace::Ray> rays;
@@ -114,19 +116,42 @@ float visible_sky(const trace::RayTracer& tracer, Vec3 position, Vec3 normal, Ve
   }
   std::vector<uint8_t> blocked(rays.size());
   tracer.occluded(rays, blocked);
-  return float(std::count(blocked.begin(), blocked.end(), 0)) / float(count);
+  // Summed in double: a sky of one radiance gives its share of the rays, whatever their order.
+  double r = 0, g = 0, b = 0;
+  for (size_t k = 0; k < rays.size(); ++k) {
+    if (blocked[k]) continue;
+    const Rgb l = transport::soft_radiance(scene, around, rays[k].direction);
+    r += double(l.x), g += double(l.y), b += double(l.z);
+  }
+  const double share = kPiDouble / double(count);
+  return {float(r * share), float(g * share), float(b * share)};
+}
+
+float brightest_sky(const scene::Scene& scene, const transport::Surroundings& around) {
+  float most = max_component(around.background);
+  if (scene.environment.empty()) return most;
+  float brightest = 0;
+  for (const Rgb& l : scene.environment.radiance) {
+    const float y = luminance(l);
+    brightest = std::max(brightest, max_component(l) * (y > around.limit ? around.limit / y : 1));
+  }
+  return most + brightest;
 }
 
 Lamps lamps_of(const scene::Scene& scene) {
   Lamps out;
-  out.punctual.punctual = scene.lights;
-  out.background = scene.background;
+  out.lights.punctual = scene.lights;
+  out.lights.around = transport::surroundings_of(scene);
+  out.has_sky = max_component(scene.background) > 0 || !scene.environment.empty();
   return out;
 }
 
 Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
                     const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress) {
   if (!lamps.any()) return {};
+  const float unsure = lamps.has_sky ? brightest_sky(state.scene, lamps.lights.around) * kPi *
+                                           (kUnsureRays / kSkyRays)
+                                     : 0.0f;
   for (;;) {
     lit.resize(state.tree.elements.size());
     std::vector<size_t> leaves;
@@ -141,16 +166,15 @@ Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
     }
     if (leaves.empty()) return {};
     LUXEL_TRY(transport::DirectLight direct,
-              transport::direct_light(state.scene, points, lamps.punctual, x.tracer, {64, 1, true},
+              transport::direct_light(state.scene, points, lamps.lights, x.tracer, {64, 1, true},
                                       progress));
-    const std::vector<Rgb> sky = sky_light(x, points, lamps.background);
+    const std::vector<Rgb> sky = sky_light(state.scene, x, lamps, points);
     for (size_t i = 0; i < sky.size(); ++i) direct.irradiance[i] += sky[i];
     std::span<const Rgb> light = direct.irradiance;
     for (size_t k = 0; k < leaves.size(); ++k) {
       const Fit fit = fit_of(probes[k], light.first(probes[k].at.size()));
       light = light.subspan(probes[k].at.size());
       state.light.elements[leaves[k]].unlinked = fit.corner;
-      const float unsure = max_component(lamps.background) * kPi * (kUnsureRays / kSkyRays);
       const double area = state.tree.elements[leaves[k]].area_m2;
       if (double(fit.error - unsure) * area / x.unit_area_m2 > params.eps &&
           area > 4 * params.min_area_m2 && state.tree.elements.size() + 4 <= params.max_elements)

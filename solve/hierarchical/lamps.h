@@ -8,16 +8,19 @@ namespace luxel::hierarchical {
 
 /// What shines besides surfaces.
 struct Lamps {
-  transport::Lights punctual;  ///< no triangles
-  Rgb background{};            ///< radiance
-  bool any() const { return !punctual.punctual.empty() || max_component(background) > 0; }
+  transport::Lights lights;  ///< no triangles
+  bool has_sky = false;      ///< background or a map
+  bool any() const { return has_sky || !lights.punctual.empty(); }
 };
 Lamps lamps_of(const scene::Scene& scene);
 
-/// The share of the sky that a point sees, weighted by the cosine about `normal`: by so many rays,
-/// the same directions everywhere.
-float visible_sky(const trace::RayTracer& tracer, Vec3 position, Vec3 normal, Vec3 geometric_normal,
-                  float diagonal_m, uint32_t count);
+/// E of the soft light of the surroundings at a point: by so many rays, the same directions
+/// everywhere.
+Rgb soft_sky_at(const scene::Scene& scene, const transport::Surroundings& around,
+                const trace::RayTracer& tracer, const Vec3& position, Vec3 normal,
+                Vec3 geometric_normal, float diagonal_m, uint32_t count);
+/// No more than this comes from the whole of it.
+float brightest_sky(const scene::Scene& scene, const transport::Surroundings& around);
 
 /// Sets ElementLight::unlinked of all leaves that have none yet (`lit` counts elements, in order),
 /// dividing leaves over which it is farther than eps from linear. As with links, large leaves count

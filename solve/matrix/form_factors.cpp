@@ -220,7 +220,7 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
         }
         const scene::Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
         const uint32_t material = mesh.triangle_material[hit.triangle];
-        if (hit.back_face && !scene.materials[material].double_sided) continue;
+        if (hit.back_face && !scene::reflects_from_behind(scene.materials[material])) continue;
         const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
         const uint32_t j = work.locator.locate(scene::world_position(scene, hit.point()),
                                                hit.back_face ? -front : front, material, tracer);

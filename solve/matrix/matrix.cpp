@@ -13,6 +13,8 @@ namespace {
 /// The visible share of a light is a ratio of sums, which few shadow rays overestimate: 16 by 0.2
 /// %.
 constexpr int kLeastSamples = 64;
+/// Rays per probe towards a map of the surroundings: with eight probes, 1,024 per patch.
+constexpr int kSkySamples = 128;
 constexpr int kMaxSweeps = 4000;
 
 /// The probes of every patch as elements, patch after patch.
@@ -105,6 +107,30 @@ Result<Prepared> prepare(const scene::Scene& scene, const trace::RayTracer& trac
   return out;
 }
 
+namespace {
+
+/// E of the soft surroundings per patch. A background is what the patches' own rays saw of it; a
+/// map is looked at again, by rays that know where they go.
+Result<std::vector<Rgb>> sky_light(const scene::Scene& scene, const transport::Lights& lights,
+                                   const trace::RayTracer& tracer, const Prepared& prepared,
+                                   const Probes& probes, uint64_t seed, Progress& progress) {
+  const size_t n = prepared.work.patches.size();
+  std::vector<Rgb> sky(n);
+  for (size_t i = 0; i < n; ++i) sky[i] = lights.around.background * (kPi * prepared.sky[i]);
+  if (scene.environment.empty()) return sky;
+  transport::Lights map;
+  map.around.limit = lights.around.limit;
+  transport::DirectParams params{1, seed, false, kSkySamples};
+  LUXEL_TRY(const transport::DirectLight soft,
+            transport::direct_light(scene, probes.elements, map, tracer, params, progress));
+  for (size_t i = 0; i < n; ++i)
+    for (size_t k = probes.first[i]; k < probes.first[i + 1]; ++k)
+      sky[i] += soft.irradiance[k] / float(probes.first[i + 1] - probes.first[i]);
+  return sky;
+}
+
+}  // namespace
+
 Result<Solution> solve(const scene::Scene& scene, const transport::Lights& lights,
                        const trace::RayTracer& tracer, const Prepared& prepared,
                        const MatrixParams& params, Progress& progress) {
@@ -117,12 +143,13 @@ Result<Solution> solve(const scene::Scene& scene, const transport::Lights& light
                                     {samples, params.seed, false}, progress));
   Solution out;
   out.direct.resize(n), out.indirect.resize(n);
-  std::vector<Rgb> sky(n), change(n), sent(n);
+  LUXEL_TRY(const std::vector<Rgb> sky,
+            sky_light(scene, lights, tracer, prepared, probes, params.seed, progress));
+  std::vector<Rgb> change(n), sent(n);
   for (size_t i = 0; i < n; ++i) {
     const auto count = float(probes.first[i + 1] - probes.first[i]);
     for (size_t k = probes.first[i]; k < probes.first[i + 1]; ++k)
       out.direct[i] += direct.irradiance[k] / count;
-    sky[i] = lights.background * (kPi * prepared.sky[i]);
     out.indirect[i] = sky[i];
     change[i] = out.direct[i] + sky[i];
   }

@@ -1,4 +1,4 @@
-// Every solver of the pipeline's table against the path tracer, on five small scenes.
+// Every solver of the pipeline's table against the path tracer, on six small scenes.
 #include <gtest/gtest.h>
 
 #include "base/random.h"
@@ -25,18 +25,21 @@ constexpr Tolerance kTolerances[] = {
     {"gather", "every lamp", 0.03, 0.006,
      "a texel is half as wide as a hole of the mask, whose light bounces blurred"},
     {"gather", "window", 0.025, 0.005, "noise: the window is small, and the sun's patch bright"},
+    {"gather", "sky map", 0.025, 0.005, "noise: the window is small, and the sun's patch bright"},
     {"hemicube", "Cornell box", 0.015, 0.004, "10,000 elements: shadow edges inside triangles"},
     {"hemicube", "lamp in a room", 0.007, 0.004, "light falls off steeply beside the corners"},
     {"hemicube", "spheres and cube", 0.01, 0.005, "facets of the spheres; corners"},
     {"hemicube", "every lamp", 0.07, 0.01,
      "sharp shadows of a mask whose holes are smaller than elements"},
     {"hemicube", "window", 0.02, 0.006, "the sun's patch has an edge inside triangles"},
+    {"hemicube", "sky map", 0.03, 0.006, "the sun's patch has an edge inside triangles"},
     {"matrix", "Cornell box", 0.025, 0.003,
      "8,192 patches of 17 mm; texels of 19 mm lose the dark of contacts"},
     {"matrix", "lamp in a room", 0.006, 0.003, "indirect light bends within patches at corners"},
     {"matrix", "spheres and cube", 0.02, 0.003, "where spheres touch the floor"},
     {"matrix", "every lamp", 0.012, 0.003, "indirect light bends within patches"},
     {"matrix", "window", 0.018, 0.004, "the sky's light has a border inside patches"},
+    {"matrix", "sky map", 0.03, 0.005, "the sky's light has a border inside patches"},
     {"hierarchical", "Cornell box", 0.02, 0.003, "texels beside the feet of the blocks"},
     {"hierarchical", "lamp in a room", 0.008, 0.004, "interpolants are off by 0.0025 of the mean"},
     {"hierarchical", "spheres and cube", 0.01, 0.003,
@@ -44,11 +47,13 @@ constexpr Tolerance kTolerances[] = {
     {"hierarchical", "every lamp", 0.04, 0.005,
      "shadows of a mask's holes, along which no triangle's edge runs"},
     {"hierarchical", "window", 0.018, 0.004, "the sky's light by 1024 rays"},
+    {"hierarchical", "sky map", 0.05, 0.006, "the sun's patch has an edge inside triangles"},
     {"reference", "Cornell box", 0.07, 0.005, "its own noise: 0.05 at 512 paths, mean 0.001"},
     {"reference", "lamp in a room", 0.05, 0.004, "its own noise: 0.03"},
     {"reference", "spheres and cube", 0.05, 0.004, "its own noise: 0.03"},
     {"reference", "every lamp", 0.06, 0.004, "its own noise: 0.04"},
     {"reference", "window", 0.13, 0.009, "its own noise: 0.09; most paths miss the window"},
+    {"reference", "sky map", 0.13, 0.009, "its own noise; most paths miss the window"},
 };
 
 const Tolerance* tolerance_of(std::string_view solver, std::string_view scene) {

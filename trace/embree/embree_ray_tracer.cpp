@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <string>
 #include <vector>
 
 #include "base/check.h"
+#include "base/random.h"
 #include "trace/ray_tracer.h"
 
 namespace luxel::trace {
@@ -25,7 +27,7 @@ RTCIntersectContext packet_context(bool coherent = false) {
   return context;
 }
 
-/// What a filter function needs to find the hole in a mask.
+/// What a filter function needs to find what lets light through.
 struct SceneTag {
   const scene::Scene* scene = nullptr;
 };
@@ -36,9 +38,50 @@ inline uint32_t instance_of(uint32_t instance_id, uint32_t geometry_id) {
   return instance_id != RTC_INVALID_GEOMETRY_ID ? instance_id : geometry_id;
 }
 
-/// Rejects hits in the holes of alpha masks, for packets of any size.
-void reject_holes(const RTCFilterFunctionNArguments* args) {
+/// What a query does with the light of a packet's rays that goes straight through surfaces.
+enum class Through : uint8_t {
+  chance,  ///< let the ray through or not
+  tint,    ///< let it through, and multiply its light by the tint
+  share    ///< the same with (1 - coverage) tint; where nothing is left, it is blocked
+};
+
+/// Embree hands the context of a query to filter functions: ours has more behind it.
+struct Query {
+  RTCIntersectContext context;
+  Through through = Through::chance;
+  Rgb* light = nullptr;  ///< one for each ray of the packet
+  /// Places that a ray has passed: Embree may ask about one several times, because spatial splits
+  /// put a triangle into several boxes. So many are remembered.
+  static constexpr size_t kRemembered = 16;
+  std::array<std::array<uint64_t, kRemembered>, kPacket> passed;
+  std::array<uint32_t, kPacket> passed_count{};
+
+  bool is_new(unsigned lane, uint64_t place) {
+    const size_t known = std::min<size_t>(passed_count[lane], kRemembered);
+    const auto end = passed[lane].begin() + std::ptrdiff_t(known);
+    if (std::find(passed[lane].begin(), end, place) != end) return false;
+    passed[lane][passed_count[lane]++ % kRemembered] = place;
+    return true;
+  }
+};
+
+/// A number in [0, 1) that follows from the bits of a ray and of what it meets.
+float chance_of(const RTCFilterFunctionNArguments* args, unsigned i, uint64_t place) {
+  const auto bits = [](float x) { return uint64_t(std::bit_cast<uint32_t>(x)); };
+  RTCRayN* ray = args->ray;
+  const uint64_t direction =
+      hash64(bits(RTCRayN_dir_x(ray, args->N, i)) << 32 | bits(RTCRayN_dir_y(ray, args->N, i)),
+             bits(RTCRayN_dir_z(ray, args->N, i)));
+  const uint64_t origin =
+      hash64(bits(RTCRayN_org_x(ray, args->N, i)) << 32 | bits(RTCRayN_org_y(ray, args->N, i)),
+             bits(RTCRayN_org_z(ray, args->N, i)));
+  return unit_float(uint32_t(hash64(hash64(direction, origin), place) >> 32));
+}
+
+/// Lets rays through the holes of masks and through what is not opaque, for packets of any size.
+void let_through(const RTCFilterFunctionNArguments* args) {
   const scene::Scene& scene = *static_cast<const SceneTag*>(args->geometryUserPtr)->scene;
+  Query& query = *reinterpret_cast<Query*>(args->context);
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
     const scene::SurfacePoint p{
@@ -46,14 +89,27 @@ void reject_holes(const RTCFilterFunctionNArguments* args) {
                     RTCHitN_geomID(args->hit, args->N, i)),
         RTCHitN_primID(args->hit, args->N, i),
         {RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i)}};
-    if (!scene::is_solid_at(scene, p)) args->valid[i] = 0;
+    const scene::Passage passage = scene::passage_at(scene, p);
+    if (passage.coverage >= 1) continue;
+    const uint64_t place = uint64_t(p.instance) << 32 | p.triangle;
+    if (query.through == Through::chance) {
+      if (chance_of(args, i, place) >= passage.coverage) args->valid[i] = 0;
+      continue;
+    }
+    const unsigned lane = RTCRayN_id(args->ray, args->N, i);
+    Rgb& light = query.light[lane];
+    if (query.is_new(lane, place)) {
+      const float open = query.through == Through::share ? 1 - passage.coverage : 1.0f;
+      light = light * passage.tint * open;
+    }
+    if (max_component(light) > 0) args->valid[i] = 0;
   }
 }
 
-bool has_mask(const scene::Scene& scene, const scene::Mesh& mesh) {
-  for (const uint32_t material : mesh.triangle_material)
-    if (scene.materials[material].alpha_mode == scene::AlphaMode::mask) return true;
-  return false;
+template <class Is>
+bool has_material(const scene::Scene& scene, const scene::Mesh& mesh, const Is& is) {
+  return std::any_of(mesh.triangle_material.begin(), mesh.triangle_material.end(),
+                     [&](uint32_t material) { return is(scene.materials[material]); });
 }
 
 void* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, size_t stride,
@@ -68,6 +124,7 @@ struct RayTracer::Impl {
   RTCScene top = nullptr;
   std::vector<RTCScene> meshes;  ///< per mesh; null unless several instances share it
   bool has_shared_meshes = false;
+  bool has_tints = false;
   SceneTag tag;
   /// Per instance, the map of object normals to world normals of the front side.
   std::vector<std::array<Vec3, 3>> normal_columns;
@@ -105,10 +162,11 @@ RTCGeometry RayTracer::Impl::new_triangles(const scene::Scene& scene, const scen
                  [&](Vec3 p) { return transform_point(map, p); });
   std::copy(mesh.triangles.begin(), mesh.triangles.end(),
             static_cast<std::array<uint32_t, 3>*>(indices));
-  if (has_mask(scene, mesh)) {
+  has_tints = has_tints || has_material(scene, mesh, scene::tints_light);
+  if (has_material(scene, mesh, scene::lets_light_through)) {
     rtcSetGeometryUserData(geometry, &tag);
-    rtcSetGeometryIntersectFilterFunction(geometry, reject_holes);
-    rtcSetGeometryOccludedFilterFunction(geometry, reject_holes);
+    rtcSetGeometryIntersectFilterFunction(geometry, let_through);
+    rtcSetGeometryOccludedFilterFunction(geometry, let_through);
   }
   rtcCommitGeometry(geometry);
   return geometry;
@@ -223,15 +281,14 @@ unsigned load_packet(std::span<const Ray> rays, int* valid, RTCRay16& out) {
 void RayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
                              Packets packets) const {
   LUXEL_CHECK(rays.size() == hits.size());
-  RTCIntersectContext context =
-      packet_context(packets == Packets::bundles && !impl_->has_shared_meshes);
+  Query query{packet_context(packets == Packets::bundles && !impl_->has_shared_meshes)};
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
     RTCRayHit16 packet;
     const unsigned count = load_packet(rays.subspan(first), valid, packet.ray);
     for (unsigned i = 0; i < kPacket; ++i)
       packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect16(valid, impl_->top, &context, &packet);
+    rtcIntersect16(valid, impl_->top, &query.context, &packet);
     for (unsigned i = 0; i < count; ++i) {
       Hit& hit = hits[first + i];
       if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
@@ -257,13 +314,44 @@ Hit RayTracer::closest_hit(const Ray& ray) const {
 
 void RayTracer::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const {
   LUXEL_CHECK(rays.size() == blocked.size());
-  RTCIntersectContext context = packet_context();
+  Query query{packet_context()};
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
     RTCRay16 packet;
     const unsigned count = load_packet(rays.subspan(first), valid, packet);
-    rtcOccluded16(valid, impl_->top, &context, &packet);
+    rtcOccluded16(valid, impl_->top, &query.context, &packet);
     for (unsigned i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0 ? 1 : 0;
+  }
+}
+
+bool RayTracer::has_tints() const { return impl_->has_tints; }
+
+void RayTracer::tint(std::span<const Ray> rays, std::span<const Hit> hits,
+                     std::span<Rgb> light) const {
+  LUXEL_CHECK(rays.size() == hits.size() && rays.size() == light.size());
+  for (size_t first = 0; first < rays.size(); first += kPacket) {
+    alignas(64) int valid[kPacket];
+    RTCRay16 packet;
+    const unsigned count = load_packet(rays.subspan(first), valid, packet);
+    // Up to just before the hit: what stands there has stopped the ray, not tinted it.
+    for (unsigned i = 0; i < count; ++i)
+      if (hits[first + i].found()) packet.tfar[i] = hits[first + i].t * (1 - 1e-6f);
+    Query query{packet_context(), Through::tint, light.data() + first};
+    rtcOccluded16(valid, impl_->top, &query.context, &packet);
+  }
+}
+
+void RayTracer::transmitted(std::span<const Ray> rays, std::span<Rgb> share) const {
+  LUXEL_CHECK(rays.size() == share.size());
+  for (size_t first = 0; first < rays.size(); first += kPacket) {
+    alignas(64) int valid[kPacket];
+    RTCRay16 packet;
+    const unsigned count = load_packet(rays.subspan(first), valid, packet);
+    for (unsigned i = 0; i < count; ++i) share[first + i] = {1, 1, 1};
+    Query query{packet_context(), Through::share, share.data() + first};
+    rtcOccluded16(valid, impl_->top, &query.context, &packet);
+    for (unsigned i = 0; i < count; ++i)
+      if (packet.tfar[i] < 0) share[first + i] = {};
   }
 }
 

@@ -1,0 +1,55 @@
+#include "scene/environment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/vec_double.h"
+
+namespace luxel::scene {
+namespace {
+
+/// acos for the whole range: acos itself loses half of the digits near the poles.
+float angle_from_up(Vec3 d) { return std::atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y); }
+
+}  // namespace
+
+Vec2 uv_of(const Environment& map, Vec3 d) {
+  const float u = 0.5f + (std::atan2(d.z, d.x) - map.rotation_rad) / (2 * kPi);
+  const float wrapped = u - std::floor(u);
+  return {wrapped < 1 ? wrapped : 0.0f, angle_from_up(d) / kPi};
+}
+
+Vec3 direction_of(const Environment& map, Vec2 uv) {
+  const float phi = 2 * kPi * (uv.x - 0.5f) + map.rotation_rad, theta = kPi * uv.y;
+  const float s = std::sin(theta);
+  return {s * std::cos(phi), std::cos(theta), s * std::sin(phi)};
+}
+
+size_t pixel_towards(const Environment& map, Vec3 direction) {
+  const Vec2 uv = uv_of(map, direction);
+  const int x = std::min(int(uv.x * float(map.width)), map.width - 1);
+  const int y = std::min(int(uv.y * float(map.height)), map.height - 1);
+  return size_t(y) * size_t(map.width) + size_t(x);
+}
+
+Rgb smooth_radiance_towards(const Environment& map, Vec3 direction) {
+  const Vec2 uv = uv_of(map, direction);
+  const float x = uv.x * float(map.width) - 0.5f + float(map.width);
+  const float y = std::clamp(uv.y * float(map.height) - 0.5f, 0.0f, float(map.height - 1));
+  const int x0 = int(x), y0 = int(y);
+  const float fx = x - float(x0), fy = y - float(y0);
+  const auto at = [&](int column, int row) {
+    return map.radiance[size_t(std::min(row, map.height - 1)) * size_t(map.width) +
+                        size_t(column % map.width)];
+  };
+  return (at(x0, y0) * (1 - fx) + at(x0 + 1, y0) * fx) * (1 - fy) +
+         (at(x0, y0 + 1) * (1 - fx) + at(x0 + 1, y0 + 1) * fx) * fy;
+}
+
+double pixel_solid_angle(const Environment& map, int row) {
+  // 2 pi / width (cos above - cos below), without its cancellation.
+  const double half = kPiDouble / (2 * map.height), middle = kPiDouble * (row + 0.5) / map.height;
+  return 4 * kPiDouble / map.width * std::sin(middle) * std::sin(half);
+}
+
+}  // namespace luxel::scene

@@ -1,0 +1,110 @@
+#include "transport/surroundings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/vec_double.h"
+#include "scene/environment.h"
+
+namespace luxel::transport {
+namespace {
+
+/// Light of up to so many times the mean is left to rays with the density of the cosine: a sky's
+/// gradient and its clouds, not its sun.
+constexpr double kPeak = 4;
+
+/// The limit that is kPeak times the mean of min(L, limit): from above, until it stays.
+double limit_of(const scene::Environment& map) {
+  double limit = HUGE_VAL;
+  for (int round = 0; round < 64; ++round) {
+    double sum = 0;
+    for (int y = 0; y < map.height; ++y) {
+      double row = 0;
+      for (int x = 0; x < map.width; ++x)
+        row += std::min(limit,
+                        double(luminance(map.radiance[size_t(y) * size_t(map.width) + size_t(x)])));
+      sum += row * scene::pixel_solid_angle(map, y);
+    }
+    const double next = kPeak * sum / (4 * kPiDouble);
+    if (next >= limit * (1 - 1e-3)) break;
+    limit = next;
+  }
+  return limit;
+}
+
+/// Places near each other in this order lie near each other in the map, so that points spread
+/// evenly over the order spread over the map.
+uint64_t morton(uint32_t x, uint32_t y) {
+  uint64_t code = 0;
+  for (int bit = 0; bit < 32; ++bit)
+    code |= (uint64_t(x >> bit & 1) << (2 * bit)) | (uint64_t(y >> bit & 1) << (2 * bit + 1));
+  return code;
+}
+
+/// What of a pixel's light lies below the limit, as a share.
+float soft_share(float luminance_of_pixel, float limit) {
+  return luminance_of_pixel > limit ? limit / luminance_of_pixel : 1.0f;
+}
+
+}  // namespace
+
+Surroundings surroundings_of(const scene::Scene& scene) {
+  Surroundings out;
+  out.background = scene.background;
+  const scene::Environment& map = scene.environment;
+  if (map.empty()) return out;
+  out.limit = float(limit_of(map));
+  for (uint32_t i = 0; i < map.radiance.size(); ++i)
+    if (luminance(map.radiance[i]) > out.limit) out.peak.push_back(i);
+  const auto code = [&](uint32_t i) {
+    return morton(i % uint32_t(map.width), i / uint32_t(map.width));
+  };
+  std::sort(out.peak.begin(), out.peak.end(),
+            [&](uint32_t a, uint32_t b) { return code(a) < code(b); });
+  out.below.push_back(0);
+  for (const uint32_t i : out.peak) {
+    const double over = double(luminance(map.radiance[i])) - double(out.limit);
+    out.below.push_back(out.below.back() +
+                        over * scene::pixel_solid_angle(map, int(i) / map.width));
+  }
+  out.peak_power = out.below.back();
+  return out;
+}
+
+Rgb soft_radiance(const scene::Scene& scene, const Surroundings& s, Vec3 direction) {
+  if (scene.environment.empty()) return s.background;
+  const Rgb l = scene::radiance_towards(scene.environment, direction);
+  return s.background + l * soft_share(luminance(l), s.limit);
+}
+
+PeakSample sample_peaks(const scene::Scene& scene, const Surroundings& s, Vec2 u) {
+  LUXEL_CHECK(!s.peak.empty());
+  const scene::Environment& map = scene.environment;
+  const double at = double(u.x) * s.peak_power;
+  const auto found = std::upper_bound(s.below.begin() + 1, s.below.end() - 1, at);
+  const size_t k = size_t(found - s.below.begin()) - 1;
+  // What is left of u.x within the pixel's share is uniform again.
+  const double within = std::clamp((at - s.below[k]) / (s.below[k + 1] - s.below[k]), 0.0, 1.0);
+  const uint32_t pixel = s.peak[k];
+  const int x = int(pixel) % map.width, y = int(pixel) / map.width;
+  // Uniform over the pixel's solid angle: linear in the cosine.
+  const double upper = std::cos(kPiDouble * y / map.height);
+  const double lower = std::cos(kPiDouble * (y + 1) / map.height);
+  const double cosine = upper + (lower - upper) * double(u.y);
+  const Vec2 uv{(float(x) + float(within)) / float(map.width),
+                float(std::acos(cosine) / kPiDouble)};
+  const Rgb l = map.radiance[pixel];
+  const float l_luminance = luminance(l);
+  // Density = (lum L - limit) / peak_power per steradian, radiance = L (lum L - limit) / lum L.
+  return {scene::direction_of(map, uv), l * float(s.peak_power / double(l_luminance))};
+}
+
+float folded_cosine(Vec3 d, Vec3 normal, Vec3 geometric_normal) {
+  const float cosine = std::max(0.0f, dot(d, normal));
+  if (normal == geometric_normal) return cosine;
+  const Vec3 mirrored = d - geometric_normal * (2 * dot(d, geometric_normal));
+  return cosine + std::max(0.0f, dot(mirrored, normal));
+}
+
+}  // namespace luxel::transport

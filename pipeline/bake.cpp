@@ -38,6 +38,9 @@ Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>
   progress.begin("import", 0);
   LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
   warnings = std::move(imported.warnings);
+  LUXEL_TRY(const std::vector<std::string> of_profiles,
+            add_profiles(settings.outside.ies, imported.scene));
+  warnings.insert(warnings.end(), of_profiles.begin(), of_profiles.end());
   const std::string dark = add_outside_light(settings.outside, imported.scene);
   if (!dark.empty()) warnings.push_back(dark);
   LUXEL_TRY_STATUS(not_cancelled(progress));

@@ -127,6 +127,8 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   scene::Scene& scene = imported.scene;
   Probed out;
   out.warnings = std::move(imported.warnings);
+  LUXEL_TRY(const std::vector<std::string> of_profiles, add_profiles(s.outside.ies, scene));
+  out.warnings.insert(out.warnings.end(), of_profiles.begin(), of_profiles.end());
   if (std::string dark = add_outside_light(s.outside, scene); !dark.empty())
     out.warnings.push_back(std::move(dark));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));

@@ -49,6 +49,10 @@ Status check(const RelightSettings& s) {
   if (std::find(kTargets.begin(), kTargets.end(), s.target) == kTargets.end())
     return fail(ErrorCode::bad_setting,
                 "--target {} is not known; there is: texels, vertices, none", s.target);
+  if (!s.outside.ies.empty())
+    return fail(ErrorCode::bad_setting,
+                "--ies {}={}: .lxr files do not keep light profiles; leave it out",
+                s.outside.ies[0].lamp, s.outside.ies[0].file.string());
   if (s.output.extension() != ".lxr")
     return fail(ErrorCode::bad_setting, "-o {}: the file is to end in .lxr", s.output.string());
   if (!(s.max_error >= 1e-5 && s.max_error <= 1))
@@ -170,7 +174,7 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   scene::Scene& scene = imported.scene;
   std::vector<std::string> warnings = std::move(imported.warnings);
   // A scene without light is no mistake here: its lamps come later.
-  if (s.outside.background || s.outside.sun) add_outside_light(s.outside, scene);
+  if (s.outside.background || s.outside.sun || s.outside.sky) add_outside_light(s.outside, scene);
   LUXEL_TRY_STATUS(fits(s));
   LUXEL_TRY(Wanted wanted, wanted_of(scene, s, progress));
   progress.begin("build ray tracer", 0);

@@ -100,6 +100,9 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
   Rendered out;
   out.warnings = std::move(imported.warnings);
+  LUXEL_TRY(const std::vector<std::string> of_profiles,
+            add_profiles(s.outside.ies, imported.scene));
+  out.warnings.insert(out.warnings.end(), of_profiles.begin(), of_profiles.end());
   const std::string dark = add_outside_light(s.outside, imported.scene);
   const bool computes_light = !technique || (technique->is_light && !technique->needs_bake);
   if (computes_light && !dark.empty()) out.warnings.push_back(dark);

@@ -15,8 +15,6 @@ namespace {
 
 constexpr int kMaxSamples = 65535;
 constexpr int64_t kMaxElements = 1 << 26;
-/// Half the angle under which the sun is seen from the earth.
-constexpr float kSunAngularRadius = 0.00465f;
 
 /// A number that is the whole of `text`.
 std::optional<double> parse_number(std::string_view text) {
@@ -160,6 +158,13 @@ nlohmann::json to_json(const BakeSettings& s) {
   if (const auto& b = s.outside.background) json["background"] = {b->x, b->y, b->z};
   if (const auto& sun = s.outside.sun)
     json["sun"] = {sun->azimuth_deg, sun->elevation_deg, sun->lux};
+  if (const auto& sky = s.outside.sky)
+    json["sky"] = {{"azimuth_deg", sky->azimuth_deg},
+                   {"elevation_deg", sky->elevation_deg},
+                   {"turbidity", sky->turbidity},
+                   {"sun_distance_au", sky->sun_distance_au}};
+  for (const IesSetting& ies : s.outside.ies)
+    json["ies"].push_back({{"lamp", ies.lamp}, {"file", ies.file.string()}, {"scale", ies.scale}});
   return json;
 }
 
@@ -214,17 +219,18 @@ scene::PunctualLight sun_light(const Sun& sun) {
   light.intensity = Rgb{1, 1, 1} * sun.lux;
   light.direction = -Vec3{std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
                           -std::cos(azimuth) * std::cos(elevation)};
-  light.angular_radius_rad = kSunAngularRadius;
+  light.angular_radius_rad = scene::kSunAngularRadiusRad;
   return light;
 }
 
 std::string add_outside_light(const OutsideLight& outside, scene::Scene& scene) {
   if (outside.background) scene.background = *outside.background;
   if (outside.sun && outside.sun->lux > 0) scene.lights.push_back(sun_light(*outside.sun));
+  if (outside.sky) add_sky(*outside.sky, scene);
   if (scene::has_light(scene)) return {};
   scene.background = {1, 1, 1};
-  return "the scene has no light: lit by a white background of radiance 1; --background and --sun "
-         "give others";
+  return "the scene has no light: lit by a white background of radiance 1; --background, --sun and "
+         "--sky give others";
 }
 
 }  // namespace luxel::pipeline

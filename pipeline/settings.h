@@ -7,10 +7,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "atlas/atlas.h"
 #include "base/result.h"
 #include "base/vec.h"
+#include "pipeline/ies_setting.h"
+#include "pipeline/sky_setting.h"
 #include "scene/scene.h"
 
 namespace luxel::pipeline {
@@ -22,10 +25,12 @@ struct Sun {
   float lux = 0;             ///< E on a surface that faces it [W/m^2 or lux]
 };
 
-/// Light from outside the scene's file.
+/// Light that the scene's file does not have.
 struct OutsideLight {
   std::optional<Rgb> background;  ///< radiance of the surroundings; replaces the file's
   std::optional<Sun> sun;
+  std::optional<SkySetting> sky;  ///< with its own sun
+  std::vector<IesSetting> ies;    ///< add_profiles() reads them
 };
 
 /// What only the hemicube solver reads.
@@ -96,8 +101,8 @@ Result<int> parse_bounces(std::string_view text);
 /// The sun's disc is half a degree wide: its shadows have penumbrae.
 scene::PunctualLight sun_light(const Sun& sun);
 
-/// Adds outside light to a scene. A scene that then has no light at all gets a white background of
-/// radiance 1; the returned sentence says so (empty otherwise).
+/// Adds background, sun and sky to a scene. One that then has no light at all gets a white
+/// background of radiance 1; the returned sentence says so (empty otherwise).
 std::string add_outside_light(const OutsideLight& outside, scene::Scene& scene);
 
 }  // namespace luxel::pipeline

@@ -166,7 +166,7 @@ void register_relight(CLI::App& app, Action& action) {
   relight->add_option("--script", options->script, "How lamps move (docs/relight.md)")
       ->type_name("FILE.json");
   add_outside_light(*relight, options->outside);
-  for (const char* name : {"--background", "--sun"})
+  for (const char* name : {"--background", "--sun", "--sky", "--ies"})
     options->of_making.push_back(relight->get_option(name));
   add_common(*relight, options->common);
   relight->callback([options, &action] { action = [options] { return run_relight(*options); }; });

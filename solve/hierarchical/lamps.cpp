@@ -119,7 +119,7 @@ float visible_sky(const trace::RayTracer& tracer, Vec3 position, Vec3 normal, Ve
 
 Lamps lamps_of(const scene::Scene& scene) {
   Lamps out;
-  out.punctual.punctual = scene.lights;
+  out.punctual.punctual = scene.lights, out.punctual.profiles = scene.profiles;
   out.background = scene.background;
   return out;
 }

@@ -33,14 +33,18 @@ TEST(Sky, IsAsBrightAsMeasuredClearSkies) {
   }
 }
 
-// [Kimball38; Bond63]: on the horizontal under clear skies with the sun's centre at -6 degrees, the
-// end of civil twilight, 3.4 lx; at -12, of nautical twilight, 0.0083 lx without stars. Within a
-// factor of two: light there has been scattered high up and several times, and evenings differ.
-TEST(Sky, TwilightIsAsDarkAsMeasured) {
-  EXPECT_GT(lux_of(sky_at(-6)), 3.4 / 2);
-  EXPECT_LT(lux_of(sky_at(-6)), 3.4 * 2);
-  EXPECT_GT(lux_of(sky_at(-12)), 0.0083 / 2);
-  EXPECT_LT(lux_of(sky_at(-12)), 0.0083 * 2);
+// [AMS24]: on the horizontal under clear skies 410 to 585 lx with the sun's centre at 0 degrees, 2
+// to 3.5 lx at -6, about 0.008 lx at -12. Within a factor of two: light there has been scattered
+// high up and several times, which [Hillaire20] approximates, and evenings differ.
+TEST(Sky, TwilightIsAboutAsDarkAsMeasured) {
+  struct Measured {
+    double elevation_deg, low_lux, high_lux;
+  };
+  for (const Measured& m : {Measured{0, 410, 585}, {-6, 2, 3.5}, {-12, 0.008, 0.008}}) {
+    const double lux = lux_of(sky_at(m.elevation_deg));
+    EXPECT_GT(lux, m.low_lux / 2) << m.elevation_deg;
+    EXPECT_LT(lux, m.high_lux * 2) << m.elevation_deg;
+  }
 }
 
 TEST(Sky, FallsSteadilyThroughTwilightAndStaysFinite) {

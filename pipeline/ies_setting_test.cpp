@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/command.h"
+#include <cstdlib>
+
+#include "base/file.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -13,6 +15,22 @@ using ::testing::HasSubstr;
 
 constexpr const char* kFile =
     "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 60\n0 45 90\n0\n100 70 0\n";
+
+/// kFile in a folder of this test's own, removed with the object.
+struct FileOnDisk {
+  std::filesystem::path folder, path;
+  FileOnDisk() {
+    std::string name = (std::filesystem::temp_directory_path() / "luxel-ies-XXXXXX").string();
+    folder = ::mkdtemp(name.data()), path = folder / "a.ies";
+    EXPECT_TRUE(write_file_atomically(path, text_file(path, kFile).bytes));
+  }
+  FileOnDisk(const FileOnDisk&) = delete;
+  FileOnDisk& operator=(const FileOnDisk&) = delete;
+  ~FileOnDisk() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+  }
+};
 
 TEST(IesSetting, NameFileAndScale) {
   const auto plain = parse_ies_setting("desk lamp=a/b.ies");
@@ -31,8 +49,8 @@ TEST(IesSetting, NameFileAndScale) {
 }
 
 TEST(IesSetting, GoesToAllLampsOfTheName) {
-  const testing_support::ScratchFolder folder;
-  const auto file = folder.write("a.ies", kFile);
+  const FileOnDisk disk;
+  const auto file = disk.path;
   scene::Scene scene;
   scene.lights.resize(4);
   scene.lights[0].name = scene.lights[2].name = scene.lights[3].name = "spot";
@@ -50,8 +68,8 @@ TEST(IesSetting, GoesToAllLampsOfTheName) {
 }
 
 TEST(IesSetting, UnknownNamesAreSaid) {
-  const testing_support::ScratchFolder folder;
-  const auto file = folder.write("a.ies", kFile);
+  const FileOnDisk disk;
+  const auto file = disk.path;
   scene::Scene scene;
   const auto error = [&](std::vector<IesSetting> settings) {
     const auto added = add_profiles(settings, scene);
@@ -62,7 +80,7 @@ TEST(IesSetting, UnknownNamesAreSaid) {
   scene.lights[0].name = "left", scene.lights[1].name = "right";
   EXPECT_THAT(error({{"x", file}}), HasSubstr("there is: 'left', 'right'"));
   EXPECT_THAT(error({{"left", file}, {"left", file}}), HasSubstr("another file already"));
-  EXPECT_THAT(error({{"left", folder.path / "b.ies"}}), HasSubstr("b.ies"));
+  EXPECT_THAT(error({{"left", disk.folder / "b.ies"}}), HasSubstr("b.ies"));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace luxel::scene {
 namespace {
 
-constexpr int kDepthSteps = 128;  // of a ray to the top
+constexpr int kDepthSteps = 128;                        // of a ray to the top
 constexpr int kAgainDirections = 64, kAgainSteps = 20;  // as [Hillaire20, section 5.5]
 
 DVec3 times(DVec3 a, DVec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }

@@ -61,6 +61,10 @@ TEST(Sky, FallsSteadilyThroughTwilightAndStaysFinite) {
   for (const float v : sky_at(-90).radiance.data) ASSERT_TRUE(std::isfinite(v) && v >= 0);
 }
 
+// At -30 degrees the earth's shadow reaches 980 km up, over all of the air, even the clearest. What
+// is left comes out of the table of light scattered again, whose entries are 3 degrees apart.
+TEST(Sky, NightIsBlack) { EXPECT_LT(lux_of(sky_at(-30, 1)), 1e-9); }
+
 // North (-Z) is the column at u = 0.25: the picture is the same to both sides of it. East (+X) is
 // at 0.5: turning the sun there turns the picture by a quarter.
 TEST(Sky, IsSymmetricAboutTheSunAndTurnsWithIt) {

@@ -23,7 +23,7 @@ double lux_of(const Sky& sky) { return double(luminance(horizontal_illuminance(s
 // 0.8 + 15.5 sqrt(sin h) klx: means of measurements, single days of which differ by half and more.
 // Turbidity 2 is Preetham's very clear sky: the sun within a tenth; the sky, which haze changes
 // most, within 30 %.
-TEST(Sky, IsAsBrightAsMeasuredClearSkies) {
+TEST(SkySlow, IsAsBrightAsMeasuredClearSkies) {
   for (const double elevation : {30.0, 45.0, 60.0, 75.0}) {
     const double sine = std::sin(elevation * kPiDouble / 180);
     const double sun = 127500 * std::exp(-0.21 / sine), diffuse = 800 + 15500 * std::sqrt(sine);
@@ -36,7 +36,7 @@ TEST(Sky, IsAsBrightAsMeasuredClearSkies) {
 // [AMS24]: on the horizontal under clear skies 410 to 585 lx with the sun's centre at 0 degrees, 2
 // to 3.5 lx at -6, about 0.008 lx at -12. Within a factor of two: light there has been scattered
 // high up and several times, which [Hillaire20] approximates, and evenings differ.
-TEST(Sky, TwilightIsAboutAsDarkAsMeasured) {
+TEST(SkySlow, TwilightIsAboutAsDarkAsMeasured) {
   struct Measured {
     double elevation_deg, low_lux, high_lux;
   };
@@ -47,7 +47,7 @@ TEST(Sky, TwilightIsAboutAsDarkAsMeasured) {
   }
 }
 
-TEST(Sky, FallsSteadilyThroughTwilightAndStaysFinite) {
+TEST(SkySlow, FallsSteadilyThroughTwilightAndStaysFinite) {
   double before = INFINITY;
   for (const double elevation : {20.0, 5.0, 1.0, 0.2, 0.0, -0.2, -1.0, -3.0, -6.0, -9.0, -18.0}) {
     const Sky sky = sky_at(elevation);
@@ -81,7 +81,7 @@ TEST(Sky, IsSymmetricAboutTheSunAndTurnsWithIt) {
     }
 }
 
-TEST(Sky, IsBrightestAroundTheSun) {
+TEST(SkySlow, IsBrightestAroundTheSun) {
   const Sky sky = sky_at(30, 2, 90, 64);  // +X, u = 0.5; 60 degrees from the top
   int best_x = 0, best_y = 0;
   for (int y = 0; y < 32; ++y)
@@ -104,7 +104,7 @@ TEST(Sky, TheZenithIsDarkerAndBluerThanTheHorizon) {
   EXPECT_GT(zenith.y, zenith.x);
 }
 
-TEST(Sky, TheLowSunIsWeakerAndRedder) {
+TEST(SkySlow, TheLowSunIsWeakerAndRedder) {
   float light = INFINITY, blue_over_red = INFINITY;
   for (const double elevation : {90.0, 45.0, 20.0, 10.0, 5.0, 2.0, 1.0}) {
     const Rgb sun = sky_at(elevation).sun_illuminance;
@@ -114,7 +114,7 @@ TEST(Sky, TheLowSunIsWeakerAndRedder) {
   }
 }
 
-TEST(Sky, HazeTakesFromTheSunAndGivesToTheSky) {
+TEST(SkySlow, HazeTakesFromTheSunAndGivesToTheSky) {
   double sun = INFINITY, sky = 0;
   for (const double turbidity : {1.0, 2.0, 4.0}) {
     const Sky s = sky_at(50, turbidity);

@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "base/check.h"
+#include "base/vec_double.h"
 #include "export/gltf_mesh.h"
 #include "export/gltf_node.h"
 #include "image/codec.h"
@@ -39,8 +40,19 @@ std::vector<std::byte> lightmap_png(const image::Image& lightmap, float intensit
   return image::encode_png(image::to_srgb8(scaled));
 }
 
+/// KHR_lights_punctual knows no profiles: such a lamp gets the mean of what it sends into its cone,
+/// a point light into all directions, so that its flux stays.
+scene::PunctualLight as_even_light(const scene::Scene& scene, scene::PunctualLight light) {
+  if (light.profile == scene::kNone) return light;
+  const bool is_spot = light.kind == scene::PunctualLight::Kind::spot;
+  light.intensity *= float(scene::mean_candela(scene.profiles[light.profile],
+                                               is_spot ? double(light.outer_cone_rad) : kPiDouble));
+  return light;
+}
+
 void append_lights_and_cameras(Glb& glb, const scene::Scene& scene, json& roots) {
-  for (const scene::PunctualLight& light : scene.lights) roots.push_back(append_light(glb, light));
+  for (const scene::PunctualLight& light : scene.lights)
+    roots.push_back(append_light(glb, as_even_light(scene, light)));
   const float diagonal = std::max(world_bounds(scene).diagonal(), 1e-6f);
   for (const scene::Camera& camera : scene.cameras)
     roots.push_back(append_camera(glb, camera, 1e-3f * diagonal, 10 * diagonal));

@@ -243,6 +243,25 @@ TEST(SceneGlb, LightsShineAlongTheirDirection) {
   EXPECT_EQ(lights[2]["type"], "directional");
 }
 
+// 100 cos v below, dark above: a quarter over all directions, (1 + cos a) / 2 over a cone of a.
+TEST(SceneGlb, LampsWithProfilesGetTheirMean) {
+  scene::Scene scene = rich_scene();
+  scene::LightProfile plate;
+  plate.horizontal_rad = {0};
+  for (int v = 0; v <= 90; ++v) {
+    plate.vertical_rad.push_back(float(v) * kPi / 180);
+    plate.candela.push_back(100 * std::max(0.0f, std::cos(plate.vertical_rad.back())));
+  }
+  for (size_t i : {0, 1}) scene::attach_profile(scene, i, plate, 2);
+  scene.lights[1].outer_cone_rad = 0.5f;
+  const Document d = parse(*scene_glb(scene));
+  const json& lights = d.j["extensions"]["KHR_lights_punctual"]["lights"];
+  // Interpolation between degrees loses 2.5e-5 of a cosine.
+  EXPECT_NEAR(lights[0]["intensity"].get<float>(), 2 * 25, 5e-3f);
+  EXPECT_NEAR(lights[1]["intensity"].get<float>(), 100 * (1 + std::cos(0.5f)), 2e-2f);
+  EXPECT_EQ(lights[1]["type"], "spot");
+}
+
 TEST(SceneGlb, CamerasAreKept) {
   const Document d = parse(*scene_glb(rich_scene()));
   ASSERT_EQ(d.j["cameras"].size(), 2u);

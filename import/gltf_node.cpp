@@ -55,6 +55,7 @@ void add_light(GltfReader& reader, const tinygltf::Node& node, const Mat34& worl
   light.intensity = vec3_of(in.color, {1, 1, 1}) * float(in.intensity);
   light.position = transform_point(world, {});
   light.direction = normalize(-column(world, 2));
+  light.side = normalize(column(world, 0));
   light.range_m = float(in.range);
   light.inner_cone_rad = float(in.spot.innerConeAngle);
   light.outer_cone_rad = float(in.spot.outerConeAngle);

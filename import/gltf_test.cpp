@@ -274,6 +274,10 @@ TEST(Gltf, LightsShineAlongMinusZOfTheirNode) {
   EXPECT_FLOAT_EQ(scene.lights[1].outer_cone_rad, 0.3f);
   EXPECT_EQ(scene.lights[2].kind, scene::PunctualLight::Kind::directional);
   expect_near(scene.lights[2].intensity, {3, 3, 3}, 0);
+  for (const scene::PunctualLight& light : scene.lights) {
+    expect_near(light.direction, {0, -1, 0}, 1e-6f);
+    expect_near(light.side, {1, 0, 0}, 1e-6f);  // the node's x, for profiles
+  }
 }
 
 TEST(Gltf, CamerasKeepTheirViewAndLoseTheirScale) {

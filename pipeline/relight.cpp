@@ -38,6 +38,14 @@ Result<matrix::CodecKind> codec_of(const std::string& name) {
   return fail(ErrorCode::bad_setting, "--codec {} is not known; there is: {}", name, codec_names());
 }
 
+/// Whether there was a map, which is an even background now.
+bool flatten_sky(scene::Scene& scene) {
+  if (scene.environment.empty()) return false;
+  scene.background += scene::horizontal_irradiance(scene.environment) * (1 / kPi);
+  scene.environment = {};
+  return true;
+}
+
 Status check(const RelightSettings& s) {
   LUXEL_TRY_STATUS(check(s.matrix));
   LUXEL_TRY(const matrix::CodecKind codec, codec_of(s.codec));
@@ -49,6 +57,10 @@ Status check(const RelightSettings& s) {
   if (std::find(kTargets.begin(), kTargets.end(), s.target) == kTargets.end())
     return fail(ErrorCode::bad_setting,
                 "--target {} is not known; there is: texels, vertices, none", s.target);
+  if (!s.outside.ies.empty())
+    return fail(ErrorCode::bad_setting,
+                "--ies {}={}: .lxr files do not keep light profiles; leave it out",
+                s.outside.ies[0].lamp, s.outside.ies[0].file.string());
   if (s.output.extension() != ".lxr")
     return fail(ErrorCode::bad_setting, "-o {}: the file is to end in .lxr", s.output.string());
   if (!(s.max_error >= 1e-5 && s.max_error <= 1))
@@ -170,7 +182,12 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   scene::Scene& scene = imported.scene;
   std::vector<std::string> warnings = std::move(imported.warnings);
   // A scene without light is no mistake here: its lamps come later.
-  if (s.outside.background || s.outside.sun) LUXEL_TRY_STATUS(add_outside_light(s.outside, scene));
+  if (s.outside.background || s.outside.environment || s.outside.sun || s.outside.sky)
+    LUXEL_TRY_STATUS(add_outside_light(s.outside, scene));
+  if (flatten_sky(scene))
+    warnings.push_back(
+        "the sky of an .lxr file has one colour: the map counts as an even sky that lights the "
+        "ground as much");
   LUXEL_TRY_STATUS(fits(s));
   LUXEL_TRY(Wanted wanted, wanted_of(scene, s, progress));
   progress.begin("build ray tracer", 0);

@@ -16,8 +16,6 @@ namespace {
 
 constexpr int kMaxSamples = 65535;
 constexpr int64_t kMaxElements = 1 << 26;
-/// Half the angle under which the sun is seen from the earth.
-constexpr float kSunAngularRadius = 0.00465f;
 
 /// A number that is the whole of `text`.
 std::optional<double> parse_number(std::string_view text) {
@@ -164,6 +162,13 @@ nlohmann::json to_json(const BakeSettings& s) {
         {"file", e->file.string()}, {"rotation_deg", e->rotation_deg}, {"scale", e->scale}};
   if (const auto& sun = s.outside.sun)
     json["sun"] = {sun->azimuth_deg, sun->elevation_deg, sun->lux};
+  if (const auto& sky = s.outside.sky)
+    json["sky"] = {{"azimuth_deg", sky->azimuth_deg},
+                   {"elevation_deg", sky->elevation_deg},
+                   {"turbidity", sky->turbidity},
+                   {"sun_distance_au", sky->sun_distance_au}};
+  for (const IesSetting& ies : s.outside.ies)
+    json["ies"].push_back({{"lamp", ies.lamp}, {"file", ies.file.string()}, {"scale", ies.scale}});
   return json;
 }
 
@@ -241,27 +246,28 @@ scene::PunctualLight sun_light(const Sun& sun) {
   light.intensity = Rgb{1, 1, 1} * sun.lux;
   light.direction = -Vec3{std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
                           -std::cos(azimuth) * std::cos(elevation)};
-  light.angular_radius_rad = kSunAngularRadius;
+  light.angular_radius_rad = scene::kSunAngularRadiusRad;
   return light;
 }
 
 Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,
                                                    scene::Scene& scene) {
-  std::vector<std::string> warnings;
+  LUXEL_TRY(std::vector<std::string> warnings, add_profiles(outside.ies, scene));
   if (const auto& e = outside.environment) {
     LUXEL_TRY(import::ImportedEnvironment imported,
               import::read_environment(e->file, e->rotation_deg * kPi / 180, e->scale));
     scene.environment = std::move(imported.map);
     scene.background = {};
-    warnings = std::move(imported.warnings);
+    warnings.insert(warnings.end(), imported.warnings.begin(), imported.warnings.end());
   }
   if (outside.background) scene.background = *outside.background;
   if (outside.sun && outside.sun->lux > 0) scene.lights.push_back(sun_light(*outside.sun));
+  if (outside.sky) add_sky(*outside.sky, scene);
   if (scene::has_light(scene)) return warnings;
   scene.background = {1, 1, 1};
   warnings.push_back(
       "the scene has no light: lit by a white background of radiance 1; --background, "
-      "--environment and --sun give others");
+      "--environment, --sky and --sun give others");
   return warnings;
 }
 

@@ -12,6 +12,8 @@
 #include "atlas/atlas.h"
 #include "base/result.h"
 #include "base/vec.h"
+#include "pipeline/ies_setting.h"
+#include "pipeline/sky_setting.h"
 #include "scene/scene.h"
 
 namespace luxel::pipeline {
@@ -30,11 +32,13 @@ struct EnvironmentSetting {
   float scale = 1;         ///< of its radiance
 };
 
-/// Light from outside the scene's file.
+/// Light that the scene's file does not have.
 struct OutsideLight {
   std::optional<EnvironmentSetting> environment;
   std::optional<Rgb> background;  ///< radiance of the surroundings; replaces the file's
   std::optional<Sun> sun;
+  std::optional<SkySetting> sky;  ///< with its own sun
+  std::vector<IesSetting> ies;    ///< add_profiles() reads them
 };
 
 /// What only the hemicube solver reads.
@@ -107,9 +111,10 @@ Result<int> parse_bounces(std::string_view text);
 /// The sun's disc is half a degree wide: its shadows have penumbrae.
 scene::PunctualLight sun_light(const Sun& sun);
 
-/// Adds outside light to a scene; an environment without a background beside it replaces the file's
-/// background. A scene that then has no light at all gets a white background of radiance 1. Returns
-/// warnings; that one comes last. Errors: those of import::read_environment.
+/// Adds profiles of lamps, environment or sky, background and sun to a scene; an environment or a
+/// sky without a background beside it replaces the file's background. A scene that then has no
+/// light at all gets a white background of radiance 1. Returns warnings; that one comes last.
+/// Errors: those of import::read_environment and add_profiles.
 Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,
                                                    scene::Scene& scene);
 

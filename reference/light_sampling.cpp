@@ -52,9 +52,12 @@ size_t pick(std::span<const double> below, double u) {
 }
 
 /// KHR_lights_punctual: I / d^2, a window that reaches zero at the range, a squared ramp in the
-/// cosine between the spot's cones.
-float falloff(const scene::PunctualLight& lamp, Vec3 towards, float distance) {
+/// cosine between the spot's cones; a profile's candela.
+float falloff(const scene::Scene& scene, const scene::PunctualLight& lamp, Vec3 towards,
+              float distance) {
   float f = 1 / (distance * distance);
+  if (lamp.profile != scene::kNone)
+    f *= scene::candela_at(scene.profiles[lamp.profile], lamp.direction, lamp.side, -towards);
   if (lamp.range_m > 0) f *= std::clamp(1 - std::pow(distance / lamp.range_m, 4.0f), 0.0f, 1.0f);
   if (lamp.kind != scene::PunctualLight::Kind::spot) return f;
   const float outer = std::cos(lamp.outer_cone_rad);
@@ -68,13 +71,13 @@ bool is_directional(const scene::PunctualLight& lamp) {
 }
 
 /// The lamp's light at its centre, not yet divided by a chance.
-LampSample light_of(const scene::PunctualLight& lamp, Vec3 position) {
+LampSample light_of(const scene::Scene& scene, const scene::PunctualLight& lamp, Vec3 position) {
   if (is_directional(lamp)) return {lamp.intensity, -lamp.direction, INFINITY};
   const Vec3 to_lamp = lamp.position - position;
   const float distance = length(to_lamp);
   if (!(distance > 0)) return {};
   const Vec3 towards = to_lamp / distance;
-  return {lamp.intensity * falloff(lamp, towards, distance), towards, distance};
+  return {lamp.intensity * falloff(scene, lamp, towards, distance), towards, distance};
 }
 
 /// A disc of uniform radiance that brings E to a facing surface has L = E / (pi sin^2 a), and
@@ -176,7 +179,7 @@ LampSample sample_lamps(const scene::Scene& scene, const Receiver& at, RandomStr
   float total = 0;
   for (size_t k = 0; k < count; ++k) {
     const scene::PunctualLight& lamp = scene.lights[k];
-    const LampSample light = light_of(lamp, at.position);
+    const LampSample light = light_of(scene, lamp, at.position);
     // A disc reaches over the horizon when its centre is still below it.
     const float reach = is_directional(lamp) ? std::sin(lamp.angular_radius_rad) : 0.0f;
     const float cosine = std::max(0.0f, dot(light.towards, at.normal) + reach);
@@ -193,7 +196,7 @@ LampSample sample_lamps(const scene::Scene& scene, const Receiver& at, RandomStr
     if (left < scratch[next]) break;
     left -= scratch[next];
   }
-  LampSample sample = light_of(scene.lights[k], at.position);
+  LampSample sample = light_of(scene, scene.lights[k], at.position);
   sample.irradiance *= total / scratch[k];
   if (is_directional(scene.lights[k]) && scene.lights[k].angular_radius_rad > 0)
     spread_over_disc(scene.lights[k], random, sample);

@@ -52,4 +52,19 @@ double pixel_solid_angle(const Environment& map, int row) {
   return 4 * kPiDouble / map.width * std::sin(middle) * std::sin(half);
 }
 
+Rgb horizontal_irradiance(const Environment& map) {
+  double r = 0, g = 0, b = 0;
+  for (int y = 0; y < map.height / 2; ++y) {
+    // The cosine over a row's solid angle: sin^2 / 2 between its polar angles.
+    const double from = std::sin(kPiDouble * y / map.height);
+    const double to = std::sin(kPiDouble * (y + 1) / map.height);
+    const double weight = 2 * kPiDouble / map.width * (to * to - from * from) / 2;
+    for (int x = 0; x < map.width; ++x) {
+      const Rgb l = map.radiance[size_t(y) * size_t(map.width) + size_t(x)];
+      r += double(l.x) * weight, g += double(l.y) * weight, b += double(l.z) * weight;
+    }
+  }
+  return {float(r), float(g), float(b)};
+}
+
 }  // namespace luxel::scene

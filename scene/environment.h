@@ -36,4 +36,7 @@ Rgb smooth_radiance_towards(const Environment& map, Vec3 direction);
 /// Solid angle of every pixel of a row [sr]; the rows' sum times the width is 4 pi.
 double pixel_solid_angle(const Environment& map, int row);
 
+/// E on a horizontal surface that faces up [W/m^2], nothing in between.
+Rgb horizontal_irradiance(const Environment& map);
+
 }  // namespace luxel::scene

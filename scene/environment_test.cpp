@@ -69,5 +69,14 @@ TEST(Environment, IsConstantOverAPixelAndSmoothInPictures) {
   EXPECT_NEAR(smooth_radiance_towards(map, direction_of(map, {2.5f / 8, 0.01f})).x, 2, 1e-4f);
 }
 
+// L pi of a sky of one radiance, half of it where only one half of the azimuths shines.
+TEST(Environment, BringsAHorizontalSurfaceItsCosine) {
+  Environment map{16, 8, std::vector<Rgb>(128, {1, 2, 3}), 0};
+  EXPECT_NEAR(horizontal_irradiance(map).y, 2 * kPi, 1e-5f);
+  for (size_t i = 0; i < 128; ++i)
+    if (i % 16 < 8) map.radiance[i] = {};
+  EXPECT_NEAR(horizontal_irradiance(map).z, 1.5f * kPi, 1e-5f);
+}
+
 }  // namespace
 }  // namespace luxel::scene

@@ -16,6 +16,7 @@
 
 #include "base/vec.h"
 #include "scene/environment.h"
+#include "scene/light_profile.h"
 
 namespace luxel::scene {
 
@@ -94,13 +95,18 @@ struct PunctualLight {
   enum class Kind : uint8_t { point, spot, directional };
   std::string name;
   Kind kind = Kind::point;
-  Rgb intensity{1, 1, 1};    ///< I [W/sr] for point and spot; E on a facing surface [W/m^2] else
-  Vec3 position{};           ///< point, spot
-  Vec3 direction{0, -1, 0};  ///< spot, directional: unit, the way the light travels
-  float range_m = 0;         ///< 0 = no limit; else glTF's window function
-  float inner_cone_rad = 0;  ///< spot: full light inside
+  /// I [W/sr] for point and spot, with a profile a factor on its candela; E on a facing surface
+  /// [W/m^2] else.
+  Rgb intensity{1, 1, 1};
+  Vec3 position{};                 ///< point, spot
+  Vec3 direction{0, -1, 0};        ///< spot, directional, profile: unit, the way the light travels
+  float range_m = 0;               ///< 0 = no limit; else glTF's window function
+  float inner_cone_rad = 0;        ///< spot: full light inside
   float outer_cone_rad = kPi / 4;  ///< spot: no light outside
   float angular_radius_rad = 0;    ///< directional: half the angle of the disc (sun 0.00465)
+  uint32_t profile = kNone;  ///< point, spot: of Scene::profiles; kNone: even in all directions
+  Vec3 side{1, 0, 0};        ///< where its horizontal angle 0 points: unit, at a right angle
+                             ///< to `direction`
 };
 
 struct Camera {
@@ -118,6 +124,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<PunctualLight> lights;
+  std::vector<LightProfile> profiles;  ///< distributions of lamps
   std::vector<Camera> cameras;
   Rgb background{0, 0, 0};  ///< radiance seen by rays that leave the scene
   Environment environment;  ///< what they see besides; empty: nothing

@@ -107,7 +107,32 @@ Status check_materials(Scene& scene, Report& report) {
   return {};
 }
 
+bool ascends(const std::vector<float>& angles) {
+  for (size_t k = 0; k < angles.size(); ++k)
+    if (!std::isfinite(angles[k]) || (k > 0 && !(angles[k] > angles[k - 1]))) return false;
+  return true;
+}
+
+Status check_profiles(const Scene& scene, const Report& report) {
+  for (size_t i = 0; i < scene.profiles.size(); ++i) {
+    const LightProfile& p = scene.profiles[i];
+    const std::string name = label("profile", i, p.name);
+    if (p.vertical_rad.size() < 2 || p.horizontal_rad.empty() ||
+        p.candela.size() != p.vertical_rad.size() * p.horizontal_rad.size())
+      return fail(ErrorCode::bad_input, "{}: {}: {} candela for {} x {} angles", report.file, name,
+                  p.candela.size(), p.vertical_rad.size(), p.horizontal_rad.size());
+    if (!ascends(p.vertical_rad) || !ascends(p.horizontal_rad))
+      return fail(ErrorCode::bad_input, "{}: {}: its angles do not ascend", report.file, name);
+    for (const float candela : p.candela)
+      if (!(std::isfinite(candela) && candela >= 0))
+        return fail(ErrorCode::bad_input, "{}: {}: {} is no number of candela", report.file, name,
+                    candela);
+  }
+  return {};
+}
+
 Status check_lights(Scene& scene, Report& report) {
+  LUXEL_TRY_STATUS(check_profiles(scene, report));
   if (!luxel::is_finite(scene.background))
     return fail(ErrorCode::bad_input, "{}: the background is not finite", report.file);
   scene.background = max(scene.background, Rgb{});
@@ -115,9 +140,9 @@ Status check_lights(Scene& scene, Report& report) {
     PunctualLight& light = scene.lights[i];
     const std::string name = label("light", i, light.name);
     if (!luxel::is_finite(light.intensity) || !luxel::is_finite(light.position) ||
-        !luxel::is_finite(light.direction) || !std::isfinite(light.range_m) ||
-        !std::isfinite(light.inner_cone_rad) || !std::isfinite(light.outer_cone_rad) ||
-        !std::isfinite(light.angular_radius_rad))
+        !luxel::is_finite(light.direction) || !luxel::is_finite(light.side) ||
+        !std::isfinite(light.range_m) || !std::isfinite(light.inner_cone_rad) ||
+        !std::isfinite(light.outer_cone_rad) || !std::isfinite(light.angular_radius_rad))
       return fail(ErrorCode::bad_input, "{}: {}: one of its numbers is not finite", report.file,
                   name);
     if (min_component(light.intensity) < 0) {

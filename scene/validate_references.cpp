@@ -66,6 +66,12 @@ Status check_references(const Scene& scene, const Report& report) {
     for (const TextureRef* ref : textures_of(m))
       LUXEL_TRY_STATUS(check_texture_ref(scene, *ref, where));
   }
+  for (size_t i = 0; i < scene.lights.size(); ++i)
+    if (scene.lights[i].profile != kNone && scene.lights[i].profile >= scene.profiles.size())
+      return fail(ErrorCode::bad_input,
+                  "{}: {}: profile index {} is out of range, there are {} profiles", report.file,
+                  label("light", i, scene.lights[i].name), scene.lights[i].profile,
+                  scene.profiles.size());
   for (size_t i = 0; i < scene.textures.size(); ++i) {
     const Texture& t = scene.textures[i];
     if (t.width < 1 || t.height < 1 ||

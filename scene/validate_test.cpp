@@ -134,6 +134,18 @@ TEST(Validate, NotFiniteNumbersAreErrorsThatNameTheirPlace) {
   EXPECT_THAT(error_of(scene), HasSubstr("light 0"));
 }
 
+TEST(Validate, ProfilesAreGridsOfCandela) {
+  Scene scene = good_scene();
+  scene.profiles.push_back({"lamp.ies", LightProfile::Angles::c, {0, 1}, {0}, {5, 4}});
+  EXPECT_EQ(error_of(scene), "no error");
+  scene.profiles[0].candela[1] = NAN;
+  EXPECT_THAT(error_of(scene), HasSubstr("profile 0 (lamp.ies): nan is no number"));
+  scene.profiles[0].candela = {5};
+  EXPECT_THAT(error_of(scene), HasSubstr("1 candela for 2 x 1 angles"));
+  scene.profiles[0].candela = {5, 4}, scene.profiles[0].vertical_rad = {1, 1};
+  EXPECT_THAT(error_of(scene), HasSubstr("do not ascend"));
+}
+
 TEST(Validate, EveryIndexIsChecked) {
   Scene scene = good_scene();
   scene.meshes[0].triangles[1][2] = 4;
@@ -153,6 +165,10 @@ TEST(Validate, EveryIndexIsChecked) {
   scene = good_scene();
   scene.textures.push_back({"t", 2, 2, std::vector<uint8_t>(15), {}, ""});
   EXPECT_THAT(error_of(scene), HasSubstr("15 bytes"));
+  scene = good_scene();
+  scene.lights.push_back({});
+  scene.lights[0].profile = 0;
+  EXPECT_THAT(error_of(scene), HasSubstr("light 0: profile index 0"));
 }
 
 TEST(Validate, SceneWithoutTrianglesIsRefused) {

@@ -203,9 +203,10 @@ void shoot_at_disc(const scene::PunctualLight& light, uint32_t source, int sampl
   }
 }
 
-void shoot_at_punctual(const scene::PunctualLight& light, float chance, int samples,
+void shoot_at_punctual(const Lights& lights, size_t index, float chance, int samples,
                        const Receiver& r, Work& work) {
-  const PunctualIncidence in = incidence_at(light, r.position);
+  const scene::PunctualLight& light = lights.punctual[index];
+  const PunctualIncidence in = incidence_at(light, lights.profiles, r.position);
   const float cosine = dot(in.towards, r.normal);
   const bool disc =
       light.kind == scene::PunctualLight::Kind::directional && light.angular_radius_rad > 0;
@@ -230,15 +231,14 @@ void shoot_at_punctual(const scene::PunctualLight& light, float chance, int samp
 void shoot_at_lamps(const Lights& lights, int samples, const Receiver& r, Work& work) {
   const size_t count = lights.punctual.size();
   if (count <= kMaxPunctual) {
-    for (const scene::PunctualLight& light : lights.punctual)
-      shoot_at_punctual(light, 1, samples, r, work);
+    for (size_t i = 0; i < count; ++i) shoot_at_punctual(lights, i, 1, samples, r, work);
     return;
   }
   // Many lamps: systematic sampling in proportion to unshadowed light.
   std::vector<float> importance(count);
   float total = 0;
   for (size_t i = 0; i < count; ++i) {
-    const auto in = incidence_at(lights.punctual[i], r.position);
+    const auto in = incidence_at(lights.punctual[i], lights.profiles, r.position);
     importance[i] = luminance(in.irradiance) * std::max(0.0f, dot(in.towards, r.normal));
     total += importance[i];
   }
@@ -250,7 +250,7 @@ void shoot_at_lamps(const Lights& lights, int samples, const Receiver& r, Work& 
     owed += chance;
     if (owed < 1) continue;
     owed -= 1;
-    shoot_at_punctual(lights.punctual[i], chance, samples, r, work);
+    shoot_at_punctual(lights, i, chance, samples, r, work);
   }
 }
 

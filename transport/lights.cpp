@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/check.h"
 #include "base/random.h"
 #include "base/warp.h"
 
@@ -81,7 +82,7 @@ Rgb radiance_at(const scene::Scene& scene, const TriangleLight& light, Barycentr
 
 Lights collect_lights(const scene::Scene& scene) {
   Lights lights;
-  lights.punctual = scene.lights;
+  lights.punctual = scene.lights, lights.profiles = scene.profiles;
   lights.around = surroundings_of(scene);
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
@@ -99,7 +100,8 @@ Lights collect_lights(const scene::Scene& scene) {
   return lights;
 }
 
-PunctualIncidence incidence_at(const scene::PunctualLight& light, Vec3 position) {
+PunctualIncidence incidence_at(const scene::PunctualLight& light,
+                               std::span<const scene::LightProfile> profiles, Vec3 position) {
   using Kind = scene::PunctualLight::Kind;
   if (light.kind == Kind::directional) return {light.intensity, -light.direction, INFINITY};
   const Vec3 to_light = light.position - position;
@@ -116,6 +118,10 @@ PunctualIncidence incidence_at(const scene::PunctualLight& light, Vec3 position)
     const float outer = std::cos(light.outer_cone_rad), inner = std::cos(light.inner_cone_rad);
     const float t = std::clamp((c - outer) / std::max(1e-3f, inner - outer), 0.0f, 1.0f);
     factor *= t * t;
+  }
+  if (light.profile != scene::kNone) {
+    LUXEL_CHECK(light.profile < profiles.size());
+    factor *= scene::candela_at(profiles[light.profile], light.direction, light.side, -towards);
   }
   return {light.intensity * factor, towards, distance};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/vec.h"
@@ -36,7 +37,8 @@ struct Lights {
   std::vector<float> power_below;        ///< sum of powers before each triangle; one extra entry
   std::vector<LightNode> nodes;          ///< binary, depth first; node 0 is the root
   std::vector<scene::PunctualLight> punctual;
-  Surroundings around;  ///< what rays see that leave the scene
+  std::vector<scene::LightProfile> profiles;  ///< what lamps refer to
+  Surroundings around;                        ///< what rays see that leave the scene
 };
 
 /// Finds the emissive triangles, averages their textures and builds the hierarchy. A light with no
@@ -53,7 +55,9 @@ struct PunctualIncidence {
   Vec3 towards;
   float distance_m = INFINITY;
 };
-/// Point and spot: I / d^2 times glTF's range window and cone falloff [KHR_lights_punctual].
-PunctualIncidence incidence_at(const scene::PunctualLight& light, Vec3 position);
+/// Point and spot: I / d^2 times glTF's range window and cone falloff [KHR_lights_punctual]; I of a
+/// lamp with a profile is that of the direction. `profiles` are the scene's.
+PunctualIncidence incidence_at(const scene::PunctualLight& light,
+                               std::span<const scene::LightProfile> profiles, Vec3 position);
 
 }  // namespace luxel::transport

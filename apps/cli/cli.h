@@ -26,9 +26,10 @@ struct Common {
 };
 void add_common(CLI::App& command, Common& common);
 
-/// Options for light from outside the file, as text until the command runs.
+/// Options for light that the file does not have, as text until the command runs.
 struct OutsideText {
-  std::string background, environment, sun;
+  std::string background, environment, sun, sky;
+  std::vector<std::string> ies;
 };
 void add_outside_light(CLI::App& command, OutsideText& text);
 Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text);

@@ -193,16 +193,31 @@ std::vector<CLI::Option*> add_hierarchical(CLI::App& command, pipeline::Hierarch
 }
 
 void add_outside_light(CLI::App& command, OutsideText& text) {
-  command.add_option("--background", text.background, "Radiance of the surroundings as r,g,b")
-      ->type_name("R,G,B");
+  auto* background =
+      command.add_option("--background", text.background, "Radiance of the surroundings as r,g,b")
+          ->type_name("R,G,B");
+  auto* sun = command
+                  .add_option("--sun", text.sun,
+                              "A sun: bearing (0 = -Z, 90 = +X), elevation, illuminance facing it")
+                  ->type_name("AZIMUTH_DEG,ELEVATION_DEG,LUX");
   command
       .add_option("--environment", text.environment,
                   "Equirectangular .hdr or .exr of the surroundings, turned and scaled")
       ->type_name("FILE[,ROTATE_DEG[,SCALE]]");
   command
-      .add_option("--sun", text.sun,
-                  "A sun: bearing (0 = -Z, 90 = +X), elevation, illuminance facing it")
-      ->type_name("AZIMUTH_DEG,ELEVATION_DEG,LUX");
+      .add_option("--sky", text.sky,
+                  "A clear sky with its sun in lux, by the sun's bearing and elevation or by date, "
+                  "time and place (2026-06-21T15:30+02:00,48.85,2.35); turbidity 1 to 10 (2)")
+      ->type_name("AZIMUTH_DEG,ELEVATION_DEG|TIME,LATITUDE,LONGITUDE[,TURBIDITY]")
+      ->excludes(background)
+      ->excludes(sun)
+      ->excludes("--environment");
+  command
+      .add_option("--ies", text.ies,
+                  "The distribution of a point or spot light from an IES file; may be given for "
+                  "several")
+      ->type_name("LAMP=FILE[,SCALE]")
+      ->allow_extra_args(false);
 }
 
 Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text) {
@@ -215,6 +230,13 @@ Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text) {
   }
   if (!text.sun.empty()) {
     LUXEL_TRY(outside.sun, pipeline::parse_sun(text.sun));
+  }
+  if (!text.sky.empty()) {
+    LUXEL_TRY(outside.sky, pipeline::parse_sky(text.sky));
+  }
+  for (const std::string& ies : text.ies) {
+    LUXEL_TRY(pipeline::IesSetting setting, pipeline::parse_ies_setting(ies));
+    outside.ies.push_back(std::move(setting));
   }
   return outside;
 }

@@ -27,10 +27,6 @@ Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
     LUXEL_TRY(s.max_memory_bytes, pipeline::parse_size(options.max_memory));
   }
   LUXEL_TRY(s.outside, parse_outside_light(options.outside));
-  if (s.outside.environment)
-    return fail(ErrorCode::bad_setting,
-                "relight does not take --environment yet: its sky is one colour that may change; "
-                "use --background");
   return s;
 }
 
@@ -170,7 +166,7 @@ void register_relight(CLI::App& app, Action& action) {
   relight->add_option("--script", options->script, "How lamps move (docs/relight.md)")
       ->type_name("FILE.json");
   add_outside_light(*relight, options->outside);
-  for (const char* name : {"--background", "--sun"})
+  for (const char* name : {"--background", "--environment", "--sun", "--sky", "--ies"})
     options->of_making.push_back(relight->get_option(name));
   add_common(*relight, options->common);
   relight->callback([options, &action] { action = [options] { return run_relight(*options); }; });

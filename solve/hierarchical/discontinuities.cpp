@@ -238,7 +238,8 @@ void add_lamps(const View& v, const scene::Scene& scene, double least_weight, do
   for (uint32_t k = 0; k < scene.lights.size(); ++k) {
     const scene::PunctualLight& lamp = scene.lights[k];
     const DVec3 middle = transport::mean_corner(v.face.corners);
-    const float e = max_component(transport::incidence_at(lamp, to_float(middle)).irradiance);
+    const float e =
+        max_component(transport::incidence_at(lamp, scene.profiles, to_float(middle)).irradiance);
     DVec3 place = to_double(lamp.position);
     if (lamp.kind == scene::PunctualLight::Kind::directional)
       place = middle - to_double(lamp.direction) * (1e4 * double(v.s.diagonal_m));
@@ -274,9 +275,9 @@ double weight_of(const Discontinuity& d, const Solution& s, const scene::Scene& 
   if (d.kind == DiscontinuityKind::contact) return INFINITY;
   if (d.source >= kLampSource)
     return d.geometric *
-           double(max_component(
-               transport::incidence_at(scene.lights[d.source - kLampSource], to_float(d.a))
-                   .irradiance));
+           double(max_component(transport::incidence_at(scene.lights[d.source - kLampSource],
+                                                        scene.profiles, to_float(d.a))
+                                    .irradiance));
   return d.geometric * double(radiosity_of(s, d.source));
 }
 

@@ -140,7 +140,7 @@ float brightest_sky(const scene::Scene& scene, const transport::Surroundings& ar
 
 Lamps lamps_of(const scene::Scene& scene) {
   Lamps out;
-  out.lights.punctual = scene.lights;
+  out.lights.punctual = scene.lights, out.lights.profiles = scene.profiles;
   out.lights.around = transport::surroundings_of(scene);
   out.has_sky = max_component(scene.background) > 0 || !scene.environment.empty();
   return out;

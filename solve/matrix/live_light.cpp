@@ -24,7 +24,7 @@ struct Arriving {
 
 Arriving arriving_at(const LitPlaces& places, size_t i, const scene::PunctualLight& light,
                      float diagonal_m) {
-  const transport::PunctualIncidence in = transport::incidence_at(light, places.position[i]);
+  const transport::PunctualIncidence in = transport::incidence_at(light, {}, places.position[i]);
   const float cosine = dot(places.normal[i], in.towards);
   if (!(cosine > 0) || !(dot(places.geometric_normal[i], in.towards) > 0)) return {};
   const Vec3 origin =

@@ -18,6 +18,7 @@ struct LitPlaces {
 };
 
 /// E [W/m^2] at a place from point, spot and directional lights; a sun's disc counts as its centre.
+/// Lamps have no profiles.
 Rgb live_light_at(const LitPlaces& places, size_t place,
                   std::span<const scene::PunctualLight> lights, const trace::RayTracer& tracer,
                   float scene_diagonal_m);

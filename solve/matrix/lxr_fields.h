@@ -101,8 +101,9 @@ void fields(Archive& a, Is<Occluders> auto& x) {
 }
 template <class Archive>
 void fields(Archive& a, Is<scene::PunctualLight> auto& x) {
-  auto& [name, kind, intensity, position, direction, range_m, inner_cone_rad, outer_cone_rad,
-         angular_radius_rad] = x;
+  // make_relight_data refuses lamps with profiles: `side` means nothing here.
+  [[maybe_unused]] auto& [name, kind, intensity, position, direction, range_m, inner_cone_rad,
+                          outer_cone_rad, angular_radius_rad, profile, side] = x;
   a(name, intensity, position, direction, range_m, inner_cone_rad, outer_cone_rad,
     angular_radius_rad, kind);
 }

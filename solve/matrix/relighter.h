@@ -13,7 +13,7 @@ namespace luxel::matrix {
 
 /// What shines on a relit scene.
 struct RelightLights {
-  std::span<const scene::PunctualLight> punctual{};  ///< point, spot, directional
+  std::span<const scene::PunctualLight> punctual{};  ///< without profiles
   /// Radiance L of each material of RelightData::material_name [W/(sr m^2)]; empty: as baked. A
   /// material that glowed unevenly keeps its pattern, and L is its mean.
   std::span<const Rgb> emission{};

@@ -80,6 +80,18 @@ TEST(Relighter, EveryCodecGivesTheLightOfPlainProducts) {
   }
 }
 
+// The file has no place for a distribution: what it would show instead would be wrong.
+TEST(RelightData, RefusesLampsWithProfiles) {
+  Stage stage(scene::cornell_box(scene::CornellColors::pbrt, true));
+  stage.scene.lights = {kLeft};
+  stage.scene.lights[0].name = "left";
+  scene::attach_profile(stage.scene, 0, {"a", {}, {0, 1}, {0}, {5, 4}}, 1);
+  Progress progress;
+  const auto data = make_relight_data(stage.scene, stage.tracer, {}, stage.params, progress);
+  ASSERT_FALSE(data);
+  EXPECT_NE(data.error().message.find("lamp 'left' has a light profile"), std::string::npos);
+}
+
 TEST(Relighter, CountsBouncesWhenAskedTo) {
   for (const int bounces : {0, 3})
     for (const CodecKind codec : {CodecKind::dense32, CodecKind::lowrank, CodecKind::bc1}) {

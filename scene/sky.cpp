@@ -1,0 +1,83 @@
+#include "scene/sky.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "base/vec_double.h"
+#include "scene/atmosphere.h"
+
+namespace luxel::scene {
+namespace {
+
+constexpr double kEyeKm = 0.002;
+constexpr int kSteps = 96;
+
+/// The mean over the sun's disc of what the air lets through, in horizontal strips: none of those
+/// below the horizon.
+DVec3 through_air(const AirTables& t, double elevation_rad) {
+  constexpr int kStrips = 32;
+  DVec3 sum{};
+  double weights = 0;
+  for (int k = 0; k < kStrips; ++k) {
+    const double y = 2 * (k + 0.5) / kStrips - 1, weight = std::sqrt(1 - y * y);
+    const double strip = elevation_rad + y * double(kSunAngularRadiusRad);
+    weights += weight;
+    if (strip > 0) sum += transmittance_to_top(t, t.air.ground_km, std::sin(strip)) * weight;
+  }
+  return sum * (1 / weights);
+}
+
+DVec3 direction_at(const image::Image& picture, int x, int y) {
+  const double theta = kPiDouble * (y + 0.5) / picture.height;
+  const double phi = 2 * kPiDouble * ((x + 0.5) / picture.width - 0.5);
+  return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+}
+
+void draw_upper_half(const AirTables& t, DVec3 towards_sun, double lux, image::Image& picture) {
+  const DVec3 eye{0, t.air.ground_km + kEyeKm, 0};
+  parallel_for(size_t(picture.height / 2), 1, [&](size_t begin, size_t end) {
+    for (int y = int(begin); y < int(end); ++y)
+      for (int x = 0; x < picture.width; ++x)
+        picture.set_rgb(
+            x, y,
+            to_float(sky_radiance(t, eye, direction_at(picture, x, y), towards_sun, kSteps) * lux));
+  });
+}
+
+}  // namespace
+
+Rgb horizontal_illuminance(const image::Image& picture) {
+  DVec3 sum{};
+  for (int y = 0; y < picture.height / 2; ++y) {
+    // The cosine over a row's band of directions, exactly.
+    const double upper = std::sin(kPiDouble * y / picture.height);
+    const double lower = std::sin(kPiDouble * (y + 1) / picture.height);
+    const double weight = kPiDouble * (lower * lower - upper * upper) / picture.width;
+    for (int x = 0; x < picture.width; ++x) sum += to_double(picture.rgb(x, y)) * weight;
+  }
+  return to_float(sum);
+}
+
+Sky make_sky(const SkyParams& params) {
+  LUXEL_CHECK(params.height >= 2 && params.height % 2 == 0);
+  LUXEL_CHECK(params.turbidity >= 1 && params.sun_distance_au > 0);
+  const AirTables tables = make_air_tables(atmosphere_of(params.turbidity));
+  const double lux = kSunLux / (params.sun_distance_au * params.sun_distance_au);
+  const DVec3 sun = normalize(to_double(params.towards_sun));
+  Sky out;
+  out.towards_sun = to_float(sun);
+  out.sun_illuminance =
+      to_float(through_air(tables, std::asin(std::clamp(sun.y, -1.0, 1.0))) * lux);
+  out.radiance = image::Image(2 * params.height, params.height, 3);
+  draw_upper_half(tables, sun, lux, out.radiance);
+  const Rgb onto_ground =
+      horizontal_illuminance(out.radiance) + out.sun_illuminance * float(std::max(0.0, sun.y));
+  for (int y = params.height / 2; y < params.height; ++y)
+    for (int x = 0; x < out.radiance.width; ++x)
+      out.radiance.set_rgb(x, y, onto_ground * float(tables.air.ground_albedo / kPiDouble));
+  return out;
+}
+
+}  // namespace luxel::scene

@@ -1,0 +1,39 @@
+// A clear sky and its sun, computed from the air. [Hillaire20; docs/lights.md]
+#pragma once
+
+#include "base/vec.h"
+#include "image/image.h"
+
+namespace luxel::scene {
+
+/// Half the angle under which the sun is seen from the earth.
+inline constexpr float kSunAngularRadiusRad = 0.00465f;
+/// E of a surface that faces the sun above the air, at the mean distance [lx] [IES84: 127.5 klx].
+inline constexpr double kSunLux = 127500;
+
+struct SkyParams {
+  Vec3 towards_sun{0, 1, 0};   ///< unit, +Y is up; may lie below the horizon
+  double turbidity = 2;        ///< 1 (air alone) to 10 (thick haze): atmosphere_of()
+  double sun_distance_au = 1;  ///< its light changes with the inverse square
+  int height = 256;            ///< of the picture, even; it is twice as wide
+};
+
+struct Sky {
+  /// Equirectangular, linear sRGB [cd/m^2], without the sun's disc. u = (i + 0.5) / width,
+  /// v = (j + 0.5) / height is the direction (sin t cos p, cos t, sin t sin p) with t = pi v and
+  /// p = 2 pi (u - 0.5): row 0 is up, u = 0.5 is +X, u = 0.25 -Z. The lower half is the ground:
+  /// diffuse, albedo 0.3, lit by this sun and sky, the same everywhere.
+  image::Image radiance;
+  /// E of a surface that faces the sun [lx], for a lamp whose disc has kSunAngularRadiusRad; zero
+  /// when all of the disc is below the horizon.
+  Rgb sun_illuminance{};
+  Vec3 towards_sun{};
+};
+
+/// The sky over a plain at sea level. The same bits for any number of threads.
+Sky make_sky(const SkyParams& params);
+
+/// E of the upward horizontal from the upper half of an equirectangular picture [lx].
+Rgb horizontal_illuminance(const image::Image& equirectangular);
+
+}  // namespace luxel::scene

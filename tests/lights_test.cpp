@@ -1,0 +1,117 @@
+// Light that the command line brings: --ies and --sky, through the whole program.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "image/codec.h"
+#include "tests/command.h"
+
+namespace luxel::testing_support {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::string kWall = scene_file("ies/wall.gltf");
+
+struct Lightmap {
+  image::Image map;
+  double mean_luminance() const {
+    double sum = 0, count = 0;
+    for (int y = 0; y < map.height; ++y)
+      for (int x = 0; x < map.width; ++x)
+        if (map.at(x, y)[3] == 1) sum += double(luminance(map.rgb(x, y))), ++count;
+    return sum / count;
+  }
+};
+
+Lightmap bake(const std::string& scene, const std::string& options, std::string* err = nullptr) {
+  const ScratchFolder s;
+  const CommandResult r =
+      luxel("bake " + scene + " -o " + (s.path / "b").string() + " --resolution 64 " + options);
+  EXPECT_EQ(r.code, 0) << options << ": " << r.err;
+  if (err) *err = r.err;
+  const auto bytes = read_file(s.path / "b" / "lightmap.exr");
+  return {bytes ? *image::decode_exr(*bytes, "lightmap.exr") : image::Image(1, 1, 4)};
+}
+
+const std::string kProfiles = "--ies left=" + scene_file("ies/spot.ies") +
+                              " --ies middle=" + scene_file("ies/batwing.ies") +
+                              " --ies right=" + scene_file("ies/wall-washer.ies") + " ";
+
+// Gather and hierarchical radiosity against the path tracer, texel by texel on the same map. The
+// path tracer's 4096 samples pick one of three lamps: about 1.5 / sqrt(4096) = 2.3 % per texel, and
+// less than a tenth of it over some thousand texels; gather's own noise is of indirect light alone.
+TEST(Profiles, SolversAgreeWithThePathTracer) {
+  const Lightmap paths = bake(kWall, kProfiles + "--solver reference --samples 4096");
+  const double mean = paths.mean_luminance();
+  EXPECT_NEAR(bake(kWall, kProfiles + "--samples 256").mean_luminance(), mean, 0.005 * mean);
+  EXPECT_NEAR(bake(kWall, kProfiles + "--solver matrix").mean_luminance(), mean, 0.02 * mean);
+}
+
+TEST(Profiles, TheScaleScales) {
+  const std::string file = scene_file("ies/spot.ies");
+  const std::string others = " --samples 16 --ies middle=" + file + ",0 --ies right=" + file + ",0";
+  const double one = bake(kWall, "--ies left=" + file + others).mean_luminance();
+  const double three = bake(kWall, "--ies left=" + file + ",3" + others).mean_luminance();
+  EXPECT_NEAR(three, 3 * one, 1e-4 * three);
+}
+
+TEST(Profiles, AreInBakeJson) {
+  const ScratchFolder s;
+  const CommandResult r = luxel(
+      "bake " + kWall + " -o " + (s.path / "b").string() +
+      " --resolution 32 --samples 4 --json --ies left=" + scene_file("ies/spot.ies") + ",0.5");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const auto ies = nlohmann::json::parse(r.out)["settings"]["ies"];
+  ASSERT_EQ(ies.size(), 1u);
+  EXPECT_EQ(ies[0]["lamp"], "left");
+  EXPECT_EQ(ies[0]["scale"], 0.5);
+}
+
+TEST(Profiles, WhatCannotBeIsSaid) {
+  const ScratchFolder s;
+  const std::string out = " -o " + (s.path / "x").string();
+  const CommandResult unknown =
+      luxel("bake " + kWall + out + " --ies lamp=" + scene_file("ies/spot.ies"));
+  EXPECT_EQ(unknown.code, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("there is: 'left', 'middle', 'right'"));
+  const CommandResult broken = luxel("bake " + kWall + out + " --ies left=" + kWall);
+  EXPECT_EQ(broken.code, 1);
+  EXPECT_THAT(broken.err, AllOf(HasSubstr("wall.gltf"), HasSubstr("TILT=")));
+  const CommandResult kept =
+      luxel("relight " + kWall + out + ".lxr --ies left=" + scene_file("ies/spot.ies"));
+  EXPECT_EQ(kept.code, 1);
+  EXPECT_THAT(kept.err, HasSubstr(".lxr files do not keep light profiles"));
+  EXPECT_TRUE(files_in(s.path).empty());
+}
+
+// A plate under an open sky gets what the sky and its sun bring to the horizontal; at 50 degrees
+// [IES84] says 127.5 exp(-0.21 / sin h) sin h + 0.8 + 15.5 sqrt(sin h) = 88.7 klx. Within a tenth,
+// see scene/sky_test.cpp.
+TEST(SkyOption, APlateIsAsBrightAsDay) {
+  const ScratchFolder s;
+  const auto plate = s.write("plate.obj", "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n");
+  const double lux = bake(plate.string(), "--samples 64 --sky 120,50").mean_luminance();
+  EXPECT_NEAR(lux, 88.7e3, 8.9e3);
+  const double by_time =
+      bake(plate.string(), "--samples 64 --sky 2026-06-21T15:30+02:00,48.85,2.35").mean_luminance();
+  EXPECT_GT(by_time, lux);  // the sun stands at 59 degrees
+  EXPECT_LT(by_time, 1.2 * lux);
+}
+
+TEST(SkyOption, GoesWithoutAnotherSun) {
+  const ScratchFolder s;
+  const std::string out = " -o " + (s.path / "x").string();
+  EXPECT_EQ(luxel("bake " + kWall + out + " --sky 120,50 --sun 1,2,3").code, 2);
+  EXPECT_EQ(luxel("bake " + kWall + out + " --sky 120,50 --background 1,1,1").code, 2);
+  const CommandResult bad = luxel("bake " + kWall + out + " --sky 2026-06-21T15:30,48,2");
+  EXPECT_EQ(bad.code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("offset from UTC"));
+}
+
+}  // namespace
+}  // namespace luxel::testing_support

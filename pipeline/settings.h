@@ -11,6 +11,7 @@
 #include "atlas/atlas.h"
 #include "base/result.h"
 #include "base/vec.h"
+#include "pipeline/lightmap_files.h"
 #include "scene/scene.h"
 
 namespace luxel::pipeline {
@@ -72,6 +73,8 @@ struct BakeSettings {
   MatrixSettings matrix;
   HierarchicalSettings hierarchical;
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
+  LightmapFormats formats;     ///< files beside lightmap.exr
+  bool html = false;           ///< view.html too
 };
 
 /// Checks every number against its range. Errors (bad_setting) name the option, the value, and what

@@ -190,7 +190,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(folder.try_out());
   LUXEL_TRY(const Bake result, bake_scene(settings, progress));
   progress.begin(kWriteStage, 0);
-  nlohmann::json about_files;
+  nlohmann::json about_files = nlohmann::json::object();
   LUXEL_TRY(std::vector<OutputFile> files, files_of(settings, result, about_files));
   LUXEL_TRY_STATUS(not_cancelled(progress));
   progress.finish();

@@ -84,7 +84,7 @@ void main() {
   emitted *= texture(glow, atEmission).rgb;
 #endif
   if (base.a < cutoff) discard;
-  vec3 rho = clamp(base.rgb * (1.0 - metalness), 0.0, 0.99);
+  vec3 rho = clamp(base.rgb * (1.0 - clamp(metalness, 0.0, 1.0)), 0.0, 0.99);
   vec3 irradiance = texture(light, atLight).rgb * lightScale;
   const float pi = 3.14159265358979;
   vec3 shown = show == 2 ? rho : show == 1 ? compress(exposure * irradiance / pi)

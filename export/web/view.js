@@ -105,10 +105,12 @@ async function open() {
     fitWindow(camera, innerWidth, innerHeight);
     renderer.render(scene, camera);
   };
-  const controls = new OrbitControls(camera, byId("canvas"));
-  controls.zoomToCursor = true;
   resize();
-  controls.target.copy(lookedAt(camera, scene, box));
+  const target = lookedAt(camera, scene, box), from = camera.position.clone();
+  const controls = new OrbitControls(camera, byId("canvas"));  // turns the camera to the origin
+  controls.zoomToCursor = true;
+  controls.target.copy(target);
+  camera.position.copy(from);
   controls.update();
   controls.saveState();
   controls.addEventListener("change", draw);

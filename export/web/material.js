@@ -104,6 +104,20 @@ void main() { pixel = vec4(show == 2 ? vec3(0.0) : srgb(compress(exposure * back
 
 const uvName = (channel) => (channel === 0 ? "uv" : `uv${channel}`);
 
+/** Offset, rotation and scale as KHR_texture_transform orders them; three scales last. */
+function textureTransform({ offset, rotation, repeat }) {
+  const c = Math.cos(rotation), s = Math.sin(rotation);
+  return new THREE.Matrix3(c * repeat.x, s * repeat.y, offset.x, -s * repeat.x, c * repeat.y, offset.y, 0, 0, 1);
+}
+
+/** A texture whose numbers are not colours. GLTFLoader has one object where colours share its picture. */
+function linear(texture) {
+  if (!texture || texture.colorSpace === THREE.NoColorSpace) return texture;
+  const own = texture.clone();
+  own.colorSpace = THREE.NoColorSpace;
+  return own;
+}
+
 /**
  * The material of a mesh of baked.glb, from what GLTFLoader made of it. `common`: the uniforms that
  * all materials share (light, lightScale, exposure, show).
@@ -121,13 +135,12 @@ export function bakedMaterial(loaded, geometry, common) {
   };
   const lookUp = (texture, name, sampler, transform) => {
     if (!texture || !geometry.hasAttribute(uvName(texture.channel))) return;
-    texture.updateMatrix();
     defines[name] = uvName(texture.channel);
     uniforms[sampler] = { value: texture };
-    uniforms[transform] = { value: texture.matrix };
+    uniforms[transform] = { value: textureTransform(texture) };
   };
   lookUp(loaded.map, "MAP_UV", "map", "mapTransform");
-  if (lit) lookUp(loaded.metalnessMap, "METAL_UV", "metal", "metalTransform");
+  if (lit) lookUp(linear(loaded.metalnessMap), "METAL_UV", "metal", "metalTransform");
   if (lit) lookUp(loaded.emissiveMap, "EMISSION_UV", "glow", "emissionTransform");
   if (geometry.hasAttribute("uv")) defines.HAS_UV = "";
   if (geometry.hasAttribute("uv2")) defines.HAS_UV2 = "";

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "export/baked_glb.h"
 #include "image/codec.h"
+#include "image/color.h"
 #include "tests/command.h"
 
 namespace luxel::testing_support {
@@ -200,6 +201,35 @@ TEST_F(ViewHtml, KnowsEveryMaterial) {
   const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
   const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
   expect_same(difference(shot.picture, preview, 3, every_pixel), "one of each");
+}
+
+// A plate of reflectance 1/2 that sees nothing but a white sky of radiance 1: E = pi. Its
+// luminance, 1/2, is exposed to 0.6 (display::auto_exposure), so the light alone, E / pi, to 1.2.
+// Both go over the shoulder, 1 - 1/2 / (1 + (x - 1/2) / (1/2)); the plate's colour is shown as it
+// is.
+TEST_F(ViewHtml, ShowsLightAloneAndColourAlone) {
+  const ScratchFolder s;
+  scene::Scene scene;
+  scene.background = {1, 1, 1};
+  scene::Material half;
+  half.base_color = {0.5f, 0.5f, 0.5f};
+  add_square(scene, {-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, half);
+  scene.cameras.emplace_back();
+  scene.cameras[0].world_from_camera = translation({0, 0, 3});
+  ASSERT_TRUE(write_file_atomically(s.path / "plate.glb", *export_::scene_glb(scene)));
+  if (!bake((s.path / "plate.glb").string(), s.path / "b", "--resolution 32 --samples 16")) return;
+  const image::Image8 size{240, 180, 4, {}};
+  const auto shown = [&](const char* what) {
+    const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare," + what, size);
+    return int(shot.picture.data[4 * (90 * 240 + 120)]);
+  };
+  const auto byte = [](double linear) {
+    return 255 * double(image::srgb_from_linear(float(linear)));
+  };
+  const auto shoulder = [](double x) { return 1 - 0.5 / (1 + (x - 0.5) / 0.5); };
+  EXPECT_NEAR(shown("both"), byte(shoulder(0.6)), 1);
+  EXPECT_NEAR(shown("light"), byte(shoulder(1.2)), 1);
+  EXPECT_NEAR(shown("colour"), byte(0.5), 1);
 }
 
 // LinearToneMapping and the curve of preview.png are the same line up to one half of linear light,

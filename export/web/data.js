@@ -1,6 +1,11 @@
 // What the page carries: `luxel bake` puts it into script elements that no browser runs.
 
-const text = (id) => document.getElementById(id).textContent;
+/** Once: what has been read need not stay in memory. */
+function text(id) {
+  const element = document.getElementById(id);
+  element.remove();
+  return element.textContent;
+}
 
 async function inflate(id) {
   const bytes = Uint8Array.from(atob(text(id)), (c) => c.charCodeAt(0));

@@ -50,7 +50,8 @@ function fillPanel(about) {
   byId("panel").hidden = false;
 }
 
-function connectPanel(about, common, controls, draw) {
+/** `wishes`: the words after # in the page's address; light and colour choose what is shown first. */
+function connectPanel(about, common, controls, draw, wishes) {
   const expose = () => {
     const stops = Number(byId("exposure").value);
     common.exposure.value = about.preview.exposure * 2 ** stops;
@@ -60,7 +61,7 @@ function connectPanel(about, common, controls, draw) {
   const choices = [...document.getElementsByName("show")];
   const choose = (choice) => {
     choice.checked = true;
-    common.show.value = Number(choice.value);
+    common.show.value = choices.indexOf(choice);
     draw();
   };
   for (const choice of choices) choice.addEventListener("change", () => choose(choice));
@@ -73,6 +74,7 @@ function connectPanel(about, common, controls, draw) {
   });
   addEventListener("keydown", (event) => choices[Number(event.key) - 1] && choose(choices[Number(event.key) - 1]));
   expose();
+  choose(choices.find((choice) => wishes.includes(choice.value)) ?? choices[0]);
 }
 
 async function open() {
@@ -115,9 +117,10 @@ async function open() {
   controls.saveState();
   controls.addEventListener("change", draw);
   addEventListener("resize", resize);
-  document.body.classList.toggle("bare", location.hash === "#bare");
+  const wishes = location.hash.slice(1).split(",");
+  document.body.classList.toggle("bare", wishes.includes("bare"));
   fillPanel(about);
-  connectPanel(about, common, controls, draw);
+  connectPanel(about, common, controls, draw, wishes);
   resize();
   byId("message").hidden = true;
 }

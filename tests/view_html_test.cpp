@@ -203,6 +203,35 @@ TEST_F(ViewHtml, KnowsEveryMaterial) {
   expect_same(difference(shot.picture, preview, 3, every_pixel), "one of each");
 }
 
+// Orthographic; rolled and tilted; wider than high, which the picture then is; looking straight
+// down.
+TEST_F(ViewHtml, StartsWithAnyCamera) {
+  std::vector<scene::Camera> cameras(4);
+  const Vec3 aside = normalize({0.2f, 0.1f, 1}), up = normalize({0.5f, 1, 0.3f});
+  const Vec3 right = normalize(cross(up, aside));
+  cameras[0].world_from_camera = translation({1.8f, 1.7f, 4}) * scaling({2, 3, 4});
+  cameras[0].orthographic_height_m = 4;
+  cameras[1].world_from_camera = from_columns(right, cross(aside, right), aside, {2.6f, 2.2f, 5});
+  cameras[2].world_from_camera = translation({2, 1.6f, 5});
+  cameras[2].aspect = 1.6f;
+  cameras[3].world_from_camera = from_columns({1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {1.7f, 8, 0});
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const ScratchFolder s;
+    scene::Scene scene = one_of_each();
+    if (i == 3)  // lay the wall down
+      for (scene::Instance& instance : scene.instances)
+        instance.world_from_object =
+            from_columns({1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {}) * instance.world_from_object;
+    scene.cameras = {cameras[i]};
+    ASSERT_TRUE(write_file_atomically(s.path / "each.glb", *export_::scene_glb(scene)));
+    if (!bake((s.path / "each.glb").string(), s.path / "b", "--resolution 128 --samples 16"))
+      return;
+    const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
+    const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
+    expect_same(difference(shot.picture, preview, 3, every_pixel), std::to_string(i).c_str());
+  }
+}
+
 // A plate of reflectance 1/2 that sees nothing but a white sky of radiance 1: E = pi. Its
 // luminance, 1/2, is exposed to 0.6 (display::auto_exposure), so the light alone, E / pi, to 1.2.
 // Both go over the shoulder, 1 - 1/2 / (1 + (x - 1/2) / (1/2)); the plate's colour is shown as it

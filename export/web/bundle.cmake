@@ -46,15 +46,20 @@ function(luxel_run_bundler folder variable)
     return()
   endif()
   message(STATUS "Bundling the page of luxel bake --html")
-  # Without install scripts: esbuild's program is a package of its own.
-  execute_process(COMMAND ${LUXEL_NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline
-                          --fetch-retries=1 --fetch-timeout=30000
-                  WORKING_DIRECTORY ${folder} RESULT_VARIABLE status OUTPUT_FILE ${folder}/npm.log
-                  ERROR_FILE ${folder}/npm.log TIMEOUT 180)
-  if(NOT status EQUAL 0)
-    set(${variable} "npm could not fetch three and esbuild, is there a network? (${folder}/npm.log)"
-        PARENT_SCOPE)
-    return()
+  file(SHA256 ${folder}/package-lock.json lock)
+  if(NOT EXISTS ${folder}/node_modules/luxel-${lock})
+    # Without install scripts: esbuild's program is a package of its own.
+    execute_process(COMMAND ${LUXEL_NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline
+                            --fetch-retries=1 --fetch-timeout=30000
+                    WORKING_DIRECTORY ${folder} RESULT_VARIABLE status
+                    OUTPUT_FILE ${folder}/npm.log ERROR_FILE ${folder}/npm.log TIMEOUT 180)
+    if(NOT status EQUAL 0)
+      set(${variable}
+          "npm could not fetch three and esbuild, is there a network? (${folder}/npm.log)"
+          PARENT_SCOPE)
+      return()
+    endif()
+    file(TOUCH ${folder}/node_modules/luxel-${lock})
   endif()
   execute_process(COMMAND ${LUXEL_NODE} build.mjs bundled.cpp WORKING_DIRECTORY ${folder}
                   RESULT_VARIABLE status ERROR_VARIABLE problem)

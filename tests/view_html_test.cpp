@@ -274,14 +274,16 @@ TEST_F(ViewHtml, APageOfOnesOwnShowsWhatThePreviewShows) {
                 .code,
             0);
   const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
-  const Shot shot = shoot("index.html", preview,
-                          "--root " LUXEL_SOURCE_DIR "/examples/three --root " +
-                              (s.path / "b").string() + " --root " + web.string());
-  const Difference d = difference(shot.picture, preview, 4, [](const uint8_t* p) {
-    return p[0] < 188 && p[1] < 188 && p[2] < 188;
-  });
-  EXPECT_GT(d.pixels, 0.3 * preview.width * preview.height);
-  expect_same(d, "a page of one's own");
+  for (const char* page : {"index.html", "index.html?exr"}) {
+    const Shot shot = shoot(page, preview,
+                            "--root " LUXEL_SOURCE_DIR "/examples/three --root " +
+                                (s.path / "b").string() + " --root " + web.string());
+    const Difference d = difference(shot.picture, preview, 4, [](const uint8_t* p) {
+      return p[0] < 188 && p[1] < 188 && p[2] < 188;
+    });
+    EXPECT_GT(d.pixels, 0.3 * preview.width * preview.height);
+    expect_same(d, page);
+  }
 }
 
 TEST(ThreeExample, StandsInTheDocumentation) {

@@ -1,11 +1,13 @@
 // Shows baked.glb as preview.png does: same camera, same exposure.
 import * as THREE from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { EXRLoader } from "three/addons/loaders/EXRLoader.js";
 import { useLightmap } from "./lightmap.js";
 
 async function show() {
   const gltf = await new GLTFLoader().loadAsync("baked.glb");
-  await useLightmap(gltf);
+  const exr = location.search === "?exr" ? await new EXRLoader().loadAsync("lightmap.exr") : null;
+  await useLightmap(gltf, exr);
   const { preview } = await (await fetch("bake.json")).json();
 
   const camera = new THREE.PerspectiveCamera(

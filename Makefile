@@ -16,16 +16,20 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-.PHONY: setup build test demo bench asan format format-check clean
+.PHONY: setup setup-tests build test demo bench asan format format-check clean
 
 setup:
 	@tools/setup.sh
+
+# What only tests use, too.
+setup-tests:
+	@tools/setup.sh tests
 
 build: setup
 	cmake --preset release
 	cmake --build --preset release --parallel $(JOBS) --target luxel
 
-test: setup
+test: setup-tests
 	cmake --preset release
 	cmake --build --preset release --parallel $(JOBS)
 	ctest --preset release --parallel $$(nproc)
@@ -40,7 +44,7 @@ bench: build
 
 # The fast tests under AddressSanitizer and UndefinedBehaviorSanitizer. Leak detection stays on:
 # neither Embree nor TBB needs a suppression.
-asan: setup
+asan: setup-tests
 	cmake --preset asan
 	cmake --build --preset asan --parallel $(JOBS)
 	ctest --preset asan --parallel $$(nproc)

@@ -8,12 +8,12 @@
 
 #include "base/check.h"
 #include "image/codec.h"
+#include "image/rgbe.h"
 
 namespace luxel::image {
 namespace {
 
 using Bytes = std::span<const uint8_t>;
-using Rgbe = std::array<uint8_t, 4>;
 
 /// A broken header may claim any size: this many pixels (16384 squared) are the most we believe.
 constexpr uint64_t kMaxPixels = uint64_t(1) << 28;
@@ -186,23 +186,9 @@ void place(Image& image, const Header& header, size_t i, size_t j, const Rgbe& p
     const size_t at = forward ? from_start[k] : header.count[k] - 1 - from_start[k];
     (header.axis[k] == 'X' ? x : y) = at;
   }
-  const double unit = p[3] ? std::ldexp(1.0, int(p[3]) - (128 + 8)) : 0.0;
+  const std::array<double, 3> color = from_rgbe(p);
   float* out = image.at(int(x), int(y));
-  for (size_t c = 0; c < 3; ++c) out[c] = float(p[c] * unit / header.scale[c]);
-}
-
-Rgbe rgbe_from(Rgb c) {
-  const float m = max_component(c);
-  if (!(m > 1e-38f)) return {};
-  int exponent = 0;
-  (void)std::frexp(m, &exponent);
-  // Rounding may carry the largest mantissa to 256: then the next exponent holds it.
-  if (std::lround(std::ldexp(double(m), 8 - exponent)) > 255) ++exponent;
-  exponent = std::min(exponent, 127);
-  Rgbe out{0, 0, 0, uint8_t(exponent + 128)};
-  for (int k = 0; k < 3; ++k)
-    out[size_t(k)] = uint8_t(std::clamp(std::ldexp(double(c[k]), 8 - exponent) + 0.5, 0.0, 255.0));
-  return out;
+  for (size_t c = 0; c < 3; ++c) out[c] = float(color[c] / header.scale[c]);
 }
 
 /// One component of a scan line: runs of at least 4 equal bytes, dumps between them.
@@ -266,7 +252,7 @@ std::vector<std::byte> encode_hdr(const Image& image) {
       fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
   std::vector<Rgbe> line(size_t(image.width));
   for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) line[size_t(x)] = rgbe_from(image.rgb(x, y));
+    for (int x = 0; x < image.width; ++x) line[size_t(x)] = to_rgbe(image.rgb(x, y));
     append_scan_line(line, out);
   }
   const auto bytes = std::as_bytes(std::span(out.data(), out.size()));

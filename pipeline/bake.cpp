@@ -84,9 +84,9 @@ Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progre
   display::DrawParams params;
   params.width = kPreviewWidth, params.height = kPreviewHeight;
   const float aspect = float(params.width) / float(params.height);
-  scene::Camera camera = bake.scene.cameras.empty()
-                             ? display::fit_camera(bake.scene, tracer, aspect)
-                             : bake.scene.cameras.front();
+  const scene::Camera camera = bake.scene.cameras.empty()
+                                   ? display::fit_camera(bake.scene, tracer, aspect)
+                                   : bake.scene.cameras.front();
   if (camera.aspect > 0) params.width = int(float(params.height) * camera.aspect + 0.5f);
   params.width = std::clamp(params.width, params.height / 4, params.height * 4);
   LUXEL_TRY(const image::Image picture,
@@ -94,7 +94,8 @@ Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progre
                 bake.scene, tracer, camera,
                 [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); },
                 params, progress));
-  bake.preview = display::tone_map(picture, display::auto_exposure(picture));
+  bake.view = {camera, params.width, params.height, display::auto_exposure(picture)};
+  bake.preview = display::tone_map(picture, bake.view.exposure);
   return {};
 }
 
@@ -123,6 +124,7 @@ nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Prog
           {"peak_memory_bytes", peak_resident_bytes()},
           {"scratch_bytes", bake.light.scratch_bytes},
           {"relative_error", bake.light.relative_error},
+          {"preview", to_json(bake.view)},
           {"warnings", bake.warnings}};
 }
 
@@ -150,6 +152,37 @@ Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& 
   return export_::vertex_lit_glb(lit.scene, lit.intensity);
 }
 
+/// `glb` is baked.glb. Where that holds light per vertex the page has one of its own.
+Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
+                             std::span<const std::byte> glb) {
+  std::vector<std::byte> own;
+  if (settings.vertex_colors) {
+    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, bake.lightmap));
+    glb = own;
+  }
+  LUXEL_TRY(const std::string html,
+            export_::view_html({settings.scene.stem().string(), bake.view, bake.scene.background,
+                                bake.atlas.corners.size(), glb, &bake.lightmap}));
+  return text_file(settings.output / "view.html", html);
+}
+
+/// Everything but bake.json, and what bake.json says about it.
+Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bake& bake,
+                                         nlohmann::json& json) {
+  LUXEL_TRY(LightmapFiles lightmap,
+            lightmap_files(bake.lightmap, settings.formats, settings.output, "lightmap"));
+  std::vector<OutputFile> files = std::move(lightmap.files);
+  if (lightmap.rgbm_range > 0) json["lightmap"]["rgbm_range"] = lightmap.rgbm_range;
+  LUXEL_TRY(std::vector<std::byte> glb, glb_of(settings, bake));
+  if (settings.html) {
+    LUXEL_TRY(OutputFile page, view_page(settings, bake, glb));
+    files.push_back(std::move(page));
+  }
+  files.push_back({settings.output / "baked.glb", std::move(glb)});
+  files.push_back({settings.output / "preview.png", image::encode_png(bake.preview)});
+  return files;
+}
+
 }  // namespace
 
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
@@ -158,15 +191,14 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(folder.try_out());
   LUXEL_TRY(const Bake result, bake_scene(settings, progress));
   progress.begin(kWriteStage, 0);
-  std::vector<OutputFile> files;
-  LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(result.lightmap));
-  files.push_back({settings.output / "lightmap.exr", std::move(exr)});
-  LUXEL_TRY(std::vector<std::byte> glb, glb_of(settings, result));
-  files.push_back({settings.output / "baked.glb", std::move(glb)});
-  files.push_back({settings.output / "preview.png", image::encode_png(result.preview)});
+  nlohmann::json about_files = nlohmann::json::object();
+  LUXEL_TRY(std::vector<OutputFile> files, files_of(settings, result, about_files));
   LUXEL_TRY_STATUS(not_cancelled(progress));
   progress.finish();
   nlohmann::json json = report(settings, result, progress);
+  json.update(about_files);
+  for (const OutputFile& file : files) json["files"].push_back(file.path.filename().string());
+  json["files"].push_back("bake.json");
   files.push_back(text_file(settings.output / "bake.json", json.dump(2) + "\n"));
   LUXEL_TRY_STATUS(folder.make());
   LUXEL_TRY_STATUS(write_files_atomically(files));

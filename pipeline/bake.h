@@ -9,6 +9,7 @@
 #include "atlas/atlas.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "export/view_page.h"
 #include "image/codec.h"
 #include "pipeline/settings.h"
 #include "pipeline/solvers.h"
@@ -28,6 +29,7 @@ struct Bake {
   TexelLight light;
   image::Image lightmap;  ///< E, 4 channels, as lightmap.exr holds it
   image::Image8 preview;
+  export_::View view;  ///< what the preview was taken with
   double seam_residual_before = 0, seam_residual_after = 0;
   std::vector<std::string> warnings;
 };
@@ -36,8 +38,9 @@ struct Bake {
 /// name in or above settings.output. Errors: whatever the stages say; settings out of range.
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress);
 
-/// The whole of `luxel bake`: bake_scene, then lightmap.exr, baked.glb, preview.png and bake.json
-/// in settings.output, all of them or none. Returns what bake.json holds.
+/// The whole of `luxel bake`: bake_scene, then lightmap.exr (and its other formats), baked.glb,
+/// preview.png, view.html when asked for, and bake.json in settings.output, all of them or none.
+/// Returns what bake.json holds.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

@@ -5,8 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "import/environment.h"
-#include "pipeline/solvers.h"
+ba#include "pipeline/solvers.h"
 #include "scene/validate.h"
 #include "solve/hemicube/hemicube.h"
 #include "solve/matrix/patches.h"
@@ -119,6 +118,7 @@ Status check(const BakeSettings& s) {
                 "--vertex-colors needs light per vertex, which --solver {} does not compute; use "
                 "--solver hemicube",
                 s.solver);
+  if (s.html) LUXEL_TRY_STATUS(export_::check_view_page());
   LUXEL_TRY_STATUS(check(s.matrix));
   LUXEL_TRY_STATUS(check(s.hierarchical));
   return check(s.hemicube);
@@ -135,6 +135,8 @@ nlohmann::json to_json(const BakeSettings& s) {
                       {"max_memory_bytes", s.max_memory_bytes},
                       {"seed", s.seed},
                       {"threads", s.threads}};
+  json["formats"] = to_json(s.formats);
+  json["html"] = s.html;
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
   if (s.solver == "hemicube")
     json["hemicube"] = {{"elements", s.hemicube.elements},

@@ -14,6 +14,7 @@
 #include "base/vec.h"
 #include "pipeline/ies_setting.h"
 #include "pipeline/sky_setting.h"
+#include "pipeline/lightmap_files.h"
 #include "scene/scene.h"
 
 namespace luxel::pipeline {
@@ -85,6 +86,8 @@ struct BakeSettings {
   MatrixSettings matrix;
   HierarchicalSettings hierarchical;
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
+  LightmapFormats formats;     ///< files beside lightmap.exr
+  bool html = false;           ///< view.html too
 };
 
 /// Checks every number against its range. Errors (bad_setting) name the option, the value, and what

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -46,6 +47,49 @@ TEST(BakeOutputs, AreAllThereAndWhatTheContractSays) {
     for (int x = 0; x < map.width; ++x) coverage.insert(map.at(x, y)[3]);
   for (const float a : coverage) EXPECT_TRUE(a == 0 || a == 0.5f || a == 1) << a;
   EXPECT_TRUE(coverage.contains(1));
+}
+
+// Decoded by the formulas of docs/bake.md; the bounds are those of its table.
+TEST(BakeOutputs, EveryFormatHoldsTheSameLight) {
+  const ScratchFolder s;
+  const auto folder = s.path / "b";
+  ASSERT_EQ(bake(scene_file("cornell-box.glb"), folder,
+                 "--resolution 64 --samples 16 --formats rgbe,hdr,rgbm")
+                .code,
+            0);
+  std::set<std::string> expected = kBakeFiles;
+  expected.insert({"lightmap.hdr", "lightmap.rgbm.png", "lightmap.rgbe.png"});
+  EXPECT_EQ(files_in(folder), expected);
+  const auto json = nlohmann::json::parse(slurp(folder / "bake.json"));
+  EXPECT_EQ(json["files"].get<std::set<std::string>>(), expected);
+  const image::Image exr = lightmap_of(folder);
+  const image::Image hdr = *image::decode_hdr(*read_file(folder / "lightmap.hdr"), "hdr");
+  const image::Image8 m = *image::decode_ldr(*read_file(folder / "lightmap.rgbm.png"), "rgbm");
+  const image::Image8 e = *image::decode_ldr(*read_file(folder / "lightmap.rgbe.png"), "rgbe");
+  const double range = json["lightmap"]["rgbm_range"];
+  for (size_t i = 0; i < exr.data.size() / 4; ++i) {
+    const double most = double(max_component(exr.rgb(int(i) % 64, int(i) / 64)));
+    const double multiplier = range * m.data[4 * i + 3] / 255.0;
+    for (size_t c = 0; c < 3; ++c) {
+      const double light = double(exr.data[4 * i + c]);
+      const double rgbe = std::exp2(e.data[4 * i + 3] - 136.0) * e.data[4 * i + c];
+      EXPECT_NEAR(double(hdr.data[3 * i + c]), light, most / 256 * 1.000001);
+      EXPECT_EQ(double(hdr.data[3 * i + c]), rgbe);
+      EXPECT_NEAR(multiplier * m.data[4 * i + c] / 255.0, light,
+                  (most + range / 255) / 510 * 1.000001);
+    }
+  }
+}
+
+TEST(BakeOutputs, AFormatThatIsNoneIsSaid) {
+  const ScratchFolder s;
+  for (const char* formats : {"png", "hdr,", "''", "hdr,exr,Hdr"}) {
+    const CommandResult r = bake(scene_file("cornell-box.glb"), s.path / "b",
+                                 std::string("--resolution 32 --formats ") + formats);
+    EXPECT_EQ(r.code, 1) << formats;
+    EXPECT_THAT(r.err, HasSubstr("exr, hdr, rgbm, rgbe")) << formats;
+  }
+  EXPECT_EQ(files_in(s.path), std::set<std::string>{});
 }
 
 TEST(BakeOutputs, AStageIsALineWhenNobodyWatches) {

@@ -12,7 +12,7 @@ namespace {
 struct BakeOptions {
   Common common;
   OutsideText outside;
-  std::string uv = "auto", bounces = "inf", max_memory;
+  std::string uv = "auto", bounces = "inf", max_memory, formats = "exr";
   HemicubeOptions hemicube;
   pipeline::BakeSettings settings;
   std::set<std::string> given;  ///< of kSolverOptions
@@ -78,6 +78,7 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
     LUXEL_TRY(s.max_memory_bytes, pipeline::parse_size(options.max_memory));
   }
   LUXEL_TRY(s.outside, parse_outside_light(options.outside));
+  LUXEL_TRY(s.formats, pipeline::parse_formats(options.formats));
   return s;
 }
 
@@ -93,8 +94,8 @@ void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json&
                   json["seconds"]["total"].get<double>(),
                   100 * json["relative_error"].get<double>())
           .c_str());
-  for (const char* name : {"lightmap.exr", "baked.glb", "preview.png", "bake.json"})
-    std::fprintf(stderr, "wrote %s\n", (settings.output / name).string().c_str());
+  for (const nlohmann::json& name : json["files"])
+    std::fprintf(stderr, "wrote %s\n", (settings.output / name.get<std::string>()).c_str());
 }
 
 int run_bake(const BakeOptions& options) {
@@ -141,6 +142,10 @@ void register_bake(CLI::App& app, Action& action) {
   add_hierarchical(*bake, s.hierarchical);
   bake->add_flag("--vertex-colors", s.vertex_colors,
                  "hemicube: baked.glb gets light per vertex in COLOR_0 instead of the lightmap");
+  bake->add_option("--formats", options->formats,
+                   "The lightmap as exr (always), hdr, rgbm and rgbe, with commas between them")
+      ->capture_default_str();
+  bake->add_flag("--html", s.html, "Also view.html: the baked scene as a page to walk around in");
   bake->add_option("--max-memory", options->max_memory,
                    "Memory to stay under, as 900M or 1.5G (default: most of what is free)");
   bake->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();

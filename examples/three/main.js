@@ -1,0 +1,25 @@
+// Shows baked.glb as preview.png does: same camera, same exposure.
+import * as THREE from "three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { EXRLoader } from "three/addons/loaders/EXRLoader.js";
+import { useLightmap } from "./lightmap.js";
+
+async function show() {
+  const gltf = await new GLTFLoader().loadAsync("baked.glb");
+  const exr = location.search === "?exr" ? await new EXRLoader().loadAsync("lightmap.exr") : null;
+  await useLightmap(gltf, exr);
+  const { preview } = await (await fetch("bake.json")).json();
+
+  const camera = new THREE.PerspectiveCamera(
+    THREE.MathUtils.radToDeg(preview.camera.yfov), innerWidth / innerHeight, 0.01, 1000);
+  camera.applyMatrix4(new THREE.Matrix4().fromArray(preview.camera.matrix));
+
+  const renderer = new THREE.WebGLRenderer({ antialias: true });
+  renderer.setSize(innerWidth, innerHeight);
+  renderer.toneMapping = THREE.LinearToneMapping; // or any other of three's curves
+  renderer.toneMappingExposure = preview.exposure;
+  document.body.append(renderer.domElement);
+  renderer.render(gltf.scene, camera);
+}
+
+window.luxelReady = show();

@@ -1,0 +1,94 @@
+#include "export/view_page.h"
+
+#include <zlib.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/base64.h"
+#include "base/check.h"
+#include "export/view_template.h"
+#include "image/half.h"
+
+namespace luxel::export_ {
+namespace {
+
+using nlohmann::json;
+
+/// As the browser's DecompressionStream("deflate") reads it. [RFC 1950]
+Result<std::vector<std::byte>> deflated(std::span<const std::byte> bytes) {
+  uLongf size = compressBound(uLong(bytes.size()));
+  std::vector<std::byte> out(size);
+  const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                               reinterpret_cast<const Bytef*>(bytes.data()), uLong(bytes.size()),
+                               Z_DEFAULT_COMPRESSION);
+  if (status != Z_OK)
+    return fail(ErrorCode::out_of_memory, "no memory is left to pack {} bytes for view.html",
+                bytes.size());
+  out.resize(size);
+  return out;
+}
+
+/// A script element that no browser runs. JSON and base64 hold no '<' that could end it: json's own
+/// are written as escapes.
+void append_data(std::string& html, const char* id, const char* type, std::string_view text) {
+  html += fmt::format("<script id=\"{}\" type=\"{}\">", id, type);
+  for (const char c : text) {
+    if (c == '<')
+      html += "\\u003c";
+    else
+      html += c;
+  }
+  html += "</script>\n";
+}
+
+json about(const ViewPage& page, const image::HalfImage& light) {
+  return {{"title", page.title},
+          {"triangles", page.triangles},
+          {"background", {page.background.x, page.background.y, page.background.z}},
+          {"preview", to_json(page.view)},
+          {"light", {{"width", light.width}, {"height", light.height}, {"scale", light.scale}}}};
+}
+
+}  // namespace
+
+json to_json(const View& view) {
+  json matrix = json::array();
+  for (size_t j = 0; j < 4; ++j) {
+    for (size_t i = 0; i < 3; ++i) matrix.push_back(view.camera.world_from_camera.row[i][j]);
+    matrix.push_back(j == 3 ? 1 : 0);
+  }
+  return {{"width", view.width},
+          {"height", view.height},
+          {"exposure", view.exposure},
+          {"camera",
+           {{"matrix", std::move(matrix)},
+            {"yfov", view.camera.fov_y_rad},
+            {"aspect", view.camera.aspect},
+            {"height_m", view.camera.orthographic_height_m}}}};
+}
+
+Status check_view_page() {
+  if (!view_page_before_data().empty()) return {};
+  return fail(
+      ErrorCode::bad_setting,
+      "--html is not in this luxel, which was built without node, npm or a network; install "
+      "nodejs and npm, run make build with a network, and bake again");
+}
+
+Result<std::string> view_html(const ViewPage& page) {
+  LUXEL_CHECK(page.lightmap != nullptr && page.lightmap->channels == 4);
+  LUXEL_TRY_STATUS(check_view_page());
+  const image::HalfImage light = image::to_half(*page.lightmap);
+  LUXEL_TRY(const std::vector<std::byte> packed_light,
+            deflated(std::as_bytes(std::span(light.data))));
+  LUXEL_TRY(const std::vector<std::byte> packed_model, deflated(page.glb));
+  std::string html(view_page_before_data());
+  append_data(html, "about", "application/json",
+              about(page, light).dump(-1, ' ', true, json::error_handler_t::replace));
+  append_data(html, "light", "text/plain", base64(packed_light));
+  append_data(html, "model", "text/plain", base64(packed_model));
+  html += view_page_after_data();
+  return html;
+}
+
+}  // namespace luxel::export_

@@ -1,0 +1,175 @@
+// How a baked surface looks: rho E / pi + emission, exposed, through the curve of preview.png.
+import * as THREE from "three";
+
+/** display/tone_map.cpp's compress(), and the sRGB transfer function of image/color.h. */
+const toneMap = /* glsl */ `
+float shoulder(float x) {
+  const float a = 0.5;
+  if (x <= a) return x;
+  float t = (x - a) / (1.0 - a);
+  return a + (1.0 - a) * (1.0 - 1.0 / (1.0 + t));
+}
+vec3 compress(vec3 exposed) {
+  vec3 c = clamp(exposed, 0.0, 1e18);
+  float y = dot(c, vec3(0.2126, 0.7152, 0.0722));
+  if (!(y > 0.0)) return vec3(0.0);
+  float f = shoulder(y);
+  vec3 scaled = c * (f / y);
+  float room = 1.0 - f, wanted = max(max(scaled.r, scaled.g), scaled.b) - f;
+  if (wanted <= 0.5 * room) return scaled;
+  return f + (scaled - f) * (room * shoulder(wanted / room) / wanted);
+}
+vec3 srgb(vec3 c) {
+  return mix(1.055 * pow(max(c, 1e-9), vec3(1.0 / 2.4)) - 0.055, 12.92 * c,
+             vec3(lessThanEqual(c, vec3(0.0031308))));
+}`;
+
+const vertexShader = /* glsl */ `
+precision highp float;
+uniform mat4 modelViewMatrix, projectionMatrix;
+uniform mat3 mapTransform, metalTransform, emissionTransform;
+in vec3 position;
+in vec2 uv1;
+#ifdef HAS_COLOR
+in vec3 color;
+#endif
+#ifdef HAS_UV
+in vec2 uv;
+#endif
+#ifdef HAS_UV2
+in vec2 uv2;
+#endif
+out vec2 atLight, atMap, atMetal, atEmission;
+out vec3 tint;
+void main() {
+  atLight = uv1;
+#ifdef MAP_UV
+  atMap = (mapTransform * vec3(MAP_UV, 1.0)).xy;
+#endif
+#ifdef METAL_UV
+  atMetal = (metalTransform * vec3(METAL_UV, 1.0)).xy;
+#endif
+#ifdef EMISSION_UV
+  atEmission = (emissionTransform * vec3(EMISSION_UV, 1.0)).xy;
+#endif
+#ifdef HAS_COLOR
+  tint = color;
+#else
+  tint = vec3(1.0);
+#endif
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`;
+
+const fragmentShader = /* glsl */ `
+precision highp float;
+uniform sampler2D light, map, metal, glow;
+uniform vec3 baseColor, emission;
+uniform float alpha, cutoff, metallic, lightScale, exposure;
+uniform int show;
+in vec2 atLight, atMap, atMetal, atEmission;
+in vec3 tint;
+out vec4 pixel;
+${toneMap}
+void main() {
+  vec4 base = vec4(baseColor * tint, alpha);
+  float metalness = metallic;
+  vec3 emitted = emission;
+#ifdef MAP_UV
+  base *= texture(map, atMap);
+#endif
+#ifdef METAL_UV
+  metalness *= texture(metal, atMetal).b;
+#endif
+#ifdef EMISSION_UV
+  emitted *= texture(glow, atEmission).rgb;
+#endif
+  if (base.a < cutoff) discard;
+  vec3 rho = clamp(base.rgb * (1.0 - clamp(metalness, 0.0, 1.0)), 0.0, 0.99);
+  vec3 irradiance = texture(light, atLight).rgb * lightScale;
+  const float pi = 3.14159265358979;
+  vec3 shown = show == 2 ? rho : show == 1 ? compress(exposure * irradiance / pi)
+             : compress(exposure * (rho * irradiance / pi + emitted));
+  pixel = vec4(srgb(shown), 1.0);
+}`;
+
+/** Whole-screen: what is seen where there is no surface. */
+const backgroundShader = /* glsl */ `
+precision highp float;
+uniform vec3 background;
+uniform float exposure;
+uniform int show;
+out vec4 pixel;
+${toneMap}
+void main() { pixel = vec4(show == 2 ? vec3(0.0) : srgb(compress(exposure * background)), 1.0); }`;
+
+const uvName = (channel) => (channel === 0 ? "uv" : `uv${channel}`);
+
+/** Offset, rotation and scale as KHR_texture_transform orders them; three scales last. */
+function textureTransform({ offset, rotation, repeat }) {
+  const c = Math.cos(rotation), s = Math.sin(rotation);
+  return new THREE.Matrix3(c * repeat.x, s * repeat.y, offset.x, -s * repeat.x, c * repeat.y, offset.y, 0, 0, 1);
+}
+
+/** A texture whose numbers are not colours. GLTFLoader has one object where colours share its picture. */
+function linear(texture) {
+  if (!texture || texture.colorSpace === THREE.NoColorSpace) return texture;
+  const own = texture.clone();
+  own.colorSpace = THREE.NoColorSpace;
+  return own;
+}
+
+/**
+ * The material of a mesh of baked.glb, from what GLTFLoader made of it. `common`: the uniforms that
+ * all materials share (light, lightScale, exposure, show).
+ */
+export function bakedMaterial(loaded, geometry, common) {
+  const lit = loaded.isMeshStandardMaterial === true;
+  const defines = {};
+  const uniforms = {
+    ...common,
+    baseColor: { value: loaded.color },
+    alpha: { value: loaded.opacity },
+    cutoff: { value: loaded.alphaTest },
+    metallic: { value: lit ? loaded.metalness : 0 },
+    emission: { value: lit ? loaded.emissive.clone().multiplyScalar(loaded.emissiveIntensity) : new THREE.Color(0) },
+  };
+  const lookUp = (texture, name, sampler, transform) => {
+    if (!texture || !geometry.hasAttribute(uvName(texture.channel))) return;
+    defines[name] = uvName(texture.channel);
+    uniforms[sampler] = { value: texture };
+    uniforms[transform] = { value: textureTransform(texture) };
+  };
+  lookUp(loaded.map, "MAP_UV", "map", "mapTransform");
+  if (lit) lookUp(linear(loaded.metalnessMap), "METAL_UV", "metal", "metalTransform");
+  if (lit) lookUp(loaded.emissiveMap, "EMISSION_UV", "glow", "emissionTransform");
+  if (geometry.hasAttribute("uv")) defines.HAS_UV = "";
+  if (geometry.hasAttribute("uv2")) defines.HAS_UV2 = "";
+  if (geometry.hasAttribute("color")) defines.HAS_COLOR = "";
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3, defines, uniforms, vertexShader, fragmentShader, side: loaded.side,
+  });
+}
+
+export function backgroundMesh(background, common) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute([-1, -1, 0, 3, -1, 0, -1, 3, 0], 3));
+  const mesh = new THREE.Mesh(geometry, new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    uniforms: { ...common, background: { value: new THREE.Vector3(...background) } },
+    vertexShader: "in vec3 position; void main() { gl_Position = vec4(position, 1.0); }",
+    fragmentShader: backgroundShader,
+    depthTest: false, depthWrite: false,
+  }));
+  mesh.frustumCulled = false;
+  mesh.raycast = () => {};
+  mesh.renderOrder = -1;
+  return mesh;
+}
+
+/** E / scale, looked up bilinearly, clamped. Halves are filtered by the graphics card itself. */
+export function lightTexture(halves, width, height) {
+  const texture = new THREE.DataTexture(halves, width, height, THREE.RGBAFormat, THREE.HalfFloatType);
+  texture.minFilter = texture.magFilter = THREE.LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
+}

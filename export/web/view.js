@@ -1,0 +1,132 @@
+// view.html: a baked scene to walk around in. Nothing is fetched: the page carries it all.
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { fitWindow, lookedAt, previewCamera } from "./camera.js";
+import * as data from "./data.js";
+import { backgroundMesh, bakedMaterial, lightTexture } from "./material.js";
+
+const byId = (id) => document.getElementById(id);
+
+/** Meshes alone, with the bake's materials: lamps are in the lightmap already. */
+async function loadScene(about, common) {
+  const { scene } = await new GLTFLoader().parseAsync(await data.model(), "");
+  const lamps = [];
+  const known = new Map();
+  scene.traverse((object) => {
+    if (object.isLight) lamps.push(object);
+    if (!object.isMesh) return;
+    const key = object.material.uuid + Object.keys(object.geometry.attributes);
+    if (!known.has(key)) known.set(key, bakedMaterial(object.material, object.geometry, common));
+    object.material = known.get(key);
+  });
+  for (const lamp of lamps) lamp.removeFromParent();
+  scene.add(backgroundMesh(about.background, common));
+  return scene;
+}
+
+/** The room that surfaces take; the background's triangle is none. */
+function boundsOf(scene) {
+  const box = new THREE.Box3();
+  scene.updateMatrixWorld(true);
+  scene.traverse((o) => o.isMesh && o.renderOrder === 0 && box.expandByObject(o));
+  return box;
+}
+
+function makeRenderer() {
+  const renderer = new THREE.WebGLRenderer({ canvas: byId("canvas"), antialias: true });
+  renderer.debug.onShaderError = (gl, program, vertex, fragment) => {
+    throw new Error([vertex, fragment].map((s) => gl.getShaderInfoLog(s)).join("\n"));
+  };
+  return renderer;
+}
+
+function fillPanel(about) {
+  document.title = `${about.title} - luxel`;
+  byId("title").textContent = about.title;
+  byId("numbers").textContent = `${about.triangles.toLocaleString("en")} triangles, ` +
+    `lightmap ${about.light.width} x ${about.light.height}`;
+  byId("panel").open = innerWidth > 600;
+  byId("panel").hidden = false;
+}
+
+/** `wishes`: the words after # in the page's address; light and colour choose what is shown first. */
+function connectPanel(about, common, controls, draw, wishes) {
+  const expose = () => {
+    const stops = Number(byId("exposure").value);
+    common.exposure.value = about.preview.exposure * 2 ** stops;
+    byId("stops").textContent = `${stops > 0 ? "+" : ""}${stops.toFixed(1)} stops`;
+    draw();
+  };
+  const choices = [...document.getElementsByName("show")];
+  const choose = (choice) => {
+    choice.checked = true;
+    common.show.value = choices.indexOf(choice);
+    draw();
+  };
+  for (const choice of choices) choice.addEventListener("change", () => choose(choice));
+  byId("exposure").addEventListener("input", expose);
+  byId("reset").addEventListener("click", () => {
+    byId("exposure").value = 0;
+    controls.reset();
+    choose(choices[0]);
+    expose();
+  });
+  addEventListener("keydown", (event) => choices[Number(event.key) - 1] && choose(choices[Number(event.key) - 1]));
+  expose();
+  choose(choices.find((choice) => wishes.includes(choice.value)) ?? choices[0]);
+}
+
+async function open() {
+  const about = data.about();
+  const renderer = makeRenderer();
+  const side = Math.max(about.light.width, about.light.height);
+  if (side > renderer.capabilities.maxTextureSize)
+    throw new Error(`This device shows textures of ${renderer.capabilities.maxTextureSize} texels a side; the lightmap has ${side}.`);
+  const common = {
+    light: { value: lightTexture(await data.light(), about.light.width, about.light.height) },
+    lightScale: { value: about.light.scale },
+    exposure: { value: about.preview.exposure },
+    show: { value: 0 },
+  };
+  const scene = await loadScene(about, common);
+  const box = boundsOf(scene);
+  const camera = previewCamera(about.preview, box.getSize(new THREE.Vector3()).length() || 1);
+  let asked = false;
+  const draw = () => {
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => {
+      asked = false;
+      renderer.render(scene, camera);
+    });
+  };
+  const resize = () => {
+    renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    renderer.setSize(innerWidth, innerHeight, false);
+    fitWindow(camera, innerWidth, innerHeight);
+    renderer.render(scene, camera);
+  };
+  resize();
+  const target = lookedAt(camera, scene, box), from = camera.position.clone();
+  const controls = new OrbitControls(camera, byId("canvas"));  // turns the camera to the origin
+  controls.zoomToCursor = true;
+  controls.target.copy(target);
+  camera.position.copy(from);
+  controls.update();
+  controls.saveState();
+  controls.addEventListener("change", draw);
+  addEventListener("resize", resize);
+  const wishes = location.hash.slice(1).split(",");
+  document.body.classList.toggle("bare", wishes.includes("bare"));
+  fillPanel(about);
+  connectPanel(about, common, controls, draw, wishes);
+  resize();
+  byId("message").hidden = true;
+}
+
+/** Resolves when the first picture stands. */
+window.luxelReady = open().catch((error) => {
+  byId("message").textContent = `The scene cannot be shown: ${error.message}`;
+  throw error;
+});

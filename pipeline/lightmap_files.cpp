@@ -1,0 +1,59 @@
+#include "pipeline/lightmap_files.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "image/codec.h"
+#include "image/rgbe.h"
+#include "image/rgbm.h"
+
+namespace luxel::pipeline {
+
+Result<LightmapFormats> parse_formats(std::string_view text) {
+  LightmapFormats formats;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find(',', begin), text.size());
+    const std::string_view one = text.substr(begin, end - begin);
+    begin = end + 1;
+    if (one == "hdr")
+      formats.hdr = true;
+    else if (one == "rgbm")
+      formats.rgbm = true;
+    else if (one == "rgbe")
+      formats.rgbe = true;
+    else if (one != "exr")
+      return fail(ErrorCode::bad_setting,
+                  "--formats '{}': there is no format '{}'; there is: exr, hdr, rgbm, rgbe, with "
+                  "commas between them",
+                  text, one);
+  }
+  return formats;
+}
+
+nlohmann::json to_json(const LightmapFormats& formats) {
+  nlohmann::json names = {"exr"};
+  if (formats.hdr) names.push_back("hdr");
+  if (formats.rgbm) names.push_back("rgbm");
+  if (formats.rgbe) names.push_back("rgbe");
+  return names;
+}
+
+Result<LightmapFiles> lightmap_files(const image::Image& lightmap, const LightmapFormats& formats,
+                                     const std::filesystem::path& folder, const std::string& name) {
+  LightmapFiles out;
+  const auto add = [&](const char* extension, std::vector<std::byte> bytes) {
+    out.files.push_back({folder / (name + extension), std::move(bytes)});
+  };
+  LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(lightmap));
+  add(".exr", std::move(exr));
+  if (formats.hdr) add(".hdr", image::encode_hdr(lightmap));
+  if (formats.rgbm) {
+    const image::RgbmPicture rgbm = image::rgbm_picture(lightmap);
+    add(".rgbm.png", image::encode_png(rgbm.picture));
+    out.rgbm_range = rgbm.range;
+  }
+  if (formats.rgbe) add(".rgbe.png", image::encode_png(image::rgbe_picture(lightmap)));
+  return out;
+}
+
+}  // namespace luxel::pipeline

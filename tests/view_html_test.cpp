@@ -1,0 +1,295 @@
+// What a browser draws from a bake, held against preview.png: Chromium and WebGL share no line with
+// display/draw.cpp.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "export/baked_glb.h"
+#include "image/codec.h"
+#include "image/color.h"
+#include "tests/command.h"
+
+namespace luxel::testing_support {
+namespace {
+
+using ::testing::HasSubstr;
+
+bool has_command(const char* name) {
+  return std::system((std::string("command -v ") + name + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+/// What is missing for drawing pages; empty: nothing.
+std::string missing_browser() {
+  if (!has_command("node")) return "node is not installed";
+  if (!has_command("${CHROMIUM:-chromium}")) return "chromium is not installed";
+  return {};
+}
+
+image::Image8 picture_of(const std::filesystem::path& file) {
+  const auto bytes = read_file(file);
+  EXPECT_TRUE(bytes) << file;
+  const auto picture = image::decode_ldr(*bytes, file.string());
+  EXPECT_TRUE(picture) << file;
+  return *picture;
+}
+
+struct Shot {
+  image::Image8 picture;
+  nlohmann::json page;  ///< what tools/screenshot.mjs says
+};
+
+/// A page as Chromium draws it, as large as `size`.
+Shot shoot(const std::string& page, const image::Image8& size, const std::string& options = "") {
+  const ScratchFolder s;
+  const std::string command = "node " LUXEL_SOURCE_DIR "/tools/screenshot.mjs '" + page + "' " +
+                              (s.path / "shot.png").string() + " --size " +
+                              std::to_string(size.width) + "x" + std::to_string(size.height) + " " +
+                              options + " >" + (s.path / "out").string() + " 2>" +
+                              (s.path / "err").string();
+  EXPECT_EQ(std::system(command.c_str()), 0) << command << "\n"
+                                             << slurp(s.path / "out") << slurp(s.path / "err");
+  return {picture_of(s.path / "shot.png"), nlohmann::json::parse(slurp(s.path / "out"))};
+}
+
+/// How far two pictures of 4 channels differ, alpha aside, over the pixels that `counts` accepts.
+struct Difference {
+  double mean = 0, bias = 0;  ///< of the channels' differences, in 255ths; bias with its sign
+  double share_beyond = 0;    ///< of pixels with a channel more than `step` away
+  double pixels = 0;
+};
+template <class Counts>
+Difference difference(const image::Image8& a, const image::Image8& b, int step, Counts counts) {
+  Difference d;
+  EXPECT_EQ(a.data.size(), b.data.size());
+  for (size_t i = 0; i + 3 < std::min(a.data.size(), b.data.size()); i += 4) {
+    if (!counts(&b.data[i])) continue;
+    int worst = 0;
+    for (size_t c = 0; c < 3; ++c) {
+      const int delta = int(a.data[i + c]) - int(b.data[i + c]);
+      d.mean += std::abs(delta), d.bias += delta;
+      worst = std::max(worst, std::abs(delta));
+    }
+    d.share_beyond += worst > step ? 1 : 0;
+    ++d.pixels;
+  }
+  d.mean /= 3 * d.pixels, d.bias /= 3 * d.pixels, d.share_beyond /= d.pixels;
+  return d;
+}
+bool every_pixel(const uint8_t*) { return true; }
+
+void expect_same(const Difference& d, const char* what) {
+  std::printf("%s: mean %.3f, bias %.3f, %.3f %% beyond\n", what, d.mean, d.bias,
+              100 * d.share_beyond);
+  EXPECT_LT(d.mean, 0.5) << what;
+  EXPECT_LT(std::abs(d.bias), 0.3) << what;
+  EXPECT_LT(d.share_beyond, 0.02) << what;
+}
+
+/// A unit square in the plane of `x` and `y`, its front towards x cross y, cut into two triangles.
+void add_square(scene::Scene& scene, Vec3 corner, Vec3 x, Vec3 y, scene::Material material,
+                bool colored = false) {
+  scene::Mesh mesh;
+  mesh.positions = {{}, x, x + y, y};
+  mesh.uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  if (colored) mesh.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.triangle_material.assign(2, uint32_t(scene.materials.size()));
+  scene.materials.push_back(std::move(material));
+  scene.instances.push_back({"square", uint32_t(scene.meshes.size()), translation(corner)});
+  scene.meshes.push_back(std::move(mesh));
+}
+
+/// Squares on a wall under a white sky, one for each thing that a material can say.
+scene::Scene one_of_each() {
+  scene::Scene scene;
+  scene.background = {0.4f, 0.6f, 1};
+  scene::Texture texture;
+  texture.width = texture.height = 4;
+  for (int i = 0; i < 16; ++i)
+    for (const int v : {16 * i, 255 - 12 * i, i % 3 * 100, i % 2 ? 255 : 40})
+      texture.rgba.push_back(uint8_t(v));
+  scene.textures.push_back(texture);
+  scene::TextureRef look;
+  look.texture = 0;
+  const Vec3 x{1, 0, 0}, y{0, 1, 0};
+  const auto place = [](int i, int j) { return Vec3{1.2f * float(i), 1.2f * float(j), 0}; };
+  scene::Material plain;
+  plain.base_color = {0.7f, 0.5f, 0.3f};
+  add_square(scene, {-1, -1, -0.5f}, x * 6, y * 5, plain);
+  scene::Material textured = plain;
+  textured.base_color_texture = look;
+  add_square(scene, place(0, 0), x, y, textured);
+  scene::Material turned = textured;
+  turned.base_color_texture.rotation = 0.7f;
+  turned.base_color_texture.scale = {2, 0.5f};
+  turned.base_color_texture.offset = {0.3f, 0.1f};
+  turned.base_color_texture.wrap_u = scene::Wrap::mirror;
+  add_square(scene, place(1, 0), x, y, turned, true);
+  scene::Material masked = textured;
+  masked.alpha_mode = scene::AlphaMode::mask;
+  masked.base_color_texture.filter = scene::Filter::nearest;
+  masked.double_sided = true;
+  add_square(scene, place(2, 0) + x, -x, y, masked);  // seen from behind
+  scene::Material metal = plain;
+  metal.metallic = 0.8f;
+  metal.metallic_texture = look;
+  add_square(scene, place(0, 1), x, y, metal);
+  scene::Material lamp = plain;
+  lamp.emission = {1.5f, 0.2f, 0.1f};
+  lamp.emission_texture = look;
+  add_square(scene, place(1, 1), x, y, lamp);
+  scene::Material unlit = plain;
+  unlit.unlit = true;
+  unlit.base_color = {1, 1, 1};  // and over 0.99
+  add_square(scene, place(2, 1), x, y, unlit);
+  add_square(scene, place(0, 2) + x, -x, y, plain);  // one-sided, seen from behind: not there
+  add_square(scene, place(1, 2) + x, x, y, textured);
+  scene.instances.back().world_from_object =  // mirrored: its front stays in front
+      translation(place(1, 2) + x) * scaling({-1, 1, 1});
+  scene::Camera camera;
+  camera.world_from_camera = translation({2, 1.6f, 6});
+  camera.fov_y_rad = 0.7f;
+  scene.cameras.push_back(camera);
+  return scene;
+}
+
+class ViewHtml : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = missing_browser(); !missing.empty()) GTEST_SKIP() << missing;
+  }
+  /// Bakes into `folder`; false, and the test is skipped, in a luxel without the page.
+  bool bake(const std::string& scene, const std::filesystem::path& folder,
+            const std::string& options) {
+    const CommandResult r =
+        luxel("bake " + scene + " -o " + folder.string() + " --html " + options);
+    if (r.code != 0 && r.err.find("--html is not in this luxel") != std::string::npos) {
+      [&] { GTEST_SKIP() << r.err; }();
+      return false;
+    }
+    EXPECT_EQ(r.code, 0) << r.err;
+    return r.code == 0;
+  }
+};
+
+// One step of 8 bits comes from rounding, others from where a card puts a texel's weights (8 bits
+// of fraction) and from rims of charts, where the preview leaves out the gutter that a card looks
+// up. Silhouettes are drawn with other samples: 4 a pixel here, 9 there, and averaged after the
+// tone curve, not before. On 720 x 720 pixels the edges of a box and its furniture, about 5000
+// pixels long and a pixel or two wide, are under 2 %.
+TEST_F(ViewHtml, ShowsWhatThePreviewShows) {
+  for (const char* name : {"cornell-box.glb", "spheres-and-cube.glb"}) {
+    const ScratchFolder s;
+    if (!bake(scene_file(name), s.path / "b", "--resolution 256 --samples 32")) return;
+    const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
+    const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
+    expect_same(difference(shot.picture, preview, 3, every_pixel), name);
+    EXPECT_EQ(shot.page["requests"], nlohmann::json::array()) << "the page fetched something";
+  }
+}
+
+// Textures, their transforms, vertex colours, metal, masks, one-sided backs, mirrors, no lightmap
+// texel alike: everything that a material of baked.glb may say.
+TEST_F(ViewHtml, KnowsEveryMaterial) {
+  const ScratchFolder s;
+  const auto glb = export_::scene_glb(one_of_each());
+  ASSERT_TRUE(glb);
+  ASSERT_TRUE(write_file_atomically(s.path / "each.glb", *glb));
+  if (!bake((s.path / "each.glb").string(), s.path / "b", "--resolution 256 --samples 64")) return;
+  const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
+  const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
+  expect_same(difference(shot.picture, preview, 3, every_pixel), "one of each");
+}
+
+// Orthographic; rolled and tilted; wider than high, which the picture then is; looking straight
+// down.
+TEST_F(ViewHtml, StartsWithAnyCamera) {
+  std::vector<scene::Camera> cameras(4);
+  const Vec3 aside = normalize({0.2f, 0.1f, 1}), up = normalize({0.5f, 1, 0.3f});
+  const Vec3 right = normalize(cross(up, aside));
+  cameras[0].world_from_camera = translation({1.8f, 1.7f, 4}) * scaling({2, 3, 4});
+  cameras[0].orthographic_height_m = 4;
+  cameras[1].world_from_camera = from_columns(right, cross(aside, right), aside, {2.6f, 2.2f, 5});
+  cameras[2].world_from_camera = translation({2, 1.6f, 5});
+  cameras[2].aspect = 1.6f;
+  cameras[3].world_from_camera = from_columns({1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {1.7f, 8, 0});
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const ScratchFolder s;
+    scene::Scene scene = one_of_each();
+    if (i == 3)  // lay the wall down
+      for (scene::Instance& instance : scene.instances)
+        instance.world_from_object =
+            from_columns({1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {}) * instance.world_from_object;
+    scene.cameras = {cameras[i]};
+    ASSERT_TRUE(write_file_atomically(s.path / "each.glb", *export_::scene_glb(scene)));
+    if (!bake((s.path / "each.glb").string(), s.path / "b", "--resolution 128 --samples 16"))
+      return;
+    const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
+    const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
+    expect_same(difference(shot.picture, preview, 3, every_pixel), std::to_string(i).c_str());
+  }
+}
+
+// A plate of reflectance 1/2 that sees nothing but a white sky of radiance 1: E = pi. Its
+// luminance, 1/2, is exposed to 0.6 (display::auto_exposure), so the light alone, E / pi, to 1.2.
+// Both go over the shoulder, 1 - 1/2 / (1 + (x - 1/2) / (1/2)); the plate's colour is shown as it
+// is.
+TEST_F(ViewHtml, ShowsLightAloneAndColourAlone) {
+  const ScratchFolder s;
+  scene::Scene scene;
+  scene.background = {1, 1, 1};
+  scene::Material half;
+  half.base_color = {0.5f, 0.5f, 0.5f};
+  add_square(scene, {-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, half);
+  scene.cameras.emplace_back();
+  scene.cameras[0].world_from_camera = translation({0, 0, 3});
+  ASSERT_TRUE(write_file_atomically(s.path / "plate.glb", *export_::scene_glb(scene)));
+  if (!bake((s.path / "plate.glb").string(), s.path / "b", "--resolution 32 --samples 16")) return;
+  const image::Image8 size{240, 180, 4, {}};
+  const auto shown = [&](const char* what) {
+    const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare," + what, size);
+    return int(shot.picture.data[4 * (90 * 240 + 120)]);
+  };
+  const auto byte = [](double linear) {
+    return 255 * double(image::srgb_from_linear(float(linear)));
+  };
+  const auto shoulder = [](double x) { return 1 - 0.5 / (1 + (x - 0.5) / 0.5); };
+  EXPECT_NEAR(shown("both"), byte(shoulder(0.6)), 1);
+  EXPECT_NEAR(shown("light"), byte(shoulder(1.2)), 1);
+  EXPECT_NEAR(shown("colour"), byte(0.5), 1);
+}
+
+// LinearToneMapping and the curve of preview.png are the same line up to one half of linear light,
+// 188 of 255; what is brighter is left out. The lightmap has 8 bits here, of which the picture
+// stretches the dark ones: a step of E is up to two of the picture.
+TEST_F(ViewHtml, APageOfOnesOwnShowsWhatThePreviewShows) {
+  const std::filesystem::path web = std::filesystem::path(LUXEL_BINARY_DIR) / "web";
+  if (!std::filesystem::exists(web / "node_modules" / "three"))
+    GTEST_SKIP() << "three is not in " << web << ": the build had no npm or no network";
+  const ScratchFolder s;
+  ASSERT_EQ(luxel("bake " + scene_file("cornell-box.glb") + " -o " + (s.path / "b").string() +
+                  " --resolution 256 --samples 32")
+                .code,
+            0);
+  const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
+  for (const char* page : {"index.html", "index.html?exr"}) {
+    const Shot shot = shoot(page, preview,
+                            "--root " LUXEL_SOURCE_DIR "/examples/three --root " +
+                                (s.path / "b").string() + " --root " + web.string());
+    const Difference d = difference(shot.picture, preview, 4, [](const uint8_t* p) {
+      return p[0] < 188 && p[1] < 188 && p[2] < 188;
+    });
+    EXPECT_GT(d.pixels, 0.3 * preview.width * preview.height);
+    expect_same(d, page);
+  }
+}
+
+TEST(ThreeExample, StandsInTheDocumentation) {
+  EXPECT_THAT(slurp(LUXEL_SOURCE_DIR "/docs/bake.md"),
+              HasSubstr("```js\n" + slurp(LUXEL_SOURCE_DIR "/examples/three/lightmap.js") + "```"));
+}
+
+}  // namespace
+}  // namespace luxel::testing_support

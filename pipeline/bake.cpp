@@ -9,6 +9,7 @@
 #include "export/baked_glb.h"
 #include "image/codec.h"
 #include "import/import.h"
+#include "pipeline/denoise_light.h"
 #include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/stage_seconds.h"
@@ -62,6 +63,7 @@ Status solve(const BakeSettings& settings, const trace::RayTracer& tracer, Bake&
   const transport::Lights lights = transport::collect_lights(bake.scene);
   const SolveInput input{bake.scene, bake.atlas, bake.map, elements, lights, tracer};
   LUXEL_TRY(bake.light, find_solver(settings.solver)->solve(input, settings, progress));
+  if (settings.denoise) LUXEL_TRY_STATUS(denoise_light(input, bake.light, progress));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};
 }

@@ -19,8 +19,9 @@ struct NoiseLevel {
 ///       1 -2  1
 ///
 /// [Immerkaer96] has the variance of one texel and holds nothing of light that is the sum of a
-/// function of x and one of y. Around each texel the mean of r^2 is a second estimate, too large
-/// where light has edges; the smaller of the two counts.
+/// function of x and one of y. The median of r^2 over what is stated for it, taken around each
+/// texel, says by how much the statement is too large; edges of light, which fill less than half
+/// of the window, do not move it. It is never taken to be too small.
 NoiseLevel noise_level(const Neighbourhood& n, std::span<const Rgb> values,
                        std::span<const float> variance);
 

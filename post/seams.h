@@ -17,8 +17,9 @@ struct Seam {
   Vec2 a0, a1, b0, b1;
 };
 
-/// The edges that two triangles of one instance share in space with agreeing shading normals (a
-/// crease is a real change of light and is left alone) but not in the atlas.
+/// The edges that two triangles share in space with agreeing shading normals (a crease is a real
+/// change of light and is left alone) but not in the atlas: those of one instance, whose corners
+/// are the same, and those of tiles that lie edge to edge, whole or in part (post/touching.h).
 std::vector<Seam> find_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
                              float max_normal_angle_rad = 0.1f);
 

@@ -34,7 +34,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   out.irradiance = std::move(bounced.irradiance);
   out.direct = std::move(direct.irradiance);
   out.direct_variance = std::move(direct.variance);
-  out.indirect_variance = std::move(bounced.variance);
+  out.indirect_variance = std::move(bounced.split_variance);
   for (size_t i = 0; i < elements.size(); ++i) out.enclosed.push_back(is_enclosed(hits, i));
   out.met_back = std::move(hits.met_back);
   out.rays = direct.rays + hits.rays;

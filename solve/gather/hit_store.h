@@ -10,6 +10,9 @@ namespace luxel::gather {
 struct StoredHit {
   uint32_t base = 0;  ///< index into a map with a border of one texel: (y + 1) * (side + 2) + x + 1
   uint16_t fx = 0, fy = 0;
+
+  /// Which half of its element's samples the ray belongs to, kept in the lowest bit of fx.
+  bool second_half() const { return fx & 1; }
 };
 static_assert(sizeof(StoredHit) == 8);
 

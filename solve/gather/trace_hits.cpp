@@ -21,6 +21,7 @@ constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
 struct Work {
   std::vector<float> u, v, x, y, z;
   std::vector<uint8_t> cell;
+  std::vector<uint8_t> second_half;  ///< per ray
   std::vector<trace::Ray> rays;
   std::vector<trace::Hit> hits;
 
@@ -31,6 +32,7 @@ struct Work {
         y(samples),
         z(samples),
         cell(samples),
+        second_half(samples),
         rays(samples),
         hits(samples) {}
 };
@@ -89,17 +91,20 @@ void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, W
       const float above = dot(d, geometric_normal);
       if (above < 0) d += geometric_normal * (-2 * above);
     }
-    rays[place[work.cell[i]]++] = {origin, 0, d, INFINITY};
+    const uint32_t at = place[work.cell[i]]++;
+    rays[at] = {origin, 0, d, INFINITY};
+    work.second_half[at] = 2 * i >= count;
   }
 }
 
-StoredHit store(const atlas::Atlas& atlas, const trace::Hit& hit) {
+StoredHit store(const atlas::Atlas& atlas, const trace::Hit& hit, bool second_half) {
   const auto& corners = atlas.corners[atlas.triangle_number(hit.instance, hit.triangle)];
   const Vec2 at = interpolate(corners[0], corners[1], corners[2], hit.at);
   const float limit = float(atlas.resolution);
   const float x = std::clamp(at.x, 0.0f, limit) + 0.5f, y = std::clamp(at.y, 0.0f, limit) + 0.5f;
   const uint32_t x0 = uint32_t(x), y0 = uint32_t(y);  // with the border of one texel
-  return {y0 * uint32_t(atlas.resolution + 2) + x0, uint16_t((x - float(x0)) * 65535.0f + 0.5f),
+  return {y0 * uint32_t(atlas.resolution + 2) + x0,
+          uint16_t((uint16_t((x - float(x0)) * 65535.0f + 0.5f) & ~1u) | uint16_t(second_half)),
           uint16_t((y - float(y0)) * 65535.0f + 0.5f)};
 }
 
@@ -109,10 +114,13 @@ bool is_double_sided(const scene::Scene& scene, const trace::Hit& hit) {
 
 /// Counts what an element's rays met, and keeps the hits that bring light.
 void sort_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
-               std::span<const trace::Hit> hits, size_t element, TracedHits& out, HitTile& tile) {
-  for (const trace::Hit& hit : hits) {
+               std::span<const trace::Hit> hits, std::span<const uint8_t> second_half,
+               size_t element, TracedHits& out, HitTile& tile) {
+  for (size_t k = 0; k < hits.size(); ++k) {
+    const trace::Hit& hit = hits[k];
     if (!hit.found()) {
       ++out.escaped[element];
+      out.escaped_first_half[element] += !second_half[k];
       continue;
     }
     if (hit.back_face && !is_double_sided(scene, hit)) {
@@ -120,7 +128,7 @@ void sort_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
       continue;
     }
     if (hit.back_face) ++out.met_double_sided_back[element];
-    tile.entries.push_back(store(atlas, hit));
+    tile.entries.push_back(store(atlas, hit, second_half[k]));
   }
   tile.end.push_back(uint32_t(tile.entries.size()));
 }
@@ -140,8 +148,9 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
   const size_t samples = size_t(params.samples);
   LUXEL_TRY(HitStore hit_store, HitStore::create(elements.size(), kTileElements, samples,
                                                  params.memory_limit_bytes, params.scratch_folder));
-  TracedHits out{std::move(hit_store), params.samples, {}, {}, {}, 0};
+  TracedHits out{std::move(hit_store), params.samples, {}, {}, {}, {}, 0};
   out.escaped.resize(elements.size());
+  out.escaped_first_half.resize(elements.size());
   out.met_back.resize(elements.size());
   out.met_double_sided_back.resize(elements.size());
   out.rays = uint64_t(elements.size()) * samples;
@@ -152,7 +161,7 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
     fill_rays(origin, elements.normal[i], elements.geometric_normal[i],
               hash64(params.seed ^ 0x6a7e, i), work, work.rays);
     tracer.closest_hits(work.rays, work.hits);
-    sort_hits(scene, atlas, work.hits, i, out, tile);
+    sort_hits(scene, atlas, work.hits, work.second_half, i, out, tile);
   };
 
   constexpr uint64_t kRaysPerAdvance = 8192;

@@ -31,6 +31,8 @@ struct TracedHits {
   /// Backs of double-sided surfaces send the light of their front (docs/gather.md); they are
   /// counted too.
   std::vector<uint16_t> escaped, met_back, met_double_sided_back;
+  /// How many of the escaped rays belong to the first half of the samples.
+  std::vector<uint16_t> escaped_first_half;
   uint64_t rays = 0;
 };
 

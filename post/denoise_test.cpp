@@ -73,7 +73,8 @@ struct Sheet {
     values.clear(), variance.clear();
     for (size_t i = 0; i < size(); ++i) {
       const float r = std::sqrt(-2 * std::log(1 - random.next()));
-      values.push_back(light(i) + Rgb{1, 1, 1} * (sigma * r * std::cos(2 * kPi * random.next())));
+      const float noise = sigma * r * std::cos(2 * kPi * random.next());
+      values.push_back(max(light(i) + Rgb{1, 1, 1} * noise, Rgb{}));
       variance.push_back(stated * sigma * sigma);
     }
   }

@@ -57,12 +57,15 @@ TEST(SlowDenoise, HalvesTheErrorAndSparesConvergedLight) {
   const std::string box = "cornell-box.glb", base = "--resolution 128 --no-stitch ";
   const image::Image exact =
       bake(s.path / "exact", box, base + "--samples 4096 --direct-samples 1024 --seed 7");
-  for (const char* samples : {"--samples 16 --direct-samples 16 ", "--samples 64 "}) {
+  // The noise of few samples is skewed, and the filter leans towards its median: docs/denoise.md
+  // states by how much the mean may fall, and these are those numbers.
+  for (const auto& [samples, change] :
+       {std::pair("--samples 16 --direct-samples 16 ", 0.004), std::pair("--samples 64 ", 0.002)}) {
     const Difference raw = difference(bake(s.path / "raw", box, base + samples), exact);
     const Difference quiet =
         difference(bake(s.path / "quiet", box, base + samples + "--denoise"), exact);
     EXPECT_LT(quiet.relative, raw.relative / 2) << samples;
-    EXPECT_LT(std::abs(quiet.mean), std::abs(raw.mean) + 0.003) << samples;
+    EXPECT_LT(std::abs(quiet.mean - raw.mean), change) << samples;
   }
   // The same texels: what denoising changes of light that needs none, half a percent of it.
   const image::Image still =

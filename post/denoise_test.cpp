@@ -26,7 +26,7 @@ struct Sheet {
 
   explicit Sheet(int charts = 1, float angle = 0) {
     constexpr float kTexel = 0.01f, kSize = kTexel * kSide;
-    const int stride = kSide + 4;
+    const int stride = kSide + 24;  // farther apart than windows are wide
     atlas.resolution = map.resolution = charts * stride;
     map.texel_at.assign(size_t(map.resolution) * size_t(map.resolution), atlas::kNone);
     atlas.chart_count = uint32_t(charts);

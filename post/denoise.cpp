@@ -69,42 +69,48 @@ Plane fit(const Moments& m) {
   return plane;
 }
 
+/// What a texel shows to its neighbours, side by side in memory.
+struct Shown {
+  Rgb estimate;
+  float estimate_variance = 0;
+  Rgb value;  ///< its own, unfiltered
+  float variance = 0;
+};
+
 /// How well a neighbour's light agrees with the plane around a texel, 0 .. 1: the squared
-/// difference over its variance, in the channel where it is largest.
-float agreement(const Plane& own, const Plane& other, Rgb per_channel, const Neighbour& at,
-                float max_deviations2) {
-  const Rgb d = own.value + own.slope_u * at.u + own.slope_v * at.v - other.value;
+/// difference over its variance, in the channel where it is largest. `per_limit`: one over the
+/// largest ratio that counts, times each channel's variance over that of luminance.
+float agreement(const Plane& own, const Shown& other, Rgb per_limit, const Neighbour& at) {
+  const Rgb d = own.value + own.slope_u * at.u + own.slope_v * at.v - other.estimate;
   const float expected =
-      own.variance + (at.u * at.u + at.v * at.v) * own.slope_variance + other.variance;
-  constexpr float kTiny = 1e-30f;
-  const float s = max_component({d.x * d.x / (per_channel.x * expected + kTiny),
-                                 d.y * d.y / (per_channel.y * expected + kTiny),
-                                 d.z * d.z / (per_channel.z * expected + kTiny)});
-  const float rest = 1 - s / max_deviations2;
+      own.variance + (at.u * at.u + at.v * at.v) * own.slope_variance + other.estimate_variance;
+  const float rest = 1 - max_component(d * d * per_limit) / expected;
   return rest > 0 ? rest * (2 - rest) : 0.0f;
 }
 
 /// One round: every texel's plane from the texels around it, weighted by how well the estimates of
-/// the round before agree.
+/// the round before agree. `shown` is made anew from `planes`, which are then replaced.
 Status grow(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb> values,
-            float radius, float max_deviations2, std::span<const Plane> before,
-            std::span<Plane> after, Progress& progress) {
+            float radius, float max_deviations2, std::vector<Plane>& planes,
+            std::vector<Shown>& shown, Progress& progress) {
+  for (size_t i = 0; i < planes.size(); ++i)
+    shown[i] = {planes[i].value, planes[i].variance, values[i], noise.variance[i]};
   parallel_for(values.size(), kBlockTexels, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     for (size_t i = begin; i < end; ++i) {
-      after[i] = before[i];
       if (n.place[i].spacing <= 0 || noise.variance[i] <= 0) continue;
+      const Plane own = planes[i];
+      constexpr float kTiny = 1e-30f;  // a channel without noise agrees with its like alone
+      const auto per = [&](float channel) {
+        return 1 / (max_deviations2 * std::max(channel, kTiny));
+      };
+      const Rgb c = noise.per_channel[i], per_limit{per(c.x), per(c.y), per(c.z)};
       Moments moments;
-      for_neighbours(n, uint32_t(i), frame_around(n.place[i].normal), radius,
-                     [&](uint32_t j, const Neighbour& at) {
-                       const float agree =
-                           j == i ? 1.0f
-                                  : agreement(before[i], before[j], noise.per_channel[i], at,
-                                              max_deviations2);
-                       if (agree > 0)
-                         moments.add(at, at.weight * agree, values[j], noise.variance[j]);
-                     });
-      after[i] = fit(moments);
+      for_neighbours(n, uint32_t(i), radius, [&](uint32_t j, const Neighbour& at) {
+        const float agree = j == i ? 1.0f : agreement(own, shown[j], per_limit, at);
+        if (agree > 0) moments.add(at, at.weight * agree, shown[j].value, shown[j].variance);
+      });
+      planes[i] = fit(moments);
     }
     progress.advance(end - begin);
   });
@@ -122,14 +128,14 @@ constexpr float kFirstDeviations = 2;
 Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLight& part,
               Progress& progress) {
   const NoiseLevel noise = noise_level(n, part.values, part.variance);
-  std::vector<Plane> now(part.values.size()), next(part.values.size());
+  std::vector<Plane> now(part.values.size());
+  std::vector<Shown> shown(part.values.size());
   for (size_t i = 0; i < now.size(); ++i) now[i] = {part.values[i], {}, {}, noise.variance[i], 0};
   float deviations = params.max_deviations * kFirstDeviations;
   for (const float radius : kRadii) {
     if (radius > params.radius) break;
     LUXEL_TRY_STATUS(
-        grow(n, noise, part.values, radius, deviations * deviations, now, next, progress));
-    now.swap(next);
+        grow(n, noise, part.values, radius, deviations * deviations, now, shown, progress));
     deviations = params.max_deviations;
   }
   for (size_t i = 0; i < now.size(); ++i) {

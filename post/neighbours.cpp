@@ -74,18 +74,18 @@ Grid make_grid(const std::vector<Place>& places, float cell_m) {
 
 /// Whether something of a texel's window is missing: only there may its surface go on elsewhere.
 /// Every other texel is looked at, for charts lie two apart.
-bool is_near_a_border(const Neighbourhood& n, uint32_t i, const Frame& frame) {
+bool is_near_a_border(const Neighbourhood& n, uint32_t i) {
   const atlas::TexelMap& map = *n.map;
   const atlas::Texel& t = map.texels[i];
   const int side = map.resolution;
+  // Twice the radius: the window's corners are farther away than its sides.
+  const Around self = around(n.place[i], 2 * float(n.radius), n.min_cosine);
   for (int y = int(t.y) - n.radius; y <= int(t.y) + n.radius; y += 2)
     for (int x = int(t.x) - n.radius; x <= int(t.x) + n.radius; x += 2) {
       if (x < 0 || y < 0 || x >= side || y >= side) return true;
       const uint32_t j = map.texel_at[size_t(y) * size_t(side) + size_t(x)];
       if (j == atlas::kNone) return true;
-      // Twice the radius: the window's corners are farther away than its sides.
-      if (neighbour(n.place[i], n.place[j], frame, 2 * float(n.radius), n.min_cosine).weight <= 0)
-        return true;
+      if (neighbour(self, n.place[j]).weight <= 0) return true;
     }
   return false;
 }
@@ -96,9 +96,9 @@ struct Candidate {
 };
 
 /// Neighbours of texel i that its window in the atlas does not hold.
-void find_far(const Neighbourhood& n, const Grid& grid, uint32_t i, const Frame& frame,
-              std::vector<Candidate>& found) {
+void find_far(const Neighbourhood& n, const Grid& grid, uint32_t i, std::vector<Candidate>& found) {
   const Place& own = n.place[i];
+  const Around self = around(own, float(n.radius), n.min_cosine);
   const atlas::Texel& t = n.map->texels[i];
   // A texel far larger than most looks no farther than two cells.
   const float reach = std::min(float(n.radius) * own.spacing, 2 * grid.cell_m);
@@ -113,7 +113,7 @@ void find_far(const Neighbourhood& n, const Grid& grid, uint32_t i, const Frame&
         const atlas::Texel& o = n.map->texels[j];
         if (std::abs(int(o.x) - int(t.x)) <= n.radius && std::abs(int(o.y) - int(t.y)) <= n.radius)
           continue;
-        if (neighbour(own, n.place[j], frame, float(n.radius), n.min_cosine).weight <= 0) continue;
+        if (neighbour(self, n.place[j]).weight <= 0) continue;
         const Vec3 d = n.place[j].position - own.position;
         found.push_back({dot(d, d), j});
       }
@@ -149,10 +149,9 @@ Result<Neighbourhood> make_neighbourhood(const TexelPlaces& places, const Denois
     FarBlock& block = n.far[begin / kBlockTexels];
     std::vector<Candidate> found;
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
-      const Frame frame = frame_around(n.place[i].normal);
       found.clear();
-      if (n.place[i].spacing > 0 && is_near_a_border(n, uint32_t(i), frame))
-        find_far(n, grid, uint32_t(i), frame, found);
+      if (n.place[i].spacing > 0 && is_near_a_border(n, uint32_t(i)))
+        find_far(n, grid, uint32_t(i), found);
       for (const Candidate& c : found) block.texel.push_back(c.texel);
       block.end.push_back(uint32_t(block.texel.size()));
     }

@@ -43,34 +43,47 @@ struct Neighbour {
   float weight = 0;
 };
 
-/// `radius` in texels, `tangent` and `bitangent` of a. The weight falls with the square of the
-/// distance and with the angle between the normals. Both points must lie near each other's tangent
-/// plane: a quarter of a texel, or as far as a sphere rises whose normal turns by 0.4 over that
-/// distance.
-inline Neighbour neighbour(const Place& a, const Place& b, const Frame& frame, float radius,
-                           float min_cosine) {
-  const Vec3 d = b.position - a.position;
-  const float d2 = dot(d, d), reach = radius * a.spacing;
-  const float near = 1 - d2 / (reach * reach);
-  const float facing = dot(a.normal, b.normal) - min_cosine;
+/// A texel that looks around, and what of that does not depend on whom it sees.
+struct Around {
+  Place own;
+  Frame frame;
+  float min_cosine = 0;
+  float texels_per_metre = 0;
+  float per_reach2 = 0;  ///< 1 / reach^2 [1/m^2]
+  float per_facing = 0;  ///< 1 / (1 - min_cosine)
+};
+
+/// `radius` in texels.
+inline Around around(const Place& own, float radius, float min_cosine) {
+  const float scale = own.spacing > 0 ? 1 / own.spacing : 0.0f;
+  return {own,   frame_around(own.normal),          min_cosine,
+          scale, scale * scale / (radius * radius), 1 / (1 - min_cosine)};
+}
+
+/// The weight falls with the square of the distance and with the angle between the normals. Both
+/// points must lie near each other's tangent plane: a quarter of a texel, or as far as a sphere
+/// rises whose normal turns by 0.4 over that distance.
+inline Neighbour neighbour(const Around& a, const Place& b) {
+  const Vec3 d = b.position - a.own.position;
+  const float d2 = dot(d, d);
+  const float near = 1 - d2 * a.per_reach2;
+  const float facing = dot(a.own.normal, b.normal) - a.min_cosine;
   if (near <= 0 || facing <= 0 || b.spacing <= 0) return {};
-  const float off = std::max(std::abs(dot(d, a.normal)), std::abs(dot(d, b.normal)));
-  const float allowed = 0.25f * a.spacing;
+  const float off = std::max(std::abs(dot(d, a.own.normal)), std::abs(dot(d, b.normal)));
+  const float allowed = 0.25f * a.own.spacing;
   if (off > allowed && (off - allowed) * (off - allowed) > 0.04f * d2) return {};
-  const float scale = 1 / a.spacing;
-  return {dot(d, frame.tangent) * scale, dot(d, frame.bitangent) * scale,
-          near * facing / (1 - min_cosine)};
+  return {dot(d, a.frame.tangent) * a.texels_per_metre,
+          dot(d, a.frame.bitangent) * a.texels_per_metre, near * facing * a.per_facing};
 }
 
 /// Calls visit(texel, Neighbour) for all that count, `i` itself among them, in a fixed order.
 template <class Visit>
-void for_neighbours(const Neighbourhood& n, uint32_t i, const Frame& frame, float radius,
-                    const Visit& visit) {
+void for_neighbours(const Neighbourhood& n, uint32_t i, float radius, const Visit& visit) {
   const atlas::TexelMap& map = *n.map;
   const atlas::Texel& t = map.texels[i];
-  const Place own = n.place[i];
+  const Around self = around(n.place[i], radius, n.min_cosine);
   const auto try_one = [&](uint32_t j) {
-    const Neighbour found = neighbour(own, n.place[j], frame, radius, n.min_cosine);
+    const Neighbour found = neighbour(self, n.place[j]);
     if (found.weight > 0) visit(j, found);
   };
   const int reach = std::min(int(radius), n.radius), side = map.resolution;

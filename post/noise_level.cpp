@@ -31,16 +31,14 @@ Difference mixed_difference(const Neighbourhood& n, uint32_t i, std::span<const 
   const atlas::Texel& t = map.texels[i];
   const int side = map.resolution;
   if (t.x < 1 || t.y < 1 || int(t.x) + 1 >= side || int(t.y) + 1 >= side) return {};
-  const Frame frame = frame_around(n.place[i].normal);
+  // A neighbour in the atlas that is one in the world, too: three texels, for stretched charts.
+  const Around self = around(n.place[i], 3, n.min_cosine);
   Rgb r{};
   float stated = 0;
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       const uint32_t j = map.texel_at[size_t(int(t.y) + dy) * size_t(side) + size_t(int(t.x) + dx)];
-      // A neighbour in the atlas that is one in the world, too: three texels, for stretched charts.
-      if (j == atlas::kNone ||
-          neighbour(n.place[i], n.place[j], frame, 3, n.min_cosine).weight <= 0)
-        return {};
+      if (j == atlas::kNone || neighbour(self, n.place[j]).weight <= 0) return {};
       const float k = kMask[dy + 1][dx + 1] / 6;
       r += values[j] * k;
       stated += k * k * variance[j];
@@ -113,10 +111,10 @@ NoiseLevel noise_level(const Neighbourhood& n, std::span<const Rgb> values,
     for (size_t i = begin; i < end; ++i) {
       if (n.place[i].spacing <= 0) continue;
       window.clear();
-      for_neighbours(n, uint32_t(i), frame_around(n.place[i].normal), kWindow,
-                     [&](uint32_t j, const Neighbour& at) {
-                       window.add(at.weight, variance[j], values[j], difference[j]);
-                     });
+      for_neighbours(n, uint32_t(i), kWindow, [&](uint32_t j, const Neighbour& at) {
+        window.add(at.weight, variance[j], values[j], difference[j]);
+      });
+      if (!(window.stated > 0)) continue;
       const Level own = level_of(window);
       level.variance[i] = own.variance, level.per_channel[i] = own.per_channel;
     }

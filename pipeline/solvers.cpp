@@ -24,7 +24,9 @@ namespace {
 /// the square: direct light, two maps of irradiance, variances, two radiosity maps; later, when the
 /// hits are gone, the lightmap and its encoded files, which take less. Paths need about the same:
 /// three results of 12 bytes per element, and less per texel.
-constexpr uint64_t kBytesPerElement = 64, kBytesPerSquareTexel = 20;
+constexpr uint64_t kBytesPerElement = 72, kBytesPerSquareTexel = 20;
+/// What denoising needs besides: places, planes, what neighbours show, the level of noise.
+constexpr uint64_t kDenoiseBytesPerElement = 140;
 /// A bake with fewer stored hits in memory than this would only wait for the disk.
 constexpr uint64_t kMinHitBytes = 16u << 20;
 /// What the process holds differs from run to run: by this much less than the size that is advised.
@@ -39,8 +41,9 @@ std::string size_text(uint64_t bytes) {
 Result<uint64_t> memory_to_spare(const SolveInput& in, const BakeSettings& settings,
                                  uint64_t spare) {
   const uint64_t side = uint64_t(in.map.resolution);
+  const uint64_t per_element = kBytesPerElement + (settings.denoise ? kDenoiseBytesPerElement : 0);
   const uint64_t needed =
-      resident_bytes() + kBytesPerElement * in.elements.size() + kBytesPerSquareTexel * side * side;
+      resident_bytes() + per_element * in.elements.size() + kBytesPerSquareTexel * side * side;
   const uint64_t smallest_mb = ((needed + spare) >> 20) + 1 + kResidentNoiseMb;
   if (settings.max_memory_bytes == 0) {
     const uint64_t free = available_bytes() / 5 * 4;

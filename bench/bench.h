@@ -40,13 +40,16 @@ Result<Table> measure_atlas(const std::filesystem::path& shared, int threads);
 Result<Table> measure_memory(const std::filesystem::path& shared, int threads);
 /// Gather with one and with two threads.
 Result<Table> measure_threads(const std::filesystem::path& shared, int threads);
+/// Errors of gather with and without --denoise against a bake of many samples.
+Result<Table> measure_denoise(const std::filesystem::path& shared, int threads);
 
 struct Bench {
   std::string_view name;
   BenchFunction run;
 };
-inline constexpr std::array kBenches{Bench{"rays", measure_rays}, Bench{"maps", measure_maps},
-                                     Bench{"atlas", measure_atlas}, Bench{"memory", measure_memory},
-                                     Bench{"threads", measure_threads}};
+inline constexpr std::array kBenches{
+    Bench{"rays", measure_rays},       Bench{"maps", measure_maps},
+    Bench{"atlas", measure_atlas},     Bench{"memory", measure_memory},
+    Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise}};
 
 }  // namespace luxel::bench

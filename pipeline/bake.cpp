@@ -9,6 +9,7 @@
 #include "export/baked_glb.h"
 #include "image/codec.h"
 #include "import/import.h"
+#include "pipeline/denoise_light.h"
 #include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/stage_seconds.h"
@@ -63,16 +64,19 @@ Status solve(const BakeSettings& settings, const trace::RayTracer& tracer, Bake&
   const transport::Lights lights = transport::collect_lights(bake.scene);
   const SolveInput input{bake.scene, bake.atlas, bake.map, elements, lights, tracer};
   LUXEL_TRY(bake.light, find_solver(settings.solver)->solve(input, settings, progress));
+  if (settings.denoise) LUXEL_TRY_STATUS(denoise_light(input, bake.light, progress));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};
 }
 
-Status repair(Bake& bake, Progress& progress) {
+Status repair(const BakeSettings& settings, Bake& bake, Progress& progress) {
   progress.begin("seams", 0);
   post::refill_hidden(bake.atlas, bake.map, bake.light.hidden, kRefillRings, bake.light.irradiance);
   const std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
   bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance);
-  LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
+  bake.seams = seams.size();
+  if (settings.stitch)
+    LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
   bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance);
   bake.lightmap = post::lightmap_from_texels(bake.map, bake.light.irradiance);
   post::dilate(bake.lightmap, kDilationRings);
@@ -110,6 +114,7 @@ nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Prog
             {"texels", bake.map.texels.size()},
             {"rays", bake.light.rays},
             {"charts", bake.atlas.chart_count},
+            {"seams", bake.seams},
             {"sweeps", bake.light.sweeps},
             {"elements", bake.light.elements},
             {"suspicious_texels", bake.light.suspicious_texels}}},
@@ -118,7 +123,12 @@ nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Prog
             {"utilisation", bake.atlas_stats.utilisation},
             {"mean_stretch_l2", bake.atlas_stats.mean_stretch_l2},
             {"texels_per_metre", bake.atlas_stats.texels_per_metre}}},
-          {"seam_residual", {bake.seam_residual_before, bake.seam_residual_after}},
+          {"seam_residual",
+           {bake.seam_residual_before.rms_over_mean, bake.seam_residual_after.rms_over_mean}},
+          {"seam_residual_p95",
+           {bake.seam_residual_before.relative_p95, bake.seam_residual_after.relative_p95}},
+          {"seam_residual_max",
+           {bake.seam_residual_before.relative_max, bake.seam_residual_after.relative_max}},
           {"seconds", seconds},
           {"mrays_per_s", tracing > 0 ? double(bake.light.rays) * 1e-6 / tracing : 0.0},
           {"peak_memory_bytes", peak_resident_bytes()},
@@ -139,7 +149,7 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
   LUXEL_TRY_STATUS(solve(settings, tracer, bake, progress));
-  LUXEL_TRY_STATUS(repair(bake, progress));
+  LUXEL_TRY_STATUS(repair(settings, bake, progress));
   LUXEL_TRY_STATUS(draw_preview(tracer, bake, progress));
   return bake;
 }

@@ -13,6 +13,7 @@
 #include "image/codec.h"
 #include "pipeline/settings.h"
 #include "pipeline/solvers.h"
+#include "post/seams.h"
 #include "scene/scene.h"
 
 namespace luxel::pipeline {
@@ -30,7 +31,8 @@ struct Bake {
   image::Image lightmap;  ///< E, 4 channels, as lightmap.exr holds it
   image::Image8 preview;
   export_::View view;  ///< what the preview was taken with
-  double seam_residual_before = 0, seam_residual_after = 0;
+  size_t seams = 0;
+  post::SeamResidual seam_residual_before, seam_residual_after;
   std::vector<std::string> warnings;
 };
 

@@ -113,6 +113,10 @@ Status check(const BakeSettings& s) {
   if (!std::isfinite(s.texels_per_metre) || s.texels_per_metre < 0)
     return fail(ErrorCode::bad_setting, "--texels-per-metre {} is not a density; give a number > 0",
                 s.texels_per_metre);
+  if (s.denoise && !find_solver(s.solver)->noise)
+    return fail(ErrorCode::bad_setting,
+                "--denoise needs light with known noise, which --solver {} has not; leave it out",
+                s.solver);
   if (s.vertex_colors && s.solver != "hemicube")
     return fail(ErrorCode::bad_setting,
                 "--vertex-colors needs light per vertex, which --solver {} does not compute; use "
@@ -138,6 +142,7 @@ nlohmann::json to_json(const BakeSettings& s) {
   json["formats"] = to_json(s.formats);
   json["html"] = s.html;
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
+  json["denoise"] = s.denoise, json["stitch"] = s.stitch;
   if (s.solver == "hemicube")
     json["hemicube"] = {{"elements", s.hemicube.elements},
                         {"resolution", s.hemicube.resolution},

@@ -85,6 +85,8 @@ struct BakeSettings {
   HemicubeSettings hemicube;
   MatrixSettings matrix;
   HierarchicalSettings hierarchical;
+  bool denoise = false;        ///< take the grain out of texels, docs/denoise.md
+  bool stitch = true;          ///< make charts agree along seams
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
   LightmapFormats formats;     ///< files beside lightmap.exr
   bool html = false;           ///< view.html too

@@ -24,7 +24,9 @@ namespace {
 /// the square: direct light, two maps of irradiance, variances, two radiosity maps; later, when the
 /// hits are gone, the lightmap and its encoded files, which take less. Paths need about the same:
 /// three results of 12 bytes per element, and less per texel.
-constexpr uint64_t kBytesPerElement = 64, kBytesPerSquareTexel = 20;
+constexpr uint64_t kBytesPerElement = 72, kBytesPerSquareTexel = 20;
+/// What denoising needs besides: places, planes, what neighbours show, the level of noise.
+constexpr uint64_t kDenoiseBytesPerElement = 140;
 /// A bake with fewer stored hits in memory than this would only wait for the disk.
 constexpr uint64_t kMinHitBytes = 16u << 20;
 /// What the process holds differs from run to run: by this much less than the size that is advised.
@@ -39,8 +41,9 @@ std::string size_text(uint64_t bytes) {
 Result<uint64_t> memory_to_spare(const SolveInput& in, const BakeSettings& settings,
                                  uint64_t spare) {
   const uint64_t side = uint64_t(in.map.resolution);
+  const uint64_t per_element = kBytesPerElement + (settings.denoise ? kDenoiseBytesPerElement : 0);
   const uint64_t needed =
-      resident_bytes() + kBytesPerElement * in.elements.size() + kBytesPerSquareTexel * side * side;
+      resident_bytes() + per_element * in.elements.size() + kBytesPerSquareTexel * side * side;
   const uint64_t smallest_mb = ((needed + spare) >> 20) + 1 + kResidentNoiseMb;
   if (settings.max_memory_bytes == 0) {
     const uint64_t free = available_bytes() / 5 * 4;
@@ -82,6 +85,9 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   TexelLight out = texel_light(std::move(result));
+  out.direct = std::move(result.direct);
+  out.direct_variance = std::move(result.direct_variance);
+  out.variance = std::move(result.indirect_variance);
   out.sweeps = result.sweeps;
   out.scratch_bytes = result.hit_bytes_in_file;
   return out;
@@ -95,7 +101,9 @@ Result<TexelLight> solve_reference(const SolveInput& in, const BakeSettings& set
   LUXEL_TRY(reference::TexelPaths result,
             reference::irradiance_by_paths(in.scene, reference::receivers(in.elements), in.tracer,
                                            params, progress));
-  return texel_light(std::move(result));
+  TexelLight out = texel_light(std::move(result));
+  for (const float error : result.luminance_error) out.variance.push_back(error * error);
+  return out;
 }
 
 /// Its elements are few, and their light is stretched over their triangles: shadows get more rays.
@@ -169,6 +177,10 @@ Result<TexelLight> solve_matrix(const SolveInput& in, const BakeSettings& settin
     }
   });
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
+  // What patches exchange has no grain: every texel reads it through the same smooth functions.
+  out.variance.assign(in.elements.size(), 0.0f);
+  out.direct = std::move(direct.irradiance);
+  out.direct_variance = std::move(direct.variance);
   out.rays = solution.rays + direct.rays, out.sweeps = solution.sweeps;
   out.elements = prepared.work.patches.size();
   out.relative_error = solution.relative_error;
@@ -229,11 +241,19 @@ Result<TexelLight> solve_hierarchical(const SolveInput& in, const BakeSettings& 
 }
 
 constexpr std::array kSolvers{
-    Solver{.name = "gather", .solve = solve_gather, .samples = true, .direct_samples = true},
+    Solver{.name = "gather",
+           .solve = solve_gather,
+           .samples = true,
+           .direct_samples = true,
+           .noise = true},
     Solver{.name = "hemicube", .solve = solve_hemicube, .direct_samples = true, .hemicube = true},
-    Solver{.name = "matrix", .solve = solve_matrix, .direct_samples = true, .matrix = true},
+    Solver{.name = "matrix",
+           .solve = solve_matrix,
+           .direct_samples = true,
+           .matrix = true,
+           .noise = true},
     Solver{.name = "hierarchical", .solve = solve_hierarchical, .hierarchical = true},
-    Solver{.name = "reference", .solve = solve_reference, .samples = true}};
+    Solver{.name = "reference", .solve = solve_reference, .samples = true, .noise = true}};
 
 }  // namespace
 

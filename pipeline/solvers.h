@@ -32,6 +32,12 @@ struct SolveInput {
 /// What every solver gives.
 struct TexelLight {
   std::vector<Rgb> irradiance;  ///< E per texel of the map [W/m^2]
+  /// Estimated variance of its luminance per texel, the direct part aside; empty: light without
+  /// noise, or noise that nobody knows.
+  std::vector<float> variance;
+  /// The part of the irradiance that comes straight from lamps, and its variance; empty: not apart.
+  std::vector<Rgb> direct;
+  std::vector<float> direct_variance;
   uint64_t rays = 0;
   int sweeps = 0;
   double relative_error = 0;       ///< estimated, root mean square over the mean
@@ -52,6 +58,7 @@ struct Solver {
   /// What it looks at of the settings.
   bool samples = false, direct_samples = false, hemicube = false, matrix = false,
        hierarchical = false;
+  bool noise = false;  ///< knows the variance of its light: --denoise
 };
 
 /// What a bake's settings ask of the hemicube solver. Shadow rays are four times direct_samples.

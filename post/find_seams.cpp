@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "post/seams.h"
+#include "post/touching.h"
 
 namespace luxel::post {
 namespace {
@@ -66,13 +67,21 @@ bool is_smooth(const scene::Scene& scene, uint32_t instance, const HalfEdge& a, 
   return agree(a.low_corner, b.low_corner) && agree(a.high_corner, b.high_corner);
 }
 
-void add_seam(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t instance,
+/// Returns whether the surface goes on over the edge: then nothing else can join it there.
+bool add_seam(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t instance,
               const HalfEdge& a, const HalfEdge& b, float min_cosine, std::vector<Seam>& seams) {
   const auto& in_a = atlas.corners[atlas.triangle_number(instance, a.triangle)];
   const auto& in_b = atlas.corners[atlas.triangle_number(instance, b.triangle)];
   const Seam seam{in_a[a.low_corner], in_a[a.high_corner], in_b[b.low_corner], in_b[b.high_corner]};
-  if (seam.a0 == seam.b0 && seam.a1 == seam.b1) return;  // one place in the atlas
-  if (is_smooth(scene, instance, a, b, min_cosine)) seams.push_back(seam);
+  if (seam.a0 == seam.b0 && seam.a1 == seam.b1) return true;  // one place in the atlas
+  if (!is_smooth(scene, instance, a, b, min_cosine)) return false;
+  seams.push_back(seam);
+  return true;
+}
+
+OpenEdge open_edge(uint32_t instance, const HalfEdge& e) {
+  const bool forward = (e.low_corner + 1) % 3 == e.high_corner;
+  return {instance, e.triangle, forward ? e.low_corner : e.high_corner};
 }
 
 }  // namespace
@@ -83,6 +92,7 @@ std::vector<Seam> find_seams(const scene::Scene& scene, const atlas::Atlas& atla
   const float min_cosine = std::cos(max_normal_angle_rad);
   std::vector<std::vector<HalfEdge>> edges_of(scene.meshes.size());
   std::vector<Seam> seams;
+  std::vector<OpenEdge> open;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const uint32_t mesh = scene.instances[i].mesh;
     std::vector<HalfEdge>& edges = edges_of[mesh];
@@ -93,10 +103,17 @@ std::vector<Seam> find_seams(const scene::Scene& scene, const atlas::Atlas& atla
         ++end;
       // Two sides as a rule. Where more triangles meet, each goes with the next: all that agree
       // hang together, without a square number of pairs.
-      for (size_t a = begin; a + 1 < end; ++a)
-        add_seam(scene, atlas, i, edges[a], edges[a + 1], min_cosine, seams);
+      bool joined = false;
+      for (size_t a = begin; a < end; ++a) {
+        const bool before = joined;
+        joined =
+            a + 1 < end && add_seam(scene, atlas, i, edges[a], edges[a + 1], min_cosine, seams);
+        if (!before && !joined) open.push_back(open_edge(i, edges[a]));
+      }
     }
   }
+  const std::vector<Seam> touching = find_touching(scene, atlas, open, min_cosine);
+  seams.insert(seams.end(), touching.begin(), touching.end());
   return seams;
 }
 

@@ -17,8 +17,9 @@ struct Seam {
   Vec2 a0, a1, b0, b1;
 };
 
-/// The edges that two triangles of one instance share in space with agreeing shading normals (a
-/// crease is a real change of light and is left alone) but not in the atlas.
+/// The edges that two triangles share in space with agreeing shading normals (a crease is a real
+/// change of light and is left alone) but not in the atlas: those of one instance, whose corners
+/// are the same, and those of tiles that lie edge to edge, whole or in part (post/touching.h).
 std::vector<Seam> find_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
                              float max_normal_angle_rad = 0.1f);
 
@@ -49,8 +50,16 @@ struct SeamParams {
 Status stitch_seams(const atlas::TexelMap& map, std::span<const Seam> seams,
                     const SeamParams& params, std::span<Rgb> values, Progress& progress);
 
-/// Root mean square of the difference between both sides over all seam points, per mean value.
-double seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
-                     std::span<const Rgb> values);
+/// How far the two sides of seams lie apart, over all points of all seams.
+struct SeamResidual {
+  /// Root mean square of the difference, all channels, over the mean value of all points.
+  double rms_over_mean = 0;
+  /// Of |a - b| / m_p, where |.| is the largest channel's and m_p is as above the mean of both
+  /// sides and all channels at the point itself, plus a thousandth of the mean of all: the 95th
+  /// percentile and the largest.
+  double relative_p95 = 0, relative_max = 0;
+};
+SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
+                           std::span<const Rgb> values);
 
 }  // namespace luxel::post

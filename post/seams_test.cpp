@@ -85,7 +85,7 @@ struct Sheet {
       values.push_back((t.triangle_number == 0 ? left : right) *
                        (1 + noise * (random.next() - 0.5f)));
   }
-  double residual() const { return seam_residual(map, seams, values); }
+  double residual() const { return seam_residual(map, seams, values).rms_over_mean; }
   void stitch() {
     Progress progress;
     const Status status = stitch_seams(map, seams, {}, values, progress);

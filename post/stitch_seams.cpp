@@ -1,4 +1,5 @@
 #include <Eigen/Sparse>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -219,21 +220,28 @@ Status stitch_seams(const atlas::TexelMap& map, std::span<const Seam> seams,
   return {};
 }
 
-double seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
-                     std::span<const Rgb> values) {
+SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
+                           std::span<const Rgb> values) {
   LUXEL_CHECK(values.size() == map.texels.size());
-  double squares = 0, sum = 0;
-  size_t count = 0;
-  for (const SeamPoint& point : seam_points(map, seams)) {
+  const std::vector<SeamPoint> points = seam_points(map, seams);
+  double squares = 0, mean = 0;
+  for (const SeamPoint& point : points) {
     const auto a = value(point.a, values), b = value(point.b, values);
-    for (size_t c = 0; c < 3; ++c) {
-      squares += (a[c] - b[c]) * (a[c] - b[c]);
-      sum += (a[c] + b[c]) / 2;
-      ++count;
-    }
+    for (size_t c = 0; c < 3; ++c) squares += (a[c] - b[c]) * (a[c] - b[c]);
+    mean += mean_value(point, values) / double(points.size());
   }
-  if (count == 0 || sum <= 0) return 0;
-  return std::sqrt(squares / double(count)) / (sum / double(count));
+  if (points.empty() || mean <= 0) return {};
+  std::vector<double> relative;
+  for (const SeamPoint& point : points) {
+    const auto a = value(point.a, values), b = value(point.b, values);
+    double largest = 0;
+    for (size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(a[c] - b[c]));
+    relative.push_back(largest / (mean_value(point, values) + 1e-3 * mean));
+  }
+  const auto p95 = relative.begin() + std::ptrdiff_t((relative.size() - 1) * 95 / 100);
+  std::nth_element(relative.begin(), p95, relative.end());
+  return {std::sqrt(squares / (3 * double(points.size()))) / mean, *p95,
+          *std::max_element(p95, relative.end())};
 }
 
 }  // namespace luxel::post

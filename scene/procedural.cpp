@@ -9,7 +9,8 @@ std::vector<NamedScene> procedural_scenes() {
           {"office.glb", office()},
           {"radiosity-box.glb", radiosity_box()},
           {"radiosity-box-with-shapes.glb", radiosity_box_with_shapes()},
-          {"spheres-and-cube.glb", spheres_and_cube()}};
+          {"spheres-and-cube.glb", spheres_and_cube()},
+          {"tiled-kit.glb", tiled_kit()}};
 }
 
 }  // namespace luxel::scene

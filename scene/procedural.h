@@ -45,6 +45,11 @@ Scene radiosity_box_with_shapes();
 /// ceiling lights of 1.2 x 0.3 m; 61 polygons in all, two cameras. [Hardt96, figure 7-1]
 Scene office();
 
+/// Twenty tiles of 1 m x 1 m, 5 x 4, edge to edge: two meshes in turn, one a single quad and one
+/// cut into 3 x 3, so that whole edges meet thirds. A lamp of 0.6 m hangs 2.6 m above them and a
+/// pillar throws its shadow over several.
+Scene tiled_kit();
+
 /// A sphere of radius `radius_m` seen from inside (normals point inwards), latitude-longitude-free:
 /// an icosahedron subdivided `levels` times; flat shading. One material.
 Scene inward_sphere(float radius_m, int levels, Rgb reflectance, Rgb emission);

@@ -26,6 +26,7 @@ struct SolverOption {
 constexpr std::array kSolverOptions{
     SolverOption{"--samples", &pipeline::Solver::samples},
     SolverOption{"--direct-samples", &pipeline::Solver::direct_samples},
+    SolverOption{"--denoise", &pipeline::Solver::noise},
     SolverOption{"--elements", &pipeline::Solver::hemicube},
     SolverOption{"--hemicube", &pipeline::Solver::hemicube},
     SolverOption{"--element-size", &pipeline::Solver::hemicube},
@@ -140,6 +141,8 @@ void register_bake(CLI::App& app, Action& action) {
       ->capture_default_str()
       ->group(matrix);
   add_hierarchical(*bake, s.hierarchical);
+  bake->add_flag("--denoise", s.denoise, "Take the grain out of texels; edges of shadows stay");
+  bake->add_flag("!--no-stitch", s.stitch, "Leave charts as they are along seams");
   bake->add_flag("--vertex-colors", s.vertex_colors,
                  "hemicube: baked.glb gets light per vertex in COLOR_0 instead of the lightmap");
   bake->add_option("--formats", options->formats,

@@ -58,6 +58,7 @@ inline Float4 lookup(const RadiosityMap& m, const StoredHit& hit) {
 struct Gathered {
   Float4 sum{};
   float sum_luminance2 = 0;
+  float first_less_second = 0;  ///< luminance of the first half of the samples minus the other's
 };
 
 /// Every stride-th hit from `first` on, counted for all of them.
@@ -70,6 +71,7 @@ Gathered gather_element(const RadiosityMap& m, std::span<const StoredHit> hits, 
     const float l = luminance({b[0], b[1], b[2]});
     g.sum += b;
     g.sum_luminance2 += l * l;
+    g.first_less_second += hits[k].second_half() ? -l : l;
   }
   if (used > 0 && used < hits.size()) g.sum *= float(hits.size()) / float(used);
   return g;
@@ -82,7 +84,8 @@ struct Sweep {
   std::span<const Rgb> previous;  ///< E of the sweep before
   std::span<Rgb> next;
   std::span<float> variance;  ///< of the gathered part and the sky
-  size_t stride = 1;          ///< only every stride-th ray is looked at
+  std::span<float> split_variance;
+  size_t stride = 1;  ///< only every stride-th ray is looked at
   std::vector<double> change2;
 };
 
@@ -92,6 +95,18 @@ float variance_of_mean(const Gathered& g, const TracedHits& hits, size_t element
   const float sum = luminance({g.sum[0], g.sum[1], g.sum[2]}) + kPi * luminance(hits.sky[element]);
   const float sum2 = g.sum_luminance2 + kPi * kPi * hits.sky_luminance2[element];
   return std::max(0.0f, sum2 / n - (sum / n) * (sum / n)) / n;
+}
+
+/// ((A - B) / 2)^2 of the halves' means A and B; without halves, of one sample, there is nothing to
+/// say.
+float split_variance(const Gathered& g, const TracedHits& hits, size_t element) {
+  if (hits.samples < 2) return variance_of_mean(g, hits, element);
+  const int first = (hits.samples + 1) / 2, second = hits.samples - first;
+  const float sum = luminance({g.sum[0], g.sum[1], g.sum[2]}) + kPi * luminance(hits.sky[element]);
+  const float difference = g.first_less_second + kPi * hits.sky_first_less_second[element];
+  const float a = 0.5f * (sum + difference), b = 0.5f * (sum - difference);
+  const float d = 0.5f * (a / float(first) - b / float(second));
+  return d * d;
 }
 
 Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress) {
@@ -119,7 +134,10 @@ Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Pr
       first = end;
       const Rgb gathered = Rgb{g.sum[0], g.sum[1], g.sum[2]} * per_ray;
       sweep.next[i] = sweep.source[i] + gathered;
-      if (sweep.stride == 1) sweep.variance[i] = variance_of_mean(g, hits, i);
+      if (sweep.stride == 1) {
+        sweep.variance[i] = variance_of_mean(g, hits, i);
+        sweep.split_variance[i] = split_variance(g, hits, i);
+      }
       const Rgb d = sweep.next[i] - sweep.previous[i];
       sweep.change2[t] += double(dot(d, d));
     }
@@ -174,13 +192,14 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   Bounced out;
   out.irradiance = source;
   out.variance.assign(n, 0.0f);
+  out.split_variance.assign(n, 0.0f);
   std::vector<Rgb> next(n);
   RadiosityMap radiosity = empty_map(map.resolution);
   progress.begin("bounces", 0);
   // Returns the root mean square change, relative to the mean irradiance.
   const auto run = [&](size_t stride) -> Result<double> {
     fill(radiosity, map, elements, hits, out.irradiance);
-    Sweep sweep{source, out.irradiance, next, out.variance, stride, {}};
+    Sweep sweep{source, out.irradiance, next, out.variance, out.split_variance, stride, {}};
     LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
     out.irradiance.swap(next);
     ++out.sweeps;

@@ -23,6 +23,11 @@ struct BounceParams {
 struct Bounced {
   std::vector<Rgb> irradiance;  ///< E per element [W/m^2], direct light included
   std::vector<float> variance;  ///< estimated variance of its luminance, direct light aside
+  /// A second estimate of it, from the difference of two halves of the samples: ((A - B) / 2)^2.
+  /// Each half is stratified, as the whole is, so that it is larger than the truth by a factor of
+  /// 1.4 to 2 where `variance` may be 30 times too large; but each is a single square, as uncertain
+  /// as that: for means over neighbours. docs/denoise.md.
+  std::vector<float> split_variance;
   int sweeps = 0;
 };
 

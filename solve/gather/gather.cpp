@@ -22,7 +22,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                       const transport::Lights& lights, const trace::RayTracer& tracer,
                       const GatherParams& params, Progress& progress) {
   const transport::DirectParams direct_params{params.direct_samples, params.seed};
-  LUXEL_TRY(const transport::DirectLight direct,
+  LUXEL_TRY(transport::DirectLight direct,
             transport::direct_light(scene, elements, lights, tracer, direct_params, progress));
   const TraceParams trace_params{params.samples, params.seed, params.hit_memory_bytes,
                                  params.scratch_folder};
@@ -33,6 +33,9 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   Gather out;
   out.relative_error = relative_error(bounced.irradiance, direct.variance, bounced.variance);
   out.irradiance = std::move(bounced.irradiance);
+  out.direct = std::move(direct.irradiance);
+  out.direct_variance = std::move(direct.variance);
+  out.indirect_variance = std::move(bounced.split_variance);
   for (size_t i = 0; i < elements.size(); ++i) out.enclosed.push_back(is_enclosed(hits, i));
   out.met_back = std::move(hits.met_back);
   out.rays = direct.rays + hits.rays;

@@ -18,7 +18,10 @@ struct GatherParams {
 };
 
 struct Gather {
-  std::vector<Rgb> irradiance;     ///< E per element [W/m^2], after all bounces
+  std::vector<Rgb> irradiance;  ///< E per element [W/m^2], after all bounces
+  std::vector<Rgb> direct;      ///< the part of it that comes straight from lamps
+  /// Estimated variance of the mean's luminance, per element: of the direct part and of the rest.
+  std::vector<float> direct_variance, indirect_variance;  ///< indirect: from halves, see Bounced
   std::vector<uint16_t> met_back;  ///< rays per element that met the back of a one-sided surface
   std::vector<uint8_t> enclosed;   ///< per element: 1 where is_enclosed
   uint64_t rays = 0;

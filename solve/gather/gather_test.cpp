@@ -269,12 +269,14 @@ TEST(Gather, TexelsInsideSolidsAreDarkAndCounted) {
 TEST(StoredHit, KeepsWhatIsPacked) {
   const uint32_t last = 16386u * 16386u - 1;  // of the largest atlas, with its border
   for (const uint32_t base : {0u, 1u, 12345678u, last})
-    for (const uint32_t f : {0u, 7u, 4095u}) {
-      const StoredHit hit = StoredHit::pack(base, f, 4095 - f, 1234);
+    for (const uint32_t f : {0u, 7u, StoredHit::kSteps}) {
+      const StoredHit hit =
+          StoredHit::pack(base, f, StoredHit::kSteps - f, {.tint = 1234, .second_half = f == 7});
       EXPECT_EQ(hit.base(), base);
       EXPECT_EQ(hit.fx(), f);
-      EXPECT_EQ(hit.fy(), 4095 - f);
+      EXPECT_EQ(hit.fy(), StoredHit::kSteps - f);
       EXPECT_EQ(hit.tint(), 1234u);
+      EXPECT_EQ(hit.second_half(), f == 7);
     }
 }
 
@@ -313,8 +315,7 @@ scene::Scene divided_furnace(float rho, const scene::Material& pane) {
   return scene;
 }
 
-// A pane that reflects and lets through without loss: of what comes, 0.3 is reflected (two faces,
-// each covering a part) and the rest goes on, so a furnace stays what it is without the pane.
+// A pane of two faces that reflects and lets through without loss: a furnace stays what it is.
 TEST(SlowGather, AFurnaceDoesNotSeeGlassThatLosesNothing) {
   scene::Material pane;
   pane.alpha_mode = scene::AlphaMode::blend;
@@ -328,6 +329,34 @@ TEST(SlowGather, AFurnaceDoesNotSeeGlassThatLosesNothing) {
   double sum = 0;
   for (const Rgb& e : result.irradiance) sum += double(e.x) / (2 * kPiDouble);
   EXPECT_NEAR(sum / double(result.irradiance.size()), 0.995, 0.01);
+}
+
+// The true variance from 16 seeds, over some thousand texels. Halves of 32 samples are as
+// stratified as the whole of 64: their estimate is larger than the truth by at most the gain of
+// stratification from 32 to 64, less than a factor 3 even for smooth light, where twice the samples
+// give an eighth of the variance instead of half of it, and never smaller, but for chance (a
+// hundredth).
+TEST(Gather, VarianceOfHalvesIsThatOfSeeds) {
+  scene::Scene scene = scene::spheres_and_cube();
+  const auto room = lay_out(std::move(scene), 64);
+  constexpr int kSeeds = 16;
+  const size_t n = room->elements.size();
+  std::vector<double> sum(n), sum2(n);
+  double stated = 0;
+  for (int k = 0; k < kSeeds; ++k) {
+    GatherParams params = with_samples(64, 4);
+    params.seed = uint64_t(k + 1);
+    const Gather result = solve(*room, params);
+    for (size_t i = 0; i < n; ++i) {
+      const double l = double(luminance(result.irradiance[i] - result.direct[i]));
+      sum[i] += l, sum2[i] += l * l;
+      stated += double(result.indirect_variance[i]) / kSeeds;
+    }
+  }
+  double truth = 0;
+  for (size_t i = 0; i < n; ++i) truth += (sum2[i] - sum[i] * sum[i] / kSeeds) / (kSeeds - 1);
+  EXPECT_GT(stated, 0.95 * truth);
+  EXPECT_LT(stated, 3 * truth);
 }
 
 }  // namespace

@@ -11,16 +11,23 @@ namespace luxel::gather {
 struct StoredHit {
   uint64_t bits = 0;
 
-  static constexpr uint32_t kSteps = 4095;  ///< parts of a texel
+  /// What is known of the ray besides where it ended.
+  struct Ray {
+    uint32_t tint = 2047;      ///< what it passed, see pack_tint; 2047 is white
+    bool second_half = false;  ///< which half of its element's samples it belongs to
+  };
+  static constexpr uint32_t kSteps = 2047;  ///< parts of a texel
   /// `base`: the upper left of the four texels around the point, as an index into a map with a
   /// border of one texel, (y + 1) * (side + 2) + x + 1 < 2^29. `fx`, `fy`: how far the point is
-  /// towards the lower right one, in 1/kSteps. `tint`: a Tint.
-  static StoredHit pack(uint32_t base, uint32_t fx, uint32_t fy, uint32_t tint) {
-    return {uint64_t(base) << 35 | uint64_t(fx) << 23 | uint64_t(fy) << 11 | tint};
+  /// towards the lower right one, in 1/kSteps.
+  static StoredHit pack(uint32_t base, uint32_t fx, uint32_t fy, Ray ray) {
+    return {uint64_t(base) << 35 | uint64_t(fx) << 24 | uint64_t(fy) << 13 |
+            uint64_t(ray.second_half) << 11 | ray.tint};
   }
   uint32_t base() const { return uint32_t(bits >> 35); }
-  uint32_t fx() const { return uint32_t(bits >> 23) & kSteps; }
-  uint32_t fy() const { return uint32_t(bits >> 11) & kSteps; }
+  uint32_t fx() const { return uint32_t(bits >> 24) & kSteps; }
+  uint32_t fy() const { return uint32_t(bits >> 13) & kSteps; }
+  bool second_half() const { return bits >> 11 & 1; }
   uint32_t tint() const { return uint32_t(bits) & 2047; }
 };
 

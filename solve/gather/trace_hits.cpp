@@ -21,6 +21,7 @@ constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
 struct Work {
   std::vector<float> u, v, x, y, z;
   std::vector<uint8_t> cell;
+  std::vector<uint8_t> second_half;  ///< per ray
   std::vector<trace::Ray> rays;
   std::vector<trace::Hit> hits;
   std::vector<Rgb> tint;  ///< of what rays have passed; empty where nothing has a colour
@@ -32,6 +33,7 @@ struct Work {
         y(samples),
         z(samples),
         cell(samples),
+        second_half(samples),
         rays(samples),
         hits(samples) {}
 };
@@ -90,11 +92,13 @@ void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, W
       const float above = dot(d, geometric_normal);
       if (above < 0) d += geometric_normal * (-2 * above);
     }
-    rays[place[work.cell[i]]++] = {origin, 0, d, INFINITY};
+    const uint32_t at = place[work.cell[i]]++;
+    rays[at] = {origin, 0, d, INFINITY};
+    work.second_half[at] = 2 * i >= count;
   }
 }
 
-StoredHit store(const atlas::Atlas& atlas, const trace::Hit& hit, uint32_t tint) {
+StoredHit store(const atlas::Atlas& atlas, const trace::Hit& hit, StoredHit::Ray ray) {
   const auto& corners = atlas.corners[atlas.triangle_number(hit.instance, hit.triangle)];
   const Vec2 at = interpolate(corners[0], corners[1], corners[2], hit.at);
   const float limit = float(atlas.resolution);
@@ -103,7 +107,7 @@ StoredHit store(const atlas::Atlas& atlas, const trace::Hit& hit, uint32_t tint)
   constexpr float kSteps = float(StoredHit::kSteps);
   return StoredHit::pack(y0 * uint32_t(atlas.resolution + 2) + x0,
                          uint32_t((x - float(x0)) * kSteps + 0.5f),
-                         uint32_t((y - float(y0)) * kSteps + 0.5f), tint);
+                         uint32_t((y - float(y0)) * kSteps + 0.5f), ray);
 }
 
 /// What rays meet, and what they see beyond.
@@ -124,6 +128,7 @@ void sort_hits(const World& world, const Work& work, size_t element, TracedHits&
       if (!work.tint.empty()) l = l * work.tint[k];
       out.sky[element] += l;
       out.sky_luminance2[element] += luminance(l) * luminance(l);
+      out.sky_first_less_second[element] += work.second_half[k] ? -luminance(l) : luminance(l);
       continue;
     }
     if (hit.back_face &&
@@ -134,7 +139,7 @@ void sort_hits(const World& world, const Work& work, size_t element, TracedHits&
     if (hit.back_face) ++out.met_double_sided_back[element];
     const uint32_t tint =
         work.tint.empty() ? kNoTint : pack_tint(work.tint[k], hash64(element, k ^ 0x7147u));
-    tile.entries.push_back(store(world.atlas, hit, tint));
+    tile.entries.push_back(store(world.atlas, hit, {tint, work.second_half[k] != 0}));
   }
   tile.end.push_back(uint32_t(tile.entries.size()));
 }
@@ -155,12 +160,13 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
   const size_t samples = size_t(params.samples);
   LUXEL_TRY(HitStore hit_store, HitStore::create(elements.size(), kTileElements, samples,
                                                  params.memory_limit_bytes, params.scratch_folder));
-  TracedHits out{std::move(hit_store), params.samples, {}, {}, {}, {}, {}, 0};
+  TracedHits out{std::move(hit_store), params.samples, {}, {}, {}, {}, {}, {}, 0};
   out.escaped.resize(elements.size());
   out.met_back.resize(elements.size());
   out.met_double_sided_back.resize(elements.size());
   out.sky.resize(elements.size());
   out.sky_luminance2.resize(elements.size());
+  out.sky_first_less_second.resize(elements.size());
   out.rays = uint64_t(elements.size()) * samples;
   const float diagonal_m = scene::world_bounds(scene).diagonal();
   const World world{scene, atlas, around};

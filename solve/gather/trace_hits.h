@@ -33,9 +33,10 @@ struct TracedHits {
   /// counted too.
   std::vector<uint16_t> escaped, met_back, met_double_sided_back;
   /// Per element, what its escaped rays saw of the surroundings' soft light: the sum of radiances,
-  /// and of their squared luminances.
+  /// that of their squared luminances, and that of the first half of the samples' luminances minus
+  /// the other half's.
   std::vector<Rgb> sky;
-  std::vector<float> sky_luminance2;
+  std::vector<float> sky_luminance2, sky_first_less_second;
   uint64_t rays = 0;
 };
 

@@ -1,0 +1,132 @@
+// luxel bench denoise: what --denoise takes away of the error, and what it adds to light that has
+// none.
+#include <cmath>
+
+#include "base/parallel.h"
+#include "bench/bench.h"
+#include "bench/prepared.h"
+#include "import/import.h"
+#include "pipeline/denoise_light.h"
+#include "scene/procedural.h"
+
+namespace luxel::bench {
+namespace {
+
+constexpr int kResolution = 256;
+/// The reference: this many bakes of this many samples, of other seeds; its own error is a third of
+/// that of the last row.
+constexpr int kReferenceBakes = 8, kReferenceSamples = 4096;
+constexpr std::array kSamples{16, 64, 256, 1024, 4096};
+
+/// A quarter as many shadow rays as indirect ones, as in the defaults.
+pipeline::BakeSettings settings_of(int samples, uint64_t seed) {
+  pipeline::BakeSettings settings;
+  settings.samples = samples;
+  settings.direct_samples = samples / 4;
+  settings.seed = seed;
+  return settings;
+}
+
+Result<std::vector<Rgb>> reference_of(const Prepared& p, Progress& progress) {
+  std::vector<Rgb> mean(p.elements.size());
+  for (int k = 0; k < kReferenceBakes; ++k) {
+    LUXEL_TRY(const Timed bake,
+              solve(p, "gather", settings_of(kReferenceSamples, uint64_t(1000 + k)), progress));
+    for (size_t i = 0; i < mean.size(); ++i)
+      mean[i] += bake.light.irradiance[i] / float(kReferenceBakes);
+  }
+  return mean;
+}
+
+struct Errors {
+  double relative = 0;   ///< root mean square of d / (b + 0.01 mean b), as `luxel compare` has it
+  double over_mean = 0;  ///< root mean square of d over the mean
+  double mean = 0;       ///< of d over the mean
+};
+
+/// Of luminance, over texels that are not hidden.
+Errors errors_of(const pipeline::TexelLight& light, const std::vector<Rgb>& reference) {
+  double mean = 0, count = 0;
+  for (size_t i = 0; i < reference.size(); ++i)
+    if (!light.hidden[i]) mean += double(luminance(reference[i])), count += 1;
+  mean /= count;
+  Errors e;
+  for (size_t i = 0; i < reference.size(); ++i) {
+    if (light.hidden[i]) continue;
+    const double d = double(luminance(light.irradiance[i] - reference[i]));
+    const double relative = d / (double(luminance(reference[i])) + 0.01 * mean);
+    e.relative += relative * relative / count, e.over_mean += d * d / count, e.mean += d / count;
+  }
+  return {std::sqrt(e.relative), std::sqrt(e.over_mean) / mean, e.mean / mean};
+}
+
+Status measure(const std::string& name, scene::Scene scene, Table& table) {
+  Progress progress;
+  LUXEL_TRY(const auto p, prepare(std::move(scene), kResolution, progress));
+  LUXEL_TRY(const std::vector<Rgb> reference, reference_of(*p, progress));
+  for (const int samples : kSamples) {
+    LUXEL_TRY(Timed bake, solve(*p, "gather", settings_of(samples, 1), progress));
+    const Errors before = errors_of(bake.light, reference);
+    const auto start = Clock::now();
+    LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), bake.light, progress));
+    const double seconds = seconds_since(start);
+    const Errors after = errors_of(bake.light, reference);
+    const auto percent = [](double v) { return fmt::format("{:.3f} %", 100 * v); };
+    table.rows.push_back(
+        {name, fmt::format("{}", samples), percent(before.relative), percent(after.relative),
+         fmt::format("{:.2f}", before.relative / after.relative), percent(before.over_mean),
+         percent(after.over_mean), fmt::format("{:+.3f} %", 100 * (after.mean - before.mean)),
+         fmt::format("{:.2f}", bake.seconds), fmt::format("{:.2f}", seconds)});
+    table.json.push_back({{"scene", name},
+                          {"samples", samples},
+                          {"relative_rmse", {before.relative, after.relative}},
+                          {"rmse_over_mean", {before.over_mean, after.over_mean}},
+                          {"mean_change", after.mean - before.mean},
+                          {"bake_s", bake.seconds},
+                          {"denoise_s", seconds}});
+  }
+  return {};
+}
+
+/// Seconds of the filter alone at 1024 x 1024.
+Status measure_large(Table& table) {
+  Progress progress;
+  LUXEL_TRY(const auto p, prepare(scene::cornell_box(), 1024, progress));
+  LUXEL_TRY(Timed bake, solve(*p, "gather", settings_of(64, 1), progress));
+  const auto start = Clock::now();
+  LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), bake.light, progress));
+  table.notes.push_back(
+      fmt::format("The Cornell box at 1024 x 1024 ({} texels), 64 samples: {:.1f} s for the light, "
+                  "{:.1f} s to denoise it.",
+                  p->elements.size(), bake.seconds, seconds_since(start)));
+  table.json.push_back({{"scene", "Cornell box, 1024 x 1024"},
+                        {"samples", 64},
+                        {"bake_s", bake.seconds},
+                        {"denoise_s", seconds_since(start)}});
+  return {};
+}
+
+}  // namespace
+
+Result<Table> measure_denoise(const std::filesystem::path& shared, int threads) {
+  const ThreadLimit limit(threads);
+  Table table = new_table("denoise",
+                          {"scene", "samples", "relative RMSE", "denoised", "factor", "RMSE / mean",
+                           "denoised", "change of the mean", "light, s", "denoising, s"});
+  LUXEL_TRY_STATUS(measure("Cornell box", scene::cornell_box(), table));
+  const auto file = shared / "scenes/living_room/living_room_lit_uv1.glb";
+  if (std::filesystem::exists(file)) {
+    LUXEL_TRY(import::Imported imported, import::import_scene(file));
+    LUXEL_TRY_STATUS(measure("living_room_lit_uv1", std::move(imported.scene), table));
+  } else {
+    table.notes.push_back(file.string() + " is not on this machine: left out");
+  }
+  table.notes.push_back(
+      fmt::format("{0} x {0} texels, a quarter as many shadow rays as samples; "
+                  "against the mean of {1} bakes of {2} samples.",
+                  kResolution, kReferenceBakes, kReferenceSamples));
+  LUXEL_TRY_STATUS(measure_large(table));
+  return table;
+}
+
+}  // namespace luxel::bench

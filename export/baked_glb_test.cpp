@@ -220,6 +220,25 @@ TEST(SceneGlb, SharedMeshesStayShared) {
   EXPECT_FALSE(d.j["materials"][0].value("extensions", json::object()).contains("MOZ_lightmap"));
 }
 
+// WebP may come in by an extension; what goes out needs none.
+TEST(SceneGlb, PicturesThatGltfDoesNotKnowBecomePngs) {
+  scene::Scene scene = rich_scene();
+  const std::string webp = "RIFF....WEBP";
+  const auto* first = reinterpret_cast<const std::byte*>(webp.data());
+  scene.textures[0].encoded.assign(first, first + webp.size());
+  scene.textures[0].mime_type = "image/webp";
+  const Document d = parse(*scene_glb(scene));
+  ASSERT_FALSE(d.j["images"].empty());
+  EXPECT_EQ(d.j["images"][0]["mimeType"], "image/png");
+  const json& view = d.j["bufferViews"][d.j["images"][0]["bufferView"].get<size_t>()];
+  const auto picture =
+      image::decode_ldr(std::span(d.binary).subspan(view["byteOffset"].get<size_t>(),
+                                                    view["byteLength"].get<size_t>()),
+                        "picture");
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->data, scene.textures[0].rgba);
+}
+
 TEST(SceneGlb, LightsShineAlongTheirDirection) {
   const scene::Scene scene = rich_scene();
   const Document d = parse(*scene_glb(scene));

@@ -19,7 +19,8 @@ struct Image8 {
   std::vector<uint8_t> data;
 };
 
-/// PNG or JPEG (what glTF allows) to RGBA. `name` is the file or texture named in errors.
+/// PNG, JPEG (what glTF allows) or WebP (its extension EXT_texture_webp) to RGBA. `name` is the
+/// file or texture named in errors.
 Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name);
 /// The same as display values in [0, 1], four channels, with all 16 bits that a PNG may have.
 Result<Image> decode_display(std::span<const std::byte> bytes, std::string_view name);

@@ -1,5 +1,6 @@
-// 8-bit pictures in: PNG and JPEG through stb. stb checks neither PNG's CRCs nor whether a JPEG is
-// complete, and would hand out garbage pixels for a damaged file: both are checked here first.
+// 8-bit pictures in: PNG and JPEG through stb, WebP through libwebp. stb checks neither PNG's CRCs
+// nor whether a JPEG is complete, and would hand out garbage pixels for a damaged file: both are
+// checked here first.
 #include <fmt/format.h>
 #include <stb/stb_image.h>
 
@@ -10,11 +11,11 @@
 #include <type_traits>
 
 #include "image/codec.h"
+#include "image/codec_webp.h"
 
 namespace luxel::image {
 namespace {
 
-constexpr int kMaxSide = 16384;
 constexpr std::array<uint8_t, 8> kPngMagic{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 
 using Bytes = std::span<const uint8_t>;
@@ -84,6 +85,26 @@ std::string damage_of_jpeg(Bytes bytes) {
   return "it ends early";
 }
 
+uint32_t big_endian16(Bytes p) { return uint32_t(p[0]) << 8 | uint32_t(p[1]); }
+
+/// Width and height by the first header that states them; only for what damage_of_...() found
+/// whole. A PNG begins with it; of a JPEG it is the first frame (SOF0 to SOF15).
+std::array<uint32_t, 2> stated_size(Bytes bytes, bool is_png) {
+  if (is_png) {
+    if (bytes.size() < 24) return {};
+    return {big_endian32(bytes.subspan(16)), big_endian32(bytes.subspan(20))};
+  }
+  for (size_t at = 2; bytes.size() - at >= 9;) {
+    const uint8_t marker = bytes[at + 1];
+    const bool is_frame = (marker & 0xf0) == 0xc0 && marker != 0xc4 && marker != 0xc8 &&
+                          marker != 0xcc;  // tables and an extension stand among the frames
+    if (is_frame) return {big_endian16(bytes.subspan(at + 7)), big_endian16(bytes.subspan(at + 5))};
+    at += marker == 0xff ? 1 : 2 + big_endian16(bytes.subspan(at + 2));
+    if (at > bytes.size()) break;
+  }
+  return {};
+}
+
 /// The bytes as stb takes them, after all checks that it does not make itself.
 Result<Bytes> checked(std::span<const std::byte> bytes, std::string_view name) {
   const Bytes data(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
@@ -92,18 +113,19 @@ Result<Bytes> checked(std::span<const std::byte> bytes, std::string_view name) {
   const bool is_jpeg = starts_with(data, std::array<uint8_t, 3>{0xff, 0xd8, 0xff});
   if (!is_png && !is_jpeg)
     return fail(ErrorCode::bad_input,
-                "{}: the picture is neither PNG nor JPEG; convert it to one of them", name);
+                "{}: the picture is neither PNG, JPEG nor WebP; convert it to one of them", name);
   const std::string damage = is_png ? damage_of_png(data) : damage_of_jpeg(data);
   if (!damage.empty() || data.size() > size_t(INT32_MAX))
     return fail(ErrorCode::bad_input, "{}: the {} picture is damaged: {}", name,
                 is_png ? "PNG" : "JPEG", damage.empty() ? "it is over 2 GB" : damage);
+  // Before anything else: a short file may state a size that no memory holds.
+  const auto [stated_width, stated_height] = stated_size(data, is_png);
+  LUXEL_TRY_STATUS(check_picture_size(stated_width, stated_height, name));
   int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_memory(data.data(), int(data.size()), &width, &height, &channels))
     return fail(ErrorCode::bad_input, "{}: cannot decode the picture: {}", name,
                 stbi_failure_reason());
-  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
-    return fail(ErrorCode::bad_input, "{}: the picture has {} x {} pixels, must be 1 to {} a side",
-                name, width, height, kMaxSide);
+  LUXEL_TRY_STATUS(check_picture_size(uint32_t(width), uint32_t(height), name));
   return data;
 }
 
@@ -118,7 +140,16 @@ auto load_rgba(const Load& load, Bytes data, int& width, int& height) {
 
 }  // namespace
 
+Status check_picture_size(uint32_t width, uint32_t height, std::string_view name) {
+  constexpr uint32_t kMaxSide = 16384;
+  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
+    return fail(ErrorCode::bad_input, "{}: the picture has {} x {} pixels, must be 1 to {} a side",
+                name, width, height, kMaxSide);
+  return {};
+}
+
 Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name) {
+  if (is_webp(bytes)) return decode_webp(bytes, name);
   LUXEL_TRY(const Bytes data, checked(bytes, name));
   Image8 image{0, 0, 4, {}};
   const auto pixels = load_rgba(stbi_load_from_memory, data, image.width, image.height);
@@ -131,6 +162,12 @@ Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view nam
 }
 
 Result<Image> decode_display(std::span<const std::byte> bytes, std::string_view name) {
+  if (is_webp(bytes)) {
+    LUXEL_TRY(const Image8 webp, decode_webp(bytes, name));
+    Image image(webp.width, webp.height, 4);
+    for (size_t i = 0; i < image.data.size(); ++i) image.data[i] = float(webp.data[i]) / 255.0f;
+    return image;
+  }
   LUXEL_TRY(const Bytes data, checked(bytes, name));
   int width = 0, height = 0;
   const auto pixels = load_rgba(stbi_load_16_from_memory, data, width, height);

@@ -100,7 +100,8 @@ TEST(DecodeLdr, FlippedBitsAreSeen) {
 }
 
 TEST(DecodeLdr, TooLargeOtherFormatsAndNothing) {
-  EXPECT_THAT(decode("GIF89a").error().message, HasSubstr("pic: the picture is neither PNG nor"));
+  EXPECT_THAT(decode("GIF89a").error().message,
+              HasSubstr("pic: the picture is neither PNG, JPEG nor WebP"));
   EXPECT_THAT(decode("").error().message, HasSubstr("empty"));
   const std::vector<uint8_t> row(16385);
   std::string wide;

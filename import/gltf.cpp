@@ -1,59 +1,14 @@
-// glTF 2.0: checks, then tinygltf for the document and its buffers, then our parts from it.
+// glTF 2.0: the document and its buffers through tinygltf, then our parts from it.
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "import/gltf_checks.h"
+#include "import/gltf_load.h"
 #include "import/gltf_parts.h"
 
 namespace luxel::import {
 namespace {
-
-/// Keeps the encoded bytes: pictures are decoded where a material asks for them.
-bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
-                  const unsigned char* bytes, int size, void*) {
-  image->image.assign(bytes, bytes + std::max(size, 0));
-  return true;
-}
-
-Result<tinygltf::Model> load_model(const SourceFile& source, const std::string& text) {
-  tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(keep_encoded, nullptr);
-  tinygltf::Model model;
-  std::string error, warning;
-  std::string folder = source.path.parent_path().string();
-  if (folder.empty()) folder = ".";
-  if (source.bytes.size() > UINT32_MAX)
-    return fail(ErrorCode::unsupported, "{}: glTF files over 4 GB cannot be read", source.name);
-  const bool loaded =
-      source.extension == ".glb"
-          ? loader.LoadBinaryFromMemory(&model, &error, &warning,
-                                        reinterpret_cast<const unsigned char*>(source.bytes.data()),
-                                        static_cast<unsigned int>(source.bytes.size()), folder)
-          : loader.LoadASCIIFromString(&model, &error, &warning, text.data(),
-                                       static_cast<unsigned int>(text.size()), folder);
-  if (!loaded)
-    return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name, one_sentence(error));
-  return model;
-}
-
-/// check_document() went by the stated lengths; this is what really came.
-Status check_buffers(const tinygltf::Model& model, const nlohmann::json& document,
-                     const SourceFile& source) {
-  if (!document.contains("buffers")) return {};
-  for (size_t i = 0; i < document["buffers"].size(); ++i)
-    if (i >= model.buffers.size() ||
-        double(model.buffers[i].data.size()) < document["buffers"][i]["byteLength"].get<double>())
-      return fail(ErrorCode::bad_input, "{}: buffer {} has fewer bytes than its byteLength",
-                  source.name, i);
-  return {};
-}
-
-Result<std::string> text_of(const SourceFile& source) {
-  if (source.extension == ".glb") return json_of_glb(source.bytes, source.name);
-  return std::string(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
-}
 
 /// glTF has no word for the light around a scene; luxel's own files say it in the scene's extras.
 /// What is not three finite numbers >= 0 is somebody else's and is left alone.
@@ -80,11 +35,8 @@ Rgb background_of(const nlohmann::json& document) {
 }  // namespace
 
 Result<Imported> read_gltf(const SourceFile& source) {
-  LUXEL_TRY(const std::string text, text_of(source));
-  LUXEL_TRY(const nlohmann::json document, parse_json(text, source.name));
-  LUXEL_TRY_STATUS(check_document(document, source.name));
-  LUXEL_TRY(const tinygltf::Model model, load_model(source, text));
-  LUXEL_TRY_STATUS(check_buffers(model, document, source));
+  LUXEL_TRY(const LoadedGltf loaded, load_gltf(source));
+  const auto& [document, model] = loaded;
 
   Imported imported;
   GltfReader reader{model, source, imported, scene::kNone};

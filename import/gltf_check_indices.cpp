@@ -5,18 +5,6 @@
 namespace luxel::import {
 namespace {
 
-/// An index `target` names a list: `holder[key]`, when present, is a position in it.
-Status check_index(const Json& document, const Json& holder, const char* key, const char* target,
-                   const std::string& where) {
-  if (!holder.is_object() || !holder.contains(key)) return {};
-  const size_t size = list_of(document, target).size();
-  const Json& value = holder[key];
-  if (!value.is_number_integer() || value.get<double>() < 0 || value.get<double>() >= double(size))
-    return fail(ErrorCode::bad_input, "{}: {} {} is out of range, there are {} {}", where, key,
-                value.dump(), size, target);
-  return {};
-}
-
 Status check_index_list(const Json& document, const Json& holder, const char* key,
                         const char* target, const std::string& where) {
   if (!holder.contains(key)) return {};
@@ -83,7 +71,40 @@ Status check_node_extensions(const Json& document, const Json& node, const std::
   return {};
 }
 
+/// The pictures that extensions give a texture besides, or instead of, its own.
+Status check_texture_extensions(const Json& document, const Json& texture,
+                                const std::string& where) {
+  for (const char* name : {"EXT_texture_webp", "KHR_texture_basisu"}) {
+    LUXEL_TRY(const Json* extension, extension_of(texture, name, where));
+    if (extension != nullptr)
+      LUXEL_TRY_STATUS(check_index(document, *extension, "source", "images", where + ", " + name));
+  }
+  return {};
+}
+
 }  // namespace
+
+Status check_index(const Json& document, const Json& holder, const char* key, const char* target,
+                   const std::string& where) {
+  if (!holder.is_object() || !holder.contains(key)) return {};
+  const size_t size = list_of(document, target).size();
+  const Json& value = holder[key];
+  if (!value.is_number_integer() || value.get<double>() < 0 || value.get<double>() >= double(size))
+    return fail(ErrorCode::bad_input, "{}: {} {} is out of range, there are {} {}", where, key,
+                value.dump(), size, target);
+  return {};
+}
+
+Result<const Json*> extension_of(const Json& object, const char* name, const std::string& where) {
+  const auto extensions = object.find("extensions");
+  if (extensions == object.end() || !extensions->is_object()) return nullptr;
+  const auto extension = extensions->find(name);
+  if (extension == extensions->end()) return nullptr;
+  if (!extension->is_object())
+    return fail(ErrorCode::bad_input, "{}: {} is {}, must be an object", where, name,
+                extension->dump());
+  return &*extension;
+}
 
 std::string name_of(const char* kind, size_t index, const Json& object) {
   const auto name = object.is_object() ? object.find("name") : object.end();
@@ -134,6 +155,10 @@ Status check_indices(const Json& document, const std::string& file) {
       LUXEL_TRY_STATUS(check_primitive(
           document, meshes[m]["primitives"][p],
           fmt::format("{}: {}, primitive {}", file, name_of("mesh", m, meshes[m]), p)));
+  const Json& textures = list_of(document, "textures");
+  for (size_t i = 0; i < textures.size(); ++i)
+    LUXEL_TRY_STATUS(check_texture_extensions(document, textures[i],
+                                              file + ": " + name_of("texture", i, textures[i])));
   const Json& materials = list_of(document, "materials");
   for (size_t i = 0; i < materials.size(); ++i)
     LUXEL_TRY_STATUS(check_texture_indices(document, materials[i],

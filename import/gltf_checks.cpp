@@ -13,11 +13,17 @@ namespace {
 /// Extensions that luxel reads, or that change nothing about diffuse light.
 constexpr std::string_view kSupported[] = {
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
+    // What cannot be decoded is said where a texture is needed: a normal map is not.
+    "KHR_texture_basisu",
     "KHR_texture_transform",
     // Shine, and data about data.
     "KHR_materials_anisotropy",
@@ -131,6 +137,24 @@ Result<std::string> json_of_glb(std::span<const std::byte> bytes, const std::str
   return text;
 }
 
+std::vector<std::byte> glb_with_json(std::span<const std::byte> bytes, std::string text) {
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const size_t length = little_endian32(bytes, 8);
+  const auto rest = bytes.subspan(20 + little_endian32(bytes, 12));  // the other chunks
+  const size_t new_length = 20 + text.size() + (length - (bytes.size() - rest.size()));
+  std::vector<std::byte> out(new_length);
+  const auto put32 = [&](size_t at, size_t value) {
+    for (size_t k = 0; k < 4; ++k) out[at + k] = std::byte(value >> (8 * k));
+  };
+  std::memcpy(out.data(), bytes.data(), 20);  // the header and that of the first chunk
+  put32(8, new_length);
+  put32(12, text.size());
+  std::memcpy(out.data() + 20, text.data(), text.size());
+  std::copy_n(rest.begin(), new_length - 20 - text.size(),
+              out.begin() + ptrdiff_t(20 + text.size()));
+  return out;
+}
+
 Result<Json> parse_json(const std::string& text, const std::string& file) {
   if (is_nested_too_deep(text))
     return fail(ErrorCode::bad_input, "{}: its JSON is nested too deep to be glTF", file);
@@ -154,6 +178,8 @@ Status check_document(const Json& document, const std::string& file) {
   LUXEL_TRY_STATUS(check_lists(document, file));
   LUXEL_TRY_STATUS(check_indices(document, file));
   LUXEL_TRY_STATUS(check_ranges(document, file));
+  LUXEL_TRY_STATUS(check_meshopt(document, file));
+  LUXEL_TRY_STATUS(check_draco(document, file));
   return check_trees(document, file);
 }
 

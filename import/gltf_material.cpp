@@ -56,16 +56,35 @@ void apply_transform(TextureRef& ref, const tinygltf::ExtensionMap& extensions) 
   ref.uv_set = int(number_in(transform, "texCoord", ref.uv_set));
 }
 
+/// The picture to take: the PNG or JPEG, which can go into baked files as it is, before the WebP of
+/// an extension that shows the same.
+Result<int> image_of(const GltfReader& reader, const tinygltf::Texture& texture, int index,
+                     const std::string& user) {
+  if (texture.source >= 0) return texture.source;
+  if (const auto webp = texture.extensions.find("EXT_texture_webp");
+      webp != texture.extensions.end()) {
+    const int source = int(number_in(webp->second, "source", -1));
+    if (source >= 0) return source;
+  }
+  const std::string where = fmt::format("{}: {} of {}", reader.source.name,
+                                        label("texture", size_t(index), texture.name), user);
+  if (texture.extensions.count("KHR_texture_basisu") > 0)
+    return fail(ErrorCode::unsupported,
+                "{} is there as KTX2 only (KHR_texture_basisu), which luxel cannot decode; export "
+                "it with PNG or JPEG textures",
+                where);
+  return fail(ErrorCode::unsupported,
+              "{} has no picture that luxel can decode; export it with PNG or JPEG textures",
+              where);
+}
+
 Result<TextureRef> read_ref(GltfReader& reader, ImageLoader& images,
                             const tinygltf::TextureInfo& info, const std::string& user) {
   TextureRef ref;
   if (info.index < 0) return ref;
   const tinygltf::Texture& texture = reader.model.textures[size_t(info.index)];
-  if (texture.source < 0)
-    return fail(ErrorCode::unsupported,
-                "{}: texture {} of {} has no PNG or JPEG image (KTX2 and WebP are not supported)",
-                reader.source.name, info.index, user);
-  LUXEL_TRY(ref.texture, images.load(texture.source, user));
+  LUXEL_TRY(const int image, image_of(reader, texture, info.index, user));
+  LUXEL_TRY(ref.texture, images.load(image, user));
   ref.uv_set = info.texCoord;
   if (texture.sampler >= 0) {
     const tinygltf::Sampler& sampler = reader.model.samplers[size_t(texture.sampler)];
@@ -97,6 +116,15 @@ float mean_channel(const scene::Scene& scene, const TextureRef& ref, size_t chan
   return rgba.empty() ? 1.0f : float(double(sum) * 4 / double(rgba.size()) / 255);
 }
 
+/// What a dielectric mirrors head on. An index of 0 stands for infinity. [KHR_materials_ior]
+float dielectric_f0(const tinygltf::Material& in) {
+  const auto it = in.extensions.find("KHR_materials_ior");
+  if (it == in.extensions.end()) return scene::kDielectricF0;
+  const double ior = number_in(it->second, "ior", 1.5);
+  const double r = ior == 0 ? 1 : (ior - 1) / (ior + 1);
+  return ior >= 0 ? float(r * r) : scene::kDielectricF0;
+}
+
 /// Phong's highlight from roughness, metallic and KHR_materials_specular; docs/display.md. One
 /// value per material: of the metallic-roughness texture the mean counts, of others the factor.
 void set_highlight(const GltfReader& reader, const tinygltf::Material& in, scene::Material& m) {
@@ -110,7 +138,7 @@ void set_highlight(const GltfReader& reader, const tinygltf::Material& in, scene
   const scene::Scene& scene = reader.out.scene;
   const float metallic = m.metallic * mean_channel(scene, m.metallic_texture, 2);
   const float roughness = m.roughness * mean_channel(scene, m.metallic_texture, 1);
-  const Rgb dielectric = min(color * scene::kDielectricF0, Rgb{1, 1, 1}) * float(weight);
+  const Rgb dielectric = min(color * dielectric_f0(in), Rgb{1, 1, 1}) * float(weight);
   const Rgb f0 = dielectric * (1 - metallic) + m.base_color * metallic;
   m.sharpness = scene::sharpness_of(roughness);
   m.specular = scene::specular_of(f0, m.sharpness);

@@ -1,7 +1,9 @@
 // Materials of glTF files.
 #include <gmock/gmock.h>
+#include <webp/encode.h>
 
 #include "import/test_files.h"
+#include "scene/specular.h"
 
 namespace luxel::import {
 namespace {
@@ -177,6 +179,130 @@ TEST(GltfMaterial, MissingAndCorruptTexturesNameFileAndMaterial) {
     EXPECT_THAT(imported.error().message, HasSubstr("nowhere.png"));
     EXPECT_THAT(imported.error().message, HasSubstr("brick"));
   }
+}
+
+/// The square with one base colour texture, whose JSON this is, and a picture for each string.
+Gltf square_with_texture(nlohmann::json texture, const std::vector<std::string>& pictures) {
+  Gltf gltf = square_with_material(
+      {{"name", "brick"},
+       {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}}}});
+  for (const std::string& picture : pictures) add_texture(gltf, picture);
+  gltf.json["textures"] = {std::move(texture)};
+  return gltf;
+}
+
+std::string webp_of(std::array<uint8_t, 4> rgba) {
+  uint8_t* bytes = nullptr;
+  const size_t size = WebPEncodeLosslessRGBA(rgba.data(), 1, 1, 4, &bytes);
+  const std::string file(reinterpret_cast<const char*>(bytes), size);
+  WebPFree(bytes);
+  return file;
+}
+
+TEST(GltfMaterial, WebpTexturesAreReadWhereNoOtherPictureIs) {
+  const std::string webp = webp_of({90, 80, 70, 255}), png = png_of(1, 1, {1, 2, 3, 255});
+  const nlohmann::json extension = {{"EXT_texture_webp", {{"source", 0}}}};
+  Gltf gltf = square_with_texture({{"extensions", extension}}, {webp, png});
+  gltf.json["extensionsRequired"] = {"EXT_texture_webp"};
+  const scene::Texture only = scene_of(import_glb(gltf)).textures[0];
+  EXPECT_EQ(only.rgba, (std::vector<uint8_t>{90, 80, 70, 255}));
+  EXPECT_EQ(only.mime_type, "image/webp");
+  gltf.json["textures"][0]["source"] = 1;
+  EXPECT_EQ(scene_of(import_glb(gltf)).textures[0].rgba[0], 1);
+  gltf.json["textures"][0] = {{"extensions", {{"EXT_texture_webp", {{"source", 2}}}}}};
+  const auto imported = import_glb(gltf);
+  ASSERT_FALSE(imported);
+  EXPECT_THAT(imported.error().message, HasSubstr("EXT_texture_webp: source 2 is out of range"));
+}
+
+TEST(GltfMaterial, Ktx2IsReplacedByItsFallbackOrSaid) {
+  const nlohmann::json extension = {{"KHR_texture_basisu", {{"source", 0}}}};
+  Gltf gltf = square_with_texture({{"extensions", extension}, {"source", 1}},
+                                  {"\xabKTX 20\xbb", png_of(1, 1, {1, 2, 3, 255})});
+  gltf.json["extensionsUsed"] = {"KHR_texture_basisu"};
+  const auto fallback = import_glb(gltf);
+  EXPECT_EQ(scene_of(fallback).textures[0].rgba[1], 2);
+  EXPECT_THAT(all_of(fallback->warnings), Not(HasSubstr("basisu")));
+  gltf.json["extensionsRequired"] = {"KHR_texture_basisu"};
+  gltf.json["textures"][0].erase("source");
+  const auto needed = import_glb(gltf);
+  ASSERT_FALSE(needed);
+  EXPECT_EQ(needed.error().code, ErrorCode::unsupported);
+  EXPECT_THAT(needed.error().message,
+              HasSubstr("a.glb: texture 0 of material 0 (brick) is there as KTX2 only "
+                        "(KHR_texture_basisu), which luxel cannot decode; export it with PNG or "
+                        "JPEG textures"));
+  // Nobody needs it as a normal map.
+  gltf.json["materials"][0] = {{"normalTexture", {{"index", 0}}}};
+  EXPECT_TRUE(import_glb(gltf));
+}
+
+TEST(GltfMaterial, AMissingTextureOfAMaskIsSaid) {
+  Gltf gltf = square_with_texture({{"source", 0}}, {});
+  gltf.json["materials"][0]["alphaMode"] = "MASK";
+  gltf.json["images"] = {{{"uri", "leaves.png"}}};
+  const auto imported = import_glb(gltf);
+  ASSERT_FALSE(imported);
+  EXPECT_THAT(imported.error().message,
+              HasSubstr("leaves.png: the texture of material 0 (brick) is missing"));
+}
+
+nlohmann::json glossy(nlohmann::json values) {
+  return {{"name", "gold"},
+          {"extensions", {{"KHR_materials_pbrSpecularGlossiness", std::move(values)}}}};
+}
+
+TEST(GltfMaterial, SpecularGlossinessIsDiffuseAndHighlight) {
+  const scene::Material m =
+      scene_of(import_glb(square_with_material(glossy({{"diffuseFactor", {0.8, 0.4, 0.2, 0.5}},
+                                                       {"specularFactor", {0.1, 0.2, 0}},
+                                                       {"glossinessFactor", 0.5}}))))
+          .materials[0];
+  expect_near(m.base_color, {0.8f, 0.4f, 0.2f}, 1e-6f);
+  EXPECT_FLOAT_EQ(m.alpha, 0.5f);
+  EXPECT_EQ(m.metallic, 0);
+  EXPECT_FLOAT_EQ(m.roughness, 0.5f);
+  EXPECT_FLOAT_EQ(m.sharpness, kHalfRough);
+  expect_near(m.specular, Rgb{0.1f, 0.2f, 0} * ((kHalfRough + 1) / 2), 1e-5f);
+}
+
+// ((1.2 - 1) / (1.2 + 1))^2 = 1 / 121.
+TEST(GltfMaterial, TheIndexOfRefractionSetsTheHighlight) {
+  const auto specular = [](double ior) {
+    return scene_of(
+               import_glb(square_with_material(
+                   {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+                    {"extensions", {{"KHR_materials_ior", {{"ior", ior}}}}}})))
+        .materials[0]
+        .specular.x;
+  };
+  EXPECT_NEAR(specular(1.2), (kHalfRough + 1) / 2 / 121, 1e-6f);
+  EXPECT_NEAR(specular(1.5), (kHalfRough + 1) / 2 * 0.04f, 1e-6f);
+  EXPECT_EQ(specular(0), 1);
+}
+
+TEST(GltfMaterial, SpecularGlossinessTextures) {
+  Gltf gltf = square_with_material(
+      glossy({{"diffuseTexture",
+               {{"index", 0},
+                {"texCoord", 1},
+                {"extensions", {{"KHR_texture_transform", {{"scale", {2, 3}}}}}}}},
+              {"glossinessFactor", 0.5},
+              {"specularGlossinessTexture", {{"index", 1}}}}));
+  add_texture(gltf, png_of(1, 1, {255, 0, 255, 255}));
+  add_texture(gltf, "this is no picture");
+  const auto imported = import_glb(gltf);
+  const scene::Scene scene = scene_of(imported);
+  const scene::Material& m = scene.materials[0];
+  EXPECT_EQ(m.base_color_texture.texture, 0u);
+  EXPECT_EQ(m.base_color_texture.uv_set, 1);
+  EXPECT_EQ(m.base_color_texture.scale, (Vec2{2, 3}));
+  EXPECT_NEAR(scene::f0_of(m.specular, m.sharpness).x, 0.04f, 1e-3f) << "glTF's own";
+  gltf.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"]["diffuseTexture"]
+           ["index"] = 9;
+  const auto wrong = import_glb(gltf);
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(wrong.error().message, HasSubstr("diffuseTexture: index 9 is out of range"));
 }
 
 }  // namespace

@@ -79,7 +79,10 @@ Result<scene::Texture> decode_texture(std::vector<std::byte> encoded, const std:
   texture.width = image->width;
   texture.height = image->height;
   texture.rgba = std::move(image->data);
-  texture.mime_type = encoded[0] == std::byte{0x89} ? "image/png" : "image/jpeg";
+  const std::byte first = encoded[0];  // decode_ldr() knows these three
+  texture.mime_type = first == std::byte{0x89}  ? "image/png"
+                      : first == std::byte{'R'} ? "image/webp"
+                                                : "image/jpeg";
   texture.encoded = std::move(encoded);
   return texture;
 }

@@ -99,11 +99,13 @@ struct Gltf {
     json["scenes"][0]["nodes"].push_back(json["nodes"].size() - 1);
   }
 
-  std::string glb() const {
+  /// `buffers`: null for the one that add() fills.
+  std::string glb(const nlohmann::json& buffers = {}) const {
     nlohmann::json document = json;
     std::string bin = buffer;
     while (bin.size() % 4) bin += '\0';
     if (!buffer.empty()) document["buffers"] = {{{"byteLength", bin.size()}}};
+    if (!buffers.is_null()) document["buffers"] = buffers;
     std::string text = document.dump();
     while (text.size() % 4) text += ' ';
     const size_t bin_chunk = bin.empty() ? 0 : 8 + bin.size();

@@ -27,7 +27,7 @@ struct Texture {
   std::string name;
   int width = 0, height = 0;
   std::vector<uint8_t> rgba;       ///< 4 * width * height
-  std::vector<std::byte> encoded;  ///< the PNG or JPEG file it came from, for export; may be empty
+  std::vector<std::byte> encoded;  ///< the PNG, JPEG or WebP file it came from; may be empty
   std::string mime_type;           ///< of `encoded`
 };
 

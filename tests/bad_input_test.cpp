@@ -1,4 +1,5 @@
 // Wrong files and wrong settings: one clear sentence, the right exit code, nothing written.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -124,6 +125,47 @@ TEST(BadFiles, MissingAndCorruptTexturesAreNamed) {
   expect_refused(with_image("none.png"), 1, "none.png");
   s.write("corrupt.png", "\x89PNG\r\n\x1a\nnonsense");
   expect_refused(with_image("corrupt.png"), 1, "corrupt.png");
+}
+
+TEST(BadFiles, CompressedPartsThatAreDamagedAreNamed) {
+  const ScratchFolder s;
+  const auto refused = [&](const std::string& from, const std::string& to,
+                           const std::string& words) {
+    expect_refused(s.write("bad.gltf", gltf_with(from, to)).string(), 1, words);
+  };
+  // The 36 bytes of the positions, which are compressed by nobody.
+  refused("\"indices\":1", R"("indices":1,"extensions":{"KHR_draco_mesh_compression":
+{"bufferView":0,"attributes":{"POSITION":0}}})",
+          "mesh 0, primitive 0: its 36 bytes do not start as Draco data do");
+  const auto meshopt = [](const char* count) {
+    return fmt::format(R"({{"buffer":0,"byteLength":36,"extensions":{{"EXT_meshopt_compression":
+{{"buffer":0,"byteLength":36,"byteStride":12,"count":{},"mode":"ATTRIBUTES"}}}}}})",
+                       count);
+  };
+  const std::string view = R"({"buffer":0,"byteLength":36})";
+  refused(view, meshopt("3"),
+          "buffer view 0: the 36 compressed bytes at 0 of buffer 0 are damaged");
+  refused(view, meshopt("3000000000"),
+          "count 3000000000 times byteStride 12 is not the byteLength");
+}
+
+TEST(BadFiles, TexturesThatNeedADecoderOrAllMemoryAreNamed) {
+  const ScratchFolder s;
+  const auto with_texture = [&](const std::string& texture) {
+    std::string text = gltf_with("\"indices\":1", "\"indices\":1,\"material\":0");
+    // The header of a PNG of 100,000 x 100,000 pixels, with its checksums, and no pixels.
+    text.insert(
+        1,
+        R"("materials":[{"name":"wall","pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0}}],
+"images":[{"mimeType":"image/png","uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgABhqAAAYagCAYAAACoUgvIAAAACElEQVR4nAMAAAAAAUgGidIAAAAASUVORK5CYII="}],
+"textures":[)" +
+            texture + "],");
+    return s.write("textured.gltf", text).string();
+  };
+  expect_refused(with_texture(R"({"source":0})"), 1,
+                 "the picture has 100000 x 100000 pixels, must be 1 to 16384 a side");
+  expect_refused(with_texture(R"({"extensions":{"KHR_texture_basisu":{"source":0}}})"), 1,
+                 "texture 0 of material 0 (wall) is there as KTX2 only");
 }
 
 TEST(BadFiles, OnlyTrianglesWithoutAreaAreNothing) {

@@ -14,6 +14,8 @@ packages=(
   libembree-dev libtbb-dev           # rays, threads
   libopenexr-dev libstb-dev          # images
   libtinygltf-dev nlohmann-json3-dev # glTF, JSON
+  libdraco-dev libmeshoptimizer-dev  # compressed glTF
+  libwebp-dev                        # WebP textures
   libassimp-dev                      # OBJ, FBX, Collada, ...
   libeigen3-dev                      # least squares
   libcgal-dev                        # exact predicates, constrained Delaunay triangulation

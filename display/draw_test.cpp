@@ -101,7 +101,7 @@ TEST(Draw, MissesShowTheBackground) {
   const image::Image picture = draw_ok(scene, camera_on_z(2), {4, 4, 2});
   EXPECT_EQ(picture.rgb(2, 1), scene.background);
   EXPECT_EQ(picture.at(2, 1)[3], 0);
-  EXPECT_EQ(draw_ok(scene, camera_on_z(2), {4, 4, 2, Rgb{1, 0, 1}}).rgb(2, 1), (Rgb{1, 0, 1}));
+  EXPECT_EQ(draw_ok(scene, camera_on_z(2), {4, 4, 2, 0.25f}).rgb(2, 1), (Rgb{0.1f, 0.2f, 0.25f}));
 }
 
 TEST(Draw, PerspectiveAndOrthographicEdgesLieWhereGeometrySaysSo) {

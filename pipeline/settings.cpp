@@ -5,7 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-ba#include "pipeline/solvers.h"
+#include "export/view_page.h"
+#include "import/environment.h"
+#include "pipeline/solvers.h"
 #include "scene/validate.h"
 #include "solve/hemicube/hemicube.h"
 #include "solve/matrix/patches.h"

@@ -52,7 +52,7 @@ TEST(EnvironmentMap, IsTurnedAndScaled) {
   const std::vector<std::byte> bytes = image::encode_hdr(north);
   const auto map = s.write("a,b.hdr", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   const std::string render = "render " + scene_file("cornell-box-empty.glb") +
-                             " --technique paths --samples 1 --size 4x4 --eye 50,50,50 --quiet ";
+                             " --technique path --samples 1 --size 4x4 --eye 50,50,50 --quiet ";
   const auto seen = [&](const std::string& options, const std::string& towards) {
     const auto file = s.path / "picture.exr";
     const CommandResult r = luxel(render + "--look-at " + towards + " --fov-deg 5 --environment '" +
@@ -84,7 +84,7 @@ TEST(EnvironmentMap, WrongOnesAreRefused) {
   refused(s.write("sky.png", "x").string(), ".hdr or .exr");
   refused(s.write("cut.hdr", good.substr(0, good.size() / 2)).string(), "cut.hdr");
   refused(s.write("sky.hdr", good).string() + ",10,-1", "scale");
-  refused("", "FILE");
+  refused(",90", "FILE");
 }
 
 }  // namespace

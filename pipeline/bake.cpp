@@ -57,12 +57,8 @@ Status lay_out(const BakeSettings& settings, Bake& bake, Progress& progress) {
   return not_cancelled(progress);
 }
 
-Status solve(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
+Status solve(const BakeSettings& settings, const SolveInput& input, Bake& bake,
              Progress& progress) {
-  const transport::Elements elements =
-      transport::elements_from_texels(bake.scene, bake.atlas, bake.map);
-  const transport::Lights lights = transport::collect_lights(bake.scene);
-  const SolveInput input{bake.scene, bake.atlas, bake.map, elements, lights, tracer};
   LUXEL_TRY(bake.light, find_solver(settings.solver)->solve(input, settings, progress));
   if (settings.denoise) LUXEL_TRY_STATUS(denoise_light(input, bake.light, progress));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
@@ -81,6 +77,23 @@ Status repair(const BakeSettings& settings, Bake& bake, Progress& progress) {
   bake.lightmap = post::lightmap_from_texels(bake.map, bake.light.irradiance);
   post::dilate(bake.lightmap, kDilationRings);
   return not_cancelled(progress);
+}
+
+/// What is asked for besides the lightmap, from the light that the lightmap ended up with.
+Status add_directions(const BakeSettings& settings, const SolveInput& input, Bake& bake,
+                      Progress& progress) {
+  const std::span<const Rgb> light = bake.light.irradiance;
+  if (settings.directional != Directional::none) {
+    LUXEL_TRY(bake.directions, direction_maps(input, light, bake.light.hidden, settings.directional,
+                                              settings.seed, progress));
+    bake.light.rays += bake.directions.rays;
+  }
+  if (settings.probe_spacing_m > 0) {
+    LUXEL_TRY(bake.probes,
+              probe_grid(input, light, float(settings.probe_spacing_m), settings.seed, progress));
+    bake.light.rays += bake.probes->rays;
+  }
+  return {};
 }
 
 Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progress) {
@@ -106,7 +119,8 @@ Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progre
 nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Progress& progress) {
   const nlohmann::json seconds = stage_seconds(progress);
   const double tracing = seconds.value("direct light", 0.0) + seconds.value("trace rays", 0.0) +
-                         seconds.value("trace paths", 0.0) + seconds.value("hemicubes", 0.0);
+                         seconds.value("trace paths", 0.0) + seconds.value("hemicubes", 0.0) +
+                         seconds.value("directions", 0.0) + seconds.value("probes", 0.0);
   return {{"version", kVersion},
           {"settings", to_json(settings)},
           {"counts",
@@ -148,8 +162,13 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(lay_out(settings, bake, progress));
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
-  LUXEL_TRY_STATUS(solve(settings, tracer, bake, progress));
+  const transport::Elements elements =
+      transport::elements_from_texels(bake.scene, bake.atlas, bake.map);
+  const transport::Lights lights = transport::collect_lights(bake.scene);
+  const SolveInput input{bake.scene, bake.atlas, bake.map, elements, lights, tracer};
+  LUXEL_TRY_STATUS(solve(settings, input, bake, progress));
   LUXEL_TRY_STATUS(repair(settings, bake, progress));
+  LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
   LUXEL_TRY_STATUS(draw_preview(tracer, bake, progress));
   return bake;
 }
@@ -183,6 +202,17 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
             lightmap_files(bake.lightmap, settings.formats, settings.output, "lightmap"));
   std::vector<OutputFile> files = std::move(lightmap.files);
   if (lightmap.rgbm_range > 0) json["lightmap"]["rgbm_range"] = lightmap.rgbm_range;
+  const auto append = [&](std::vector<OutputFile> more) {
+    std::move(more.begin(), more.end(), std::back_inserter(files));
+  };
+  LUXEL_TRY(std::vector<OutputFile> directions, direction_files(bake.directions, settings.output));
+  append(std::move(directions));
+  if (bake.probes) {
+    LUXEL_TRY(std::vector<OutputFile> probes, probe_files(*bake.probes, settings.output));
+    append(std::move(probes));
+    json["probes"] = {{"placed", bake.probes->probes.size()},
+                      {"inside_solids", bake.probes->row.size() - bake.probes->probes.size()}};
+  }
   LUXEL_TRY(std::vector<std::byte> glb, glb_of(settings, bake));
   if (settings.html) {
     LUXEL_TRY(OutputFile page, view_page(settings, bake, glb));

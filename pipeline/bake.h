@@ -11,6 +11,7 @@
 #include "base/result.h"
 #include "export/view_page.h"
 #include "image/codec.h"
+#include "pipeline/light_directions.h"
 #include "pipeline/settings.h"
 #include "pipeline/solvers.h"
 #include "post/seams.h"
@@ -30,7 +31,9 @@ struct Bake {
   TexelLight light;
   image::Image lightmap;  ///< E, 4 channels, as lightmap.exr holds it
   image::Image8 preview;
-  export_::View view;  ///< what the preview was taken with
+  DirectionMaps directions;         ///< with --directional
+  std::optional<ProbeGrid> probes;  ///< with --probes
+  export_::View view;               ///< what the preview was taken with
   size_t seams = 0;
   post::SeamResidual seam_residual_before, seam_residual_after;
   std::vector<std::string> warnings;

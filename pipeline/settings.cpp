@@ -115,6 +115,9 @@ Status check(const BakeSettings& s) {
   if (!std::isfinite(s.texels_per_metre) || s.texels_per_metre < 0)
     return fail(ErrorCode::bad_setting, "--texels-per-metre {} is not a density; give a number > 0",
                 s.texels_per_metre);
+  if (!std::isfinite(s.probe_spacing_m) || s.probe_spacing_m < 0)
+    return fail(ErrorCode::bad_setting, "--probes {} is not a spacing; give metres > 0",
+                s.probe_spacing_m);
   if (s.denoise && !find_solver(s.solver)->noise)
     return fail(ErrorCode::bad_setting,
                 "--denoise needs light with known noise, which --solver {} has not; leave it out",
@@ -144,6 +147,8 @@ nlohmann::json to_json(const BakeSettings& s) {
   json["formats"] = to_json(s.formats);
   json["html"] = s.html;
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
+  json["directional"] = name_of(s.directional);
+  json["probe_spacing_m"] = s.probe_spacing_m;
   json["denoise"] = s.denoise, json["stitch"] = s.stitch;
   if (s.solver == "hemicube")
     json["hemicube"] = {{"elements", s.hemicube.elements},
@@ -179,6 +184,19 @@ nlohmann::json to_json(const BakeSettings& s) {
   for (const IesSetting& ies : s.outside.ies)
     json["ies"].push_back({{"lamp", ies.lamp}, {"file", ies.file.string()}, {"scale", ies.scale}});
   return json;
+}
+
+Result<Directional> parse_directional(std::string_view text) {
+  if (text == "dominant") return Directional::dominant;
+  if (text == "sh1") return Directional::sh1;
+  return fail(ErrorCode::bad_setting, "--directional '{}' is not known; there is: dominant, sh1",
+              text);
+}
+
+std::string_view name_of(Directional directional) {
+  return directional == Directional::sh1        ? "sh1"
+         : directional == Directional::dominant ? "dominant"
+                                                : "none";
 }
 
 Result<Rgb> parse_background(std::string_view text) {

@@ -13,8 +13,8 @@
 #include "base/result.h"
 #include "base/vec.h"
 #include "pipeline/ies_setting.h"
-#include "pipeline/sky_setting.h"
 #include "pipeline/lightmap_files.h"
+#include "pipeline/sky_setting.h"
 #include "scene/scene.h"
 
 namespace luxel::pipeline {
@@ -68,6 +68,12 @@ struct HierarchicalSettings {
   std::string ranking = "slope";     ///< or nearness: which discontinuities come first
 };
 
+/// How a lightmap says where its light comes from; pipeline/light_directions.h.
+enum class Directional : uint8_t { none, dominant, sh1 };
+/// "dominant" or "sh1".
+Result<Directional> parse_directional(std::string_view text);
+std::string_view name_of(Directional directional);
+
 struct BakeSettings {
   std::filesystem::path scene;
   std::filesystem::path output;  ///< a folder; made when missing
@@ -85,6 +91,8 @@ struct BakeSettings {
   HemicubeSettings hemicube;
   MatrixSettings matrix;
   HierarchicalSettings hierarchical;
+  Directional directional = Directional::none;
+  double probe_spacing_m = 0;  ///< 0: no probes
   bool denoise = false;        ///< take the grain out of texels, docs/denoise.md
   bool stitch = true;          ///< make charts agree along seams
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0

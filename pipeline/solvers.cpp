@@ -27,6 +27,8 @@ namespace {
 constexpr uint64_t kBytesPerElement = 72, kBytesPerSquareTexel = 20;
 /// What denoising needs besides: places, planes, what neighbours show, the level of noise.
 constexpr uint64_t kDenoiseBytesPerElement = 140;
+/// E for five normals and what becomes of it, with --directional.
+constexpr uint64_t kDirectionBytesPerElement = 110;
 /// A bake with fewer stored hits in memory than this would only wait for the disk.
 constexpr uint64_t kMinHitBytes = 16u << 20;
 /// What the process holds differs from run to run: by this much less than the size that is advised.
@@ -41,7 +43,10 @@ std::string size_text(uint64_t bytes) {
 Result<uint64_t> memory_to_spare(const SolveInput& in, const BakeSettings& settings,
                                  uint64_t spare) {
   const uint64_t side = uint64_t(in.map.resolution);
-  const uint64_t per_element = kBytesPerElement + (settings.denoise ? kDenoiseBytesPerElement : 0);
+  // What comes after solving: not all of it at once, but most.
+  uint64_t per_element = kBytesPerElement;
+  if (settings.denoise) per_element += kDenoiseBytesPerElement;
+  if (settings.directional != Directional::none) per_element += kDirectionBytesPerElement;
   const uint64_t needed =
       resident_bytes() + per_element * in.elements.size() + kBytesPerSquareTexel * side * side;
   const uint64_t smallest_mb = ((needed + spare) >> 20) + 1 + kResidentNoiseMb;

@@ -12,7 +12,7 @@ namespace {
 struct BakeOptions {
   Common common;
   OutsideText outside;
-  std::string uv = "auto", bounces = "inf", max_memory, formats = "exr";
+  std::string uv = "auto", bounces = "inf", max_memory, formats = "exr", directional;
   HemicubeOptions hemicube;
   pipeline::BakeSettings settings;
   std::set<std::string> given;  ///< of kSolverOptions
@@ -80,6 +80,9 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   }
   LUXEL_TRY(s.outside, parse_outside_light(options.outside));
   LUXEL_TRY(s.formats, pipeline::parse_formats(options.formats));
+  if (!options.directional.empty()) {
+    LUXEL_TRY(s.directional, pipeline::parse_directional(options.directional));
+  }
   return s;
 }
 
@@ -141,6 +144,11 @@ void register_bake(CLI::App& app, Action& action) {
       ->capture_default_str()
       ->group(matrix);
   add_hierarchical(*bake, s.hierarchical);
+  bake->add_option("--directional", options->directional,
+                   "Also how light changes with the normal: dominant or sh1");
+  bake->add_option("--probes", s.probe_spacing_m,
+                   "Also light probes in the air, so many metres apart")
+      ->type_name("SPACING");
   bake->add_flag("--denoise", s.denoise, "Take the grain out of texels; edges of shadows stay");
   bake->add_flag("!--no-stitch", s.stitch, "Leave charts as they are along seams");
   bake->add_flag("--vertex-colors", s.vertex_colors,

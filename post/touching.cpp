@@ -22,10 +22,15 @@ struct Line {
 };
 
 /// Cells of a class are as wide as its longest edges: an edge lies in a few of them, and a cell
-/// holds only edges of about its own size, however unlike the meshes of a scene are.
-int class_of(float length) { return int(std::ceil(std::log2(length))); }
+/// holds only edges of about its own size, however unlike the meshes of a scene are. No cell is
+/// smaller than the tolerance by which an edge's box is grown: a splinter of a micrometre would
+/// fill millions of them.
+int class_of(float length, float tolerance) {
+  return int(std::ceil(std::log2(std::max(length, tolerance))));
+}
 
-std::vector<Line> lines_of(const scene::Scene& scene, std::span<const OpenEdge> edges) {
+std::vector<Line> lines_of(const scene::Scene& scene, std::span<const OpenEdge> edges,
+                           float tolerance) {
   std::vector<Line> lines(edges.size());
   parallel_for(edges.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -36,7 +41,7 @@ std::vector<Line> lines_of(const scene::Scene& scene, std::span<const OpenEdge> 
       Line& line = lines[i];
       line.from = from, line.along = normalize(to - from), line.length = length(to - from);
       line.inward = normalize(apex - line.along * dot(apex, line.along));
-      if (line.length > 0) line.size_class = class_of(line.length);
+      if (line.length > 0) line.size_class = class_of(line.length, tolerance);
     }
   });
   return lines;
@@ -197,8 +202,8 @@ Seam seam_of(const atlas::Atlas& atlas, std::span<const OpenEdge> edges,
 
 std::vector<Seam> find_touching(const scene::Scene& scene, const atlas::Atlas& atlas,
                                 std::span<const OpenEdge> edges, float min_cosine) {
-  const std::vector<Line> lines = lines_of(scene, edges);
   const float tolerance = kTouchTolerance * scene::world_bounds(scene).diagonal();
+  const std::vector<Line> lines = lines_of(scene, edges, tolerance);
   const std::vector<Contact> contacts = find_contacts(lines, tolerance);
   const Standing standing = find_standing(scene, edges, lines, contacts);
   std::vector<Seam> seams;

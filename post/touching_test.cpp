@@ -131,6 +131,16 @@ TEST(Touching, AWallOnTheJointKeepsItsSidesApart) {
   }
 }
 
+// A splinter's edges are far shorter than the tolerance: looked for in cells of their own size they
+// would take all memory there is.
+TEST(Touching, SplintersAreNoBurden) {
+  Kit kit;
+  kit.add_tile(0, 0, 1), kit.add_tile(1, 0, 1);
+  for (int k = 0; k < 100; ++k) kit.add_tile(0.01f * float(k), 0.5f, 1e-6f, 1);
+  kit.add_tile(-1000, -1000, 1);  // so that the tolerance is 0.2 m
+  EXPECT_EQ(kit.seams().size(), 1u);
+}
+
 // 60 x 60 tiles at random heights of a millionth, each with three or four neighbours: 2 * 60 * 59
 // joints, whatever their order and wherever they lie.
 TEST(Touching, FindsEveryJointOfAFieldOfTiles) {

@@ -17,8 +17,8 @@ struct AgreementScene {
   int resolution = 64;
   std::string shows;  ///< what kind of light it is there for
 };
-/// Five of them: area light, lamp in a closed room, curved surfaces under a sky, every kind of lamp
-/// with textures and masks, sun through a window.
+/// Six of them: area light, lamp in a closed room, curved surfaces under a sky, every kind of lamp
+/// with textures and masks, sun through a window, the same from a map.
 std::vector<AgreementScene> agreement_scenes();
 
 /// The judge's answer, twice, from independent paths.

@@ -42,6 +42,8 @@ Result<Table> measure_memory(const std::filesystem::path& shared, int threads);
 Result<Table> measure_threads(const std::filesystem::path& shared, int threads);
 /// Errors of gather with and without --denoise against a bake of many samples.
 Result<Table> measure_denoise(const std::filesystem::path& shared, int threads);
+/// Shared scenes under sun and sky, a map against the path tracer, real light and many lamps.
+Result<Table> measure_scenes(const std::filesystem::path& shared, int threads);
 
 struct Bench {
   std::string_view name;
@@ -50,6 +52,7 @@ struct Bench {
 inline constexpr std::array kBenches{
     Bench{"rays", measure_rays},       Bench{"maps", measure_maps},
     Bench{"atlas", measure_atlas},     Bench{"memory", measure_memory},
-    Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise}};
+    Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise},
+    Bench{"scenes", measure_scenes}};
 
 }  // namespace luxel::bench

@@ -105,7 +105,8 @@ double gather_rate(const Prepared& p, int samples) {
   gather::TraceParams params;
   params.samples = samples;
   const auto start = Clock::now();
-  const auto hits = gather::trace_hits(p.scene, p.atlas, p.elements, p.lights.around, *p.tracer, params, progress);
+  const auto hits = gather::trace_hits(p.scene, p.atlas, p.elements, p.lights.around, *p.tracer,
+                                       params, progress);
   return hits ? double(hits->rays) / seconds_since(start) : 0.0;
 }
 

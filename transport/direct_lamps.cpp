@@ -1,0 +1,83 @@
+// Shadow rays towards lamps without area and suns.
+#include <algorithm>
+
+#include "base/random.h"
+#include "base/warp.h"
+#include "transport/direct_shots.h"
+
+namespace luxel::transport {
+namespace {
+
+constexpr size_t kMaxPunctual = 64;
+
+/// A directional light whose disc has some size: directions uniform in its cone.
+void shoot_at_disc(const scene::PunctualLight& light, uint32_t source, int samples,
+                   const Receiver& r, Shots& shots) {
+  const Frame frame = frame_around(-light.direction);
+  // 1 - cos(angle) without cancellation.
+  const float s = std::sin(0.5f * light.angular_radius_rad);
+  const float height = 2 * s * s;
+  for (int k = 0; k < samples; ++k) {
+    const Vec2 u = sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x5000 + source));
+    const float down = u.y * height, radius = std::sqrt(std::max(0.0f, down * (2 - down)));
+    const float phi = 2 * kPi * u.x;
+    const Vec3 d = frame.to_world({radius * std::cos(phi), radius * std::sin(phi), 1 - down});
+    const float w = std::max(0.0f, dot(d, r.normal));
+    if (w > 0) add_shot(shots, r, {source, w, Rgb{1, 1, 1} * w}, d, INFINITY);
+  }
+}
+
+void shoot_at_punctual(const Lights& lights, size_t index, float chance, int samples,
+                       const Receiver& r, Shots& shots) {
+  const scene::PunctualLight& light = lights.punctual[index];
+  const PunctualIncidence in = incidence_at(light, lights.profiles, r.position);
+  const float cosine = dot(in.towards, r.normal);
+  const bool disc =
+      light.kind == scene::PunctualLight::Kind::directional && light.angular_radius_rad > 0;
+  if (max_component(in.irradiance) <= 0 || (cosine <= 0 && !disc)) return;
+  const uint32_t source = uint32_t(shots.sources.size());
+  shots.sources.push_back({});
+  Source& s = shots.sources.back();
+  s.exact = true;
+  if (disc)
+    shoot_at_disc(light, source, samples, r, shots);
+  else
+    add_shot(shots, r, {source, 1, {1, 1, 1}}, in.towards,
+             std::isfinite(in.distance_m) ? in.distance_m * (1 - 1e-5f) : INFINITY);
+  // Over the disc the cosine averages to that of its centre while all of it is above the horizon.
+  const float seen = disc ? shots.sources[source].sum_weight / float(samples) : cosine;
+  const bool whole = disc && shots.sources[source].shots == uint32_t(samples);
+  shots.sources[source].scale = (whole ? std::max(cosine, 0.0f) : seen) / chance;
+  shots.sources[source].unshadowed = luminance(in.irradiance) * shots.sources[source].scale;
+  shots.sources[source].tint = in.irradiance;
+}
+
+}  // namespace
+
+void shoot_at_lamps(const Lights& lights, int samples, const Receiver& r, Shots& shots) {
+  const size_t count = lights.punctual.size();
+  if (count <= kMaxPunctual) {
+    for (size_t i = 0; i < count; ++i) shoot_at_punctual(lights, i, 1, samples, r, shots);
+    return;
+  }
+  // Many lamps: systematic sampling in proportion to unshadowed light.
+  std::vector<float> importance(count);
+  float total = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const auto in = incidence_at(lights.punctual[i], lights.profiles, r.position);
+    importance[i] = luminance(in.irradiance) * std::max(0.0f, dot(in.towards, r.normal));
+    total += importance[i];
+  }
+  if (!(total > 0)) return;
+  RandomStream random{hash64(r.seed, 0x12)};
+  float owed = random.next();
+  for (size_t i = 0; i < count; ++i) {
+    const float chance = std::min(1.0f, float(kMaxPunctual) * importance[i] / total);
+    owed += chance;
+    if (owed < 1) continue;
+    owed -= 1;
+    shoot_at_punctual(lights, i, chance, samples, r, shots);
+  }
+}
+
+}  // namespace luxel::transport

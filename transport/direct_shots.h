@@ -1,0 +1,73 @@
+// Shadow rays of an element and what they are worth: what the parts of direct_light share.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.h"
+#include "trace/ray_tracer.h"
+#include "transport/light_cut.h"
+#include "transport/lights.h"
+
+namespace luxel::transport {
+
+struct Receiver {
+  Vec3 position, normal, geometric_normal;
+  Vec3 origin;  ///< position moved off the surface: where shadow rays start
+  uint64_t seed = 0;
+};
+
+/// A shadow ray and what its source would bring.
+struct Shot {
+  uint32_t source = 0;  ///< index into Shots::sources
+  float weight = 0;     ///< w: what the source's density does not cancel
+  Rgb radiance;         ///< times w
+};
+
+/// The visible share of a source is  sum w V / sum w  over its shots; its light is that share times
+/// the exact unshadowed light. A group of lights has no exact value: its light is the mean of w V.
+struct Source {
+  float scale = 0;  ///< exact: irradiance per radiance / chance; group: 1 / (shots * chance)
+  bool exact = false;
+  float sum_weight = 0;
+  uint32_t shots = 0;
+  Rgb sum{};
+  float sum_luminance2 = 0;
+  Rgb tint{1, 1, 1};     ///< multiplies the sum
+  float unshadowed = 0;  ///< luminance, for the variance of exact sources
+};
+
+/// Sources and shots of one element; buffers that are reused from element to element.
+struct Shots {
+  std::vector<CutEntry> cut;
+  std::vector<Source> sources;
+  std::vector<Shot> shots;
+  std::vector<trace::Ray> rays;
+  std::vector<uint8_t> blocked;
+  std::vector<Rgb> arriving;  ///< share of each shot's light
+};
+
+/// Adds a shot whose shadow ray ends at `target`, or, with t_max infinite, goes on for ever. A
+/// direction below the receiver's own triangle is blocked by it: it counts, without a ray.
+inline void add_shot(Shots& shots, const Receiver& at, const Shot& shot, Vec3 direction,
+                     float t_max) {
+  Source& source = shots.sources[shot.source];
+  source.sum_weight += shot.weight;
+  ++source.shots;
+  if (dot(direction, at.geometric_normal) <= 0) return;
+  shots.shots.push_back(shot);
+  shots.rays.push_back({at.origin, 0, direction, t_max});
+}
+
+/// Each adds what it aims at of one kind, about `samples` shadow rays for it.
+void shoot_at_triangles(const scene::Scene& scene, const Lights& lights, int samples,
+                        const Receiver& r, float diagonal_m, Shots& shots);
+void shoot_at_lamps(const Lights& lights, int samples, const Receiver& r, Shots& shots);
+/// Peaks of the environment, in proportion to their power.
+void shoot_at_peaks(const scene::Scene& scene, const Surroundings& around, int samples,
+                    const Receiver& r, Shots& shots);
+/// The soft light of the surroundings, by rays with the density of the cosine.
+void shoot_at_soft_sky(const scene::Scene& scene, const Surroundings& around, int samples,
+                       const Receiver& r, Shots& shots);
+
+}  // namespace luxel::transport

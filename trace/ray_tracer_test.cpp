@@ -296,9 +296,10 @@ TEST(RayTracer, ATriangleTintsOnce) {
   size_t met = 0;
   for (int k = 0; k < 4000; ++k) {
     const float along = random.next(), across = random.next() * along;
-    const Vec3 target = Vec3{-3, -3, -4} + Vec3{6, 5.9f, 8.1f} * along +
-                        Vec3{0, 0.1f, -0.1f} * across;
-    const Vec3 away = normalize(Vec3{0.3f, -1, 0.7f} + Vec3{random.next(), 0, random.next()} * 0.1f);
+    const Vec3 target =
+        Vec3{-3, -3, -4} + Vec3{6, 5.9f, 8.1f} * along + Vec3{0, 0.1f, -0.1f} * across;
+    const Vec3 away =
+        normalize(Vec3{0.3f, -1, 0.7f} + Vec3{random.next(), 0, random.next()} * 0.1f);
     const Ray ray{target + away * 0.2f, 0, -away, 0.4f};
     Rgb share;
     tracer->transmitted({&ray, 1}, {&share, 1});

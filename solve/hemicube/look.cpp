@@ -100,7 +100,8 @@ class Looker {
         pixels_(std::move(pixels)),
         diagonal_m_(scene::world_bounds(senders.scene).diagonal()) {
     for (const scene::Material& m : s_.scene.materials)
-      sorts_.push_back({scene::reflects_from_behind(m), max_component(m.emission) > 0 && s_.emission_by_pixels});
+      sorts_.push_back(
+          {scene::reflects_from_behind(m), max_component(m.emission) > 0 && s_.emission_by_pixels});
   }
 
   size_t pixel_count() const { return pixels_.size(); }

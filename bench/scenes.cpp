@@ -211,6 +211,8 @@ Result<Table> measure_scenes(const std::filesystem::path& shared, int threads) {
   const ThreadLimit limit(threads);
   Table table = new_table("scenes", {"scene under sun and sky", "triangles", "texels", "seconds",
                                      "Mrays/s", "estimated error", "in solids", "seams, 95 %"});
+  LUXEL_TRY_STATUS(measure_real_light(table));
+  LUXEL_TRY_STATUS(measure_lamps(table));
   for (const char* file : kScenes) {
     const auto path = shared / "scenes" / file;
     if (std::filesystem::exists(path))
@@ -222,8 +224,6 @@ Result<Table> measure_scenes(const std::filesystem::path& shared, int threads) {
       "1024 x 1024 texels, 64 samples, 16 shadow rays, --sky 135,45; seconds of the whole bake, "
       "without writing files.");
   LUXEL_TRY_STATUS(measure_map(shared, table));
-  LUXEL_TRY_STATUS(measure_real_light(table));
-  LUXEL_TRY_STATUS(measure_lamps(table));
   return table;
 }
 

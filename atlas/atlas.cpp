@@ -115,7 +115,8 @@ Error too_small(const scene::Scene& scene, const Faces& faces,
 }
 
 Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progress& progress) {
-  const Faces faces = make_faces(scene);
+  Faces faces = make_faces(scene);
+  if (!params.group.empty()) part_groups(faces, params.group);
   const std::vector<ChartFaces> groups =
       grow_charts(faces, double(params.max_chart_angle_rad), progress);
   if (progress.cancelled()) return cancelled();

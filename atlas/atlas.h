@@ -22,6 +22,7 @@ struct Atlas {
   std::vector<std::array<Vec2, 3>> corners;  ///< per drawn triangle, corner order of the mesh
   std::vector<uint32_t> chart;               ///< per drawn triangle
   uint32_t chart_count = 0;
+  bool kept = false;  ///< laid out as TEXCOORD_1 says
 
   uint32_t triangle_number(uint32_t instance, uint32_t triangle) const {
     return first_triangle[instance] + triangle;
@@ -53,6 +54,8 @@ struct AtlasParams {
   int gutter = 2;              ///< empty texels between charts
   float max_chart_angle_rad =
       0.8f;  ///< unwrap: largest angle between a triangle and its chart's axis
+  /// Unwrap: per drawn triangle; charts never hold triangles of different groups. Empty: one group.
+  std::vector<uint32_t> group{};
 };
 
 /// What the layout is like; printed by `luxel bench atlas` and `luxel info`.
@@ -73,6 +76,17 @@ Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, P
 /// that holds its centre, else the one that covers most of it (ties: the lower number).
 TexelMap rasterise(const scene::Scene& scene, const Atlas& atlas);
 
+/// A place of the atlas in the coordinates of a triangle of it; negative ones where it has no area.
+inline Barycentric barycentric_in(const std::array<Vec2, 3>& corners, Vec2 p) {
+  const Vec2 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0], d = p - corners[0];
+  const float area = cross(e1, e2);
+  if (area == 0) return {-1, -1};
+  return {cross(d, e2) / area, cross(e1, d) / area};
+}
+
 AtlasStats atlas_stats(const scene::Scene& scene, const Atlas& atlas, const TexelMap& map);
+
+/// The texels that triangles of more than one chart touch: only a kept TEXCOORD_1 has any.
+std::vector<uint32_t> overlapping_texels(const Atlas& atlas, const TexelMap& map);
 
 }  // namespace luxel::atlas

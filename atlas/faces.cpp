@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "atlas/atlas.h"
+#include "base/check.h"
 #include "base/parallel.h"
 
 namespace luxel::atlas {
@@ -109,6 +110,13 @@ Faces make_faces(const scene::Scene& scene) {
     }
   });
   return faces;
+}
+
+void part_groups(Faces& faces, std::span<const uint32_t> group) {
+  LUXEL_CHECK(group.size() == faces.size());
+  for (size_t f = 0; f < faces.size(); ++f)
+    for (uint32_t& g : faces.across[f])
+      if (g != kNone && group[g] != group[f]) g = kNone;
 }
 
 }  // namespace luxel::atlas

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "atlas/plane.h"
@@ -23,5 +24,8 @@ struct Faces {
 };
 
 Faces make_faces(const scene::Scene& scene);
+
+/// Makes edges between faces of different groups borders.
+void part_groups(Faces& faces, std::span<const uint32_t> group);
 
 }  // namespace luxel::atlas

@@ -140,7 +140,7 @@ Result<Atlas> keep_uv1(const scene::Scene& scene, int resolution, const Progress
   LUXEL_TRY_STATUS(check_range(scene));
   LUXEL_TRY_STATUS(check_instances(scene));
   Atlas atlas;
-  atlas.resolution = resolution;
+  atlas.resolution = resolution, atlas.kept = true;
   atlas.first_triangle = scene::first_triangles(scene);
   add_corners(scene, atlas);
   LUXEL_TRY_STATUS(check_overlap(scene, atlas, progress));

@@ -28,27 +28,34 @@ Measure measure(const scene::Triangle3& world, const std::array<Vec2, 3>& uv) {
   return m;
 }
 
+/// Calls visit(index into map.texels) for every texel that the triangle touches.
+template <class Visit>
+void for_touched(const Atlas& atlas, const TexelMap& map, uint32_t number, const Visit& visit) {
+  const auto& c = atlas.corners[number];
+  const UvTriangle t = uv_triangle({to_double(c[0]), to_double(c[1]), to_double(c[2])});
+  const int last = atlas.resolution - 1;
+  const Span rows = touched_rows(t);
+  for (int j = rows.begin; j < rows.end; ++j) {
+    const Span span = touched_texels(t, j);
+    for (int i = span.begin; i < span.end; ++i) {
+      const uint32_t texel = map.texel_at[size_t(std::clamp(j, 0, last)) * size_t(last + 1) +
+                                          size_t(std::clamp(i, 0, last))];
+      if (texel != kNone) visit(texel);
+    }
+  }
+}
+
 /// Whether the triangle touches a texel of its chart, and whether it owns one.
 struct Found {
   bool chart = false, own = false;
 };
 Found find_texels(const Atlas& atlas, const TexelMap& map, uint32_t number) {
-  const auto& c = atlas.corners[number];
-  const UvTriangle t = uv_triangle({to_double(c[0]), to_double(c[1]), to_double(c[2])});
-  const int last = atlas.resolution - 1;
   Found found;
-  const Span rows = touched_rows(t);
-  for (int j = rows.begin; j < rows.end && !found.own; ++j) {
-    const Span span = touched_texels(t, j);
-    for (int i = span.begin; i < span.end; ++i) {
-      const uint32_t texel = map.texel_at[size_t(std::clamp(j, 0, last)) * size_t(last + 1) +
-                                          size_t(std::clamp(i, 0, last))];
-      if (texel == kNone) continue;
-      const uint32_t owner = map.texels[texel].triangle_number;
-      found.chart = found.chart || atlas.chart[owner] == atlas.chart[number];
-      found.own = found.own || owner == number;
-    }
-  }
+  for_touched(atlas, map, number, [&](uint32_t texel) {
+    const uint32_t owner = map.texels[texel].triangle_number;
+    found.chart = found.chart || atlas.chart[owner] == atlas.chart[number];
+    found.own = found.own || owner == number;
+  });
   return found;
 }
 
@@ -83,6 +90,18 @@ AtlasStats atlas_stats(const scene::Scene& scene, const Atlas& atlas, const Texe
   stats.texels_per_metre = area > 0 ? std::sqrt(uv_area / area) : 0;
   stats.owning_triangles = count > 0 ? double(owners) / count : 0;
   return stats;
+}
+
+std::vector<uint32_t> overlapping_texels(const Atlas& atlas, const TexelMap& map) {
+  std::vector<uint8_t> shared(map.texels.size());
+  for (uint32_t t = 0; t < atlas.corners.size(); ++t)
+    for_touched(atlas, map, t, [&](uint32_t texel) {
+      if (atlas.chart[map.texels[texel].triangle_number] != atlas.chart[t]) shared[texel] = 1;
+    });
+  std::vector<uint32_t> all;
+  for (uint32_t i = 0; i < shared.size(); ++i)
+    if (shared[i]) all.push_back(i);
+  return all;
 }
 
 }  // namespace luxel::atlas

@@ -13,6 +13,7 @@
 #include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/stage_seconds.h"
+#include "pipeline/texel_picture.h"
 #include "pipeline/version.h"
 #include "pipeline/vertex_lit.h"
 #include "post/dilate.h"
@@ -46,17 +47,6 @@ Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>
   return std::move(imported.scene);
 }
 
-Status lay_out(const BakeSettings& settings, Bake& bake, Progress& progress) {
-  atlas::AtlasParams params;
-  params.uv = settings.uv;
-  params.resolution = settings.resolution;
-  params.texels_per_metre = settings.texels_per_metre;
-  LUXEL_TRY(bake.atlas, atlas::make_atlas(bake.scene, params, progress));
-  bake.map = atlas::rasterise(bake.scene, bake.atlas);
-  bake.atlas_stats = atlas::atlas_stats(bake.scene, bake.atlas, bake.map);
-  return not_cancelled(progress);
-}
-
 Status solve(const BakeSettings& settings, const SolveInput& input, Bake& bake,
              Progress& progress) {
   LUXEL_TRY(bake.light, find_solver(settings.solver)->solve(input, settings, progress));
@@ -65,15 +55,26 @@ Status solve(const BakeSettings& settings, const SolveInput& input, Bake& bake,
   return {};
 }
 
-Status repair(const BakeSettings& settings, Bake& bake, Progress& progress) {
+Status repair(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
+              Progress& progress) {
   progress.begin("seams", 0);
-  post::refill_hidden(bake.atlas, bake.map, bake.light.hidden, kRefillRings, bake.light.irradiance);
-  const std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
+  const std::span<const uint8_t> hidden = bake.light.hidden;
+  const post::Parted parted = settings.repair_leaks
+                                  ? parted_texels(bake.scene, bake.atlas, bake.map, tracer)
+                                  : post::Parted{};
+  bake.repair.refilled = post::refill_hidden(bake.atlas, bake.map, hidden, kRefillRings, parted,
+                                             bake.light.irradiance);
+  std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
+  if (settings.repair_leaks) seams = open_seams(bake.scene, bake.atlas, tracer, std::move(seams));
   bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance);
   bake.seams = seams.size();
   if (settings.stitch)
     LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
   bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance);
+  bake.texel_picture =
+      draw_texels(bake.atlas, bake.map,
+                  {hidden, bake.repair.overlapping, bake.repair.moved, bake.repair.refilled,
+                   post::seam_errors(bake.map, seams, bake.light.irradiance)});
   bake.lightmap = post::lightmap_from_texels(bake.map, bake.light.irradiance);
   post::dilate(bake.lightmap, kDilationRings);
   return not_cancelled(progress);
@@ -137,6 +138,13 @@ nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Prog
             {"utilisation", bake.atlas_stats.utilisation},
             {"mean_stretch_l2", bake.atlas_stats.mean_stretch_l2},
             {"texels_per_metre", bake.atlas_stats.texels_per_metre}}},
+          {"leaks",
+           {{"cuts", bake.repair.cuts},
+            {"parted_pairs", bake.repair.parted},
+            {"overlapping_texels", bake.repair.overlapping.size()},
+            {"invalid_texels", std::count(bake.light.hidden.begin(), bake.light.hidden.end(), 1)},
+            {"moved_samples", bake.repair.moved.size()},
+            {"refilled_texels", bake.repair.refilled.size()}}},
           {"seam_residual",
            {bake.seam_residual_before.rms_over_mean, bake.seam_residual_after.rms_over_mean}},
           {"seam_residual_p95",
@@ -159,15 +167,17 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
   const ThreadLimit threads(settings.threads);
   Bake bake;
   LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
-  LUXEL_TRY_STATUS(lay_out(settings, bake, progress));
-  progress.begin("build ray tracer", 0);
-  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
+  LUXEL_TRY(TexelLayout layout, lay_out_texels(settings, bake.scene, progress));
+  LUXEL_TRY_STATUS(not_cancelled(progress));
+  bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
+  bake.atlas_stats = layout.stats, bake.repair = std::move(layout.repair);
+  const trace::RayTracer& tracer = layout.tracer;
   const transport::Elements elements =
       transport::elements_from_texels(bake.scene, bake.atlas, bake.map);
   const transport::Lights lights = transport::collect_lights(bake.scene);
   const SolveInput input{bake.scene, bake.atlas, bake.map, elements, lights, tracer};
   LUXEL_TRY_STATUS(solve(settings, input, bake, progress));
-  LUXEL_TRY_STATUS(repair(settings, bake, progress));
+  LUXEL_TRY_STATUS(repair(settings, tracer, bake, progress));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
   LUXEL_TRY_STATUS(draw_preview(tracer, bake, progress));
   return bake;
@@ -219,6 +229,7 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
     files.push_back(std::move(page));
   }
   files.push_back({settings.output / "baked.glb", std::move(glb)});
+  files.push_back({settings.output / "texels.png", image::encode_png(bake.texel_picture)});
   files.push_back({settings.output / "preview.png", image::encode_png(bake.preview)});
   return files;
 }

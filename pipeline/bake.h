@@ -14,6 +14,7 @@
 #include "pipeline/light_directions.h"
 #include "pipeline/settings.h"
 #include "pipeline/solvers.h"
+#include "pipeline/texel_layout.h"
 #include "post/seams.h"
 #include "scene/scene.h"
 
@@ -24,7 +25,7 @@ inline constexpr std::string_view kWriteStage = "write files";
 
 /// A finished bake in memory, before anything is written.
 struct Bake {
-  scene::Scene scene;  ///< as baked: outside light added
+  scene::Scene scene;  ///< as baked: outside light added, charts cut
   atlas::Atlas atlas;
   atlas::TexelMap map;
   atlas::AtlasStats atlas_stats;
@@ -35,6 +36,8 @@ struct Bake {
   std::optional<ProbeGrid> probes;  ///< with --probes
   export_::View view;               ///< what the preview was taken with
   size_t seams = 0;
+  LeakRepair repair;
+  image::Image8 texel_picture;  ///< what was found and done, texel by texel: texels.png
   post::SeamResidual seam_residual_before, seam_residual_after;
   std::vector<std::string> warnings;
 };
@@ -44,8 +47,8 @@ struct Bake {
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress);
 
 /// The whole of `luxel bake`: bake_scene, then lightmap.exr (and its other formats), baked.glb,
-/// preview.png, view.html when asked for, and bake.json in settings.output, all of them or none.
-/// Returns what bake.json holds.
+/// preview.png, texels.png, view.html when asked for, and bake.json in settings.output, all of them
+/// or none. Returns what bake.json holds.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

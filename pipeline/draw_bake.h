@@ -9,4 +9,8 @@ namespace luxel::pipeline {
 Result<image::Image> draw_lightmap(const Subject& subject, const RenderSettings& settings,
                                    Rendered& out, Progress& progress);
 
+/// The same bake's texels.png on its surfaces; pipeline/texel_picture.h.
+Result<image::Image> draw_texels_of_bake(const Subject& subject, const RenderSettings& settings,
+                                         Rendered& out, Progress& progress);
+
 }  // namespace luxel::pipeline

@@ -26,7 +26,7 @@ void add_mesh(const h::Solution& s, Lines& out) {
   }
 }
 
-bool cuts(const h::Plane& plane, const h::Element& e, double slack_m) {
+bool cuts(const Plane& plane, const h::Element& e, double slack_m) {
   bool above = false, below = false;
   for (const DVec3& p : e.polygon())
     above |= plane.height(p) > slack_m, below |= plane.height(p) < -slack_m;
@@ -35,7 +35,7 @@ bool cuts(const h::Plane& plane, const h::Element& e, double slack_m) {
 
 Rgb color_of(const h::Solution& s, const h::Element& r, const h::Element& e, const h::Link& link) {
   if (link.visible < 1) return kGreen;
-  const h::Plane &a = s.faces.faces[r.face].plane, &b = s.faces.faces[e.face].plane;
+  const Plane &a = s.faces.faces[r.face].plane, &b = s.faces.faces[e.face].plane;
   return cuts(a, e, s.faces.slack_m) || cuts(b, r, s.faces.slack_m) ? kPink : kWhite;
 }
 

@@ -150,6 +150,7 @@ nlohmann::json to_json(const BakeSettings& s) {
   json["directional"] = name_of(s.directional);
   json["probe_spacing_m"] = s.probe_spacing_m;
   json["denoise"] = s.denoise, json["stitch"] = s.stitch;
+  json["repair_leaks"] = s.repair_leaks;
   if (s.solver == "hemicube")
     json["hemicube"] = {{"elements", s.hemicube.elements},
                         {"resolution", s.hemicube.resolution},

@@ -95,6 +95,7 @@ struct BakeSettings {
   double probe_spacing_m = 0;  ///< 0: no probes
   bool denoise = false;        ///< take the grain out of texels, docs/denoise.md
   bool stitch = true;          ///< make charts agree along seams
+  bool repair_leaks = true;    ///< cut charts at thin walls, move samples out of solids
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
   LightmapFormats formats;     ///< files beside lightmap.exr
   bool html = false;           ///< view.html too

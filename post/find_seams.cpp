@@ -70,9 +70,12 @@ bool is_smooth(const scene::Scene& scene, uint32_t instance, const HalfEdge& a, 
 /// Returns whether the surface goes on over the edge: then nothing else can join it there.
 bool add_seam(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t instance,
               const HalfEdge& a, const HalfEdge& b, float min_cosine, std::vector<Seam>& seams) {
-  const auto& in_a = atlas.corners[atlas.triangle_number(instance, a.triangle)];
-  const auto& in_b = atlas.corners[atlas.triangle_number(instance, b.triangle)];
-  const Seam seam{in_a[a.low_corner], in_a[a.high_corner], in_b[b.low_corner], in_b[b.high_corner]};
+  const uint32_t number_a = atlas.triangle_number(instance, a.triangle);
+  const uint32_t number_b = atlas.triangle_number(instance, b.triangle);
+  const auto &in_a = atlas.corners[number_a], &in_b = atlas.corners[number_b];
+  const Seam seam{in_a[a.low_corner], in_a[a.high_corner],
+                  in_b[b.low_corner], in_b[b.high_corner],
+                  number_a,           number_b};
   if (seam.a0 == seam.b0 && seam.a1 == seam.b1) return true;  // one place in the atlas
   if (!is_smooth(scene, instance, a, b, min_cosine)) return false;
   seams.push_back(seam);

@@ -29,7 +29,7 @@ TEST(RefillHidden, GoesInwardsRingByRingAndLeavesTheRest) {
   const std::vector<uint8_t> hidden{0, 1, 1, 1, 1, 1};
   std::vector<Rgb> values(6);
   values[0] = {4, 2, 1};
-  refill_hidden(row.atlas, row.map, hidden, 2, values);
+  refill_hidden(row.atlas, row.map, hidden, 2, {}, values);
   EXPECT_EQ(values[0], (Rgb{4, 2, 1}));
   EXPECT_EQ(values[1], (Rgb{4, 2, 1}));
   EXPECT_EQ(values[2], (Rgb{4, 2, 1}));
@@ -39,14 +39,25 @@ TEST(RefillHidden, GoesInwardsRingByRingAndLeavesTheRest) {
 TEST(RefillHidden, TakesTheMeanOfBothSides) {
   const Row row = row_of({0, 0, 0});
   std::vector<Rgb> values{{1, 1, 1}, {9, 9, 9}, {3, 3, 3}};
-  refill_hidden(row.atlas, row.map, std::vector<uint8_t>{0, 1, 0}, 1, values);
+  refill_hidden(row.atlas, row.map, std::vector<uint8_t>{0, 1, 0}, 1, {}, values);
   EXPECT_EQ(values[1], (Rgb{2, 2, 2}));
+}
+
+/// A texel under a wall belongs to one side of it: that of its nearest neighbour.
+TEST(RefillHidden, StaysOnOneSideOfABarrier) {
+  const Row row = row_of({0, 0, 0});
+  std::vector<Rgb> values{{1, 1, 1}, {9, 9, 9}, {3, 3, 3}};
+  const Parted parted = [](uint32_t a, uint32_t b) { return (a < 1) != (b < 1); };
+  const auto filled =
+      refill_hidden(row.atlas, row.map, std::vector<uint8_t>{0, 1, 0}, 1, parted, values);
+  EXPECT_EQ(values[1], (Rgb{1, 1, 1}));
+  EXPECT_EQ(filled, (std::vector<uint32_t>{1}));
 }
 
 TEST(RefillHidden, NeverMixesCharts) {
   const Row row = row_of({0, 1, 1});
   std::vector<Rgb> values{{5, 5, 5}, {0, 0, 0}, {0, 0, 0}};
-  refill_hidden(row.atlas, row.map, std::vector<uint8_t>{0, 1, 1}, 2, values);
+  refill_hidden(row.atlas, row.map, std::vector<uint8_t>{0, 1, 1}, 2, {}, values);
   EXPECT_EQ(values[1], (Rgb{0, 0, 0}));
 }
 

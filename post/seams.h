@@ -15,6 +15,7 @@ namespace luxel::post {
 /// A scene edge that lies in the atlas twice, at (a0, a1) and (b0, b1), in texels.
 struct Seam {
   Vec2 a0, a1, b0, b1;
+  uint32_t triangle_a = atlas::kNone, triangle_b = atlas::kNone;  ///< drawn triangles
 };
 
 /// The edges that two triangles share in space with agreeing shading normals (a crease is a real
@@ -61,5 +62,9 @@ struct SeamResidual {
 };
 SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
                            std::span<const Rgb> values);
+
+/// Per texel, the largest relative difference at the points of seams that look it up; 0 elsewhere.
+std::vector<float> seam_errors(const atlas::TexelMap& map, std::span<const Seam> seams,
+                               std::span<const Rgb> values);
 
 }  // namespace luxel::post

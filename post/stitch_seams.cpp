@@ -220,28 +220,57 @@ Status stitch_seams(const atlas::TexelMap& map, std::span<const Seam> seams,
   return {};
 }
 
+namespace {
+
+struct Differences {
+  double squares = 0;            ///< sum over points and channels
+  double mean = 0;               ///< value
+  std::vector<double> relative;  ///< per point, as SeamResidual says
+};
+
+Differences differences_at(const std::vector<SeamPoint>& points, std::span<const Rgb> values) {
+  Differences d;
+  for (const SeamPoint& point : points) d.mean += mean_value(point, values) / double(points.size());
+  for (const SeamPoint& point : points) {
+    const auto a = value(point.a, values), b = value(point.b, values);
+    double largest = 0;
+    for (size_t c = 0; c < 3; ++c) {
+      d.squares += (a[c] - b[c]) * (a[c] - b[c]);
+      largest = std::max(largest, std::abs(a[c] - b[c]));
+    }
+    const double around = mean_value(point, values) + 1e-3 * d.mean;
+    d.relative.push_back(around > 0 ? largest / around : 0);
+  }
+  return d;
+}
+
+}  // namespace
+
 SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
                            std::span<const Rgb> values) {
   LUXEL_CHECK(values.size() == map.texels.size());
   const std::vector<SeamPoint> points = seam_points(map, seams);
-  double squares = 0, mean = 0;
-  for (const SeamPoint& point : points) {
-    const auto a = value(point.a, values), b = value(point.b, values);
-    for (size_t c = 0; c < 3; ++c) squares += (a[c] - b[c]) * (a[c] - b[c]);
-    mean += mean_value(point, values) / double(points.size());
-  }
-  if (points.empty() || mean <= 0) return {};
-  std::vector<double> relative;
-  for (const SeamPoint& point : points) {
-    const auto a = value(point.a, values), b = value(point.b, values);
-    double largest = 0;
-    for (size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(a[c] - b[c]));
-    relative.push_back(largest / (mean_value(point, values) + 1e-3 * mean));
-  }
-  const auto p95 = relative.begin() + std::ptrdiff_t((relative.size() - 1) * 95 / 100);
-  std::nth_element(relative.begin(), p95, relative.end());
-  return {std::sqrt(squares / (3 * double(points.size()))) / mean, *p95,
-          *std::max_element(p95, relative.end())};
+  Differences d = differences_at(points, values);
+  if (points.empty() || d.mean <= 0) return {};
+  const auto p95 = d.relative.begin() + std::ptrdiff_t((d.relative.size() - 1) * 95 / 100);
+  std::nth_element(d.relative.begin(), p95, d.relative.end());
+  return {std::sqrt(d.squares / (3 * double(points.size()))) / d.mean, *p95,
+          *std::max_element(p95, d.relative.end())};
+}
+
+std::vector<float> seam_errors(const atlas::TexelMap& map, std::span<const Seam> seams,
+                               std::span<const Rgb> values) {
+  LUXEL_CHECK(values.size() == map.texels.size());
+  const std::vector<SeamPoint> points = seam_points(map, seams);
+  const Differences d = differences_at(points, values);
+  std::vector<float> error(map.texels.size());
+  for (size_t p = 0; p < points.size(); ++p)
+    for (const Lookup* side : {&points[p].a, &points[p].b})
+      for (int i = 0; i < side->count; ++i) {
+        float& e = error[side->texel[size_t(i)]];
+        e = std::max(e, float(d.relative[p]));
+      }
+  return error;
 }
 
 }  // namespace luxel::post

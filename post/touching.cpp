@@ -189,13 +189,17 @@ bool stands_on(const Standing& standing, uint32_t edge, float t0, float t1) {
 
 Seam seam_of(const atlas::Atlas& atlas, std::span<const OpenEdge> edges,
              const std::vector<Line>& lines, const Contact& c) {
+  const auto number_of = [&](uint32_t edge) {
+    return atlas.triangle_number(edges[edge].instance, edges[edge].triangle);
+  };
   const auto in_atlas = [&](uint32_t edge, float t) {
     const OpenEdge& e = edges[edge];
-    const auto& corners = atlas.corners[atlas.triangle_number(e.instance, e.triangle)];
+    const auto& corners = atlas.corners[number_of(edge)];
     const float s = t / lines[edge].length;
     return corners[e.corner] * (1 - s) + corners[(e.corner + 1) % 3] * s;
   };
-  return {in_atlas(c.a, c.a0), in_atlas(c.a, c.a1), in_atlas(c.b, c.b0), in_atlas(c.b, c.b1)};
+  return {in_atlas(c.a, c.a0), in_atlas(c.a, c.a1), in_atlas(c.b, c.b0),
+          in_atlas(c.b, c.b1), number_of(c.a),      number_of(c.b)};
 }
 
 }  // namespace

@@ -50,6 +50,11 @@ Scene office();
 /// pillar throws its shadow over several.
 Scene tiled_kit();
 
+/// A house with walls and a roof of 1 cm on a lawn in the sun, without door or window: whatever
+/// light a bake finds inside has come through the lightmap. The lawn goes on under the walls and
+/// the roof's underside over them; the house stands askew on the lawn. Two cameras.
+Scene closed_corner();
+
 /// A sphere of radius `radius_m` seen from inside (normals point inwards), latitude-longitude-free:
 /// an icosahedron subdivided `levels` times; flat shading. One material.
 Scene inward_sphere(float radius_m, int levels, Rgb reflectance, Rgb emission);

@@ -5,14 +5,6 @@
 namespace luxel::transport {
 namespace {
 
-/// Barycentric coordinates of a point of the atlas in a triangle of it.
-Barycentric barycentric_in(const std::array<Vec2, 3>& t, Vec2 p) {
-  const Vec2 e1 = t[1] - t[0], e2 = t[2] - t[0], d = p - t[0];
-  const float area = cross(e1, e2);
-  if (area == 0) return {-1, -1};
-  return {cross(d, e2) / area, cross(e1, d) / area};
-}
-
 bool varies_over_texels(const scene::Material& material) {
   return material.base_color_texture.texture != scene::kNone ||
          material.metallic_texture.texture != scene::kNone;
@@ -29,7 +21,7 @@ Rgb mean_reflectance(const scene::Scene& scene, const atlas::Atlas& atlas,
     for (int i = 0; i < kGrid; ++i) {
       const Vec2 p{float(texel.x) + (float(i) + 0.5f) / kGrid,
                    float(texel.y) + (float(j) + 0.5f) / kGrid};
-      const Barycentric at = barycentric_in(corners, p);
+      const Barycentric at = atlas::barycentric_in(corners, p);
       if (at.u < 0 || at.v < 0 || at.u + at.v > 1) continue;
       sum += scene::reflectance_at(scene, {texel.sample.instance, texel.sample.triangle, at});
       count += 1;

@@ -4,19 +4,13 @@
 #include <span>
 #include <vector>
 
-#include "base/vec_double.h"
+#include "base/plane.h"
 
 namespace luxel::transport {
 
 /// Corners in the world [m], counter-clockwise seen from the front.
 using Polygon = std::vector<DVec3>;
 using PolygonView = std::span<const DVec3>;
-
-struct Plane {
-  DVec3 normal;  ///< unit
-  double offset = 0;
-  double height(DVec3 p) const { return dot(normal, p) - offset; }
-};
 
 /// The front side's normal times the area [m^2].
 DVec3 area_vector(PolygonView polygon);

@@ -12,7 +12,6 @@
 
 namespace luxel::hierarchical {
 
-using transport::Plane;
 using transport::Polygon;
 using transport::PolygonView;
 

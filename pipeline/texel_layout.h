@@ -1,0 +1,49 @@
+// Where texels lie, such that none of them lets light through a wall.
+#pragma once
+
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "base/progress.h"
+#include "base/result.h"
+#include "pipeline/settings.h"
+#include "post/refill.h"
+#include "post/seams.h"
+#include "trace/ray_tracer.h"
+
+namespace luxel::pipeline {
+
+/// What was found and done against leaks; docs/leaks.md. Texels are indices into
+/// TexelMap::texels.
+struct LeakRepair {
+  uint32_t cuts = 0;                  ///< planes along which charts were cut
+  size_t parted = 0;                  ///< pairs of texels that still mix across a barrier
+  std::vector<uint32_t> overlapping;  ///< that belong to more than one chart
+  std::vector<uint32_t> moved;        ///< samples moved out of solids
+  std::vector<uint32_t> refilled;     ///< inside solids, with the light of their neighbours
+};
+
+struct TexelLayout {
+  atlas::Atlas atlas;
+  atlas::TexelMap map;
+  atlas::AtlasStats stats;
+  trace::RayTracer tracer;  ///< of the scene as it is now
+  LeakRepair repair;
+};
+
+/// Lays the scene out and rasterises it. With settings.repair_leaks, samples move out of solids,
+/// and where barriers stand on charts (transport/barriers.h) the scene's triangles are cut along
+/// them and laid out anew, unless TEXCOORD_1 is kept. `scene` changes by these cuts and must stay
+/// where it is while the tracer is used.
+Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& scene,
+                                   Progress& progress);
+
+/// Whether a barrier stands between two texels of one chart. Refers to its arguments.
+post::Parted parted_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
+                           const atlas::TexelMap& map, const trace::RayTracer& tracer);
+
+/// Seams without the stretches on which a barrier stands: there light differs for good.
+std::vector<post::Seam> open_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                   const trace::RayTracer& tracer, std::vector<post::Seam> seams);
+
+}  // namespace luxel::pipeline

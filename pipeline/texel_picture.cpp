@@ -1,0 +1,64 @@
+#include "pipeline/texel_picture.h"
+
+#include <algorithm>
+#include <array>
+
+namespace luxel::pipeline {
+namespace {
+
+using Color = std::array<uint8_t, 3>;
+
+constexpr Color kWhite{255, 255, 255}, kBlack{0, 0, 0}, kMagenta{220, 30, 200}, kGreen{40, 190, 70},
+    kYellow{240, 200, 40}, kRed{230, 30, 30};
+constexpr Color kLight{205, 205, 205}, kDark{160, 160, 160}, kBorder{95, 105, 140};
+constexpr uint32_t kSquare = 8;
+constexpr float kFullRed = 0.05f;
+
+bool on_border(const atlas::Atlas& atlas, const atlas::TexelMap& map, const atlas::Texel& t) {
+  const int side = map.resolution;
+  for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
+    const int x = int(t.x) + dx, y = int(t.y) + dy;
+    if (x < 0 || y < 0 || x >= side || y >= side) return true;
+    const uint32_t other = map.texel_at[size_t(y) * size_t(side) + size_t(x)];
+    if (other == atlas::kNone ||
+        atlas.chart[map.texels[other].triangle_number] != atlas.chart[t.triangle_number])
+      return true;
+  }
+  return false;
+}
+
+Color mix(Color a, Color b, float s) {
+  Color out;
+  for (size_t c = 0; c < 3; ++c)
+    out[c] = uint8_t(std::lround(float(a[c]) * (1 - s) + float(b[c]) * s));
+  return out;
+}
+
+}  // namespace
+
+image::Image8 draw_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                          const TexelFacts& facts) {
+  std::vector<Color> color(map.texels.size());
+  for (size_t i = 0; i < color.size(); ++i) {
+    const atlas::Texel& t = map.texels[i];
+    color[i] = ((t.x / kSquare + t.y / kSquare) & 1u) ? kDark : kLight;
+    if (on_border(atlas, map, t)) color[i] = kBorder;
+    if (!facts.seam_error.empty())
+      color[i] = mix(color[i], kRed, std::min(1.0f, facts.seam_error[i] / kFullRed));
+  }
+  for (const uint32_t i : facts.moved) color[i] = kGreen;
+  for (size_t i = 0; i < facts.hidden.size(); ++i)
+    if (facts.hidden[i]) color[i] = kBlack;
+  for (const uint32_t i : facts.refilled) color[i] = kYellow;
+  for (const uint32_t i : facts.overlapping) color[i] = kMagenta;
+  image::Image8 picture;
+  picture.width = picture.height = map.resolution, picture.channels = 3;
+  picture.data.resize(3 * map.texel_at.size());
+  for (size_t at = 0; at < map.texel_at.size(); ++at) {
+    const Color c = map.texel_at[at] == atlas::kNone ? kWhite : color[map.texel_at[at]];
+    std::copy(c.begin(), c.end(), picture.data.begin() + long(3 * at));
+  }
+  return picture;
+}
+
+}  // namespace luxel::pipeline

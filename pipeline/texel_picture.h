@@ -1,0 +1,29 @@
+// A picture of a bake's texels: what they are, not how bright.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "image/codec.h"
+
+namespace luxel::pipeline {
+
+/// What is known about texels besides their light. Indices into TexelMap::texels; `hidden` and
+/// `seam_error` have an entry per texel, or none.
+struct TexelFacts {
+  std::span<const uint8_t> hidden;
+  std::span<const uint32_t> overlapping, moved, refilled;
+  std::vector<float> seam_error;  ///< relative difference of a seam's sides
+};
+
+/// The atlas, rows from the top, a colour per texel:
+///   a checker of two grays, squares of 8 x 8 texels (density), the chart's border darker;
+///   red, the more the two sides of a seam differ: full at 5 %;
+///   green: sample moved out of a solid; yellow: inside a solid, refilled from its neighbours;
+///   black: inside a solid, where nobody looks; magenta: belongs to more than one chart.
+/// Later ones win. Places without a texel are white.
+image::Image8 draw_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                          const TexelFacts& facts);
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,146 @@
+#include "scene/cut_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <unordered_map>
+
+#include "base/check.h"
+
+namespace luxel::scene {
+namespace {
+
+using Corners = std::array<uint32_t, 3>;
+
+uint64_t key_of(uint32_t low, uint32_t high) { return uint64_t(low) << 32 | high; }
+
+/// Per vertex, the lowest vertex at exactly the same position: files split vertices along creases
+/// and texture seams.
+std::vector<uint32_t> places_of(const std::vector<Vec3>& positions) {
+  std::vector<uint32_t> order(positions.size());
+  for (uint32_t v = 0; v < order.size(); ++v) order[v] = v;
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    const Vec3 &p = positions[a], &q = positions[b];
+    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+  });
+  std::vector<uint32_t> place(positions.size());
+  for (size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && positions[order[i]] == positions[order[i - 1]];
+    place[order[i]] = same ? place[order[i - 1]] : order[i];
+  }
+  return place;
+}
+
+/// Where edges are cut: from the end at the lower place, as a share of the edge.
+class CutEdges {
+ public:
+  CutEdges(Mesh& mesh, std::span<const uint8_t> chosen, const Plane& plane, double tolerance)
+      : mesh_(mesh), place_(places_of(mesh.positions)) {
+    std::vector<double> height(mesh.positions.size());
+    for (size_t v = 0; v < height.size(); ++v)
+      height[v] = plane.height(to_double(mesh.positions[v]));
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (size_t k = 0; chosen[t] && k < 3; ++k) {
+        const auto [low, high] = ends(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+        const double a = height[low], b = height[high];
+        if (std::min(a, b) < -tolerance && std::max(a, b) > tolerance)
+          at_.emplace(key_of(place_[low], place_[high]), float(a / (a - b)));
+      }
+  }
+
+  bool empty() const { return at_.empty(); }
+  bool cuts(uint32_t a, uint32_t b) const {
+    const auto [low, high] = ends(a, b);
+    return at_.count(key_of(place_[low], place_[high])) > 0;
+  }
+  /// The vertex on a cut edge; added when it is asked for the first time.
+  uint32_t vertex(uint32_t a, uint32_t b) {
+    const auto [low, high] = ends(a, b);
+    const auto [found, added] =
+        vertex_.emplace(key_of(low, high), uint32_t(mesh_.positions.size()));
+    if (added) add_vertex(low, high, at_.at(key_of(place_[low], place_[high])));
+    return found->second;
+  }
+
+ private:
+  std::pair<uint32_t, uint32_t> ends(uint32_t a, uint32_t b) const {
+    return place_[a] < place_[b] ? std::pair(a, b) : std::pair(b, a);
+  }
+
+  void add_vertex(uint32_t low, uint32_t high, float s) {
+    const auto between = [&](auto& values) {
+      if (!values.empty()) values.push_back(values[low] * (1 - s) + values[high] * s);
+    };
+    between(mesh_.positions), between(mesh_.uv0), between(mesh_.uv1), between(mesh_.colors);
+    between(mesh_.normals);
+    if (mesh_.normals.empty()) return;
+    Vec3& n = mesh_.normals.back();
+    // Normals that point against each other leave none between them.
+    n = length(n) > 1e-6f ? normalize(n) : mesh_.normals[low];
+  }
+
+  Mesh& mesh_;
+  std::vector<uint32_t> place_;
+  std::unordered_map<uint64_t, float> at_;         ///< by places
+  std::unordered_map<uint64_t, uint32_t> vertex_;  ///< by vertices
+};
+
+/// The pieces of a triangle whose edges (k, k + 1) are cut where cut[k] says, at middle[k].
+std::vector<Corners> pieces_of(const Mesh& mesh, const Corners& c, const std::array<bool, 3>& cut,
+                               const std::array<uint32_t, 3>& middle) {
+  const auto count = std::count(cut.begin(), cut.end(), true);
+  if (count == 3)
+    return {{c[0], middle[0], middle[2]},
+            {middle[0], c[1], middle[1]},
+            {middle[2], middle[1], c[2]},
+            {middle[0], middle[1], middle[2]}};
+  if (count == 1) {
+    const size_t k = size_t(std::find(cut.begin(), cut.end(), true) - cut.begin());
+    const uint32_t apex = c[(k + 2) % 3];
+    return {{c[k], middle[k], apex}, {middle[k], c[(k + 1) % 3], apex}};
+  }
+  // Two cut edges meet in a corner; what is left is divided by its shorter diagonal.
+  const size_t whole = size_t(std::find(cut.begin(), cut.end(), false) - cut.begin());
+  const uint32_t a = c[whole], b = c[(whole + 1) % 3], tip = c[(whole + 2) % 3];
+  const uint32_t on_b = middle[(whole + 1) % 3], on_a = middle[(whole + 2) % 3];
+  const auto apart = [&](uint32_t v, uint32_t w) {
+    return length(mesh.positions[v] - mesh.positions[w]);
+  };
+  if (apart(a, on_b) <= apart(b, on_a)) return {{on_a, on_b, tip}, {a, b, on_b}, {a, on_b, on_a}};
+  return {{on_a, on_b, tip}, {a, b, on_a}, {b, on_b, on_a}};
+}
+
+}  // namespace
+
+Plane plane_in_object(const Plane& world, const Mat34& m) {
+  const auto along = [&](int axis) { return dot(world.normal, to_double(column(m, axis))); };
+  return {{along(0), along(1), along(2)}, world.offset - along(3)};
+}
+
+std::vector<uint32_t> cut_mesh(Mesh& mesh, std::span<const uint8_t> chosen, const Plane& plane,
+                               double tolerance) {
+  LUXEL_CHECK(chosen.size() == mesh.triangles.size());
+  CutEdges edges(mesh, chosen, plane, tolerance);
+  std::vector<uint32_t> part_of;
+  const size_t count = edges.empty() ? 0 : mesh.triangles.size();
+  for (uint32_t t = 0; t < count; ++t) {
+    const Corners c = mesh.triangles[t];
+    std::array<bool, 3> cut{};
+    std::array<uint32_t, 3> middle{};
+    for (size_t k = 0; k < 3; ++k) {
+      cut[k] = edges.cuts(c[k], c[(k + 1) % 3]);
+      if (cut[k]) middle[k] = edges.vertex(c[k], c[(k + 1) % 3]);
+    }
+    if (!cut[0] && !cut[1] && !cut[2]) continue;
+    const std::vector<Corners> pieces = pieces_of(mesh, c, cut, middle);
+    mesh.triangles[t] = pieces.front();
+    for (size_t k = 1; k < pieces.size(); ++k) {
+      mesh.triangles.push_back(pieces[k]);
+      mesh.triangle_material.push_back(mesh.triangle_material[t]);
+      part_of.push_back(t);
+    }
+  }
+  return part_of;
+}
+
+}  // namespace luxel::scene

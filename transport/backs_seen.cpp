@@ -1,0 +1,30 @@
+#include "transport/backs_seen.h"
+
+#include <array>
+
+#include "base/check.h"
+#include "base/random.h"
+#include "base/warp.h"
+
+namespace luxel::transport {
+
+BacksSeen backs_seen(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
+                     Vec3 normal, int rays) {
+  constexpr size_t kMost = 64;
+  LUXEL_CHECK(rays > 0 && size_t(rays) <= kMost);
+  const size_t count = size_t(rays);
+  const auto frame = frame_around(normal);
+  std::array<trace::Ray, kMost> batch;
+  std::array<trace::Hit, kMost> hits;
+  for (uint32_t k = 0; k < count; ++k)
+    batch[k] = {from, 0, frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 3))), INFINITY};
+  tracer.closest_hits(std::span(batch).first(count), std::span(hits).first(count));
+  BacksSeen seen{rays, 0, 0};
+  for (const trace::Hit& hit : std::span(hits).first(count)) {
+    if (!hit.found() || !hit.back_face) continue;
+    ++(scene::material_at(scene, hit.point()).double_sided ? seen.double_sided : seen.one_sided);
+  }
+  return seen;
+}
+
+}  // namespace luxel::transport

@@ -1,0 +1,26 @@
+// Whether a place lies inside a solid: what it sees are the backs of surfaces.
+#pragma once
+
+#include "trace/ray_tracer.h"
+
+namespace luxel::transport {
+
+/// Of `rays` rays, how many met the back of a one-sided or of a double-sided surface.
+struct BacksSeen {
+  int rays = 0, one_sided = 0, double_sided = 0;
+};
+
+/// 64 rays at most, cosine-distributed about `normal`, the same set for every place. They start at
+/// `from`, which lies just off the surface (trace::offset_origin).
+BacksSeen backs_seen(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
+                     Vec3 normal, int rays);
+
+/// Most of what it sees is the back of one-sided surfaces: light there means nothing to anybody.
+inline bool is_hidden(const BacksSeen& b) { return 2 * b.one_sided > b.rays; }
+/// It is hidden or sees nothing but backs, also of double-sided surfaces: the floor under a box.
+/// Many exporters call every material double-sided.
+inline bool is_enclosed(const BacksSeen& b) {
+  return is_hidden(b) || 100 * (b.one_sided + b.double_sided) >= 98 * b.rays;
+}
+
+}  // namespace luxel::transport

@@ -50,6 +50,7 @@ void shoot_at_punctual(const Lights& lights, size_t index, float chance, int sam
   shots.sources[source].scale = (whole ? std::max(cosine, 0.0f) : seen) / chance;
   shots.sources[source].unshadowed = luminance(in.irradiance) * shots.sources[source].scale;
   shots.sources[source].tint = in.irradiance;
+  shots.sources[source].drawn = chance < 1;
 }
 
 }  // namespace
@@ -60,24 +61,20 @@ void shoot_at_lamps(const Lights& lights, int samples, const Receiver& r, Shots&
     for (size_t i = 0; i < count; ++i) shoot_at_punctual(lights, i, 1, samples, r, shots);
     return;
   }
-  // Many lamps: systematic sampling in proportion to unshadowed light.
-  std::vector<float> importance(count);
-  float total = 0;
-  for (size_t i = 0; i < count; ++i) {
-    const auto in = incidence_at(lights.punctual[i], lights.profiles, r.position);
-    importance[i] = luminance(in.irradiance) * std::max(0.0f, dot(in.towards, r.normal));
-    total += importance[i];
-  }
-  if (!(total > 0)) return;
+  for (size_t i = 0; i < count; ++i)
+    if (lights.punctual[i].kind == scene::PunctualLight::Kind::directional)
+      shoot_at_punctual(lights, i, 1, samples, r, shots);
+  if (lights.lamp_nodes.empty()) return;
+  const auto leaf = [&](const LightNode& node) {
+    const auto in =
+        incidence_at(lights.punctual[lights.lamp_order[node.first]], lights.profiles, r.position);
+    return luminance(in.irradiance) * std::max(0.0f, dot(in.towards, r.normal));
+  };
   RandomStream random{hash64(r.seed, 0x12)};
-  float owed = random.next();
-  for (size_t i = 0; i < count; ++i) {
-    const float chance = std::min(1.0f, float(kMaxPunctual) * importance[i] / total);
-    owed += chance;
-    if (owed < 1) continue;
-    owed -= 1;
-    shoot_at_punctual(lights, i, chance, samples, r, shots);
-  }
+  draw_lights(lights.lamp_nodes, r.position, r.normal, leaf,
+              {.samples = int(kMaxPunctual), .start = random.next()}, shots.draws);
+  for (const LightDraw& draw : shots.draws.draws)
+    shoot_at_punctual(lights, lights.lamp_order[draw.light], draw.chance, samples, r, shots);
 }
 
 }  // namespace luxel::transport

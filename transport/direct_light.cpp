@@ -20,6 +20,23 @@ void trace_shots(const trace::RayTracer& tracer, Shots& shots) {
     shots.arriving[k] = shots.blocked[k] ? Rgb{} : Rgb{1, 1, 1};
 }
 
+/// Variance of what systematic sampling has drawn: half the mean square of the differences between
+/// neighbours on the line, which share their place and differ by chance [Wolter85, eq. 7.2.4].
+struct DrawnVariance {
+  float before = 0, squares = 0;
+  uint32_t count = 0;
+
+  void add(float light) {
+    const float d = light - before;
+    if (count > 0) squares += 0.5f * d * d;
+    before = light, ++count;
+  }
+  float sum() const {
+    if (count < 2) return before * before;
+    return squares * float(count) / float(count - 1);
+  }
+};
+
 /// Traces the shots and adds the sources up.
 void resolve(const trace::RayTracer& tracer, Shots& shots, Rgb& irradiance, float& variance) {
   trace_shots(tracer, shots);
@@ -32,11 +49,14 @@ void resolve(const trace::RayTracer& tracer, Shots& shots, Rgb& irradiance, floa
     const float l = luminance(arrived);
     source.sum_luminance2 += l * l;
   }
+  DrawnVariance drawn;
   for (const Source& s : shots.sources) {
+    if (s.drawn) drawn.add(luminance(s.sum * s.tint) * s.scale);
     if (s.shots == 0 || s.sum_weight <= 0) continue;
     const float n = float(s.shots);
     const Rgb light = s.sum * s.tint * (s.exact ? s.scale / s.sum_weight : s.scale);
     irradiance += light;
+    if (s.drawn) continue;
     if (s.exact) {
       const float share = std::min(1.0f, luminance(light) / std::max(s.unshadowed, 1e-30f));
       variance += s.unshadowed * s.unshadowed * share * (1 - share) / n;
@@ -45,6 +65,7 @@ void resolve(const trace::RayTracer& tracer, Shots& shots, Rgb& irradiance, floa
       variance += std::max(0.0f, mean2 - mean * mean) * s.scale * s.scale * n;
     }
   }
+  variance += drawn.sum();
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "scene/scene.h"
 #include "trace/ray_tracer.h"
-#include "transport/light_cut.h"
+#include "transport/light_draw.h"
 #include "transport/lights.h"
 
 namespace luxel::transport {
@@ -25,10 +25,11 @@ struct Shot {
 };
 
 /// The visible share of a source is  sum w V / sum w  over its shots; its light is that share times
-/// the exact unshadowed light. A group of lights has no exact value: its light is the mean of w V.
+/// the exact unshadowed light. Where nothing is exact, light is scale * sum w V.
 struct Source {
-  float scale = 0;  ///< exact: irradiance per radiance / chance; group: 1 / (shots * chance)
+  float scale = 0;  ///< exact: irradiance per radiance / chance; else 1 / (shots * chance)
   bool exact = false;
+  bool drawn = false;  ///< one of many, for its neighbours too; scale is 1 / chance
   float sum_weight = 0;
   uint32_t shots = 0;
   Rgb sum{};
@@ -39,7 +40,8 @@ struct Source {
 
 /// Sources and shots of one element; buffers that are reused from element to element.
 struct Shots {
-  std::vector<CutEntry> cut;
+  std::vector<float> whole;  ///< per triangle light: irradiance per radiance, nothing in between
+  LightDraws draws;
   std::vector<Source> sources;
   std::vector<Shot> shots;
   std::vector<trace::Ray> rays;

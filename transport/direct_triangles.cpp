@@ -1,17 +1,37 @@
 // Shadow rays towards emissive triangles.
 #include <algorithm>
+#include <array>
 
 #include "base/random.h"
 #include "base/warp.h"
 #include "transport/direct_shots.h"
+#include "transport/light_draw.h"
+#include "transport/point_form_factor.h"
 #include "transport/spherical_triangle.h"
 
 namespace luxel::transport {
 namespace {
 
-constexpr size_t kMaxCut = 32;
+/// Up to so many lights every one is looked at; of more, some are drawn.
+constexpr size_t kMaxAll = 32;
 /// Below it a triangle is so small that sampling its area is as good, and more exact in floats.
 constexpr float kMinSolidAngle = 1e-3f;
+
+/// pi F(point -> triangle light): irradiance per unit of radiance, nothing in between. Zero in the
+/// light's own plane and behind a one-sided light.
+float irradiance_per_radiance(const TriangleLight& light, Vec3 position, Vec3 normal) {
+  const float side = dot(position - light.a, light.normal);
+  const float reach = length(position - light.a);
+  // In the light's plane, or in ours, rounding would decide between nothing and a half space.
+  constexpr float kPlaneTolerance = 1e-6f;
+  if (std::abs(side) <= kPlaneTolerance * reach || (side < 0 && !light.two_sided)) return 0;
+  const float highest = std::max({dot(light.a - position, normal), dot(light.b - position, normal),
+                                  dot(light.c - position, normal)});
+  if (highest <= 10 * kPlaneTolerance * reach) return 0;
+  const std::array<Vec3, 3> corners{light.a, side > 0 ? light.b : light.c,
+                                    side > 0 ? light.c : light.b};
+  return kPi * float(point_to_polygon(position, normal, corners));
+}
 
 /// One point of a triangle light: w = cos (solid angle density) or cos cos / d^2 (area density);
 /// both up to a constant of the light, `measure`, which a group needs and an exact source does not.
@@ -78,42 +98,72 @@ void shoot_at_triangle(const scene::Scene& scene, const TriangleLight& light, ui
   }
 }
 
-/// Shots at a group: a triangle in proportion to its power, a point on it by area.
-void shoot_at_group(const scene::Scene& scene, const Lights& lights, const LightNode& node,
-                    uint32_t source, uint32_t count, const Receiver& r, float diagonal_m,
-                    Shots& shots) {
-  const float low = lights.power_below[node.first];
-  const float high = lights.power_below[node.first + node.count];
-  RandomStream random{hash64(r.seed, node.first + (uint64_t(node.count) << 32))};
-  for (uint32_t k = 0; k < count; ++k) {
-    const float power = low + (high - low) * ((float(k) + random.next()) / float(count));
-    const auto begin = lights.power_below.begin() + node.first + 1;
-    const auto found = std::upper_bound(begin, begin + node.count - 1, power);
-    const size_t index = node.first + size_t(found - begin);
-    const TriangleLight& light = lights.triangles[index];
-    const float chance = (lights.power_below[index + 1] - lights.power_below[index]) / (high - low);
-    const LightPoint point = sample_area(light, r, random.next2());
-    if (point.weight > 0 && chance > 0)
-      shoot_at(scene, light, point, source, point.measure / chance, r, diagonal_m, shots);
+bool shines_on(const TriangleLight& light, const Receiver& r) {
+  return light.two_sided || dot(r.position - light.a, light.normal) > 0;
+}
+
+/// One shot at a triangle that stands for many.
+void shoot_at_drawn(const scene::Scene& scene, const TriangleLight& light, float chance,
+                    const Receiver& r, float diagonal_m, Shots& shots) {
+  const uint32_t source = uint32_t(shots.sources.size());
+  shots.sources.push_back({.scale = 1 / chance, .drawn = true});
+  const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
+  const uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
+  const Vec2 u = RandomStream{seed}.next2();
+  const LightPoint point = spherical.solid_angle > kMinSolidAngle
+                               ? sample_solid_angle(light, spherical, r, u)
+                               : sample_area(light, r, u);
+  if (point.weight > 0 && shines_on(light, r))
+    shoot_at(scene, light, point, source, point.measure, r, diagonal_m, shots);
+}
+
+/// More lights than a cut holds: some of them. Those that get a ray for certain are exact but for
+/// the visible share; of the others each one that is drawn stands for its neighbours too.
+void shoot_at_many(const scene::Scene& scene, const Lights& lights, int samples, const Receiver& r,
+                   float diagonal_m, Shots& shots) {
+  const auto leaf = [&](const LightNode& node) {
+    return importance_at(node, r.position, r.normal);
+  };
+  RandomStream random{hash64(r.seed, 0x11)};
+  draw_lights(lights.nodes, r.position, r.normal, leaf,
+              {.samples = samples, .start = random.next()}, shots.draws);
+  for (const LightDraw& draw : shots.draws.draws) {
+    const TriangleLight& light = lights.triangles[draw.light];
+    if (draw.chance < 1) {
+      shoot_at_drawn(scene, light, draw.chance, r, diagonal_m, shots);
+      continue;
+    }
+    const float whole = irradiance_per_radiance(light, r.position, r.normal);
+    if (whole <= 0) continue;
+    const uint32_t source = uint32_t(shots.sources.size());
+    shots.sources.push_back(
+        {.scale = whole, .exact = true, .unshadowed = whole * luminance(light.mean_radiance)});
+    shoot_at_triangle(scene, light, source, draw.count, r, diagonal_m, shots);
   }
 }
 
-}  // namespace
-
-/// Shares `samples` shots out over the cut in proportion to importance, at least one to each entry
-/// while there are twice as many shots as entries. Where there are fewer, an entry that deserves
+/// Few lights: `samples` shots are shared out in proportion to what each brings, at least one to
+/// each while there are twice as many shots as lights. Where there are fewer, a light that deserves
 /// less than one gets one with that chance (systematic sampling), and counts for more then.
-void shoot_at_triangles(const scene::Scene& scene, const Lights& lights, int samples,
-                        const Receiver& r, float diagonal_m, Shots& shots) {
-  light_cut(lights, r.position, r.normal, kMaxCut, shots.cut);
+void shoot_at_all(const scene::Scene& scene, const Lights& lights, int samples, const Receiver& r,
+                  float diagonal_m, Shots& shots) {
+  shots.whole.clear();
   float total = 0;
-  for (const CutEntry& entry : shots.cut) total += entry.importance;
+  size_t shining = 0;
+  for (const TriangleLight& light : lights.triangles) {
+    shots.whole.push_back(irradiance_per_radiance(light, r.position, r.normal));
+    total += shots.whole.back() * luminance(light.mean_radiance);
+    shining += shots.whole.back() > 0;
+  }
   if (!(total > 0)) return;
   RandomStream random{hash64(r.seed, 0x11)};
   float owed = random.next();
-  const float least = size_t(samples) >= 2 * shots.cut.size() ? 1.0f : 0.0f;
-  for (const CutEntry& entry : shots.cut) {
-    const float deserved = std::max(least, float(samples) * entry.importance / total);
+  const float least = size_t(samples) >= 2 * shining ? 1.0f : 0.0f;
+  for (size_t i = 0; i < lights.triangles.size(); ++i) {
+    if (shots.whole[i] <= 0) continue;
+    const TriangleLight& light = lights.triangles[i];
+    const float unshadowed = shots.whole[i] * luminance(light.mean_radiance);
+    const float deserved = std::max(least, float(samples) * unshadowed / total);
     uint32_t count = uint32_t(std::lround(deserved));
     if (deserved < 1) {
       owed += deserved;
@@ -122,18 +172,22 @@ void shoot_at_triangles(const scene::Scene& scene, const Lights& lights, int sam
     }
     if (count == 0) continue;
     const float chance = std::min(1.0f, deserved);
-    const LightNode& node = lights.nodes[entry.node];
     const uint32_t source = uint32_t(shots.sources.size());
-    Source s;
-    s.exact = entry.exact;
-    s.scale = entry.exact ? entry.irradiance_per_radiance / chance : 1 / (float(count) * chance);
-    s.unshadowed = entry.importance / chance;
-    shots.sources.push_back(s);
-    if (entry.exact)
-      shoot_at_triangle(scene, lights.triangles[node.first], source, count, r, diagonal_m, shots);
-    else
-      shoot_at_group(scene, lights, node, source, count, r, diagonal_m, shots);
+    shots.sources.push_back(
+        {.scale = shots.whole[i] / chance, .exact = true, .unshadowed = unshadowed / chance});
+    shoot_at_triangle(scene, light, source, count, r, diagonal_m, shots);
   }
+}
+
+}  // namespace
+
+void shoot_at_triangles(const scene::Scene& scene, const Lights& lights, int samples,
+                        const Receiver& r, float diagonal_m, Shots& shots) {
+  if (lights.triangles.empty()) return;
+  if (lights.triangles.size() <= kMaxAll)
+    shoot_at_all(scene, lights, samples, r, diagonal_m, shots);
+  else
+    shoot_at_many(scene, lights, samples, r, diagonal_m, shots);
 }
 
 }  // namespace luxel::transport

@@ -1,7 +1,6 @@
 #include "transport/lights.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "base/check.h"
 #include "base/random.h"
@@ -44,32 +43,54 @@ float power_of(const TriangleLight& light) {
   return luminance(light.mean_radiance) * light.area_m2 * (light.two_sided ? 2.0f : 1.0f);
 }
 
-/// Splits [first, first + count) at the median of the longest axis of the centres, depth first.
-void build_node(std::vector<TriangleLight>& lights, std::vector<LightNode>& nodes, uint32_t first,
-                uint32_t count) {
-  const size_t self = nodes.size();
-  nodes.push_back({});
-  LightNode node;
-  node.first = first, node.count = count;
-  Box3 centres;
-  for (uint32_t i = first; i < first + count; ++i) {
-    const TriangleLight& light = lights[i];
-    node.bounds.extend(light.a), node.bounds.extend(light.b), node.bounds.extend(light.c);
-    centres.extend((light.a + light.b + light.c) / 3.0f);
-    node.power += power_of(light);
+/// Two-sided triangles send as much as a sphere of directions does: half of their cosines' mean.
+LightLeaf leaf_of(const TriangleLight& light, uint32_t index) {
+  LightLeaf leaf;
+  leaf.index = index;
+  for (const Vec3 p : {light.a, light.b, light.c}) leaf.bounds.extend(p);
+  leaf.place = {light.a.x + light.b.x + light.c.x, light.a.y + light.b.y + light.c.y,
+                light.a.z + light.b.z + light.c.z};
+  leaf.node.power = power_of(light);
+  leaf.node.even = light.two_sided ? 0.25f : 0;
+  leaf.node.facing = light.two_sided ? Vec3{} : light.normal;
+  set_cone(leaf.node, light.normal, light.two_sided ? kPi : 0.5f * kPi);
+  return leaf;
+}
+
+LightLeaf leaf_of(const scene::PunctualLight& lamp, std::span<const scene::LightProfile> profiles,
+                  uint32_t index) {
+  LightLeaf leaf;
+  leaf.index = index;
+  leaf.place = lamp.position;
+  leaf.bounds.extend(lamp.position);
+  leaf.node.power = luminance(lamp.intensity);
+  if (lamp.profile != scene::kNone)
+    leaf.node.power *= *std::ranges::max_element(profiles[lamp.profile].candela);
+  if (lamp.range_m > 0) leaf.node.reach_m = lamp.range_m;
+  const bool spot = lamp.kind == scene::PunctualLight::Kind::spot;
+  set_cone(leaf.node, lamp.direction, spot ? lamp.outer_cone_rad : kPi);
+  return leaf;
+}
+
+void build_triangle_tree(Lights& lights) {
+  std::vector<LightLeaf> leaves;
+  for (const TriangleLight& light : lights.triangles)
+    leaves.push_back(leaf_of(light, uint32_t(leaves.size())));
+  lights.nodes = build_light_tree(leaves);
+  std::vector<TriangleLight> sorted;
+  for (const LightLeaf& leaf : leaves) sorted.push_back(lights.triangles[leaf.index]);
+  lights.triangles = std::move(sorted);
+}
+
+void build_lamp_tree(Lights& lights) {
+  std::vector<LightLeaf> leaves;
+  for (uint32_t i = 0; i < lights.punctual.size(); ++i) {
+    if (lights.punctual[i].kind == scene::PunctualLight::Kind::directional) continue;
+    const LightLeaf leaf = leaf_of(lights.punctual[i], lights.profiles, i);
+    if (leaf.node.power > 0) leaves.push_back(leaf);
   }
-  if (count > 1) {
-    const Vec3 size = centres.upper - centres.lower;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const auto begin = lights.begin() + first;
-    std::stable_sort(begin, begin + count, [axis](const auto& p, const auto& q) {
-      return p.a[axis] + p.b[axis] + p.c[axis] < q.a[axis] + q.b[axis] + q.c[axis];
-    });
-    build_node(lights, nodes, first, count / 2);
-    node.right_child = uint32_t(nodes.size());
-    build_node(lights, nodes, first + count / 2, count - count / 2);
-  }
-  nodes[self] = node;
+  lights.lamp_nodes = build_light_tree(leaves);
+  for (const LightLeaf& leaf : leaves) lights.lamp_order.push_back(leaf.index);
 }
 
 }  // namespace
@@ -92,11 +113,8 @@ Lights collect_lights(const scene::Scene& scene) {
       if (power_of(light) > 0) lights.triangles.push_back(light);
     }
   }
-  if (!lights.triangles.empty())
-    build_node(lights.triangles, lights.nodes, 0, uint32_t(lights.triangles.size()));
-  lights.power_below.assign(1, 0.0f);
-  for (const TriangleLight& light : lights.triangles)
-    lights.power_below.push_back(lights.power_below.back() + power_of(light));
+  build_triangle_tree(lights);
+  build_lamp_tree(lights);
   return lights;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/vec.h"
 #include "scene/scene.h"
+#include "transport/light_tree.h"
 #include "transport/surroundings.h"
 
 namespace luxel::transport {
@@ -24,25 +25,18 @@ struct TriangleLight {
   bool two_sided = false;
 };
 
-/// A node of the light hierarchy: a range of triangles and what an element far away needs to know.
-struct LightNode {
-  Box3 bounds;
-  float power = 0;  ///< sum of luminance(mean radiance) * area * sides
-  uint32_t first = 0, count = 0;
-  uint32_t right_child = 0;  ///< the left child follows its parent; 0: a leaf of one triangle
-};
-
 struct Lights {
   std::vector<TriangleLight> triangles;  ///< in the order of the hierarchy's leaves
-  std::vector<float> power_below;        ///< sum of powers before each triangle; one extra entry
-  std::vector<LightNode> nodes;          ///< binary, depth first; node 0 is the root
+  std::vector<LightNode> nodes;          ///< of the triangles; node 0 is the root
   std::vector<scene::PunctualLight> punctual;
+  std::vector<uint32_t> lamp_order;           ///< point and spot lights as leaves of lamp_nodes
+  std::vector<LightNode> lamp_nodes;          ///< of those with any light
   std::vector<scene::LightProfile> profiles;  ///< what lamps refer to
   Surroundings around;                        ///< what rays see that leave the scene
 };
 
-/// Finds the emissive triangles, averages their textures and builds the hierarchy. A light with no
-/// power is left out.
+/// Finds the emissive triangles, averages their textures and builds the hierarchies. A triangle
+/// with no power is left out.
 Lights collect_lights(const scene::Scene& scene);
 
 /// Emitted radiance at a point of a triangle light, as the mean over what covers it and what not.

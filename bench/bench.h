@@ -45,6 +45,9 @@ Result<Table> measure_denoise(const std::filesystem::path& shared, int threads);
 /// Shared scenes under sun and sky, a map against the path tracer, real light and many lamps.
 Result<Table> measure_scenes(const std::filesystem::path& shared, int threads);
 
+/// What averaging direct light over texels costs, and what it takes away of their error.
+Result<Table> measure_supersample(const std::filesystem::path& shared, int threads);
+
 struct Bench {
   std::string_view name;
   BenchFunction run;
@@ -53,6 +56,6 @@ inline constexpr std::array kBenches{
     Bench{"rays", measure_rays},       Bench{"maps", measure_maps},
     Bench{"atlas", measure_atlas},     Bench{"memory", measure_memory},
     Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise},
-    Bench{"scenes", measure_scenes}};
+    Bench{"scenes", measure_scenes},   Bench{"supersample", measure_supersample}};
 
 }  // namespace luxel::bench

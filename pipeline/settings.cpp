@@ -15,7 +15,7 @@
 namespace luxel::pipeline {
 namespace {
 
-constexpr int kMaxSamples = 65535;
+constexpr int kMaxSamples = 65535, kMaxSupersample = 1024;
 constexpr int64_t kMaxElements = 1 << 26;
 
 /// A number that is the whole of `text`.
@@ -111,6 +111,7 @@ Status check(const BakeSettings& s) {
   LUXEL_TRY_STATUS(check_range("--resolution", s.resolution, 1, 16384));
   LUXEL_TRY_STATUS(check_range("--samples", s.samples, 1, kMaxSamples));
   LUXEL_TRY_STATUS(check_range("--direct-samples", s.direct_samples, 1, kMaxSamples));
+  LUXEL_TRY_STATUS(check_range("--supersample", s.supersample, 1, kMaxSupersample));
   LUXEL_TRY_STATUS(check_range("--threads", s.threads, 0, 1024));
   if (!std::isfinite(s.texels_per_metre) || s.texels_per_metre < 0)
     return fail(ErrorCode::bad_setting, "--texels-per-metre {} is not a density; give a number > 0",
@@ -141,6 +142,7 @@ nlohmann::json to_json(const BakeSettings& s) {
                       {"uv", name_of(s.uv)},
                       {"samples", s.samples},
                       {"direct_samples", s.direct_samples},
+                      {"supersample", s.supersample},
                       {"max_memory_bytes", s.max_memory_bytes},
                       {"seed", s.seed},
                       {"threads", s.threads}};

@@ -83,6 +83,7 @@ struct BakeSettings {
   atlas::UvMode uv = atlas::UvMode::automatic;
   int samples = 256;
   int direct_samples = 64;
+  int supersample = 16;           ///< points per texel where direct light varies; 1: none
   int bounces = -1;               ///< < 0: all
   uint64_t max_memory_bytes = 0;  ///< 0: four fifths of what is free when the bake starts
   uint64_t seed = 1;

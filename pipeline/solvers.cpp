@@ -15,7 +15,7 @@
 #include "solve/hierarchical/represent.h"
 #include "solve/hierarchical/surface.h"
 #include "solve/matrix/matrix.h"
-#include "transport/direct_light.h"
+#include "transport/supersample.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -25,6 +25,8 @@ namespace {
 /// hits are gone, the lightmap and its encoded files, which take less. Paths need about the same:
 /// three results of 12 bytes per element, and less per texel.
 constexpr uint64_t kBytesPerElement = 72, kBytesPerSquareTexel = 20;
+/// A point of a texel's footprint, held twice while the list is made.
+constexpr uint64_t kBytesPerFootprintPoint = 120;
 /// What denoising needs besides: places, planes, what neighbours show, the level of noise.
 constexpr uint64_t kDenoiseBytesPerElement = 140;
 /// E for five normals and what becomes of it, with --directional.
@@ -83,6 +85,7 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   gather::GatherParams params;
   params.samples = settings.samples;
   params.direct_samples = settings.direct_samples;
+  params.supersample = settings.supersample;
   params.bounces = settings.bounces;
   params.seed = settings.seed;
   params.hit_memory_bytes = hit_memory;
@@ -93,19 +96,28 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   out.direct = std::move(result.direct);
   out.direct_variance = std::move(result.direct_variance);
   out.variance = std::move(result.indirect_variance);
-  out.sweeps = result.sweeps;
+  out.sweeps = result.sweeps, out.supersampled_texels = result.supersampled;
   out.scratch_bytes = result.hit_bytes_in_file;
   return out;
 }
 
 Result<TexelLight> solve_reference(const SolveInput& in, const BakeSettings& settings,
                                    Progress& progress) {
-  if (const auto spare = memory_to_spare(in, settings, 0); !spare)
+  const int points = std::min(settings.supersample, settings.samples);
+  const uint64_t per_element = points > 1 ? uint64_t(points) * kBytesPerFootprintPoint : 0;
+  if (const auto spare = memory_to_spare(in, settings, per_element * in.elements.size()); !spare)
     return tl::unexpected(spare.error());
   const reference::PathParams params{settings.samples, settings.bounces, settings.seed};
+  transport::Footprints footprints;
+  reference::Receivers receivers = reference::receivers(in.elements);
+  if (points > 1) {
+    LUXEL_TRY(footprints, transport::footprints(in.scene, in.atlas, in.map, in.elements, in.tracer,
+                                                points, settings.seed, progress));
+    receivers = reference::receivers(footprints.points);
+    receivers.first = footprints.first;
+  }
   LUXEL_TRY(reference::TexelPaths result,
-            reference::irradiance_by_paths(in.scene, reference::receivers(in.elements), in.tracer,
-                                           params, progress));
+            reference::irradiance_by_paths(in.scene, receivers, in.tracer, params, progress));
   TexelLight out = texel_light(std::move(result));
   for (const float error : result.luminance_error) out.variance.push_back(error * error);
   return out;
@@ -168,9 +180,14 @@ Result<TexelLight> solve_matrix(const SolveInput& in, const BakeSettings& settin
   LUXEL_TRY(const matrix::Transfer map,
             matrix::make_transfer(prepared.work, in.tracer,
                                   {in.elements.position, in.elements.geometric_normal}, progress));
+  const transport::DirectParams direct_params{settings.direct_samples, settings.seed};
   LUXEL_TRY(transport::DirectLight direct,
-            transport::direct_light(in.scene, in.elements, in.lights, in.tracer,
-                                    {settings.direct_samples, settings.seed, false}, progress));
+            transport::direct_light(in.scene, in.elements, in.lights, in.tracer, direct_params,
+                                    progress));
+  LUXEL_TRY(const transport::Supersampled averaged,
+            transport::supersample(in.scene, in.atlas, in.map, in.elements, in.lights, in.tracer,
+                                   {.points = settings.supersample, .direct = direct_params},
+                                   direct, progress));
   TexelLight out;
   out.irradiance.resize(in.elements.size()), out.hidden.resize(in.elements.size());
   matrix::transfer(map, solution.indirect, out.irradiance);
@@ -186,7 +203,8 @@ Result<TexelLight> solve_matrix(const SolveInput& in, const BakeSettings& settin
   out.variance.assign(in.elements.size(), 0.0f);
   out.direct = std::move(direct.irradiance);
   out.direct_variance = std::move(direct.variance);
-  out.rays = solution.rays + direct.rays, out.sweeps = solution.sweeps;
+  out.supersampled_texels = averaged.texels;
+  out.rays = solution.rays + direct.rays + averaged.rays, out.sweeps = solution.sweeps;
   out.elements = prepared.work.patches.size();
   out.relative_error = solution.relative_error;
   return out;
@@ -250,15 +268,21 @@ constexpr std::array kSolvers{
            .solve = solve_gather,
            .samples = true,
            .direct_samples = true,
+           .supersample = true,
            .noise = true},
     Solver{.name = "hemicube", .solve = solve_hemicube, .direct_samples = true, .hemicube = true},
     Solver{.name = "matrix",
            .solve = solve_matrix,
            .direct_samples = true,
+           .supersample = true,
            .matrix = true,
            .noise = true},
     Solver{.name = "hierarchical", .solve = solve_hierarchical, .hierarchical = true},
-    Solver{.name = "reference", .solve = solve_reference, .samples = true, .noise = true}};
+    Solver{.name = "reference",
+           .solve = solve_reference,
+           .samples = true,
+           .supersample = true,
+           .noise = true}};
 
 }  // namespace
 

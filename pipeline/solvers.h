@@ -39,6 +39,7 @@ struct TexelLight {
   std::vector<Rgb> direct;
   std::vector<float> direct_variance;
   uint64_t rays = 0;
+  uint64_t supersampled_texels = 0;  ///< direct light is a mean over their points
   int sweeps = 0;
   double relative_error = 0;       ///< estimated, root mean square over the mean
   std::vector<uint8_t> hidden;     ///< per texel: 1 inside a solid, where E means nothing
@@ -56,8 +57,8 @@ struct Solver {
   std::string_view name;
   SolveFunction solve;
   /// What it looks at of the settings.
-  bool samples = false, direct_samples = false, hemicube = false, matrix = false,
-       hierarchical = false;
+  bool samples = false, direct_samples = false, supersample = false, hemicube = false,
+       matrix = false, hierarchical = false;
   bool noise = false;  ///< knows the variance of its light: --denoise
 };
 

@@ -63,6 +63,29 @@ TEST(Lights, TheExactCornellProbes) {
   }
 }
 
+// Paths start at a receiver's points in turn: under a lamp 2 m up, I cos / d^2 is I / 4 below it
+// and I / 8 sqrt(1/2) two metres beside it; three points of the second receiver take 0, 1, 2, 0,
+// ...
+TEST(Lights, AReceiverOfSeveralPointsHasTheirMean) {
+  scene::Scene scene;
+  scene::PunctualLight lamp;
+  lamp.position = {0, 2, 0};
+  lamp.intensity = gray(8);
+  scene.lights.push_back(lamp);
+  Points points;
+  for (const float x : {0.0f, 0.0f, 2.0f, 2.0f}) points.add({x, 0, 0}, {0, 1, 0});
+  const std::vector<uint32_t> first{0, 1, 4};
+  const auto tracer = trace::RayTracer::build(scene);
+  Progress progress;
+  const auto result = irradiance_by_paths(
+      scene, {points.position, points.normal, points.normal, first}, *tracer, {30, 0, 1}, progress);
+  ASSERT_TRUE(result);
+  ASSERT_EQ(result->irradiance.size(), 2u);
+  const float beside = 8 / 8.0f * std::sqrt(0.5f);
+  EXPECT_NEAR(result->irradiance[0].x, 2.0f, 1e-5f);
+  EXPECT_NEAR(result->irradiance[1].x, (2 + 2 * beside) / 3, 1e-5f);
+}
+
 // A lamp that is bright in one corner of its texture, at four times its mean.
 TEST(Lights, ATexturedLampShinesWhereItIsBright) {
   scene::Scene scene;

@@ -99,6 +99,13 @@ uint64_t path_seed(uint64_t seed, size_t item, size_t sample) {
   return hash64(hash64(seed, item), sample);
 }
 
+/// Where a sample of a receiver starts.
+size_t point_of(const Receivers& receivers, size_t i, size_t sample) {
+  if (receivers.first.empty()) return i;
+  const size_t first = receivers.first[i];
+  return first + sample % (receivers.first[i + 1] - first);
+}
+
 }  // namespace
 
 Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receivers& receivers,
@@ -106,18 +113,21 @@ Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receiver
                                        Progress& progress) {
   const size_t count = receivers.size();
   LUXEL_CHECK(params.samples >= 1);
-  LUXEL_CHECK(receivers.normal.size() == count && receivers.geometric_normal.size() == count);
+  LUXEL_CHECK(receivers.normal.size() == receivers.position.size());
+  LUXEL_CHECK(receivers.geometric_normal.size() == receivers.position.size());
   const World world = world_of(scene, tracer);
   TexelPaths out;
   out.irradiance.resize(count), out.standard_error.resize(count), out.luminance_error.resize(count);
   out.met_back.resize(count), out.met_double_sided_back.resize(count), out.enclosed.resize(count);
   progress.begin("trace paths", uint64_t(count) * uint64_t(params.samples));
   const auto start = [&](const Batch& batch, std::vector<Path>& paths) {
-    for (size_t i = batch.begin; i < batch.end; ++i) {
-      const Receiver at{receivers.position[i], receivers.normal[i], receivers.geometric_normal[i]};
-      for (size_t s = batch.first_sample; s < batch.last_sample; ++s)
+    for (size_t i = batch.begin; i < batch.end; ++i)
+      for (size_t s = batch.first_sample; s < batch.last_sample; ++s) {
+        const size_t k = point_of(receivers, i, s);
+        const Receiver at{receivers.position[k], receivers.normal[k],
+                          receivers.geometric_normal[k]};
         paths.push_back(path_from(world, at, {path_seed(params.seed, i, s)}));
-    }
+      }
   };
   const auto each = [&](size_t i, const Path& path) {
     out.met_back[i] += path.first_hit == FirstHit::back;

@@ -24,15 +24,18 @@ struct PathParams {
   uint64_t seed = 1;
 };
 
-/// Where irradiance is asked for; three spans of one length.
+/// Where irradiance is asked for; three spans of one length. A receiver is a point, or, with
+/// `first`, the mean over points [first[i], first[i + 1]), which its paths start at in turn; none is
+/// empty.
 struct Receivers {
   std::span<const Vec3> position;          ///< world [m]
   std::span<const Vec3> normal;            ///< unit; the cosine is about it
   std::span<const Vec3> geometric_normal;  ///< unit; no light comes from below the plane it spans
-  size_t size() const { return position.size(); }
+  std::span<const uint32_t> first{};       ///< empty, or one entry per receiver and one more
+  size_t size() const { return first.empty() ? position.size() : first.size() - 1; }
 };
 inline Receivers receivers(const transport::Elements& e) {
-  return {e.position, e.normal, e.geometric_normal};
+  return {e.position, e.normal, e.geometric_normal, {}};
 }
 
 /// Irradiance E [W/m^2] after all bounces asked for, direct light included.

@@ -219,6 +219,7 @@ TEST(BadSettings, NameTheOptionAndTheValue) {
                                       {"--sun 10,95,1", "'10,95,1'"},
                                       {"--max-memory 0", "'0'"},
                                       {"--direct-samples 0", "--direct-samples 0"},
+                                      {"--supersample 0", "--supersample 0"},
                                       {"--threads -1", "--threads -1"},
                                       {"--bounces -1", "--bounces '-1'"},
                                       {"--bounces many", "'many'"},

@@ -26,6 +26,7 @@ struct SolverOption {
 constexpr std::array kSolverOptions{
     SolverOption{"--samples", &pipeline::Solver::samples},
     SolverOption{"--direct-samples", &pipeline::Solver::direct_samples},
+    SolverOption{"--supersample", &pipeline::Solver::supersample},
     SolverOption{"--denoise", &pipeline::Solver::noise},
     SolverOption{"--elements", &pipeline::Solver::hemicube},
     SolverOption{"--hemicube", &pipeline::Solver::hemicube},
@@ -132,6 +133,9 @@ void register_bake(CLI::App& app, Action& action) {
       ->capture_default_str();
   bake->add_option("--direct-samples", s.direct_samples,
                    "Shadow rays per texel towards area lights")
+      ->capture_default_str();
+  bake->add_option("--supersample", s.supersample,
+                   "Points per texel across which direct light varies; 1: none")
       ->capture_default_str();
   bake->add_option("--bounces", options->bounces, "Reflections to count, or inf")
       ->capture_default_str();

@@ -24,6 +24,10 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   const transport::DirectParams direct_params{params.direct_samples, params.seed};
   LUXEL_TRY(transport::DirectLight direct,
             transport::direct_light(scene, elements, lights, tracer, direct_params, progress));
+  LUXEL_TRY(const transport::Supersampled averaged,
+            transport::supersample(scene, atlas, map, elements, lights, tracer,
+                                   {.points = params.supersample, .direct = direct_params}, direct,
+                                   progress));
   const TraceParams trace_params{params.samples, params.seed, params.hit_memory_bytes,
                                  params.scratch_folder};
   LUXEL_TRY(TracedHits hits,
@@ -38,7 +42,8 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   out.indirect_variance = std::move(bounced.split_variance);
   for (size_t i = 0; i < elements.size(); ++i) out.enclosed.push_back(is_enclosed(hits, i));
   out.met_back = std::move(hits.met_back);
-  out.rays = direct.rays + hits.rays;
+  out.rays = direct.rays + averaged.rays + hits.rays;
+  out.supersampled = averaged.texels;
   out.sweeps = bounced.sweeps;
   out.hit_bytes_in_file = hits.store.bytes_in_file();
   return out;

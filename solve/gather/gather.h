@@ -3,13 +3,14 @@
 
 #include "solve/gather/bounces.h"
 #include "solve/gather/trace_hits.h"
-#include "transport/direct_light.h"
+#include "transport/supersample.h"
 
 namespace luxel::gather {
 
 struct GatherParams {
   int samples = 256;        ///< indirect rays per element
   int direct_samples = 64;  ///< shadow rays per element towards emissive surfaces
+  int supersample = 1;      ///< points per element where direct light varies; 1: none
   int bounces = -1;         ///< < 0: all
   float tolerance = 1e-4f;  ///< see BounceParams
   uint64_t seed = 1;
@@ -25,6 +26,7 @@ struct Gather {
   std::vector<uint16_t> met_back;  ///< rays per element that met the back of a one-sided surface
   std::vector<uint8_t> enclosed;   ///< per element: 1 where is_enclosed
   uint64_t rays = 0;
+  uint64_t supersampled = 0;  ///< elements whose direct light is a mean over points
   int sweeps = 0;
   uint64_t hit_bytes_in_file = 0;
   /// Root mean square of the estimated standard errors over the mean irradiance. Conservative: it

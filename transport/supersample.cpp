@@ -1,0 +1,220 @@
+#include "transport/supersample.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <numeric>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "base/warp.h"
+#include "transport/direct_shots.h"
+
+namespace luxel::transport {
+namespace {
+
+constexpr size_t kGrain = 16, kEnclosureRays = 16;
+constexpr uint64_t kPointSeed = 0x70e1;
+
+/// What all points share.
+struct Place {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  float diagonal_m;
+};
+
+/// Whether a point lies inside a solid, by the rule of gather: more than half of its rays meet
+/// backs of one-sided surfaces, or all of them meet backs.
+bool is_enclosed(const Place& at, const Receiver& r) {
+  constexpr size_t kRays = kEnclosureRays;
+  std::array<trace::Ray, kRays> rays;
+  std::array<trace::Hit, kRays> hits;
+  const Frame frame = frame_around(r.normal);
+  for (size_t k = 0; k < kRays; ++k) {
+    Vec3 d =
+        frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x15))));
+    const float above = dot(d, r.geometric_normal);
+    if (above < 0) d += r.geometric_normal * (-2 * above);
+    rays[k] = {r.origin, 0, d, INFINITY};
+  }
+  at.tracer.closest_hits(rays, hits);
+  size_t one_sided = 0, backs = 0;
+  for (const trace::Hit& hit : hits) {
+    if (!hit.found() || !hit.back_face) continue;
+    ++backs;
+    one_sided += !scene::reflects_from_behind(scene::material_at(at.scene, hit.point()));
+  }
+  return 2 * one_sided > kRays || backs == kRays;
+}
+
+Receiver receiver_at(const Place& at, const SmoothPoint& s, uint64_t seed) {
+  return {s.position, s.normal, s.geometric_normal,
+          trace::offset_origin(s.position, s.geometric_normal, at.diagonal_m), seed};
+}
+
+Receiver own_receiver(const Place& at, const Elements& elements, size_t i, uint64_t seed) {
+  return receiver_at(at, {elements.position[i], elements.normal[i], elements.geometric_normal[i]},
+                     seed);
+}
+
+/// Light at the points of one texel.
+struct PointLight {
+  Vec3 position;
+  Rgb irradiance;
+  float variance = 0;
+};
+
+/// Estimates the variance of the mean's luminance. Points are stratified: what counts is how much
+/// the light varies within each one's share of the texel, and half the squared difference to the
+/// nearest other point stands for that, and for the noise of the point itself.
+float variance_of_mean(std::span<const PointLight> points) {
+  const size_t n = points.size();
+  if (n == 1) return points[0].variance;
+  double sum = 0;
+  for (size_t i = 0; i < n; ++i) {
+    size_t nearest = i == 0 ? 1 : 0;
+    const auto distance2 = [&](size_t j) {
+      const Vec3 d = points[j].position - points[i].position;
+      return dot(d, d);
+    };
+    for (size_t j = 0; j < n; ++j)
+      if (j != i && distance2(j) < distance2(nearest)) nearest = j;
+    const double d =
+        double(luminance(points[i].irradiance)) - double(luminance(points[nearest].irradiance));
+    sum += 0.5 * d * d;
+  }
+  return float(sum / (double(n) * double(n)));
+}
+
+bool differ(const DirectLight& direct, size_t a, size_t b, float threshold) {
+  const Rgb p = direct.irradiance[a], q = direct.irradiance[b];
+  const float difference = max_component(max(p - q, q - p));
+  const float noise = std::sqrt(direct.variance[a] + direct.variance[b]);
+  return difference > threshold * max_component(max(p, q)) && difference > 3 * noise;
+}
+
+bool is_dark(Rgb light) { return max_component(light) <= 0; }
+
+int samples_per_point(int samples) { return std::max(std::min(samples, 8), samples / 8); }
+
+}  // namespace
+
+std::vector<uint32_t> uneven_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                    const DirectLight& direct, float threshold) {
+  const int side = map.resolution;
+  std::vector<uint8_t> uneven(map.texels.size());
+  const auto chart_of = [&](size_t i) { return atlas.chart[map.texels[i].triangle_number]; };
+  parallel_for(map.texels.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const int x = int(map.texels[i].x), y = int(map.texels[i].y);
+      for (int v = std::max(0, y - 1); v <= std::min(side - 1, y + 1) && !uneven[i]; ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(side - 1, x + 1) && !uneven[i]; ++u) {
+          const uint32_t j = map.texel_at[size_t(v) * size_t(side) + size_t(u)];
+          if (j == atlas::kNone || j == i || chart_of(i) != chart_of(j)) continue;
+          uneven[i] = differ(direct, i, j, threshold);
+        }
+    }
+  });
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < uneven.size(); ++i)
+    if (uneven[i]) out.push_back(i);
+  return out;
+}
+
+Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atlas,
+                              const atlas::TexelMap& map, const Elements& elements,
+                              const trace::RayTracer& tracer, int points, uint64_t seed,
+                              Progress& progress) {
+  LUXEL_CHECK(points >= 1);
+  std::vector<uint32_t> all(map.texels.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const atlas::Cover cover = atlas::cover_of(atlas, map, all);
+  const Place place{scene, tracer, scene::world_bounds(scene).diagonal()};
+  std::vector<std::vector<Receiver>> found(all.size());
+  progress.begin("footprints", all.size());
+  parallel_for(all.size(), kGrain, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
+    std::vector<scene::SurfacePoint> spread;
+    for (size_t i = begin; i < end; ++i) {
+      const Receiver own = own_receiver(place, elements, i, hash64(seed, i));
+      if (!is_enclosed(place, own)) {
+        atlas::spread_points(atlas, map.texels[i], cover.of(i), points, seed, spread);
+        for (const scene::SurfacePoint& p : spread) {
+          const uint64_t point_seed = hash64(hash64(seed, kPointSeed + found[i].size()), i);
+          const Receiver r = receiver_at(place, smooth_point(scene, p), point_seed);
+          if (!is_enclosed(place, r)) found[i].push_back(r);
+        }
+      }
+      if (found[i].empty()) found[i].push_back(own);
+    }
+    progress.advance(end - begin);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  Footprints out;
+  out.first.push_back(0);
+  for (size_t i = 0; i < all.size(); ++i) {
+    for (const Receiver& r : found[i]) {
+      out.points.position.push_back(r.position), out.points.normal.push_back(r.normal);
+      out.points.geometric_normal.push_back(r.geometric_normal);
+    }
+    out.first.push_back(uint32_t(out.points.size()));
+    found[i] = {};
+  }
+  return out;
+}
+
+Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const atlas::TexelMap& map, const Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
+                                 const SupersampleParams& params, DirectLight& direct,
+                                 Progress& progress) {
+  LUXEL_CHECK(params.points >= 1);
+  if (params.points == 1) return Supersampled{};
+  const std::vector<uint32_t> uneven = uneven_texels(atlas, map, direct, params.threshold);
+  const atlas::Cover cover = atlas::cover_of(atlas, map, uneven);
+  const Place place{scene, tracer, scene::world_bounds(scene).diagonal()};
+  DirectParams each = params.direct;
+  each.samples = samples_per_point(params.direct.samples);
+  std::atomic<uint64_t> rays{0}, texels{0};
+  progress.begin("supersample", uneven.size());
+  parallel_for(uneven.size(), kGrain, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
+    Shots shots;
+    std::vector<scene::SurfacePoint> spread;
+    std::vector<PointLight> points;
+    uint64_t traced = 0, averaged = 0;
+    for (size_t k = begin; k < end; ++k) {
+      const uint32_t i = uneven[k];
+      if (is_dark(direct.irradiance[i])) {
+        traced += kEnclosureRays;
+        if (is_enclosed(place, own_receiver(place, elements, i, hash64(each.seed, i)))) continue;
+      }
+      points.clear();
+      atlas::spread_points(atlas, map.texels[i], cover.of(k), params.points, each.seed, spread);
+      for (const scene::SurfacePoint& p : spread) {
+        const uint64_t seed = hash64(hash64(each.seed, kPointSeed + points.size()), i);
+        const Receiver r = receiver_at(place, smooth_point(scene, p), seed);
+        PointLight light{r.position, {}, 0};
+        traced += light_at(scene, lights, tracer, each, r, place.diagonal_m, shots,
+                           light.irradiance, light.variance);
+        // Where a wall stands on the surface, its inside is dark, and nobody sees it.
+        const bool dark = is_dark(light.irradiance);
+        traced += dark ? kEnclosureRays : 0;
+        if (!dark || !is_enclosed(place, r)) points.push_back(light);
+      }
+      if (points.empty()) continue;
+      Rgb sum{};
+      for (const PointLight& p : points) sum += p.irradiance;
+      direct.irradiance[i] = sum / float(points.size());
+      direct.variance[i] = variance_of_mean(points);
+      ++averaged;
+    }
+    rays += traced, texels += averaged;
+    progress.advance(end - begin);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return Supersampled{texels, rays};
+}
+
+}  // namespace luxel::transport

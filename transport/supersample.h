@@ -1,0 +1,54 @@
+// Direct light averaged over texels inside which it varies.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "atlas/footprint.h"
+#include "transport/direct_light.h"
+
+namespace luxel::transport {
+
+struct SupersampleParams {
+  int points = 16;         ///< per texel where light varies; 1: none
+  float threshold = 0.1f;  ///< neighbours that differ by more of the brighter one make it vary
+  /// Of direct_light. Each point gets an eighth of the samples, but eight at least where that many
+  /// are asked for.
+  DirectParams direct;
+};
+
+struct Supersampled {
+  uint64_t texels = 0;  ///< that were averaged over
+  uint64_t rays = 0;
+};
+
+/// Texels whose direct light differs from that of one of their eight neighbours in the same chart
+/// by more than `threshold` of the brighter one, in any channel, and by more than three standard
+/// deviations of their noise; in the order of the map. A straight edge of a shadow that crosses a
+/// texel separates its centre from that of such a neighbour, where there is one.
+std::vector<uint32_t> uneven_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                    const DirectLight& direct, float threshold);
+
+/// The points of texels at which light is averaged, without those inside of solids. A texel whose
+/// own sample lies inside a solid has that alone: it is hidden, and refilled from its neighbours.
+struct Footprints {
+  std::vector<uint32_t> first;  ///< per texel, one extra entry
+  Elements points;              ///< without reflectance
+};
+/// For all texels of the map, as the judge wants them: 16 points need 576 bytes a texel. Errors:
+/// cancelled.
+Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atlas,
+                              const atlas::TexelMap& map, const Elements& elements,
+                              const trace::RayTracer& tracer, int points, uint64_t seed,
+                              Progress& progress);
+
+/// Replaces the direct light of uneven texels by its mean over `points` points of their footprint,
+/// and its variance by an estimate for that mean; all others, and hidden ones, keep their bits.
+/// `elements` are those of the map. Errors: cancelled.
+Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const atlas::TexelMap& map, const Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
+                                 const SupersampleParams& params, DirectLight& direct,
+                                 Progress& progress);
+
+}  // namespace luxel::transport

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "atlas/pages.h"
 #include "base/file.h"
 #include "base/parallel.h"
 #include "display/draw.h"
@@ -51,6 +52,7 @@ Status lay_out(const BakeSettings& settings, Bake& bake, Progress& progress) {
   params.uv = settings.uv;
   params.resolution = settings.resolution;
   params.texels_per_metre = settings.texels_per_metre;
+  params.page_mode = settings.pages.mode, params.pages = settings.pages.count;
   LUXEL_TRY(bake.atlas, atlas::make_atlas(bake.scene, params, progress));
   bake.map = atlas::rasterise(bake.scene, bake.atlas);
   bake.atlas_stats = atlas::atlas_stats(bake.scene, bake.atlas, bake.map);
@@ -74,8 +76,8 @@ Status repair(const BakeSettings& settings, Bake& bake, Progress& progress) {
   if (settings.stitch)
     LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
   bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance);
-  bake.lightmap = post::lightmap_from_texels(bake.map, bake.light.irradiance);
-  post::dilate(bake.lightmap, kDilationRings);
+  bake.lightmaps = post::lightmap_pages(bake.atlas, bake.map, bake.light.irradiance);
+  for (image::Image& lightmap : bake.lightmaps) post::dilate(lightmap, kDilationRings);
   return not_cancelled(progress);
 }
 
@@ -116,6 +118,26 @@ Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progre
   return {};
 }
 
+nlohmann::json about_atlas(const BakeSettings& settings, const Bake& bake) {
+  const std::vector<atlas::Page> pages = atlas::pages_of(bake.atlas);
+  nlohmann::json out = {{"resolution", 0},
+                        {"utilisation", bake.atlas_stats.utilisation},
+                        {"mean_stretch_l2", bake.atlas_stats.mean_stretch_l2},
+                        {"texels_per_metre", bake.atlas_stats.texels_per_metre}};
+  for (size_t p = 0; p < pages.size(); ++p) {
+    out["resolution"] = std::max(out["resolution"].get<int>(), pages[p].side);
+    out["pages"].push_back({{"file", export_::lightmap_name(p, pages.size()) + ".exr"},
+                            {"resolution", pages[p].side}});
+  }
+  if (settings.pages.mode != atlas::PageMode::per_instance) return out;
+  for (uint32_t i = 0; i < bake.scene.instances.size(); ++i) {
+    const uint32_t first = bake.atlas.first_triangle[i];
+    if (first < bake.atlas.first_triangle[i + 1])
+      out["pages"][atlas::page_of(bake.atlas, first)]["node"] = bake.scene.instances[i].name;
+  }
+  return out;
+}
+
 nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Progress& progress) {
   const nlohmann::json seconds = stage_seconds(progress);
   const double tracing = seconds.value("direct light", 0.0) + seconds.value("trace rays", 0.0) +
@@ -132,11 +154,7 @@ nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Prog
             {"sweeps", bake.light.sweeps},
             {"elements", bake.light.elements},
             {"suspicious_texels", bake.light.suspicious_texels}}},
-          {"atlas",
-           {{"resolution", bake.atlas.resolution},
-            {"utilisation", bake.atlas_stats.utilisation},
-            {"mean_stretch_l2", bake.atlas_stats.mean_stretch_l2},
-            {"texels_per_metre", bake.atlas_stats.texels_per_metre}}},
+          {"atlas", about_atlas(settings, bake)},
           {"seam_residual",
            {bake.seam_residual_before.rms_over_mean, bake.seam_residual_after.rms_over_mean}},
           {"seam_residual_p95",
@@ -176,7 +194,7 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
 namespace {
 
 Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& bake) {
-  if (!settings.vertex_colors) return export_::baked_glb(bake.scene, bake.atlas, bake.lightmap);
+  if (!settings.vertex_colors) return export_::baked_glb(bake.scene, bake.atlas, bake.lightmaps);
   const VertexLit lit = vertex_lit(bake.scene, *bake.light.field);
   return export_::vertex_lit_glb(lit.scene, lit.intensity);
 }
@@ -186,12 +204,13 @@ Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
                              std::span<const std::byte> glb) {
   std::vector<std::byte> own;
   if (settings.vertex_colors) {
-    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, bake.lightmap));
+    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, bake.lightmaps));
     glb = own;
   }
   LUXEL_TRY(const std::string html,
             export_::view_html({settings.scene.stem().string(), bake.view, bake.scene.background,
-                                bake.atlas.corners.size(), glb, &bake.lightmap}));
+                                bake.atlas.corners.size(), glb, bake.lightmaps,
+                                &bake.scene.environment}));
   return text_file(settings.output / "view.html", html);
 }
 
@@ -199,7 +218,7 @@ Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
 Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bake& bake,
                                          nlohmann::json& json) {
   LUXEL_TRY(LightmapFiles lightmap,
-            lightmap_files(bake.lightmap, settings.formats, settings.output, "lightmap"));
+            lightmap_files(bake.lightmaps, settings.formats, settings.output));
   std::vector<OutputFile> files = std::move(lightmap.files);
   if (lightmap.rgbm_range > 0) json["lightmap"]["rgbm_range"] = lightmap.rgbm_range;
   const auto append = [&](std::vector<OutputFile> more) {

@@ -29,7 +29,7 @@ struct Bake {
   atlas::TexelMap map;
   atlas::AtlasStats atlas_stats;
   TexelLight light;
-  image::Image lightmap;  ///< E, 4 channels, as lightmap.exr holds it
+  std::vector<image::Image> lightmaps;  ///< E, 4 channels, per page as lightmap.exr holds it
   image::Image8 preview;
   DirectionMaps directions;         ///< with --directional
   std::optional<ProbeGrid> probes;  ///< with --probes
@@ -44,8 +44,8 @@ struct Bake {
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress);
 
 /// The whole of `luxel bake`: bake_scene, then lightmap.exr (and its other formats), baked.glb,
-/// preview.png, view.html when asked for, and bake.json in settings.output, all of them or none.
-/// Returns what bake.json holds.
+/// preview.png, view.html when asked for, and bake.json in settings.output, all of them or none. Of
+/// several pages it is lightmap-0.exr and so on. Returns what bake.json holds.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

@@ -1,8 +1,11 @@
 #include "pipeline/draw_bake.h"
 
+#include <map>
+
 #include "base/file.h"
 #include "display/draw.h"
 #include "display/lightmap_lookup.h"
+#include "export/baked_glb.h"
 #include "image/codec.h"
 #include "import/import.h"
 #include "pipeline/bake.h"
@@ -20,17 +23,42 @@ display::DrawParams size_of(const RenderSettings& settings) {
   return params;
 }
 
+struct Lightmaps {
+  std::vector<image::Image> pages;
+  std::vector<size_t> of_material;  ///< index into pages
+};
+
+/// The files that the materials of baked.glb name; those that name none have lightmap.exr.
+Result<Lightmaps> read_lightmaps(const std::filesystem::path& folder, size_t materials) {
+  const std::filesystem::path glb = folder / "baked.glb";
+  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(glb));
+  LUXEL_TRY(std::vector<std::string> names, export_::lightmap_files_of(bytes, glb.string()));
+  names.resize(materials);  // import adds one for triangles that have none
+  Lightmaps out;
+  std::map<std::string, size_t> known;
+  for (const std::string& name : names) {
+    const std::string file = name.empty() ? "lightmap.exr" : name;
+    const auto [page, fresh] = known.emplace(file, out.pages.size());
+    out.of_material.push_back(page->second);
+    if (!fresh) continue;
+    LUXEL_TRY(const std::vector<std::byte> exr, read_file(folder / file));
+    LUXEL_TRY(image::Image picture, image::decode_exr(exr, (folder / file).string()));
+    out.pages.push_back(std::move(picture));
+  }
+  return out;
+}
+
 Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettings& s,
                                       Progress& progress) {
   LUXEL_TRY(import::Imported baked, import::import_scene(s.from / "baked.glb"));
-  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(s.from / "lightmap.exr"));
-  LUXEL_TRY(const image::Image lightmap,
-            image::decode_exr(bytes, (s.from / "lightmap.exr").string()));
+  LUXEL_TRY(const Lightmaps lightmaps, read_lightmaps(s.from, baked.scene.materials.size()));
   scene::Scene& scene = baked.scene;
   scene.background = subject.scene.background, scene.environment = subject.scene.environment;
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   const auto irradiance = [&](const scene::SurfacePoint& p) {
-    return display::lightmap_at(scene, lightmap, p);
+    const scene::Mesh& mesh = scene.meshes[scene.instances[p.instance].mesh];
+    const size_t page = lightmaps.of_material[mesh.triangle_material[p.triangle]];
+    return display::lightmap_at(scene, lightmaps.pages[page], p);
   };
   return display::draw(scene, tracer, subject.camera, irradiance, size_of(s), progress);
 }

@@ -13,6 +13,11 @@ namespace luxel::atlas {
 
 inline constexpr uint32_t kNone = UINT32_MAX;
 
+/// A square part of the atlas that becomes a lightmap of its own, in texels. No chart lies on two.
+struct Page {
+  int x = 0, y = 0, side = 0;
+};
+
 /// A layout of every drawn triangle (numbered as scene::first_triangles does) on a square.
 /// Coordinates are in texels: x to the right, y downwards, texel (i, j) covers [i, i+1) x [j, j+1).
 /// As texture coordinates, u = x / resolution and v = y / resolution.
@@ -23,6 +28,8 @@ struct Atlas {
   std::vector<uint32_t> chart;               ///< per drawn triangle
   uint32_t chart_count = 0;
   bool kept = false;  ///< laid out as TEXCOORD_1 says
+  std::vector<Page> pages;     ///< empty: the whole square is the only one; see pages_of()
+  std::vector<uint32_t> page;  ///< per drawn triangle; empty: all on the first
 
   uint32_t triangle_number(uint32_t instance, uint32_t triangle) const {
     return first_triangle[instance] + triangle;
@@ -46,22 +53,28 @@ struct TexelMap {
 };
 
 enum class UvMode : uint8_t { automatic, keep, unwrap };
+/// How many pages: so many; as many as it takes; one for each instance.
+enum class PageMode : uint8_t { fixed, automatic, per_instance };
 
 struct AtlasParams {
   UvMode uv = UvMode::automatic;  ///< automatic: keep when TEXCOORD_1 is valid, else unwrap
-  int resolution = 512;           ///< side in texels, 1 .. 16384; unused when density is given
+  /// Side of a page in texels, 1 .. 16384; per instance: of the largest. With a density only
+  /// automatic pages read it.
+  int resolution = 512;
   float texels_per_metre = 0;  ///< > 0: the density; the side is the smallest power of 2 that fits
   int gutter = 2;              ///< empty texels between charts
   float max_chart_angle_rad =
       0.8f;  ///< unwrap: largest angle between a triangle and its chart's axis
   /// Unwrap: per drawn triangle; charts never hold triangles of different groups. Empty: one group.
   std::vector<uint32_t> group{};
+  PageMode page_mode = PageMode::fixed;
+  int pages = 1;  ///< fixed: how many; more than one with a resolution only
 };
 
 /// What the layout is like; printed by `luxel bench atlas` and `luxel info`.
 struct AtlasStats {
   uint32_t charts = 0;
-  double utilisation = 0;       ///< covered texels / all texels
+  double utilisation = 0;       ///< covered texels / all texels of all pages
   double mean_stretch_l2 = 0;   ///< area-weighted L2 stretch, 1 is perfect [Sander01, section 3]
   double texels_per_metre = 0;  ///< mean density
   uint32_t triangles_without_texel = 0;  ///< triangles that touch no texel of their own chart: 0
@@ -69,7 +82,9 @@ struct AtlasStats {
 };
 
 /// Lays the scene out. Errors: --uv keep without or with invalid TEXCOORD_1 (names the triangles);
-/// a resolution that is too small (states the smallest that works) or out of range.
+/// a resolution that is too small (states the smallest that works) or out of range. Several pages
+/// are always laid out anew; more errors: a triangle longer than an automatic page, more pages than
+/// kMaxPages, and more texels on them than the solvers can number.
 Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, Progress& progress);
 
 /// Clips every triangle against the texels it touches and gives each texel one owner: the triangle

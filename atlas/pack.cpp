@@ -85,6 +85,24 @@ Offer best_place(const Strip& strip, const Directions& chart, const FirstRows& f
   });
 }
 
+/// A page while it fills.
+struct Sheet {
+  Strip strip;
+  FirstRows first_rows;
+  int height = 0;
+};
+
+/// On the wished page, else on the first after it that has room.
+Place place_on_pages(const std::vector<Sheet>& sheets, const Directions& chart, size_t wished) {
+  for (size_t k = 0; k < sheets.size(); ++k) {
+    const size_t page = (wished + k) % sheets.size();
+    Place place = best_place(sheets[page].strip, chart, sheets[page].first_rows).place;
+    place.page = uint32_t(page);
+    if (place.y >= 0) return place;
+  }
+  return {-1, -1};
+}
+
 std::vector<uint32_t> large_first(const std::vector<Directions>& charts, Order by) {
   std::vector<uint32_t> order(charts.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -109,27 +127,29 @@ Turns all_turns(Mask upright) {
 }
 
 Packing pack_masks(const std::vector<Directions>& charts, int side, int gutter, Order order,
-                   const Progress& progress) {
-  Strip strip(side);
-  FirstRows first_rows;
+                   const Progress& progress, const PackPages& pages) {
+  std::vector<Sheet> sheets(pages.count, Sheet{Strip(side), {}});
   Packing packing;
   packing.places.resize(charts.size());
   uint64_t total = 0, placed = 0;
   for (const Directions& d : charts) total += d.front().front().texels;
   for (const uint32_t m : large_first(charts, order)) {
     if (progress.cancelled()) return packing;
-    const Place place = best_place(strip, charts[m], first_rows).place;
+    const size_t wished = pages.wished.empty() ? 0 : pages.wished[m];
+    const Place place = place_on_pages(sheets, charts[m], wished);
     if (place.y < 0) {
       packing.placed = double(placed) / double(total);
       return packing;
     }
     const Mask& mask = charts[m][size_t(place.direction)][size_t(place.turns)];
-    first_rows.raise(mask.width, mask.height, place.y);
-    strip.take_with_gutter(mask, place, gutter);
+    Sheet& sheet = sheets[place.page];
+    sheet.first_rows.raise(mask.width, mask.height, place.y);
+    sheet.strip.take_with_gutter(mask, place, gutter);
+    sheet.height = std::max(sheet.height, place.y + mask.height);
     packing.places[m] = place;
-    packing.height = std::max(packing.height, place.y + mask.height);
     placed += charts[m].front().front().texels;
   }
+  for (const Sheet& sheet : sheets) packing.height += sheet.height;
   packing.placed = 1;
   return packing;
 }

@@ -2,6 +2,7 @@
 
 #include "atlas/atlas.h"
 #include "atlas/cover.h"
+#include "atlas/pages.h"
 #include "base/parallel.h"
 
 namespace luxel::atlas {
@@ -64,7 +65,9 @@ Found find_texels(const Atlas& atlas, const TexelMap& map, uint32_t number) {
 AtlasStats atlas_stats(const scene::Scene& scene, const Atlas& atlas, const TexelMap& map) {
   AtlasStats stats;
   stats.charts = atlas.chart_count;
-  stats.utilisation = double(map.texels.size()) / (double(map.resolution) * double(map.resolution));
+  double room = 0;
+  for (const Page& page : pages_of(atlas)) room += double(page.side) * double(page.side);
+  stats.utilisation = double(map.texels.size()) / room;
   const uint32_t count = atlas.first_triangle.back();
   std::vector<Found> found(count);
   parallel_for(count, 1024, [&](size_t begin, size_t end) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <exception>
 
+#include "atlas/pages.h"
 #include "base/check.h"
 #include "base/vec_double.h"
 #include "export/gltf_mesh.h"
@@ -18,11 +20,12 @@ using nlohmann::json;
 /// The irradiance that white stands for in the 8-bit picture: the 99.9th percentile of the largest
 /// channel over covered texels, so that a few texels beside a lamp do not take all the steps from
 /// the rest (they clip; lightmap.exr has them). 1 where no light falls.
-float lightmap_intensity(const image::Image& lightmap) {
+float lightmap_intensity(std::span<const image::Image> lightmaps) {
   std::vector<float> values;
-  for (int y = 0; y < lightmap.height; ++y)
-    for (int x = 0; x < lightmap.width; ++x)
-      if (lightmap.at(x, y)[3] > 0) values.push_back(max_component(lightmap.rgb(x, y)));
+  for (const image::Image& lightmap : lightmaps)
+    for (int y = 0; y < lightmap.height; ++y)
+      for (int x = 0; x < lightmap.width; ++x)
+        if (lightmap.at(x, y)[3] > 0) values.push_back(max_component(lightmap.rgb(x, y)));
   if (values.empty()) return 1;
   const size_t rank = size_t(double(values.size() - 1) * 0.999);
   std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
@@ -78,33 +81,54 @@ json instance_node(const scene::Instance& instance, size_t mesh) {
   return node;
 }
 
-/// The lightmap coordinates of an instance's triangles, in [0, 1].
-std::vector<std::array<Vec2, 3>> lightmap_uv(const atlas::Atlas& atlas, uint32_t instance) {
-  const uint32_t first = atlas.first_triangle[instance], end = atlas.first_triangle[instance + 1];
-  std::vector<std::array<Vec2, 3>> uv(atlas.corners.begin() + first, atlas.corners.begin() + end);
-  for (auto& corners : uv)
-    for (Vec2& c : corners) c = {c.x / float(atlas.resolution), c.y / float(atlas.resolution)};
-  return uv;
+LightmapPlaces lightmap_places(const atlas::Atlas& atlas, const std::vector<atlas::Page>& pages,
+                               uint32_t instance) {
+  LightmapPlaces out;
+  for (uint32_t t = atlas.first_triangle[instance]; t < atlas.first_triangle[instance + 1]; ++t) {
+    out.page.push_back(atlas::page_of(atlas, t));
+    const atlas::Page& page = pages[out.page.back()];
+    std::array<Vec2, 3> uv = atlas.corners[t];
+    for (Vec2& c : uv)
+      c = {(c.x - float(page.x)) / float(page.side), (c.y - float(page.y)) / float(page.side)};
+    out.uv.push_back(uv);
+  }
+  return out;
+}
+
+/// One intensity for all pages: the same light is the same byte on each.
+void append_lightmaps(Glb& glb, MaterialBook& book, std::span<const image::Image> lightmaps) {
+  const float intensity = lightmap_intensity(lightmaps);
+  json names = json::array();
+  for (size_t p = 0; p < lightmaps.size(); ++p) {
+    const std::string name = lightmap_name(p, lightmaps.size());
+    const size_t texture =
+        append_lightmap_texture(glb, book, lightmap_png(lightmaps[p], intensity), name);
+    book.lightmap.push_back(
+        {{{"index", texture}, {"texCoord", 1}, {"intensity", intensity}}, name});
+    names.push_back(name + ".exr");
+  }
+  glb.json["asset"]["extras"]["luxel"] = {
+      {"irradiance",
+       "E [W/m^2] = intensity * linear(picture), the picture in sRGB; " +
+           std::string(lightmaps.size() == 1 ? "lightmap.exr holds" : "lightmap-N.exr hold") +
+           " E itself"}};
+  if (lightmaps.size() == 1)
+    glb.json["asset"]["extras"]["luxel"]["lightmap"] = names[0];
+  else
+    glb.json["asset"]["extras"]["luxel"]["lightmaps"] = names;
 }
 
 Result<std::vector<std::byte>> write_baked(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                           const image::Image& lightmap) {
+                                           std::span<const image::Image> lightmaps) {
   Glb glb;
   MaterialBook book;
-  const float intensity = lightmap_intensity(lightmap);
-  const size_t texture = append_lightmap_texture(glb, book, lightmap_png(lightmap, intensity));
-  book.lightmap = {{"index", texture}, {"texCoord", 1}, {"intensity", intensity}};
-  glb.json["asset"]["extras"]["luxel"] = {
-      {"lightmap", "lightmap.exr"},
-      {"irradiance",
-       "E [W/m^2] = intensity * linear(picture), the picture in sRGB; "
-       "lightmap.exr holds E itself"}};
-
+  append_lightmaps(glb, book, lightmaps);
+  const std::vector<atlas::Page> pages = atlas::pages_of(atlas);
   json roots = json::array();
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
     if (mesh.triangles.empty()) continue;
-    const size_t index = append_mesh(glb, book, scene, mesh, lightmap_uv(atlas, i));
+    const size_t index = append_mesh(glb, book, scene, mesh, lightmap_places(atlas, pages, i));
     roots.push_back(append_node(glb, scene.instances[i].world_from_object,
                                 instance_node(scene.instances[i], index)));
   }
@@ -132,14 +156,40 @@ Result<std::vector<std::byte>> write_scene(const scene::Scene& scene, json luxel
 }  // namespace
 
 Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                         const image::Image& lightmap) {
-  LUXEL_CHECK(lightmap.channels == 4);
+                                         std::span<const image::Image> lightmaps) {
+  LUXEL_CHECK(lightmaps.size() == atlas::pages_of(atlas).size());
+  for (const image::Image& lightmap : lightmaps) LUXEL_CHECK(lightmap.channels == 4);
   LUXEL_CHECK(atlas.first_triangle.size() == scene.instances.size() + 1);
   try {
-    return write_baked(scene, atlas, lightmap);
+    return write_baked(scene, atlas, lightmaps);
   } catch (const std::exception& e) {  // nlohmann-json and memory
     return fail(ErrorCode::io, "the baked scene cannot be written as .glb: {}", e.what());
   }
+}
+
+std::string lightmap_name(size_t page, size_t pages) {
+  return pages == 1 ? "lightmap" : fmt::format("lightmap-{}", page);
+}
+
+Result<std::vector<std::string>> lightmap_files_of(std::span<const std::byte> glb,
+                                                   const std::string& name) {
+  // Header, then the JSON chunk's length and type.
+  constexpr size_t kBefore = 20;
+  uint32_t length = 0;
+  if (glb.size() >= kBefore) std::memcpy(&length, glb.data() + 12, sizeof length);
+  const bool whole = glb.size() >= kBefore && length <= glb.size() - kBefore;
+  const char* text = reinterpret_cast<const char*>(glb.data()) + kBefore;
+  const json document =
+      whole ? json::parse(text, text + length, nullptr, false) : json(json::value_t::discarded);
+  if (!document.is_object())
+    return fail(ErrorCode::bad_input, "{} is no binary glTF file; bake the scene again", name);
+  std::vector<std::string> out;
+  const json::json_pointer where("/extras/luxel/lightmap");
+  for (const json& material : document.value("materials", json::array()))
+    out.push_back(material.contains(where) && material[where].is_string()
+                      ? material[where].get<std::string>()
+                      : std::string());
+  return out;
 }
 
 Result<std::vector<std::byte>> vertex_lit_glb(const scene::Scene& scene, float intensity) {

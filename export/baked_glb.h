@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,25 @@ namespace luxel::export_ {
 /// shared elsewhere; positions, normals, TEXCOORD_0, colours, materials, textures, lights and
 /// cameras are kept. The lightmap is attached as extension MOZ_lightmap of every material (texCoord
 /// 1, `intensity`), its picture an 8-bit sRGB PNG of E / intensity; docs/bake.md describes it.
-/// `lightmap` is E, 4 channels. Passes the Khronos validator without errors.
+/// `lightmaps` is E, 4 channels, one for each page of the atlas. With several pages a material has
+/// a version for each that it lies on, and a mesh that lies on several a primitive for each. Passes
+/// the Khronos validator without errors.
 Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                         const image::Image& lightmap);
+                                         std::span<const image::Image> lightmaps);
+inline Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene,
+                                                const atlas::Atlas& atlas,
+                                                const image::Image& lightmap) {
+  return baked_glb(scene, atlas, std::span(&lightmap, 1));
+}
+
+/// What the files of a page are called, up to their extension: "lightmap", or of several pages
+/// "lightmap-0", "lightmap-1", ...
+std::string lightmap_name(size_t page, size_t pages);
+
+/// Of a file that baked_glb() wrote: per material the file with its light, "lightmap.exr"; "" where
+/// it names none. Error (bad_input): no .glb.
+Result<std::vector<std::string>> lightmap_files_of(std::span<const std::byte> glb,
+                                                   const std::string& name);
 
 /// A scene whose meshes carry light per vertex: `colors` is E / `intensity`, times the vertex
 /// colours that the materials had. Materials become unlit (KHR_materials_unlit), so that every

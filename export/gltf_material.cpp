@@ -147,7 +147,7 @@ void set_highlight(Glb& glb, const scene::Material& m, json& out) {
 }
 
 json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
-                   const scene::Material& m, TexcoordSlots slots) {
+                   const scene::Material& m, TexcoordSlots slots, uint32_t page) {
   json out = {{"pbrMetallicRoughness", surface(glb, book, scene, m, slots)}};
   if (!m.name.empty()) out["name"] = m.name;
   set_emission(glb, book, scene, m, slots, out);
@@ -163,10 +163,10 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
     glb.extensions_used.insert("KHR_materials_unlit");
   }
   // What is baked is diffuse.
-  if (book.lightmap.is_null()) set_highlight(glb, m, out);
-  if (!book.lightmap.is_null()) {
-    out["extensions"]["MOZ_lightmap"] = book.lightmap;
-    out["extras"]["luxel"]["lightmap"] = "lightmap.exr";
+  if (book.lightmap.empty()) set_highlight(glb, m, out);
+  if (!book.lightmap.empty()) {
+    out["extensions"]["MOZ_lightmap"] = book.lightmap[page].extension;
+    out["extras"]["luxel"]["lightmap"] = book.lightmap[page].name + ".exr";
     glb.extensions_used.insert("MOZ_lightmap");
   }
   return out;
@@ -175,7 +175,7 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
 }  // namespace
 
 size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, uint32_t material,
-                      TexcoordSlots slots) {
+                      TexcoordSlots slots, uint32_t page) {
   const scene::Material& m = scene.materials[material];
   // Slots that no texture asks for make no difference, and no second copy of the material.
   std::array<bool, 2> used{};
@@ -184,16 +184,17 @@ size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, u
   for (size_t set = 0; set < 2; ++set)
     if (!used[set]) slots[set] = -1;
 
-  const std::tuple key{material, slots};
+  const std::tuple key{material, slots, page};
   if (const auto known = book.materials.find(key); known != book.materials.end())
     return known->second;
-  const size_t index = append(glb, "materials", material_json(glb, book, scene, m, slots));
+  const size_t index = append(glb, "materials", material_json(glb, book, scene, m, slots, page));
   return book.materials[key] = index;
 }
 
-size_t append_lightmap_texture(Glb& glb, MaterialBook& book, std::span<const std::byte> png) {
+size_t append_lightmap_texture(Glb& glb, MaterialBook& book, std::span<const std::byte> png,
+                               const std::string& name) {
   const int clamp = wrap_code(scene::Wrap::clamp);
-  return texture_index(glb, book, append_image(glb, png, "image/png", "lightmap"),
+  return texture_index(glb, book, append_image(glb, png, "image/png", name),
                        {clamp, clamp, kLinear, kLinear});
 }
 

@@ -17,18 +17,24 @@ using TexcoordSlots = std::array<int, 2>;
 
 /// What is already in the document: materials, textures and samplers are written when first used.
 struct MaterialBook {
-  std::map<std::tuple<uint32_t, TexcoordSlots>, size_t> materials;
+  std::map<std::tuple<uint32_t, TexcoordSlots, uint32_t>, size_t> materials;
   std::map<uint32_t, size_t> images;
   std::map<std::array<int, 4>, size_t> samplers;     ///< wrap u, wrap v, magnify, minify
   std::map<std::array<size_t, 2>, size_t> textures;  ///< image, sampler
-  nlohmann::json lightmap;  ///< the MOZ_lightmap of every material; null: none
+  /// What every material says of the lightmap, for each of its pages; empty: there is none.
+  struct LightmapPage {
+    nlohmann::json extension;  ///< MOZ_lightmap
+    std::string name;          ///< of the files, without what follows the first dot
+  };
+  std::vector<LightmapPage> lightmap;
 };
 
-/// The index of the material in the document.
+/// The index of the material in the document, as it is on a page of the lightmap (0 without one).
 size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, uint32_t material,
-                      TexcoordSlots slots);
+                      TexcoordSlots slots, uint32_t page);
 
 /// A lightmap picture as glTF texture: clamped, bilinear, without mipmaps (charts would bleed).
-size_t append_lightmap_texture(Glb& glb, MaterialBook& book, std::span<const std::byte> png);
+size_t append_lightmap_texture(Glb& glb, MaterialBook& book, std::span<const std::byte> png,
+                               const std::string& name);
 
 }  // namespace luxel::export_

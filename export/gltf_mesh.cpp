@@ -1,6 +1,8 @@
 #include "export/gltf_mesh.h"
 
 #include <algorithm>
+#include <compare>
+#include <map>
 
 #include "base/check.h"
 
@@ -81,8 +83,14 @@ TexcoordSlots append_texcoords(Glb& glb, const scene::Mesh& mesh, const scene::M
   return slots;
 }
 
+/// What the triangles of a primitive have in common.
+struct Part {
+  uint32_t material = 0, page = 0;
+  friend auto operator<=>(const Part&, const Part&) = default;
+};
+
 json primitive(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scene::Mesh& mesh,
-               uint32_t material, const Vertices& vertices, bool lightmapped) {
+               Part part, const Vertices& vertices, bool lightmapped) {
   json attributes;
   attributes["POSITION"] =
       append_accessor(glb, std::span<const Vec3>(picked(mesh.positions, vertices.source)));
@@ -96,42 +104,45 @@ json primitive(Glb& glb, MaterialBook& book, const scene::Scene& scene, const sc
   if (!mesh.colors.empty())
     attributes["COLOR_0"] =
         append_accessor(glb, std::span<const Vec3>(picked(mesh.colors, vertices.source)));
-  const TexcoordSlots slots =
-      append_texcoords(glb, mesh, scene.materials[material], vertices, lightmapped, attributes);
+  const TexcoordSlots slots = append_texcoords(glb, mesh, scene.materials[part.material], vertices,
+                                               lightmapped, attributes);
   return {{"attributes", std::move(attributes)},
           {"indices", append_indices(glb, vertices.indices)},
-          {"material", material_index(glb, book, scene, material, slots)}};
+          {"material", material_index(glb, book, scene, part.material, slots, part.page)}};
 }
 
 }  // namespace
 
 size_t append_mesh(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scene::Mesh& mesh,
-                   std::span<const std::array<Vec2, 3>> lightmap_uv) {
+                   const LightmapPlaces& lightmap) {
   LUXEL_CHECK(!mesh.triangles.empty());
-  LUXEL_CHECK(lightmap_uv.empty() || lightmap_uv.size() == mesh.triangles.size());
-  // Triangles by material, materials in the order of their first triangle.
-  std::vector<uint32_t> materials;
-  std::vector<uint32_t> rank(scene.materials.size(), kNone);
-  for (const uint32_t m : mesh.triangle_material)
-    if (rank[m] == kNone) {
-      rank[m] = uint32_t(materials.size());
-      materials.push_back(m);
+  LUXEL_CHECK(lightmap.uv.empty() || lightmap.uv.size() == mesh.triangles.size());
+  LUXEL_CHECK(lightmap.page.size() == lightmap.uv.size());
+  // Triangles by part, parts in the order of their first triangle.
+  std::vector<Part> parts;
+  std::map<Part, size_t> rank;
+  std::vector<std::vector<uint32_t>> triangles_of;
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Part part{mesh.triangle_material[t], lightmap.page.empty() ? 0 : lightmap.page[t]};
+    const auto [known, fresh] = rank.emplace(part, parts.size());
+    if (fresh) {
+      parts.push_back(part);
+      triangles_of.emplace_back();
     }
-  std::vector<std::vector<uint32_t>> triangles_of(materials.size());
-  for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    triangles_of[rank[mesh.triangle_material[t]]].push_back(t);
+    triangles_of[known->second].push_back(t);
+  }
 
   Splitter splitter(mesh.positions.size());
   json primitives = json::array();
-  for (size_t k = 0; k < materials.size(); ++k) {
+  for (size_t k = 0; k < parts.size(); ++k) {
     Vertices vertices;
     for (const uint32_t t : triangles_of[k])
       for (size_t c = 0; c < 3; ++c) {
-        const Vec2 place = lightmap_uv.empty() ? Vec2{} : lightmap_uv[t][c];
+        const Vec2 place = lightmap.uv.empty() ? Vec2{} : lightmap.uv[t][c];
         vertices.indices.push_back(splitter.vertex(vertices, mesh.triangles[t][c], place));
       }
     primitives.push_back(
-        primitive(glb, book, scene, mesh, materials[k], vertices, !lightmap_uv.empty()));
+        primitive(glb, book, scene, mesh, parts[k], vertices, !lightmap.uv.empty()));
     splitter.start_next_primitive(vertices);
   }
   json out = {{"primitives", std::move(primitives)}};

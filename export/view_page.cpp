@@ -6,6 +6,8 @@
 
 #include "base/base64.h"
 #include "base/check.h"
+#include "export/baked_glb.h"
+#include "export/small_picture.h"
 #include "export/view_template.h"
 #include "image/half.h"
 
@@ -41,12 +43,35 @@ void append_data(std::string& html, const char* id, const char* type, std::strin
   html += "</script>\n";
 }
 
-json about(const ViewPage& page, const image::HalfImage& light) {
-  return {{"title", page.title},
-          {"triangles", page.triangles},
-          {"background", {page.background.x, page.background.y, page.background.z}},
-          {"preview", to_json(page.view)},
-          {"light", {{"width", light.width}, {"height", light.height}, {"scale", light.scale}}}};
+/// Bytes as the page inflates them again.
+Status append_packed(std::string& html, const std::string& id, std::span<const std::byte> bytes) {
+  LUXEL_TRY(const std::vector<std::byte> packed, deflated(bytes));
+  append_data(html, id.c_str(), "text/plain", base64(packed));
+  return {};
+}
+
+/// An image as 16-bit floats; says what they mean.
+Result<json> append_image(std::string& html, const std::string& id, const image::Image& image) {
+  const image::HalfImage half = image::to_half(image);
+  LUXEL_TRY_STATUS(append_packed(html, id, std::as_bytes(std::span(half.data))));
+  return json{{"id", id}, {"width", half.width}, {"height", half.height}, {"scale", half.scale}};
+}
+
+Result<json> append_lightmaps(std::string& html, std::span<const image::Image> lightmaps) {
+  json out = json::array();
+  for (size_t p = 0; p < lightmaps.size(); ++p) {
+    LUXEL_TRY(json page, append_image(html, fmt::format("light-{}", p), lightmaps[p]));
+    page["file"] = lightmap_name(p, lightmaps.size()) + ".exr";  // by which materials name it
+    out.push_back(std::move(page));
+  }
+  return out;
+}
+
+Result<json> append_surroundings(std::string& html, const scene::Environment* map) {
+  if (!map || map->empty()) return nullptr;
+  LUXEL_TRY(json out, append_image(html, "surroundings", small_picture(*map, kSurroundingsWidth)));
+  out["rotation"] = map->rotation_rad;
+  return out;
 }
 
 }  // namespace
@@ -76,17 +101,19 @@ Status check_view_page() {
 }
 
 Result<std::string> view_html(const ViewPage& page) {
-  LUXEL_CHECK(page.lightmap != nullptr && page.lightmap->channels == 4);
+  LUXEL_CHECK(!page.lightmaps.empty());
+  for (const image::Image& lightmap : page.lightmaps) LUXEL_CHECK(lightmap.channels == 4);
   LUXEL_TRY_STATUS(check_view_page());
-  const image::HalfImage light = image::to_half(*page.lightmap);
-  LUXEL_TRY(const std::vector<std::byte> packed_light,
-            deflated(std::as_bytes(std::span(light.data))));
-  LUXEL_TRY(const std::vector<std::byte> packed_model, deflated(page.glb));
   std::string html(view_page_before_data());
+  json about = {{"title", page.title},
+                {"triangles", page.triangles},
+                {"background", {page.background.x, page.background.y, page.background.z}},
+                {"preview", to_json(page.view)}};
+  LUXEL_TRY(about["light"], append_lightmaps(html, page.lightmaps));
+  LUXEL_TRY(about["surroundings"], append_surroundings(html, page.environment));
+  LUXEL_TRY_STATUS(append_packed(html, "model", page.glb));
   append_data(html, "about", "application/json",
-              about(page, light).dump(-1, ' ', true, json::error_handler_t::replace));
-  append_data(html, "light", "text/plain", base64(packed_light));
-  append_data(html, "model", "text/plain", base64(packed_model));
+              about.dump(-1, ' ', true, json::error_handler_t::replace));
   html += view_page_after_data();
   return html;
 }

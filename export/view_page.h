@@ -27,20 +27,24 @@ nlohmann::json to_json(const View& view);
 
 struct ViewPage {
   std::string title;
-  View view;                               ///< what is shown first
-  Rgb background;                          ///< radiance where there is no surface
-  size_t triangles = 0;                    ///< for the reader
-  std::span<const std::byte> glb;          ///< of baked_glb()
-  const image::Image* lightmap = nullptr;  ///< E, 4 channels
+  View view;                                ///< what is shown first
+  Rgb background;                           ///< radiance where there is no surface
+  size_t triangles = 0;                     ///< for the reader
+  std::span<const std::byte> glb;           ///< of baked_glb()
+  std::span<const image::Image> lightmaps;  ///< E, 4 channels, the pages of `glb`
+  /// What stands behind the background's radiance; nullptr or empty: nothing. The page carries it
+  /// kSurroundingsWidth pixels wide, or as it is where it is narrower.
+  const scene::Environment* environment = nullptr;
 };
+inline constexpr int kSurroundingsWidth = 512;
 
 /// Whether luxel was built with the page. The error says what to install.
 Status check_view_page();
 
-/// The whole page: a program (three.js and export/web/), the scene and the lightmap as 16-bit
-/// floats, both deflated. It fetches nothing. Surfaces show base colour * (1 - metallic) * E / pi +
-/// emission through the curve of display::compress, back faces of one-sided materials are left out
-/// and alpha masks cut, as display::draw does. Errors: check_view_page's; out of memory.
+/// The whole page: a program (three.js and export/web/), the scene, its lightmaps and surroundings
+/// as 16-bit floats, all deflated. It fetches nothing. Surfaces show base colour * (1 - metallic) *
+/// E / pi + emission through the curve of display::compress, back faces of one-sided materials are
+/// left out and alpha masks cut, as display::draw does. Errors: check_view_page's; out of memory.
 Result<std::string> view_html(const ViewPage& page);
 
 }  // namespace luxel::export_

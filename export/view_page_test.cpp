@@ -71,9 +71,11 @@ class ViewPageTest : public ::testing::Test {
     for (int i = 0; i < 1000; ++i) glb.push_back(std::byte(i * i % 251));
   }
   std::string html(const std::string& title) {
-    return *view_html({title, some_view(), {0.5f, 0, 0}, 7, glb, &lightmap});
+    return *view_html(
+        {title, some_view(), {0.5f, 0, 0}, 7, glb, std::span(&lightmap, 1), &environment});
   }
   image::Image lightmap{5, 3, 4};
+  scene::Environment environment;
   std::vector<std::byte> glb;
 };
 
@@ -85,13 +87,34 @@ TEST_F(ViewPageTest, CarriesTheSceneAndTheLight) {
   EXPECT_EQ(about["preview"], to_json(some_view()));
   const std::string model = inflated(unbase64(element(page, "model")), glb.size());
   EXPECT_EQ(std::memcmp(model.data(), glb.data(), glb.size()), 0);
-  const std::string halves = inflated(unbase64(element(page, "light")), 5 * 3 * 4 * 2);
-  const double scale = about["light"]["scale"];
+  const std::string halves = inflated(unbase64(element(page, "light-0")), 5 * 3 * 4 * 2);
+  ASSERT_EQ(about["light"].size(), 1u);
+  EXPECT_EQ(about["light"][0]["file"], "lightmap.exr");
+  EXPECT_TRUE(about["surroundings"].is_null());
+  const double scale = about["light"][0]["scale"];
   uint16_t first;
   std::memcpy(&first, halves.data(), 2);
   // 1e5 = 1.5259 * 2^16; eleven bits of it.
   const double value = std::ldexp(1024 + (first & 1023), (first >> 10) - 25) * scale;
   EXPECT_NEAR(value, 1e5, 1e5 / 2048);
+}
+
+// A map of constant radiance stays what it is, however small the page makes it.
+TEST_F(ViewPageTest, CarriesTheSurroundings) {
+  environment = {1400, 700, std::vector<Rgb>(1400 * 700, {4, 0.5f, 0}), 0.25f};
+  const std::string page = html("box");
+  const nlohmann::json about = nlohmann::json::parse(element(page, "about"))["surroundings"];
+  EXPECT_EQ(about["rotation"], 0.25);
+  EXPECT_EQ(about["width"], 512);
+  EXPECT_EQ(about["height"], 256);
+  const std::string halves = inflated(unbase64(element(page, "surroundings")), 512 * 256 * 4 * 2);
+  std::array<uint16_t, 2> last;
+  std::memcpy(last.data(), halves.data() + halves.size() - 8, 4);
+  for (size_t c = 0; c < 2; ++c) {
+    const double half = std::ldexp(1024 + (last[c] & 1023), (last[c] >> 10) - 25);
+    const double wanted = c == 0 ? 4 : 0.5;
+    EXPECT_NEAR(half * about["scale"].get<double>(), wanted, wanted / 1024);
+  }
 }
 
 TEST_F(ViewPageTest, TitlesCannotEndTheirElement) {

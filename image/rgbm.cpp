@@ -32,19 +32,29 @@ std::array<uint8_t, 4> to_rgbm(Rgb c, double range) {
 
 }  // namespace
 
-RgbmPicture rgbm_picture(const Image& image) {
-  LUXEL_CHECK(image.channels >= 3);
-  for (const float v : image.data) LUXEL_CHECK(std::isfinite(v));
-  RgbmPicture out{{image.width, image.height, 4, {}}, largest_component(image)};
+float rgbm_range(std::span<const Image> images) {
+  float largest = 0;
+  for (const Image& image : images) largest = std::max(largest, largest_component(image));
   // Of a denormal range the smallest step would be no number.
-  if (!(out.range > 1e-30f)) out.range = 1;
-  out.picture.data.reserve(size_t(image.width) * size_t(image.height) * 4);
+  return largest > 1e-30f ? largest : 1;
+}
+
+Image8 rgbm_picture(const Image& image, float range) {
+  LUXEL_CHECK(image.channels >= 3 && range > 0);
+  for (const float v : image.data) LUXEL_CHECK(std::isfinite(v));
+  Image8 out{image.width, image.height, 4, {}};
+  out.data.reserve(size_t(image.width) * size_t(image.height) * 4);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      const auto code = to_rgbm(image.rgb(x, y), double(out.range));
-      out.picture.data.insert(out.picture.data.end(), code.begin(), code.end());
+      const auto code = to_rgbm(image.rgb(x, y), double(range));
+      out.data.insert(out.data.end(), code.begin(), code.end());
     }
   return out;
+}
+
+RgbmPicture rgbm_picture(const Image& image) {
+  const float range = rgbm_range(std::span(&image, 1));
+  return {rgbm_picture(image, range), range};
 }
 
 }  // namespace luxel::image

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "atlas/pages.h"
 #include "base/file.h"
 #include "base/parallel.h"
 #include "display/draw.h"
@@ -71,12 +72,12 @@ Status repair(const BakeSettings& settings, const trace::RayTracer& tracer, Bake
   if (settings.stitch)
     LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
   bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance);
-  bake.texel_picture =
+  bake.texel_pictures =
       draw_texels(bake.atlas, bake.map,
                   {hidden, bake.repair.overlapping, bake.repair.moved, bake.repair.refilled,
                    post::seam_errors(bake.map, seams, bake.light.irradiance)});
-  bake.lightmap = post::lightmap_from_texels(bake.map, bake.light.irradiance);
-  post::dilate(bake.lightmap, kDilationRings);
+  bake.lightmaps = post::lightmap_pages(bake.atlas, bake.map, bake.light.irradiance);
+  for (image::Image& lightmap : bake.lightmaps) post::dilate(lightmap, kDilationRings);
   return not_cancelled(progress);
 }
 
@@ -117,12 +118,32 @@ Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progre
   return {};
 }
 
+nlohmann::json about_atlas(const BakeSettings& settings, const Bake& bake) {
+  const std::vector<atlas::Page> pages = atlas::pages_of(bake.atlas);
+  nlohmann::json out = {{"resolution", 0},
+                        {"utilisation", bake.atlas_stats.utilisation},
+                        {"mean_stretch_l2", bake.atlas_stats.mean_stretch_l2},
+                        {"texels_per_metre", bake.atlas_stats.texels_per_metre}};
+  for (size_t p = 0; p < pages.size(); ++p) {
+    out["resolution"] = std::max(out["resolution"].get<int>(), pages[p].side);
+    out["pages"].push_back({{"file", export_::lightmap_name(p, pages.size()) + ".exr"},
+                            {"resolution", pages[p].side}});
+  }
+  if (settings.pages.mode != atlas::PageMode::per_instance) return out;
+  for (uint32_t i = 0; i < bake.scene.instances.size(); ++i) {
+    const uint32_t first = bake.atlas.first_triangle[i];
+    if (first < bake.atlas.first_triangle[i + 1])
+      out["pages"][atlas::page_of(bake.atlas, first)]["node"] = bake.scene.instances[i].name;
+  }
+  return out;
+}
+
 nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Progress& progress) {
   const nlohmann::json seconds = stage_seconds(progress);
-  const double tracing = seconds.value("direct light", 0.0) +
-                         seconds.value("supersample", 0.0) + seconds.value("trace rays", 0.0) +
-                         seconds.value("trace paths", 0.0) + seconds.value("hemicubes", 0.0) +
-                         seconds.value("directions", 0.0) + seconds.value("probes", 0.0);
+  const double tracing = seconds.value("direct light", 0.0) + seconds.value("supersample", 0.0) +
+                         seconds.value("trace rays", 0.0) + seconds.value("trace paths", 0.0) +
+                         seconds.value("hemicubes", 0.0) + seconds.value("directions", 0.0) +
+                         seconds.value("probes", 0.0);
   return {{"version", kVersion},
           {"settings", to_json(settings)},
           {"counts",
@@ -135,11 +156,7 @@ nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Prog
             {"elements", bake.light.elements},
             {"supersampled_texels", bake.light.supersampled_texels},
             {"suspicious_texels", bake.light.suspicious_texels}}},
-          {"atlas",
-           {{"resolution", bake.atlas.resolution},
-            {"utilisation", bake.atlas_stats.utilisation},
-            {"mean_stretch_l2", bake.atlas_stats.mean_stretch_l2},
-            {"texels_per_metre", bake.atlas_stats.texels_per_metre}}},
+          {"atlas", about_atlas(settings, bake)},
           {"leaks",
            {{"cuts", bake.repair.cuts},
             {"parted_pairs", bake.repair.parted},
@@ -188,7 +205,7 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
 namespace {
 
 Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& bake) {
-  if (!settings.vertex_colors) return export_::baked_glb(bake.scene, bake.atlas, bake.lightmap);
+  if (!settings.vertex_colors) return export_::baked_glb(bake.scene, bake.atlas, bake.lightmaps);
   const VertexLit lit = vertex_lit(bake.scene, *bake.light.field);
   return export_::vertex_lit_glb(lit.scene, lit.intensity);
 }
@@ -198,12 +215,13 @@ Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
                              std::span<const std::byte> glb) {
   std::vector<std::byte> own;
   if (settings.vertex_colors) {
-    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, bake.lightmap));
+    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, bake.lightmaps));
     glb = own;
   }
   LUXEL_TRY(const std::string html,
             export_::view_html({settings.scene.stem().string(), bake.view, bake.scene.background,
-                                bake.atlas.corners.size(), glb, &bake.lightmap}));
+                                bake.atlas.corners.size(), glb, bake.lightmaps,
+                                &bake.scene.environment}));
   return text_file(settings.output / "view.html", html);
 }
 
@@ -211,7 +229,7 @@ Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
 Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bake& bake,
                                          nlohmann::json& json) {
   LUXEL_TRY(LightmapFiles lightmap,
-            lightmap_files(bake.lightmap, settings.formats, settings.output, "lightmap"));
+            lightmap_files(bake.lightmaps, settings.formats, settings.output));
   std::vector<OutputFile> files = std::move(lightmap.files);
   if (lightmap.rgbm_range > 0) json["lightmap"]["rgbm_range"] = lightmap.rgbm_range;
   const auto append = [&](std::vector<OutputFile> more) {
@@ -231,7 +249,11 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
     files.push_back(std::move(page));
   }
   files.push_back({settings.output / "baked.glb", std::move(glb)});
-  files.push_back({settings.output / "texels.png", image::encode_png(bake.texel_picture)});
+  for (size_t p = 0; p < bake.texel_pictures.size(); ++p) {
+    const bool one = bake.texel_pictures.size() == 1;
+    files.push_back({settings.output / (one ? "texels.png" : fmt::format("texels-{}.png", p)),
+                     image::encode_png(bake.texel_pictures[p])});
+  }
   files.push_back({settings.output / "preview.png", image::encode_png(bake.preview)});
   return files;
 }

@@ -30,14 +30,14 @@ struct Bake {
   atlas::TexelMap map;
   atlas::AtlasStats atlas_stats;
   TexelLight light;
-  image::Image lightmap;  ///< E, 4 channels, as lightmap.exr holds it
+  std::vector<image::Image> lightmaps;  ///< E, 4 channels, per page as lightmap.exr holds it
   image::Image8 preview;
   DirectionMaps directions;         ///< with --directional
   std::optional<ProbeGrid> probes;  ///< with --probes
   export_::View view;               ///< what the preview was taken with
   size_t seams = 0;
   LeakRepair repair;
-  image::Image8 texel_picture;  ///< what was found and done, texel by texel: texels.png
+  std::vector<image::Image8> texel_pictures;  ///< per page, texel by texel: texels.png
   post::SeamResidual seam_residual_before, seam_residual_after;
   std::vector<std::string> warnings;
 };
@@ -48,7 +48,7 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress);
 
 /// The whole of `luxel bake`: bake_scene, then lightmap.exr (and its other formats), baked.glb,
 /// preview.png, texels.png, view.html when asked for, and bake.json in settings.output, all of them
-/// or none. Returns what bake.json holds.
+/// or none. Of several pages they are lightmap-0.exr and so on. Returns what bake.json holds.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

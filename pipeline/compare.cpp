@@ -8,6 +8,7 @@
 #include "image/flip.h"
 #include "pipeline/bake.h"
 #include "pipeline/compare_report.h"
+#include "pipeline/lightmap_files.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/picture.h"
 
@@ -16,16 +17,51 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder stands for the lightmap of the bake in it.
-fs::path picture_file(const fs::path& path) {
+/// A folder stands for the lightmap of the bake in it, or for all its pages.
+std::vector<fs::path> picture_files(const fs::path& path) {
   std::error_code ignored;
-  return fs::is_directory(path, ignored) ? path / "lightmap.exr" : path;
+  if (fs::is_directory(path, ignored)) return lightmaps_in(path);
+  return {path};
+}
+
+/// Pages below one another, with nothing beside the smaller ones.
+image::Image stacked(const std::vector<Picture>& pages) {
+  int width = 0, height = 0;
+  for (const Picture& page : pages) {
+    width = std::max(width, page.linear.width);
+    height += page.linear.height;
+  }
+  image::Image out(width, height, pages.front().linear.channels);
+  int top = 0;
+  for (const Picture& page : pages) {
+    const size_t row = size_t(page.linear.width) * size_t(out.channels);
+    for (int y = 0; y < page.linear.height; ++y)
+      std::copy_n(page.linear.at(0, y), row, out.at(0, top + y));
+    top += page.linear.height;
+  }
+  return out;
+}
+
+/// What a file shows, or what all lightmaps of a folder show.
+Result<Picture> read_subject(const fs::path& path) {
+  const std::vector<fs::path> files = picture_files(path);
+  std::vector<Picture> pages;
+  for (const fs::path& file : files) {
+    LUXEL_TRY(Picture page, read_picture(file));
+    if (!pages.empty() && page.linear.channels != pages.front().linear.channels)
+      return fail(ErrorCode::bad_input, "{} has {} channels, and {} has {}; bake the scene again",
+                  page.name, page.linear.channels, pages.front().name,
+                  pages.front().linear.channels);
+    pages.push_back(std::move(page));
+  }
+  if (pages.size() == 1) return std::move(pages.front());
+  return Picture{path.string(), stacked(pages), {}};
 }
 
 Status check(const CompareSettings& s) {
   for (const fs::path& path : {s.a, s.b}) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored) && !fs::exists(picture_file(path), ignored))
+    if (fs::is_directory(path, ignored) && !fs::exists(picture_files(path).front(), ignored))
       return fail(ErrorCode::bad_input,
                   "{} is a folder without lightmap.exr; give a picture or what `luxel bake` left",
                   path.string());
@@ -180,8 +216,8 @@ Result<Measured> measure(const Picture& a, const Picture& b, std::optional<doubl
 Result<Compared> compare(const CompareSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check(s));
   progress.begin("read", 0);
-  LUXEL_TRY(const Picture a, read_picture(picture_file(s.a)));
-  LUXEL_TRY(const Picture b, read_picture(picture_file(s.b)));
+  LUXEL_TRY(const Picture a, read_subject(s.a));
+  LUXEL_TRY(const Picture b, read_subject(s.b));
   LUXEL_TRY(Measured measured, measure(a, b, s.exposure, progress));
   if (s.report) {
     progress.begin("report", 0);

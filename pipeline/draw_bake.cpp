@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 
+#include "base/check.h"
 #include "base/file.h"
 #include "display/draw.h"
 #include "display/lightmap_lookup.h"
+#include "export/baked_glb.h"
 #include "image/codec.h"
 #include "image/color.h"
 #include "import/import.h"
@@ -32,15 +35,60 @@ Result<scene::Scene> baked_scene(const Subject& subject, const RenderSettings& s
   return std::move(baked.scene);
 }
 
+/// What a bake's folder has for each page of its atlas.
+struct Pages {
+  std::vector<image::Image> pictures;
+  std::vector<size_t> of_material;  ///< index into pictures
+
+  const image::Image& of(const scene::Scene& scene, const scene::SurfacePoint& p) const {
+    const scene::Mesh& mesh = scene.meshes[scene.instances[p.instance].mesh];
+    return pictures[of_material[mesh.triangle_material[p.triangle]]];
+  }
+};
+
+/// read(file) for every lightmap that the materials of baked.glb name; those that name none have
+/// lightmap.exr.
+Result<Pages> read_pages(
+    const std::filesystem::path& folder, size_t materials,
+    const std::function<Result<image::Image>(const std::filesystem::path& lightmap)>& read) {
+  const std::filesystem::path glb = folder / "baked.glb";
+  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(glb));
+  LUXEL_TRY(std::vector<std::string> names, export_::lightmap_files_of(bytes, glb.string()));
+  names.resize(materials);  // import adds one for triangles that have none
+  Pages out;
+  std::map<std::string, size_t> known;
+  for (const std::string& name : names) {
+    const std::string file = name.empty() ? "lightmap.exr" : name;
+    const auto [page, fresh] = known.emplace(file, out.pictures.size());
+    out.of_material.push_back(page->second);
+    if (!fresh) continue;
+    LUXEL_TRY(image::Image picture, read(folder / file));
+    out.pictures.push_back(std::move(picture));
+  }
+  return out;
+}
+
+Result<image::Image> read_lightmap(const std::filesystem::path& file) {
+  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
+  return image::decode_exr(bytes, file.string());
+}
+
+/// texels.png beside lightmap.exr, texels-1.png beside lightmap-1.exr.
+Result<image::Image> read_texel_picture(const std::filesystem::path& lightmap) {
+  constexpr std::string_view kLightmap = "lightmap";
+  const std::string number = lightmap.stem().string().substr(kLightmap.size());
+  const std::filesystem::path file = lightmap.parent_path() / ("texels" + number + ".png");
+  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
+  return image::decode_display(bytes, file.string());
+}
+
 Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettings& s,
                                       Progress& progress) {
   LUXEL_TRY(const scene::Scene scene, baked_scene(subject, s));
-  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(s.from / "lightmap.exr"));
-  LUXEL_TRY(const image::Image lightmap,
-            image::decode_exr(bytes, (s.from / "lightmap.exr").string()));
+  LUXEL_TRY(const Pages lightmaps, read_pages(s.from, scene.materials.size(), read_lightmap));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   const auto irradiance = [&](const scene::SurfacePoint& p) {
-    return display::lightmap_at(scene, lightmap, p);
+    return display::lightmap_at(scene, lightmaps.of(scene, p), p);
   };
   return display::draw(scene, tracer, subject.camera, irradiance, size_of(s), progress);
 }
@@ -66,56 +114,59 @@ Result<image::Image> draw_quick_bake(const Subject& subject, const RenderSetting
   return display::draw(bake.scene, tracer, subject.camera, irradiance, size_of(s), progress);
 }
 
-/// The pictures of texels.png on surfaces: a colour per texel, a little darker where surfaces turn
-/// away from the eye.
-Result<image::Image> draw_texel_colors(const scene::Scene& scene, const image::Image& colors,
-                                       const std::function<Vec2(const scene::SurfacePoint&)>& place,
+/// The colour of a texel (linear).
+Rgb texel_color(const image::Image& picture, Vec2 at) {
+  const int x = std::clamp(int(at.x), 0, picture.width - 1);
+  const int y = std::clamp(int(at.y), 0, picture.height - 1);
+  const Rgb c = picture.rgb(x, y);
+  return {image::linear_from_srgb(c.x), image::linear_from_srgb(c.y), image::linear_from_srgb(c.z)};
+}
+
+/// Surfaces in the colours of their texels, a little darker where they turn away from the eye.
+Result<image::Image> draw_texel_colors(const scene::Scene& scene,
+                                       const std::function<Rgb(const scene::SurfacePoint&)>& color,
                                        const Subject& subject, const RenderSettings& s,
                                        Progress& progress) {
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   const Vec3 forward = -normalize(column(subject.camera.world_from_camera, 2));
   const auto seen_at = [&](const trace::Hit& hit) {
-    const Vec2 at = place(hit.point());
-    const int x = std::clamp(int(at.x), 0, colors.width - 1);
-    const int y = std::clamp(int(at.y), 0, colors.height - 1);
     const Vec3 n = scene::front_normal(scene, hit.instance, hit.triangle);
-    const Rgb c = colors.rgb(x, y);
-    return Rgb{image::linear_from_srgb(c.x), image::linear_from_srgb(c.y),
-               image::linear_from_srgb(c.z)} *
-           (0.7f + 0.3f * std::abs(dot(n, forward)));
+    return color(hit.point()) * (0.7f + 0.3f * std::abs(dot(n, forward)));
   };
   display::DrawParams params = size_of(s);
   params.brightest_behind = 1;
   return display::draw_seen(scene, tracer, subject.camera, seen_at, params, progress);
 }
 
+Result<image::Image> draw_quick_texels(const Subject& subject, const RenderSettings& s,
+                                       Progress& progress) {
+  LUXEL_TRY(const Bake bake, quick_bake(s, progress));
+  LUXEL_CHECK(bake.texel_pictures.size() == 1);
+  LUXEL_TRY(const image::Image picture,
+            image::decode_display(image::encode_png(bake.texel_pictures[0]), "texels.png"));
+  const auto color = [&](const scene::SurfacePoint& p) {
+    const auto& c = bake.atlas.corners[bake.atlas.triangle_number(p.instance, p.triangle)];
+    return texel_color(picture, interpolate(c[0], c[1], c[2], p.at));
+  };
+  return draw_texel_colors(bake.scene, color, subject, s, progress);
+}
+
 }  // namespace
 
 Result<image::Image> draw_texels_of_bake(const Subject& subject, const RenderSettings& s, Rendered&,
                                          Progress& progress) {
-  if (s.from.empty()) {
-    LUXEL_TRY(const Bake bake, quick_bake(s, progress));
-    const auto place = [&](const scene::SurfacePoint& p) {
-      const auto& c = bake.atlas.corners[bake.atlas.triangle_number(p.instance, p.triangle)];
-      return interpolate(c[0], c[1], c[2], p.at);
-    };
-    LUXEL_TRY(const image::Image colors,
-              image::decode_display(image::encode_png(bake.texel_picture), "texels.png"));
-    return draw_texel_colors(bake.scene, colors, place, subject, s, progress);
-  }
+  if (s.from.empty()) return draw_quick_texels(subject, s, progress);
   LUXEL_TRY(const scene::Scene scene, baked_scene(subject, s));
-  const std::filesystem::path file = s.from / "texels.png";
-  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
-  LUXEL_TRY(const image::Image colors, image::decode_display(bytes, file.string()));
-  const Vec2 size{float(colors.width), float(colors.height)};
-  const auto place = [&](const scene::SurfacePoint& p) {
+  LUXEL_TRY(const Pages pages, read_pages(s.from, scene.materials.size(), read_texel_picture));
+  const auto color = [&](const scene::SurfacePoint& p) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[p.instance].mesh];
-    if (mesh.uv1.empty()) return Vec2{};
+    if (mesh.uv1.empty()) return Rgb{};
     const auto& t = mesh.triangles[p.triangle];
     const Vec2 uv = interpolate(mesh.uv1[t[0]], mesh.uv1[t[1]], mesh.uv1[t[2]], p.at);
-    return Vec2{uv.x * size.x, uv.y * size.y};
+    const image::Image& picture = pages.of(scene, p);
+    return texel_color(picture, {uv.x * float(picture.width), uv.y * float(picture.height)});
   };
-  return draw_texel_colors(scene, colors, place, subject, s, progress);
+  return draw_texel_colors(scene, color, subject, s, progress);
 }
 
 Result<image::Image> draw_lightmap(const Subject& subject, const RenderSettings& settings,

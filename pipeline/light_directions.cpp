@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "export/baked_glb.h"
 #include "image/codec.h"
 #include "post/dilate.h"
 #include "transport/irradiance_field.h"
@@ -50,8 +51,8 @@ Result<DirectionMaps> direction_maps(const SolveInput& in, std::span<const Rgb> 
     for (size_t i = 0; i < values.size(); ++i)
       values[i] =
           kind == Directional::sh1 ? light.bent[i].v[k] : dominant_of(light.bent[i], irradiance[i]);
-    out.pictures.push_back(post::lightmap_from_texels(in.map, values));
-    post::dilate(out.pictures.back(), kDilationRings);
+    out.pictures.push_back(post::lightmap_pages(in.atlas, in.map, values));
+    for (image::Image& page : out.pictures.back()) post::dilate(page, kDilationRings);
   }
   return out;
 }
@@ -60,11 +61,13 @@ Result<std::vector<OutputFile>> direction_files(const DirectionMaps& maps,
                                                 const std::filesystem::path& folder) {
   std::vector<OutputFile> out;
   for (size_t k = 0; k < maps.pictures.size(); ++k) {
-    const std::string name = maps.pictures.size() == 1
-                                 ? "lightmap.direction.exr"
-                                 : std::string("lightmap.") + "xyz"[k] + ".exr";
-    LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(maps.pictures[k]));
-    out.push_back({folder / name, std::move(exr)});
+    const std::string what = maps.pictures.size() == 1 ? "direction" : std::string(1, "xyz"[k]);
+    const std::vector<image::Image>& pages = maps.pictures[k];
+    for (size_t p = 0; p < pages.size(); ++p) {
+      LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(pages[p]));
+      const std::string name = export_::lightmap_name(p, pages.size());
+      out.push_back({folder / fmt::format("{}.{}.exr", name, what), std::move(exr)});
+    }
   }
   return out;
 }

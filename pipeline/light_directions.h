@@ -16,18 +16,19 @@
 
 namespace luxel::pipeline {
 
-/// V of E(m) = E + (m - n) . V as pictures of the lightmap's shape and coverage. sh1: three, of V's
-/// x, y and z, a channel per colour. dominant: one, of w = V's luminance over that of E, whose
+/// V of E(m) = E + (m - n) . V as pictures of the lightmaps' shapes and coverage. sh1: three, of
+/// V's x, y and z, a channel per colour. dominant: one, of w = V's luminance over that of E, whose
 /// channels are x, y and z: E(m) = E max(0, 1 + (m - n) . w).
 struct DirectionMaps {
-  std::vector<image::Image> pictures;
+  std::vector<std::vector<image::Image>> pictures;  ///< each with a page per lightmap
   uint64_t rays = 0;
 };
 /// `irradiance` is the finished lightmap's, per texel. Errors: cancelled.
 Result<DirectionMaps> direction_maps(const SolveInput& in, std::span<const Rgb> irradiance,
                                      std::span<const uint8_t> hidden, Directional kind,
                                      uint64_t seed, Progress& progress);
-/// lightmap.direction.exr, or lightmap.x.exr, .y.exr and .z.exr.
+/// lightmap.direction.exr, or lightmap.x.exr, .y.exr and .z.exr; of several pages
+/// lightmap-0.direction.exr, ...
 Result<std::vector<OutputFile>> direction_files(const DirectionMaps& maps,
                                                 const std::filesystem::path& folder);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "export/baked_glb.h"
 #include "image/codec.h"
 #include "image/rgbe.h"
 #include "image/rgbm.h"
@@ -38,21 +39,39 @@ nlohmann::json to_json(const LightmapFormats& formats) {
   return names;
 }
 
-Result<LightmapFiles> lightmap_files(const image::Image& lightmap, const LightmapFormats& formats,
-                                     const std::filesystem::path& folder, const std::string& name) {
+Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
+                                     const LightmapFormats& formats,
+                                     const std::filesystem::path& folder) {
   LightmapFiles out;
-  const auto add = [&](const char* extension, std::vector<std::byte> bytes) {
-    out.files.push_back({folder / (name + extension), std::move(bytes)});
-  };
-  LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(lightmap));
-  add(".exr", std::move(exr));
-  if (formats.hdr) add(".hdr", image::encode_hdr(lightmap));
-  if (formats.rgbm) {
-    const image::RgbmPicture rgbm = image::rgbm_picture(lightmap);
-    add(".rgbm.png", image::encode_png(rgbm.picture));
-    out.rgbm_range = rgbm.range;
+  if (formats.rgbm) out.rgbm_range = image::rgbm_range(lightmaps);
+  for (size_t p = 0; p < lightmaps.size(); ++p) {
+    const image::Image& lightmap = lightmaps[p];
+    const std::string name = export_::lightmap_name(p, lightmaps.size());
+    const auto add = [&](const char* extension, std::vector<std::byte> bytes) {
+      out.files.push_back({folder / (name + extension), std::move(bytes)});
+    };
+    LUXEL_TRY(std::vector<std::byte> exr, image::encode_exr(lightmap));
+    add(".exr", std::move(exr));
+    if (formats.hdr) add(".hdr", image::encode_hdr(lightmap));
+    if (formats.rgbm)
+      add(".rgbm.png", image::encode_png(image::rgbm_picture(lightmap, out.rgbm_range)));
+    if (formats.rgbe) add(".rgbe.png", image::encode_png(image::rgbe_picture(lightmap)));
   }
-  if (formats.rgbe) add(".rgbe.png", image::encode_png(image::rgbe_picture(lightmap)));
+  return out;
+}
+
+std::vector<std::filesystem::path> lightmaps_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> out;
+  if (const auto text = read_file(folder / "bake.json")) {
+    const char* begin = reinterpret_cast<const char*>(text->data());
+    const auto json = nlohmann::json::parse(begin, begin + text->size(), nullptr, false);
+    const nlohmann::json::json_pointer where("/atlas/pages");
+    if (json.contains(where))
+      for (const nlohmann::json& page : json[where])
+        if (page.contains("file") && page["file"].is_string())
+          out.push_back(folder / page["file"].get<std::string>());
+  }
+  if (out.empty()) out.push_back(folder / "lightmap.exr");
   return out;
 }
 

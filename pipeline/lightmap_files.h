@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -26,11 +27,17 @@ nlohmann::json to_json(const LightmapFormats& formats);
 
 struct LightmapFiles {
   std::vector<OutputFile> files;
-  float rgbm_range = 0;  ///< E = range a rgb in NAME.rgbm.png; 0 where there is none
+  float rgbm_range = 0;  ///< E = range a rgb in every NAME.rgbm.png; 0 where there is none
 };
 
-/// `lightmap` as NAME.exr and what `formats` adds, in `folder`. Error: from the EXR encoder.
-Result<LightmapFiles> lightmap_files(const image::Image& lightmap, const LightmapFormats& formats,
-                                     const std::filesystem::path& folder, const std::string& name);
+/// Pages of a lightmap as NAME.exr and what `formats` adds, in `folder`. NAME is
+/// export_::lightmap_name's. Error: from the EXR encoder.
+Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
+                                     const LightmapFormats& formats,
+                                     const std::filesystem::path& folder);
+
+/// The lightmaps of the bake in `folder`, as bake.json lists them; lightmap.exr where it lists none
+/// or is not there.
+std::vector<std::filesystem::path> lightmaps_in(const std::filesystem::path& folder);
 
 }  // namespace luxel::pipeline

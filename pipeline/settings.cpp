@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "atlas/pages.h"
 #include "export/view_page.h"
 #include "import/environment.h"
 #include "pipeline/solvers.h"
@@ -52,11 +53,29 @@ std::string hemicube_memory(int resolution) {
   return gib < 0.1 ? std::string() : fmt::format("; it would take {:.1f} GiB for its pixels", gib);
 }
 
+std::string pages_text(const PagesSetting& pages) {
+  return pages.mode == atlas::PageMode::automatic      ? "auto"
+         : pages.mode == atlas::PageMode::per_instance ? "mesh"
+                                                       : fmt::format("{}", pages.count);
+}
+
 const char* name_of(atlas::UvMode mode) {
   return mode == atlas::UvMode::keep ? "keep" : mode == atlas::UvMode::unwrap ? "unwrap" : "auto";
 }
 
 }  // namespace
+
+Result<PagesSetting> parse_pages(std::string_view text) {
+  if (text == "auto") return PagesSetting{atlas::PageMode::automatic, 1};
+  if (text == "mesh") return PagesSetting{atlas::PageMode::per_instance, 1};
+  const auto count = parse_number(text);
+  if (!count || *count < 1 || *count > atlas::kMaxPages || *count != std::floor(*count))
+    return fail(ErrorCode::bad_setting,
+                "--pages '{}' is not a number of lightmaps; give 1 to {}, auto for as many as it "
+                "takes, or mesh for one per mesh",
+                text, atlas::kMaxPages);
+  return PagesSetting{atlas::PageMode::fixed, int(*count)};
+}
 
 Status check(const HemicubeSettings& s) {
   if (s.elements != "vertex" && s.elements != "triangle")
@@ -104,6 +123,29 @@ Status check(const HierarchicalSettings& s) {
   return check_range("--max-leaf-lines", s.max_leaf_lines, 0, 1000);
 }
 
+namespace {
+
+/// What one option says must not be said by another.
+Status check_pages(const BakeSettings& s) {
+  const bool one = s.pages.mode == atlas::PageMode::fixed && s.pages.count == 1;
+  if (one) return {};
+  const std::string pages = pages_text(s.pages);
+  if (s.uv == atlas::UvMode::keep)
+    return fail(ErrorCode::bad_setting,
+                "--uv keep takes the file's layout, which is one lightmap, and --pages {} asks for "
+                "others; leave one of them out",
+                pages);
+  if (s.pages.mode == atlas::PageMode::fixed && s.texels_per_metre > 0)
+    return fail(
+        ErrorCode::bad_setting,
+        "--texels-per-metre {} says how many texels there are, and so does --pages {}; give "
+        "--pages auto, or a --resolution instead of the density",
+        s.texels_per_metre, pages);
+  return {};
+}
+
+}  // namespace
+
 Status check(const BakeSettings& s) {
   if (!find_solver(s.solver))
     return fail(ErrorCode::bad_setting, "--solver {} is not known; there is: {}", s.solver,
@@ -119,6 +161,7 @@ Status check(const BakeSettings& s) {
   if (!std::isfinite(s.probe_spacing_m) || s.probe_spacing_m < 0)
     return fail(ErrorCode::bad_setting, "--probes {} is not a spacing; give metres > 0",
                 s.probe_spacing_m);
+  LUXEL_TRY_STATUS(check_pages(s));
   if (s.denoise && !find_solver(s.solver)->noise)
     return fail(ErrorCode::bad_setting,
                 "--denoise needs light with known noise, which --solver {} has not; leave it out",
@@ -139,6 +182,7 @@ nlohmann::json to_json(const BakeSettings& s) {
                       {"solver", s.solver},
                       {"resolution", s.resolution},
                       {"texels_per_metre", s.texels_per_metre},
+                      {"pages", pages_text(s.pages)},
                       {"uv", name_of(s.uv)},
                       {"samples", s.samples},
                       {"direct_samples", s.direct_samples},

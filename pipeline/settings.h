@@ -74,12 +74,22 @@ enum class Directional : uint8_t { none, dominant, sh1 };
 Result<Directional> parse_directional(std::string_view text);
 std::string_view name_of(Directional directional);
 
+/// How many lightmaps a bake leaves. More than one, or not yet known how many: the scene is laid
+/// out anew.
+struct PagesSetting {
+  atlas::PageMode mode = atlas::PageMode::fixed;
+  int count = 1;  ///< fixed
+};
+/// "auto", "mesh" or a number.
+Result<PagesSetting> parse_pages(std::string_view text);
+
 struct BakeSettings {
   std::filesystem::path scene;
   std::filesystem::path output;  ///< a folder; made when missing
   std::string solver = "gather";
-  int resolution = 512;        ///< side of the lightmap in texels
-  float texels_per_metre = 0;  ///< > 0: chooses the resolution
+  int resolution = 512;        ///< side of a lightmap in texels
+  float texels_per_metre = 0;  ///< > 0: chooses the resolution; with automatic pages their number
+  PagesSetting pages;
   atlas::UvMode uv = atlas::UvMode::automatic;
   int samples = 256;
   int direct_samples = 64;

@@ -16,7 +16,7 @@ namespace {
 using display::LocalTechnique;
 
 /// Colours of a screen before a background that a screen can show.
-display::DrawParams params_for_colors(const Subject& subject, const RenderSettings& settings) {
+display::DrawParams params_for_colors(const RenderSettings& settings) {
   display::DrawParams params;
   params.width = settings.width, params.height = settings.height;
   params.brightest_behind = 1;
@@ -32,13 +32,13 @@ Result<image::Image> draw_local(const Subject& subject, const RenderSettings& se
     return display::local_light_at(subject.scene, hit, technique, lights, viewer);
   };
   return display::draw_seen(subject.scene, subject.tracer, subject.camera, seen_at,
-                            params_for_colors(subject, settings), progress);
+                            params_for_colors(settings), progress);
 }
 
 Result<image::Image> draw_normals(const Subject& subject, const RenderSettings& settings, Rendered&,
                                   Progress& progress) {
   return display::draw_normals(subject.scene, subject.tracer, subject.camera,
-                               params_for_colors(subject, settings), progress);
+                               params_for_colors(settings), progress);
 }
 
 /// The hemicube solver's own answer, without a lightmap in between.

@@ -15,6 +15,7 @@ atlas::AtlasParams params_of(const BakeSettings& settings) {
   params.uv = settings.uv;
   params.resolution = settings.resolution;
   params.texels_per_metre = settings.texels_per_metre;
+  params.page_mode = settings.pages.mode, params.pages = settings.pages.count;
   return params;
 }
 

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <array>
 
+#include "atlas/pages.h"
+
 namespace luxel::pipeline {
 namespace {
 
 using Color = std::array<uint8_t, 3>;
 
-constexpr Color kWhite{255, 255, 255}, kBlack{0, 0, 0}, kMagenta{220, 30, 200}, kGreen{40, 190, 70},
-    kYellow{240, 200, 40}, kRed{230, 30, 30};
+constexpr Color kBlack{0, 0, 0}, kMagenta{220, 30, 200}, kGreen{40, 190, 70}, kYellow{240, 200, 40},
+    kRed{230, 30, 30};
 constexpr Color kLight{205, 205, 205}, kDark{160, 160, 160}, kBorder{95, 105, 140};
 constexpr uint32_t kSquare = 8;
 constexpr float kFullRed = 0.05f;
@@ -36,8 +38,8 @@ Color mix(Color a, Color b, float s) {
 
 }  // namespace
 
-image::Image8 draw_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                          const TexelFacts& facts) {
+std::vector<image::Image8> draw_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                       const TexelFacts& facts) {
   std::vector<Color> color(map.texels.size());
   for (size_t i = 0; i < color.size(); ++i) {
     const atlas::Texel& t = map.texels[i];
@@ -51,14 +53,20 @@ image::Image8 draw_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
     if (facts.hidden[i]) color[i] = kBlack;
   for (const uint32_t i : facts.refilled) color[i] = kYellow;
   for (const uint32_t i : facts.overlapping) color[i] = kMagenta;
-  image::Image8 picture;
-  picture.width = picture.height = map.resolution, picture.channels = 3;
-  picture.data.resize(3 * map.texel_at.size());
-  for (size_t at = 0; at < map.texel_at.size(); ++at) {
-    const Color c = map.texel_at[at] == atlas::kNone ? kWhite : color[map.texel_at[at]];
-    std::copy(c.begin(), c.end(), picture.data.begin() + long(3 * at));
+  const std::vector<atlas::Page> pages = atlas::pages_of(atlas);
+  std::vector<image::Image8> pictures;
+  for (const atlas::Page& page : pages) {
+    const auto side = size_t(page.side);
+    pictures.push_back({page.side, page.side, 3, std::vector<uint8_t>(3 * side * side, 255)});
   }
-  return picture;
+  for (size_t i = 0; i < color.size(); ++i) {
+    const atlas::Texel& t = map.texels[i];
+    const uint32_t p = atlas::page_of(atlas, t.triangle_number);
+    const size_t x = size_t(int(t.x) - pages[p].x), y = size_t(int(t.y) - pages[p].y);
+    const size_t at = y * size_t(pages[p].side) + x;
+    std::copy(color[i].begin(), color[i].end(), pictures[p].data.begin() + long(3 * at));
+  }
+  return pictures;
 }
 
 }  // namespace luxel::pipeline

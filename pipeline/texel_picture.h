@@ -17,13 +17,13 @@ struct TexelFacts {
   std::vector<float> seam_error;  ///< relative difference of a seam's sides
 };
 
-/// The atlas, rows from the top, a colour per texel:
+/// The pages of the atlas, rows from the top, a colour per texel:
 ///   a checker of two grays, squares of 8 x 8 texels (density), the chart's border darker;
 ///   red, the more the two sides of a seam differ: full at 5 %;
 ///   green: sample moved out of a solid; yellow: inside a solid, refilled from its neighbours;
 ///   black: inside a solid, where nobody looks; magenta: belongs to more than one chart.
 /// Later ones win. Places without a texel are white.
-image::Image8 draw_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                          const TexelFacts& facts);
+std::vector<image::Image8> draw_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                       const TexelFacts& facts);
 
 }  // namespace luxel::pipeline

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "atlas/pages.h"
 #include "base/check.h"
 
 namespace luxel::post {
@@ -65,6 +66,22 @@ image::Image lightmap_from_texels(const atlas::TexelMap& map, std::span<const Rg
     lightmap.at(int(texel.x), int(texel.y))[3] = texel.centre_covered ? 1.0f : 0.5f;
   }
   return lightmap;
+}
+
+std::vector<image::Image> lightmap_pages(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                         std::span<const Rgb> values) {
+  LUXEL_CHECK(map.texels.size() == values.size());
+  const std::vector<atlas::Page> pages = atlas::pages_of(atlas);
+  std::vector<image::Image> lightmaps;
+  for (const atlas::Page& page : pages) lightmaps.emplace_back(page.side, page.side, 4);
+  for (size_t i = 0; i < values.size(); ++i) {
+    const atlas::Texel& texel = map.texels[i];
+    const uint32_t p = atlas::page_of(atlas, texel.triangle_number);
+    const int x = int(texel.x) - pages[p].x, y = int(texel.y) - pages[p].y;
+    lightmaps[p].set_rgb(x, y, values[i]);
+    lightmaps[p].at(x, y)[3] = texel.centre_covered ? 1.0f : 0.5f;
+  }
+  return lightmaps;
 }
 
 void dilate(image::Image& lightmap, int rings) {

@@ -190,6 +190,63 @@ TEST_F(ViewHtml, ShowsWhatThePreviewShows) {
   }
 }
 
+// Three squares that share the meshes out, and one for each mesh: every texel must be looked up on
+// its own page.
+TEST_F(ViewHtml, ShowsEveryPage) {
+  for (const char* pages : {"--resolution 128 --pages 3", "--resolution 64 --pages mesh"}) {
+    const ScratchFolder s;
+    if (!bake(scene_file("spheres-and-cube.glb"), s.path / "b",
+              std::string("--samples 32 --uv unwrap ") + pages))
+      return;
+    const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
+    const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
+    expect_same(difference(shot.picture, preview, 3, every_pixel), pages);
+  }
+}
+
+/// Smooth all around, another colour in every direction, `width` pixels wide.
+std::vector<std::byte> colourful_map(int width) {
+  image::Image map(width, width / 2, 3);
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) {
+      const float phi = 2 * kPi * (float(x) + 0.5f) / float(map.width);
+      const float theta = kPi * (float(y) + 0.5f) / float(map.height);
+      const float s = std::sin(theta);
+      map.set_rgb(x, y, {1 + s * std::cos(phi), 1.2f + std::cos(theta), 1 + s * std::sin(3 * phi)});
+    }
+  return image::encode_hdr(map);
+}
+
+// The map as it is (16 pixels around: the picture shows three of them, blended), turned and scaled;
+// one that the page carries smaller, which is as smooth as before; with a background's radiance
+// before it; a sky, whose lower half is the ground; and parallel rays, which all see the same.
+TEST_F(ViewHtml, ShowsTheSurroundings) {
+  scene::Scene scene;
+  scene::Material plain;
+  plain.base_color = {0.7f, 0.5f, 0.3f};
+  add_square(scene, {-0.5f, -0.5f, -4}, {1, 0, 0}, {0, 1, 0}, plain);
+  const ScratchFolder s;
+  for (const int width : {16, 1200})
+    ASSERT_TRUE(write_file_atomically(s.path / ("map" + std::to_string(width) + ".hdr"),
+                                      colourful_map(width)));
+  const std::string map = "--environment " + (s.path / "map").string();
+  for (const bool parallel : {false, true})
+    for (const std::string& light :
+         {map + "16.hdr,100,2", map + "1200.hdr,-37", map + "16.hdr --background 0.5,0,1",
+          std::string("--sky 20,15")}) {
+      scene.cameras.assign(1, {});  // towards -Z, half a radian up at the picture's top
+      scene.cameras[0].fov_y_rad = 1.2f;
+      scene.cameras[0].orthographic_height_m = parallel ? 3 : 0;
+      ASSERT_TRUE(write_file_atomically(s.path / "plate.glb", *export_::scene_glb(scene)));
+      if (!bake((s.path / "plate.glb").string(), s.path / "b",
+                "--resolution 32 --samples 64 " + light))
+        return;
+      const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
+      const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
+      expect_same(difference(shot.picture, preview, 3, every_pixel), light.c_str());
+    }
+}
+
 // Textures, their transforms, vertex colours, metal, masks, one-sided backs, mirrors, no lightmap
 // texel alike: everything that a material of baked.glb may say.
 TEST_F(ViewHtml, KnowsEveryMaterial) {

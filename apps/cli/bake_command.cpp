@@ -12,7 +12,8 @@ namespace {
 struct BakeOptions {
   Common common;
   OutsideText outside;
-  std::string uv = "auto", bounces = "inf", max_memory, formats = "exr", directional;
+  std::string uv = "auto", bounces = "inf", max_memory, formats = "exr", directional, pages = "1";
+  bool resolution_given = false;
   HemicubeOptions hemicube;
   pipeline::BakeSettings settings;
   std::set<std::string> given;  ///< of kSolverOptions
@@ -72,6 +73,14 @@ Status check_used(const BakeOptions& options) {
 Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   LUXEL_TRY_STATUS(check_used(options));
   pipeline::BakeSettings s = options.settings;
+  LUXEL_TRY(s.pages, pipeline::parse_pages(options.pages));
+  if (options.resolution_given && s.texels_per_metre > 0 &&
+      s.pages.mode != atlas::PageMode::automatic)
+    return fail(
+        ErrorCode::bad_setting,
+        "--resolution {} and --texels-per-metre {} contradict each other; leave one out, or "
+        "add --pages auto, which takes as many lightmaps of that resolution as it needs",
+        s.resolution, s.texels_per_metre);
   s.threads = options.common.threads;
   s.hemicube = options.hemicube.settings;
   s.uv = uv_mode(options.uv);
@@ -89,11 +98,13 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
 
 void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
   const auto& counts = json["counts"];
+  const size_t pages = json["atlas"]["pages"].size();
   std::fprintf(
       stderr, "%s\n",
-      fmt::format("{} triangles, {} charts, {} x {} texels ({} used), {} rays in {:.1f} s, "
+      fmt::format("{} triangles, {} charts, {}{} x {} texels ({} used), {} rays in {:.1f} s, "
                   "estimated error {:.2f} %",
                   counts["triangles"].get<uint64_t>(), counts["charts"].get<uint64_t>(),
+                  pages == 1 ? "" : fmt::format("{} pages of up to ", pages),
                   json["atlas"]["resolution"].get<int>(), json["atlas"]["resolution"].get<int>(),
                   counts["texels"].get<uint64_t>(), counts["rays"].get<uint64_t>(),
                   json["seconds"]["total"].get<double>(),
@@ -122,12 +133,13 @@ void register_bake(CLI::App& app, Action& action) {
       ->required();
   bake->add_option("--solver", s.solver, "How light is computed: " + pipeline::solver_names())
       ->capture_default_str();
-  auto* resolution =
-      bake->add_option("--resolution", s.resolution, "Side of the lightmap in texels")
-          ->capture_default_str();
+  bake->add_option("--resolution", s.resolution, "Side of a lightmap in texels")
+      ->capture_default_str();
   bake->add_option("--texels-per-metre", s.texels_per_metre,
-                   "Density; the side becomes the smallest power of two that holds the scene")
-      ->excludes(resolution);
+                   "Density; the side becomes the smallest power of two that holds the scene");
+  bake->add_option("--pages", options->pages,
+                   "Lightmaps: so many; auto, as many as the density needs; mesh, one per mesh")
+      ->capture_default_str();
   add_uv(*bake, options->uv);
   bake->add_option("--samples", s.samples, "Indirect rays per texel; reference: paths")
       ->capture_default_str();
@@ -169,6 +181,7 @@ void register_bake(CLI::App& app, Action& action) {
   add_outside_light(*bake, options->outside);
   add_common(*bake, options->common);
   bake->callback([options, bake, &action] {
+    options->resolution_given = bake->count("--resolution") > 0;
     for (const SolverOption& option : kSolverOptions)
       if (bake->count(option.name) > 0) options->given.insert(option.name);
     action = [options] { return run_bake(*options); };

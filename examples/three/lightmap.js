@@ -1,8 +1,9 @@
 import * as THREE from "three";
 
 /**
- * Lights what GLTFLoader made of baked.glb with its lightmap, and with nothing else. `exr` is what
- * EXRLoader made of lightmap.exr; without it the picture inside baked.glb, 8 bits, is used.
+ * Lights what GLTFLoader made of baked.glb with its lightmap, and with nothing else. `exr(name)`
+ * resolves to what EXRLoader makes of the file, "lightmap.exr" or one for each page; without it the
+ * pictures inside baked.glb, 8 bits, are used.
  */
 export async function useLightmap(gltf, exr = null) {
   const lamps = [], meshes = [];
@@ -20,8 +21,9 @@ export async function useLightmap(gltf, exr = null) {
 
 async function bakedMaterial(loaded, parser, exr) {
   const lightmap = loaded.userData.gltfExtensions.MOZ_lightmap;
-  const picture = exr ?? await parser.getDependency("texture", lightmap.index);
-  if (exr) exr.flipY = true; // EXRLoader has the bottom row first, glTF the top row
+  const picture = exr ? await exr(loaded.userData.luxel.lightmap)
+    : await parser.getDependency("texture", lightmap.index);
+  if (exr) picture.flipY = true; // EXRLoader has the bottom row first, glTF the top row
   else picture.colorSpace = THREE.SRGBColorSpace;
   picture.channel = lightmap.texCoord; // 1: TEXCOORD_1
   picture.needsUpdate = true;

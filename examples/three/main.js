@@ -6,8 +6,12 @@ import { useLightmap } from "./lightmap.js";
 
 async function show() {
   const gltf = await new GLTFLoader().loadAsync("baked.glb");
-  const exr = location.search === "?exr" ? await new EXRLoader().loadAsync("lightmap.exr") : null;
-  await useLightmap(gltf, exr);
+  const files = new Map(); // one lightmap, or one for each page, which several materials share
+  const exr = (name) => {
+    if (!files.has(name)) files.set(name, new EXRLoader().loadAsync(name));
+    return files.get(name);
+  };
+  await useLightmap(gltf, location.search === "?exr" ? exr : null);
   const { preview } = await (await fetch("bake.json")).json();
 
   const camera = new THREE.PerspectiveCamera(

@@ -13,9 +13,9 @@ async function inflate(id) {
   return new Response(stream).arrayBuffer();
 }
 
-/** Title, counts, camera, exposure, size and scale of the lightmap. */
+/** Title, counts, camera, exposure, sizes and scales of the pictures. */
 export const about = () => JSON.parse(text("about"));
 /** The bytes of baked.glb. */
 export const model = () => inflate("model");
-/** E / scale as 16-bit floats, RGBA, the top row first. */
-export const light = async () => new Uint16Array(await inflate("light"));
+/** A picture / its scale as 16-bit floats, RGBA, the top row first. `about` says which. */
+export const picture = async (about) => new Uint16Array(await inflate(about.id));

@@ -93,14 +93,43 @@ void main() {
 }`;
 
 /** Whole-screen: what is seen where there is no surface. */
+const backgroundVertexShader = /* glsl */ `
+precision highp float;
+uniform mat4 modelViewMatrix, projectionMatrix;
+in vec3 position;
+out vec3 towards;
+void main() {
+  mat4 p = projectionMatrix;
+  bool parallel = p[3][3] == 1.0;
+  vec3 ahead = parallel ? vec3(0, 0, -1)
+             : vec3((position.x + p[2][0]) / p[0][0], (position.y + p[2][1]) / p[1][1], -1);
+  towards = transpose(mat3(modelViewMatrix)) * ahead;  // it stands unturned at the origin
+  gl_Position = vec4(position, 1.0);
+}`;
+
+/** scene/environment.h has the map's shape. */
 const backgroundShader = /* glsl */ `
 precision highp float;
 uniform vec3 background;
 uniform float exposure;
 uniform int show;
+#ifdef SURROUNDINGS
+uniform sampler2D surroundings;
+uniform float surroundingsScale, rotation;
+#endif
+in vec3 towards;
 out vec4 pixel;
 ${toneMap}
-void main() { pixel = vec4(show == 2 ? vec3(0.0) : srgb(compress(exposure * background)), 1.0); }`;
+void main() {
+  vec3 seen = background;
+#ifdef SURROUNDINGS
+  const float pi = 3.14159265358979;
+  vec3 d = normalize(towards);
+  vec2 at = vec2(0.5 + (atan(d.z, d.x) - rotation) / (2.0 * pi), atan(length(d.xz), d.y) / pi);
+  seen += texture(surroundings, at).rgb * surroundingsScale;
+#endif
+  pixel = vec4(show == 2 ? vec3(0.0) : srgb(compress(exposure * seen)), 1.0);
+}`;
 
 const uvName = (channel) => (channel === 0 ? "uv" : `uv${channel}`);
 
@@ -120,13 +149,14 @@ function linear(texture) {
 
 /**
  * The material of a mesh of baked.glb, from what GLTFLoader made of it. `common`: the uniforms that
- * all materials share (light, lightScale, exposure, show).
+ * all materials share (exposure, show); `page`: those of its lightmap (light, lightScale).
  */
-export function bakedMaterial(loaded, geometry, common) {
+export function bakedMaterial(loaded, geometry, page, common) {
   const lit = loaded.isMeshStandardMaterial === true;
   const defines = {};
   const uniforms = {
     ...common,
+    ...page,
     baseColor: { value: loaded.color },
     alpha: { value: loaded.opacity },
     cutoff: { value: loaded.alphaTest },
@@ -150,13 +180,21 @@ export function bakedMaterial(loaded, geometry, common) {
   });
 }
 
-export function backgroundMesh(background, common) {
+/** `surroundings`: the map behind the background's radiance and how it is turned, or null. */
+export function backgroundMesh(background, surroundings, common) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.Float32BufferAttribute([-1, -1, 0, 3, -1, 0, -1, 3, 0], 3));
   const mesh = new THREE.Mesh(geometry, new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
-    uniforms: { ...common, background: { value: new THREE.Vector3(...background) } },
-    vertexShader: "in vec3 position; void main() { gl_Position = vec4(position, 1.0); }",
+    defines: surroundings ? { SURROUNDINGS: "" } : {},
+    uniforms: {
+      ...common,
+      background: { value: new THREE.Vector3(...background) },
+      surroundings: { value: surroundings?.texture ?? null },
+      surroundingsScale: { value: surroundings?.scale ?? 1 },
+      rotation: { value: surroundings?.rotation ?? 0 },
+    },
+    vertexShader: backgroundVertexShader,
     fragmentShader: backgroundShader,
     depthTest: false, depthWrite: false,
   }));
@@ -166,10 +204,14 @@ export function backgroundMesh(background, common) {
   return mesh;
 }
 
-/** E / scale, looked up bilinearly, clamped. Halves are filtered by the graphics card itself. */
-export function lightTexture(halves, width, height) {
+/**
+ * Halves, looked up bilinearly, clamped, or around the vertical. They are filtered by the graphics
+ * card itself.
+ */
+export function halfTexture(halves, { width, height }, wrap = THREE.ClampToEdgeWrapping) {
   const texture = new THREE.DataTexture(halves, width, height, THREE.RGBAFormat, THREE.HalfFloatType);
   texture.minFilter = texture.magFilter = THREE.LinearFilter;
+  texture.wrapS = wrap;
   texture.needsUpdate = true;
   return texture;
 }

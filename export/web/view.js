@@ -4,12 +4,30 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { fitWindow, lookedAt, previewCamera } from "./camera.js";
 import * as data from "./data.js";
-import { backgroundMesh, bakedMaterial, lightTexture } from "./material.js";
+import { backgroundMesh, bakedMaterial, halfTexture } from "./material.js";
 
 const byId = (id) => document.getElementById(id);
 
+/** What materials look up of each lightmap, by the name of its file. */
+async function loadLight(about) {
+  const pages = new Map();
+  for (const page of about.light)
+    pages.set(page.file, {
+      light: { value: halfTexture(await data.picture(page), page) },
+      lightScale: { value: page.scale },
+    });
+  return pages;
+}
+
+async function loadSurroundings(about) {
+  if (!about) return null;
+  const texture = halfTexture(await data.picture(about), about, THREE.RepeatWrapping);
+  return { texture, scale: about.scale, rotation: about.rotation };
+}
+
 /** Meshes alone, with the bake's materials: lamps are in the lightmap already. */
 async function loadScene(about, common) {
+  const pages = await loadLight(about);
   const { scene } = await new GLTFLoader().parseAsync(await data.model(), "");
   const lamps = [];
   const known = new Map();
@@ -17,11 +35,14 @@ async function loadScene(about, common) {
     if (object.isLight) lamps.push(object);
     if (!object.isMesh) return;
     const key = object.material.uuid + Object.keys(object.geometry.attributes);
-    if (!known.has(key)) known.set(key, bakedMaterial(object.material, object.geometry, common));
+    if (!known.has(key)) {
+      const page = pages.get(object.material.userData.luxel.lightmap);
+      known.set(key, bakedMaterial(object.material, object.geometry, page, common));
+    }
     object.material = known.get(key);
   });
   for (const lamp of lamps) lamp.removeFromParent();
-  scene.add(backgroundMesh(about.background, common));
+  scene.add(backgroundMesh(about.background, await loadSurroundings(about.surroundings), common));
   return scene;
 }
 
@@ -41,11 +62,18 @@ function makeRenderer() {
   return renderer;
 }
 
+/** "lightmap 512 x 512", "3 lightmaps 512 x 512", "9 lightmaps up to 256 x 256". */
+function lightmapsOf({ light }) {
+  const size = ({ width, height }) => `${width} x ${height}`;
+  const largest = light.reduce((a, b) => (b.width > a.width ? b : a));
+  const same = light.every((page) => size(page) === size(largest));
+  return `${light.length > 1 ? `${light.length} lightmaps` : "lightmap"} ${same ? "" : "up to "}${size(largest)}`;
+}
+
 function fillPanel(about) {
   document.title = `${about.title} - luxel`;
   byId("title").textContent = about.title;
-  byId("numbers").textContent = `${about.triangles.toLocaleString("en")} triangles, ` +
-    `lightmap ${about.light.width} x ${about.light.height}`;
+  byId("numbers").textContent = `${about.triangles.toLocaleString("en")} triangles, ${lightmapsOf(about)}`;
   byId("panel").open = innerWidth > 600;
   byId("panel").hidden = false;
 }
@@ -80,12 +108,10 @@ function connectPanel(about, common, controls, draw, wishes) {
 async function open() {
   const about = data.about();
   const renderer = makeRenderer();
-  const side = Math.max(about.light.width, about.light.height);
+  const side = Math.max(...about.light.map(({ width, height }) => Math.max(width, height)));
   if (side > renderer.capabilities.maxTextureSize)
     throw new Error(`This device shows textures of ${renderer.capabilities.maxTextureSize} texels a side; the lightmap has ${side}.`);
   const common = {
-    light: { value: lightTexture(await data.light(), about.light.width, about.light.height) },
-    lightScale: { value: about.light.scale },
     exposure: { value: about.preview.exposure },
     show: { value: 0 },
   };

@@ -249,7 +249,7 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
     files.push_back(std::move(page));
   }
   files.push_back({settings.output / "baked.glb", std::move(glb)});
-  for (size_t p = 0; p < bake.texel_pictures.size(); ++p) {
+  for (size_t p = 0; settings.texels && p < bake.texel_pictures.size(); ++p) {
     const bool one = bake.texel_pictures.size() == 1;
     files.push_back({settings.output / (one ? "texels.png" : fmt::format("texels-{}.png", p)),
                      image::encode_png(bake.texel_pictures[p])});

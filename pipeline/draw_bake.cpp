@@ -78,8 +78,11 @@ Result<image::Image> read_texel_picture(const std::filesystem::path& lightmap) {
   constexpr std::string_view kLightmap = "lightmap";
   const std::string number = lightmap.stem().string().substr(kLightmap.size());
   const std::filesystem::path file = lightmap.parent_path() / ("texels" + number + ".png");
-  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
-  return image::decode_display(bytes, file.string());
+  const Result<std::vector<std::byte>> bytes = read_file(file);
+  if (!bytes)
+    return fail(bytes.error().code, "{}; bake with --texels, or draw without --from",
+                bytes.error().message);
+  return image::decode_display(*bytes, file.string());
 }
 
 Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettings& s,

@@ -65,7 +65,7 @@ Status check_used(const RenderSettings& s, const Technique& technique) {
                   "--technique {} does not use {}; leave {} out (it is for {}){}", technique.name,
                   option.name, option.name, users_of(option.used),
                   technique.needs_bake ? "; a bake has its light from `luxel bake`" : "");
-  if (technique.needs_bake && s.from.empty())
+  if (technique.needs_bake && !technique.bakes_itself && s.from.empty())
     return fail(ErrorCode::bad_setting,
                 "--technique {} draws a bake; name its folder with --from, or use --technique path",
                 technique.name);

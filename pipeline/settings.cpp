@@ -191,7 +191,7 @@ nlohmann::json to_json(const BakeSettings& s) {
                       {"seed", s.seed},
                       {"threads", s.threads}};
   json["formats"] = to_json(s.formats);
-  json["html"] = s.html;
+  json["html"] = s.html, json["texels"] = s.texels;
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
   json["directional"] = name_of(s.directional);
   json["probe_spacing_m"] = s.probe_spacing_m;

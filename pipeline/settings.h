@@ -108,6 +108,7 @@ struct BakeSettings {
   bool stitch = true;          ///< make charts agree along seams
   bool repair_leaks = true;    ///< cut charts at thin walls, move samples out of solids
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
+  bool texels = false;         ///< texels.png too
   LightmapFormats formats;     ///< files beside lightmap.exr
   bool html = false;           ///< view.html too
 };

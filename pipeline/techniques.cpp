@@ -137,6 +137,7 @@ constexpr std::array kTechniques{
               .draw = draw_texels_of_bake,
               .is_light = false,
               .needs_bake = true,
+              .bakes_itself = true,
               .on_sheet = false},
     Technique{.name = "path",
               .help = "trace paths",

@@ -31,6 +31,7 @@ struct Technique {
   DrawFunction draw;
   bool is_light = true;         ///< radiance, which is exposed and tone mapped
   bool needs_bake = false;      ///< --from
+  bool bakes_itself = false;    ///< makes a small bake when --from names none
   bool traces_paths = false;    ///< --samples, --seed
   bool counts_bounces = false;  ///< --bounces
   bool has_elements = false;    ///< --elements, --hemicube, ...

@@ -145,6 +145,28 @@ TEST(ContactSheetCommand, DrawsTheBakeThatItIsGiven) {
   EXPECT_THAT(missing.err, HasSubstr("none"));
 }
 
+/// A bake's texels on the plate: one of the two grays of the checker, as it faces the eye. From a
+/// folder and from a small bake of its own.
+TEST(Techniques, TexelsAreDrawnFromABakeOrWithoutOne) {
+  const Plate plate;
+  const auto linear = [](float v) { return std::pow((v / 255 + 0.055f) / 1.055f, 2.4f); };
+  const auto is_gray = [&](float v) {
+    return std::abs(v - linear(205)) < 1e-3f || std::abs(v - linear(160)) < 1e-3f;  // 8 bits
+  };
+  const float quick = plate.draw("--technique texels").rgb(4, 4).y;
+  EXPECT_TRUE(is_gray(quick)) << quick;
+  const std::string dir = (plate.s.path / "b").string();
+  const std::string bake = "bake " + (plate.s.path / "plate.obj").string() + " -o " + dir +
+                           " --resolution 64 --samples 4 --quiet";
+  ASSERT_EQ(luxel(bake).code, 0);
+  const CommandResult without = luxel(plate.command("--technique texels --from " + dir, "x.exr"));
+  EXPECT_EQ(without.code, 1);
+  EXPECT_THAT(without.err, HasSubstr("--texels"));
+  ASSERT_EQ(luxel(bake + " --texels").code, 0);
+  const float from = plate.draw("--technique texels --from " + dir).rgb(4, 4).y;
+  EXPECT_TRUE(is_gray(from)) << from;
+}
+
 TEST(RenderRefuses, WhatATechniqueWouldNotLookAt) {
   const Plate plate;
   const auto refused = [&](const std::string& options, const std::string& option,

@@ -166,6 +166,9 @@ void register_bake(CLI::App& app, Action& action) {
                    "Also light probes in the air, so many metres apart")
       ->type_name("SPACING");
   bake->add_flag("--denoise", s.denoise, "Take the grain out of texels; edges of shadows stay");
+  bake->add_flag(
+      "--texels", s.texels,
+      "Also leave texels.png: what became of each texel (luxel render --technique texels)");
   bake->add_flag("!--no-leak-repair", s.repair_leaks,
                  "Leave charts whole under thin walls, and samples inside of solids");
   bake->add_flag("!--no-stitch", s.stitch, "Leave charts as they are along seams");

@@ -118,10 +118,10 @@ Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progre
 
 nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Progress& progress) {
   const nlohmann::json seconds = stage_seconds(progress);
-  const double tracing = seconds.value("direct light", 0.0) +
-                         seconds.value("supersample", 0.0) + seconds.value("trace rays", 0.0) +
-                         seconds.value("trace paths", 0.0) + seconds.value("hemicubes", 0.0) +
-                         seconds.value("directions", 0.0) + seconds.value("probes", 0.0);
+  const double tracing = seconds.value("direct light", 0.0) + seconds.value("supersample", 0.0) +
+                         seconds.value("trace rays", 0.0) + seconds.value("trace paths", 0.0) +
+                         seconds.value("hemicubes", 0.0) + seconds.value("directions", 0.0) +
+                         seconds.value("probes", 0.0);
   return {{"version", kVersion},
           {"settings", to_json(settings)},
           {"counts",

@@ -104,7 +104,25 @@ TEST(Lights, ATexturedLampShinesWhereItIsBright) {
   expect_unbiased(solve(scene, points, kDirect), rectangle_light(points, -0.5, 0, -0.5, 0, 1, 2));
 }
 
-// The same with holes: what is cut out neither shines nor blocks.
+// One bright row of sixteen: what transport/textured_lights_test.cpp asks of gather's direct light.
+TEST(Lights, ABrightRowBringsWhatItsGeometryWould) {
+  scene::Scene scene;
+  scene::add_material(scene, "lamp", {}, gray(2));
+  scene::Texture texture;
+  texture.width = 1, texture.height = 16;
+  texture.rgba.assign(64, 0);
+  for (size_t k = 0; k < 4; ++k) texture.rgba[4 * 5 + k] = 255;
+  scene.textures.push_back(texture);
+  scene.materials[0].emission_texture = {.texture = 0, .filter = scene::Filter::nearest};
+  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, false, 0);
+  for (const Vec3& p : scene.meshes[0].positions)
+    scene.meshes[0].uv0.push_back({p.x + 0.5f, p.z + 0.5f});
+  const Points points = floor_points();
+  expect_unbiased(solve(scene, points, {.samples = 8000, .bounces = 0}),
+                  rectangle_light(points, -0.5, 0.5, 5.0 / 16 - 0.5, 6.0 / 16 - 0.5, 1, 2));
+}
+
+// The lamp of one bright corner with holes: what is cut out neither shines nor blocks.
 TEST(Lights, AMaskedLampShinesFromItsSolidPart) {
   scene::Scene scene;
   scene::add_material(scene, "lamp", {}, gray(2));

@@ -86,7 +86,8 @@ void shoot_at_triangle(const scene::Scene& scene, const TriangleLight& light, ui
                        uint32_t count, const Receiver& r, float diagonal_m, Shots& shots) {
   const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
   const bool by_angle = spherical.solid_angle > kMinSolidAngle;
-  const uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
+  uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
+  if (light.piece > 0) seed = hash64(seed, light.piece);
   uint32_t kept = 0;
   for (uint32_t k = 0; kept < count && k < 8 * count + 64; ++k) {
     const Vec2 u = sobol_owen_2d(k, seed);

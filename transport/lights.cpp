@@ -3,14 +3,13 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "base/random.h"
-#include "base/warp.h"
+#include "transport/textured_lights.h"
 
 namespace luxel::transport {
 namespace {
 
-/// Enough points that a small bright spot of a texture is not taken for darkness.
-constexpr int kTexturePoints = 64;
+/// Pieces of textured lights, in the whole scene and of each triangle.
+constexpr size_t kMaxPieces = 16384, kMaxPiecesOfOne = 256;
 
 TriangleLight light_from_triangle(const scene::Scene& scene, uint32_t instance, uint32_t triangle) {
   TriangleLight light;
@@ -26,21 +25,25 @@ TriangleLight light_from_triangle(const scene::Scene& scene, uint32_t instance, 
   light.textured =
       material.emission_texture.texture != scene::kNone || scene::lets_light_through(material);
   light.two_sided = material.double_sided;
-  if (!light.textured) {
-    light.mean_radiance = material.emission;
-    return light;
-  }
-  for (int i = 0; i < kTexturePoints; ++i)
-    light.mean_radiance +=
-        radiance_at(scene, light, triangle_sample(sobol_owen_2d(uint32_t(i), 0)));
-  light.mean_radiance *= 1.0f / kTexturePoints;
-  // The points may have missed what shines: keep a small chance for it.
-  if (max_component(light.mean_radiance) <= 0) light.mean_radiance = material.emission * 1e-3f;
+  light.mean_radiance = material.emission;  // of textured ones: the largest that it can be
   return light;
 }
 
 float power_of(const TriangleLight& light) {
   return luminance(light.mean_radiance) * light.area_m2 * (light.two_sided ? 2.0f : 1.0f);
+}
+
+std::vector<TriangleLight> emissive_triangles(const scene::Scene& scene) {
+  std::vector<TriangleLight> out;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (max_component(scene.materials[mesh.triangle_material[t]].emission) <= 0) continue;
+      const TriangleLight light = light_from_triangle(scene, i, t);
+      if (power_of(light) > 0) out.push_back(light);
+    }
+  }
+  return out;
 }
 
 /// Two-sided triangles send as much as a sphere of directions does: half of their cosines' mean.
@@ -96,6 +99,10 @@ void build_lamp_tree(Lights& lights) {
 }  // namespace
 
 Rgb radiance_at(const scene::Scene& scene, const TriangleLight& light, Barycentric at) {
+  const auto& part = light.part;
+  const float w = 1 - at.u - at.v;
+  at = {part[0].u * w + part[1].u * at.u + part[2].u * at.v,
+        part[0].v * w + part[1].v * at.u + part[2].v * at.v};
   if (light.flipped) std::swap(at.u, at.v);
   const scene::SurfacePoint p{light.instance, light.triangle, at};
   return scene::emission_at(scene, p) * scene::passage_at(scene, p).coverage;
@@ -105,13 +112,19 @@ Lights collect_lights(const scene::Scene& scene) {
   Lights lights;
   lights.punctual = scene.lights, lights.profiles = scene.profiles;
   lights.around = surroundings_of(scene);
-  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (max_component(scene.materials[mesh.triangle_material[t]].emission) <= 0) continue;
-      const TriangleLight light = light_from_triangle(scene, i, t);
-      if (power_of(light) > 0) lights.triangles.push_back(light);
+  const std::vector<TriangleLight> whole = emissive_triangles(scene);
+  const auto textured = std::count_if(whole.begin(), whole.end(),
+                                      [](const TriangleLight& light) { return light.textured; });
+  const size_t pieces =
+      std::clamp<size_t>(kMaxPieces / std::max<size_t>(1, size_t(textured)), 1, kMaxPiecesOfOne);
+  lights.emissive_triangles = whole.size();
+  for (const TriangleLight& light : whole) {
+    if (!light.textured) {
+      lights.triangles.push_back(light);
+      continue;
     }
+    const std::vector<TriangleLight> parts = pieces_by_brightness(scene, light, pieces);
+    lights.triangles.insert(lights.triangles.end(), parts.begin(), parts.end());
   }
   build_triangle_tree(lights);
   build_lamp_tree(lights);

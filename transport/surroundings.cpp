@@ -68,7 +68,6 @@ Surroundings surroundings_of(const scene::Scene& scene) {
     out.below.push_back(out.below.back() +
                         over * scene::pixel_solid_angle(map, int(i) / map.width));
   }
-  out.peak_power = out.below.back();
   return out;
 }
 
@@ -81,7 +80,8 @@ Rgb soft_radiance(const scene::Scene& scene, const Surroundings& s, Vec3 directi
 PeakSample sample_peaks(const scene::Scene& scene, const Surroundings& s, Vec2 u) {
   LUXEL_CHECK(!s.peak.empty());
   const scene::Environment& map = scene.environment;
-  const double at = double(u.x) * s.peak_power;
+  const double power = s.below.back();
+  const double at = double(u.x) * power;
   const auto found = std::upper_bound(s.below.begin() + 1, s.below.end() - 1, at);
   const size_t k = size_t(found - s.below.begin()) - 1;
   // What is left of u.x within the pixel's share is uniform again.
@@ -96,8 +96,8 @@ PeakSample sample_peaks(const scene::Scene& scene, const Surroundings& s, Vec2 u
                 float(std::acos(cosine) / kPiDouble)};
   const Rgb l = map.radiance[pixel];
   const float l_luminance = luminance(l);
-  // Density = (lum L - limit) / peak_power per steradian, radiance = L (lum L - limit) / lum L.
-  return {scene::direction_of(map, uv), l * float(s.peak_power / double(l_luminance))};
+  // Density = (lum L - limit) / power per steradian, radiance = L (lum L - limit) / lum L.
+  return {scene::direction_of(map, uv), l * float(power / double(l_luminance))};
 }
 
 float folded_cosine(Vec3 d, Vec3 normal, Vec3 geometric_normal) {

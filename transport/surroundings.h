@@ -20,9 +20,10 @@ namespace luxel::transport {
 struct Surroundings {
   Rgb background{};            ///< radiance of rays that leave the scene, besides that of the map
   float limit = INFINITY;      ///< luminance of the map [W/(sr m^2)] at which peaks begin
-  double peak_power = 0;       ///< integral of the luminance of the peaks over the sphere [W/m^2]
   std::vector<uint32_t> peak;  ///< pixels of the map that rise above the limit, in Morton order
-  std::vector<double> below;   ///< power of all peaks before each one; one extra entry
+  /// Power of all peaks before each one, the integral of their luminance [W/m^2]; one extra entry,
+  /// the power of all.
+  std::vector<double> below;
 };
 
 /// Finds the peaks of the scene's map. The limit is kPeak times the mean luminance of what lies

@@ -40,7 +40,7 @@ double light_to_come(double change, double before, double largest_reflectance) {
 }  // namespace
 
 Emission choose_emission(const transport::Lights& lights) {
-  Emission out{lights.triangles.size() > kMaxExactLights, lights};
+  Emission out{lights.emissive_triangles > kMaxExactLights, lights};
   if (!out.by_pixels) return out;
   out.exact.triangles.clear(), out.exact.nodes.clear();
   return out;

@@ -79,6 +79,22 @@ Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver
   return out;
 }
 
+Errors errors_of(std::span<const Rgb> light, std::span<const Rgb> reference,
+                 std::span<const uint8_t> hidden) {
+  double mean = 0, count = 0;
+  for (size_t i = 0; i < reference.size(); ++i)
+    if (hidden.empty() || !hidden[i]) mean += double(luminance(reference[i])), count += 1;
+  mean /= count;
+  Errors e;
+  for (size_t i = 0; i < reference.size(); ++i) {
+    if (!hidden.empty() && hidden[i]) continue;
+    const double d = double(luminance(light[i] - reference[i]));
+    const double relative = d / (double(luminance(reference[i])) + 0.01 * mean);
+    e.relative += relative * relative / count, e.over_mean += d * d / count, e.mean += d / count;
+  }
+  return {std::sqrt(e.relative), std::sqrt(e.over_mean) / mean, e.mean / mean};
+}
+
 std::string relative_rmse_text(const Agreement& a) {
   return a.relative_rmse < a.resolution ? fmt::format("< {:.2f} %", 100 * a.resolution)
                                         : fmt::format("{:.2f} %", 100 * a.relative_rmse);

@@ -53,6 +53,16 @@ struct Agreement {
 Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver_hidden,
                     const Judged& judged);
 
+/// Of luminance against a reference b, d being the difference.
+struct Errors {
+  double relative = 0;   ///< root mean square of d / (b + 0.01 mean b), as `luxel compare` has it
+  double over_mean = 0;  ///< root mean square of d over the mean
+  double mean = 0;       ///< of d over the mean
+};
+/// Over texels that are not hidden; `hidden` may be empty.
+Errors errors_of(std::span<const Rgb> light, std::span<const Rgb> reference,
+                 std::span<const uint8_t> hidden);
+
 /// "0.44 %", or "< 0.2 %" where nothing can be told.
 std::string relative_rmse_text(const Agreement& a);
 

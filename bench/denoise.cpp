@@ -1,8 +1,7 @@
 // luxel bench denoise: what --denoise takes away of the error, and what it adds to light that has
 // none.
-#include <cmath>
-
 #include "base/parallel.h"
+#include "bench/agreement.h"
 #include "bench/bench.h"
 #include "bench/prepared.h"
 #include "import/import.h"
@@ -38,39 +37,17 @@ Result<std::vector<Rgb>> reference_of(const Prepared& p, Progress& progress) {
   return mean;
 }
 
-struct Errors {
-  double relative = 0;   ///< root mean square of d / (b + 0.01 mean b), as `luxel compare` has it
-  double over_mean = 0;  ///< root mean square of d over the mean
-  double mean = 0;       ///< of d over the mean
-};
-
-/// Of luminance, over texels that are not hidden.
-Errors errors_of(const pipeline::TexelLight& light, const std::vector<Rgb>& reference) {
-  double mean = 0, count = 0;
-  for (size_t i = 0; i < reference.size(); ++i)
-    if (!light.hidden[i]) mean += double(luminance(reference[i])), count += 1;
-  mean /= count;
-  Errors e;
-  for (size_t i = 0; i < reference.size(); ++i) {
-    if (light.hidden[i]) continue;
-    const double d = double(luminance(light.irradiance[i] - reference[i]));
-    const double relative = d / (double(luminance(reference[i])) + 0.01 * mean);
-    e.relative += relative * relative / count, e.over_mean += d * d / count, e.mean += d / count;
-  }
-  return {std::sqrt(e.relative), std::sqrt(e.over_mean) / mean, e.mean / mean};
-}
-
 Status measure(const std::string& name, scene::Scene scene, Table& table) {
   Progress progress;
   LUXEL_TRY(const auto p, prepare(std::move(scene), kResolution, progress));
   LUXEL_TRY(const std::vector<Rgb> reference, reference_of(*p, progress));
   for (const int samples : kSamples) {
     LUXEL_TRY(Timed bake, solve(*p, "gather", settings_of(samples, 1), progress));
-    const Errors before = errors_of(bake.light, reference);
+    const Errors before = errors_of(bake.light.irradiance, reference, bake.light.hidden);
     const auto start = Clock::now();
     LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), bake.light, progress));
     const double seconds = seconds_since(start);
-    const Errors after = errors_of(bake.light, reference);
+    const Errors after = errors_of(bake.light.irradiance, reference, bake.light.hidden);
     const auto percent = [](double v) { return fmt::format("{:.3f} %", 100 * v); };
     table.rows.push_back(
         {name, fmt::format("{}", samples), percent(before.relative), percent(after.relative),

@@ -89,18 +89,6 @@ Status measure_map(const std::filesystem::path& shared, Table& table) {
   return {};
 }
 
-/// Root mean square of relative errors, d / (b + 0.01 mean b), of luminance.
-double relative_rmse(std::span<const Rgb> light, std::span<const Rgb> reference) {
-  double mean = 0, sum = 0;
-  for (const Rgb& b : reference) mean += double(luminance(b)) / double(reference.size());
-  for (size_t i = 0; i < light.size(); ++i) {
-    const double b = double(luminance(reference[i]));
-    const double d = (double(luminance(light[i])) - b) / (b + 0.01 * mean);
-    sum += d * d;
-  }
-  return std::sqrt(sum / double(light.size()));
-}
-
 /// A hall of 20 x 20 m, 4 m high, with n x n square lamps in a grid under its ceiling, or as many
 /// point lamps, and some pillars. Every lamp has its share of the same flux.
 scene::Scene hall(int n, bool squares) {
@@ -152,7 +140,7 @@ Result<Cost> cost_of(scene::Scene scene) {
   LUXEL_TRY(const Timed few, solve(*p, "gather", settings, progress));
   settings.samples = 1024, settings.direct_samples = 512, settings.seed = 2;
   LUXEL_TRY(const Timed many, solve(*p, "gather", settings, progress));
-  return Cost{few.seconds, relative_rmse(few.light.irradiance, many.light.irradiance)};
+  return Cost{few.seconds, errors_of(few.light.irradiance, many.light.irradiance, {}).relative};
 }
 
 /// Error falls with the root of time, at worst: the time to reach the other's error.

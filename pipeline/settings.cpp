@@ -314,14 +314,9 @@ Result<int> parse_bounces(std::string_view text) {
 
 scene::PunctualLight sun_light(const Sun& sun) {
   const float azimuth = sun.azimuth_deg * kPi / 180, elevation = sun.elevation_deg * kPi / 180;
-  scene::PunctualLight light;
-  light.name = "sun";
-  light.kind = scene::PunctualLight::Kind::directional;
-  light.intensity = Rgb{1, 1, 1} * sun.lux;
-  light.direction = -Vec3{std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
-                          -std::cos(azimuth) * std::cos(elevation)};
-  light.angular_radius_rad = scene::kSunAngularRadiusRad;
-  return light;
+  return sun_lamp(Rgb{1, 1, 1} * sun.lux,
+                  {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                   -std::cos(azimuth) * std::cos(elevation)});
 }
 
 Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,

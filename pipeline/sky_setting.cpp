@@ -145,19 +145,20 @@ scene::SkyParams sky_params(const SkySetting& s) {
   return out;
 }
 
-void add_sky(const SkySetting& setting, scene::Scene& scene) {
-  const scene::Sky sky = scene::make_sky(sky_params(setting));
-  scene.background = {};
-  scene.environment = {sky.radiance.width, sky.radiance.height, {}, 0};
-  for (int y = 0; y < sky.radiance.height; ++y)
-    for (int x = 0; x < sky.radiance.width; ++x)
-      scene.environment.radiance.push_back(sky.radiance.rgb(x, y));
-  if (!(max_component(sky.sun_illuminance) > 0)) return;
+scene::PunctualLight sun_lamp(Rgb illuminance, Vec3 towards) {
   scene::PunctualLight sun;
   sun.name = "sun", sun.kind = scene::PunctualLight::Kind::directional;
-  sun.intensity = sky.sun_illuminance, sun.direction = -sky.towards_sun;
+  sun.intensity = illuminance, sun.direction = -towards;
   sun.angular_radius_rad = scene::kSunAngularRadiusRad;
-  scene.lights.push_back(sun);
+  return sun;
+}
+
+void add_sky(const SkySetting& setting, scene::Scene& scene) {
+  scene::Sky sky = scene::make_sky(sky_params(setting));
+  scene.background = {};
+  scene.environment = std::move(sky.radiance);
+  if (max_component(sky.sun_illuminance) > 0)
+    scene.lights.push_back(sun_lamp(sky.sun_illuminance, sky.towards_sun));
 }
 
 }  // namespace luxel::pipeline

@@ -25,8 +25,8 @@ struct PathParams {
 };
 
 /// Where irradiance is asked for; three spans of one length. A receiver is a point, or, with
-/// `first`, the mean over points [first[i], first[i + 1]), which its paths start at in turn; none is
-/// empty.
+/// `first`, the mean over points [first[i], first[i + 1]), which its paths start at in turn; none
+/// is empty.
 struct Receivers {
   std::span<const Vec3> position;          ///< world [m]
   std::span<const Vec3> normal;            ///< unit; the cosine is about it

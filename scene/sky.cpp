@@ -29,36 +29,24 @@ DVec3 through_air(const AirTables& t, double elevation_rad) {
   return sum * (1 / weights);
 }
 
-DVec3 direction_at(const image::Image& picture, int x, int y) {
-  const double theta = kPiDouble * (y + 0.5) / picture.height;
-  const double phi = 2 * kPiDouble * ((x + 0.5) / picture.width - 0.5);
+/// direction_of a pixel's centre, in double.
+DVec3 direction_at(const Environment& map, int x, int y) {
+  const double theta = kPiDouble * (y + 0.5) / map.height;
+  const double phi = 2 * kPiDouble * ((x + 0.5) / map.width - 0.5);
   return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
 }
 
-void draw_upper_half(const AirTables& t, DVec3 towards_sun, double lux, image::Image& picture) {
+void draw_upper_half(const AirTables& t, DVec3 towards_sun, double lux, Environment& map) {
   const DVec3 eye{0, t.air.ground_km + kEyeKm, 0};
-  parallel_for(size_t(picture.height / 2), 1, [&](size_t begin, size_t end) {
-    for (int y = int(begin); y < int(end); ++y)
-      for (int x = 0; x < picture.width; ++x)
-        picture.set_rgb(
-            x, y,
-            to_float(sky_radiance(t, eye, direction_at(picture, x, y), towards_sun, kSteps) * lux));
+  parallel_for(size_t(map.height / 2), 1, [&](size_t begin, size_t end) {
+    for (size_t y = begin; y < end; ++y)
+      for (size_t x = 0; x < size_t(map.width); ++x)
+        map.radiance[y * size_t(map.width) + x] = to_float(
+            sky_radiance(t, eye, direction_at(map, int(x), int(y)), towards_sun, kSteps) * lux);
   });
 }
 
 }  // namespace
-
-Rgb horizontal_illuminance(const image::Image& picture) {
-  DVec3 sum{};
-  for (int y = 0; y < picture.height / 2; ++y) {
-    // The cosine over a row's band of directions, exactly.
-    const double upper = std::sin(kPiDouble * y / picture.height);
-    const double lower = std::sin(kPiDouble * (y + 1) / picture.height);
-    const double weight = kPiDouble * (lower * lower - upper * upper) / picture.width;
-    for (int x = 0; x < picture.width; ++x) sum += to_double(picture.rgb(x, y)) * weight;
-  }
-  return to_float(sum);
-}
 
 Sky make_sky(const SkyParams& params) {
   LUXEL_CHECK(params.height >= 2 && params.height % 2 == 0);
@@ -70,13 +58,13 @@ Sky make_sky(const SkyParams& params) {
   out.towards_sun = to_float(sun);
   out.sun_illuminance =
       to_float(through_air(tables, std::asin(std::clamp(sun.y, -1.0, 1.0))) * lux);
-  out.radiance = image::Image(2 * params.height, params.height, 3);
+  const size_t width = 2 * size_t(params.height), half = width * size_t(params.height / 2);
+  out.radiance = {int(width), params.height, std::vector<Rgb>(2 * half), 0};
   draw_upper_half(tables, sun, lux, out.radiance);
   const Rgb onto_ground =
-      horizontal_illuminance(out.radiance) + out.sun_illuminance * float(std::max(0.0, sun.y));
-  for (int y = params.height / 2; y < params.height; ++y)
-    for (int x = 0; x < out.radiance.width; ++x)
-      out.radiance.set_rgb(x, y, onto_ground * float(tables.air.ground_albedo / kPiDouble));
+      horizontal_irradiance(out.radiance) + out.sun_illuminance * float(std::max(0.0, sun.y));
+  std::fill(out.radiance.radiance.begin() + std::ptrdiff_t(half), out.radiance.radiance.end(),
+            onto_ground * float(tables.air.ground_albedo / kPiDouble));
   return out;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/vec.h"
-#include "image/image.h"
+#include "scene/environment.h"
 
 namespace luxel::scene {
 
@@ -19,11 +19,9 @@ struct SkyParams {
 };
 
 struct Sky {
-  /// Equirectangular, linear sRGB [cd/m^2], without the sun's disc. u = (i + 0.5) / width,
-  /// v = (j + 0.5) / height is the direction (sin t cos p, cos t, sin t sin p) with t = pi v and
-  /// p = 2 pi (u - 0.5): row 0 is up, u = 0.5 is +X, u = 0.25 -Z. The lower half is the ground:
+  /// Linear sRGB [cd/m^2], without the sun's disc, not turned. The lower half is the ground:
   /// diffuse, albedo 0.3, lit by this sun and sky, the same everywhere.
-  image::Image radiance;
+  Environment radiance;
   /// E of a surface that faces the sun [lx], for a lamp whose disc has kSunAngularRadiusRad; zero
   /// when all of the disc is below the horizon.
   Rgb sun_illuminance{};
@@ -32,8 +30,5 @@ struct Sky {
 
 /// The sky over a plain at sea level. The same bits for any number of threads.
 Sky make_sky(const SkyParams& params);
-
-/// E of the upward horizontal from the upper half of an equirectangular picture [lx].
-Rgb horizontal_illuminance(const image::Image& equirectangular);
 
 }  // namespace luxel::scene

@@ -4,9 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
-#include "image/codec.h"
 #include "tests/command.h"
+#include "tests/pictures.h"
 
 namespace luxel::testing_support {
 namespace {
@@ -18,9 +17,7 @@ image::Image bake(const std::filesystem::path& folder, const std::string& scene,
   const CommandResult r =
       luxel("bake " + scene_file(scene) + " -o " + folder.string() + " --quiet " + options);
   EXPECT_EQ(r.code, 0) << r.err;
-  const auto bytes = read_file(folder / "lightmap.exr");
-  EXPECT_TRUE(bytes);
-  return *image::decode_exr(*bytes, "lightmap.exr");
+  return lightmap_of(folder);
 }
 
 nlohmann::json json_of(const std::filesystem::path& folder) {

@@ -5,20 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "base/spherical_harmonics.h"
-#include "image/codec.h"
 #include "tests/command.h"
+#include "tests/pictures.h"
 
 namespace luxel::testing_support {
 namespace {
 
 using ::testing::HasSubstr;
-
-image::Image exr_at(const std::filesystem::path& file) {
-  const std::string text = slurp(file);
-  const auto picture = image::decode_exr(std::as_bytes(std::span(text)), file.string());
-  EXPECT_TRUE(picture) << file;
-  return picture ? *picture : image::Image(1, 1, 4);
-}
 
 /// A floor of 4 x 4 m that faces up, on a box that is closed below it.
 const char* kFloor = R"(o floor

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
 #include "image/codec.h"
 #include "tests/command.h"
+#include "tests/pictures.h"
 #include "tests/support.h"
 
 namespace luxel::testing_support {
@@ -58,9 +58,8 @@ TEST(EnvironmentMap, IsTurnedAndScaled) {
     const CommandResult r = luxel(render + "--look-at " + towards + " --fov-deg 5 --environment '" +
                                   map.string() + options + "' -o " + file.string());
     EXPECT_EQ(r.code, 0) << r.err;
-    const auto text = slurp(file);
-    const auto picture = image::decode_exr(std::as_bytes(std::span(text)), "picture");
-    return picture ? picture->rgb(2, 2).x : -1.0f;
+    const image::Image picture = exr_at(file);
+    return picture.width > 2 ? picture.rgb(2, 2).x : -1.0f;
   };
   EXPECT_NEAR(seen("", "50,50,40"), 1, 1e-3f);
   EXPECT_NEAR(seen("", "60,50,50"), 0, 1e-3f);

@@ -4,10 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
-#include "image/codec.h"
 #include "import/import.h"
 #include "tests/command.h"
+#include "tests/pictures.h"
 
 namespace luxel::testing_support {
 namespace {
@@ -19,12 +18,6 @@ const std::string kSmall = " --solver hemicube --resolution 64 --hemicube 16 --m
 CommandResult bake(const std::string& scene, const std::filesystem::path& output,
                    const std::string& options) {
   return luxel("bake " + scene + " -o " + output.string() + kSmall + options);
-}
-
-image::Image lightmap_of(const std::filesystem::path& folder) {
-  const auto bytes = read_file(folder / "lightmap.exr");
-  EXPECT_TRUE(bytes);
-  return *image::decode_exr(*bytes, "lightmap.exr");
 }
 
 /// Mean of the green channel over covered texels.

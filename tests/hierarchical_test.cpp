@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "image/codec.h"
 #include "tests/command.h"
+#include "tests/pictures.h"
 
 namespace luxel::testing_support {
 namespace {
@@ -112,10 +113,7 @@ TEST(HierarchicalPictures, SurviveBadPolygonsAndNameThem) {
 }
 
 double difference(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const auto read = [](const std::filesystem::path& path) {
-    return *image::decode_exr(*read_file(path), path.string());
-  };
-  const image::Image x = read(a), y = read(b);
+  const image::Image x = exr_at(a), y = exr_at(b);
   double sum = 0, all = 0;
   for (size_t k = 0; k < x.data.size(); ++k)
     if (k % 4 != 3) {

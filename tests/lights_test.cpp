@@ -5,9 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
-#include "image/codec.h"
 #include "tests/command.h"
+#include "tests/pictures.h"
 
 namespace luxel::testing_support {
 namespace {
@@ -34,8 +33,7 @@ Lightmap bake(const std::string& scene, const std::string& options, std::string*
       luxel("bake " + scene + " -o " + (s.path / "b").string() + " --resolution 64 " + options);
   EXPECT_EQ(r.code, 0) << options << ": " << r.err;
   if (err) *err = r.err;
-  const auto bytes = read_file(s.path / "b" / "lightmap.exr");
-  return {bytes ? *image::decode_exr(*bytes, "lightmap.exr") : image::Image(1, 1, 4)};
+  return {lightmap_of(s.path / "b")};
 }
 
 const std::string kProfiles = "--ies left=" + scene_file("ies/spot.ies") +

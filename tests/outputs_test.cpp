@@ -10,6 +10,7 @@
 #include "image/codec.h"
 #include "import/import.h"
 #include "tests/command.h"
+#include "tests/pictures.h"
 
 namespace luxel::testing_support {
 namespace {
@@ -19,12 +20,6 @@ using ::testing::HasSubstr;
 CommandResult bake(const std::string& scene, const std::filesystem::path& output,
                    const std::string& options) {
   return luxel("bake " + scene + " -o " + output.string() + " " + options);
-}
-
-image::Image lightmap_of(const std::filesystem::path& folder) {
-  const auto bytes = read_file(folder / "lightmap.exr");
-  EXPECT_TRUE(bytes);
-  return *image::decode_exr(*bytes, "lightmap.exr");
 }
 
 TEST(BakeOutputs, AreAllThereAndWhatTheContractSays) {
@@ -221,7 +216,7 @@ TEST(Render, TracesPathsWithoutABake) {
   ASSERT_EQ(luxel(command + (s.path / "y.exr").string() + " --threads 2").code, 0);
   EXPECT_EQ(slurp(s.path / "x.exr"), slurp(s.path / "y.exr"));
   // Half of the pixels see the lit box: 0.1 is a dim room, 17 the lamp itself.
-  const image::Image picture = *image::decode_exr(*read_file(s.path / "x.exr"), "x.exr");
+  const image::Image picture = exr_at(s.path / "x.exr");
   double sum = 0;
   for (const float v : picture.data) sum += double(v);
   EXPECT_GT(sum / double(picture.data.size()), 0.1);
@@ -254,8 +249,8 @@ TEST(BakeWithTheReference, AgreesWithGather) {
   EXPECT_THAT(r.err, HasSubstr("estimated error"));
   const auto json = nlohmann::json::parse(slurp(s.path / "r" / "bake.json"));
   EXPECT_EQ(json["settings"]["solver"], "reference");
-  const image::Image a = *image::decode_exr(*read_file(s.path / "g" / "lightmap.exr"), "g");
-  const image::Image b = *image::decode_exr(*read_file(s.path / "r" / "lightmap.exr"), "r");
+  const image::Image a = lightmap_of(s.path / "g");
+  const image::Image b = lightmap_of(s.path / "r");
   ASSERT_EQ(a.data.size(), b.data.size());
   double sum = 0, difference2 = 0, n = 0;
   for (size_t i = 0; i < a.data.size(); i += 4) {

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "image/codec.h"
 #include "tests/command.h"
+#include "tests/pictures.h"
 
 namespace luxel::testing_support {
 namespace {
@@ -30,8 +31,8 @@ struct Plate {
   image::Image draw(const std::string& options) const {
     const CommandResult r = luxel(command(options, "x.exr"));
     EXPECT_EQ(r.code, 0) << options << ": " << r.err;
-    const auto bytes = read_file(s.path / "x.exr");
-    return bytes ? *image::decode_exr(*bytes, "x.exr") : image::Image(33, 33, 4);
+    const image::Image picture = exr_at(s.path / "x.exr");
+    return picture.width > 1 ? picture : image::Image(33, 33, 4);
   }
   float middle(const std::string& options) const { return draw(options).rgb(16, 16).y; }
 };

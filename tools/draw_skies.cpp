@@ -15,9 +15,11 @@ namespace {
 
 using namespace luxel;
 
-image::Image cut(const image::Image& picture, int rows) {
-  image::Image out(picture.width, rows, picture.channels);
-  std::copy_n(picture.data.begin(), out.data.size(), out.data.begin());
+image::Image cut(const scene::Environment& map, int rows) {
+  image::Image out(map.width, rows, 3);
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < map.width; ++x)
+      out.set_rgb(x, y, map.radiance[size_t(y) * size_t(map.width) + size_t(x)]);
   return out;
 }
 
@@ -30,7 +32,7 @@ scene::Sky sky_of(float elevation_deg, int height) {
 }
 
 float sky_lux(const scene::Sky& sky) {
-  return luminance(scene::horizontal_illuminance(sky.radiance));
+  return luminance(scene::horizontal_irradiance(sky.radiance));
 }
 
 display::Tile tile_of(float elevation_deg) {

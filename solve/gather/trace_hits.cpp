@@ -126,9 +126,10 @@ void sort_hits(const World& world, const Work& work, size_t element, TracedHits&
       ++out.escaped[element];
       Rgb l = transport::soft_radiance(world.scene, world.around, work.rays[k].direction);
       if (!work.tint.empty()) l = l * work.tint[k];
+      const float y = luminance(l);
       out.sky[element] += l;
-      out.sky_luminance2[element] += luminance(l) * luminance(l);
-      out.sky_first_less_second[element] += work.second_half[k] ? -luminance(l) : luminance(l);
+      out.sky_luminance2[element] += y * y;
+      out.sky_first_less_second[element] += work.second_half[k] ? -y : y;
       continue;
     }
     if (hit.back_face &&

@@ -47,7 +47,7 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
                                        const trace::RayTracer& tracer,
                                        std::span<const Receiver> receivers,
                                        const PointParams& params, Progress& progress) {
-  Lamps lamps = lamps_of(scene);
+  Lamps lamps = s.lamps;
   if (!params.sharp_lamps) std::erase_if(lamps.lights.punctual, is_sharp);
   LUXEL_TRY(std::vector<Rgb> out, from_lamps(scene, tracer, lamps.lights, receivers, progress));
   // A sky of one radiance is what no face hides; one that varies is looked at.

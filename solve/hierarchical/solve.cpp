@@ -51,7 +51,6 @@ double change_of(const Tree& tree, const Light& light, std::span<const Rgb> befo
 struct Work {
   Solution& s;
   const Exchange x;
-  Lamps lamps;
   std::vector<uint8_t> lit;
   Refined state;
 };
@@ -87,7 +86,7 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
   // A first guess, from the power there is; it is made better when light has arrived.
   const double power = double(max_component(totals_of(w.s).emission));
   refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * power) : 0.1 * power;
-  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.lamps,
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps,
                                 {refine_params.eps > 0 ? refine_params.eps : INFINITY,
                                  w.s.min_area_m2, params.max_elements, params.max_links},
                                 w.lit, progress));
@@ -98,9 +97,9 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
     refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * mean) : kUsualEps * mean;
     w.s.eps = refine_params.eps;
     const size_t leaves = w.s.tree.elements.size();
-    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.lamps, refine_params, w.lit, progress));
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, refine_params, w.lit, progress));
     LUXEL_TRY(const size_t refined, refine(w.state, w.x, refine_params, progress));
-    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.lamps, refine_params, w.lit, progress));
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, refine_params, w.lit, progress));
     if (refined == 0 && leaves == w.s.tree.elements.size()) break;
   }
   LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
@@ -164,7 +163,8 @@ Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer
   s.diagonal_m = scene::world_bounds(scene).diagonal();
   s.unit_area_m2 = area_of(s.tree) / double(std::clamp<size_t>(s.faces.size(), 1, kMostUnits));
   s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;
-  Work work{s, s.exchange(tracer), lamps_of(scene), {}, {scene, s.tree, s.light, s.links}};
+  s.lamps = lamps_of(scene);
+  Work work{s, s.exchange(tracer), {}, {scene, s.tree, s.light, s.links}};
   LUXEL_TRY_STATUS(run(work, params, progress));
   if (params.eps && *params.eps < s.eps)
     s.warnings.push_back(

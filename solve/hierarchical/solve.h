@@ -4,8 +4,8 @@
 
 #include <optional>
 
+#include "solve/hierarchical/lamps.h"
 #include "solve/hierarchical/refine.h"
-#include "transport/lights.h"
 
 namespace luxel::hierarchical {
 
@@ -28,6 +28,7 @@ struct Solution {
   Light light;
   Links links;
   Blockers blockers;
+  Lamps lamps;
   double eps = 0, min_area_m2 = 0;
   std::vector<std::string> warnings;  ///< overlaps.h; a bound that ended the refinement
   int iterations = 0;                 ///< refinements

@@ -70,6 +70,19 @@ void resolve(const trace::RayTracer& tracer, Shots& shots, Rgb& irradiance, floa
 
 }  // namespace
 
+Rgb direct_light_at(const scene::Scene& scene, const Lights& lights, const trace::RayTracer& tracer,
+                    const DirectParams& params, const Receiver& r, float diagonal_m, Shots& shots,
+                    float& variance) {
+  shots.sources.clear(), shots.shots.clear(), shots.rays.clear();
+  shoot_at_triangles(scene, lights, params.samples, r, diagonal_m, shots);
+  shoot_at_lamps(lights, params.samples, r, shots);
+  shoot_at_peaks(scene, lights.around, params.samples, r, shots);
+  shoot_at_soft_sky(scene, lights.around, params.sky_samples, r, shots);
+  Rgb irradiance{};
+  resolve(tracer, shots, irradiance, variance);
+  return irradiance;
+}
+
 Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elements,
                                  const Lights& lights, const trace::RayTracer& tracer,
                                  const DirectParams& params, Progress& progress) {
@@ -85,16 +98,12 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elem
     Shots shots;
     uint64_t traced = 0;
     for (size_t i = begin; i < end; ++i) {
-      shots.sources.clear(), shots.shots.clear(), shots.rays.clear();
       const Receiver r{
           elements.position[i], elements.normal[i], elements.geometric_normal[i],
           trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
           hash64(params.seed, params.same_points ? 0 : i)};
-      shoot_at_triangles(scene, lights, params.samples, r, diagonal_m, shots);
-      shoot_at_lamps(lights, params.samples, r, shots);
-      shoot_at_peaks(scene, lights.around, params.samples, r, shots);
-      shoot_at_soft_sky(scene, lights.around, params.sky_samples, r, shots);
-      resolve(tracer, shots, out.irradiance[i], out.variance[i]);
+      out.irradiance[i] =
+          direct_light_at(scene, lights, tracer, params, r, diagonal_m, shots, out.variance[i]);
       traced += shots.rays.size();
     }
     rays += traced;

@@ -6,6 +6,7 @@
 
 #include "scene/scene.h"
 #include "trace/ray_tracer.h"
+#include "transport/direct_light.h"
 #include "transport/light_draw.h"
 #include "transport/lights.h"
 
@@ -71,5 +72,11 @@ void shoot_at_peaks(const scene::Scene& scene, const Surroundings& around, int s
 /// The soft light of the surroundings, by rays with the density of the cosine.
 void shoot_at_soft_sky(const scene::Scene& scene, const Surroundings& around, int samples,
                        const Receiver& r, Shots& shots);
+
+/// direct_light at a single receiver. Adds the estimated variance of the luminance. The number of
+/// rays is that of shots.rays.
+Rgb direct_light_at(const scene::Scene& scene, const Lights& lights, const trace::RayTracer& tracer,
+                    const DirectParams& params, const Receiver& r, float diagonal_m, Shots& shots,
+                    float& variance);
 
 }  // namespace luxel::transport

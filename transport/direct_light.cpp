@@ -70,16 +70,17 @@ void resolve(const trace::RayTracer& tracer, Shots& shots, Rgb& irradiance, floa
 
 }  // namespace
 
-size_t light_at(const scene::Scene& scene, const Lights& lights, const trace::RayTracer& tracer,
-                const DirectParams& params, const Receiver& r, float diagonal_m, Shots& shots,
-                Rgb& irradiance, float& variance) {
+Rgb direct_light_at(const scene::Scene& scene, const Lights& lights, const trace::RayTracer& tracer,
+                    const DirectParams& params, const Receiver& r, float diagonal_m, Shots& shots,
+                    float& variance) {
   shots.sources.clear(), shots.shots.clear(), shots.rays.clear();
   shoot_at_triangles(scene, lights, params.samples, r, diagonal_m, shots);
   shoot_at_lamps(lights, params.samples, r, shots);
   shoot_at_peaks(scene, lights.around, params.samples, r, shots);
   shoot_at_soft_sky(scene, lights.around, params.sky_samples, r, shots);
+  Rgb irradiance{};
   resolve(tracer, shots, irradiance, variance);
-  return shots.rays.size();
+  return irradiance;
 }
 
 Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elements,
@@ -101,8 +102,9 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elem
           elements.position[i], elements.normal[i], elements.geometric_normal[i],
           trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
           hash64(params.seed, params.same_points ? 0 : i)};
-      traced += light_at(scene, lights, tracer, params, r, diagonal_m, shots, out.irradiance[i],
-                         out.variance[i]);
+      out.irradiance[i] =
+          direct_light_at(scene, lights, tracer, params, r, diagonal_m, shots, out.variance[i]);
+      traced += shots.rays.size();
     }
     rays += traced;
     progress.advance(end - begin);

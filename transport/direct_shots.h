@@ -73,9 +73,10 @@ void shoot_at_peaks(const scene::Scene& scene, const Surroundings& around, int s
 void shoot_at_soft_sky(const scene::Scene& scene, const Surroundings& around, int samples,
                        const Receiver& r, Shots& shots);
 
-/// All of them, traced: adds E and the variance of its luminance. Returns the number of rays.
-size_t light_at(const scene::Scene& scene, const Lights& lights, const trace::RayTracer& tracer,
-                const DirectParams& params, const Receiver& r, float diagonal_m, Shots& shots,
-                Rgb& irradiance, float& variance);
+/// direct_light at a single receiver. Adds the estimated variance of the luminance. The number of
+/// rays is that of shots.rays.
+Rgb direct_light_at(const scene::Scene& scene, const Lights& lights, const trace::RayTracer& tracer,
+                    const DirectParams& params, const Receiver& r, float diagonal_m, Shots& shots,
+                    float& variance);
 
 }  // namespace luxel::transport

@@ -196,8 +196,9 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
         const uint64_t seed = hash64(hash64(each.seed, kPointSeed + points.size()), i);
         const Receiver r = receiver_at(place, smooth_point(scene, p), seed);
         PointLight light{r.position, {}, 0};
-        traced += light_at(scene, lights, tracer, each, r, place.diagonal_m, shots,
-                           light.irradiance, light.variance);
+        light.irradiance = direct_light_at(scene, lights, tracer, each, r, place.diagonal_m, shots,
+                                           light.variance);
+        traced += shots.rays.size();
         // Where a wall stands on the surface, its inside is dark, and nobody sees it.
         const bool dark = is_dark(light.irradiance);
         traced += dark ? kEnclosureRays : 0;

@@ -29,7 +29,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                                    {.points = params.supersample, .direct = direct_params}, direct,
                                    progress));
   const TraceParams trace_params{params.samples, params.seed, params.hit_memory_bytes,
-                                 params.scratch_folder};
+                                 params.scratch_folder, params.bounces < 0 ? &lights : nullptr};
   LUXEL_TRY(TracedHits hits,
             trace_hits(scene, atlas, elements, lights.around, tracer, trace_params, progress));
   LUXEL_TRY(Bounced bounced, bounce(map, elements, hits, direct.irradiance,

@@ -4,11 +4,13 @@
 #include <array>
 #include <atomic>
 #include <mutex>
+#include <optional>
 
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/vectorize.h"
+#include "solve/gather/near_paths.h"
 
 namespace luxel::gather {
 namespace {
@@ -25,6 +27,7 @@ struct Work {
   std::vector<trace::Ray> rays;
   std::vector<trace::Hit> hits;
   std::vector<Rgb> tint;  ///< of what rays have passed; empty where nothing has a colour
+  NearWork near;
 
   explicit Work(size_t samples)
       : u(samples),
@@ -115,21 +118,25 @@ struct World {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;
   const transport::Surroundings& around;
+  const NearWorld* near = nullptr;  ///< null: rays are not followed on
 };
 
+/// Adds radiance that a ray has brought without the map.
+void add_light(Rgb l, bool second_half, size_t element, TracedHits& out) {
+  out.sky[element] += l;
+  out.sky_luminance2[element] += luminance(l) * luminance(l);
+  out.sky_first_less_second[element] += second_half ? -luminance(l) : luminance(l);
+}
+
 /// Counts what an element's rays met, and keeps the hits that bring light.
-void sort_hits(const World& world, const Work& work, size_t element, TracedHits& out,
-               HitTile& tile) {
+void sort_hits(const World& world, Work& work, size_t element, TracedHits& out, HitTile& tile) {
   for (size_t k = 0; k < work.hits.size(); ++k) {
     const trace::Hit& hit = work.hits[k];
     if (!hit.found()) {
       ++out.escaped[element];
       Rgb l = transport::soft_radiance(world.scene, world.around, work.rays[k].direction);
       if (!work.tint.empty()) l = l * work.tint[k];
-      const float y = luminance(l);
-      out.sky[element] += l;
-      out.sky_luminance2[element] += y * y;
-      out.sky_first_less_second[element] += work.second_half[k] ? -y : y;
+      add_light(l, work.second_half[k], element, out);
       continue;
     }
     if (hit.back_face &&
@@ -138,11 +145,37 @@ void sort_hits(const World& world, const Work& work, size_t element, TracedHits&
       continue;
     }
     if (hit.back_face) ++out.met_double_sided_back[element];
+    if (world.near != nullptr) {
+      NearPath path{uint32_t(k), work.tint.empty() ? Rgb{1, 1, 1} : work.tint[k], {}, hit, {}};
+      if (goes_on(*world.near, path)) {
+        work.near.paths.push_back(path);
+        continue;
+      }
+    }
     const uint32_t tint =
         work.tint.empty() ? kNoTint : pack_tint(work.tint[k], hash64(element, k ^ 0x7147u));
     tile.entries.push_back(store(world.atlas, hit, {tint, work.second_half[k] != 0}));
   }
-  tile.end.push_back(uint32_t(tile.entries.size()));
+}
+
+/// Follows the rays of an element on that ended nearby. Returns the number of rays.
+uint64_t follow_on(const World& world, Work& work, size_t element, uint64_t seed, TracedHits& out,
+                   HitTile& tile) {
+  return follow_near(*world.near, seed, work.near, [&](const NearPath& path) {
+    const bool second_half = work.second_half[path.ray] != 0;
+    Rgb light = path.light;
+    const bool alive = max_component(path.throughput) > 0;
+    if (alive && !path.hit.found())
+      light +=
+          path.throughput * transport::soft_radiance(world.scene, world.around, path.direction);
+    add_light(light, second_half, element, out);
+    if (!alive || !path.hit.found()) return;
+    if (path.hit.back_face &&
+        !scene::reflects_from_behind(scene::material_at(world.scene, path.hit.point())))
+      return;
+    const uint32_t tint = pack_tint(path.throughput, hash64(element, path.ray ^ 0x4e37u));
+    tile.entries.push_back(store(world.atlas, path.hit, {tint, second_half}));
+  });
 }
 
 }  // namespace
@@ -170,7 +203,14 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
   out.sky_first_less_second.resize(elements.size());
   out.rays = uint64_t(elements.size()) * samples;
   const float diagonal_m = scene::world_bounds(scene).diagonal();
-  const World world{scene, atlas, around};
+  std::optional<NearWorld> near;
+  std::vector<float> widths;
+  if (params.near_lights != nullptr) {
+    widths = texel_widths_m(scene, atlas);
+    near.emplace(NearWorld{scene, atlas, *params.near_lights, tracer, widths, diagonal_m});
+  }
+  const World world{scene, atlas, around, near ? &*near : nullptr};
+  std::atomic<uint64_t> more_rays{0};
   const auto trace_element = [&](size_t i, Work& work, HitTile& tile) {
     const Vec3 origin =
         trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
@@ -182,6 +222,9 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
       tracer.tint(work.rays, work.hits, work.tint);
     }
     sort_hits(world, work, i, out, tile);
+    if (!work.near.paths.empty())
+      more_rays += follow_on(world, work, i, hash64(params.seed ^ 0x7ea4, i), out, tile);
+    tile.end.push_back(uint32_t(tile.entries.size()));
   };
 
   constexpr uint64_t kRaysPerAdvance = 8192;
@@ -211,6 +254,7 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
   });
   if (!status) return tl::unexpected(status.error());
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  out.rays += more_rays;
   return out;
 }
 

@@ -12,7 +12,7 @@
 #include "solve/gather/hit_store.h"
 #include "trace/ray_tracer.h"
 #include "transport/elements.h"
-#include "transport/surroundings.h"
+#include "transport/lights.h"
 
 namespace luxel::gather {
 
@@ -21,6 +21,8 @@ struct TraceParams {
   uint64_t seed = 1;
   uint64_t memory_limit_bytes = UINT64_MAX;  ///< for hits; the rest goes to a temporary file
   std::filesystem::path scratch_folder = ".";
+  /// What rays look for that are followed on where they end nearby (near_paths.h); null: none are.
+  const transport::Lights* near_lights = nullptr;
 };
 
 struct TracedHits {
@@ -32,7 +34,8 @@ struct TracedHits {
   /// Backs of double-sided surfaces send the light of their front (docs/gather.md); they are
   /// counted too.
   std::vector<uint16_t> escaped, met_back, met_double_sided_back;
-  /// Per element, what its escaped rays saw of the surroundings' soft light: the sum of radiances,
+  /// Per element, what its escaped rays saw of the surroundings' soft light, and what rays brought
+  /// that were followed on, but for what they read in the map in the end: the sum of radiances,
   /// that of their squared luminances, and that of the first half of the samples' luminances minus
   /// the other half's.
   std::vector<Rgb> sky;

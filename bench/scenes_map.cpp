@@ -1,0 +1,79 @@
+// A map with a sun, shining through windows: gather against the path tracer.
+#include <algorithm>
+#include <numeric>
+
+#include "base/random.h"
+#include "bench/agreement.h"
+#include "bench/scenes.h"
+#include "import/environment.h"
+#include "import/import.h"
+
+namespace luxel::bench {
+namespace {
+
+constexpr int kPaths = 4096, kSamples = 1024;
+constexpr size_t kJudged = 2500;
+
+/// Texels by chance, in order: paths are dear, and the more of them a texel gets the finer a
+/// difference it shows.
+std::vector<size_t> some_texels(size_t count) {
+  std::vector<size_t> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  const size_t kept = std::min(kJudged, count);
+  for (size_t i = 0; i < kept; ++i) std::swap(all[i], all[i + hash64(1, i) % (count - i)]);
+  all.resize(kept);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+template <class T>
+std::vector<T> chosen(std::span<const T> values, std::span<const size_t> texels) {
+  std::vector<T> out;
+  for (const size_t i : texels) out.push_back(values[i]);
+  return out;
+}
+
+Status measure_at(const scene::Scene& scene, int resolution, Table& table) {
+  Progress progress;
+  LUXEL_TRY(const auto p, prepare(scene, resolution, progress));
+  const std::vector<size_t> texels = some_texels(p->elements.size());
+  const auto position = chosen<Vec3>(p->elements.position, texels);
+  const auto normal = chosen<Vec3>(p->elements.normal, texels);
+  const auto flat = chosen<Vec3>(p->elements.geometric_normal, texels);
+  LUXEL_TRY(const Judged judged,
+            judge(p->scene, *p->tracer, {position, normal, flat}, kPaths, 1, progress));
+  pipeline::BakeSettings settings;
+  settings.samples = kSamples, settings.direct_samples = kSamples / 4;
+  LUXEL_TRY(const Timed solved, solve(*p, "gather", settings, progress));
+  const Agreement a = agreement(chosen<Rgb>(solved.light.irradiance, texels),
+                                chosen<uint8_t>(solved.light.hidden, texels), judged);
+  table.notes.push_back(fmt::format(
+      "kloppenheim_05_1k on living_room, {0} x {0}, {1} samples: relative RMSE {2} against twice "
+      "{3} paths at {4} of {5} texels (resolution {6:.2f} %), bias {7:+.3f} % of the mean, {8:.1f} "
+      "s; the paths took {9:.0f} s.",
+      resolution, kSamples, relative_rmse_text(a), kPaths, texels.size(), p->elements.size(),
+      100 * a.resolution, 100 * a.bias_over_mean, solved.seconds, judged.seconds));
+  table.json.push_back({{"scene", "living_room under kloppenheim_05_1k"},
+                        {"resolution_texels", resolution},
+                        {"relative_rmse", a.relative_rmse},
+                        {"resolution", a.resolution},
+                        {"bias_over_mean", a.bias_over_mean},
+                        {"seconds", solved.seconds}});
+  return {};
+}
+
+}  // namespace
+
+Status measure_map(const std::filesystem::path& shared, Table& table) {
+  const auto room = shared / "scenes/living_room/living_room.glb";
+  const auto sky = shared / "scenes/sky/kloppenheim_05_1k.hdr";
+  if (!std::filesystem::exists(room) || !std::filesystem::exists(sky)) return {};
+  LUXEL_TRY(import::Imported imported, import::import_scene(room));
+  LUXEL_TRY(import::ImportedEnvironment map, import::read_environment(sky, 0, 1));
+  imported.scene.environment = std::move(map.map);
+  for (const int resolution : {128, 256})
+    LUXEL_TRY_STATUS(measure_at(imported.scene, resolution, table));
+  return {};
+}
+
+}  // namespace luxel::bench

@@ -1,0 +1,106 @@
+#include "solve/gather/near_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "base/warp.h"
+#include "transport/elements.h"
+
+namespace luxel::gather {
+namespace {
+
+/// A ray that has ended nearer than a texel there is wide asks for more than the map knows.
+constexpr float kNearTexels = 1;
+/// Paths that carry more are never ended by chance, which would be noise where light is even.
+constexpr float kSureThroughput = 0.1f;
+
+/// The side of the surface that a ray has met; the back is that of the flat triangle.
+transport::SmoothPoint place_of(const scene::Scene& scene, const trace::Hit& hit) {
+  if (!hit.back_face) return transport::smooth_point(scene, hit.point());
+  return {scene::world_position(scene, hit.point()), -scene::shading_normal(scene, hit.point()),
+          -scene::front_normal(scene, hit.instance, hit.triangle)};
+}
+
+/// The light that lamps send to where the path is, and the ray on. False: the path ends there, by
+/// chance, in proportion to what it carries.
+bool look_around(const NearWorld& world, uint64_t seed, NearPath& path, NearWork& work,
+                 uint64_t& rays) {
+  const transport::SmoothPoint p = place_of(world.scene, path.hit);
+  path.throughput = path.throughput * scene::reflectance_at(world.scene, path.hit.point());
+  const float carried = max_component(path.throughput);
+  if (!(carried > 0)) return false;
+  RandomStream random{hash64(seed, path.ray)};
+  const transport::Receiver at{
+      p.position, p.normal, p.geometric_normal,
+      trace::offset_origin(p.position, p.geometric_normal, world.diagonal_m),
+      hash64(seed, path.ray ^ 0x80000000u)};
+  float variance = 0;
+  const Rgb irradiance =
+      transport::direct_light_at(world.scene, world.lights, world.tracer, {.samples = 1}, at,
+                                 world.diagonal_m, work.shots, variance);
+  rays += work.shots.rays.size();
+  path.light += path.throughput * irradiance / kPi;
+  const float chance = std::min(1.0f, carried / kSureThroughput);
+  if (random.next() >= chance) return false;
+  path.throughput = path.throughput / chance;
+  path.direction = frame_around(p.normal).to_world(cosine_hemisphere_sample(random.next2()));
+  const float above = dot(path.direction, p.geometric_normal);
+  if (above < 0) path.direction += p.geometric_normal * (-2 * above);
+  work.rays.push_back({at.origin, 0, path.direction, INFINITY});
+  return true;
+}
+
+}  // namespace
+
+std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas& atlas) {
+  std::vector<float> width(atlas.corners.size());
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const size_t count = scene.meshes[scene.instances[i].mesh].triangles.size();
+    parallel_for(count, 4096, [&](size_t begin, size_t end) {
+      for (uint32_t t = uint32_t(begin); t < end; ++t) {
+        const uint32_t number = atlas.triangle_number(i, t);
+        const auto& c = atlas.corners[number];
+        const float texels = 0.5f * std::abs(cross(c[1] - c[0], c[2] - c[0]));
+        const float area_m2 = scene::area_m2(scene::world_triangle(scene, i, t));
+        width[number] = texels > 0 ? std::sqrt(area_m2 / texels) : 0;
+      }
+    });
+  }
+  return width;
+}
+
+bool goes_on(const NearWorld& world, const NearPath& path) {
+  const trace::Hit& hit = path.hit;
+  if (!hit.found() || max_component(path.throughput) <= 0) return false;
+  if (hit.back_face)
+    return scene::reflects_from_behind(scene::material_at(world.scene, hit.point()));
+  return hit.t <
+         kNearTexels * world.texel_width_m[world.atlas.triangle_number(hit.instance, hit.triangle)];
+}
+
+uint64_t step_near(const NearWorld& world, uint64_t seed, NearWork& work) {
+  uint64_t rays = 0;
+  work.rays.clear(), work.going_on.clear();
+  for (NearPath& path : work.paths) {
+    const bool on = look_around(world, seed, path, work, rays);
+    if (on) continue;
+    path.throughput = {};
+    work.going_on.push_back(path);
+  }
+  work.hits.resize(work.rays.size());
+  world.tracer.closest_hits(work.rays, work.hits);
+  work.tint.assign(work.rays.size(), {1, 1, 1});
+  if (world.tracer.has_tints()) world.tracer.tint(work.rays, work.hits, work.tint);
+  size_t next = 0;
+  for (NearPath& path : work.paths) {
+    if (max_component(path.throughput) <= 0) continue;
+    path.hit = work.hits[next];
+    path.throughput = path.throughput * work.tint[next++];
+    work.going_on.push_back(path);
+  }
+  return rays + work.rays.size();
+}
+
+}  // namespace luxel::gather

@@ -1,0 +1,83 @@
+// Rays that end nearby, or on the back of a surface, are followed on.
+//
+// What a texel of the map holds stands for all of the texel. A ray that ends nearer than a texel is
+// wide asks for less: for the dark inside of a joint between two solids, whose texel lies for the
+// most part in the sun, or for the bright edge of a sill. There the light of the place itself is
+// worked out: what comes straight from lamps, and one more ray, which ends farther away and reads
+// the map there, or is followed on again. The map holds the light of fronts only: on the back of a
+// double-sided surface the same is done, however far it is. docs/gather.md
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "scene/scene.h"
+#include "trace/ray_tracer.h"
+#include "transport/direct_shots.h"
+
+namespace luxel::gather {
+
+/// Per drawn triangle: how wide a texel of it is in the world, as the root of its area [m].
+std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas& atlas);
+
+/// What is left of a ray of an element.
+struct NearPath {
+  uint32_t ray = 0;         ///< of its element
+  Rgb throughput{1, 1, 1};  ///< of reflectances and glass, over the chances to go on
+  Rgb light{};              ///< radiance that it has brought so far
+  trace::Hit hit;           ///< where it is
+  Vec3 direction;           ///< of its last ray
+};
+
+/// What paths look at.
+struct NearWorld {
+  const scene::Scene& scene;
+  const atlas::Atlas& atlas;
+  const transport::Lights& lights;
+  const trace::RayTracer& tracer;
+  std::span<const float> texel_width_m;
+  float diagonal_m = 0;
+};
+
+/// Buffers of one thread.
+struct NearWork {
+  std::vector<NearPath> paths, going_on;
+  std::vector<trace::Ray> rays;
+  std::vector<trace::Hit> hits;
+  std::vector<Rgb> tint;
+  transport::Shots shots;
+};
+
+/// Takes each of work.paths from its near hit to where it ends, in order of their rays within each
+/// length; `end` gets them one by one: `hit` is far away, on the back of a one-sided surface, or
+/// nothing; throughput is that up to there. A path that has died comes with throughput 0.
+/// Returns the number of rays.
+template <class End>
+uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, const End& end);
+
+/// One step of all of work.paths: the light of where they are, and rays on. Paths that end there
+/// come first in work.going_on, with throughput 0.
+uint64_t step_near(const NearWorld& world, uint64_t seed, NearWork& work);
+
+/// Whether the map has no answer for the place that a path has met.
+bool goes_on(const NearWorld& world, const NearPath& path);
+
+template <class End>
+uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, const End& end) {
+  uint64_t rays = 0;
+  for (uint64_t depth = 0; !work.paths.empty(); ++depth) {
+    rays += step_near(world, seed + depth, work);
+    work.paths.clear();
+    for (const NearPath& path : work.going_on) {
+      if (goes_on(world, path))
+        work.paths.push_back(path);
+      else
+        end(path);
+    }
+  }
+  return rays;
+}
+
+}  // namespace luxel::gather

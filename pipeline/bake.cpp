@@ -12,12 +12,15 @@
 #include "pipeline/denoise_light.h"
 #include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
+#include "pipeline/shown_light.h"
 #include "pipeline/stage_seconds.h"
+#include "pipeline/two_sides.h"
 #include "pipeline/version.h"
 #include "pipeline/vertex_lit.h"
 #include "post/dilate.h"
 #include "post/refill.h"
 #include "post/seams.h"
+#include "scene/sides.h"
 #include "transport/irradiance_field.h"
 
 namespace luxel::pipeline {
@@ -59,7 +62,13 @@ Status lay_out(const BakeSettings& settings, Bake& bake, Progress& progress) {
 
 Status solve(const BakeSettings& settings, const SolveInput& input, Bake& bake,
              Progress& progress) {
-  LUXEL_TRY(bake.light, find_solver(settings.solver)->solve(input, settings, progress));
+  const Solver& solver = *find_solver(settings.solver);
+  if (!solver.scatters && scene::scatters_light(input.scene))
+    bake.warnings.push_back(fmt::format(
+        "light that is scattered through surfaces (KHR_materials_diffuse_transmission) is left out "
+        "by --solver {}: they are too dark; gather and reference have it",
+        settings.solver));
+  LUXEL_TRY(bake.light, solver.solve(input, settings, progress));
   if (settings.denoise) LUXEL_TRY_STATUS(denoise_light(input, bake.light, progress));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};
@@ -76,6 +85,11 @@ Status repair(const BakeSettings& settings, Bake& bake, Progress& progress) {
   bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance);
   bake.lightmap = post::lightmap_from_texels(bake.map, bake.light.irradiance);
   post::dilate(bake.lightmap, kDilationRings);
+  if (scene::scatters_light(bake.scene)) {
+    bake.shown = post::lightmap_from_texels(
+        bake.map, shown_irradiance(bake.scene, bake.atlas, bake.map, bake.light.irradiance));
+    post::dilate(bake.shown, kDilationRings);
+  }
   return not_cancelled(progress);
 }
 
@@ -159,6 +173,9 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
   const ThreadLimit threads(settings.threads);
   Bake bake;
   LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
+  LUXEL_TRY(const std::vector<std::string> sides,
+            split_sides(bake.scene, settings.uv, settings.resolution, progress));
+  bake.warnings.insert(bake.warnings.end(), sides.begin(), sides.end());
   LUXEL_TRY_STATUS(lay_out(settings, bake, progress));
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
@@ -175,8 +192,13 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
 
 namespace {
 
+const image::Image& shown_lightmap(const Bake& bake) {
+  return bake.shown.data.empty() ? bake.lightmap : bake.shown;
+}
+
 Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& bake) {
-  if (!settings.vertex_colors) return export_::baked_glb(bake.scene, bake.atlas, bake.lightmap);
+  if (!settings.vertex_colors)
+    return export_::baked_glb(bake.scene, bake.atlas, shown_lightmap(bake));
   const VertexLit lit = vertex_lit(bake.scene, *bake.light.field);
   return export_::vertex_lit_glb(lit.scene, lit.intensity);
 }
@@ -186,12 +208,12 @@ Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
                              std::span<const std::byte> glb) {
   std::vector<std::byte> own;
   if (settings.vertex_colors) {
-    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, bake.lightmap));
+    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, shown_lightmap(bake)));
     glb = own;
   }
   LUXEL_TRY(const std::string html,
             export_::view_html({settings.scene.stem().string(), bake.view, bake.scene.background,
-                                bake.atlas.corners.size(), glb, &bake.lightmap}));
+                                bake.atlas.corners.size(), glb, &shown_lightmap(bake)}));
   return text_file(settings.output / "view.html", html);
 }
 

@@ -30,6 +30,7 @@ struct Bake {
   atlas::AtlasStats atlas_stats;
   TexelLight light;
   image::Image lightmap;  ///< E, 4 channels, as lightmap.exr holds it
+  image::Image shown;     ///< for viewers (shown_light.h); empty: the same
   image::Image8 preview;
   DirectionMaps directions;         ///< with --directional
   std::optional<ProbeGrid> probes;  ///< with --probes

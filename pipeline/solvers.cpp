@@ -250,7 +250,8 @@ constexpr std::array kSolvers{
            .solve = solve_gather,
            .samples = true,
            .direct_samples = true,
-           .noise = true},
+           .noise = true,
+           .scatters = true},
     Solver{.name = "hemicube", .solve = solve_hemicube, .direct_samples = true, .hemicube = true},
     Solver{.name = "matrix",
            .solve = solve_matrix,
@@ -258,7 +259,11 @@ constexpr std::array kSolvers{
            .matrix = true,
            .noise = true},
     Solver{.name = "hierarchical", .solve = solve_hierarchical, .hierarchical = true},
-    Solver{.name = "reference", .solve = solve_reference, .samples = true, .noise = true}};
+    Solver{.name = "reference",
+           .solve = solve_reference,
+           .samples = true,
+           .noise = true,
+           .scatters = true}};
 
 }  // namespace
 

@@ -19,7 +19,8 @@ export async function useLightmap(gltf, exr = null) {
 }
 
 async function bakedMaterial(loaded, parser, exr) {
-  const lightmap = loaded.userData.gltfExtensions.MOZ_lightmap;
+  const lightmap = loaded.userData.gltfExtensions?.MOZ_lightmap;
+  if (!lightmap) return loaded; // unlit: its colour as it is
   const picture = exr ?? await parser.getDependency("texture", lightmap.index);
   if (exr) exr.flipY = true; // EXRLoader has the bottom row first, glTF the top row
   else picture.colorSpace = THREE.SRGBColorSpace;

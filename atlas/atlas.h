@@ -27,7 +27,7 @@ struct Atlas {
   std::vector<std::array<Vec2, 3>> corners;  ///< per drawn triangle, corner order of the mesh
   std::vector<uint32_t> chart;               ///< per drawn triangle
   uint32_t chart_count = 0;
-  bool kept = false;  ///< laid out as TEXCOORD_1 says
+  bool kept = false;           ///< laid out as TEXCOORD_1 says
   std::vector<Page> pages;     ///< empty: the whole square is the only one; see pages_of()
   std::vector<uint32_t> page;  ///< per drawn triangle; empty: all on the first
 

@@ -1,6 +1,7 @@
 // What many lamps cost.
 #include <cmath>
 
+#include "bench/agreement.h"
 #include "bench/prepared.h"
 #include "bench/scenes.h"
 #include "scene/shapes.h"

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "trace/camera_rays.h"
+#include "transport/irradiance_field.h"
 
 namespace luxel::display {
 namespace {
@@ -35,10 +36,15 @@ std::vector<trace::Ray> tile_rays(const trace::CameraRays& camera, const Tile& t
   return rays;
 }
 
-/// What a surface sends to the eye: emitted plus reflected radiance, L + rho E / pi.
+/// What a surface sends to the eye: emitted radiance and that of what it reflects or scatters
+/// through, L + B / pi. An unlit surface sends the radiance of its colour, whatever falls on it.
 Rgb seen_radiance(const scene::Scene& scene, const scene::SurfacePoint& p,
                   const IrradianceAt& irradiance_at) {
-  return emission_at(scene, p) + reflectance_at(scene, p) * irradiance_at(p) * (1.0f / kPi);
+  if (material_at(scene, p).unlit) {
+    const auto color = base_color_at(scene, p);
+    return {color[0], color[1], color[2]};
+  }
+  return emission_at(scene, p) + transport::radiosity_at(scene, p, irradiance_at) * (1.0f / kPi);
 }
 
 /// What is seen in a direction in which there is no surface.

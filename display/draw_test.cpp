@@ -67,6 +67,16 @@ TEST(Draw, EmissionAddsToReflection) {
   EXPECT_FLOAT_EQ(picture.rgb(2, 2).z, 1 + 0.5f / kPi);
 }
 
+TEST(Draw, UnlitSurfacesShowTheirColor) {
+  scene::Scene scene;
+  scene::Material sign = gray(0.5f);
+  sign.unlit = true;
+  sign.base_color = {1, 0.5f, 0.25f};
+  sign.emission = {3, 2, 1};
+  add_square(scene, {}, {10, 0, 0}, {0, 10, 0}, sign);
+  EXPECT_EQ(draw_ok(scene, camera_on_z(2), {4, 4, 1}).rgb(2, 2), sign.base_color);
+}
+
 TEST(Draw, BackFacesOfOneSidedMaterialsAreInvisible) {
   // Forty-one squares turned away from the camera stand before the one that faces it.
   scene::Scene scene;

@@ -166,6 +166,7 @@ TEST(BakedGlb, MaterialsKeepTheirMeaning) {
   EXPECT_EQ(materials["leaf"]["alphaCutoff"], 0.25f);
   EXPECT_EQ(materials["sign"]["alphaMode"], "BLEND");
   EXPECT_TRUE(materials["sign"]["extensions"].contains("KHR_materials_unlit"));
+  EXPECT_FALSE(materials["sign"]["extensions"].contains("MOZ_lightmap"));
   EXPECT_FALSE(materials["sign"]["pbrMetallicRoughness"].contains("baseColorTexture"));
 
   const std::set<std::string> used = baked.document.j["extensionsUsed"];

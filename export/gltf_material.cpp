@@ -136,6 +136,20 @@ void set_transmission(Glb& glb, MaterialBook& book, const scene::Scene& scene,
   glb.extensions_used.insert("KHR_materials_transmission");
 }
 
+void set_diffuse_transmission(Glb& glb, MaterialBook& book, const scene::Scene& scene,
+                              const scene::Material& m, TexcoordSlots slots, json& out) {
+  if (!(m.diffuse_transmission > 0)) return;
+  json& extension = out["extensions"]["KHR_materials_diffuse_transmission"];
+  extension = {
+      {"diffuseTransmissionFactor", m.diffuse_transmission},
+      {"diffuseTransmissionColorFactor", rgb(min(m.diffuse_transmission_color, Rgb{1, 1, 1}))}};
+  set_if(extension, "diffuseTransmissionTexture",
+         texture_info(glb, book, scene, m.diffuse_transmission_texture, slots));
+  set_if(extension, "diffuseTransmissionColorTexture",
+         texture_info(glb, book, scene, m.diffuse_transmission_color_texture, slots));
+  glb.extensions_used.insert("KHR_materials_diffuse_transmission");
+}
+
 /// Phong's highlight of a material that is no metal, as import/ will find it again. Only where
 /// something was set: a scene that asks for no highlight is written without one.
 void set_highlight(Glb& glb, const scene::Material& m, json& out) {
@@ -152,6 +166,7 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
   if (!m.name.empty()) out["name"] = m.name;
   set_emission(glb, book, scene, m, slots, out);
   set_transmission(glb, book, scene, m, slots, out);
+  set_diffuse_transmission(glb, book, scene, m, slots, out);
   if (m.alpha_mode == scene::AlphaMode::blend) out["alphaMode"] = "BLEND";
   if (m.alpha_mode == scene::AlphaMode::mask) {
     out["alphaMode"] = "MASK";
@@ -164,7 +179,7 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
   }
   // What is baked is diffuse.
   if (book.lightmap.empty()) set_highlight(glb, m, out);
-  if (!book.lightmap.empty()) {
+  if (!book.lightmap.empty() && !m.unlit) {
     out["extensions"]["MOZ_lightmap"] = book.lightmap[page].extension;
     out["extras"]["luxel"]["lightmap"] = book.lightmap[page].name + ".exr";
     glb.extensions_used.insert("MOZ_lightmap");

@@ -163,6 +163,24 @@ Result<tinygltf::TextureInfo> texture_in(const GltfReader& reader, const tinyglt
   return info;
 }
 
+Status read_diffuse_transmission(GltfReader& reader, ImageLoader& images,
+                                 const tinygltf::Material& in, const std::string& user,
+                                 scene::Material& out) {
+  const auto it = in.extensions.find("KHR_materials_diffuse_transmission");
+  if (it == in.extensions.end()) return {};
+  out.diffuse_transmission = float(number_in(it->second, "diffuseTransmissionFactor", 0));
+  if (!(out.diffuse_transmission > 0)) return {};
+  out.diffuse_transmission_color =
+      vec3_in(it->second, "diffuseTransmissionColorFactor", out.diffuse_transmission_color);
+  LUXEL_TRY(const tinygltf::TextureInfo share,
+            texture_in(reader, it->second, "diffuseTransmissionTexture", user));
+  LUXEL_TRY(out.diffuse_transmission_texture, read_ref(reader, images, share, user));
+  LUXEL_TRY(const tinygltf::TextureInfo color,
+            texture_in(reader, it->second, "diffuseTransmissionColorTexture", user));
+  LUXEL_TRY(out.diffuse_transmission_color_texture, read_ref(reader, images, color, user));
+  return {};
+}
+
 Result<scene::Material> read_material(GltfReader& reader, ImageLoader& images, size_t index) {
   const tinygltf::Material& in = reader.model.materials[index];
   const auto& pbr = in.pbrMetallicRoughness;
@@ -192,6 +210,7 @@ Result<scene::Material> read_material(GltfReader& reader, ImageLoader& images, s
               texture_in(reader, it->second, "transmissionTexture", user));
     LUXEL_TRY(out.transmission_texture, read_ref(reader, images, info, user));
   }
+  LUXEL_TRY_STATUS(read_diffuse_transmission(reader, images, in, user, out));
   LUXEL_TRY(out.base_color_texture, read_ref(reader, images, pbr.baseColorTexture, user));
   if (max_component(out.emission) > 0) {
     LUXEL_TRY(out.emission_texture, read_ref(reader, images, in.emissiveTexture, user));

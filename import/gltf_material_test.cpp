@@ -140,6 +140,35 @@ TEST(GltfMaterial, TexturesComeWithSamplerTransformAndEncodedBytes) {
   expect_near(scene::emission_at(scene, p), {2, 0, 0}, 1e-6f);
 }
 
+// Of a base colour of 0.8 the share 0.5 * (102 / 255) goes through, in the colour (0.5, 1, 0.25)
+// times the texture's (1, 0, 1): 0.2 (0.5, 0, 0.25), and 0.8 * 0.8 is reflected.
+TEST(GltfMaterial, DiffuseTransmission) {
+  Gltf gltf = square_with_material(
+      {{"pbrMetallicRoughness", {{"baseColorFactor", {0.8, 0.8, 0.8, 1}}, {"metallicFactor", 0}}},
+       {"extensions",
+        {{"KHR_materials_diffuse_transmission",
+          {{"diffuseTransmissionFactor", 0.5},
+           {"diffuseTransmissionTexture", {{"index", 0}}},
+           {"diffuseTransmissionColorFactor", {0.5, 1, 0.25}},
+           {"diffuseTransmissionColorTexture", {{"index", 0}}}}}}}});
+  add_texture(gltf, png_of(1, 1, {255, 0, 255, 102}));
+  const scene::Scene scene = scene_of(import_glb(gltf));
+  const scene::SurfacePoint p{0, 0, {0.3f, 0.3f}};
+  expect_near(scene::diffuse_transmittance_at(scene, p), {0.1f, 0, 0.05f}, 1e-6f);
+  expect_near(scene::reflectance_at(scene, p), Rgb{1, 1, 1} * 0.64f, 1e-6f);
+  EXPECT_TRUE(scene::reflects_from_behind(scene.materials[0]));
+  // Metal lets nothing through, and both together never send back more than 0.99.
+  gltf.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 0.5;
+  expect_near(scene::diffuse_transmittance_at(scene_of(import_glb(gltf)), p), {0.05f, 0, 0.025f},
+              1e-6f);
+  gltf.json["materials"][0]["pbrMetallicRoughness"] = {{"metallicFactor", 0}};
+  auto& extension = gltf.json["materials"][0]["extensions"]["KHR_materials_diffuse_transmission"];
+  extension["diffuseTransmissionColorFactor"] = {1, 1, 1};
+  const scene::Scene white = scene_of(import_glb(gltf));
+  expect_near(scene::reflectance_at(white, p) + scene::diffuse_transmittance_at(white, p),
+              {0.99f, 0.8f * 0.99f, 0.99f}, 1e-6f);  // white is 0.99, of which 0.2 is scattered
+}
+
 TEST(GltfMaterial, PicturesThatNobodyUsesAreNotDecoded) {
   Gltf gltf = square_with_material({{"normalTexture", {{"index", 0}}}});
   add_texture(gltf, "this is no picture");

@@ -225,8 +225,8 @@ TEST(GltfMeshoptScene, TheGardenIsTheGarden) {
   EXPECT_EQ(scene::world_bounds(a).lower, scene::world_bounds(b).lower);
   EXPECT_EQ(scene::world_bounds(a).upper, scene::world_bounds(b).upper);
   EXPECT_FLOAT_EQ(drawn_area(a), drawn_area(b));
-  ASSERT_EQ(a.materials.size(), 13u);
-  ASSERT_EQ(b.materials.size(), 13u);
+  ASSERT_GE(a.materials.size(), 13u);  // of the file; more are made for sheets with two sides
+  ASSERT_EQ(b.materials.size(), a.materials.size());
   for (size_t i = 0; i < 13; ++i) {
     const scene::Material &m = a.materials[i], &n = b.materials[i];
     // Nine decimal digits in one file, the shortest that is the same float in the other.

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "import/readers.h"
+#include "scene/sides.h"
 #include "scene/validate.h"
 
 namespace luxel::import {
@@ -32,6 +33,7 @@ Result<Imported> read_checked(const SourceFile& source) {
     if (imported.scene.name.empty()) imported.scene.name = source.path.stem().string();
     LUXEL_TRY(std::vector<std::string> repairs, scene::validate(imported.scene, source.name));
     imported.warnings.insert(imported.warnings.end(), repairs.begin(), repairs.end());
+    scene::link_sides(imported.scene);
     return imported;
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::out_of_memory, "{}: not enough memory to read it", source.name);

@@ -13,13 +13,16 @@
 #include "pipeline/denoise_light.h"
 #include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
+#include "pipeline/shown_light.h"
 #include "pipeline/stage_seconds.h"
 #include "pipeline/texel_picture.h"
+#include "pipeline/two_sides.h"
 #include "pipeline/version.h"
 #include "pipeline/vertex_lit.h"
 #include "post/dilate.h"
 #include "post/refill.h"
 #include "post/seams.h"
+#include "scene/sides.h"
 #include "transport/irradiance_field.h"
 
 namespace luxel::pipeline {
@@ -50,7 +53,13 @@ Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>
 
 Status solve(const BakeSettings& settings, const SolveInput& input, Bake& bake,
              Progress& progress) {
-  LUXEL_TRY(bake.light, find_solver(settings.solver)->solve(input, settings, progress));
+  const Solver& solver = *find_solver(settings.solver);
+  if (!solver.scatters && scene::scatters_light(input.scene))
+    bake.warnings.push_back(fmt::format(
+        "light that is scattered through surfaces (KHR_materials_diffuse_transmission) is left out "
+        "by --solver {}: they are too dark; gather and reference have it",
+        settings.solver));
+  LUXEL_TRY(bake.light, solver.solve(input, settings, progress));
   if (settings.denoise) LUXEL_TRY_STATUS(denoise_light(input, bake.light, progress));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};
@@ -78,6 +87,12 @@ Status repair(const BakeSettings& settings, const trace::RayTracer& tracer, Bake
                    post::seam_errors(bake.map, seams, bake.light.irradiance)});
   bake.lightmaps = post::lightmap_pages(bake.atlas, bake.map, bake.light.irradiance);
   for (image::Image& lightmap : bake.lightmaps) post::dilate(lightmap, kDilationRings);
+  if (scene::scatters_light(bake.scene)) {
+    bake.shown = post::lightmap_pages(
+        bake.atlas, bake.map,
+        shown_irradiance(bake.scene, bake.atlas, bake.map, bake.light.irradiance));
+    for (image::Image& lightmap : bake.shown) post::dilate(lightmap, kDilationRings);
+  }
   return not_cancelled(progress);
 }
 
@@ -186,6 +201,9 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
   const ThreadLimit threads(settings.threads);
   Bake bake;
   LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
+  LUXEL_TRY(const std::vector<std::string> sides,
+            split_sides(bake.scene, settings.uv, settings.resolution, progress));
+  bake.warnings.insert(bake.warnings.end(), sides.begin(), sides.end());
   LUXEL_TRY(TexelLayout layout, lay_out_texels(settings, bake.scene, progress));
   LUXEL_TRY_STATUS(not_cancelled(progress));
   bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
@@ -204,8 +222,13 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
 
 namespace {
 
+const std::vector<image::Image>& shown_lightmaps(const Bake& bake) {
+  return bake.shown.empty() ? bake.lightmaps : bake.shown;
+}
+
 Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& bake) {
-  if (!settings.vertex_colors) return export_::baked_glb(bake.scene, bake.atlas, bake.lightmaps);
+  if (!settings.vertex_colors)
+    return export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake));
   const VertexLit lit = vertex_lit(bake.scene, *bake.light.field);
   return export_::vertex_lit_glb(lit.scene, lit.intensity);
 }
@@ -215,12 +238,12 @@ Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
                              std::span<const std::byte> glb) {
   std::vector<std::byte> own;
   if (settings.vertex_colors) {
-    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, bake.lightmaps));
+    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake)));
     glb = own;
   }
   LUXEL_TRY(const std::string html,
             export_::view_html({settings.scene.stem().string(), bake.view, bake.scene.background,
-                                bake.atlas.corners.size(), glb, bake.lightmaps,
+                                bake.atlas.corners.size(), glb, shown_lightmaps(bake),
                                 &bake.scene.environment}));
   return text_file(settings.output / "view.html", html);
 }

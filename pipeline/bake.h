@@ -31,6 +31,7 @@ struct Bake {
   atlas::AtlasStats atlas_stats;
   TexelLight light;
   std::vector<image::Image> lightmaps;  ///< E, 4 channels, per page as lightmap.exr holds it
+  std::vector<image::Image> shown;      ///< for viewers (shown_light.h); empty: the same
   image::Image8 preview;
   DirectionMaps directions;         ///< with --directional
   std::optional<ProbeGrid> probes;  ///< with --probes

@@ -269,7 +269,8 @@ constexpr std::array kSolvers{
            .samples = true,
            .direct_samples = true,
            .supersample = true,
-           .noise = true},
+           .noise = true,
+           .scatters = true},
     Solver{.name = "hemicube", .solve = solve_hemicube, .direct_samples = true, .hemicube = true},
     Solver{.name = "matrix",
            .solve = solve_matrix,
@@ -282,7 +283,8 @@ constexpr std::array kSolvers{
            .solve = solve_reference,
            .samples = true,
            .supersample = true,
-           .noise = true}};
+           .noise = true,
+           .scatters = true}};
 
 }  // namespace
 

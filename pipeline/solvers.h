@@ -59,7 +59,8 @@ struct Solver {
   /// What it looks at of the settings.
   bool samples = false, direct_samples = false, supersample = false, hemicube = false,
        matrix = false, hierarchical = false;
-  bool noise = false;  ///< knows the variance of its light: --denoise
+  bool noise = false;     ///< knows the variance of its light: --denoise
+  bool scatters = false;  ///< follows light that surfaces scatter through
 };
 
 /// What a bake's settings ask of the hemicube solver. Shadow rays are four times direct_samples.

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "post/seams.h"
 #include "post/touching.h"
+#include "scene/places.h"
 
 namespace luxel::post {
 namespace {
@@ -17,28 +18,9 @@ struct HalfEdge {
   uint32_t low_corner = 0, high_corner = 0;
 };
 
-/// Vertices at exactly the same place get the same number: exporters split vertices along UV seams
-/// and hard edges, and the split copies have equal positions, bit for bit.
-std::vector<uint32_t> place_numbers(const std::vector<Vec3>& positions) {
-  const auto key = [&](uint32_t i) {
-    const Vec3 p = positions[i];
-    return std::tuple(p.x, p.y, p.z);
-  };
-  std::vector<uint32_t> order(positions.size());
-  for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-  std::vector<uint32_t> number(positions.size());
-  uint32_t next = 0;
-  for (size_t i = 0; i < order.size(); ++i) {
-    if (i > 0 && key(order[i - 1]) != key(order[i])) ++next;
-    number[order[i]] = next;
-  }
-  return number;
-}
-
 /// Sorted, so that the sides of an edge follow each other.
 std::vector<HalfEdge> half_edges(const scene::Mesh& mesh) {
-  const std::vector<uint32_t> place = place_numbers(mesh.positions);
+  const std::vector<uint32_t> place = scene::place_numbers(mesh.positions);
   std::vector<HalfEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (uint32_t t = 0; t < mesh.triangles.size(); ++t)

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/warp.h"
+#include "scene/sides.h"
 #include "transport/surroundings.h"
 
 namespace luxel::reference {
@@ -12,8 +13,6 @@ namespace {
 constexpr int kSureBounces = 8;
 /// A ray towards a point of an emitter ends there, unless it met something before this part of it.
 constexpr float kArrived = 1 - 1e-5f, kBeyond = 1 + 1e-4f;
-
-Vec3 mirrored(Vec3 d, Vec3 normal) { return d - normal * (2 * dot(d, normal)); }
 
 /// The cosine with which light from `d` is gathered that surfaces have reflected, or the sky.
 float folded_cosine(const Receiver& at, Vec3 d) {
@@ -29,9 +28,8 @@ float mis_weight(float own, float other) {
 
 trace::Ray random_ray(Path& path) {
   const Vec3 local = cosine_hemisphere_sample(path.random.next2());
-  Vec3 d = frame_around(path.at.normal).to_world(local);
-  if (dot(d, path.at.geometric_normal) < 0) d = mirrored(d, path.at.geometric_normal);
-  return {path.origin, 0, d, INFINITY};
+  const Vec3 d = frame_around(path.at.normal).to_world(local);
+  return {path.origin, 0, transport::mirrored_above(d, path.at.geometric_normal), INFINITY};
 }
 
 /// Next-event estimation: one point of the emissive triangles, weighted against the chance that
@@ -98,21 +96,14 @@ void add_emitter_light(const World& world, const EmitterRay& ray, const trace::H
       ray.factor * tint * scene::emission_at(world.scene, {e.instance, e.triangle, ray.point.at});
 }
 
-/// All rays of a bounce. Where nothing colours light, tints are 1 and shares 0 or 1.
+/// All rays of a bounce. Where nothing colours light, tints are 1.
 void trace(const World& world, PathWork& work) {
   work.hits.resize(work.rays.size());
   world.tracer.closest_hits(work.rays, work.hits);
   work.tint.assign(work.rays.size(), {1, 1, 1});
   work.arriving.resize(work.shadow_rays.size());
-  if (world.tracer.has_tints()) {
-    world.tracer.tint(work.rays, work.hits, work.tint);
-    world.tracer.transmitted(work.shadow_rays, work.arriving);
-    return;
-  }
-  work.blocked.resize(work.shadow_rays.size());
-  world.tracer.occluded(work.shadow_rays, work.blocked);
-  for (size_t k = 0; k < work.blocked.size(); ++k)
-    work.arriving[k] = work.blocked[k] ? Rgb{} : Rgb{1, 1, 1};
+  if (world.tracer.has_tints()) world.tracer.tint(work.rays, work.hits, work.tint);
+  world.tracer.transmitted(work.shadow_rays, work.arriving);
 }
 
 /// Emission that a random ray has found, weighted against the chance that aim_at_emitter picks the
@@ -142,6 +133,30 @@ bool survives(Path& path, int reflections) {
   return true;
 }
 
+/// Multiplies by the reflectance, or, by chance, by the transmittance: then the path goes on to the
+/// light of the other side. Returns the side whose light is asked for next.
+trace::Hit send_on(const World& world, const trace::Hit& hit, Path& path) {
+  const Rgb rho = scene::reflectance_at(world.scene, hit.point());
+  const Rgb tau = scene::diffuse_transmittance_at(world.scene, hit.point());
+  const float sum = luminance(rho) + luminance(tau);
+  const float through = sum > 0 ? luminance(tau) / sum : 0.0f;
+  if (!(through > 0)) {
+    path.throughput = path.throughput * rho;
+    return hit;
+  }
+  if (path.random.next() >= through) {
+    path.throughput = path.throughput * rho / (1 - through);
+    return hit;
+  }
+  path.throughput = path.throughput * tau / through;
+  trace::Hit other = hit;
+  if (const auto p = scene::other_side_of(world.scene, hit.point()))
+    other.triangle = p->triangle, other.at = p->at;
+  else
+    other.back_face = !hit.back_face;
+  return other;
+}
+
 /// Takes the light that the path's ray has found and moves the path there. False when it ends.
 bool advance(const World& world, const trace::Ray& ray, const trace::Hit& hit, int depth,
              int bounces, Path& path) {
@@ -158,9 +173,9 @@ bool advance(const World& world, const trace::Ray& ray, const trace::Hit& hit, i
   if (!hit.back_face || scene::material_at(world.scene, hit.point()).double_sided)
     add_found_emission(world, hit, ray.direction, path);
   if (depth == bounces) return false;
-  path.throughput = path.throughput * scene::reflectance_at(world.scene, hit.point());
+  const trace::Hit side = send_on(world, hit, path);
   if (!survives(path, depth + 1)) return false;
-  path.at = receiver_at(world.scene, world.surfaces, hit);
+  path.at = receiver_at(world.scene, world.surfaces, side);
   path.origin = trace::offset_origin(path.at.position, path.at.geometric_normal, world.diagonal_m);
   return true;
 }
@@ -193,8 +208,17 @@ Path path_from_eye(const World& world, Vec3 direction, const trace::Hit& hit, Ra
     path.value = scene::smooth_surroundings_towards(world.scene, direction);
     return path;
   }
-  Path path = path_from(world, receiver_at(world.scene, world.surfaces, hit), random);
-  path.throughput = scene::reflectance_at(world.scene, hit.point());
+  Path path;
+  path.random = random;
+  if (scene::material_at(world.scene, hit.point()).unlit) {
+    const auto color = scene::base_color_at(world.scene, hit.point());
+    path.throughput = {};
+    path.value = {color[0], color[1], color[2]};
+    path.shows_surface = true;
+    return path;
+  }
+  path.at = receiver_at(world.scene, world.surfaces, send_on(world, hit, path));
+  path.origin = trace::offset_origin(path.at.position, path.at.geometric_normal, world.diagonal_m);
   path.value = scene::emission_at(world.scene, hit.point());
   path.shows_surface = true;
   return path;

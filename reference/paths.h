@@ -59,7 +59,6 @@ struct PathWork {
   std::vector<LampRay> lamp_rays;  ///< towards the sky, too
   std::vector<trace::Ray> rays, shadow_rays;
   std::vector<trace::Hit> hits;
-  std::vector<uint8_t> blocked;
   std::vector<Rgb> tint, arriving;  ///< of rays; share of shadow rays' light
   std::vector<float> lamp_weights;
 };

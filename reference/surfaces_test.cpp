@@ -6,6 +6,7 @@
 
 #include "reference/reference_test_support.h"
 #include "scene/procedural.h"
+#include "scene/sides.h"
 
 namespace luxel::reference {
 namespace {
@@ -61,6 +62,66 @@ TEST(SurfacesOfPaths, TheInsideOfADoubleSidedBoxIsAFurnace) {
   Points points = random_points(scene, 100, 1);
   for (Vec3& n : points.normal) n = -n;
   expect_unbiased(solve(scene, points, {.samples = 500}), std::vector<double>(100, 2 * kPiDouble));
+}
+
+/// A box of uniform light inside: every inner side emits radiosity e. Its walls reflect rho and let
+/// tau through; outside is a sky of radiance `sky`. The inside is a furnace, whatever its shape,
+/// and the outside sees nothing but sky:
+///   E_out = pi sky,  E_in = e + rho E_in + tau E_out,  B_out = rho E_out + tau E_in.
+struct Lampshade {
+  scene::Scene scene;
+  double in = 0, out = 0, sent = 0;  ///< E_in, E_out, B_out
+};
+Lampshade lampshade(bool linked) {
+  const float t = 0.4f, c = 0.5f, albedo = 0.8f, e = 2, sky = 0.3f;
+  Lampshade out;
+  scene::Scene& s = out.scene;
+  const uint32_t paper = scene::add_material(s, "paper", gray(albedo));
+  s.materials[paper].diffuse_transmission = t;
+  s.materials[paper].diffuse_transmission_color = gray(c);
+  scene::Mesh box;
+  scene::add_box(box, {-1, -1, -1}, {1, 1, 1}, paper);
+  const size_t triangles = box.triangles.size();
+  scene::place(s, std::move(box));
+  s.background = gray(sky);
+  const double rho = double(albedo * (1 - t)), tau = double(t * c);
+  out.out = kPiDouble * double(sky);
+  double inside = 0;
+  if (linked) {
+    scene::add_backs(s, 0, std::vector<uint8_t>(triangles, 1));
+    s.materials.push_back(s.materials[paper]);
+    s.materials.back().emission = gray(e / kPi);
+    for (size_t k = triangles; k < 2 * triangles; ++k) s.meshes[0].triangle_material[k] = 1;
+    inside = double(e);
+  }
+  out.in = (inside + tau * out.out) / (1 - rho);
+  out.sent = rho * out.out + tau * out.in;
+  return out;
+}
+
+// Also where the two sides are not told apart: a box as it comes from a file, which emits nothing.
+TEST(SurfacesOfPaths, LightIsScatteredThroughALampshade) {
+  for (const bool linked : {true, false}) {
+    const Lampshade shade = lampshade(linked);
+    Points inside, outside, beside;
+    for (int k = 0; k < 20; ++k) {
+      const float x = -0.9f + 0.09f * float(k), y = 0.05f * float(k) - 0.7f;
+      inside.add({x, y, 1}, {0, 0, -1});
+      outside.add({x, y, 1}, {0, 0, 1});
+      beside.add({x, y, 2}, {0, 0, -1});
+    }
+    expect_unbiased(solve(shade.scene, inside, {.samples = 2000}),
+                    std::vector<double>(inside.size(), shade.in));
+    expect_unbiased(solve(shade.scene, outside, {.samples = 100}),
+                    std::vector<double>(outside.size(), shade.out));
+    std::vector<double> exact;
+    for (size_t k = 0; k < beside.size(); ++k) {
+      const double f = polygon_factor(beside.position[k], beside.normal[k],
+                                      {{1, -1, 1}, {-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}});
+      exact.push_back(f * shade.sent + (1 - f) * shade.out);
+    }
+    expect_unbiased(solve(shade.scene, beside, {.samples = 2000}), exact);
+  }
 }
 
 TexelPaths at_bent_point(const scene::Scene& scene, Vec3 p, Vec3 n, int samples) {

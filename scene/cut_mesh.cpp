@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 
 #include "base/check.h"
+#include "scene/places.h"
 
 namespace luxel::scene {
 namespace {
@@ -14,28 +16,11 @@ using Corners = std::array<uint32_t, 3>;
 
 uint64_t key_of(uint32_t low, uint32_t high) { return uint64_t(low) << 32 | high; }
 
-/// Per vertex, the lowest vertex at exactly the same position: files split vertices along creases
-/// and texture seams.
-std::vector<uint32_t> places_of(const std::vector<Vec3>& positions) {
-  std::vector<uint32_t> order(positions.size());
-  for (uint32_t v = 0; v < order.size(); ++v) order[v] = v;
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    const Vec3 &p = positions[a], &q = positions[b];
-    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-  });
-  std::vector<uint32_t> place(positions.size());
-  for (size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && positions[order[i]] == positions[order[i - 1]];
-    place[order[i]] = same ? place[order[i - 1]] : order[i];
-  }
-  return place;
-}
-
 /// Where edges are cut: from the end at the lower place, as a share of the edge.
 class CutEdges {
  public:
   CutEdges(Mesh& mesh, std::span<const uint8_t> chosen, const Plane& plane, double tolerance)
-      : mesh_(mesh), place_(places_of(mesh.positions)) {
+      : mesh_(mesh), place_(place_numbers(mesh.positions)) {
     std::vector<double> height(mesh.positions.size());
     for (size_t v = 0; v < height.size(); ++v)
       height[v] = plane.height(to_double(mesh.positions[v]));
@@ -99,15 +84,41 @@ std::vector<Corners> pieces_of(const Mesh& mesh, const Corners& c, const std::ar
     const uint32_t apex = c[(k + 2) % 3];
     return {{c[k], middle[k], apex}, {middle[k], c[(k + 1) % 3], apex}};
   }
-  // Two cut edges meet in a corner; what is left is divided by its shorter diagonal.
+  // Two cut edges meet in a corner; what is left is divided by its shorter diagonal, of equal ones
+  // by that of the lower place: the other side of a sheet is divided alike.
   const size_t whole = size_t(std::find(cut.begin(), cut.end(), false) - cut.begin());
   const uint32_t a = c[whole], b = c[(whole + 1) % 3], tip = c[(whole + 2) % 3];
   const uint32_t on_b = middle[(whole + 1) % 3], on_a = middle[(whole + 2) % 3];
   const auto apart = [&](uint32_t v, uint32_t w) {
     return length(mesh.positions[v] - mesh.positions[w]);
   };
-  if (apart(a, on_b) <= apart(b, on_a)) return {{on_a, on_b, tip}, {a, b, on_b}, {a, on_b, on_a}};
+  const float by_a = apart(a, on_b), by_b = apart(b, on_a);
+  const Vec3 &p = mesh.positions[a], &q = mesh.positions[b];
+  const bool a_is_lower = std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+  if (by_a < by_b || (by_a == by_b && a_is_lower))
+    return {{on_a, on_b, tip}, {a, b, on_b}, {a, on_b, on_a}};
   return {{on_a, on_b, tip}, {a, b, on_a}, {b, on_b, on_a}};
+}
+
+/// A triangle's corners from the one at `place` on; nothing when it has none there.
+std::optional<Corners> corners_from(const Mesh& mesh, const Corners& c, Vec3 place) {
+  for (size_t k = 0; k < 3; ++k)
+    if (mesh.positions[c[k]] == place) return Corners{c[k], c[(k + 1) % 3], c[(k + 2) % 3]};
+  return {};
+}
+
+/// Ties the pieces of a triangle to those of its other side, (a, c, b) for (a, b, c).
+void tie_pieces(Mesh& mesh, std::span<const uint32_t> pieces, std::span<const uint32_t> others) {
+  const auto at = [&](uint32_t v) { return mesh.positions[v]; };
+  for (const uint32_t t : pieces) {
+    const Corners c = mesh.triangles[t];
+    for (const uint32_t o : others) {
+      const auto turned = corners_from(mesh, mesh.triangles[o], at(c[0]));
+      if (!turned || at((*turned)[1]) != at(c[2]) || at((*turned)[2]) != at(c[1])) continue;
+      mesh.triangles[o] = *turned;
+      mesh.other_side[t] = o, mesh.other_side[o] = t;
+    }
+  }
 }
 
 }  // namespace
@@ -122,6 +133,7 @@ std::vector<uint32_t> cut_mesh(Mesh& mesh, std::span<const uint8_t> chosen, cons
   LUXEL_CHECK(chosen.size() == mesh.triangles.size());
   CutEdges edges(mesh, chosen, plane, tolerance);
   std::vector<uint32_t> part_of;
+  std::unordered_map<uint32_t, std::vector<uint32_t>> parts;  // of triangles with two sides
   const size_t count = edges.empty() ? 0 : mesh.triangles.size();
   for (uint32_t t = 0; t < count; ++t) {
     const Corners c = mesh.triangles[t];
@@ -133,13 +145,20 @@ std::vector<uint32_t> cut_mesh(Mesh& mesh, std::span<const uint8_t> chosen, cons
     }
     if (!cut[0] && !cut[1] && !cut[2]) continue;
     const std::vector<Corners> pieces = pieces_of(mesh, c, cut, middle);
+    const bool two_sided = !mesh.other_side.empty() && mesh.other_side[t] != kNone;
     mesh.triangles[t] = pieces.front();
+    if (two_sided) parts[t].push_back(t);
     for (size_t k = 1; k < pieces.size(); ++k) {
+      if (two_sided) parts[t].push_back(uint32_t(mesh.triangles.size()));
       mesh.triangles.push_back(pieces[k]);
       mesh.triangle_material.push_back(mesh.triangle_material[t]);
       part_of.push_back(t);
     }
   }
+  if (!mesh.other_side.empty()) mesh.other_side.resize(mesh.triangles.size(), kNone);
+  const std::vector<uint32_t> before = mesh.other_side;
+  for (const auto& [t, pieces] : parts)
+    if (t < before[t]) tie_pieces(mesh, pieces, parts.at(before[t]));
   return part_of;
 }
 

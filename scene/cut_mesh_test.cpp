@@ -6,6 +6,7 @@
 
 #include "scene/procedural.h"
 #include "scene/shapes.h"
+#include "scene/sides.h"
 
 namespace luxel::scene {
 namespace {
@@ -103,6 +104,30 @@ TEST(CutMesh, CutsOnce) {
   cut_mesh(ball, all, cut, 1e-6);
   const std::vector<uint8_t> again(ball.triangles.size(), 1);
   EXPECT_TRUE(cut_mesh(ball, again, cut, 1e-6).empty());
+}
+
+/// A sheet whose sides are tied together stays one: every piece has its piece behind.
+TEST(CutMesh, SidesStayTied) {
+  Scene scene;
+  add_material(scene, "leaf", {0.5f, 0.5f, 0.5f});
+  add_rectangle(scene, {0, 2, 0, 2}, 0, true, 0);  // its cuts have equal diagonals, too
+  const std::vector<uint8_t> both(2, 1);
+  add_backs(scene, 0, both);
+  Mesh& mesh = scene.meshes[0];
+  for (const Plane& cut : {plane({1, 0, 0}, 1), plane({1, 0, 0.4f}, 1.1f)}) {
+    std::vector<uint8_t> fronts(mesh.triangles.size());
+    for (size_t t = 0; t < fronts.size(); ++t) fronts[t] = t % 2 == 0;
+    EXPECT_FALSE(cut_mesh(mesh, fronts, cut, 1e-6).empty());
+    ASSERT_EQ(mesh.other_side.size(), mesh.triangles.size());
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const uint32_t o = mesh.other_side[t];
+      ASSERT_LT(o, mesh.triangles.size());
+      EXPECT_EQ(mesh.other_side[o], t);
+      for (size_t k = 0; k < 3; ++k)
+        EXPECT_EQ(mesh.positions[mesh.triangles[t][k]],
+                  mesh.positions[mesh.triangles[o][(3 - k) % 3]]);
+    }
+  }
 }
 
 TEST(CutMesh, PlaneInObjectSpace) {

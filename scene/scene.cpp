@@ -6,6 +6,8 @@
 namespace luxel::scene {
 namespace {
 
+constexpr float kMaxReflectance = 0.99f;
+
 const Mesh& mesh_of(const Scene& scene, uint32_t instance) {
   return scene.meshes[scene.instances[instance].mesh];
 }
@@ -119,14 +121,45 @@ std::array<float, 4> base_color_at(const Scene& scene, const SurfacePoint& p) {
   return {c[0] * factor.x, c[1] * factor.y, c[2] * factor.z, c[3] * material.alpha};
 }
 
+namespace {
+
+/// What of a surface's light is not left to metal.
+float diffuse_share(const Scene& scene, const SurfacePoint& p, const Material& material) {
+  const float metallic =
+      material.metallic * texture_at(scene, p, material.metallic_texture, false)[2];
+  return 1 - std::clamp(metallic, 0.0f, 1.0f);
+}
+
+/// What of that is scattered through.
+float scattered_share(const Scene& scene, const SurfacePoint& p, const Material& material) {
+  if (!(material.diffuse_transmission > 0)) return 0;
+  return std::clamp(material.diffuse_transmission *
+                        texture_at(scene, p, material.diffuse_transmission_texture, false)[3],
+                    0.0f, 1.0f);
+}
+
+}  // namespace
+
 Rgb reflectance_at(const Scene& scene, const SurfacePoint& p) {
   const Material& material = material_at(scene, p);
   const auto c = base_color_at(scene, p);
-  const float metallic =
-      material.metallic * texture_at(scene, p, material.metallic_texture, false)[2];
-  const float diffuse = 1 - std::clamp(metallic, 0.0f, 1.0f);
-  return {std::clamp(c[0] * diffuse, 0.0f, 0.99f), std::clamp(c[1] * diffuse, 0.0f, 0.99f),
-          std::clamp(c[2] * diffuse, 0.0f, 0.99f)};
+  const float diffuse =
+      diffuse_share(scene, p, material) * (1 - scattered_share(scene, p, material));
+  return {std::clamp(c[0] * diffuse, 0.0f, kMaxReflectance),
+          std::clamp(c[1] * diffuse, 0.0f, kMaxReflectance),
+          std::clamp(c[2] * diffuse, 0.0f, kMaxReflectance)};
+}
+
+Rgb diffuse_transmittance_at(const Scene& scene, const SurfacePoint& p) {
+  const Material& material = material_at(scene, p);
+  const float scattered = scattered_share(scene, p, material);
+  if (!(scattered > 0)) return {};
+  const auto texture = texture_at(scene, p, material.diffuse_transmission_color_texture, true);
+  const Rgb tau = material.diffuse_transmission_color * Rgb{texture[0], texture[1], texture[2]} *
+                  (scattered * diffuse_share(scene, p, material));
+  const Rgb most =
+      Rgb{kMaxReflectance, kMaxReflectance, kMaxReflectance} - reflectance_at(scene, p);
+  return min(max(tau, Rgb{}), most);
 }
 
 Rgb emission_at(const Scene& scene, const SurfacePoint& p) {
@@ -151,7 +184,7 @@ bool tints_light(const Material& material) {
 }
 
 bool reflects_from_behind(const Material& material) {
-  return material.double_sided || tints_light(material);
+  return material.double_sided || tints_light(material) || material.diffuse_transmission > 0;
 }
 
 Passage passage_at(const Scene& scene, const SurfacePoint& p) {

@@ -60,16 +60,27 @@ struct Material {
   float alpha_cutoff = 0.5f;  ///< mask: alpha below it is a hole
   float transmission = 0;     ///< KHR_materials_transmission: share that goes straight through
   TextureRef transmission_texture;  ///< its red channel, linear, multiplies transmission
+  /// KHR_materials_diffuse_transmission: of the light that meets a thin surface and is not mirrored
+  /// by metal this share is not reflected, but scattered through, tinted.
+  float diffuse_transmission = 0;
+  Rgb diffuse_transmission_color{1, 1, 1};
+  TextureRef diffuse_transmission_texture;        ///< its alpha, multiplies the share
+  TextureRef diffuse_transmission_color_texture;  ///< multiplies the colour
   bool double_sided = false;
-  bool unlit = false;  ///< KHR_materials_unlit; baked as a diffuse surface like any other
+  bool unlit = false;  ///< KHR_materials_unlit: shown in its base colour, however it is lit
   /// Phong's highlight, for display/local_light.h alone: global illumination here is diffuse.
   Rgb specular{0, 0, 0};  ///< C_s of [Rodriguez06, eq. 4.26]
   float sharpness = 20;   ///< its exponent n, >= 0
 };
 
 /// Everything that a material looks up.
-inline std::array<const TextureRef*, 4> textures_of(const Material& m) {
-  return {&m.base_color_texture, &m.metallic_texture, &m.emission_texture, &m.transmission_texture};
+inline std::array<const TextureRef*, 6> textures_of(const Material& m) {
+  return {&m.base_color_texture,
+          &m.metallic_texture,
+          &m.emission_texture,
+          &m.transmission_texture,
+          &m.diffuse_transmission_texture,
+          &m.diffuse_transmission_color_texture};
 }
 
 /// Indexed triangles. Attribute arrays are either empty or as long as `positions`.
@@ -81,6 +92,10 @@ struct Mesh {
   std::vector<Rgb> colors;      ///< linear, multiplies the base colour
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<uint32_t> triangle_material;  ///< per triangle, index into Scene::materials
+  /// Thin surfaces whose two sides each have light of their own: the number of the triangle that is
+  /// this one's other side, (a, c, b) for (a, b, c); kNone where there is none, empty where no
+  /// triangle has one (scene/sides.h). A ray meets the side that it comes from.
+  std::vector<uint32_t> other_side;
 };
 
 /// A mesh placed in the world.
@@ -153,8 +168,12 @@ Vec3 shading_normal(const Scene& scene, const SurfacePoint& p);
 Vec3 world_position(const Scene& scene, const SurfacePoint& p);
 
 const Material& material_at(const Scene& scene, const SurfacePoint& p);
-/// rho = base colour * (1 - metallic), each channel in [0, 0.99].
+/// rho = base colour * (1 - metallic) * (1 - t), each channel in [0, 0.99]; t is the share that is
+/// scattered through.
 Rgb reflectance_at(const Scene& scene, const SurfacePoint& p);
+/// tau = colour * (1 - metallic) * t of KHR_materials_diffuse_transmission: of the irradiance on
+/// one side, what leaves the other side as diffuse light. rho + tau is at most 0.99.
+Rgb diffuse_transmittance_at(const Scene& scene, const SurfacePoint& p);
 /// Emitted radiance L [W/(sr m^2)] of the front side (of both when double-sided).
 Rgb emission_at(const Scene& scene, const SurfacePoint& p);
 /// False in the holes of an alpha mask.
@@ -175,7 +194,7 @@ Passage passage_at(const Scene& scene, const SurfacePoint& p);
 bool lets_light_through(const Material& material);
 bool tints_light(const Material& material);
 /// Whether the back reflects light, too: double-sided materials, and those that light goes through,
-/// for rays leave a pane of glass through the back of its far side.
+/// for rays leave a pane of glass through the back of its far side, and a leaf glows on both.
 bool reflects_from_behind(const Material& material);
 /// Radiance that a ray sees which leaves the scene: background plus environment.
 Rgb surroundings_towards(const Scene& scene, Vec3 direction);

@@ -79,7 +79,8 @@ Status check_materials(Scene& scene, Report& report) {
         luxel::is_finite(m.base_color) && luxel::is_finite(m.emission) && std::isfinite(m.alpha) &&
         std::isfinite(m.metallic) && std::isfinite(m.roughness) && std::isfinite(m.alpha_cutoff) &&
         luxel::is_finite(m.specular) && std::isfinite(m.sharpness) &&
-        std::isfinite(m.transmission) &&
+        std::isfinite(m.transmission) && std::isfinite(m.diffuse_transmission) &&
+        luxel::is_finite(m.diffuse_transmission_color) &&
         std::ranges::all_of(textures_of(m), [](const auto* ref) { return is_finite(*ref); });
     if (!finite)
       return fail(ErrorCode::bad_input, "{}: {}: one of its numbers is not finite", report.file,
@@ -91,12 +92,16 @@ Status check_materials(Scene& scene, Report& report) {
     m.metallic = std::clamp(m.metallic, 0.0f, 1.0f);
     m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
     m.transmission = std::clamp(m.transmission, 0.0f, 1.0f);
+    m.diffuse_transmission = std::clamp(m.diffuse_transmission, 0.0f, 1.0f);
+    m.diffuse_transmission_color = max(m.diffuse_transmission_color, Rgb{});
     m.specular = max(m.specular, Rgb{});
     m.sharpness = std::max(m.sharpness, 0.0f);
     if (m.base_color != before.base_color || m.emission != before.emission ||
         m.alpha != before.alpha || m.metallic != before.metallic ||
         m.roughness != before.roughness || m.specular != before.specular ||
-        m.sharpness != before.sharpness || m.transmission != before.transmission)
+        m.sharpness != before.sharpness || m.transmission != before.transmission ||
+        m.diffuse_transmission != before.diffuse_transmission ||
+        m.diffuse_transmission_color != before.diffuse_transmission_color)
       clamped.push_back(name);
   }
   if (!clamped.empty())

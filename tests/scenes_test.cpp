@@ -40,6 +40,8 @@ TEST(Scenes, FilesReadBackAsTheSameTrianglesAndLight) {
         const scene::SurfacePoint p{i, t, {0.3f, 0.3f}};
         EXPECT_EQ(scene::emission_at(file.scene, p), scene::emission_at(imported->scene, p));
         EXPECT_EQ(scene::reflectance_at(file.scene, p), scene::reflectance_at(imported->scene, p));
+        EXPECT_EQ(scene::diffuse_transmittance_at(file.scene, p),
+                  scene::diffuse_transmittance_at(imported->scene, p));
       }
   }
 }

@@ -66,6 +66,7 @@ class RayTracer {
   void tint(std::span<const Ray> rays, std::span<const Hit> hits, std::span<Rgb> light) const;
   /// The share of light that arrives from t_max, per channel: 0 where something opaque stands,
   /// the product of (1 - coverage) tint of all that lets light through. No chance is involved.
+  /// Where nothing has a tint it is 1 unless occluded.
   void transmitted(std::span<const Ray> rays, std::span<Rgb> share) const;
 
  private:

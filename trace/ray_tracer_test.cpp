@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "scene/procedural.h"
+#include "scene/sides.h"
 
 namespace luxel::trace {
 namespace {
@@ -37,6 +38,29 @@ TEST(RayTracer, HitsWhereThePlaneIs) {
   EXPECT_NEAR(p.y, 0.25f, 1e-6f);
   EXPECT_FALSE(tracer->closest_hit({{1.5f, 0.5f, 2}, 0, {0, 0, -1}, INFINITY}).found());
   EXPECT_FALSE(tracer->closest_hit({{0.5f, 0.5f, 2}, 0, {0, 0, -1}, 1.5f}).found());
+}
+
+// A sheet with two sides of its own is met on the side that the ray comes from, at the same place,
+// and never from behind; also where the other triangle comes first, and in mirrored instances.
+TEST(RayTracer, MeetsTheSideThatTheRayComesFrom) {
+  for (const Vec3 scale : {Vec3{1, 1, 1}, Vec3{-1, 1, 1}}) {
+    scene::Scene scene = quad_scene(scaling(scale));
+    scene::add_backs(scene, 0, std::vector<uint8_t>{1, 1});
+    scene.instances.push_back({"elsewhere", 0, translation({0, 0, 50})});
+    for (const size_t max_flat_triangles : {100, 0}) {
+      const auto tracer = RayTracer::build(scene, max_flat_triangles);
+      for (const float z : {1.0f, -1.0f}) {
+        const Vec3 from{0.6f * scale.x, 0.3f, z};
+        const Hit hit = tracer->closest_hit({from, 0, {0, 0, -z}, 10});
+        ASSERT_TRUE(hit.found());
+        EXPECT_FALSE(hit.back_face);
+        EXPECT_EQ(hit.triangle >= 2, z < 0);
+        EXPECT_GT(scene::front_normal(scene, hit.instance, hit.triangle).z * z, 0.99f);
+        const Vec3 p = scene::world_position(scene, hit.point());
+        EXPECT_LT(length(p - Vec3{from.x, from.y, 0}), 1e-5f);
+      }
+    }
+  }
 }
 
 TEST(RayTracer, KnowsTheBackEvenOfMirroredInstances) {

@@ -11,15 +11,6 @@
 namespace luxel::transport {
 namespace {
 
-void trace_shots(const trace::RayTracer& tracer, Shots& shots) {
-  shots.arriving.resize(shots.rays.size());
-  if (tracer.has_tints()) return tracer.transmitted(shots.rays, shots.arriving);
-  shots.blocked.resize(shots.rays.size());
-  tracer.occluded(shots.rays, shots.blocked);
-  for (size_t k = 0; k < shots.rays.size(); ++k)
-    shots.arriving[k] = shots.blocked[k] ? Rgb{} : Rgb{1, 1, 1};
-}
-
 /// Variance of what systematic sampling has drawn: half the mean square of the differences between
 /// neighbours on the line, which share their place and differ by chance [Wolter85, eq. 7.2.4].
 struct DrawnVariance {
@@ -39,7 +30,8 @@ struct DrawnVariance {
 
 /// Traces the shots and adds the sources up.
 void resolve(const trace::RayTracer& tracer, Shots& shots, Rgb& irradiance, float& variance) {
-  trace_shots(tracer, shots);
+  shots.arriving.resize(shots.rays.size());
+  tracer.transmitted(shots.rays, shots.arriving);
   for (size_t k = 0; k < shots.shots.size(); ++k) {
     if (max_component(shots.arriving[k]) <= 0) continue;
     const Shot& shot = shots.shots[k];

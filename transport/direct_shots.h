@@ -46,7 +46,6 @@ struct Shots {
   std::vector<Source> sources;
   std::vector<Shot> shots;
   std::vector<trace::Ray> rays;
-  std::vector<uint8_t> blocked;
   std::vector<Rgb> arriving;  ///< share of each shot's light
 };
 

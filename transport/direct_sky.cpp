@@ -28,9 +28,7 @@ void shoot_at_soft_sky(const scene::Scene& scene, const Surroundings& around, in
   const Frame frame = frame_around(r.normal);
   for (int k = 0; k < samples; ++k) {
     const Vec2 u = sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x14));
-    Vec3 d = frame.to_world(cosine_hemisphere_sample(u));
-    const float above = dot(d, r.geometric_normal);
-    if (above < 0) d += r.geometric_normal * (-2 * above);
+    const Vec3 d = mirrored_above(frame.to_world(cosine_hemisphere_sample(u)), r.geometric_normal);
     add_shot(shots, r, {source, 1, soft_radiance(scene, around, d)}, d, INFINITY);
   }
 }

@@ -1,21 +1,26 @@
 #include "transport/elements.h"
 
 #include "base/parallel.h"
+#include "scene/sides.h"
 
 namespace luxel::transport {
 namespace {
 
 bool varies_over_texels(const scene::Material& material) {
   return material.base_color_texture.texture != scene::kNone ||
-         material.metallic_texture.texture != scene::kNone;
+         material.metallic_texture.texture != scene::kNone ||
+         material.diffuse_transmission_texture.texture != scene::kNone ||
+         material.diffuse_transmission_color_texture.texture != scene::kNone;
 }
 
-/// Mean reflectance over a 4 x 4 grid of the texel, where the triangle covers it.
-Rgb mean_reflectance(const scene::Scene& scene, const atlas::Atlas& atlas,
-                     const atlas::Texel& texel) {
+using ColorAt = Rgb (*)(const scene::Scene&, const scene::SurfacePoint&);
+
+/// Mean of a colour over a 4 x 4 grid of the texel, where the triangle covers it.
+Rgb mean_over_texel(const scene::Scene& scene, const atlas::Atlas& atlas, const atlas::Texel& texel,
+                    ColorAt color_at) {
   constexpr int kGrid = 4;
   const auto& corners = atlas.corners[texel.triangle_number];
-  Rgb sum = scene::reflectance_at(scene, texel.sample);
+  Rgb sum = color_at(scene, texel.sample);
   float count = 1;
   for (int j = 0; j < kGrid; ++j)
     for (int i = 0; i < kGrid; ++i) {
@@ -23,7 +28,7 @@ Rgb mean_reflectance(const scene::Scene& scene, const atlas::Atlas& atlas,
                    float(texel.y) + (float(j) + 0.5f) / kGrid};
       const Barycentric at = atlas::barycentric_in(corners, p);
       if (at.u < 0 || at.v < 0 || at.u + at.v > 1) continue;
-      sum += scene::reflectance_at(scene, {texel.sample.instance, texel.sample.triangle, at});
+      sum += color_at(scene, {texel.sample.instance, texel.sample.triangle, at});
       count += 1;
     }
   return sum / count;
@@ -77,6 +82,8 @@ Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atl
   Elements e;
   const size_t n = map.texels.size();
   e.position.resize(n), e.normal.resize(n), e.geometric_normal.resize(n), e.reflectance.resize(n);
+  const bool scatters = scene::scatters_light(scene);
+  if (scatters) e.transmittance.resize(n);
   parallel_for(n, 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const atlas::Texel& texel = map.texels[i];
@@ -84,9 +91,12 @@ Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atl
       const SmoothPoint at = smooth_point(scene, p);
       e.position[i] = at.position, e.normal[i] = at.normal;
       e.geometric_normal[i] = at.geometric_normal;
-      e.reflectance[i] = varies_over_texels(scene::material_at(scene, p))
-                             ? mean_reflectance(scene, atlas, texel)
-                             : scene::reflectance_at(scene, p);
+      const bool varies = varies_over_texels(scene::material_at(scene, p));
+      const auto color = [&](ColorAt color_at) {
+        return varies ? mean_over_texel(scene, atlas, texel, color_at) : color_at(scene, p);
+      };
+      e.reflectance[i] = color(scene::reflectance_at);
+      if (scatters) e.transmittance[i] = color(scene::diffuse_transmittance_at);
     }
   });
   return e;

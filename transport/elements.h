@@ -18,6 +18,9 @@ struct Elements {
   std::vector<Vec3> normal;            ///< unit shading normal of the front side
   std::vector<Vec3> geometric_normal;  ///< unit; no light comes from below the plane it spans
   std::vector<Rgb> reflectance;        ///< rho in [0, 0.99]
+  /// tau: what of the irradiance on the other side leaves this one. Empty where nothing scatters
+  /// light through.
+  std::vector<Rgb> transmittance;
 
   size_t size() const { return position.size(); }
 };

@@ -6,6 +6,7 @@
 
 #include "atlas/atlas.h"
 #include "scene/scene.h"
+#include "scene/sides.h"
 
 namespace luxel::transport {
 
@@ -19,5 +20,16 @@ struct TexelField {
 /// E of the front side at a surface point: bilinear over those of the four nearest texels that
 /// carry a sample, weights renormalised, so that nothing bleeds in from outside the chart.
 Rgb irradiance_at(const TexelField& field, const scene::SurfacePoint& p);
+
+/// rho E + tau E behind: what a surface point sends besides what it emits, pi times its radiance.
+/// `irradiance_at(p)` is E of the side that p belongs to; what has but one is lit alike on both.
+template <class IrradianceAt>
+Rgb radiosity_at(const scene::Scene& scene, const scene::SurfacePoint& p,
+                 const IrradianceAt& irradiance_at) {
+  const Rgb reflected = scene::reflectance_at(scene, p) * irradiance_at(p);
+  const Rgb tau = scene::diffuse_transmittance_at(scene, p);
+  if (max_component(tau) <= 0) return reflected;
+  return reflected + tau * irradiance_at(scene::other_side_of(scene, p).value_or(p));
+}
 
 }  // namespace luxel::transport

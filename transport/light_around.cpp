@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "base/warp.h"
 #include "transport/direct_light.h"
+#include "transport/irradiance_field.h"
 
 namespace luxel::transport {
 namespace {
@@ -41,8 +42,7 @@ void look_around(const LitScene& lit, Arrivals& a) {
     if (hit.back_face && !scene::reflects_from_behind(scene::material_at(lit.scene, p)))
       a.radiance[k] = {};
     else
-      a.radiance[k] =
-          a.radiance[k] * scene::reflectance_at(lit.scene, p) * lit.irradiance_at(p) * (1 / kPi);
+      a.radiance[k] = a.radiance[k] * radiosity_at(lit.scene, p, lit.irradiance_at) * (1 / kPi);
   }
 }
 

@@ -46,4 +46,10 @@ PeakSample sample_peaks(const scene::Scene& scene, const Surroundings& s, Vec2 u
 /// they see light, not the inside of the solid. Its integral over the hemisphere is pi.
 float folded_cosine(Vec3 direction, Vec3 normal, Vec3 geometric_normal);
 
+/// That mirror image: the direction itself where it points away from the triangle.
+inline Vec3 mirrored_above(Vec3 direction, Vec3 geometric_normal) {
+  const float above = dot(direction, geometric_normal);
+  return above < 0 ? direction + geometric_normal * (-2 * above) : direction;
+}
+
 }  // namespace luxel::transport

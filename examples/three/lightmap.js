@@ -20,7 +20,8 @@ export async function useLightmap(gltf, exr = null) {
 }
 
 async function bakedMaterial(loaded, parser, exr) {
-  const lightmap = loaded.userData.gltfExtensions.MOZ_lightmap;
+  const lightmap = loaded.userData.gltfExtensions?.MOZ_lightmap;
+  if (!lightmap) return loaded; // unlit: its colour as it is
   const picture = exr ? await exr(loaded.userData.luxel.lightmap)
     : await parser.getDependency("texture", lightmap.index);
   if (exr) picture.flipY = true; // EXRLoader has the bottom row first, glTF the top row

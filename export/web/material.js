@@ -87,8 +87,13 @@ void main() {
   vec3 rho = clamp(base.rgb * (1.0 - clamp(metalness, 0.0, 1.0)), 0.0, 0.99);
   vec3 irradiance = texture(light, atLight).rgb * lightScale;
   const float pi = 3.14159265358979;
+#ifdef UNLIT
+  vec3 radiance = base.rgb;
+#else
+  vec3 radiance = rho * irradiance / pi + emitted;
+#endif
   vec3 shown = show == 2 ? rho : show == 1 ? compress(exposure * irradiance / pi)
-             : compress(exposure * (rho * irradiance / pi + emitted));
+             : compress(exposure * radiance);
   pixel = vec4(srgb(shown), 1.0);
 }`;
 
@@ -153,7 +158,7 @@ function linear(texture) {
  */
 export function bakedMaterial(loaded, geometry, page, common) {
   const lit = loaded.isMeshStandardMaterial === true;
-  const defines = {};
+  const defines = lit ? {} : { UNLIT: "" };  // KHR_materials_unlit: GLTFLoader's MeshBasicMaterial
   const uniforms = {
     ...common,
     ...page,

@@ -36,7 +36,7 @@ async function loadScene(about, common) {
     if (!object.isMesh) return;
     const key = object.material.uuid + Object.keys(object.geometry.attributes);
     if (!known.has(key)) {
-      const page = pages.get(object.material.userData.luxel.lightmap);
+      const page = pages.get(object.material.userData.luxel?.lightmap);  // none: unlit
       known.set(key, bakedMaterial(object.material, object.geometry, page, common));
     }
     object.material = known.get(key);

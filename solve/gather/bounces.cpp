@@ -29,12 +29,14 @@ RadiosityMap empty_map(int resolution) {
   return m;
 }
 
-void fill(RadiosityMap& m, const atlas::TexelMap& map, const transport::Elements& elements,
-          const TracedHits& hits, std::span<const Rgb> irradiance) {
+/// `value_at(i)`: what element i sends.
+template <class ValueAt>
+void fill(RadiosityMap& m, const atlas::TexelMap& map, const TracedHits& hits,
+          const ValueAt& value_at) {
   parallel_for(map.texels.size(), 1 << 14, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       if (is_hidden(hits, i)) continue;
-      const Rgb b = elements.reflectance[i] * irradiance[i];
+      const Rgb b = value_at(i);
       m.texels[size_t(map.texels[i].y + 1) * m.stride + map.texels[i].x + 1] =
           Float4{b.x, b.y, b.z, 1.0f};
     }
@@ -53,6 +55,21 @@ inline Float4 lookup(const RadiosityMap& m, const StoredHit& hit) {
   if (hit.tint() == kNoTint) return mean;
   const Rgb tint = unpack_tint(hit.tint());
   return mean * Float4{tint.x, tint.y, tint.z, 1};
+}
+
+/// B = rho E + tau E behind. `behind` has one place per element, or none.
+void fill_radiosity(RadiosityMap& m, const atlas::TexelMap& map,
+                    const transport::Elements& elements, const TracedHits& hits,
+                    std::span<const StoredHit> behind, std::span<const Rgb> irradiance) {
+  const auto reflected = [&](size_t i) { return elements.reflectance[i] * irradiance[i]; };
+  if (behind.empty()) return fill(m, map, hits, reflected);
+  RadiosityMap light = empty_map(map.resolution);
+  fill(light, map, hits, [&](size_t i) { return irradiance[i]; });
+  fill(m, map, hits, [&](size_t i) {
+    if (max_component(elements.transmittance[i]) <= 0) return reflected(i);
+    const Float4 e = lookup(light, behind[i]);
+    return reflected(i) + elements.transmittance[i] * Rgb{e[0], e[1], e[2]};
+  });
 }
 
 struct Gathered {
@@ -157,13 +174,16 @@ double mean_luminance(std::span<const Rgb> values) {
 /// is wrong.
 constexpr int kMaxSweeps = 4000;
 
+/// Of what surfaces send back of the light on both their sides.
 struct ReflectanceRange {
   double mean = 0, max = 0;
 };
 
 ReflectanceRange reflectance_range(const transport::Elements& elements) {
   ReflectanceRange range;
-  for (const Rgb& rho : elements.reflectance) {
+  for (size_t i = 0; i < elements.size(); ++i) {
+    const Rgb tau = elements.transmittance.empty() ? Rgb{} : elements.transmittance[i];
+    const Rgb rho = elements.reflectance[i] + tau;
     range.mean += double(luminance(rho)) / double(elements.size());
     range.max = std::max(range.max, double(max_component(rho)));
   }
@@ -183,9 +203,11 @@ double light_to_come(double change, double change_before, const ReflectanceRange
 
 Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& elements,
                        const TracedHits& hits, std::span<const Rgb> direct,
-                       const BounceParams& params, Progress& progress) {
+                       std::span<const StoredHit> behind, const BounceParams& params,
+                       Progress& progress) {
   const size_t n = elements.size();
   LUXEL_CHECK(direct.size() == n && map.texels.size() == n && hits.escaped.size() == n);
+  LUXEL_CHECK(behind.size() == elements.transmittance.size());
   // E_0: what arrives without any reflection. A ray that escapes sees the sky.
   std::vector<Rgb> source(direct.begin(), direct.end());
   for (size_t i = 0; i < n; ++i) source[i] += hits.sky[i] * (kPi / float(hits.samples));
@@ -198,7 +220,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   progress.begin("bounces", 0);
   // Returns the root mean square change, relative to the mean irradiance.
   const auto run = [&](size_t stride) -> Result<double> {
-    fill(radiosity, map, elements, hits, out.irradiance);
+    fill_radiosity(radiosity, map, elements, hits, behind, out.irradiance);
     Sweep sweep{source, out.irradiance, next, out.variance, out.split_variance, stride, {}};
     LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
     out.irradiance.swap(next);

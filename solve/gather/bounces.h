@@ -31,16 +31,18 @@ struct Bounced {
   int sweeps = 0;
 };
 
-/// Solves  E = E_0 + (1/N) sum over rays of rho E at the hit,  E_0 = direct light + soft sky
-/// seen, by Neumann iteration [Moreno05, eq. 3.4, 3.7]. Unlike the paper's running average
-/// (eq. 3.15) this does not underestimate late bounces: every sweep uses all rays and the whole map
-/// of the one before. Radiosity between texels is bilinear over those with an element. With all
-/// bounces asked for, the first sweeps look at every 16th and then every 4th ray: their solution is
-/// noisier, but a sweep averages that noise out, so that few sweeps over all rays are left to do.
-/// The fixed point, and the test for having reached it, are those of all rays. `direct` has one
-/// value per element. Errors: cancelled, the file of hits cannot be read.
+/// Solves  E = E_0 + (1/N) sum over rays of B at the hit,  B = rho E + tau E behind,  E_0 = direct
+/// light + soft sky seen, by Neumann iteration [Moreno05, eq. 3.4, 3.7]. Unlike the paper's running
+/// average (eq. 3.15) this does not underestimate late bounces: every sweep uses all rays and the
+/// whole map of the one before. Radiosity between texels is bilinear over those with an element.
+/// With all bounces asked for, the first sweeps look at every 16th and then every 4th ray: their
+/// solution is noisier, but a sweep averages that noise out, so that few sweeps over all rays are
+/// left to do. The fixed point, and the test for having reached it, are those of all rays. `direct`
+/// has one value per element, `behind` as well, or none: places_behind(). Errors: cancelled, the
+/// file of hits cannot be read.
 Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& elements,
                        const TracedHits& hits, std::span<const Rgb> direct,
-                       const BounceParams& params, Progress& progress);
+                       std::span<const StoredHit> behind, const BounceParams& params,
+                       Progress& progress);
 
 }  // namespace luxel::gather

@@ -33,6 +33,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   LUXEL_TRY(TracedHits hits,
             trace_hits(scene, atlas, elements, lights.around, tracer, trace_params, progress));
   LUXEL_TRY(Bounced bounced, bounce(map, elements, hits, direct.irradiance,
+                                    places_behind(scene, atlas, map, elements),
                                     {params.bounces, params.tolerance}, progress));
   Gather out;
   out.relative_error = relative_error(bounced.irradiance, direct.variance, bounced.variance);

@@ -8,6 +8,8 @@
 #include "base/parallel.h"
 #include "base/vec_double.h"
 #include "scene/procedural.h"
+#include "scene/shapes.h"
+#include "scene/sides.h"
 #include "tests/reference_data.h"
 
 namespace luxel::gather {
@@ -88,6 +90,62 @@ TEST(SlowGather, AFurnaceIsUniformAtEveryTexel) {
           << "rho " << rho << " texel " << i;
     }
   }
+}
+
+/// A box whose inner sides emit radiosity e, of walls that reflect rho and let tau through, under
+/// an even sky: the inside is a furnace, the outside sees nothing but sky.
+scene::Scene lampshade(float e, float rho, float tau, float sky) {
+  scene::Scene s;
+  const uint32_t paper = scene::add_material(s, "paper", {1, 1, 1});
+  const float t = 1 - rho;
+  s.materials[paper].diffuse_transmission = t;
+  s.materials[paper].diffuse_transmission_color = Rgb{1, 1, 1} * (tau / t);
+  scene::Mesh box;
+  scene::add_box(box, {-1, -1, -1}, {1, 1, 1}, paper);
+  const size_t triangles = box.triangles.size();
+  scene::place(s, std::move(box));
+  scene::add_backs(s, 0, std::vector<uint8_t>(triangles, 1));
+  s.materials.push_back(s.materials[paper]);
+  s.materials.back().emission = Rgb{1, 1, 1} * (e / kPi);
+  for (size_t k = triangles; k < 2 * triangles; ++k) s.meshes[0].triangle_material[k] = 1;
+  s.background = Rgb{1, 1, 1} * sky;
+  return s;
+}
+
+//   E_out = pi sky,  E_in = e + rho E_in + tau E_out
+TEST(Gather, EachSideOfALampshadeHasItsOwnLight) {
+  const float e = 2, rho = 0.5f, tau = 0.3f, sky = 0.4f;
+  const auto room = lay_out(lampshade(e, rho, tau, sky), 96);
+  const Gather result = solve(*room, with_samples(256));
+  const float out = kPi * sky, in = (e + tau * out) / (1 - rho);
+  size_t inside = 0;
+  for (size_t i = 0; i < result.irradiance.size(); ++i) {
+    const bool is_inside = room->map.texels[i].sample.triangle >= 12;
+    inside += is_inside;
+    // Every ray meets the same radiosity; direct light, a share of the whole sphere of emitters
+    // that shadow rays estimate, and 1e-4 of light to come are what is left.
+    ASSERT_NEAR(result.irradiance[i].x, is_inside ? in : out, 0.01f * in) << i;
+  }
+  EXPECT_NEAR(double(inside) / double(result.irradiance.size()), 0.5, 0.02);
+  EXPECT_NEAR(mean_irradiance(*room, result, 1, &Rgb::x), double(in), 1e-3 * double(in));
+}
+
+// A plate between two skies: the light of one is not seen on the other side.
+TEST(Gather, EachSideOfAPlateSeesItsOwnSky) {
+  scene::Scene s;
+  scene::add_material(s, "plate", {0.7f, 0.7f, 0.7f});
+  s.materials[0].double_sided = true;
+  scene::add_rectangle(s, {-1, 1, -1, 1}, 0, true, 0);
+  scene::add_backs(s, 0, std::vector<uint8_t>{1, 1});
+  s.environment = {8, 4, {}};
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 8; ++x)
+      s.environment.radiance.push_back(Rgb{1, 1, 1} * (y < 2 ? 1 : 0.25f));
+  const auto room = lay_out(std::move(s), 64);
+  const Gather result = solve(*room, with_samples(64));
+  for (size_t i = 0; i < result.irradiance.size(); ++i)
+    ASSERT_NEAR(result.irradiance[i].x, kPi * (room->map.texels[i].sample.triangle < 2 ? 1 : 0.25f),
+                1e-4f);
 }
 
 // Exact solution 1, bounce by bounce: B_k = e (1 - rho^(k+1)) / (1 - rho), so E after k reflections
@@ -242,8 +300,8 @@ TEST(Gather, ALightCanChangeWithoutTracingAgain) {
   std::vector<Rgb> half = direct->irradiance;
   for (Rgb& e : half) e *= 0.5f;
   const auto full =
-      bounce(room->map, room->elements, *hits, direct->irradiance, {-1, 1e-6f}, progress);
-  const auto dimmed = bounce(room->map, room->elements, *hits, half, {-1, 1e-6f}, progress);
+      bounce(room->map, room->elements, *hits, direct->irradiance, {}, {-1, 1e-6f}, progress);
+  const auto dimmed = bounce(room->map, room->elements, *hits, half, {}, {-1, 1e-6f}, progress);
   for (size_t i = 0; i < half.size(); ++i)
     ASSERT_NEAR(dimmed->irradiance[i].x, 0.5f * full->irradiance[i].x,
                 1e-5f * full->irradiance[i].x + 1e-7f);

@@ -46,8 +46,7 @@ bool look_around(const NearWorld& world, uint64_t seed, NearPath& path, NearWork
   if (random.next() >= chance) return false;
   path.throughput = path.throughput / chance;
   path.direction = frame_around(p.normal).to_world(cosine_hemisphere_sample(random.next2()));
-  const float above = dot(path.direction, p.geometric_normal);
-  if (above < 0) path.direction += p.geometric_normal * (-2 * above);
+  path.direction = transport::mirrored_above(path.direction, p.geometric_normal);
   work.rays.push_back({at.origin, 0, path.direction, INFINITY});
   return true;
 }
@@ -74,6 +73,8 @@ std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas&
 bool goes_on(const NearWorld& world, const NearPath& path) {
   const trace::Hit& hit = path.hit;
   if (!hit.found() || max_component(path.throughput) <= 0) return false;
+  // What scatters light through shines by the light behind it, which the map knows.
+  if (scene::material_at(world.scene, hit.point()).diffuse_transmission > 0) return false;
   if (hit.back_face)
     return scene::reflects_from_behind(scene::material_at(world.scene, hit.point()));
   return hit.t <

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "base/vectorize.h"
+#include "scene/sides.h"
 #include "solve/gather/near_paths.h"
 
 namespace luxel::gather {
@@ -91,19 +92,16 @@ void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, W
   const bool bent = !(normal == geometric_normal);
   for (size_t i = 0; i < count; ++i) {
     Vec3 d = frame.to_world({work.x[i], work.y[i], work.z[i]});
-    if (bent) {
-      const float above = dot(d, geometric_normal);
-      if (above < 0) d += geometric_normal * (-2 * above);
-    }
+    if (bent) d = transport::mirrored_above(d, geometric_normal);
     const uint32_t at = place[work.cell[i]]++;
     rays[at] = {origin, 0, d, INFINITY};
     work.second_half[at] = 2 * i >= count;
   }
 }
 
-StoredHit store(const atlas::Atlas& atlas, const trace::Hit& hit, StoredHit::Ray ray) {
-  const auto& corners = atlas.corners[atlas.triangle_number(hit.instance, hit.triangle)];
-  const Vec2 at = interpolate(corners[0], corners[1], corners[2], hit.at);
+StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray) {
+  const auto& corners = atlas.corners[atlas.triangle_number(p.instance, p.triangle)];
+  const Vec2 at = interpolate(corners[0], corners[1], corners[2], p.at);
   const float limit = float(atlas.resolution);
   const float x = std::clamp(at.x, 0.0f, limit) + 0.5f, y = std::clamp(at.y, 0.0f, limit) + 0.5f;
   const uint32_t x0 = uint32_t(x), y0 = uint32_t(y);  // with the border of one texel
@@ -154,7 +152,7 @@ void sort_hits(const World& world, Work& work, size_t element, TracedHits& out, 
     }
     const uint32_t tint =
         work.tint.empty() ? kNoTint : pack_tint(work.tint[k], hash64(element, k ^ 0x7147u));
-    tile.entries.push_back(store(world.atlas, hit, {tint, work.second_half[k] != 0}));
+    tile.entries.push_back(store(world.atlas, hit.point(), {tint, work.second_half[k] != 0}));
   }
 }
 
@@ -174,11 +172,24 @@ uint64_t follow_on(const World& world, Work& work, size_t element, uint64_t seed
         !scene::reflects_from_behind(scene::material_at(world.scene, path.hit.point())))
       return;
     const uint32_t tint = pack_tint(path.throughput, hash64(element, path.ray ^ 0x4e37u));
-    tile.entries.push_back(store(world.atlas, path.hit, {tint, second_half}));
+    tile.entries.push_back(store(world.atlas, path.hit.point(), {tint, second_half}));
   });
 }
 
 }  // namespace
+
+std::vector<StoredHit> places_behind(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                     const atlas::TexelMap& map,
+                                     const transport::Elements& elements) {
+  std::vector<StoredHit> out(elements.transmittance.size());
+  parallel_for(out.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const scene::SurfacePoint& p = map.texels[i].sample;
+      out[i] = store(atlas, scene::other_side_of(scene, p).value_or(p), {});
+    }
+  });
+  return out;
+}
 
 void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,
                   std::span<trace::Ray> rays) {

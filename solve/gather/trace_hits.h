@@ -64,6 +64,12 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
                               const transport::Surroundings& around, const trace::RayTracer& tracer,
                               const TraceParams& params, Progress& progress);
 
+/// Per element, the place on the other side of the surface, as a hit: its own where the surface has
+/// but one side. Empty where nothing scatters light through.
+std::vector<StoredHit> places_behind(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                     const atlas::TexelMap& map,
+                                     const transport::Elements& elements);
+
 /// The rays of one element, in the order in which they are traced: sorted so that neighbours in a
 /// packet point in similar directions. Shared with `luxel bench rays`.
 void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,

@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "base/random.h"
+#include "scene/sides.h"
 #include "trace/ray_tracer.h"
 
 namespace luxel::trace {
@@ -47,8 +48,11 @@ enum class Through : uint8_t {
 
 /// Embree hands the context of a query to filter functions: ours has more behind it.
 struct Query {
+  explicit Query(const RTCIntersectContext& rays, Through which = Through::chance)
+      : context(rays), through(which) {}
+
   RTCIntersectContext context;
-  Through through = Through::chance;
+  Through through;
   Rgb* light = nullptr;  ///< one for each ray of the packet
   /// Places that a ray has passed: Embree may ask about one several times, because spatial splits
   /// put a triangle into several boxes. So many are remembered.
@@ -144,6 +148,12 @@ struct RayTracer::Impl {
     const Vec3 n = m[0] * object_normal.x + m[1] * object_normal.y + m[2] * object_normal.z;
     return dot(n, direction) > 0;
   }
+  /// What has two sides is met on the side that the ray comes from.
+  void turn_to_ray(Hit& hit) const {
+    if (!hit.back_face) return;
+    if (const auto other = scene::other_side_of(*tag.scene, hit.point()))
+      hit.triangle = other->triangle, hit.at = other->at, hit.back_face = false;
+  }
 };
 
 /// A mesh's triangles with `map` applied; nullptr when memory ran out.
@@ -160,8 +170,12 @@ RTCGeometry RayTracer::Impl::new_triangles(const scene::Scene& scene, const scen
   }
   std::transform(mesh.positions.begin(), mesh.positions.end(), static_cast<Vec3*>(vertices),
                  [&](Vec3 p) { return transform_point(map, p); });
-  std::copy(mesh.triangles.begin(), mesh.triangles.end(),
-            static_cast<std::array<uint32_t, 3>*>(indices));
+  auto* corners = static_cast<std::array<uint32_t, 3>*>(indices);
+  std::copy(mesh.triangles.begin(), mesh.triangles.end(), corners);
+  // Of two sides of one sheet rays meet the first, which stands for both: Embree leaves out
+  // triangles of vertices that there are not.
+  for (uint32_t t = 0; t < mesh.other_side.size(); ++t)
+    if (mesh.other_side[t] < t) corners[t] = {UINT32_MAX, UINT32_MAX, UINT32_MAX};
   has_tints = has_tints || has_material(scene, mesh, scene::tints_light);
   if (has_material(scene, mesh, scene::lets_light_through)) {
     rtcSetGeometryUserData(geometry, &tag);
@@ -302,6 +316,7 @@ void RayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
              packet.hit.primID[i],
              {packet.hit.u[i], packet.hit.v[i]},
              impl_->from_behind(instance, normal, rays[first + i].direction)};
+      impl_->turn_to_ray(hit);
     }
   }
 }
@@ -329,6 +344,7 @@ bool RayTracer::has_tints() const { return impl_->has_tints; }
 void RayTracer::tint(std::span<const Ray> rays, std::span<const Hit> hits,
                      std::span<Rgb> light) const {
   LUXEL_CHECK(rays.size() == hits.size() && rays.size() == light.size());
+  Query query{packet_context(), Through::tint};
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
     RTCRay16 packet;
@@ -336,19 +352,23 @@ void RayTracer::tint(std::span<const Ray> rays, std::span<const Hit> hits,
     // Up to just before the hit: what stands there has stopped the ray, not tinted it.
     for (unsigned i = 0; i < count; ++i)
       if (hits[first + i].found()) packet.tfar[i] = hits[first + i].t * (1 - 1e-6f);
-    Query query{packet_context(), Through::tint, light.data() + first};
+    query.light = light.data() + first;
+    query.passed_count.fill(0);
     rtcOccluded16(valid, impl_->top, &query.context, &packet);
   }
 }
 
 void RayTracer::transmitted(std::span<const Ray> rays, std::span<Rgb> share) const {
   LUXEL_CHECK(rays.size() == share.size());
+  // Without tints, only holes let light through: all of it.
+  Query query{packet_context(), has_tints() ? Through::share : Through::chance};
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
     RTCRay16 packet;
     const unsigned count = load_packet(rays.subspan(first), valid, packet);
     for (unsigned i = 0; i < count; ++i) share[first + i] = {1, 1, 1};
-    Query query{packet_context(), Through::share, share.data() + first};
+    query.light = share.data() + first;
+    query.passed_count.fill(0);
     rtcOccluded16(valid, impl_->top, &query.context, &packet);
     for (unsigned i = 0; i < count; ++i)
       if (packet.tfar[i] < 0) share[first + i] = {};

@@ -1,0 +1,156 @@
+#include "pipeline/two_sides.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scene/shapes.h"
+
+namespace luxel::pipeline {
+namespace {
+
+constexpr uint32_t kSheet = 0, kSolid = 1;  ///< materials: double-sided, one-sided
+
+scene::Scene empty() {
+  scene::Scene s;
+  scene::add_material(s, "sheet", {0.5f, 0.5f, 0.5f});
+  scene::add_material(s, "solid", {0.5f, 0.5f, 0.5f});
+  s.materials[kSheet].double_sided = true;
+  s.background = {1, 1, 1};
+  return s;
+}
+
+/// A box without its top (+y) or bottom, or whole.
+scene::Mesh box(Vec3 lower, Vec3 upper, uint32_t material, float without_y = 0) {
+  scene::Mesh whole;
+  scene::add_box(whole, lower, upper, material);
+  scene::Mesh out = whole;
+  out.triangles.clear(), out.triangle_material.clear();
+  const float y = without_y > 0 ? upper.y : lower.y;
+  for (const auto& t : whole.triangles) {
+    const bool in_plane =
+        std::all_of(t.begin(), t.end(), [&](uint32_t v) { return whole.positions[v].y == y; });
+    if (without_y != 0 && in_plane) continue;
+    out.triangles.push_back(t), out.triangle_material.push_back(material);
+  }
+  return out;
+}
+
+void turn_inside_out(scene::Mesh& mesh) {
+  for (auto& [a, b, c] : mesh.triangles) std::swap(b, c);
+}
+
+/// The share of a mesh's triangles that need a back.
+double open_share(const scene::Scene& scene, size_t mesh = 0) {
+  Progress progress;
+  const auto open = open_backs(scene, progress);
+  EXPECT_TRUE(open);
+  const std::vector<uint8_t>& flags = (*open)[mesh];
+  if (flags.empty()) return 0;
+  EXPECT_EQ(flags.size(), scene.meshes[mesh].triangles.size());
+  return double(std::count(flags.begin(), flags.end(), 1)) / double(flags.size());
+}
+
+double share_of(scene::Mesh mesh) {
+  scene::Scene s = empty();
+  scene::place(s, std::move(mesh));
+  return open_share(s);
+}
+
+TEST(TwoSides, SheetsAndOpenBoxesHaveBacksAndClosedSolidsHaveNone) {
+  scene::Mesh sheet;
+  scene::add_quad(sheet, {Vec3{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, kSheet);
+  EXPECT_EQ(share_of(sheet), 1);
+  EXPECT_EQ(share_of(box({}, {1, 1, 1}, kSheet, 1)), 1);
+  EXPECT_EQ(share_of(box({}, {1, 1, 1}, kSheet)), 0);
+  EXPECT_EQ(share_of(scene::sphere("ball", 1, 16, 8, kSheet)), 0);
+  EXPECT_EQ(share_of(box({}, {1, 1, 1}, kSolid, 1)), 0);  // one-sided
+}
+
+// The walls of a room in the void: outside is nothing but the dark, unless there is a sky, a sun or
+// a lamp.
+TEST(TwoSides, WallsHaveAnOutsideWhereLightIsOutside) {
+  scene::Scene s = empty();
+  scene::Mesh room = box({-2, 0, -2}, {2, 3, 2}, kSheet);
+  turn_inside_out(room);
+  scene::place(s, std::move(room));
+  EXPECT_EQ(open_share(s), 1);
+  s.background = {};
+  EXPECT_EQ(open_share(s), 0);
+  scene::PunctualLight lamp;
+  lamp.position = {0, 1, 0};
+  s.lights.push_back(lamp);
+  EXPECT_EQ(open_share(s), 0);  // inside, where the fronts are
+  s.lights[0].position = {5, 4, 7};
+  EXPECT_EQ(open_share(s), 1);
+  s.lights[0] = {};
+  s.lights[0].kind = scene::PunctualLight::Kind::directional;
+  EXPECT_EQ(open_share(s), 1);
+}
+
+// Both in one mesh: each shell for itself.
+TEST(TwoSides, ShellsOfAMeshAreToldApart) {
+  scene::Mesh both = box({}, {1, 1, 1}, kSheet);
+  scene::add_quad(both, {Vec3{3, 0, 0}, {4, 0, 0}, {4, 1, 0}, {3, 1, 0}}, kSheet);
+  EXPECT_NEAR(share_of(both), 2.0 / 14, 1e-12);
+}
+
+TEST(TwoSides, WhatIsShutByAFloorHasNone) {
+  for (const uint32_t floor : {kSolid, kSheet}) {
+    scene::Scene s = empty();
+    scene::place(s, box({-0.5f, 0, -0.5f}, {0.5f, 2, 0.5f}, kSheet, -1));  // a pillar
+    scene::add_rectangle(s, {-5, 5, -5, 5}, 0, true, floor);
+    EXPECT_EQ(open_share(s), 0);
+    s.meshes[0] = {};
+    scene::add_quad(s.meshes[0],
+                    {Vec3{-1, 1e-3f, 1}, {1, 1e-3f, 1}, {1, 1e-3f, -1}, {-1, 1e-3f, -1}}, kSheet);
+    EXPECT_EQ(open_share(s), 0);  // a rug
+    for (Vec3& p : s.meshes[0].positions) p.y = 1;
+    EXPECT_EQ(open_share(s), 1);  // a table top
+  }
+}
+
+// A room whose walls are wound outwards, as models from CAD have it, is seen from behind.
+TEST(TwoSides, ARoomThatIsWoundOutwardsIsLitInside) {
+  scene::Scene s = empty();
+  scene::place(s, box({-2, 0, -2}, {2, 3, 2}, kSheet));
+  EXPECT_EQ(open_share(s), 0);  // nobody is in it
+  s.lights.emplace_back();
+  s.lights[0].position = {0, 2, 0};
+  EXPECT_EQ(open_share(s), 1);
+  s.lights.clear();
+  scene::place(s, box({-1, 0.5f, -1}, {1, 1, 1}, kSheet));
+  EXPECT_EQ(open_share(s), 1);
+  EXPECT_EQ(open_share(s, 1), 0);  // a solid table
+}
+
+// The hollow of a wall between two boxes, the inner one wound inwards, is closed.
+TEST(TwoSides, TheHollowOfAWallHasNone) {
+  scene::Scene s = empty();
+  scene::Mesh inner = box({-2, 0, -2}, {2, 3, 2}, kSheet);
+  turn_inside_out(inner);
+  scene::place(s, std::move(inner));
+  scene::place(s, box({-2.8f, -0.8f, -2.8f}, {2.8f, 3.8f, 2.8f}, kSheet));
+  scene::place(s, box({-1, 0.5f, -1}, {1, 1, 1}, kSheet));
+  EXPECT_EQ(open_share(s, 0), 0);
+  EXPECT_EQ(open_share(s, 2), 0);
+}
+
+TEST(TwoSides, WhatScattersLightThroughHasTwoSidesInAnyCase) {
+  scene::Scene s = empty();
+  s.materials[kSolid].diffuse_transmission = 0.5f;
+  scene::place(s, box({}, {1, 1, 1}, kSolid));
+  EXPECT_EQ(open_share(s), 1);
+}
+
+TEST(TwoSides, NothingIsAskedOfASceneWithoutSheets) {
+  scene::Scene s = empty();
+  scene::place(s, box({}, {1, 1, 1}, kSolid));
+  Progress progress;
+  const auto open = open_backs(s, progress);
+  ASSERT_TRUE(open);
+  EXPECT_TRUE((*open)[0].empty());
+}
+
+}  // namespace
+}  // namespace luxel::pipeline

@@ -6,6 +6,7 @@ std::vector<NamedScene> procedural_scenes() {
   return {{"cornell-box.glb", cornell_box()},
           {"cornell-box-empty.glb", cornell_box(CornellColors::pbrt, false)},
           {"closed-corner.glb", closed_corner()},
+          {"foliage.glb", foliage()},
           {"furnace-box.glb", furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1})},
           {"office.glb", office()},
           {"radiosity-box.glb", radiosity_box()},

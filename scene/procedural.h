@@ -55,6 +55,10 @@ Scene tiled_kit();
 /// the roof's underside over them; the house stands askew on the lawn. Two cameras.
 Scene closed_corner();
 
+/// Twigs of leaves over a floor of 3 x 3 m, under a sun and a sky: cards with a leaf's picture
+/// whose mask has holes, double-sided, which scatter light through themselves.
+Scene foliage();
+
 /// A sphere of radius `radius_m` seen from inside (normals point inwards), latitude-longitude-free:
 /// an icosahedron subdivided `levels` times; flat shading. One material.
 Scene inward_sphere(float radius_m, int levels, Rgb reflectance, Rgb emission);

@@ -26,6 +26,7 @@ TEST(Scenes, FilesReadBackAsTheSameTrianglesAndLight) {
   for (const auto& file : scene::procedural_scenes()) {
     const auto imported = import::import_scene(scenes_folder() / file.file);
     ASSERT_TRUE(imported) << imported.error().message;
+    EXPECT_TRUE(imported->warnings.empty()) << file.file << ": " << imported->warnings.front();
     const auto first = scene::first_triangles(file.scene);
     const auto first_read = scene::first_triangles(imported->scene);
     ASSERT_EQ(first, first_read) << file.file;

@@ -1,0 +1,158 @@
+// Sides, scattered light and unlit surfaces through the whole program and back from its files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "base/vec_double.h"
+#include "display/lightmap_lookup.h"
+#include "export/baked_glb.h"
+#include "image/codec.h"
+#include "import/import.h"
+#include "scene/shapes.h"
+#include "scene/sides.h"
+#include "tests/command.h"
+#include "trace/ray_tracer.h"
+
+namespace luxel::testing_support {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// What a bake left, read back.
+struct Baked {
+  scene::Scene scene;
+  image::Image lightmap;
+  nlohmann::json report;
+
+  /// E where a ray from `eye` arrives, on the side that it meets.
+  Rgb light_seen(Vec3 eye, Vec3 direction) const {
+    const auto tracer = trace::RayTracer::build(scene);
+    const trace::Hit hit = tracer->closest_hit({eye, 0, direction, INFINITY});
+    EXPECT_TRUE(hit.found());
+    EXPECT_FALSE(hit.back_face);
+    return display::lightmap_at(scene, lightmap, hit.point());
+  }
+};
+
+Baked bake(const scene::Scene& scene, const std::string& options) {
+  const ScratchFolder s;
+  Baked out;
+  const auto glb = export_::scene_glb(scene);
+  EXPECT_TRUE(glb && write_file_atomically(s.path / "scene.glb", *glb));
+  const CommandResult r = luxel("bake " + (s.path / "scene.glb").string() + " -o " +
+                                (s.path / "b").string() + " --json " + options);
+  EXPECT_EQ(r.code, 0) << r.err;
+  if (r.code != 0) return out;
+  out.report = nlohmann::json::parse(r.out);
+  out.scene = import::import_scene(s.path / "b" / "baked.glb")->scene;
+  out.lightmap = *image::decode_exr(*read_file(s.path / "b" / "lightmap.exr"), "lightmap.exr");
+  return out;
+}
+
+/// A double-sided plate of 2 x 2 m at height 0 under a sun of 3 W/m^2.
+scene::Scene plate() {
+  scene::Scene s;
+  scene::add_material(s, "plate", {0.6f, 0.6f, 0.6f});
+  s.materials[0].double_sided = true;
+  scene::add_rectangle(s, {-1, 1, -1, 1}, 0, true, 0);
+  scene::PunctualLight sun;
+  sun.kind = scene::PunctualLight::Kind::directional;
+  sun.intensity = {3, 3, 3};
+  s.lights.push_back(sun);
+  return s;
+}
+
+constexpr Vec3 kAbove{0.3f, 1, -0.4f}, kBelow{0.3f, -1, -0.4f}, kUp{0, 1, 0}, kDown{0, -1, 0};
+
+// The sun stands above: below there is no light at all, in every solver.
+TEST(Sides, APlateIsDarkOnItsUnderside) {
+  for (const char* solver : {"gather", "reference", "hemicube", "matrix", "hierarchical"}) {
+    const Baked b = bake(plate(), std::string("--resolution 64 --solver ") + solver);
+    ASSERT_EQ(b.scene.meshes.size(), 1u) << solver;
+    EXPECT_EQ(b.scene.meshes[0].triangles.size(), 4u);
+    for (const uint32_t m : b.scene.meshes[0].triangle_material)
+      EXPECT_FALSE(b.scene.materials[m].double_sided);
+    for (const uint32_t other : b.scene.meshes[0].other_side) EXPECT_NE(other, scene::kNone);
+    EXPECT_NEAR(b.light_seen(kAbove, kDown).x, 3, 0.01) << solver;
+    EXPECT_NEAR(b.light_seen(kBelow, kUp).x, 0, 1e-5) << solver;
+  }
+}
+
+// Under the plate arrives what the floor throws back: one reflection, from all of the floor but the
+// plate's own shadow, E = rho 3 (F_floor - F_shadow). F of rectangles that are parallel to the
+// plate and half a metre below a place which lies 0.3 and 0.4 m off their middle.
+TEST(Sides, TheUndersideHasTheLightOfTheFloor) {
+  scene::Scene s = plate();
+  const uint32_t floor = scene::add_material(s, "floor", {0.5f, 0.5f, 0.5f});
+  scene::add_rectangle(s, {-3, 3, -3, 3}, -0.5f, true, floor);
+  const Baked b = bake(s, "--resolution 256 --samples 1024 --bounces 1");
+  const auto factor = [](double half_side) {
+    double f = 0;
+    for (const double x : {half_side - 0.3, half_side + 0.3})
+      for (const double y : {half_side - 0.4, half_side + 0.4}) {
+        const double a = std::hypot(x, 0.5), c = std::hypot(y, 0.5);
+        f += (x / a * std::atan(y / a) + y / c * std::atan(x / c)) / (2 * kPiDouble);
+      }
+    return f;
+  };
+  const double expected = 0.5 * 3 * (factor(3) - factor(1));
+  // Texels of 3 cm blur the shadow's rim; 1024 rays.
+  EXPECT_NEAR(b.light_seen(kBelow + Vec3{0, 0.6f, 0}, kUp).x, expected, 0.03 * expected);
+  EXPECT_NEAR(b.light_seen(kAbove, kDown).x, 3, 0.01);
+}
+
+// With the file's own coordinates there is one place for both sides, and luxel says so.
+TEST(Sides, OnePlaceForBothIsSaid) {
+  scene::Scene s = plate();
+  for (const Vec3& p : s.meshes[0].positions)
+    s.meshes[0].uv1.push_back({0.45f * p.x + 0.5f, 0.45f * p.z + 0.5f});
+  for (const char* uv : {"auto", "keep"}) {
+    const Baked b = bake(s, std::string("--resolution 64 --samples 4 --uv ") + uv);
+    EXPECT_EQ(b.scene.meshes[0].triangles.size(), 2u);
+    EXPECT_THAT(b.report["warnings"].dump(), HasSubstr("see light on both sides"));
+  }
+  EXPECT_EQ(bake(s, "--resolution 64 --samples 4 --uv unwrap").scene.meshes[0].triangles.size(),
+            4u);
+}
+
+// A sheet that lets half of the light through, in green: the lightmap of the side away from the sun
+// is black, yet the picture for viewers shows tau E = 0.5 (0, 1, 0) 3 over the base colour.
+TEST(Scattering, ViewersGetTheLightThatComesThrough) {
+  scene::Scene s = plate();
+  s.materials[0].double_sided = false;  // what scatters has two sides in any case
+  s.materials[0].diffuse_transmission = 0.5f;
+  s.materials[0].diffuse_transmission_color = {0, 1, 0};
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder.path / "s.glb", *export_::scene_glb(s)));
+  const std::string out = (folder.path / "b").string();
+  const CommandResult r = luxel("bake " + (folder.path / "s.glb").string() + " -o " + out +
+                                " --resolution 64 --samples 16");
+  ASSERT_EQ(r.code, 0) << r.err;
+  const scene::Scene baked = import::import_scene(folder.path / "b" / "baked.glb")->scene;
+  const image::Image lightmap =
+      *image::decode_exr(*read_file(folder.path / "b" / "lightmap.exr"), "lightmap.exr");
+  EXPECT_FLOAT_EQ(baked.materials.back().diffuse_transmission, 0.5f);
+  const auto tracer = trace::RayTracer::build(baked);
+  const trace::Hit hit = tracer->closest_hit({kBelow, 0, kUp, INFINITY});
+  ASSERT_TRUE(hit.found());
+  EXPECT_NEAR(display::lightmap_at(baked, lightmap, hit.point()).y, 0, 1e-5);
+  // preview.png shows scattered light: from below the sheet is green. The camera looks up.
+  const CommandResult shown = luxel("render " + (folder.path / "s.glb").string() + " --from " +
+                                    out + " -o " + (folder.path / "p.exr").string() +
+                                    " --size 16x16 --eye 0,-1,0.1 --look-at 0,0,0 --fov-deg 40");
+  ASSERT_EQ(shown.code, 0) << shown.err;
+  const image::Image picture = *image::decode_exr(*read_file(folder.path / "p.exr"), "p.exr");
+  EXPECT_NEAR(picture.rgb(8, 8).y, 0.5f * 3 / kPi, 0.01f);
+  EXPECT_NEAR(picture.rgb(8, 8).x, 0, 1e-5f);
+  // The other solvers lose it, and say so.
+  EXPECT_THAT(luxel("bake " + (folder.path / "s.glb").string() + " -o " + out +
+                    " --resolution 64 --solver matrix")
+                  .err,
+              HasSubstr("KHR_materials_diffuse_transmission"));
+}
+
+}  // namespace
+}  // namespace luxel::testing_support

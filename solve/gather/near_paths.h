@@ -54,6 +54,9 @@ struct NearWork {
 /// length; `end` gets them one by one: `hit` is far away, on the back of a one-sided surface, or
 /// nothing; throughput is that up to there. A path that has died comes with throughput 0.
 /// Returns the number of rays.
+/// Between narrow walls paths would go on and on: so many times the map's answer is left aside.
+inline constexpr uint64_t kMostNearSteps = 2;
+
 template <class End>
 uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, const End& end);
 
@@ -64,6 +67,9 @@ uint64_t step_near(const NearWorld& world, uint64_t seed, NearWork& work);
 /// Whether the map has no answer for the place that a path has met.
 bool goes_on(const NearWorld& world, const NearPath& path);
 
+/// Between narrow walls paths would go on and on: so many times the map's answer is left aside.
+inline constexpr uint64_t kMostNearSteps = 2;
+
 template <class End>
 uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, const End& end) {
   uint64_t rays = 0;
@@ -71,7 +77,7 @@ uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, cons
     rays += step_near(world, seed + depth, work);
     work.paths.clear();
     for (const NearPath& path : work.going_on) {
-      if (goes_on(world, path))
+      if (goes_on(world, path) && (depth < kMostNearSteps || path.hit.back_face))
         work.paths.push_back(path);
       else
         end(path);

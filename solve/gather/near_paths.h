@@ -67,9 +67,6 @@ uint64_t step_near(const NearWorld& world, uint64_t seed, NearWork& work);
 /// Whether the map has no answer for the place that a path has met.
 bool goes_on(const NearWorld& world, const NearPath& path);
 
-/// Between narrow walls paths would go on and on: so many times the map's answer is left aside.
-inline constexpr uint64_t kMostNearSteps = 2;
-
 template <class End>
 uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, const End& end) {
   uint64_t rays = 0;

@@ -50,13 +50,13 @@ struct NearWork {
   transport::Shots shots;
 };
 
+/// Between narrow walls paths would go on and on: so many times the map's answer is left aside.
+inline constexpr uint64_t kMostNearSteps = 2;
+
 /// Takes each of work.paths from its near hit to where it ends, in order of their rays within each
 /// length; `end` gets them one by one: `hit` is far away, on the back of a one-sided surface, or
 /// nothing; throughput is that up to there. A path that has died comes with throughput 0.
 /// Returns the number of rays.
-/// Between narrow walls paths would go on and on: so many times the map's answer is left aside.
-inline constexpr uint64_t kMostNearSteps = 2;
-
 template <class End>
 uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, const End& end);
 

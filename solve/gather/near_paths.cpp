@@ -15,9 +15,6 @@ namespace {
 constexpr float kNearTexels = 1;
 /// Paths that carry more are never ended by chance, which would be noise where light is even.
 constexpr float kSureThroughput = 0.1f;
-/// On backs paths go on by this chance: most of them are inside of a solid, where they would go
-/// from wall to wall and find nothing.
-constexpr float kChanceOnBacks = 0.6f;
 
 /// The side of the surface that a ray has met; the back is that of the flat triangle.
 transport::SmoothPoint place_of(const scene::Scene& scene, const trace::Hit& hit) {
@@ -45,8 +42,7 @@ bool look_around(const NearWorld& world, uint64_t seed, NearPath& path, NearWork
                                  world.diagonal_m, work.shots, variance);
   rays += work.shots.rays.size();
   path.light += path.throughput * irradiance / kPi;
-  const float chance =
-      std::min(1.0f, carried / kSureThroughput) * (path.hit.back_face ? kChanceOnBacks : 1);
+  const float chance = std::min(1.0f, carried / kSureThroughput);
   if (random.next() >= chance) return false;
   path.throughput = path.throughput / chance;
   path.direction = frame_around(p.normal).to_world(cosine_hemisphere_sample(random.next2()));

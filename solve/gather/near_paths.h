@@ -50,9 +50,6 @@ struct NearWork {
   transport::Shots shots;
 };
 
-/// Between narrow walls paths would go on and on: so many times the map's answer is left aside.
-inline constexpr uint64_t kMostNearSteps = 2;
-
 /// Takes each of work.paths from its near hit to where it ends, in order of their rays within each
 /// length; `end` gets them one by one: `hit` is far away, on the back of a one-sided surface, or
 /// nothing; throughput is that up to there. A path that has died comes with throughput 0.
@@ -74,7 +71,7 @@ uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, cons
     rays += step_near(world, seed + depth, work);
     work.paths.clear();
     for (const NearPath& path : work.going_on) {
-      if (goes_on(world, path) && (depth < kMostNearSteps || path.hit.back_face))
+      if (goes_on(world, path))
         work.paths.push_back(path);
       else
         end(path);

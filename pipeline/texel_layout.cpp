@@ -28,13 +28,6 @@ Result<TexelLayout> lay_out_once(const atlas::AtlasParams& params, const scene::
   return TexelLayout{std::move(atlas), std::move(map), {}, std::move(tracer), {}};
 }
 
-std::vector<atlas::PartedPoints> points_of(const std::vector<transport::PartedTexels>& pairs) {
-  std::vector<atlas::PartedPoints> points;
-  points.reserve(pairs.size());
-  for (const transport::PartedTexels& pair : pairs) points.push_back(pair.points);
-  return points;
-}
-
 /// Cuts the scene where its charts run under barriers. Cut charts are smaller and pack another way,
 /// at another density, so that a few barriers can lie between other texels than before: twice.
 Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, TexelLayout& layout,
@@ -43,7 +36,7 @@ Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, Te
   const auto parted = transport::find_parted(scene, layout.atlas, layout.map, layout.tracer);
   layout.repair.parted = parted.size();
   if (layout.atlas.kept || parted.size() < atlas::kFewestParted) return {};
-  atlas::CutScene cut = atlas::cut_charts(scene, layout.atlas, points_of(parted));
+  atlas::CutScene cut = atlas::cut_charts(scene, layout.atlas, parted);
   if (cut.cuts == 0) return {};
   scene = std::move(cut.scene);
   atlas::AtlasParams grouped = params;

@@ -86,14 +86,14 @@ struct Search {
     return pairs;
   }
 
-  std::vector<PartedTexels> parted(uint32_t begin, uint32_t end) const {
-    std::vector<PartedTexels> found;
+  std::vector<atlas::PartedPoints> parted(uint32_t begin, uint32_t end) const {
+    std::vector<atlas::PartedPoints> found;
     for (const Pair& pair : blocked_pairs(begin, end)) {
       const uint32_t chart = chart_of(pair.a);
       const Place a = place(pair.a), b = place(pair.b);
       const auto plane = barrier_between(scene, atlas, tracer, chart, a, b, pair.step_m);
       if (!plane || !in_the_open(pair.a) || !in_the_open(pair.b)) continue;
-      found.push_back({pair.a, pair.b, {chart, a.position, b.position, *plane}});
+      found.push_back({chart, a.position, b.position, *plane});
     }
     return found;
   }
@@ -119,16 +119,17 @@ std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atl
   return lowest;
 }
 
-std::vector<PartedTexels> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                      const atlas::TexelMap& map, const trace::RayTracer& tracer) {
+std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                             const atlas::TexelMap& map,
+                                             const trace::RayTracer& tracer) {
   constexpr size_t kBlock = 2048;
   const Search search{scene, atlas, map, tracer, scene::world_bounds(scene).diagonal()};
   const size_t count = map.texels.size();
-  std::vector<std::vector<PartedTexels>> found((count + kBlock - 1) / kBlock);
+  std::vector<std::vector<atlas::PartedPoints>> found((count + kBlock - 1) / kBlock);
   parallel_for(count, kBlock, [&](size_t begin, size_t end) {
     found[begin / kBlock] = search.parted(uint32_t(begin), uint32_t(end));
   });
-  std::vector<PartedTexels> all;
+  std::vector<atlas::PartedPoints> all;
   for (const auto& block : found) all.insert(all.end(), block.begin(), block.end());
   return all;
 }

@@ -27,15 +27,10 @@ std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atl
                                      const trace::RayTracer& tracer, uint32_t chart, const Place& a,
                                      const Place& b, float step_m);
 
-/// Two texels with a barrier between them: indices into TexelMap::texels.
-struct PartedTexels {
-  uint32_t a = 0, b = 0;
-  atlas::PartedPoints points;
-};
-
-/// All pairs of texels of one chart that lie side by side or next but one in a row or a column,
-/// both in the open, that a barrier parts. In the order of the texels.
-std::vector<PartedTexels> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                      const atlas::TexelMap& map, const trace::RayTracer& tracer);
+/// The samples of all pairs of texels of one chart that lie side by side or next but one in a row
+/// or a column, both in the open, that a barrier parts. In the order of the texels.
+std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                             const atlas::TexelMap& map,
+                                             const trace::RayTracer& tracer);
 
 }  // namespace luxel::transport

@@ -48,7 +48,7 @@ struct Floor {
       map.texel_at[map.texels[i].y * kSide + map.texels[i].x] = i;
     return *trace::RayTracer::build(scene);
   }
-  std::vector<PartedTexels> parted() {
+  std::vector<atlas::PartedPoints> parted() {
     const trace::RayTracer rays = tracer();
     return find_parted(scene, atlas, map, rays);
   }
@@ -61,11 +61,11 @@ TEST(Barriers, AThinWallPartsEveryRow) {
   floor.add_box({0.99f, 0, 0}, {1.0f, 1, 2});  // samples lie at 0.96875 and 1.03125
   const auto parted = floor.parted();
   EXPECT_EQ(parted.size(), 3u * Floor::kSide);
-  for (const PartedTexels& p : parted) {
-    EXPECT_LT(p.points.a.x, 0.99f);
-    EXPECT_GT(p.points.b.x, 1.0f);
-    EXPECT_NEAR(std::abs(p.points.between.normal.x), 1, 1e-6);  // float corners
-    EXPECT_NEAR(p.points.between.height(to_double(Vec3{0.99f, 0, 0})), 0, 1e-6);
+  for (const atlas::PartedPoints& p : parted) {
+    EXPECT_LT(p.a.x, 0.99f);
+    EXPECT_GT(p.b.x, 1.0f);
+    EXPECT_NEAR(std::abs(p.between.normal.x), 1, 1e-6);  // float corners
+    EXPECT_NEAR(p.between.height(to_double(Vec3{0.99f, 0, 0})), 0, 1e-6);
   }
 }
 

@@ -81,10 +81,11 @@ Status repair(const BakeSettings& settings, const trace::RayTracer& tracer, Bake
   if (settings.stitch)
     LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
   bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance);
-  bake.texel_pictures =
-      draw_texels(bake.atlas, bake.map,
-                  {hidden, bake.repair.overlapping, bake.repair.moved, bake.repair.refilled,
-                   post::seam_errors(bake.map, seams, bake.light.irradiance)});
+  if (settings.texels)
+    bake.texel_pictures =
+        draw_texels(bake.atlas, bake.map,
+                    {hidden, bake.repair.overlapping, bake.repair.moved, bake.repair.refilled,
+                     post::seam_errors(bake.map, seams, bake.light.irradiance)});
   bake.lightmaps = post::lightmap_pages(bake.atlas, bake.map, bake.light.irradiance);
   for (image::Image& lightmap : bake.lightmaps) post::dilate(lightmap, kDilationRings);
   if (scene::scatters_light(bake.scene)) {
@@ -272,7 +273,7 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
     files.push_back(std::move(page));
   }
   files.push_back({settings.output / "baked.glb", std::move(glb)});
-  for (size_t p = 0; settings.texels && p < bake.texel_pictures.size(); ++p) {
+  for (size_t p = 0; p < bake.texel_pictures.size(); ++p) {
     const bool one = bake.texel_pictures.size() == 1;
     files.push_back({settings.output / (one ? "texels.png" : fmt::format("texels-{}.png", p)),
                      image::encode_png(bake.texel_pictures[p])});

@@ -38,7 +38,7 @@ struct Bake {
   export_::View view;               ///< what the preview was taken with
   size_t seams = 0;
   LeakRepair repair;
-  std::vector<image::Image8> texel_pictures;  ///< per page, texel by texel: texels.png
+  std::vector<image::Image8> texel_pictures;  ///< per page, with --texels
   post::SeamResidual seam_residual_before, seam_residual_after;
   std::vector<std::string> warnings;
 };

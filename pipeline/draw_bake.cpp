@@ -101,7 +101,7 @@ Result<Bake> quick_bake(const RenderSettings& s, Progress& progress) {
   settings.scene = s.scene, settings.outside = s.outside;
   settings.output = s.output.parent_path().empty() ? "." : s.output.parent_path();
   settings.bounces = s.bounces.value_or(-1), settings.seed = s.seed.value_or(1);
-  settings.resolution = kQuickResolution;
+  settings.resolution = kQuickResolution, settings.texels = true;
   settings.samples = kQuickSamples, settings.direct_samples = kQuickDirectSamples;
   return bake_scene(settings, progress);
 }

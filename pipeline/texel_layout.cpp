@@ -29,7 +29,8 @@ Result<TexelLayout> lay_out_once(const atlas::AtlasParams& params, const scene::
 }
 
 /// Cuts the scene where its charts run under barriers. Cut charts are smaller and pack another way,
-/// at another density, so that a few barriers can lie between other texels than before: twice.
+/// at another density, so that a few barriers can lie between other texels than before: what is
+/// parted then is counted.
 Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, TexelLayout& layout,
                        Progress& progress) {
   progress.begin("walls", 0);

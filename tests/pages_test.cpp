@@ -39,7 +39,8 @@ TEST(Pages, HoldTheLightOfAFurnace) {
                    std::string("--resolution 48 --samples 64 --uv unwrap --pages ") + pages)
                   .code,
               0);
-    for (const nlohmann::json& page : about(folder)["atlas"]["pages"]) {
+    const nlohmann::json atlas = about(folder)["atlas"];
+    for (const nlohmann::json& page : atlas["pages"]) {
       const image::Image light = exr_at(folder / page["file"].get<std::string>());
       EXPECT_EQ(light.width, page["resolution"]);
       int covered = 0;

@@ -25,17 +25,23 @@ int wrapped(int i, int n, Wrap wrap) {
   return j < n ? j : period - 1 - j;
 }
 
+/// Linear light of each byte of an sRGB texture.
+const std::array<float, 256> kLinearOfByte = [] {
+  std::array<float, 256> linear{};
+  for (size_t i = 0; i < linear.size(); ++i) linear[i] = image::linear_from_srgb(float(i) / 255.0f);
+  return linear;
+}();
+
 std::array<float, 4> texel(const Texture& t, int x, int y, bool srgb) {
   const uint8_t* p = t.rgba.data() + 4 * (size_t(y) * size_t(t.width) + size_t(x));
   std::array<float, 4> c{};
-  for (int k = 0; k < 4; ++k) {
-    const float v = float(p[k]) / 255.0f;
-    c[k] = srgb && k < 3 ? image::linear_from_srgb(v) : v;
-  }
+  for (int k = 0; k < 4; ++k) c[k] = srgb && k < 3 ? kLinearOfByte[p[k]] : float(p[k]) / 255.0f;
   return c;
 }
 
 Vec2 transformed_uv(const TextureRef& ref, Vec2 uv) {
+  if (ref.rotation == 0)
+    return {uv.x * ref.scale.x + ref.offset.x, uv.y * ref.scale.y + ref.offset.y};
   const float s = std::sin(ref.rotation), c = std::cos(ref.rotation);
   const Vec2 q{uv.x * ref.scale.x, uv.y * ref.scale.y};
   return {c * q.x + s * q.y + ref.offset.x, -s * q.x + c * q.y + ref.offset.y};

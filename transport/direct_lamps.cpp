@@ -10,15 +10,16 @@ namespace {
 
 constexpr size_t kMaxPunctual = 64;
 
-/// A directional light whose disc has some size: directions uniform in its cone.
-void shoot_at_disc(const scene::PunctualLight& light, uint32_t source, int samples,
+/// The directional light of that number, whose disc has some size: directions uniform in its cone.
+void shoot_at_disc(const Lights& lights, size_t index, uint32_t source, int samples,
                    const Receiver& r, Shots& shots) {
+  const scene::PunctualLight& light = lights.punctual[index];
   const Frame frame = frame_around(-light.direction);
   // 1 - cos(angle) without cancellation.
   const float s = std::sin(0.5f * light.angular_radius_rad);
   const float height = 2 * s * s;
   for (int k = 0; k < samples; ++k) {
-    const Vec2 u = sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x5000 + source));
+    const Vec2 u = sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x5000 + index));
     const float down = u.y * height, radius = std::sqrt(std::max(0.0f, down * (2 - down)));
     const float phi = 2 * kPi * u.x;
     const Vec3 d = frame.to_world({radius * std::cos(phi), radius * std::sin(phi), 1 - down});
@@ -40,7 +41,7 @@ void shoot_at_punctual(const Lights& lights, size_t index, float chance, int sam
   Source& s = shots.sources.back();
   s.exact = true;
   if (disc)
-    shoot_at_disc(light, source, samples, r, shots);
+    shoot_at_disc(lights, index, source, samples, r, shots);
   else
     add_shot(shots, r, {source, 1, {1, 1, 1}}, in.towards,
              std::isfinite(in.distance_m) ? in.distance_m * (1 - 1e-5f) : INFINITY);

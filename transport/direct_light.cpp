@@ -28,8 +28,8 @@ struct DrawnVariance {
   }
 };
 
-/// Traces the shots and adds the sources up.
-void resolve(const trace::RayTracer& tracer, Shots& shots, Rgb& irradiance, float& variance) {
+/// Traces the shots and adds up what arrives in their sources.
+void trace_shots(const trace::RayTracer& tracer, Shots& shots) {
   shots.arriving.resize(shots.rays.size());
   tracer.transmitted(shots.rays, shots.arriving);
   for (size_t k = 0; k < shots.shots.size(); ++k) {
@@ -41,38 +41,57 @@ void resolve(const trace::RayTracer& tracer, Shots& shots, Rgb& irradiance, floa
     const float l = luminance(arrived);
     source.sum_luminance2 += l * l;
   }
+}
+
+LightAt sum_of(std::span<const Source> sources) {
+  LightAt out;
   DrawnVariance drawn;
-  for (const Source& s : shots.sources) {
+  for (const Source& s : sources) {
     if (s.drawn) drawn.add(luminance(s.sum * s.tint) * s.scale);
     if (s.shots == 0 || s.sum_weight <= 0) continue;
     const float n = float(s.shots);
     const Rgb light = s.sum * s.tint * (s.exact ? s.scale / s.sum_weight : s.scale);
-    irradiance += light;
+    out.irradiance += light;
     if (s.drawn) continue;
     if (s.exact) {
       const float share = std::min(1.0f, luminance(light) / std::max(s.unshadowed, 1e-30f));
-      variance += s.unshadowed * s.unshadowed * share * (1 - share) / n;
+      out.variance += s.unshadowed * s.unshadowed * share * (1 - share) / n;
     } else {
       const float mean = luminance(s.sum) / n, mean2 = s.sum_luminance2 / n;
-      variance += std::max(0.0f, mean2 - mean * mean) * s.scale * s.scale * n;
+      out.variance += std::max(0.0f, mean2 - mean * mean) * s.scale * s.scale * n;
     }
   }
-  variance += drawn.sum();
+  out.variance += drawn.sum();
+  return out;
 }
 
 }  // namespace
 
-Rgb direct_light_at(const scene::Scene& scene, const Lights& lights, const trace::RayTracer& tracer,
-                    const DirectParams& params, const Receiver& r, float diagonal_m, Shots& shots,
-                    float& variance) {
-  shots.sources.clear(), shots.shots.clear(), shots.rays.clear();
-  shoot_at_triangles(scene, lights, params.samples, r, diagonal_m, shots);
-  shoot_at_lamps(lights, params.samples, r, shots);
-  shoot_at_peaks(scene, lights.around, params.samples, r, shots);
-  shoot_at_soft_sky(scene, lights.around, params.sky_samples, r, shots);
-  Rgb irradiance{};
-  resolve(tracer, shots, irradiance, variance);
-  return irradiance;
+void direct_light_at(const scene::Scene& scene, const Lights& lights,
+                     const trace::RayTracer& tracer, const DirectParams& params,
+                     std::span<const Receiver> receivers, float diagonal_m, Shots& shots,
+                     std::span<LightAt> out) {
+  LUXEL_CHECK(out.size() == receivers.size());
+  shots.sources.clear(), shots.sources_end.clear(), shots.shots.clear(), shots.rays.clear();
+  for (const Receiver& r : receivers) {
+    shoot_at_triangles(scene, lights, params.samples, r, diagonal_m, shots);
+    shoot_at_lamps(lights, params.samples, r, shots);
+    shoot_at_peaks(scene, lights.around, params.samples, r, shots);
+    shoot_at_soft_sky(scene, lights.around, params.sky_samples, r, shots);
+    shots.sources_end.push_back(shots.sources.size());
+  }
+  trace_shots(tracer, shots);
+  const std::span<const Source> sources = shots.sources;
+  for (size_t i = 0, begin = 0; i < out.size(); begin = shots.sources_end[i++])
+    out[i] = sum_of(sources.subspan(begin, shots.sources_end[i] - begin));
+}
+
+LightAt direct_light_at(const scene::Scene& scene, const Lights& lights,
+                        const trace::RayTracer& tracer, const DirectParams& params,
+                        const Receiver& r, float diagonal_m, Shots& shots) {
+  LightAt out;
+  direct_light_at(scene, lights, tracer, params, {&r, 1}, diagonal_m, shots, {&out, 1});
+  return out;
 }
 
 Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elements,
@@ -94,8 +113,8 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elem
           elements.position[i], elements.normal[i], elements.geometric_normal[i],
           trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
           hash64(params.seed, params.same_points ? 0 : i)};
-      out.irradiance[i] =
-          direct_light_at(scene, lights, tracer, params, r, diagonal_m, shots, out.variance[i]);
+      const LightAt light = direct_light_at(scene, lights, tracer, params, r, diagonal_m, shots);
+      out.irradiance[i] = light.irradiance, out.variance[i] = light.variance;
       traced += shots.rays.size();
     }
     rays += traced;

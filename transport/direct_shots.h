@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scene/scene.h"
@@ -39,11 +40,12 @@ struct Source {
   float unshadowed = 0;  ///< luminance, for the variance of exact sources
 };
 
-/// Sources and shots of one element; buffers that are reused from element to element.
+/// Sources and shots of one receiver or a few; buffers that are reused from element to element.
 struct Shots {
   std::vector<float> whole;  ///< per triangle light: irradiance per radiance, nothing in between
   LightDraws draws;
   std::vector<Source> sources;
+  std::vector<size_t> sources_end;  ///< per receiver: where its sources end
   std::vector<Shot> shots;
   std::vector<trace::Ray> rays;
   std::vector<Rgb> arriving;  ///< share of each shot's light
@@ -72,10 +74,21 @@ void shoot_at_peaks(const scene::Scene& scene, const Surroundings& around, int s
 void shoot_at_soft_sky(const scene::Scene& scene, const Surroundings& around, int samples,
                        const Receiver& r, Shots& shots);
 
-/// direct_light at a single receiver. Adds the estimated variance of the luminance. The number of
-/// rays is that of shots.rays.
-Rgb direct_light_at(const scene::Scene& scene, const Lights& lights, const trace::RayTracer& tracer,
-                    const DirectParams& params, const Receiver& r, float diagonal_m, Shots& shots,
-                    float& variance);
+struct LightAt {
+  Rgb irradiance{};
+  float variance = 0;  ///< estimated, of the luminance
+};
+
+/// direct_light at a few receivers, whose shadow rays are traced together: `out` gets the light of
+/// each. The number of rays is that of shots.rays.
+void direct_light_at(const scene::Scene& scene, const Lights& lights,
+                     const trace::RayTracer& tracer, const DirectParams& params,
+                     std::span<const Receiver> receivers, float diagonal_m, Shots& shots,
+                     std::span<LightAt> out);
+
+/// The same at one.
+LightAt direct_light_at(const scene::Scene& scene, const Lights& lights,
+                        const trace::RayTracer& tracer, const DirectParams& params,
+                        const Receiver& r, float diagonal_m, Shots& shots);
 
 }  // namespace luxel::transport

@@ -126,8 +126,10 @@ void shoot_at_many(const scene::Scene& scene, const Lights& lights, int samples,
     return importance_at(node, r.position, r.normal);
   };
   RandomStream random{hash64(r.seed, 0x11)};
-  draw_lights(lights.nodes, r.position, r.normal, leaf,
-              {.samples = samples, .start = random.next()}, shots.draws);
+  // A cut shares several rays out better; for a single one the way down from the root is enough.
+  const DrawParams params{
+      .samples = samples, .max_cut = samples == 1 ? 1u : 16u, .start = random.next()};
+  draw_lights(lights.nodes, r.position, r.normal, leaf, params, shots.draws);
   for (const LightDraw& draw : shots.draws.draws) {
     const TriangleLight& light = lights.triangles[draw.light];
     if (draw.chance < 1) {

@@ -182,6 +182,8 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
     if (progress.cancelled()) return;
     Shots shots;
     std::vector<scene::SurfacePoint> spread;
+    std::vector<Receiver> receivers;
+    std::vector<LightAt> light;
     std::vector<PointLight> points;
     uint64_t traced = 0, averaged = 0;
     for (size_t k = begin; k < end; ++k) {
@@ -190,19 +192,21 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
         traced += kEnclosureRays;
         if (is_enclosed(place, own_receiver(place, elements, i, hash64(each.seed, i)))) continue;
       }
-      points.clear();
+      receivers.clear(), points.clear();
       atlas::spread_points(atlas, map.texels[i], cover.of(k), params.points, each.seed, spread);
       for (const scene::SurfacePoint& p : spread) {
-        const uint64_t seed = hash64(hash64(each.seed, kPointSeed + points.size()), i);
-        const Receiver r = receiver_at(place, smooth_point(scene, p), seed);
-        PointLight light{r.position, {}, 0};
-        light.irradiance = direct_light_at(scene, lights, tracer, each, r, place.diagonal_m, shots,
-                                           light.variance);
-        traced += shots.rays.size();
+        const uint64_t seed = hash64(hash64(each.seed, kPointSeed + receivers.size()), i);
+        receivers.push_back(receiver_at(place, smooth_point(scene, p), seed));
+      }
+      light.resize(receivers.size());
+      direct_light_at(scene, lights, tracer, each, receivers, place.diagonal_m, shots, light);
+      traced += shots.rays.size();
+      for (size_t j = 0; j < receivers.size(); ++j) {
         // Where a wall stands on the surface, its inside is dark, and nobody sees it.
-        const bool dark = is_dark(light.irradiance);
+        const bool dark = is_dark(light[j].irradiance);
         traced += dark ? kEnclosureRays : 0;
-        if (!dark || !is_enclosed(place, r)) points.push_back(light);
+        if (dark && is_enclosed(place, receivers[j])) continue;
+        points.push_back({receivers[j].position, light[j].irradiance, light[j].variance});
       }
       if (points.empty()) continue;
       Rgb sum{};

@@ -55,6 +55,8 @@ Surroundings surroundings_of(const scene::Scene& scene) {
   const scene::Environment& map = scene.environment;
   if (map.empty()) return out;
   out.limit = float(limit_of(map));
+  for (int y = 0; y <= map.height; ++y)
+    out.row_cosine.push_back(std::cos(kPiDouble * y / map.height));
   for (uint32_t i = 0; i < map.radiance.size(); ++i)
     if (luminance(map.radiance[i]) > out.limit) out.peak.push_back(i);
   const auto code = [&](uint32_t i) {
@@ -88,16 +90,17 @@ PeakSample sample_peaks(const scene::Scene& scene, const Surroundings& s, Vec2 u
   const double within = std::clamp((at - s.below[k]) / (s.below[k + 1] - s.below[k]), 0.0, 1.0);
   const uint32_t pixel = s.peak[k];
   const int x = int(pixel) % map.width, y = int(pixel) / map.width;
-  // Uniform over the pixel's solid angle: linear in the cosine.
-  const double upper = std::cos(kPiDouble * y / map.height);
-  const double lower = std::cos(kPiDouble * (y + 1) / map.height);
-  const double cosine = upper + (lower - upper) * double(u.y);
-  const Vec2 uv{(float(x) + float(within)) / float(map.width),
-                float(std::acos(cosine) / kPiDouble)};
+  // Uniform over the pixel's solid angle: linear in the cosine of the angle from up.
+  const double upper = s.row_cosine[size_t(y)], lower = s.row_cosine[size_t(y) + 1];
+  const double up = upper + (lower - upper) * double(u.y);
+  const double sine = std::sqrt(std::max(0.0, (1 - up) * (1 + up)));
+  const float phi =
+      2 * kPi * ((float(x) + float(within)) / float(map.width) - 0.5f) + map.rotation_rad;
+  const Vec3 direction{float(sine) * std::cos(phi), float(up), float(sine) * std::sin(phi)};
   const Rgb l = map.radiance[pixel];
   const float l_luminance = luminance(l);
   // Density = (lum L - limit) / power per steradian, radiance = L (lum L - limit) / lum L.
-  return {scene::direction_of(map, uv), l * float(power / double(l_luminance))};
+  return {direction, l * float(power / double(l_luminance))};
 }
 
 float folded_cosine(Vec3 d, Vec3 normal, Vec3 geometric_normal) {

@@ -23,31 +23,30 @@ transport::SmoothPoint place_of(const scene::Scene& scene, const trace::Hit& hit
           -scene::front_normal(scene, hit.instance, hit.triangle)};
 }
 
-/// The light that lamps send to where the path is, and the ray on. False: the path ends there, by
-/// chance, in proportion to what it carries.
-bool look_around(const NearWorld& world, uint64_t seed, NearPath& path, NearWork& work,
-                 uint64_t& rays) {
-  const transport::SmoothPoint p = place_of(world.scene, path.hit);
-  path.throughput = path.throughput * scene::reflectance_at(world.scene, path.hit.point());
-  const float carried = max_component(path.throughput);
-  if (!(carried > 0)) return false;
+/// A path that brings nothing more.
+void end(NearPath path, NearWork& work) {
+  path.throughput = {};
+  work.going_on.push_back(path);
+}
+
+/// The light that lamps send to where the paths are.
+uint64_t add_direct_light(const NearWorld& world, NearWork& work) {
+  work.light.resize(work.receivers.size());
+  transport::direct_light_at(world.scene, world.lights, world.tracer, {.samples = 1},
+                             work.receivers, world.diagonal_m, work.shots, work.light);
+  for (size_t i = 0; i < work.paths.size(); ++i)
+    work.paths[i].light += work.paths[i].throughput * work.light[i].irradiance / kPi;
+  return work.shots.rays.size();
+}
+
+/// The path's ray on. False: the path ends there, by chance, in proportion to what it carries.
+bool go_on(const transport::Receiver& at, uint64_t seed, NearPath& path) {
   RandomStream random{hash64(seed, path.ray)};
-  const transport::Receiver at{
-      p.position, p.normal, p.geometric_normal,
-      trace::offset_origin(p.position, p.geometric_normal, world.diagonal_m),
-      hash64(seed, path.ray ^ 0x80000000u)};
-  float variance = 0;
-  const Rgb irradiance =
-      transport::direct_light_at(world.scene, world.lights, world.tracer, {.samples = 1}, at,
-                                 world.diagonal_m, work.shots, variance);
-  rays += work.shots.rays.size();
-  path.light += path.throughput * irradiance / kPi;
-  const float chance = std::min(1.0f, carried / kSureThroughput);
+  const float chance = std::min(1.0f, max_component(path.throughput) / kSureThroughput);
   if (random.next() >= chance) return false;
   path.throughput = path.throughput / chance;
-  path.direction = frame_around(p.normal).to_world(cosine_hemisphere_sample(random.next2()));
-  path.direction = transport::mirrored_above(path.direction, p.geometric_normal);
-  work.rays.push_back({at.origin, 0, path.direction, INFINITY});
+  path.direction = frame_around(at.normal).to_world(cosine_hemisphere_sample(random.next2()));
+  path.direction = transport::mirrored_above(path.direction, at.geometric_normal);
   return true;
 }
 
@@ -82,26 +81,42 @@ bool goes_on(const NearWorld& world, const NearPath& path) {
 }
 
 uint64_t step_near(const NearWorld& world, uint64_t seed, NearWork& work) {
-  uint64_t rays = 0;
-  work.rays.clear(), work.going_on.clear();
-  for (NearPath& path : work.paths) {
-    const bool on = look_around(world, seed, path, work, rays);
-    if (on) continue;
-    path.throughput = {};
-    work.going_on.push_back(path);
+  work.receivers.clear(), work.rays.clear(), work.going_on.clear();
+  std::erase_if(work.paths, [&](NearPath& path) {
+    path.throughput = path.throughput * scene::reflectance_at(world.scene, path.hit.point());
+    const bool black = max_component(path.throughput) <= 0;
+    if (black) end(path, work);
+    return black;
+  });
+  for (const NearPath& path : work.paths) {
+    const transport::SmoothPoint p = place_of(world.scene, path.hit);
+    work.receivers.push_back(
+        {p.position, p.normal, p.geometric_normal,
+         trace::offset_origin(p.position, p.geometric_normal, world.diagonal_m),
+         hash64(seed, path.ray ^ 0x80000000u)});
   }
-  work.hits.resize(work.rays.size());
+  const uint64_t shadow_rays = add_direct_light(world, work);
+  size_t alive = 0;
+  for (size_t i = 0; i < work.paths.size(); ++i) {
+    NearPath& path = work.paths[i];
+    if (!go_on(work.receivers[i], seed, path)) {
+      end(path, work);
+      continue;
+    }
+    work.rays.push_back({work.receivers[i].origin, 0, path.direction, INFINITY});
+    work.paths[alive++] = path;
+  }
+  work.paths.resize(alive);
+  work.hits.resize(alive);
   world.tracer.closest_hits(work.rays, work.hits);
-  work.tint.assign(work.rays.size(), {1, 1, 1});
+  work.tint.assign(alive, {1, 1, 1});
   if (world.tracer.has_tints()) world.tracer.tint(work.rays, work.hits, work.tint);
-  size_t next = 0;
-  for (NearPath& path : work.paths) {
-    if (max_component(path.throughput) <= 0) continue;
-    path.hit = work.hits[next];
-    path.throughput = path.throughput * work.tint[next++];
-    work.going_on.push_back(path);
+  for (size_t i = 0; i < alive; ++i) {
+    work.paths[i].hit = work.hits[i];
+    work.paths[i].throughput = work.paths[i].throughput * work.tint[i];
+    work.going_on.push_back(work.paths[i]);
   }
-  return rays + work.rays.size();
+  return shadow_rays + alive;
 }
 
 }  // namespace luxel::gather

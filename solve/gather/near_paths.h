@@ -44,6 +44,8 @@ struct NearWorld {
 /// Buffers of one thread.
 struct NearWork {
   std::vector<NearPath> paths, going_on;
+  std::vector<transport::Receiver> receivers;  ///< where the paths are
+  std::vector<transport::LightAt> light;
   std::vector<trace::Ray> rays;
   std::vector<trace::Hit> hits;
   std::vector<Rgb> tint;

@@ -22,7 +22,8 @@ BacksSeen backs_seen(const scene::Scene& scene, const trace::RayTracer& tracer, 
   BacksSeen seen{rays, 0, 0};
   for (const trace::Hit& hit : std::span(hits).first(count)) {
     if (!hit.found() || !hit.back_face) continue;
-    ++(scene::material_at(scene, hit.point()).double_sided ? seen.double_sided : seen.one_sided);
+    const scene::Material& material = scene::material_at(scene, hit.point());
+    ++(scene::reflects_from_behind(material) ? seen.double_sided : seen.one_sided);
   }
   return seen;
 }

@@ -1,20 +1,21 @@
 #include "transport/supersample.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <numeric>
 
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "base/warp.h"
+#include "transport/backs_seen.h"
 #include "transport/direct_shots.h"
 
 namespace luxel::transport {
 namespace {
 
-constexpr size_t kGrain = 16, kEnclosureRays = 16;
+constexpr size_t kGrain = 16;
+/// For one of many points, and for the sample of a texel, as gather asks.
+constexpr int kEnclosureRays = 16, kEnclosureRaysOfTexel = 64;
 constexpr uint64_t kPointSeed = 0x70e1;
 
 /// What all points share.
@@ -24,28 +25,9 @@ struct Place {
   float diagonal_m;
 };
 
-/// Whether a point lies inside a solid, by the rule of gather: more than half of its rays meet
-/// backs of one-sided surfaces, or all of them meet backs.
-bool is_enclosed(const Place& at, const Receiver& r) {
-  constexpr size_t kRays = kEnclosureRays;
-  std::array<trace::Ray, kRays> rays;
-  std::array<trace::Hit, kRays> hits;
-  const Frame frame = frame_around(r.normal);
-  for (size_t k = 0; k < kRays; ++k) {
-    Vec3 d =
-        frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x15))));
-    const float above = dot(d, r.geometric_normal);
-    if (above < 0) d += r.geometric_normal * (-2 * above);
-    rays[k] = {r.origin, 0, d, INFINITY};
-  }
-  at.tracer.closest_hits(rays, hits);
-  size_t one_sided = 0, backs = 0;
-  for (const trace::Hit& hit : hits) {
-    if (!hit.found() || !hit.back_face) continue;
-    ++backs;
-    one_sided += !scene::reflects_from_behind(scene::material_at(at.scene, hit.point()));
-  }
-  return 2 * one_sided > kRays || backs == kRays;
+/// Whether a point lies inside a solid; of each place the same answer in every bake.
+bool is_enclosed(const Place& at, const Receiver& r, int rays = kEnclosureRays) {
+  return is_enclosed(backs_seen(at.scene, at.tracer, r.origin, r.normal, rays));
 }
 
 Receiver receiver_at(const Place& at, const SmoothPoint& s, uint64_t seed) {
@@ -138,7 +120,7 @@ Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atl
     std::vector<scene::SurfacePoint> spread;
     for (size_t i = begin; i < end; ++i) {
       const Receiver own = own_receiver(place, elements, i, hash64(seed, i));
-      if (!is_enclosed(place, own)) {
+      if (!is_enclosed(place, own, kEnclosureRaysOfTexel)) {
         atlas::spread_points(atlas, map.texels[i], cover.of(i), points, seed, spread);
         for (const scene::SurfacePoint& p : spread) {
           const uint64_t point_seed = hash64(hash64(seed, kPointSeed + found[i].size()), i);
@@ -189,8 +171,9 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
     for (size_t k = begin; k < end; ++k) {
       const uint32_t i = uneven[k];
       if (is_dark(direct.irradiance[i])) {
-        traced += kEnclosureRays;
-        if (is_enclosed(place, own_receiver(place, elements, i, hash64(each.seed, i)))) continue;
+        traced += uint64_t(kEnclosureRaysOfTexel);
+        const Receiver own = own_receiver(place, elements, i, hash64(each.seed, i));
+        if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
       }
       receivers.clear(), points.clear();
       atlas::spread_points(atlas, map.texels[i], cover.of(k), params.points, each.seed, spread);
@@ -204,7 +187,7 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
       for (size_t j = 0; j < receivers.size(); ++j) {
         // Where a wall stands on the surface, its inside is dark, and nobody sees it.
         const bool dark = is_dark(light[j].irradiance);
-        traced += dark ? kEnclosureRays : 0;
+        traced += dark ? uint64_t(kEnclosureRays) : 0;
         if (dark && is_enclosed(place, receivers[j])) continue;
         points.push_back({receivers[j].position, light[j].irradiance, light[j].variance});
       }

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "base/parallel.h"
+#include "transport/backs_seen.h"
+
 namespace luxel::gather {
 namespace {
 
@@ -13,6 +16,27 @@ double relative_error(std::span<const Rgb> irradiance, std::span<const float> di
     variance += double(direct_variance[i]) + double(gathered_variance[i]);
   }
   return mean > 0 ? std::sqrt(variance * double(irradiance.size())) / mean : 0;
+}
+
+/// Per element, whether it lies inside a solid (is_enclosed). Where its own rays are not sure, a
+/// fixed set decides, so that other samples or another seed do not turn a texel on and off.
+std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const transport::Elements& elements,
+                                   const trace::RayTracer& tracer, const TracedHits& hits) {
+  constexpr int kRays = 64;
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  std::vector<uint8_t> out(elements.size());
+  parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const int one_sided = int(hits.met_back[i]), n = hits.samples;
+      const int backs = one_sided + int(hits.met_double_sided_back[i]);
+      if (4 * one_sided < n && 8 * backs < 7 * n) continue;
+      const Vec3 from =
+          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
+      out[i] = 4 * one_sided > 3 * n || transport::is_enclosed(transport::backs_seen(
+                                            scene, tracer, from, elements.normal[i], kRays));
+    }
+  });
+  return out;
 }
 
 }  // namespace
@@ -41,7 +65,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   out.direct = std::move(direct.irradiance);
   out.direct_variance = std::move(direct.variance);
   out.indirect_variance = std::move(bounced.split_variance);
-  for (size_t i = 0; i < elements.size(); ++i) out.enclosed.push_back(is_enclosed(hits, i));
+  out.enclosed = find_enclosed(scene, elements, tracer, hits);
   out.met_back = std::move(hits.met_back);
   out.rays = direct.rays + averaged.rays + hits.rays;
   out.supersampled = averaged.texels;

@@ -24,7 +24,7 @@ struct Gather {
   /// Estimated variance of the mean's luminance, per element: of the direct part and of the rest.
   std::vector<float> direct_variance, indirect_variance;  ///< indirect: from halves, see Bounced
   std::vector<uint16_t> met_back;  ///< rays per element that met the back of a one-sided surface
-  std::vector<uint8_t> enclosed;   ///< per element: 1 where is_enclosed
+  std::vector<uint8_t> enclosed;   ///< per element: 1 inside a solid (transport::is_enclosed)
   uint64_t rays = 0;
   uint64_t supersampled = 0;  ///< elements whose direct light is a mean over points
   int sweeps = 0;

@@ -49,13 +49,6 @@ inline bool is_hidden(const TracedHits& hits, size_t element) {
   return 2 * int(hits.met_back[element]) > hits.samples;
 }
 
-/// Whether an element is hidden or sees nothing but backs, also of double-sided surfaces: the floor
-/// under a box. Many exporters call every material double-sided.
-inline bool is_enclosed(const TracedHits& hits, size_t element) {
-  const int backs = int(hits.met_back[element]) + int(hits.met_double_sided_back[element]);
-  return is_hidden(hits, element) || 100 * backs >= 98 * hits.samples;
-}
-
 /// One ray per sample, directions from an Owen-scrambled Sobol sequence of its own per element,
 /// cosine-distributed about the shading normal [Moreno05, eq. 3.7]. Directions below the triangle
 /// itself are mirrored to above it. Errors: cancelled, disk full.

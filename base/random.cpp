@@ -47,15 +47,16 @@ Vec2 sobol_owen_2d(uint32_t index, uint64_t seed) {
 }
 
 LUXEL_VECTOR_CLONES
-void sobol_owen_2d_points(uint64_t seed, std::span<float> x, std::span<float> y) {
+void sobol_owen_2d_points(uint64_t seed, std::span<float> x, std::span<float> y, uint32_t first) {
   LUXEL_CHECK(x.size() == y.size());
   const uint32_t seed_x = uint32_t(seed), seed_y = uint32_t(seed >> 32);
   float* out_x = x.data();
   float* out_y = y.data();
   const uint32_t count = uint32_t(x.size());
   for (uint32_t i = 0; i < count; ++i) {
-    const uint32_t a = reverse_bits(scramble_upwards(i, seed_x)) >> 8;
-    const uint32_t b = reverse_bits(scramble_upwards(sobol_second_reversed(i), seed_y)) >> 8;
+    const uint32_t a = reverse_bits(scramble_upwards(first + i, seed_x)) >> 8;
+    const uint32_t b =
+        reverse_bits(scramble_upwards(sobol_second_reversed(first + i), seed_y)) >> 8;
     // The signed conversion has a vector instruction, and 24 bits fit.
     out_x[i] = float(int32_t(a)) * 0x1p-24f;
     out_y[i] = float(int32_t(b)) * 0x1p-24f;

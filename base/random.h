@@ -38,9 +38,10 @@ struct RandomStream {
 /// The index is not shuffled: a pixel uses one seed for one pair of dimensions.
 Vec2 sobol_owen_2d(uint32_t index, uint64_t seed);
 
-/// The first x.size() points of sobol_owen_2d, bit for bit, several times as fast. x and y are of
-/// the same length.
-void sobol_owen_2d_points(uint64_t seed, std::span<float> x, std::span<float> y);
+/// x.size() points of sobol_owen_2d from the one with the index `first` on, bit for bit, several
+/// times as fast. x and y are of the same length.
+void sobol_owen_2d_points(uint64_t seed, std::span<float> x, std::span<float> y,
+                          uint32_t first = 0);
 
 }  // namespace base
 }  // namespace luxel

@@ -30,6 +30,9 @@ TEST(SobolOwen2d, ManyAtOnceAreTheSamePoints) {
     sobol_owen_2d_points(0x1234567890abcdef, x, y);
     for (size_t i = 0; i < count; ++i)
       ASSERT_EQ((Vec2{x[i], y[i]}), sobol_owen_2d(uint32_t(i), 0x1234567890abcdef)) << i;
+    sobol_owen_2d_points(0x1234567890abcdef, x, y, 300);
+    for (size_t i = 0; i < count; ++i)
+      ASSERT_EQ((Vec2{x[i], y[i]}), sobol_owen_2d(300 + uint32_t(i), 0x1234567890abcdef)) << i;
   }
 }
 

@@ -102,11 +102,9 @@ double bare_rate(const Prepared& p, int samples) {
 
 double gather_rate(const Prepared& p, int samples) {
   Progress progress;
-  gather::TraceParams params;
-  params.samples = samples;
   const auto start = Clock::now();
   const auto hits = gather::trace_hits(p.scene, p.atlas, p.elements, p.lights.around, *p.tracer,
-                                       params, progress);
+                                       samples, {}, progress);
   return hits ? double(hits->rays) / seconds_since(start) : 0.0;
 }
 

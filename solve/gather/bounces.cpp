@@ -78,20 +78,23 @@ struct Gathered {
   float first_less_second = 0;  ///< luminance of the first half of the samples minus the other's
 };
 
-/// Every stride-th hit from `first` on, counted for all of them.
-Gathered gather_element(const RadiosityMap& m, std::span<const StoredHit> hits, size_t first,
-                        size_t stride) {
-  Gathered g;
+/// Adds every stride-th hit of a round from `first` on, counted for all of them. Only in the last
+/// round of an element do hits know which half of all they belong to; before, all is of the first.
+void gather_round(const RadiosityMap& m, std::span<const StoredHit> hits, size_t first,
+                  size_t stride, bool last, Gathered& g) {
+  Gathered round;
   size_t used = 0;
   for (size_t k = first; k < hits.size(); k += stride, ++used) {
     const Float4 b = lookup(m, hits[k]);
     const float l = luminance({b[0], b[1], b[2]});
-    g.sum += b;
-    g.sum_luminance2 += l * l;
-    g.first_less_second += hits[k].second_half() ? -l : l;
+    round.sum += b;
+    round.sum_luminance2 += l * l;
+    round.first_less_second += last && hits[k].second_half() ? -l : l;
   }
-  if (used > 0 && used < hits.size()) g.sum *= float(hits.size()) / float(used);
-  return g;
+  if (used > 0 && used < hits.size()) round.sum *= float(hits.size()) / float(used);
+  g.sum += round.sum;
+  g.sum_luminance2 += round.sum_luminance2;
+  g.first_less_second += round.first_less_second;
 }
 
 /// One sweep's input and output. `change2` holds the squared change per tile: summed in a fixed
@@ -108,7 +111,7 @@ struct Sweep {
 
 /// Variance of the mean over an element's rays, taken as independent.
 float variance_of_mean(const Gathered& g, const TracedHits& hits, size_t element) {
-  const float n = float(hits.samples);
+  const float n = float(hits.samples[element]);
   const float sum = luminance({g.sum[0], g.sum[1], g.sum[2]}) + kPi * luminance(hits.sky[element]);
   const float sum2 = g.sum_luminance2 + kPi * kPi * hits.sky_luminance2[element];
   return std::max(0.0f, sum2 / n - (sum / n) * (sum / n)) / n;
@@ -117,8 +120,9 @@ float variance_of_mean(const Gathered& g, const TracedHits& hits, size_t element
 /// ((A - B) / 2)^2 of the halves' means A and B; without halves, of one sample, there is nothing to
 /// say.
 float split_variance(const Gathered& g, const TracedHits& hits, size_t element) {
-  if (hits.samples < 2) return variance_of_mean(g, hits, element);
-  const int first = (hits.samples + 1) / 2, second = hits.samples - first;
+  const int samples = int(hits.samples[element]);
+  if (samples < 2) return variance_of_mean(g, hits, element);
+  const int first = (samples + 1) / 2, second = samples - first;
   const float sum = luminance({g.sum[0], g.sum[1], g.sum[2]}) + kPi * luminance(hits.sky[element]);
   const float difference = g.first_less_second + kPi * hits.sky_first_less_second[element];
   const float a = 0.5f * (sum + difference), b = 0.5f * (sum - difference);
@@ -126,38 +130,65 @@ float split_variance(const Gathered& g, const TracedHits& hits, size_t element) 
   return d * d;
 }
 
-Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress) {
-  const float per_ray = 1.0f / float(hits.samples);
-  sweep.change2.assign(hits.store.tile_count(), 0.0);
-  std::mutex mutex;
-  Status status;
-  parallel_for(hits.store.tile_count(), 1, [&](size_t t, size_t) {
-    if (progress.cancelled()) return;
-    HitTile buffer;
-    const auto tile = hits.store.get(t, buffer);
-    if (!tile) {
-      const std::lock_guard lock(mutex);
-      status = tl::unexpected(tile.error());
-      return;
+/// The hits of a tile's elements in all rounds.
+struct TileHits {
+  std::vector<HitTile> buffer;
+  std::vector<const HitTile*> round;
+
+  Status read(const TracedHits& hits, size_t tile) {
+    buffer.resize(hits.rounds.size()), round.resize(hits.rounds.size());
+    for (size_t r = 0; r < round.size(); ++r) {
+      LUXEL_TRY(round[r], hits.rounds[r].get(tile, buffer[r]));
     }
-    uint32_t first = 0;
-    for (size_t k = 0; k < (*tile)->end.size(); ++k) {
-      const size_t i = t * kTileElements + k;
-      const uint32_t end = (*tile)->end[k];
-      const std::span<const StoredHit> own((*tile)->entries.data() + first, end - first);
+    return {};
+  }
+  /// Of the tile's k-th element.
+  std::span<const StoredHit> of(size_t r, size_t k) const {
+    const HitTile& tile = *round[r];
+    const uint32_t first = k == 0 ? 0 : tile.end[k - 1];
+    return std::span(tile.entries).subspan(first, tile.end[k] - first);
+  }
+};
+
+/// Returns the sum of squared changes of a tile's elements.
+double sweep_tile(const RadiosityMap& m, const TracedHits& hits, const TileHits& tile,
+                  size_t first_element, Sweep& sweep) {
+  double change2 = 0;
+  const size_t end = std::min(first_element + kTileElements, hits.size());
+  for (size_t i = first_element; i < end; ++i) {
+    Gathered g;
+    for (size_t r = 0; r <= hits.last_round[i]; ++r) {
+      const std::span<const StoredHit> own = tile.of(r, i - first_element);
       // Neighbours look at different rays, so that what a sparse sweep misses averages out.
       const size_t start = own.empty() ? 0 : std::min((i * 5) % sweep.stride, own.size() - 1);
-      const Gathered g = gather_element(m, own, start, sweep.stride);
-      first = end;
-      const Rgb gathered = Rgb{g.sum[0], g.sum[1], g.sum[2]} * per_ray;
-      sweep.next[i] = sweep.source[i] + gathered;
-      if (sweep.stride == 1) {
-        sweep.variance[i] = variance_of_mean(g, hits, i);
-        sweep.split_variance[i] = split_variance(g, hits, i);
-      }
-      const Rgb d = sweep.next[i] - sweep.previous[i];
-      sweep.change2[t] += double(dot(d, d));
+      gather_round(m, own, start, sweep.stride, r == hits.last_round[i], g);
     }
+    const Rgb gathered = Rgb{g.sum[0], g.sum[1], g.sum[2]} * (1.0f / float(hits.samples[i]));
+    sweep.next[i] = sweep.source[i] + gathered;
+    if (sweep.stride == 1) {
+      sweep.variance[i] = variance_of_mean(g, hits, i);
+      sweep.split_variance[i] = split_variance(g, hits, i);
+    }
+    const Rgb d = sweep.next[i] - sweep.previous[i];
+    change2 += double(dot(d, d));
+  }
+  return change2;
+}
+
+Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress) {
+  const size_t tiles = (hits.size() + kTileElements - 1) / kTileElements;
+  sweep.change2.assign(tiles, 0.0);
+  std::mutex mutex;
+  Status status;
+  parallel_for(tiles, 1, [&](size_t t, size_t) {
+    if (progress.cancelled()) return;
+    TileHits tile;
+    if (const Status read = tile.read(hits, t); !read) {
+      const std::lock_guard lock(mutex);
+      status = read;
+      return;
+    }
+    sweep.change2[t] = sweep_tile(m, hits, tile, t * kTileElements, sweep);
   });
   if (!status) return status;
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
@@ -210,7 +241,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   LUXEL_CHECK(behind.size() == elements.transmittance.size());
   // E_0: what arrives without any reflection. A ray that escapes sees the sky.
   std::vector<Rgb> source(direct.begin(), direct.end());
-  for (size_t i = 0; i < n; ++i) source[i] += hits.sky[i] * (kPi / float(hits.samples));
+  for (size_t i = 0; i < n; ++i) source[i] += hits.sky[i] * (kPi / float(hits.samples[i]));
   Bounced out;
   out.irradiance = source;
   out.variance.assign(n, 0.0f);
@@ -238,8 +269,9 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
     return out;
   }
   const ReflectanceRange reflectance = reflectance_range(elements);
+  const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
   for (const size_t stride : {size_t(16), size_t(4), size_t(1)}) {
-    if (stride > 1 && size_t(hits.samples) < 16 * stride) continue;
+    if (stride > 1 && fewest < 16 * stride) continue;
     double before = 0;
     for (int k = 0; k < kMaxSweeps; ++k) {
       LUXEL_TRY(const double change, run(stride));

@@ -27,7 +27,7 @@ std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const transport::E
   std::vector<uint8_t> out(elements.size());
   parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const int one_sided = int(hits.met_back[i]), n = hits.samples;
+      const int one_sided = int(hits.met_back[i]), n = int(hits.samples[i]);
       const int backs = one_sided + int(hits.met_double_sided_back[i]);
       if (4 * one_sided < n && 8 * backs < 7 * n) continue;
       const Vec3 from =
@@ -52,10 +52,10 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
             transport::supersample(scene, atlas, map, elements, lights, tracer,
                                    {.points = params.supersample, .direct = direct_params}, direct,
                                    progress));
-  const TraceParams trace_params{params.samples, params.seed, params.hit_memory_bytes,
-                                 params.scratch_folder, params.bounces < 0 ? &lights : nullptr};
-  LUXEL_TRY(TracedHits hits,
-            trace_hits(scene, atlas, elements, lights.around, tracer, trace_params, progress));
+  const TraceParams trace_params{params.seed, params.hit_memory_bytes, params.scratch_folder,
+                                 params.bounces < 0 ? &lights : nullptr};
+  LUXEL_TRY(TracedHits hits, trace_hits(scene, atlas, elements, lights.around, tracer,
+                                        params.samples, trace_params, progress));
   LUXEL_TRY(Bounced bounced, bounce(map, elements, hits, direct.irradiance,
                                     places_behind(scene, atlas, map, elements),
                                     {params.bounces, params.tolerance}, progress));
@@ -70,7 +70,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   out.rays = direct.rays + averaged.rays + hits.rays;
   out.supersampled = averaged.texels;
   out.sweeps = bounced.sweeps;
-  out.hit_bytes_in_file = hits.store.bytes_in_file();
+  out.hit_bytes_in_file = hits.bytes_in_file();
   return out;
 }
 

@@ -293,7 +293,7 @@ TEST(Gather, ALightCanChangeWithoutTracingAgain) {
   const auto room = lay_out(scene::cornell_box(), 48);
   Progress progress;
   auto hits = trace_hits(room->scene, room->atlas, room->elements, room->lights.around,
-                         *room->tracer, {64, 1, UINT64_MAX, "."}, progress);
+                         *room->tracer, 64, {1, UINT64_MAX, "."}, progress);
   ASSERT_TRUE(hits);
   const auto direct = transport::direct_light(room->scene, room->elements, room->lights,
                                               *room->tracer, {32, 1}, progress);

@@ -30,16 +30,20 @@ struct Work {
   std::vector<Rgb> tint;  ///< of what rays have passed; empty where nothing has a colour
   NearWork near;
 
-  explicit Work(size_t samples)
-      : u(samples),
-        v(samples),
-        x(samples),
-        y(samples),
-        z(samples),
-        cell(samples),
-        second_half(samples),
-        rays(samples),
-        hits(samples) {}
+  void resize(size_t samples) {
+    for (std::vector<float>* buffer : {&u, &v, &x, &y, &z}) buffer->resize(samples);
+    cell.resize(samples), second_half.resize(samples);
+    rays.resize(samples), hits.resize(samples);
+  }
+};
+
+/// Which samples of an element.
+struct Samples {
+  uint32_t first = 0, end = 0;
+
+  uint32_t count() const { return end - first; }
+  /// Whether sample `first` + k belongs to the second half of all up to `end`.
+  bool in_second_half(uint32_t k) const { return 2 * (first + k) >= end; }
 };
 
 /// cos and sin of 2 pi x for x in [0, 1), to 2e-7: each quarter turn by Taylor's series about its
@@ -80,22 +84,23 @@ void local_directions(Work& work, size_t count) {
 }
 
 /// The rays of an element in the order of their cells (a counting sort).
-void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Work& work,
-               std::span<trace::Ray> rays) {
-  const size_t count = rays.size();
-  sobol_owen_2d_points(seed, work.u, work.v);
+void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Samples samples,
+               Work& work) {
+  const uint32_t count = samples.count();
+  work.resize(count);
+  sobol_owen_2d_points(seed, work.u, work.v, samples.first);
   local_directions(work, count);
   std::array<uint32_t, kCells + 1> place{};
-  for (size_t i = 0; i < count; ++i) ++place[work.cell[i] + 1];
+  for (uint32_t i = 0; i < count; ++i) ++place[work.cell[i] + 1];
   for (size_t c = 0; c < kCells; ++c) place[c + 1] += place[c];
   const Frame frame = frame_around(normal);
   const bool bent = !(normal == geometric_normal);
-  for (size_t i = 0; i < count; ++i) {
+  for (uint32_t i = 0; i < count; ++i) {
     Vec3 d = frame.to_world({work.x[i], work.y[i], work.z[i]});
     if (bent) d = transport::mirrored_above(d, geometric_normal);
     const uint32_t at = place[work.cell[i]]++;
-    rays[at] = {origin, 0, d, INFINITY};
-    work.second_half[at] = 2 * i >= count;
+    work.rays[at] = {origin, 0, d, INFINITY};
+    work.second_half[at] = samples.in_second_half(i);
   }
 }
 
@@ -126,8 +131,10 @@ void add_light(Rgb l, bool second_half, size_t element, TracedHits& out) {
   out.sky_first_less_second[element] += second_half ? -luminance(l) : luminance(l);
 }
 
-/// Counts what an element's rays met, and keeps the hits that bring light.
-void sort_hits(const World& world, Work& work, size_t element, TracedHits& out, HitTile& tile) {
+/// Counts what an element's rays met, those of its samples from `first` on, and keeps the hits that
+/// bring light.
+void sort_hits(const World& world, Work& work, size_t element, uint32_t first, TracedHits& out,
+               HitTile& tile) {
   for (size_t k = 0; k < work.hits.size(); ++k) {
     const trace::Hit& hit = work.hits[k];
     if (!hit.found()) {
@@ -150,8 +157,9 @@ void sort_hits(const World& world, Work& work, size_t element, TracedHits& out, 
         continue;
       }
     }
-    const uint32_t tint =
-        work.tint.empty() ? kNoTint : pack_tint(work.tint[k], hash64(element, k ^ 0x7147u));
+    const uint32_t tint = work.tint.empty()
+                              ? kNoTint
+                              : pack_tint(work.tint[k], hash64(element, (first + k) ^ 0x7147u));
     tile.entries.push_back(store(world.atlas, hit.point(), {tint, work.second_half[k] != 0}));
   }
 }
@@ -171,7 +179,7 @@ uint64_t follow_on(const World& world, Work& work, size_t element, uint64_t seed
     if (path.hit.back_face &&
         !scene::reflects_from_behind(scene::material_at(world.scene, path.hit.point())))
       return;
-    const uint32_t tint = pack_tint(path.throughput, hash64(element, path.ray ^ 0x4e37u));
+    const uint32_t tint = pack_tint(path.throughput, hash64(seed, path.ray ^ 0x4e37u));
     tile.entries.push_back(store(world.atlas, path.hit.point(), {tint, second_half}));
   });
 }
@@ -193,26 +201,130 @@ std::vector<StoredHit> places_behind(const scene::Scene& scene, const atlas::Atl
 
 void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,
                   std::span<trace::Ray> rays) {
-  Work work(rays.size());
-  fill_rays(origin, normal, geometric_normal, seed, work, rays);
+  Work work;
+  fill_rays(origin, normal, geometric_normal, seed, {0, uint32_t(rays.size())}, work);
+  std::copy(work.rays.begin(), work.rays.end(), rays.begin());
 }
 
-Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
-                              const transport::Elements& elements,
-                              const transport::Surroundings& around, const trace::RayTracer& tracer,
-                              const TraceParams& params, Progress& progress) {
-  LUXEL_CHECK(params.samples >= 1 && params.samples <= 65535);
-  const size_t samples = size_t(params.samples);
-  LUXEL_TRY(HitStore hit_store, HitStore::create(elements.size(), kTileElements, samples,
-                                                 params.memory_limit_bytes, params.scratch_folder));
-  TracedHits out{std::move(hit_store), params.samples, {}, {}, {}, {}, {}, {}, 0};
-  out.escaped.resize(elements.size());
-  out.met_back.resize(elements.size());
-  out.met_double_sided_back.resize(elements.size());
-  out.sky.resize(elements.size());
-  out.sky_luminance2.resize(elements.size());
-  out.sky_first_less_second.resize(elements.size());
-  out.rays = uint64_t(elements.size()) * samples;
+uint64_t TracedHits::bytes_in_memory() const {
+  uint64_t bytes = 0;
+  for (const HitStore& round : rounds) bytes += round.bytes_in_memory();
+  return bytes;
+}
+
+uint64_t TracedHits::bytes_in_file() const {
+  uint64_t bytes = 0;
+  for (const HitStore& round : rounds) bytes += round.bytes_in_file();
+  return bytes;
+}
+
+TracedHits no_hits(size_t elements) {
+  TracedHits out;
+  out.samples.resize(elements), out.last_round.resize(elements);
+  out.escaped.resize(elements), out.met_back.resize(elements);
+  out.met_double_sided_back.resize(elements);
+  out.sky.resize(elements);
+  out.sky_luminance2.resize(elements), out.sky_first_less_second.resize(elements);
+  return out;
+}
+
+namespace {
+
+/// One round's way through the elements.
+struct Round {
+  const World& world;
+  const transport::Elements& elements;
+  const trace::RayTracer& tracer;
+  std::span<const uint16_t> target;
+  uint64_t seed = 0;
+  float diagonal_m = 0;
+
+  /// Returns the number of rays.
+  uint64_t trace_element(size_t i, Work& work, TracedHits& out, HitTile& tile) const;
+};
+
+uint64_t Round::trace_element(size_t i, Work& work, TracedHits& out, HitTile& tile) const {
+  const Samples samples{out.samples[i], std::max(out.samples[i], target[i])};
+  if (samples.count() == 0) return 0;
+  // What was there before is of the first half now.
+  out.sky_first_less_second[i] = luminance(out.sky[i]);
+  out.samples[i] = uint16_t(samples.end), out.last_round[i] = uint8_t(out.rounds.size());
+  const Vec3 origin =
+      trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
+  fill_rays(origin, elements.normal[i], elements.geometric_normal[i], hash64(seed ^ 0x6a7e, i),
+            samples, work);
+  tracer.closest_hits(work.rays, work.hits);
+  if (tracer.has_tints()) {
+    work.tint.assign(samples.count(), {1, 1, 1});
+    tracer.tint(work.rays, work.hits, work.tint);
+  }
+  sort_hits(world, work, i, samples.first, out, tile);
+  if (work.near.paths.empty()) return samples.count();
+  const uint64_t near_seed = hash64(hash64(seed ^ 0x7ea4, i), samples.first);
+  return samples.count() + follow_on(world, work, i, near_seed, out, tile);
+}
+
+/// The most samples that the round adds to one element.
+size_t most_added(std::span<const uint16_t> target, const TracedHits& hits) {
+  size_t most = 0;
+  for (size_t i = 0; i < target.size(); ++i) {
+    if (target[i] <= hits.samples[i]) continue;
+    const size_t added = size_t(target[i] - hits.samples[i]);
+    LUXEL_CHECK(added >= hits.samples[i]);
+    most = std::max(most, added);
+  }
+  return most;
+}
+
+/// Traces the round's elements into `store`. Errors: disk full.
+Status trace_tiles(const Round& round, TracedHits& hits, HitStore& store, Progress& progress) {
+  constexpr uint64_t kRaysPerAdvance = 8192;
+  std::atomic<uint64_t> rays{0};
+  std::mutex mutex;
+  Status status;
+  parallel_for(hits.size(), kTileElements, [&](size_t begin, size_t end) {
+    Work work;
+    HitTile tile;
+    uint64_t planned = 0, traced = 0, untold = 0;
+    for (size_t i = begin; i < end; ++i)
+      planned += uint64_t(std::max(0, int(round.target[i]) - int(hits.samples[i])));
+    tile.entries.reserve(planned);
+    for (size_t i = begin; i < end; ++i) {
+      if (progress.cancelled()) return;
+      const uint64_t before = hits.samples[i];
+      traced += round.trace_element(i, work, hits, tile);
+      tile.end.push_back(uint32_t(tile.entries.size()));
+      // Not for every element: the counter is shared by all threads.
+      untold += hits.samples[i] - before;
+      if (untold < kRaysPerAdvance && i + 1 < end) continue;
+      progress.advance(untold);
+      untold = 0;
+    }
+    rays += traced;
+    const Status put = store.put(begin / kTileElements, std::move(tile));
+    if (!put) {
+      const std::lock_guard lock(mutex);
+      if (status) status = put;
+      progress.request_cancel();
+    }
+  });
+  hits.rays += rays;
+  return status;
+}
+
+}  // namespace
+
+Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
+                  const transport::Elements& elements, const transport::Surroundings& around,
+                  const trace::RayTracer& tracer, std::span<const uint16_t> target,
+                  const TraceParams& params, TracedHits& hits, Progress& progress) {
+  LUXEL_CHECK(target.size() == elements.size() && hits.size() == elements.size());
+  LUXEL_CHECK(hits.rounds.size() < 256);
+  const uint64_t used = hits.bytes_in_memory();
+  LUXEL_TRY(HitStore store,
+            HitStore::create(elements.size(), kTileElements, most_added(target, hits),
+                             params.memory_limit_bytes - std::min(used, params.memory_limit_bytes),
+                             params.scratch_folder));
   const float diagonal_m = scene::world_bounds(scene).diagonal();
   std::optional<NearWorld> near;
   std::vector<float> widths;
@@ -221,52 +333,27 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
     near.emplace(NearWorld{scene, atlas, *params.near_lights, tracer, widths, diagonal_m});
   }
   const World world{scene, atlas, around, near ? &*near : nullptr};
-  std::atomic<uint64_t> more_rays{0};
-  const auto trace_element = [&](size_t i, Work& work, HitTile& tile) {
-    const Vec3 origin =
-        trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
-    fill_rays(origin, elements.normal[i], elements.geometric_normal[i],
-              hash64(params.seed ^ 0x6a7e, i), work, work.rays);
-    tracer.closest_hits(work.rays, work.hits);
-    if (tracer.has_tints()) {
-      work.tint.assign(samples, {1, 1, 1});
-      tracer.tint(work.rays, work.hits, work.tint);
-    }
-    sort_hits(world, work, i, out, tile);
-    if (!work.near.paths.empty())
-      more_rays += follow_on(world, work, i, hash64(params.seed ^ 0x7ea4, i), out, tile);
-    tile.end.push_back(uint32_t(tile.entries.size()));
-  };
-
-  constexpr uint64_t kRaysPerAdvance = 8192;
-  progress.begin("trace rays", out.rays);
-  std::mutex mutex;
-  Status status;
-  parallel_for(elements.size(), kTileElements, [&](size_t begin, size_t end) {
-    Work work(samples);
-    HitTile tile;
-    tile.entries.reserve((end - begin) * samples);
-    uint64_t untold = 0;
-    for (size_t i = begin; i < end; ++i) {
-      if (progress.cancelled()) return;
-      trace_element(i, work, tile);
-      // Not for every element: the counter is shared by all threads.
-      untold += samples;
-      if (untold < kRaysPerAdvance && i + 1 < end) continue;
-      progress.advance(untold);
-      untold = 0;
-    }
-    const Status put = out.store.put(begin / kTileElements, std::move(tile));
-    if (!put) {
-      const std::lock_guard lock(mutex);
-      if (status) status = put;
-      progress.request_cancel();
-    }
-  });
-  if (!status) return tl::unexpected(status.error());
+  uint64_t planned = 0;
+  for (size_t i = 0; i < target.size(); ++i)
+    planned += uint64_t(std::max(0, int(target[i]) - int(hits.samples[i])));
+  progress.begin("trace rays", planned);
+  LUXEL_TRY_STATUS(trace_tiles({world, elements, tracer, target, params.seed, diagonal_m}, hits,
+                               store, progress));
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  out.rays += more_rays;
-  return out;
+  hits.rounds.push_back(std::move(store));
+  return {};
+}
+
+Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
+                              const transport::Elements& elements,
+                              const transport::Surroundings& around, const trace::RayTracer& tracer,
+                              int samples, const TraceParams& params, Progress& progress) {
+  LUXEL_CHECK(samples >= 1 && samples <= 65535);
+  TracedHits hits = no_hits(elements.size());
+  const std::vector<uint16_t> target(elements.size(), uint16_t(samples));
+  LUXEL_TRY_STATUS(
+      trace_more(scene, atlas, elements, around, tracer, target, params, hits, progress));
+  return hits;
 }
 
 }  // namespace luxel::gather

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "atlas/atlas.h"
@@ -17,17 +18,18 @@
 namespace luxel::gather {
 
 struct TraceParams {
-  int samples = 256;  ///< rays per element
   uint64_t seed = 1;
-  uint64_t memory_limit_bytes = UINT64_MAX;  ///< for hits; the rest goes to a temporary file
+  uint64_t memory_limit_bytes = UINT64_MAX;  ///< for hits; the rest goes to temporary files
   std::filesystem::path scratch_folder = ".";
   /// What rays look for that are followed on where they end nearby (near_paths.h); null: none are.
   const transport::Lights* near_lights = nullptr;
 };
 
+/// What rays have met, in rounds of tracing: each adds samples to some of the elements.
 struct TracedHits {
-  HitStore store;
-  int samples = 0;
+  std::vector<HitStore> rounds;
+  std::vector<uint16_t> samples;    ///< per element, of all rounds
+  std::vector<uint8_t> last_round;  ///< per element, that which added to it last
   /// Per element, how many of its rays left the scene, and how many met the back of a one-sided
   /// surface close by or far: those bring no light, and many of them mean that the element lies
   /// inside a solid (kept for leak repair).
@@ -41,21 +43,37 @@ struct TracedHits {
   std::vector<Rgb> sky;
   std::vector<float> sky_luminance2, sky_first_less_second;
   uint64_t rays = 0;
+
+  size_t size() const { return samples.size(); }
+  uint64_t bytes_in_memory() const;
+  uint64_t bytes_in_file() const;
 };
 
 /// Whether an element lies inside a solid, under a floor or behind a wall: most of what it sees is
 /// the back of one-sided surfaces. Its own light means nothing to anybody.
 inline bool is_hidden(const TracedHits& hits, size_t element) {
-  return 2 * int(hits.met_back[element]) > hits.samples;
+  return 2 * int(hits.met_back[element]) > int(hits.samples[element]);
 }
 
-/// One ray per sample, directions from an Owen-scrambled Sobol sequence of its own per element,
-/// cosine-distributed about the shading normal [Moreno05, eq. 3.7]. Directions below the triangle
-/// itself are mirrored to above it. Errors: cancelled, disk full.
+/// Nothing traced yet.
+TracedHits no_hits(size_t elements);
+
+/// A round of tracing: of each element the samples from those that it has up to `target`, so many
+/// at most as 65535. An element that has enough keeps what it has. Of an element that has samples
+/// already the new ones are at least as many, so that the old ones lie in the first half of all.
+/// Directions are those of an Owen-scrambled Sobol sequence of its own per element,
+/// cosine-distributed about the shading normal [Moreno05, eq. 3.7]; those below the triangle itself
+/// are mirrored to above it. Errors: cancelled, disk full; hits are of no use then.
+Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
+                  const transport::Elements& elements, const transport::Surroundings& around,
+                  const trace::RayTracer& tracer, std::span<const uint16_t> target,
+                  const TraceParams& params, TracedHits& hits, Progress& progress);
+
+/// One round, the same number of samples for all elements.
 Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
                               const transport::Elements& elements,
                               const transport::Surroundings& around, const trace::RayTracer& tracer,
-                              const TraceParams& params, Progress& progress);
+                              int samples, const TraceParams& params, Progress& progress);
 
 /// Per element, the place on the other side of the surface, as a hit: its own where the surface has
 /// but one side. Empty where nothing scatters light through.

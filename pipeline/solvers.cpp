@@ -203,7 +203,7 @@ Result<TexelLight> solve_matrix(const SolveInput& in, const BakeSettings& settin
   out.variance.assign(in.elements.size(), 0.0f);
   out.direct = std::move(direct.irradiance);
   out.direct_variance = std::move(direct.variance);
-  out.supersampled_texels = averaged.texels;
+  out.supersampled_texels = averaged.texels.size();
   out.rays = solution.rays + direct.rays + averaged.rays, out.sweeps = solution.sweeps;
   out.elements = prepared.work.patches.size();
   out.relative_error = solution.relative_error;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -40,7 +41,35 @@ void trace_shots(const trace::RayTracer& tracer, Shots& shots) {
     source.sum += arrived;
     const float l = luminance(arrived);
     source.sum_luminance2 += l * l;
+    if (shot.second_half) source.second_luminance += l;
   }
+}
+
+Rgb light_of(const Source& s) {
+  return s.sum * s.tint * (s.exact ? s.scale / s.sum_weight : s.scale);
+}
+
+/// As if its shots were independent.
+float variance_of(const Source& s, float light) {
+  const float n = float(s.shots);
+  if (s.exact) {
+    const float share = std::min(1.0f, light / std::max(s.unshadowed, 1e-30f));
+    return s.unshadowed * s.unshadowed * share * (1 - share) / n;
+  }
+  const float mean = luminance(s.sum) / n, mean2 = s.sum_luminance2 / n;
+  return std::max(0.0f, mean2 - mean * mean) * s.scale * s.scale * n;
+}
+
+/// ((A - B) / 2)^2 of the light by either half of its shots. `whole` where there are no halves.
+float split_variance_of(const Source& s, float light, float whole) {
+  const float sum = luminance(s.sum), first_weight = s.sum_weight - s.second_weight;
+  if (!(first_weight > 0) || !(s.second_weight > 0) || !(sum > 0)) return whole;
+  const float a = s.exact ? (sum - s.second_luminance) / first_weight * s.sum_weight
+                          : 2 * (sum - s.second_luminance);
+  const float b =
+      s.exact ? s.second_luminance / s.second_weight * s.sum_weight : 2 * s.second_luminance;
+  const float half = 0.5f * (a - b) / sum * light;
+  return half * half;
 }
 
 LightAt sum_of(std::span<const Source> sources) {
@@ -49,19 +78,14 @@ LightAt sum_of(std::span<const Source> sources) {
   for (const Source& s : sources) {
     if (s.drawn) drawn.add(luminance(s.sum * s.tint) * s.scale);
     if (s.shots == 0 || s.sum_weight <= 0) continue;
-    const float n = float(s.shots);
-    const Rgb light = s.sum * s.tint * (s.exact ? s.scale / s.sum_weight : s.scale);
+    const Rgb light = light_of(s);
     out.irradiance += light;
     if (s.drawn) continue;
-    if (s.exact) {
-      const float share = std::min(1.0f, luminance(light) / std::max(s.unshadowed, 1e-30f));
-      out.variance += s.unshadowed * s.unshadowed * share * (1 - share) / n;
-    } else {
-      const float mean = luminance(s.sum) / n, mean2 = s.sum_luminance2 / n;
-      out.variance += std::max(0.0f, mean2 - mean * mean) * s.scale * s.scale * n;
-    }
+    const float variance = variance_of(s, luminance(light));
+    out.variance += variance;
+    out.split_variance += split_variance_of(s, luminance(light), variance);
   }
-  out.variance += drawn.sum();
+  out.variance += drawn.sum(), out.split_variance += drawn.sum();
   return out;
 }
 
@@ -94,34 +118,45 @@ LightAt direct_light_at(const scene::Scene& scene, const Lights& lights,
   return out;
 }
 
-Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elements,
-                                 const Lights& lights, const trace::RayTracer& tracer,
-                                 const DirectParams& params, Progress& progress) {
-  LUXEL_CHECK(params.samples >= 1);
-  DirectLight out;
-  out.irradiance.resize(elements.size());
-  out.variance.resize(elements.size());
+Status direct_light_again(const scene::Scene& scene, const Elements& elements, const Lights& lights,
+                          const trace::RayTracer& tracer, std::span<const uint32_t> which,
+                          const DirectParams& params, DirectLight& direct, Progress& progress) {
+  LUXEL_CHECK(params.samples >= 1 && direct.irradiance.size() == elements.size());
   const float diagonal_m = scene::world_bounds(scene).diagonal();
   std::atomic<uint64_t> rays{0};
-  progress.begin("direct light", elements.size());
-  parallel_for(elements.size(), 256, [&](size_t begin, size_t end) {
+  progress.begin("direct light", which.size());
+  parallel_for(which.size(), 256, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     Shots shots;
     uint64_t traced = 0;
-    for (size_t i = begin; i < end; ++i) {
+    for (size_t k = begin; k < end; ++k) {
+      const size_t i = which[k];
       const Receiver r{
           elements.position[i], elements.normal[i], elements.geometric_normal[i],
           trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
           hash64(params.seed, params.same_points ? 0 : i)};
       const LightAt light = direct_light_at(scene, lights, tracer, params, r, diagonal_m, shots);
-      out.irradiance[i] = light.irradiance, out.variance[i] = light.variance;
+      direct.irradiance[i] = light.irradiance;
+      direct.variance[i] = light.variance, direct.split_variance[i] = light.split_variance;
       traced += shots.rays.size();
     }
     rays += traced;
     progress.advance(end - begin);
   });
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  out.rays = rays;
+  direct.rays += rays;
+  return {};
+}
+
+Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
+                                 const DirectParams& params, Progress& progress) {
+  DirectLight out;
+  out.irradiance.resize(elements.size());
+  out.variance.resize(elements.size()), out.split_variance.resize(elements.size());
+  std::vector<uint32_t> all(elements.size());
+  std::iota(all.begin(), all.end(), 0u);
+  LUXEL_TRY_STATUS(direct_light_again(scene, elements, lights, tracer, all, params, out, progress));
   return out;
 }
 

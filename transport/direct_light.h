@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/progress.h"
@@ -26,7 +27,9 @@ struct DirectParams {
 
 struct DirectLight {
   std::vector<Rgb> irradiance;  ///< E per element [W/m^2]
-  std::vector<float> variance;  ///< estimated variance of its luminance
+  /// Estimated variance of its luminance: as if shadow rays were independent, which stratified ones
+  /// beat, and from the difference of their halves, nearly right in the mean, but a single square.
+  std::vector<float> variance, split_variance;
   uint64_t rays = 0;
 };
 
@@ -38,5 +41,11 @@ struct DirectLight {
 Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elements,
                                  const Lights& lights, const trace::RayTracer& tracer,
                                  const DirectParams& params, Progress& progress);
+
+/// The light of some elements again, with other samples, in place of what is there. Errors:
+/// cancelled; `direct` is of no use then.
+Status direct_light_again(const scene::Scene& scene, const Elements& elements, const Lights& lights,
+                          const trace::RayTracer& tracer, std::span<const uint32_t> which,
+                          const DirectParams& params, DirectLight& direct, Progress& progress);
 
 }  // namespace luxel::transport

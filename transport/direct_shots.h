@@ -21,9 +21,10 @@ struct Receiver {
 
 /// A shadow ray and what its source would bring.
 struct Shot {
-  uint32_t source = 0;  ///< index into Shots::sources
-  float weight = 0;     ///< w: what the source's density does not cancel
-  Rgb radiance;         ///< times w
+  uint32_t source = 0;       ///< index into Shots::sources
+  float weight = 0;          ///< w: what the source's density does not cancel
+  Rgb radiance;              ///< times w
+  bool second_half = false;  ///< of the shots planned at its source
 };
 
 /// The visible share of a source is  sum w V / sum w  over its shots; its light is that share times
@@ -31,11 +32,12 @@ struct Shot {
 struct Source {
   float scale = 0;  ///< exact: irradiance per radiance / chance; else 1 / (shots * chance)
   bool exact = false;
-  bool drawn = false;  ///< one of many, for its neighbours too; scale is 1 / chance
-  float sum_weight = 0;
+  bool drawn = false;    ///< one of many, for its neighbours too; scale is 1 / chance
+  uint32_t planned = 1;  ///< shots; the first and the second half of them are each well spread
+  float sum_weight = 0, second_weight = 0;  ///< of all, and of the second half
   uint32_t shots = 0;
   Rgb sum{};
-  float sum_luminance2 = 0;
+  float sum_luminance2 = 0, second_luminance = 0;
   Rgb tint{1, 1, 1};     ///< multiplies the sum
   float unshadowed = 0;  ///< luminance, for the variance of exact sources
 };
@@ -53,10 +55,11 @@ struct Shots {
 
 /// Adds a shot whose shadow ray ends at `target`, or, with t_max infinite, goes on for ever. A
 /// direction below the receiver's own triangle is blocked by it: it counts, without a ray.
-inline void add_shot(Shots& shots, const Receiver& at, const Shot& shot, Vec3 direction,
-                     float t_max) {
+inline void add_shot(Shots& shots, const Receiver& at, Shot shot, Vec3 direction, float t_max) {
   Source& source = shots.sources[shot.source];
   source.sum_weight += shot.weight;
+  shot.second_half = 2 * source.shots >= source.planned;
+  if (shot.second_half) source.second_weight += shot.weight;
   ++source.shots;
   if (dot(direction, at.geometric_normal) <= 0) return;
   shots.shots.push_back(shot);
@@ -76,7 +79,8 @@ void shoot_at_soft_sky(const scene::Scene& scene, const Surroundings& around, in
 
 struct LightAt {
   Rgb irradiance{};
-  float variance = 0;  ///< estimated, of the luminance
+  float variance = 0;        ///< estimated, of the luminance, as if shots were independent
+  float split_variance = 0;  ///< the same from the halves of each source's shots
 };
 
 /// direct_light at a few receivers, whose shadow rays are traced together: `out` gets the light of

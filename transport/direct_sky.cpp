@@ -11,7 +11,7 @@ void shoot_at_peaks(const scene::Scene& scene, const Surroundings& around, int s
                     const Receiver& r, Shots& shots) {
   if (around.peak.empty()) return;
   const uint32_t source = uint32_t(shots.sources.size());
-  shots.sources.push_back({.scale = 1 / float(samples)});
+  shots.sources.push_back({.scale = 1 / float(samples), .planned = uint32_t(samples)});
   for (int k = 0; k < samples; ++k) {
     const PeakSample peak =
         sample_peaks(scene, around, sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x13)));
@@ -24,7 +24,7 @@ void shoot_at_soft_sky(const scene::Scene& scene, const Surroundings& around, in
                        const Receiver& r, Shots& shots) {
   if (samples == 0 || (around.limit == INFINITY && max_component(around.background) <= 0)) return;
   const uint32_t source = uint32_t(shots.sources.size());
-  shots.sources.push_back({.scale = kPi / float(samples)});
+  shots.sources.push_back({.scale = kPi / float(samples), .planned = uint32_t(samples)});
   const Frame frame = frame_around(r.normal);
   for (int k = 0; k < samples; ++k) {
     const Vec2 u = sobol_owen_2d(uint32_t(k), hash64(r.seed, 0x14));

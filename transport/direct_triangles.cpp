@@ -139,8 +139,10 @@ void shoot_at_many(const scene::Scene& scene, const Lights& lights, int samples,
     const float whole = irradiance_per_radiance(light, r.position, r.normal);
     if (whole <= 0) continue;
     const uint32_t source = uint32_t(shots.sources.size());
-    shots.sources.push_back(
-        {.scale = whole, .exact = true, .unshadowed = whole * luminance(light.mean_radiance)});
+    shots.sources.push_back({.scale = whole,
+                             .exact = true,
+                             .planned = draw.count,
+                             .unshadowed = whole * luminance(light.mean_radiance)});
     shoot_at_triangle(scene, light, source, draw.count, r, diagonal_m, shots);
   }
 }
@@ -176,8 +178,10 @@ void shoot_at_all(const scene::Scene& scene, const Lights& lights, int samples, 
     if (count == 0) continue;
     const float chance = std::min(1.0f, deserved);
     const uint32_t source = uint32_t(shots.sources.size());
-    shots.sources.push_back(
-        {.scale = shots.whole[i] / chance, .exact = true, .unshadowed = unshadowed / chance});
+    shots.sources.push_back({.scale = shots.whole[i] / chance,
+                             .exact = true,
+                             .planned = count,
+                             .unshadowed = unshadowed / chance});
     shoot_at_triangle(scene, light, source, count, r, diagonal_m, shots);
   }
 }

@@ -151,25 +151,36 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
                                  const Lights& lights, const trace::RayTracer& tracer,
                                  const SupersampleParams& params, DirectLight& direct,
                                  Progress& progress) {
-  LUXEL_CHECK(params.points >= 1);
   if (params.points == 1) return Supersampled{};
-  const std::vector<uint32_t> uneven = uneven_texels(atlas, map, direct, params.threshold);
-  const atlas::Cover cover = atlas::cover_of(atlas, map, uneven);
+  return average_texels(scene, atlas, map, elements, lights, tracer,
+                        uneven_texels(atlas, map, direct, params.threshold), params, direct,
+                        progress);
+}
+
+Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                    const atlas::TexelMap& map, const Elements& elements,
+                                    const Lights& lights, const trace::RayTracer& tracer,
+                                    std::span<const uint32_t> which,
+                                    const SupersampleParams& params, DirectLight& direct,
+                                    Progress& progress) {
+  LUXEL_CHECK(params.points >= 1);
+  const atlas::Cover cover = atlas::cover_of(atlas, map, which);
   const Place place{scene, tracer, scene::world_bounds(scene).diagonal()};
   DirectParams each = params.direct;
   each.samples = samples_per_point(params.direct.samples);
-  std::atomic<uint64_t> rays{0}, texels{0};
-  progress.begin("supersample", uneven.size());
-  parallel_for(uneven.size(), kGrain, [&](size_t begin, size_t end) {
+  std::atomic<uint64_t> rays{0};
+  std::vector<uint8_t> is_averaged(which.size());
+  progress.begin("supersample", which.size());
+  parallel_for(which.size(), kGrain, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     Shots shots;
     std::vector<scene::SurfacePoint> spread;
     std::vector<Receiver> receivers;
     std::vector<LightAt> light;
     std::vector<PointLight> points;
-    uint64_t traced = 0, averaged = 0;
+    uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
-      const uint32_t i = uneven[k];
+      const uint32_t i = which[k];
       if (is_dark(direct.irradiance[i])) {
         traced += uint64_t(kEnclosureRaysOfTexel);
         const Receiver own = own_receiver(place, elements, i, hash64(each.seed, i));
@@ -195,14 +206,17 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
       Rgb sum{};
       for (const PointLight& p : points) sum += p.irradiance;
       direct.irradiance[i] = sum / float(points.size());
-      direct.variance[i] = variance_of_mean(points);
-      ++averaged;
+      direct.variance[i] = direct.split_variance[i] = variance_of_mean(points);
+      is_averaged[k] = 1;
     }
-    rays += traced, texels += averaged;
+    rays += traced;
     progress.advance(end - begin);
   });
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  return Supersampled{texels, rays};
+  Supersampled out{{}, rays};
+  for (size_t k = 0; k < which.size(); ++k)
+    if (is_averaged[k]) out.texels.push_back(which[k]);
+  return out;
 }
 
 }  // namespace luxel::transport

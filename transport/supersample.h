@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "atlas/footprint.h"
@@ -18,7 +19,7 @@ struct SupersampleParams {
 };
 
 struct Supersampled {
-  uint64_t texels = 0;  ///< that were averaged over
+  std::vector<uint32_t> texels;  ///< that were averaged over, in the order of the map
   uint64_t rays = 0;
 };
 
@@ -50,5 +51,13 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
                                  const Lights& lights, const trace::RayTracer& tracer,
                                  const SupersampleParams& params, DirectLight& direct,
                                  Progress& progress);
+
+/// The same for the texels `which`, uneven or not.
+Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                    const atlas::TexelMap& map, const Elements& elements,
+                                    const Lights& lights, const trace::RayTracer& tracer,
+                                    std::span<const uint32_t> which,
+                                    const SupersampleParams& params, DirectLight& direct,
+                                    Progress& progress);
 
 }  // namespace luxel::transport

@@ -187,8 +187,8 @@ TEST(Supersample, TexelsWithoutVariationKeepTheirBits) {
     ++kept;
   }
   EXPECT_GT(kept, 200u);
-  EXPECT_LT(lit.done.texels, 60u);
-  EXPECT_EQ(light(sunlit_floor(), 16).done.texels, 0u);
+  EXPECT_LT(lit.done.texels.size(), 60u);
+  EXPECT_EQ(light(sunlit_floor(), 16).done.texels.size(), 0u);
 }
 
 TEST(Supersample, TheSameBitsForAnyNumberOfThreads) {
@@ -227,7 +227,7 @@ TEST(Supersample, WhatStandsOnATexelTakesNoLightFromIt) {
   EXPECT_GT(outside, 200u);
   // 5.25 lies before the centre of its texel, 9.75 behind: the texels there are inside, their
   // neighbours differ from them and were looked at.
-  EXPECT_GT(lit.done.texels, 10u);
+  EXPECT_GT(lit.done.texels.size(), 10u);
 }
 
 }  // namespace

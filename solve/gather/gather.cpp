@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "solve/gather/adaptive.h"
 #include "transport/backs_seen.h"
 
 namespace luxel::gather {
@@ -39,6 +40,28 @@ std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const transport::E
   return out;
 }
 
+/// While samples are still to come the bounces need not be exact.
+constexpr float kRoughTolerance = 1e-2f;
+
+/// Pooled variances, and relative errors by them.
+struct Errors {
+  std::vector<float> variance;
+  std::vector<float> direct, gathered, all;  ///< relative
+};
+
+Errors errors_of(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                 const transport::DirectLight& direct, const Bounced& bounced,
+                 const TracedHits& hits) {
+  const auto of_direct = pooled_variances(atlas, map, {direct.variance, direct.split_variance});
+  const auto gathered = pooled_variances(atlas, map, {bounced.variance, bounced.split_variance});
+  Errors out;
+  for (size_t i = 0; i < gathered.size(); ++i) out.variance.push_back(of_direct[i] + gathered[i]);
+  out.direct = relative_errors(of_direct, bounced.irradiance, hits);
+  out.gathered = relative_errors(gathered, bounced.irradiance, hits);
+  out.all = relative_errors(out.variance, bounced.irradiance, hits);
+  return out;
+}
+
 }  // namespace
 
 Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
@@ -46,29 +69,55 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                       const transport::Lights& lights, const trace::RayTracer& tracer,
                       const GatherParams& params, Progress& progress) {
   const transport::DirectParams direct_params{params.direct_samples, params.seed};
+  const transport::SupersampleParams supersample_params{.points = params.supersample,
+                                                        .direct = direct_params};
   LUXEL_TRY(transport::DirectLight direct,
             transport::direct_light(scene, elements, lights, tracer, direct_params, progress));
   LUXEL_TRY(const transport::Supersampled averaged,
-            transport::supersample(scene, atlas, map, elements, lights, tracer,
-                                   {.points = params.supersample, .direct = direct_params}, direct,
-                                   progress));
+            transport::supersample(scene, atlas, map, elements, lights, tracer, supersample_params,
+                                   direct, progress));
+  direct.rays += averaged.rays;
   const TraceParams trace_params{params.seed, params.hit_memory_bytes, params.scratch_folder,
                                  params.bounces < 0 ? &lights : nullptr};
+  const std::vector<StoredHit> behind = places_behind(scene, atlas, map, elements);
   LUXEL_TRY(TracedHits hits, trace_hits(scene, atlas, elements, lights.around, tracer,
                                         params.samples, trace_params, progress));
-  LUXEL_TRY(Bounced bounced, bounce(map, elements, hits, direct.irradiance,
-                                    places_behind(scene, atlas, map, elements),
-                                    {params.bounces, params.tolerance}, progress));
+  const DirectWorld direct_world{scene, atlas, map, elements, lights, tracer};
+  DirectLevels levels{std::vector<uint8_t>(elements.size()), std::vector<uint8_t>(elements.size())};
+  for (const uint32_t i : averaged.texels) levels.averaged[i] = 1;
+  Bounced bounced;
+  Errors errors;
+  for (bool last = params.max_error <= 0;;) {
+    const float tolerance = last ? params.tolerance : kRoughTolerance;
+    LUXEL_TRY(bounced, bounce(map, elements, hits, direct.irradiance, behind,
+                              {params.bounces, tolerance}, progress));
+    errors = errors_of(atlas, map, direct, bounced, hits);
+    if (last) break;
+    last = percentile_95(errors.all) <= params.max_error;
+    if (last) continue;
+    // Of a part that is below half of the square all may be left as it is.
+    const float each = params.max_error / std::sqrt(2.0f);
+    LUXEL_TRY(const size_t finer, refine_direct(direct_world, errors.direct, each,
+                                                supersample_params, levels, direct, progress));
+    const std::vector<uint16_t> target =
+        next_samples(errors.gathered, each, params.max_samples, hits);
+    last = finer == 0 && target == hits.samples;
+    if (target == hits.samples) continue;
+    LUXEL_TRY_STATUS(trace_more(scene, atlas, elements, lights.around, tracer, target, trace_params,
+                                hits, progress));
+  }
   Gather out;
   out.relative_error = relative_error(bounced.irradiance, direct.variance, bounced.variance);
   out.irradiance = std::move(bounced.irradiance);
   out.direct = std::move(direct.irradiance);
   out.direct_variance = std::move(direct.variance);
   out.indirect_variance = std::move(bounced.split_variance);
+  out.pooled_variance = std::move(errors.variance);
+  out.relative_error_p95 = percentile_95(errors.all);
   out.enclosed = find_enclosed(scene, elements, tracer, hits);
   out.met_back = std::move(hits.met_back);
-  out.rays = direct.rays + averaged.rays + hits.rays;
-  out.supersampled = averaged.texels;
+  out.rays = direct.rays + hits.rays;
+  out.supersampled = averaged.texels.size();
   out.sweeps = bounced.sweeps;
   out.hit_bytes_in_file = hits.bytes_in_file();
   return out;

@@ -8,7 +8,10 @@
 namespace luxel::gather {
 
 struct GatherParams {
-  int samples = 256;        ///< indirect rays per element
+  int samples = 256;  ///< indirect rays per element; with max_error, of the first round
+  /// > 0: rounds of more samples until 95 % of elements have a smaller relative error (adaptive.h).
+  float max_error = 0;
+  int max_samples = 16384;  ///< with max_error, per element
   int direct_samples = 64;  ///< shadow rays per element towards emissive surfaces
   int supersample = 1;      ///< points per element where direct light varies; 1: none
   int bounces = -1;         ///< < 0: all
@@ -25,6 +28,8 @@ struct Gather {
   std::vector<float> direct_variance, indirect_variance;  ///< indirect: from halves, see Bounced
   std::vector<uint16_t> met_back;  ///< rays per element that met the back of a one-sided surface
   std::vector<uint8_t> enclosed;   ///< per element: 1 inside a solid (transport::is_enclosed)
+  std::vector<float> pooled_variance;  ///< of the luminance, per element: pooled_variances
+  float relative_error_p95 = 0;        ///< that 95 of 100 elements stay below (adaptive.h)
   uint64_t rays = 0;
   uint64_t supersampled = 0;  ///< elements whose direct light is a mean over points
   int sweeps = 0;

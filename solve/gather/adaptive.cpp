@@ -1,0 +1,150 @@
+#include "solve/gather/adaptive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/parallel.h"
+
+namespace luxel::gather {
+namespace {
+
+/// Neighbours up to so many texels away.
+constexpr int kReach = 2;
+/// So many elements' worth of the chart's ratio is added to that of the neighbours, who may be few.
+constexpr double kPriorElements = 8;
+/// Standard errors fall like n to this power and a bit faster (docs/gather.md): it says how many
+/// samples more are needed.
+constexpr float kDecay = 0.7f;
+constexpr float kDarkest = 0.1f;
+/// Levels of direct light: 4^4 times the shadow rays, 4^2 times the points, each of which looks at
+/// the lamps with rays of its own.
+constexpr int kFinestLevel = 4, kFinestAverage = 2, kDone = 16;
+
+struct Sums {
+  double variance = 0, split = 0;
+  uint32_t count = 0;
+
+  void add(const VariancePair& v, size_t i) {
+    variance += double(v.independent[i]), split += double(v.split[i]);
+    ++count;
+  }
+  double ratio() const { return variance > 0 ? split / variance : 1; }
+};
+
+std::vector<Sums> sums_of_charts(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                 const VariancePair& pair) {
+  std::vector<Sums> out(size_t(atlas.chart_count));
+  for (size_t i = 0; i < map.texels.size(); ++i)
+    out[atlas.chart[map.texels[i].triangle_number]].add(pair, i);
+  return out;
+}
+
+/// Those of the same chart, itself included.
+Sums sums_around(const atlas::Atlas& atlas, const atlas::TexelMap& map, const VariancePair& pair,
+                 size_t i) {
+  const int side = map.resolution, x = int(map.texels[i].x), y = int(map.texels[i].y);
+  const uint32_t chart = atlas.chart[map.texels[i].triangle_number];
+  Sums sums;
+  for (int v = std::max(0, y - kReach); v <= std::min(side - 1, y + kReach); ++v)
+    for (int u = std::max(0, x - kReach); u <= std::min(side - 1, x + kReach); ++u) {
+      const uint32_t j = map.texel_at[size_t(v) * size_t(side) + size_t(u)];
+      if (j == atlas::kNone || atlas.chart[map.texels[j].triangle_number] != chart) continue;
+      sums.add(pair, j);
+    }
+  return sums;
+}
+
+}  // namespace
+
+std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                    VariancePair variance) {
+  LUXEL_CHECK(variance.independent.size() == map.texels.size());
+  LUXEL_CHECK(variance.split.size() == map.texels.size());
+  const std::vector<Sums> charts = sums_of_charts(atlas, map, variance);
+  std::vector<float> out(map.texels.size());
+  parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Sums near = sums_around(atlas, map, variance, i);
+      const Sums& chart = charts[atlas.chart[map.texels[i].triangle_number]];
+      const double mean = near.variance / double(near.count);
+      const double prior = kPriorElements * mean;
+      const double ratio =
+          mean > 0 ? (near.split + prior * chart.ratio()) / (near.variance + prior) : 0;
+      out[i] = float(0.5 * (double(variance.independent[i]) + mean) * ratio);
+    }
+  });
+  return out;
+}
+
+std::vector<float> relative_errors(std::span<const float> variance, std::span<const Rgb> irradiance,
+                                   const TracedHits& hits) {
+  double mean = 0;
+  for (const Rgb& e : irradiance) mean += double(luminance(e)) / double(irradiance.size());
+  std::vector<float> out(irradiance.size());
+  if (!(mean > 0)) return out;
+  for (size_t i = 0; i < out.size(); ++i)
+    if (!is_hidden(hits, i))
+      out[i] = std::sqrt(variance[i]) / std::max(luminance(irradiance[i]), kDarkest * float(mean));
+  return out;
+}
+
+float percentile_95(std::span<const float> errors) {
+  if (errors.empty()) return 0;
+  std::vector<float> sorted(errors.begin(), errors.end());
+  const auto at = sorted.begin() + std::ptrdiff_t((sorted.size() - 1) * 95 / 100);
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return *at;
+}
+
+std::vector<uint16_t> next_samples(std::span<const float> errors, float max_error, int max_samples,
+                                   const TracedHits& hits) {
+  LUXEL_CHECK(max_error > 0 && errors.size() == hits.size());
+  std::vector<uint16_t> out = hits.samples;
+  for (size_t i = 0; i < out.size(); ++i) {
+    if (errors[i] <= max_error) continue;
+    const float more = std::pow(errors[i] / max_error, 1 / kDecay);
+    const int wanted = int(out[i]) * (more > 2 ? 4 : 2);
+    const int affordable = wanted <= max_samples ? wanted : int(out[i]) * 2;
+    if (affordable <= max_samples) out[i] = uint16_t(affordable);
+  }
+  return out;
+}
+
+Result<size_t> refine_direct(const DirectWorld& world, std::span<const float> errors,
+                             float max_error, const transport::SupersampleParams& params,
+                             DirectLevels& levels, transport::DirectLight& direct,
+                             Progress& progress) {
+  LUXEL_CHECK(levels.level.size() == errors.size() && levels.averaged.size() == errors.size());
+  size_t count = 0;
+  for (int level = 0; level < kFinestLevel; ++level) {
+    std::vector<uint32_t> single, averaged;
+    for (uint32_t i = 0; i < errors.size(); ++i) {
+      if (errors[i] <= max_error || levels.level[i] != level) continue;
+      if (!levels.averaged[i])
+        single.push_back(i);
+      else if (level < kFinestAverage)
+        averaged.push_back(i);
+    }
+    const int factor = 1 << (2 * (level + 1));
+    transport::SupersampleParams finer = params;
+    finer.points = params.points * factor;
+    LUXEL_TRY(const transport::Supersampled points,
+              average_texels(world.scene, world.atlas, world.map, world.elements, world.lights,
+                             world.tracer, averaged, finer, direct, progress));
+    direct.rays += points.rays;
+    finer = params;
+    finer.direct.samples = params.direct.samples * factor;
+    LUXEL_TRY_STATUS(direct_light_again(world.scene, world.elements, world.lights, world.tracer,
+                                        single, finer.direct, direct, progress));
+    // Marked as done beneath this level's number, or the next one would take them again.
+    for (const uint32_t i : averaged) levels.level[i] = uint8_t(kDone + level + 1);
+    for (const uint32_t i : single) levels.level[i] = uint8_t(kDone + level + 1);
+    count += single.size() + averaged.size();
+  }
+  for (uint8_t& level : levels.level)
+    if (level >= kDone) level = uint8_t(level - kDone);
+  return count;
+}
+
+}  // namespace luxel::gather

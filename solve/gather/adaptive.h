@@ -1,0 +1,61 @@
+// How sure each texel's light is, and which texels need more rays.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "atlas/atlas.h"
+#include "solve/gather/bounces.h"
+#include "transport/supersample.h"
+
+namespace luxel::gather {
+
+/// Two estimates of the variance of each element's luminance [(W/m^2)^2]: as if its rays were
+/// independent, which is steady but too large, because they are stratified; and the squared
+/// difference of its halves, nearly right in the mean, but a single square.
+struct VariancePair {
+  std::span<const float> independent, split;
+};
+
+/// Stratification gains about as much for neighbours: the first estimate, smoothed, times the ratio
+/// of both, summed over the neighbours of the same chart. docs/baking.md
+std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                    VariancePair variance);
+
+/// Per element, its standard error over its own luminance, or over a tenth of the mean luminance
+/// where it is darker: what nobody sees is not worth the rays. Hidden elements have none.
+std::vector<float> relative_errors(std::span<const float> variance, std::span<const Rgb> irradiance,
+                                   const TracedHits& hits);
+
+/// The value that 95 of 100 elements with an error stay below.
+float percentile_95(std::span<const float> errors);
+
+/// Samples of the next round: of elements whose relative error is larger than max_error two or four
+/// times as many as they have, of others what they have. More than max_samples nobody gets.
+std::vector<uint16_t> next_samples(std::span<const float> errors, float max_error, int max_samples,
+                                   const TracedHits& hits);
+
+/// How finely each element's direct light was looked at.
+struct DirectLevels {
+  std::vector<uint8_t> level;     ///< per element: shadow rays, or points, times 4 to this power
+  std::vector<uint8_t> averaged;  ///< per element: 1 where it is a mean over points of its texel
+};
+/// What direct light is taken from.
+struct DirectWorld {
+  const scene::Scene& scene;
+  const atlas::Atlas& atlas;
+  const atlas::TexelMap& map;
+  const transport::Elements& elements;
+  const transport::Lights& lights;
+  const trace::RayTracer& tracer;
+};
+/// Looks at the direct light of elements whose relative error is larger than max_error again, one
+/// level finer. Returns how many there were: 0 when all are good enough or as fine as they can be.
+/// Errors: cancelled.
+Result<size_t> refine_direct(const DirectWorld& world, std::span<const float> errors,
+                             float max_error, const transport::SupersampleParams& params,
+                             DirectLevels& levels, transport::DirectLight& direct,
+                             Progress& progress);
+
+}  // namespace luxel::gather

@@ -40,6 +40,18 @@ void turn_inside_out(scene::Mesh& mesh) {
   for (auto& [a, b, c] : mesh.triangles) std::swap(b, c);
 }
 
+/// As exporters leave flat shaded meshes: no triangle shares a vertex.
+scene::Mesh with_own_corners(const scene::Mesh& mesh) {
+  scene::Mesh out;
+  for (const auto& t : mesh.triangles) {
+    const auto n = uint32_t(out.positions.size());
+    for (const uint32_t v : t) out.positions.push_back(mesh.positions[v]);
+    out.triangles.push_back({n, n + 1, n + 2});
+  }
+  out.triangle_material = mesh.triangle_material;
+  return out;
+}
+
 /// The share of a mesh's triangles that need a back.
 double open_share(const scene::Scene& scene, size_t mesh = 0) {
   Progress progress;
@@ -63,6 +75,7 @@ TEST(TwoSides, SheetsAndOpenBoxesHaveBacksAndClosedSolidsHaveNone) {
   EXPECT_EQ(share_of(sheet), 1);
   EXPECT_EQ(share_of(box({}, {1, 1, 1}, kSheet, 1)), 1);
   EXPECT_EQ(share_of(box({}, {1, 1, 1}, kSheet)), 0);
+  EXPECT_EQ(share_of(with_own_corners(box({}, {1, 1, 1}, kSheet))), 0);
   EXPECT_EQ(share_of(scene::sphere("ball", 1, 16, 8, kSheet)), 0);
   EXPECT_EQ(share_of(box({}, {1, 1, 1}, kSolid, 1)), 0);  // one-sided
 }
@@ -77,6 +90,9 @@ TEST(TwoSides, WallsHaveAnOutsideWhereLightIsOutside) {
   EXPECT_EQ(open_share(s), 1);
   s.background = {};
   EXPECT_EQ(open_share(s), 0);
+  s.environment = {.width = 1, .height = 1, .radiance = {{1, 1, 1}}};
+  EXPECT_EQ(open_share(s), 1);
+  s.environment = {};
   scene::PunctualLight lamp;
   lamp.position = {0, 1, 0};
   s.lights.push_back(lamp);
@@ -116,12 +132,69 @@ TEST(TwoSides, ARoomThatIsWoundOutwardsIsLitInside) {
   scene::place(s, box({-2, 0, -2}, {2, 3, 2}, kSheet));
   EXPECT_EQ(open_share(s), 0);  // nobody is in it
   s.lights.emplace_back();
+  s.lights[0].position = {0, 9, 0};
+  EXPECT_EQ(open_share(s), 0);  // the lamp is outside
   s.lights[0].position = {0, 2, 0};
   EXPECT_EQ(open_share(s), 1);
   s.lights.clear();
-  scene::place(s, box({-1, 0.5f, -1}, {1, 1, 1}, kSheet));
+  scene::Scene with_shade = s;
+  scene::add_rectangle(with_shade, {-0.2f, 0.2f, -0.2f, 0.2f}, 2, true, kSheet);
+  EXPECT_EQ(open_share(with_shade, 1), 1);  // it sees nothing but backs
+  scene::place(s, box({9, 0.5f, -1}, {11, 1, 1}, kSheet), translation({-10, 0, 0}));
   EXPECT_EQ(open_share(s), 1);
   EXPECT_EQ(open_share(s, 1), 0);  // a solid table
+}
+
+// Light from lamps in a room, where no walk finds the sky.
+TEST(TwoSides, ASheetInAShutRoomHasABack) {
+  scene::Scene s = empty();
+  scene::Mesh room = box({-2, 0, -2}, {2, 3, 2}, kSolid);
+  turn_inside_out(room);
+  scene::place(s, std::move(room));
+  scene::add_rectangle(s, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, true, kSheet);
+  EXPECT_EQ(open_share(s, 1), 1);
+  scene::Mesh booth = box({-1.5f, 0.5f, -1.5f}, {-1, 1, -1}, kSheet);
+  turn_inside_out(booth);
+  scene::place(s, std::move(booth));
+  EXPECT_EQ(open_share(s, 2), 1);
+}
+
+TEST(TwoSides, WhatLiesInASolidHasNone) {
+  scene::Scene s = empty();
+  scene::place(s, box({-2, 0, -2}, {2, 3, 2}, kSolid));
+  scene::add_rectangle(s, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, true, kSheet);
+  EXPECT_EQ(open_share(s, 1), 0);
+}
+
+// A board across a box, joined to its corners: what is shut stays so where the shell sees itself.
+TEST(TwoSides, ABoxWithAPartitionIsShut) {
+  scene::Mesh chambers = box({}, {1, 1, 1}, kSheet);
+  scene::add_quad(chambers, {Vec3{0, 0, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 0}}, kSheet);
+  EXPECT_EQ(share_of(chambers), 0);
+}
+
+// A lid that leaves a fortieth of the top open: walks of four steps from places of five sides get
+// out by a chance of 4 / 40 / 6 or so, 1 in 60.
+TEST(TwoSides, ABoxWithAJointIsShut) {
+  scene::Scene s = empty();
+  scene::place(s, box({}, {1, 1, 1}, kSheet, 1));
+  scene::add_rectangle(s, {0, 0.975f, 0, 1}, 1, true, kSheet);
+  EXPECT_EQ(open_share(s), 0);
+}
+
+// One of many places in the light is enough.
+TEST(TwoSides, AMeshIsLookedAtInSeveralPlaces) {
+  scene::Scene s = empty();
+  scene::add_rectangle(s, {-9, 9, -9, 9}, 0, true, kSolid);
+  scene::Mesh rug;
+  scene::add_quad(rug, {Vec3{-1, 1e-3f, 1}, {1, 1e-3f, 1}, {1, 1e-3f, -1}, {-1, 1e-3f, -1}},
+                  kSheet);
+  scene::place(s, std::move(rug));
+  s.instances.push_back(s.instances[1]);
+  s.instances[2].world_from_object = translation({3, 0, 0});
+  EXPECT_EQ(open_share(s, 1), 0);
+  s.instances[2].world_from_object = translation({3, 1, 0});
+  EXPECT_EQ(open_share(s, 1), 1);
 }
 
 // The hollow of a wall between two boxes, the inner one wound inwards, is closed.
@@ -133,6 +206,7 @@ TEST(TwoSides, TheHollowOfAWallHasNone) {
   scene::place(s, box({-2.8f, -0.8f, -2.8f}, {2.8f, 3.8f, 2.8f}, kSheet));
   scene::place(s, box({-1, 0.5f, -1}, {1, 1, 1}, kSheet));
   EXPECT_EQ(open_share(s, 0), 0);
+  EXPECT_EQ(open_share(s, 1), 0);  // it holds the inner one, of which it sees backs alone
   EXPECT_EQ(open_share(s, 2), 0);
 }
 
@@ -141,6 +215,17 @@ TEST(TwoSides, WhatScattersLightThroughHasTwoSidesInAnyCase) {
   s.materials[kSolid].diffuse_transmission = 0.5f;
   scene::place(s, box({}, {1, 1, 1}, kSolid));
   EXPECT_EQ(open_share(s), 1);
+}
+
+TEST(TwoSides, SidesAreSplitOnce) {
+  scene::Scene s = empty();
+  s.materials[kSheet].diffuse_transmission = 0.5f;
+  scene::add_rectangle(s, {-1, 1, -1, 1}, 0, true, kSheet);
+  for (int k = 0; k < 2; ++k) {
+    Progress progress;
+    EXPECT_TRUE(split_sides(s, atlas::UvMode::unwrap, 64, progress));
+    EXPECT_EQ(s.meshes[0].triangles.size(), 4u);
+  }
 }
 
 TEST(TwoSides, NothingIsAskedOfASceneWithoutSheets) {

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
 
 #include "base/check.h"
-#include "scene/places.h"
+#include "base/random.h"
 
 namespace luxel::scene {
 namespace {
@@ -16,40 +17,75 @@ using Corners = std::array<uint32_t, 3>;
 
 uint64_t key_of(uint32_t low, uint32_t high) { return uint64_t(low) << 32 | high; }
 
-/// Where edges are cut: from the end at the lower place, as a share of the edge.
+bool is_lower(Vec3 p, Vec3 q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); }
+
+/// Equal for equal positions: the sign of zero does not count.
+struct PlaceHash {
+  size_t operator()(Vec3 p) const {
+    const auto bits = [](float x) { return uint64_t(std::bit_cast<uint32_t>(x + 0.0f)); };
+    return size_t(hash64(bits(p.x) << 32 | bits(p.y), bits(p.z)));
+  }
+};
+
+/// Where edges are cut: from the end at the lower place, as a share of the edge. A mesh is cut
+/// along hundreds of planes that each cross a small part of it: only the chosen triangles are
+/// measured.
 class CutEdges {
  public:
   CutEdges(Mesh& mesh, std::span<const uint8_t> chosen, const Plane& plane, double tolerance)
-      : mesh_(mesh), place_(place_numbers(mesh.positions)) {
-    std::vector<double> height(mesh.positions.size());
-    for (size_t v = 0; v < height.size(); ++v)
-      height[v] = plane.height(to_double(mesh.positions[v]));
+      : mesh_(mesh) {
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
-      for (size_t k = 0; chosen[t] && k < 3; ++k) {
-        const auto [low, high] = ends(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-        const double a = height[low], b = height[high];
-        if (std::min(a, b) < -tolerance && std::max(a, b) > tolerance)
-          at_.emplace(key_of(place_[low], place_[high]), float(a / (a - b)));
-      }
+      if (chosen[t]) find_cuts(mesh.triangles[t], plane, tolerance);
   }
 
   bool empty() const { return at_.empty(); }
-  bool cuts(uint32_t a, uint32_t b) const {
-    const auto [low, high] = ends(a, b);
-    return at_.count(key_of(place_[low], place_[high])) > 0;
+  /// Whether a triangle may have cut edges: those have two ends in the box around all of them.
+  bool may_cut(const Corners& c) const {
+    const auto inside = [&](uint32_t v) {
+      const Vec3 p = mesh_.positions[v];
+      return max(box_.lower, p) == p && min(box_.upper, p) == p;
+    };
+    return inside(c[0]) + inside(c[1]) + inside(c[2]) > 1;
   }
+  bool cuts(uint32_t a, uint32_t b) const { return share(a, b) != nullptr; }
   /// The vertex on a cut edge; added when it is asked for the first time.
   uint32_t vertex(uint32_t a, uint32_t b) {
     const auto [low, high] = ends(a, b);
     const auto [found, added] =
         vertex_.emplace(key_of(low, high), uint32_t(mesh_.positions.size()));
-    if (added) add_vertex(low, high, at_.at(key_of(place_[low], place_[high])));
+    if (added) add_vertex(low, high, *share(a, b));
     return found->second;
   }
 
  private:
+  void find_cuts(const Corners& c, const Plane& plane, double tolerance) {
+    std::array<double, 3> height{};
+    for (size_t k = 0; k < 3; ++k) height[k] = plane.height(to_double(mesh_.positions[c[k]]));
+    for (size_t k = 0; k < 3; ++k) {
+      double a = height[k], b = height[(k + 1) % 3];
+      if (std::min(a, b) >= -tolerance || std::max(a, b) <= tolerance) continue;
+      const auto [low, high] = ends(c[k], c[(k + 1) % 3]);
+      if (low != c[k]) std::swap(a, b);
+      at_.emplace(key_of(add_place(low), add_place(high)), float(a / (a - b)));
+    }
+  }
+
+  uint32_t add_place(uint32_t v) {
+    box_.extend(mesh_.positions[v]);
+    return place_.emplace(mesh_.positions[v], uint32_t(place_.size())).first->second;
+  }
+
   std::pair<uint32_t, uint32_t> ends(uint32_t a, uint32_t b) const {
-    return place_[a] < place_[b] ? std::pair(a, b) : std::pair(b, a);
+    return is_lower(mesh_.positions[a], mesh_.positions[b]) ? std::pair(a, b) : std::pair(b, a);
+  }
+
+  /// Null where the edge is not cut.
+  const float* share(uint32_t a, uint32_t b) const {
+    const auto [low, high] = ends(a, b);
+    const auto p = place_.find(mesh_.positions[low]), q = place_.find(mesh_.positions[high]);
+    if (p == place_.end() || q == place_.end()) return nullptr;
+    const auto found = at_.find(key_of(p->second, q->second));
+    return found == at_.end() ? nullptr : &found->second;
   }
 
   void add_vertex(uint32_t low, uint32_t high, float s) {
@@ -65,9 +101,10 @@ class CutEdges {
   }
 
   Mesh& mesh_;
-  std::vector<uint32_t> place_;
-  std::unordered_map<uint64_t, float> at_;         ///< by places
-  std::unordered_map<uint64_t, uint32_t> vertex_;  ///< by vertices
+  std::unordered_map<Vec3, uint32_t, PlaceHash> place_;  ///< numbers of ends of cut edges
+  Box3 box_;                                             ///< around these
+  std::unordered_map<uint64_t, float> at_;               ///< by places
+  std::unordered_map<uint64_t, uint32_t> vertex_;        ///< by vertices
 };
 
 /// The pieces of a triangle whose edges (k, k + 1) are cut where cut[k] says, at middle[k].
@@ -93,8 +130,7 @@ std::vector<Corners> pieces_of(const Mesh& mesh, const Corners& c, const std::ar
     return length(mesh.positions[v] - mesh.positions[w]);
   };
   const float by_a = apart(a, on_b), by_b = apart(b, on_a);
-  const Vec3 &p = mesh.positions[a], &q = mesh.positions[b];
-  const bool a_is_lower = std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+  const bool a_is_lower = is_lower(mesh.positions[a], mesh.positions[b]);
   if (by_a < by_b || (by_a == by_b && a_is_lower))
     return {{on_a, on_b, tip}, {a, b, on_b}, {a, on_b, on_a}};
   return {{on_a, on_b, tip}, {a, b, on_a}, {b, on_b, on_a}};
@@ -137,6 +173,7 @@ std::vector<uint32_t> cut_mesh(Mesh& mesh, std::span<const uint8_t> chosen, cons
   const size_t count = edges.empty() ? 0 : mesh.triangles.size();
   for (uint32_t t = 0; t < count; ++t) {
     const Corners c = mesh.triangles[t];
+    if (!edges.may_cut(c)) continue;
     std::array<bool, 3> cut{};
     std::array<uint32_t, 3> middle{};
     for (size_t k = 0; k < 3; ++k) {
@@ -156,6 +193,7 @@ std::vector<uint32_t> cut_mesh(Mesh& mesh, std::span<const uint8_t> chosen, cons
     }
   }
   if (!mesh.other_side.empty()) mesh.other_side.resize(mesh.triangles.size(), kNone);
+  if (parts.empty()) return part_of;
   const std::vector<uint32_t> before = mesh.other_side;
   for (const auto& [t, pieces] : parts)
     if (t < before[t]) tie_pieces(mesh, pieces, parts.at(before[t]));

@@ -70,6 +70,16 @@ TEST(CutMesh, NeighboursStayJoined) {
   EXPECT_NEAR(area_of(ball), area, 1e-5 * area);  // float positions of new vertices
 }
 
+/// Exporters write -0 beside 0: an edge from either is the same edge.
+TEST(CutMesh, TheSignOfZeroDoesNotPartNeighbours) {
+  Mesh mesh;
+  mesh.positions = {{0, -1, 0},        {1, 0, 0},  {0, 1, 0},
+                    {-0.0f, 1, -0.0f}, {-1, 0, 0}, {-0.0f, -1, 0}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}}, mesh.triangle_material = {0, 0};
+  const std::vector<uint8_t> first{1, 0};
+  EXPECT_EQ(cut_mesh(mesh, first, plane({0, 1, 0}, 0), 1e-6), (std::vector<uint32_t>{0, 1}));
+}
+
 /// A function that is linear over a triangle stays the same one.
 TEST(CutMesh, AttributesFollow) {
   Mesh mesh;

@@ -43,21 +43,27 @@ TEST(Sides, ABackIsTheSamePlaceSeenFromBehind) {
     Mesh mesh = sheet();
     for (const Vec3& p : mesh.positions)
       if (with_normals) mesh.normals.push_back(normalize(Vec3{p.x - 1, p.y, 2}));
-    for (const Vec3& p : mesh.positions) mesh.uv0.push_back({p.x, p.y});
+    for (const Vec3& p : mesh.positions) {
+      mesh.uv0.push_back({p.x, p.y});
+      mesh.uv1.push_back({p.y, 1 - p.x});
+      mesh.colors.push_back({p.x, p.y, 1});
+    }
     Scene scene = scene_of(std::move(mesh));
     add_backs(scene, 0, std::vector<uint8_t>{1, 0});
     ASSERT_EQ(scene.meshes[0].triangles.size(), 3u);
     expect_other_sides(scene, 1);
     const SurfacePoint p{0, 0, {0.2f, 0.3f}};
     const SurfacePoint behind = *other_side_of(scene, p);
-    // The texture goes through: both look it up at the same place.
-    const auto uv = [&](const SurfacePoint& q) {
-      const auto& t = scene.meshes[0].triangles[q.triangle];
-      const auto& uv0 = scene.meshes[0].uv0;
-      return interpolate(uv0[t[0]], uv0[t[1]], uv0[t[2]], q.at);
+    // The texture goes through: both look it up at the same place, and have the same colours.
+    const Mesh& m = scene.meshes[0];
+    const auto at = [&](const auto& values, const SurfacePoint& q) {
+      const auto& t = m.triangles[q.triangle];
+      return interpolate(values[t[0]], values[t[1]], values[t[2]], q.at);
     };
-    EXPECT_NEAR(uv(p).x, uv(behind).x, 1e-6f);
-    EXPECT_NEAR(uv(p).y, uv(behind).y, 1e-6f);
+    EXPECT_LT(length(at(m.uv0, p) - at(m.uv0, behind)), 1e-6f);
+    EXPECT_LT(length(at(m.uv1, p) - at(m.uv1, behind)), 1e-6f);
+    EXPECT_LT(length(at(m.colors, p) - at(m.colors, behind)), 1e-6f);
+    if (with_normals) EXPECT_LT(length(at(m.normals, p) + at(m.normals, behind)), 1e-6f);
     EXPECT_TRUE(material_at(scene, {0, 1, {}}).double_sided);
     EXPECT_FALSE(other_side_of(scene, {0, 1, {}}));
   }
@@ -87,6 +93,11 @@ TEST(Sides, WhatIsNotTheOtherSideIsLeftAlone) {
   EXPECT_EQ(link_sides(scene), 0u);
   EXPECT_TRUE(scene.meshes[0].other_side.empty());
   EXPECT_EQ(scene.materials.size(), 1u);
+  const auto [u, v, w] = scene.meshes[0].triangles[0];
+  scene.meshes[0].triangles[1] = {v, u, w};  // front, back and front again: one has no partner
+  scene.meshes[0].triangles[2] = {u, v, w};
+  EXPECT_EQ(link_sides(scene), 1u);
+  EXPECT_EQ(scene.meshes[0].other_side, (std::vector<uint32_t>{1, 0, kNone}));
   // A leaf whose sides show different parts of a texture with holes.
   Mesh leaf = sheet();
   const auto [a, b, c] = leaf.triangles[0];
@@ -98,6 +109,12 @@ TEST(Sides, WhatIsNotTheOtherSideIsLeftAlone) {
   for (size_t v = 4; v < 8; ++v) leaf.uv0[v].x += 0.5f;
   Scene holes = scene_of(std::move(leaf));
   holes.materials[0].alpha_mode = AlphaMode::mask;
+  EXPECT_EQ(link_sides(holes), 0u);
+  std::swap(holes.meshes[0].uv0, holes.meshes[0].uv1);
+  EXPECT_EQ(link_sides(holes), 0u);
+  holes.meshes[0].uv1.clear();
+  add_material(holes, "other holes", {0.5f, 0.5f, 0.5f});
+  holes.meshes[0].triangle_material[1] = 1;
   EXPECT_EQ(link_sides(holes), 0u);
   holes.materials[0].alpha_mode = AlphaMode::opaque;
   EXPECT_EQ(link_sides(holes), 1u);

@@ -9,6 +9,7 @@
 #include "export/baked_glb.h"
 #include "image/codec.h"
 #include "image/color.h"
+#include "scene/shapes.h"
 #include "tests/command.h"
 
 namespace luxel::testing_support {
@@ -287,6 +288,49 @@ TEST_F(ViewHtml, StartsWithAnyCamera) {
     const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
     expect_same(difference(shot.picture, preview, 3, every_pixel), std::to_string(i).c_str());
   }
+}
+
+// Where a pixel's middle lies beside a face that is seen edge-on, the light is looked up on the
+// face all the same, and not where its plane goes on in the atlas. A block under a sun, its sides
+// slanted so that a camera above sees a fifth of a pixel of them: nothing is as dark as its bottom.
+TEST_F(ViewHtml, FacesSeenEdgeOnHaveTheirOwnLight) {
+  scene::Scene scene;
+  const uint32_t white = scene::add_material(scene, "white", {0.5f, 0.5f, 0.5f});
+  const float a = 1, b = 4.0f / 3 + 1e-3f;  // rays from 4 m up that pass the top go by the sides
+  scene::Mesh block;
+  const std::array<Vec3, 4> top{{{-a, 1, a}, {a, 1, a}, {a, 1, -a}, {-a, 1, -a}}};
+  const std::array<Vec3, 4> foot{{{-b, 0, b}, {b, 0, b}, {b, 0, -b}, {-b, 0, -b}}};
+  scene::add_quad(block, top, white);
+  scene::add_quad(block, {foot[3], foot[2], foot[1], foot[0]}, white);
+  for (size_t k = 0; k < 4; ++k) {
+    const size_t next = (k + 1) % 4;
+    scene::add_quad(block, {foot[k], foot[next], top[next], top[k]}, white);
+  }
+  scene::place(scene, std::move(block));
+  // What lies under the floor is dark and fills most of the atlas.
+  for (const float y : {-0.5f, -1.0f, -1.5f, -2.0f, -2.5f})
+    scene::add_rectangle(scene, {-3, 3, -3, 3}, y, true, white);
+  scene.lights.emplace_back();
+  scene.lights[0].kind = scene::PunctualLight::Kind::directional;
+  scene.lights[0].intensity = {3, 3, 3};
+  scene.cameras.emplace_back();
+  const Vec3 right = normalize({1, 0, 0.1f}), up = normalize({0.1f, 0, -1});
+  scene.cameras[0].world_from_camera = from_columns(right, up, {0, 1, 0}, {0, 4, 0});
+  const ScratchFolder s;
+  ASSERT_TRUE(write_file_atomically(s.path / "block.glb", *export_::scene_glb(scene)));
+  if (!bake((s.path / "block.glb").string(), s.path / "b", "--resolution 256 --samples 64")) return;
+  const image::Image8 preview = picture_of(s.path / "b" / "preview.png");
+  const Shot shot = shoot((s.path / "b" / "view.html").string() + "#bare", preview);
+  const auto darkest = [](const image::Image8& picture) {
+    uint8_t least = 255;
+    for (size_t i = 0; i < picture.data.size(); i += 4) least = std::min(least, picture.data[i]);
+    return int(least);
+  };
+  // Sides have some third of the light around them; of a pixel's samples there are 4 here and 9 in
+  // the preview, blended after the tone curve here and before it there. Looked up in the dark, one
+  // sample of 4 took 50 from the pixel's 200.
+  EXPECT_GT(darkest(preview), 100);
+  EXPECT_GT(darkest(shot.picture), darkest(preview) - 15);
 }
 
 // A plate of reflectance 1/2 that sees nothing but a white sky of radiance 1: E = pi. Its

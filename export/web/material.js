@@ -39,7 +39,8 @@ in vec2 uv;
 #ifdef HAS_UV2
 in vec2 uv2;
 #endif
-out vec2 atLight, atMap, atMetal, atEmission;
+centroid out vec2 atLight;
+out vec2 atMap, atMetal, atEmission;
 out vec3 tint;
 void main() {
   atLight = uv1;
@@ -66,7 +67,10 @@ uniform sampler2D light, map, metal, glow;
 uniform vec3 baseColor, emission;
 uniform float alpha, cutoff, metallic, lightScale, exposure;
 uniform int show;
-in vec2 atLight, atMap, atMetal, atEmission;
+// At pixels that a triangle covers in part, the middle can lie outside of it: far away in the atlas,
+// on nothing, where the triangle is seen edge-on. The light map has no mipmaps that need it even.
+centroid in vec2 atLight;
+in vec2 atMap, atMetal, atEmission;
 in vec3 tint;
 out vec4 pixel;
 ${toneMap}

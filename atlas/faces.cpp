@@ -1,34 +1,17 @@
 #include "atlas/faces.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 #include "atlas/atlas.h"
 #include "base/check.h"
 #include "base/parallel.h"
+#include "scene/places.h"
 
 namespace luxel::atlas {
 namespace {
 
-/// Per vertex, the lowest vertex at the same position.
-std::vector<uint32_t> weld(const std::vector<Vec3>& positions) {
-  std::vector<uint32_t> order(positions.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto key = [&](uint32_t v) {
-    const Vec3& p = positions[v];
-    return std::tuple(p.x, p.y, p.z, v);
-  };
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-  std::vector<uint32_t> first(positions.size());
-  for (size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && positions[order[i]] == positions[order[i - 1]];
-    first[order[i]] = same ? first[order[i - 1]] : order[i];
-  }
-  return first;
-}
-
-/// An edge of a face, named by its welded ends in ascending order.
+/// An edge of a face, named by the places of its ends in ascending order.
 struct HalfEdge {
   uint32_t low, high, face;
   uint8_t side;  ///< runs from corner `side` to the next
@@ -64,13 +47,13 @@ void join_around_edge(const HalfEdge* edges, size_t count, Faces& faces) {
   }
 }
 
-void join_faces(const scene::Mesh& mesh, const std::vector<uint32_t>& welded, uint32_t first,
+void join_faces(const scene::Mesh& mesh, const std::vector<uint32_t>& place, uint32_t first,
                 Faces& faces) {
   std::vector<HalfEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (uint8_t k = 0; k < 3; ++k) {
-      const uint32_t a = welded[mesh.triangles[t][k]], b = welded[mesh.triangles[t][(k + 1) % 3]];
+      const uint32_t a = place[mesh.triangles[t][k]], b = place[mesh.triangles[t][(k + 1) % 3]];
       if (a != b) edges.push_back({std::min(a, b), std::max(a, b), first + t, k, a < b});
     }
   std::sort(edges.begin(), edges.end());
@@ -91,8 +74,9 @@ Faces make_faces(const scene::Scene& scene) {
   faces.normal.resize(first.back());
   faces.area.resize(first.back());
   faces.across.assign(first.back(), {kNone, kNone, kNone});
-  std::vector<std::vector<uint32_t>> welded(scene.meshes.size());
-  for (size_t m = 0; m < scene.meshes.size(); ++m) welded[m] = weld(scene.meshes[m].positions);
+  std::vector<std::vector<uint32_t>> places(scene.meshes.size());
+  for (size_t m = 0; m < scene.meshes.size(); ++m)
+    places[m] = scene::place_numbers(scene.meshes[m].positions);
 
   parallel_for(scene.instances.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -106,7 +90,7 @@ Faces make_faces(const scene::Scene& scene) {
         faces.normal[first[i] + t] = normalize(area2);
         faces.area[first[i] + t] = 0.5 * length(area2);
       }
-      join_faces(scene.meshes[instance.mesh], welded[instance.mesh], first[i], faces);
+      join_faces(scene.meshes[instance.mesh], places[instance.mesh], first[i], faces);
     }
   });
   return faces;

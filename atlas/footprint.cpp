@@ -5,6 +5,7 @@
 
 #include "atlas/cover.h"
 #include "base/random.h"
+#include "scene/drawn_triangle.h"
 
 namespace luxel::atlas {
 namespace {
@@ -20,11 +21,6 @@ std::optional<Barycentric> found_in(const std::array<Vec2, 3>& corners, DVec2 p)
   const double u = cross(p - a, ac) / area2, v = cross(ab, p - a) / area2;
   if (u < 0 || v < 0 || u + v > 1) return std::nullopt;
   return Barycentric{float(u), std::min(float(v), 1 - float(u))};
-}
-
-uint32_t instance_of(const Atlas& atlas, uint32_t triangle) {
-  const auto& first = atlas.first_triangle;
-  return uint32_t(std::upper_bound(first.begin(), first.end(), triangle) - first.begin()) - 1;
 }
 
 /// Calls visit(k, triangle) for every triangle, in ascending order, and every texel k that it
@@ -75,8 +71,8 @@ void spread_points(const Atlas& atlas, const Texel& texel, std::span<const uint3
     for (const uint32_t triangle : cover) {
       const auto at = found_in(atlas.corners[triangle], p);
       if (!at) continue;
-      const uint32_t instance = instance_of(atlas, triangle);
-      points.push_back({instance, triangle - atlas.first_triangle[instance], *at});
+      const auto drawn = scene::drawn_triangle(atlas.first_triangle, triangle);
+      points.push_back({drawn.instance, drawn.triangle, *at});
       break;
     }
   }

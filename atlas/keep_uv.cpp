@@ -5,19 +5,17 @@
 #include <tuple>
 
 #include "atlas/cover.h"
+#include "scene/drawn_triangle.h"
 
 namespace luxel::atlas {
 namespace {
 
 /// What a user can find a drawn triangle by.
 std::string triangle_name(const scene::Scene& scene, const Atlas& atlas, uint32_t number) {
-  const auto after =
-      std::upper_bound(atlas.first_triangle.begin(), atlas.first_triangle.end(), number);
-  const auto instance = uint32_t(after - atlas.first_triangle.begin() - 1);
+  const auto [instance, triangle] = scene::drawn_triangle(atlas.first_triangle, number);
   const scene::Instance& placed = scene.instances[instance];
   const std::string& mesh = scene.meshes[placed.mesh].name;
-  return fmt::format("triangle {} of mesh '{}' (instance {} '{}')",
-                     number - atlas.first_triangle[instance],
+  return fmt::format("triangle {} of mesh '{}' (instance {} '{}')", triangle,
                      mesh.empty() ? fmt::format("{}", placed.mesh) : mesh, instance, placed.name);
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "scene/drawn_triangle.h"
+
 namespace luxel::atlas {
 namespace {
 
@@ -56,16 +58,12 @@ double side_of(const Faces& faces, const std::vector<ChartFaces>& groups, int pa
   return std::sqrt(area / 0.8 / pages);
 }
 
-uint32_t instance_of(const std::vector<uint32_t>& first_triangle, uint32_t face) {
-  const auto after = std::upper_bound(first_triangle.begin(), first_triangle.end(), face);
-  return uint32_t(after - first_triangle.begin() - 1);
-}
-
 std::vector<uint32_t> instances_of(const scene::Scene& scene,
                                    const std::vector<FlatChart>& charts) {
   const std::vector<uint32_t> first = scene::first_triangles(scene);
   std::vector<uint32_t> out;
-  for (const FlatChart& chart : charts) out.push_back(instance_of(first, chart.faces.front()));
+  for (const FlatChart& chart : charts)
+    out.push_back(scene::drawn_triangle(first, chart.faces.front()).instance);
   return out;
 }
 
@@ -98,7 +96,8 @@ Status check_lengths(const scene::Scene& scene, const std::vector<FlatChart>& ch
     const double length_m = std::max(chart.size.x, chart.size.y);
     const double texels = length_m * double(params.texels_per_metre) + 1;
     if (texels <= params.resolution) continue;
-    const uint32_t i = instance_of(scene::first_triangles(scene), chart.faces.front());
+    const uint32_t i =
+        scene::drawn_triangle(scene::first_triangles(scene), chart.faces.front()).instance;
     const std::string advice =
         texels <= kMaxResolution
             ? fmt::format("raise --resolution to {}", std::bit_ceil(unsigned(std::ceil(texels))))
@@ -161,7 +160,7 @@ std::vector<OwnPage> pages_per_instance(const scene::Scene& scene, const Faces& 
   const std::vector<uint32_t> first = scene::first_triangles(scene);
   std::vector<OwnPage> pages(scene.instances.size());
   for (const ChartFaces& group : groups)
-    pages[instance_of(first, group.front())].groups.push_back(group);
+    pages[scene::drawn_triangle(first, group.front()).instance].groups.push_back(group);
   std::erase_if(pages, [](const OwnPage& page) { return page.groups.empty(); });
   for (OwnPage& page : pages) page.side_m = side_of(faces, page.groups, 1);
   return pages;

@@ -3,6 +3,7 @@
 #include "atlas/atlas.h"
 #include "atlas/cover.h"
 #include "base/parallel.h"
+#include "scene/drawn_triangle.h"
 
 namespace luxel::atlas {
 namespace {
@@ -114,7 +115,8 @@ std::vector<Owner> find_owners(const Atlas& atlas, const std::vector<uint32_t>& 
 std::vector<Texel> band_texels(const Atlas& atlas, const std::vector<Owner>& owners, Span rows) {
   const int n = atlas.resolution;
   std::vector<Texel> texels;
-  uint32_t cached = kNone, instance = 0;
+  uint32_t cached = kNone;
+  scene::DrawnTriangle drawn;
   std::array<DVec2, 3> corners;
   UvTriangle triangle;
   for (size_t k = 0; k < owners.size(); ++k) {
@@ -122,9 +124,7 @@ std::vector<Texel> band_texels(const Atlas& atlas, const std::vector<Owner>& own
     if (o.triangle == kNone) continue;
     if (o.triangle != cached) {
       cached = o.triangle;
-      const auto after =
-          std::upper_bound(atlas.first_triangle.begin(), atlas.first_triangle.end(), o.triangle);
-      instance = uint32_t(after - atlas.first_triangle.begin() - 1);
+      drawn = scene::drawn_triangle(atlas.first_triangle, o.triangle);
       const auto& c = atlas.corners[o.triangle];
       corners = {to_double(c[0]), to_double(c[1]), to_double(c[2])};
       triangle = uv_triangle(corners);
@@ -132,7 +132,7 @@ std::vector<Texel> band_texels(const Atlas& atlas, const std::vector<Owner>& own
     Texel texel;
     texel.x = uint32_t(k % size_t(n));
     texel.y = uint32_t(rows.begin) + uint32_t(k / size_t(n));
-    texel.sample = {instance, o.triangle - atlas.first_triangle[instance],
+    texel.sample = {drawn.instance, drawn.triangle,
                     sample_in(corners, triangle, int(texel.x), int(texel.y))};
     texel.triangle_number = o.triangle;
     texel.centre_covered = o.centre;

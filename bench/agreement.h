@@ -10,15 +10,16 @@
 
 namespace luxel::bench {
 
-/// A scene on which every solver must agree with the path tracer.
+/// A scene on which solvers must agree with the path tracer.
 struct AgreementScene {
   std::string name;
   scene::Scene scene;
   int resolution = 64;
   std::string shows;  ///< what kind of light it is there for
 };
-/// Six of them: area light, lamp in a closed room, curved surfaces under a sky, every kind of lamp
-/// with textures and masks, sun through a window, the same from a map.
+/// Area light, lamp in a closed room, curved surfaces under a sky, every kind of lamp with textures
+/// and masks, sun through a window, the same from a map, sun through coloured panes, sky and
+/// indirect light through coloured glass.
 std::vector<AgreementScene> agreement_scenes();
 
 /// The judge's answer, twice, from independent paths.

@@ -126,6 +126,42 @@ scene::Scene window() {
   return s;
 }
 
+uint32_t add_glass(scene::Scene& s, std::string name, Rgb color) {
+  const uint32_t glass = scene::add_material(s, std::move(name), color);
+  s.materials[glass].transmission = 0.8f;
+  s.materials[glass].double_sided = true;
+  return glass;
+}
+
+/// window() with panes of amber and blue in its opening, and no light but that of the sun.
+scene::Scene sun_through_glass() {
+  scene::Scene s = window();
+  s.background = {};
+  const uint32_t amber = add_glass(s, "amber", {0.9f, 0.6f, 0.2f});
+  const uint32_t blue = add_glass(s, "blue", {0.3f, 0.5f, 0.9f});
+  scene::Mesh panes;
+  panes.name = "panes";
+  const float y0 = 1, y1 = 2.2f, z = 2;
+  scene::add_quad(panes, {Vec3{0, y0, z}, {-0.8f, y0, z}, {-0.8f, y1, z}, {0, y1, z}}, amber);
+  scene::add_quad(panes, {Vec3{0.8f, y0, z}, {0, y0, z}, {0, y1, z}, {0.8f, y1, z}}, blue);
+  scene::place(s, std::move(panes));
+  return s;
+}
+
+/// The same under window()'s sky, with a screen of green glass across the room: what is behind it
+/// has most of its light from surfaces and sky, through glass.
+scene::Scene coloured_glass() {
+  scene::Scene s = sun_through_glass();
+  s.background = window().background;
+  const uint32_t green = add_glass(s, "green", {0.4f, 0.9f, 0.5f});
+  scene::Mesh screen;
+  screen.name = "screen";
+  const float x = 1.6f, y0 = 0.2f, y1 = 2.7f, z = -0.3f;
+  scene::add_quad(screen, {Vec3{-x, y0, z}, {x, y0, z}, {x, y1, z}, {-x, y1, z}}, green);
+  scene::place(s, std::move(screen));
+  return s;
+}
+
 /// A map of the sky: bright above, dim below, and a sun of two pixels that is 20,000 times as
 /// bright, where window() has its own.
 scene::Environment sky_map() {
@@ -142,6 +178,14 @@ scene::Environment sky_map() {
 scene::Scene window_to_a_sky_map() {
   scene::Scene s = window();
   s.lights.clear(), s.background = {};
+  s.lights.clear();
+  {
+    scene::Mesh lamp;
+    lamp.name = "lamp";
+    const uint32_t e = scene::add_material(s, "e", gray(0.2f), {6, 5, 3});
+    scene::add_quad(lamp, {Vec3{-1, 1.5f, 3}, {-1, 3, 3}, {1, 3, 3}, {1, 1.5f, 3}}, e);
+    scene::place(s, std::move(lamp));
+  }
   s.environment = sky_map();
   return s;
 }
@@ -155,7 +199,10 @@ std::vector<AgreementScene> agreement_scenes() {
           {"every lamp", every_lamp(), 128,
            "point, spot and sun, an emissive texture, a textured floor, a mask with holes"},
           {"window", window(), 96, "sky and a broad sun through an opening"},
-          {"sky map", window_to_a_sky_map(), 96, "the same under an environment with a sun"}};
+          {"sky map", window_to_a_sky_map(), 96, "the same under an environment with a sun"},
+          {"sun through glass", sun_through_glass(), 96, "the sun through panes of two colours"},
+          {"coloured glass", coloured_glass(), 96,
+           "sky and indirect light through panes and a screen of coloured glass"}};
 }
 
 }  // namespace luxel::bench

@@ -1,4 +1,4 @@
-// Five small scenes by every solver, against the path tracer.
+// Small scenes by every solver, against the path tracer.
 #include <fmt/format.h>
 
 #include "bench/agreement.h"
@@ -34,8 +34,7 @@ Result<Section> validate_agreement(Progress& progress) {
   }
   section.markdown = fmt::format(
       "## Solvers against the path tracer\n\n"
-      "Five small scenes, one row per solver: a new solver adds its rows by itself. The judge is "
-      "two "
+      "Small scenes, one row per solver: a new solver adds its rows by itself. The judge is two "
       "independent runs of {} paths per texel;\nthe mean of (g - a)(g - b) over both leaves the "
       "solver's own error, without the judge's noise. gather: {} rays, {} shadow rays; "
       "hemicube: up to {} vertices. The path tracer's own\nrow is a third run of {} paths: what is "

@@ -12,6 +12,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "display/draw.h"
+#include "scene/drawn_triangle.h"
 #include "trace/camera_rays.h"
 
 namespace luxel::display {
@@ -155,9 +156,8 @@ View look(const scene::Scene& scene, const trace::RayTracer& tracer,
     scratch[number].area_m2 += area;
   }
   for (uint32_t number : touched) {
-    const uint32_t instance =
-        uint32_t(std::upper_bound(first.begin(), first.end(), number) - first.begin()) - 1;
-    const float whole = area_m2(world_triangle(scene, instance, number - first[instance]));
+    const auto [instance, triangle] = scene::drawn_triangle(first, number);
+    const float whole = area_m2(world_triangle(scene, instance, triangle));
     view.area_m2 += double(std::min(scratch[number].area_m2, whole));
     view.detail += std::sqrt(double(scratch[number].rays));
     scratch[number] = {};

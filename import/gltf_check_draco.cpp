@@ -39,13 +39,9 @@ bool is_draco(const Json& primitive) {
 }
 
 Status check_draco(const Json& document, const std::string& file) {
-  const Json& meshes = list_of(document, "meshes");
-  for (size_t m = 0; m < meshes.size(); ++m)
-    for (size_t p = 0; p < meshes[m]["primitives"].size(); ++p)
-      LUXEL_TRY_STATUS(check_primitive(
-          document, meshes[m]["primitives"][p],
-          fmt::format("{}: {}, primitive {}", file, name_of("mesh", m, meshes[m]), p)));
-  return {};
+  return check_primitives(document, file, [&](const Json& primitive, const std::string& where) {
+    return check_primitive(document, primitive, where);
+  });
 }
 
 }  // namespace luxel::import

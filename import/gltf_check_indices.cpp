@@ -95,6 +95,19 @@ Status check_index(const Json& document, const Json& holder, const char* key, co
   return {};
 }
 
+Status check_primitives(
+    const Json& document, const std::string& file,
+    const std::function<Status(const Json& primitive, const std::string& where)>& check) {
+  const Json& meshes = list_of(document, "meshes");
+  for (size_t m = 0; m < meshes.size(); ++m) {
+    const Json& primitives = meshes[m]["primitives"];
+    for (size_t p = 0; p < primitives.size(); ++p)
+      LUXEL_TRY_STATUS(check(primitives[p], fmt::format("{}: {}, primitive {}", file,
+                                                        name_of("mesh", m, meshes[m]), p)));
+  }
+  return {};
+}
+
 Result<const Json*> extension_of(const Json& object, const char* name, const std::string& where) {
   const auto extensions = object.find("extensions");
   if (extensions == object.end() || !extensions->is_object()) return nullptr;
@@ -149,12 +162,10 @@ Status check_indices(const Json& document, const std::string& file) {
       LUXEL_TRY_STATUS(check_index(document, list[i], r.key, r.target,
                                    file + ": " + name_of(r.kind, i, list[i])));
   }
-  const Json& meshes = list_of(document, "meshes");
-  for (size_t m = 0; m < meshes.size(); ++m)
-    for (size_t p = 0; p < meshes[m]["primitives"].size(); ++p)
-      LUXEL_TRY_STATUS(check_primitive(
-          document, meshes[m]["primitives"][p],
-          fmt::format("{}: {}, primitive {}", file, name_of("mesh", m, meshes[m]), p)));
+  LUXEL_TRY_STATUS(
+      check_primitives(document, file, [&](const Json& primitive, const std::string& where) {
+        return check_primitive(document, primitive, where);
+      }));
   const Json& textures = list_of(document, "textures");
   for (size_t i = 0; i < textures.size(); ++i)
     LUXEL_TRY_STATUS(check_texture_extensions(document, textures[i],

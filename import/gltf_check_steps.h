@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -32,6 +33,12 @@ std::string name_of(const char* kind, size_t index, const Json& object);
 
 /// The list under a key; empty when absent. Only after check_lists().
 const Json& list_of(const Json& document, const char* key);
+
+/// Calls check(primitive, where) for every primitive of every mesh until one fails. Only after
+/// check_lists().
+Status check_primitives(
+    const Json& document, const std::string& file,
+    const std::function<Status(const Json& primitive, const std::string& where)>& check);
 
 /// The object's extension of this name, or null. Errors: it is not an object.
 Result<const Json*> extension_of(const Json& object, const char* name, const std::string& where);

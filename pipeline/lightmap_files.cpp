@@ -7,15 +7,13 @@
 #include "image/codec.h"
 #include "image/rgbe.h"
 #include "image/rgbm.h"
+#include "pipeline/comma_list.h"
 
 namespace luxel::pipeline {
 
 Result<LightmapFormats> parse_formats(std::string_view text) {
   LightmapFormats formats;
-  for (size_t begin = 0; begin <= text.size();) {
-    const size_t end = std::min(text.find(',', begin), text.size());
-    const std::string_view one = text.substr(begin, end - begin);
-    begin = end + 1;
+  for (const std::string_view one : split_at_commas(text)) {
     if (one == "hdr")
       formats.hdr = true;
     else if (one == "rgbm")

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "pipeline/comma_list.h"
+
 namespace luxel::pipeline {
 namespace {
 
@@ -132,14 +134,12 @@ std::string overlay_names() {
 
 Result<std::vector<std::string>> parse_overlays(std::string_view text) {
   std::vector<std::string> out;
-  while (!text.empty()) {
-    const size_t comma = std::min(text.find(','), text.size());
-    const std::string_view name = text.substr(0, comma);
+  if (text.empty()) return out;
+  for (const std::string_view name : split_at_commas(text)) {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end())
       return fail(ErrorCode::bad_setting, "--overlay {} is not known; there is: {}", name,
                   overlay_names());
     out.emplace_back(name);
-    text.remove_prefix(std::min(text.size(), comma + 1));
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include "atlas/pages.h"
 #include "export/view_page.h"
 #include "import/environment.h"
+#include "pipeline/comma_list.h"
 #include "pipeline/solvers.h"
 #include "scene/validate.h"
 #include "solve/hemicube/hemicube.h"
@@ -30,14 +31,13 @@ std::optional<double> parse_number(std::string_view text) {
 
 /// Three numbers with commas between them.
 std::optional<std::array<double, 3>> parse_triple(std::string_view text) {
+  const std::vector<std::string_view> words = split_at_commas(text);
+  if (words.size() != 3) return std::nullopt;
   std::array<double, 3> values{};
-  for (int k = 0; k < 3; ++k) {
-    const size_t comma = k < 2 ? text.find(',') : text.size();
-    if (comma == std::string_view::npos) return std::nullopt;
-    const auto value = parse_number(text.substr(0, comma));
+  for (size_t k = 0; k < 3; ++k) {
+    const auto value = parse_number(words[k]);
     if (!value) return std::nullopt;
-    values[size_t(k)] = *value;
-    text.remove_prefix(std::min(text.size(), comma + 1));
+    values[k] = *value;
   }
   return values;
 }

@@ -9,22 +9,13 @@
 
 #include "base/text_tables.h"
 #include "base/vec_double.h"
+#include "pipeline/comma_list.h"
 #include "scene/solar_position.h"
 
 namespace luxel::pipeline {
 namespace {
 
 constexpr double kDegree = kPiDouble / 180;
-
-std::vector<std::string_view> split(std::string_view text) {
-  std::vector<std::string_view> out;
-  for (size_t comma; (comma = text.find(',')) != std::string_view::npos;) {
-    out.push_back(text.substr(0, comma));
-    text.remove_prefix(comma + 1);
-  }
-  out.push_back(text);
-  return out;
-}
 
 int days_in(int month, int year) {
   constexpr std::array kDays{31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
@@ -127,7 +118,7 @@ Result<SkySetting> by_direction(std::string_view text, const std::vector<std::st
 }  // namespace
 
 Result<SkySetting> parse_sky(std::string_view text) {
-  const std::vector<std::string_view> words = split(text);
+  const std::vector<std::string_view> words = split_at_commas(text);
   const bool has_time = words[0].find('T') != std::string_view::npos;
   LUXEL_TRY(const SkySetting out, has_time ? by_time(text, words) : by_direction(text, words));
   if (!(out.turbidity >= 1 && out.turbidity <= 10))

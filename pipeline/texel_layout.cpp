@@ -4,6 +4,7 @@
 
 #include "atlas/cut_charts.h"
 #include "base/parallel.h"
+#include "scene/drawn_triangle.h"
 #include "transport/barriers.h"
 #include "transport/open_samples.h"
 
@@ -54,15 +55,13 @@ Vec2 between(Vec2 a, Vec2 b, float s) { return a * (1 - s) + b * s; }
 /// The place of a drawn triangle's plane half a texel from an edge, on its side of it.
 transport::Place beside_edge(const scene::Scene& scene, const atlas::Atlas& atlas,
                              uint32_t triangle, Vec2 on_edge, Vec2 along) {
-  const auto after =
-      std::upper_bound(atlas.first_triangle.begin(), atlas.first_triangle.end(), triangle);
-  const auto instance = uint32_t(after - atlas.first_triangle.begin() - 1);
+  const auto drawn = scene::drawn_triangle(atlas.first_triangle, triangle);
   const auto& corners = atlas.corners[triangle];
   const Vec2 middle = (corners[0] + corners[1] + corners[2]) * (1.0f / 3);
   Vec2 inwards = Vec2{-along.y, along.x} * (0.5f / std::max(length(along), 1e-6f));
   if (dot(inwards, middle - on_edge) < 0) inwards = inwards * -1.0f;
   const Barycentric at = atlas::barycentric_in(corners, on_edge + inwards);
-  return transport::place_of(scene, {instance, triangle - atlas.first_triangle[instance], at});
+  return transport::place_of(scene, {drawn.instance, drawn.triangle, at});
 }
 
 /// The stretches of one seam that are open, whole texels each.

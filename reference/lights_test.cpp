@@ -29,6 +29,13 @@ Points floor_points() {
   return points;
 }
 
+/// A square of 1 m at height 1, front down, that the texture fills.
+void add_textured_lamp(scene::Scene& scene) {
+  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, false, 0);
+  for (const Vec3& p : scene.meshes[0].positions)
+    scene.meshes[0].uv0.push_back({p.x + 0.5f, p.z + 0.5f});
+}
+
 /// pi L F of a rectangle at height y, seen from floor_points().
 std::vector<double> rectangle_light(const Points& points, double x0, double x1, double z0,
                                     double z1, double y, double radiance) {
@@ -97,9 +104,7 @@ TEST(Lights, ATexturedLampShinesWhereItIsBright) {
   texture.rgba[0] = texture.rgba[1] = texture.rgba[2] = 255;  // (0, 0), the corner of low u and v
   scene.textures.push_back(texture);
   scene.materials[0].emission_texture = {.texture = 0, .filter = scene::Filter::nearest};
-  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, false, 0);
-  for (const Vec3& p : scene.meshes[0].positions)
-    scene.meshes[0].uv0.push_back({p.x + 0.5f, p.z + 0.5f});
+  add_textured_lamp(scene);
   const Points points = floor_points();
   expect_unbiased(solve(scene, points, kDirect), rectangle_light(points, -0.5, 0, -0.5, 0, 1, 2));
 }
@@ -114,9 +119,7 @@ TEST(Lights, ABrightRowBringsWhatItsGeometryWould) {
   for (size_t k = 0; k < 4; ++k) texture.rgba[4 * 5 + k] = 255;
   scene.textures.push_back(texture);
   scene.materials[0].emission_texture = {.texture = 0, .filter = scene::Filter::nearest};
-  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, false, 0);
-  for (const Vec3& p : scene.meshes[0].positions)
-    scene.meshes[0].uv0.push_back({p.x + 0.5f, p.z + 0.5f});
+  add_textured_lamp(scene);
   const Points points = floor_points();
   expect_unbiased(solve(scene, points, {.samples = 8000, .bounces = 0}),
                   rectangle_light(points, -0.5, 0.5, 5.0 / 16 - 0.5, 6.0 / 16 - 0.5, 1, 2));
@@ -132,9 +135,7 @@ TEST(Lights, AMaskedLampShinesFromItsSolidPart) {
   scene.textures.push_back(texture);
   scene.materials[0].base_color_texture = {.texture = 0, .filter = scene::Filter::nearest};
   scene.materials[0].alpha_mode = scene::AlphaMode::mask;
-  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, false, 0);
-  for (const Vec3& p : scene.meshes[0].positions)
-    scene.meshes[0].uv0.push_back({p.x + 0.5f, p.z + 0.5f});
+  add_textured_lamp(scene);
   // Behind the lamp, seen through its holes: another lamp, all of it solid.
   scene::add_material(scene, "behind", {}, gray(3));
   scene::add_rectangle(scene, {2, 4, -0.5f, 0.5f}, 2, false, 1);

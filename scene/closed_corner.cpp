@@ -1,4 +1,5 @@
 // A house of sheets: what shines through a lightmap's walls.
+#include "scene/place_camera.h"
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 
@@ -33,14 +34,8 @@ Scene closed_corner() {
   sun.angular_radius_rad = 0.00465f;
   scene.lights.push_back(sun);
   scene.background = {0.5f, 0.7f, 1.0f};
-  Camera outside, inside;
-  outside.name = "outside";
-  outside.world_from_camera = look_at({5.2f, 3.4f, 6.4f}, {0, 0.8f, 0}, {0, 1, 0});
-  outside.fov_y_rad = 0.8f;
-  inside.name = "inside";
-  inside.world_from_camera = look_at({-0.9f, 1.7f, -0.9f}, {1.2f, 0.5f, 1}, {0, 1, 0});
-  inside.fov_y_rad = 1.2f;
-  scene.cameras = {outside, inside};
+  place_camera(scene, "outside", {5.2f, 3.4f, 6.4f}, {0, 0.8f, 0}, 0.8f);
+  place_camera(scene, "inside", {-0.9f, 1.7f, -0.9f}, {1.2f, 0.5f, 1}, 1.2f);
   return scene;
 }
 

@@ -1,5 +1,6 @@
 // Leaves over a floor: masks with holes, two sides, light scattered through.
 #include "base/random.h"
+#include "scene/place_camera.h"
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 
@@ -74,11 +75,7 @@ Scene foliage() {
   sun.direction = normalize(Vec3{-0.37f, -1, -0.21f});
   sun.intensity = {9, 8.2f, 7};
   scene.lights.push_back(sun);
-  Camera camera;
-  camera.name = "front";
-  camera.world_from_camera = look_at({0.9f, 1.1f, 3.6f}, {0, 0.55f, 0}, {0, 1, 0});
-  camera.fov_y_rad = 0.75f;
-  scene.cameras.push_back(camera);
+  place_camera(scene, "front", {0.9f, 1.1f, 3.6f}, {0, 0.55f, 0}, 0.75f);
   return scene;
 }
 

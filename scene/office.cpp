@@ -1,5 +1,6 @@
 // An office in the manner of [Hardt96, figure 7-1], which gives no sizes: about sixty
 // quadrilaterals, two area lights.
+#include "scene/place_camera.h"
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 
@@ -100,16 +101,8 @@ Scene office() {
   place_chair(scene, p);
   place_shelf(scene, p);
 
-  const auto add_camera = [&](const char* name, Vec3 eye, Vec3 target, float fov_y_rad) {
-    Camera camera;
-    camera.name = name;
-    camera.world_from_camera = look_at(eye, target, {0, 1, 0});
-    camera.fov_y_rad = fov_y_rad;
-    camera.aspect = 4.0f / 3;
-    scene.cameras.push_back(camera);
-  };
-  add_camera("door", {2.1f, 1.6f, 1.75f}, {-0.5f, 0.75f, -1.2f}, 0.95f);
-  add_camera("bird", {0.6f, 6.5f, 3.2f}, {0, 0.9f, -0.3f}, 0.75f);
+  place_camera(scene, "door", {2.1f, 1.6f, 1.75f}, {-0.5f, 0.75f, -1.2f}, 0.95f, 4.0f / 3);
+  place_camera(scene, "bird", {0.6f, 6.5f, 3.2f}, {0, 0.9f, -0.3f}, 0.75f, 4.0f / 3);
   return scene;
 }
 

@@ -1,4 +1,5 @@
 // The boxes of [Rodriguez06]: a closed room cut into a regular grid, empty and with two shapes.
+#include "scene/place_camera.h"
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 
@@ -98,12 +99,7 @@ Scene radiosity_box() {
   place_ceiling(scene, gray, light);
 
   // From outside, through the back of the front wall, which is invisible from there.
-  Camera camera;
-  camera.name = "front";
-  camera.world_from_camera = look_at({0, 1, 4.4f}, {0, 1, 0}, {0, 1, 0});
-  camera.fov_y_rad = 0.65f;
-  camera.aspect = 1;
-  scene.cameras.push_back(camera);
+  place_camera(scene, "front", {0, 1, 4.4f}, {0, 1, 0}, 0.65f, 1);
   return scene;
 }
 

@@ -1,5 +1,6 @@
 // Spheres and cube, after the description in [Moreno05, section 5.2]. The paper gives the objects,
 // their colours and the number of triangles; sizes, places and light are ours.
+#include "scene/place_camera.h"
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 
@@ -65,12 +66,7 @@ Scene spheres_and_cube() {
   add_box(cube, {-0.25f, -0.25f, -0.25f}, {0.25f, 0.25f, 0.25f}, gray);
   place(scene, std::move(cube), translation({0.4f, 0.45f, 0.3f}) * turned_about_y(0.5f));
 
-  Camera camera;
-  camera.name = "front";
-  camera.world_from_camera = look_at({0, 1, 4.4f}, {0, 1, 0}, {0, 1, 0});
-  camera.fov_y_rad = 0.65f;
-  camera.aspect = 1;
-  scene.cameras.push_back(camera);
+  place_camera(scene, "front", {0, 1, 4.4f}, {0, 1, 0}, 0.65f, 1);
   return scene;
 }
 

@@ -1,4 +1,5 @@
 // A floor laid from a kit of tiles: what an atlas cuts into islands and the eye must see as one.
+#include "scene/place_camera.h"
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 
@@ -42,11 +43,7 @@ Scene tiled_kit() {
   place(scene, std::move(pillar));
   add_rectangle(scene, {-1.9f, -1.3f, -1.1f, -0.5f}, 2.6f, false, lamp);
   scene.meshes.back().name = scene.instances.back().name = "lamp";
-  Camera camera;
-  camera.name = "above";
-  camera.world_from_camera = look_at({1.6f, 3.4f, 4.2f}, {0.1f, 0, 0.1f}, {0, 1, 0});
-  camera.fov_y_rad = 0.8f;
-  scene.cameras.push_back(camera);
+  place_camera(scene, "above", {1.6f, 3.4f, 4.2f}, {0.1f, 0, 0.1f}, 0.8f);
   return scene;
 }
 

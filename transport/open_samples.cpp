@@ -8,6 +8,7 @@
 #include "base/warp.h"
 #include "transport/backs_seen.h"
 #include "transport/barriers.h"
+#include "transport/texel_width.h"
 
 namespace luxel::transport {
 namespace {
@@ -32,20 +33,12 @@ struct Work {
     return !is_enclosed(backs_seen(scene, tracer, just_above(at), at.normal, kFirstRays)) &&
            !is_enclosed(backs_seen(scene, tracer, just_above(at), at.normal, kRaysForOpen));
   }
-  /// The side of a square texel as large as this one.
-  float texel_size(const atlas::Texel& texel) const {
-    const auto& c = atlas.corners[texel.triangle_number];
-    const double texels = 0.5 * std::abs(double(cross(c[1] - c[0], c[2] - c[0])));
-    const double area =
-        double(area_m2(world_triangle(scene, texel.sample.instance, texel.sample.triangle)));
-    return texels > 0 ? float(std::sqrt(area / texels)) : 0;
-  }
-
   /// Short rays around the sample, twenty degrees above the surface.
   void add_feelers(const atlas::Texel& texel, std::vector<trace::Ray>& rays) const {
     const Place at = place_of(scene, texel.sample);
     const Vec3 from = just_above(at);
-    const float reach = kReach * texel_size(texel);
+    const float reach =
+        kReach * texel_width_m(scene, atlas, texel.sample.instance, texel.sample.triangle);
     const auto frame = frame_around(at.normal);
     for (int k = 0; k < kFeelers; ++k) {
       const float turn = 2 * kPi * float(k) / kFeelers;

@@ -2,63 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cstring>
-
-#include "base/parallel.h"
 #include "base/vec_double.h"
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 #include "scene/sides.h"
+#include "solve/gather/gather_test_support.h"
 #include "tests/reference_data.h"
 
 namespace luxel::gather {
 namespace {
 
 namespace shared = luxel::testing_support;
-
-/// A scene, laid out and ready to be solved. Heap-allocated: parts point at each other.
-struct Room {
-  scene::Scene scene;
-  atlas::Atlas atlas;
-  atlas::TexelMap map;
-  transport::Elements elements;
-  transport::Lights lights;
-  std::optional<trace::RayTracer> tracer;
-};
-
-std::unique_ptr<Room> lay_out(scene::Scene scene, int resolution) {
-  auto room = std::make_unique<Room>();
-  room->scene = std::move(scene);
-  Progress progress;
-  atlas::AtlasParams params;
-  params.resolution = resolution;
-  params.uv = atlas::UvMode::unwrap;
-  auto atlas = atlas::make_atlas(room->scene, params, progress);
-  EXPECT_TRUE(atlas) << atlas.error().message;
-  room->atlas = std::move(*atlas);
-  room->map = atlas::rasterise(room->scene, room->atlas);
-  room->elements = transport::elements_from_texels(room->scene, room->atlas, room->map);
-  room->lights = transport::collect_lights(room->scene);
-  auto tracer = trace::RayTracer::build(room->scene);
-  EXPECT_TRUE(tracer);
-  room->tracer.emplace(std::move(*tracer));
-  return room;
-}
-
-Gather solve(const Room& room, const GatherParams& params) {
-  Progress progress;
-  auto result = gather(room.scene, room.atlas, room.map, room.elements, room.lights, *room.tracer,
-                       params, progress);
-  EXPECT_TRUE(result) << result.error().message;
-  return std::move(*result);
-}
-
-GatherParams with_samples(int samples, int direct_samples = 64) {
-  GatherParams params;
-  params.samples = samples, params.direct_samples = direct_samples;
-  return params;
-}
 
 /// Mean of a channel over the texels of one material, weighted by the surface each texel stands
 /// for: all texels have the same density, so partly covered ones count less than they should, which
@@ -225,69 +179,6 @@ TEST(Gather, ParallelPlatesExchangeLight) {
   EXPECT_GT(checked, 20);
 }
 
-// Against many samples of the same map: stratified samples must at least keep up with independent
-// ones, error ~ n^-1/2.
-TEST(SlowGather, TheErrorFallsAtLeastWithTheRootOfTheSamples) {
-  const auto room = lay_out(scene::cornell_box(), 48);
-  GatherParams params = with_samples(16384, 1024);
-  params.seed = 99;
-  const Gather truth = solve(*room, params);
-  std::vector<double> log_n, log_error;
-  for (const int samples : {16, 64, 256, 1024}) {
-    const Gather result = solve(*room, with_samples(samples, 1024));
-    double sum2 = 0;
-    for (size_t i = 0; i < truth.irradiance.size(); ++i) {
-      const double d = double(luminance(result.irradiance[i]) - luminance(truth.irradiance[i]));
-      sum2 += d * d;
-    }
-    log_n.push_back(std::log(double(samples)));
-    log_error.push_back(0.5 * std::log(sum2 / double(truth.irradiance.size())));
-  }
-  // Least squares through the four points.
-  double mx = 0, my = 0, sxy = 0, sxx = 0;
-  for (size_t k = 0; k < 4; ++k) mx += log_n[k] / 4, my += log_error[k] / 4;
-  for (size_t k = 0; k < 4; ++k) {
-    sxy += (log_n[k] - mx) * (log_error[k] - my);
-    sxx += (log_n[k] - mx) * (log_n[k] - mx);
-  }
-  EXPECT_LE(sxy / sxx, -0.5) << "errors " << std::exp(log_error[0]) << " .. "
-                             << std::exp(log_error[3]);
-}
-
-uint64_t hash_of(std::span<const Rgb> values) {
-  uint64_t h = 0;
-  for (const Rgb& v : values)
-    for (const float c : {v.x, v.y, v.z}) h = h * 0x100000001b3ull ^ std::bit_cast<uint32_t>(c);
-  return h;
-}
-
-TEST(Gather, TheSameSeedGivesTheSameBitsForAnyNumberOfThreads) {
-  const auto room = lay_out(scene::spheres_and_cube(), 96);
-  std::vector<uint64_t> hashes;
-  for (const int threads : {1, 2, 7}) {
-    const ThreadLimit limit(threads);
-    hashes.push_back(hash_of(solve(*room, with_samples(32, 8)).irradiance));
-  }
-  EXPECT_EQ(hashes[0], hashes[1]);
-  EXPECT_EQ(hashes[0], hashes[2]);
-  GatherParams other = with_samples(32, 8);
-  other.seed = 2;
-  EXPECT_NE(hashes[0], hash_of(solve(*room, other).irradiance));
-}
-
-// Tiles in the temporary file hold what tiles in memory hold.
-TEST(Gather, TilesOnDiskGiveTheSameBits) {
-  const auto room = lay_out(scene::cornell_box(), 96);
-  GatherParams params = with_samples(64, 8);
-  params.scratch_folder = ::testing::TempDir();
-  const Gather in_memory = solve(*room, params);
-  params.hit_memory_bytes = 2 * kTileElements * 64 * sizeof(StoredHit);
-  const Gather on_disk = solve(*room, params);
-  EXPECT_EQ(in_memory.hit_bytes_in_file, 0u);
-  EXPECT_GT(on_disk.hit_bytes_in_file, 100000u);
-  EXPECT_EQ(hash_of(in_memory.irradiance), hash_of(on_disk.irradiance));
-}
-
 // Light is linear: with the rays kept, twice the lamp gives twice the light without a new ray.
 TEST(Gather, ALightCanChangeWithoutTracingAgain) {
   const auto room = lay_out(scene::cornell_box(), 48);
@@ -322,32 +213,6 @@ TEST(Gather, TexelsInsideSolidsAreDarkAndCounted) {
     ++inside;
   }
   EXPECT_GT(inside, 10);
-}
-
-TEST(StoredHit, KeepsWhatIsPacked) {
-  const uint32_t last = 16386u * 16386u - 1;  // of the largest atlas, with its border
-  for (const uint32_t base : {0u, 1u, 12345678u, last})
-    for (const uint32_t f : {0u, 7u, StoredHit::kSteps}) {
-      const StoredHit hit =
-          StoredHit::pack(base, f, StoredHit::kSteps - f, {.tint = 1234, .second_half = f == 7});
-      EXPECT_EQ(hit.base(), base);
-      EXPECT_EQ(hit.fx(), f);
-      EXPECT_EQ(hit.fy(), StoredHit::kSteps - f);
-      EXPECT_EQ(hit.tint(), 1234u);
-      EXPECT_EQ(hit.second_half(), f == 7);
-    }
-}
-
-TEST(StoredHit, TintsAreRightInTheMean) {
-  EXPECT_EQ(pack_tint({1, 1, 1}, 5), kNoTint);
-  EXPECT_EQ(unpack_tint(kNoTint), (Rgb{1, 1, 1}));
-  EXPECT_EQ(unpack_tint(pack_tint({0, 0, 0}, 5)), (Rgb{0, 0, 0}));
-  const Rgb tint{0.9f, 0.517f, 0.02f};
-  Rgb sum{};
-  constexpr int kTints = 20000;
-  for (uint64_t k = 0; k < kTints; ++k) sum += unpack_tint(pack_tint(tint, k));
-  // A step of 1/7 by chance deviates by 1/14 at most: 5 standard errors of the mean are 0.0025.
-  EXPECT_LE(length(sum / float(kTints) - tint), 0.0025f);
 }
 
 /// A closed furnace with a floor of glass half way up: every wall sends B = e / (1 - rho).
@@ -387,34 +252,6 @@ TEST(SlowGather, AFurnaceDoesNotSeeGlassThatLosesNothing) {
   double sum = 0;
   for (const Rgb& e : result.irradiance) sum += double(e.x) / (2 * kPiDouble);
   EXPECT_NEAR(sum / double(result.irradiance.size()), 0.995, 0.01);
-}
-
-// The true variance from 16 seeds, over some thousand texels. Halves of 32 samples are as
-// stratified as the whole of 64: their estimate is larger than the truth by at most the gain of
-// stratification from 32 to 64, less than a factor 3 even for smooth light, where twice the samples
-// give an eighth of the variance instead of half of it, and never smaller, but for chance (a
-// hundredth).
-TEST(Gather, VarianceOfHalvesIsThatOfSeeds) {
-  scene::Scene scene = scene::spheres_and_cube();
-  const auto room = lay_out(std::move(scene), 64);
-  constexpr int kSeeds = 16;
-  const size_t n = room->elements.size();
-  std::vector<double> sum(n), sum2(n);
-  double stated = 0;
-  for (int k = 0; k < kSeeds; ++k) {
-    GatherParams params = with_samples(64, 4);
-    params.seed = uint64_t(k + 1);
-    const Gather result = solve(*room, params);
-    for (size_t i = 0; i < n; ++i) {
-      const double l = double(luminance(result.irradiance[i] - result.direct[i]));
-      sum[i] += l, sum2[i] += l * l;
-      stated += double(result.indirect_variance[i]) / kSeeds;
-    }
-  }
-  double truth = 0;
-  for (size_t i = 0; i < n; ++i) truth += (sum2[i] - sum[i] * sum[i] / kSeeds) / (kSeeds - 1);
-  EXPECT_GT(stated, 0.95 * truth);
-  EXPECT_LT(stated, 3 * truth);
 }
 
 }  // namespace

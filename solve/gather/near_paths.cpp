@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "base/warp.h"
 #include "transport/elements.h"
+#include "transport/texel_width.h"
 
 namespace luxel::gather {
 namespace {
@@ -58,11 +59,7 @@ std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas&
     const size_t count = scene.meshes[scene.instances[i].mesh].triangles.size();
     parallel_for(count, 4096, [&](size_t begin, size_t end) {
       for (uint32_t t = uint32_t(begin); t < end; ++t) {
-        const uint32_t number = atlas.triangle_number(i, t);
-        const auto& c = atlas.corners[number];
-        const float texels = 0.5f * std::abs(cross(c[1] - c[0], c[2] - c[0]));
-        const float area_m2 = scene::area_m2(scene::world_triangle(scene, i, t));
-        width[number] = texels > 0 ? std::sqrt(area_m2 / texels) : 0;
+        width[atlas.triangle_number(i, t)] = transport::texel_width_m(scene, atlas, i, t);
       }
     });
   }

@@ -19,7 +19,7 @@
 
 namespace luxel::gather {
 
-/// Per drawn triangle: how wide a texel of it is in the world, as the root of its area [m].
+/// transport::texel_width_m() per drawn triangle.
 std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas& atlas);
 
 /// What is left of a ray of an element.

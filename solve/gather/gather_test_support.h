@@ -1,0 +1,56 @@
+// Scenes laid out for tests of gather.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+
+#include "solve/gather/gather.h"
+
+namespace luxel::gather {
+
+/// A scene, laid out and ready to be solved. Heap-allocated: parts point at each other.
+struct Room {
+  scene::Scene scene;
+  atlas::Atlas atlas;
+  atlas::TexelMap map;
+  transport::Elements elements;
+  transport::Lights lights;
+  std::optional<trace::RayTracer> tracer;
+};
+
+inline std::unique_ptr<Room> lay_out(scene::Scene scene, int resolution) {
+  auto room = std::make_unique<Room>();
+  room->scene = std::move(scene);
+  Progress progress;
+  atlas::AtlasParams params;
+  params.resolution = resolution;
+  params.uv = atlas::UvMode::unwrap;
+  auto atlas = atlas::make_atlas(room->scene, params, progress);
+  EXPECT_TRUE(atlas) << atlas.error().message;
+  room->atlas = std::move(*atlas);
+  room->map = atlas::rasterise(room->scene, room->atlas);
+  room->elements = transport::elements_from_texels(room->scene, room->atlas, room->map);
+  room->lights = transport::collect_lights(room->scene);
+  auto tracer = trace::RayTracer::build(room->scene);
+  EXPECT_TRUE(tracer);
+  room->tracer.emplace(std::move(*tracer));
+  return room;
+}
+
+inline Gather solve(const Room& room, const GatherParams& params) {
+  Progress progress;
+  auto result = gather(room.scene, room.atlas, room.map, room.elements, room.lights, *room.tracer,
+                       params, progress);
+  EXPECT_TRUE(result) << result.error().message;
+  return std::move(*result);
+}
+
+inline GatherParams with_samples(int samples, int direct_samples = 64) {
+  GatherParams params;
+  params.samples = samples, params.direct_samples = direct_samples;
+  return params;
+}
+
+}  // namespace luxel::gather

@@ -63,7 +63,9 @@ TEST(Sides, ABackIsTheSamePlaceSeenFromBehind) {
     EXPECT_LT(length(at(m.uv0, p) - at(m.uv0, behind)), 1e-6f);
     EXPECT_LT(length(at(m.uv1, p) - at(m.uv1, behind)), 1e-6f);
     EXPECT_LT(length(at(m.colors, p) - at(m.colors, behind)), 1e-6f);
-    if (with_normals) EXPECT_LT(length(at(m.normals, p) + at(m.normals, behind)), 1e-6f);
+    if (with_normals) {
+      EXPECT_LT(length(at(m.normals, p) + at(m.normals, behind)), 1e-6f);
+    }
     EXPECT_TRUE(material_at(scene, {0, 1, {}}).double_sided);
     EXPECT_FALSE(other_side_of(scene, {0, 1, {}}));
   }
@@ -106,7 +108,7 @@ TEST(Sides, WhatIsNotTheOtherSideIsLeftAlone) {
   const std::vector<Vec3> positions = leaf.positions;
   leaf.positions.insert(leaf.positions.end(), positions.begin(), positions.end());
   for (const Vec3& p : leaf.positions) leaf.uv0.push_back({p.x, p.y});
-  for (size_t v = 4; v < 8; ++v) leaf.uv0[v].x += 0.5f;
+  for (size_t k = 4; k < 8; ++k) leaf.uv0[k].x += 0.5f;
   Scene holes = scene_of(std::move(leaf));
   holes.materials[0].alpha_mode = AlphaMode::mask;
   EXPECT_EQ(link_sides(holes), 0u);

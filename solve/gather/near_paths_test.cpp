@@ -119,5 +119,92 @@ TEST(NearPaths, ALeafSendsTheLightOfTheSideThatIsSeen) {
   EXPECT_GT(seen, 0u);
 }
 
+// A black floor before a wall, x = 0, both large, with texels of about a metre: half of what floor
+// texels beside the wall see of it is nearer than that, and followed on.
+constexpr float kSize = 20;
+
+struct WallCase {
+  Rgb wall;         ///< its reflectance
+  float sky = 0;    ///< radiance
+  float sun = 0;    ///< irradiance of the wall, without glass
+  float glass = 1;  ///< tint of a pane 5 cm in front of the wall; 1: none
+};
+
+Lit wall_and_floor(const WallCase& c) {
+  scene::Scene scene;
+  scene.background = Rgb{1, 1, 1} * c.sky;
+  const uint32_t black = scene::add_material(scene, "floor", {}, {});
+  const uint32_t gray = scene::add_material(scene, "wall", c.wall, {});
+  const auto add_wall = [&](float x, uint32_t material) {
+    scene::Mesh mesh;
+    scene::add_quad(
+        mesh, {Vec3{x, 0, kSize}, {x, 0, -kSize}, {x, kSize, -kSize}, {x, kSize, kSize}}, material);
+    scene::place(scene, std::move(mesh));
+  };
+  scene::add_rectangle(scene, {0, kSize, -kSize, kSize}, 0, true, black);
+  add_wall(0, gray);
+  if (c.glass < 1) {
+    const uint32_t pane = scene::add_material(scene, "pane", Rgb{1, 1, 1} * c.glass, {});
+    scene.materials[pane].transmission = 1, scene.materials[pane].double_sided = true;
+    add_wall(0.05f, pane);
+  }
+  if (c.sun > 0) {
+    scene::PunctualLight sun;
+    sun.kind = scene::PunctualLight::Kind::directional;
+    sun.direction = normalize(Vec3{-1, -1, 0}),
+    sun.intensity = Rgb{1, 1, 1} * (c.sun * std::sqrt(2.0f));
+    scene.lights.push_back(sun);
+  }
+  return solve(scene, 64, 1024);
+}
+
+/// Share of what a floor point sees, at a distance x from the wall, that is the wall between two
+/// heights: half the difference of the sines of the angles from up.
+double wall_factor(double x, double low, double high) {
+  return 0.5 * (x / std::hypot(x, low) - x / std::hypot(x, high));
+}
+
+/// What the wall sends to a floor point: its light, strip by strip. A wall point at a height y sees
+/// the floor with (1 - y / |(y, size)|) / 2 and the sky with the rest.
+double light_from_wall(const WallCase& c, double x) {
+  double sum = 0;
+  const int strips = 1000;
+  for (int k = 0; k < strips; ++k) {
+    const double low = double(kSize) * k / strips, high = double(kSize) * (k + 1) / strips;
+    const double y = 0.5 * (low + high);
+    const double sees_sky = 0.5 * (1 + y / std::hypot(y, double(kSize)));
+    const double e = double(c.sun) + double(kPi) * double(c.sky) * sees_sky;
+    // Light passes the pane on its way there and on its way back.
+    sum += wall_factor(x, low, high) * double(c.wall.x * c.glass * c.glass) * e;
+  }
+  return sum;
+}
+
+// The same with a black wall has the same rays, and what the floor sees beside the wall with it:
+// the difference is the wall's light.
+TEST(NearPaths, BringTheLightOfWhereTheyEnd) {
+  const Rgb half{0.5f, 0.5f, 0.5f}, dark{0.05f, 0.05f, 0.05f};
+  for (WallCase c :
+       {WallCase{half, 0, 3}, {half, 1, 0}, {dark, 1, 0}, {half, 0, 3, 0.6f}, {half, 1, 0, 0.6f}}) {
+    const Lit lit = wall_and_floor(c);
+    const WallCase with_wall = c;
+    c.wall = {};
+    const Lit unlit = wall_and_floor(c);
+    ASSERT_EQ(unlit.elements.size(), lit.elements.size());
+    double sum = 0, exact = 0;
+    for (size_t i = 0; i < lit.elements.size(); ++i) {
+      const Vec3 p = lit.elements.position[i];
+      if (lit.elements.normal[i].y < 0.5f || p.x > 1 || p.x < 0.1f || std::abs(p.z) > 10) continue;
+      sum += double(lit.light.irradiance[i].x - unlit.light.irradiance[i].x);
+      exact += light_from_wall(with_wall, double(p.x));
+    }
+    ASSERT_GT(exact, 0);
+    // The wall ends after 20 m, where it should go on for ever (1 %), and dark paths that go on by
+    // chance are noise: 20 texels with 1024 rays, a fifth of them near (1 %).
+    EXPECT_NEAR(sum / exact, 1, 0.04)
+        << c.sky << " " << c.sun << " " << c.glass << " " << with_wall.wall.x;
+  }
+}
+
 }  // namespace
 }  // namespace luxel::gather

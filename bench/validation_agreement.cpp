@@ -38,7 +38,8 @@ Result<Section> validate_agreement(Progress& progress) {
       "independent runs of {} paths per texel;\nthe mean of (g - a)(g - b) over both leaves the "
       "solver's own error, without the judge's noise. gather: {} rays, {} shadow rays; "
       "hemicube: up to {} vertices. The path tracer's own\nrow is a third run of {} paths: what is "
-      "left there is its noise.\n\n{}",
+      "left there is its noise. hemicube, matrix and hierarchical leave out the colour that\nglass "
+      "gives to indirect light (lights.md): under \"coloured glass\" their errors are that.\n\n{}",
       kPaths, kSamples, kDirect, kElements, kPaths,
       markdown_table({"scene", "shows", "solver", "texels", "relative RMSE", "bias", "seconds"},
                      rows));

@@ -126,6 +126,14 @@ void set_emission(Glb& glb, MaterialBook& book, const scene::Scene& scene, const
   glb.extensions_used.insert("KHR_materials_emissive_strength");
 }
 
+void set_normal_map(Glb& glb, MaterialBook& book, const scene::Scene& scene,
+                    const scene::Material& m, TexcoordSlots slots, json& out) {
+  json info = texture_info(glb, book, scene, m.normal_texture, slots);
+  if (info.is_null()) return;
+  if (m.normal_scale != 1) info["scale"] = m.normal_scale;
+  out["normalTexture"] = std::move(info);
+}
+
 void set_transmission(Glb& glb, MaterialBook& book, const scene::Scene& scene,
                       const scene::Material& m, TexcoordSlots slots, json& out) {
   if (!(m.transmission > 0)) return;
@@ -165,6 +173,7 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
   json out = {{"pbrMetallicRoughness", surface(glb, book, scene, m, slots)}};
   if (!m.name.empty()) out["name"] = m.name;
   set_emission(glb, book, scene, m, slots, out);
+  set_normal_map(glb, book, scene, m, slots, out);
   set_transmission(glb, book, scene, m, slots, out);
   set_diffuse_transmission(glb, book, scene, m, slots, out);
   if (m.alpha_mode == scene::AlphaMode::blend) out["alphaMode"] = "BLEND";

@@ -181,6 +181,19 @@ Status read_diffuse_transmission(GltfReader& reader, ImageLoader& images,
   return {};
 }
 
+/// Light does without normal maps: one that cannot be read is left out.
+void read_normal_map(GltfReader& reader, ImageLoader& images, const tinygltf::NormalTextureInfo& in,
+                     const std::string& user, scene::Material& out) {
+  tinygltf::TextureInfo info;
+  info.index = in.index, info.texCoord = in.texCoord, info.extensions = in.extensions;
+  const Result<TextureRef> ref = read_ref(reader, images, info, user);
+  if (!ref) {
+    reader.warn("the normal map of {} is left out: {}", user, ref.error().message);
+    return;
+  }
+  out.normal_texture = *ref, out.normal_scale = float(in.scale);
+}
+
 Result<scene::Material> read_material(GltfReader& reader, ImageLoader& images, size_t index) {
   const tinygltf::Material& in = reader.model.materials[index];
   const auto& pbr = in.pbrMetallicRoughness;
@@ -219,6 +232,7 @@ Result<scene::Material> read_material(GltfReader& reader, ImageLoader& images, s
     tinygltf::TextureInfo metallic = pbr.metallicRoughnessTexture;
     LUXEL_TRY(out.metallic_texture, read_ref(reader, images, metallic, user));
   }
+  read_normal_map(reader, images, in.normalTexture, user, out);
   set_highlight(reader, in, out);
   return out;
 }

@@ -8,6 +8,7 @@
 namespace luxel::import {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -170,9 +171,30 @@ TEST(GltfMaterial, DiffuseTransmission) {
 }
 
 TEST(GltfMaterial, PicturesThatNobodyUsesAreNotDecoded) {
-  Gltf gltf = square_with_material({{"normalTexture", {{"index", 0}}}});
+  Gltf gltf = square_with_material({{"occlusionTexture", {{"index", 0}}}});
   add_texture(gltf, "this is no picture");
   EXPECT_TRUE(import_glb(gltf));
+}
+
+TEST(GltfMaterial, NormalMapsAreKept) {
+  Gltf gltf = square_with_material(
+      {{"name", "brick"}, {"normalTexture", {{"index", 0}, {"texCoord", 0}, {"scale", 0.25}}}});
+  add_texture(gltf, png_of(4, 1, {128, 128, 255, 255}));
+  const scene::Scene scene = scene_of(import_glb(gltf));
+  EXPECT_EQ(scene.materials[0].normal_texture.texture, 0u);
+  EXPECT_EQ(scene.materials[0].normal_scale, 0.25f);
+  ASSERT_EQ(scene.textures.size(), 1u);
+  EXPECT_EQ(scene.textures[0].rgba[2], 255);
+}
+
+TEST(GltfMaterial, ABrokenNormalMapIsLeftOutAndSaid) {
+  Gltf gltf = square_with_material({{"name", "brick"}, {"normalTexture", {{"index", 0}}}});
+  add_texture(gltf, "this is no picture");
+  const auto imported = import_glb(gltf);
+  ASSERT_TRUE(imported);
+  EXPECT_EQ(imported->scene.materials[0].normal_texture.texture, scene::kNone);
+  EXPECT_THAT(imported->warnings,
+              Contains(HasSubstr("the normal map of material 0 (brick) is left out: ")));
 }
 
 TEST(GltfMaterial, ExternalTextureIsFoundBesideTheFile) {

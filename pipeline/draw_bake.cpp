@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <span>
 
 #include "base/check.h"
 #include "base/file.h"
@@ -13,6 +14,7 @@
 #include "image/color.h"
 #include "import/import.h"
 #include "pipeline/bake.h"
+#include "scene/normal_map.h"
 #include "transport/irradiance_field.h"
 
 namespace luxel::pipeline {
@@ -73,6 +75,38 @@ Result<image::Image> read_lightmap(const std::filesystem::path& file) {
   return image::decode_exr(bytes, file.string());
 }
 
+/// Beside each lightmap, what --directional left: one picture per page, `direction`, or three, `x`,
+/// `y` and `z`; none when there are none.
+Result<std::vector<Pages>> read_directions(const std::filesystem::path& folder, size_t materials) {
+  const auto is_there = [&](const char* kind) {
+    return std::filesystem::exists(folder / fmt::format("lightmap.{}.exr", kind)) ||
+           std::filesystem::exists(folder / fmt::format("lightmap-0.{}.exr", kind));
+  };
+  std::vector<std::string> kinds;
+  if (is_there("direction")) kinds = {"direction"};
+  if (is_there("x")) kinds = {"x", "y", "z"};
+  std::vector<Pages> out;
+  for (const std::string& kind : kinds) {
+    LUXEL_TRY(Pages pages,
+              read_pages(folder, materials, [&](const std::filesystem::path& lightmap) {
+                return read_lightmap(lightmap.parent_path() /
+                                     (lightmap.stem().string() + "." + kind + ".exr"));
+              }));
+    out.push_back(std::move(pages));
+  }
+  return out;
+}
+
+/// E of a bent normal, `bend` away from the surface's own: docs/directional.md.
+Rgb irradiance_of_bent(const scene::Scene& scene, std::span<const Pages> directions,
+                       const scene::SurfacePoint& p, Vec3 bend, Rgb e) {
+  const auto read = [&](size_t k) {
+    return display::lightmap_at(scene, directions[k].of(scene, p), p);
+  };
+  if (directions.size() == 1) return e * std::max(0.0f, 1 + dot(bend, read(0)));
+  return max(Rgb{}, e + read(0) * bend.x + read(1) * bend.y + read(2) * bend.z);
+}
+
 /// texels.png beside lightmap.exr, texels-1.png beside lightmap-1.exr.
 Result<image::Image> read_texel_picture(const std::filesystem::path& lightmap) {
   constexpr std::string_view kLightmap = "lightmap";
@@ -90,8 +124,12 @@ Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettin
   LUXEL_TRY(const scene::Scene scene, baked_scene(subject, s));
   LUXEL_TRY(const Pages lightmaps, read_pages(s.from, scene.materials.size(), read_lightmap));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  LUXEL_TRY(const std::vector<Pages> directions, read_directions(s.from, scene.materials.size()));
   const auto irradiance = [&](const scene::SurfacePoint& p) {
-    return display::lightmap_at(scene, lightmaps.of(scene, p), p);
+    const Rgb e = display::lightmap_at(scene, lightmaps.of(scene, p), p);
+    if (directions.empty()) return e;
+    const Vec3 bend = scene::bent_normal(scene, p) - scene::shading_normal(scene, p);
+    return bend == Vec3{} ? e : irradiance_of_bent(scene, directions, p, bend, e);
   };
   return display::draw(scene, tracer, subject.camera, irradiance, size_of(s), progress);
 }

@@ -3,7 +3,9 @@
 namespace luxel::scene {
 
 std::vector<NamedScene> procedural_scenes() {
-  return {{"cornell-box.glb", cornell_box()},
+  return {{"bumps.glb", bumps(false)},
+          {"bumps-in-relief.glb", bumps(true)},
+          {"cornell-box.glb", cornell_box()},
           {"cornell-box-empty.glb", cornell_box(CornellColors::pbrt, false)},
           {"closed-corner.glb", closed_corner()},
           {"foliage.glb", foliage()},

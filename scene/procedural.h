@@ -59,6 +59,10 @@ Scene closed_corner();
 /// whose mask has holes, double-sided, which scatter light through themselves.
 Scene foliage();
 
+/// A floor of 1.5 x 1.5 m with 6 x 6 bumps 2 cm high before a wall, between a warm and a cool lamp:
+/// flat with a normal map, or in relief, which is what the map stands for.
+Scene bumps(bool in_relief);
+
 /// A sphere of radius `radius_m` seen from inside (normals point inwards), latitude-longitude-free:
 /// an icosahedron subdivided `levels` times; flat shading. One material.
 Scene inward_sphere(float radius_m, int levels, Rgb reflectance, Rgb emission);

@@ -39,14 +39,6 @@ std::array<float, 4> texel(const Texture& t, int x, int y, bool srgb) {
   return c;
 }
 
-Vec2 transformed_uv(const TextureRef& ref, Vec2 uv) {
-  if (ref.rotation == 0)
-    return {uv.x * ref.scale.x + ref.offset.x, uv.y * ref.scale.y + ref.offset.y};
-  const float s = std::sin(ref.rotation), c = std::cos(ref.rotation);
-  const Vec2 q{uv.x * ref.scale.x, uv.y * ref.scale.y};
-  return {c * q.x + s * q.y + ref.offset.x, -s * q.x + c * q.y + ref.offset.y};
-}
-
 /// Bilinear lookup; colours are filtered in linear light.
 std::array<float, 4> sample(const Scene& scene, const TextureRef& ref, Vec2 uv, bool srgb) {
   const Texture& t = scene.textures[ref.texture];
@@ -70,7 +62,16 @@ std::array<float, 4> sample(const Scene& scene, const TextureRef& ref, Vec2 uv, 
   return sum;
 }
 
-/// The texture's value at a surface point; white when there is no texture or no UV set for it.
+}  // namespace
+
+Vec2 transformed_uv(const TextureRef& ref, Vec2 uv) {
+  if (ref.rotation == 0)
+    return {uv.x * ref.scale.x + ref.offset.x, uv.y * ref.scale.y + ref.offset.y};
+  const float s = std::sin(ref.rotation), c = std::cos(ref.rotation);
+  const Vec2 q{uv.x * ref.scale.x, uv.y * ref.scale.y};
+  return {c * q.x + s * q.y + ref.offset.x, -s * q.x + c * q.y + ref.offset.y};
+}
+
 std::array<float, 4> texture_at(const Scene& scene, const SurfacePoint& p, const TextureRef& ref,
                                 bool srgb) {
   const Mesh& mesh = mesh_of(scene, p.instance);
@@ -78,8 +79,6 @@ std::array<float, 4> texture_at(const Scene& scene, const SurfacePoint& p, const
   if (ref.texture == kNone || uv.empty()) return {1, 1, 1, 1};
   return sample(scene, ref, attribute_at(uv, mesh.triangles[p.triangle], p.at), srgb);
 }
-
-}  // namespace
 
 Triangle3 world_triangle(const Scene& scene, uint32_t instance, uint32_t triangle) {
   const Mesh& mesh = mesh_of(scene, instance);

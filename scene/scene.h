@@ -56,6 +56,8 @@ struct Material {
   TextureRef metallic_texture;    ///< its blue channel, linear, multiplies metallic
   Rgb emission{0, 0, 0};          ///< radiance L [W/(sr m^2)]: emissiveFactor * strength
   TextureRef emission_texture;    ///< multiplies emission
+  TextureRef normal_texture;      ///< bends the normal of pictures: scene/normal_map.h
+  float normal_scale = 1;
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;  ///< mask: alpha below it is a hole
   float transmission = 0;     ///< KHR_materials_transmission: share that goes straight through
@@ -74,10 +76,11 @@ struct Material {
 };
 
 /// Everything that a material looks up.
-inline std::array<const TextureRef*, 6> textures_of(const Material& m) {
+inline std::array<const TextureRef*, 7> textures_of(const Material& m) {
   return {&m.base_color_texture,
           &m.metallic_texture,
           &m.emission_texture,
+          &m.normal_texture,
           &m.transmission_texture,
           &m.diffuse_transmission_texture,
           &m.diffuse_transmission_color_texture};
@@ -200,6 +203,13 @@ bool reflects_from_behind(const Material& material);
 Rgb surroundings_towards(const Scene& scene, Vec3 direction);
 /// The same for pictures, in which the map's pixels are not to be seen.
 Rgb smooth_surroundings_towards(const Scene& scene, Vec3 direction);
+/// Where a material looks a texture up that has the texture coordinates uv.
+Vec2 transformed_uv(const TextureRef& ref, Vec2 uv);
+/// The texture's value at a surface point, bilinear, in linear light where it is sRGB; white when
+/// there is no texture or the mesh has no coordinates for it.
+std::array<float, 4> texture_at(const Scene& scene, const SurfacePoint& p, const TextureRef& ref,
+                                bool srgb);
+
 /// Texture colour times vertex colour times factor, linear, alpha in the fourth value.
 std::array<float, 4> base_color_at(const Scene& scene, const SurfacePoint& p);
 

@@ -79,8 +79,8 @@ Status check_materials(Scene& scene, Report& report) {
         luxel::is_finite(m.base_color) && luxel::is_finite(m.emission) && std::isfinite(m.alpha) &&
         std::isfinite(m.metallic) && std::isfinite(m.roughness) && std::isfinite(m.alpha_cutoff) &&
         luxel::is_finite(m.specular) && std::isfinite(m.sharpness) &&
-        std::isfinite(m.transmission) && std::isfinite(m.diffuse_transmission) &&
-        luxel::is_finite(m.diffuse_transmission_color) &&
+        std::isfinite(m.normal_scale) && std::isfinite(m.transmission) &&
+        std::isfinite(m.diffuse_transmission) && luxel::is_finite(m.diffuse_transmission_color) &&
         std::ranges::all_of(textures_of(m), [](const auto* ref) { return is_finite(*ref); });
     if (!finite)
       return fail(ErrorCode::bad_input, "{}: {}: one of its numbers is not finite", report.file,

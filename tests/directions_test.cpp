@@ -134,5 +134,46 @@ TEST(Probes, WrongSpacingsAreRefused) {
   refused("--directional up", "dominant, sh1");
 }
 
+/// Mean absolute difference of two pictures of one size.
+double difference(const image::Image& a, const image::Image& b) {
+  EXPECT_EQ(a.width, b.width);
+  double sum = 0;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      const Rgb d = a.rgb(x, y) - b.rgb(x, y);
+      sum += double(std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
+    }
+  return sum;
+}
+
+// A normal map stands for a relief, whose picture is known: a flat floor with directions comes much
+// nearer to it than without, half as far and less. What is left are the bumps' outlines, shadows
+// and light among themselves, the noise of all bakes, and, for dominant, lamps of two colours that
+// it mixes. A map that is read the wrong way round is farther off than none.
+TEST(Directional, NormalMapsLookLikeTheRelief) {
+  const ScratchFolder s;
+  const auto picture = [&](const std::string& scene, const std::string& name,
+                           const std::string& options) {
+    const std::string file = scene_file(scene), folder = (s.path / name).string();
+    EXPECT_EQ(luxel("bake " + file + " -o " + folder + " --resolution 192 --quiet " + options).code,
+              0);
+    const std::filesystem::path drawn = s.path / (name + ".exr");
+    EXPECT_EQ(luxel("render " + file + " --from " + folder + " -o " + drawn.string() +
+                    " --size 160x120 --quiet")
+                  .code,
+              0);
+    return exr_at(drawn);
+  };
+  const image::Image relief = picture("bumps-in-relief.glb", "relief", "--samples 128");
+  const double flat = difference(picture("bumps.glb", "flat", "--samples 128"), relief);
+  const double sh1 =
+      difference(picture("bumps.glb", "sh1", "--samples 128 --directional sh1"), relief);
+  const double dominant =
+      difference(picture("bumps.glb", "dominant", "--samples 128 --directional dominant"), relief);
+  EXPECT_LT(sh1, 0.5 * flat);
+  EXPECT_LT(dominant, 0.75 * flat);
+  EXPECT_LT(sh1, dominant);
+}
+
 }  // namespace
 }  // namespace luxel::testing_support

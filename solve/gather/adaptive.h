@@ -19,7 +19,7 @@ struct VariancePair {
 };
 
 /// Stratification gains about as much for neighbours: the first estimate, smoothed, times the ratio
-/// of both, summed over the neighbours of the same chart. docs/baking.md
+/// of both, summed over the neighbours of the same chart. docs/gather.md
 std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                     VariancePair variance);
 

@@ -5,8 +5,8 @@
 
 namespace luxel::transport {
 
-/// Of `rays` rays, how many met the back of a one-sided surface, or of one that reflects from behind
-/// too (scene::reflects_from_behind).
+/// Of `rays` rays, how many met the back of a one-sided surface, or of one that reflects from
+/// behind too (scene::reflects_from_behind).
 struct BacksSeen {
   int rays = 0, one_sided = 0, double_sided = 0;
 };

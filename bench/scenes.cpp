@@ -100,6 +100,7 @@ Result<Table> measure_scenes(const std::filesystem::path& shared, int threads) {
   table.notes.push_back(
       "1024 x 1024 texels, 64 samples, 16 shadow rays, --sky 135,45; seconds of the whole bake, "
       "without writing files.");
+  LUXEL_TRY_STATUS(measure_own(table));
   LUXEL_TRY_STATUS(measure_map(shared, table));
   return table;
 }

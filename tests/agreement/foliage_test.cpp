@@ -2,78 +2,29 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "bench/agreement.h"
-#include "scene/procedural.h"
+#include "bench/own_scenes.h"
 #include "scene/shapes.h"
 #include "transport/direct_light.h"
 
 namespace luxel::bench {
 namespace {
 
-/// What of a solution lies on the floor, instance 0.
-struct Floor {
-  std::vector<size_t> texels;
-  transport::Elements elements;
-};
-Floor floor_of(const Prepared& p) {
-  Floor out;
-  for (size_t i = 0; i < p.map.texels.size(); ++i) {
-    if (p.map.texels[i].sample.instance != 0) continue;
-    out.texels.push_back(i);
-    out.elements.position.push_back(p.elements.position[i]);
-    out.elements.normal.push_back(p.elements.normal[i]);
-    out.elements.geometric_normal.push_back(p.elements.geometric_normal[i]);
-    out.elements.reflectance.push_back(p.elements.reflectance[i]);
-  }
-  return out;
-}
-
-struct Mean {
-  double solved = 0, judged = 0;
-};
-
 // The floor under twigs, texel by texel and in the mean, also of the texels in shadow alone. The
 // judge follows every path by itself; gather reads the leaves' light from their texels, some four
 // across a leaf.
 TEST(SlowFoliage, LightBeneathLeavesIsThatOfThePathTracer) {
-  constexpr int kPaths = 1024;
-  scene::Scene scene = scene::foliage();
-  scene.lights[0].angular_radius_rad = 0.02f;  // shadows with soft rims
   Progress progress;
-  const auto prepared = prepare(std::move(scene), 160, progress);
-  ASSERT_TRUE(prepared) << prepared.error().message;
-  const Prepared& p = **prepared;
-  for (const scene::Mesh& mesh : p.scene.meshes)
-    EXPECT_EQ(mesh.other_side.empty(), mesh.name != "twig") << mesh.name;
-  const Floor floor = floor_of(p);
-  const auto judged =
-      judge(p.scene, *p.tracer, reference::receivers(floor.elements), kPaths, 1, progress);
-  ASSERT_TRUE(judged);
-  pipeline::BakeSettings settings;
-  settings.samples = 1024, settings.direct_samples = 256, settings.seed = 7;
-  const auto solved = solve(p, "gather", settings, progress);
-  ASSERT_TRUE(solved) << solved.error().message;
-  std::vector<Rgb> light;
-  for (const size_t i : floor.texels) light.push_back(solved->light.irradiance[i]);
-  const Agreement a = agreement(light, {}, *judged);
-  double brightest = 0;
-  for (const Rgb& e : light) brightest = std::max(brightest, double(luminance(e)));
-  Mean all, shadow;
-  size_t in_shadow = 0;
-  for (size_t k = 0; k < light.size(); ++k) {
-    const double s = double(luminance(light[k])), j = double(luminance(judged->mean(k)));
-    all.solved += s, all.judged += j;
-    if (s > 0.4 * brightest) continue;
-    shadow.solved += s, shadow.judged += j, ++in_shadow;
-  }
+  const auto light = foliage_light(1024, progress);
+  ASSERT_TRUE(light) << light.error().message;
   std::printf("floor: %zu texels, %zu in shadow; relative RMSE %.4f, mean %+.4f, shadow %+.4f\n",
-              light.size(), in_shadow, a.relative_rmse, all.solved / all.judged - 1,
-              shadow.solved / shadow.judged - 1);
-  EXPECT_GT(light.size(), 2000u);
-  EXPECT_GT(in_shadow, 300u);
-  EXPECT_LE(a.relative_rmse, 0.02);
-  EXPECT_NEAR(all.solved / all.judged, 1, 0.01);
-  EXPECT_NEAR(shadow.solved / shadow.judged, 1, 0.02);
+              light->texels, light->in_shadow, light->floor.relative_rmse, light->mean - 1,
+              light->shadow_mean - 1);
+  EXPECT_TRUE(light->is_two_sided);
+  EXPECT_GT(light->texels, 2000u);
+  EXPECT_GT(light->in_shadow, 300u);
+  EXPECT_LE(light->floor.relative_rmse, 0.02);
+  EXPECT_NEAR(light->mean, 1, 0.01);
+  EXPECT_NEAR(light->shadow_mean, 1, 0.02);
 }
 
 // A sun straight above a mask of random holes: the mean light below is what the holes let through.
@@ -107,13 +58,15 @@ TEST(Foliage, AMaskLetsThroughTheShareOfItsHoles) {
   Progress progress;
   const auto prepared = prepare(std::move(s), 256, progress);
   ASSERT_TRUE(prepared) << prepared.error().message;
-  const Floor floor = floor_of(**prepared);
-  const auto light = transport::direct_light(
-      (*prepared)->scene, floor.elements, (*prepared)->lights, *(*prepared)->tracer, {}, progress);
+  const Prepared& p = **prepared;
+  const auto light =
+      transport::direct_light(p.scene, p.elements, p.lights, *p.tracer, {}, progress);
   ASSERT_TRUE(light);
-  double mean = 0;
-  for (const Rgb& e : light->irradiance) mean += double(e.x) / double(floor.texels.size());
-  ASSERT_GT(floor.texels.size(), 5000u);
+  double sum = 0, texels = 0;
+  for (size_t i = 0; i < p.map.texels.size(); ++i)
+    if (p.map.texels[i].sample.instance == 0) sum += double(light->irradiance[i].x), ++texels;
+  const double mean = sum / texels;
+  ASSERT_GT(texels, 5000);
   // Cells are 5 texels wide or more; texels on their rims fall to either side at random.
   EXPECT_NEAR(mean, 4 * open, 0.01 * 4);
   EXPECT_GT(open, 0.3);

@@ -127,26 +127,27 @@ Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettin
   LUXEL_TRY(const std::vector<Pages> directions, read_directions(s.from, scene.materials.size()));
   const auto irradiance = [&](const scene::SurfacePoint& p) {
     const Rgb e = display::lightmap_at(scene, lightmaps.of(scene, p), p);
-    if (directions.empty()) return e;
+    const bool flat = scene::material_at(scene, p).normal_texture.texture == scene::kNone;
+    if (directions.empty() || flat) return e;
     const Vec3 bend = scene::bent_normal(scene, p) - scene::shading_normal(scene, p);
-    return bend == Vec3{} ? e : irradiance_of_bent(scene, directions, p, bend, e);
+    return irradiance_of_bent(scene, directions, p, bend, e);
   };
   return display::draw(scene, tracer, subject.camera, irradiance, size_of(s), progress);
 }
 
-Result<Bake> quick_bake(const RenderSettings& s, Progress& progress) {
+Result<Bake> quick_bake(const RenderSettings& s, bool texels, Progress& progress) {
   BakeSettings settings;
   settings.scene = s.scene, settings.outside = s.outside;
   settings.output = s.output.parent_path().empty() ? "." : s.output.parent_path();
   settings.bounces = s.bounces.value_or(-1), settings.seed = s.seed.value_or(1);
-  settings.resolution = kQuickResolution, settings.texels = true;
+  settings.resolution = kQuickResolution, settings.texels = texels;
   settings.samples = kQuickSamples, settings.direct_samples = kQuickDirectSamples;
   return bake_scene(settings, progress);
 }
 
 Result<image::Image> draw_quick_bake(const Subject& subject, const RenderSettings& s,
                                      Progress& progress) {
-  LUXEL_TRY(const Bake bake, quick_bake(s, progress));
+  LUXEL_TRY(const Bake bake, quick_bake(s, false, progress));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
   const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
   const auto irradiance = [&](const scene::SurfacePoint& p) {
@@ -181,7 +182,7 @@ Result<image::Image> draw_texel_colors(const scene::Scene& scene,
 
 Result<image::Image> draw_quick_texels(const Subject& subject, const RenderSettings& s,
                                        Progress& progress) {
-  LUXEL_TRY(const Bake bake, quick_bake(s, progress));
+  LUXEL_TRY(const Bake bake, quick_bake(s, true, progress));
   LUXEL_CHECK(bake.texel_pictures.size() == 1);
   LUXEL_TRY(const image::Image picture,
             image::decode_display(image::encode_png(bake.texel_pictures[0]), "texels.png"));

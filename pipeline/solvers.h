@@ -16,18 +16,12 @@
 #include "trace/ray_tracer.h"
 #include "transport/elements.h"
 #include "transport/lights.h"
+#include "transport/texel_scene.h"
 
 namespace luxel::pipeline {
 
 /// What every solver gets.
-struct SolveInput {
-  const scene::Scene& scene;
-  const atlas::Atlas& atlas;
-  const atlas::TexelMap& map;
-  const transport::Elements& elements;
-  const transport::Lights& lights;
-  const trace::RayTracer& tracer;
-};
+using SolveInput = transport::TexelScene;
 
 /// What every solver gives.
 struct TexelLight {

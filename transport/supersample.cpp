@@ -35,9 +35,10 @@ Receiver receiver_at(const Place& at, const SmoothPoint& s, uint64_t seed) {
           trace::offset_origin(s.position, s.geometric_normal, at.diagonal_m), seed};
 }
 
-Receiver own_receiver(const Place& at, const Elements& elements, size_t i, uint64_t seed) {
+/// Only to be asked whether it is enclosed: it has no seed.
+Receiver own_receiver(const Place& at, const Elements& elements, size_t i) {
   return receiver_at(at, {elements.position[i], elements.normal[i], elements.geometric_normal[i]},
-                     seed);
+                     0);
 }
 
 /// Light at the points of one texel.
@@ -119,12 +120,11 @@ Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atl
     if (progress.cancelled()) return;
     std::vector<scene::SurfacePoint> spread;
     for (size_t i = begin; i < end; ++i) {
-      const Receiver own = own_receiver(place, elements, i, hash64(seed, i));
+      const Receiver own = own_receiver(place, elements, i);
       if (!is_enclosed(place, own, kEnclosureRaysOfTexel)) {
         atlas::spread_points(atlas, map.texels[i], cover.of(i), points, seed, spread);
         for (const scene::SurfacePoint& p : spread) {
-          const uint64_t point_seed = hash64(hash64(seed, kPointSeed + found[i].size()), i);
-          const Receiver r = receiver_at(place, smooth_point(scene, p), point_seed);
+          const Receiver r = receiver_at(place, smooth_point(scene, p), 0);
           if (!is_enclosed(place, r)) found[i].push_back(r);
         }
       }
@@ -183,7 +183,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
       const uint32_t i = which[k];
       if (is_dark(direct.irradiance[i])) {
         traced += uint64_t(kEnclosureRaysOfTexel);
-        const Receiver own = own_receiver(place, elements, i, hash64(each.seed, i));
+        const Receiver own = own_receiver(place, elements, i);
         if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
       }
       receivers.clear(), points.clear();

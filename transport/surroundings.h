@@ -24,8 +24,8 @@ struct Surroundings {
   /// Power of all peaks before each one, the integral of their luminance [W/m^2]; one extra entry,
   /// the power of all.
   std::vector<double> below;
-  std::vector<double>
-      row_cosine;  ///< of the angle from up, where the map's rows begin, and its end
+  /// Cosine of the angle from up where each row of the map begins; one extra entry, its end.
+  std::vector<double> row_cosine;
 };
 
 /// Finds the peaks of the scene's map. The limit is kPeak times the mean luminance of what lies

@@ -19,7 +19,7 @@ constexpr float kDecay = 0.7f;
 constexpr float kDarkest = 0.1f;
 /// Levels of direct light: 4^4 times the shadow rays, 4^2 times the points, each of which looks at
 /// the lamps with rays of its own.
-constexpr int kFinestLevel = 4, kFinestAverage = 2, kDone = 16;
+constexpr int kFinestLevel = 4, kFinestAverage = 2;
 
 struct Sums {
   double variance = 0, split = 0;
@@ -111,13 +111,14 @@ std::vector<uint16_t> next_samples(std::span<const float> errors, float max_erro
   return out;
 }
 
-Result<size_t> refine_direct(const DirectWorld& world, std::span<const float> errors,
+Result<size_t> refine_direct(const transport::TexelScene& world, std::span<const float> errors,
                              float max_error, const transport::SupersampleParams& params,
                              DirectLevels& levels, transport::DirectLight& direct,
                              Progress& progress) {
   LUXEL_CHECK(levels.level.size() == errors.size() && levels.averaged.size() == errors.size());
   size_t count = 0;
-  for (int level = 0; level < kFinestLevel; ++level) {
+  // From the finest level down: what rises by one level is not met again.
+  for (int level = kFinestLevel - 1; level >= 0; --level) {
     std::vector<uint32_t> single, averaged;
     for (uint32_t i = 0; i < errors.size(); ++i) {
       if (errors[i] <= max_error || levels.level[i] != level) continue;
@@ -127,23 +128,24 @@ Result<size_t> refine_direct(const DirectWorld& world, std::span<const float> er
         averaged.push_back(i);
     }
     const int factor = 1 << (2 * (level + 1));
-    transport::SupersampleParams finer = params;
-    finer.points = params.points * factor;
-    LUXEL_TRY(const transport::Supersampled points,
-              average_texels(world.scene, world.atlas, world.map, world.elements, world.lights,
-                             world.tracer, averaged, finer, direct, progress));
-    direct.rays += points.rays;
-    finer = params;
-    finer.direct.samples = params.direct.samples * factor;
-    LUXEL_TRY_STATUS(direct_light_again(world.scene, world.elements, world.lights, world.tracer,
-                                        single, finer.direct, direct, progress));
-    // Marked as done beneath this level's number, or the next one would take them again.
-    for (const uint32_t i : averaged) levels.level[i] = uint8_t(kDone + level + 1);
-    for (const uint32_t i : single) levels.level[i] = uint8_t(kDone + level + 1);
+    if (!averaged.empty()) {
+      transport::SupersampleParams finer = params;
+      finer.points *= factor;
+      LUXEL_TRY(const transport::Supersampled points,
+                average_texels(world.scene, world.atlas, world.map, world.elements, world.lights,
+                               world.tracer, averaged, finer, direct, progress));
+      direct.rays += points.rays;
+    }
+    if (!single.empty()) {
+      transport::DirectParams finer = params.direct;
+      finer.samples *= factor;
+      LUXEL_TRY_STATUS(direct_light_again(world.scene, world.elements, world.lights, world.tracer,
+                                          single, finer, direct, progress));
+    }
+    for (const auto& risen : {averaged, single})
+      for (const uint32_t i : risen) ++levels.level[i];
     count += single.size() + averaged.size();
   }
-  for (uint8_t& level : levels.level)
-    if (level >= kDone) level = uint8_t(level - kDone);
   return count;
 }
 

@@ -8,6 +8,7 @@
 #include "atlas/atlas.h"
 #include "solve/gather/bounces.h"
 #include "transport/supersample.h"
+#include "transport/texel_scene.h"
 
 namespace luxel::gather {
 
@@ -41,19 +42,10 @@ struct DirectLevels {
   std::vector<uint8_t> level;     ///< per element: shadow rays, or points, times 4 to this power
   std::vector<uint8_t> averaged;  ///< per element: 1 where it is a mean over points of its texel
 };
-/// What direct light is taken from.
-struct DirectWorld {
-  const scene::Scene& scene;
-  const atlas::Atlas& atlas;
-  const atlas::TexelMap& map;
-  const transport::Elements& elements;
-  const transport::Lights& lights;
-  const trace::RayTracer& tracer;
-};
 /// Looks at the direct light of elements whose relative error is larger than max_error again, one
 /// level finer. Returns how many there were: 0 when all are good enough or as fine as they can be.
 /// Errors: cancelled.
-Result<size_t> refine_direct(const DirectWorld& world, std::span<const float> errors,
+Result<size_t> refine_direct(const transport::TexelScene& world, std::span<const float> errors,
                              float max_error, const transport::SupersampleParams& params,
                              DirectLevels& levels, transport::DirectLight& direct,
                              Progress& progress);

@@ -6,39 +6,16 @@
 #include <cmath>
 
 #include "scene/procedural.h"
-#include "solve/gather/gather.h"
+#include "solve/gather/gather_test_support.h"
 
 namespace luxel::gather {
 namespace {
 
-struct Room {
-  scene::Scene scene = scene::cornell_box();
-  atlas::Atlas atlas;
-  atlas::TexelMap map;
-  transport::Elements elements;
-  transport::Lights lights = transport::collect_lights(scene);
-  trace::RayTracer tracer = *trace::RayTracer::build(scene);
-
-  explicit Room(int resolution) {
-    Progress progress;
-    atlas::AtlasParams params;
-    params.uv = atlas::UvMode::unwrap, params.resolution = resolution;
-    atlas = *atlas::make_atlas(scene, params, progress);
-    map = atlas::rasterise(scene, atlas);
-    elements = transport::elements_from_texels(scene, atlas, map);
-  }
-  Gather gather_with(const GatherParams& params) const {
-    Progress progress;
-    auto light = gather(scene, atlas, map, elements, lights, tracer, params, progress);
-    EXPECT_TRUE(light);
-    return std::move(*light);
-  }
-};
-
 // 64 samples and 192 more are the 256 that one round traces: the light differs by the order of the
 // sums, 256 roundings of 6e-8 at most, five times that after all bounces.
 TEST(Rounds, AreTheSamplesOfOneRound) {
-  const Room room(32);
+  const auto laid_out = lay_out(scene::cornell_box(), 32);
+  const Room& room = *laid_out;
   Progress progress;
   const size_t n = room.elements.size();
   const std::vector<uint16_t> all(n, 256);
@@ -47,10 +24,10 @@ TEST(Rounds, AreTheSamplesOfOneRound) {
   for (size_t i = 1; i < n; i += 3) first[i] = 0;
   TracedHits rounds = no_hits(n);
   for (const auto& target : {first, all})
-    ASSERT_TRUE(trace_more(room.scene, room.atlas, room.elements, room.lights.around, room.tracer,
+    ASSERT_TRUE(trace_more(room.scene, room.atlas, room.elements, room.lights.around, *room.tracer,
                            target, {}, rounds, progress));
   const auto once = trace_hits(room.scene, room.atlas, room.elements, room.lights.around,
-                               room.tracer, 256, {}, progress);
+                               *room.tracer, 256, {}, progress);
   ASSERT_TRUE(once);
   EXPECT_EQ(rounds.samples, once->samples);
   EXPECT_EQ(rounds.escaped, once->escaped);
@@ -69,12 +46,12 @@ TEST(Rounds, AreTheSamplesOfOneRound) {
 
 // Half as many tiles fit into memory as the round needs: the rest is read from files.
 TEST(Rounds, GoToFilesWhenMemoryIsShort) {
-  const Room room(32);
+  const auto room = lay_out(scene::cornell_box(), 32);
   GatherParams params;
   params.samples = 32, params.max_error = 0.1f;
-  const Gather in_memory = room.gather_with(params);
+  const Gather in_memory = solve(*room, params);
   params.hit_memory_bytes = 100'000;
-  const Gather in_files = room.gather_with(params);
+  const Gather in_files = solve(*room, params);
   EXPECT_GT(in_files.hit_bytes_in_file, 0u);
   EXPECT_EQ(in_files.irradiance, in_memory.irradiance);
 }
@@ -83,12 +60,12 @@ TEST(Rounds, GoToFilesWhenMemoryIsShort) {
 class SlowAdaptive : public testing::Test {
  protected:
   static const Room& room() {
-    static const Room instance(64);
-    return instance;
+    static const auto instance = lay_out(scene::cornell_box(), 64);
+    return *instance;
   }
   static const Gather& judge() {
-    static const Gather instance = room().gather_with(
-        {.samples = 16384, .direct_samples = 4096, .supersample = 256, .seed = 7});
+    static const Gather instance =
+        solve(room(), {.samples = 16384, .direct_samples = 4096, .supersample = 256, .seed = 7});
     return instance;
   }
 };
@@ -99,8 +76,8 @@ class SlowAdaptive : public testing::Test {
 // too large than too small, because halves are less well spread than the whole).
 TEST_F(SlowAdaptive, TheErrorIsWhatWasAskedFor) {
   for (const float max_error : {0.05f, 0.02f}) {
-    const Gather light = room().gather_with(
-        {.samples = 32, .max_error = max_error, .direct_samples = 16, .supersample = 16});
+    const Gather light = solve(
+        room(), {.samples = 32, .max_error = max_error, .direct_samples = 16, .supersample = 16});
     EXPECT_LE(light.relative_error_p95, max_error);
     double mean = 0;
     for (const Rgb& e : judge().irradiance)

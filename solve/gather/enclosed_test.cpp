@@ -4,7 +4,7 @@
 #include <array>
 
 #include "scene/shapes.h"
-#include "solve/gather/gather.h"
+#include "solve/gather/gather_test_support.h"
 #include "transport/point_form_factor.h"
 
 namespace luxel::gather {
@@ -23,18 +23,10 @@ TEST(Enclosed, IsTheSameForAllSeeds) {
   scene::add_rectangle(scene, {-1, 1, -1, 1}, kHeight, true, white);
   const std::array<Vec3, 4> plate{Vec3{-1, kHeight, -1}, Vec3{1, kHeight, -1}, Vec3{1, kHeight, 1},
                                   Vec3{-1, kHeight, 1}};
-  Progress progress;
-  const auto atlas =
-      atlas::make_atlas(scene, {.uv = atlas::UvMode::unwrap, .resolution = 96}, progress);
-  ASSERT_TRUE(atlas);
-  const atlas::TexelMap map = atlas::rasterise(scene, *atlas);
-  const transport::Elements elements = transport::elements_from_texels(scene, *atlas, map);
-  const auto tracer = trace::RayTracer::build(scene);
+  const auto room = lay_out(std::move(scene), 96);
+  const transport::Elements& elements = room->elements;
   const auto enclosed = [&](int samples, uint64_t seed) {
-    const auto light = gather(scene, *atlas, map, elements, transport::collect_lights(scene),
-                              *tracer, {.samples = samples, .seed = seed}, progress);
-    EXPECT_TRUE(light);
-    return light->enclosed;
+    return solve(*room, {.samples = samples, .seed = seed}).enclosed;
   };
   const std::vector<uint8_t> first = enclosed(64, 1);
   size_t inside = 0, outside = 0, unsure = 0;

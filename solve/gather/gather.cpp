@@ -82,7 +82,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   const std::vector<StoredHit> behind = places_behind(scene, atlas, map, elements);
   LUXEL_TRY(TracedHits hits, trace_hits(scene, atlas, elements, lights.around, tracer,
                                         params.samples, trace_params, progress));
-  const DirectWorld direct_world{scene, atlas, map, elements, lights, tracer};
+  const transport::TexelScene world{scene, atlas, map, elements, lights, tracer};
   DirectLevels levels{std::vector<uint8_t>(elements.size()), std::vector<uint8_t>(elements.size())};
   for (const uint32_t i : averaged.texels) levels.averaged[i] = 1;
   Bounced bounced;
@@ -91,14 +91,14 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
     const float tolerance = last ? params.tolerance : kRoughTolerance;
     LUXEL_TRY(bounced, bounce(map, elements, hits, direct.irradiance, behind,
                               {params.bounces, tolerance}, progress));
-    errors = errors_of(atlas, map, direct, bounced, hits);
+    if (params.max_error > 0) errors = errors_of(atlas, map, direct, bounced, hits);
     if (last) break;
     last = percentile_95(errors.all) <= params.max_error;
     if (last) continue;
     // Of a part that is below half of the square all may be left as it is.
     const float each = params.max_error / std::sqrt(2.0f);
-    LUXEL_TRY(const size_t finer, refine_direct(direct_world, errors.direct, each,
-                                                supersample_params, levels, direct, progress));
+    LUXEL_TRY(const size_t finer, refine_direct(world, errors.direct, each, supersample_params,
+                                                levels, direct, progress));
     const std::vector<uint16_t> target =
         next_samples(errors.gathered, each, params.max_samples, hits);
     last = finer == 0 && target == hits.samples;

@@ -4,32 +4,19 @@
 #include <gtest/gtest.h>
 
 #include "scene/shapes.h"
-#include "solve/gather/gather.h"
+#include "solve/gather/gather_test_support.h"
 
 namespace luxel::gather {
 namespace {
 
 struct Lit {
-  atlas::TexelMap map;
   transport::Elements elements;
   Gather light;
 };
 
-Lit solve(const scene::Scene& scene, int resolution, int samples = 256) {
-  Progress progress;
-  atlas::AtlasParams params;
-  params.resolution = resolution;
-  params.uv = atlas::UvMode::unwrap;
-  const auto atlas = atlas::make_atlas(scene, params, progress);
-  EXPECT_TRUE(atlas);
-  Lit out{atlas::rasterise(scene, *atlas), {}, {}};
-  out.elements = transport::elements_from_texels(scene, *atlas, out.map);
-  const auto tracer = trace::RayTracer::build(scene);
-  auto light = gather(scene, *atlas, out.map, out.elements, transport::collect_lights(scene),
-                      *tracer, {.samples = samples}, progress);
-  EXPECT_TRUE(light);
-  out.light = std::move(*light);
-  return out;
+Lit solve(scene::Scene scene, int resolution, int samples = 256) {
+  const auto room = lay_out(std::move(scene), resolution);
+  return {room->elements, gather::solve(*room, with_samples(samples))};
 }
 
 // A wide plate 1 mm above a small one, under an even sky of radiance 1. Of the wide plate's lower

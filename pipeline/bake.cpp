@@ -1,6 +1,7 @@
 #include "pipeline/bake.h"
 
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "atlas/pages.h"
 #include "base/file.h"
@@ -154,6 +155,26 @@ nlohmann::json about_atlas(const BakeSettings& settings, const Bake& bake) {
   return out;
 }
 
+/// How sure the light is, and where it is least so.
+nlohmann::json about_error(const BakeSettings& settings, const Bake& bake) {
+  const std::vector<float>& errors = bake.light.errors;
+  const std::vector<uint16_t>& samples = bake.light.samples;
+  const size_t worst = size_t(std::max_element(errors.begin(), errors.end()) - errors.begin());
+  const atlas::Texel& texel = bake.map.texels[worst];
+  const Vec3 at = scene::world_position(bake.scene, texel.sample);
+  const auto [fewest, most] = std::minmax_element(samples.begin(), samples.end());
+  const double all = std::accumulate(samples.begin(), samples.end(), 0.0);
+  nlohmann::json out = {
+      {"relative_p95", bake.light.error_p95},
+      {"worst",
+       {{"relative", errors[worst]},
+        {"position", {at.x, at.y, at.z}},
+        {"node", bake.scene.instances[texel.sample.instance].name}}},
+      {"samples", {{"fewest", *fewest}, {"mean", all / double(samples.size())}, {"most", *most}}}};
+  if (settings.max_error > 0) out["asked"] = settings.max_error;
+  return out;
+}
+
 nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Progress& progress) {
   const nlohmann::json seconds = stage_seconds(progress);
   const double tracing = seconds.value("direct light", 0.0) + seconds.value("supersample", 0.0) +
@@ -295,6 +316,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(not_cancelled(progress));
   progress.finish();
   nlohmann::json json = report(settings, result, progress);
+  if (!result.light.errors.empty()) json["error"] = about_error(settings, result);
   json.update(about_files);
   for (const OutputFile& file : files) json["files"].push_back(file.path.filename().string());
   json["files"].push_back("bake.json");

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kMaxSamples = 65535, kMaxSupersample = 1024;
 constexpr int64_t kMaxElements = 1 << 26;
+constexpr double kSmallestError = 1e-4;
 
 /// A number that is the whole of `text`.
 std::optional<double> parse_number(std::string_view text) {
@@ -155,6 +156,11 @@ Status check(const BakeSettings& s) {
   LUXEL_TRY_STATUS(check_range("--direct-samples", s.direct_samples, 1, kMaxSamples));
   LUXEL_TRY_STATUS(check_range("--supersample", s.supersample, 1, kMaxSupersample));
   LUXEL_TRY_STATUS(check_range("--threads", s.threads, 0, 1024));
+  if (s.max_error != 0 && !(s.max_error >= kSmallestError && s.max_error <= 1))
+    return fail(ErrorCode::bad_setting,
+                "--max-error {} is outside {} to 1; give the part of their light to which texels "
+                "must be known, as 0.02",
+                s.max_error, kSmallestError);
   if (!std::isfinite(s.texels_per_metre) || s.texels_per_metre < 0)
     return fail(ErrorCode::bad_setting, "--texels-per-metre {} is not a density; give a number > 0",
                 s.texels_per_metre);
@@ -186,6 +192,7 @@ nlohmann::json to_json(const BakeSettings& s) {
                       {"uv", name_of(s.uv)},
                       {"samples", s.samples},
                       {"direct_samples", s.direct_samples},
+                      {"max_error", s.max_error},
                       {"supersample", s.supersample},
                       {"max_memory_bytes", s.max_memory_bytes},
                       {"seed", s.seed},

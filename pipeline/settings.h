@@ -93,6 +93,10 @@ struct BakeSettings {
   atlas::UvMode uv = atlas::UvMode::automatic;
   int samples = 256;
   int direct_samples = 64;
+  /// gather: rays are added until 95 of 100 texels are known to this part of their light, `samples`
+  /// is not looked at; 0: no more than `samples`.
+  double max_error = 0;
+  bool samples_given = false;     ///< beside max_error, which wins: worth a warning
   int supersample = 16;           ///< points per texel where direct light varies; 1: none
   int bounces = -1;               ///< < 0: all
   uint64_t max_memory_bytes = 0;  ///< 0: four fifths of what is free when the bake starts

@@ -79,11 +79,29 @@ TexelLight texel_light(Solved&& solved) {
   return out;
 }
 
+/// Of the first round, when an error is asked for.
+constexpr int kFirstSamples = 32;
+
+void warn_about_error(const BakeSettings& settings, const gather::GatherParams& params,
+                      const gather::Gather& result, std::vector<std::string>& warnings) {
+  if (settings.samples_given)
+    warnings.push_back(
+        fmt::format("--max-error {} wins: rays are added until it is reached, and --samples {} is "
+                    "not looked at",
+                    settings.max_error, settings.samples));
+  if (double(result.relative_error_p95) > settings.max_error)
+    warnings.push_back(
+        fmt::format("--max-error {} was not reached: 95 of 100 texels are known to {:.2g} of their "
+                    "light, and none gets more than {} rays",
+                    settings.max_error, result.relative_error_p95, params.max_samples));
+}
+
 Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
                                 Progress& progress) {
   LUXEL_TRY(const uint64_t hit_memory, memory_to_spare(in, settings, kMinHitBytes));
   gather::GatherParams params;
-  params.samples = settings.samples;
+  params.samples = settings.max_error > 0 ? kFirstSamples : settings.samples;
+  params.max_error = float(settings.max_error);
   params.direct_samples = settings.direct_samples;
   params.supersample = settings.supersample;
   params.bounces = settings.bounces;
@@ -93,6 +111,9 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   TexelLight out = texel_light(std::move(result));
+  if (settings.max_error > 0) warn_about_error(settings, params, result, out.warnings);
+  out.errors = std::move(result.errors), out.error_p95 = result.relative_error_p95;
+  out.samples = std::move(result.samples);
   out.direct = std::move(result.direct);
   out.direct_variance = std::move(result.direct_variance);
   out.variance = std::move(result.indirect_variance);
@@ -269,9 +290,14 @@ constexpr std::array kSolvers{
            .samples = true,
            .direct_samples = true,
            .supersample = true,
+           .max_error = true,
            .noise = true,
            .scatters = true},
-    Solver{.name = "hemicube", .solve = solve_hemicube, .direct_samples = true, .hemicube = true},
+    Solver{.name = "hemicube",
+           .solve = solve_hemicube,
+           .direct_samples = true,
+           .hemicube = true,
+           .max_error = true},
     Solver{.name = "matrix",
            .solve = solve_matrix,
            .direct_samples = true,

@@ -32,6 +32,11 @@ struct TexelLight {
   /// The part of the irradiance that comes straight from lamps, and its variance; empty: not apart.
   std::vector<Rgb> direct;
   std::vector<float> direct_variance;
+  /// Where the solver knows how sure each texel's luminance is, relative to itself or, where it is
+  /// darker, to a tenth of the mean; empty: it does not. Hidden texels have none.
+  std::vector<float> errors;
+  float error_p95 = 0;            ///< that 95 of 100 stay below
+  std::vector<uint16_t> samples;  ///< with errors: indirect rays per texel
   uint64_t rays = 0;
   uint64_t supersampled_texels = 0;  ///< direct light is a mean over their points
   int sweeps = 0;
@@ -53,8 +58,9 @@ struct Solver {
   /// What it looks at of the settings.
   bool samples = false, direct_samples = false, supersample = false, hemicube = false,
        matrix = false, hierarchical = false;
-  bool noise = false;     ///< knows the variance of its light: --denoise
-  bool scatters = false;  ///< follows light that surfaces scatter through
+  bool max_error = false;  ///< can be asked for an error, of its mesh or of texels
+  bool noise = false;      ///< knows the variance of its light: --denoise
+  bool scatters = false;   ///< follows light that surfaces scatter through
 };
 
 /// What a bake's settings ask of the hemicube solver. Shadow rays are four times direct_samples.

@@ -33,7 +33,7 @@ constexpr std::array kSolverOptions{
     SolverOption{"--hemicube", &pipeline::Solver::hemicube},
     SolverOption{"--element-size", &pipeline::Solver::hemicube},
     SolverOption{"--max-elements", &pipeline::Solver::hemicube},
-    SolverOption{"--max-error", &pipeline::Solver::hemicube},
+    SolverOption{"--max-error", &pipeline::Solver::max_error},
     SolverOption{"--smooth", &pipeline::Solver::hemicube},
     SolverOption{"--patches", &pipeline::Solver::matrix},
     SolverOption{"--rays", &pipeline::Solver::matrix},
@@ -83,6 +83,15 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
         s.resolution, s.texels_per_metre);
   s.threads = options.common.threads;
   s.hemicube = options.hemicube.settings;
+  if (s.solver == "gather" && options.given.contains("--max-error")) {
+    s.max_error = s.hemicube.max_error;
+    if (s.max_error == 0)
+      return fail(
+          ErrorCode::bad_setting,
+          "--max-error 0 would never end; give the part of their light to which texels must "
+          "be known, as 0.02");
+    s.samples_given = options.given.contains("--samples");
+  }
   s.uv = uv_mode(options.uv);
   LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
   if (!options.max_memory.empty()) {
@@ -152,6 +161,11 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_option("--bounces", options->bounces, "Reflections to count, or inf")
       ->capture_default_str();
   add_hemicube(*bake, options->hemicube);
+  bake->get_option("--max-error")
+      ->description(
+          "gather: rays are added until 95 of 100 texels are known to this part of their light, as "
+          "0.02; hemicube: cut triangles over which the light is off by more, 0 cuts none")
+      ->group("OPTIONS");
   const char* matrix = "Matrix radiosity";
   bake->add_option("--patches", s.matrix.patches, "About so many pieces of surface exchange light")
       ->capture_default_str()

@@ -9,14 +9,11 @@
 namespace luxel::gather {
 namespace {
 
-double relative_error(std::span<const Rgb> irradiance, std::span<const float> direct_variance,
-                      std::span<const float> gathered_variance) {
-  double mean = 0, variance = 0;
-  for (size_t i = 0; i < irradiance.size(); ++i) {
-    mean += luminance(irradiance[i]);
-    variance += double(direct_variance[i]) + double(gathered_variance[i]);
-  }
-  return mean > 0 ? std::sqrt(variance * double(irradiance.size())) / mean : 0;
+double relative_error(std::span<const Rgb> irradiance, std::span<const float> variance) {
+  double mean = 0, sum = 0;
+  for (size_t i = 0; i < irradiance.size(); ++i)
+    mean += double(luminance(irradiance[i])), sum += double(variance[i]);
+  return mean > 0 ? std::sqrt(sum * double(irradiance.size())) / mean : 0;
 }
 
 /// Per element, whether it lies inside a solid (is_enclosed). Where its own rays are not sure, a
@@ -91,7 +88,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
     const float tolerance = last ? params.tolerance : kRoughTolerance;
     LUXEL_TRY(bounced, bounce(map, elements, hits, direct.irradiance, behind,
                               {params.bounces, tolerance}, progress));
-    if (params.max_error > 0) errors = errors_of(atlas, map, direct, bounced, hits);
+    errors = errors_of(atlas, map, direct, bounced, hits);
     if (last) break;
     last = percentile_95(errors.all) <= params.max_error;
     if (last) continue;
@@ -107,15 +104,17 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                                 hits, progress));
   }
   Gather out;
-  out.relative_error = relative_error(bounced.irradiance, direct.variance, bounced.variance);
+  out.relative_error = relative_error(bounced.irradiance, errors.variance);
   out.irradiance = std::move(bounced.irradiance);
   out.direct = std::move(direct.irradiance);
   out.direct_variance = std::move(direct.variance);
   out.indirect_variance = std::move(bounced.split_variance);
   out.pooled_variance = std::move(errors.variance);
   out.relative_error_p95 = percentile_95(errors.all);
+  out.errors = std::move(errors.all);
   out.enclosed = find_enclosed(scene, elements, tracer, hits);
   out.met_back = std::move(hits.met_back);
+  out.samples = std::move(hits.samples);
   out.rays = direct.rays + hits.rays;
   out.supersampled = averaged.texels.size();
   out.sweeps = bounced.sweeps;

@@ -28,16 +28,15 @@ struct Gather {
   std::vector<float> direct_variance, indirect_variance;  ///< indirect: from halves, see Bounced
   std::vector<uint16_t> met_back;  ///< rays per element that met the back of a one-sided surface
   std::vector<uint8_t> enclosed;   ///< per element: 1 inside a solid (transport::is_enclosed)
-  /// With max_error, else nothing: of the luminance, per element (pooled_variances), and what 95 of
-  /// 100 relative errors stay below.
-  std::vector<float> pooled_variance;
-  float relative_error_p95 = 0;
+  std::vector<float> pooled_variance;  ///< of the luminance, per element: pooled_variances
+  std::vector<float> errors;           ///< per element: relative_errors
+  float relative_error_p95 = 0;        ///< that 95 of 100 elements stay below
+  std::vector<uint16_t> samples;       ///< indirect rays per element
   uint64_t rays = 0;
   uint64_t supersampled = 0;  ///< elements whose direct light is a mean over points
   int sweeps = 0;
   uint64_t hit_bytes_in_file = 0;
-  /// Root mean square of the estimated standard errors over the mean irradiance. Conservative: it
-  /// takes the samples for independent, which stratified ones beat.
+  /// Root mean square of the estimated standard errors (pooled_variances) over the mean irradiance.
   double relative_error = 0;
 };
 

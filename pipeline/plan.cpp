@@ -21,7 +21,8 @@ struct Rounds {
   double seconds = 0, rays = 0, hit_bytes = 0;
 };
 
-/// What comes after the first round, which is made to know. Errors: cancelled, disk full.
+/// What comes after the first round, which is made to know. How errors fall from there is a guess,
+/// right within a factor of two or so. Errors: cancelled, disk full.
 Result<Rounds> rounds_of(const SolveInput& in, const BakeSettings& settings,
                          const gather::Forecast& first, Progress& progress) {
   const gather::GatherParams params = gather_params(settings);
@@ -30,8 +31,8 @@ Result<Rounds> rounds_of(const SolveInput& in, const BakeSettings& settings,
   LUXEL_TRY(const gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                         in.lights, in.tracer, once, progress));
   const double texels = double(in.elements.size()), before = texels * params.samples;
-  const std::vector<uint64_t> added =
-      gather::rounds_to_come(result.errors, params.max_error, params.max_samples, result.samples);
+  const std::vector<uint64_t> added = gather::rounds_to_come(
+      result.errors, result.gathered_errors, params.max_error, params.max_samples, result.samples);
   Rounds out;
   double samples = before;
   for (const uint64_t round : added) {
@@ -39,7 +40,8 @@ Result<Rounds> rounds_of(const SolveInput& in, const BakeSettings& settings,
     out.seconds += double(round) / before * first.trace_s + samples / before * first.bounces_s;
   }
   out.rays = (samples - before) / before * (first.rays - texels * params.direct_samples);
-  out.hit_bytes = (samples - before) / before * first.hit_bytes;
+  // They go where it is dark: most of them meet something.
+  out.hit_bytes = (samples - before) * double(sizeof(gather::StoredHit));
   return out;
 }
 

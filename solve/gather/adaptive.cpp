@@ -14,9 +14,6 @@ namespace {
 constexpr int kReach = 2;
 /// So many elements' worth of the chart's ratio is added to that of the neighbours, who may be few.
 constexpr double kPriorElements = 8;
-/// Standard errors fall like n to this power and a bit faster (docs/gather.md): it says how many
-/// samples more are needed.
-constexpr float kDecay = 0.7f;
 constexpr float kDarkest = 0.1f;
 constexpr size_t kTexelsForForecast = 20000;
 /// Levels of direct light: 4^4 times the shadow rays, 4^2 times the points, each of which looks at
@@ -103,7 +100,7 @@ std::vector<uint16_t> next_samples(std::span<const float> errors, float max_erro
   std::vector<uint16_t> out(samples.begin(), samples.end());
   for (size_t i = 0; i < out.size(); ++i) {
     if (errors[i] <= max_error) continue;
-    const bool far = std::pow(max_error / errors[i], 1 / kDecay) < 0.5f;
+    const bool far = std::pow(max_error / errors[i], 1 / kDecay) < 0.25f;
     const int wanted = int(out[i]) * (far ? 4 : 2);
     const int affordable = wanted <= max_samples ? wanted : int(out[i]) * 2;
     if (affordable <= max_samples) out[i] = uint16_t(affordable);
@@ -115,23 +112,31 @@ uint64_t sum_of(std::span<const uint16_t> samples) {
   return std::accumulate(samples.begin(), samples.end(), uint64_t(0));
 }
 
-std::vector<uint64_t> rounds_to_come(std::span<const float> errors, float max_error,
-                                     int max_samples, std::span<const uint16_t> samples) {
+std::vector<uint64_t> rounds_to_come(std::span<const float> all, std::span<const float> gathered,
+                                     float max_error, int max_samples,
+                                     std::span<const uint16_t> samples) {
+  const float each = error_of_part(max_error);
   // Some texels stand for all: it is an estimate.
-  const size_t step = std::max<size_t>(1, errors.size() / kTexelsForForecast);
-  std::vector<float> e;
+  const size_t step = std::max<size_t>(1, all.size() / kTexelsForForecast);
+  std::vector<float> now, sum, rest;
   std::vector<uint16_t> n;
-  for (size_t i = 0; i < errors.size(); i += step) e.push_back(errors[i]), n.push_back(samples[i]);
+  for (size_t i = 0; i < all.size(); i += step) {
+    const float of_lamps = std::sqrt(std::max(0.0f, all[i] * all[i] - gathered[i] * gathered[i]));
+    now.push_back(gathered[i]), rest.push_back(std::min(of_lamps, each)), n.push_back(samples[i]);
+  }
   std::vector<uint64_t> rounds;
-  while (percentile_95(e) > max_error) {
-    const std::vector<uint16_t> next = next_samples(e, max_error, max_samples, n);
+  for (;;) {
+    sum.clear();
+    for (size_t i = 0; i < now.size(); ++i) sum.push_back(std::hypot(now[i], rest[i]));
+    if (percentile_95(sum) <= max_error) return rounds;
+    const std::vector<uint16_t> next = next_samples(now, each, max_samples, n);
     const uint64_t added = sum_of(next) - sum_of(n);
-    if (added == 0) break;
+    if (added == 0) return rounds;
     rounds.push_back(step * added);
-    for (size_t i = 0; i < e.size(); ++i) e[i] *= std::pow(float(n[i]) / float(next[i]), kDecay);
+    for (size_t i = 0; i < now.size(); ++i)
+      now[i] *= std::pow(float(n[i]) / float(next[i]), kDecay);
     n = next;
   }
-  return rounds;
 }
 
 void keep_affordable(std::span<const float> errors, uint64_t affordable,

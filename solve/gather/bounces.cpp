@@ -247,7 +247,10 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   std::vector<Rgb> source(direct.begin(), direct.end());
   for (size_t i = 0; i < n; ++i) source[i] += hits.sky[i] * (kPi / float(hits.samples[i]));
   Bounced out;
+  const bool guessed = params.bounces < 0 && !params.start.empty();
+  LUXEL_CHECK(!guessed || params.start.size() == n);
   out.irradiance = source;
+  if (guessed) out.irradiance.assign(params.start.begin(), params.start.end());
   out.variance.assign(n, 0.0f);
   out.split_variance.assign(n, 0.0f);
   std::vector<Rgb> next(n);
@@ -275,7 +278,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   const ReflectanceRange reflectance = reflectance_range(elements);
   const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
   for (const size_t stride : {size_t(16), size_t(4), size_t(1)}) {
-    if (stride > 1 && fewest < 16 * stride) continue;
+    if (stride > 1 && (guessed || fewest < 16 * stride)) continue;
     double before = 0;
     for (int k = 0; k < kMaxSweeps; ++k) {
       LUXEL_TRY(const double change, run(stride));

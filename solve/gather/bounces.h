@@ -18,6 +18,9 @@ struct BounceParams {
   /// Stop when the light of all bounces still to come is below this: its root mean square over the
   /// elements, relative to the mean irradiance.
   float tolerance = 1e-4f;
+  /// With all bounces asked for: a guess of E per element to start from, as that of fewer samples;
+  /// or nothing.
+  std::span<const Rgb> start{};
 };
 
 struct Bounced {

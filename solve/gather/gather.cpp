@@ -97,6 +97,8 @@ Status trace_round(const transport::TexelScene& world, const GatherParams& param
 Status bounce_round(const transport::TexelScene& world, std::span<const StoredHit> behind,
                     BounceParams params, Work& work, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
+  const std::vector<Rgb> guess = std::move(work.bounced.irradiance);
+  params.start = guess;
   LUXEL_TRY(work.bounced, bounce(world.map, world.elements, work.hits, work.direct.irradiance,
                                  behind, params, progress));
   work.errors = errors_of(world, work);
@@ -114,9 +116,9 @@ double affordable_rays(const Work& work, double seconds_left) {
 /// Tells the watcher what is still to come, when an error is asked for.
 void expect_rounds(const GatherParams& params, std::span<const uint16_t> target, const Work& work,
                    Progress& progress) {
-  const float each = params.max_error / std::sqrt(2.0f);
   std::vector<uint64_t> rounds =
-      rounds_to_come(work.errors.gathered, each, params.max_samples, work.hits.samples);
+      rounds_to_come(work.errors.all, work.errors.gathered, params.max_error, params.max_samples,
+                     work.hits.samples);
   const double before = double(sum_of(work.hits.samples));
   if (rounds.empty()) rounds.push_back(0);
   rounds.front() = sum_of(target) - uint64_t(before);  // that is known
@@ -136,8 +138,7 @@ void expect_rounds(const GatherParams& params, std::span<const uint16_t> target,
 Result<bool> next_round(const transport::TexelScene& world, const GatherParams& params,
                         double seconds_left, Work& work, Progress& progress) {
   if (percentile_95(work.errors.all) <= params.max_error) return false;
-  // Of a part that is below half of the square all may be left as it is.
-  const float each = params.max_error / std::sqrt(2.0f);
+  const float each = error_of_part(params.max_error);
   const transport::SupersampleParams supersample = supersample_params(params);
   std::vector<uint16_t> target =
       next_samples(work.errors.gathered, each, params.max_samples, work.hits.samples);
@@ -189,6 +190,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   out.pooled_variance = std::move(work.errors.variance);
   out.relative_error_p95 = percentile_95(work.errors.all);
   out.errors = std::move(work.errors.all);
+  out.gathered_errors = std::move(work.errors.gathered);
   out.enclosed = transport::find_enclosed(scene, tracer, elements, [&](size_t i) {
     return transport::BacksSeen{int(work.hits.samples[i]), int(work.hits.met_back[i]),
                                 int(work.hits.met_double_sided_back[i])};

@@ -33,6 +33,7 @@ struct Gather {
   std::vector<uint8_t> enclosed;   ///< per element: 1 inside a solid (transport::is_enclosed)
   std::vector<float> pooled_variance;  ///< of the luminance, per element: pooled_variances
   std::vector<float> errors;           ///< per element: relative_errors
+  std::vector<float> gathered_errors;  ///< the same of what rays brought, light from lamps aside
   float relative_error_p95 = 0;        ///< that 95 of 100 elements stay below
   std::vector<uint16_t> samples;       ///< indirect rays per element
   uint64_t rays = 0;

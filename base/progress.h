@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -28,6 +29,11 @@ class Progress {
   /// Ends the last stage.
   void finish();
   void advance(uint64_t units) { done_.fetch_add(units, std::memory_order_relaxed); }
+  /// Units that were there already, which says nothing about how long the others take.
+  void skip(uint64_t units) {
+    skipped_.fetch_add(units, std::memory_order_relaxed);
+    advance(units);
+  }
 
   void request_cancel() { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
@@ -35,6 +41,7 @@ class Progress {
   struct Snapshot {
     std::string stage;
     uint64_t done = 0, total = 0;
+    uint64_t skipped = 0;  ///< of done
     double stage_seconds = 0;
     int stage_index = -1;
   };
@@ -42,13 +49,28 @@ class Progress {
   /// The stages so far with their wall-clock seconds.
   std::vector<Stage> stages() const;
 
+  /// A sentence that people should read now rather than when the work is done. Thread-safe.
+  void note(std::string text);
+  /// All from number `first` on.
+  std::vector<std::string> notes(size_t first) const;
+  /// What can be said to someone who stops the work; empty: that it is lost. Thread-safe.
+  void set_way_on(std::string text);
+  std::string way_on() const;
+  /// What must be done by whoever ends the process while the work still runs; empty: nothing.
+  /// Thread-safe.
+  void set_clean_up(std::function<void()> clean_up);
+  void clean_up() const;
+
  private:
   using Clock = std::chrono::steady_clock;
   mutable std::mutex mutex_;
   std::vector<Stage> stages_;
   Clock::time_point stage_start_;
   bool running_ = false;
-  std::atomic<uint64_t> done_{0}, total_{0};
+  std::atomic<uint64_t> done_{0}, total_{0}, skipped_{0};
+  std::vector<std::string> notes_;
+  std::string way_on_;
+  std::function<void()> clean_up_;
   std::atomic<bool> cancelled_{false};
 };
 

@@ -20,6 +20,7 @@ namespace {
 constexpr int kMaxSamples = 65535, kMaxSupersample = 1024;
 constexpr int64_t kMaxElements = 1 << 26;
 constexpr double kSmallestError = 1e-4;
+constexpr double kLongestCheckpoint_s = 1e6;
 
 /// A number that is the whole of `text`.
 std::optional<double> parse_number(std::string_view text) {
@@ -167,6 +168,10 @@ Status check(const BakeSettings& s) {
   if (!std::isfinite(s.probe_spacing_m) || s.probe_spacing_m < 0)
     return fail(ErrorCode::bad_setting, "--probes {} is not a spacing; give metres > 0",
                 s.probe_spacing_m);
+  if (!(s.checkpoint_s >= 0 && s.checkpoint_s <= kLongestCheckpoint_s))
+    return fail(ErrorCode::bad_setting,
+                "--checkpoint {} is outside 0 to {} seconds; 0 keeps nothing", s.checkpoint_s,
+                kLongestCheckpoint_s);
   LUXEL_TRY_STATUS(check_pages(s));
   if (s.denoise && !find_solver(s.solver)->noise)
     return fail(ErrorCode::bad_setting,
@@ -199,6 +204,7 @@ nlohmann::json to_json(const BakeSettings& s) {
                       {"threads", s.threads}};
   json["formats"] = to_json(s.formats);
   json["html"] = s.html, json["texels"] = s.texels;
+  json["checkpoint_s"] = s.checkpoint_s;
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
   json["directional"] = name_of(s.directional);
   json["probe_spacing_m"] = s.probe_spacing_m;

@@ -108,6 +108,7 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   params.seed = settings.seed;
   params.hit_memory_bytes = hit_memory;
   params.scratch_folder = nearest_folder(settings.output);
+  params.parts = in.parts;
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   TexelLight out = texel_light(std::move(result));
@@ -292,7 +293,8 @@ constexpr std::array kSolvers{
            .supersample = true,
            .max_error = true,
            .noise = true,
-           .scatters = true},
+           .scatters = true,
+           .parts = true},
     Solver{.name = "hemicube",
            .solve = solve_hemicube,
            .direct_samples = true,

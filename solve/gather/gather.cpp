@@ -65,7 +65,8 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                       const atlas::TexelMap& map, const transport::Elements& elements,
                       const transport::Lights& lights, const trace::RayTracer& tracer,
                       const GatherParams& params, Progress& progress) {
-  const transport::DirectParams direct_params{params.direct_samples, params.seed};
+  const transport::DirectParams direct_params{
+      .samples = params.direct_samples, .seed = params.seed, .parts = params.parts};
   const transport::SupersampleParams supersample_params{.points = params.supersample,
                                                         .direct = direct_params};
   LUXEL_TRY(transport::DirectLight direct,
@@ -75,7 +76,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                                    direct, progress));
   direct.rays += averaged.rays;
   const TraceParams trace_params{params.seed, params.hit_memory_bytes, params.scratch_folder,
-                                 params.bounces < 0 ? &lights : nullptr};
+                                 params.bounces < 0 ? &lights : nullptr, params.parts};
   const std::vector<StoredHit> behind = places_behind(scene, atlas, map, elements);
   LUXEL_TRY(TracedHits hits, trace_hits(scene, atlas, elements, lights.around, tracer,
                                         params.samples, trace_params, progress));

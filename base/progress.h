@@ -19,6 +19,17 @@ struct Stage {
   double seconds = 0;
 };
 
+/// How work goes against what was expected of it [s].
+struct Expected {
+  double past = 0, past_taken = 0;  ///< of stages that have ended, and what they took
+  double now = 0, now_taken = 0;    ///< of the running one
+  double now_share = 0;             ///< of it that is done; 0: not known
+  double future = 0;                ///< of stages to come
+};
+/// Seconds to the end, if what is to come is as much slower than expected as what has come. How
+/// fast the running stage goes counts for more the more of it is done.
+double seconds_left(const Expected& e);
+
 /// Work calls begin() per stage and advance() per tile or iteration, never per ray. A watcher may
 /// read at any time from another thread. request_cancel() may be called from a signal handler;
 /// work polls cancelled() at the same places where it advances, and at least every 0.2 s.
@@ -35,6 +46,11 @@ class Progress {
     advance(units);
   }
 
+  /// What stages to come are expected to take, in order, instead of what was said before; and those
+  /// that come after all of them. A stage that comes unexpected takes no place in either.
+  void expect(std::vector<Stage> stages);
+  void expect_at_end(std::vector<Stage> stages);
+
   void request_cancel() { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
 
@@ -44,6 +60,7 @@ class Progress {
     uint64_t skipped = 0;  ///< of done
     double stage_seconds = 0;
     int stage_index = -1;
+    double seconds_left = -1;  ///< of all that is expected; < 0: nothing is
   };
   Snapshot snapshot() const;
   /// The stages so far with their wall-clock seconds.
@@ -65,6 +82,9 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   mutable std::mutex mutex_;
   std::vector<Stage> stages_;
+  std::vector<Stage> expected_, expected_at_end_;  ///< those that have come are taken away
+  Stage awaited_;                                  ///< the running stage, as it was expected
+  double expected_s_ = 0, taken_s_ = 0;            ///< of expected stages that have ended
   Clock::time_point stage_start_;
   bool running_ = false;
   std::atomic<uint64_t> done_{0}, total_{0}, skipped_{0};

@@ -76,5 +76,36 @@ TEST(Progress, CancelReachesTheWorker) {
   EXPECT_TRUE(progress.cancelled()) << "a new stage does not forget it";
 }
 
+// 10 s were expected and took 20: all that comes takes twice as long.
+TEST(SecondsLeft, FollowFromWhatTheWorkHasTakenSoFar) {
+  EXPECT_DOUBLE_EQ(seconds_left({10, 10, 0, 0, 0, 30}), 30);
+  EXPECT_DOUBLE_EQ(seconds_left({10, 20, 0, 0, 0, 30}), 60);
+  // A stage of 10 s that has just begun, and 30 s after it.
+  EXPECT_DOUBLE_EQ(seconds_left({10, 20, 10, 0, 0, 30}), 80);
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 4, 0, 0}), 6) << "no share is known: as was expected";
+}
+
+// Half of a stage of 10 s took 20 s: it will take 40, and what follows is four times as slow.
+TEST(SecondsLeft, FollowFromTheSpeedOfTheRunningStage) {
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 20, 0.5, 5}), 20 + 4 * 5);
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 30, 0, 0}), 0) << "never below nothing";
+}
+
+TEST(Progress, ExpectedStagesAreTakenAwayAsTheyCome) {
+  Progress progress;
+  EXPECT_LT(progress.snapshot().seconds_left, 0) << "nothing is expected";
+  progress.expect_at_end({{"write", 100}});
+  progress.expect({{"trace", 1000}, {"bounce", 1000}});
+  progress.begin("read", 0);
+  EXPECT_DOUBLE_EQ(progress.snapshot().seconds_left, 2100);
+  progress.begin("trace", 10);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 2100, 1);
+  progress.expect({{"bounce", 500}});  // said anew
+  EXPECT_NEAR(progress.snapshot().seconds_left, 1600, 1);
+  // Stages of no time: what was expected of them is far too much, and is forgotten by degrees.
+  progress.begin("write", 10);
+  EXPECT_LT(progress.snapshot().seconds_left, 1) << "no bounces any more";
+}
+
 }  // namespace
 }  // namespace luxel

@@ -21,8 +21,8 @@ constexpr int kFormat = 1;
 
 /// Settings that leave every bit of the light as it is. Of what files hold there are digests:
 /// where they lie does not matter.
-constexpr std::array kWithoutEffect{
-    "scene", "threads", "max_memory_bytes", "checkpoint_s", "formats", "html", "texels"};
+constexpr std::array kWithoutEffect{"scene",   "threads", "max_memory_bytes", "checkpoint_s",
+                                    "formats", "html",    "texels",           "error_map"};
 
 json settings_with_effect(const BakeSettings& settings) {
   json out = to_json(settings);

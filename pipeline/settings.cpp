@@ -21,6 +21,7 @@ constexpr int kMaxSamples = 65535, kMaxSupersample = 1024;
 constexpr int64_t kMaxElements = 1 << 26;
 constexpr double kSmallestError = 1e-4;
 constexpr double kLongestCheckpoint_s = 1e6;
+constexpr double kLongestBudget = 1e7;  ///< [s], some months
 
 /// A number that is the whole of `text`.
 std::optional<double> parse_number(std::string_view text) {
@@ -162,6 +163,9 @@ Status check(const BakeSettings& s) {
                 "--max-error {} is outside {} to 1; give the part of their light to which texels "
                 "must be known, as 0.02",
                 s.max_error, kSmallestError);
+  if (!(s.time_budget_s >= 0 && s.time_budget_s <= kLongestBudget))
+    return fail(ErrorCode::bad_setting,
+                "--time-budget {} is not a time to bake in; give seconds, as 60", s.time_budget_s);
   if (!std::isfinite(s.texels_per_metre) || s.texels_per_metre < 0)
     return fail(ErrorCode::bad_setting, "--texels-per-metre {} is not a density; give a number > 0",
                 s.texels_per_metre);
@@ -204,6 +208,7 @@ nlohmann::json to_json(const BakeSettings& s) {
                       {"threads", s.threads}};
   json["formats"] = to_json(s.formats);
   json["html"] = s.html, json["texels"] = s.texels;
+  json["error_map"] = s.error_map, json["time_budget_s"] = s.time_budget_s;
   json["checkpoint_s"] = s.checkpoint_s;
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
   json["directional"] = name_of(s.directional);

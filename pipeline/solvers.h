@@ -61,6 +61,7 @@ struct Solver {
   bool samples = false, direct_samples = false, supersample = false, hemicube = false,
        matrix = false, hierarchical = false;
   bool max_error = false;  ///< can be asked for an error, of its mesh or of texels
+  bool errors = false;     ///< knows how sure each texel is: --error-map, --time-budget, --plan
   bool noise = false;      ///< knows the variance of its light: --denoise
   bool scatters = false;   ///< follows light that surfaces scatter through
   bool parts = false;      ///< keeps its finished parts: --checkpoint, --resume

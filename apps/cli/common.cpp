@@ -31,13 +31,6 @@ int exit_code(ErrorCode code) {
   }
 }
 
-std::string clock_text(double seconds) {
-  const long s = long(seconds + 0.5);
-  if (s < 60) return fmt::format("{} s", s);
-  if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
-  return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
-}
-
 /// Shows stages on stderr: one line that is rewritten on a terminal, and a line that stays for each
 /// finished stage.
 class ProgressLine {
@@ -60,9 +53,11 @@ class ProgressLine {
       if (now.stage == "trace rays")
         line += fmt::format("  {:.1f} Mrays/s", done * 1e-6 / now.stage_seconds);
       // Long work has an estimate early, too.
-      if (share > 0.02 || (share > 0 && now.stage_seconds > 3))
-        line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left";
+      const bool known = share > 0.02 || (share > 0 && now.stage_seconds > 3);
+      if (known && now.seconds_left < 0)
+        line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left of this";
     }
+    if (now.seconds_left >= 0) line += "  " + clock_text(now.seconds_left) + " left";
     std::fprintf(stderr, "\r\033[K%s", line.c_str());
     std::fflush(stderr);
   }
@@ -141,6 +136,13 @@ void watch(Progress& progress, const std::atomic<Work>& work, bool quiet) {
 }
 
 }  // namespace
+
+std::string clock_text(double seconds) {
+  const long s = long(seconds + 0.5);
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
+  return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
+}
 
 void add_common(CLI::App& command, Common& common) {
   command.add_option("--threads", common.threads, "Threads to use; 0 = all cores")
@@ -303,7 +305,7 @@ int run_and_print(const Common& common,
     return {};
   });
   if (!done) return report(done.error());
-  print_warnings(json["warnings"].get<std::vector<std::string>>(), common);
+  print_warnings(json.value("warnings", std::vector<std::string>()), common);
   if (common.json)
     std::printf("%s\n", json.dump(2).c_str());
   else if (!common.quiet)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -17,6 +18,7 @@ constexpr double kPriorElements = 8;
 /// samples more are needed.
 constexpr float kDecay = 0.7f;
 constexpr float kDarkest = 0.1f;
+constexpr size_t kTexelsForForecast = 20000;
 /// Levels of direct light: 4^4 times the shadow rays, 4^2 times the points, each of which looks at
 /// the lamps with rays of its own.
 constexpr int kFinestLevel = 4, kFinestAverage = 2;
@@ -98,17 +100,79 @@ float percentile_95(std::span<const float> errors) {
 }
 
 std::vector<uint16_t> next_samples(std::span<const float> errors, float max_error, int max_samples,
-                                   const TracedHits& hits) {
-  LUXEL_CHECK(max_error > 0 && errors.size() == hits.size());
-  std::vector<uint16_t> out = hits.samples;
+                                   std::span<const uint16_t> samples) {
+  LUXEL_CHECK(max_error >= 0 && errors.size() == samples.size());
+  std::vector<uint16_t> out(samples.begin(), samples.end());
   for (size_t i = 0; i < out.size(); ++i) {
     if (errors[i] <= max_error) continue;
-    const float more = std::pow(errors[i] / max_error, 1 / kDecay);
-    const int wanted = int(out[i]) * (more > 2 ? 4 : 2);
+    const bool far = std::pow(max_error / errors[i], 1 / kDecay) < 0.5f;
+    const int wanted = int(out[i]) * (far ? 4 : 2);
     const int affordable = wanted <= max_samples ? wanted : int(out[i]) * 2;
     if (affordable <= max_samples) out[i] = uint16_t(affordable);
   }
   return out;
+}
+
+uint64_t sum_of(std::span<const uint16_t> samples) {
+  return std::accumulate(samples.begin(), samples.end(), uint64_t(0));
+}
+
+std::vector<uint64_t> rounds_to_come(std::span<const float> errors, float max_error,
+                                     int max_samples, std::span<const uint16_t> samples) {
+  // Some texels stand for all: it is an estimate.
+  const size_t step = std::max<size_t>(1, errors.size() / kTexelsForForecast);
+  std::vector<float> e;
+  std::vector<uint16_t> n;
+  for (size_t i = 0; i < errors.size(); i += step) e.push_back(errors[i]), n.push_back(samples[i]);
+  std::vector<uint64_t> rounds;
+  while (percentile_95(e) > max_error) {
+    const std::vector<uint16_t> next = next_samples(e, max_error, max_samples, n);
+    const uint64_t added = sum_of(next) - sum_of(n);
+    if (added == 0) break;
+    rounds.push_back(step * added);
+    for (size_t i = 0; i < e.size(); ++i) e[i] *= std::pow(float(n[i]) / float(next[i]), kDecay);
+    n = next;
+  }
+  return rounds;
+}
+
+void keep_affordable(std::span<const float> errors, uint64_t affordable,
+                     std::span<const uint16_t> samples, std::vector<uint16_t>& target) {
+  uint64_t added = sum_of(target) - sum_of(samples);
+  if (added <= affordable) return;
+  std::vector<uint32_t> which;
+  for (uint32_t i = 0; i < target.size(); ++i)
+    if (target[i] > samples[i]) which.push_back(i);
+  const auto gain = [&](uint32_t i) { return errors[i] * errors[i] / float(samples[i]); };
+  std::ranges::sort(which, [&](uint32_t a, uint32_t b) {
+    const float x = gain(a), y = gain(b);
+    return x != y ? x < y : a < b;
+  });
+  for (const uint32_t i : which) {
+    if (added <= affordable) return;
+    added -= uint64_t(target[i] - samples[i]);
+    target[i] = samples[i];
+  }
+}
+
+float affordable_error(std::span<const float> errors, float at_least, double rays,
+                       const transport::SupersampleParams& params, const DirectLevels& levels) {
+  // Of texels that are one level finer, each lamp of which there may be several counted once.
+  const auto cost = [&](size_t i) {
+    const int factor = 1 << (2 * (int(levels.level[i]) + 1)), samples = params.direct.samples;
+    if (!levels.averaged[i]) return levels.level[i] < kFinestLevel ? factor * samples : 0;
+    return levels.level[i] < kFinestAverage ? factor * params.points * std::max(samples / 8, 8) : 0;
+  };
+  std::vector<uint32_t> which;
+  for (uint32_t i = 0; i < errors.size(); ++i)
+    if (errors[i] > at_least && cost(i) > 0) which.push_back(i);
+  std::ranges::sort(which, [&](uint32_t a, uint32_t b) { return errors[a] > errors[b]; });
+  double sum = 0;
+  for (const uint32_t i : which) {
+    sum += double(cost(i));
+    if (sum > rays) return errors[i];
+  }
+  return at_least;
 }
 
 Result<size_t> refine_direct(const transport::TexelScene& world, std::span<const float> errors,

@@ -8,10 +8,13 @@
 namespace luxel::gather {
 
 struct GatherParams {
-  int samples = 256;  ///< indirect rays per element; with max_error, of the first round
+  int samples = 256;  ///< indirect rays per element; with max_error or seconds, of the first round
   /// > 0: rounds of more samples until 95 % of elements have a smaller relative error (adaptive.h).
   float max_error = 0;
-  int max_samples = 16384;  ///< with max_error, per element
+  /// > 0: rounds of more samples while they, and the bounces, end within so many seconds from the
+  /// call. The first round and the first direct light are not cut short. Depends on the machine.
+  double seconds = 0;
+  int max_samples = 16384;  ///< with max_error or seconds, per element
   int direct_samples = 64;  ///< shadow rays per element towards emissive surfaces
   int supersample = 1;      ///< points per element where direct light varies; 1: none
   int bounces = -1;         ///< < 0: all

@@ -60,8 +60,11 @@ void Progress::begin(std::string_view stage, uint64_t total) {
 void Progress::finish() {
   const std::lock_guard lock(mutex_);
   if (running_) stages_.back().seconds = seconds_since(stage_start_);
-  if (running_ && !awaited_.name.empty())
-    expected_s_ += awaited_.seconds, taken_s_ += stages_.back().seconds;
+  if (running_ && !awaited_.name.empty()) {
+    const double total = double(total_), skipped = double(skipped_);
+    expected_s_ += awaited_.seconds * (total > 0 ? 1 - skipped / total : 1);
+    taken_s_ += stages_.back().seconds;
+  }
   running_ = false;
 }
 

@@ -15,7 +15,7 @@ namespace {
 /// Of the texels, in a trial for a plan: half a percent of the bake, but some thousand of them.
 constexpr int kPlanPart = 200;
 /// Measured on one core of an AMD EPYC; short beside the light of all bakes that are worth a plan.
-constexpr double kDrawSeconds = 0.4, kSeamSecondsPerTexel = 2e-7, kWriteSecondsPerTexel = 4e-7;
+constexpr double kDrawSeconds = 0.6, kSeamSecondsPerTexel = 4e-7, kWriteSecondsPerTexel = 4e-7;
 
 struct Rounds {
   double seconds = 0, rays = 0, hit_bytes = 0;

@@ -252,13 +252,26 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
                                  const Lights& lights, const trace::RayTracer& tracer,
                                  const SupersampleParams& params, DirectLight& direct,
                                  Progress& progress) {
+  std::vector<uint32_t> all(map.texels.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return supersample(scene, atlas, map, elements, lights, tracer, all, params, direct, progress);
+}
+
+Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const atlas::TexelMap& map, const Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
+                                 std::span<const uint32_t> among, const SupersampleParams& params,
+                                 DirectLight& direct, Progress& progress) {
   if (params.points == 1) return Supersampled{};
   const Place place{scene, tracer, scene::world_bounds(scene).diagonal()};
-  const std::vector<uint32_t> by_neighbours = uneven_texels(atlas, map, direct, params.threshold);
-  std::vector<uint32_t> borders = border_texels(atlas, map, by_neighbours), which;
+  std::vector<uint32_t> uneven, borders, which;
+  std::ranges::set_intersection(uneven_texels(atlas, map, direct, params.threshold), among,
+                                std::back_inserter(uneven));
+  std::ranges::set_intersection(border_texels(atlas, map, uneven), among,
+                                std::back_inserter(borders));
   LUXEL_TRY(const uint64_t rays,
             keep_uneven(place, atlas, map, lights, params, direct, borders, progress));
-  std::ranges::merge(by_neighbours, borders, std::back_inserter(which));
+  std::ranges::merge(uneven, borders, std::back_inserter(which));
   LUXEL_TRY(Supersampled out, average_texels(scene, atlas, map, elements, lights, tracer, which,
                                              params, direct, progress));
   out.rays += rays;

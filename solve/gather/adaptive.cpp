@@ -34,26 +34,23 @@ struct Sums {
   double ratio() const { return variance > 0 ? split / variance : 1; }
 };
 
-std::vector<Sums> sums_of_charts(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                                 const VariancePair& pair) {
-  std::vector<Sums> out(size_t(atlas.chart_count));
-  for (size_t i = 0; i < map.texels.size(); ++i)
-    out[atlas.chart[map.texels[i].triangle_number]].add(pair, i);
+/// Per element: read for 25 neighbours of each.
+std::vector<uint32_t> charts_of(const atlas::Atlas& atlas, const atlas::TexelMap& map) {
+  std::vector<uint32_t> out(map.texels.size());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = atlas.chart[map.texels[i].triangle_number];
   return out;
 }
 
 /// Those of the same chart, itself included.
-Sums sums_around(const atlas::Atlas& atlas, const atlas::TexelMap& map, const VariancePair& pair,
-                 size_t i) {
+Sums sums_around(const atlas::TexelMap& map, std::span<const uint32_t> chart,
+                 const VariancePair& pair, size_t i) {
   const int side = map.resolution, x = int(map.texels[i].x), y = int(map.texels[i].y);
-  const uint32_t chart = atlas.chart[map.texels[i].triangle_number];
   Sums sums;
-  for (int v = std::max(0, y - kReach); v <= std::min(side - 1, y + kReach); ++v)
-    for (int u = std::max(0, x - kReach); u <= std::min(side - 1, x + kReach); ++u) {
-      const uint32_t j = map.texel_at[size_t(v) * size_t(side) + size_t(u)];
-      if (j == atlas::kNone || atlas.chart[map.texels[j].triangle_number] != chart) continue;
-      sums.add(pair, j);
-    }
+  for (int v = std::max(0, y - kReach); v <= std::min(side - 1, y + kReach); ++v) {
+    const uint32_t* row = map.texel_at.data() + size_t(v) * size_t(side);
+    for (int u = std::max(0, x - kReach); u <= std::min(side - 1, x + kReach); ++u)
+      if (row[u] != atlas::kNone && chart[row[u]] == chart[i]) sums.add(pair, row[u]);
+  }
   return sums;
 }
 
@@ -63,16 +60,17 @@ std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::Texe
                                     VariancePair variance) {
   LUXEL_CHECK(variance.independent.size() == map.texels.size());
   LUXEL_CHECK(variance.split.size() == map.texels.size());
-  const std::vector<Sums> charts = sums_of_charts(atlas, map, variance);
+  const std::vector<uint32_t> chart = charts_of(atlas, map);
+  std::vector<Sums> charts(size_t(atlas.chart_count));
+  for (size_t i = 0; i < chart.size(); ++i) charts[chart[i]].add(variance, i);
   std::vector<float> out(map.texels.size());
   parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const Sums near = sums_around(atlas, map, variance, i);
-      const Sums& chart = charts[atlas.chart[map.texels[i].triangle_number]];
+      const Sums near = sums_around(map, chart, variance, i);
       const double mean = near.variance / double(near.count);
       const double prior = kPriorElements * mean;
       const double ratio =
-          mean > 0 ? (near.split + prior * chart.ratio()) / (near.variance + prior) : 0;
+          mean > 0 ? (near.split + prior * charts[chart[i]].ratio()) / (near.variance + prior) : 0;
       out[i] = float(0.5 * (double(variance.independent[i]) + mean) * ratio);
     }
   });

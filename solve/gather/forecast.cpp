@@ -12,10 +12,8 @@
 namespace luxel::gather {
 namespace {
 
-constexpr int kSquare = 8;
-constexpr size_t kFewestTexels = 1024;
-/// Of uneven texels: points of each are as dear as a texel's whole direct light.
-constexpr size_t kMostAveraged = 256;
+constexpr uint32_t kSquare = 5;
+constexpr size_t kFewestTexels = 4096;
 
 template <class Work>
 Result<double> seconds_of(const Work& work) {
@@ -24,22 +22,22 @@ Result<double> seconds_of(const Work& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Texels of squares around every so-manieth texel, each once, in the order of the map.
+/// About `count` texels, those of some cells of the map: all texels are as likely, also those at
+/// the borders of charts, where light is the dearest.
 std::vector<uint32_t> texels_to_try(const atlas::TexelMap& map, size_t count) {
   const size_t n = map.texels.size();
-  const size_t squares = std::max<size_t>(1, count / size_t(kSquare * kSquare));
-  std::vector<uint32_t> out;
-  for (size_t k = 0; k < squares; ++k) {
-    const size_t first = n * k / squares, end = n * (k + 1) / squares;
-    const atlas::Texel& anchor = map.texels[first + hash64(0x7a1e, k) % (end - first)];
-    for (int y = int(anchor.y); y < std::min(int(anchor.y) + kSquare, map.resolution); ++y)
-      for (int x = int(anchor.x); x < std::min(int(anchor.x) + kSquare, map.resolution); ++x) {
-        const uint32_t i = map.texel_at[size_t(y) * size_t(map.resolution) + size_t(x)];
-        if (i != atlas::kNone) out.push_back(i);
-      }
+  if (count >= n) {
+    std::vector<uint32_t> all(n);
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
   }
-  std::ranges::sort(out);
-  out.erase(std::unique(out.begin(), out.end()), out.end());
+  const double part = double(count) / double(n);
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < n; ++i) {
+    const uint64_t cell = hash64(map.texels[i].x / kSquare, map.texels[i].y / kSquare);
+    if (double(unit_float(uint32_t(cell >> 32))) < part) out.push_back(i);
+  }
+  if (out.empty()) out.push_back(uint32_t(n / 2));
   return out;
 }
 
@@ -94,31 +92,23 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
       .points = trial.params.supersample,
       .direct = {trial.params.direct_samples, trial.params.seed}};
   const std::vector<uint32_t> known = within(map, trial.texels);
-  const std::vector<uint32_t> uneven =
-      transport::uneven_texels(atlas, map, trial.direct, params.threshold);
-  std::vector<uint32_t> averaged;
-  std::ranges::set_intersection(known, uneven, std::back_inserter(averaged));
-  if (averaged.empty()) return {};
-  const double all = double(averaged.size()) * double(elements.size()) / double(known.size());
-  const size_t count = std::min(kMostAveraged, averaged.size());
-  for (size_t k = 0; k < count; ++k) averaged[k] = averaged[averaged.size() * k / count];
-  averaged.resize(count);
-  const double scale = all / double(count);
+  if (known.empty()) return {};
+  const double scale = double(elements.size()) / double(known.size());
   // They are too few for many threads, and a call looks at the whole map once: that is no texel's.
   const int threads = thread_count();
   const ThreadLimit one(1);
   uint64_t rays = 0;
-  const auto seconds_for = [&](size_t texels) {
+  const auto seconds_for = [&](std::span<const uint32_t> among) {
     return seconds_of([&]() -> Status {
       LUXEL_TRY(const transport::Supersampled done,
-                average_texels(scene, atlas, map, elements, lights, tracer,
-                               std::span(averaged).first(texels), params, trial.direct, progress));
+                transport::supersample(scene, atlas, map, elements, lights, tracer, among, params,
+                                       trial.direct, progress));
       rays = done.rays;
       return {};
     });
   };
-  LUXEL_TRY(const double fixed, seconds_for(0));
-  LUXEL_TRY(const double with_fixed, seconds_for(count));
+  LUXEL_TRY(const double fixed, seconds_for({}));
+  LUXEL_TRY(const double with_fixed, seconds_for(known));
   const double seconds = std::max(0.0, with_fixed - fixed) / double(threads);
   out.supersample_s = scale * seconds, out.rays += scale * double(rays);
   return {};

@@ -14,8 +14,8 @@ struct Forecast {
   double seconds() const { return direct_s + supersample_s + trace_s + bounces_s; }
 };
 
-/// Lights squares of 8 x 8 texels, spread over the map, and measures. They are about one texel in
-/// `part`, but some hundred at least, and no more than kTrialRays rays. Errors: cancelled.
+/// Lights squares of 5 x 5 texels, spread over the map, and measures. They are about one texel in
+/// `part`, but some thousand at least, and no more than kTrialRays rays. Errors: cancelled.
 Result<Forecast> forecast(const transport::TexelScene& world, const GatherParams& params, int part,
                           Progress& progress);
 inline constexpr double kTrialRays = 2e7;

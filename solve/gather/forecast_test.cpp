@@ -13,7 +13,7 @@ transport::TexelScene world_of(const Room& room) {
 }
 
 // Seconds are the machine's; rays and stored hits are counted. The trial sees one texel in five of
-// the Cornell box: some 1,000 in squares of 64. Shares of texels that are averaged, and of rays
+// the Cornell box: some thousand in squares of 25. Shares of texels that are averaged, and of rays
 // that are followed on, differ from square to square: 15 %.
 TEST(Forecast, CountsTheRaysAndHitsOfTheWhole) {
   const auto room = lay_out(scene::cornell_box(), 96);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -39,6 +40,11 @@ class Progress {
   /// Ends the last stage.
   void finish();
   void advance(uint64_t units) { done_.fetch_add(units, std::memory_order_relaxed); }
+  /// Units that were there already, which says nothing about how long the others take.
+  void skip(uint64_t units) {
+    skipped_.fetch_add(units, std::memory_order_relaxed);
+    advance(units);
+  }
 
   /// What stages to come are expected to take, in order, instead of what was said before; and those
   /// that come after all of them. A stage that comes unexpected takes no place in either.
@@ -51,6 +57,7 @@ class Progress {
   struct Snapshot {
     std::string stage;
     uint64_t done = 0, total = 0;
+    uint64_t skipped = 0;  ///< of done
     double stage_seconds = 0;
     int stage_index = -1;
     double seconds_left = -1;  ///< of all that is expected; < 0: nothing is
@@ -58,6 +65,18 @@ class Progress {
   Snapshot snapshot() const;
   /// The stages so far with their wall-clock seconds.
   std::vector<Stage> stages() const;
+
+  /// A sentence that people should read now rather than when the work is done. Thread-safe.
+  void note(std::string text);
+  /// All from number `first` on.
+  std::vector<std::string> notes(size_t first) const;
+  /// What can be said to someone who stops the work; empty: that it is lost. Thread-safe.
+  void set_way_on(std::string text);
+  std::string way_on() const;
+  /// What must be done by whoever ends the process while the work still runs; empty: nothing.
+  /// Thread-safe.
+  void set_clean_up(std::function<void()> clean_up);
+  void clean_up() const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -68,7 +87,10 @@ class Progress {
   double expected_s_ = 0, taken_s_ = 0;            ///< of expected stages that have ended
   Clock::time_point stage_start_;
   bool running_ = false;
-  std::atomic<uint64_t> done_{0}, total_{0};
+  std::atomic<uint64_t> done_{0}, total_{0}, skipped_{0};
+  std::vector<std::string> notes_;
+  std::string way_on_;
+  std::function<void()> clean_up_;
   std::atomic<bool> cancelled_{false};
 };
 

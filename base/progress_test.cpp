@@ -107,5 +107,34 @@ TEST(Progress, ExpectedStagesAreTakenAwayAsTheyCome) {
   EXPECT_LT(progress.snapshot().seconds_left, 1) << "no bounces any more";
 }
 
+// Half of the stage was there already: what is left takes half as long, and goes at its own speed.
+TEST(Progress, WhatIsSkippedIsDoneButTakesNoTime) {
+  Progress progress;
+  progress.expect({{"trace", 1000}});
+  progress.begin("trace", 100);
+  progress.skip(50);
+  EXPECT_EQ(progress.snapshot().done, 50u);
+  EXPECT_EQ(progress.snapshot().skipped, 50u);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 500, 1);
+  progress.begin("next", 10);
+  EXPECT_EQ(progress.snapshot().skipped, 0u);
+}
+
+TEST(Progress, CarriesWhatIsToBeSaidAndDone) {
+  Progress progress;
+  EXPECT_EQ(progress.way_on(), "");
+  progress.clean_up();  // nothing to do
+  progress.note("one"), progress.note("two");
+  EXPECT_EQ(progress.notes(0), (std::vector<std::string>{"one", "two"}));
+  EXPECT_EQ(progress.notes(1), std::vector<std::string>{"two"});
+  EXPECT_TRUE(progress.notes(2).empty());
+  progress.set_way_on("there");
+  EXPECT_EQ(progress.way_on(), "there");
+  int cleaned = 0;
+  progress.set_clean_up([&] { ++cleaned; });
+  progress.clean_up();
+  EXPECT_EQ(cleaned, 1);
+}
+
 }  // namespace
 }  // namespace luxel

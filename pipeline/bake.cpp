@@ -10,6 +10,7 @@
 #include "image/codec.h"
 #include "import/import.h"
 #include "pipeline/bake_report.h"
+#include "pipeline/checkpoint.h"
 #include "pipeline/denoise_light.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/shown_light.h"
@@ -141,8 +142,10 @@ struct Ready {
 };
 
 /// Reads and lays out. The tracer looks at bake.scene.
-Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, Progress& progress) {
+Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, Checkpoint* checkpoint,
+                         Progress& progress) {
   LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
+  if (checkpoint != nullptr) LUXEL_TRY_STATUS(checkpoint->open(bake.scene, progress));
   LUXEL_TRY(const std::vector<std::string> sides,
             split_sides(bake.scene, settings.uv, settings.resolution, progress));
   bake.warnings.insert(bake.warnings.end(), sides.begin(), sides.end());
@@ -157,13 +160,14 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, Progress& pro
 
 }  // namespace
 
-Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
+Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, Checkpoint* checkpoint) {
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
-  LUXEL_TRY(const Ready ready, make_ready(settings, bake, progress));
-  const SolveInput input{bake.scene,     bake.atlas,   bake.map,
-                         ready.elements, ready.lights, ready.tracer};
+  LUXEL_TRY(const Ready ready, make_ready(settings, bake, checkpoint, progress));
+  const SolveInput input{
+      {bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
+      checkpoint != nullptr ? checkpoint->parts() : nullptr};
   LUXEL_TRY_STATUS(solve(settings, input, bake, progress));
   LUXEL_TRY_STATUS(repair(settings, ready.tracer, bake, progress));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
@@ -175,9 +179,10 @@ Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
-  LUXEL_TRY(const Ready ready, make_ready(settings, bake, progress));
-  return plan({bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
-              settings, progress);
+  LUXEL_TRY(const Ready ready, make_ready(settings, bake, nullptr, progress));
+  return plan(
+      {{bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer}, nullptr},
+      settings, progress);
 }
 
 namespace {
@@ -251,24 +256,42 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
 
 }  // namespace
 
+namespace {
+
+/// A full disk has room when the checkpoint is gone, which is not needed any more then.
+Status write_results(std::span<const OutputFile> files, Checkpoint& checkpoint) {
+  const Status written = write_files_atomically(files);
+  if (written || written.error().code != ErrorCode::out_of_disk || !checkpoint.has_file())
+    return written;
+  checkpoint.remove();
+  return write_files_atomically(files);
+}
+
+}  // namespace
+
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(check(settings));
   OutputFolder folder(settings.output);
-  LUXEL_TRY_STATUS(folder.try_out());
-  LUXEL_TRY(const Bake result, bake_scene(settings, progress));
+  LUXEL_TRY_STATUS(folder.hold(progress));
+  Checkpoint checkpoint(settings);
+  LUXEL_TRY(Bake result, bake_scene(settings, progress, &checkpoint));
+  if (checkpoint.parts() != nullptr && checkpoint.parts()->has_failed())
+    result.warnings.push_back(checkpoint.parts()->failure());
   progress.begin(kWriteStage, 0);
   nlohmann::json about_files = nlohmann::json::object();
   LUXEL_TRY(std::vector<OutputFile> files, files_of(settings, result, about_files));
   LUXEL_TRY_STATUS(not_cancelled(progress));
   progress.finish();
   nlohmann::json json = bake_report(settings, result, progress);
+  json["checkpoint"] = checkpoint.about();
   json.update(about_files);
   for (const OutputFile& file : files) json["files"].push_back(file.path.filename().string());
   json["files"].push_back("bake.json");
   files.push_back(text_file(settings.output / "bake.json", json.dump(2) + "\n"));
   LUXEL_TRY_STATUS(folder.make());
-  LUXEL_TRY_STATUS(write_files_atomically(files));
+  LUXEL_TRY_STATUS(write_results(files, checkpoint));
   folder.keep();
+  checkpoint.remove();
   return json;
 }
 

@@ -21,6 +21,8 @@
 
 namespace luxel::pipeline {
 
+class Checkpoint;
+
 /// The stage in which files appear. It is short and better not cut off.
 inline constexpr std::string_view kWriteStage = "write files";
 
@@ -46,8 +48,10 @@ struct Bake {
 };
 
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
-/// name in or above settings.output. Errors: whatever the stages say; settings out of range.
-Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress);
+/// name in or above settings.output, and the checkpoint, if there is one. Errors: whatever the
+/// stages say; settings out of range.
+Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
+                        Checkpoint* checkpoint = nullptr);
 
 /// `luxel bake --plan`: reads and lays out, and tries a few texels. Nothing is written.
 Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);
@@ -55,7 +59,7 @@ Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);
 /// The whole of `luxel bake`: bake_scene, then lightmap.exr (and its other formats), baked.glb,
 /// preview.png, texels.png, error.png, view.html when asked for, and bake.json in settings.output,
 /// all of them or none. Of several pages they are lightmap-0.exr and so on. Returns what bake.json
-/// holds.
+/// holds. A bake that does not come to its end leaves its checkpoint, nothing else.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

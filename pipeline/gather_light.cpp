@@ -96,6 +96,7 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   params.bounces = settings.bounces;
   params.seed = settings.seed;
   params.scratch_folder = nearest_folder(settings.output);
+  params.parts = in.parts;
   return params;
 }
 

@@ -20,6 +20,7 @@ namespace {
 constexpr int kMaxSamples = 65535, kMaxSupersample = 1024;
 constexpr int64_t kMaxElements = 1 << 26;
 constexpr double kSmallestError = 1e-4;
+constexpr double kLongestCheckpoint_s = 1e6;
 constexpr double kLongestBudget = 1e7;  ///< [s], some months
 
 /// A number that is the whole of `text`.
@@ -171,6 +172,10 @@ Status check(const BakeSettings& s) {
   if (!std::isfinite(s.probe_spacing_m) || s.probe_spacing_m < 0)
     return fail(ErrorCode::bad_setting, "--probes {} is not a spacing; give metres > 0",
                 s.probe_spacing_m);
+  if (!(s.checkpoint_s >= 0 && s.checkpoint_s <= kLongestCheckpoint_s))
+    return fail(ErrorCode::bad_setting,
+                "--checkpoint {} is outside 0 to {} seconds; 0 keeps nothing", s.checkpoint_s,
+                kLongestCheckpoint_s);
   LUXEL_TRY_STATUS(check_pages(s));
   if (s.denoise && !find_solver(s.solver)->noise)
     return fail(ErrorCode::bad_setting,
@@ -204,6 +209,7 @@ nlohmann::json to_json(const BakeSettings& s) {
   json["formats"] = to_json(s.formats);
   json["html"] = s.html, json["texels"] = s.texels;
   json["error_map"] = s.error_map, json["time_budget_s"] = s.time_budget_s;
+  json["checkpoint_s"] = s.checkpoint_s;
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
   json["directional"] = name_of(s.directional);
   json["probe_spacing_m"] = s.probe_spacing_m;

@@ -119,6 +119,9 @@ struct BakeSettings {
   bool error_map = false;      ///< error.png too
   LightmapFormats formats;     ///< files beside lightmap.exr
   bool html = false;           ///< view.html too
+  /// Finished parts are kept once the bake has taken so long [s], docs/checkpoints.md; 0: never.
+  double checkpoint_s = 30;
+  bool resume = false;  ///< go on with what another bake has kept
 };
 
 /// Checks every number against its range. Errors (bad_setting) name the option, the value, and what

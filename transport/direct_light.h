@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/part_store.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "scene/scene.h"
@@ -23,6 +24,7 @@ struct DirectParams {
   /// Rays per element towards the soft light of the surroundings. 0: the caller's own rays see it;
   /// the peaks of an environment count in any case.
   int sky_samples = 0;
+  PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
 };
 
 struct DirectLight {

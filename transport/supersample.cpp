@@ -4,12 +4,14 @@
 #include <atomic>
 #include <iterator>
 #include <numeric>
+#include <optional>
 
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "transport/backs_seen.h"
 #include "transport/direct_shots.h"
+#include "transport/kept_light.h"
 
 namespace luxel::transport {
 namespace {
@@ -276,6 +278,45 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
   return out;
 }
 
+namespace {
+
+KeptStage kept_stage(const SupersampleParams& params, std::span<const uint32_t> which,
+                     const DirectLight& direct) {
+  if (params.direct.parts == nullptr) return {};
+  Digest digest;
+  digest.add("supersample"), digest.add(params.points), add_to(digest, params.direct);
+  digest.add(which);
+  for (const uint32_t i : which) digest.add(is_dark(direct.irradiance[i]));
+  return {params.direct.parts, digest.value()};
+}
+
+/// Returns the number of rays; fills one flag per texel, whether it was averaged.
+std::optional<uint64_t> find_part(const KeptStage& kept, size_t part,
+                                  std::span<const uint32_t> which, std::span<uint8_t> is_averaged,
+                                  DirectLight& direct) {
+  const auto bytes = kept.find(part);
+  if (!bytes) return std::nullopt;
+  ByteReader in{*bytes};
+  const uint64_t rays = in.get_value<uint64_t>();
+  std::vector<uint8_t> flags(is_averaged.size());
+  in.get(std::span(flags));
+  if (!in.ok || !get_light(in, which, direct)) return std::nullopt;
+  std::copy(flags.begin(), flags.end(), is_averaged.begin());
+  return rays;
+}
+
+void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> which,
+               std::span<const uint8_t> is_averaged, const DirectLight& direct, uint64_t rays) {
+  if (!kept.wants()) return;
+  ByteWriter out;
+  out.put_value(rays);
+  out.put(is_averaged);
+  put_light(direct, which, out);
+  kept.keep(part, out.bytes);
+}
+
+}  // namespace
+
 Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
                                     const atlas::TexelMap& map, const Elements& elements,
                                     const Lights& lights, const trace::RayTracer& tracer,
@@ -289,9 +330,16 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
   each.samples = samples_per_point(params.direct.samples);
   std::atomic<uint64_t> rays{0};
   std::vector<uint8_t> is_averaged(which.size());
+  const KeptStage kept = kept_stage(params, which, direct);
   progress.begin("supersample", which.size());
   parallel_for(which.size(), kGrain, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
+    const std::span<const uint32_t> these = which.subspan(begin, end - begin);
+    const std::span<uint8_t> averaged = std::span(is_averaged).subspan(begin, end - begin);
+    if (const auto found = find_part(kept, begin / kGrain, these, averaged, direct)) {
+      rays += *found;
+      return progress.skip(end - begin);
+    }
     PointWork work;
     std::vector<PointLight> points;
     uint64_t traced = 0;
@@ -323,6 +371,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
       is_averaged[k] = 1;
     }
     rays += traced;
+    keep_part(kept, begin / kGrain, these, averaged, direct, traced);
     progress.advance(end - begin);
   });
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");

@@ -32,6 +32,8 @@ constexpr std::array kSolverOptions{
     SolverOption{"--error-map", &pipeline::Solver::errors},
     SolverOption{"--plan", &pipeline::Solver::errors},
     SolverOption{"--denoise", &pipeline::Solver::noise},
+    SolverOption{"--checkpoint", &pipeline::Solver::parts},
+    SolverOption{"--resume", &pipeline::Solver::parts},
     SolverOption{"--elements", &pipeline::Solver::hemicube},
     SolverOption{"--hemicube", &pipeline::Solver::hemicube},
     SolverOption{"--element-size", &pipeline::Solver::hemicube},
@@ -233,6 +235,11 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_flag("--html", s.html, "Also view.html: the baked scene as a page to walk around in");
   bake->add_option("--max-memory", options->max_memory,
                    "Memory to stay under, as 900M or 1.5G (default: most of what is free)");
+  bake->add_option("--checkpoint", s.checkpoint_s,
+                   "gather: what is finished later than so many seconds after the start is kept in "
+                   "FOLDER/checkpoint.luxel until the bake is done; 0: nothing is")
+      ->capture_default_str();
+  bake->add_flag("--resume", s.resume, "gather: go on with the checkpoint that is in the folder");
   bake->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();
   add_outside_light(*bake, options->outside);
   add_common(*bake, options->common);

@@ -43,7 +43,7 @@ struct Work {
   TracedHits hits;
   Bounced bounced;
   Errors errors;
-  double traced_s = 0, bounced_s = 0;  ///< of the last round
+  double traced_s = 0, bounced_s = 0;  ///< of the last round, of which something was traced
   uint64_t traced_rays = 0, traced_samples = 0;
 };
 
@@ -62,7 +62,8 @@ Errors errors_of(const transport::TexelScene& world, const Work& work) {
 }
 
 transport::SupersampleParams supersample_params(const GatherParams& params) {
-  return {.points = params.supersample, .direct = {params.direct_samples, params.seed}};
+  return {.points = params.supersample,
+          .direct = {.samples = params.direct_samples, .seed = params.seed, .parts = params.parts}};
 }
 
 Status begin_direct(const transport::TexelScene& world, const GatherParams& params, Work& work,
@@ -84,12 +85,16 @@ Status begin_direct(const transport::TexelScene& world, const GatherParams& para
 Status trace_round(const transport::TexelScene& world, const GatherParams& params,
                    std::span<const uint16_t> target, Work& work, Progress& progress) {
   const TraceParams trace{params.seed, params.hit_memory_bytes, params.scratch_folder,
-                          params.bounces < 0 ? &world.lights : nullptr};
+                          params.bounces < 0 ? &world.lights : nullptr, params.parts};
   const auto start = std::chrono::steady_clock::now();
   const uint64_t before = work.hits.rays, samples = sum_of(work.hits.samples);
   LUXEL_TRY_STATUS(trace_more(world.scene, world.atlas, world.elements, world.lights.around,
                               world.tracer, target, trace, work.hits, progress));
-  work.traced_s = seconds_since(start), work.traced_rays = work.hits.rays - before;
+  // What was kept says nothing about how long rays take.
+  const Progress::Snapshot stage = progress.snapshot();
+  if (stage.total == stage.skipped) return {};
+  work.traced_s = seconds_since(start) * double(stage.total) / double(stage.total - stage.skipped);
+  work.traced_rays = work.hits.rays - before;
   work.traced_samples = sum_of(work.hits.samples) - samples;
   return {};
 }
@@ -109,6 +114,7 @@ Status bounce_round(const transport::TexelScene& world, std::span<const StoredHi
 /// How many rays the next round may have, such that it and the last bounces end in time.
 double affordable_rays(const Work& work, double seconds_left) {
   const double rays = double(work.hits.rays), bounces_s = work.bounced_s * (1 + kFineOverRough);
+  if (work.traced_rays == 0) return kSmallestRound * rays;  // all found: some are traced to know
   const double per_ray = work.traced_s / double(std::max<uint64_t>(work.traced_rays, 1));
   return (seconds_left - bounces_s) / (per_ray + bounces_s / rays);
 }

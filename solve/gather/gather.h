@@ -22,6 +22,7 @@ struct GatherParams {
   uint64_t seed = 1;
   uint64_t hit_memory_bytes = UINT64_MAX;
   std::filesystem::path scratch_folder = ".";
+  PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
 };
 
 struct Gather {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "atlas/atlas.h"
+#include "base/part_store.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "scene/scene.h"
@@ -23,6 +24,7 @@ struct TraceParams {
   std::filesystem::path scratch_folder = ".";
   /// What rays look for that are followed on where they end nearby (near_paths.h); null: none are.
   const transport::Lights* near_lights = nullptr;
+  PartStore* parts = nullptr;  ///< where finished tiles are kept and found; null: nowhere
 };
 
 /// What rays have met, in rounds of tracing: each adds samples to some of the elements.

@@ -52,19 +52,6 @@ TEST(SlowMaxError, TheTruthLiesWithinTheClaim) {
   EXPECT_GT(judged, 2000);
 }
 
-// A plan of 256 samples counts the rays and the memory of the bake that follows: 25 %, as is
-// promised. Seconds are judged by bench/.
-TEST(SlowPlan, KnowsTheRaysAndTheMemoryOfTheBake) {
-  const BakeSettings settings = box_at(256);
-  Progress before, progress;
-  const Result<Plan> plan = plan_bake(settings, before);
-  ASSERT_TRUE(plan) << plan.error().message;
-  const Result<Bake> whole = bake_scene(settings, progress);
-  ASSERT_TRUE(whole);
-  EXPECT_EQ(plan->texels, whole->map.texels.size());
-  EXPECT_NEAR(plan->rays / double(whole->light.rays), 1, 0.25);
-}
-
 TEST(Plan, IsForTheGatherSolver) {
   BakeSettings settings = box_at(16);
   settings.solver = "hemicube";

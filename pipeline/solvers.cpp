@@ -31,6 +31,9 @@ constexpr uint64_t kBytesPerFootprintPoint = 120;
 constexpr uint64_t kDenoiseBytesPerElement = 140;
 /// E for five normals and what becomes of it, with --directional.
 constexpr uint64_t kDirectionBytesPerElement = 110;
+/// With --layers each takes, per element: direct light, that of rays, the solution and its copy,
+/// later the lightmap and its files; and a sweep's map, which is five layers wide, per texel.
+constexpr uint64_t kLayerBytesPerElement = 48, kLayerMapBytesPerSquareTexel = 64;
 /// A bake with fewer stored hits in memory than this would only wait for the disk.
 constexpr uint64_t kMinHitBytes = 16u << 20;
 /// What the process holds differs from run to run: by this much less than the size that is advised.
@@ -42,15 +45,17 @@ std::string size_text(uint64_t bytes) {
 
 /// How many bytes a solver may use beyond what it needs at least. Fails when that is less than
 /// `spare`.
-Result<uint64_t> memory_to_spare(const SolveInput& in, const BakeSettings& settings,
-                                 uint64_t spare) {
+Result<uint64_t> memory_to_spare(const SolveInput& in, const BakeSettings& settings, uint64_t spare,
+                                 size_t layers = 0) {
   const uint64_t side = uint64_t(in.map.resolution);
   // What comes after solving: not all of it at once, but most.
   uint64_t per_element = kBytesPerElement;
   if (settings.denoise) per_element += kDenoiseBytesPerElement;
   if (settings.directional != Directional::none) per_element += kDirectionBytesPerElement;
+  per_element += layers * kLayerBytesPerElement;
+  const uint64_t per_texel = kBytesPerSquareTexel + (layers > 0 ? kLayerMapBytesPerSquareTexel : 0);
   const uint64_t needed =
-      resident_bytes() + per_element * in.elements.size() + kBytesPerSquareTexel * side * side;
+      resident_bytes() + per_element * in.elements.size() + per_texel * side * side;
   const uint64_t smallest_mb = ((needed + spare) >> 20) + 1 + kResidentNoiseMb;
   if (settings.max_memory_bytes == 0) {
     const uint64_t free = available_bytes() / 5 * 4;
@@ -98,7 +103,11 @@ void warn_about_error(const BakeSettings& settings, const gather::GatherParams& 
 
 Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
                                 Progress& progress) {
-  LUXEL_TRY(const uint64_t hit_memory, memory_to_spare(in, settings, kMinHitBytes));
+  transport::LightLayers layers;
+  if (settings.layers != transport::LayerMode::none) {
+    LUXEL_TRY(layers, transport::light_layers(in.scene, in.lights, settings.layers));
+  }
+  LUXEL_TRY(const uint64_t hit_memory, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
   gather::GatherParams params;
   params.samples = settings.max_error > 0 ? kFirstSamples : settings.samples;
   params.max_error = float(settings.max_error);
@@ -106,6 +115,7 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   params.supersample = settings.supersample;
   params.bounces = settings.bounces;
   params.seed = settings.seed;
+  params.layers = layers.size() > 0 ? &layers : nullptr;
   params.hit_memory_bytes = hit_memory;
   params.scratch_folder = nearest_folder(settings.output);
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
@@ -114,6 +124,7 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   if (settings.max_error > 0) warn_about_error(settings, params, result, out.warnings);
   out.errors = std::move(result.errors), out.error_p95 = result.relative_error_p95;
   out.samples = std::move(result.samples);
+  out.layers = std::move(layers.layers), out.layer_irradiance = std::move(result.layers);
   out.direct = std::move(result.direct);
   out.direct_variance = std::move(result.direct_variance);
   out.variance = std::move(result.indirect_variance);
@@ -292,6 +303,7 @@ constexpr std::array kSolvers{
            .supersample = true,
            .max_error = true,
            .noise = true,
+           .layers = true,
            .scatters = true},
     Solver{.name = "hemicube",
            .solve = solve_hemicube,

@@ -178,6 +178,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
     std::vector<Receiver> receivers;
     std::vector<LightAt> light;
     std::vector<PointLight> points;
+    std::vector<Rgb> by_layer(each.layers ? each.layers->size() : 0);
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
       const uint32_t i = which[k];
@@ -187,6 +188,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
         if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
       }
       receivers.clear(), points.clear();
+      std::ranges::fill(by_layer, Rgb{});
       atlas::spread_points(atlas, map.texels[i], cover.of(k), params.points, each.seed, spread);
       for (const scene::SurfacePoint& p : spread) {
         const uint64_t seed = hash64(hash64(each.seed, kPointSeed + receivers.size()), i);
@@ -201,12 +203,15 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
         traced += dark ? uint64_t(kEnclosureRays) : 0;
         if (dark && is_enclosed(place, receivers[j])) continue;
         points.push_back({receivers[j].position, light[j].irradiance, light[j].variance});
+        if (each.layers) add_light_by_layer(shots, j, *each.layers, {1, 1, 1}, by_layer);
       }
       if (points.empty()) continue;
       Rgb sum{};
       for (const PointLight& p : points) sum += p.irradiance;
       direct.irradiance[i] = sum / float(points.size());
       direct.variance[i] = direct.split_variance[i] = variance_of_mean(points);
+      for (size_t l = 0; l < by_layer.size(); ++l)
+        direct.layers_of(i, *each.layers)[l] = by_layer[l] / float(points.size());
       is_averaged[k] = 1;
     }
     rays += traced;

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "solve/gather/adaptive.h"
+#include "solve/gather/bounce_layers.h"
 #include "transport/backs_seen.h"
 
 namespace luxel::gather {
@@ -65,7 +66,8 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                       const atlas::TexelMap& map, const transport::Elements& elements,
                       const transport::Lights& lights, const trace::RayTracer& tracer,
                       const GatherParams& params, Progress& progress) {
-  const transport::DirectParams direct_params{params.direct_samples, params.seed};
+  const transport::DirectParams direct_params{
+      .samples = params.direct_samples, .seed = params.seed, .layers = params.layers};
   const transport::SupersampleParams supersample_params{.points = params.supersample,
                                                         .direct = direct_params};
   LUXEL_TRY(transport::DirectLight direct,
@@ -75,7 +77,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                                    direct, progress));
   direct.rays += averaged.rays;
   const TraceParams trace_params{params.seed, params.hit_memory_bytes, params.scratch_folder,
-                                 params.bounces < 0 ? &lights : nullptr};
+                                 params.bounces < 0 ? &lights : nullptr, params.layers};
   const std::vector<StoredHit> behind = places_behind(scene, atlas, map, elements);
   LUXEL_TRY(TracedHits hits, trace_hits(scene, atlas, elements, lights.around, tracer,
                                         params.samples, trace_params, progress));
@@ -104,6 +106,12 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                                 hits, progress));
   }
   Gather out;
+  if (params.layers) {
+    LUXEL_TRY(LayersBounced layers,
+              bounce_layers(map, elements, hits, layer_sources(hits, std::move(direct.by_layer)),
+                            behind, bounced, params.bounces < 0, progress));
+    out.layers = std::move(layers.irradiance), out.layers_shared_out = layers.shared_out;
+  }
   out.relative_error = relative_error(bounced.irradiance, errors.variance);
   out.irradiance = std::move(bounced.irradiance);
   out.direct = std::move(direct.irradiance);

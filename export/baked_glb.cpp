@@ -167,8 +167,9 @@ Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas:
   }
 }
 
-std::string lightmap_name(size_t page, size_t pages) {
-  return pages == 1 ? "lightmap" : fmt::format("lightmap-{}", page);
+std::string lightmap_name(size_t page, size_t pages, std::string_view layer) {
+  const std::string name = layer.empty() ? "lightmap" : fmt::format("lightmap-{}", layer);
+  return pages == 1 ? name : fmt::format("{}-{}", name, page);
 }
 
 Result<std::vector<std::string>> lightmap_files_of(std::span<const std::byte> glb,

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "atlas/atlas.h"
@@ -30,8 +31,8 @@ inline Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene,
 }
 
 /// What the files of a page are called, up to their extension: "lightmap", or of several pages
-/// "lightmap-0", "lightmap-1", ...
-std::string lightmap_name(size_t page, size_t pages);
+/// "lightmap-0", "lightmap-1", ... Those of a layer: "lightmap-LAYER", "lightmap-LAYER-0", ...
+std::string lightmap_name(size_t page, size_t pages, std::string_view layer = {});
 
 /// Of a file that baked_glb() wrote: per material the file with its light, "lightmap.exr"; "" where
 /// it names none. Error (bad_input): no .glb.

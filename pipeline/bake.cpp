@@ -63,6 +63,15 @@ Status solve(const BakeSettings& settings, const SolveInput& input, Bake& bake,
   return {};
 }
 
+Status stitch(std::span<const post::Seam> seams, Bake& bake, Progress& progress) {
+  std::vector<Rgb> before;
+  if (!bake.light.layers.empty()) before = bake.light.irradiance;
+  LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
+  if (before.empty()) return {};
+  return stitch_layers(bake.map, seams, before, bake.light.irradiance, bake.light.layer_irradiance,
+                       progress);
+}
+
 Status repair(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
               Progress& progress) {
   progress.begin("seams", 0);
@@ -70,14 +79,15 @@ Status repair(const BakeSettings& settings, const trace::RayTracer& tracer, Bake
   const post::Parted parted = settings.repair_leaks
                                   ? parted_texels(bake.scene, bake.atlas, bake.map, tracer)
                                   : post::Parted{};
-  bake.repair.refilled = post::refill_hidden(bake.atlas, bake.map, hidden, kRefillRings, parted,
-                                             bake.light.irradiance);
+  std::vector<std::span<Rgb>> arrays{bake.light.irradiance};
+  for (std::vector<Rgb>& layer : bake.light.layer_irradiance) arrays.push_back(layer);
+  bake.repair.refilled =
+      post::refill_hidden(bake.atlas, bake.map, hidden, kRefillRings, parted, arrays);
   std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
   if (settings.repair_leaks) seams = open_seams(bake.scene, bake.atlas, tracer, std::move(seams));
   bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance);
   bake.seams = seams.size();
-  if (settings.stitch)
-    LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
+  if (settings.stitch) LUXEL_TRY_STATUS(stitch(seams, bake, progress));
   bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance);
   if (settings.texels)
     bake.texel_pictures =
@@ -94,6 +104,7 @@ Status repair(const BakeSettings& settings, const trace::RayTracer& tracer, Bake
         shown_irradiance(bake.scene, bake.atlas, bake.map, bake.light.irradiance));
     for (image::Image& lightmap : bake.shown) post::dilate(lightmap, kDilationRings);
   }
+  bake.layers = bake_layers(bake.scene, bake.atlas, bake.map, kDilationRings, bake.light);
   return not_cancelled(progress);
 }
 
@@ -234,6 +245,11 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
   const auto append = [&](std::vector<OutputFile> more) {
     std::move(more.begin(), more.end(), std::back_inserter(files));
   };
+  if (!bake.layers.empty()) {
+    LUXEL_TRY(std::vector<OutputFile> layers,
+              layer_files(bake.layers, settings.formats, settings.output, json["layers"]));
+    append(std::move(layers));
+  }
   LUXEL_TRY(std::vector<OutputFile> directions, direction_files(bake.directions, settings.output));
   append(std::move(directions));
   if (bake.probes) {

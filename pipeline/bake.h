@@ -11,6 +11,7 @@
 #include "base/result.h"
 #include "export/view_page.h"
 #include "image/codec.h"
+#include "pipeline/layers.h"
 #include "pipeline/light_directions.h"
 #include "pipeline/plan.h"
 #include "pipeline/settings.h"
@@ -35,6 +36,7 @@ struct Bake {
   TexelLight light;
   std::vector<image::Image> lightmaps;  ///< E, 4 channels, per page as lightmap.exr holds it
   std::vector<image::Image> shown;      ///< for viewers (shown_light.h); empty: the same
+  std::vector<BakedLayer> layers;       ///< with --layers
   image::Image8 preview;
   DirectionMaps directions;         ///< with --directional
   std::optional<ProbeGrid> probes;  ///< with --probes
@@ -58,8 +60,9 @@ Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);
 
 /// The whole of `luxel bake`: bake_scene, then lightmap.exr (and its other formats), baked.glb,
 /// preview.png, texels.png, error.png, view.html when asked for, and bake.json in settings.output,
-/// all of them or none. Of several pages they are lightmap-0.exr and so on. Returns what bake.json
-/// holds. A bake that does not come to its end leaves its checkpoint, nothing else.
+/// all of them or none. Of several pages they are lightmap-0.exr and so on; with --layers there is
+/// a lightmap-LAYER.exr of each besides. Returns what bake.json holds. A bake that does not come to
+/// its end leaves its checkpoint, nothing else.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

@@ -96,14 +96,20 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   params.bounces = settings.bounces;
   params.seed = settings.seed;
   params.scratch_folder = nearest_folder(settings.output);
-  params.parts = in.parts;
   return params;
 }
 
 Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
                                 Progress& progress) {
   gather::GatherParams params = gather_params(settings);
-  LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes));
+  transport::LightLayers layers;
+  if (settings.layers != transport::LayerMode::none) {
+    LUXEL_TRY(layers, transport::light_layers(in.scene, in.lights, settings.layers));
+    params.layers = &layers;
+  } else {
+    params.parts = in.parts;  // the light of layers is not kept yet
+  }
+  LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
   std::vector<std::string> warnings;
   LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
@@ -114,6 +120,7 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
     warn_about_rounds(settings, params, result, out.warnings);
   out.errors = std::move(result.errors), out.error_p95 = result.relative_error_p95;
   out.samples = std::move(result.samples);
+  out.layers = std::move(layers.layers), out.layer_irradiance = std::move(result.layers);
   out.direct = std::move(result.direct);
   out.direct_variance = std::move(result.direct_variance);
   out.variance = std::move(result.indirect_variance);

@@ -39,12 +39,12 @@ nlohmann::json to_json(const LightmapFormats& formats) {
 
 Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
                                      const LightmapFormats& formats,
-                                     const std::filesystem::path& folder) {
+                                     const std::filesystem::path& folder, std::string_view layer) {
   LightmapFiles out;
   if (formats.rgbm) out.rgbm_range = image::rgbm_range(lightmaps);
   for (size_t p = 0; p < lightmaps.size(); ++p) {
     const image::Image& lightmap = lightmaps[p];
-    const std::string name = export_::lightmap_name(p, lightmaps.size());
+    const std::string name = export_::lightmap_name(p, lightmaps.size(), layer);
     const auto add = [&](const char* extension, std::vector<std::byte> bytes) {
       out.files.push_back({folder / (name + extension), std::move(bytes)});
     };

@@ -66,7 +66,20 @@ const char* name_of(atlas::UvMode mode) {
   return mode == atlas::UvMode::keep ? "keep" : mode == atlas::UvMode::unwrap ? "unwrap" : "auto";
 }
 
+std::string_view name_of(transport::LayerMode mode) {
+  return mode == transport::LayerMode::per_light ? "per-light"
+         : mode == transport::LayerMode::groups  ? "groups"
+                                                 : "none";
+}
+
 }  // namespace
+
+Result<transport::LayerMode> parse_layers(std::string_view text) {
+  if (text == "per-light") return transport::LayerMode::per_light;
+  if (text == "groups") return transport::LayerMode::groups;
+  return fail(ErrorCode::bad_setting, "--layers '{}' is not known; there is: per-light, groups",
+              text);
+}
 
 Result<PagesSetting> parse_pages(std::string_view text) {
   if (text == "auto") return PagesSetting{atlas::PageMode::automatic, 1};
@@ -147,6 +160,26 @@ Status check_pages(const BakeSettings& s) {
   return {};
 }
 
+/// What each light's own lightmap is not made for yet.
+Status check_layers(const BakeSettings& s) {
+  if (s.layers == transport::LayerMode::none) return {};
+  if (!find_solver(s.solver)->layers)
+    return fail(ErrorCode::bad_setting,
+                "--layers needs light that can be told apart, which --solver {} does not keep; use "
+                "--solver gather",
+                s.solver);
+  const char* other = s.denoise                            ? "--denoise"
+                      : s.directional != Directional::none ? "--directional"
+                      : s.probe_spacing_m > 0              ? "--probes"
+                                                           : nullptr;
+  if (other)
+    return fail(ErrorCode::bad_setting,
+                "--layers {} does not go together with {}, which looks at all light at once; leave "
+                "one of them out",
+                name_of(s.layers), other);
+  return {};
+}
+
 }  // namespace
 
 Status check(const BakeSettings& s) {
@@ -181,6 +214,7 @@ Status check(const BakeSettings& s) {
     return fail(ErrorCode::bad_setting,
                 "--denoise needs light with known noise, which --solver {} has not; leave it out",
                 s.solver);
+  LUXEL_TRY_STATUS(check_layers(s));
   if (s.vertex_colors && s.solver != "hemicube")
     return fail(ErrorCode::bad_setting,
                 "--vertex-colors needs light per vertex, which --solver {} does not compute; use "
@@ -213,6 +247,7 @@ nlohmann::json to_json(const BakeSettings& s) {
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
   json["directional"] = name_of(s.directional);
   json["probe_spacing_m"] = s.probe_spacing_m;
+  json["layers"] = name_of(s.layers);
   json["denoise"] = s.denoise, json["stitch"] = s.stitch;
   json["repair_leaks"] = s.repair_leaks;
   if (s.solver == "hemicube")

@@ -16,6 +16,7 @@
 #include "pipeline/lightmap_files.h"
 #include "pipeline/sky_setting.h"
 #include "scene/scene.h"
+#include "transport/light_layers.h"
 
 namespace luxel::pipeline {
 
@@ -83,6 +84,9 @@ struct PagesSetting {
 /// "auto", "mesh" or a number.
 Result<PagesSetting> parse_pages(std::string_view text);
 
+/// "per-light" or "groups".
+Result<transport::LayerMode> parse_layers(std::string_view text);
+
 struct BakeSettings {
   std::filesystem::path scene;
   std::filesystem::path output;  ///< a folder; made when missing
@@ -110,7 +114,8 @@ struct BakeSettings {
   MatrixSettings matrix;
   HierarchicalSettings hierarchical;
   Directional directional = Directional::none;
-  double probe_spacing_m = 0;  ///< 0: no probes
+  double probe_spacing_m = 0;                                ///< 0: no probes
+  transport::LayerMode layers = transport::LayerMode::none;  ///< lightmaps per light, too
   bool denoise = false;        ///< take the grain out of texels, docs/denoise.md
   bool stitch = true;          ///< make charts agree along seams
   bool repair_leaks = true;    ///< cut charts at thin walls, move samples out of solids

@@ -200,6 +200,7 @@ constexpr std::array kSolvers{
            .max_error = true,
            .errors = true,
            .noise = true,
+           .layers = true,
            .scatters = true,
            .parts = true},
     Solver{.name = "hemicube",

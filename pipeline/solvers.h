@@ -37,7 +37,10 @@ struct TexelLight {
   /// Where the solver knows how sure each texel's luminance is, relative to itself or, where it is
   /// darker, to a tenth of the mean; empty: it does not. Hidden texels have none.
   std::vector<float> errors;
-  float error_p95 = 0;            ///< that 95 of 100 stay below
+  float error_p95 = 0;  ///< that 95 of 100 stay below
+  /// With --layers: which there are, and E of each per texel; they add up to the irradiance.
+  std::vector<transport::LightLayer> layers;
+  std::vector<std::vector<Rgb>> layer_irradiance;
   std::vector<uint16_t> samples;  ///< with errors: indirect rays per texel
   uint64_t rays = 0;
   uint64_t supersampled_texels = 0;  ///< direct light is a mean over their points
@@ -63,6 +66,7 @@ struct Solver {
   bool max_error = false;  ///< can be asked for an error, of its mesh or of texels
   bool errors = false;     ///< knows how sure each texel is: --error-map, --time-budget, --plan
   bool noise = false;      ///< knows the variance of its light: --denoise
+  bool layers = false;     ///< can tell the light of each lamp apart: --layers
   bool scatters = false;   ///< follows light that surfaces scatter through
   bool parts = false;      ///< keeps its finished parts: --checkpoint, --resume
 };

@@ -51,6 +51,14 @@ struct SeamParams {
 Status stitch_seams(const atlas::TexelMap& map, std::span<const Seam> seams,
                     const SeamParams& params, std::span<Rgb> values, Progress& progress);
 
+/// The change that stitch_seams() makes to `whole`, taken apart for layers of light that add up to
+/// it: d is linear in x while the weights stay those of the whole, so each layer gets the d of its
+/// own x. Where that would make a layer negative it stays at 0, and the layers no longer add up to
+/// the last digit.
+Status stitch_layers(const atlas::TexelMap& map, std::span<const Seam> seams,
+                     const SeamParams& params, std::span<const Rgb> whole,
+                     std::span<std::vector<Rgb>> layers, Progress& progress);
+
 /// How far the two sides of seams lie apart, over all points of all seams.
 struct SeamResidual {
   /// Root mean square of the difference, all channels, over the mean value of all points.

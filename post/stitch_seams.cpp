@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -194,19 +195,21 @@ Result<Columns> solve(const System& system, const Columns& x, int max_iterations
   return change;
 }
 
-}  // namespace
-
-Status stitch_seams(const atlas::TexelMap& map, std::span<const Seam> seams,
-                    const SeamParams& params, std::span<Rgb> values, Progress& progress) {
+/// Nothing, where there is nothing to agree on: where all is black relative errors mean nothing.
+std::optional<System> system_of(const atlas::TexelMap& map, std::span<const Seam> seams,
+                                const SeamParams& params, std::span<const Rgb> values) {
   LUXEL_CHECK(values.size() == map.texels.size());
   LUXEL_CHECK(params.keep_weight > 0);
   for (const Rgb& v : values) LUXEL_CHECK(is_finite(v) && min_component(v) >= 0);
   std::vector<SeamPoint> points = seam_points(map, seams);
-  // Where all is black there is nothing to agree on, and relative errors mean nothing.
   std::erase_if(points, [&](const SeamPoint& p) { return !(mean_value(p, values) > 0); });
-  if (points.empty()) return {};
+  if (points.empty()) return std::nullopt;
+  return build_system(points, values, double(params.keep_weight));
+}
 
-  const System system = build_system(points, values, double(params.keep_weight));
+/// Adds the change that solves the system for these values.
+Status move_values(const System& system, const SeamParams& params, std::span<Rgb> values,
+                   const Progress& progress) {
   Columns x(Eigen::Index(system.texel.size()), 3);
   for (Eigen::Index n = 0; n < x.rows(); ++n) {
     const Rgb v = values[system.texel[size_t(n)]];
@@ -216,6 +219,26 @@ Status stitch_seams(const atlas::TexelMap& map, std::span<const Seam> seams,
   for (Eigen::Index n = 0; n < x.rows(); ++n) {
     const auto moved = [&](int c) { return float(std::max(0.0, x(n, c) + change(n, c))); };
     values[system.texel[size_t(n)]] = {moved(0), moved(1), moved(2)};
+  }
+  return {};
+}
+
+}  // namespace
+
+Status stitch_seams(const atlas::TexelMap& map, std::span<const Seam> seams,
+                    const SeamParams& params, std::span<Rgb> values, Progress& progress) {
+  const std::optional<System> system = system_of(map, seams, params, values);
+  return system ? move_values(*system, params, values, progress) : Status{};
+}
+
+Status stitch_layers(const atlas::TexelMap& map, std::span<const Seam> seams,
+                     const SeamParams& params, std::span<const Rgb> whole,
+                     std::span<std::vector<Rgb>> layers, Progress& progress) {
+  const std::optional<System> system = system_of(map, seams, params, whole);
+  if (!system) return {};
+  for (std::vector<Rgb>& layer : layers) {
+    LUXEL_CHECK(layer.size() == whole.size());
+    LUXEL_TRY_STATUS(move_values(*system, params, layer, progress));
   }
   return {};
 }

@@ -40,6 +40,7 @@ void shoot_at_punctual(const Lights& lights, size_t index, float chance, int sam
   shots.sources.push_back({});
   Source& s = shots.sources.back();
   s.exact = true;
+  s.light = {LightId::Kind::punctual, uint32_t(index)};
   s.planned = disc ? uint32_t(samples) : 1;
   if (disc)
     shoot_at_disc(lights, index, source, samples, r, shots);

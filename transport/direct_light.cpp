@@ -74,6 +74,19 @@ float split_variance_of(const Source& s, float light, float whole) {
   return half * half;
 }
 
+size_t layer_of(const LightLayers& layers, LightId light) {
+  switch (light.kind) {
+    case LightId::Kind::triangle:
+      return layers.of_triangle[light.index];
+    case LightId::Kind::punctual:
+      return layers.of_punctual[light.index];
+    case LightId::Kind::surroundings:
+      break;
+  }
+  LUXEL_CHECK(layers.of_surroundings.has_value());
+  return *layers.of_surroundings;
+}
+
 LightAt sum_of(std::span<const Source> sources) {
   LightAt out;
   DrawnVariance drawn;
@@ -110,6 +123,17 @@ void direct_light_at(const scene::Scene& scene, const Lights& lights,
   const std::span<const Source> sources = shots.sources;
   for (size_t i = 0, begin = 0; i < out.size(); begin = shots.sources_end[i++])
     out[i] = sum_of(sources.subspan(begin, shots.sources_end[i] - begin));
+}
+
+void add_light_by_layer(const Shots& shots, size_t receiver, const LightLayers& layers, Rgb factor,
+                        std::span<Rgb> out) {
+  LUXEL_CHECK(out.size() == layers.size());
+  const size_t begin = receiver == 0 ? 0 : shots.sources_end[receiver - 1];
+  for (size_t k = begin; k < shots.sources_end[receiver]; ++k) {
+    const Source& s = shots.sources[k];
+    if (s.shots == 0 || s.sum_weight <= 0) continue;
+    out[layer_of(layers, s.light)] += light_of(s) * factor;
+  }
 }
 
 LightAt direct_light_at(const scene::Scene& scene, const Lights& lights,
@@ -157,6 +181,8 @@ Status direct_light_again(const scene::Scene& scene, const Elements& elements, c
                           const trace::RayTracer& tracer, std::span<const uint32_t> which,
                           const DirectParams& params, DirectLight& direct, Progress& progress) {
   LUXEL_CHECK(params.samples >= 1 && direct.irradiance.size() == elements.size());
+  LUXEL_CHECK(direct.by_layer.size() ==
+              (params.layers ? params.layers->size() : 0) * elements.size());
   const float diagonal_m = scene::world_bounds(scene).diagonal();
   const KeptStage kept = kept_stage(params, which);
   std::atomic<uint64_t> rays{0};
@@ -179,6 +205,11 @@ Status direct_light_again(const scene::Scene& scene, const Elements& elements, c
       const LightAt light = direct_light_at(scene, lights, tracer, params, r, diagonal_m, shots);
       direct.irradiance[i] = light.irradiance;
       direct.variance[i] = light.variance, direct.split_variance[i] = light.split_variance;
+      if (params.layers) {
+        const std::span<Rgb> own = direct.layers_of(i, *params.layers);
+        std::ranges::fill(own, Rgb{});
+        add_light_by_layer(shots, 0, *params.layers, {1, 1, 1}, own);
+      }
       traced += shots.rays.size();
     }
     rays += traced;
@@ -196,6 +227,7 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elem
   DirectLight out;
   out.irradiance.resize(elements.size());
   out.variance.resize(elements.size()), out.split_variance.resize(elements.size());
+  if (params.layers) out.by_layer.resize(elements.size() * params.layers->size());
   std::vector<uint32_t> all(elements.size());
   std::iota(all.begin(), all.end(), 0u);
   LUXEL_TRY_STATUS(direct_light_again(scene, elements, lights, tracer, all, params, out, progress));

@@ -11,6 +11,7 @@
 #include "scene/scene.h"
 #include "trace/ray_tracer.h"
 #include "transport/elements.h"
+#include "transport/light_layers.h"
 #include "transport/lights.h"
 
 namespace luxel::transport {
@@ -24,7 +25,8 @@ struct DirectParams {
   /// Rays per element towards the soft light of the surroundings. 0: the caller's own rays see it;
   /// the peaks of an environment count in any case.
   int sky_samples = 0;
-  PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
+  PartStore* parts = nullptr;           ///< where finished parts are kept and found; null: nowhere
+  const LightLayers* layers = nullptr;  ///< null: light is not told apart
 };
 
 struct DirectLight {
@@ -32,7 +34,14 @@ struct DirectLight {
   /// Estimated variance of its luminance: as if shadow rays were independent, which stratified ones
   /// beat, and from the difference of their halves, nearly right in the mean, but a single square.
   std::vector<float> variance, split_variance;
+  /// With layers: each one's part of the irradiance, layer by layer for each element. They add up
+  /// to it but for rounding.
+  std::vector<Rgb> by_layer;
   uint64_t rays = 0;
+
+  std::span<Rgb> layers_of(size_t element, const LightLayers& layers) {
+    return std::span(by_layer).subspan(element * layers.size(), layers.size());
+  }
 };
 
 /// E at every element from emissive triangles, point, spot and directional lights, peaks of the

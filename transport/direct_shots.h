@@ -9,6 +9,7 @@
 #include "trace/ray_tracer.h"
 #include "transport/direct_light.h"
 #include "transport/light_draw.h"
+#include "transport/light_layers.h"
 #include "transport/lights.h"
 
 namespace luxel::transport {
@@ -27,6 +28,13 @@ struct Shot {
   bool second_half = false;  ///< of the shots planned at its source
 };
 
+/// What shines: a triangle light, a lamp, or the surroundings.
+struct LightId {
+  enum class Kind : uint8_t { surroundings, triangle, punctual };
+  Kind kind = Kind::surroundings;
+  uint32_t index = 0;  ///< into Lights::triangles or Lights::punctual
+};
+
 /// The visible share of a source is  sum w V / sum w  over its shots; its light is that share times
 /// the exact unshadowed light. Where nothing is exact, light is scale * sum w V.
 struct Source {
@@ -40,6 +48,7 @@ struct Source {
   float sum_luminance2 = 0, second_luminance = 0;
   Rgb tint{1, 1, 1};     ///< multiplies the sum
   float unshadowed = 0;  ///< luminance, for the variance of exact sources
+  LightId light{};       ///< where drawn: the one that stands for its neighbours
 };
 
 /// Sources and shots of one receiver or a few; buffers that are reused from element to element.
@@ -94,5 +103,10 @@ void direct_light_at(const scene::Scene& scene, const Lights& lights,
 LightAt direct_light_at(const scene::Scene& scene, const Lights& lights,
                         const trace::RayTracer& tracer, const DirectParams& params,
                         const Receiver& r, float diagonal_m, Shots& shots);
+
+/// The light of receiver number `receiver` of the last direct_light_at(), times `factor`, is added
+/// to the layer that each source belongs to: `out` has an entry per layer.
+void add_light_by_layer(const Shots& shots, size_t receiver, const LightLayers& layers, Rgb factor,
+                        std::span<Rgb> out);
 
 }  // namespace luxel::transport

@@ -104,10 +104,12 @@ bool shines_on(const TriangleLight& light, const Receiver& r) {
 }
 
 /// One shot at a triangle that stands for many.
-void shoot_at_drawn(const scene::Scene& scene, const TriangleLight& light, float chance,
+void shoot_at_drawn(const scene::Scene& scene, const Lights& lights, const LightDraw& draw,
                     const Receiver& r, float diagonal_m, Shots& shots) {
+  const TriangleLight& light = lights.triangles[draw.light];
   const uint32_t source = uint32_t(shots.sources.size());
-  shots.sources.push_back({.scale = 1 / chance, .drawn = true});
+  shots.sources.push_back(
+      {.scale = 1 / draw.chance, .drawn = true, .light = {LightId::Kind::triangle, draw.light}});
   const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
   const uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
   const Vec2 u = RandomStream{seed}.next2();
@@ -131,18 +133,19 @@ void shoot_at_many(const scene::Scene& scene, const Lights& lights, int samples,
       .samples = samples, .max_cut = samples == 1 ? 1u : 16u, .start = random.next()};
   draw_lights(lights.nodes, r.position, r.normal, leaf, params, shots.draws);
   for (const LightDraw& draw : shots.draws.draws) {
-    const TriangleLight& light = lights.triangles[draw.light];
     if (draw.chance < 1) {
-      shoot_at_drawn(scene, light, draw.chance, r, diagonal_m, shots);
+      shoot_at_drawn(scene, lights, draw, r, diagonal_m, shots);
       continue;
     }
+    const TriangleLight& light = lights.triangles[draw.light];
     const float whole = irradiance_per_radiance(light, r.position, r.normal);
     if (whole <= 0) continue;
     const uint32_t source = uint32_t(shots.sources.size());
     shots.sources.push_back({.scale = whole,
                              .exact = true,
                              .planned = draw.count,
-                             .unshadowed = whole * luminance(light.mean_radiance)});
+                             .unshadowed = whole * luminance(light.mean_radiance),
+                             .light = {LightId::Kind::triangle, draw.light}});
     shoot_at_triangle(scene, light, source, draw.count, r, diagonal_m, shots);
   }
 }
@@ -181,7 +184,8 @@ void shoot_at_all(const scene::Scene& scene, const Lights& lights, int samples, 
     shots.sources.push_back({.scale = shots.whole[i] / chance,
                              .exact = true,
                              .planned = count,
-                             .unshadowed = unshadowed / chance});
+                             .unshadowed = unshadowed / chance,
+                             .light = {LightId::Kind::triangle, uint32_t(i)}});
     shoot_at_triangle(scene, light, source, count, r, diagonal_m, shots);
   }
 }

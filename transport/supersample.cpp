@@ -342,6 +342,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
     }
     PointWork work;
     std::vector<PointLight> points;
+    std::vector<Rgb> by_layer(each.layers ? each.layers->size() : 0);
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
       const uint32_t i = which[k];
@@ -351,6 +352,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
         if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
       }
       points.clear();
+      std::ranges::fill(by_layer, Rgb{});
       atlas::spread_points(atlas, map.texels[i], cover.of(k), params.points, each.seed,
                            work.spread);
       light_points(place, lights, each, i, work);
@@ -362,12 +364,15 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
         traced += dark ? uint64_t(kEnclosureRays) : 0;
         if (dark && is_enclosed(place, work.receivers[j])) continue;
         points.push_back({work.receivers[j].position, light.irradiance, light.variance});
+        if (each.layers) add_light_by_layer(work.shots, j, *each.layers, {1, 1, 1}, by_layer);
       }
       if (points.empty()) continue;
       Rgb sum{};
       for (const PointLight& p : points) sum += p.irradiance;
       direct.irradiance[i] = sum / float(points.size());
       direct.variance[i] = direct.split_variance[i] = variance_of_mean(points);
+      for (size_t l = 0; l < by_layer.size(); ++l)
+        direct.layers_of(i, *each.layers)[l] = by_layer[l] / float(points.size());
       is_averaged[k] = 1;
     }
     rays += traced;

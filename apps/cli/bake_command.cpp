@@ -12,7 +12,8 @@ namespace {
 struct BakeOptions {
   Common common;
   OutsideText outside;
-  std::string uv = "auto", bounces = "inf", max_memory, formats = "exr", directional, pages = "1";
+  std::string uv = "auto", bounces = "inf", max_memory, formats = "exr", directional, pages = "1",
+              layers;
   bool resolution_given = false, plan = false;
   HemicubeOptions hemicube;
   pipeline::BakeSettings settings;
@@ -34,6 +35,7 @@ constexpr std::array kSolverOptions{
     SolverOption{"--denoise", &pipeline::Solver::noise},
     SolverOption{"--checkpoint", &pipeline::Solver::parts},
     SolverOption{"--resume", &pipeline::Solver::parts},
+    SolverOption{"--layers", &pipeline::Solver::layers},
     SolverOption{"--elements", &pipeline::Solver::hemicube},
     SolverOption{"--hemicube", &pipeline::Solver::hemicube},
     SolverOption{"--element-size", &pipeline::Solver::hemicube},
@@ -109,6 +111,9 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   LUXEL_TRY(s.formats, pipeline::parse_formats(options.formats));
   if (!options.directional.empty()) {
     LUXEL_TRY(s.directional, pipeline::parse_directional(options.directional));
+  }
+  if (!options.layers.empty()) {
+    LUXEL_TRY(s.layers, pipeline::parse_layers(options.layers));
   }
   return s;
 }
@@ -218,6 +223,10 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_option("--probes", s.probe_spacing_m,
                    "Also light probes in the air, so many metres apart")
       ->type_name("SPACING");
+  bake->add_option("--layers", options->layers,
+                   "Also a lightmap of each light: per-light; or of each group of lights that have "
+                   "one name but for a number at its end: groups")
+      ->type_name("WHICH");
   bake->add_flag("--denoise", s.denoise, "Take the grain out of texels; edges of shadows stay");
   bake->add_flag(
       "--texels", s.texels,

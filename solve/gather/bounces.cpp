@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "solve/gather/tile_hits.h"
 
 namespace luxel::gather {
 namespace {
@@ -131,26 +132,6 @@ float split_variance(const Gathered& g, const TracedHits& hits, size_t element) 
   return d * d;
 }
 
-/// The hits of a tile's elements in all rounds.
-struct TileHits {
-  std::vector<HitTile> buffer;
-  std::vector<const HitTile*> round;
-
-  Status read(const TracedHits& hits, size_t tile) {
-    buffer.resize(hits.rounds.size()), round.resize(hits.rounds.size());
-    for (size_t r = 0; r < round.size(); ++r) {
-      LUXEL_TRY(round[r], hits.rounds[r].get(tile, buffer[r]));
-    }
-    return {};
-  }
-  /// Of the tile's k-th element.
-  std::span<const StoredHit> of(size_t r, size_t k) const {
-    const HitTile& tile = *round[r];
-    const uint32_t first = k == 0 ? 0 : tile.end[k - 1];
-    return std::span(tile.entries).subspan(first, tile.end[k] - first);
-  }
-};
-
 /// Returns the sum of squared changes of a tile's elements.
 double sweep_tile(const RadiosityMap& m, const TracedHits& hits, const TileHits& tile,
                   size_t first_element, Sweep& sweep) {
@@ -160,8 +141,7 @@ double sweep_tile(const RadiosityMap& m, const TracedHits& hits, const TileHits&
     Gathered g;
     for (size_t r = 0; r <= hits.last_round[i]; ++r) {
       const std::span<const StoredHit> own = tile.of(r, i - first_element);
-      // Neighbours look at different rays, so that what a sparse sweep misses averages out.
-      const size_t start = own.empty() ? 0 : std::min((i * 5) % sweep.stride, own.size() - 1);
+      const size_t start = first_hit(i, sweep.stride, own.size());
       gather_round(m, own, start, sweep.stride, r == hits.last_round[i], g);
     }
     const Rgb gathered = Rgb{g.sum[0], g.sum[1], g.sum[2]} * (1.0f / float(hits.samples[i]));
@@ -262,6 +242,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
     Sweep sweep{source, out.irradiance, next, out.variance, out.split_variance, stride, {}};
     LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
     out.irradiance.swap(next);
+    out.strides.push_back(uint8_t(stride));
     ++out.sweeps;
     progress.advance(1);
     const double sum2 = std::accumulate(sweep.change2.begin(), sweep.change2.end(), 0.0);

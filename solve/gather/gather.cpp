@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solve/gather/adaptive.h"
+#include "solve/gather/bounce_layers.h"
 #include "transport/backs_seen.h"
 
 namespace luxel::gather {
@@ -63,7 +64,10 @@ Errors errors_of(const transport::TexelScene& world, const Work& work) {
 
 transport::SupersampleParams supersample_params(const GatherParams& params) {
   return {.points = params.supersample,
-          .direct = {.samples = params.direct_samples, .seed = params.seed, .parts = params.parts}};
+          .direct = {.samples = params.direct_samples,
+                     .seed = params.seed,
+                     .parts = params.parts,
+                     .layers = params.layers}};
 }
 
 Status begin_direct(const transport::TexelScene& world, const GatherParams& params, Work& work,
@@ -84,8 +88,9 @@ Status begin_direct(const transport::TexelScene& world, const GatherParams& para
 
 Status trace_round(const transport::TexelScene& world, const GatherParams& params,
                    std::span<const uint16_t> target, Work& work, Progress& progress) {
-  const TraceParams trace{params.seed, params.hit_memory_bytes, params.scratch_folder,
-                          params.bounces < 0 ? &world.lights : nullptr, params.parts};
+  const TraceParams trace{params.seed,           params.hit_memory_bytes,
+                          params.scratch_folder, params.bounces < 0 ? &world.lights : nullptr,
+                          params.parts,          params.layers};
   const auto start = std::chrono::steady_clock::now();
   const uint64_t before = work.hits.rays, samples = sum_of(work.hits.samples);
   LUXEL_TRY_STATUS(trace_more(world.scene, world.atlas, world.elements, world.lights.around,
@@ -186,8 +191,17 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
     LUXEL_TRY(more,
               next_round(world, params, params.seconds - seconds_since(start), work, progress));
   }
+  // Layers follow the sweeps of the whole, from the first one on.
+  if (params.layers) work.bounced.irradiance.clear();
   LUXEL_TRY_STATUS(bounce_round(world, behind, {params.bounces, params.tolerance}, work, progress));
   Gather out;
+  if (params.layers) {
+    LUXEL_TRY(LayersBounced layers,
+              bounce_layers(map, elements, work.hits,
+                            layer_sources(work.hits, std::move(work.direct.by_layer)), behind,
+                            work.bounced, params.bounces < 0, progress));
+    out.layers = std::move(layers.irradiance), out.layers_shared_out = layers.shared_out;
+  }
   out.relative_error = relative_error(work.bounced.irradiance, work.errors.variance);
   out.irradiance = std::move(work.bounced.irradiance);
   out.direct = std::move(work.direct.irradiance);

@@ -20,6 +20,7 @@ struct GatherParams {
   int bounces = -1;         ///< < 0: all
   float tolerance = 1e-4f;  ///< see BounceParams
   uint64_t seed = 1;
+  const transport::LightLayers* layers = nullptr;  ///< null: light is not told apart
   uint64_t hit_memory_bytes = UINT64_MAX;
   std::filesystem::path scratch_folder = ".";
   PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
@@ -37,6 +38,9 @@ struct Gather {
   std::vector<float> gathered_errors;  ///< the same of what rays brought, light from lamps aside
   float relative_error_p95 = 0;        ///< that 95 of 100 elements stay below
   std::vector<uint16_t> samples;       ///< indirect rays per element
+  /// With layers, of each: E per element after all bounces. They add up to `irradiance`.
+  std::vector<std::vector<Rgb>> layers;
+  double layers_shared_out = 0;  ///< LayersBounced::shared_out
   uint64_t rays = 0;
   uint64_t supersampled = 0;  ///< elements whose direct light is a mean over points
   int sweeps = 0;

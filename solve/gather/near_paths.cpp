@@ -35,8 +35,12 @@ uint64_t add_direct_light(const NearWorld& world, NearWork& work) {
   work.light.resize(work.receivers.size());
   transport::direct_light_at(world.scene, world.lights, world.tracer, {.samples = 1},
                              work.receivers, world.diagonal_m, work.shots, work.light);
-  for (size_t i = 0; i < work.paths.size(); ++i)
+  for (size_t i = 0; i < work.paths.size(); ++i) {
     work.paths[i].light += work.paths[i].throughput * work.light[i].irradiance / kPi;
+    if (world.layers)
+      transport::add_light_by_layer(work.shots, i, *world.layers, work.paths[i].throughput / kPi,
+                                    work.by_layer);
+  }
   return work.shots.rays.size();
 }
 

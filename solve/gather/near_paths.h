@@ -39,6 +39,7 @@ struct NearWorld {
   const trace::RayTracer& tracer;
   std::span<const float> texel_width_m;
   float diagonal_m = 0;
+  const transport::LightLayers* layers = nullptr;  ///< null: light is not told apart
 };
 
 /// Buffers of one thread.
@@ -50,6 +51,7 @@ struct NearWork {
   std::vector<trace::Hit> hits;
   std::vector<Rgb> tint;
   transport::Shots shots;
+  std::span<Rgb> by_layer;  ///< with layers: the radiance that paths bring is added to these, too
 };
 
 /// Takes each of work.paths from its near hit to where it ends, in order of their rays within each

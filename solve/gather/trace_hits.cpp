@@ -123,6 +123,7 @@ struct World {
   const atlas::Atlas& atlas;
   const transport::Surroundings& around;
   const NearWorld* near = nullptr;  ///< null: rays are not followed on
+  const transport::LightLayers* layers = nullptr;
 };
 
 /// Adds radiance that a ray has brought without the map.
@@ -130,6 +131,12 @@ void add_light(Rgb l, bool second_half, size_t element, TracedHits& out) {
   out.sky[element] += l;
   out.sky_luminance2[element] += luminance(l) * luminance(l);
   out.sky_first_less_second[element] += second_half ? -luminance(l) : luminance(l);
+}
+
+/// Radiance of a ray that has left the scene.
+void add_sky(const World& world, Rgb l, size_t element, TracedHits& out) {
+  if (world.layers && world.layers->of_surroundings)
+    out.sky_by_layer[element * world.layers->size() + *world.layers->of_surroundings] += l;
 }
 
 /// Counts what an element's rays met, those of its samples from `first` on, and keeps the hits that
@@ -143,6 +150,7 @@ void sort_hits(const World& world, Work& work, size_t element, uint32_t first, T
       Rgb l = transport::soft_radiance(world.scene, world.around, work.rays[k].direction);
       if (!work.tint.empty()) l = l * work.tint[k];
       add_light(l, work.second_half[k], element, out);
+      add_sky(world, l, element, out);
       continue;
     }
     if (hit.back_face &&
@@ -168,13 +176,19 @@ void sort_hits(const World& world, Work& work, size_t element, uint32_t first, T
 /// Follows the rays of an element on that ended nearby. Returns the number of rays.
 uint64_t follow_on(const World& world, Work& work, size_t element, uint64_t seed, TracedHits& out,
                    HitTile& tile) {
+  if (world.layers)
+    work.near.by_layer =
+        std::span(out.sky_by_layer).subspan(element * world.layers->size(), world.layers->size());
   return follow_near(*world.near, seed, work.near, [&](const NearPath& path) {
     const bool second_half = work.second_half[path.ray] != 0;
     Rgb light = path.light;
     const bool alive = max_component(path.throughput) > 0;
-    if (alive && !path.hit.found())
-      light +=
+    if (alive && !path.hit.found()) {
+      const Rgb l =
           path.throughput * transport::soft_radiance(world.scene, world.around, path.direction);
+      add_sky(world, l, element, out);
+      light += l;
+    }
     add_light(light, second_half, element, out);
     if (!alive || !path.hit.found()) return;
     if (path.hit.back_face &&
@@ -219,12 +233,12 @@ uint64_t TracedHits::bytes_in_file() const {
   return bytes;
 }
 
-TracedHits no_hits(size_t elements) {
+TracedHits no_hits(size_t elements, size_t layers) {
   TracedHits out;
   out.samples.resize(elements), out.last_round.resize(elements);
   out.escaped.resize(elements), out.met_back.resize(elements);
   out.met_double_sided_back.resize(elements);
-  out.sky.resize(elements);
+  out.sky.resize(elements), out.sky_by_layer.resize(elements * layers);
   out.sky_luminance2.resize(elements), out.sky_first_less_second.resize(elements);
   return out;
 }
@@ -348,6 +362,8 @@ Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
                   const TraceParams& params, TracedHits& hits, Progress& progress) {
   LUXEL_CHECK(target.size() == elements.size() && hits.size() == elements.size());
   LUXEL_CHECK(hits.rounds.size() < 256);
+  LUXEL_CHECK(hits.sky_by_layer.size() ==
+              elements.size() * (params.layers ? params.layers->size() : 0));
   const uint64_t used = hits.bytes_in_memory();
   LUXEL_TRY(HitStore store,
             HitStore::create(elements.size(), kTileElements, most_added(target, hits),
@@ -358,9 +374,10 @@ Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
   std::vector<float> widths;
   if (params.near_lights != nullptr) {
     widths = texel_widths_m(scene, atlas);
-    near.emplace(NearWorld{scene, atlas, *params.near_lights, tracer, widths, diagonal_m});
+    near.emplace(
+        NearWorld{scene, atlas, *params.near_lights, tracer, widths, diagonal_m, params.layers});
   }
-  const World world{scene, atlas, around, near ? &*near : nullptr};
+  const World world{scene, atlas, around, near ? &*near : nullptr, params.layers};
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   LUXEL_TRY_STATUS(trace_tiles({world, elements, tracer, target, params.seed, diagonal_m}, kept,
@@ -375,7 +392,7 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
                               const transport::Surroundings& around, const trace::RayTracer& tracer,
                               int samples, const TraceParams& params, Progress& progress) {
   LUXEL_CHECK(samples >= 1 && samples <= 65535);
-  TracedHits hits = no_hits(elements.size());
+  TracedHits hits = no_hits(elements.size(), params.layers ? params.layers->size() : 0);
   const std::vector<uint16_t> target(elements.size(), uint16_t(samples));
   LUXEL_TRY_STATUS(
       trace_more(scene, atlas, elements, around, tracer, target, params, hits, progress));

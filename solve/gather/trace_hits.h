@@ -14,6 +14,7 @@
 #include "solve/gather/hit_store.h"
 #include "trace/ray_tracer.h"
 #include "transport/elements.h"
+#include "transport/light_layers.h"
 #include "transport/lights.h"
 
 namespace luxel::gather {
@@ -25,6 +26,7 @@ struct TraceParams {
   /// What rays look for that are followed on where they end nearby (near_paths.h); null: none are.
   const transport::Lights* near_lights = nullptr;
   PartStore* parts = nullptr;  ///< where finished tiles are kept and found; null: nowhere
+  const transport::LightLayers* layers = nullptr;  ///< null: light is not told apart
 };
 
 /// What rays have met, in rounds of tracing: each adds samples to some of the elements.
@@ -44,6 +46,7 @@ struct TracedHits {
   /// the other half's.
   std::vector<Rgb> sky;
   std::vector<float> sky_luminance2, sky_first_less_second;
+  std::vector<Rgb> sky_by_layer;  ///< with layers: `sky`, layer by layer for each element
   uint64_t rays = 0;
 
   size_t size() const { return samples.size(); }
@@ -57,8 +60,8 @@ inline bool is_hidden(const TracedHits& hits, size_t element) {
   return 2 * int(hits.met_back[element]) > int(hits.samples[element]);
 }
 
-/// Nothing traced yet.
-TracedHits no_hits(size_t elements);
+/// Nothing traced yet. `layers`: how many there are; 0: light is not told apart.
+TracedHits no_hits(size_t elements, size_t layers = 0);
 
 /// A round of tracing: of each element the samples from those that it has up to `target`, so many
 /// at most as 65535. An element that has enough keeps what it has. Of an element that has samples

@@ -1,0 +1,273 @@
+#include "solve/gather/bounce_layers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "base/vectorize.h"
+#include "solve/gather/tile_hits.h"
+#include "transport/light_layers.h"
+
+namespace luxel::gather {
+namespace {
+
+/// Layers that a sweep looks up at once: R, G and B of five, and coverage, are one cache line.
+constexpr size_t kBlock = 5;
+constexpr size_t kLanes = 3 * kBlock + 1, kCoverage = kLanes - 1;
+
+struct alignas(64) BlockTexel {
+  std::array<float, kLanes> value{};
+};
+
+/// As bounces.cpp's map of radiosity, with a border of one empty texel.
+struct BlockMap {
+  uint32_t stride = 0;
+  std::vector<BlockTexel> texels;
+};
+
+/// Light layer by layer for each element.
+struct LayeredLight {
+  std::span<Rgb> light;
+  size_t layers = 0;
+
+  std::span<Rgb> of(size_t element, size_t first, size_t count) const {
+    return light.subspan(element * layers + first, count);
+  }
+};
+
+/// Layers first, first + 1, ... of all.
+struct Block {
+  size_t first = 0, count = 0;
+};
+
+BlockMap empty_map(int resolution) {
+  BlockMap m;
+  m.stride = uint32_t(resolution + 2);
+  m.texels.resize(size_t(m.stride) * m.stride);
+  return m;
+}
+
+/// `value_at(i, l)`: what element i sends of the block's l-th layer.
+template <class ValueAt>
+void fill(BlockMap& m, const atlas::TexelMap& map, const TracedHits& hits, const Block& block,
+          const ValueAt& value_at) {
+  parallel_for(map.texels.size(), 1 << 14, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      if (is_hidden(hits, i)) continue;
+      auto& texel = m.texels[size_t(map.texels[i].y + 1) * m.stride + map.texels[i].x + 1].value;
+      for (size_t l = 0; l < block.count; ++l) {
+        const Rgb b = value_at(i, l);
+        texel[3 * l] = b.x, texel[3 * l + 1] = b.y, texel[3 * l + 2] = b.z;
+      }
+      texel[kCoverage] = 1;
+    }
+  });
+}
+
+/// What arrives of a block's layers, in lanes as those of the map.
+struct Lanes {
+  Float8 low{}, high{};
+};
+
+/// Adds the bilinear lookup at a hit, its weights renormalised over the texels that have an
+/// element.
+[[gnu::always_inline]] inline void add_lookup(const BlockMap& m, const StoredHit& hit, Lanes& sum) {
+  constexpr float kUnit = 1.0f / float(StoredHit::kSteps);
+  const float fx = float(hit.fx()) * kUnit, fy = float(hit.fy()) * kUnit;
+  const BlockTexel* upper = m.texels.data() + hit.base();
+  const BlockTexel* lower = upper + m.stride;
+  const std::array<const BlockTexel*, 4> texel{upper, upper + 1, lower, lower + 1};
+  const std::array<float, 4> weight{(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
+  Float8 low{}, high{};
+  for (size_t k = 0; k < 4; ++k) {
+    Float8 a, b;
+    load8(texel[k]->value.data(), a), load8(texel[k]->value.data() + 8, b);
+    low += a * weight[k], high += b * weight[k];
+  }
+  // Coverage is zero only where all texels around the hit are hidden.
+  const float coverage = high[kCoverage - 8];
+  if (!(coverage > 0)) return;
+  const float inverse = 1.0f / coverage;
+  if (hit.tint() == kNoTint) {
+    sum.low += low * inverse, sum.high += high * inverse;
+    return;
+  }
+  const Rgb t = unpack_tint(hit.tint()) * inverse;
+  sum.low += low * Float8{t.x, t.y, t.z, t.x, t.y, t.z, t.x, t.y};
+  sum.high += high * Float8{t.z, t.x, t.y, t.z, t.x, t.y, t.z, 0};
+}
+
+/// B = rho E + tau E behind, as bounces.cpp has it.
+void fill_radiosity(BlockMap& m, const atlas::TexelMap& map, const transport::Elements& elements,
+                    const TracedHits& hits, std::span<const StoredHit> behind,
+                    const LayeredLight& light, const Block& block) {
+  const auto irradiance = [&](size_t i, size_t l) {
+    return light.of(i, block.first, block.count)[l];
+  };
+  const auto reflected = [&](size_t i, size_t l) {
+    return elements.reflectance[i] * irradiance(i, l);
+  };
+  if (behind.empty()) return fill(m, map, hits, block, reflected);
+  BlockMap all = empty_map(map.resolution);
+  fill(all, map, hits, block, irradiance);
+  fill(m, map, hits, block, [&](size_t i, size_t l) {
+    if (max_component(elements.transmittance[i]) <= 0) return reflected(i, l);
+    Lanes other;
+    add_lookup(all, behind[i], other);
+    std::array<float, kLanes> e;
+    store8(other.low, e.data()), store8(other.high, e.data() + 8);
+    return reflected(i, l) + elements.transmittance[i] * Rgb{e[3 * l], e[3 * l + 1], e[3 * l + 2]};
+  });
+}
+
+/// Every stride-th of an element's hits of one round, counted for all of them.
+[[gnu::always_inline]] inline void gather_round(const BlockMap& m, std::span<const StoredHit> hits,
+                                                size_t first, size_t stride, Lanes& sum) {
+  Lanes round;
+  size_t used = 0;
+  for (size_t k = first; k < hits.size(); k += stride, ++used) add_lookup(m, hits[k], round);
+  const float scale = used > 0 ? float(hits.size()) / float(used) : 0;
+  sum.low += round.low * scale, sum.high += round.high * scale;
+}
+
+struct Sweep {
+  const BlockMap& radiosity;
+  LayeredLight source, light;
+  Block block;
+  size_t stride = 1;
+};
+
+LUXEL_VECTOR_CLONES
+void sweep_tile(const Sweep& sweep, const TracedHits& hits, const TileHits& tile,
+                size_t first_element) {
+  const size_t end = std::min(first_element + kTileElements, hits.size());
+  for (size_t i = first_element; i < end; ++i) {
+    Lanes sum;
+    for (size_t r = 0; r <= hits.last_round[i]; ++r) {
+      const std::span<const StoredHit> own = tile.of(r, i - first_element);
+      gather_round(sweep.radiosity, own, first_hit(i, sweep.stride, own.size()), sweep.stride, sum);
+    }
+    std::array<float, kLanes> e;
+    store8(sum.low, e.data()), store8(sum.high, e.data() + 8);
+    const float inverse = 1.0f / float(hits.samples[i]);
+    const std::span<const Rgb> source = sweep.source.of(i, sweep.block.first, sweep.block.count);
+    const std::span<Rgb> light = sweep.light.of(i, sweep.block.first, sweep.block.count);
+    for (size_t l = 0; l < light.size(); ++l)
+      light[l] = source[l] + Rgb{e[3 * l], e[3 * l + 1], e[3 * l + 2]} * inverse;
+  }
+}
+
+Status run_sweep(const Sweep& sweep, const TracedHits& hits, Progress& progress) {
+  const size_t tiles = (hits.size() + kTileElements - 1) / kTileElements;
+  std::mutex mutex;
+  Status status;
+  parallel_for(tiles, 1, [&](size_t t, size_t) {
+    if (progress.cancelled()) return;
+    TileHits tile;
+    if (const Status read = tile.read(hits, t); !read) {
+      const std::lock_guard lock(mutex);
+      status = read;
+      return;
+    }
+    sweep_tile(sweep, hits, tile, t * kTileElements);
+  });
+  if (!status) return status;
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return {};
+}
+
+/// Gives each layer its share of the whole. Returns the sum of squares of what was missing.
+double share_out(std::span<const Rgb> whole, const LayeredLight& light) {
+  constexpr size_t kGrain = 4096;
+  std::vector<double> missing2((whole.size() + kGrain - 1) / kGrain);
+  parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
+    double sum2 = 0;
+    for (size_t i = begin; i < end; ++i) {
+      const Rgb missing = transport::share_out(whole[i], light.of(i, 0, light.layers));
+      sum2 += double(dot(missing, missing));
+    }
+    missing2[begin / kGrain] = sum2;
+  });
+  return std::accumulate(missing2.begin(), missing2.end(), 0.0);
+}
+
+/// The strides of all sweeps but the last: as many as the whole's first stride had, and one that
+/// takes their noise away. A given number of bounces has no more than that many sweeps.
+std::vector<size_t> sparse_strides(const Bounced& whole, bool converged, const TracedHits& hits) {
+  if (whole.strides.empty()) return {};
+  const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
+  const size_t middle = fewest >= 64 ? 4 : 1, sparsest = fewest >= 256 ? 16 : middle;
+  if (!converged) return std::vector<size_t>(whole.strides.size() - 1, middle);
+  const auto first = std::ranges::count(whole.strides, whole.strides.front());
+  std::vector<size_t> strides(size_t(first), sparsest);
+  strides.push_back(middle);
+  return strides;
+}
+
+std::vector<std::vector<Rgb>> layer_by_layer(const LayeredLight& light, size_t elements) {
+  std::vector<std::vector<Rgb>> out(light.layers, std::vector<Rgb>(elements));
+  parallel_for(elements, 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      for (size_t l = 0; l < light.layers; ++l) out[l][i] = light.of(i, l, 1)[0];
+  });
+  return out;
+}
+
+double mean_luminance(std::span<const Rgb> values) {
+  double sum = 0;
+  for (const Rgb& v : values) sum += double(luminance(v));
+  return values.empty() ? 0 : sum / double(values.size());
+}
+
+}  // namespace
+
+std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct) {
+  LUXEL_CHECK(direct.size() == hits.sky_by_layer.size() && hits.size() > 0);
+  const size_t layers = direct.size() / hits.size();
+  parallel_for(hits.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t k = begin * layers; k < end * layers; ++k)
+      direct[k] += hits.sky_by_layer[k] * (kPi / float(hits.samples[k / layers]));
+  });
+  return direct;
+}
+
+Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport::Elements& elements,
+                                    const TracedHits& hits, std::vector<Rgb> source,
+                                    std::span<const StoredHit> behind, const Bounced& whole,
+                                    bool converged, Progress& progress) {
+  const size_t n = elements.size();
+  LUXEL_CHECK(n > 0 && source.size() % n == 0 && whole.irradiance.size() == n);
+  const size_t layers = source.size() / n;
+  std::vector<Rgb> solution = source;
+  const LayeredLight light{solution, layers}, sources{source, layers};
+  BlockMap radiosity = empty_map(map.resolution);
+  const auto sweep_all = [&](size_t stride) -> Status {
+    for (Block block; block.first < layers; block.first += kBlock) {
+      block.count = std::min(kBlock, layers - block.first);
+      fill_radiosity(radiosity, map, elements, hits, behind, light, block);
+      LUXEL_TRY_STATUS(run_sweep({radiosity, sources, light, block, stride}, hits, progress));
+    }
+    progress.advance(1);
+    return {};
+  };
+  progress.begin("layers", 0);
+  size_t before = 0;
+  for (const size_t stride : sparse_strides(whole, converged, hits)) {
+    // Of a sparser solution's noise only the share is left.
+    if (converged && before > stride) share_out(whole.irradiance, light);
+    LUXEL_TRY_STATUS(sweep_all(stride));
+    before = stride;
+  }
+  if (converged) share_out(whole.irradiance, light);
+  if (!whole.strides.empty()) LUXEL_TRY_STATUS(sweep_all(1));
+  const double missing2 = share_out(whole.irradiance, light),
+               mean = mean_luminance(whole.irradiance);
+  return LayersBounced{layer_by_layer(light, n),
+                       mean > 0 ? std::sqrt(missing2 / (3 * double(n))) / mean : 0};
+}
+
+}  // namespace luxel::gather

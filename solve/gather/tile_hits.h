@@ -1,0 +1,38 @@
+// The stored hits of neighbouring elements, as sweeps read them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "solve/gather/trace_hits.h"
+
+namespace luxel::gather {
+
+/// The hits of a tile's elements in all rounds.
+struct TileHits {
+  std::vector<HitTile> buffer;
+  std::vector<const HitTile*> round;
+
+  Status read(const TracedHits& hits, size_t tile) {
+    buffer.resize(hits.rounds.size()), round.resize(hits.rounds.size());
+    for (size_t r = 0; r < round.size(); ++r) {
+      LUXEL_TRY(round[r], hits.rounds[r].get(tile, buffer[r]));
+    }
+    return {};
+  }
+  /// Of the tile's k-th element.
+  std::span<const StoredHit> of(size_t r, size_t k) const {
+    const HitTile& tile = *round[r];
+    const uint32_t first = k == 0 ? 0 : tile.end[k - 1];
+    return std::span(tile.entries).subspan(first, tile.end[k] - first);
+  }
+};
+
+/// Where a sweep begins that looks at every stride-th of an element's `count` hits. Neighbours look
+/// at different rays, so that what a sparse sweep misses averages out.
+inline size_t first_hit(size_t element, size_t stride, size_t count) {
+  return count == 0 ? 0 : std::min((element * 5) % stride, count - 1);
+}
+
+}  // namespace luxel::gather

@@ -82,7 +82,7 @@ TEST(LightLayers, GroupsGoByNamesWithoutNumbers) {
 
 TEST(LightLayers, TooManyAreRefused) {
   scene::Scene scene;
-  for (int k = 0; k < 65; ++k) add_lamp(scene, (k < 40 ? "a" : "b") + std::to_string(k));
+  for (int k = 0; k < 65; ++k) add_lamp(scene, fmt::format("{}{}", k < 40 ? "a" : "b", k));
   const auto layers = light_layers(scene, collect_lights(scene), LayerMode::per_light);
   ASSERT_FALSE(layers);
   EXPECT_THAT(layers.error().message, HasSubstr("makes 65 layers"));

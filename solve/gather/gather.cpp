@@ -182,7 +182,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   Work work;
   LUXEL_TRY_STATUS(begin_direct(world, params, work, progress));
   const std::vector<StoredHit> behind = places_behind(scene, atlas, map, elements);
-  work.hits = no_hits(elements.size());
+  work.hits = no_hits(elements.size(), params.layers ? params.layers->size() : 0);
   const std::vector<uint16_t> first(elements.size(), uint16_t(params.samples));
   LUXEL_TRY_STATUS(trace_round(world, params, first, work, progress));
   for (bool more = params.max_error > 0 || params.seconds > 0; more;) {

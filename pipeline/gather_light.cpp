@@ -96,7 +96,6 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   params.bounces = settings.bounces;
   params.seed = settings.seed;
   params.scratch_folder = nearest_folder(settings.output);
-  params.parts = in.parts;
   return params;
 }
 
@@ -106,6 +105,7 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes));
   std::vector<std::string> warnings;
   LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
+  params.parts = in.parts;
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   TexelLight out = texel_light(std::move(result));

@@ -112,6 +112,7 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
   std::vector<std::string> warnings;
   LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
+  params.parts = in.parts;
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   TexelLight out = texel_light(std::move(result));

@@ -106,13 +106,12 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   if (settings.layers != transport::LayerMode::none) {
     LUXEL_TRY(layers, transport::light_layers(in.scene, in.lights, settings.layers));
     params.layers = &layers;
-  } else {
-    params.parts = in.parts;  // the light of layers is not kept yet
   }
   LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
   std::vector<std::string> warnings;
   LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
-  params.parts = in.parts;
+  // Not for the trial; and the light of layers is not kept yet.
+  if (!params.layers) params.parts = in.parts;
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   TexelLight out = texel_light(std::move(result));

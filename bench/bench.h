@@ -48,6 +48,9 @@ Result<Table> measure_scenes(const std::filesystem::path& shared, int threads);
 /// What averaging direct light over texels costs, and what it takes away of their error.
 Result<Table> measure_supersample(const std::filesystem::path& shared, int threads);
 
+/// What a lightmap for each of 20 lamps costs besides that of all.
+Result<Table> measure_layers(const std::filesystem::path& shared, int threads);
+
 struct Bench {
   std::string_view name;
   BenchFunction run;
@@ -56,6 +59,7 @@ inline constexpr std::array kBenches{
     Bench{"rays", measure_rays},       Bench{"maps", measure_maps},
     Bench{"atlas", measure_atlas},     Bench{"memory", measure_memory},
     Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise},
-    Bench{"scenes", measure_scenes},   Bench{"supersample", measure_supersample}};
+    Bench{"scenes", measure_scenes},   Bench{"supersample", measure_supersample},
+    Bench{"layers", measure_layers}};
 
 }  // namespace luxel::bench

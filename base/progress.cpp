@@ -1,19 +1,58 @@
 #include "base/progress.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace luxel {
 inline namespace base {
 namespace {
+/// Of a stage that has come this far its own speed is known.
+constexpr double kShareToTrust = 0.2;
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 }  // namespace
 
+double seconds_left(const Expected& e) {
+  // Of the running stage: as expected so far, or by its own speed.
+  const double slow = e.past > 0 ? e.past_taken / e.past : 1;
+  const double by_plan = e.now * slow;
+  const double by_speed = e.now_share > 0 ? e.now_taken / e.now_share : by_plan;
+  const double trust = std::min(1.0, e.now_share / kShareToTrust);
+  const double whole = std::max(by_plan + trust * (by_speed - by_plan), e.now_taken);
+  const double past = e.past + e.now;
+  const double slow_now = past > 0 ? (e.past_taken + whole) / past : 1;
+  return whole - e.now_taken + slow_now * e.future;
+}
+
+void Progress::expect(std::vector<Stage> stages) {
+  const std::lock_guard lock(mutex_);
+  expected_ = std::move(stages);
+}
+
+void Progress::expect_at_end(std::vector<Stage> stages) {
+  const std::lock_guard lock(mutex_);
+  expected_at_end_ = std::move(stages);
+}
+
 void Progress::begin(std::string_view stage, uint64_t total) {
   finish();
   const std::lock_guard lock(mutex_);
+  awaited_ = {};
+  for (std::vector<Stage>* list : {&expected_, &expected_at_end_}) {
+    const auto found =
+        std::ranges::find_if(*list, [stage](const Stage& s) { return s.name == stage; });
+    if (found == list->end()) continue;
+    awaited_ = *found;
+    list->erase(list->begin(), found + 1);
+    // Nothing of the first list comes after the second has begun.
+    if (list == &expected_at_end_) expected_.clear();
+    break;
+  }
   stages_.push_back({std::string(stage), 0});
   stage_start_ = Clock::now();
-  done_ = 0;
+  done_ = 0, skipped_ = 0;
   total_ = total;
   running_ = true;
 }
@@ -21,6 +60,11 @@ void Progress::begin(std::string_view stage, uint64_t total) {
 void Progress::finish() {
   const std::lock_guard lock(mutex_);
   if (running_) stages_.back().seconds = seconds_since(stage_start_);
+  if (running_ && !awaited_.name.empty()) {
+    const double total = double(total_), skipped = double(skipped_);
+    expected_s_ += awaited_.seconds * (total > 0 ? 1 - skipped / total : 1);
+    taken_s_ += stages_.back().seconds;
+  }
   running_ = false;
 }
 
@@ -31,14 +75,58 @@ Progress::Snapshot Progress::snapshot() const {
   s.stage = stages_.back().name;
   s.done = done_;
   s.total = total_;
+  s.skipped = skipped_;
   s.stage_seconds = running_ ? seconds_since(stage_start_) : stages_.back().seconds;
   s.stage_index = int(stages_.size()) - 1;
+  if (awaited_.name.empty() && expected_.empty() && expected_at_end_.empty()) return s;
+  Expected e{expected_s_, taken_s_, awaited_.seconds, 0, 0, 0};
+  if (!awaited_.name.empty()) {
+    e.now_taken = s.stage_seconds;
+    // What was there already takes no time.
+    const double total = double(s.total - s.skipped), done = double(s.done - s.skipped);
+    if (s.total > 0) e.now *= total / double(s.total);
+    if (total > 0) e.now_share = std::min(1.0, done / total);
+  }
+  for (const std::vector<Stage>* list : {&expected_, &expected_at_end_})
+    for (const Stage& stage : *list) e.future += stage.seconds;
+  s.seconds_left = luxel::seconds_left(e);
   return s;
 }
 
 std::vector<Stage> Progress::stages() const {
   const std::lock_guard lock(mutex_);
   return stages_;
+}
+
+void Progress::note(std::string text) {
+  const std::lock_guard lock(mutex_);
+  notes_.push_back(std::move(text));
+}
+
+std::vector<std::string> Progress::notes(size_t first) const {
+  const std::lock_guard lock(mutex_);
+  if (first >= notes_.size()) return {};
+  return {notes_.begin() + std::ptrdiff_t(first), notes_.end()};
+}
+
+void Progress::set_way_on(std::string text) {
+  const std::lock_guard lock(mutex_);
+  way_on_ = std::move(text);
+}
+
+std::string Progress::way_on() const {
+  const std::lock_guard lock(mutex_);
+  return way_on_;
+}
+
+void Progress::set_clean_up(std::function<void()> clean_up) {
+  const std::lock_guard lock(mutex_);
+  clean_up_ = std::move(clean_up);
+}
+
+void Progress::clean_up() const {
+  const std::lock_guard lock(mutex_);
+  if (clean_up_) clean_up_();
 }
 
 }  // namespace base

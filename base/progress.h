@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -18,6 +19,17 @@ struct Stage {
   double seconds = 0;
 };
 
+/// How work goes against what was expected of it [s].
+struct Expected {
+  double past = 0, past_taken = 0;  ///< of stages that have ended, and what they took
+  double now = 0, now_taken = 0;    ///< of the running one
+  double now_share = 0;             ///< of it that is done; 0: not known
+  double future = 0;                ///< of stages to come
+};
+/// Seconds to the end, if what is to come is as much slower than expected as what has come. How
+/// fast the running stage goes counts for more the more of it is done.
+double seconds_left(const Expected& e);
+
 /// Work calls begin() per stage and advance() per tile or iteration, never per ray. A watcher may
 /// read at any time from another thread. request_cancel() may be called from a signal handler;
 /// work polls cancelled() at the same places where it advances, and at least every 0.2 s.
@@ -28,6 +40,16 @@ class Progress {
   /// Ends the last stage.
   void finish();
   void advance(uint64_t units) { done_.fetch_add(units, std::memory_order_relaxed); }
+  /// Units that were there already, which says nothing about how long the others take.
+  void skip(uint64_t units) {
+    skipped_.fetch_add(units, std::memory_order_relaxed);
+    advance(units);
+  }
+
+  /// What stages to come are expected to take, in order, instead of what was said before; and those
+  /// that come after all of them. A stage that comes unexpected takes no place in either.
+  void expect(std::vector<Stage> stages);
+  void expect_at_end(std::vector<Stage> stages);
 
   void request_cancel() { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
@@ -35,20 +57,40 @@ class Progress {
   struct Snapshot {
     std::string stage;
     uint64_t done = 0, total = 0;
+    uint64_t skipped = 0;  ///< of done
     double stage_seconds = 0;
     int stage_index = -1;
+    double seconds_left = -1;  ///< of all that is expected; < 0: nothing is
   };
   Snapshot snapshot() const;
   /// The stages so far with their wall-clock seconds.
   std::vector<Stage> stages() const;
 
+  /// A sentence that people should read now rather than when the work is done. Thread-safe.
+  void note(std::string text);
+  /// All from number `first` on.
+  std::vector<std::string> notes(size_t first) const;
+  /// What can be said to someone who stops the work; empty: that it is lost. Thread-safe.
+  void set_way_on(std::string text);
+  std::string way_on() const;
+  /// What must be done by whoever ends the process while the work still runs; empty: nothing.
+  /// Thread-safe.
+  void set_clean_up(std::function<void()> clean_up);
+  void clean_up() const;
+
  private:
   using Clock = std::chrono::steady_clock;
   mutable std::mutex mutex_;
   std::vector<Stage> stages_;
+  std::vector<Stage> expected_, expected_at_end_;  ///< those that have come are taken away
+  Stage awaited_;                                  ///< the running stage, as it was expected
+  double expected_s_ = 0, taken_s_ = 0;            ///< of expected stages that have ended
   Clock::time_point stage_start_;
   bool running_ = false;
-  std::atomic<uint64_t> done_{0}, total_{0};
+  std::atomic<uint64_t> done_{0}, total_{0}, skipped_{0};
+  std::vector<std::string> notes_;
+  std::string way_on_;
+  std::function<void()> clean_up_;
   std::atomic<bool> cancelled_{false};
 };
 

@@ -76,5 +76,65 @@ TEST(Progress, CancelReachesTheWorker) {
   EXPECT_TRUE(progress.cancelled()) << "a new stage does not forget it";
 }
 
+// 10 s were expected and took 20: all that comes takes twice as long.
+TEST(SecondsLeft, FollowFromWhatTheWorkHasTakenSoFar) {
+  EXPECT_DOUBLE_EQ(seconds_left({10, 10, 0, 0, 0, 30}), 30);
+  EXPECT_DOUBLE_EQ(seconds_left({10, 20, 0, 0, 0, 30}), 60);
+  // A stage of 10 s that has just begun, and 30 s after it.
+  EXPECT_DOUBLE_EQ(seconds_left({10, 20, 10, 0, 0, 30}), 80);
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 4, 0, 0}), 6) << "no share is known: as was expected";
+}
+
+// Half of a stage of 10 s took 20 s: it will take 40, and what follows is four times as slow.
+TEST(SecondsLeft, FollowFromTheSpeedOfTheRunningStage) {
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 20, 0.5, 5}), 20 + 4 * 5);
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 30, 0, 0}), 0) << "never below nothing";
+}
+
+TEST(Progress, ExpectedStagesAreTakenAwayAsTheyCome) {
+  Progress progress;
+  EXPECT_LT(progress.snapshot().seconds_left, 0) << "nothing is expected";
+  progress.expect_at_end({{"write", 100}});
+  progress.expect({{"trace", 1000}, {"bounce", 1000}});
+  progress.begin("read", 0);
+  EXPECT_DOUBLE_EQ(progress.snapshot().seconds_left, 2100);
+  progress.begin("trace", 10);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 2100, 1);
+  progress.expect({{"bounce", 500}});  // said anew
+  EXPECT_NEAR(progress.snapshot().seconds_left, 1600, 1);
+  // Stages of no time: what was expected of them is far too much, and is forgotten by degrees.
+  progress.begin("write", 10);
+  EXPECT_LT(progress.snapshot().seconds_left, 1) << "no bounces any more";
+}
+
+// Half of the stage was there already: what is left takes half as long, and goes at its own speed.
+TEST(Progress, WhatIsSkippedIsDoneButTakesNoTime) {
+  Progress progress;
+  progress.expect({{"trace", 1000}});
+  progress.begin("trace", 100);
+  progress.skip(50);
+  EXPECT_EQ(progress.snapshot().done, 50u);
+  EXPECT_EQ(progress.snapshot().skipped, 50u);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 500, 1);
+  progress.begin("next", 10);
+  EXPECT_EQ(progress.snapshot().skipped, 0u);
+}
+
+TEST(Progress, CarriesWhatIsToBeSaidAndDone) {
+  Progress progress;
+  EXPECT_EQ(progress.way_on(), "");
+  progress.clean_up();  // nothing to do
+  progress.note("one"), progress.note("two");
+  EXPECT_EQ(progress.notes(0), (std::vector<std::string>{"one", "two"}));
+  EXPECT_EQ(progress.notes(1), std::vector<std::string>{"two"});
+  EXPECT_TRUE(progress.notes(2).empty());
+  progress.set_way_on("there");
+  EXPECT_EQ(progress.way_on(), "there");
+  int cleaned = 0;
+  progress.set_clean_up([&] { ++cleaned; });
+  progress.clean_up();
+  EXPECT_EQ(cleaned, 1);
+}
+
 }  // namespace
 }  // namespace luxel

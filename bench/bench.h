@@ -48,6 +48,10 @@ Result<Table> measure_scenes(const std::filesystem::path& shared, int threads);
 /// What averaging direct light over texels costs, and what it takes away of their error.
 Result<Table> measure_supersample(const std::filesystem::path& shared, int threads);
 
+/// Seconds to 1 % against the path tracer, adaptive against uniform rays, plans, times left and
+/// time budgets against what came. Half an hour, most of it of paths.
+Result<Table> measure_budget(const std::filesystem::path& shared, int threads);
+
 /// What a lightmap for each of 20 lamps costs besides that of all.
 Result<Table> measure_layers(const std::filesystem::path& shared, int threads);
 
@@ -60,6 +64,6 @@ inline constexpr std::array kBenches{
     Bench{"atlas", measure_atlas},     Bench{"memory", measure_memory},
     Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise},
     Bench{"scenes", measure_scenes},   Bench{"supersample", measure_supersample},
-    Bench{"layers", measure_layers}};
+    Bench{"budget", measure_budget},   Bench{"layers", measure_layers}};
 
 }  // namespace luxel::bench

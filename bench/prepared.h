@@ -24,7 +24,9 @@ struct Prepared {
   transport::Lights lights;
   std::optional<trace::RayTracer> tracer;
 
-  pipeline::SolveInput input() const { return {scene, atlas, map, elements, lights, *tracer}; }
+  pipeline::SolveInput input() const {
+    return {{scene, atlas, map, elements, lights, *tracer}, nullptr};
+  }
 };
 
 /// Lays the scene out on a lightmap of `resolution` squared. A scene without any light gets a white

@@ -1,9 +1,7 @@
 #include "pipeline/bake.h"
 
 #include <nlohmann/json.hpp>
-#include <numeric>
 
-#include "atlas/pages.h"
 #include "base/file.h"
 #include "base/parallel.h"
 #include "display/draw.h"
@@ -11,14 +9,13 @@
 #include "export/baked_glb.h"
 #include "image/codec.h"
 #include "import/import.h"
+#include "pipeline/bake_report.h"
+#include "pipeline/checkpoint.h"
 #include "pipeline/denoise_light.h"
-#include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/shown_light.h"
-#include "pipeline/stage_seconds.h"
 #include "pipeline/texel_picture.h"
 #include "pipeline/two_sides.h"
-#include "pipeline/version.h"
 #include "pipeline/vertex_lit.h"
 #include "post/dilate.h"
 #include "post/refill.h"
@@ -97,6 +94,8 @@ Status repair(const BakeSettings& settings, const trace::RayTracer& tracer, Bake
         draw_texels(bake.atlas, bake.map,
                     {hidden, bake.repair.overlapping, bake.repair.moved, bake.repair.refilled,
                      post::seam_errors(bake.map, seams, bake.light.irradiance)});
+  if (settings.error_map)
+    bake.error_pictures = draw_errors(bake.atlas, bake.map, bake.light.errors);
   bake.lightmaps = post::lightmap_pages(bake.atlas, bake.map, bake.light.irradiance);
   for (image::Image& lightmap : bake.lightmaps) post::dilate(lightmap, kDilationRings);
   if (scene::scatters_light(bake.scene)) {
@@ -146,94 +145,18 @@ Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progre
   return {};
 }
 
-nlohmann::json about_atlas(const BakeSettings& settings, const Bake& bake) {
-  const std::vector<atlas::Page> pages = atlas::pages_of(bake.atlas);
-  nlohmann::json out = {{"resolution", 0},
-                        {"utilisation", bake.atlas_stats.utilisation},
-                        {"mean_stretch_l2", bake.atlas_stats.mean_stretch_l2},
-                        {"texels_per_metre", bake.atlas_stats.texels_per_metre}};
-  for (size_t p = 0; p < pages.size(); ++p) {
-    out["resolution"] = std::max(out["resolution"].get<int>(), pages[p].side);
-    out["pages"].push_back({{"file", export_::lightmap_name(p, pages.size()) + ".exr"},
-                            {"resolution", pages[p].side}});
-  }
-  if (settings.pages.mode != atlas::PageMode::per_instance) return out;
-  for (uint32_t i = 0; i < bake.scene.instances.size(); ++i) {
-    const uint32_t first = bake.atlas.first_triangle[i];
-    if (first < bake.atlas.first_triangle[i + 1])
-      out["pages"][atlas::page_of(bake.atlas, first)]["node"] = bake.scene.instances[i].name;
-  }
-  return out;
-}
+/// What light needs besides a bake's scene and texels.
+struct Ready {
+  trace::RayTracer tracer;
+  transport::Elements elements;
+  transport::Lights lights;
+};
 
-/// How sure the light is, and where it is least so.
-nlohmann::json about_error(const BakeSettings& settings, const Bake& bake) {
-  const std::vector<float>& errors = bake.light.errors;
-  const std::vector<uint16_t>& samples = bake.light.samples;
-  const size_t worst = size_t(std::max_element(errors.begin(), errors.end()) - errors.begin());
-  const atlas::Texel& texel = bake.map.texels[worst];
-  const Vec3 at = scene::world_position(bake.scene, texel.sample);
-  const auto [fewest, most] = std::minmax_element(samples.begin(), samples.end());
-  const double all = std::accumulate(samples.begin(), samples.end(), 0.0);
-  nlohmann::json out = {
-      {"relative_p95", bake.light.error_p95},
-      {"worst",
-       {{"relative", errors[worst]},
-        {"position", {at.x, at.y, at.z}},
-        {"node", bake.scene.instances[texel.sample.instance].name}}},
-      {"samples", {{"fewest", *fewest}, {"mean", all / double(samples.size())}, {"most", *most}}}};
-  if (settings.max_error > 0) out["asked"] = settings.max_error;
-  return out;
-}
-
-nlohmann::json report(const BakeSettings& settings, const Bake& bake, const Progress& progress) {
-  const nlohmann::json seconds = stage_seconds(progress);
-  const double tracing = seconds.value("direct light", 0.0) + seconds.value("supersample", 0.0) +
-                         seconds.value("trace rays", 0.0) + seconds.value("trace paths", 0.0) +
-                         seconds.value("hemicubes", 0.0) + seconds.value("directions", 0.0) +
-                         seconds.value("probes", 0.0);
-  return {{"version", kVersion},
-          {"settings", to_json(settings)},
-          {"counts",
-           {{"triangles", bake.atlas.corners.size()},
-            {"texels", bake.map.texels.size()},
-            {"rays", bake.light.rays},
-            {"charts", bake.atlas.chart_count},
-            {"seams", bake.seams},
-            {"sweeps", bake.light.sweeps},
-            {"elements", bake.light.elements},
-            {"supersampled_texels", bake.light.supersampled_texels},
-            {"suspicious_texels", bake.light.suspicious_texels}}},
-          {"atlas", about_atlas(settings, bake)},
-          {"leaks",
-           {{"cuts", bake.repair.cuts},
-            {"parted_pairs", bake.repair.parted},
-            {"overlapping_texels", bake.repair.overlapping.size()},
-            {"invalid_texels", std::count(bake.light.hidden.begin(), bake.light.hidden.end(), 1)},
-            {"moved_samples", bake.repair.moved.size()},
-            {"refilled_texels", bake.repair.refilled.size()}}},
-          {"seam_residual",
-           {bake.seam_residual_before.rms_over_mean, bake.seam_residual_after.rms_over_mean}},
-          {"seam_residual_p95",
-           {bake.seam_residual_before.relative_p95, bake.seam_residual_after.relative_p95}},
-          {"seam_residual_max",
-           {bake.seam_residual_before.relative_max, bake.seam_residual_after.relative_max}},
-          {"seconds", seconds},
-          {"mrays_per_s", tracing > 0 ? double(bake.light.rays) * 1e-6 / tracing : 0.0},
-          {"peak_memory_bytes", peak_resident_bytes()},
-          {"scratch_bytes", bake.light.scratch_bytes},
-          {"relative_error", bake.light.relative_error},
-          {"preview", to_json(bake.view)},
-          {"warnings", bake.warnings}};
-}
-
-}  // namespace
-
-Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
-  LUXEL_TRY_STATUS(check(settings));
-  const ThreadLimit threads(settings.threads);
-  Bake bake;
+/// Reads and lays out. The tracer looks at bake.scene.
+Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, Checkpoint* checkpoint,
+                         Progress& progress) {
   LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
+  if (checkpoint != nullptr) LUXEL_TRY_STATUS(checkpoint->open(bake.scene, progress));
   LUXEL_TRY(const std::vector<std::string> sides,
             split_sides(bake.scene, settings.uv, settings.resolution, progress));
   bake.warnings.insert(bake.warnings.end(), sides.begin(), sides.end());
@@ -241,17 +164,37 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(not_cancelled(progress));
   bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
   bake.atlas_stats = layout.stats, bake.repair = std::move(layout.repair);
-  const trace::RayTracer& tracer = layout.tracer;
-  const transport::Elements elements =
-      transport::elements_from_texels(bake.scene, bake.atlas, bake.map);
-  const transport::Lights lights = transport::collect_lights(bake.scene);
-  const SolveInput input{bake.scene, bake.atlas, bake.map, elements, lights, tracer};
+  return Ready{std::move(layout.tracer),
+               transport::elements_from_texels(bake.scene, bake.atlas, bake.map),
+               transport::collect_lights(bake.scene)};
+}
+
+}  // namespace
+
+Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, Checkpoint* checkpoint) {
+  LUXEL_TRY_STATUS(check(settings));
+  const ThreadLimit threads(settings.threads);
+  Bake bake;
+  LUXEL_TRY(const Ready ready, make_ready(settings, bake, checkpoint, progress));
+  const SolveInput input{
+      {bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
+      checkpoint != nullptr ? checkpoint->parts() : nullptr};
   LUXEL_TRY_STATUS(solve(settings, input, bake, progress));
-  LUXEL_TRY_STATUS(repair(settings, tracer, bake, progress));
-  LUXEL_TRY_STATUS(note_lights(bake.scene, lights, settings.layers, bake.layers));
+  LUXEL_TRY_STATUS(repair(settings, ready.tracer, bake, progress));
+  LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
-  LUXEL_TRY_STATUS(draw_preview(tracer, bake, progress));
+  LUXEL_TRY_STATUS(draw_preview(ready.tracer, bake, progress));
   return bake;
+}
+
+Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress) {
+  LUXEL_TRY_STATUS(check(settings));
+  const ThreadLimit threads(settings.threads);
+  Bake bake;
+  LUXEL_TRY(const Ready ready, make_ready(settings, bake, nullptr, progress));
+  return plan(
+      {{bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer}, nullptr},
+      settings, progress);
 }
 
 namespace {
@@ -296,6 +239,17 @@ Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
   return text_file(settings.output / "view.html", html);
 }
 
+/// kind.png, or kind-0.png and so on of several pages.
+std::vector<OutputFile> picture_files(std::span<const image::Image8> pages, std::string_view kind,
+                                      const std::filesystem::path& folder) {
+  std::vector<OutputFile> files;
+  for (size_t p = 0; p < pages.size(); ++p) {
+    const std::string number = pages.size() == 1 ? "" : fmt::format("-{}", p);
+    files.push_back({folder / fmt::format("{}{}.png", kind, number), image::encode_png(pages[p])});
+  }
+  return files;
+}
+
 /// Everything but bake.json, and what bake.json says about it.
 Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bake& bake,
                                          nlohmann::json& json) {
@@ -325,13 +279,23 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
     files.push_back(std::move(page));
   }
   files.push_back({settings.output / "baked.glb", std::move(glb)});
-  for (size_t p = 0; p < bake.texel_pictures.size(); ++p) {
-    const bool one = bake.texel_pictures.size() == 1;
-    files.push_back({settings.output / (one ? "texels.png" : fmt::format("texels-{}.png", p)),
-                     image::encode_png(bake.texel_pictures[p])});
-  }
+  append(picture_files(bake.texel_pictures, "texels", settings.output));
+  append(picture_files(bake.error_pictures, "error", settings.output));
   files.push_back({settings.output / "preview.png", image::encode_png(bake.preview)});
   return files;
+}
+
+}  // namespace
+
+namespace {
+
+/// A full disk has room when the checkpoint is gone, which is not needed any more then.
+Status write_results(std::span<const OutputFile> files, Checkpoint& checkpoint) {
+  const Status written = write_files_atomically(files);
+  if (written || written.error().code != ErrorCode::out_of_disk || !checkpoint.has_file())
+    return written;
+  checkpoint.remove();
+  return write_files_atomically(files);
 }
 
 }  // namespace
@@ -339,22 +303,26 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(check(settings));
   OutputFolder folder(settings.output);
-  LUXEL_TRY_STATUS(folder.try_out());
-  LUXEL_TRY(const Bake result, bake_scene(settings, progress));
+  LUXEL_TRY_STATUS(folder.hold(progress));
+  Checkpoint checkpoint(settings);
+  LUXEL_TRY(Bake result, bake_scene(settings, progress, &checkpoint));
+  if (checkpoint.parts() != nullptr && checkpoint.parts()->has_failed())
+    result.warnings.push_back(checkpoint.parts()->failure());
   progress.begin(kWriteStage, 0);
   nlohmann::json about_files = nlohmann::json::object();
   LUXEL_TRY(std::vector<OutputFile> files, files_of(settings, result, about_files));
   LUXEL_TRY_STATUS(not_cancelled(progress));
   progress.finish();
-  nlohmann::json json = report(settings, result, progress);
-  if (!result.light.errors.empty()) json["error"] = about_error(settings, result);
+  nlohmann::json json = bake_report(settings, result, progress);
+  json["checkpoint"] = checkpoint.about();
   json.update(about_files);
   for (const OutputFile& file : files) json["files"].push_back(file.path.filename().string());
   json["files"].push_back("bake.json");
   files.push_back(text_file(settings.output / "bake.json", json.dump(2) + "\n"));
   LUXEL_TRY_STATUS(folder.make());
-  LUXEL_TRY_STATUS(write_files_atomically(files));
+  LUXEL_TRY_STATUS(write_results(files, checkpoint));
   folder.keep();
+  checkpoint.remove();
   return json;
 }
 

@@ -13,6 +13,7 @@
 #include "image/codec.h"
 #include "pipeline/layers.h"
 #include "pipeline/light_directions.h"
+#include "pipeline/plan.h"
 #include "pipeline/settings.h"
 #include "pipeline/solvers.h"
 #include "pipeline/texel_layout.h"
@@ -20,6 +21,8 @@
 #include "scene/scene.h"
 
 namespace luxel::pipeline {
+
+class Checkpoint;
 
 /// The stage in which files appear. It is short and better not cut off.
 inline constexpr std::string_view kWriteStage = "write files";
@@ -41,18 +44,25 @@ struct Bake {
   size_t seams = 0;
   LeakRepair repair;
   std::vector<image::Image8> texel_pictures;  ///< per page, with --texels
+  std::vector<image::Image8> error_pictures;  ///< per page, with --error-map
   post::SeamResidual seam_residual_before, seam_residual_after;
   std::vector<std::string> warnings;
 };
 
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
-/// name in or above settings.output. Errors: whatever the stages say; settings out of range.
-Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress);
+/// name in or above settings.output, and the checkpoint, if there is one. Errors: whatever the
+/// stages say; settings out of range.
+Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
+                        Checkpoint* checkpoint = nullptr);
+
+/// `luxel bake --plan`: reads and lays out, and tries a few texels. Nothing is written.
+Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);
 
 /// The whole of `luxel bake`: bake_scene, then lightmap.exr (and its other formats), baked.glb,
-/// preview.png, texels.png, view.html when asked for, and bake.json in settings.output, all of them
-/// or none. Of several pages they are lightmap-0.exr and so on; with --layers there is a
-/// lightmap-LAYER.exr of each besides. Returns what bake.json holds.
+/// preview.png, texels.png, error.png, view.html when asked for, and bake.json in settings.output,
+/// all of them or none. Of several pages they are lightmap-0.exr and so on;
+/// with --layers there is a lightmap-LAYER.exr of each besides. Returns what bake.json holds. A
+/// bake that does not come to its end leaves its checkpoint, nothing else.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

@@ -107,15 +107,25 @@ Rgb irradiance_of_bent(const scene::Scene& scene, std::span<const Pages> directi
   return max(Rgb{}, e + read(0) * bend.x + read(1) * bend.y + read(2) * bend.z);
 }
 
-/// texels.png beside lightmap.exr, texels-1.png beside lightmap-1.exr.
-Result<image::Image> read_texel_picture(const std::filesystem::path& lightmap) {
+/// A picture of each texel's own, beside the lightmap.
+struct TexelKind {
+  const char* name;    ///< texels.png beside lightmap.exr, texels-1.png beside lightmap-1.exr
+  const char* option;  ///< of bake, that leaves it
+  bool BakeSettings::*wanted;
+  std::vector<image::Image8> Bake::*pictures;
+};
+constexpr TexelKind kTexels{"texels", "--texels", &BakeSettings::texels, &Bake::texel_pictures};
+constexpr TexelKind kErrors{"error", "--error-map", &BakeSettings::error_map,
+                            &Bake::error_pictures};
+
+Result<image::Image> read_texel_picture(const std::filesystem::path& lightmap, TexelKind kind) {
   constexpr std::string_view kLightmap = "lightmap";
   const std::string number = lightmap.stem().string().substr(kLightmap.size());
-  const std::filesystem::path file = lightmap.parent_path() / ("texels" + number + ".png");
+  const std::filesystem::path file = lightmap.parent_path() / (kind.name + number + ".png");
   const Result<std::vector<std::byte>> bytes = read_file(file);
   if (!bytes)
-    return fail(bytes.error().code, "{}; bake with --texels, or draw without --from",
-                bytes.error().message);
+    return fail(bytes.error().code, "{}; bake with {}, or draw without --from",
+                bytes.error().message, kind.option);
   return image::decode_display(*bytes, file.string());
 }
 
@@ -135,19 +145,20 @@ Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettin
   return display::draw(scene, tracer, subject.camera, irradiance, size_of(s), progress);
 }
 
-Result<Bake> quick_bake(const RenderSettings& s, bool texels, Progress& progress) {
+Result<Bake> quick_bake(const RenderSettings& s, const TexelKind* kind, Progress& progress) {
   BakeSettings settings;
   settings.scene = s.scene, settings.outside = s.outside;
   settings.output = s.output.parent_path().empty() ? "." : s.output.parent_path();
   settings.bounces = s.bounces.value_or(-1), settings.seed = s.seed.value_or(1);
-  settings.resolution = kQuickResolution, settings.texels = texels;
+  settings.resolution = kQuickResolution;
+  if (kind) settings.*(kind->wanted) = true;
   settings.samples = kQuickSamples, settings.direct_samples = kQuickDirectSamples;
   return bake_scene(settings, progress);
 }
 
 Result<image::Image> draw_quick_bake(const Subject& subject, const RenderSettings& s,
                                      Progress& progress) {
-  LUXEL_TRY(const Bake bake, quick_bake(s, false, progress));
+  LUXEL_TRY(const Bake bake, quick_bake(s, nullptr, progress));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
   const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
   const auto irradiance = [&](const scene::SurfacePoint& p) {
@@ -181,11 +192,12 @@ Result<image::Image> draw_texel_colors(const scene::Scene& scene,
 }
 
 Result<image::Image> draw_quick_texels(const Subject& subject, const RenderSettings& s,
-                                       Progress& progress) {
-  LUXEL_TRY(const Bake bake, quick_bake(s, true, progress));
-  LUXEL_CHECK(bake.texel_pictures.size() == 1);
+                                       TexelKind kind, Progress& progress) {
+  LUXEL_TRY(const Bake bake, quick_bake(s, &kind, progress));
+  const std::vector<image::Image8>& pictures = bake.*(kind.pictures);
+  LUXEL_CHECK(pictures.size() == 1);
   LUXEL_TRY(const image::Image picture,
-            image::decode_display(image::encode_png(bake.texel_pictures[0]), "texels.png"));
+            image::decode_display(image::encode_png(pictures[0]), kind.name));
   const auto color = [&](const scene::SurfacePoint& p) {
     const auto& c = bake.atlas.corners[bake.atlas.triangle_number(p.instance, p.triangle)];
     return texel_color(picture, interpolate(c[0], c[1], c[2], p.at));
@@ -193,13 +205,14 @@ Result<image::Image> draw_quick_texels(const Subject& subject, const RenderSetti
   return draw_texel_colors(bake.scene, color, subject, s, progress);
 }
 
-}  // namespace
-
-Result<image::Image> draw_texels_of_bake(const Subject& subject, const RenderSettings& s, Rendered&,
-                                         Progress& progress) {
-  if (s.from.empty()) return draw_quick_texels(subject, s, progress);
+Result<image::Image> draw_texel_pictures(const Subject& subject, const RenderSettings& s,
+                                         TexelKind kind, Progress& progress) {
+  if (s.from.empty()) return draw_quick_texels(subject, s, kind, progress);
   LUXEL_TRY(const scene::Scene scene, baked_scene(subject, s));
-  LUXEL_TRY(const Pages pages, read_pages(s.from, scene.materials.size(), read_texel_picture));
+  LUXEL_TRY(const Pages pages,
+            read_pages(s.from, scene.materials.size(), [&](const std::filesystem::path& lightmap) {
+              return read_texel_picture(lightmap, kind);
+            }));
   const auto color = [&](const scene::SurfacePoint& p) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[p.instance].mesh];
     if (mesh.uv1.empty()) return Rgb{};
@@ -209,6 +222,18 @@ Result<image::Image> draw_texels_of_bake(const Subject& subject, const RenderSet
     return texel_color(picture, {uv.x * float(picture.width), uv.y * float(picture.height)});
   };
   return draw_texel_colors(scene, color, subject, s, progress);
+}
+
+}  // namespace
+
+Result<image::Image> draw_texels_of_bake(const Subject& subject, const RenderSettings& s, Rendered&,
+                                         Progress& progress) {
+  return draw_texel_pictures(subject, s, kTexels, progress);
+}
+
+Result<image::Image> draw_errors_of_bake(const Subject& subject, const RenderSettings& s, Rendered&,
+                                         Progress& progress) {
+  return draw_texel_pictures(subject, s, kErrors, progress);
 }
 
 Result<image::Image> draw_lightmap(const Subject& subject, const RenderSettings& settings,

@@ -12,5 +12,8 @@ Result<image::Image> draw_lightmap(const Subject& subject, const RenderSettings&
 /// The same bake's texels.png on its surfaces; pipeline/texel_picture.h.
 Result<image::Image> draw_texels_of_bake(const Subject& subject, const RenderSettings& settings,
                                          Rendered& out, Progress& progress);
+/// And its error.png.
+Result<image::Image> draw_errors_of_bake(const Subject& subject, const RenderSettings& settings,
+                                         Rendered&, Progress& progress);
 
 }  // namespace luxel::pipeline

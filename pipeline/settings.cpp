@@ -20,6 +20,8 @@ namespace {
 constexpr int kMaxSamples = 65535, kMaxSupersample = 1024;
 constexpr int64_t kMaxElements = 1 << 26;
 constexpr double kSmallestError = 1e-4;
+constexpr double kLongestCheckpoint_s = 1e6;
+constexpr double kLongestBudget = 1e7;  ///< [s], some months
 
 /// A number that is the whole of `text`.
 std::optional<double> parse_number(std::string_view text) {
@@ -169,6 +171,7 @@ Status check_layers(const BakeSettings& s) {
   const char* other = s.denoise                            ? "--denoise"
                       : s.directional != Directional::none ? "--directional"
                       : s.probe_spacing_m > 0              ? "--probes"
+                      : s.resume                           ? "--resume"
                                                            : nullptr;
   if (other)
     return fail(ErrorCode::bad_setting,
@@ -194,12 +197,19 @@ Status check(const BakeSettings& s) {
                 "--max-error {} is outside {} to 1; give the part of their light to which texels "
                 "must be known, as 0.02",
                 s.max_error, kSmallestError);
+  if (!(s.time_budget_s >= 0 && s.time_budget_s <= kLongestBudget))
+    return fail(ErrorCode::bad_setting,
+                "--time-budget {} is not a time to bake in; give seconds, as 60", s.time_budget_s);
   if (!std::isfinite(s.texels_per_metre) || s.texels_per_metre < 0)
     return fail(ErrorCode::bad_setting, "--texels-per-metre {} is not a density; give a number > 0",
                 s.texels_per_metre);
   if (!std::isfinite(s.probe_spacing_m) || s.probe_spacing_m < 0)
     return fail(ErrorCode::bad_setting, "--probes {} is not a spacing; give metres > 0",
                 s.probe_spacing_m);
+  if (!(s.checkpoint_s >= 0 && s.checkpoint_s <= kLongestCheckpoint_s))
+    return fail(ErrorCode::bad_setting,
+                "--checkpoint {} is outside 0 to {} seconds; 0 keeps nothing", s.checkpoint_s,
+                kLongestCheckpoint_s);
   LUXEL_TRY_STATUS(check_pages(s));
   if (s.denoise && !find_solver(s.solver)->noise)
     return fail(ErrorCode::bad_setting,
@@ -233,6 +243,8 @@ nlohmann::json to_json(const BakeSettings& s) {
                       {"threads", s.threads}};
   json["formats"] = to_json(s.formats);
   json["html"] = s.html, json["texels"] = s.texels;
+  json["error_map"] = s.error_map, json["time_budget_s"] = s.time_budget_s;
+  json["checkpoint_s"] = s.checkpoint_s;
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
   json["directional"] = name_of(s.directional);
   json["probe_spacing_m"] = s.probe_spacing_m;

@@ -100,7 +100,10 @@ struct BakeSettings {
   /// gather: rays are added until 95 of 100 texels are known to this part of their light, `samples`
   /// is not looked at; 0: no more than `samples`.
   double max_error = 0;
-  bool samples_given = false;     ///< beside max_error, which wins: worth a warning
+  /// gather, > 0: as good as it gets in about so many seconds, `samples` is not looked at; with
+  /// max_error until either is reached. The result depends on how fast the machine is.
+  double time_budget_s = 0;
+  bool samples_given = false;     ///< beside max_error or time_budget_s, which win: worth a warning
   int supersample = 16;           ///< points per texel where direct light varies; 1: none
   int bounces = -1;               ///< < 0: all
   uint64_t max_memory_bytes = 0;  ///< 0: four fifths of what is free when the bake starts
@@ -118,8 +121,12 @@ struct BakeSettings {
   bool repair_leaks = true;    ///< cut charts at thin walls, move samples out of solids
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
   bool texels = false;         ///< texels.png too
+  bool error_map = false;      ///< error.png too
   LightmapFormats formats;     ///< files beside lightmap.exr
   bool html = false;           ///< view.html too
+  /// Finished parts are kept once the bake has taken so long [s], docs/checkpoints.md; 0: never.
+  double checkpoint_s = 30;
+  bool resume = false;  ///< go on with what another bake has kept
 };
 
 /// Checks every number against its range. Errors (bad_setting) name the option, the value, and what

@@ -5,133 +5,25 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "pipeline/gather_light.h"
 #include "pipeline/hierarchical.h"
-#include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
+#include "pipeline/solver_memory.h"
+#include "pipeline/texel_light.h"
 #include "reference/path_tracer.h"
-#include "solve/gather/gather.h"
 #include "solve/hemicube/hemicube.h"
 #include "solve/hierarchical/enclosed.h"
 #include "solve/hierarchical/represent.h"
 #include "solve/hierarchical/surface.h"
 #include "solve/matrix/matrix.h"
+#include "transport/backs_seen.h"
 #include "transport/supersample.h"
 
 namespace luxel::pipeline {
 namespace {
 
-/// What gather and the steps after it need besides the stored hits, per element and per texel of
-/// the square: direct light, two maps of irradiance, variances, two radiosity maps; later, when the
-/// hits are gone, the lightmap and its encoded files, which take less. Paths need about the same:
-/// three results of 12 bytes per element, and less per texel.
-constexpr uint64_t kBytesPerElement = 72, kBytesPerSquareTexel = 20;
 /// A point of a texel's footprint, held twice while the list is made.
 constexpr uint64_t kBytesPerFootprintPoint = 120;
-/// What denoising needs besides: places, planes, what neighbours show, the level of noise.
-constexpr uint64_t kDenoiseBytesPerElement = 140;
-/// E for five normals and what becomes of it, with --directional.
-constexpr uint64_t kDirectionBytesPerElement = 110;
-/// With --layers each takes, per element: direct light, that of rays, the solution and its copy,
-/// later the lightmap and its files; and a sweep's map, which is five layers wide, per texel.
-constexpr uint64_t kLayerBytesPerElement = 48, kLayerMapBytesPerSquareTexel = 64;
-/// A bake with fewer stored hits in memory than this would only wait for the disk.
-constexpr uint64_t kMinHitBytes = 16u << 20;
-/// What the process holds differs from run to run: by this much less than the size that is advised.
-constexpr uint64_t kResidentNoiseMb = 8;
-
-std::string size_text(uint64_t bytes) {
-  return bytes < 1u << 20 ? fmt::format("{} bytes", bytes) : fmt::format("{}M", bytes >> 20);
-}
-
-/// How many bytes a solver may use beyond what it needs at least. Fails when that is less than
-/// `spare`.
-Result<uint64_t> memory_to_spare(const SolveInput& in, const BakeSettings& settings, uint64_t spare,
-                                 size_t layers = 0) {
-  const uint64_t side = uint64_t(in.map.resolution);
-  // What comes after solving: not all of it at once, but most.
-  uint64_t per_element = kBytesPerElement;
-  if (settings.denoise) per_element += kDenoiseBytesPerElement;
-  if (settings.directional != Directional::none) per_element += kDirectionBytesPerElement;
-  per_element += layers * kLayerBytesPerElement;
-  const uint64_t per_texel = kBytesPerSquareTexel + (layers > 0 ? kLayerMapBytesPerSquareTexel : 0);
-  const uint64_t needed =
-      resident_bytes() + per_element * in.elements.size() + per_texel * side * side;
-  const uint64_t smallest_mb = ((needed + spare) >> 20) + 1 + kResidentNoiseMb;
-  if (settings.max_memory_bytes == 0) {
-    const uint64_t free = available_bytes() / 5 * 4;
-    if (resident_bytes() + free >= needed + spare) return resident_bytes() + free - needed;
-    return fail(ErrorCode::out_of_memory,
-                "{} x {} texels need {}M of memory, more than is free; lower --resolution", side,
-                side, smallest_mb);
-  }
-  if (settings.max_memory_bytes < needed + spare)
-    return fail(
-        ErrorCode::out_of_memory,
-        "--max-memory {} is too small for this scene at {} x {}: the smallest that works is {}M",
-        size_text(settings.max_memory_bytes), side, side, smallest_mb);
-  return settings.max_memory_bytes - needed;
-}
-
-/// What gather and the path tracer call by the same names.
-template <class Solved>
-TexelLight texel_light(Solved&& solved) {
-  TexelLight out;
-  out.suspicious_texels = uint64_t(std::count(solved.enclosed.begin(), solved.enclosed.end(), 1));
-  out.hidden = std::move(solved.enclosed);
-  out.irradiance = std::move(solved.irradiance);
-  out.rays = solved.rays;
-  out.relative_error = solved.relative_error;
-  return out;
-}
-
-/// Of the first round, when an error is asked for.
-constexpr int kFirstSamples = 32;
-
-void warn_about_error(const BakeSettings& settings, const gather::GatherParams& params,
-                      const gather::Gather& result, std::vector<std::string>& warnings) {
-  if (settings.samples_given)
-    warnings.push_back(
-        fmt::format("--max-error {} wins: rays are added until it is reached, and --samples {} is "
-                    "not looked at",
-                    settings.max_error, settings.samples));
-  if (double(result.relative_error_p95) > settings.max_error)
-    warnings.push_back(
-        fmt::format("--max-error {} was not reached: 95 of 100 texels are known to {:.2g} of their "
-                    "light, and none gets more than {} rays",
-                    settings.max_error, result.relative_error_p95, params.max_samples));
-}
-
-Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
-                                Progress& progress) {
-  transport::LightLayers layers;
-  if (settings.layers != transport::LayerMode::none) {
-    LUXEL_TRY(layers, transport::light_layers(in.scene, in.lights, settings.layers));
-  }
-  LUXEL_TRY(const uint64_t hit_memory, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
-  gather::GatherParams params;
-  params.samples = settings.max_error > 0 ? kFirstSamples : settings.samples;
-  params.max_error = float(settings.max_error);
-  params.direct_samples = settings.direct_samples;
-  params.supersample = settings.supersample;
-  params.bounces = settings.bounces;
-  params.seed = settings.seed;
-  params.layers = layers.size() > 0 ? &layers : nullptr;
-  params.hit_memory_bytes = hit_memory;
-  params.scratch_folder = nearest_folder(settings.output);
-  LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
-                                                  in.lights, in.tracer, params, progress));
-  TexelLight out = texel_light(std::move(result));
-  if (settings.max_error > 0) warn_about_error(settings, params, result, out.warnings);
-  out.errors = std::move(result.errors), out.error_p95 = result.relative_error_p95;
-  out.samples = std::move(result.samples);
-  out.layers = std::move(layers.layers), out.layer_irradiance = std::move(result.layers);
-  out.direct = std::move(result.direct);
-  out.direct_variance = std::move(result.direct_variance);
-  out.variance = std::move(result.indirect_variance);
-  out.sweeps = result.sweeps, out.supersampled_texels = result.supersampled;
-  out.scratch_bytes = result.hit_bytes_in_file;
-  return out;
-}
 
 Result<TexelLight> solve_reference(const SolveInput& in, const BakeSettings& settings,
                                    Progress& progress) {
@@ -150,6 +42,10 @@ Result<TexelLight> solve_reference(const SolveInput& in, const BakeSettings& set
   }
   LUXEL_TRY(reference::TexelPaths result,
             reference::irradiance_by_paths(in.scene, receivers, in.tracer, params, progress));
+  result.enclosed = transport::find_enclosed(in.scene, in.tracer, in.elements, [&](size_t i) {
+    return transport::BacksSeen{settings.samples, int(result.met_back[i]),
+                                int(result.met_double_sided_back[i])};
+  });
   TexelLight out = texel_light(std::move(result));
   for (const float error : result.luminance_error) out.variance.push_back(error * error);
   return out;
@@ -302,9 +198,11 @@ constexpr std::array kSolvers{
            .direct_samples = true,
            .supersample = true,
            .max_error = true,
+           .errors = true,
            .noise = true,
            .layers = true,
-           .scatters = true},
+           .scatters = true,
+           .parts = true},
     Solver{.name = "hemicube",
            .solve = solve_hemicube,
            .direct_samples = true,

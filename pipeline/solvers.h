@@ -21,7 +21,9 @@
 namespace luxel::pipeline {
 
 /// What every solver gets.
-using SolveInput = transport::TexelScene;
+struct SolveInput : transport::TexelScene {
+  PartStore* parts = nullptr;  ///< where its finished parts are kept and found; null: nowhere
+};
 
 /// What every solver gives.
 struct TexelLight {
@@ -62,9 +64,11 @@ struct Solver {
   bool samples = false, direct_samples = false, supersample = false, hemicube = false,
        matrix = false, hierarchical = false;
   bool max_error = false;  ///< can be asked for an error, of its mesh or of texels
+  bool errors = false;     ///< knows how sure each texel is: --error-map, --time-budget, --plan
   bool noise = false;      ///< knows the variance of its light: --denoise
   bool layers = false;     ///< can tell the light of each lamp apart: --layers
   bool scatters = false;   ///< follows light that surfaces scatter through
+  bool parts = false;      ///< keeps its finished parts: --checkpoint, --resume
 };
 
 /// What a bake's settings ask of the hemicube solver. Shadow rays are four times direct_samples.

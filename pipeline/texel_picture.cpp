@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "atlas/pages.h"
+#include "base/check.h"
+#include "image/false_color.h"
 
 namespace luxel::pipeline {
 namespace {
 
-using Color = std::array<uint8_t, 3>;
+using Color = image::Color8;
 
 constexpr Color kBlack{0, 0, 0}, kMagenta{220, 30, 200}, kGreen{40, 190, 70}, kYellow{240, 200, 40},
     kRed{230, 30, 30};
@@ -36,6 +39,25 @@ Color mix(Color a, Color b, float s) {
   return out;
 }
 
+/// A picture of each page, white where no texel is.
+std::vector<image::Image8> pages_in(std::span<const Color> color, const atlas::Atlas& atlas,
+                                    const atlas::TexelMap& map) {
+  const std::vector<atlas::Page> pages = atlas::pages_of(atlas);
+  std::vector<image::Image8> pictures;
+  for (const atlas::Page& page : pages) {
+    const auto side = size_t(page.side);
+    pictures.push_back({page.side, page.side, 3, std::vector<uint8_t>(3 * side * side, 255)});
+  }
+  for (size_t i = 0; i < color.size(); ++i) {
+    const atlas::Texel& t = map.texels[i];
+    const uint32_t p = atlas::page_of(atlas, t.triangle_number);
+    const size_t x = size_t(int(t.x) - pages[p].x), y = size_t(int(t.y) - pages[p].y);
+    const size_t at = y * size_t(pages[p].side) + x;
+    std::copy(color[i].begin(), color[i].end(), pictures[p].data.begin() + long(3 * at));
+  }
+  return pictures;
+}
+
 }  // namespace
 
 std::vector<image::Image8> draw_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
@@ -53,20 +75,18 @@ std::vector<image::Image8> draw_texels(const atlas::Atlas& atlas, const atlas::T
     if (facts.hidden[i]) color[i] = kBlack;
   for (const uint32_t i : facts.refilled) color[i] = kYellow;
   for (const uint32_t i : facts.overlapping) color[i] = kMagenta;
-  const std::vector<atlas::Page> pages = atlas::pages_of(atlas);
-  std::vector<image::Image8> pictures;
-  for (const atlas::Page& page : pages) {
-    const auto side = size_t(page.side);
-    pictures.push_back({page.side, page.side, 3, std::vector<uint8_t>(3 * side * side, 255)});
-  }
+  return pages_in(color, atlas, map);
+}
+
+std::vector<image::Image8> draw_errors(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                       std::span<const float> errors) {
+  LUXEL_CHECK(errors.size() == map.texels.size());
+  std::vector<Color> color(errors.size());
   for (size_t i = 0; i < color.size(); ++i) {
-    const atlas::Texel& t = map.texels[i];
-    const uint32_t p = atlas::page_of(atlas, t.triangle_number);
-    const size_t x = size_t(int(t.x) - pages[p].x), y = size_t(int(t.y) - pages[p].y);
-    const size_t at = y * size_t(pages[p].side) + x;
-    std::copy(color[i].begin(), color[i].end(), pictures[p].data.begin() + long(3 * at));
+    const float over = std::max(errors[i], kLowestError) / kLowestError;
+    color[i] = image::false_color(double(std::log(over) / std::log(kHighestError / kLowestError)));
   }
-  return pictures;
+  return pages_in(color, atlas, map);
 }
 
 }  // namespace luxel::pipeline

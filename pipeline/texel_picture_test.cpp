@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "image/false_color.h"
+
 namespace luxel::pipeline {
 namespace {
 
@@ -57,6 +59,29 @@ TEST(TexelPicture, ShowsWhatIsKnown) {
   EXPECT_TRUE(green[1] > 2 * green[0] && green[1] > 2 * green[2]);
   EXPECT_TRUE(magenta[0] > 2 * magenta[1] && magenta[2] > 2 * magenta[1]);
   EXPECT_TRUE(red[0] > 4 * red[1] && red[0] > 4 * red[2]);
+}
+
+// Lightness grows with the logarithm of the error, and no more beyond the ends.
+TEST(ErrorPicture, IsBrighterWhereLessIsKnown) {
+  const Sheet sheet;
+  std::vector<float> errors(sheet.map.texels.size(), 0.0f);
+  errors[sheet.at(1, 1)] = 0.003f, errors[sheet.at(2, 1)] = 0.01f, errors[sheet.at(3, 1)] = 0.1f;
+  errors[sheet.at(4, 1)] = 5;
+  const std::vector<image::Image8> pages = draw_errors(sheet.atlas, sheet.map, errors);
+  ASSERT_EQ(pages.size(), 1u);
+  const auto color = [&](int x, int y) {
+    const uint8_t* p = &pages[0].data[size_t(3 * (y * 24 + x))];
+    return Color{p[0], p[1], p[2]};
+  };
+  const auto false_color = [](double t) {
+    const image::Color8 c = image::false_color(t);
+    return Color{c[0], c[1], c[2]};
+  };
+  EXPECT_EQ(color(0, 0), false_color(0));
+  EXPECT_EQ(color(2, 1), false_color(0.5)) << "0.01 lies in the middle of 0.001 and 0.1";
+  EXPECT_EQ(color(3, 1), false_color(1));
+  EXPECT_EQ(color(4, 1), false_color(1));
+  EXPECT_EQ(color(12, 5), (Color{255, 255, 255})) << "no texel";
 }
 
 }  // namespace

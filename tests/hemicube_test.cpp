@@ -170,11 +170,12 @@ TEST(HemicubeSettings, OutOfRangeAreRefused) {
 
 TEST(HemicubeSettings, OfAnotherSolverAreRefused) {
   for (const char* option : {"--elements vertex", "--hemicube 64", "--element-size 0.1",
-                             "--max-elements 10000", "--max-error 0.1", "--smooth"}) {
+                             "--max-elements 10000", "--smooth"}) {
     const std::string name = std::string(option).substr(0, std::string(option).find(' '));
     expect_refused(option, 1, "--solver gather does not use " + name);
     expect_refused(std::string("--solver reference ") + option, 1, "(it is for hemicube)");
   }
+  expect_refused("--solver reference --max-error 0.1", 1, "(it is for gather, hemicube)");
   expect_refused("--vertex-colors", 1, "--solver hemicube");
   expect_refused("--solver reference --direct-samples 8", 1, "--direct-samples");
 }

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "base/random.h"
 #include "base/warp.h"
 
@@ -26,6 +27,26 @@ BacksSeen backs_seen(const scene::Scene& scene, const trace::RayTracer& tracer, 
     ++(scene::reflects_from_behind(material) ? seen.double_sided : seen.one_sided);
   }
   return seen;
+}
+
+std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                   const Elements& elements,
+                                   const std::function<BacksSeen(size_t)>& seen) {
+  constexpr int kRays = 64;
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  std::vector<uint8_t> out(elements.size());
+  parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const BacksSeen own = seen(i);
+      const int backs = own.one_sided + own.double_sided;
+      if (4 * own.one_sided < own.rays && 8 * backs < 7 * own.rays) continue;
+      const Vec3 from =
+          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
+      out[i] = 4 * own.one_sided > 3 * own.rays ||
+               is_enclosed(backs_seen(scene, tracer, from, elements.normal[i], kRays));
+    }
+  });
+  return out;
 }
 
 }  // namespace luxel::transport

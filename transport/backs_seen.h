@@ -1,7 +1,12 @@
 // Whether a place lies inside a solid: what it sees are the backs of surfaces.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <vector>
+
 #include "trace/ray_tracer.h"
+#include "transport/elements.h"
 
 namespace luxel::transport {
 
@@ -23,5 +28,12 @@ inline bool is_hidden(const BacksSeen& b) { return 2 * b.one_sided > b.rays; }
 inline bool is_enclosed(const BacksSeen& b) {
   return is_hidden(b) || 100 * (b.one_sided + b.double_sided) >= 98 * b.rays;
 }
+
+/// Per element, 1 where it lies inside a solid. `seen(i)` is what element i's own rays met; where
+/// they are not sure, a fixed set decides, so that other samples or another seed do not turn a
+/// texel on and off, and solvers agree.
+std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                   const Elements& elements,
+                                   const std::function<BacksSeen(size_t)>& seen);
 
 }  // namespace luxel::transport

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <numeric>
+#include <optional>
 
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "transport/direct_shots.h"
+#include "transport/kept_light.h"
 
 namespace luxel::transport {
 namespace {
@@ -142,6 +144,39 @@ LightAt direct_light_at(const scene::Scene& scene, const Lights& lights,
   return out;
 }
 
+namespace {
+
+constexpr size_t kPartElements = 256;
+
+KeptStage kept_stage(const DirectParams& params, std::span<const uint32_t> which) {
+  if (params.parts == nullptr) return {};
+  Digest digest;
+  digest.add("direct light"), add_to(digest, params), digest.add(which);
+  return {params.parts, digest.value()};
+}
+
+/// Returns the number of rays.
+std::optional<uint64_t> find_part(const KeptStage& kept, size_t part,
+                                  std::span<const uint32_t> which, DirectLight& direct) {
+  const auto bytes = kept.find(part);
+  if (!bytes) return std::nullopt;
+  ByteReader in{*bytes};
+  const uint64_t rays = in.get_value<uint64_t>();
+  if (!get_light(in, which, direct) || !in.ended_well()) return std::nullopt;
+  return rays;
+}
+
+void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> which,
+               const DirectLight& direct, uint64_t rays) {
+  if (!kept.wants()) return;
+  ByteWriter out;
+  out.put_value(rays);
+  put_light(direct, which, out);
+  kept.keep(part, out.bytes);
+}
+
+}  // namespace
+
 Status direct_light_again(const scene::Scene& scene, const Elements& elements, const Lights& lights,
                           const trace::RayTracer& tracer, std::span<const uint32_t> which,
                           const DirectParams& params, DirectLight& direct, Progress& progress) {
@@ -149,10 +184,16 @@ Status direct_light_again(const scene::Scene& scene, const Elements& elements, c
   LUXEL_CHECK(direct.by_layer.size() ==
               (params.layers ? params.layers->size() : 0) * elements.size());
   const float diagonal_m = scene::world_bounds(scene).diagonal();
+  const KeptStage kept = kept_stage(params, which);
   std::atomic<uint64_t> rays{0};
   progress.begin("direct light", which.size());
-  parallel_for(which.size(), 256, [&](size_t begin, size_t end) {
+  parallel_for(which.size(), kPartElements, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
+    const std::span<const uint32_t> these = which.subspan(begin, end - begin);
+    if (const auto found = find_part(kept, begin / kPartElements, these, direct)) {
+      rays += *found;
+      return progress.skip(end - begin);
+    }
     Shots shots;
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
@@ -172,6 +213,7 @@ Status direct_light_again(const scene::Scene& scene, const Elements& elements, c
       traced += shots.rays.size();
     }
     rays += traced;
+    keep_part(kept, begin / kPartElements, these, direct, traced);
     progress.advance(end - begin);
   });
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");

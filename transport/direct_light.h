@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/part_store.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "scene/scene.h"
@@ -25,6 +26,7 @@ struct DirectParams {
   /// the peaks of an environment count in any case.
   int sky_samples = 0;
   const LightLayers* layers = nullptr;  ///< null: light is not told apart
+  PartStore* parts = nullptr;           ///< where finished parts are kept and found; null: nowhere
 };
 
 struct DirectLight {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/check.h"
+#include "base/part_store.h"
 #include "transport/scratch_file.h"
 
 namespace luxel::transport {
@@ -19,7 +20,15 @@ struct RowTile {
   std::vector<Entry> entries;  ///< element after element
 };
 
-/// Keeps tiles in memory up to a limit and the rest in a temporary file.
+/// Where the bytes of a tile's entries stand already: in a part, from an offset on.
+struct KeptEntries {
+  const PartStore* store = nullptr;  ///< null: nowhere
+  RecordKey part;
+  uint64_t offset = 0;
+};
+
+/// Keeps tiles in memory up to a limit and the rest in a temporary file, or where they are kept
+/// anyway.
 template <class Entry>
 class RowStore {
   static_assert(std::is_trivially_copyable_v<Entry>);
@@ -39,6 +48,7 @@ class RowStore {
             ? tiles
             : size_t(std::min<uint64_t>(tiles, memory_limit_bytes / store.slot_bytes_));
     store.tiles_.resize(tiles);
+    store.kept_.resize(tiles - store.tiles_in_memory_);
     if (store.tiles_in_memory_ < tiles) {
       auto file = ScratchFile::create(scratch_folder);
       if (!file) return tl::unexpected(file.error());
@@ -49,14 +59,15 @@ class RowStore {
 
   size_t tile_count() const { return tiles_.size(); }
 
-  /// Thread-safe for different tiles. Errors: the disk is full.
-  Status put(size_t tile, RowTile<Entry> rows) {
+  /// Thread-safe for different tiles. The store of `kept` outlives this. Errors: the disk is full.
+  Status put(size_t tile, RowTile<Entry> rows, const KeptEntries& kept = {}) {
     LUXEL_CHECK(tile < tile_count());
     const size_t bytes = rows.entries.size() * sizeof(Entry);
     if (tile >= tiles_in_memory_) {
       LUXEL_CHECK(bytes <= slot_bytes_);
-      const Status written = file_->write(offset(tile), rows.entries.data(), bytes);
-      if (!written) return written;
+      kept_[tile - tiles_in_memory_] = kept;
+      if (kept.store == nullptr)
+        LUXEL_TRY_STATUS(file_->write(offset(tile), rows.entries.data(), bytes));
       rows.entries = {};
     }
     rows.entries.shrink_to_fit();
@@ -71,9 +82,13 @@ class RowStore {
     if (tile < tiles_in_memory_) return &tiles_[tile];
     buffer.end = tiles_[tile].end;
     buffer.entries.resize(buffer.end.empty() ? 0 : buffer.end.back());
-    const Status read =
-        file_->read(offset(tile), buffer.entries.data(), buffer.entries.size() * sizeof(Entry));
-    if (!read) return tl::unexpected(read.error());
+    const KeptEntries& kept = kept_[tile - tiles_in_memory_];
+    const std::span<std::byte> bytes = std::as_writable_bytes(std::span(buffer.entries));
+    if (kept.store == nullptr)
+      LUXEL_TRY_STATUS(file_->read(offset(tile), bytes.data(), bytes.size()));
+    else if (!kept.store->read(kept.part, kept.offset, bytes))
+      return fail(ErrorCode::io, "cannot read {} back: the disk has failed",
+                  kept.store->file().string());
     return &buffer;
   }
 
@@ -89,6 +104,7 @@ class RowStore {
   uint64_t offset(size_t tile) const { return (tile - tiles_in_memory_) * slot_bytes_; }
 
   std::vector<RowTile<Entry>> tiles_;  ///< without entries where those lie in the file
+  std::vector<KeptEntries> kept_;      ///< per tile that is not in memory
   size_t tiles_in_memory_ = 0;
   uint64_t slot_bytes_ = 0;
   std::optional<ScratchFile> file_;

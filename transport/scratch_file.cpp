@@ -8,22 +8,9 @@
 #include <cstring>
 #include <utility>
 
+#include "base/transfer.h"
+
 namespace luxel::transport {
-namespace {
-
-/// Reads or writes everything at an offset; returns 0 or an errno.
-template <class Call, class Byte>
-int transfer_all(Call call, int file, Byte* bytes, size_t count, off_t offset) {
-  while (count > 0) {
-    const ssize_t n = call(file, bytes, count, offset);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return n < 0 ? errno : EIO;
-    bytes += n, count -= size_t(n), offset += n;
-  }
-  return 0;
-}
-
-}  // namespace
 
 ScratchFile::ScratchFile(std::filesystem::path folder, int file)
     : folder_(std::move(folder)), file_(file) {}

@@ -43,7 +43,8 @@ Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atl
                               const trace::RayTracer& tracer, int points, uint64_t seed,
                               Progress& progress);
 
-/// Replaces the direct light of uneven texels by its mean over `points` points of their footprint,
+/// Replaces the direct light of uneven texels, and of those at a chart's border where it differs
+/// between points of the texel, by its mean over `points` points of their footprint,
 /// and its variance by an estimate for that mean; all others, and hidden ones, keep their bits.
 /// `elements` are those of the map. Errors: cancelled.
 Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
@@ -51,6 +52,13 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
                                  const Lights& lights, const trace::RayTracer& tracer,
                                  const SupersampleParams& params, DirectLight& direct,
                                  Progress& progress);
+
+/// The same, but looks only at texels `among`, in the order of the map.
+Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const atlas::TexelMap& map, const Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
+                                 std::span<const uint32_t> among, const SupersampleParams& params,
+                                 DirectLight& direct, Progress& progress);
 
 /// The same for the texels `which`, uneven or not.
 Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atlas& atlas,

@@ -160,6 +160,25 @@ TEST(Supersample, TexelsAtAShadowsEdgeGetTheShareOfTheirAreaThatIsLit) {
   }
 }
 
+// The edge x = 15.5 lies between the floor's border, 15.7, and the samples of the last
+// texels, 15.35: no sample is in the shade. As above, each texel is off by a few points of 64 at
+// most.
+TEST(Supersample, AShadowAlongAChartsBorderIsSeenToo) {
+  scene::Scene scene = sunlit_floor();
+  add_quad(scene, {15.5f, 1, -20}, {60, 1, -20}, {60, 1, 40}, {15.5f, 1, 40});
+  const int points = 64;
+  const Lit lit = light(scene, points);
+  const double tolerance = 4 * std::sqrt(2 * std::sqrt(double(points)) / 6) / points;
+  size_t at_border = 0;
+  for (size_t i = 0; i < lit.map.texels.size(); ++i) {
+    EXPECT_EQ(lit.before.irradiance[i].x, 1.0f);
+    const bool border = lit.map.texels[i].x == kSide - 1;
+    EXPECT_NEAR(lit.after.irradiance[i].x, border ? 5.0 / 7 : 1.0, border ? tolerance : 0) << i;
+    at_border += border;
+  }
+  EXPECT_EQ(at_border, size_t(kSide));
+}
+
 // What the estimate is for: on average over texels it is the squared error, here within a factor of
 // three, for it takes neighbouring points for the two halves of a stratum.
 TEST(Supersample, TheVarianceIsThatOfTheMean) {

@@ -14,7 +14,7 @@ struct BakeOptions {
   OutsideText outside;
   std::string uv = "auto", bounces = "inf", max_memory, formats = "exr", directional, pages = "1",
               layers;
-  bool resolution_given = false;
+  bool resolution_given = false, plan = false;
   HemicubeOptions hemicube;
   pipeline::BakeSettings settings;
   std::set<std::string> given;  ///< of kSolverOptions
@@ -29,8 +29,13 @@ constexpr std::array kSolverOptions{
     SolverOption{"--samples", &pipeline::Solver::samples},
     SolverOption{"--direct-samples", &pipeline::Solver::direct_samples},
     SolverOption{"--supersample", &pipeline::Solver::supersample},
+    SolverOption{"--time-budget", &pipeline::Solver::errors},
+    SolverOption{"--error-map", &pipeline::Solver::errors},
+    SolverOption{"--plan", &pipeline::Solver::errors},
     SolverOption{"--denoise", &pipeline::Solver::noise},
     SolverOption{"--layers", &pipeline::Solver::layers},
+    SolverOption{"--checkpoint", &pipeline::Solver::parts},
+    SolverOption{"--resume", &pipeline::Solver::parts},
     SolverOption{"--elements", &pipeline::Solver::hemicube},
     SolverOption{"--hemicube", &pipeline::Solver::hemicube},
     SolverOption{"--element-size", &pipeline::Solver::hemicube},
@@ -92,8 +97,11 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
           ErrorCode::bad_setting,
           "--max-error 0 would never end; give the part of their light to which texels must "
           "be known, as 0.02");
-    s.samples_given = options.given.contains("--samples");
   }
+  if (options.given.contains("--time-budget") && s.time_budget_s <= 0)
+    return fail(ErrorCode::bad_setting,
+                "--time-budget {} is not a time to bake in; give seconds, as 60", s.time_budget_s);
+  s.samples_given = options.given.contains("--samples");
   s.uv = uv_mode(options.uv);
   LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
   if (!options.max_memory.empty()) {
@@ -128,9 +136,34 @@ void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json&
     std::fprintf(stderr, "wrote %s\n", (settings.output / name.get<std::string>()).c_str());
 }
 
+void print_plan(const nlohmann::json& json) {
+  std::fprintf(
+      stderr, "%s\n",
+      fmt::format("plan: about {}, {:.0f}M of memory{}, {:.0f} million rays, for {} texels "
+                  "on {} x {}; nothing was baked",
+                  clock_text(json["seconds"]["total"].get<double>()),
+                  json["memory_bytes"].get<double>() / double(1u << 20),
+                  json["scratch_bytes"].get<double>() > 0
+                      ? fmt::format(" and {:.0f}M of temporary files",
+                                    json["scratch_bytes"].get<double>() / double(1u << 20))
+                      : std::string(),
+                  json["rays"].get<double>() * 1e-6, json["texels"].get<uint64_t>(),
+                  json["resolution"].get<int>(), json["resolution"].get<int>())
+          .c_str());
+}
+
+int run_plan(const BakeOptions& options, const pipeline::BakeSettings& settings) {
+  const auto work = [&](Progress& progress) -> Result<nlohmann::json> {
+    LUXEL_TRY(const pipeline::Plan plan, pipeline::plan_bake(settings, progress));
+    return to_json(plan);
+  };
+  return run_and_print(options.common, work, print_plan);
+}
+
 int run_bake(const BakeOptions& options) {
   const auto settings = settings_from(options);
   if (!settings) return report(settings.error());
+  if (options.plan) return run_plan(options, *settings);
   return run_and_print(
       options.common, [&](Progress& progress) { return pipeline::bake(*settings, progress); },
       [&](const nlohmann::json& json) { print_summary(*settings, json); });
@@ -171,6 +204,12 @@ void register_bake(CLI::App& app, Action& action) {
           "gather: rays are added until 95 of 100 texels are known to this part of their light, as "
           "0.02; hemicube: cut triangles over which the light is off by more, 0 cuts none")
       ->group("OPTIONS");
+  bake->add_option("--time-budget", s.time_budget_s,
+                   "As good as it gets in about so many seconds, whole; with --max-error until "
+                   "either is reached")
+      ->type_name("SECONDS");
+  bake->add_flag("--plan", options->plan,
+                 "Do not bake: say what time, memory and rays it would take, from a trial");
   const char* matrix = "Matrix radiosity";
   bake->add_option("--patches", s.matrix.patches, "About so many pieces of surface exchange light")
       ->capture_default_str()
@@ -192,6 +231,8 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_flag(
       "--texels", s.texels,
       "Also leave texels.png: what became of each texel (luxel render --technique texels)");
+  bake->add_flag("--error-map", s.error_map,
+                 "Also leave error.png: how sure each texel is (luxel render --technique error)");
   bake->add_flag("!--no-leak-repair", s.repair_leaks,
                  "Leave charts whole under thin walls, and samples inside of solids");
   bake->add_flag("!--no-stitch", s.stitch, "Leave charts as they are along seams");
@@ -203,6 +244,11 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_flag("--html", s.html, "Also view.html: the baked scene as a page to walk around in");
   bake->add_option("--max-memory", options->max_memory,
                    "Memory to stay under, as 900M or 1.5G (default: most of what is free)");
+  bake->add_option("--checkpoint", s.checkpoint_s,
+                   "gather: what is finished later than so many seconds after the start is kept in "
+                   "FOLDER/checkpoint.luxel until the bake is done; 0: nothing is")
+      ->capture_default_str();
+  bake->add_flag("--resume", s.resume, "gather: go on with the checkpoint that is in the folder");
   bake->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();
   add_outside_light(*bake, options->outside);
   add_common(*bake, options->common);

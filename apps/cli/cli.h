@@ -57,6 +57,9 @@ atlas::UvMode uv_mode(const std::string& text);
 
 /// Prints the error's sentence to stderr and returns its exit code.
 int report(const Error& error);
+/// "42 s", "1:05 min", "2:10 h".
+std::string clock_text(double seconds);
+
 void print_warnings(const std::vector<std::string>& warnings, const Common& common);
 
 /// Runs `work` while a second thread shows its progress on stderr and turns Ctrl-C into a request
@@ -64,8 +67,8 @@ void print_warnings(const std::vector<std::string>& warnings, const Common& comm
 /// half written then, because files and folders appear when everything else is done.
 Status run_with_progress(const Common& common, const std::function<Status(Progress&)>& work);
 
-/// Runs work that ends in a JSON object with its `warnings`; prints those, and the object or, when
-/// it was not asked for, a summary of it. Returns the exit code.
+/// Runs work that ends in a JSON object, with its `warnings` or none; prints those, and the object
+/// or, when it was not asked for, a summary of it. Returns the exit code.
 int run_and_print(const Common& common,
                   const std::function<Result<nlohmann::json>(Progress&)>& work,
                   const std::function<void(const nlohmann::json&)>& summary);

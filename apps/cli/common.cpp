@@ -13,6 +13,11 @@ namespace {
 
 constexpr const char* kStopped = "stopped by the user";
 
+std::string stopped_text(const Progress& progress) {
+  const std::string way_on = progress.way_on();
+  return way_on.empty() ? kStopped : fmt::format("{}; {}", kStopped, way_on);
+}
+
 int exit_code(ErrorCode code) {
   switch (code) {
     case ErrorCode::out_of_memory:
@@ -26,13 +31,6 @@ int exit_code(ErrorCode code) {
   }
 }
 
-std::string clock_text(double seconds) {
-  const long s = long(seconds + 0.5);
-  if (s < 60) return fmt::format("{} s", s);
-  if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
-  return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
-}
-
 /// Shows stages on stderr: one line that is rewritten on a terminal, and a line that stays for each
 /// finished stage.
 class ProgressLine {
@@ -41,26 +39,32 @@ class ProgressLine {
 
   void show(const Progress& progress) {
     const Progress::Snapshot now = progress.snapshot();
+    print_notes(progress);
     if (quiet_ || now.stage_index < 0) return;
     print_finished(progress, size_t(now.stage_index));
-    if (now.stage == "trace rays") rays_ = now.total;
+    if (now.stage == "trace rays") rays_ = now.total - now.skipped;
     if (!terminal_) return;
     std::string line = now.stage;
     if (now.total > 0 && now.stage_seconds > 0) {
-      const double share = double(now.done) / double(now.total);
-      line += fmt::format("  {:3.0f} %", 100 * share);
+      line += fmt::format("  {:3.0f} %", 100 * double(now.done) / double(now.total));
+      // What was there already has taken no time.
+      const double done = double(now.done - now.skipped), total = double(now.total - now.skipped);
+      const double share = total > 0 ? done / total : 0;
       if (now.stage == "trace rays")
-        line += fmt::format("  {:.1f} Mrays/s", double(now.done) * 1e-6 / now.stage_seconds);
+        line += fmt::format("  {:.1f} Mrays/s", done * 1e-6 / now.stage_seconds);
       // Long work has an estimate early, too.
-      if (share > 0.02 || (share > 0 && now.stage_seconds > 3))
-        line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left";
+      const bool known = share > 0.02 || (share > 0 && now.stage_seconds > 3);
+      if (known && now.seconds_left < 0)
+        line += "  " + clock_text(now.stage_seconds * (1 - share) / share) + " left of this";
     }
+    if (now.seconds_left >= 0) line += "  " + clock_text(now.seconds_left) + " left";
     std::fprintf(stderr, "\r\033[K%s", line.c_str());
     std::fflush(stderr);
   }
 
   /// The work has ended: shows the stages it has finished. After an error the last one is not.
   void end(const Progress& progress, bool succeeded) {
+    print_notes(progress);
     if (quiet_) return;
     const size_t begun = progress.stages().size();
     print_finished(progress, succeeded || begun == 0 ? begun : begun - 1);
@@ -68,6 +72,12 @@ class ProgressLine {
   }
 
  private:
+  void print_notes(const Progress& progress) {
+    for (const std::string& note : progress.notes(notes_)) {
+      if (!quiet_) std::fprintf(stderr, "%s%s\n", terminal_ ? "\r\033[K" : "", note.c_str());
+      ++notes_;
+    }
+  }
   void print_finished(const Progress& progress, size_t count) {
     const std::vector<Stage> stages = progress.stages();
     for (; printed_ < count; ++printed_) {
@@ -80,7 +90,7 @@ class ProgressLine {
   }
 
   bool quiet_, terminal_;
-  size_t printed_ = 0;
+  size_t printed_ = 0, notes_ = 0;
   uint64_t rays_ = 0;
 };
 
@@ -117,7 +127,8 @@ void watch(Progress& progress, const std::atomic<Work>& work, bool quiet) {
         asked != Clock::time_point{} && Clock::now() - asked > std::chrono::milliseconds(700);
     if (late && progress.snapshot().stage != pipeline::kWriteStage) {
       line.end(progress, false);
-      std::fprintf(stderr, "luxel: %s\n", kStopped);
+      progress.clean_up();
+      std::fprintf(stderr, "luxel: %s\n", stopped_text(progress).c_str());
       ::_exit(kInterrupted);
     }
   }
@@ -125,6 +136,13 @@ void watch(Progress& progress, const std::atomic<Work>& work, bool quiet) {
 }
 
 }  // namespace
+
+std::string clock_text(double seconds) {
+  const long s = long(seconds + 0.5);
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
+  return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
+}
 
 void add_common(CLI::App& command, Common& common) {
   command.add_option("--threads", common.threads, "Threads to use; 0 = all cores")
@@ -242,9 +260,7 @@ Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text) {
 }
 
 int report(const Error& error) {
-  // Whichever stage was stopped: the user knows why.
-  const bool stopped = error.code == ErrorCode::cancelled;
-  std::fprintf(stderr, "luxel: %s\n", stopped ? kStopped : error.message.c_str());
+  std::fprintf(stderr, "luxel: %s\n", error.message.c_str());
   return exit_code(error.code);
 }
 
@@ -270,6 +286,9 @@ Status run_with_progress(const Common& common, const std::function<Status(Progre
     Status done = work(progress);
     if (done) progress.finish();
     end(done ? Work::succeeded : Work::failed);
+    // Whichever stage was stopped: the user knows why.
+    if (!done && done.error().code == ErrorCode::cancelled)
+      return fail(ErrorCode::cancelled, "{}", stopped_text(progress));
     return done;
   } catch (...) {
     end(Work::failed);
@@ -286,7 +305,7 @@ int run_and_print(const Common& common,
     return {};
   });
   if (!done) return report(done.error());
-  print_warnings(json["warnings"].get<std::vector<std::string>>(), common);
+  print_warnings(json.value("warnings", std::vector<std::string>()), common);
   if (common.json)
     std::printf("%s\n", json.dump(2).c_str());
   else if (!common.quiet)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -13,10 +14,8 @@ namespace {
 constexpr int kReach = 2;
 /// So many elements' worth of the chart's ratio is added to that of the neighbours, who may be few.
 constexpr double kPriorElements = 8;
-/// Standard errors fall like n to this power and a bit faster (docs/gather.md): it says how many
-/// samples more are needed.
-constexpr float kDecay = 0.7f;
 constexpr float kDarkest = 0.1f;
+constexpr size_t kTexelsForForecast = 20000;
 /// Levels of direct light: 4^4 times the shadow rays, 4^2 times the points, each of which looks at
 /// the lamps with rays of its own.
 constexpr int kFinestLevel = 4, kFinestAverage = 2;
@@ -32,26 +31,23 @@ struct Sums {
   double ratio() const { return variance > 0 ? split / variance : 1; }
 };
 
-std::vector<Sums> sums_of_charts(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                                 const VariancePair& pair) {
-  std::vector<Sums> out(size_t(atlas.chart_count));
-  for (size_t i = 0; i < map.texels.size(); ++i)
-    out[atlas.chart[map.texels[i].triangle_number]].add(pair, i);
+/// Per element: read for 25 neighbours of each.
+std::vector<uint32_t> charts_of(const atlas::Atlas& atlas, const atlas::TexelMap& map) {
+  std::vector<uint32_t> out(map.texels.size());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = atlas.chart[map.texels[i].triangle_number];
   return out;
 }
 
 /// Those of the same chart, itself included.
-Sums sums_around(const atlas::Atlas& atlas, const atlas::TexelMap& map, const VariancePair& pair,
-                 size_t i) {
+Sums sums_around(const atlas::TexelMap& map, std::span<const uint32_t> chart,
+                 const VariancePair& pair, size_t i) {
   const int side = map.resolution, x = int(map.texels[i].x), y = int(map.texels[i].y);
-  const uint32_t chart = atlas.chart[map.texels[i].triangle_number];
   Sums sums;
-  for (int v = std::max(0, y - kReach); v <= std::min(side - 1, y + kReach); ++v)
-    for (int u = std::max(0, x - kReach); u <= std::min(side - 1, x + kReach); ++u) {
-      const uint32_t j = map.texel_at[size_t(v) * size_t(side) + size_t(u)];
-      if (j == atlas::kNone || atlas.chart[map.texels[j].triangle_number] != chart) continue;
-      sums.add(pair, j);
-    }
+  for (int v = std::max(0, y - kReach); v <= std::min(side - 1, y + kReach); ++v) {
+    const uint32_t* row = map.texel_at.data() + size_t(v) * size_t(side);
+    for (int u = std::max(0, x - kReach); u <= std::min(side - 1, x + kReach); ++u)
+      if (row[u] != atlas::kNone && chart[row[u]] == chart[i]) sums.add(pair, row[u]);
+  }
   return sums;
 }
 
@@ -61,16 +57,17 @@ std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::Texe
                                     VariancePair variance) {
   LUXEL_CHECK(variance.independent.size() == map.texels.size());
   LUXEL_CHECK(variance.split.size() == map.texels.size());
-  const std::vector<Sums> charts = sums_of_charts(atlas, map, variance);
+  const std::vector<uint32_t> chart = charts_of(atlas, map);
+  std::vector<Sums> charts(size_t(atlas.chart_count));
+  for (size_t i = 0; i < chart.size(); ++i) charts[chart[i]].add(variance, i);
   std::vector<float> out(map.texels.size());
   parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const Sums near = sums_around(atlas, map, variance, i);
-      const Sums& chart = charts[atlas.chart[map.texels[i].triangle_number]];
+      const Sums near = sums_around(map, chart, variance, i);
       const double mean = near.variance / double(near.count);
       const double prior = kPriorElements * mean;
       const double ratio =
-          mean > 0 ? (near.split + prior * chart.ratio()) / (near.variance + prior) : 0;
+          mean > 0 ? (near.split + prior * charts[chart[i]].ratio()) / (near.variance + prior) : 0;
       out[i] = float(0.5 * (double(variance.independent[i]) + mean) * ratio);
     }
   });
@@ -98,17 +95,87 @@ float percentile_95(std::span<const float> errors) {
 }
 
 std::vector<uint16_t> next_samples(std::span<const float> errors, float max_error, int max_samples,
-                                   const TracedHits& hits) {
-  LUXEL_CHECK(max_error > 0 && errors.size() == hits.size());
-  std::vector<uint16_t> out = hits.samples;
+                                   std::span<const uint16_t> samples) {
+  LUXEL_CHECK(max_error >= 0 && errors.size() == samples.size());
+  std::vector<uint16_t> out(samples.begin(), samples.end());
   for (size_t i = 0; i < out.size(); ++i) {
     if (errors[i] <= max_error) continue;
-    const float more = std::pow(errors[i] / max_error, 1 / kDecay);
-    const int wanted = int(out[i]) * (more > 2 ? 4 : 2);
+    const bool far = std::pow(max_error / errors[i], 1 / kDecay) < 0.25f;
+    const int wanted = int(out[i]) * (far ? 4 : 2);
     const int affordable = wanted <= max_samples ? wanted : int(out[i]) * 2;
     if (affordable <= max_samples) out[i] = uint16_t(affordable);
   }
   return out;
+}
+
+uint64_t sum_of(std::span<const uint16_t> samples) {
+  return std::accumulate(samples.begin(), samples.end(), uint64_t(0));
+}
+
+std::vector<uint64_t> rounds_to_come(std::span<const float> all, std::span<const float> gathered,
+                                     float max_error, int max_samples,
+                                     std::span<const uint16_t> samples) {
+  const float each = error_of_part(max_error);
+  // Some texels stand for all: it is an estimate.
+  const size_t step = std::max<size_t>(1, all.size() / kTexelsForForecast);
+  std::vector<float> now, sum, rest;
+  std::vector<uint16_t> n;
+  for (size_t i = 0; i < all.size(); i += step) {
+    const float of_lamps = std::sqrt(std::max(0.0f, all[i] * all[i] - gathered[i] * gathered[i]));
+    now.push_back(gathered[i]), rest.push_back(std::min(of_lamps, each)), n.push_back(samples[i]);
+  }
+  std::vector<uint64_t> rounds;
+  for (;;) {
+    sum.clear();
+    for (size_t i = 0; i < now.size(); ++i) sum.push_back(std::hypot(now[i], rest[i]));
+    if (percentile_95(sum) <= max_error) return rounds;
+    const std::vector<uint16_t> next = next_samples(now, each, max_samples, n);
+    const uint64_t added = sum_of(next) - sum_of(n);
+    if (added == 0) return rounds;
+    rounds.push_back(step * added);
+    for (size_t i = 0; i < now.size(); ++i)
+      now[i] *= std::pow(float(n[i]) / float(next[i]), kDecay);
+    n = next;
+  }
+}
+
+void keep_affordable(std::span<const float> errors, uint64_t affordable,
+                     std::span<const uint16_t> samples, std::vector<uint16_t>& target) {
+  uint64_t added = sum_of(target) - sum_of(samples);
+  if (added <= affordable) return;
+  std::vector<uint32_t> which;
+  for (uint32_t i = 0; i < target.size(); ++i)
+    if (target[i] > samples[i]) which.push_back(i);
+  const auto gain = [&](uint32_t i) { return errors[i] * errors[i] / float(samples[i]); };
+  std::ranges::sort(which, [&](uint32_t a, uint32_t b) {
+    const float x = gain(a), y = gain(b);
+    return x != y ? x < y : a < b;
+  });
+  for (const uint32_t i : which) {
+    if (added <= affordable) return;
+    added -= uint64_t(target[i] - samples[i]);
+    target[i] = samples[i];
+  }
+}
+
+float affordable_error(std::span<const float> errors, float at_least, double rays,
+                       const transport::SupersampleParams& params, const DirectLevels& levels) {
+  // Of texels that are one level finer, each lamp of which there may be several counted once.
+  const auto cost = [&](size_t i) {
+    const int factor = 1 << (2 * (int(levels.level[i]) + 1)), samples = params.direct.samples;
+    if (!levels.averaged[i]) return levels.level[i] < kFinestLevel ? factor * samples : 0;
+    return levels.level[i] < kFinestAverage ? factor * params.points * std::max(samples / 8, 8) : 0;
+  };
+  std::vector<uint32_t> which;
+  for (uint32_t i = 0; i < errors.size(); ++i)
+    if (errors[i] > at_least && cost(i) > 0) which.push_back(i);
+  std::ranges::sort(which, [&](uint32_t a, uint32_t b) { return errors[a] > errors[b]; });
+  double sum = 0;
+  for (const uint32_t i : which) {
+    sum += double(cost(i));
+    if (sum > rays) return errors[i];
+  }
+  return at_least;
 }
 
 Result<size_t> refine_direct(const transport::TexelScene& world, std::span<const float> errors,

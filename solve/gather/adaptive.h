@@ -32,10 +32,32 @@ std::vector<float> relative_errors(std::span<const float> variance, std::span<co
 /// The value that 95 of 100 elements with an error stay below.
 float percentile_95(std::span<const float> errors);
 
+/// Standard errors of stratified samples fall like n^-kDecay and a bit faster (docs/gather.md): it
+/// says how many samples more are needed.
+inline constexpr float kDecay = 0.7f;
+
+/// What the light from lamps, or the rest, may be off by: half of the square each.
+inline float error_of_part(float max_error) { return max_error * 0.70710678f; }
+
 /// Samples of the next round: of elements whose relative error is larger than max_error two or four
 /// times as many as they have, of others what they have. More than max_samples nobody gets.
 std::vector<uint16_t> next_samples(std::span<const float> errors, float max_error, int max_samples,
-                                   const TracedHits& hits);
+                                   std::span<const uint16_t> samples);
+
+/// How many samples each round will add, until 95 of 100 of `all` errors are below max_error, if
+/// those of the gathered light, which are part of them, fall like n^-kDecay, and lamps are looked
+/// at until theirs are small enough.
+std::vector<uint64_t> rounds_to_come(std::span<const float> all, std::span<const float> gathered,
+                                     float max_error, int max_samples,
+                                     std::span<const uint16_t> samples);
+
+/// Samples of all elements.
+uint64_t sum_of(std::span<const uint16_t> samples);
+
+/// Takes samples back from `target` until no more than `affordable` are added to `samples`: they go
+/// first to where they lower the sum of squared errors most for a ray.
+void keep_affordable(std::span<const float> errors, uint64_t affordable,
+                     std::span<const uint16_t> samples, std::vector<uint16_t>& target);
 
 /// How finely each element's direct light was looked at.
 struct DirectLevels {
@@ -49,5 +71,10 @@ Result<size_t> refine_direct(const transport::TexelScene& world, std::span<const
                              float max_error, const transport::SupersampleParams& params,
                              DirectLevels& levels, transport::DirectLight& direct,
                              Progress& progress);
+
+/// The smallest max_error, `at_least` or larger, with which refine_direct would trace about `rays`
+/// rays at most.
+float affordable_error(std::span<const float> errors, float at_least, double rays,
+                       const transport::SupersampleParams& params, const DirectLevels& levels);
 
 }  // namespace luxel::gather

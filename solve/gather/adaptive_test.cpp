@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/procedural.h"
@@ -54,6 +55,69 @@ TEST(Rounds, GoToFilesWhenMemoryIsShort) {
   const Gather in_files = solve(*room, params);
   EXPECT_GT(in_files.hit_bytes_in_file, 0u);
   EXPECT_EQ(in_files.irradiance, in_memory.irradiance);
+}
+
+// Errors fall by 2^-0.7 = 0.62 when samples double: 0.03 is below 0.02 after one doubling, 0.06 is
+// not after two, which are asked for at once; 0.01 is.
+TEST(NextSamples, DoubleOrQuadrupleWhereTheErrorIsTooLarge) {
+  const std::vector<float> errors{0.01f, 0.03f, 0.06f, 0.06f};
+  const std::vector<uint16_t> samples{32, 32, 32, 1024};
+  EXPECT_EQ(next_samples(errors, 0.02f, 2048, samples), (std::vector<uint16_t>{32, 64, 128, 2048}));
+  EXPECT_EQ(next_samples(errors, 0.02f, 1024, samples), (std::vector<uint16_t>{32, 64, 128, 1024}));
+}
+
+// To 0.02 with lamps as sure as the rest, each part may be off by 0.0141. 100 texels at 0.02 are at
+// 0.0123 after one doubling. Six of 100 at 0.05 need 2^(log(0.05 / 0.0141) / (0.7 log 2)) = 6.1
+// times the samples: four times at once, then twice, and 94 of 100 are not enough.
+TEST(RoundsToCome, EndWhenNineteenOfTwentyAreSure) {
+  std::vector<float> gathered(100, 0.02f), all(100, 0.03f);
+  const std::vector<uint16_t> samples(100, 32);
+  const auto rounds = [&](float max_error, int max_samples) {
+    return rounds_to_come(all, gathered, max_error, max_samples, samples);
+  };
+  EXPECT_EQ(rounds(0.02f, 2048), (std::vector<uint64_t>{3200}));
+  std::fill_n(gathered.begin(), 6, 0.05f), std::fill_n(all.begin(), 6, 0.06f);
+  EXPECT_EQ(rounds(0.02f, 2048), (std::vector<uint64_t>{94 * 32 + 6 * 96, 6 * 128}));
+  EXPECT_TRUE(rounds(0.06f, 2048).empty());
+  EXPECT_TRUE(rounds(0.02f, 32).empty()) << "nobody may have more";
+}
+
+// Gains e^2 / n are 4, 1, 16 and 2 units: of 32 samples each, 70 pay the two largest.
+TEST(KeepAffordable, SamplesGoWhereTheyHelpMost) {
+  const std::vector<float> errors{0.02f, 0.01f, 0.04f, 0.02f};
+  const std::vector<uint16_t> samples{32, 32, 32, 64};
+  const std::vector<uint16_t> wanted{64, 64, 64, 128};
+  std::vector<uint16_t> target = wanted;
+  keep_affordable(errors, 70, samples, target);
+  EXPECT_EQ(target, (std::vector<uint16_t>{64, 32, 64, 64}));
+  target = wanted;
+  keep_affordable(errors, 1000, samples, target);
+  EXPECT_EQ(target, wanted);
+}
+
+// Four texels with a ray each per sample of 16, the next level takes four times as many: 64 each.
+TEST(AffordableError, LetsInAsManyAsThereAreRaysFor) {
+  const std::vector<float> errors{0.1f, 0.4f, 0.2f, 0.3f};
+  const DirectLevels levels{std::vector<uint8_t>(4), std::vector<uint8_t>(4)};
+  const transport::SupersampleParams params{.points = 16, .direct = {.samples = 16}};
+  EXPECT_EQ(affordable_error(errors, 0.05f, 1000, params, levels), 0.05f);
+  EXPECT_EQ(affordable_error(errors, 0.05f, 150, params, levels), 0.2f) << "two are above it";
+  EXPECT_EQ(affordable_error(errors, 0.25f, 1000, params, levels), 0.25f);
+}
+
+// With a budget rounds follow as long as there is time; a tenth of a second is worth more than the
+// first 4 samples on any machine, and the hour is not waited for: nobody gets more than 64.
+TEST(Seconds, AreUsedAndNotWaitedFor) {
+  const auto room = lay_out(scene::cornell_box(), 16);
+  GatherParams params;
+  params.samples = 4, params.max_samples = 64, params.seconds = 3600;
+  const Gather light = solve(*room, params);
+  // But for texels that see nothing, whose error is none.
+  EXPECT_GT(std::ranges::count(light.samples, 64),
+            std::ptrdiff_t(0.9 * double(light.samples.size())));
+  params.seconds = 1e-9;
+  const Gather none = solve(*room, params);
+  EXPECT_EQ(none.samples, std::vector<uint16_t>(room->elements.size(), 4));
 }
 
 // The judge: 64 times the rays of what is judged, with noise of its own about a tenth as large.

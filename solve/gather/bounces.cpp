@@ -1,6 +1,7 @@
 #include "solve/gather/bounces.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <numeric>
@@ -185,6 +186,9 @@ double mean_luminance(std::span<const Rgb> values) {
 /// is wrong.
 constexpr int kMaxSweeps = 4000;
 
+/// About so many sweeps follow sparser ones.
+constexpr double kSweepsAfterSparse = 3;
+
 /// Of what surfaces send back of the light on both their sides.
 struct ReflectanceRange {
   double mean = 0, max = 0;
@@ -223,7 +227,10 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   std::vector<Rgb> source(direct.begin(), direct.end());
   for (size_t i = 0; i < n; ++i) source[i] += hits.sky[i] * (kPi / float(hits.samples[i]));
   Bounced out;
+  const bool guessed = params.bounces < 0 && !params.start.empty();
+  LUXEL_CHECK(!guessed || params.start.size() == n);
   out.irradiance = source;
+  if (guessed) out.irradiance.assign(params.start.begin(), params.start.end());
   out.variance.assign(n, 0.0f);
   out.split_variance.assign(n, 0.0f);
   std::vector<Rgb> next(n);
@@ -235,7 +242,6 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
     Sweep sweep{source, out.irradiance, next, out.variance, out.split_variance, stride, {}};
     LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
     out.irradiance.swap(next);
-    out.strides.push_back(uint8_t(stride));
     ++out.sweeps;
     progress.advance(1);
     const double sum2 = std::accumulate(sweep.change2.begin(), sweep.change2.end(), 0.0);
@@ -252,7 +258,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   const ReflectanceRange reflectance = reflectance_range(elements);
   const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
   for (const size_t stride : {size_t(16), size_t(4), size_t(1)}) {
-    if (stride > 1 && fewest < 16 * stride) continue;
+    if (stride > 1 && (guessed || fewest < 16 * stride)) continue;
     double before = 0;
     for (int k = 0; k < kMaxSweeps; ++k) {
       LUXEL_TRY(const double change, run(stride));
@@ -260,6 +266,59 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
         break;
       before = change;
     }
+  }
+  return out;
+}
+
+double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits) {
+  const RadiosityMap m = empty_map(map.resolution);
+  const auto start = std::chrono::steady_clock::now();
+  Gathered g;
+  size_t looked_at = 0;
+  for (const HitStore& round : hits.rounds)
+    for (size_t t = 0; t < round.tile_count(); ++t) {
+      HitTile buffer;
+      const Result<const HitTile*> tile = round.get(t, buffer);
+      if (!tile) continue;
+      gather_round(m, (*tile)->entries, 0, 1, true, g);
+      looked_at += (*tile)->entries.size();
+    }
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  // The sum is zero, which the compiler does not know.
+  return looked_at == 0 ? 0 : (seconds + double(g.sum[0])) / double(looked_at);
+}
+
+double expected_sweeps(const atlas::TexelMap& map, const transport::Elements& elements,
+                       const TracedHits& hits, int samples, const BounceParams& params) {
+  if (params.bounces >= 0) return params.bounces;
+  // What a sweep leaves of the light, in the mean: the reflectance that rays see.
+  const uint32_t stride = uint32_t(map.resolution + 2);
+  double sum = 0, rays = 0;
+  for (const uint16_t n : hits.samples) rays += double(n);
+  for (const HitStore& round : hits.rounds)
+    for (size_t t = 0; t < round.tile_count(); ++t) {
+      HitTile buffer;
+      const Result<const HitTile*> tile = round.get(t, buffer);
+      if (!tile) continue;
+      for (const StoredHit& hit : (*tile)->entries) {
+        const uint32_t x = hit.base() % stride, y = hit.base() / stride;
+        if (x == 0 || y == 0) continue;
+        const uint32_t i = map.texel_at[size_t(y - 1) * size_t(map.resolution) + (x - 1)];
+        if (i != atlas::kNone) sum += double(luminance(elements.reflectance[i]));
+      }
+    }
+  const double q = std::clamp(sum / std::max(rays, 1.0), 0.01, 0.99);
+  double out = 0;
+  bool first = true;
+  for (const size_t step : {size_t(16), size_t(4), size_t(1)}) {
+    if (step > 1 && size_t(samples) < 16 * step) continue;
+    // Until q^k q / (1 - q) is below the tolerance; what the sparser sweeps leave is their noise,
+    // which few sweeps average out.
+    const double end = double(params.tolerance) * double(step) * (1 - q) / q;
+    const double sweeps = first ? std::max(1.0, std::log(end) / std::log(q)) : kSweepsAfterSparse;
+    out += sweeps / double(step);
+    first = false;
   }
   return out;
 }

@@ -18,6 +18,9 @@ struct BounceParams {
   /// Stop when the light of all bounces still to come is below this: its root mean square over the
   /// elements, relative to the mean irradiance.
   float tolerance = 1e-4f;
+  /// With all bounces asked for: a guess of E per element to start from, as that of fewer samples;
+  /// or nothing.
+  std::span<const Rgb> start{};
 };
 
 struct Bounced {
@@ -29,7 +32,6 @@ struct Bounced {
   /// as that: for means over neighbours. docs/denoise.md.
   std::vector<float> split_variance;
   int sweeps = 0;
-  std::vector<uint8_t> strides;  ///< per sweep: it looked at one in so many rays
 };
 
 /// Solves  E = E_0 + (1/N) sum over rays of B at the hit,  B = rho E + tau E behind,  E_0 = direct
@@ -45,5 +47,14 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
                        const TracedHits& hits, std::span<const Rgb> direct,
                        std::span<const StoredHit> behind, const BounceParams& params,
                        Progress& progress);
+
+/// What a look at one hit of the map takes one thread [s], measured on the hits that there are, all
+/// of them in memory.
+double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits);
+
+/// About how many sweeps over all rays bounce() will need, sparse ones by their part, when hits are
+/// like those that there are.
+double expected_sweeps(const atlas::TexelMap& map, const transport::Elements& elements,
+                       const TracedHits& hits, int samples, const BounceParams& params);
 
 }  // namespace luxel::gather

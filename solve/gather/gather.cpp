@@ -1,8 +1,8 @@
 #include "solve/gather/gather.h"
 
+#include <chrono>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "solve/gather/adaptive.h"
 #include "solve/gather/bounce_layers.h"
 #include "transport/backs_seen.h"
@@ -17,29 +17,18 @@ double relative_error(std::span<const Rgb> irradiance, std::span<const float> va
   return mean > 0 ? std::sqrt(sum * double(irradiance.size())) / mean : 0;
 }
 
-/// Per element, whether it lies inside a solid (is_enclosed). Where its own rays are not sure, a
-/// fixed set decides, so that other samples or another seed do not turn a texel on and off.
-std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const transport::Elements& elements,
-                                   const trace::RayTracer& tracer, const TracedHits& hits) {
-  constexpr int kRays = 64;
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
-  std::vector<uint8_t> out(elements.size());
-  parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const int one_sided = int(hits.met_back[i]), n = int(hits.samples[i]);
-      const int backs = one_sided + int(hits.met_double_sided_back[i]);
-      if (4 * one_sided < n && 8 * backs < 7 * n) continue;
-      const Vec3 from =
-          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
-      out[i] = 4 * one_sided > 3 * n || transport::is_enclosed(transport::backs_seen(
-                                            scene, tracer, from, elements.normal[i], kRays));
-    }
-  });
-  return out;
-}
-
 /// While samples are still to come the bounces need not be exact.
 constexpr float kRoughTolerance = 1e-2f;
+/// What the last bounces take, over those of a round.
+constexpr double kFineOverRough = 4;
+/// A round that adds less than this part of the rays is not worth its bounces.
+constexpr double kSmallestRound = 1.0 / 16;
+/// Of a round's rays, those that may go to lamps.
+constexpr double kDirectShare = 0.25;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// Pooled variances, and relative errors by them.
 struct Errors {
@@ -47,17 +36,139 @@ struct Errors {
   std::vector<float> direct, gathered, all;  ///< relative
 };
 
-Errors errors_of(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                 const transport::DirectLight& direct, const Bounced& bounced,
-                 const TracedHits& hits) {
-  const auto of_direct = pooled_variances(atlas, map, {direct.variance, direct.split_variance});
-  const auto gathered = pooled_variances(atlas, map, {bounced.variance, bounced.split_variance});
+/// What there is so far.
+struct Work {
+  transport::DirectLight direct;
+  DirectLevels levels;
+  size_t averaged = 0;
+  TracedHits hits;
+  Bounced bounced;
+  Errors errors;
+  double traced_s = 0, bounced_s = 0;  ///< of the last round, of which something was traced
+  uint64_t traced_rays = 0, traced_samples = 0;
+};
+
+Errors errors_of(const transport::TexelScene& world, const Work& work) {
+  const auto direct =
+      pooled_variances(world.atlas, world.map, {work.direct.variance, work.direct.split_variance});
+  const auto gathered = pooled_variances(world.atlas, world.map,
+                                         {work.bounced.variance, work.bounced.split_variance});
   Errors out;
-  for (size_t i = 0; i < gathered.size(); ++i) out.variance.push_back(of_direct[i] + gathered[i]);
-  out.direct = relative_errors(of_direct, bounced.irradiance, hits);
-  out.gathered = relative_errors(gathered, bounced.irradiance, hits);
-  out.all = relative_errors(out.variance, bounced.irradiance, hits);
+  out.variance.resize(gathered.size());
+  for (size_t i = 0; i < gathered.size(); ++i) out.variance[i] = direct[i] + gathered[i];
+  out.direct = relative_errors(direct, work.bounced.irradiance, work.hits);
+  out.gathered = relative_errors(gathered, work.bounced.irradiance, work.hits);
+  out.all = relative_errors(out.variance, work.bounced.irradiance, work.hits);
   return out;
+}
+
+transport::SupersampleParams supersample_params(const GatherParams& params) {
+  return {.points = params.supersample,
+          .direct = {.samples = params.direct_samples,
+                     .seed = params.seed,
+                     .layers = params.layers,
+                     .parts = params.parts}};
+}
+
+Status begin_direct(const transport::TexelScene& world, const GatherParams& params, Work& work,
+                    Progress& progress) {
+  const transport::SupersampleParams supersample = supersample_params(params);
+  LUXEL_TRY(work.direct, transport::direct_light(world.scene, world.elements, world.lights,
+                                                 world.tracer, supersample.direct, progress));
+  LUXEL_TRY(const transport::Supersampled averaged,
+            transport::supersample(world.scene, world.atlas, world.map, world.elements,
+                                   world.lights, world.tracer, supersample, work.direct, progress));
+  work.direct.rays += averaged.rays;
+  work.averaged = averaged.texels.size();
+  work.levels = {std::vector<uint8_t>(world.elements.size()),
+                 std::vector<uint8_t>(world.elements.size())};
+  for (const uint32_t i : averaged.texels) work.levels.averaged[i] = 1;
+  return {};
+}
+
+Status trace_round(const transport::TexelScene& world, const GatherParams& params,
+                   std::span<const uint16_t> target, Work& work, Progress& progress) {
+  const TraceParams trace{params.seed,           params.hit_memory_bytes,
+                          params.scratch_folder, params.bounces < 0 ? &world.lights : nullptr,
+                          params.layers,         params.parts};
+  const auto start = std::chrono::steady_clock::now();
+  const uint64_t before = work.hits.rays, samples = sum_of(work.hits.samples);
+  LUXEL_TRY_STATUS(trace_more(world.scene, world.atlas, world.elements, world.lights.around,
+                              world.tracer, target, trace, work.hits, progress));
+  // What was kept says nothing about how long rays take.
+  const Progress::Snapshot stage = progress.snapshot();
+  if (stage.total == stage.skipped) return {};
+  work.traced_s = seconds_since(start) * double(stage.total) / double(stage.total - stage.skipped);
+  work.traced_rays = work.hits.rays - before;
+  work.traced_samples = sum_of(work.hits.samples) - samples;
+  return {};
+}
+
+Status bounce_round(const transport::TexelScene& world, std::span<const StoredHit> behind,
+                    BounceParams params, Work& work, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<Rgb> guess = std::move(work.bounced.irradiance);
+  params.start = guess;
+  LUXEL_TRY(work.bounced, bounce(world.map, world.elements, work.hits, work.direct.irradiance,
+                                 behind, params, progress));
+  work.errors = errors_of(world, work);
+  work.bounced_s = seconds_since(start);
+  return {};
+}
+
+/// How many rays the next round may have, such that it and the last bounces end in time.
+double affordable_rays(const Work& work, double seconds_left) {
+  const double rays = double(work.hits.rays), bounces_s = work.bounced_s * (1 + kFineOverRough);
+  if (work.traced_rays == 0) return kSmallestRound * rays;  // all found: some are traced to know
+  const double per_ray = work.traced_s / double(std::max<uint64_t>(work.traced_rays, 1));
+  return (seconds_left - bounces_s) / (per_ray + bounces_s / rays);
+}
+
+/// Tells the watcher what is still to come, when an error is asked for.
+void expect_rounds(const GatherParams& params, std::span<const uint16_t> target, const Work& work,
+                   Progress& progress) {
+  std::vector<uint64_t> rounds =
+      rounds_to_come(work.errors.all, work.errors.gathered, params.max_error, params.max_samples,
+                     work.hits.samples);
+  const double before = double(sum_of(work.hits.samples));
+  if (rounds.empty()) rounds.push_back(0);
+  rounds.front() = sum_of(target) - uint64_t(before);  // that is known
+  const double per_sample = work.traced_s / double(std::max<uint64_t>(work.traced_samples, 1));
+  std::vector<Stage> stages;
+  double samples = before;
+  for (const uint64_t added : rounds) {
+    samples += double(added);
+    stages.push_back({"trace rays", double(added) * per_sample});
+    stages.push_back({"bounces", work.bounced_s * samples / before});
+  }
+  stages.push_back({"bounces", kFineOverRough * work.bounced_s * samples / before});
+  progress.expect(std::move(stages));
+}
+
+/// Adds rays where they are needed most. False: there is nothing to add, or no time.
+Result<bool> next_round(const transport::TexelScene& world, const GatherParams& params,
+                        double seconds_left, Work& work, Progress& progress) {
+  if (percentile_95(work.errors.all) <= params.max_error) return false;
+  const float each = error_of_part(params.max_error);
+  const transport::SupersampleParams supersample = supersample_params(params);
+  std::vector<uint16_t> target =
+      next_samples(work.errors.gathered, each, params.max_samples, work.hits.samples);
+  float direct_above = each;
+  if (params.seconds > 0) {
+    const double rays = affordable_rays(work, seconds_left);
+    if (rays < kSmallestRound * double(work.hits.rays)) return false;
+    const double rays_per_sample = double(work.hits.rays) / double(sum_of(work.hits.samples));
+    keep_affordable(work.errors.gathered, uint64_t((1 - kDirectShare) * rays / rays_per_sample),
+                    work.hits.samples, target);
+    direct_above =
+        affordable_error(work.errors.direct, each, kDirectShare * rays, supersample, work.levels);
+  }
+  if (params.seconds <= 0) expect_rounds(params, target, work, progress);
+  LUXEL_TRY(const size_t finer, refine_direct(world, work.errors.direct, direct_above, supersample,
+                                              work.levels, work.direct, progress));
+  if (target == work.hits.samples) return finer > 0;
+  LUXEL_TRY_STATUS(trace_round(world, params, target, work, progress));
+  return true;
 }
 
 }  // namespace
@@ -66,67 +177,48 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                       const atlas::TexelMap& map, const transport::Elements& elements,
                       const transport::Lights& lights, const trace::RayTracer& tracer,
                       const GatherParams& params, Progress& progress) {
-  const transport::DirectParams direct_params{
-      .samples = params.direct_samples, .seed = params.seed, .layers = params.layers};
-  const transport::SupersampleParams supersample_params{.points = params.supersample,
-                                                        .direct = direct_params};
-  LUXEL_TRY(transport::DirectLight direct,
-            transport::direct_light(scene, elements, lights, tracer, direct_params, progress));
-  LUXEL_TRY(const transport::Supersampled averaged,
-            transport::supersample(scene, atlas, map, elements, lights, tracer, supersample_params,
-                                   direct, progress));
-  direct.rays += averaged.rays;
-  const TraceParams trace_params{params.seed, params.hit_memory_bytes, params.scratch_folder,
-                                 params.bounces < 0 ? &lights : nullptr, params.layers};
-  const std::vector<StoredHit> behind = places_behind(scene, atlas, map, elements);
-  LUXEL_TRY(TracedHits hits, trace_hits(scene, atlas, elements, lights.around, tracer,
-                                        params.samples, trace_params, progress));
+  const auto start = std::chrono::steady_clock::now();
   const transport::TexelScene world{scene, atlas, map, elements, lights, tracer};
-  DirectLevels levels{std::vector<uint8_t>(elements.size()), std::vector<uint8_t>(elements.size())};
-  for (const uint32_t i : averaged.texels) levels.averaged[i] = 1;
-  Bounced bounced;
-  Errors errors;
-  for (bool last = params.max_error <= 0;;) {
-    const float tolerance = last ? params.tolerance : kRoughTolerance;
-    LUXEL_TRY(bounced, bounce(map, elements, hits, direct.irradiance, behind,
-                              {params.bounces, tolerance}, progress));
-    errors = errors_of(atlas, map, direct, bounced, hits);
-    if (last) break;
-    last = percentile_95(errors.all) <= params.max_error;
-    if (last) continue;
-    // Of a part that is below half of the square all may be left as it is.
-    const float each = params.max_error / std::sqrt(2.0f);
-    LUXEL_TRY(const size_t finer, refine_direct(world, errors.direct, each, supersample_params,
-                                                levels, direct, progress));
-    const std::vector<uint16_t> target =
-        next_samples(errors.gathered, each, params.max_samples, hits);
-    last = finer == 0 && target == hits.samples;
-    if (target == hits.samples) continue;
-    LUXEL_TRY_STATUS(trace_more(scene, atlas, elements, lights.around, tracer, target, trace_params,
-                                hits, progress));
+  Work work;
+  LUXEL_TRY_STATUS(begin_direct(world, params, work, progress));
+  const std::vector<StoredHit> behind = places_behind(scene, atlas, map, elements);
+  work.hits = no_hits(elements.size(), params.layers ? params.layers->size() : 0);
+  const std::vector<uint16_t> first(elements.size(), uint16_t(params.samples));
+  LUXEL_TRY_STATUS(trace_round(world, params, first, work, progress));
+  for (bool more = params.max_error > 0 || params.seconds > 0; more;) {
+    LUXEL_TRY_STATUS(
+        bounce_round(world, behind, {params.bounces, kRoughTolerance}, work, progress));
+    LUXEL_TRY(more,
+              next_round(world, params, params.seconds - seconds_since(start), work, progress));
   }
+  LUXEL_TRY_STATUS(bounce_round(world, behind, {params.bounces, params.tolerance}, work, progress));
   Gather out;
   if (params.layers) {
     LUXEL_TRY(LayersBounced layers,
-              bounce_layers(map, elements, hits, layer_sources(hits, std::move(direct.by_layer)),
-                            behind, bounced, params.bounces < 0, progress));
+              bounce_layers(map, elements, work.hits,
+                            layer_sources(work.hits, std::move(work.direct.by_layer)), behind,
+                            work.bounced.irradiance, params.bounces, progress));
     out.layers = std::move(layers.irradiance), out.layers_shared_out = layers.shared_out;
   }
-  out.relative_error = relative_error(bounced.irradiance, errors.variance);
-  out.irradiance = std::move(bounced.irradiance);
-  out.direct = std::move(direct.irradiance);
-  out.direct_variance = std::move(direct.variance);
-  out.indirect_variance = std::move(bounced.split_variance);
-  out.pooled_variance = std::move(errors.variance);
-  out.relative_error_p95 = percentile_95(errors.all);
-  out.errors = std::move(errors.all);
-  out.enclosed = find_enclosed(scene, elements, tracer, hits);
-  out.met_back = std::move(hits.met_back);
-  out.samples = std::move(hits.samples);
-  out.rays = direct.rays + hits.rays;
-  out.supersampled = averaged.texels.size();
-  out.sweeps = bounced.sweeps;
-  out.hit_bytes_in_file = hits.bytes_in_file();
+  out.relative_error = relative_error(work.bounced.irradiance, work.errors.variance);
+  out.irradiance = std::move(work.bounced.irradiance);
+  out.direct = std::move(work.direct.irradiance);
+  out.direct_variance = std::move(work.direct.variance);
+  out.indirect_variance = std::move(work.bounced.split_variance);
+  out.pooled_variance = std::move(work.errors.variance);
+  out.relative_error_p95 = percentile_95(work.errors.all);
+  out.errors = std::move(work.errors.all);
+  out.gathered_errors = std::move(work.errors.gathered);
+  out.enclosed = transport::find_enclosed(scene, tracer, elements, [&](size_t i) {
+    return transport::BacksSeen{int(work.hits.samples[i]), int(work.hits.met_back[i]),
+                                int(work.hits.met_double_sided_back[i])};
+  });
+  out.met_back = std::move(work.hits.met_back);
+  out.samples = std::move(work.hits.samples);
+  out.rays = work.direct.rays + work.hits.rays;
+  out.supersampled = work.averaged;
+  out.sweeps = work.bounced.sweeps;
+  out.hit_bytes_in_file = work.hits.bytes_in_file();
   return out;
 }
 

@@ -8,10 +8,13 @@
 namespace luxel::gather {
 
 struct GatherParams {
-  int samples = 256;  ///< indirect rays per element; with max_error, of the first round
+  int samples = 256;  ///< indirect rays per element; with max_error or seconds, of the first round
   /// > 0: rounds of more samples until 95 % of elements have a smaller relative error (adaptive.h).
   float max_error = 0;
-  int max_samples = 16384;  ///< with max_error, per element
+  /// > 0: rounds of more samples while they, and the bounces, end within so many seconds from the
+  /// call. The first round and the first direct light are not cut short. Depends on the machine.
+  double seconds = 0;
+  int max_samples = 16384;  ///< with max_error or seconds, per element
   int direct_samples = 64;  ///< shadow rays per element towards emissive surfaces
   int supersample = 1;      ///< points per element where direct light varies; 1: none
   int bounces = -1;         ///< < 0: all
@@ -20,6 +23,7 @@ struct GatherParams {
   const transport::LightLayers* layers = nullptr;  ///< null: light is not told apart
   uint64_t hit_memory_bytes = UINT64_MAX;
   std::filesystem::path scratch_folder = ".";
+  PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
 };
 
 struct Gather {
@@ -31,6 +35,7 @@ struct Gather {
   std::vector<uint8_t> enclosed;   ///< per element: 1 inside a solid (transport::is_enclosed)
   std::vector<float> pooled_variance;  ///< of the luminance, per element: pooled_variances
   std::vector<float> errors;           ///< per element: relative_errors
+  std::vector<float> gathered_errors;  ///< the same of what rays brought, light from lamps aside
   float relative_error_p95 = 0;        ///< that 95 of 100 elements stay below
   std::vector<uint16_t> samples;       ///< indirect rays per element
   /// With layers, of each: E per element after all bounces. They add up to `irradiance`.

@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "base/vectorize.h"
 #include "scene/sides.h"
+#include "solve/gather/kept_hits.h"
 #include "solve/gather/near_paths.h"
 
 namespace luxel::gather {
@@ -290,32 +291,59 @@ size_t most_added(std::span<const uint16_t> target, const TracedHits& hits) {
   return most;
 }
 
-/// Traces the round's elements into `store`. Errors: disk full.
-Status trace_tiles(const Round& round, TracedHits& hits, HitStore& store, Progress& progress) {
+/// How many samples some elements will get in a round.
+uint64_t planned_samples(std::span<const uint16_t> target, const TracedHits& hits, size_t begin,
+                         size_t end) {
+  uint64_t planned = 0;
+  for (size_t i = begin; i < end; ++i)
+    planned += uint64_t(std::max(0, int(target[i]) - int(hits.samples[i])));
+  return planned;
+}
+
+/// Traces the elements [begin, end), unless the work is cancelled.
+TracedTile trace_tile(const Round& round, size_t begin, size_t end, TracedHits& hits,
+                      Progress& progress) {
   constexpr uint64_t kRaysPerAdvance = 8192;
+  Work work;
+  TracedTile tile;
+  uint64_t untold = 0;
+  tile.hits.entries.reserve(planned_samples(round.target, hits, begin, end));
+  for (size_t i = begin; i < end; ++i) {
+    if (progress.cancelled()) return tile;
+    const uint64_t before = hits.samples[i];
+    tile.rays += round.trace_element(i, work, hits, tile.hits);
+    tile.hits.end.push_back(uint32_t(tile.hits.entries.size()));
+    // Not for every element: the counter is shared by all threads.
+    untold += hits.samples[i] - before;
+    if (untold < kRaysPerAdvance && i + 1 < end) continue;
+    progress.advance(untold);
+    untold = 0;
+  }
+  return tile;
+}
+
+/// Traces the round's elements into `store`. Errors: disk full.
+Status trace_tiles(const Round& round, const KeptStage& kept, TracedHits& hits, HitStore& store,
+                   Progress& progress) {
   std::atomic<uint64_t> rays{0};
   std::mutex mutex;
   Status status;
+  // StoredHit::base() of the last texel that has another below and to the right, plus one.
+  const uint32_t side = uint32_t(round.world.atlas.resolution);
+  const uint32_t places = (side + 2) * (side + 1) - 1;
   parallel_for(hits.size(), kTileElements, [&](size_t begin, size_t end) {
-    Work work;
-    HitTile tile;
-    uint64_t planned = 0, traced = 0, untold = 0;
-    for (size_t i = begin; i < end; ++i)
-      planned += uint64_t(std::max(0, int(round.target[i]) - int(hits.samples[i])));
-    tile.entries.reserve(planned);
-    for (size_t i = begin; i < end; ++i) {
+    if (progress.cancelled()) return;
+    const uint64_t planned = planned_samples(round.target, hits, begin, end);
+    std::optional<FoundTile> tile = find_tile(kept, begin, end, places, hits);
+    if (tile) {
+      progress.skip(planned);
+    } else {
+      tile.emplace(FoundTile{trace_tile(round, begin, end, hits, progress), {}});
       if (progress.cancelled()) return;
-      const uint64_t before = hits.samples[i];
-      traced += round.trace_element(i, work, hits, tile);
-      tile.end.push_back(uint32_t(tile.entries.size()));
-      // Not for every element: the counter is shared by all threads.
-      untold += hits.samples[i] - before;
-      if (untold < kRaysPerAdvance && i + 1 < end) continue;
-      progress.advance(untold);
-      untold = 0;
+      tile->entries = keep_tile(kept, begin, end, tile->tile, hits);
     }
-    rays += traced;
-    const Status put = store.put(begin / kTileElements, std::move(tile));
+    rays += tile->tile.rays;
+    const Status put = store.put(begin / kTileElements, std::move(tile->tile.hits), tile->entries);
     if (!put) {
       const std::lock_guard lock(mutex);
       if (status) status = put;
@@ -350,12 +378,10 @@ Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
         NearWorld{scene, atlas, *params.near_lights, tracer, widths, diagonal_m, params.layers});
   }
   const World world{scene, atlas, around, near ? &*near : nullptr, params.layers};
-  uint64_t planned = 0;
-  for (size_t i = 0; i < target.size(); ++i)
-    planned += uint64_t(std::max(0, int(target[i]) - int(hits.samples[i])));
-  progress.begin("trace rays", planned);
-  LUXEL_TRY_STATUS(trace_tiles({world, elements, tracer, target, params.seed, diagonal_m}, hits,
-                               store, progress));
+  const KeptStage kept = kept_round(hits, target, params);
+  progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
+  LUXEL_TRY_STATUS(trace_tiles({world, elements, tracer, target, params.seed, diagonal_m}, kept,
+                               hits, store, progress));
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
   hits.rounds.push_back(std::move(store));
   return {};

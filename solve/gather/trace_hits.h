@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "atlas/atlas.h"
+#include "base/part_store.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "scene/scene.h"
@@ -25,6 +26,7 @@ struct TraceParams {
   /// What rays look for that are followed on where they end nearby (near_paths.h); null: none are.
   const transport::Lights* near_lights = nullptr;
   const transport::LightLayers* layers = nullptr;  ///< null: light is not told apart
+  PartStore* parts = nullptr;  ///< where finished tiles are kept and found; null: nowhere
 };
 
 /// What rays have met, in rounds of tracing: each adds samples to some of the elements.

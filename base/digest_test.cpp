@@ -1,0 +1,36 @@
+#include "base/digest.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <vector>
+
+namespace luxel {
+namespace {
+
+uint64_t digest(const std::vector<std::byte>& bytes) { return digest_of(bytes); }
+
+TEST(Digest, ChangesWithEveryBitAndWithTheLength) {
+  std::set<uint64_t> seen;
+  size_t count = 0;
+  for (size_t length = 0; length <= 20; ++length) {
+    std::vector<std::byte> bytes(length);
+    seen.insert(digest(bytes)), ++count;  // zeros: the length alone differs
+    for (size_t i = 0; i < 8 * length; ++i, ++count) {
+      bytes[i / 8] ^= std::byte(1 << i % 8);
+      seen.insert(digest(bytes));
+      bytes[i / 8] ^= std::byte(1 << i % 8);
+    }
+  }
+  EXPECT_EQ(seen.size(), count);
+}
+
+TEST(Digest, KnowsWhereOneListEndsAndTheNextBegins) {
+  Digest a, b;
+  a.add("ab"), a.add("c");
+  b.add("a"), b.add("bc");
+  EXPECT_NE(a.value(), b.value());
+}
+
+}  // namespace
+}  // namespace luxel

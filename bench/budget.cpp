@@ -1,0 +1,217 @@
+// luxel bench budget: how long it takes to a known error, and whether plans, budgets and the time
+// left that is shown hold.
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "base/parallel.h"
+#include "bench/bench.h"
+#include "bench/prepared.h"
+#include "pipeline/bake.h"
+
+namespace luxel::bench {
+namespace {
+
+constexpr int kPaths = 16384;
+constexpr double kGoal = 0.01;
+constexpr std::array kJudgedScenes{"cornell_box/cornell_box.glb",
+                                   "living_room/living_room_lit_uv1.glb",
+                                   "tile_game_room/tile_game_room_lit_uv1.glb"};
+constexpr std::array kPlannedScenes{"cornell_box/cornell_box.glb", "living_room/living_room.glb",
+                                    "tile_game_room/tile_game_room6.glb", "suzanne_room/room.glb",
+                                    "kaykit_city/kaykit_city.glb"};
+
+pipeline::BakeSettings settings_of(const std::filesystem::path& scene) {
+  pipeline::BakeSettings settings;
+  settings.scene = scene;
+  settings.output = std::filesystem::temp_directory_path();
+  return settings;
+}
+
+struct TimedBake {
+  pipeline::Bake bake;
+  double seconds = 0;
+};
+Result<TimedBake> timed(const pipeline::BakeSettings& settings) {
+  Progress progress;
+  const auto start = Clock::now();
+  LUXEL_TRY(pipeline::Bake bake, pipeline::bake_scene(settings, progress));
+  return TimedBake{std::move(bake), seconds_since(start)};
+}
+
+/// Over texels that neither takes for the inside of a solid.
+double rmse_over_mean(const pipeline::Bake& bake, const pipeline::Bake& truth) {
+  double sum2 = 0, mean = 0, count = 0;
+  for (size_t i = 0; i < bake.light.irradiance.size(); ++i) {
+    if (bake.light.hidden[i] || truth.light.hidden[i]) continue;
+    const double e = double(luminance(truth.light.irradiance[i]));
+    const double d = double(luminance(bake.light.irradiance[i])) - e;
+    sum2 += d * d, mean += e, count += 1;
+  }
+  return std::sqrt(sum2 * count) / mean;
+}
+
+/// The least samples, doubled from 64, with which a bake is as near to the paths as is asked for.
+Status measure_to_one_percent(const std::filesystem::path& scene, Table& table) {
+  pipeline::BakeSettings settings = settings_of(scene);
+  settings.resolution = 256, settings.uv = atlas::UvMode::keep;
+  settings.solver = "reference", settings.samples = kPaths;
+  LUXEL_TRY(const TimedBake truth, timed(settings));
+  settings.solver = "gather";
+  for (settings.samples = 64; settings.samples <= kPaths; settings.samples *= 2) {
+    LUXEL_TRY(const TimedBake t, timed(settings));
+    const double error = rmse_over_mean(t.bake, truth.bake);
+    table.rows.push_back({scene.stem().string(), fmt::format("{}", settings.samples),
+                          fmt::format("{:.2f}", t.seconds), fmt::format("{:.2f} %", 100 * error),
+                          fmt::format("{:.2f} %", 100 * t.bake.light.relative_error),
+                          fmt::format("{:.2f} %", 100 * truth.bake.light.relative_error),
+                          fmt::format("{:.0f}", truth.seconds)});
+    table.json.push_back({{"scene", scene.stem().string()},
+                          {"samples", settings.samples},
+                          {"seconds", t.seconds},
+                          {"rmse_over_mean", error},
+                          {"claimed", t.bake.light.relative_error},
+                          {"noise_of_paths", truth.bake.light.relative_error},
+                          {"seconds_of_paths", truth.seconds}});
+    if (error <= kGoal) break;
+  }
+  return {};
+}
+
+/// Rays of a bake to an error over those of the least uniform bake, by doublings, that is as sure
+/// at 95 of 100 texels.
+Status compare_adaptive(const std::filesystem::path& scene, Table& table) {
+  pipeline::BakeSettings settings = settings_of(scene);
+  settings.resolution = 256, settings.uv = atlas::UvMode::keep;
+  for (const double asked : {0.1, 0.05, 0.02}) {
+    settings.max_error = asked;
+    LUXEL_TRY(const TimedBake adaptive, timed(settings));
+    settings.max_error = 0;
+    // Between two doublings the error is taken for a power of the samples.
+    double rays_before = 0, error_before = 0;
+    const double goal = double(adaptive.bake.light.error_p95);
+    for (settings.samples = 32; settings.samples <= 1 << 15; settings.samples *= 2) {
+      settings.direct_samples = settings.samples;
+      LUXEL_TRY(const TimedBake uniform, timed(settings));
+      const double error = double(uniform.bake.light.error_p95);
+      const double rays = double(uniform.bake.light.rays);
+      if (error > goal) {
+        rays_before = rays, error_before = error;
+        continue;
+      }
+      const double part =
+          rays_before > 0 ? std::log(error_before / goal) / std::log(error_before / error) : 1;
+      const double needed =
+          rays_before > 0 ? rays_before * std::pow(rays / rays_before, part) : rays;
+      const double ratio = double(adaptive.bake.light.rays) / needed;
+      table.notes.push_back(fmt::format(
+          "{} to {:.1f} % (reached: {:.1f} %): {:.1f} Mrays, {:.2f} of the {:.1f} that uniform "
+          "sampling needs; {:.1f} s.",
+          scene.stem().string(), 100 * asked, 100 * goal, double(adaptive.bake.light.rays) * 1e-6,
+          ratio, needed * 1e-6, adaptive.seconds));
+      table.json.push_back({{"scene", scene.stem().string()},
+                            {"max_error", asked},
+                            {"reached", goal},
+                            {"rays", adaptive.bake.light.rays},
+                            {"rays_of_uniform", needed},
+                            {"ratio", ratio}});
+      break;
+    }
+    settings.direct_samples = pipeline::BakeSettings{}.direct_samples;
+  }
+  return {};
+}
+
+/// What was shown when a tenth of the bake was over, over what was left then.
+struct Watched {
+  double seconds = 0;
+  std::vector<std::pair<double, double>> shown;  ///< when, and seconds left
+
+  double ratio_at(double share) const {
+    for (const auto& [at, left] : shown)
+      if (at >= share * seconds && left >= 0) return left / (seconds - at);
+    return 0;
+  }
+};
+
+Result<Watched> watch(const pipeline::BakeSettings& settings) {
+  Watched out;
+  Progress progress;
+  std::atomic<bool> done{false};
+  const auto start = Clock::now();
+  std::thread watcher([&] {
+    while (!done) {
+      out.shown.emplace_back(seconds_since(start), progress.snapshot().seconds_left);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  });
+  const Result<pipeline::Bake> bake = pipeline::bake_scene(settings, progress);
+  out.seconds = seconds_since(start);
+  done = true;
+  watcher.join();
+  if (!bake) return tl::unexpected(bake.error());
+  return out;
+}
+
+Status measure_plan(const std::filesystem::path& scene, Table& table) {
+  pipeline::BakeSettings settings = settings_of(scene);
+  settings.resolution = 1024;
+  LUXEL_TRY(settings.outside.sky, pipeline::parse_sky("135,45"));
+  Progress progress;
+  LUXEL_TRY(const pipeline::Plan plan, pipeline::plan_bake(settings, progress));
+  LUXEL_TRY(const Watched watched, watch(settings));
+  table.notes.push_back(fmt::format(
+      "{}, 1024 x 1024, sun and sky: planned {:.1f} s, took {:.1f} s, ratio {:.2f}; time left "
+      "shown over the truth when a tenth was over {:.2f}, half {:.2f}.",
+      scene.stem().string(), plan.seconds, watched.seconds, plan.seconds / watched.seconds,
+      watched.ratio_at(0.1), watched.ratio_at(0.5)));
+  table.json.push_back({{"scene", scene.stem().string()},
+                        {"planned_s", plan.seconds},
+                        {"seconds", watched.seconds},
+                        {"left_at_a_tenth", watched.ratio_at(0.1)},
+                        {"left_at_half", watched.ratio_at(0.5)}});
+  return {};
+}
+
+Status measure_time_budget(const std::filesystem::path& scene, Table& table) {
+  pipeline::BakeSettings settings = settings_of(scene);
+  LUXEL_TRY(settings.outside.sky, pipeline::parse_sky("135,45"));
+  for (const double budget : {3, 10, 30}) {
+    settings.time_budget_s = budget;
+    LUXEL_TRY(const TimedBake t, timed(settings));
+    table.notes.push_back(fmt::format(
+        "{}, 512 x 512, --time-budget {}: {:.1f} s, 95 of 100 texels to {:.1f} %.",
+        scene.stem().string(), budget, t.seconds, 100 * double(t.bake.light.error_p95)));
+    table.json.push_back({{"scene", scene.stem().string()},
+                          {"time_budget_s", budget},
+                          {"seconds", t.seconds},
+                          {"relative_p95", t.bake.light.error_p95}});
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Table> measure_budget(const std::filesystem::path& shared, int threads) {
+  const ThreadLimit limit(threads);
+  Table table =
+      new_table("budget", {"scene, 256 x 256, --uv keep", "samples", "seconds", "RMSE over mean",
+                           "claimed", "noise of the paths", "seconds of the paths"});
+  const auto for_scene = [&](const char* file, const auto& measure) -> Status {
+    const auto path = shared / "scenes" / file;
+    if (std::filesystem::exists(path)) return measure(path, table);
+    table.notes.push_back(path.string() + " is not on this machine: left out");
+    return {};
+  };
+  LUXEL_TRY_STATUS(for_scene(kJudgedScenes[1], compare_adaptive));
+  LUXEL_TRY_STATUS(for_scene(kPlannedScenes[1], measure_time_budget));
+  for (const char* file : kPlannedScenes) LUXEL_TRY_STATUS(for_scene(file, measure_plan));
+  for (const char* file : kJudgedScenes) LUXEL_TRY_STATUS(for_scene(file, measure_to_one_percent));
+  table.notes.push_back(fmt::format(
+      "Judged by {} paths per texel, whose own noise is a part of what is measured; seconds of the "
+      "whole bake without writing files.",
+      kPaths));
+  return table;
+}
+
+}  // namespace luxel::bench

@@ -1,0 +1,134 @@
+#include "pipeline/gather_light.h"
+
+#include <algorithm>
+
+#include "pipeline/output_folder.h"
+#include "pipeline/plan.h"
+#include "pipeline/solver_memory.h"
+#include "pipeline/texel_light.h"
+#include "solve/gather/forecast.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Of the first round, when an error is asked for.
+constexpr int kFirstSamples = 32;
+/// A trial lights one texel in so many, which costs as much of the bake.
+constexpr int kTrialPart = 100;
+/// Bakes below so many rays are over before anybody looks at the clock.
+constexpr double kRaysWorthATrial = 2e7;
+/// What the first direct light and the first rays may take of a time budget.
+constexpr double kFirstShare = 0.3;
+
+void warn_about_rounds(const BakeSettings& settings, const gather::GatherParams& params,
+                       const gather::Gather& result, std::vector<std::string>& warnings) {
+  const std::string winner = settings.max_error > 0
+                                 ? fmt::format("--max-error {}", settings.max_error)
+                                 : fmt::format("--time-budget {}", settings.time_budget_s);
+  if (settings.samples_given)
+    warnings.push_back(
+        fmt::format("{} wins: it says how many rays there are, and --samples {} is not looked at",
+                    winner, settings.samples));
+  if (settings.max_error <= 0 || double(result.relative_error_p95) <= settings.max_error) return;
+  warnings.push_back(fmt::format(
+      "--max-error {} was not reached: 95 of 100 texels are known to {:.2g} of their light, {}",
+      settings.max_error, result.relative_error_p95,
+      settings.time_budget_s > 0
+          ? fmt::format("when --time-budget {} was over", settings.time_budget_s)
+          : fmt::format("and none gets more than {} rays", params.max_samples)));
+}
+
+double total_seconds(const Progress& progress) {
+  double sum = 0;
+  for (const Stage& stage : progress.stages()) sum += stage.seconds;
+  return sum;
+}
+
+/// Makes the first round small enough for `seconds`. The forecast is that of `params`.
+void shrink_first_round(const gather::Forecast& forecast, double seconds,
+                        gather::GatherParams& params) {
+  const double share = kFirstShare * std::max(seconds, 0.0);
+  double points_s = forecast.supersample_s;
+  if (forecast.direct_s + points_s > share) {
+    const double part = share / (forecast.direct_s + points_s);
+    params.direct_samples = std::max(1, int(params.direct_samples * part));
+    // Points have a few shadow rays each, however few there are of the texel.
+    if (points_s > share) params.supersample = std::max(1, int(params.supersample * part));
+  }
+  if (forecast.trace_s > share)
+    params.samples = std::max(1, int(params.samples * share / forecast.trace_s));
+}
+
+/// Tells how long it will take, and fits the first round into a time budget.
+Status look_ahead(const SolveInput& in, const BakeSettings& settings, gather::GatherParams& params,
+                  std::vector<std::string>& warnings, Progress& progress) {
+  const std::vector<Stage> after = stages_after_solving(in, settings);
+  progress.expect_at_end(after);
+  const double rays = double(in.elements.size()) * (params.samples + params.direct_samples);
+  if (rays < kRaysWorthATrial && settings.time_budget_s <= 0) return {};
+  LUXEL_TRY(const gather::Forecast forecast, gather::forecast(in, params, kTrialPart, progress));
+  progress.finish();
+  if (settings.time_budget_s <= 0) {
+    progress.expect(stages_of(forecast));
+    return {};
+  }
+  double left = settings.time_budget_s - total_seconds(progress);
+  for (const Stage& stage : after) left -= stage.seconds;
+  if (left < forecast.seconds() / params.samples)
+    warnings.push_back(
+        fmt::format("--time-budget {} leaves {:.1f} s for light, after reading and laying out the "
+                    "scene and before drawing and writing: too little, it takes longer",
+                    settings.time_budget_s, std::max(left, 0.0)));
+  shrink_first_round(forecast, left, params);
+  params.seconds = std::max(left, 1e-3);
+  return {};
+}
+
+}  // namespace
+
+gather::GatherParams gather_params(const BakeSettings& settings) {
+  gather::GatherParams params;
+  const bool rounds = settings.max_error > 0 || settings.time_budget_s > 0;
+  params.samples = rounds ? kFirstSamples : settings.samples;
+  params.max_error = float(settings.max_error);
+  params.direct_samples = settings.direct_samples;
+  params.supersample = settings.supersample;
+  params.bounces = settings.bounces;
+  params.seed = settings.seed;
+  params.scratch_folder = nearest_folder(settings.output);
+  params.parts = in.parts;
+  return params;
+}
+
+Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
+                                Progress& progress) {
+  gather::GatherParams params = gather_params(settings);
+  transport::LightLayers layers;
+  if (settings.layers != transport::LayerMode::none) {
+    LUXEL_TRY(layers, transport::light_layers(in.scene, in.lights, settings.layers));
+  }
+  LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
+  std::vector<std::string> warnings;
+  LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
+  if (layers.size() > 0) {
+    params.layers = &layers;
+    params.parts = nullptr;  // what is kept does not tell lights apart
+  }
+  LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
+                                                  in.lights, in.tracer, params, progress));
+  TexelLight out = texel_light(std::move(result));
+  out.warnings = std::move(warnings);
+  if (settings.max_error > 0 || settings.time_budget_s > 0)
+    warn_about_rounds(settings, params, result, out.warnings);
+  out.errors = std::move(result.errors), out.error_p95 = result.relative_error_p95;
+  out.samples = std::move(result.samples);
+  out.layers = std::move(layers.layers), out.layer_irradiance = std::move(result.layers);
+  out.direct = std::move(result.direct);
+  out.direct_variance = std::move(result.direct_variance);
+  out.variance = std::move(result.indirect_variance);
+  out.sweeps = result.sweeps, out.supersampled_texels = result.supersampled;
+  out.scratch_bytes = result.hit_bytes_in_file;
+  return out;
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,157 @@
+#include "solve/gather/forecast.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "solve/gather/adaptive.h"
+
+namespace luxel::gather {
+namespace {
+
+constexpr uint32_t kSquare = 5;
+constexpr size_t kFewestTexels = 4096;
+
+template <class Work>
+Result<double> seconds_of(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  LUXEL_TRY_STATUS(work());
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// About `count` texels, those of some cells of the map: all texels are as likely, also those at
+/// the borders of charts, where light is the dearest.
+std::vector<uint32_t> texels_to_try(const atlas::TexelMap& map, size_t count) {
+  const size_t n = map.texels.size();
+  if (count >= n) {
+    std::vector<uint32_t> all(n);
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
+  }
+  const double part = double(count) / double(n);
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < n; ++i) {
+    const uint64_t cell = hash64(map.texels[i].x / kSquare, map.texels[i].y / kSquare);
+    if (double(unit_float(uint32_t(cell >> 32))) < part) out.push_back(i);
+  }
+  if (out.empty()) out.push_back(uint32_t(n / 2));
+  return out;
+}
+
+/// Those of `tried` whose neighbours were all tried too: of others it is not known whether light
+/// varies around them.
+std::vector<uint32_t> within(const atlas::TexelMap& map, std::span<const uint32_t> tried) {
+  std::vector<uint8_t> is_tried(map.texels.size());
+  for (const uint32_t i : tried) is_tried[i] = 1;
+  const int side = map.resolution;
+  std::vector<uint32_t> out;
+  for (const uint32_t i : tried) {
+    const int x0 = int(map.texels[i].x), y0 = int(map.texels[i].y);
+    bool whole = true;
+    for (int y = std::max(0, y0 - 1); y <= std::min(side - 1, y0 + 1); ++y)
+      for (int x = std::max(0, x0 - 1); x <= std::min(side - 1, x0 + 1); ++x) {
+        const uint32_t j = map.texel_at[size_t(y) * size_t(side) + size_t(x)];
+        whole = whole && (j == atlas::kNone || is_tried[j]);
+      }
+    if (whole) out.push_back(i);
+  }
+  return out;
+}
+
+struct Trial {
+  const transport::TexelScene& world;
+  const GatherParams& params;
+  std::vector<uint32_t> texels;
+  double scale = 1;  ///< all texels over those tried
+  transport::DirectLight direct;
+  TracedHits hits;
+};
+
+Status try_direct(Trial& trial, Forecast& out, Progress& progress) {
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const transport::DirectParams params{trial.params.direct_samples, trial.params.seed};
+  trial.direct.irradiance.resize(elements.size());
+  trial.direct.variance.resize(elements.size());
+  trial.direct.split_variance.resize(elements.size());
+  LUXEL_TRY(const double seconds, seconds_of([&] {
+              return direct_light_again(scene, elements, lights, tracer, trial.texels, params,
+                                        trial.direct, progress);
+            }));
+  out.direct_s = trial.scale * seconds;
+  out.rays += trial.scale * double(trial.direct.rays);
+  return {};
+}
+
+Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  if (trial.params.supersample <= 1) return {};
+  const transport::SupersampleParams params{
+      .points = trial.params.supersample,
+      .direct = {trial.params.direct_samples, trial.params.seed}};
+  const std::vector<uint32_t> known = within(map, trial.texels);
+  if (known.empty()) return {};
+  const double scale = double(elements.size()) / double(known.size());
+  // They are too few for many threads, and a call looks at the whole map once: that is no texel's.
+  const int threads = thread_count();
+  const ThreadLimit one(1);
+  uint64_t rays = 0;
+  const auto seconds_for = [&](std::span<const uint32_t> among) {
+    return seconds_of([&]() -> Status {
+      LUXEL_TRY(const transport::Supersampled done,
+                transport::supersample(scene, atlas, map, elements, lights, tracer, among, params,
+                                       trial.direct, progress));
+      rays = done.rays;
+      return {};
+    });
+  };
+  LUXEL_TRY(const double fixed, seconds_for({}));
+  LUXEL_TRY(const double with_fixed, seconds_for(known));
+  const double seconds = std::max(0.0, with_fixed - fixed) / double(threads);
+  out.supersample_s = scale * seconds, out.rays += scale * double(rays);
+  return {};
+}
+
+Status try_tracing(Trial& trial, Forecast& out, Progress& progress) {
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  trial.hits = no_hits(elements.size());
+  std::vector<uint16_t> target(elements.size());
+  for (const uint32_t i : trial.texels) target[i] = uint16_t(trial.params.samples);
+  const TraceParams params{trial.params.seed, UINT64_MAX, trial.params.scratch_folder,
+                           trial.params.bounces < 0 ? &lights : nullptr};
+  LUXEL_TRY(const double seconds, seconds_of([&] {
+              return trace_more(scene, atlas, elements, lights.around, tracer, target, params,
+                                trial.hits, progress);
+            }));
+  out.trace_s = trial.scale * seconds;
+  out.rays += trial.scale * double(trial.hits.rays);
+  out.hit_bytes = trial.scale * double(trial.hits.bytes_in_memory());
+  return {};
+}
+
+}  // namespace
+
+Result<Forecast> forecast(const transport::TexelScene& world, const GatherParams& params, int part,
+                          Progress& progress) {
+  const size_t n = world.elements.size();
+  const size_t most = size_t(kTrialRays / double(params.samples));
+  const size_t count = std::min({n, most, std::max(kFewestTexels, n / size_t(part))});
+  Trial trial{world, params, texels_to_try(world.map, std::max<size_t>(count, 1)), 1, {}, {}};
+  trial.scale = double(n) / double(trial.texels.size());
+  progress.begin("trial", 0);
+  Progress own;  // its stages are not those of the bake
+  Forecast out;
+  LUXEL_TRY_STATUS(try_direct(trial, out, own));
+  LUXEL_TRY_STATUS(try_supersample(trial, out, own));
+  LUXEL_TRY_STATUS(try_tracing(trial, out, own));
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  const double sweeps = expected_sweeps(world.map, world.elements, trial.hits, params.samples,
+                                        {params.bounces, params.tolerance});
+  out.bounces_s = sweeps * (seconds_per_hit(world.map, trial.hits) * out.hit_bytes /
+                            double(sizeof(StoredHit)) / double(thread_count()));
+  return out;
+}
+
+}  // namespace luxel::gather

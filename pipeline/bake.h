@@ -60,9 +60,9 @@ Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);
 
 /// The whole of `luxel bake`: bake_scene, then lightmap.exr (and its other formats), baked.glb,
 /// preview.png, texels.png, error.png, view.html when asked for, and bake.json in settings.output,
-/// all of them or none. Of several pages they are lightmap-0.exr and so on;
-/// with --layers there is a lightmap-LAYER.exr of each besides. Returns what bake.json holds. A
-/// bake that does not come to its end leaves its checkpoint, nothing else.
+/// all of them or none. Of several pages they are lightmap-0.exr and so on; with --layers there is
+/// a lightmap-LAYER.exr of each besides. Returns what bake.json holds. A bake that does not come to
+/// its end leaves its checkpoint, nothing else.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

@@ -96,7 +96,6 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   params.bounces = settings.bounces;
   params.seed = settings.seed;
   params.scratch_folder = nearest_folder(settings.output);
-  params.parts = in.parts;
   return params;
 }
 
@@ -106,14 +105,13 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   transport::LightLayers layers;
   if (settings.layers != transport::LayerMode::none) {
     LUXEL_TRY(layers, transport::light_layers(in.scene, in.lights, settings.layers));
+    params.layers = &layers;
+  } else {
+    params.parts = in.parts;  // the light of layers is not kept yet
   }
   LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
   std::vector<std::string> warnings;
   LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
-  if (layers.size() > 0) {
-    params.layers = &layers;
-    params.parts = nullptr;  // what is kept does not tell lights apart
-  }
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   TexelLight out = texel_light(std::move(result));

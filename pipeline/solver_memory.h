@@ -9,7 +9,7 @@ namespace luxel::pipeline {
 inline constexpr uint64_t kMinHitBytes = 16u << 20;
 
 /// What the process will hold besides stored hits, the scene and all that is there now included.
-/// `layers`: of light, that are told apart.
+/// `layers` of light are told apart.
 uint64_t bytes_besides_hits(const SolveInput& in, const BakeSettings& settings, size_t layers = 0);
 
 /// How many bytes a solver may use beyond what it needs at least: by --max-memory, or by what is

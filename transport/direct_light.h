@@ -25,8 +25,8 @@ struct DirectParams {
   /// Rays per element towards the soft light of the surroundings. 0: the caller's own rays see it;
   /// the peaks of an environment count in any case.
   int sky_samples = 0;
-  const LightLayers* layers = nullptr;  ///< null: light is not told apart
   PartStore* parts = nullptr;           ///< where finished parts are kept and found; null: nowhere
+  const LightLayers* layers = nullptr;  ///< null: light is not told apart
 };
 
 struct DirectLight {

@@ -66,8 +66,8 @@ transport::SupersampleParams supersample_params(const GatherParams& params) {
   return {.points = params.supersample,
           .direct = {.samples = params.direct_samples,
                      .seed = params.seed,
-                     .layers = params.layers,
-                     .parts = params.parts}};
+                     .parts = params.parts,
+                     .layers = params.layers}};
 }
 
 Status begin_direct(const transport::TexelScene& world, const GatherParams& params, Work& work,
@@ -90,7 +90,7 @@ Status trace_round(const transport::TexelScene& world, const GatherParams& param
                    std::span<const uint16_t> target, Work& work, Progress& progress) {
   const TraceParams trace{params.seed,           params.hit_memory_bytes,
                           params.scratch_folder, params.bounces < 0 ? &world.lights : nullptr,
-                          params.layers,         params.parts};
+                          params.parts,          params.layers};
   const auto start = std::chrono::steady_clock::now();
   const uint64_t before = work.hits.rays, samples = sum_of(work.hits.samples);
   LUXEL_TRY_STATUS(trace_more(world.scene, world.atlas, world.elements, world.lights.around,
@@ -191,6 +191,8 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
     LUXEL_TRY(more,
               next_round(world, params, params.seconds - seconds_since(start), work, progress));
   }
+  // Layers follow the sweeps of the whole, from the first one on.
+  if (params.layers) work.bounced.irradiance.clear();
   LUXEL_TRY_STATUS(bounce_round(world, behind, {params.bounces, params.tolerance}, work, progress));
   Gather out;
   if (params.layers) {

@@ -25,8 +25,8 @@ struct TraceParams {
   std::filesystem::path scratch_folder = ".";
   /// What rays look for that are followed on where they end nearby (near_paths.h); null: none are.
   const transport::Lights* near_lights = nullptr;
-  const transport::LightLayers* layers = nullptr;  ///< null: light is not told apart
   PartStore* parts = nullptr;  ///< where finished tiles are kept and found; null: nowhere
+  const transport::LightLayers* layers = nullptr;  ///< null: light is not told apart
 };
 
 /// What rays have met, in rounds of tracing: each adds samples to some of the elements.

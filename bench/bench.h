@@ -52,6 +52,9 @@ Result<Table> measure_supersample(const std::filesystem::path& shared, int threa
 /// time budgets against what came. Half an hour, most of it of paths.
 Result<Table> measure_budget(const std::filesystem::path& shared, int threads);
 
+/// What a lightmap for each of 20 lamps costs besides that of all.
+Result<Table> measure_layers(const std::filesystem::path& shared, int threads);
+
 struct Bench {
   std::string_view name;
   BenchFunction run;
@@ -61,6 +64,6 @@ inline constexpr std::array kBenches{
     Bench{"atlas", measure_atlas},     Bench{"memory", measure_memory},
     Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise},
     Bench{"scenes", measure_scenes},   Bench{"supersample", measure_supersample},
-    Bench{"budget", measure_budget}};
+    Bench{"budget", measure_budget},   Bench{"layers", measure_layers}};
 
 }  // namespace luxel::bench

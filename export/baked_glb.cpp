@@ -7,6 +7,7 @@
 
 #include "atlas/pages.h"
 #include "base/check.h"
+#include "base/parallel.h"
 #include "base/vec_double.h"
 #include "export/gltf_mesh.h"
 #include "export/gltf_node.h"
@@ -118,19 +119,53 @@ void append_lightmaps(Glb& glb, MaterialBook& book, std::span<const image::Image
     glb.json["asset"]["extras"]["luxel"]["lightmaps"] = names;
 }
 
+/// Pictures are encoded side by side: there may be dozens.
+struct EncodedLayer {
+  float intensity = 1;
+  std::vector<std::vector<std::byte>> png;  ///< per page
+};
+std::vector<EncodedLayer> encode_layers(std::span<const LightmapLayer> layers) {
+  std::vector<EncodedLayer> out(layers.size());
+  parallel_for(layers.size(), 1, [&](size_t l, size_t) {
+    out[l].intensity = lightmap_intensity(layers[l].lightmaps);
+    for (const image::Image& page : layers[l].lightmaps)
+      out[l].png.push_back(lightmap_png(page, out[l].intensity));
+  });
+  return out;
+}
+
+void append_layers(Glb& glb, MaterialBook& book, std::span<const LightmapLayer> layers) {
+  const std::vector<EncodedLayer> encoded = encode_layers(layers);
+  for (size_t l = 0; l < layers.size(); ++l) {
+    json about = {{"name", layers[l].name}, {"lights", layers[l].lights}};
+    if (layers[l].surroundings) about["surroundings"] = true;
+    const size_t pages = encoded[l].png.size();
+    if (pages > 0) about["intensity"] = encoded[l].intensity;
+    for (size_t p = 0; p < pages; ++p)
+      about["textures"].push_back(append_lightmap_texture(glb, book, encoded[l].png[p],
+                                                          lightmap_name(p, pages, layers[l].name)));
+    glb.json["asset"]["extras"]["luxel"]["layers"].push_back(std::move(about));
+  }
+}
+
 Result<std::vector<std::byte>> write_baked(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                           std::span<const image::Image> lightmaps) {
+                                           std::span<const image::Image> lightmaps,
+                                           std::span<const LightmapLayer> layers) {
   Glb glb;
   MaterialBook book;
   append_lightmaps(glb, book, lightmaps);
+  append_layers(glb, book, layers);
   const std::vector<atlas::Page> pages = atlas::pages_of(atlas);
   json roots = json::array();
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
     if (mesh.triangles.empty()) continue;
     const size_t index = append_mesh(glb, book, scene, mesh, lightmap_places(atlas, pages, i));
-    roots.push_back(append_node(glb, scene.instances[i].world_from_object,
-                                instance_node(scene.instances[i], index)));
+    json node = instance_node(scene.instances[i], index);
+    for (const LightmapLayer& layer : layers)
+      if (std::ranges::find(layer.instances, i) != layer.instances.end())
+        node["extras"]["luxel"]["layer"] = layer.name;
+    roots.push_back(append_node(glb, scene.instances[i].world_from_object, std::move(node)));
   }
   append_lights_and_cameras(glb, scene, roots);
   return finish_scene(glb, scene, std::move(roots));
@@ -156,12 +191,13 @@ Result<std::vector<std::byte>> write_scene(const scene::Scene& scene, json luxel
 }  // namespace
 
 Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                         std::span<const image::Image> lightmaps) {
+                                         std::span<const image::Image> lightmaps,
+                                         std::span<const LightmapLayer> layers) {
   LUXEL_CHECK(lightmaps.size() == atlas::pages_of(atlas).size());
   for (const image::Image& lightmap : lightmaps) LUXEL_CHECK(lightmap.channels == 4);
   LUXEL_CHECK(atlas.first_triangle.size() == scene.instances.size() + 1);
   try {
-    return write_baked(scene, atlas, lightmaps);
+    return write_baked(scene, atlas, lightmaps, layers);
   } catch (const std::exception& e) {  // nlohmann-json and memory
     return fail(ErrorCode::io, "the baked scene cannot be written as .glb: {}", e.what());
   }

@@ -14,16 +14,28 @@
 
 namespace luxel::export_ {
 
+/// The light of some of the lamps. Layers add up to the lightmap.
+struct LightmapLayer {
+  std::string name;
+  std::vector<std::string> lights;          ///< that it is of
+  std::vector<uint32_t> instances;          ///< whose surfaces shine in its light
+  bool surroundings = false;                ///< background and environment are of it
+  std::span<const image::Image> lightmaps;  ///< E, 4 channels, one for each page
+};
+
 /// glTF 2.0 binary: every instance becomes a node with a mesh of its own (its place in the atlas is
 /// its own), TEXCOORD_1 holds the lightmap coordinates, vertices are split where charts part and
 /// shared elsewhere; positions, normals, TEXCOORD_0, colours, materials, textures, lights and
 /// cameras are kept. The lightmap is attached as extension MOZ_lightmap of every material (texCoord
 /// 1, `intensity`), its picture an 8-bit sRGB PNG of E / intensity; docs/bake.md describes it.
 /// `lightmaps` is E, 4 channels, one for each page of the atlas. With several pages a material has
-/// a version for each that it lies on, and a mesh that lies on several a primitive for each. Passes
-/// the Khronos validator without errors.
+/// a version for each that it lies on, and a mesh that lies on several a primitive for each.
+/// asset.extras.luxel.layers lists `layers`, each with a texture per page and its own intensity
+/// (without pictures: none), and nodes that shine name theirs in extras.luxel.layer. Passes the
+/// Khronos validator without errors.
 Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                         std::span<const image::Image> lightmaps);
+                                         std::span<const image::Image> lightmaps,
+                                         std::span<const LightmapLayer> layers = {});
 inline Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene,
                                                 const atlas::Atlas& atlas,
                                                 const image::Image& lightmap) {

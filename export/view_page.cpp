@@ -6,6 +6,7 @@
 
 #include "base/base64.h"
 #include "base/check.h"
+#include "base/parallel.h"
 #include "export/baked_glb.h"
 #include "export/small_picture.h"
 #include "export/view_template.h"
@@ -50,26 +51,67 @@ Status append_packed(std::string& html, const std::string& id, std::span<const s
   return {};
 }
 
-/// An image as 16-bit floats; says what they mean.
-Result<json> append_image(std::string& html, const std::string& id, const image::Image& image) {
+/// An image as 16-bit floats, packed, and what they mean.
+struct PackedImage {
+  json about;
+  std::vector<std::byte> bytes;
+};
+
+Result<PackedImage> packed_image(const std::string& id, const image::Image& image) {
   const image::HalfImage half = image::to_half(image);
-  LUXEL_TRY_STATUS(append_packed(html, id, std::as_bytes(std::span(half.data))));
-  return json{{"id", id}, {"width", half.width}, {"height", half.height}, {"scale", half.scale}};
+  PackedImage out;
+  LUXEL_TRY(out.bytes, deflated(std::as_bytes(std::span(half.data))));
+  out.about = {{"id", id}, {"width", half.width}, {"height", half.height}, {"scale", half.scale}};
+  return out;
 }
 
-Result<json> append_lightmaps(std::string& html, std::span<const image::Image> lightmaps) {
+/// Says what the image means.
+json append_image(std::string& html, PackedImage image) {
+  append_data(html, image.about["id"].get<std::string>().c_str(), "text/plain",
+              base64(image.bytes));
+  return std::move(image.about);
+}
+
+/// Pages of the lightmap; with layers their pictures stand in for its own.
+Result<json> append_lightmaps(std::string& html, std::span<const image::Image> lightmaps,
+                              bool with_pictures) {
   json out = json::array();
   for (size_t p = 0; p < lightmaps.size(); ++p) {
-    LUXEL_TRY(json page, append_image(html, fmt::format("light-{}", p), lightmaps[p]));
+    json page = {{"width", lightmaps[p].width}, {"height", lightmaps[p].height}};
+    if (with_pictures) {
+      LUXEL_TRY(PackedImage image, packed_image(fmt::format("light-{}", p), lightmaps[p]));
+      page = append_image(html, std::move(image));
+    }
     page["file"] = lightmap_name(p, lightmaps.size()) + ".exr";  // by which materials name it
     out.push_back(std::move(page));
   }
   return out;
 }
 
+/// Names of the layers; to `pages` comes the picture of each layer there, in their order.
+Result<json> append_layers(std::string& html, std::span<const LightmapLayer> layers, json& pages) {
+  json out = json::array();
+  std::vector<Result<PackedImage>> packed(layers.size());
+  for (size_t p = 0; p < pages.size(); ++p) {
+    parallel_for(layers.size(), 1, [&](size_t l, size_t) {
+      packed[l] = packed_image(fmt::format("light-{}-{}", p, l), layers[l].lightmaps[p]);
+    });
+    for (size_t l = 0; l < layers.size(); ++l) {
+      LUXEL_TRY(PackedImage image, std::move(packed[l]));
+      pages[p]["layers"].push_back(append_image(html, std::move(image)));
+    }
+  }
+  for (const LightmapLayer& layer : layers)
+    out.push_back(
+        {{"name", layer.name}, {"lights", layer.lights}, {"surroundings", layer.surroundings}});
+  return out;
+}
+
 Result<json> append_surroundings(std::string& html, const scene::Environment* map) {
   if (!map || map->empty()) return nullptr;
-  LUXEL_TRY(json out, append_image(html, "surroundings", small_picture(*map, kSurroundingsWidth)));
+  LUXEL_TRY(PackedImage image,
+            packed_image("surroundings", small_picture(*map, kSurroundingsWidth)));
+  json out = append_image(html, std::move(image));
   out["rotation"] = map->rotation_rad;
   return out;
 }
@@ -103,13 +145,18 @@ Status check_view_page() {
 Result<std::string> view_html(const ViewPage& page) {
   LUXEL_CHECK(!page.lightmaps.empty());
   for (const image::Image& lightmap : page.lightmaps) LUXEL_CHECK(lightmap.channels == 4);
+  for (const LightmapLayer& layer : page.layers)
+    LUXEL_CHECK(layer.lightmaps.size() == page.lightmaps.size());
   LUXEL_TRY_STATUS(check_view_page());
   std::string html(view_page_before_data());
   json about = {{"title", page.title},
                 {"triangles", page.triangles},
                 {"background", {page.background.x, page.background.y, page.background.z}},
                 {"preview", to_json(page.view)}};
-  LUXEL_TRY(about["light"], append_lightmaps(html, page.lightmaps));
+  LUXEL_TRY(about["light"], append_lightmaps(html, page.lightmaps, page.layers.empty()));
+  if (!page.layers.empty()) {
+    LUXEL_TRY(about["layers"], append_layers(html, page.layers, about["light"]));
+  }
   LUXEL_TRY(about["surroundings"], append_surroundings(html, page.environment));
   LUXEL_TRY_STATUS(append_packed(html, "model", page.glb));
   append_data(html, "about", "application/json",

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/result.h"
+#include "export/baked_glb.h"
 #include "image/image.h"
 #include "scene/scene.h"
 
@@ -35,6 +36,8 @@ struct ViewPage {
   /// What stands behind the background's radiance; nullptr or empty: nothing. The page carries it
   /// kSurroundingsWidth pixels wide, or as it is where it is narrower.
   const scene::Environment* environment = nullptr;
+  /// The page carries these instead of `lightmaps`, with a slider and a colour for each.
+  std::span<const LightmapLayer> layers = {};
 };
 inline constexpr int kSurroundingsWidth = 512;
 

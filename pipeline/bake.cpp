@@ -181,6 +181,7 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, Checkp
       checkpoint != nullptr ? checkpoint->parts() : nullptr};
   LUXEL_TRY_STATUS(solve(settings, input, bake, progress));
   LUXEL_TRY_STATUS(repair(settings, ready.tracer, bake, progress));
+  LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
   LUXEL_TRY_STATUS(draw_preview(ready.tracer, bake, progress));
   return bake;
@@ -202,25 +203,39 @@ const std::vector<image::Image>& shown_lightmaps(const Bake& bake) {
   return bake.shown.empty() ? bake.lightmaps : bake.shown;
 }
 
+/// As viewers want them; without pictures only what is said of them.
+std::vector<export_::LightmapLayer> shown_layers(const Bake& bake, bool with_pictures) {
+  std::vector<export_::LightmapLayer> out;
+  for (const BakedLayer& layer : bake.layers) {
+    out.push_back({layer.about.name, layer.about.lights, layer.instances, layer.surroundings, {}});
+    if (with_pictures) out.back().lightmaps = layer.shown.empty() ? layer.lightmaps : layer.shown;
+  }
+  return out;
+}
+
 Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& bake) {
   if (!settings.vertex_colors)
-    return export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake));
+    return export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake),
+                              shown_layers(bake, true));
   const VertexLit lit = vertex_lit(bake.scene, *bake.light.field);
   return export_::vertex_lit_glb(lit.scene, lit.intensity);
 }
 
-/// `glb` is baked.glb. Where that holds light per vertex the page has one of its own.
+/// `glb` is baked.glb. Where that holds light per vertex, or pictures of layers, which the page has
+/// already, the page has one of its own.
 Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
                              std::span<const std::byte> glb) {
   std::vector<std::byte> own;
-  if (settings.vertex_colors) {
-    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake)));
+  const std::vector<export_::LightmapLayer> layers = shown_layers(bake, true);
+  if (settings.vertex_colors || !layers.empty()) {
+    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake),
+                                      shown_layers(bake, false)));
     glb = own;
   }
   LUXEL_TRY(const std::string html,
             export_::view_html({settings.scene.stem().string(), bake.view, bake.scene.background,
                                 bake.atlas.corners.size(), glb, shown_lightmaps(bake),
-                                &bake.scene.environment}));
+                                &bake.scene.environment, layers}));
   return text_file(settings.output / "view.html", html);
 }
 

@@ -3,10 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "base/check.h"
 #include "base/parallel.h"
 #include "pipeline/shown_light.h"
 #include "post/dilate.h"
 #include "scene/sides.h"
+#include "transport/layer_instances.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -62,6 +64,19 @@ std::vector<BakedLayer> bake_layers(const scene::Scene& scene, const atlas::Atla
   for (BakedLayer& layer : out)
     layer.share = all > 0 ? double(luminance(layer.mean_irradiance)) / all : 0;
   return out;
+}
+
+Status note_lights(const scene::Scene& scene, const transport::Lights& lights,
+                   transport::LayerMode mode, std::span<BakedLayer> layers) {
+  if (layers.empty()) return {};
+  LUXEL_TRY(const transport::LightLayers found, transport::light_layers(scene, lights, mode));
+  LUXEL_CHECK(found.size() == layers.size());
+  std::vector<std::vector<uint32_t>> instances = transport::instances_of_layers(lights, found);
+  for (size_t l = 0; l < layers.size(); ++l) {
+    layers[l].instances = std::move(instances[l]);
+    layers[l].surroundings = found.of_surroundings == l;
+  }
+  return {};
 }
 
 Result<std::vector<OutputFile>> layer_files(std::span<const BakedLayer> layers,

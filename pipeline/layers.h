@@ -22,6 +22,8 @@ namespace luxel::pipeline {
 /// A layer of a finished bake.
 struct BakedLayer {
   transport::LightLayer about;
+  std::vector<uint32_t> instances;      ///< transport::instances_of_layers
+  bool surroundings = false;            ///< the light of background and environment is in it
   Rgb mean_irradiance{};                ///< over the texels [W/m^2]
   double share = 0;                     ///< of the luminance of all layers together
   std::vector<image::Image> lightmaps;  ///< E, 4 channels, per page
@@ -37,6 +39,10 @@ Status stitch_layers(const atlas::TexelMap& map, std::span<const post::Seam> sea
 /// The lightmaps of the layers of `light`, which are used up, with `rings` of dilation.
 std::vector<BakedLayer> bake_layers(const scene::Scene& scene, const atlas::Atlas& atlas,
                                     const atlas::TexelMap& map, int rings, TexelLight& light);
+
+/// Notes which surfaces shine in which layer. `mode` is that of the bake.
+Status note_lights(const scene::Scene& scene, const transport::Lights& lights,
+                   transport::LayerMode mode, std::span<BakedLayer> layers);
 
 /// lightmap-NAME.exr and what `formats` adds for each layer. `json` gets what bake.json says about
 /// them, one object per layer.

@@ -171,6 +171,7 @@ Status check_layers(const BakeSettings& s) {
   const char* other = s.denoise                            ? "--denoise"
                       : s.directional != Directional::none ? "--directional"
                       : s.probe_spacing_m > 0              ? "--probes"
+                      : s.resume                           ? "--resume"
                                                            : nullptr;
   if (other)
     return fail(ErrorCode::bad_setting,

@@ -36,6 +36,18 @@ TEST(RefillHidden, GoesInwardsRingByRingAndLeavesTheRest) {
   EXPECT_EQ(values[3], (Rgb{0, 0, 0}));
 }
 
+TEST(RefillHidden, FillsSeveralArraysFromTheSameTexels) {
+  const Row row = row_of({0, 0, 0, 0});
+  const std::vector<uint8_t> hidden{0, 1, 0, 1};
+  std::vector<Rgb> a{{4, 2, 1}, {}, {2, 0, 1}, {}}, b{{0, 0, 0}, {9, 9, 9}, {1, 1, 1}, {}};
+  const std::vector<std::span<Rgb>> arrays{a, b};
+  EXPECT_EQ(refill_hidden(row.atlas, row.map, hidden, 1, {}, arrays),
+            (std::vector<uint32_t>{1, 3}));
+  EXPECT_EQ(a[1], (Rgb{3, 1, 1}));
+  EXPECT_EQ(b[1], (Rgb{0.5f, 0.5f, 0.5f}));
+  EXPECT_EQ(b[3], (Rgb{1, 1, 1}));
+}
+
 TEST(RefillHidden, TakesTheMeanOfBothSides) {
   const Row row = row_of({0, 0, 0});
   std::vector<Rgb> values{{1, 1, 1}, {9, 9, 9}, {3, 3, 3}};

@@ -135,6 +135,28 @@ TEST(StitchSeams, WhatOneSideGainsTheOtherLoses) {
   EXPECT_NEAR(sheet.values[middle].x, 2.0f, 0.02f);
 }
 
+// Two parts of a sheet, one of them all on the left, change by what together the whole changes by,
+// to the five digits of the conjugate gradient; neither alone is stitched: each part's jump weighs
+// as much as the whole's light says.
+TEST(StitchLayers, PartsChangeAsTheirSumDoes) {
+  Sheet sheet({1, 2, 0.5f}, {3, 1, 0.6f}, 0.2f);
+  const std::vector<Rgb> before = sheet.values;
+  std::vector<std::vector<Rgb>> parts(2, std::vector<Rgb>(before.size()));
+  for (size_t i = 0; i < before.size(); ++i) {
+    const float share = sheet.map.texels[i].triangle_number == 0 ? 0.25f : 0.75f;
+    parts[0][i] = before[i] * share, parts[1][i] = before[i] * (1 - share);
+  }
+  Progress progress;
+  ASSERT_TRUE(stitch_layers(sheet.map, sheet.seams, {}, before, parts, progress));
+  sheet.stitch();
+  for (size_t i = 0; i < before.size(); ++i) {
+    const Rgb sum = parts[0][i] + parts[1][i];
+    EXPECT_NEAR(sum.x, sheet.values[i].x, 1e-4f);
+    EXPECT_NEAR(sum.y, sheet.values[i].y, 1e-4f);
+    EXPECT_NEAR(sum.z, sheet.values[i].z, 1e-4f);
+  }
+}
+
 TEST(StitchSeams, AConstantFieldStaysBitForBit) {
   Sheet sheet({0.3f, 0.7f, 1.1f}, {0.3f, 0.7f, 1.1f}, 0);
   const std::vector<Rgb> before = sheet.values;

@@ -9,6 +9,7 @@
 #include "export/baked_glb.h"
 #include "image/codec.h"
 #include "image/color.h"
+#include "scene/procedural.h"
 #include "scene/shapes.h"
 #include "tests/command.h"
 
@@ -331,6 +332,58 @@ TEST_F(ViewHtml, FacesSeenEdgeOnHaveTheirOwnLight) {
   // sample of 4 took 50 from the pixel's 200.
   EXPECT_GT(darkest(preview), 100);
   EXPECT_GT(darkest(shot.picture), darkest(preview) - 15);
+}
+
+/// Two lamps and a panel in a box, which a camera looks into.
+scene::Scene three_lights(Rgb left, Rgb right, Rgb panel) {
+  scene::Scene s = scene::cornell_box();
+  const Box3 bounds = scene::world_bounds(s);
+  const Vec3 size = bounds.upper - bounds.lower;
+  for (scene::Material& m : s.materials)
+    if (max_component(m.emission) > 0) m.emission = panel;
+  s.lights.resize(2);
+  for (size_t k = 0; k < 2; ++k) {
+    s.lights[k].name = k == 0 ? "left" : "right";
+    s.lights[k].position =
+        bounds.lower + Vec3{size.x * (k == 0 ? 0.25f : 0.75f), size.y * 0.7f, size.z * 0.7f};
+    s.lights[k].intensity = k == 0 ? left : right;
+  }
+  return s;
+}
+
+// With all sliders at 1 the page is the preview; at half, off and in another colour it is the
+// preview of a bake of lamps like that. That bake has its own exposure, which the page is told in
+// stops; the lamp's panel itself, which is seen, is turned down with its layer.
+TEST_F(ViewHtml, SlidersAreLamps) {
+  const ScratchFolder s;
+  const auto write = [&](const char* name, const scene::Scene& scene) {
+    EXPECT_TRUE(write_file_atomically(s.path / name, *export_::scene_glb(scene)));
+    return (s.path / name).string();
+  };
+  const Rgb warm{0.3f, 0.2f, 0.1f}, cool{0.1f, 0.2f, 0.3f}, panel{4, 4, 4};
+  const std::string options = "--resolution 192 --samples 64 --uv unwrap";
+  if (!bake(write("a.glb", three_lights(warm, cool, panel)), s.path / "a",
+            options + " --layers per-light"))
+    return;
+  const std::string page = (s.path / "a" / "view.html").string();
+  const auto json = nlohmann::json::parse(slurp(s.path / "a" / "bake.json"));
+  const image::Image8 preview = picture_of(s.path / "a" / "preview.png");
+  expect_same(difference(shoot(page + "#bare", preview).picture, preview, 3, every_pixel),
+              "all at 1");
+  const auto b = three_lights(warm * 0.5f, cool * Rgb{1, 0, 0}, {});
+  ASSERT_TRUE(bake(write("b.glb", b), s.path / "b", options));
+  const auto other = nlohmann::json::parse(slurp(s.path / "b" / "bake.json"));
+  const std::string stops = std::to_string(std::log2(other["preview"]["exposure"].get<double>() /
+                                                     json["preview"]["exposure"].get<double>()));
+  const std::string lamp = json["layers"][2]["name"];
+  const image::Image8 wanted = picture_of(s.path / "b" / "preview.png");
+  const Shot shot =
+      shoot(page + "#bare,left=0.5,right=1:ff0000," + lamp + "=0,stops=" + stops, wanted);
+  // Another bake: its own noise, of 64 rays a percent or two of the light, is a step or two.
+  const Difference d = difference(shot.picture, wanted, 8, every_pixel);
+  EXPECT_LT(d.mean, 1.5);
+  EXPECT_LT(std::abs(d.bias), 0.5);
+  EXPECT_LT(d.share_beyond, 0.03);
 }
 
 // A plate of reflectance 1/2 that sees nothing but a white sky of radiance 1: E = pi. Its

@@ -134,7 +134,10 @@ std::string_view without_number(std::string_view name) {
 Rgb share_out(Rgb whole, std::span<Rgb> by_layer) {
   Rgb sum{};
   for (const Rgb& e : by_layer) sum += e;
-  const auto factor = [](float all, float found) { return found > 0 ? all / found : 1.0f; };
+  // A sum of next to nothing says nothing about shares, and the quotient might not be finite.
+  const auto factor = [](float all, float found) {
+    return found > 1e-6f * all ? all / found : 1.0f;
+  };
   const Rgb share{factor(whole.x, sum.x), factor(whole.y, sum.y), factor(whole.z, sum.z)};
   for (Rgb& e : by_layer) e = e * share;
   return whole - sum;

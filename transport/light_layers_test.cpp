@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/shapes.h"
+#include "transport/layer_instances.h"
 
 namespace luxel::transport {
 namespace {
@@ -58,6 +59,7 @@ TEST(LightLayers, EachLightHasItsOwn) {
   EXPECT_EQ(layers.of_punctual[4], 3);
   EXPECT_EQ(layers.of_surroundings, 7);
   const Lights lights = collect_lights(scene);
+  EXPECT_THAT(instances_of_layers(lights, layers)[4], ElementsAre(1));
   ASSERT_EQ(layers.of_triangle.size(), lights.triangles.size());
   for (size_t k = 0; k < lights.triangles.size(); ++k)
     EXPECT_EQ(layers.of_triangle[k], 3 + lights.triangles[k].instance);  // instance 1 is layer 4
@@ -68,6 +70,9 @@ TEST(LightLayers, GroupsGoByNamesWithoutNumbers) {
   EXPECT_THAT(names_of(layers), ElementsAre("lamp", "light", "Lamp-2", "Tube", "sign", "sky"));
   EXPECT_THAT(layers.layers[0].lights, ElementsAre("lamp.001", "lamp.002"));
   EXPECT_THAT(layers.layers[3].lights, ElementsAre("tube a", "tube b"));
+  const auto instances = instances_of_layers(collect_lights(shop()), layers);
+  EXPECT_THAT(instances[3], ElementsAre(1, 2));
+  EXPECT_TRUE(instances[5].empty());
   for (const auto& [name, without] : {std::pair{"lamp.001", "lamp"},
                                       {"lamp_2", "lamp"},
                                       {"lamp 3", "lamp"},
@@ -98,6 +103,9 @@ TEST(LightLayers, ShareOutMakesTheSumWhole) {
   EXPECT_EQ(missing, (Rgb{4, -2, 1}));
   EXPECT_EQ(own[0], (Rgb{2, 1, 0}));
   EXPECT_EQ(own[1], (Rgb{6, 1, 0}));
+  std::vector<Rgb> faint{{1e-38f, 0, 0}};
+  share_out({1e5f, 1, 1}, faint);
+  EXPECT_EQ(faint[0], (Rgb{1e-38f, 0, 0}));
 }
 
 }  // namespace

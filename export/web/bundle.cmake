@@ -6,7 +6,7 @@
 
 # luxel_bundle_view(VARIABLE): sets VARIABLE to the path of the C++ file.
 function(luxel_bundle_view variable)
-  set(sources package.json package-lock.json build.mjs page.html view.js data.js camera.js material.js)
+  set(sources package.json package-lock.json build.mjs page.html view.js data.js camera.js layers.js material.js)
   set(folder ${CMAKE_BINARY_DIR}/web)
   set(result ${folder}/view_template.cpp)
   set(${variable} ${result} PARENT_SCOPE)

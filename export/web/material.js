@@ -63,9 +63,18 @@ void main() {
 
 const fragmentShader = /* glsl */ `
 precision highp float;
-uniform sampler2D light, map, metal, glow;
+precision highp sampler2DArray;
+#ifdef LAYERS
+uniform sampler2DArray light;
+uniform float layerScale[LAYERS];
+uniform vec3 layerColor[LAYERS];
+#else
+uniform sampler2D light;
+uniform float lightScale;
+#endif
+uniform sampler2D map, metal, glow;
 uniform vec3 baseColor, emission;
-uniform float alpha, cutoff, metallic, lightScale, exposure;
+uniform float alpha, cutoff, metallic, exposure;
 uniform int show;
 // At pixels that a triangle covers in part, the middle can lie outside of it: far away in the atlas,
 // on nothing, where the triangle is seen edge-on. The light map has no mipmaps that need it even.
@@ -87,9 +96,18 @@ void main() {
 #ifdef EMISSION_UV
   emitted *= texture(glow, atEmission).rgb;
 #endif
+#ifdef SHINES_IN
+  emitted *= layerColor[SHINES_IN];
+#endif
   if (base.a < cutoff) discard;
   vec3 rho = clamp(base.rgb * (1.0 - clamp(metalness, 0.0, 1.0)), 0.0, 0.99);
+#ifdef LAYERS
+  vec3 irradiance = vec3(0.0);
+  for (int l = 0; l < LAYERS; ++l)
+    irradiance += texture(light, vec3(atLight, float(l))).rgb * (layerScale[l] * layerColor[l]);
+#else
   vec3 irradiance = texture(light, atLight).rgb * lightScale;
+#endif
   const float pi = 3.14159265358979;
 #ifdef UNLIT
   vec3 radiance = base.rgb;
@@ -126,6 +144,9 @@ uniform int show;
 uniform sampler2D surroundings;
 uniform float surroundingsScale, rotation;
 #endif
+#ifdef SHINES_IN
+uniform vec3 layerColor[LAYERS];
+#endif
 in vec3 towards;
 out vec4 pixel;
 ${toneMap}
@@ -136,6 +157,9 @@ void main() {
   vec3 d = normalize(towards);
   vec2 at = vec2(0.5 + (atan(d.z, d.x) - rotation) / (2.0 * pi), atan(length(d.xz), d.y) / pi);
   seen += texture(surroundings, at).rgb * surroundingsScale;
+#endif
+#ifdef SHINES_IN
+  seen *= layerColor[SHINES_IN];
 #endif
   pixel = vec4(show == 2 ? vec3(0.0) : srgb(compress(exposure * seen)), 1.0);
 }`;
@@ -158,11 +182,14 @@ function linear(texture) {
 
 /**
  * The material of a mesh of baked.glb, from what GLTFLoader made of it. `common`: the uniforms that
- * all materials share (exposure, show); `page`: those of its lightmap (light, lightScale).
+ * all materials share (exposure, show; with layers their colours); `page`: those of its lightmap
+ * (light and lightScale, or layerScale); `layer`: the number of the one that the surface shines in,
+ * or -1.
  */
-export function bakedMaterial(loaded, geometry, page, common) {
+export function bakedMaterial(loaded, geometry, page, common, layer) {
   const lit = loaded.isMeshStandardMaterial === true;
-  const defines = lit ? {} : { UNLIT: "" };  // KHR_materials_unlit: GLTFLoader's MeshBasicMaterial
+  const defines = { ...layerDefines(common, layer) };
+  if (!lit) defines.UNLIT = "";  // KHR_materials_unlit: GLTFLoader's MeshBasicMaterial
   const uniforms = {
     ...common,
     ...page,
@@ -189,13 +216,22 @@ export function bakedMaterial(loaded, geometry, page, common) {
   });
 }
 
-/** `surroundings`: the map behind the background's radiance and how it is turned, or null. */
-export function backgroundMesh(background, surroundings, common) {
+/** What both shaders are told of layers: how many there are, and which one's colour is their own. */
+function layerDefines({ layerColor }, layer) {
+  if (!layerColor) return {};
+  return { LAYERS: layerColor.value.length, ...(layer >= 0 && { SHINES_IN: layer }) };
+}
+
+/**
+ * `surroundings`: the map behind the background's radiance and how it is turned, or null; `layer`:
+ * the number of the one that they are, or -1.
+ */
+export function backgroundMesh(background, surroundings, common, layer) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.Float32BufferAttribute([-1, -1, 0, 3, -1, 0, -1, 3, 0], 3));
   const mesh = new THREE.Mesh(geometry, new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
-    defines: surroundings ? { SURROUNDINGS: "" } : {},
+    defines: { ...(surroundings && { SURROUNDINGS: "" }), ...layerDefines(common, layer) },
     uniforms: {
       ...common,
       background: { value: new THREE.Vector3(...background) },
@@ -221,6 +257,18 @@ export function halfTexture(halves, { width, height }, wrap = THREE.ClampToEdgeW
   const texture = new THREE.DataTexture(halves, width, height, THREE.RGBAFormat, THREE.HalfFloatType);
   texture.minFilter = texture.magFilter = THREE.LinearFilter;
   texture.wrapS = wrap;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+/** The same for pictures of one size, one behind the other. */
+export function halfTextures(pictures, { width, height }) {
+  const halves = new Uint16Array(pictures.length * 4 * width * height);
+  pictures.forEach((picture, k) => halves.set(picture, k * 4 * width * height));
+  const texture = new THREE.DataArrayTexture(halves, width, height, pictures.length);
+  texture.format = THREE.RGBAFormat;
+  texture.type = THREE.HalfFloatType;
+  texture.minFilter = texture.magFilter = THREE.LinearFilter;
   texture.needsUpdate = true;
   return texture;
 }

@@ -4,7 +4,8 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { fitWindow, lookedAt, previewCamera } from "./camera.js";
 import * as data from "./data.js";
-import { backgroundMesh, bakedMaterial, halfTexture } from "./material.js";
+import { connectLayers, layerColors } from "./layers.js";
+import { backgroundMesh, bakedMaterial, halfTexture, halfTextures } from "./material.js";
 
 const byId = (id) => document.getElementById(id);
 
@@ -12,7 +13,10 @@ const byId = (id) => document.getElementById(id);
 async function loadLight(about) {
   const pages = new Map();
   for (const page of about.light)
-    pages.set(page.file, {
+    pages.set(page.file, page.layers ? {
+      light: { value: halfTextures(await Promise.all(page.layers.map(data.picture)), page) },
+      layerScale: { value: page.layers.map(({ scale }) => scale) },
+    } : {
       light: { value: halfTexture(await data.picture(page), page) },
       lightScale: { value: page.scale },
     });
@@ -25,6 +29,13 @@ async function loadSurroundings(about) {
   return { texture, scale: about.scale, rotation: about.rotation };
 }
 
+/** The number of the layer that a mesh shines in, as its node in baked.glb says; -1: none. */
+function layerOf(object, layers) {
+  for (let o = object; o && layers; o = o.parent)
+    if (o.userData.luxel?.layer) return layers.findIndex(({ name }) => name === o.userData.luxel.layer);
+  return -1;
+}
+
 /** Meshes alone, with the bake's materials: lamps are in the lightmap already. */
 async function loadScene(about, common) {
   const pages = await loadLight(about);
@@ -34,15 +45,17 @@ async function loadScene(about, common) {
   scene.traverse((object) => {
     if (object.isLight) lamps.push(object);
     if (!object.isMesh) return;
-    const key = object.material.uuid + Object.keys(object.geometry.attributes);
+    const layer = layerOf(object, about.layers);
+    const key = [object.material.uuid, layer, ...Object.keys(object.geometry.attributes)].join();
     if (!known.has(key)) {
       const page = pages.get(object.material.userData.luxel?.lightmap);  // none: unlit
-      known.set(key, bakedMaterial(object.material, object.geometry, page, common));
+      known.set(key, bakedMaterial(object.material, object.geometry, page, common, layer));
     }
     object.material = known.get(key);
   });
   for (const lamp of lamps) lamp.removeFromParent();
-  scene.add(backgroundMesh(about.background, await loadSurroundings(about.surroundings), common));
+  const sky = (about.layers ?? []).findIndex(({ surroundings }) => surroundings);
+  scene.add(backgroundMesh(about.background, await loadSurroundings(about.surroundings), common, sky));
   return scene;
 }
 
@@ -79,7 +92,7 @@ function fillPanel(about) {
 }
 
 /** `wishes`: the words after # in the page's address; light and colour choose what is shown first. */
-function connectPanel(about, common, controls, draw, wishes) {
+function connectPanel(about, common, controls, draw, wishes, resetLayers) {
   const expose = () => {
     const stops = Number(byId("exposure").value);
     common.exposure.value = about.preview.exposure * 2 ** stops;
@@ -96,11 +109,14 @@ function connectPanel(about, common, controls, draw, wishes) {
   byId("exposure").addEventListener("input", expose);
   byId("reset").addEventListener("click", () => {
     byId("exposure").value = 0;
+    resetLayers();
     controls.reset();
     choose(choices[0]);
     expose();
   });
   addEventListener("keydown", (event) => choices[Number(event.key) - 1] && choose(choices[Number(event.key) - 1]));
+  const wanted = wishes.find((word) => word.startsWith("stops="));
+  if (wanted) byId("exposure").value = wanted.slice(6);
   expose();
   choose(choices.find((choice) => wishes.includes(choice.value)) ?? choices[0]);
 }
@@ -114,6 +130,7 @@ async function open() {
   const common = {
     exposure: { value: about.preview.exposure },
     show: { value: 0 },
+    ...(about.layers && { layerColor: { value: layerColors(about.layers) } }),
   };
   const scene = await loadScene(about, common);
   const box = boundsOf(scene);
@@ -146,7 +163,8 @@ async function open() {
   const wishes = location.hash.slice(1).split(",");
   document.body.classList.toggle("bare", wishes.includes("bare"));
   fillPanel(about);
-  connectPanel(about, common, controls, draw, wishes);
+  const reset = about.layers ? connectLayers(about.layers, common.layerColor.value, draw, wishes) : () => {};
+  connectPanel(about, common, controls, draw, wishes, reset);
   resize();
   byId("message").hidden = true;
 }

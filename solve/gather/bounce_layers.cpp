@@ -195,15 +195,16 @@ double share_out(std::span<const Rgb> whole, const LayeredLight& light) {
   return std::accumulate(missing2.begin(), missing2.end(), 0.0);
 }
 
-/// The strides of all sweeps but the last: as many as the whole's first stride had, and one that
-/// takes their noise away. A given number of bounces has no more than that many sweeps.
-std::vector<size_t> sparse_strides(const Bounced& whole, bool converged, const TracedHits& hits) {
-  if (whole.strides.empty()) return {};
+/// Of all bounces. Each takes a layer's share closer to what it ends at by the reflectance, at
+/// least: how large the whole is is known from the start.
+constexpr size_t kSparseSweeps = 10;
+
+/// The strides of all sweeps but the last. A given number of bounces has as many sweeps.
+std::vector<size_t> sparse_strides(int bounces, const TracedHits& hits) {
   const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
   const size_t middle = fewest >= 64 ? 4 : 1, sparsest = fewest >= 256 ? 16 : middle;
-  if (!converged) return std::vector<size_t>(whole.strides.size() - 1, middle);
-  const auto first = std::ranges::count(whole.strides, whole.strides.front());
-  std::vector<size_t> strides(size_t(first), sparsest);
+  if (bounces >= 0) return std::vector<size_t>(size_t(std::max(bounces - 1, 0)), middle);
+  std::vector<size_t> strides(kSparseSweeps, sparsest);
   strides.push_back(middle);
   return strides;
 }
@@ -237,10 +238,10 @@ std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct) 
 
 Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport::Elements& elements,
                                     const TracedHits& hits, std::vector<Rgb> source,
-                                    std::span<const StoredHit> behind, const Bounced& whole,
-                                    bool converged, Progress& progress) {
+                                    std::span<const StoredHit> behind, std::span<const Rgb> whole,
+                                    int bounces, Progress& progress) {
   const size_t n = elements.size();
-  LUXEL_CHECK(n > 0 && source.size() % n == 0 && whole.irradiance.size() == n);
+  LUXEL_CHECK(n > 0 && source.size() % n == 0 && whole.size() == n);
   const size_t layers = source.size() / n;
   std::vector<Rgb> solution = source;
   const LayeredLight light{solution, layers}, sources{source, layers};
@@ -255,17 +256,16 @@ Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport:
     return {};
   };
   progress.begin("layers", 0);
-  size_t before = 0;
-  for (const size_t stride : sparse_strides(whole, converged, hits)) {
-    // Of a sparser solution's noise only the share is left.
-    if (converged && before > stride) share_out(whole.irradiance, light);
+  // Of a guess's errors, and a sparse solution's noise, only those of the share are left.
+  size_t before = SIZE_MAX;
+  for (const size_t stride : sparse_strides(bounces, hits)) {
+    if (bounces < 0 && before > stride) share_out(whole, light);
     LUXEL_TRY_STATUS(sweep_all(stride));
     before = stride;
   }
-  if (converged) share_out(whole.irradiance, light);
-  if (!whole.strides.empty()) LUXEL_TRY_STATUS(sweep_all(1));
-  const double missing2 = share_out(whole.irradiance, light),
-               mean = mean_luminance(whole.irradiance);
+  if (bounces < 0) share_out(whole, light);
+  if (bounces != 0) LUXEL_TRY_STATUS(sweep_all(1));
+  const double missing2 = share_out(whole, light), mean = mean_luminance(whole);
   return LayersBounced{layer_by_layer(light, n),
                        mean > 0 ? std::sqrt(missing2 / (3 * double(n))) / mean : 0};
 }

@@ -7,7 +7,6 @@
 #include "atlas/atlas.h"
 #include "base/progress.h"
 #include "base/result.h"
-#include "solve/gather/bounces.h"
 #include "solve/gather/trace_hits.h"
 #include "transport/elements.h"
 
@@ -22,22 +21,22 @@ struct LayersBounced {
 
 /// Solves  E_l = E_0,l + (1/N) sum over rays of B_l at the hit  for each layer l. E is linear in
 /// E_0, so that the layers' solutions add up to that of the whole, which is known: `whole`, of
-/// bounce() over the same hits, all bounces of it where `converged`. That saves most of the work:
-/// the late bounces come from sparse sweeps, which look at one ray in 16 (of fewer than 256: in 4,
-/// of fewer than 64: at all) as often as the first sweeps of the whole did, and after which each
-/// layer gets its share of the whole's light,
+/// bounce() over the same hits with `bounces`. With all bounces (< 0) that saves most of the work.
+/// Each layer begins with its share of the whole's light,
 ///
 ///   E_l <- E_l E / sum over layers of E_l      (per element and channel),
 ///
-/// so that of the noise of sparse sweeps only that of the share is left. One sweep over every
-/// fourth ray follows, and the last is over all; what it leaves of rounding and of that noise is
-/// shared out in the same way, and the layers add up to the whole. `source` is E_0 layer by layer
-/// for each element: direct light and what rays brought without the map. Errors: cancelled, the
-/// file of hits cannot be read.
+/// by what it has of E_0. Ten sweeps look at one ray in 16 (of fewer than 256: in 4, of fewer than
+/// 64: at all); then light is shared out anew, so that of the noise of sparse sweeps only that of
+/// the share is left. A sweep over every fourth ray and one over all follow, and what these leave
+/// of rounding and of that noise is shared out in the same way: the layers add up to the whole.
+/// With a given number of bounces N - 1 sweeps are over every fourth ray and the last over all.
+/// `source` is E_0 layer by layer for each element: direct light and what rays brought without the
+/// map. Errors: cancelled, the file of hits cannot be read.
 Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport::Elements& elements,
                                     const TracedHits& hits, std::vector<Rgb> source,
-                                    std::span<const StoredHit> behind, const Bounced& whole,
-                                    bool converged, Progress& progress);
+                                    std::span<const StoredHit> behind, std::span<const Rgb> whole,
+                                    int bounces, Progress& progress);
 
 /// E_0 of bounce_layers() from `direct`, that of lamps, layer by layer for each element.
 std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct);

@@ -242,7 +242,6 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
     Sweep sweep{source, out.irradiance, next, out.variance, out.split_variance, stride, {}};
     LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
     out.irradiance.swap(next);
-    out.strides.push_back(uint8_t(stride));
     ++out.sweeps;
     progress.advance(1);
     const double sum2 = std::accumulate(sweep.change2.begin(), sweep.change2.end(), 0.0);

@@ -32,7 +32,6 @@ struct Bounced {
   /// as that: for means over neighbours. docs/denoise.md.
   std::vector<float> split_variance;
   int sweeps = 0;
-  std::vector<uint8_t> strides;  ///< per sweep: it looked at one in so many rays
 };
 
 /// Solves  E = E_0 + (1/N) sum over rays of B at the hit,  B = rho E + tau E behind,  E_0 = direct

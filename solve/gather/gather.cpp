@@ -191,15 +191,13 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
     LUXEL_TRY(more,
               next_round(world, params, params.seconds - seconds_since(start), work, progress));
   }
-  // Layers follow the sweeps of the whole, from the first one on.
-  if (params.layers) work.bounced.irradiance.clear();
   LUXEL_TRY_STATUS(bounce_round(world, behind, {params.bounces, params.tolerance}, work, progress));
   Gather out;
   if (params.layers) {
     LUXEL_TRY(LayersBounced layers,
               bounce_layers(map, elements, work.hits,
                             layer_sources(work.hits, std::move(work.direct.by_layer)), behind,
-                            work.bounced, params.bounces < 0, progress));
+                            work.bounced.irradiance, params.bounces, progress));
     out.layers = std::move(layers.irradiance), out.layers_shared_out = layers.shared_out;
   }
   out.relative_error = relative_error(work.bounced.irradiance, work.errors.variance);

@@ -171,14 +171,16 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, Checkpoint* c
 
 }  // namespace
 
-Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, Checkpoint* checkpoint) {
+Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, Checkpoint* checkpoint,
+                        const OnBakeEstimate& on_estimate) {
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
   LUXEL_TRY(const Ready ready, make_ready(settings, bake, checkpoint, progress));
-  const SolveInput input{
-      {bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
-      checkpoint != nullptr ? checkpoint->parts() : nullptr};
+  SolveInput input{{bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
+                   checkpoint != nullptr ? checkpoint->parts() : nullptr};
+  if (on_estimate)
+    input.on_estimate = [&](const transport::LightEstimate& e) { on_estimate(input, e); };
   LUXEL_TRY_STATUS(solve(settings, input, bake, progress));
   LUXEL_TRY_STATUS(repair(settings, ready.tracer, bake, progress));
   LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));

@@ -49,11 +49,15 @@ struct Bake {
   std::vector<std::string> warnings;
 };
 
+/// Gets the light of gather as it grows, one value per texel of the map, neither refilled nor
+/// stitched. The bake goes on when it returns.
+using OnBakeEstimate = std::function<void(const SolveInput&, const transport::LightEstimate&)>;
+
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
 /// name in or above settings.output, and the checkpoint, if there is one. Errors: whatever the
 /// stages say; settings out of range.
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
-                        Checkpoint* checkpoint = nullptr);
+                        Checkpoint* checkpoint = nullptr, const OnBakeEstimate& on_estimate = {});
 
 /// `luxel bake --plan`: reads and lays out, and tries a few texels. Nothing is written.
 Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);

@@ -112,6 +112,7 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
   // Not for the trial; and the light of layers is not kept yet.
   if (!params.layers) params.parts = in.parts;
+  params.on_estimate = in.on_estimate;
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   TexelLight out = texel_light(std::move(result));

@@ -23,6 +23,7 @@ namespace luxel::pipeline {
 /// What every solver gets.
 struct SolveInput : transport::TexelScene {
   PartStore* parts = nullptr;  ///< where its finished parts are kept and found; null: nowhere
+  transport::OnLightEstimate on_estimate{};  ///< gets gather's light as it grows
 };
 
 /// What every solver gives.

@@ -135,9 +135,11 @@ TEST(StitchSeams, WhatOneSideGainsTheOtherLoses) {
   EXPECT_NEAR(sheet.values[middle].x, 2.0f, 0.02f);
 }
 
-// Two parts of a sheet, one of them all on the left, change by what together the whole changes by,
-// to the five digits of the conjugate gradient; neither alone is stitched: each part's jump weighs
-// as much as the whole's light says.
+// Two parts of a sheet change by what together the whole changes by; neither alone is stitched:
+// each part's jump weighs as much as the whole's light says. The conjugate gradient ends when the
+// residual has fallen to 1e-5 of what it was; the change itself, of the order of 1 here, is known
+// to some tens of that: values that move together keep but a small weight, so that the system is
+// ill conditioned.
 TEST(StitchLayers, PartsChangeAsTheirSumDoes) {
   Sheet sheet({1, 2, 0.5f}, {3, 1, 0.6f}, 0.2f);
   const std::vector<Rgb> before = sheet.values;
@@ -151,9 +153,9 @@ TEST(StitchLayers, PartsChangeAsTheirSumDoes) {
   sheet.stitch();
   for (size_t i = 0; i < before.size(); ++i) {
     const Rgb sum = parts[0][i] + parts[1][i];
-    EXPECT_NEAR(sum.x, sheet.values[i].x, 1e-4f);
-    EXPECT_NEAR(sum.y, sheet.values[i].y, 1e-4f);
-    EXPECT_NEAR(sum.z, sheet.values[i].z, 1e-4f);
+    EXPECT_NEAR(sum.x, sheet.values[i].x, 1e-3f);
+    EXPECT_NEAR(sum.y, sheet.values[i].y, 1e-3f);
+    EXPECT_NEAR(sum.z, sheet.values[i].z, 1e-3f);
   }
 }
 

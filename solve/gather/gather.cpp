@@ -1,5 +1,6 @@
 #include "solve/gather/gather.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -171,6 +172,56 @@ Result<bool> next_round(const transport::TexelScene& world, const GatherParams& 
   return true;
 }
 
+/// Light that surfaces send each other, if it is spread evenly: of what they reflect of the direct
+/// light, the part rho that the next reflection leaves, and so on [Cohen88, section 5]. Exact where
+/// direct light and reflectance are the same everywhere and nothing is open.
+std::vector<Rgb> with_ambient(const transport::Elements& elements, std::span<const Rgb> direct) {
+  Rgb sent{}, rho{};
+  for (size_t i = 0; i < direct.size(); ++i)
+    sent += elements.reflectance[i] * direct[i], rho += elements.reflectance[i];
+  const float part = 1 / float(std::max<size_t>(direct.size(), 1));
+  const Rgb left = Rgb{1, 1, 1} - rho * part;
+  const Rgb ambient = sent * part * Rgb{1 / left.x, 1 / left.y, 1 / left.z};
+  std::vector<Rgb> out(direct.begin(), direct.end());
+  for (Rgb& e : out) e += ambient;
+  return out;
+}
+
+/// The samples after each round, for one who watches: doubled from a few up to all.
+std::vector<int> growing(int samples) {
+  constexpr int kFewest = 8;
+  std::vector<int> out{samples};
+  while (out.back() >= 2 * kFewest) out.push_back(out.back() / 2);
+  std::ranges::reverse(out);
+  return out;
+}
+
+void show(const GatherParams& params, const Work& work) {
+  if (!params.on_estimate) return;
+  const double n = double(std::max<size_t>(work.hits.size(), 1));
+  params.on_estimate({work.bounced.irradiance, double(sum_of(work.hits.samples)) / n,
+                      percentile_95(work.errors.all)});
+}
+
+/// The rays that every element gets. Errors: cancelled, disk full.
+Status trace_first(const transport::TexelScene& world, const GatherParams& params,
+                   std::span<const StoredHit> behind, Work& work, Progress& progress) {
+  const size_t n = world.elements.size();
+  if (!params.on_estimate)
+    return trace_round(world, params, std::vector<uint16_t>(n, uint16_t(params.samples)), work,
+                       progress);
+  params.on_estimate({with_ambient(world.elements, work.direct.irradiance)});
+  for (const int samples : growing(params.samples)) {
+    const std::vector<uint16_t> target(n, uint16_t(samples));
+    LUXEL_TRY_STATUS(trace_round(world, params, target, work, progress));
+    if (samples == params.samples) break;  // what follows bounces them
+    LUXEL_TRY_STATUS(
+        bounce_round(world, behind, {params.bounces, kRoughTolerance}, work, progress));
+    show(params, work);
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
@@ -183,15 +234,16 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   LUXEL_TRY_STATUS(begin_direct(world, params, work, progress));
   const std::vector<StoredHit> behind = places_behind(scene, atlas, map, elements);
   work.hits = no_hits(elements.size(), params.layers ? params.layers->size() : 0);
-  const std::vector<uint16_t> first(elements.size(), uint16_t(params.samples));
-  LUXEL_TRY_STATUS(trace_round(world, params, first, work, progress));
+  LUXEL_TRY_STATUS(trace_first(world, params, behind, work, progress));
   for (bool more = params.max_error > 0 || params.seconds > 0; more;) {
     LUXEL_TRY_STATUS(
         bounce_round(world, behind, {params.bounces, kRoughTolerance}, work, progress));
+    show(params, work);
     LUXEL_TRY(more,
               next_round(world, params, params.seconds - seconds_since(start), work, progress));
   }
   LUXEL_TRY_STATUS(bounce_round(world, behind, {params.bounces, params.tolerance}, work, progress));
+  show(params, work);
   Gather out;
   if (params.layers) {
     LUXEL_TRY(LayersBounced layers,

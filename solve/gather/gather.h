@@ -3,6 +3,7 @@
 
 #include "solve/gather/bounces.h"
 #include "solve/gather/trace_hits.h"
+#include "transport/light_estimate.h"
 #include "transport/supersample.h"
 
 namespace luxel::gather {
@@ -24,6 +25,10 @@ struct GatherParams {
   uint64_t hit_memory_bytes = UINT64_MAX;
   std::filesystem::path scratch_folder = ".";
   PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
+  /// Gets the light as it grows: direct light with an ambient term [Cohen88], then that of a few
+  /// rays, of twice as many, and so on, the last being what gather() returns. `samples` come in
+  /// rounds then, and the result is that without it up to rounding (adaptive_test.cpp).
+  transport::OnLightEstimate on_estimate{};
 };
 
 struct Gather {

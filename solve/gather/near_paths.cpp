@@ -46,7 +46,7 @@ uint64_t add_direct_light(const NearWorld& world, NearWork& work) {
 
 /// The path's ray on. False: the path ends there, by chance, in proportion to what it carries.
 bool go_on(const transport::Receiver& at, uint64_t seed, NearPath& path) {
-  RandomStream random{hash64(seed, path.ray)};
+  RandomStream random{hash64(seed, path.sample)};
   const float chance = std::min(1.0f, max_component(path.throughput) / kSureThroughput);
   if (random.next() >= chance) return false;
   path.throughput = path.throughput / chance;
@@ -94,7 +94,7 @@ uint64_t step_near(const NearWorld& world, uint64_t seed, NearWork& work) {
     work.receivers.push_back(
         {p.position, p.normal, p.geometric_normal,
          trace::offset_origin(p.position, p.geometric_normal, world.diagonal_m),
-         hash64(seed, path.ray ^ 0x80000000u)});
+         hash64(seed, path.sample ^ 0x80000000u)});
   }
   const uint64_t shadow_rays = add_direct_light(world, work);
   size_t alive = 0;

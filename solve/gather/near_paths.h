@@ -24,7 +24,7 @@ std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas&
 
 /// What is left of a ray of an element.
 struct NearPath {
-  uint32_t ray = 0;         ///< of its element
+  uint32_t sample = 0;      ///< of its element: its random numbers are the same in any round
   Rgb throughput{1, 1, 1};  ///< of reflectances and glass, over the chances to go on
   Rgb light{};              ///< radiance that it has brought so far
   trace::Hit hit;           ///< where it is

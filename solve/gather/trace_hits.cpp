@@ -25,7 +25,7 @@ constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
 struct Work {
   std::vector<float> u, v, x, y, z;
   std::vector<uint8_t> cell;
-  std::vector<uint8_t> second_half;  ///< per ray
+  std::vector<uint32_t> sample;  ///< of the element, per ray
   std::vector<trace::Ray> rays;
   std::vector<trace::Hit> hits;
   std::vector<Rgb> tint;  ///< of what rays have passed; empty where nothing has a colour
@@ -33,7 +33,7 @@ struct Work {
 
   void resize(size_t samples) {
     for (std::vector<float>* buffer : {&u, &v, &x, &y, &z}) buffer->resize(samples);
-    cell.resize(samples), second_half.resize(samples);
+    cell.resize(samples), sample.resize(samples);
     rays.resize(samples), hits.resize(samples);
   }
 };
@@ -43,8 +43,8 @@ struct Samples {
   uint32_t first = 0, end = 0;
 
   uint32_t count() const { return end - first; }
-  /// Whether sample `first` + k belongs to the second half of all up to `end`.
-  bool in_second_half(uint32_t k) const { return 2 * (first + k) >= end; }
+  /// Whether a sample belongs to the second half of all up to `end`.
+  bool in_second_half(uint32_t sample) const { return 2 * sample >= end; }
 };
 
 /// cos and sin of 2 pi x for x in [0, 1), to 2e-7: each quarter turn by Taylor's series about its
@@ -101,7 +101,7 @@ void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, S
     if (bent) d = transport::mirrored_above(d, geometric_normal);
     const uint32_t at = place[work.cell[i]]++;
     work.rays[at] = {origin, 0, d, INFINITY};
-    work.second_half[at] = samples.in_second_half(i);
+    work.sample[at] = samples.first + i;
   }
 }
 
@@ -139,17 +139,17 @@ void add_sky(const World& world, Rgb l, size_t element, TracedHits& out) {
     out.sky_by_layer[element * world.layers->size() + *world.layers->of_surroundings] += l;
 }
 
-/// Counts what an element's rays met, those of its samples from `first` on, and keeps the hits that
-/// bring light.
-void sort_hits(const World& world, Work& work, size_t element, uint32_t first, TracedHits& out,
+/// Counts what the rays of an element's samples met, and keeps the hits that bring light.
+void sort_hits(const World& world, Work& work, size_t element, Samples samples, TracedHits& out,
                HitTile& tile) {
   for (size_t k = 0; k < work.hits.size(); ++k) {
     const trace::Hit& hit = work.hits[k];
+    const bool second_half = samples.in_second_half(work.sample[k]);
     if (!hit.found()) {
       ++out.escaped[element];
       Rgb l = transport::soft_radiance(world.scene, world.around, work.rays[k].direction);
       if (!work.tint.empty()) l = l * work.tint[k];
-      add_light(l, work.second_half[k], element, out);
+      add_light(l, second_half, element, out);
       add_sky(world, l, element, out);
       continue;
     }
@@ -160,7 +160,7 @@ void sort_hits(const World& world, Work& work, size_t element, uint32_t first, T
     }
     if (hit.back_face) ++out.met_double_sided_back[element];
     if (world.near != nullptr) {
-      NearPath path{uint32_t(k), work.tint.empty() ? Rgb{1, 1, 1} : work.tint[k], {}, hit, {}};
+      NearPath path{work.sample[k], work.tint.empty() ? Rgb{1, 1, 1} : work.tint[k], {}, hit, {}};
       if (goes_on(*world.near, path)) {
         work.near.paths.push_back(path);
         continue;
@@ -168,19 +168,19 @@ void sort_hits(const World& world, Work& work, size_t element, uint32_t first, T
     }
     const uint32_t tint = work.tint.empty()
                               ? kNoTint
-                              : pack_tint(work.tint[k], hash64(element, (first + k) ^ 0x7147u));
-    tile.entries.push_back(store(world.atlas, hit.point(), {tint, work.second_half[k] != 0}));
+                              : pack_tint(work.tint[k], hash64(element, work.sample[k] ^ 0x7147u));
+    tile.entries.push_back(store(world.atlas, hit.point(), {tint, second_half}));
   }
 }
 
 /// Follows the rays of an element on that ended nearby. Returns the number of rays.
-uint64_t follow_on(const World& world, Work& work, size_t element, uint64_t seed, TracedHits& out,
-                   HitTile& tile) {
+uint64_t follow_on(const World& world, Work& work, size_t element, Samples samples, uint64_t seed,
+                   TracedHits& out, HitTile& tile) {
   if (world.layers)
     work.near.by_layer =
         std::span(out.sky_by_layer).subspan(element * world.layers->size(), world.layers->size());
   return follow_near(*world.near, seed, work.near, [&](const NearPath& path) {
-    const bool second_half = work.second_half[path.ray] != 0;
+    const bool second_half = samples.in_second_half(path.sample);
     Rgb light = path.light;
     const bool alive = max_component(path.throughput) > 0;
     if (alive && !path.hit.found()) {
@@ -194,7 +194,7 @@ uint64_t follow_on(const World& world, Work& work, size_t element, uint64_t seed
     if (path.hit.back_face &&
         !scene::reflects_from_behind(scene::material_at(world.scene, path.hit.point())))
       return;
-    const uint32_t tint = pack_tint(path.throughput, hash64(seed, path.ray ^ 0x4e37u));
+    const uint32_t tint = pack_tint(path.throughput, hash64(seed, path.sample ^ 0x4e37u));
     tile.entries.push_back(store(world.atlas, path.hit.point(), {tint, second_half}));
   });
 }
@@ -273,10 +273,9 @@ uint64_t Round::trace_element(size_t i, Work& work, TracedHits& out, HitTile& ti
     work.tint.assign(samples.count(), {1, 1, 1});
     tracer.tint(work.rays, work.hits, work.tint);
   }
-  sort_hits(world, work, i, samples.first, out, tile);
+  sort_hits(world, work, i, samples, out, tile);
   if (work.near.paths.empty()) return samples.count();
-  const uint64_t near_seed = hash64(hash64(seed ^ 0x7ea4, i), samples.first);
-  return samples.count() + follow_on(world, work, i, near_seed, out, tile);
+  return samples.count() + follow_on(world, work, i, samples, hash64(seed ^ 0x7ea4, i), out, tile);
 }
 
 /// The most samples that the round adds to one element.

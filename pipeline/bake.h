@@ -1,6 +1,7 @@
 // A scene in, lightmaps out.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>

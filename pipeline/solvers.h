@@ -15,6 +15,7 @@
 #include "solve/matrix/matrix.h"
 #include "trace/ray_tracer.h"
 #include "transport/elements.h"
+#include "transport/light_estimate.h"
 #include "transport/lights.h"
 #include "transport/texel_scene.h"
 

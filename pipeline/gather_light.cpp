@@ -1,10 +1,12 @@
 #include "pipeline/gather_light.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "pipeline/output_folder.h"
 #include "pipeline/plan.h"
 #include "pipeline/solver_memory.h"
+#include "pipeline/stage_seconds.h"
 #include "pipeline/texel_light.h"
 #include "solve/gather/forecast.h"
 
@@ -38,12 +40,6 @@ void warn_about_rounds(const BakeSettings& settings, const gather::GatherParams&
           : fmt::format("and none gets more than {} rays", params.max_samples)));
 }
 
-double total_seconds(const Progress& progress) {
-  double sum = 0;
-  for (const Stage& stage : progress.stages()) sum += stage.seconds;
-  return sum;
-}
-
 /// Makes the first round small enough for `seconds`. The forecast is that of `params`.
 void shrink_first_round(const gather::Forecast& forecast, double seconds,
                         gather::GatherParams& params) {
@@ -72,7 +68,7 @@ Status look_ahead(const SolveInput& in, const BakeSettings& settings, gather::Ga
     progress.expect(stages_of(forecast));
     return {};
   }
-  double left = settings.time_budget_s - total_seconds(progress);
+  double left = settings.time_budget_s - stage_seconds(progress)["total"].get<double>();
   for (const Stage& stage : after) left -= stage.seconds;
   if (left < forecast.seconds() / params.samples)
     warnings.push_back(

@@ -6,20 +6,12 @@
 #include <array>
 #include <string_view>
 
-#include "base/digest.h"
+#include "scene/digest_parts.h"
 
 namespace luxel::scene {
-namespace {
 
 // Every function below names all members of its struct, so that a new one cannot be forgotten: the
 // list would be too short to compile.
-
-void add(Digest& d, const Vec3& v) { d.add(std::span<const Vec3>(&v, 1)); }
-void add(Digest& d, const Mat34& m) { d.add(std::span<const Mat34>(&m, 1)); }
-template <class T>
-void add(Digest& d, const std::vector<T>& values) {
-  d.add(std::span<const T>(values));
-}
 
 uint64_t digest(const Mesh& m) {
   const auto& [name, positions, normals, uv0, uv1, colors, triangles, material, other_side] = m;
@@ -29,43 +21,10 @@ uint64_t digest(const Mesh& m) {
   return d.value();
 }
 
-uint64_t digest(const Instance& i) {
-  const auto& [name, mesh, world_from_object] = i;
-  Digest d;
-  d.add(mesh), add(d, world_from_object);
-  return d.value();
-}
-
-void add(Digest& d, const TextureRef& t) {
-  const auto& [texture, uv_set, wrap_u, wrap_v, filter, offset, scale, rotation] = t;
-  d.add(texture), d.add(uv_set), d.add(wrap_u), d.add(wrap_v), d.add(filter);
+void add_lookup(Digest& d, const TextureRef& ref) {
+  const auto& [texture, uv_set, wrap_u, wrap_v, filter, offset, scale, rotation] = ref;
+  d.add(uv_set), d.add(wrap_u), d.add(wrap_v), d.add(filter);
   for (const float x : {offset.x, offset.y, scale.x, scale.y, rotation}) d.add(x);
-}
-
-uint64_t digest(const Material& m) {
-  const auto& [name, base_color, alpha, metallic, roughness, base_color_texture, metallic_texture,
-               emission, emission_texture, normal_texture, normal_scale, alpha_mode, alpha_cutoff,
-               transmission, transmission_texture, diffuse_transmission, diffuse_transmission_color,
-               diffuse_transmission_texture, diffuse_transmission_color_texture, double_sided,
-               unlit, specular, sharpness] = m;
-  Digest d;
-  add(d, base_color), add(d, emission), add(d, diffuse_transmission_color), add(d, specular);
-  for (const float x : {alpha, metallic, roughness, normal_scale, alpha_cutoff, transmission,
-                        diffuse_transmission, sharpness})
-    d.add(x);
-  for (const TextureRef* texture :
-       {&base_color_texture, &metallic_texture, &emission_texture, &normal_texture,
-        &transmission_texture, &diffuse_transmission_texture, &diffuse_transmission_color_texture})
-    add(d, *texture);
-  d.add(alpha_mode), d.add(double_sided), d.add(unlit);
-  return d.value();
-}
-
-uint64_t digest(const Texture& t) {
-  const auto& [name, width, height, rgba, encoded, mime_type] = t;
-  Digest d;
-  d.add(width), d.add(height), add(d, rgba);
-  return d.value();
 }
 
 uint64_t digest(const PunctualLight& l) {
@@ -85,18 +44,63 @@ uint64_t digest(const LightProfile& p) {
   return d.value();
 }
 
+uint64_t digest(const Environment& e) {
+  const auto& [width, height, radiance, rotation_rad] = e;
+  Digest d;
+  d.add(width), d.add(height), add(d, radiance), d.add(rotation_rad);
+  return d.value();
+}
+
+std::string called(std::string_view kind, std::string_view name, size_t index) {
+  if (name.empty()) return fmt::format("{} number {}", kind, index + 1);
+  return fmt::format("{} '{}'", kind, name);
+}
+
+namespace {
+
+uint64_t digest(const Instance& i) {
+  const auto& [name, mesh, world_from_object] = i;
+  Digest d;
+  d.add(mesh), add(d, world_from_object);
+  return d.value();
+}
+
+void add_texture(Digest& d, const TextureRef& ref) {
+  d.add(ref.texture);
+  add_lookup(d, ref);
+}
+
+uint64_t digest(const Material& m) {
+  const auto& [name, base_color, alpha, metallic, roughness, base_color_texture, metallic_texture,
+               emission, emission_texture, normal_texture, normal_scale, alpha_mode, alpha_cutoff,
+               transmission, transmission_texture, diffuse_transmission, diffuse_transmission_color,
+               diffuse_transmission_texture, diffuse_transmission_color_texture, double_sided,
+               unlit, specular, sharpness] = m;
+  Digest d;
+  add(d, base_color), add(d, emission), add(d, diffuse_transmission_color), add(d, specular);
+  for (const float x : {alpha, metallic, roughness, normal_scale, alpha_cutoff, transmission,
+                        diffuse_transmission, sharpness})
+    d.add(x);
+  for (const TextureRef* texture :
+       {&base_color_texture, &metallic_texture, &emission_texture, &normal_texture,
+        &transmission_texture, &diffuse_transmission_texture, &diffuse_transmission_color_texture})
+    add_texture(d, *texture);
+  d.add(alpha_mode), d.add(double_sided), d.add(unlit);
+  return d.value();
+}
+
+uint64_t digest(const Texture& t) {
+  const auto& [name, width, height, rgba, encoded, mime_type] = t;
+  Digest d;
+  d.add(width), d.add(height), add(d, rgba);
+  return d.value();
+}
+
 uint64_t digest(const Camera& c) {
   const auto& [name, world_from_camera, fov_y_rad, aspect, orthographic_height_m] = c;
   Digest d;
   add(d, world_from_camera);
   for (const float x : {fov_y_rad, aspect, orthographic_height_m}) d.add(x);
-  return d.value();
-}
-
-uint64_t digest(const Environment& e) {
-  const auto& [width, height, radiance, rotation_rad] = e;
-  Digest d;
-  d.add(width), d.add(height), add(d, radiance), d.add(rotation_rad);
   return d.value();
 }
 
@@ -115,11 +119,10 @@ std::vector<const ItemDigest*> of_kind(std::span<const ItemDigest> items, std::s
   return out;
 }
 
-std::string called(const ItemDigest& item, size_t number) {
+std::string name_of(const ItemDigest& item, size_t index) {
   if (std::find(kSingle.begin(), kSingle.end(), item.kind) != kSingle.end())
     return "the " + item.kind;
-  if (item.name.empty()) return fmt::format("{} number {}", item.kind, number + 1);
-  return fmt::format("{} '{}'", item.kind, item.name);
+  return called(item.kind, item.name, index);
 }
 
 }  // namespace
@@ -153,7 +156,7 @@ std::string difference(std::span<const ItemDigest> before, std::span<const ItemD
     if (a.size() != b.size())
       return fmt::format("{} of kind {} there, {} here", a.size(), kind, b.size());
     for (size_t i = 0; i < a.size(); ++i)
-      if (a[i]->digest != b[i]->digest) return called(*b[i], i) + " has changed";
+      if (a[i]->digest != b[i]->digest) return name_of(*b[i], i) + " has changed";
   }
   return {};
 }

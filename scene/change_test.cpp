@@ -184,7 +184,9 @@ TEST(SceneChange, OfLampsIsAFactorOrNothing) {
     const SceneChange change = changed_by(edit);
     EXPECT_TRUE(change.boxes.empty());
     for (size_t i = 0; i < 3; ++i) {
-      if (i != lamp) EXPECT_EQ(change.lamp_scale[i], kOne);
+      if (i != lamp) {
+        EXPECT_EQ(change.lamp_scale[i], kOne);
+      }
     }
     EXPECT_TRUE(change.any());
     return change.lamp_scale[lamp];

@@ -97,10 +97,12 @@ TEST(SceneChange, IsNotInNamesNorInWhatOnlyPicturesShow) {
 // What is looked up counts, not what it would be if something else were the case.
 TEST(SceneChange, IsNotInWhatIsNotLookedUp) {
   EXPECT_FALSE(changed_in(paint, [](Material& m) {
-                 m.alpha = 0.2f, m.alpha_cutoff = 0.1f;        // opaque
-                 m.metallic_texture.texture = 1;               // no metal
-                 m.transmission_texture.texture = 1;           // no transmission
-                 m.diffuse_transmission_color = {0, 0, 1};     // none of it
+                 m.alpha = 0.2f, m.alpha_cutoff = 0.1f;     // opaque
+                 m.metallic_texture.texture = 1;            // no metal
+                 m.transmission_texture.texture = 1;        // no transmission
+                 m.diffuse_transmission_color = {0, 0, 1};  // none of it
+               }).any());
+  EXPECT_FALSE(changed_in(leaf, [](Material& m) {
                  m.diffuse_transmission_texture.offset.x = 1;  // without a texture
                }).any());
   // Pictures that nobody uses; another number for the same pixels.

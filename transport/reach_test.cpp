@@ -260,6 +260,17 @@ TEST(ElementsInReach, AreThePenumbraUnderAnEmissiveTriangle) {
   }
 }
 
+TEST(ElementsInReach, AreThePenumbraUnderOneTriangle) {
+  constexpr float a = 0.1f;
+  scene::Scene scene = floor_scene();
+  scene::Mesh mesh;
+  const uint32_t glow = scene::add_material(scene, "glow", {}, {1, 1, 1});
+  scene::add_triangle(mesh, {-a, kLampHeight, -a}, {a, kLampHeight, a}, {-a, kLampHeight, a}, glow);
+  scene::place(scene, mesh);
+  // It counts as the square around it.
+  expect_square(reach_of(scene, 0), -a + (0.5f + a) * kLampHeight / (kLampHeight - 2.5f));
+}
+
 TEST(ElementsInReach, AreTheShadowInTheSun) {
   scene::PunctualLight sun;
   sun.kind = scene::PunctualLight::Kind::directional;

@@ -90,6 +90,8 @@ Result<Atlas> make_atlas(const scene::Scene& scene, const AtlasParams& params, P
 /// Clips every triangle against the texels it touches and gives each texel one owner: the triangle
 /// that holds its centre, else the one that covers most of it (ties: the lower number).
 TexelMap rasterise(const scene::Scene& scene, const Atlas& atlas);
+/// The map of texels that lie on the atlas.
+TexelMap map_of(const Atlas& atlas, std::vector<Texel> texels);
 
 /// A place of the atlas in the coordinates of a triangle of it; negative ones where it has no area.
 inline Barycentric barycentric_in(const std::array<Vec2, 3>& corners, Vec2 p) {

@@ -2,6 +2,7 @@
 
 #include "atlas/atlas.h"
 #include "atlas/cover.h"
+#include "base/check.h"
 #include "base/parallel.h"
 #include "scene/drawn_triangle.h"
 
@@ -152,18 +153,25 @@ TexelMap rasterise(const scene::Scene&, const Atlas& atlas) {
       bands[b] = band_texels(atlas, find_owners(atlas, bins[b], rows), rows);
     }
   });
-  TexelMap map;
-  map.resolution = atlas.resolution;
-  map.texel_at.assign(size_t(atlas.resolution) * size_t(atlas.resolution), kNone);
+  std::vector<Texel> texels;
   size_t count = 0;
   for (const auto& band : bands) count += band.size();
-  map.texels.reserve(count);
+  texels.reserve(count);
   for (auto& band : bands) {
-    map.texels.insert(map.texels.end(), band.begin(), band.end());
+    texels.insert(texels.end(), band.begin(), band.end());
     band = {};
   }
-  for (uint32_t t = 0; t < map.texels.size(); ++t)
+  return map_of(atlas, std::move(texels));
+}
+
+TexelMap map_of(const Atlas& atlas, std::vector<Texel> texels) {
+  TexelMap map{atlas.resolution, std::move(texels), {}};
+  map.texel_at.assign(size_t(atlas.resolution) * size_t(atlas.resolution), kNone);
+  for (uint32_t t = 0; t < map.texels.size(); ++t) {
+    LUXEL_CHECK(map.texels[t].x < uint32_t(atlas.resolution) &&
+                map.texels[t].y < uint32_t(atlas.resolution));
     map.texel_at[size_t(map.texels[t].y) * size_t(atlas.resolution) + map.texels[t].x] = t;
+  }
   return map;
 }
 

@@ -11,6 +11,7 @@
 #include "bench/prepared.h"
 #include "import/import.h"
 #include "scene/procedural.h"
+#include "solve/gather/element_rays.h"
 #include "solve/gather/gather.h"
 #include "trace/ray_tracer.h"
 

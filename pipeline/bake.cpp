@@ -9,6 +9,7 @@
 #include "export/baked_glb.h"
 #include "image/codec.h"
 #include "import/import.h"
+#include "pipeline/bake_cache.h"
 #include "pipeline/bake_report.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/denoise_light.h"
@@ -152,15 +153,31 @@ struct Ready {
   transport::Lights lights;
 };
 
+/// The layout of what was read; warnings of it are added to `warnings`.
+Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, BakeCache* cache,
+                            std::vector<std::string>& warnings, Progress& progress) {
+  std::vector<std::string> sides;
+  const auto warn = [&] { warnings.insert(warnings.end(), sides.begin(), sides.end()); };
+  if (KeptBake* found = cache ? cache->found() : nullptr) {
+    sides = found->layout.warnings, warn();
+    const bool same_places = cache->change().moved.empty() && cache->change().boxes.empty();
+    return lay_out_again(settings, std::move(found->layout), same_places, scene, progress);
+  }
+  LUXEL_TRY(sides, split_sides(scene, settings.uv, settings.resolution, progress));
+  warn();
+  LUXEL_TRY(TexelLayout layout, lay_out_texels(settings, scene, progress));
+  if (cache && cache->rays()) cache->keep(keep_layout(scene, layout, std::move(sides)));
+  return layout;
+}
+
 /// Reads and lays out. The tracer looks at bake.scene.
-Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, Checkpoint* checkpoint,
+Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers& keepers,
                          Progress& progress) {
   LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
-  if (checkpoint != nullptr) LUXEL_TRY_STATUS(checkpoint->open(bake.scene, progress));
-  LUXEL_TRY(const std::vector<std::string> sides,
-            split_sides(bake.scene, settings.uv, settings.resolution, progress));
-  bake.warnings.insert(bake.warnings.end(), sides.begin(), sides.end());
-  LUXEL_TRY(TexelLayout layout, lay_out_texels(settings, bake.scene, progress));
+  if (keepers.checkpoint) LUXEL_TRY_STATUS(keepers.checkpoint->open(bake.scene, progress));
+  if (keepers.cache) keepers.cache->open(bake.scene, progress);
+  LUXEL_TRY(TexelLayout layout,
+            lay_out(settings, bake.scene, keepers.cache, bake.warnings, progress));
   LUXEL_TRY_STATUS(not_cancelled(progress));
   bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
   bake.atlas_stats = layout.stats, bake.repair = std::move(layout.repair);
@@ -171,17 +188,19 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, Checkpoint* c
 
 }  // namespace
 
-Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, Checkpoint* checkpoint,
+Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const Keepers& keepers,
                         const OnBakeEstimate& on_estimate) {
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
-  LUXEL_TRY(const Ready ready, make_ready(settings, bake, checkpoint, progress));
+  LUXEL_TRY(const Ready ready, make_ready(settings, bake, keepers, progress));
   SolveInput input{{bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
-                   checkpoint != nullptr ? checkpoint->parts() : nullptr};
+                   keepers.checkpoint ? keepers.checkpoint->parts() : nullptr};
+  input.cache = keepers.cache;
   if (on_estimate)
     input.on_estimate = [&](const transport::LightEstimate& e) { on_estimate(input, e); };
   LUXEL_TRY_STATUS(solve(settings, input, bake, progress));
+  if (keepers.cache) keepers.cache->solved();
   LUXEL_TRY_STATUS(repair(settings, ready.tracer, bake, progress));
   LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
@@ -193,7 +212,7 @@ Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
-  LUXEL_TRY(const Ready ready, make_ready(settings, bake, nullptr, progress));
+  LUXEL_TRY(const Ready ready, make_ready(settings, bake, {}, progress));
   return plan(
       {{bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer}, nullptr},
       settings, progress);
@@ -307,7 +326,8 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
   Checkpoint checkpoint(settings);
-  LUXEL_TRY(Bake result, bake_scene(settings, progress, &checkpoint));
+  BakeCache cache(settings);
+  LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache}));
   if (checkpoint.parts() != nullptr && checkpoint.parts()->has_failed())
     result.warnings.push_back(checkpoint.parts()->failure());
   progress.begin(kWriteStage, 0);
@@ -317,6 +337,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   progress.finish();
   nlohmann::json json = bake_report(settings, result, progress);
   json["checkpoint"] = checkpoint.about();
+  json["cache"] = cache.about(result.light);
   json.update(about_files);
   for (const OutputFile& file : files) json["files"].push_back(file.path.filename().string());
   json["files"].push_back("bake.json");
@@ -325,6 +346,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(write_results(files, checkpoint));
   folder.keep();
   checkpoint.remove();
+  cache.finish(progress);
   return json;
 }
 

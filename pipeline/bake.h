@@ -23,7 +23,14 @@
 
 namespace luxel::pipeline {
 
+class BakeCache;
 class Checkpoint;
+
+/// What outlives a bake, or outlived the one before; null where there is nothing of the kind.
+struct Keepers {
+  Checkpoint* checkpoint = nullptr;
+  BakeCache* cache = nullptr;
+};
 
 /// The stage in which files appear. It is short and better not cut off.
 inline constexpr std::string_view kWriteStage = "write files";
@@ -55,10 +62,10 @@ struct Bake {
 using OnBakeEstimate = std::function<void(const SolveInput&, const transport::LightEstimate&)>;
 
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
-/// name in or above settings.output, and the checkpoint, if there is one. Errors: whatever the
-/// stages say; settings out of range.
+/// name in or above settings.output, and the checkpoint and the cache, if there are any. Errors:
+/// whatever the stages say; settings out of range.
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
-                        Checkpoint* checkpoint = nullptr, const OnBakeEstimate& on_estimate = {});
+                        const Keepers& keepers = {}, const OnBakeEstimate& on_estimate = {});
 
 /// `luxel bake --plan`: reads and lays out, and tries a few texels. Nothing is written.
 Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);
@@ -67,7 +74,7 @@ Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);
 /// preview.png, texels.png, error.png, view.html when asked for, and bake.json in settings.output,
 /// all of them or none. Of several pages they are lightmap-0.exr and so on; with --layers there is
 /// a lightmap-LAYER.exr of each besides. Returns what bake.json holds. A bake that does not come to
-/// its end leaves its checkpoint, nothing else.
+/// its end leaves its checkpoint, nothing else; one that does leaves DIR/cache with settings.keep.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

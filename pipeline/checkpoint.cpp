@@ -21,8 +21,9 @@ constexpr int kFormat = 1;
 
 /// Settings that leave every bit of the light as it is. Of what files hold there are digests:
 /// where they lie does not matter.
-constexpr std::array kWithoutEffect{"scene",   "threads", "max_memory_bytes", "checkpoint_s",
-                                    "formats", "html",    "texels",           "error_map"};
+constexpr std::array kWithoutEffect{"scene",        "threads",   "max_memory_bytes",
+                                    "checkpoint_s", "formats",   "html",
+                                    "texels",       "error_map", "keep"};
 
 json settings_with_effect(const BakeSettings& settings) {
   json out = to_json(settings);
@@ -78,11 +79,14 @@ fs::path checkpoint_file(const BakeSettings& settings) {
   return settings.output / "checkpoint.luxel";
 }
 
+json bake_identity(const BakeSettings& settings) {
+  return {{"luxel", kVersion}, {"format", kFormat}, {"settings", settings_with_effect(settings)}};
+}
+
 json checkpoint_header(const BakeSettings& settings, const scene::Scene& scene) {
-  return {{"luxel", kVersion},
-          {"format", kFormat},
-          {"settings", settings_with_effect(settings)},
-          {"scene", digests_json(scene::digests_of(scene))}};
+  json header = bake_identity(settings);
+  header["scene"] = digests_json(scene::digests_of(scene));
+  return header;
 }
 
 std::string difference(const json& there, const json& here) {
@@ -90,7 +94,7 @@ std::string difference(const json& there, const json& here) {
     if (there.at("luxel") != here.at("luxel") || there.at("format") != here.at("format"))
       return fmt::format("made by {}, this is {}", version_of(there), version_of(here));
     const std::string setting = setting_difference(there.at("settings"), here.at("settings"), "");
-    if (!setting.empty()) return setting;
+    if (!setting.empty() || !there.contains("scene")) return setting;
     return scene::difference(items_of(there.at("scene")), items_of(here.at("scene")));
   } catch (const std::exception&) {  // whole by its digest, but not written by a bake
     return "its header is none of luxel's";
@@ -98,7 +102,7 @@ std::string difference(const json& there, const json& here) {
 }
 
 Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
-  if (!find_solver(settings_.solver)->parts) return {};
+  if (!find_solver(settings_.solver)->parts || settings_.keep) return {};
   const fs::path file = checkpoint_file(settings_);
   // Names of things may be no UTF-8, which JSON knows nothing else of.
   const std::string header =

@@ -18,10 +18,12 @@ namespace luxel::pipeline {
 /// DIR/checkpoint.luxel.
 std::filesystem::path checkpoint_file(const BakeSettings& settings);
 
-/// What the parts of a bake depend on: luxel's version, the settings but for those that change no
-/// bit of the light, the scene's digests.
+/// What the light of a bake depends on besides its scene: luxel's version and the settings, but for
+/// those that change no bit of it.
+nlohmann::json bake_identity(const BakeSettings& settings);
+/// That, and the scene's digests.
 nlohmann::json checkpoint_header(const BakeSettings& settings, const scene::Scene& scene);
-/// Which of that differs, in words; empty: nothing.
+/// Which of either differs, in words; empty: nothing.
 std::string difference(const nlohmann::json& there, const nlohmann::json& here);
 
 /// The checkpoint of one bake: docs/checkpoints.md. Solvers that keep no parts have none.

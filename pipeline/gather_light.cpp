@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/bake_cache.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/plan.h"
+#include "pipeline/rebake.h"
 #include "pipeline/solver_memory.h"
 #include "pipeline/stage_seconds.h"
 #include "pipeline/texel_light.h"
@@ -95,26 +97,11 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   return params;
 }
 
-Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
-                                Progress& progress) {
-  gather::GatherParams params = gather_params(settings);
-  transport::LightLayers layers;
-  if (settings.layers != transport::LayerMode::none) {
-    LUXEL_TRY(layers, transport::light_layers(in.scene, in.lights, settings.layers));
-    params.layers = &layers;
-  }
-  LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
-  std::vector<std::string> warnings;
-  LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
-  // Not for the trial; and the light of layers is not kept yet.
-  if (!params.layers) params.parts = in.parts;
-  params.on_estimate = in.on_estimate;
-  LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
-                                                  in.lights, in.tracer, params, progress));
+namespace {
+
+/// Of gather's result; without warnings.
+TexelLight light_of(gather::Gather& result, transport::LightLayers& layers) {
   TexelLight out = texel_light(std::move(result));
-  out.warnings = std::move(warnings);
-  if (settings.max_error > 0 || settings.time_budget_s > 0)
-    warn_about_rounds(settings, params, result, out.warnings);
   out.errors = std::move(result.errors), out.error_p95 = result.relative_error_p95;
   out.samples = std::move(result.samples);
   out.layers = std::move(layers.layers), out.layer_irradiance = std::move(result.layers);
@@ -122,7 +109,75 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   out.direct_variance = std::move(result.direct_variance);
   out.variance = std::move(result.indirect_variance);
   out.sweeps = result.sweeps, out.supersampled_texels = result.supersampled;
-  out.scratch_bytes = result.hit_bytes_in_file;
+  out.scratch_bytes = result.hit_bytes_in_file, out.rays_kept = result.rays_kept;
+  return out;
+}
+
+/// Which layers light is told apart into; none where nobody asks, or, for a bake that is kept,
+/// where there are too many. Errors: too many.
+Result<transport::LightLayers> layers_of(const SolveInput& in, const BakeSettings& settings,
+                                         bool keeps) {
+  if (settings.layers != transport::LayerMode::none)
+    return transport::light_layers(in.scene, in.lights, settings.layers);
+  if (!keeps) return transport::LightLayers{};
+  return transport::light_layers(in.scene, in.lights, transport::LayerMode::per_light)
+      .value_or(transport::LightLayers{});
+}
+
+/// The bake's light with what later bakes can build on.
+KeptBake kept_bake(const SolveInput& in, const transport::LightLayers& layers,
+                   gather::Gather& result, const TexelLight& light) {
+  KeptBake kept;
+  kept.places = places_of(in.elements);
+  for (const transport::LightLayer& layer : light.layers) kept.layer_names.push_back(layer.name);
+  if (!kept.layer_names.empty()) kept.layers = layers_of_lights(in.scene, in.lights, layers);
+  kept.direct = std::move(result.kept_direct), kept.levels = std::move(result.kept_levels);
+  kept.light = light;
+  return kept;
+}
+
+/// Nobody has asked for them.
+void drop_layers(TexelLight& light) { light.layers = {}, light.layer_irradiance = {}; }
+
+}  // namespace
+
+Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
+                                Progress& progress) {
+  gather::GatherParams params = gather_params(settings);
+  const bool keeps = in.cache && in.cache->rays();
+  LUXEL_TRY(transport::LightLayers layers, layers_of(in, settings, keeps));
+  if (layers.size() > 0) params.layers = &layers;
+  std::optional<gather::Earlier> earlier;
+  if (KeptBake* found = in.cache ? in.cache->found() : nullptr) {
+    const scene::SceneChange& change = in.cache->change();
+    const LightUpdate update = light_update(*found, change, in.scene);
+    if (is_sum_of_layers(update, change)) {
+      TexelLight out = sum_of_layers(*found, update);
+      if (settings.layers == transport::LayerMode::none) drop_layers(out);
+      return out;
+    }
+    if (const RecordFile* rays = in.cache->found_rays(progress))
+      earlier = earlier_of(*found, *rays, update, change, in, params.layers);
+  }
+  LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
+  std::vector<std::string> warnings;
+  if (earlier)
+    params.earlier = &*earlier;
+  else
+    LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
+  // Not for the trial; and the light of layers is not kept yet.
+  if (!params.layers) params.parts = in.parts;
+  if (keeps) params.keep = in.cache->rays();
+  params.on_estimate = in.on_estimate;
+  LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
+                                                  in.lights, in.tracer, params, progress));
+  const transport::LightLayers all_layers = layers;
+  TexelLight out = light_of(result, layers);
+  if (keeps) in.cache->keep(kept_bake(in, all_layers, result, out));
+  if (settings.layers == transport::LayerMode::none) drop_layers(out);
+  if (settings.max_error > 0 || settings.time_budget_s > 0)
+    warn_about_rounds(settings, params, result, warnings);
+  out.warnings = std::move(warnings);
   return out;
 }
 

@@ -181,6 +181,26 @@ Status check_layers(const BakeSettings& s) {
   return {};
 }
 
+/// What a bake that is kept, or built on one, does not do.
+Status check_keep(const BakeSettings& s) {
+  if (!s.keep) return {};
+  if (!find_solver(s.solver)->keeps)
+    return fail(
+        ErrorCode::bad_setting,
+        "--keep needs rays that can be kept, which --solver {} has not; use --solver gather",
+        s.solver);
+  if (s.resume)
+    return fail(ErrorCode::bad_setting,
+                "--keep does not go together with --resume: a bake that is to be kept has no "
+                "checkpoint; leave one of them out");
+  if (s.time_budget_s > 0)
+    return fail(ErrorCode::bad_setting,
+                "--keep does not go together with --time-budget {}: what is kept should not depend "
+                "on the clock; use --max-error",
+                s.time_budget_s);
+  return {};
+}
+
 }  // namespace
 
 Status check(const BakeSettings& s) {
@@ -216,6 +236,7 @@ Status check(const BakeSettings& s) {
                 "--denoise needs light with known noise, which --solver {} has not; leave it out",
                 s.solver);
   LUXEL_TRY_STATUS(check_layers(s));
+  LUXEL_TRY_STATUS(check_keep(s));
   if (s.vertex_colors && s.solver != "hemicube")
     return fail(ErrorCode::bad_setting,
                 "--vertex-colors needs light per vertex, which --solver {} does not compute; use "
@@ -244,7 +265,7 @@ nlohmann::json to_json(const BakeSettings& s) {
   json["formats"] = to_json(s.formats);
   json["html"] = s.html, json["texels"] = s.texels;
   json["error_map"] = s.error_map, json["time_budget_s"] = s.time_budget_s;
-  json["checkpoint_s"] = s.checkpoint_s;
+  json["checkpoint_s"] = s.checkpoint_s, json["keep"] = s.keep;
   json["bounces"] = s.bounces < 0 ? nlohmann::json("inf") : nlohmann::json(s.bounces);
   json["directional"] = name_of(s.directional);
   json["probe_spacing_m"] = s.probe_spacing_m;

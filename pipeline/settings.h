@@ -127,6 +127,7 @@ struct BakeSettings {
   /// Finished parts are kept once the bake has taken so long [s], docs/checkpoints.md; 0: never.
   double checkpoint_s = 30;
   bool resume = false;  ///< go on with what another bake has kept
+  bool keep = false;    ///< build on the bake in DIR/cache, or leave one there; docs/rebake.md
 };
 
 /// Checks every number against its range. Errors (bad_setting) name the option, the value, and what

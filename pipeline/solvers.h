@@ -21,10 +21,13 @@
 
 namespace luxel::pipeline {
 
+class BakeCache;
+
 /// What every solver gets.
 struct SolveInput : transport::TexelScene {
   PartStore* parts = nullptr;  ///< where its finished parts are kept and found; null: nowhere
   transport::OnLightEstimate on_estimate{};  ///< gets gather's light as it grows
+  BakeCache* cache = nullptr;  ///< what gather builds on, and where it keeps itself; null: neither
 };
 
 /// What every solver gives.
@@ -43,8 +46,9 @@ struct TexelLight {
   /// With --layers: which there are, and E of each per texel; they add up to the irradiance.
   std::vector<transport::LightLayer> layers;
   std::vector<std::vector<Rgb>> layer_irradiance;
-  std::vector<uint16_t> samples;  ///< with errors: indirect rays per texel
-  uint64_t rays = 0;
+  std::vector<uint16_t> samples;     ///< with errors: indirect rays per texel
+  uint64_t rays = 0;                 ///< that were traced
+  uint64_t rays_kept = 0;            ///< that an earlier bake had traced
   uint64_t supersampled_texels = 0;  ///< direct light is a mean over their points
   int sweeps = 0;
   double relative_error = 0;       ///< estimated, root mean square over the mean
@@ -71,6 +75,7 @@ struct Solver {
   bool layers = false;     ///< can tell the light of each lamp apart: --layers
   bool scatters = false;   ///< follows light that surfaces scatter through
   bool parts = false;      ///< keeps its finished parts: --checkpoint, --resume
+  bool keeps = false;      ///< leaves what later bakes can build on: --keep
 };
 
 /// What a bake's settings ask of the hemicube solver. Shadow rays are four times direct_samples.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "atlas/cut_charts.h"
+#include "base/check.h"
 #include "base/parallel.h"
 #include "scene/drawn_triangle.h"
 #include "transport/barriers.h"
@@ -102,6 +103,37 @@ Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& s
   }
   layout.repair.overlapping = atlas::overlapping_texels(layout.atlas, layout.map);
   layout.stats = atlas::atlas_stats(scene, layout.atlas, layout.map);
+  return layout;
+}
+
+KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout,
+                       std::vector<std::string> warnings) {
+  KeptLayout out{scene.meshes,       {},           layout.atlas,
+                 layout.map.texels,  layout.stats, layout.repair,
+                 std::move(warnings)};
+  for (const scene::Instance& instance : scene.instances)
+    out.mesh_of_instance.push_back(instance.mesh);
+  return out;
+}
+
+Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept, bool same_places,
+                                  scene::Scene& scene, Progress& progress) {
+  LUXEL_CHECK(kept.mesh_of_instance.size() == scene.instances.size());
+  progress.begin("charts", 0);
+  scene.meshes = std::move(kept.meshes);
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    scene.instances[i].mesh = kept.mesh_of_instance[i];
+  atlas::TexelMap map = atlas::map_of(kept.atlas, std::move(kept.texels));
+  // Where texels lie in their triangles does not depend on where those are.
+  if (!same_places) map = atlas::rasterise(scene, kept.atlas);
+  progress.begin("build ray tracer", 0);
+  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
+  TexelLayout layout{std::move(kept.atlas), std::move(map), kept.stats, std::move(tracer),
+                     std::move(kept.repair)};
+  if (!same_places && settings.repair_leaks) {
+    progress.begin("samples", 0);
+    layout.repair.moved = transport::open_samples(scene, layout.atlas, layout.tracer, layout.map);
+  }
   return layout;
 }
 

@@ -1,6 +1,7 @@
 // Where texels lie, such that none of them lets light through a wall.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "atlas/atlas.h"
@@ -37,6 +38,25 @@ struct TexelLayout {
 /// where it is while the tracer is used.
 Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& scene,
                                    Progress& progress);
+
+/// A layout that is kept for later bakes: of what it is made, and what it became.
+struct KeptLayout {
+  std::vector<scene::Mesh> meshes;  ///< backs added, cut along barriers
+  std::vector<uint32_t> mesh_of_instance;
+  atlas::Atlas atlas;
+  std::vector<atlas::Texel> texels;  ///< of the map
+  atlas::AtlasStats stats;
+  LeakRepair repair;
+  std::vector<std::string> warnings;
+};
+KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout,
+                       std::vector<std::string> warnings);
+
+/// The kept layout for `scene`, which has the same meshes, as they were read, in the same number of
+/// places. With `same_places` its texels' samples stay; else they are moved out of solids again
+/// where settings.repair_leaks says so. `scene` gets the layout's meshes. Errors: no memory.
+Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept, bool same_places,
+                                  scene::Scene& scene, Progress& progress);
 
 /// Whether a barrier stands between two texels of one chart. Refers to its arguments.
 post::Parted parted_texels(const scene::Scene& scene, const atlas::Atlas& atlas,

@@ -29,22 +29,25 @@ BacksSeen backs_seen(const scene::Scene& scene, const trace::RayTracer& tracer, 
   return seen;
 }
 
+bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
+                 const Elements& elements, size_t i, const BacksSeen& own, float diagonal_m) {
+  constexpr int kRays = 64;
+  const int backs = own.one_sided + own.double_sided;
+  if (4 * own.one_sided < own.rays && 8 * backs < 7 * own.rays) return false;
+  if (4 * own.one_sided > 3 * own.rays) return true;
+  const Vec3 from =
+      trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
+  return is_enclosed(backs_seen(scene, tracer, from, elements.normal[i], kRays));
+}
+
 std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                                    const Elements& elements,
                                    const std::function<BacksSeen(size_t)>& seen) {
-  constexpr int kRays = 64;
   const float diagonal_m = scene::world_bounds(scene).diagonal();
   std::vector<uint8_t> out(elements.size());
   parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const BacksSeen own = seen(i);
-      const int backs = own.one_sided + own.double_sided;
-      if (4 * own.one_sided < own.rays && 8 * backs < 7 * own.rays) continue;
-      const Vec3 from =
-          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
-      out[i] = 4 * own.one_sided > 3 * own.rays ||
-               is_enclosed(backs_seen(scene, tracer, from, elements.normal[i], kRays));
-    }
+    for (size_t i = begin; i < end; ++i)
+      out[i] = is_enclosed(scene, tracer, elements, i, seen(i), diagonal_m);
   });
   return out;
 }

@@ -29,9 +29,12 @@ inline bool is_enclosed(const BacksSeen& b) {
   return is_hidden(b) || 100 * (b.one_sided + b.double_sided) >= 98 * b.rays;
 }
 
-/// Per element, 1 where it lies inside a solid. `seen(i)` is what element i's own rays met; where
-/// they are not sure, a fixed set decides, so that other samples or another seed do not turn a
-/// texel on and off, and solvers agree.
+/// Whether element i lies inside a solid. `own` is what its own rays met; where they are not sure,
+/// a fixed set decides, so that other samples or another seed do not turn a texel on and off, and
+/// solvers agree.
+bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
+                 const Elements& elements, size_t i, const BacksSeen& own, float diagonal_m);
+/// The same per element, as 1 or 0.
 std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                                    const Elements& elements,
                                    const std::function<BacksSeen(size_t)>& seen);

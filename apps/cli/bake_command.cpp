@@ -35,6 +35,7 @@ constexpr std::array kSolverOptions{
     SolverOption{"--denoise", &pipeline::Solver::noise},
     SolverOption{"--checkpoint", &pipeline::Solver::parts},
     SolverOption{"--resume", &pipeline::Solver::parts},
+    SolverOption{"--keep", &pipeline::Solver::keeps},
     SolverOption{"--layers", &pipeline::Solver::layers},
     SolverOption{"--elements", &pipeline::Solver::hemicube},
     SolverOption{"--hemicube", &pipeline::Solver::hemicube},
@@ -249,6 +250,9 @@ void register_bake(CLI::App& app, Action& action) {
                    "FOLDER/checkpoint.luxel until the bake is done; 0: nothing is")
       ->capture_default_str();
   bake->add_flag("--resume", s.resume, "gather: go on with the checkpoint that is in the folder");
+  bake->add_flag("--keep", s.keep,
+                 "gather: build on the bake that is kept in FOLDER/cache, tracing only what has "
+                 "changed in the scene since; without one, bake and keep it there");
   bake->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();
   add_outside_light(*bake, options->outside);
   add_common(*bake, options->common);

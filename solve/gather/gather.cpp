@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "solve/gather/adaptive.h"
 #include "solve/gather/bounce_layers.h"
+#include "solve/gather/earlier_direct.h"
 #include "transport/backs_seen.h"
 
 namespace luxel::gather {
@@ -74,6 +74,13 @@ transport::SupersampleParams supersample_params(const GatherParams& params) {
 Status begin_direct(const transport::TexelScene& world, const GatherParams& params, Work& work,
                     Progress& progress) {
   const transport::SupersampleParams supersample = supersample_params(params);
+  if (params.earlier && !params.earlier->direct.irradiance.empty()) {
+    LUXEL_TRY_STATUS(update_direct(world, supersample, *params.earlier, progress));
+    work.direct = std::move(params.earlier->direct);
+    work.levels = std::move(params.earlier->levels);
+    work.averaged = size_t(std::ranges::count(work.levels.averaged, 1));
+    return {};
+  }
   LUXEL_TRY(work.direct, transport::direct_light(world.scene, world.elements, world.lights,
                                                  world.tracer, supersample.direct, progress));
   LUXEL_TRY(const transport::Supersampled averaged,
@@ -89,9 +96,14 @@ Status begin_direct(const transport::TexelScene& world, const GatherParams& para
 
 Status trace_round(const transport::TexelScene& world, const GatherParams& params,
                    std::span<const uint16_t> target, Work& work, Progress& progress) {
-  const TraceParams trace{params.seed,           params.hit_memory_bytes,
-                          params.scratch_folder, params.bounces < 0 ? &world.lights : nullptr,
-                          params.parts,          params.layers};
+  const TraceParams trace{params.seed,
+                          params.hit_memory_bytes,
+                          params.scratch_folder,
+                          params.bounces < 0 ? &world.lights : nullptr,
+                          params.parts,
+                          params.keep,
+                          params.earlier ? &params.earlier->rays : nullptr,
+                          params.layers};
   const auto start = std::chrono::steady_clock::now();
   const uint64_t before = work.hits.rays, samples = sum_of(work.hits.samples);
   LUXEL_TRY_STATUS(trace_more(world.scene, world.atlas, world.elements, world.lights.around,
@@ -207,6 +219,11 @@ void show(const GatherParams& params, const Work& work) {
 Status trace_first(const transport::TexelScene& world, const GatherParams& params,
                    std::span<const StoredHit> behind, Work& work, Progress& progress) {
   const size_t n = world.elements.size();
+  if (params.earlier) {
+    for (const std::vector<uint16_t>& target : params.earlier->rounds)
+      LUXEL_TRY_STATUS(trace_round(world, params, target, work, progress));
+    return {};
+  }
   if (!params.on_estimate)
     return trace_round(world, params, std::vector<uint16_t>(n, uint16_t(params.samples)), work,
                        progress);
@@ -234,6 +251,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   LUXEL_TRY_STATUS(begin_direct(world, params, work, progress));
   const std::vector<StoredHit> behind = places_behind(scene, atlas, map, elements);
   work.hits = no_hits(elements.size(), params.layers ? params.layers->size() : 0);
+  if (params.earlier) work.bounced.irradiance = std::move(params.earlier->irradiance);
   LUXEL_TRY_STATUS(trace_first(world, params, behind, work, progress));
   for (bool more = params.max_error > 0 || params.seconds > 0; more;) {
     LUXEL_TRY_STATUS(
@@ -245,6 +263,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   LUXEL_TRY_STATUS(bounce_round(world, behind, {params.bounces, params.tolerance}, work, progress));
   show(params, work);
   Gather out;
+  if (params.keep) out.kept_direct = work.direct, out.kept_levels = work.levels;
   if (params.layers) {
     LUXEL_TRY(LayersBounced layers,
               bounce_layers(map, elements, work.hits,
@@ -267,7 +286,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   });
   out.met_back = std::move(work.hits.met_back);
   out.samples = std::move(work.hits.samples);
-  out.rays = work.direct.rays + work.hits.rays;
+  out.rays = work.direct.rays + work.hits.rays, out.rays_kept = work.hits.rays_kept;
   out.supersampled = work.averaged;
   out.sweeps = work.bounced.sweeps;
   out.hit_bytes_in_file = work.hits.bytes_in_file();

@@ -1,12 +1,25 @@
 // Radiosity maps: Monte Carlo gather per texel. [Moreno05]
 #pragma once
 
+#include "solve/gather/adaptive.h"
 #include "solve/gather/bounces.h"
 #include "solve/gather/trace_hits.h"
 #include "transport/light_estimate.h"
 #include "transport/supersample.h"
 
 namespace luxel::gather {
+
+/// What an earlier bake leaves to one of the changed scene on the same map.
+struct Earlier {
+  EarlierRays rays;
+  std::vector<std::vector<uint16_t>> rounds;  ///< samples per element after each, at least one
+  /// Light straight from lamps where nothing has come into its way, in place of that of all lamps
+  /// but those of `lamps_anew`; empty: not known.
+  transport::DirectLight direct;
+  DirectLevels levels;
+  transport::Lights lamps_anew;  ///< that shine otherwise than then: they are looked at everywhere
+  std::vector<Rgb> irradiance;   ///< a guess at the light after all bounces
+};
 
 struct GatherParams {
   int samples = 256;  ///< indirect rays per element; with max_error or seconds, of the first round
@@ -25,6 +38,8 @@ struct GatherParams {
   uint64_t hit_memory_bytes = UINT64_MAX;
   std::filesystem::path scratch_folder = ".";
   PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
+  PartStore* keep = nullptr;   ///< where rays are kept for later bakes of the scene; null: nowhere
+  Earlier* earlier = nullptr;  ///< is used up; its rounds come first; null: nothing is known
   /// Gets the light as it grows: direct light with an ambient term [Cohen88], then that of a few
   /// rays, of twice as many, and so on, the last being what gather() returns. `samples` come in
   /// rounds then, and the result is that without it up to rounding (adaptive_test.cpp).
@@ -46,7 +61,11 @@ struct Gather {
   /// With layers, of each: E per element after all bounces. They add up to `irradiance`.
   std::vector<std::vector<Rgb>> layers;
   double layers_shared_out = 0;  ///< LayersBounced::shared_out
+  /// With `keep`: direct light as it is in the end, and how finely it was looked at.
+  transport::DirectLight kept_direct;
+  DirectLevels kept_levels;
   uint64_t rays = 0;
+  uint64_t rays_kept = 0;     ///< TracedHits::rays_kept
   uint64_t supersampled = 0;  ///< elements whose direct light is a mean over points
   int sweeps = 0;
   uint64_t hit_bytes_in_file = 0;

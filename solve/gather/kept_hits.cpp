@@ -46,11 +46,11 @@ transport::KeptEntries keep_tile(const KeptStage& kept, size_t begin, size_t end
   out.put_value(tile.rays);
   for_each_array(hits,
                  [&](const auto& array) { out.put(std::span(array).subspan(begin, end - begin)); });
-  out.put(std::span(tile.hits.end));
-  out.put(std::span(tile.hits.entries));
+  out.put(std::span(tile.rays_met.hits.end));
+  out.put(std::span(tile.rays_met.hits.entries));
   const size_t part = begin / kTileElements;
   if (!kept.keep(part, out.bytes)) return {};
-  return entries_at_end(kept, part, out.bytes.size(), tile.hits);
+  return entries_at_end(kept, part, out.bytes.size(), tile.rays_met.hits);
 }
 
 std::optional<FoundTile> find_tile(const KeptStage& kept, size_t begin, size_t end, uint32_t places,
@@ -67,7 +67,7 @@ std::optional<FoundTile> find_tile(const KeptStage& kept, size_t begin, size_t e
     in.ok = in.ok && size <= in.bytes.size();
     if (in.ok) in.bytes = in.bytes.subspan(size);
   });
-  HitTile& tile = out.tile.hits;
+  HitTile& tile = out.tile.rays_met.hits;
   tile.end.resize(end - begin);
   in.get(std::span(tile.end));
   if (!in.ok || in.bytes.size() != size_t(tile.end.back()) * sizeof(StoredHit)) return std::nullopt;

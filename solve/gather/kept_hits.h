@@ -14,8 +14,9 @@ KeptStage kept_round(const TracedHits& hits, std::span<const uint16_t> target,
 
 /// A tile of a round with the rays that it took.
 struct TracedTile {
-  HitTile hits;
+  RayTile rays_met;  ///< ends only where it was traced
   uint64_t rays = 0;
+  uint64_t kept = 0;  ///< of an earlier bake, besides
 };
 
 /// Keeps the tile of elements [begin, end) and what `hits` counts for them. Returns where its

@@ -1,7 +1,6 @@
 #include "solve/gather/trace_hits.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <mutex>
 #include <optional>
@@ -9,101 +8,35 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "base/vectorize.h"
 #include "scene/sides.h"
+#include "solve/gather/element_rays.h"
 #include "solve/gather/kept_hits.h"
 #include "solve/gather/near_paths.h"
+#include "transport/backs_seen.h"
 
 namespace luxel::gather {
 namespace {
 
-/// Directions are sorted by cells of the unit square, 8 x 8 in Morton order.
-constexpr int kCellsPerAxis = 8;
-constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
-
 /// Everything a worker needs, reused from element to element.
 struct Work {
-  std::vector<float> u, v, x, y, z;
-  std::vector<uint8_t> cell;
-  std::vector<uint32_t> sample;  ///< of the element, per ray
-  std::vector<trace::Ray> rays;
-  std::vector<trace::Hit> hits;
-  std::vector<Rgb> tint;  ///< of what rays have passed; empty where nothing has a colour
+  RayBatch batch;
+  std::vector<trace::Hit> hits;  ///< of the batch's rays
+  std::vector<Rgb> tint;         ///< of what rays have passed; empty where nothing has a colour
   NearWork near;
-
-  void resize(size_t samples) {
-    for (std::vector<float>* buffer : {&u, &v, &x, &y, &z}) buffer->resize(samples);
-    cell.resize(samples), sample.resize(samples);
-    rays.resize(samples), hits.resize(samples);
-  }
+  /// Where rays of an earlier bake are known: 1 for those that are traced again, and those alone.
+  std::vector<uint8_t> again;
+  std::vector<trace::Ray> few_rays;
+  std::vector<trace::Hit> few_hits;
+  std::vector<Rgb> few_tints;
 };
 
-/// Which samples of an element.
-struct Samples {
-  uint32_t first = 0, end = 0;
-
-  uint32_t count() const { return end - first; }
-  /// Whether a sample belongs to the second half of all up to `end`.
-  bool in_second_half(uint32_t sample) const { return 2 * sample >= end; }
+/// An element's rays of an earlier bake.
+struct EarlierElement {
+  std::span<const RayEnd> ends;
+  std::span<const StoredHit> hits;
+  /// Light of those that escaped, as they would see it now; null: not known.
+  const EscapedLight* escaped = nullptr;
 };
-
-/// cos and sin of 2 pi x for x in [0, 1), to 2e-7: each quarter turn by Taylor's series about its
-/// middle. Without branches, so that loops over it become vector code, which std::sin prevents.
-inline Vec2 unit_circle(float x) {
-  const float turns = 4 * x;
-  const int quadrant = int(turns);
-  const float t = (turns - float(quadrant) - 0.5f) * (0.5f * kPi);  // [-pi/4, pi/4)
-  const float t2 = t * t;
-  const float s = t * (1 + t2 * (-1.0f / 6 + t2 * (1.0f / 120 + t2 * (-1.0f / 5040))));
-  const float c = 1 + t2 * (-0.5f + t2 * (1.0f / 24 + t2 * (-1.0f / 720 + t2 * (1.0f / 40320))));
-  const float h = 0.70710678f;
-  const float cosine = h * (c - s), sine = h * (c + s);  // turned by the missing eighth
-  const float a = (quadrant & 1) ? -sine : cosine, b = (quadrant & 1) ? cosine : sine;
-  const float sign = (quadrant & 2) ? -1.0f : 1.0f;
-  return {a * sign, b * sign};
-}
-
-/// Directions about +z from the points (u, v), and the cell of each point.
-LUXEL_VECTOR_CLONES
-void local_directions(Work& work, size_t count) {
-  const float* u = work.u.data();
-  const float* v = work.v.data();
-  float* x = work.x.data();
-  float* y = work.y.data();
-  float* z = work.z.data();
-  for (size_t i = 0; i < count; ++i) {
-    const Vec2 circle = unit_circle(u[i]);
-    const float r = std::sqrt(v[i]);
-    x[i] = circle.x * r, y[i] = circle.y * r, z[i] = std::sqrt(1 - v[i]);
-  }
-  uint8_t* cell = work.cell.data();
-  for (size_t i = 0; i < count; ++i) {
-    const int a = int(u[i] * kCellsPerAxis), b = int(v[i] * kCellsPerAxis);
-    cell[i] =
-        uint8_t((a & 1) | (a & 2) << 1 | (a & 4) << 2 | (b & 1) << 1 | (b & 2) << 2 | (b & 4) << 3);
-  }
-}
-
-/// The rays of an element in the order of their cells (a counting sort).
-void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Samples samples,
-               Work& work) {
-  const uint32_t count = samples.count();
-  work.resize(count);
-  sobol_owen_2d_points(seed, work.u, work.v, samples.first);
-  local_directions(work, count);
-  std::array<uint32_t, kCells + 1> place{};
-  for (uint32_t i = 0; i < count; ++i) ++place[work.cell[i] + 1];
-  for (size_t c = 0; c < kCells; ++c) place[c + 1] += place[c];
-  const Frame frame = frame_around(normal);
-  const bool bent = !(normal == geometric_normal);
-  for (uint32_t i = 0; i < count; ++i) {
-    Vec3 d = frame.to_world({work.x[i], work.y[i], work.z[i]});
-    if (bent) d = transport::mirrored_above(d, geometric_normal);
-    const uint32_t at = place[work.cell[i]]++;
-    work.rays[at] = {origin, 0, d, INFINITY};
-    work.sample[at] = samples.first + i;
-  }
-}
 
 StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray) {
   const auto& corners = atlas.corners[atlas.triangle_number(p.instance, p.triangle)];
@@ -139,43 +72,92 @@ void add_sky(const World& world, Rgb l, size_t element, TracedHits& out) {
     out.sky_by_layer[element * world.layers->size() + *world.layers->of_surroundings] += l;
 }
 
-/// Counts what the rays of an element's samples met, and keeps the hits that bring light.
-void sort_hits(const World& world, Work& work, size_t element, Samples samples, TracedHits& out,
-               HitTile& tile) {
-  for (size_t k = 0; k < work.hits.size(); ++k) {
-    const trace::Hit& hit = work.hits[k];
-    const bool second_half = samples.in_second_half(work.sample[k]);
-    if (!hit.found()) {
-      ++out.escaped[element];
-      Rgb l = transport::soft_radiance(world.scene, world.around, work.rays[k].direction);
-      if (!work.tint.empty()) l = l * work.tint[k];
-      add_light(l, second_half, element, out);
-      add_sky(world, l, element, out);
-      continue;
-    }
-    if (hit.back_face &&
-        !scene::reflects_from_behind(scene::material_at(world.scene, hit.point()))) {
-      ++out.met_back[element];
-      continue;
-    }
-    if (hit.back_face) ++out.met_double_sided_back[element];
-    if (world.near != nullptr) {
-      NearPath path{work.sample[k], work.tint.empty() ? Rgb{1, 1, 1} : work.tint[k], {}, hit, {}};
-      if (goes_on(*world.near, path)) {
-        work.near.paths.push_back(path);
-        continue;
-      }
-    }
-    const uint32_t tint = work.tint.empty()
-                              ? kNoTint
-                              : pack_tint(work.tint[k], hash64(element, work.sample[k] ^ 0x7147u));
-    tile.entries.push_back(store(world.atlas, hit.point(), {tint, second_half}));
+/// Counts a ray's end.
+void count_end(RayEnd end, size_t element, TracedHits& out) {
+  if (end == RayEnd::back) ++out.met_back[element];
+  if (end == RayEnd::behind) ++out.met_double_sided_back[element];
+  if (end == RayEnd::escaped) ++out.escaped[element];
+}
+
+/// What the batch's k-th ray sees outside, when it has escaped.
+Rgb light_outside(const World& world, const Work& work, size_t k, bool tinted) {
+  const Rgb l = transport::soft_radiance(world.scene, world.around, work.batch.rays[k].direction);
+  return tinted && !work.tint.empty() ? l * work.tint[k] : l;
+}
+
+/// The same for all rays of an element, from what was known and what has changed.
+EscapedLight escaped_light(const World& world, const Work& work, Samples samples,
+                           const EarlierElement* before, std::span<const RayEnd> ends) {
+  const bool known = before && before->escaped;
+  EscapedLight out = known ? *before->escaped : EscapedLight{};
+  for (size_t k = 0; k < ends.size(); ++k) {
+    if (known && !work.again[k]) continue;
+    const bool second_half = samples.in_second_half(work.batch.sample[k]);
+    if (known && before->ends[k] == RayEnd::escaped)
+      out.take_away(light_outside(world, work, k, false), second_half);
+    if (ends[k] == RayEnd::escaped) out.add(light_outside(world, work, k, true), second_half);
   }
+  out.sum = max(out.sum, Rgb{});
+  return out;
+}
+
+/// How the batch's k-th ray has ended; one to be followed on is added to work.near.paths.
+RayEnd end_of(const World& world, Work& work, size_t k) {
+  const trace::Hit& hit = work.hits[k];
+  if (!hit.found()) return RayEnd::escaped;
+  if (hit.back_face && !scene::reflects_from_behind(scene::material_at(world.scene, hit.point())))
+    return RayEnd::back;
+  if (world.near != nullptr) {
+    const NearPath path{
+        work.batch.sample[k], work.tint.empty() ? Rgb{1, 1, 1} : work.tint[k], {}, hit, {}};
+    if (goes_on(*world.near, path)) {
+      work.near.paths.push_back(path);
+      return RayEnd::followed;
+    }
+  }
+  return hit.back_face ? RayEnd::behind : RayEnd::hit;
+}
+
+/// Counts what the rays of an element's samples met, and keeps the hits that bring light. `before`:
+/// what they met in an earlier bake, but for work.again.
+void sort_hits(const World& world, Work& work, size_t element, Samples samples,
+               const EarlierElement* before, TracedHits& out, RayTile& tile) {
+  size_t hits_before = 0;
+  for (size_t k = 0; k < work.batch.rays.size(); ++k) {
+    const bool second_half = samples.in_second_half(work.batch.sample[k]);
+    const RayEnd known = before ? before->ends[k] : RayEnd::followed;
+    const bool was_hit = known == RayEnd::hit || known == RayEnd::behind;
+    const size_t hit_before = was_hit ? hits_before++ : 0;
+    const bool keeps = before && !work.again[k];
+    const RayEnd end = keeps ? known : end_of(world, work, k);
+    tile.ends.push_back(end);
+    if (end == RayEnd::followed) {
+      if (work.near.paths.back().hit.back_face) ++out.met_double_sided_back[element];
+      continue;
+    }
+    count_end(end, element, out);
+    if (end != RayEnd::hit && end != RayEnd::behind) continue;
+    if (keeps) {
+      tile.hits.entries.push_back(before->hits[hit_before]);
+      continue;
+    }
+    const uint32_t tint =
+        work.tint.empty()
+            ? kNoTint
+            : pack_tint(work.tint[k], hash64(element, work.batch.sample[k] ^ 0x7147u));
+    tile.hits.entries.push_back(store(world.atlas, work.hits[k].point(), {tint, second_half}));
+  }
+  const std::span<const RayEnd> ends = std::span(tile.ends).last(work.batch.rays.size());
+  tile.escaped.push_back(escaped_light(world, work, samples, before, ends));
+  const EscapedLight& light = tile.escaped.back();
+  out.sky[element] += light.sum, out.sky_luminance2[element] += light.luminance2;
+  out.sky_first_less_second[element] += luminance(light.sum) - 2 * light.second_luminance;
+  add_sky(world, light.sum, element, out);
 }
 
 /// Follows the rays of an element on that ended nearby. Returns the number of rays.
 uint64_t follow_on(const World& world, Work& work, size_t element, Samples samples, uint64_t seed,
-                   TracedHits& out, HitTile& tile) {
+                   TracedHits& out, RayTile& tile) {
   if (world.layers)
     work.near.by_layer =
         std::span(out.sky_by_layer).subspan(element * world.layers->size(), world.layers->size());
@@ -195,7 +177,7 @@ uint64_t follow_on(const World& world, Work& work, size_t element, Samples sampl
         !scene::reflects_from_behind(scene::material_at(world.scene, path.hit.point())))
       return;
     const uint32_t tint = pack_tint(path.throughput, hash64(seed, path.sample ^ 0x4e37u));
-    tile.entries.push_back(store(world.atlas, path.hit.point(), {tint, second_half}));
+    tile.hits.entries.push_back(store(world.atlas, path.hit.point(), {tint, second_half}));
   });
 }
 
@@ -212,13 +194,6 @@ std::vector<StoredHit> places_behind(const scene::Scene& scene, const atlas::Atl
     }
   });
   return out;
-}
-
-void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,
-                  std::span<trace::Ray> rays) {
-  Work work;
-  fill_rays(origin, normal, geometric_normal, seed, {0, uint32_t(rays.size())}, work);
-  std::copy(work.rays.begin(), work.rays.end(), rays.begin());
 }
 
 uint64_t TracedHits::bytes_in_memory() const {
@@ -253,29 +228,88 @@ struct Round {
   std::span<const uint16_t> target;
   uint64_t seed = 0;
   float diagonal_m = 0;
+  uint64_t number = 0;
+  const EarlierRays* earlier = nullptr;  ///< null: nothing is known
 
-  /// Returns the number of rays.
-  uint64_t trace_element(size_t i, Work& work, TracedHits& out, HitTile& tile) const;
+  /// `before`: what is known of the element's rays; null: nothing.
+  void trace_element(size_t i, const EarlierElement* before, Work& work, TracedHits& out,
+                     TracedTile& tile) const;
+  /// Inside of solids it is dark: paths along their walls, which are long, would bring nothing.
+  void drop_enclosed_paths(size_t i, Work& work, const TracedHits& hits) const;
 };
 
-uint64_t Round::trace_element(size_t i, Work& work, TracedHits& out, HitTile& tile) const {
+void Round::drop_enclosed_paths(size_t i, Work& work, const TracedHits& hits) const {
+  if (work.near.paths.empty()) return;
+  const transport::BacksSeen own{int(hits.samples[i]), int(hits.met_back[i]),
+                                 int(hits.met_double_sided_back[i])};
+  if (transport::is_enclosed(world.scene, tracer, elements, i, own, diagonal_m))
+    std::erase_if(work.near.paths, [](const NearPath& path) { return path.hit.back_face; });
+}
+
+/// Traces all rays of the batch.
+void trace_all(const trace::RayTracer& tracer, Work& work) {
+  work.hits.resize(work.batch.rays.size());
+  tracer.closest_hits(work.batch.rays, work.hits);
+  if (!tracer.has_tints()) return;
+  work.tint.assign(work.batch.rays.size(), {1, 1, 1});
+  tracer.tint(work.batch.rays, work.hits, work.tint);
+}
+
+/// Traces those that may meet something else than in the earlier bake, and those that are followed
+/// on: what they bring depends on reflectances and lamps. Of rays that escaped through something
+/// coloured the colour is not known. Returns how many there were.
+size_t trace_again(const trace::RayTracer& tracer, std::span<const Box3> boxes,
+                   std::span<const RayEnd> ends, Work& work) {
+  const std::span<const trace::Ray> rays = work.batch.rays;
+  work.again.assign(rays.size(), 0);
+  mark_rays(boxes, rays, work.again);
+  work.few_rays.clear();
+  for (size_t k = 0; k < rays.size(); ++k) {
+    if (ends[k] == RayEnd::followed || (ends[k] == RayEnd::escaped && tracer.has_tints()))
+      work.again[k] = 1;
+    if (work.again[k]) work.few_rays.push_back(rays[k]);
+  }
+  const size_t count = work.few_rays.size();
+  work.few_hits.resize(count);
+  tracer.closest_hits(work.few_rays, work.few_hits);
+  work.few_tints.assign(count, {1, 1, 1});
+  if (tracer.has_tints()) tracer.tint(work.few_rays, work.few_hits, work.few_tints);
+  work.hits.resize(rays.size());
+  if (tracer.has_tints()) work.tint.assign(rays.size(), {1, 1, 1});
+  for (size_t k = 0, at = 0; k < rays.size(); ++k) {
+    if (!work.again[k]) continue;
+    work.hits[k] = work.few_hits[at];
+    if (tracer.has_tints()) work.tint[k] = work.few_tints[at];
+    ++at;
+  }
+  return count;
+}
+
+void Round::trace_element(size_t i, const EarlierElement* before, Work& work, TracedHits& out,
+                          TracedTile& tile) const {
   const Samples samples{out.samples[i], std::max(out.samples[i], target[i])};
-  if (samples.count() == 0) return 0;
+  if (samples.count() == 0) {
+    tile.rays_met.escaped.emplace_back();
+    return;
+  }
   // What was there before is of the first half now.
   out.sky_first_less_second[i] = luminance(out.sky[i]);
   out.samples[i] = uint16_t(samples.end), out.last_round[i] = uint8_t(out.rounds.size());
   const Vec3 origin =
       trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
   fill_rays(origin, elements.normal[i], elements.geometric_normal[i], hash64(seed ^ 0x6a7e, i),
-            samples, work);
-  tracer.closest_hits(work.rays, work.hits);
-  if (tracer.has_tints()) {
-    work.tint.assign(samples.count(), {1, 1, 1});
-    tracer.tint(work.rays, work.hits, work.tint);
-  }
-  sort_hits(world, work, i, samples, out, tile);
-  if (work.near.paths.empty()) return samples.count();
-  return samples.count() + follow_on(world, work, i, samples, hash64(seed ^ 0x7ea4, i), out, tile);
+            samples, work.batch);
+  size_t traced = samples.count();
+  if (before)
+    traced = trace_again(tracer, earlier->boxes, before->ends, work);
+  else
+    trace_all(tracer, work);
+  sort_hits(world, work, i, samples, before, out, tile.rays_met);
+  drop_enclosed_paths(i, work, out);
+  tile.kept += samples.count() - traced;
+  tile.rays += traced;
+  if (!work.near.paths.empty())
+    tile.rays += follow_on(world, work, i, samples, hash64(seed ^ 0x7ea4, i), out, tile.rays_met);
 }
 
 /// The most samples that the round adds to one element.
@@ -299,32 +333,59 @@ uint64_t planned_samples(std::span<const uint16_t> target, const TracedHits& hit
   return planned;
 }
 
+/// Takes the rays of a tile's elements one after another from what an earlier bake knew.
+struct EarlierCursor {
+  const RayTile* tile = nullptr;  ///< null: nothing is known
+  size_t next_ray = 0;
+  EarlierElement of{};
+
+  /// Those of the tile's k-th element, whose rays are `count`. False: they are not known.
+  bool advance(size_t k, size_t count, bool knows_escaped) {
+    if (tile == nullptr || next_ray + count > tile->ends.size()) return false;
+    const uint32_t first = k == 0 ? 0 : tile->hits.end[k - 1];
+    of = {std::span(tile->ends).subspan(next_ray, count),
+          std::span(tile->hits.entries).subspan(first, tile->hits.end[k] - first),
+          knows_escaped ? &tile->escaped[k] : nullptr};
+    next_ray += count;
+    const auto hits = std::ranges::count_if(
+        of.ends, [](RayEnd end) { return end == RayEnd::hit || end == RayEnd::behind; });
+    return size_t(hits) <= of.hits.size();
+  }
+};
+
 /// Traces the elements [begin, end), unless the work is cancelled.
-TracedTile trace_tile(const Round& round, size_t begin, size_t end, TracedHits& hits,
-                      Progress& progress) {
+TracedTile trace_tile(const Round& round, size_t begin, size_t end, const RayTile* earlier,
+                      TracedHits& hits, Progress& progress) {
   constexpr uint64_t kRaysPerAdvance = 8192;
   Work work;
   TracedTile tile;
-  uint64_t untold = 0;
-  tile.hits.entries.reserve(planned_samples(round.target, hits, begin, end));
+  EarlierCursor before{earlier};
+  uint64_t untold = 0, kept = 0;
+  // Through glass rays escape in a colour that is not known.
+  const bool knows_escaped = earlier && !round.earlier->surroundings && !round.tracer.has_tints();
+  const uint64_t planned = planned_samples(round.target, hits, begin, end);
+  tile.rays_met.hits.entries.reserve(planned), tile.rays_met.ends.reserve(planned);
   for (size_t i = begin; i < end; ++i) {
     if (progress.cancelled()) return tile;
-    const uint64_t before = hits.samples[i];
-    tile.rays += round.trace_element(i, work, hits, tile.hits);
-    tile.hits.end.push_back(uint32_t(tile.hits.entries.size()));
+    const uint64_t samples = planned_samples(round.target, hits, i, i + 1);
+    const bool known =
+        before.advance(i - begin, samples, knows_escaped) && !round.earlier->moved[i];
+    round.trace_element(i, known ? &before.of : nullptr, work, hits, tile);
+    tile.rays_met.hits.end.push_back(uint32_t(tile.rays_met.hits.entries.size()));
     // Not for every element: the counter is shared by all threads.
-    untold += hits.samples[i] - before;
+    untold += samples;
     if (untold < kRaysPerAdvance && i + 1 < end) continue;
-    progress.advance(untold);
-    untold = 0;
+    progress.skip(std::min(untold, tile.kept - kept));
+    progress.advance(untold - std::min(untold, tile.kept - kept));
+    untold = 0, kept = tile.kept;
   }
   return tile;
 }
 
 /// Traces the round's elements into `store`. Errors: disk full.
-Status trace_tiles(const Round& round, const KeptStage& kept, TracedHits& hits, HitStore& store,
-                   Progress& progress) {
-  std::atomic<uint64_t> rays{0};
+Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, TracedHits& hits,
+                   HitStore& store, Progress& progress) {
+  std::atomic<uint64_t> rays{0}, rays_kept{0};
   std::mutex mutex;
   Status status;
   // StoredHit::base() of the last texel that has another below and to the right, plus one.
@@ -332,24 +393,30 @@ Status trace_tiles(const Round& round, const KeptStage& kept, TracedHits& hits, 
   const uint32_t places = (side + 2) * (side + 1) - 1;
   parallel_for(hits.size(), kTileElements, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
+    const size_t number = begin / kTileElements;
     const uint64_t planned = planned_samples(round.target, hits, begin, end);
     std::optional<FoundTile> tile = find_tile(kept, begin, end, places, hits);
     if (tile) {
       progress.skip(planned);
     } else {
-      tile.emplace(FoundTile{trace_tile(round, begin, end, hits, progress), {}});
+      std::optional<RayTile> earlier;
+      if (round.earlier)
+        earlier = find_rays(*round.earlier->file, round.number, number, end - begin, places);
+      tile.emplace(FoundTile{
+          trace_tile(round, begin, end, earlier ? &*earlier : nullptr, hits, progress), {}});
       if (progress.cancelled()) return;
       tile->entries = keep_tile(kept, begin, end, tile->tile, hits);
+      keep_rays(keep, round.number, number, tile->tile.rays_met);
     }
-    rays += tile->tile.rays;
-    const Status put = store.put(begin / kTileElements, std::move(tile->tile.hits), tile->entries);
+    rays += tile->tile.rays, rays_kept += tile->tile.kept;
+    const Status put = store.put(number, std::move(tile->tile.rays_met.hits), tile->entries);
     if (!put) {
       const std::lock_guard lock(mutex);
       if (status) status = put;
       progress.request_cancel();
     }
   });
-  hits.rays += rays;
+  hits.rays += rays, hits.rays_kept += rays_kept;
   return status;
 }
 
@@ -379,9 +446,12 @@ Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
   const World world{scene, atlas, around, near ? &*near : nullptr, params.layers};
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
-  LUXEL_TRY_STATUS(trace_tiles({world, elements, tracer, target, params.seed, diagonal_m}, kept,
-                               hits, store, progress));
+  const uint64_t number = hits.rounds.size();
+  LUXEL_TRY_STATUS(trace_tiles(
+      {world, elements, tracer, target, params.seed, diagonal_m, number, params.earlier}, kept,
+      params.keep, hits, store, progress));
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  keep_samples(params.keep, number, hits.samples);
   hits.rounds.push_back(std::move(store));
   return {};
 }

@@ -11,6 +11,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "scene/scene.h"
+#include "solve/gather/earlier_rays.h"
 #include "solve/gather/hit_store.h"
 #include "trace/ray_tracer.h"
 #include "transport/elements.h"
@@ -26,6 +27,8 @@ struct TraceParams {
   /// What rays look for that are followed on where they end nearby (near_paths.h); null: none are.
   const transport::Lights* near_lights = nullptr;
   PartStore* parts = nullptr;  ///< where finished tiles are kept and found; null: nowhere
+  PartStore* keep = nullptr;   ///< where each ray's end is kept for later bakes; null: nowhere
+  const EarlierRays* earlier = nullptr;  ///< what an earlier bake's rays met; null: nothing
   const transport::LightLayers* layers = nullptr;  ///< null: light is not told apart
 };
 
@@ -47,7 +50,8 @@ struct TracedHits {
   std::vector<Rgb> sky;
   std::vector<float> sky_luminance2, sky_first_less_second;
   std::vector<Rgb> sky_by_layer;  ///< with layers: `sky`, layer by layer for each element
-  uint64_t rays = 0;
+  uint64_t rays = 0;              ///< that were traced
+  uint64_t rays_kept = 0;         ///< that an earlier bake had traced
 
   size_t size() const { return samples.size(); }
   uint64_t bytes_in_memory() const;
@@ -85,10 +89,5 @@ Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atl
 std::vector<StoredHit> places_behind(const scene::Scene& scene, const atlas::Atlas& atlas,
                                      const atlas::TexelMap& map,
                                      const transport::Elements& elements);
-
-/// The rays of one element, in the order in which they are traced: sorted so that neighbours in a
-/// packet point in similar directions. Shared with `luxel bench rays`.
-void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,
-                  std::span<trace::Ray> rays);
 
 }  // namespace luxel::gather

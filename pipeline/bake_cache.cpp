@@ -1,0 +1,177 @@
+#include "pipeline/bake_cache.h"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/check.h"
+#include "base/digest.h"
+#include "pipeline/checkpoint.h"
+
+namespace luxel::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Of the cache's files; goes up when what they hold changes.
+constexpr int kFormat = 1;
+constexpr RecordKey kRest{0, 0};
+
+/// Settings that leave gathered light as it is; those of outside light are in the scene.
+constexpr std::array kWithoutEffect{"denoise",    "stitch", "directional", "probe_spacing_m",
+                                    "background", "sun",    "sky",         "environment",
+                                    "ies",        "layers"};
+
+fs::path light_file(const fs::path& folder) { return folder / "light.luxel"; }
+fs::path rays_file(const fs::path& folder) { return folder / "rays.luxel"; }
+fs::path unfinished(fs::path file) { return file += ".new"; }
+
+json identity_of(const BakeSettings& settings) {
+  json identity = bake_identity(settings);
+  for (const char* key : kWithoutEffect) identity["settings"].erase(key);
+  identity["cache"] = kFormat;
+  const bool groups = settings.layers == transport::LayerMode::groups;
+  identity["settings"]["lights told apart"] = groups ? "by groups" : "one by one";
+  return identity;
+}
+
+/// Rays and light that were kept together have the same one.
+uint64_t digest_of_state(const scene::SceneState& state) {
+  KeptBake kept;
+  kept.scene = state;
+  return digest_of(bytes_of(kept));
+}
+
+std::string header_of(const BakeSettings& settings, const scene::SceneState& state) {
+  json header = identity_of(settings);
+  header["digest"] = fmt::format("{:016x}", digest_of_state(state));
+  return header.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace
+
+BakeCache::BakeCache(const BakeSettings& settings)
+    : settings_(settings), folder_(settings.output / "cache") {}
+
+BakeCache::~BakeCache() {
+  if (!rays_) return;
+  rays_.reset();
+  std::error_code ignored;
+  for (const fs::path& file : {light_file(folder_), rays_file(folder_)}) {
+    fs::remove(unfinished(file), ignored);
+    fs::remove(RecordFile::unfinished_name(unfinished(file)), ignored);
+  }
+  fs::remove(folder_, ignored);  // if it is empty
+}
+
+void BakeCache::open(const scene::Scene& scene, Progress& progress) {
+  if (!settings_.keep) return;
+  state_ = scene::state_of(scene);
+  if (find(scene)) {
+    changed_ = scene::in_words(state_, change_);
+    progress.note(changed_.empty() ? "nothing has changed since the bake that is kept"
+                                   : "since the bake that is kept " + changed_);
+    return;
+  }
+  if (!note_.empty()) progress.note(note_);
+  begin(progress);
+}
+
+/// Whether there is something to build on; else note_ says why not, unless there is no cache.
+bool BakeCache::find(const scene::Scene& scene) {
+  const fs::path file = light_file(folder_);
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return false;
+  const auto no = [&](std::string_view why) {
+    note_ = fmt::format("{}: {}; the bake starts from scratch, and is kept in its place",
+                        folder_.string(), why);
+    return false;
+  };
+  const Result<RecordFile> found = RecordFile::open(file);
+  if (!found) return no(found.error().message);
+  json header = json::parse(found->header(), nullptr, false);
+  if (!header.is_object() || header.value("cache", 0) != kFormat)
+    return no("it was kept by another version of luxel");
+  const std::string different = difference(header, identity_of(settings_));
+  if (!different.empty()) return no("it is of another bake: " + different);
+  std::vector<std::byte> bytes(found->size_of(kRest).value_or(0));
+  if (!found->read(kRest, 0, bytes)) return no("light.luxel cannot be read");
+  found_ = kept_bake_of(bytes);
+  if (!found_) return no("light.luxel is not whole");
+  change_ = scene::change_between(found_->scene, state_);
+  if (change_.beyond.empty() && found_->layout.mesh_of_instance.size() == scene.instances.size()) {
+    seconds_before_ = found_->seconds;
+    return built_on_ = true;
+  }
+  found_.reset();
+  return no(change_.beyond);
+}
+
+const RecordFile* BakeCache::found_rays(Progress& progress) {
+  LUXEL_CHECK(found_);
+  if (found_rays_) return &*found_rays_;
+  Result<RecordFile> rays = RecordFile::open(rays_file(folder_));
+  if (!rays)
+    note_ = rays.error().message;
+  else if (rays->header() != header_of(settings_, found_->scene))
+    note_ = rays_file(folder_).string() + " is not of the bake that is kept";
+  else
+    return &found_rays_.emplace(std::move(*rays));
+  note_ += "; all rays are traced. Remove the folder to keep a bake anew";
+  progress.note(note_);
+  return nullptr;
+}
+
+void BakeCache::begin(Progress& progress) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error)
+    return give_up(fmt::format("cannot make {}: {}", folder_.string(), error.message()), progress);
+  // It begins long ago: parts are wanted at once, and not waited for.
+  constexpr double kForever_s = 1e6;
+  rays_.emplace(
+      PartStoreParams{unfinished(rays_file(folder_)), header_of(settings_, state_), "", kForever_s,
+                      std::chrono::steady_clock::now() - std::chrono::seconds(int(kForever_s) + 1)},
+      progress);
+}
+
+void BakeCache::give_up(std::string reason, Progress& progress) {
+  failure_ = std::move(reason) + "; the bake is not kept";
+  progress.note("warning: " + failure_);
+}
+
+void BakeCache::solved() {
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void BakeCache::finish(Progress& progress) {
+  if (!rays_ || !kept_) return;
+  if (rays_->has_failed()) return give_up(rays_->failure(), progress);
+  kept_->scene = state_, kept_->seconds = seconds_, kept_->layout = std::move(layout_);
+  const fs::path file = light_file(folder_);
+  Result<RecordFile> light = RecordFile::create(unfinished(file), header_of(settings_, state_));
+  if (!light) return give_up(light.error().message, progress);
+  const Status written = light->append(kRest, bytes_of(*kept_));
+  if (!written) return give_up(written.error().message, progress);
+  // Without light the rays are not looked at: at no moment do the two not belong together.
+  std::error_code error;
+  fs::remove(file, error);
+  fs::rename(unfinished(rays_file(folder_)), rays_file(folder_), error);
+  if (!error) fs::rename(unfinished(file), file, error);
+  if (error) give_up(fmt::format("{}: {}", folder_.string(), error.message()), progress);
+}
+
+json BakeCache::about(const TexelLight& light) const {
+  if (!settings_.keep) return nullptr;
+  json out = {{"built_on", built_on_}, {"kept", rays_.has_value() && failure_.empty()}};
+  if (!note_.empty()) out["note"] = note_;
+  if (!failure_.empty()) out["failure"] = failure_;
+  if (!built_on_) return out;
+  out["changed"] = changed_;
+  out["rays_traced"] = light.rays, out["rays_kept"] = light.rays_kept;
+  out["seconds_from_scratch"] = seconds_before_, out["seconds"] = seconds_;
+  return out;
+}
+
+}  // namespace luxel::pipeline

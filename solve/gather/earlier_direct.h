@@ -1,0 +1,15 @@
+// Direct light of an earlier bake, brought up to date with what has changed in the scene.
+#pragma once
+
+#include "solve/gather/gather.h"
+
+namespace luxel::gather {
+
+/// Looks at lamps again in earlier.direct: at earlier.lamps_anew from all elements, which adds
+/// their light (not with layers); then at all lamps from elements that lie elsewhere, or where
+/// something in earlier.rays.boxes may be, or have been, in the light's way. Those are supersampled
+/// where that light is uneven. direct.rays is the number of rays it took. Errors: cancelled.
+Status update_direct(const transport::TexelScene& world, const transport::SupersampleParams& params,
+                     Earlier& earlier, Progress& progress);
+
+}  // namespace luxel::gather

@@ -1,0 +1,118 @@
+#include "solve/gather/earlier_rays.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/bytes.h"
+
+namespace luxel::gather {
+namespace {
+
+bool is_sound(const RayTile& rays, uint32_t places) {
+  return std::ranges::all_of(rays.ends, [](RayEnd end) { return end <= RayEnd::followed; }) &&
+         std::ranges::is_sorted(rays.hits.end) &&
+         std::ranges::all_of(rays.hits.entries,
+                             [&](const StoredHit& hit) { return hit.base() < places; });
+}
+
+std::optional<std::vector<std::byte>> bytes_of(const RecordFile& file, RecordKey key) {
+  const std::optional<uint64_t> size = file.size_of(key);
+  if (!size) return std::nullopt;
+  std::vector<std::byte> bytes(*size);
+  if (!file.read(key, 0, bytes)) return std::nullopt;
+  return bytes;
+}
+
+/// Whether the half-line meets the box.
+bool meets(const Box3& box, Vec3 from, Vec3 direction) {
+  float begin = 0, end = INFINITY;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float d = direction[axis];
+    const float below = box.lower[axis] - from[axis], above = box.upper[axis] - from[axis];
+    if (d == 0) {
+      if (below > 0 || above < 0) return false;
+      continue;
+    }
+    const float a = below / d, b = above / d;
+    begin = std::max(begin, std::min(a, b)), end = std::min(end, std::max(a, b));
+  }
+  return begin <= end;
+}
+
+/// Unit directions from a place to a ball around a box.
+struct Cone {
+  Vec3 towards{};
+  float cosine = -1;  ///< of half its angle; -1: all directions
+
+  Cone(const Box3& box, Vec3 from) {
+    const Vec3 to = box.centre() - from;
+    const float distance = length(to), radius = 0.5f * box.diagonal();
+    if (distance <= radius) return;
+    towards = to / distance;
+    // A bit wider than it is, for directions that are unit but for rounding.
+    cosine = std::sqrt((distance - radius) * (distance + radius)) / distance - 1e-4f;
+  }
+};
+
+}  // namespace
+
+std::optional<std::vector<std::vector<uint16_t>>> earlier_rounds(const RecordFile& file,
+                                                                 size_t elements) {
+  std::vector<std::vector<uint16_t>> rounds;
+  while (true) {
+    const auto bytes = bytes_of(file, {rounds.size(), kSamplesPart});
+    if (!bytes) break;
+    std::vector<uint16_t> samples(elements);
+    ByteReader in{*bytes};
+    in.get(std::span(samples));
+    if (!in.ended_well()) return std::nullopt;
+    rounds.push_back(std::move(samples));
+  }
+  if (rounds.empty()) return std::nullopt;
+  return rounds;
+}
+
+std::optional<RayTile> find_rays(const RecordFile& file, uint64_t round, uint64_t tile,
+                                 size_t elements, uint32_t places) {
+  const auto bytes = bytes_of(file, {round, tile});
+  if (!bytes) return std::nullopt;
+  ByteReader in{*bytes};
+  RayTile out;
+  out.hits.end.resize(elements), out.escaped.resize(elements);
+  in.get(std::span(out.hits.end)), in.get(std::span(out.escaped));
+  const uint64_t rays = in.get_value<uint64_t>();
+  if (!in.ok || in.bytes.size() != rays + size_t(out.hits.end.back()) * sizeof(StoredHit))
+    return std::nullopt;
+  out.ends.resize(rays), out.hits.entries.resize(out.hits.end.back());
+  in.get(std::span(out.ends)), in.get(std::span(out.hits.entries));
+  if (!is_sound(out, places)) return std::nullopt;
+  return out;
+}
+
+void keep_rays(PartStore* store, uint64_t round, uint64_t tile, const RayTile& rays) {
+  if (store == nullptr || !store->wants()) return;
+  ByteWriter out;
+  out.put(std::span(rays.hits.end)), out.put(std::span(rays.escaped));
+  out.put_value(uint64_t(rays.ends.size()));
+  out.put(std::span(rays.ends)), out.put(std::span(rays.hits.entries));
+  store->keep({round, tile}, out.bytes);
+}
+
+void keep_samples(PartStore* store, uint64_t round, std::span<const uint16_t> samples) {
+  if (store == nullptr || !store->wants()) return;
+  store->keep({round, kSamplesPart}, std::as_bytes(samples));
+}
+
+void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
+               std::span<uint8_t> again) {
+  if (rays.empty()) return;
+  for (const Box3& box : boxes) {
+    const Cone cone(box, rays[0].origin);
+    for (size_t k = 0; k < rays.size(); ++k)
+      if (dot(cone.towards, rays[k].direction) >= cone.cosine &&
+          meets(box, rays[k].origin, rays[k].direction))
+        again[k] = 1;
+  }
+}
+
+}  // namespace luxel::gather

@@ -163,10 +163,17 @@ Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, B
     const bool same_places = cache->change().moved.empty() && cache->change().boxes.empty();
     return lay_out_again(settings, std::move(found->layout), same_places, scene, progress);
   }
+  const bool keeps = cache && cache->rays();
+  const scene::Scene before = keeps ? scene : scene::Scene{};
   LUXEL_TRY(sides, split_sides(scene, settings.uv, settings.resolution, progress));
   warn();
+  const std::vector<uint32_t> copies =
+      keeps ? one_sided_copies(before, scene) : std::vector<uint32_t>{};
   LUXEL_TRY(TexelLayout layout, lay_out_texels(settings, scene, progress));
-  if (cache && cache->rays()) cache->keep(keep_layout(scene, layout, std::move(sides)));
+  if (!keeps) return layout;
+  KeptLayout kept = keep_layout(scene, layout);
+  kept.one_sided_of = copies, kept.warnings = std::move(sides);
+  cache->keep(std::move(kept));
   return layout;
 }
 

@@ -116,9 +116,9 @@ void walk(Visit& visit, Like<LeakRepair> auto& r) {
 
 template <class Visit>
 void walk(Visit& visit, Like<KeptLayout> auto& l) {
-  auto& [meshes, mesh_of_instance, atlas, texels, stats, repair, warnings] = l;
-  visit(meshes), visit(mesh_of_instance), visit(atlas), visit(texels), visit(stats);
-  visit(repair), visit(warnings);
+  auto& [meshes, one_sided_of, mesh_of_instance, atlas, texels, stats, repair, warnings] = l;
+  visit(meshes), visit(one_sided_of), visit(mesh_of_instance), visit(atlas), visit(texels);
+  visit(stats), visit(repair), visit(warnings);
 }
 
 template <class Visit>

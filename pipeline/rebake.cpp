@@ -32,12 +32,9 @@ bool emits(Rgb emission) { return max_component(emission) > 0; }
 std::optional<Rgb> scale_of_instance(const KeptBake& kept, const scene::SceneChange& change,
                                      const scene::Scene& scene, uint32_t instance) {
   if (std::ranges::find(change.moved, instance) != change.moved.end()) return std::nullopt;
-  std::vector<uint8_t> uses(scene.materials.size());
-  for (const uint32_t m : scene.meshes[scene.instances[instance].mesh].triangle_material)
-    uses[m] = 1;
   Scales all(1);
-  for (size_t m = 0; m < uses.size(); ++m)
-    if (uses[m] && (emits(kept.scene.materials[m].emission) || emits(scene.materials[m].emission)))
+  for (const uint32_t m : kept.scene.mesh_materials[kept.scene.instances[instance].mesh])
+    if (emits(kept.scene.materials[m].emission) || emits(scene.materials[m].emission))
       all.add(0, change.emission_scale[m]);
   return all.scale[0];
 }

@@ -17,7 +17,7 @@ struct LightUpdate {
   std::vector<uint32_t> lamps_anew;  ///< lamps that do, and those of layers that have them
   bool surfaces_anew = false;        ///< so do surfaces, or the surroundings
 };
-/// `change` is that from kept.scene to `scene`, whose meshes are those of the layout.
+/// `change` is that from kept.scene to `scene`, which may have more materials by now.
 LightUpdate light_update(const KeptBake& kept, const scene::SceneChange& change,
                          const scene::Scene& scene);
 

@@ -106,13 +106,13 @@ Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& s
   return layout;
 }
 
-KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout,
-                       std::vector<std::string> warnings) {
-  KeptLayout out{scene.meshes,       {},           layout.atlas,
-                 layout.map.texels,  layout.stats, layout.repair,
-                 std::move(warnings)};
+KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout) {
+  KeptLayout out;
+  out.meshes = scene.meshes;
   for (const scene::Instance& instance : scene.instances)
     out.mesh_of_instance.push_back(instance.mesh);
+  out.atlas = layout.atlas, out.texels = layout.map.texels;
+  out.stats = layout.stats, out.repair = layout.repair;
   return out;
 }
 
@@ -121,6 +121,10 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
   LUXEL_CHECK(kept.mesh_of_instance.size() == scene.instances.size());
   progress.begin("charts", 0);
   scene.meshes = std::move(kept.meshes);
+  for (const uint32_t material : kept.one_sided_of) {
+    scene.materials.push_back(scene::Material(scene.materials[material]));
+    scene.materials.back().double_sided = false;
+  }
   for (size_t i = 0; i < scene.instances.size(); ++i)
     scene.instances[i].mesh = kept.mesh_of_instance[i];
   atlas::TexelMap map = atlas::map_of(kept.atlas, std::move(kept.texels));

@@ -42,6 +42,8 @@ Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& s
 /// A layout that is kept for later bakes: of what it is made, and what it became.
 struct KeptLayout {
   std::vector<scene::Mesh> meshes;  ///< backs added, cut along barriers
+  /// One-sided copies of materials, at the end of all, for surfaces with backs: of which each is.
+  std::vector<uint32_t> one_sided_of;
   std::vector<uint32_t> mesh_of_instance;
   atlas::Atlas atlas;
   std::vector<atlas::Texel> texels;  ///< of the map
@@ -49,8 +51,8 @@ struct KeptLayout {
   LeakRepair repair;
   std::vector<std::string> warnings;
 };
-KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout,
-                       std::vector<std::string> warnings);
+/// `one_sided_of` and `warnings` are not filled in.
+KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout);
 
 /// The kept layout for `scene`, which has the same meshes, as they were read, in the same number of
 /// places. With `same_places` its texels' samples stay; else they are moved out of solids again

@@ -284,4 +284,15 @@ Result<std::vector<std::string>> split_sides(scene::Scene& scene, atlas::UvMode 
   return std::vector<std::string>{};
 }
 
+std::vector<uint32_t> one_sided_copies(const scene::Scene& before, const scene::Scene& after) {
+  const size_t known = before.materials.size();
+  std::vector<uint32_t> out(after.materials.size() - known);
+  // Backs come after all triangles that were there.
+  for (size_t m = 0; m < before.meshes.size(); ++m)
+    for (size_t t = 0; t < before.meshes[m].triangles.size(); ++t)
+      if (const uint32_t copy = after.meshes[m].triangle_material[t]; copy >= known)
+        out[copy - known] = before.meshes[m].triangle_material[t];
+  return out;
+}
+
 }  // namespace luxel::pipeline

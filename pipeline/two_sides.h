@@ -27,4 +27,7 @@ Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene, 
 Result<std::vector<std::string>> split_sides(scene::Scene& scene, atlas::UvMode uv, int resolution,
                                              Progress& progress);
 
+/// Materials that split_sides has added to a scene, at the end: of which each is a copy.
+std::vector<uint32_t> one_sided_copies(const scene::Scene& before, const scene::Scene& after);
+
 }  // namespace luxel::pipeline

@@ -39,20 +39,16 @@ bool meets(const Box3& box, Vec3 from, Vec3 direction) {
   return begin <= end;
 }
 
-/// Unit directions from a place to a ball around a box.
-struct Cone {
-  Vec3 towards{};
-  float cosine = -1;  ///< of half its angle; -1: all directions
-
-  Cone(const Box3& box, Vec3 from) {
-    const Vec3 to = box.centre() - from;
-    const float distance = length(to), radius = 0.5f * box.diagonal();
-    if (distance <= radius) return;
-    towards = to / distance;
-    // A bit wider than it is, for directions that are unit but for rounding.
-    cosine = std::sqrt((distance - radius) * (distance + radius)) / distance - 1e-4f;
-  }
-};
+/// Directions from a place to a ball around a box; nothing: the place lies in it, and all do. A bit
+/// more than that, for directions that are unit but for rounding.
+std::optional<Cone> cone_to(const Box3& box, Vec3 from) {
+  const Vec3 to = box.centre() - from;
+  const float distance = length(to), radius = 0.5f * box.diagonal();
+  if (distance <= radius) return std::nullopt;
+  const float sine = radius / distance;
+  return Cone{to / distance,
+              std::sqrt((distance - radius) * (distance + radius)) / distance - 1e-4f, sine};
+}
 
 }  // namespace
 
@@ -104,15 +100,31 @@ void keep_samples(PartStore* store, uint64_t round, std::span<const uint16_t> sa
 }
 
 void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
-               std::span<uint8_t> again) {
-  if (rays.empty()) return;
+               std::span<const uint32_t> which, std::span<uint8_t> again) {
+  if (which.empty()) return;
   for (const Box3& box : boxes) {
-    const Cone cone(box, rays[0].origin);
-    for (size_t k = 0; k < rays.size(); ++k)
-      if (dot(cone.towards, rays[k].direction) >= cone.cosine &&
+    const std::optional<Cone> cone = cone_to(box, rays[which[0]].origin);
+    for (const uint32_t k : which)
+      if ((!cone || dot(cone->axis, rays[k].direction) >= cone->cosine) &&
           meets(box, rays[k].origin, rays[k].direction))
         again[k] = 1;
   }
+}
+
+uint64_t cells_towards(std::span<const Box3> boxes, Vec3 from, Vec3 normal,
+                       const std::array<Cone, kCells>& cells) {
+  static_assert(kCells == 64);
+  const Frame frame = frame_around(normal);
+  uint64_t out = 0;
+  for (const Box3& box : boxes) {
+    std::optional<Cone> cone = cone_to(box, from);
+    if (!cone) return ~uint64_t(0);
+    cone->axis = {dot(frame.tangent, cone->axis), dot(frame.bitangent, cone->axis),
+                  dot(frame.normal, cone->axis)};
+    for (size_t c = 0; c < kCells; ++c)
+      if (cells[c].may_meet(*cone)) out |= uint64_t(1) << c;
+  }
+  return out;
 }
 
 }  // namespace luxel::gather

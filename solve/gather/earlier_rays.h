@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/part_store.h"
+#include "solve/gather/element_rays.h"
 #include "solve/gather/hit_store.h"
 #include "trace/ray_tracer.h"
 
@@ -68,9 +69,14 @@ std::optional<RayTile> find_rays(const RecordFile& file, uint64_t round, uint64_
 void keep_rays(PartStore* store, uint64_t round, uint64_t tile, const RayTile& rays);
 void keep_samples(PartStore* store, uint64_t round, std::span<const uint16_t> samples);
 
-/// Sets again[k] to 1 where rays[k], which all start at one place, meets one of the boxes; leaves
-/// it as it is elsewhere.
+/// Sets again[k] to 1 where rays[k] meets one of the boxes, for each k of `which`; leaves it as it
+/// is elsewhere. The rays start at one place and have unit directions.
 void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
-               std::span<uint8_t> again);
+               std::span<const uint32_t> which, std::span<uint8_t> again);
+
+/// Cells of directions (element_rays.h) in which rays from a place, about `normal`, may meet a box,
+/// as one bit each.
+uint64_t cells_towards(std::span<const Box3> boxes, Vec3 from, Vec3 normal,
+                       const std::array<Cone, kCells>& cells);
 
 }  // namespace luxel::gather

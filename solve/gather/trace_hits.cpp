@@ -1,6 +1,7 @@
 #include "solve/gather/trace_hits.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <mutex>
 #include <optional>
@@ -25,6 +26,7 @@ struct Work {
   NearWork near;
   /// Where rays of an earlier bake are known: 1 for those that are traced again, and those alone.
   std::vector<uint8_t> again;
+  std::vector<uint32_t> maybe;  ///< those that have a direction
   std::vector<trace::Ray> few_rays;
   std::vector<trace::Hit> few_hits;
   std::vector<Rgb> few_tints;
@@ -230,10 +232,13 @@ struct Round {
   float diagonal_m = 0;
   uint64_t number = 0;
   const EarlierRays* earlier = nullptr;  ///< null: nothing is known
+  std::array<Cone, kCells> cell_cones = gather::cell_cones();
 
   /// `before`: what is known of the element's rays; null: nothing.
   void trace_element(size_t i, const EarlierElement* before, Work& work, TracedHits& out,
                      TracedTile& tile) const;
+  void choose_again(size_t i, Vec3 origin, Samples samples, const EarlierElement& before,
+                    Work& work) const;
   /// Inside of solids it is dark: paths along their walls, which are long, would bring nothing.
   void drop_enclosed_paths(size_t i, Work& work, const TracedHits& hits) const;
 };
@@ -255,31 +260,50 @@ void trace_all(const trace::RayTracer& tracer, Work& work) {
   tracer.tint(work.batch.rays, work.hits, work.tint);
 }
 
-/// Traces those that may meet something else than in the earlier bake, and those that are followed
-/// on: what they bring depends on reflectances and lamps. Of rays that escaped through something
-/// coloured the colour is not known. Returns how many there were.
-size_t trace_again(const trace::RayTracer& tracer, std::span<const Box3> boxes,
-                   std::span<const RayEnd> ends, Work& work) {
-  const std::span<const trace::Ray> rays = work.batch.rays;
-  work.again.assign(rays.size(), 0);
-  mark_rays(boxes, rays, work.again);
-  work.few_rays.clear();
-  for (size_t k = 0; k < rays.size(); ++k) {
-    if (ends[k] == RayEnd::followed || (ends[k] == RayEnd::escaped && tracer.has_tints()))
+/// Fills the batch, with directions of those rays at least that may meet something else than in the
+/// earlier bake, and those that are followed on: what they bring depends on reflectances and lamps.
+/// Of rays that escaped through something coloured the colour is not known. Marks them in
+/// work.again.
+void Round::choose_again(size_t i, Vec3 origin, Samples samples, const EarlierElement& before,
+                         Work& work) const {
+  const Vec3 normal = elements.normal[i], geometric = elements.geometric_normal[i];
+  const uint64_t seed_of_element = hash64(seed ^ 0x6a7e, i);
+  fill_samples(seed_of_element, samples, work.batch);
+  // Directions that are mirrored above the triangle are not where their cells are.
+  const uint64_t cells = normal == geometric && before.escaped
+                             ? cells_towards(earlier->boxes, origin, normal, cell_cones)
+                             : ~uint64_t(0);
+  work.again.assign(samples.count(), 0);
+  work.maybe.clear();
+  for (uint32_t k = 0; k < samples.count(); ++k) {
+    const RayEnd end = before.ends[k];
+    if (end == RayEnd::followed || (end == RayEnd::escaped && tracer.has_tints()))
       work.again[k] = 1;
-    if (work.again[k]) work.few_rays.push_back(rays[k]);
+    if (work.again[k] || cells >> work.batch.cell[k] & 1) work.maybe.push_back(k);
   }
+  fill_directions(origin, normal, geometric, work.maybe, work.batch);
+  mark_rays(earlier->boxes, work.batch.rays, work.maybe, work.again);
+}
+
+/// Traces the rays that are marked. Returns how many there were.
+size_t trace_marked(const trace::RayTracer& tracer, Work& work) {
+  const std::span<const trace::Ray> rays = work.batch.rays;
+  const bool tinted = tracer.has_tints();
+  work.few_rays.clear();
+  for (const uint32_t k : work.maybe)
+    if (work.again[k]) work.few_rays.push_back(rays[k]);
   const size_t count = work.few_rays.size();
   work.few_hits.resize(count);
   tracer.closest_hits(work.few_rays, work.few_hits);
   work.few_tints.assign(count, {1, 1, 1});
-  if (tracer.has_tints()) tracer.tint(work.few_rays, work.few_hits, work.few_tints);
+  if (tinted) tracer.tint(work.few_rays, work.few_hits, work.few_tints);
   work.hits.resize(rays.size());
-  if (tracer.has_tints()) work.tint.assign(rays.size(), {1, 1, 1});
-  for (size_t k = 0, at = 0; k < rays.size(); ++k) {
+  if (tinted) work.tint.assign(rays.size(), {1, 1, 1});
+  size_t at = 0;
+  for (const uint32_t k : work.maybe) {
     if (!work.again[k]) continue;
     work.hits[k] = work.few_hits[at];
-    if (tracer.has_tints()) work.tint[k] = work.few_tints[at];
+    if (tinted) work.tint[k] = work.few_tints[at];
     ++at;
   }
   return count;
@@ -297,13 +321,15 @@ void Round::trace_element(size_t i, const EarlierElement* before, Work& work, Tr
   out.samples[i] = uint16_t(samples.end), out.last_round[i] = uint8_t(out.rounds.size());
   const Vec3 origin =
       trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
-  fill_rays(origin, elements.normal[i], elements.geometric_normal[i], hash64(seed ^ 0x6a7e, i),
-            samples, work.batch);
   size_t traced = samples.count();
-  if (before)
-    traced = trace_again(tracer, earlier->boxes, before->ends, work);
-  else
+  if (before) {
+    choose_again(i, origin, samples, *before, work);
+    traced = trace_marked(tracer, work);
+  } else {
+    fill_rays(origin, elements.normal[i], elements.geometric_normal[i], hash64(seed ^ 0x6a7e, i),
+              samples, work.batch);
     trace_all(tracer, work);
+  }
   sort_hits(world, work, i, samples, before, out, tile.rays_met);
   drop_enclosed_paths(i, work, out);
   tile.kept += samples.count() - traced;

@@ -54,6 +54,7 @@ struct Query {
   RTCIntersectContext context;
   Through through;
   Rgb* light = nullptr;  ///< one for each ray of the packet
+  unsigned count = 0;    ///< of rays in the packet, where light is asked for
   /// Places that a ray has passed: Embree may ask about one several times, because spatial splits
   /// put a triangle into several boxes. So many are remembered.
   static constexpr size_t kRemembered = 16;
@@ -101,6 +102,8 @@ void let_through(const RTCFilterFunctionNArguments* args) {
       continue;
     }
     const unsigned lane = RTCRayN_id(args->ray, args->N, i);
+    // Where packets are taken apart Embree may ask for lanes that no ray is in.
+    if (lane >= query.count) continue;
     Rgb& light = query.light[lane];
     if (query.is_new(lane, place)) {
       const float open = query.through == Through::share ? 1 - passage.coverage : 1.0f;
@@ -352,7 +355,7 @@ void RayTracer::tint(std::span<const Ray> rays, std::span<const Hit> hits,
     // Up to just before the hit: what stands there has stopped the ray, not tinted it.
     for (unsigned i = 0; i < count; ++i)
       if (hits[first + i].found()) packet.tfar[i] = hits[first + i].t * (1 - 1e-6f);
-    query.light = light.data() + first;
+    query.light = light.data() + first, query.count = count;
     query.passed_count.fill(0);
     rtcOccluded16(valid, impl_->top, &query.context, &packet);
   }
@@ -367,7 +370,7 @@ void RayTracer::transmitted(std::span<const Ray> rays, std::span<Rgb> share) con
     RTCRay16 packet;
     const unsigned count = load_packet(rays.subspan(first), valid, packet);
     for (unsigned i = 0; i < count; ++i) share[first + i] = {1, 1, 1};
-    query.light = share.data() + first;
+    query.light = share.data() + first, query.count = count;
     query.passed_count.fill(0);
     rtcOccluded16(valid, impl_->top, &query.context, &packet);
     for (unsigned i = 0; i < count; ++i)

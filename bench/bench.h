@@ -55,6 +55,9 @@ Result<Table> measure_budget(const std::filesystem::path& shared, int threads);
 /// What a lightmap for each of 20 lamps costs besides that of all.
 Result<Table> measure_layers(const std::filesystem::path& shared, int threads);
 
+/// What a bake after an edit costs that builds on one that is kept (docs/rebake.md).
+Result<Table> measure_rebake(const std::filesystem::path& shared, int threads);
+
 struct Bench {
   std::string_view name;
   BenchFunction run;
@@ -64,6 +67,7 @@ inline constexpr std::array kBenches{
     Bench{"atlas", measure_atlas},     Bench{"memory", measure_memory},
     Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise},
     Bench{"scenes", measure_scenes},   Bench{"supersample", measure_supersample},
-    Bench{"budget", measure_budget},   Bench{"layers", measure_layers}};
+    Bench{"budget", measure_budget},   Bench{"layers", measure_layers},
+    Bench{"rebake", measure_rebake}};
 
 }  // namespace luxel::bench

@@ -1,32 +1,16 @@
 // luxel bench layers: what a lightmap for each of 20 lamps costs besides that of all.
 #include <cmath>
 
-#include "base/file.h"
 #include "base/parallel.h"
+#include "bench/bake_files.h"
 #include "bench/bench.h"
-#include "bench/prepared.h"
 #include "export/baked_glb.h"
-#include "image/codec.h"
-#include "pipeline/bake.h"
 #include "scene/shapes.h"
 
 namespace luxel::bench {
 namespace {
 
 constexpr int kRounds = 3, kLamps = 20;
-
-/// Removes what the bakes leave.
-struct TemporaryFolder {
-  std::filesystem::path path;
-  explicit TemporaryFolder(const std::string& name)
-      : path(std::filesystem::temp_directory_path() / name) {}
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-};
 
 /// A lamp of the room's grid, 5 x 4: twelve points, four spots and four panels.
 void add_lamp(scene::Scene& scene, int k, uint32_t panel) {
@@ -68,23 +52,10 @@ scene::Scene room_of_lamps() {
   return scene;
 }
 
-struct Run {
-  nlohmann::json report;
-  double seconds = INFINITY;  ///< the best of all rounds
-};
-
-Status run(const pipeline::BakeSettings& settings, Run& best) {
-  Progress progress;
-  const auto start = Clock::now();
-  LUXEL_TRY(nlohmann::json report, pipeline::bake(settings, progress));
-  if (const double seconds = seconds_since(start); seconds < best.seconds)
-    best = {std::move(report), seconds};
+Status run(const pipeline::BakeSettings& settings, TimedFiles& best) {
+  LUXEL_TRY(TimedFiles bake, timed_files(settings));
+  if (bake.seconds < best.seconds) best = std::move(bake);
   return {};
-}
-
-Result<image::Image> exr_at(const std::filesystem::path& file) {
-  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
-  return image::decode_exr(bytes, file.string());
 }
 
 /// The largest difference of the layers' sum to the lightmap, relative to its value or, where that
@@ -116,7 +87,6 @@ Result<Table> measure_layers(const std::filesystem::path&, int threads) {
   Table table = new_table("layers", {"atlas", "lights", "one bake, s", "with --layers per-light, s",
                                      "ratio", "largest error of the sum"});
   const TemporaryFolder folder("luxel-bench-layers");
-  std::filesystem::create_directories(folder.path);
   LUXEL_TRY(const std::vector<std::byte> glb, export_::scene_glb(room_of_lamps()));
   LUXEL_TRY_STATUS(write_file_atomically(folder.path / "room.glb", glb));
   for (const int resolution : {256, 512}) {
@@ -124,7 +94,7 @@ Result<Table> measure_layers(const std::filesystem::path&, int threads) {
     settings.scene = folder.path / "room.glb";
     settings.resolution = resolution;
     settings.threads = threads;
-    Run alone, layered;
+    TimedFiles alone, layered;  // the best of all rounds
     for (int round = 0; round < kRounds; ++round) {
       settings.output = folder.path / "one", settings.layers = transport::LayerMode::none;
       LUXEL_TRY_STATUS(run(settings, alone));

@@ -59,6 +59,10 @@ struct Loader {
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void operator()(T& value) { value = in.get_value<T>(); }
+  void operator()(bool& value) {
+    const auto byte = in.get_value<uint8_t>();
+    in.ok = in.ok && byte <= 1, value = byte == 1;
+  }
   template <class T>
   requires(!std::is_trivially_copyable_v<T>) void operator()(T& value) { walk(*this, value); }
 };
@@ -108,6 +112,14 @@ void walk(Visit& visit, Like<atlas::Atlas> auto& a) {
   visit(kept), visit(pages), visit(page);
 }
 
+/// One by one: what lies in the gaps between them is anything.
+template <class Visit>
+void walk(Visit& visit, Like<atlas::AtlasStats> auto& s) {
+  auto& [charts, utilisation, mean_stretch_l2, texels_per_metre, without_texel, owning] = s;
+  visit(charts), visit(utilisation), visit(mean_stretch_l2), visit(texels_per_metre);
+  visit(without_texel), visit(owning);
+}
+
 template <class Visit>
 void walk(Visit& visit, Like<LeakRepair> auto& r) {
   auto& [cuts, parted, overlapping, moved, refilled] = r;
@@ -117,7 +129,7 @@ void walk(Visit& visit, Like<LeakRepair> auto& r) {
 template <class Visit>
 void walk(Visit& visit, Like<KeptLayout> auto& l) {
   auto& [meshes, mesh_of_instance, atlas, texels, stats, repair, warnings] = l;
-  visit(meshes), visit(mesh_of_instance), visit(atlas), visit(texels), visit(stats);
+  visit(meshes), visit(mesh_of_instance), visit(atlas), visit(texels), walk(visit, stats);
   visit(repair), visit(warnings);
 }
 

@@ -1,5 +1,6 @@
 #include "pipeline/kept_bake.h"
 
+#include <algorithm>
 #include <type_traits>
 
 #include "base/bytes.h"
@@ -192,6 +193,24 @@ bool is_sound(const KeptBake& k) {
          k.layers.of_instance.size() == (told_apart ? instances : 0);
 }
 
+/// Whether numbers are those of something that is there: they are not looked at again.
+bool refers_to_itself(const KeptBake& k) {
+  const auto is_layer = [&](uint8_t layer) {
+    return layer == LayersOfLights::kNoLayer || layer < k.layer_names.size();
+  };
+  const atlas::Atlas& atlas = k.layout.atlas;
+  const auto is_texel = [&](const atlas::Texel& t) {
+    return int64_t(t.x) < atlas.resolution && int64_t(t.y) < atlas.resolution &&
+           t.sample.instance < k.layout.mesh_of_instance.size() &&
+           t.triangle_number < atlas.corners.size();
+  };
+  return is_layer(k.layers.of_surroundings) && std::ranges::all_of(k.layers.of_lamp, is_layer) &&
+         std::ranges::all_of(k.layers.of_instance, is_layer) &&
+         std::ranges::all_of(k.layout.mesh_of_instance,
+                             [&](uint32_t mesh) { return mesh < k.layout.meshes.size(); }) &&
+         std::ranges::all_of(k.layout.texels, is_texel);
+}
+
 }  // namespace
 
 std::vector<uint64_t> places_of(const transport::Elements& elements) {
@@ -231,7 +250,7 @@ std::optional<KeptBake> kept_bake_of(std::span<const std::byte> bytes) {
   Loader load{{bytes}};
   KeptBake kept;
   walk(load, kept);
-  if (!load.in.ended_well() || !is_sound(kept)) return std::nullopt;
+  if (!load.in.ended_well() || !is_sound(kept) || !refers_to_itself(kept)) return std::nullopt;
   return kept;
 }
 

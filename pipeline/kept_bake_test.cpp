@@ -299,6 +299,18 @@ TEST(KeptBake, WithNumbersThatDoNotFitIsRefused) {
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.scene.lamps.pop_back(); }));
 }
 
+TEST(KeptBake, ThatRefersToWhatIsNotThereIsRefused) {
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_lamp[0] = 2; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_instance[1] = 254; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_surroundings = 2; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.mesh_of_instance[0] = 2; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[0].x = 16; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[1].y = UINT32_MAX; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[1].sample.instance = 2; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[1].triangle_number = 2; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.atlas.resolution = -1; }));
+}
+
 /// Made in memory full of a byte.
 Bytes bytes_over(int fill) {
   alignas(KeptBake) std::byte place[sizeof(KeptBake)];

@@ -1,5 +1,6 @@
 #include "pipeline/kept_bake.h"
 
+#include <algorithm>
 #include <type_traits>
 
 #include "base/bytes.h"
@@ -59,6 +60,10 @@ struct Loader {
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void operator()(T& value) { value = in.get_value<T>(); }
+  void operator()(bool& value) {
+    const auto byte = in.get_value<uint8_t>();
+    in.ok = in.ok && byte <= 1, value = byte == 1;
+  }
   template <class T>
   requires(!std::is_trivially_copyable_v<T>) void operator()(T& value) { walk(*this, value); }
 };
@@ -108,6 +113,14 @@ void walk(Visit& visit, Like<atlas::Atlas> auto& a) {
   visit(kept), visit(pages), visit(page);
 }
 
+/// One by one: what lies in the gaps between them is anything.
+template <class Visit>
+void walk(Visit& visit, Like<atlas::AtlasStats> auto& s) {
+  auto& [charts, utilisation, mean_stretch_l2, texels_per_metre, without_texel, owning] = s;
+  visit(charts), visit(utilisation), visit(mean_stretch_l2), visit(texels_per_metre);
+  visit(without_texel), visit(owning);
+}
+
 template <class Visit>
 void walk(Visit& visit, Like<LeakRepair> auto& r) {
   auto& [cuts, parted, overlapping, moved, refilled] = r;
@@ -118,7 +131,7 @@ template <class Visit>
 void walk(Visit& visit, Like<KeptLayout> auto& l) {
   auto& [meshes, one_sided_of, mesh_of_instance, atlas, texels, stats, repair, warnings] = l;
   visit(meshes), visit(one_sided_of), visit(mesh_of_instance), visit(atlas), visit(texels);
-  visit(stats), visit(repair), visit(warnings);
+  walk(visit, stats), visit(repair), visit(warnings);
 }
 
 template <class Visit>
@@ -180,6 +193,24 @@ bool is_sound(const KeptBake& k) {
          k.layers.of_instance.size() == (told_apart ? instances : 0);
 }
 
+/// Whether numbers are those of something that is there: they are not looked at again.
+bool refers_to_itself(const KeptBake& k) {
+  const auto is_layer = [&](uint8_t layer) {
+    return layer == LayersOfLights::kNoLayer || layer < k.layer_names.size();
+  };
+  const atlas::Atlas& atlas = k.layout.atlas;
+  const auto is_texel = [&](const atlas::Texel& t) {
+    return int64_t(t.x) < atlas.resolution && int64_t(t.y) < atlas.resolution &&
+           t.sample.instance < k.layout.mesh_of_instance.size() &&
+           t.triangle_number < atlas.corners.size();
+  };
+  return is_layer(k.layers.of_surroundings) && std::ranges::all_of(k.layers.of_lamp, is_layer) &&
+         std::ranges::all_of(k.layers.of_instance, is_layer) &&
+         std::ranges::all_of(k.layout.mesh_of_instance,
+                             [&](uint32_t mesh) { return mesh < k.layout.meshes.size(); }) &&
+         std::ranges::all_of(k.layout.texels, is_texel);
+}
+
 }  // namespace
 
 std::vector<uint64_t> places_of(const transport::Elements& elements) {
@@ -219,7 +250,7 @@ std::optional<KeptBake> kept_bake_of(std::span<const std::byte> bytes) {
   Loader load{{bytes}};
   KeptBake kept;
   walk(load, kept);
-  if (!load.in.ended_well() || !is_sound(kept)) return std::nullopt;
+  if (!load.in.ended_well() || !is_sound(kept) || !refers_to_itself(kept)) return std::nullopt;
   return kept;
 }
 

@@ -77,7 +77,9 @@ std::optional<RayTile> find_rays(const RecordFile& file, uint64_t round, uint64_
   out.hits.end.resize(elements), out.escaped.resize(elements);
   in.get(std::span(out.hits.end)), in.get(std::span(out.escaped));
   const uint64_t rays = in.get_value<uint64_t>();
-  if (!in.ok || in.bytes.size() != rays + size_t(out.hits.end.back()) * sizeof(StoredHit))
+  // Each for itself first: their sum could wrap around.
+  if (!in.ok || rays > in.bytes.size() ||
+      in.bytes.size() - rays != size_t(out.hits.end.back()) * sizeof(StoredHit))
     return std::nullopt;
   out.ends.resize(rays), out.hits.entries.resize(out.hits.end.back());
   in.get(std::span(out.ends)), in.get(std::span(out.hits.entries));

@@ -48,5 +48,47 @@ TEST(Enclosed, IsTheSameForAllSeeds) {
   EXPECT_EQ(enclosed(256, 4), first);
 }
 
+/// A closed box on a floor, with a plate in it, under an even sky and a lamp. The floor ends at the
+/// box: no texel lies on both sides of its walls.
+std::unique_ptr<Room> box_with_plate(bool double_sided) {
+  scene::Scene scene;
+  scene.background = {1, 1, 1};
+  const uint32_t gray = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f}, {});
+  const uint32_t wall = scene::add_material(scene, "wall", {0.8f, 0.7f, 0.6f}, {});
+  scene.materials[wall].double_sided = double_sided;
+  scene::Mesh floor, box;
+  const auto square = [](float half) {
+    return scene::Quad{Vec3{-half, 0, -half}, {-half, 0, half}, {half, 0, half}, {half, 0, -half}};
+  };
+  scene::add_quad_with_hole(floor, square(3), square(0.5f), gray);
+  scene::place(scene, std::move(floor));
+  scene::add_box(box, {-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}, wall);
+  scene::place(scene, std::move(box));
+  scene::add_rectangle(scene, {-0.45f, 0.45f, -0.45f, 0.45f}, 0.05f, true, gray);
+  scene.lights.resize(1);
+  scene.lights[0].position = {1, 3, 0.5f}, scene.lights[0].intensity = {4, 4, 4};
+  return lay_out(std::move(scene), 64);
+}
+
+// From outside nobody sees whether a solid's walls have a back. Inside it is dark, and finding that
+// out takes no more rays than it does where backs bring nothing.
+TEST(Enclosed, SolidsLookTheSameFromOutsideWithTwoSidesAndWithOne) {
+  const auto one = box_with_plate(false), two = box_with_plate(true);
+  ASSERT_EQ(one->elements.position, two->elements.position);
+  const Gather expected = solve(*one, with_samples(64)), found = solve(*two, with_samples(64));
+  EXPECT_EQ(found.enclosed, expected.enclosed);
+  size_t inside = 0, outside = 0;
+  for (size_t i = 0; i < found.irradiance.size(); ++i) {
+    EXPECT_EQ(found.irradiance[i], expected.irradiance[i]) << "the same rays, in the same order";
+    ++(expected.enclosed[i] ? inside : outside);
+    if (expected.enclosed[i]) {
+      EXPECT_EQ(found.irradiance[i], Rgb{});
+    }
+  }
+  EXPECT_GT(inside, 10u);
+  EXPECT_GT(outside, 500u);
+  EXPECT_EQ(found.rays, expected.rays);
+}
+
 }  // namespace
 }  // namespace luxel::gather

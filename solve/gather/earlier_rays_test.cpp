@@ -1,0 +1,376 @@
+#include "solve/gather/earlier_rays.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "base/bytes.h"
+#include "base/random.h"
+
+namespace luxel::gather {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::byte>;
+
+/// Whether the half-line meets the box with `margin` on all sides, which may be less than 0.
+bool meets_exactly(const Box3& box, const trace::Ray& ray, double margin) {
+  double begin = 0, end = INFINITY;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double from = double(ray.origin[axis]), d = double(ray.direction[axis]);
+    const double lower = double(box.lower[axis]) - margin - from;
+    const double upper = double(box.upper[axis]) + margin - from;
+    if (lower > upper) return false;
+    if (d == 0) {
+      if (lower > 0 || upper < 0) return false;
+      continue;
+    }
+    begin = std::max(begin, std::min(lower / d, upper / d));
+    end = std::min(end, std::max(lower / d, upper / d));
+  }
+  return begin <= end;
+}
+
+Vec3 point_between(RandomStream& random, const Box3& box) {
+  const Vec3 at{random.next(), random.next(), random.next()};
+  return box.lower + (box.upper - box.lower) * at;
+}
+
+/// Boxes of all sizes, also flat ones, and places inside of them, near and far away.
+struct Look {
+  Box3 box;
+  Vec3 from;
+  float far = 0;  ///< the farthest point of the box
+};
+Look random_look(RandomStream& random) {
+  Look out;
+  const auto power = [&](float lowest, float highest) {
+    return std::pow(10.0f, lowest + (highest - lowest) * random.next());
+  };
+  const Vec3 centre = Vec3{random.next(), random.next(), random.next()} * 20.0f;
+  Vec3 half{power(-2, 1), power(-2, 1), power(-2, 1)};
+  if (random.next() < 0.2f) half.y = 0;
+  out.box = {centre - half, centre + half};
+  const Vec3 away =
+      normalize(Vec3{random.next(), random.next(), random.next()} - Vec3{.5f, .5f, .5f});
+  out.from = random.next() < 0.2f ? point_between(random, out.box) : centre + away * power(-1, 3);
+  out.far = length(out.from - centre) + length(half);
+  return out;
+}
+
+/// Towards points of the box, past its edges, and anywhere.
+std::vector<trace::Ray> random_rays(RandomStream& random, const Look& look) {
+  std::vector<trace::Ray> rays;
+  const auto add = [&](Vec3 to) { rays.push_back({look.from, 0, normalize(to), INFINITY}); };
+  Box3 wide = look.box;
+  const float by = 0.5f * look.box.diagonal();
+  wide.lower = wide.lower - Vec3{by, by, by}, wide.upper = wide.upper + Vec3{by, by, by};
+  for (int k = 0; k < 40; ++k) {
+    add(point_between(random, look.box) - look.from);
+    add(point_between(random, wide) - look.from);
+    add(Vec3{random.next(), random.next(), random.next()} - Vec3{0.5f, 0.5f, 0.5f});
+  }
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}}) add(axis);
+  return rays;
+}
+
+void mark_all(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
+              std::span<uint8_t> again) {
+  std::vector<uint32_t> all(rays.size());
+  std::iota(all.begin(), all.end(), 0u);
+  mark_rays(boxes, rays, all, again);
+}
+
+// A direction's rounding moves the ray's end by 1e-7 of the way at each of a few steps, and so do
+// the box's coordinates: 2e-6 of the farthest coordinates is beyond all of it.
+TEST(MarkRays, MeetTheBoxAsInExactArithmetic) {
+  RandomStream random{11};
+  size_t inside = 0, met = 0, missed = 0, unsure = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const Look look = random_look(random);
+    const std::vector<trace::Ray> rays = random_rays(random, look);
+    std::vector<uint8_t> again(rays.size(), 0);
+    mark_all(std::span(&look.box, 1), rays, again);
+    const double margin = 2e-6 * (double(look.far) + 50);
+    inside += meets_exactly(look.box, {look.from, 0, {0, 0, 0}, 0}, 0);
+    for (size_t r = 0; r < rays.size(); ++r) {
+      const bool surely = meets_exactly(look.box, rays[r], -margin);
+      const bool maybe = meets_exactly(look.box, rays[r], margin);
+      if (surely) {
+        EXPECT_TRUE(again[r]) << "missed, from " << look.far << " m away";
+      }
+      if (!maybe) {
+        EXPECT_FALSE(again[r]) << "marked, from " << look.far << " m away";
+      }
+      ++(surely ? met : maybe ? unsure : missed);
+    }
+  }
+  EXPECT_GT(inside, 100u);
+  EXPECT_GT(met, 50000u);
+  EXPECT_GT(missed, 50000u);
+  EXPECT_LT(unsure, met);  // the flat boxes, which a ray meets in one point, and edges
+}
+
+// A plate is met in a point: the two ends of the way through it are the same number.
+TEST(MarkRays, MeetPlatesThroughTheirMiddle) {
+  RandomStream random{12};
+  const Box3 plate{{-1, 0.3f, -1}, {1, 0.3f, 1}};
+  std::vector<trace::Ray> rays;
+  for (int k = 0; k < 1000; ++k) {
+    const Vec3 to{1.9f * random.next() - 0.95f, 0.3f, 1.9f * random.next() - 0.95f};
+    rays.push_back({{0, 2, 0}, 0, normalize(to - Vec3{0, 2, 0}), INFINITY});
+  }
+  std::vector<uint8_t> again(rays.size(), 0);
+  mark_all(std::span(&plate, 1), rays, again);
+  EXPECT_EQ(std::ranges::count(again, 1), 1000);
+  for (trace::Ray& ray : rays) ray.direction = -ray.direction;
+  std::ranges::fill(again, uint8_t(0));
+  mark_all(std::span(&plate, 1), rays, again);
+  EXPECT_EQ(std::ranges::count(again, 1), 0) << "it lies behind";
+}
+
+TEST(MarkRays, LooksOnlyAtThoseThatAreAskedFor) {
+  const Box3 box{{1, -1, -1}, {2, 1, 1}};
+  const std::vector<trace::Ray> rays(3, {{0, 0, 0}, 0, {1, 0, 0}, INFINITY});
+  std::vector<uint8_t> again(3, 0);
+  mark_rays(std::span(&box, 1), rays, std::vector<uint32_t>{0, 2}, again);
+  EXPECT_EQ(again, (std::vector<uint8_t>{1, 0, 1}));
+}
+
+/// An element that looks at a box, and its rays.
+struct Watched {
+  Look look;
+  Vec3 normal;
+  RayBatch batch;
+};
+Watched watch(RandomStream& random) {
+  Watched w{random_look(random), {}, {}};
+  w.normal = normalize(Vec3{random.next(), random.next(), random.next()} - Vec3{0.5f, 0.5f, 0.5f});
+  fill_rays(w.look.from, w.normal, w.normal, hash64(7, uint64_t(1e6f * random.next())), {0, 256},
+            w.batch);
+  return w;
+}
+
+// Each ray that meets a box is in a cell that may; and of those of small boxes far away most cells
+// are free.
+TEST(CellsTowards, HoldEveryRayThatMeetsABox) {
+  RandomStream random{13};
+  const auto cones = cell_cones();
+  size_t met = 0, small = 0, bits = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Watched w = watch(random);
+    const uint64_t cells = cells_towards(std::span(&w.look.box, 1), w.look.from, w.normal, cones);
+    for (size_t r = 0; r < w.batch.rays.size(); ++r) {
+      if (!meets_exactly(w.look.box, w.batch.rays[r], 0)) continue;
+      ++met;
+      EXPECT_TRUE(cells >> w.batch.cell[r] & 1);
+    }
+    if (length(w.look.box.centre() - w.look.from) < 4 * w.look.box.diagonal()) continue;
+    ++small, bits += size_t(std::popcount(cells));
+  }
+  EXPECT_GT(met, 10000u);
+  EXPECT_GT(small, 100u);
+  EXPECT_LT(bits, 16 * small);
+}
+
+TEST(ElementRays, SomeAreThoseOfAll) {
+  RandomStream random{14};
+  for (int k = 0; k < 50; ++k) {
+    const Watched w = watch(random);
+    const Vec3 geometric = normalize(w.normal + Vec3{0.2f, 0.1f, -0.1f} * random.next());
+    const uint64_t seed = hash64(3, uint64_t(k));
+    RayBatch all, some;
+    fill_rays(w.look.from, w.normal, geometric, seed, {32, 200}, all);
+    fill_samples(seed, {32, 200}, some);
+    EXPECT_EQ(some.sample, all.sample);
+    std::vector<uint32_t> which;
+    for (uint32_t r = 0; r < all.rays.size(); ++r)
+      if (random.next() < 0.3f) which.push_back(r);
+    fill_directions(w.look.from, w.normal, geometric, which, some);
+    for (const uint32_t r : which) EXPECT_EQ(some.rays[r].direction, all.rays[r].direction);
+  }
+}
+
+TEST(MarkRays, OfSeveralBoxesAnyCountsAndNoneIsTakenBack) {
+  const std::vector<Box3> boxes{{{1, -1, -1}, {2, 1, 1}}, {{-2, -1, -1}, {-1, 1, 1}}, {}};
+  std::vector<trace::Ray> rays;
+  for (const Vec3& d : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+    rays.push_back({{0, 0, 0}, 0, d, INFINITY});
+  std::vector<uint8_t> again{0, 0, 0, 1};
+  mark_all(boxes, rays, again);
+  EXPECT_EQ(again, (std::vector<uint8_t>{1, 1, 0, 1})) << "an empty box is nowhere";
+  mark_all({}, rays, again);
+  mark_all(boxes, {}, {});
+  EXPECT_EQ(again, (std::vector<uint8_t>{1, 1, 0, 1}));
+}
+
+/// Three elements, of which the middle one has no rays.
+constexpr size_t kElements = 3;
+constexpr uint32_t kPlaces = 1000;
+RayTile some_tile() {
+  RayTile out;
+  out.ends = {RayEnd::hit, RayEnd::escaped, RayEnd::followed, RayEnd::behind, RayEnd::back};
+  out.hits.end = {2, 2, 3};  // that of the ray followed on, too
+  for (const uint32_t base : {0u, 17u, kPlaces - 1})
+    out.hits.entries.push_back(StoredHit::pack(base, 3, 2047, {kNoTint, base > 5}));
+  out.escaped.resize(kElements);
+  out.escaped[0].add({1, 2, 3}, false), out.escaped[0].add({4, 1, 0}, true);
+  return out;
+}
+
+class KeptRays : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("luxel-rays-" + std::to_string(::getpid()) + "-" +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// What is written into a file by way of a store that keeps everything.
+  RecordFile kept(const std::function<void(PartStore&)>& write) {
+    const fs::path file = folder_ / "rays";
+    {
+      PartStore store({file, "", "", 1e-9, std::chrono::steady_clock::now()}, progress_);
+      write(store);
+    }
+    Result<RecordFile> out = RecordFile::open(file);
+    EXPECT_TRUE(out) << out.error().message;
+    return std::move(*out);
+  }
+  Bytes bytes_of(const RayTile& tile) {
+    const RecordFile file = kept([&](PartStore& store) { keep_rays(&store, 2, 7, tile); });
+    Bytes out(file.size_of({2, 7}).value_or(0));
+    EXPECT_TRUE(file.read({2, 7}, 0, out));
+    return out;
+  }
+  std::optional<RayTile> found_in(const Bytes& bytes, size_t elements = kElements) {
+    const RecordFile file = kept([&](PartStore& store) { store.keep({2, 7}, bytes); });
+    return find_rays(file, 2, 7, elements, kPlaces);
+  }
+  std::optional<RayTile> found_of(const std::function<void(RayTile&)>& edit) {
+    RayTile tile = some_tile();
+    edit(tile);
+    return found_in(bytes_of(tile));
+  }
+
+  fs::path folder_;
+  Progress progress_;
+};
+
+TEST_F(KeptRays, AreFoundAsTheyWere) {
+  const RayTile tile = some_tile();
+  const RecordFile file = kept([&](PartStore& store) { keep_rays(&store, 2, 7, tile); });
+  const auto found = find_rays(file, 2, 7, kElements, kPlaces);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->ends, tile.ends);
+  EXPECT_EQ(found->hits.end, tile.hits.end);
+  ASSERT_EQ(found->hits.entries.size(), tile.hits.entries.size());
+  for (size_t k = 0; k < tile.hits.entries.size(); ++k)
+    EXPECT_EQ(found->hits.entries[k].bits, tile.hits.entries[k].bits);
+  // By hand: luminances of (1, 2, 3) and (4, 1, 0), the second one of the second half.
+  const float first = 0.2126f + 2 * 0.7152f + 3 * 0.0722f, second = 4 * 0.2126f + 0.7152f;
+  EXPECT_EQ(found->escaped[0].sum, (Rgb{5, 3, 3}));
+  EXPECT_FLOAT_EQ(found->escaped[0].luminance2, first * first + second * second);
+  EXPECT_FLOAT_EQ(found->escaped[0].second_luminance, second);
+  EXPECT_EQ(found->escaped[2].sum, Rgb{});
+  EXPECT_FALSE(find_rays(file, 2, 6, kElements, kPlaces)) << "of another tile";
+  EXPECT_FALSE(find_rays(file, 1, 7, kElements, kPlaces)) << "of another round";
+}
+
+TEST_F(KeptRays, OfATileWithoutAnyAreFound) {
+  RayTile tile;
+  tile.hits.end = {0, 0, 0}, tile.escaped.resize(kElements);
+  const auto found = found_in(bytes_of(tile));
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->ends.empty() && found->hits.entries.empty());
+}
+
+TEST_F(KeptRays, CutOffAnywhereAreRefused) {
+  const Bytes bytes = bytes_of(some_tile());
+  ASSERT_TRUE(found_in(bytes));
+  for (size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(found_in(Bytes(bytes.begin(), bytes.begin() + ptrdiff_t(size)))) << size;
+  Bytes longer = bytes;
+  longer.push_back(std::byte{0});
+  EXPECT_FALSE(found_in(longer));
+}
+
+TEST_F(KeptRays, OfAnotherNumberOfElementsAreRefused) {
+  const Bytes bytes = bytes_of(some_tile());
+  for (const size_t elements : {kElements - 2, kElements - 1, kElements + 1, 50 * kElements})
+    EXPECT_FALSE(found_in(bytes, elements)) << elements;
+}
+
+TEST_F(KeptRays, ThatEndWhereNothingIsAreRefused) {
+  EXPECT_TRUE(found_of([](RayTile&) {}));
+  const auto hit_at = [&](uint32_t base) {
+    return found_of([&](RayTile& t) { t.hits.entries[1] = StoredHit::pack(base, 0, 0, {}); });
+  };
+  EXPECT_TRUE(hit_at(kPlaces - 1));
+  EXPECT_FALSE(hit_at(kPlaces));
+  EXPECT_FALSE(found_of([](RayTile& t) { t.hits.entries[2].bits = UINT64_MAX; }));
+  EXPECT_TRUE(found_of([](RayTile& t) { t.ends[4] = RayEnd::followed; }));
+  EXPECT_FALSE(found_of([](RayTile& t) { t.ends[4] = RayEnd(uint8_t(RayEnd::followed) + 1); }));
+  EXPECT_FALSE(found_of([](RayTile& t) { t.ends[0] = RayEnd(255); }));
+  EXPECT_FALSE(found_of([](RayTile& t) { t.hits.end = {3, 2, 3}; })) << "before they begin";
+}
+
+// The number of rays and that of hits are added up to tell the record's size: not so that the sum
+// wraps around and both are huge.
+TEST_F(KeptRays, WithImpossibleNumbersAreRefused) {
+  const Bytes bytes = bytes_of(some_tile());
+  const size_t end_at = (kElements - 1) * sizeof(uint32_t);
+  const size_t rays_at = kElements * (sizeof(uint32_t) + sizeof(EscapedLight));
+  const size_t rest = bytes.size() - rays_at - sizeof(uint64_t);
+  for (const uint32_t hits : {4u, 1000u, UINT32_MAX}) {
+    const uint64_t rays = rest - uint64_t(hits) * sizeof(StoredHit);  // wraps
+    Bytes damaged = bytes;
+    std::memcpy(damaged.data() + end_at, &hits, sizeof(hits));
+    std::memcpy(damaged.data() + rays_at, &rays, sizeof(rays));
+    EXPECT_FALSE(found_in(damaged)) << hits;
+  }
+}
+
+TEST_F(KeptRays, AreNotKeptWithoutAStoreThatWants) {
+  keep_rays(nullptr, 0, 0, some_tile());
+  keep_samples(nullptr, 0, {});
+  PartStore never({folder_ / "none", "", "", 0, std::chrono::steady_clock::now()}, progress_);
+  keep_rays(&never, 0, 0, some_tile());
+  EXPECT_FALSE(fs::exists(folder_ / "none"));
+}
+
+TEST_F(KeptRays, ComeInRoundsWithTheirSamples) {
+  const std::vector<uint16_t> first{4, 4, 4}, second{4, 65535, 8};
+  const RecordFile file = kept([&](PartStore& store) {
+    keep_samples(&store, 1, second), keep_samples(&store, 0, first);
+    keep_rays(&store, 0, 0, some_tile());
+    keep_samples(&store, 3, first);  // none comes before it
+  });
+  const auto rounds = earlier_rounds(file, kElements);
+  ASSERT_TRUE(rounds);
+  EXPECT_EQ(*rounds, (std::vector{first, second}));
+  EXPECT_FALSE(earlier_rounds(file, kElements - 1));
+  EXPECT_FALSE(earlier_rounds(file, kElements + 1));
+  const RecordFile none = kept([&](PartStore& store) { keep_rays(&store, 0, 0, some_tile()); });
+  EXPECT_FALSE(earlier_rounds(none, kElements)) << "of no finished round";
+}
+
+// Light that is taken away again is gone.
+TEST(EscapedLight, ChangesBack) {
+  EscapedLight light;
+  light.add({1, 2, 3}, false), light.add({8, 4, 2}, true), light.add({0.5f, 1, 2}, true);
+  light.take_away({8, 4, 2}, true), light.take_away({1, 2, 3}, false);
+  EscapedLight expected;
+  expected.add({0.5f, 1, 2}, true);
+  // Rounding of sums of about 10, and of their squares.
+  EXPECT_NEAR(luminance(light.sum), luminance(expected.sum), 1e-5f);
+  EXPECT_NEAR(light.luminance2, expected.luminance2, 1e-4f);
+  EXPECT_NEAR(light.second_luminance, expected.second_luminance, 1e-5f);
+}
+
+}  // namespace
+}  // namespace luxel::gather

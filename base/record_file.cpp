@@ -117,14 +117,14 @@ Result<RecordFile> RecordFile::create(const std::filesystem::path& path, std::st
   return out;
 }
 
-Result<RecordFile> RecordFile::open(const std::filesystem::path& path) {
+Result<RecordFile> RecordFile::open(const std::filesystem::path& path, Check check) {
   const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (file < 0) return io_error("open", path, errno);
   RecordFile out(path, file);
   struct stat about {};
   if (::fstat(file, &about) != 0) return io_error("open", path, errno);
   LUXEL_TRY_STATUS(out.read_header(uint64_t(about.st_size)));
-  LUXEL_TRY_STATUS(out.read_records(uint64_t(about.st_size)));
+  LUXEL_TRY_STATUS(out.read_records(uint64_t(about.st_size), check));
   return out;
 }
 
@@ -149,7 +149,7 @@ Status RecordFile::read_header(uint64_t file_bytes) {
   return {};
 }
 
-Status RecordFile::read_records(uint64_t file_bytes) {
+Status RecordFile::read_records(uint64_t file_bytes, Check check) {
   std::vector<std::byte> bytes;
   while (file_bytes - end_ >= sizeof(RecordStart)) {
     RecordStart start;
@@ -159,12 +159,14 @@ Status RecordFile::read_records(uint64_t file_bytes) {
       return damaged(path_, end_, "the start of record {} is not as written", places_.size() + 1);
     const uint64_t data = end_ + sizeof(start);
     if (start.bytes > file_bytes - data) break;  // cut off while it was written
-    bytes.resize(start.bytes);
-    if (const int error = read_at(file_, data, std::span(bytes)))
-      return io_error("read", path_, error);
-    if (digest_of(bytes) != start.bytes_digest)
-      return damaged(path_, data, "record {} is not as written", places_.size() + 1);
-    places_[start.key] = {data, start.bytes};
+    if (check == Check::now) {
+      bytes.resize(start.bytes);
+      if (const int error = read_at(file_, data, std::span(bytes)))
+        return io_error("read", path_, error);
+      if (digest_of(bytes) != start.bytes_digest)
+        return damaged(path_, data, "record {} is not as written", places_.size() + 1);
+    }
+    places_[start.key] = {data, start.bytes, start.bytes_digest};
     end_ = data + start.bytes;
   }
   // What is left of a record must not stand behind a shorter one.
@@ -184,7 +186,7 @@ Status RecordFile::append(RecordKey key, std::span<const std::byte> bytes) {
     if (::ftruncate(file_, off_t(end_)) != 0) errno = 0;
     return io_error("write", path_, error);
   }
-  places_[key] = {end_ + sizeof(start), bytes.size()};
+  places_[key] = {end_ + sizeof(start), bytes.size(), start.bytes_digest};
   end_ += sizeof(start) + bytes.size();
   return {};
 }
@@ -223,6 +225,15 @@ bool RecordFile::read(RecordKey key, uint64_t offset, std::span<std::byte> out) 
   const std::optional<Place> place = place_of(key);
   if (!place || offset > place->bytes || out.size() > place->bytes - offset) return false;
   return read_at(file_, place->offset + offset, out) == 0;
+}
+
+std::optional<std::vector<std::byte>> RecordFile::read_whole(RecordKey key) const {
+  const std::optional<Place> place = place_of(key);
+  if (!place) return std::nullopt;
+  std::vector<std::byte> bytes(place->bytes);
+  if (read_at(file_, place->offset, std::span(bytes)) != 0) return std::nullopt;
+  if (digest_of(bytes) != place->digest) return std::nullopt;
+  return bytes;
 }
 
 void RecordFile::flush() const { ::fdatasync(file_); }

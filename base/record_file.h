@@ -36,9 +36,14 @@ class RecordFile {
   /// A file with a header and no records, in place of what has that name. Only one process may do
   /// so at a time. Errors: the folder cannot be written to, the disk is full.
   static Result<RecordFile> create(const std::filesystem::path& path, std::string_view header);
-  /// Reads a file through and checks every byte. A cut-off record at its end is taken away. Errors:
-  /// no such file, none of this kind, damaged: the sentence names the byte.
-  static Result<RecordFile> open(const std::filesystem::path& path);
+  /// When the bytes of records are checked, whose starts are in any case.
+  enum class Check : uint8_t {
+    now,       ///< reads the file through
+    when_read  ///< by read_whole()
+  };
+  /// A cut-off record at the file's end is taken away. Errors: no such file, none of this kind,
+  /// damaged: the sentence names the byte.
+  static Result<RecordFile> open(const std::filesystem::path& path, Check check = Check::now);
   RecordFile(RecordFile&& other) noexcept;
   RecordFile& operator=(RecordFile&& other) noexcept;
   ~RecordFile();
@@ -56,17 +61,20 @@ class RecordFile {
   /// A record's bytes from `offset` on into `out`. False where there is no such record, it is
   /// shorter, or the disk fails. Thread-safe.
   bool read(RecordKey key, uint64_t offset, std::span<std::byte> out) const;
+  /// A record's bytes, checked. Nothing where there is no such record, it is damaged, or the disk
+  /// fails. Thread-safe.
+  std::optional<std::vector<std::byte>> read_whole(RecordKey key) const;
   /// Waits until everything is on the disk, for the end of the machine rather than that of the
   /// process. Thread-safe, and others may append meanwhile.
   void flush() const;
 
  private:
   struct Place {
-    uint64_t offset = 0, bytes = 0;
+    uint64_t offset = 0, bytes = 0, digest = 0;
   };
   RecordFile(std::filesystem::path path, int file);
   Status read_header(uint64_t file_bytes);
-  Status read_records(uint64_t file_bytes);
+  Status read_records(uint64_t file_bytes, Check check);
   std::optional<Place> place_of(RecordKey key) const;
 
   std::filesystem::path path_;

@@ -135,6 +135,23 @@ TEST_F(RecordFiles, WithAnyByteChangedAreRefused) {
     }
 }
 
+TEST_F(RecordFiles, CheckedWhenReadLoseOneRecordToADamagedByte) {
+  const Bytes whole = three_records();
+  for (size_t at = 0; at < whole.size(); ++at) {
+    Bytes bytes = whole;
+    bytes[at] ^= std::byte{0x10};
+    write(bytes);
+    const auto file = RecordFile::open(path_, RecordFile::Check::when_read);
+    if (!file) continue;  // the start of the file, its header, or the start of a record
+    for (size_t i = 0; i < kKeys.size(); ++i) {
+      const bool hit = at >= ends_[i] && at < ends_[i + 1];
+      const auto read = file->read_whole(kKeys[i]);
+      EXPECT_EQ(read.has_value(), !hit) << "byte " << at << ", record " << i;
+      if (read) EXPECT_EQ(*read, bytes_for(kKeys[i], kSizes[i]));
+    }
+  }
+}
+
 TEST_F(RecordFiles, OfOthersAreRefused) {
   EXPECT_THAT(RecordFile::open(path_).error().message, HasSubstr("No such file"));
   write(Bytes(4096, std::byte{0}));

@@ -88,16 +88,16 @@ bool BakeCache::find(const scene::Scene& scene) {
                         folder_.string(), why);
     return false;
   };
-  const Result<RecordFile> found = RecordFile::open(file);
+  const Result<RecordFile> found = RecordFile::open(file, RecordFile::Check::when_read);
   if (!found) return no(found.error().message);
   json header = json::parse(found->header(), nullptr, false);
   if (!header.is_object() || header.value("cache", 0) != kFormat)
     return no("it was kept by another version of luxel");
   const std::string different = difference(header, identity_of(settings_));
   if (!different.empty()) return no("it is of another bake: " + different);
-  std::vector<std::byte> bytes(found->size_of(kRest).value_or(0));
-  if (!found->read(kRest, 0, bytes)) return no("light.luxel cannot be read");
-  found_ = kept_bake_of(bytes);
+  const auto bytes = found->read_whole(kRest);
+  if (!bytes) return no("light.luxel is damaged");
+  found_ = kept_bake_of(*bytes);
   if (!found_) return no("light.luxel is not whole");
   change_ = scene::change_between(found_->scene, state_);
   if (change_.beyond.empty() && found_->layout.mesh_of_instance.size() == scene.instances.size()) {
@@ -111,7 +111,7 @@ bool BakeCache::find(const scene::Scene& scene) {
 const RecordFile* BakeCache::found_rays(Progress& progress) {
   LUXEL_CHECK(found_);
   if (found_rays_) return &*found_rays_;
-  Result<RecordFile> rays = RecordFile::open(rays_file(folder_));
+  Result<RecordFile> rays = RecordFile::open(rays_file(folder_), RecordFile::Check::when_read);
   if (!rays)
     note_ = rays.error().message;
   else if (rays->header() != header_of(settings_, found_->scene))

@@ -186,6 +186,11 @@ double mean_luminance(std::span<const Rgb> values) {
 /// is wrong.
 constexpr int kMaxSweeps = 4000;
 
+/// A guess whose light to come is more times the tolerance is brought closer by sparse sweeps:
+/// until they change less than a part of their first change, or so many.
+constexpr double kFarFrom = 4, kSmallPart = 0.03;
+constexpr int kMaxSparse = 64;
+
 /// About so many sweeps follow sparser ones.
 constexpr double kSweepsAfterSparse = 3;
 
@@ -206,10 +211,10 @@ ReflectanceRange reflectance_range(const transport::Elements& elements) {
 }
 
 /// The sum of all changes still to come when each is q times the one before: change q / (1 - q).
-/// The ratio of the last two changes tends to the largest q there is; it is not trusted outside of
-/// what the reflectances allow.
-double light_to_come(double change, double change_before, const ReflectanceRange& reflectance) {
-  const double seen = change_before > 0 ? change / change_before : reflectance.max;
+/// The ratio of two changes that follow each other tends to the largest q there is; it is not
+/// trusted outside of what the reflectances allow. 0: nothing is known of it.
+double light_to_come(double change, double ratio, const ReflectanceRange& reflectance) {
+  const double seen = ratio > 0 ? ratio : reflectance.max;
   const double q = std::clamp(seen, reflectance.mean, reflectance.max);
   return change * q / (1 - q);
 }
@@ -257,14 +262,41 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   }
   const ReflectanceRange reflectance = reflectance_range(elements);
   const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
+  const size_t sparse = fewest >= 256 ? 16 : fewest >= 64 ? 4 : 1;
+  // Adds what a change makes of itself in later bounces, looking at some rays only: as exact,
+  // relative to the change, as these are. Returns the ratio of its last two steps.
+  const auto look_ahead = [&](std::vector<Rgb> change) -> Result<double> {
+    const std::vector<Rgb> none(n);
+    double first = 0, before = 0, ratio = 0;
+    for (int k = 0; k < kMaxSparse; ++k) {
+      fill_radiosity(radiosity, map, elements, hits, behind, change);
+      Sweep sweep{none, change, next, out.variance, out.split_variance, sparse, {}};
+      LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
+      change.swap(next);
+      double sum2 = 0;
+      for (size_t i = 0; i < n; ++i)
+        out.irradiance[i] += change[i], sum2 += double(dot(change[i], change[i]));
+      if (k == 0) first = sum2;
+      ratio = before > 0 ? std::sqrt(sum2 / before) : 0, before = sum2;
+      if (sum2 <= kSmallPart * kSmallPart * first) break;
+    }
+    for (Rgb& e : out.irradiance) e = max(e, Rgb{});
+    return ratio;
+  };
   for (const size_t stride : {size_t(16), size_t(4), size_t(1)}) {
     if (stride > 1 && (guessed || fewest < 16 * stride)) continue;
-    double before = 0;
+    double before = 0, ratio = 0;
     for (int k = 0; k < kMaxSweeps; ++k) {
+      std::vector<Rgb> changed = guessed && sparse > 1 ? out.irradiance : std::vector<Rgb>{};
       LUXEL_TRY(const double change, run(stride));
-      if (light_to_come(change, before, reflectance) <= double(params.tolerance) * double(stride))
-        break;
+      if (before > 0) ratio = change / before;
+      const double to_come = light_to_come(change, ratio, reflectance);
+      if (to_come <= double(params.tolerance) * double(stride)) break;
       before = change;
+      if (changed.empty() || to_come < kFarFrom * double(params.tolerance)) continue;
+      for (size_t i = 0; i < n; ++i) changed[i] = out.irradiance[i] - changed[i];
+      LUXEL_TRY(ratio, look_ahead(std::move(changed)));
+      before = 0;  // the next change does not follow this one
     }
   }
   return out;

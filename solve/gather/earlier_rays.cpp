@@ -15,14 +15,6 @@ bool is_sound(const RayTile& rays, uint32_t places) {
                              [&](const StoredHit& hit) { return hit.base() < places; });
 }
 
-std::optional<std::vector<std::byte>> bytes_of(const RecordFile& file, RecordKey key) {
-  const std::optional<uint64_t> size = file.size_of(key);
-  if (!size) return std::nullopt;
-  std::vector<std::byte> bytes(*size);
-  if (!file.read(key, 0, bytes)) return std::nullopt;
-  return bytes;
-}
-
 /// Whether the half-line meets the box.
 bool meets(const Box3& box, Vec3 from, Vec3 direction) {
   float begin = 0, end = INFINITY;
@@ -56,7 +48,7 @@ std::optional<std::vector<std::vector<uint16_t>>> earlier_rounds(const RecordFil
                                                                  size_t elements) {
   std::vector<std::vector<uint16_t>> rounds;
   while (true) {
-    const auto bytes = bytes_of(file, {rounds.size(), kSamplesPart});
+    const auto bytes = file.read_whole({rounds.size(), kSamplesPart});
     if (!bytes) break;
     std::vector<uint16_t> samples(elements);
     ByteReader in{*bytes};
@@ -70,7 +62,7 @@ std::optional<std::vector<std::vector<uint16_t>>> earlier_rounds(const RecordFil
 
 std::optional<RayTile> find_rays(const RecordFile& file, uint64_t round, uint64_t tile,
                                  size_t elements, uint32_t places) {
-  const auto bytes = bytes_of(file, {round, tile});
+  const auto bytes = file.read_whole({round, tile});
   if (!bytes) return std::nullopt;
   ByteReader in{*bytes};
   RayTile out;

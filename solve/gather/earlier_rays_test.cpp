@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <bit>
 #include <filesystem>
 #include <functional>
+#include <numeric>
+#include <vector>
 
 #include "base/bytes.h"
 #include "base/random.h"

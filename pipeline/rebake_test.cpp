@@ -158,6 +158,21 @@ TEST(LightUpdate, ASurfaceIsScaledWhereAllOfItIs) {
          otherwise, {}, true, false);
 }
 
+// By groups the panel's two materials are two layers.
+TEST(LightUpdate, AllLayersOfASurfaceAreScaled) {
+  const KeptBake kept = kept_of(room(), transport::LayerMode::groups);
+  const size_t layers = kept.layer_names.size();
+  ASSERT_EQ(kept.layers.of_instance[panel].size(), 2u);
+  Scales scale(layers, kOne);
+  for (const uint8_t layer : kept.layers.of_instance[panel]) scale[layer] = Rgb{2, 2, 2};
+  expect(updated(
+             [](scene::Scene& s) {
+               for (const uint32_t m : {shine, glow}) s.materials[m].emission *= 2;
+             },
+             transport::LayerMode::groups),
+         scale, {}, false, true);
+}
+
 TEST(LightUpdate, ASurfaceThatDidNotShineIsLookedAt) {
   expect(updated([](scene::Scene& s) {
            s.materials[gray].emission = {1, 1, 1};

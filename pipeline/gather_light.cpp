@@ -151,8 +151,12 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   if (KeptBake* found = in.cache ? in.cache->found() : nullptr) {
     const scene::SceneChange& change = in.cache->change();
     const LightUpdate update = light_update(*found, change, in.scene);
-    if (is_sum_of_layers(update, change)) {
+    // Layers that are asked for are those of now: a lamp that is out has none, another name counts.
+    const bool same_layers = settings.layers == transport::LayerMode::none ||
+                             layers_of_lights(in.scene, in.lights, layers) == found->layers;
+    if (is_sum_of_layers(update, change) && same_layers) {
       TexelLight out = sum_of_layers(*found, update);
+      out.layers = std::move(layers.layers);
       if (settings.layers == transport::LayerMode::none) drop_layers(out);
       return out;
     }

@@ -195,8 +195,9 @@ bool is_sound(const KeptBake& k) {
 
 /// Whether numbers are those of something that is there: they are not looked at again.
 bool refers_to_itself(const KeptBake& k) {
-  const auto is_layer = [&](uint8_t layer) {
-    return layer == LayersOfLights::kNoLayer || layer < k.layer_names.size();
+  const auto is_layer = [&](uint8_t layer) { return layer < k.layer_names.size(); };
+  const auto is_layer_or_none = [&](uint8_t layer) {
+    return layer == LayersOfLights::kNoLayer || is_layer(layer);
   };
   const atlas::Atlas& atlas = k.layout.atlas;
   const auto is_texel = [&](const atlas::Texel& t) {
@@ -204,8 +205,11 @@ bool refers_to_itself(const KeptBake& k) {
            t.sample.instance < k.layout.mesh_of_instance.size() &&
            t.triangle_number < atlas.corners.size();
   };
-  return is_layer(k.layers.of_surroundings) && std::ranges::all_of(k.layers.of_lamp, is_layer) &&
-         std::ranges::all_of(k.layers.of_instance, is_layer) &&
+  return is_layer_or_none(k.layers.of_surroundings) &&
+         std::ranges::all_of(k.layers.of_lamp, is_layer_or_none) &&
+         std::ranges::all_of(
+             k.layers.of_instance,
+             [&](const std::vector<uint8_t>& of) { return std::ranges::all_of(of, is_layer); }) &&
          std::ranges::all_of(k.layout.mesh_of_instance,
                              [&](uint32_t mesh) { return mesh < k.layout.meshes.size(); }) &&
          std::ranges::all_of(k.layout.texels, is_texel);
@@ -229,9 +233,12 @@ std::vector<uint64_t> places_of(const transport::Elements& elements) {
 LayersOfLights layers_of_lights(const scene::Scene& scene, const transport::Lights& lights,
                                 const transport::LightLayers& layers) {
   LayersOfLights out;
-  out.of_instance.assign(scene.instances.size(), LayersOfLights::kNoLayer);
-  for (size_t k = 0; k < lights.triangles.size(); ++k)
-    out.of_instance[lights.triangles[k].instance] = layers.of_triangle[k];
+  out.of_instance.resize(scene.instances.size());
+  for (size_t k = 0; k < lights.triangles.size(); ++k) {
+    std::vector<uint8_t>& of = out.of_instance[lights.triangles[k].instance];
+    const auto at = std::ranges::lower_bound(of, layers.of_triangle[k]);
+    if (at == of.end() || *at != layers.of_triangle[k]) of.insert(at, layers.of_triangle[k]);
+  }
   for (size_t k = 0; k < lights.punctual.size(); ++k)
     out.of_lamp.push_back(max_component(lights.punctual[k].intensity) > 0
                               ? layers.of_punctual[k]

@@ -47,7 +47,7 @@ KeptBake some_bake() {
   k.layout.stats = {1, 0.25, 1.5, 100, 2, 0.75};
   k.layout.repair = {1, 2, {0}, {1}, {0, 1}}, k.layout.warnings = {"careful", "very"};
   k.places = {51, 52}, k.layer_names = {"l", "b"};
-  k.layers = {{0, LayersOfLights::kNoLayer}, {LayersOfLights::kNoLayer, 1}, 1};
+  k.layers = {{0, LayersOfLights::kNoLayer}, {{}, {0, 1}}, 1};
   k.direct.irradiance = {{1, 1, 1}, {2, 2, 2}}, k.direct.variance = {0.1f, 0.2f};
   k.direct.split_variance = {0.3f, 0.4f}, k.direct.rays = 61;
   k.direct.by_layer = {{1, 0, 0}, {0, 1, 1}, {2, 0, 0}, {0, 2, 2}};
@@ -301,7 +301,8 @@ TEST(KeptBake, WithNumbersThatDoNotFitIsRefused) {
 
 TEST(KeptBake, ThatRefersToWhatIsNotThereIsRefused) {
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_lamp[0] = 2; }));
-  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_instance[1] = 254; }));
+  EXPECT_TRUE(
+      is_refused([](KeptBake& k) { k.layers.of_instance[1][0] = LayersOfLights::kNoLayer; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_surroundings = 2; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.mesh_of_instance[0] = 2; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[0].x = 16; }));
@@ -354,7 +355,7 @@ TEST(LayersOfLights, AreThoseOfLampsAndOfInstancesThatShine) {
   constexpr uint8_t kNone = LayersOfLights::kNoLayer;
   // Lamps first, then what shines, then the surroundings; lights without power are left out.
   EXPECT_EQ(found.of_lamp, (std::vector<uint8_t>{0, kNone, 1}));
-  EXPECT_EQ(found.of_instance, (std::vector<uint8_t>{kNone, 2}));
+  EXPECT_EQ(found.of_instance, (std::vector<std::vector<uint8_t>>{{}, {2}}));
   EXPECT_EQ(found.of_surroundings, 3);
 }
 

@@ -109,11 +109,10 @@ LightUpdate light_update(const KeptBake& kept, const scene::SceneChange& change,
       out.lamps_anew.push_back(k);
   }
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const uint8_t layer = kept.layers.of_instance[i];
+    const std::vector<uint8_t>& of = kept.layers.of_instance[i];
     const std::optional<Rgb> scale = scale_of_instance(kept, change, scene, i);
-    if (layer != kNoLayer)
-      all.add(layer, scale), has_surface[layer] = 1;
-    else if (!scale && std::ranges::find(change.moved, i) == change.moved.end())
+    for (const uint8_t layer : of) all.add(layer, scale), has_surface[layer] = 1;
+    if (of.empty() && !scale && std::ranges::find(change.moved, i) == change.moved.end())
       out.surfaces_anew = true;
   }
   if (change.surroundings) out.surfaces_anew = true;

@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 
+#include "base/file.h"
 #include "base/random.h"
+#include "export/baked_glb.h"
+#include "pipeline/bake.h"
 #include "scene/shapes.h"
 #include "solve/gather/gather_test_support.h"
 
@@ -156,6 +160,21 @@ TEST(LightUpdate, ASurfaceIsScaledWhereAllOfItIs) {
            s.materials[shine].emission = {8, 4, 2}, s.materials[glow].emission = {3, 3, 6};
          }),
          otherwise, {}, true, false);
+}
+
+// By groups the panel's two materials are two layers.
+TEST(LightUpdate, AllLayersOfASurfaceAreScaled) {
+  const KeptBake kept = kept_of(room(), transport::LayerMode::groups);
+  const size_t layers = kept.layer_names.size();
+  ASSERT_EQ(kept.layers.of_instance[panel].size(), 2u);
+  Scales scale(layers, kOne);
+  for (const uint8_t layer : kept.layers.of_instance[panel]) scale[layer] = Rgb{2, 2, 2};
+  expect(updated(
+             [](scene::Scene& s) {
+               for (const uint32_t m : {shine, glow}) s.materials[m].emission *= 2;
+             },
+             transport::LayerMode::groups),
+         scale, {}, false, true);
 }
 
 TEST(LightUpdate, ASurfaceThatDidNotShineIsLookedAt) {
@@ -466,6 +485,41 @@ TEST_F(EarlierOf, BoxesAreGrown) {
 TEST_F(EarlierOf, ABakeOfOtherTexelsIsRefused) {
   kept_.places.pop_back();
   EXPECT_FALSE(earlier(paint, false));
+}
+
+// Layers that are asked for are those of the lights there are now, under the names they have now.
+TEST(SlowRebake, HasTheLayersOfABakeFromScratch) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("luxel-rebake-layers-" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const auto baked = [&](const Edit& edit, const fs::path& output) {
+    scene::Scene scene = room();
+    edit(scene);
+    const auto glb = export_::scene_glb(scene);
+    EXPECT_TRUE(glb && write_file_atomically(folder / "room.glb", *glb));
+    BakeSettings settings;
+    settings.scene = folder / "room.glb", settings.output = output, settings.keep = true;
+    settings.resolution = 32, settings.samples = 4, settings.direct_samples = 4;
+    settings.layers = transport::LayerMode::per_light;
+    Progress progress;
+    const auto json = bake(settings, progress);
+    EXPECT_TRUE(json) << json.error().message;
+    std::vector<std::string> names;
+    if (json)
+      for (const auto& layer : (*json)["layers"]) names.push_back(layer["name"]);
+    return names;
+  };
+  const std::vector<std::string> all = baked([](scene::Scene&) {}, folder / "kept");
+  EXPECT_EQ(all.size(), 4u) << "two lamps, the panel and the sky";
+  const Edit put_out = [](scene::Scene& s) { s.lights[left].intensity = {}; };
+  const Edit rename = [](scene::Scene& s) { s.lights[left].name = "hall"; };
+  int number = 0;
+  for (const Edit& edit : {put_out, rename}) {
+    const auto expected = baked(edit, folder / std::to_string(number++));
+    EXPECT_NE(expected, all);
+    EXPECT_EQ(baked(edit, folder / "kept"), expected);
+  }
+  fs::remove_all(folder);
 }
 
 }  // namespace

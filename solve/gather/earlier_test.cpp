@@ -419,11 +419,15 @@ TEST_F(EarlierGather, DirectLightIsFollowedUp) {
   give_direct(first, blind);
   const std::vector<uint8_t> moved = blind.rays.moved;
   blind.rays.boxes = {};
+  std::ranges::fill(blind.levels.level, uint8_t(2));
+  std::ranges::fill(blind.levels.averaged, uint8_t(1));
   params.earlier = &blind;
-  const Gather without_boxes = solve(*now, params);
+  const Gather without_boxes = keeping(*now, params, "without boxes");
   size_t differ = 0;
   for (size_t i = 0; i < moved.size(); ++i) {
     EXPECT_EQ(without_boxes.direct[i], (moved[i] ? scratch : first).direct[i]) << i;
+    EXPECT_EQ(without_boxes.kept_levels.level[i], moved[i] ? 0 : 2) << "it is looked at anew";
+    EXPECT_EQ(without_boxes.kept_levels.averaged[i], moved[i] ? 0 : 1) << "not over points";
     differ += moved[i] && !(first.direct[i] == scratch.direct[i]);
   }
   EXPECT_GT(differ, 20u);

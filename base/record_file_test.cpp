@@ -147,7 +147,7 @@ TEST_F(RecordFiles, CheckedWhenReadLoseOneRecordToADamagedByte) {
       const bool hit = at >= ends_[i] && at < ends_[i + 1];
       const auto read = file->read_whole(kKeys[i]);
       EXPECT_EQ(read.has_value(), !hit) << "byte " << at << ", record " << i;
-      if (read) EXPECT_EQ(*read, bytes_for(kKeys[i], kSizes[i]));
+      EXPECT_EQ(read.value_or(bytes_for(kKeys[i], kSizes[i])), bytes_for(kKeys[i], kSizes[i]));
     }
   }
 }

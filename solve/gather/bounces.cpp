@@ -187,9 +187,10 @@ double mean_luminance(std::span<const Rgb> values) {
 constexpr int kMaxSweeps = 4000;
 
 /// A guess whose light to come is more times the tolerance is brought closer by sparse sweeps:
-/// until they change less than a part of their first change, or so many.
+/// until they change less than a part of their first change, or so many; what is left is taken for
+/// a geometric series.
 constexpr double kFarFrom = 4, kSmallPart = 0.03;
-constexpr int kMaxSparse = 64;
+constexpr int kMaxSparse = 8;
 
 /// About so many sweeps follow sparser ones.
 constexpr double kSweepsAfterSparse = 3;
@@ -280,6 +281,10 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
       ratio = before > 0 ? std::sqrt(sum2 / before) : 0, before = sum2;
       if (sum2 <= kSmallPart * kSmallPart * first) break;
     }
+    // By now each step is nearly the same as the one before, but smaller.
+    const double q = std::min(ratio, reflectance.max);
+    const float left = float(q / (1 - q));
+    for (size_t i = 0; i < n; ++i) out.irradiance[i] += change[i] * left;
     for (Rgb& e : out.irradiance) e = max(e, Rgb{});
     return ratio;
   };

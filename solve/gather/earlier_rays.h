@@ -61,8 +61,8 @@ inline constexpr uint64_t kSamplesPart = UINT64_MAX;
 std::optional<std::vector<std::vector<uint16_t>>> earlier_rounds(const RecordFile& file,
                                                                  size_t elements);
 
-/// Nothing where the file has none, a damaged one, or another number of elements. `places`: StoredHit::base() is
-/// below.
+/// Nothing where the file has none, a damaged one, or another number of elements. `places`:
+/// StoredHit::base() is below.
 std::optional<RayTile> find_rays(const RecordFile& file, uint64_t round, uint64_t tile,
                                  size_t elements, uint32_t places);
 /// `store` may be null.

@@ -12,179 +12,10 @@
 #include "scene/sides.h"
 #include "solve/gather/element_rays.h"
 #include "solve/gather/kept_hits.h"
-#include "solve/gather/near_paths.h"
+#include "solve/gather/sort_rays.h"
 #include "transport/backs_seen.h"
 
 namespace luxel::gather {
-namespace {
-
-/// Everything a worker needs, reused from element to element.
-struct Work {
-  RayBatch batch;
-  std::vector<trace::Hit> hits;  ///< of the batch's rays
-  std::vector<Rgb> tint;         ///< of what rays have passed; empty where nothing has a colour
-  NearWork near;
-  /// Where rays of an earlier bake are known: 1 for those that are traced again, and those alone.
-  std::vector<uint8_t> again;
-  std::vector<uint32_t> maybe;  ///< those that have a direction
-  std::vector<trace::Ray> few_rays;
-  std::vector<trace::Hit> few_hits;
-  std::vector<Rgb> few_tints;
-};
-
-/// An element's rays of an earlier bake.
-struct EarlierElement {
-  std::span<const RayEnd> ends;
-  std::span<const StoredHit> hits;
-  /// Light of those that escaped, as they would see it now; null: not known.
-  const EscapedLight* escaped = nullptr;
-};
-
-StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray) {
-  const auto& corners = atlas.corners[atlas.triangle_number(p.instance, p.triangle)];
-  const Vec2 at = interpolate(corners[0], corners[1], corners[2], p.at);
-  const float limit = float(atlas.resolution);
-  const float x = std::clamp(at.x, 0.0f, limit) + 0.5f, y = std::clamp(at.y, 0.0f, limit) + 0.5f;
-  const uint32_t x0 = uint32_t(x), y0 = uint32_t(y);  // with the border of one texel
-  constexpr float kSteps = float(StoredHit::kSteps);
-  return StoredHit::pack(y0 * uint32_t(atlas.resolution + 2) + x0,
-                         uint32_t((x - float(x0)) * kSteps + 0.5f),
-                         uint32_t((y - float(y0)) * kSteps + 0.5f), ray);
-}
-
-/// What rays meet, and what they see beyond.
-struct World {
-  const scene::Scene& scene;
-  const atlas::Atlas& atlas;
-  const transport::Surroundings& around;
-  const NearWorld* near = nullptr;  ///< null: rays are not followed on
-  const transport::LightLayers* layers = nullptr;
-};
-
-/// Adds radiance that a ray has brought without the map.
-void add_light(Rgb l, bool second_half, size_t element, TracedHits& out) {
-  out.sky[element] += l;
-  out.sky_luminance2[element] += luminance(l) * luminance(l);
-  out.sky_first_less_second[element] += second_half ? -luminance(l) : luminance(l);
-}
-
-/// Radiance of a ray that has left the scene.
-void add_sky(const World& world, Rgb l, size_t element, TracedHits& out) {
-  if (world.layers && world.layers->of_surroundings)
-    out.sky_by_layer[element * world.layers->size() + *world.layers->of_surroundings] += l;
-}
-
-/// Counts a ray's end.
-void count_end(RayEnd end, size_t element, TracedHits& out) {
-  if (end == RayEnd::back) ++out.met_back[element];
-  if (end == RayEnd::behind) ++out.met_double_sided_back[element];
-  if (end == RayEnd::escaped) ++out.escaped[element];
-}
-
-/// What the batch's k-th ray sees outside, when it has escaped.
-Rgb light_outside(const World& world, const Work& work, size_t k, bool tinted) {
-  const Rgb l = transport::soft_radiance(world.scene, world.around, work.batch.rays[k].direction);
-  return tinted && !work.tint.empty() ? l * work.tint[k] : l;
-}
-
-/// The same for all rays of an element, from what was known and what has changed.
-EscapedLight escaped_light(const World& world, const Work& work, Samples samples,
-                           const EarlierElement* before, std::span<const RayEnd> ends) {
-  const bool known = before && before->escaped;
-  EscapedLight out = known ? *before->escaped : EscapedLight{};
-  for (size_t k = 0; k < ends.size(); ++k) {
-    if (known && !work.again[k]) continue;
-    const bool second_half = samples.in_second_half(work.batch.sample[k]);
-    if (known && before->ends[k] == RayEnd::escaped)
-      out.take_away(light_outside(world, work, k, false), second_half);
-    if (ends[k] == RayEnd::escaped) out.add(light_outside(world, work, k, true), second_half);
-  }
-  out.sum = max(out.sum, Rgb{});
-  return out;
-}
-
-/// How the batch's k-th ray has ended; one to be followed on is added to work.near.paths.
-RayEnd end_of(const World& world, Work& work, size_t k) {
-  const trace::Hit& hit = work.hits[k];
-  if (!hit.found()) return RayEnd::escaped;
-  if (hit.back_face && !scene::reflects_from_behind(scene::material_at(world.scene, hit.point())))
-    return RayEnd::back;
-  if (world.near != nullptr) {
-    const NearPath path{
-        work.batch.sample[k], work.tint.empty() ? Rgb{1, 1, 1} : work.tint[k], {}, hit, {}};
-    if (goes_on(*world.near, path)) {
-      work.near.paths.push_back(path);
-      return RayEnd::followed;
-    }
-  }
-  return hit.back_face ? RayEnd::behind : RayEnd::hit;
-}
-
-/// Counts what the rays of an element's samples met, and keeps the hits that bring light. `before`:
-/// what they met in an earlier bake, but for work.again.
-void sort_hits(const World& world, Work& work, size_t element, Samples samples,
-               const EarlierElement* before, TracedHits& out, RayTile& tile) {
-  size_t hits_before = 0;
-  for (size_t k = 0; k < work.batch.rays.size(); ++k) {
-    const bool second_half = samples.in_second_half(work.batch.sample[k]);
-    const RayEnd known = before ? before->ends[k] : RayEnd::followed;
-    const bool was_hit = known == RayEnd::hit || known == RayEnd::behind;
-    const size_t hit_before = was_hit ? hits_before++ : 0;
-    const bool keeps = before && !work.again[k];
-    const RayEnd end = keeps ? known : end_of(world, work, k);
-    tile.ends.push_back(end);
-    if (end == RayEnd::followed) {
-      if (work.near.paths.back().hit.back_face) ++out.met_double_sided_back[element];
-      continue;
-    }
-    count_end(end, element, out);
-    if (end != RayEnd::hit && end != RayEnd::behind) continue;
-    if (keeps) {
-      tile.hits.entries.push_back(before->hits[hit_before]);
-      continue;
-    }
-    const uint32_t tint =
-        work.tint.empty()
-            ? kNoTint
-            : pack_tint(work.tint[k], hash64(element, work.batch.sample[k] ^ 0x7147u));
-    tile.hits.entries.push_back(store(world.atlas, work.hits[k].point(), {tint, second_half}));
-  }
-  const std::span<const RayEnd> ends = std::span(tile.ends).last(work.batch.rays.size());
-  tile.escaped.push_back(escaped_light(world, work, samples, before, ends));
-  const EscapedLight& light = tile.escaped.back();
-  out.sky[element] += light.sum, out.sky_luminance2[element] += light.luminance2;
-  out.sky_first_less_second[element] += luminance(light.sum) - 2 * light.second_luminance;
-  add_sky(world, light.sum, element, out);
-}
-
-/// Follows the rays of an element on that ended nearby. Returns the number of rays.
-uint64_t follow_on(const World& world, Work& work, size_t element, Samples samples, uint64_t seed,
-                   TracedHits& out, RayTile& tile) {
-  if (world.layers)
-    work.near.by_layer =
-        std::span(out.sky_by_layer).subspan(element * world.layers->size(), world.layers->size());
-  return follow_near(*world.near, seed, work.near, [&](const NearPath& path) {
-    const bool second_half = samples.in_second_half(path.sample);
-    Rgb light = path.light;
-    const bool alive = max_component(path.throughput) > 0;
-    if (alive && !path.hit.found()) {
-      const Rgb l =
-          path.throughput * transport::soft_radiance(world.scene, world.around, path.direction);
-      add_sky(world, l, element, out);
-      light += l;
-    }
-    add_light(light, second_half, element, out);
-    if (!alive || !path.hit.found()) return;
-    if (path.hit.back_face &&
-        !scene::reflects_from_behind(scene::material_at(world.scene, path.hit.point())))
-      return;
-    const uint32_t tint = pack_tint(path.throughput, hash64(seed, path.sample ^ 0x4e37u));
-    tile.hits.entries.push_back(store(world.atlas, path.hit.point(), {tint, second_half}));
-  });
-}
-
-}  // namespace
-
 std::vector<StoredHit> places_behind(const scene::Scene& scene, const atlas::Atlas& atlas,
                                      const atlas::TexelMap& map,
                                      const transport::Elements& elements) {
@@ -224,7 +55,7 @@ namespace {
 
 /// One round's way through the elements.
 struct Round {
-  const World& world;
+  const RayWorld& world;
   const transport::Elements& elements;
   const trace::RayTracer& tracer;
   std::span<const uint16_t> target;
@@ -235,15 +66,15 @@ struct Round {
   std::array<Cone, kCells> cell_cones = gather::cell_cones();
 
   /// `before`: what is known of the element's rays; null: nothing.
-  void trace_element(size_t i, const EarlierElement* before, Work& work, TracedHits& out,
+  void trace_element(size_t i, const EarlierElement* before, RayWork& work, TracedHits& out,
                      TracedTile& tile) const;
   void choose_again(size_t i, Vec3 origin, Samples samples, const EarlierElement& before,
-                    Work& work) const;
+                    RayWork& work) const;
   /// Inside of solids it is dark: paths along their walls, which are long, would bring nothing.
-  void drop_enclosed_paths(size_t i, Work& work, const TracedHits& hits) const;
+  void drop_enclosed_paths(size_t i, RayWork& work, const TracedHits& hits) const;
 };
 
-void Round::drop_enclosed_paths(size_t i, Work& work, const TracedHits& hits) const {
+void Round::drop_enclosed_paths(size_t i, RayWork& work, const TracedHits& hits) const {
   if (work.near.paths.empty()) return;
   const transport::BacksSeen own{int(hits.samples[i]), int(hits.met_back[i]),
                                  int(hits.met_double_sided_back[i])};
@@ -252,7 +83,7 @@ void Round::drop_enclosed_paths(size_t i, Work& work, const TracedHits& hits) co
 }
 
 /// Traces all rays of the batch.
-void trace_all(const trace::RayTracer& tracer, Work& work) {
+void trace_all(const trace::RayTracer& tracer, RayWork& work) {
   work.hits.resize(work.batch.rays.size());
   tracer.closest_hits(work.batch.rays, work.hits);
   if (!tracer.has_tints()) return;
@@ -262,10 +93,10 @@ void trace_all(const trace::RayTracer& tracer, Work& work) {
 
 /// Fills the batch, with directions of those rays at least that may meet something else than in the
 /// earlier bake, and those that are followed on: what they bring depends on reflectances and lamps.
-/// Of rays that escaped through something coloured the colour is not known. Marks them in
-/// work.again.
+/// Of rays that escaped through something coloured the colour is not known. All that do are in
+/// work.again then.
 void Round::choose_again(size_t i, Vec3 origin, Samples samples, const EarlierElement& before,
-                         Work& work) const {
+                         RayWork& work) const {
   const Vec3 normal = elements.normal[i], geometric = elements.geometric_normal[i];
   const uint64_t seed_of_element = hash64(seed ^ 0x6a7e, i);
   fill_samples(seed_of_element, samples, work.batch);
@@ -273,43 +104,39 @@ void Round::choose_again(size_t i, Vec3 origin, Samples samples, const EarlierEl
   const uint64_t cells = normal == geometric && before.escaped
                              ? cells_towards(earlier->boxes, origin, normal, cell_cones)
                              : ~uint64_t(0);
-  work.again.assign(samples.count(), 0);
-  work.maybe.clear();
+  work.marked.assign(samples.count(), 0);
+  work.maybe.clear(), work.again.clear();
   for (uint32_t k = 0; k < samples.count(); ++k) {
     const RayEnd end = before.ends[k];
     if (end == RayEnd::followed || (end == RayEnd::escaped && tracer.has_tints()))
-      work.again[k] = 1;
-    if (work.again[k] || cells >> work.batch.cell[k] & 1) work.maybe.push_back(k);
+      work.marked[k] = 1;
+    if (work.marked[k] || cells >> work.batch.cell[k] & 1) work.maybe.push_back(k);
   }
   fill_directions(origin, normal, geometric, work.maybe, work.batch);
-  mark_rays(earlier->boxes, work.batch.rays, work.maybe, work.again);
+  mark_rays(earlier->boxes, work.batch.rays, work.maybe, work.marked);
+  for (const uint32_t k : work.maybe)
+    if (work.marked[k]) work.again.push_back(k);
 }
 
-/// Traces the rays that are marked. Returns how many there were.
-size_t trace_marked(const trace::RayTracer& tracer, Work& work) {
-  const std::span<const trace::Ray> rays = work.batch.rays;
+/// Traces work.again.
+void trace_again(const trace::RayTracer& tracer, RayWork& work) {
+  const size_t count = work.again.size();
   const bool tinted = tracer.has_tints();
   work.few_rays.clear();
-  for (const uint32_t k : work.maybe)
-    if (work.again[k]) work.few_rays.push_back(rays[k]);
-  const size_t count = work.few_rays.size();
+  for (const uint32_t k : work.again) work.few_rays.push_back(work.batch.rays[k]);
   work.few_hits.resize(count);
   tracer.closest_hits(work.few_rays, work.few_hits);
   work.few_tints.assign(count, {1, 1, 1});
   if (tinted) tracer.tint(work.few_rays, work.few_hits, work.few_tints);
-  work.hits.resize(rays.size());
-  if (tinted) work.tint.assign(rays.size(), {1, 1, 1});
-  size_t at = 0;
-  for (const uint32_t k : work.maybe) {
-    if (!work.again[k]) continue;
-    work.hits[k] = work.few_hits[at];
-    if (tinted) work.tint[k] = work.few_tints[at];
-    ++at;
+  work.hits.resize(work.batch.rays.size());
+  if (tinted) work.tint.assign(work.batch.rays.size(), {1, 1, 1});
+  for (size_t at = 0; at < count; ++at) {
+    work.hits[work.again[at]] = work.few_hits[at];
+    if (tinted) work.tint[work.again[at]] = work.few_tints[at];
   }
-  return count;
 }
 
-void Round::trace_element(size_t i, const EarlierElement* before, Work& work, TracedHits& out,
+void Round::trace_element(size_t i, const EarlierElement* before, RayWork& work, TracedHits& out,
                           TracedTile& tile) const {
   const Samples samples{out.samples[i], std::max(out.samples[i], target[i])};
   if (samples.count() == 0) {
@@ -324,13 +151,15 @@ void Round::trace_element(size_t i, const EarlierElement* before, Work& work, Tr
   size_t traced = samples.count();
   if (before) {
     choose_again(i, origin, samples, *before, work);
-    traced = trace_marked(tracer, work);
+    trace_again(tracer, work);
+    traced = work.again.size();
+    merge_rays(world, work, i, samples, *before, out, tile.rays_met);
   } else {
     fill_rays(origin, elements.normal[i], elements.geometric_normal[i], hash64(seed ^ 0x6a7e, i),
               samples, work.batch);
     trace_all(tracer, work);
+    sort_rays(world, work, i, samples, out, tile.rays_met);
   }
-  sort_hits(world, work, i, samples, before, out, tile.rays_met);
   drop_enclosed_paths(i, work, out);
   tile.kept += samples.count() - traced;
   tile.rays += traced;
@@ -383,7 +212,7 @@ struct EarlierCursor {
 TracedTile trace_tile(const Round& round, size_t begin, size_t end, const RayTile* earlier,
                       TracedHits& hits, Progress& progress) {
   constexpr uint64_t kRaysPerAdvance = 8192;
-  Work work;
+  RayWork work;
   TracedTile tile;
   EarlierCursor before{earlier};
   uint64_t untold = 0, kept = 0;
@@ -469,7 +298,7 @@ Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
     near.emplace(
         NearWorld{scene, atlas, *params.near_lights, tracer, widths, diagonal_m, params.layers});
   }
-  const World world{scene, atlas, around, near ? &*near : nullptr, params.layers};
+  const RayWorld world{scene, atlas, around, near ? &*near : nullptr, params.layers};
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   const uint64_t number = hits.rounds.size();

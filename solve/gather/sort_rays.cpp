@@ -1,0 +1,187 @@
+#include "solve/gather/sort_rays.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "base/random.h"
+
+namespace luxel::gather {
+namespace {
+
+/// Adds radiance that a ray has brought without the map.
+void add_light(Rgb l, bool second_half, size_t element, TracedHits& out) {
+  out.sky[element] += l;
+  out.sky_luminance2[element] += luminance(l) * luminance(l);
+  out.sky_first_less_second[element] += second_half ? -luminance(l) : luminance(l);
+}
+
+/// Radiance of a ray that has left the scene.
+void add_sky(const RayWorld& world, Rgb l, size_t element, TracedHits& out) {
+  if (world.layers && world.layers->of_surroundings)
+    out.sky_by_layer[element * world.layers->size() + *world.layers->of_surroundings] += l;
+}
+
+/// Counts `rays` rays of an element that end alike.
+void count_ends(RayEnd end, int rays, size_t element, TracedHits& out) {
+  const auto add = [&](uint16_t& counter) { counter = uint16_t(int(counter) + rays); };
+  if (end == RayEnd::back) add(out.met_back[element]);
+  if (end == RayEnd::behind) add(out.met_double_sided_back[element]);
+  if (end == RayEnd::escaped) add(out.escaped[element]);
+}
+
+bool is_hit(RayEnd end) { return end == RayEnd::hit || end == RayEnd::behind; }
+
+/// What the batch's k-th ray sees outside, when it has escaped.
+Rgb light_outside(const RayWorld& world, const RayWork& work, size_t k, bool tinted) {
+  const Rgb l = transport::soft_radiance(world.scene, world.around, work.batch.rays[k].direction);
+  return tinted && !work.tint.empty() ? l * work.tint[k] : l;
+}
+
+/// Light of the batch's escaped rays, all of which have a direction.
+EscapedLight escaped_light(const RayWorld& world, const RayWork& work, Samples samples,
+                           std::span<const RayEnd> ends) {
+  EscapedLight out;
+  for (size_t k = 0; k < ends.size(); ++k)
+    if (ends[k] == RayEnd::escaped)
+      out.add(light_outside(world, work, k, true), samples.in_second_half(work.batch.sample[k]));
+  return out;
+}
+
+/// The same from what was known: what was traced again no longer brings what it brought.
+EscapedLight escaped_light(const RayWorld& world, const RayWork& work, Samples samples,
+                           const EarlierElement& before, std::span<const RayEnd> ends) {
+  if (!before.escaped) return escaped_light(world, work, samples, ends);
+  EscapedLight out = *before.escaped;
+  for (const uint32_t k : work.again) {
+    const bool second_half = samples.in_second_half(work.batch.sample[k]);
+    if (before.ends[k] == RayEnd::escaped)
+      out.take_away(light_outside(world, work, k, false), second_half);
+    if (ends[k] == RayEnd::escaped) out.add(light_outside(world, work, k, true), second_half);
+  }
+  out.sum = max(out.sum, Rgb{}), out.luminance2 = std::max(out.luminance2, 0.0f);
+  return out;
+}
+
+/// Notes the light of the element's escaped rays.
+void add_escaped(const RayWorld& world, const EscapedLight& light, size_t element, TracedHits& out,
+                 RayTile& tile) {
+  tile.escaped.push_back(light);
+  out.sky[element] += light.sum, out.sky_luminance2[element] += light.luminance2;
+  out.sky_first_less_second[element] += luminance(light.sum) - 2 * light.second_luminance;
+  add_sky(world, light.sum, element, out);
+}
+
+/// How the batch's k-th ray has ended; one to be followed on is added to work.near.paths.
+RayEnd end_of(const RayWorld& world, RayWork& work, size_t k) {
+  const trace::Hit& hit = work.hits[k];
+  if (!hit.found()) return RayEnd::escaped;
+  if (hit.back_face && !scene::reflects_from_behind(scene::material_at(world.scene, hit.point())))
+    return RayEnd::back;
+  if (world.near != nullptr) {
+    const NearPath path{
+        work.batch.sample[k], work.tint.empty() ? Rgb{1, 1, 1} : work.tint[k], {}, hit, {}};
+    if (goes_on(*world.near, path)) {
+      work.near.paths.push_back(path);
+      return RayEnd::followed;
+    }
+  }
+  return hit.back_face ? RayEnd::behind : RayEnd::hit;
+}
+
+/// Counts the end of a ray that was traced, and keeps its hit.
+void take_traced(const RayWorld& world, const RayWork& work, size_t k, RayEnd end, size_t element,
+                 Samples samples, TracedHits& out, RayTile& tile) {
+  if (end == RayEnd::followed) {
+    if (work.near.paths.back().hit.back_face) ++out.met_double_sided_back[element];
+    return;
+  }
+  count_ends(end, 1, element, out);
+  if (!is_hit(end)) return;
+  const uint32_t sample = work.batch.sample[k];
+  const uint32_t tint =
+      work.tint.empty() ? kNoTint : pack_tint(work.tint[k], hash64(element, sample ^ 0x7147u));
+  tile.hits.entries.push_back(
+      store(world.atlas, work.hits[k].point(), {tint, samples.in_second_half(sample)}));
+}
+
+}  // namespace
+
+StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray) {
+  const auto& corners = atlas.corners[atlas.triangle_number(p.instance, p.triangle)];
+  const Vec2 at = interpolate(corners[0], corners[1], corners[2], p.at);
+  const float limit = float(atlas.resolution);
+  const float x = std::clamp(at.x, 0.0f, limit) + 0.5f, y = std::clamp(at.y, 0.0f, limit) + 0.5f;
+  const uint32_t x0 = uint32_t(x), y0 = uint32_t(y);  // with the border of one texel
+  constexpr float kSteps = float(StoredHit::kSteps);
+  return StoredHit::pack(y0 * uint32_t(atlas.resolution + 2) + x0,
+                         uint32_t((x - float(x0)) * kSteps + 0.5f),
+                         uint32_t((y - float(y0)) * kSteps + 0.5f), ray);
+}
+
+void sort_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+               TracedHits& out, RayTile& tile) {
+  const size_t count = work.batch.rays.size();
+  for (size_t k = 0; k < count; ++k) {
+    const RayEnd end = end_of(world, work, k);
+    tile.ends.push_back(end);
+    take_traced(world, work, k, end, element, samples, out, tile);
+  }
+  const std::span<const RayEnd> ends = std::span(tile.ends).last(count);
+  add_escaped(world, escaped_light(world, work, samples, ends), element, out, tile);
+}
+
+void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+                const EarlierElement& before, TracedHits& out, RayTile& tile) {
+  const size_t count = before.ends.size();
+  LUXEL_CHECK(count == work.batch.rays.size());
+  tile.ends.insert(tile.ends.end(), before.ends.begin(), before.ends.end());
+  const std::span<RayEnd> ends = std::span(tile.ends).last(count);
+  for (const RayEnd end : {RayEnd::back, RayEnd::behind, RayEnd::escaped})
+    count_ends(end, int(std::ranges::count(before.ends, end)), element, out);
+  size_t next = 0, hit = 0;
+  // The hits of rays from `next` on, up to `end`, stay.
+  const auto keep_up_to = [&](size_t end) {
+    const auto stay = size_t(std::ranges::count_if(before.ends.subspan(next, end - next), is_hit));
+    const auto from = before.hits.begin() + std::ptrdiff_t(hit);
+    tile.hits.entries.insert(tile.hits.entries.end(), from, from + std::ptrdiff_t(stay));
+    next = end, hit += stay;
+  };
+  for (const uint32_t k : work.again) {
+    keep_up_to(k);
+    const RayEnd known = before.ends[k];
+    count_ends(known, -1, element, out);
+    if (is_hit(known)) ++hit;
+    ends[k] = end_of(world, work, k);
+    take_traced(world, work, k, ends[k], element, samples, out, tile);
+    next = k + 1;
+  }
+  keep_up_to(count);
+  add_escaped(world, escaped_light(world, work, samples, before, ends), element, out, tile);
+}
+
+uint64_t follow_on(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+                   uint64_t seed, TracedHits& out, RayTile& tile) {
+  if (world.layers)
+    work.near.by_layer =
+        std::span(out.sky_by_layer).subspan(element * world.layers->size(), world.layers->size());
+  return follow_near(*world.near, seed, work.near, [&](const NearPath& path) {
+    const bool second_half = samples.in_second_half(path.sample);
+    Rgb light = path.light;
+    const bool alive = max_component(path.throughput) > 0;
+    if (alive && !path.hit.found()) {
+      const Rgb l =
+          path.throughput * transport::soft_radiance(world.scene, world.around, path.direction);
+      add_sky(world, l, element, out);
+      light += l;
+    }
+    add_light(light, second_half, element, out);
+    if (!alive || !path.hit.found()) return;
+    if (path.hit.back_face &&
+        !scene::reflects_from_behind(scene::material_at(world.scene, path.hit.point())))
+      return;
+    const uint32_t tint = pack_tint(path.throughput, hash64(seed, path.sample ^ 0x4e37u));
+    tile.hits.entries.push_back(store(world.atlas, path.hit.point(), {tint, second_half}));
+  });
+}
+
+}  // namespace luxel::gather

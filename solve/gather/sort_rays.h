@@ -1,0 +1,63 @@
+// What the rays of one element met, as counts, hits and light. docs/gather.md, docs/rebake.md
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solve/gather/earlier_rays.h"
+#include "solve/gather/element_rays.h"
+#include "solve/gather/near_paths.h"
+#include "solve/gather/trace_hits.h"
+
+namespace luxel::gather {
+
+/// What rays meet, and what they see beyond.
+struct RayWorld {
+  const scene::Scene& scene;
+  const atlas::Atlas& atlas;
+  const transport::Surroundings& around;
+  const NearWorld* near = nullptr;  ///< null: rays are not followed on
+  const transport::LightLayers* layers = nullptr;
+};
+
+/// Everything a worker needs, reused from element to element.
+struct RayWork {
+  RayBatch batch;
+  std::vector<trace::Hit> hits;  ///< of the batch's rays, where they were traced
+  std::vector<Rgb> tint;         ///< of what rays have passed; empty where nothing has a colour
+  NearWork near;
+  /// Where rays of an earlier bake are known: those that may meet something else, which have a
+  /// direction, and of them those that are traced again; ascending.
+  std::vector<uint32_t> maybe, again;
+  std::vector<uint8_t> marked;  ///< per ray, 1: traced again
+  std::vector<trace::Ray> few_rays;
+  std::vector<trace::Hit> few_hits;
+  std::vector<Rgb> few_tints;
+};
+
+/// An element's rays of an earlier bake.
+struct EarlierElement {
+  std::span<const RayEnd> ends;
+  std::span<const StoredHit> hits;
+  /// Light of those that escaped, as they would see it now; null: not known, and all rays of the
+  /// batch need a direction.
+  const EscapedLight* escaped = nullptr;
+};
+
+/// The place of the map at a point of the scene.
+StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray);
+
+/// Counts what the rays of the batch met, which have all been traced, and adds them to `tile`.
+/// Those that are to be followed on are added to work.near.paths.
+void sort_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+               TracedHits& out, RayTile& tile);
+/// The same where only work.again have been traced, and the others met what they met before.
+void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+                const EarlierElement& before, TracedHits& out, RayTile& tile);
+
+/// Follows work.near.paths on. Returns the number of rays.
+uint64_t follow_on(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+                   uint64_t seed, TracedHits& out, RayTile& tile);
+
+}  // namespace luxel::gather

@@ -91,7 +91,7 @@ bool BakeCache::find(const scene::Scene& scene) {
   const Result<RecordFile> found = RecordFile::open(file, RecordFile::Check::when_read);
   if (!found) return no(found.error().message);
   json header = json::parse(found->header(), nullptr, false);
-  if (!header.is_object() || header.value("cache", 0) != kFormat)
+  if (!header.is_object() || !header.contains("cache") || header["cache"] != kFormat)
     return no("it was kept by another version of luxel");
   const std::string different = difference(header, identity_of(settings_));
   if (!different.empty()) return no("it is of another bake: " + different);

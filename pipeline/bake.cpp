@@ -317,11 +317,12 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
 
 namespace {
 
-/// A full disk has room when the checkpoint is gone, which is not needed any more then.
-Status write_results(std::span<const OutputFile> files, Checkpoint& checkpoint) {
+/// A full disk has room when the checkpoint, and what is kept for later bakes, are gone.
+Status write_results(std::span<const OutputFile> files, Checkpoint& checkpoint, BakeCache& cache) {
   const Status written = write_files_atomically(files);
-  if (written || written.error().code != ErrorCode::out_of_disk || !checkpoint.has_file())
-    return written;
+  if (written || written.error().code != ErrorCode::out_of_disk) return written;
+  const bool has_file = checkpoint.has_file();
+  if (!cache.make_room() && !has_file) return written;
   checkpoint.remove();
   return write_files_atomically(files);
 }
@@ -337,6 +338,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache}));
   if (checkpoint.parts() != nullptr && checkpoint.parts()->has_failed())
     result.warnings.push_back(checkpoint.parts()->failure());
+  if (!cache.failure().empty()) result.warnings.push_back(cache.failure());
   progress.begin(kWriteStage, 0);
   nlohmann::json about_files = nlohmann::json::object();
   LUXEL_TRY(std::vector<OutputFile> files, files_of(settings, result, about_files));
@@ -350,7 +352,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   json["files"].push_back("bake.json");
   files.push_back(text_file(settings.output / "bake.json", json.dump(2) + "\n"));
   LUXEL_TRY_STATUS(folder.make());
-  LUXEL_TRY_STATUS(write_results(files, checkpoint));
+  LUXEL_TRY_STATUS(write_results(files, checkpoint, cache));
   folder.keep();
   checkpoint.remove();
   cache.finish(progress);

@@ -54,9 +54,11 @@ std::string header_of(const BakeSettings& settings, const scene::SceneState& sta
 BakeCache::BakeCache(const BakeSettings& settings)
     : settings_(settings), folder_(settings.output / "cache") {}
 
-BakeCache::~BakeCache() {
+BakeCache::~BakeCache() { remove_unfinished(); }
+
+void BakeCache::remove_unfinished() {
   if (!rays_) return;
-  rays_.reset();
+  rays_.reset(), kept_.reset();
   std::error_code ignored;
   for (const fs::path& file : {light_file(folder_), rays_file(folder_)}) {
     fs::remove(unfinished(file), ignored);
@@ -100,12 +102,18 @@ bool BakeCache::find(const scene::Scene& scene) {
   found_ = kept_bake_of(*bytes);
   if (!found_) return no("light.luxel is not whole");
   change_ = scene::change_between(found_->scene, state_);
+  // Whether light gets behind it decides which surfaces have light of their own on both sides.
+  for (const uint32_t m : change_.reshaped)
+    if (scene.materials[m].double_sided)
+      change_.beyond =
+          fmt::format("material '{}', which is double-sided, lets light through otherwise",
+                      scene.materials[m].name);
   if (change_.beyond.empty() && found_->layout.mesh_of_instance.size() == scene.instances.size()) {
     seconds_before_ = found_->seconds;
     return built_on_ = true;
   }
   found_.reset();
-  return no(change_.beyond);
+  return no(change_.beyond.empty() ? "it is of another scene" : change_.beyond);
 }
 
 const RecordFile* BakeCache::found_rays(Progress& progress) {
@@ -136,6 +144,17 @@ void BakeCache::begin(Progress& progress) {
       progress);
 }
 
+bool BakeCache::make_room() {
+  if (!rays_) return false;
+  remove_unfinished();
+  if (failure_.empty()) failure_ = "the disk is full; the bake is not kept";
+  return true;
+}
+
+std::string BakeCache::failure() const {
+  return failure_.empty() && rays_ ? rays_->failure() : failure_;
+}
+
 void BakeCache::give_up(std::string reason, Progress& progress) {
   failure_ = std::move(reason) + "; the bake is not kept";
   progress.note("warning: " + failure_);
@@ -164,9 +183,9 @@ void BakeCache::finish(Progress& progress) {
 
 json BakeCache::about(const TexelLight& light) const {
   if (!settings_.keep) return nullptr;
-  json out = {{"built_on", built_on_}, {"kept", rays_.has_value() && failure_.empty()}};
+  json out = {{"built_on", built_on_}, {"kept", rays_.has_value() && failure().empty()}};
   if (!note_.empty()) out["note"] = note_;
-  if (!failure_.empty()) out["failure"] = failure_;
+  if (!failure().empty()) out["failure"] = failure();
   if (!built_on_) return out;
   out["changed"] = changed_;
   out["rays_traced"] = light.rays, out["rays_kept"] = light.rays_kept;

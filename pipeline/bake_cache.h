@@ -49,12 +49,15 @@ class BakeCache {
   /// For bake.json; null without settings.keep. `light` is the bake's.
   nlohmann::json about(const TexelLight& light) const;
   /// Why nothing is kept though it was asked for; empty: it is, or was not asked for.
-  const std::string& failure() const { return failure_; }
+  std::string failure() const;
+  /// The bake must do with the room that its unfinished files take. Whether there were any.
+  bool make_room();
 
  private:
   bool find(const scene::Scene& scene);
   void begin(Progress& progress);
   void give_up(std::string reason, Progress& progress);
+  void remove_unfinished();
 
   const BakeSettings& settings_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

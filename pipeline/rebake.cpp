@@ -10,6 +10,16 @@ namespace {
 constexpr uint8_t kNoLayer = LayersOfLights::kNoLayer;
 const Rgb kAsBefore{1, 1, 1};
 
+/// But for the rounding of what lights dimmed alike were and are.
+bool nearly_equal(Rgb a, Rgb b) {
+  const float difference = max_component(max(a - b, b - a));
+  return difference <= 1e-5f * max_component(max(a, b));
+}
+
+/// A lamp that was weaker than this beside what it is now was looked at too roughly: few shadow
+/// rays, and no points across texels where nobody saw its shadows.
+constexpr float kMostBrighter = 4;
+
 /// Puts the scales of a layer's lights together.
 struct Scales {
   std::vector<std::optional<Rgb>> scale;
@@ -20,7 +30,7 @@ struct Scales {
     std::optional<Rgb>& all = scale[layer];
     if (!known[layer])
       all = light;
-    else if (!light || !all || !(*light == *all))
+    else if (!light || !all || !nearly_equal(*light, *all))
       all.reset();
     known[layer] = 1;
   }
@@ -117,6 +127,8 @@ LightUpdate light_update(const KeptBake& kept, const scene::SceneChange& change,
   }
   if (change.surroundings) out.surfaces_anew = true;
   out.scale = std::move(all.scale);
+  for (std::optional<Rgb>& scale : out.scale)
+    if (scale && max_component(*scale) > kMostBrighter) scale.reset();
   for (size_t l = 0; l < layers; ++l)
     if (!out.scale[l] && has_surface[l]) out.surfaces_anew = true;
   for (uint32_t k = 0; k < kept.layers.of_lamp.size(); ++k)
@@ -165,8 +177,10 @@ std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays
   out.rounds = std::move(*rounds);
   // Of float positions in a scene of this size.
   const float margin_m = 1e-4f * scene::world_bounds(in.scene).diagonal();
+  // What rays escape through may have had another colour.
+  const bool seen_otherwise = change.surroundings || !change.reshaped.empty();
   out.rays = {&rays, with_margin(change.boxes, margin_m), moved_elements(kept.places, in.elements),
-              change.surroundings};
+              seen_otherwise};
   out.irradiance = std::move(kept.light.irradiance);
   if (!update.scale.empty()) {
     std::ranges::fill(out.irradiance, Rgb{});

@@ -16,6 +16,7 @@
 #include "transport/backs_seen.h"
 
 namespace luxel::gather {
+
 std::vector<StoredHit> places_behind(const scene::Scene& scene, const atlas::Atlas& atlas,
                                      const atlas::TexelMap& map,
                                      const transport::Elements& elements) {
@@ -257,6 +258,8 @@ Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, T
       std::optional<RayTile> earlier;
       if (round.earlier)
         earlier = find_rays(*round.earlier->file, round.number, number, end - begin, places);
+      // Of a round with other samples.
+      if (earlier && earlier->ends.size() != planned) earlier.reset();
       tile.emplace(FoundTile{
           trace_tile(round, begin, end, earlier ? &*earlier : nullptr, hits, progress), {}});
       if (progress.cancelled()) return;

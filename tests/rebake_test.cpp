@@ -133,7 +133,8 @@ class RebakeEdits : public Rebake, public ::testing::WithParamInterface<Case> {}
 // The same atlas and the same rays, but for what has changed: light differs by the tolerance of the
 // bounces, 1e-4 of the mean for each of the two bakes, and at some texels by what supersampling
 // does beside what has not changed, or for one lamp alone: it may average over other texels. Sums
-// of layers are as good as these (docs/layers.md): at 64 samples some tenths of a percent.
+// of layers are as good as these (docs/layers.md): at 64 samples some tenths of a percent. A single
+// texel that only one bake averages is off by a part of the light that a shadow's edge takes away.
 TEST_P(RebakeEdits, GivesTheLightOfABakeFromScratch) {
   keep();
   const Case& c = GetParam();

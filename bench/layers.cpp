@@ -52,12 +52,6 @@ scene::Scene room_of_lamps() {
   return scene;
 }
 
-Status run(const pipeline::BakeSettings& settings, TimedFiles& best) {
-  LUXEL_TRY(TimedFiles bake, timed_files(settings));
-  if (bake.seconds < best.seconds) best = std::move(bake);
-  return {};
-}
-
 /// The largest difference of the layers' sum to the lightmap, relative to its value or, where that
 /// is smaller, to the mean.
 Result<double> sum_error(const std::filesystem::path& folder, const nlohmann::json& layers) {
@@ -94,12 +88,12 @@ Result<Table> measure_layers(const std::filesystem::path&, int threads) {
     settings.scene = folder.path / "room.glb";
     settings.resolution = resolution;
     settings.threads = threads;
-    TimedFiles alone, layered;  // the best of all rounds
+    TimedFiles alone, layered;
     for (int round = 0; round < kRounds; ++round) {
       settings.output = folder.path / "one", settings.layers = transport::LayerMode::none;
-      LUXEL_TRY_STATUS(run(settings, alone));
+      LUXEL_TRY_STATUS(time_again(settings, alone));
       settings.output = folder.path / "all", settings.layers = transport::LayerMode::per_light;
-      LUXEL_TRY_STATUS(run(settings, layered));
+      LUXEL_TRY_STATUS(time_again(settings, layered));
     }
     const nlohmann::json& layers = layered.report["layers"];
     LUXEL_TRY(const double error, sum_error(settings.output, layers));

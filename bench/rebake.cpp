@@ -56,8 +56,7 @@ Status write_scene(const std::filesystem::path& from, const EditedScene& s, cons
   return write_file_atomically(to, glb);
 }
 
-/// Root mean square over the mean, and whether the layouts are the same, so that it means
-/// something.
+/// Root mean square over the mean, at texels that both have.
 Result<double> difference(const std::filesystem::path& a, const std::filesystem::path& b) {
   LUXEL_TRY(const image::Image p, exr_at(a / "lightmap.exr"));
   LUXEL_TRY(const image::Image q, exr_at(b / "lightmap.exr"));
@@ -93,11 +92,9 @@ Status measure(const std::filesystem::path& shared, const EditedScene& s, int re
     TimedFiles scratch, again;
     for (int round = 0; round < kRounds; ++round) {
       settings.output = folder.path / "scratch", settings.keep = false;
-      LUXEL_TRY(TimedFiles a, timed_files(settings));
-      if (a.seconds < scratch.seconds) scratch = std::move(a);
+      LUXEL_TRY_STATUS(time_again(settings, scratch));
       settings.output = folder.path / "kept", settings.keep = true;
-      LUXEL_TRY(TimedFiles b, timed_files(settings));
-      if (b.seconds < again.seconds) again = std::move(b);
+      LUXEL_TRY_STATUS(time_again(settings, again));
     }
     LUXEL_TRY(const double error, difference(folder.path / "kept", folder.path / "scratch"));
     const double rays = scratch.report["counts"]["rays"], ratio = scratch.seconds / again.seconds;

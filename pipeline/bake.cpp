@@ -164,11 +164,14 @@ Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, B
     return lay_out_again(settings, std::move(found->layout), same_places, scene, progress);
   }
   const bool keeps = cache && cache->rays();
-  const scene::Scene before = keeps ? scene : scene::Scene{};
+  std::vector<std::vector<uint32_t>> numbers;
+  const size_t materials = scene.materials.size();
+  if (keeps)
+    for (const scene::Mesh& mesh : scene.meshes) numbers.push_back(mesh.triangle_material);
   LUXEL_TRY(sides, split_sides(scene, settings.uv, settings.resolution, progress));
   warn();
   const std::vector<uint32_t> copies =
-      keeps ? one_sided_copies(before, scene) : std::vector<uint32_t>{};
+      keeps ? one_sided_copies(numbers, materials, scene) : std::vector<uint32_t>{};
   LUXEL_TRY(TexelLayout layout, lay_out_texels(settings, scene, progress));
   if (!keeps) return layout;
   KeptLayout kept = keep_layout(scene, layout);

@@ -127,9 +127,9 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
   }
   for (size_t i = 0; i < scene.instances.size(); ++i)
     scene.instances[i].mesh = kept.mesh_of_instance[i];
-  atlas::TexelMap map = atlas::map_of(kept.atlas, std::move(kept.texels));
   // Where texels lie in their triangles does not depend on where those are.
-  if (!same_places) map = atlas::rasterise(scene, kept.atlas);
+  atlas::TexelMap map = same_places ? atlas::map_of(kept.atlas, std::move(kept.texels))
+                                    : atlas::rasterise(scene, kept.atlas);
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
   TexelLayout layout{std::move(kept.atlas), std::move(map), kept.stats, std::move(tracer),

@@ -284,14 +284,14 @@ Result<std::vector<std::string>> split_sides(scene::Scene& scene, atlas::UvMode 
   return std::vector<std::string>{};
 }
 
-std::vector<uint32_t> one_sided_copies(const scene::Scene& before, const scene::Scene& after) {
-  const size_t known = before.materials.size();
+std::vector<uint32_t> one_sided_copies(std::span<const std::vector<uint32_t>> before, size_t known,
+                                       const scene::Scene& after) {
   std::vector<uint32_t> out(after.materials.size() - known);
   // Backs come after all triangles that were there.
-  for (size_t m = 0; m < before.meshes.size(); ++m)
-    for (size_t t = 0; t < before.meshes[m].triangles.size(); ++t)
+  for (size_t m = 0; m < before.size(); ++m)
+    for (size_t t = 0; t < before[m].size(); ++t)
       if (const uint32_t copy = after.meshes[m].triangle_material[t]; copy >= known)
-        out[copy - known] = before.meshes[m].triangle_material[t];
+        out[copy - known] = before[m][t];
   return out;
 }
 

@@ -1,6 +1,7 @@
 // Which double-sided surfaces get light of their own on each side.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ Result<std::vector<std::string>> split_sides(scene::Scene& scene, atlas::UvMode 
                                              Progress& progress);
 
 /// Materials that split_sides has added to a scene, at the end: of which each is a copy.
-std::vector<uint32_t> one_sided_copies(const scene::Scene& before, const scene::Scene& after);
+/// `before`: the material numbers that each mesh had, of `known` materials.
+std::vector<uint32_t> one_sided_copies(std::span<const std::vector<uint32_t>> before, size_t known,
+                                       const scene::Scene& after);
 
 }  // namespace luxel::pipeline

@@ -80,17 +80,17 @@ std::optional<RayTile> find_rays(const RecordFile& file, uint64_t round, uint64_
 }
 
 void keep_rays(PartStore* store, uint64_t round, uint64_t tile, const RayTile& rays) {
-  if (store == nullptr || !store->wants()) return;
+  const KeptStage kept{store, round};
+  if (!kept.wants()) return;
   ByteWriter out;
   out.put(std::span(rays.hits.end)), out.put(std::span(rays.escaped));
   out.put_value(uint64_t(rays.ends.size()));
   out.put(std::span(rays.ends)), out.put(std::span(rays.hits.entries));
-  store->keep({round, tile}, out.bytes);
+  kept.keep(tile, out.bytes);
 }
 
 void keep_samples(PartStore* store, uint64_t round, std::span<const uint16_t> samples) {
-  if (store == nullptr || !store->wants()) return;
-  store->keep({round, kSamplesPart}, std::as_bytes(samples));
+  KeptStage{store, round}.keep(kSamplesPart, std::as_bytes(samples));
 }
 
 void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,

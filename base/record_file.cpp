@@ -228,12 +228,16 @@ bool RecordFile::read(RecordKey key, uint64_t offset, std::span<std::byte> out) 
 }
 
 std::optional<std::vector<std::byte>> RecordFile::read_whole(RecordKey key) const {
-  const std::optional<Place> place = place_of(key);
-  if (!place) return std::nullopt;
-  std::vector<std::byte> bytes(place->bytes);
-  if (read_at(file_, place->offset, std::span(bytes)) != 0) return std::nullopt;
-  if (digest_of(bytes) != place->digest) return std::nullopt;
+  std::vector<std::byte> bytes;
+  if (!read_whole(key, bytes)) return std::nullopt;
   return bytes;
+}
+
+bool RecordFile::read_whole(RecordKey key, std::vector<std::byte>& out) const {
+  const std::optional<Place> place = place_of(key);
+  if (!place) return false;
+  out.resize(place->bytes);
+  return read_at(file_, place->offset, std::span(out)) == 0 && digest_of(out) == place->digest;
 }
 
 void RecordFile::flush() const { ::fdatasync(file_); }

@@ -182,6 +182,7 @@ std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays
   out.rays = {&rays, with_margin(change.boxes, margin_m), moved_elements(kept.places, in.elements),
               seen_otherwise};
   out.irradiance = std::move(kept.light.irradiance);
+  out.relative_error = kept.light.relative_error;
   if (!update.scale.empty()) {
     std::ranges::fill(out.irradiance, Rgb{});
     for (size_t l = 0; l < update.scale.size(); ++l)

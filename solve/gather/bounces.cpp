@@ -191,6 +191,8 @@ constexpr int kMaxSweeps = 4000;
 /// a geometric series.
 constexpr double kFarFrom = 4, kSmallPart = 0.03;
 constexpr int kMaxSparse = 8;
+/// Sparse sweeps may bring a guess so much less closer than the last time (1.46 was seen).
+constexpr double kUnsure = 1.5;
 
 /// About so many sweeps follow sparser ones.
 constexpr double kSweepsAfterSparse = 3;
@@ -220,6 +222,98 @@ double light_to_come(double change, double ratio, const ReflectanceRange& reflec
   return change * q / (1 - q);
 }
 
+/// The solution on its way.
+struct Bouncing {
+  const atlas::TexelMap& map;
+  const transport::Elements& elements;
+  const TracedHits& hits;
+  std::span<const StoredHit> behind;
+  Progress& progress;
+  ReflectanceRange reflectance;
+  std::vector<Rgb> source{};  ///< E_0: what arrives without any reflection
+  RadiosityMap radiosity{};
+  std::vector<Rgb> next{};
+  Bounced out{};
+
+  Result<double> sweep(size_t stride);
+  Result<double> look_ahead(std::vector<Rgb> change, size_t stride);
+  Status settle(size_t stride, float tolerance);
+  Status settle_guess(size_t sparse, float tolerance);
+};
+
+/// Returns the root mean square change, relative to the mean irradiance.
+Result<double> Bouncing::sweep(size_t stride) {
+  fill_radiosity(radiosity, map, elements, hits, behind, out.irradiance);
+  Sweep sweep{source, out.irradiance, next, out.variance, out.split_variance, stride, {}};
+  LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
+  out.irradiance.swap(next);
+  ++out.sweeps;
+  progress.advance(1);
+  const double sum2 = std::accumulate(sweep.change2.begin(), sweep.change2.end(), 0.0);
+  const double mean = mean_luminance(out.irradiance);
+  return mean > 0 ? std::sqrt(sum2 / (3 * double(source.size()))) / mean : 0.0;
+}
+
+/// Adds what a change makes of itself in later bounces, looking at some rays only: as exact,
+/// relative to the change, as these are. Returns the ratio of its last two steps.
+Result<double> Bouncing::look_ahead(std::vector<Rgb> change, size_t stride) {
+  const size_t n = source.size();
+  const std::vector<Rgb> none(n);
+  double first = 0, before = 0, ratio = 0;
+  for (int k = 0; k < kMaxSparse; ++k) {
+    fill_radiosity(radiosity, map, elements, hits, behind, change);
+    Sweep sweep{none, change, next, out.variance, out.split_variance, stride, {}};
+    LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
+    change.swap(next);
+    double sum2 = 0;
+    for (size_t i = 0; i < n; ++i)
+      out.irradiance[i] += change[i], sum2 += double(dot(change[i], change[i]));
+    if (k == 0) first = sum2;
+    ratio = before > 0 ? std::sqrt(sum2 / before) : 0, before = sum2;
+    if (sum2 <= kSmallPart * kSmallPart * first) break;
+  }
+  // By now each step is nearly the same as the one before, but smaller.
+  const double q = std::min(ratio, reflectance.max);
+  const float left = float(q / (1 - q));
+  for (size_t i = 0; i < n; ++i) out.irradiance[i] += change[i] * left;
+  for (Rgb& e : out.irradiance) e = max(e, Rgb{});
+  return ratio;
+}
+
+/// Sweeps until the light to come is below the tolerance.
+Status Bouncing::settle(size_t stride, float tolerance) {
+  double before = 0, ratio = 0;
+  for (int k = 0; k < kMaxSweeps; ++k) {
+    LUXEL_TRY(const double change, sweep(stride));
+    if (before > 0) ratio = change / before;
+    if (light_to_come(change, ratio, reflectance) <= double(tolerance) * double(stride)) break;
+    before = change;
+  }
+  return {};
+}
+
+/// The same from a guess: what a sweep over all rays changes is carried on by sparse ones. How much
+/// closer that has come is seen by the next, and is what can be expected of another time.
+Status Bouncing::settle_guess(size_t sparse, float tolerance) {
+  double before = 0, ratio = 0, to_come_before = 0;
+  for (int k = 0; k < kMaxSweeps; ++k) {
+    std::vector<Rgb> changed = out.irradiance;
+    LUXEL_TRY(const double change, sweep(1));
+    if (before > 0) ratio = change / before;
+    const double to_come = light_to_come(change, ratio, reflectance);
+    if (to_come <= double(tolerance)) break;
+    before = change;
+    const bool has_come_closer = to_come_before > to_come;
+    if (!has_come_closer && to_come < kFarFrom * double(tolerance)) continue;
+    for (size_t i = 0; i < changed.size(); ++i) changed[i] = out.irradiance[i] - changed[i];
+    LUXEL_TRY(ratio, look_ahead(std::move(changed), sparse));
+    if (has_come_closer && kUnsure * to_come * to_come / to_come_before <= double(tolerance)) break;
+    to_come_before = to_come;
+    before = 0;  // the next change does not follow this one
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& elements,
@@ -229,82 +323,34 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   const size_t n = elements.size();
   LUXEL_CHECK(direct.size() == n && map.texels.size() == n && hits.escaped.size() == n);
   LUXEL_CHECK(behind.size() == elements.transmittance.size());
-  // E_0: what arrives without any reflection. A ray that escapes sees the sky.
-  std::vector<Rgb> source(direct.begin(), direct.end());
-  for (size_t i = 0; i < n; ++i) source[i] += hits.sky[i] * (kPi / float(hits.samples[i]));
-  Bounced out;
+  Bouncing work{map, elements, hits, behind, progress, reflectance_range(elements)};
+  work.source.assign(direct.begin(), direct.end());
+  // A ray that escapes sees the sky.
+  for (size_t i = 0; i < n; ++i) work.source[i] += hits.sky[i] * (kPi / float(hits.samples[i]));
   const bool guessed = params.bounces < 0 && !params.start.empty();
   LUXEL_CHECK(!guessed || params.start.size() == n);
-  out.irradiance = source;
-  if (guessed) out.irradiance.assign(params.start.begin(), params.start.end());
-  out.variance.assign(n, 0.0f);
-  out.split_variance.assign(n, 0.0f);
-  std::vector<Rgb> next(n);
-  RadiosityMap radiosity = empty_map(map.resolution);
+  work.out.irradiance = work.source;
+  if (guessed) work.out.irradiance.assign(params.start.begin(), params.start.end());
+  work.out.variance.assign(n, 0.0f), work.out.split_variance.assign(n, 0.0f);
+  work.next.resize(n);
+  work.radiosity = empty_map(map.resolution);
   progress.begin("bounces", 0);
-  // Returns the root mean square change, relative to the mean irradiance.
-  const auto run = [&](size_t stride) -> Result<double> {
-    fill_radiosity(radiosity, map, elements, hits, behind, out.irradiance);
-    Sweep sweep{source, out.irradiance, next, out.variance, out.split_variance, stride, {}};
-    LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
-    out.irradiance.swap(next);
-    ++out.sweeps;
-    progress.advance(1);
-    const double sum2 = std::accumulate(sweep.change2.begin(), sweep.change2.end(), 0.0);
-    const double mean = mean_luminance(out.irradiance);
-    return mean > 0 ? std::sqrt(sum2 / (3 * double(n))) / mean : 0.0;
-  };
-  if (params.bounces >= 0) {
-    for (int k = 0; k < params.bounces; ++k) {
-      const Result<double> change = run(1);
-      if (!change) return tl::unexpected(change.error());
-    }
-    return out;
+  for (int k = 0; k < params.bounces; ++k) {
+    const Result<double> change = work.sweep(1);
+    if (!change) return tl::unexpected(change.error());
   }
-  const ReflectanceRange reflectance = reflectance_range(elements);
+  if (params.bounces >= 0) return std::move(work.out);
   const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
   const size_t sparse = fewest >= 256 ? 16 : fewest >= 64 ? 4 : 1;
-  // Adds what a change makes of itself in later bounces, looking at some rays only: as exact,
-  // relative to the change, as these are. Returns the ratio of its last two steps.
-  const auto look_ahead = [&](std::vector<Rgb> change) -> Result<double> {
-    const std::vector<Rgb> none(n);
-    double first = 0, before = 0, ratio = 0;
-    for (int k = 0; k < kMaxSparse; ++k) {
-      fill_radiosity(radiosity, map, elements, hits, behind, change);
-      Sweep sweep{none, change, next, out.variance, out.split_variance, sparse, {}};
-      LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
-      change.swap(next);
-      double sum2 = 0;
-      for (size_t i = 0; i < n; ++i)
-        out.irradiance[i] += change[i], sum2 += double(dot(change[i], change[i]));
-      if (k == 0) first = sum2;
-      ratio = before > 0 ? std::sqrt(sum2 / before) : 0, before = sum2;
-      if (sum2 <= kSmallPart * kSmallPart * first) break;
-    }
-    // By now each step is nearly the same as the one before, but smaller.
-    const double q = std::min(ratio, reflectance.max);
-    const float left = float(q / (1 - q));
-    for (size_t i = 0; i < n; ++i) out.irradiance[i] += change[i] * left;
-    for (Rgb& e : out.irradiance) e = max(e, Rgb{});
-    return ratio;
-  };
+  if (guessed && sparse > 1) {
+    LUXEL_TRY_STATUS(work.settle_guess(sparse, params.tolerance));
+    return std::move(work.out);
+  }
   for (const size_t stride : {size_t(16), size_t(4), size_t(1)}) {
     if (stride > 1 && (guessed || fewest < 16 * stride)) continue;
-    double before = 0, ratio = 0;
-    for (int k = 0; k < kMaxSweeps; ++k) {
-      std::vector<Rgb> changed = guessed && sparse > 1 ? out.irradiance : std::vector<Rgb>{};
-      LUXEL_TRY(const double change, run(stride));
-      if (before > 0) ratio = change / before;
-      const double to_come = light_to_come(change, ratio, reflectance);
-      if (to_come <= double(params.tolerance) * double(stride)) break;
-      before = change;
-      if (changed.empty() || to_come < kFarFrom * double(params.tolerance)) continue;
-      for (size_t i = 0; i < n; ++i) changed[i] = out.irradiance[i] - changed[i];
-      LUXEL_TRY(ratio, look_ahead(std::move(changed)));
-      before = 0;  // the next change does not follow this one
-    }
+    LUXEL_TRY_STATUS(work.settle(stride, params.tolerance));
   }
-  return out;
+  return std::move(work.out);
 }
 
 double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits) {

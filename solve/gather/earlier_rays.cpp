@@ -9,10 +9,13 @@ namespace luxel::gather {
 namespace {
 
 bool is_sound(const RayTile& rays, uint32_t places) {
-  return std::ranges::all_of(rays.ends, [](RayEnd end) { return end <= RayEnd::followed; }) &&
-         std::ranges::is_sorted(rays.hits.end) &&
-         std::ranges::all_of(rays.hits.entries,
-                             [&](const StoredHit& hit) { return hit.base() < places; });
+  // The greatest of all instead of the first that is wrong, which takes a branch for each.
+  uint8_t end = 0;
+  for (const RayEnd e : rays.ends) end = std::max(end, uint8_t(e));
+  StoredHit farthest;
+  for (const StoredHit& hit : rays.hits.entries) farthest.bits = std::max(farthest.bits, hit.bits);
+  return end <= uint8_t(RayEnd::followed) && farthest.base() < places &&
+         std::ranges::is_sorted(rays.hits.end);
 }
 
 /// Whether the half-line meets the box.
@@ -60,29 +63,30 @@ std::optional<std::vector<std::vector<uint16_t>>> earlier_rounds(const RecordFil
   return rounds;
 }
 
-std::optional<RayTile> find_rays(const RecordFile& file, uint64_t round, uint64_t tile,
-                                 size_t elements, uint32_t places) {
-  const auto bytes = file.read_whole({round, tile});
-  if (!bytes) return std::nullopt;
-  ByteReader in{*bytes};
-  RayTile out;
+const RayTile* find_rays(const RecordFile& file, uint64_t round, uint64_t tile, size_t elements,
+                         uint32_t places, RayTileBuffer& buffer) {
+  if (!file.read_whole({round, tile}, buffer.bytes)) return nullptr;
+  ByteReader in{buffer.bytes};
+  RayTile& out = buffer.rays;
   out.hits.end.resize(elements), out.escaped.resize(elements);
   in.get(std::span(out.hits.end)), in.get(std::span(out.escaped));
   const uint64_t rays = in.get_value<uint64_t>();
   // Each for itself first: their sum could wrap around.
   if (!in.ok || rays > in.bytes.size() ||
       in.bytes.size() - rays != size_t(out.hits.end.back()) * sizeof(StoredHit))
-    return std::nullopt;
+    return nullptr;
   out.ends.resize(rays), out.hits.entries.resize(out.hits.end.back());
   in.get(std::span(out.ends)), in.get(std::span(out.hits.entries));
-  if (!is_sound(out, places)) return std::nullopt;
-  return out;
+  return is_sound(out, places) ? &out : nullptr;
 }
 
 void keep_rays(PartStore* store, uint64_t round, uint64_t tile, const RayTile& rays) {
   const KeptStage kept{store, round};
   if (!kept.wants()) return;
   ByteWriter out;
+  out.bytes.reserve(std::as_bytes(std::span(rays.hits.end)).size() +
+                    std::as_bytes(std::span(rays.escaped)).size() + sizeof(uint64_t) +
+                    rays.ends.size() + rays.hits.entries.size() * sizeof(StoredHit));
   out.put(std::span(rays.hits.end)), out.put(std::span(rays.escaped));
   out.put_value(uint64_t(rays.ends.size()));
   out.put(std::span(rays.ends)), out.put(std::span(rays.hits.entries));

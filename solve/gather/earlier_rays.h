@@ -61,10 +61,15 @@ inline constexpr uint64_t kSamplesPart = UINT64_MAX;
 std::optional<std::vector<std::vector<uint16_t>>> earlier_rounds(const RecordFile& file,
                                                                  size_t elements);
 
-/// Nothing where the file has none, a damaged one, or another number of elements. `places`:
-/// StoredHit::base() is below.
-std::optional<RayTile> find_rays(const RecordFile& file, uint64_t round, uint64_t tile,
-                                 size_t elements, uint32_t places);
+/// Reused from tile to tile.
+struct RayTileBuffer {
+  std::vector<std::byte> bytes;
+  RayTile rays;
+};
+/// In the buffer; null where the file has none, a damaged one, or another number of elements.
+/// `places`: StoredHit::base() is below.
+const RayTile* find_rays(const RecordFile& file, uint64_t round, uint64_t tile, size_t elements,
+                         uint32_t places, RayTileBuffer& buffer);
 /// `store` may be null.
 void keep_rays(PartStore* store, uint64_t round, uint64_t tile, const RayTile& rays);
 void keep_samples(PartStore* store, uint64_t round, std::span<const uint16_t> samples);

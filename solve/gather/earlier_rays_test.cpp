@@ -253,7 +253,12 @@ class KeptRays : public ::testing::Test {
   }
   std::optional<RayTile> found_in(const Bytes& bytes, size_t elements = kElements) {
     const RecordFile file = kept([&](PartStore& store) { store.keep({2, 7}, bytes); });
-    return find_rays(file, 2, 7, elements, kPlaces);
+    return found_at(file, 2, 7, elements);
+  }
+  std::optional<RayTile> found_at(const RecordFile& file, uint64_t round, uint64_t tile,
+                                  size_t elements = kElements) {
+    const RayTile* found = find_rays(file, round, tile, elements, kPlaces, buffer_);
+    return found ? std::optional(*found) : std::nullopt;
   }
   std::optional<RayTile> found_of(const std::function<void(RayTile&)>& edit) {
     RayTile tile = some_tile();
@@ -263,12 +268,13 @@ class KeptRays : public ::testing::Test {
 
   fs::path folder_;
   Progress progress_;
+  RayTileBuffer buffer_;  ///< of whatever was found before: that must not show
 };
 
 TEST_F(KeptRays, AreFoundAsTheyWere) {
   const RayTile tile = some_tile();
   const RecordFile file = kept([&](PartStore& store) { keep_rays(&store, 2, 7, tile); });
-  const auto found = find_rays(file, 2, 7, kElements, kPlaces);
+  const auto found = found_at(file, 2, 7);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->ends, tile.ends);
   EXPECT_EQ(found->hits.end, tile.hits.end);
@@ -281,8 +287,8 @@ TEST_F(KeptRays, AreFoundAsTheyWere) {
   EXPECT_FLOAT_EQ(found->escaped[0].luminance2, first * first + second * second);
   EXPECT_FLOAT_EQ(found->escaped[0].second_luminance, second);
   EXPECT_EQ(found->escaped[2].sum, Rgb{});
-  EXPECT_FALSE(find_rays(file, 2, 6, kElements, kPlaces)) << "of another tile";
-  EXPECT_FALSE(find_rays(file, 1, 7, kElements, kPlaces)) << "of another round";
+  EXPECT_FALSE(found_at(file, 2, 6)) << "of another tile";
+  EXPECT_FALSE(found_at(file, 1, 7)) << "of another round";
 }
 
 TEST_F(KeptRays, OfATileWithoutAnyAreFound) {

@@ -112,9 +112,11 @@ class EarlierGather : public ::testing::Test {
     std::vector<RayTile> out;
     const size_t n = room.elements.size();
     for (size_t tile = 0; tile < tile_count(n); ++tile) {
-      auto found = find_rays(rays, round, tile, tile_size(n, tile), places_of(room));
+      RayTileBuffer buffer;
+      const RayTile* found =
+          find_rays(rays, round, tile, tile_size(n, tile), places_of(room), buffer);
       EXPECT_TRUE(found) << "tile " << tile;
-      out.push_back(found ? std::move(*found) : RayTile{});
+      out.push_back(found ? *found : RayTile{});
     }
     return out;
   }

@@ -20,6 +20,9 @@ double relative_error(std::span<const Rgb> irradiance, std::span<const float> va
 
 /// While samples are still to come the bounces need not be exact.
 constexpr float kRoughTolerance = 1e-2f;
+/// From an earlier bake's light they end at this part of its error: what is left does not show
+/// beside that, nor above this.
+constexpr double kPartOfError = 1.0 / 20, kRoughestFromEarlier = 3e-4;
 /// What the last bounces take, over those of a round.
 constexpr double kFineOverRough = 4;
 /// A round that adds less than this part of the rays is not worth its bounces.
@@ -127,6 +130,13 @@ Status bounce_round(const transport::TexelScene& world, std::span<const StoredHi
   work.errors = errors_of(world, work);
   work.bounced_s = seconds_since(start);
   return {};
+}
+
+/// Of the last bounces.
+float last_tolerance(const GatherParams& params) {
+  if (!params.earlier) return params.tolerance;
+  const double of_error = kPartOfError * params.earlier->relative_error;
+  return std::max(params.tolerance, float(std::min(of_error, kRoughestFromEarlier)));
 }
 
 /// How many rays the next round may have, such that it and the last bounces end in time.
@@ -260,7 +270,8 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
     LUXEL_TRY(more,
               next_round(world, params, params.seconds - seconds_since(start), work, progress));
   }
-  LUXEL_TRY_STATUS(bounce_round(world, behind, {params.bounces, params.tolerance}, work, progress));
+  LUXEL_TRY_STATUS(
+      bounce_round(world, behind, {params.bounces, last_tolerance(params)}, work, progress));
   show(params, work);
   Gather out;
   if (params.keep) out.kept_direct = work.direct, out.kept_levels = work.levels;

@@ -19,6 +19,7 @@ struct Earlier {
   DirectLevels levels;
   transport::Lights lamps_anew;  ///< that shine otherwise than then: they are looked at everywhere
   std::vector<Rgb> irradiance;   ///< a guess at the light after all bounces
+  double relative_error = 0;     ///< of that light: Gather::relative_error
 };
 
 struct GatherParams {

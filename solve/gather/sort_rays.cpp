@@ -133,7 +133,7 @@ void sort_rays(const RayWorld& world, RayWork& work, size_t element, Samples sam
 void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
                 const EarlierElement& before, TracedHits& out, RayTile& tile) {
   const size_t count = before.ends.size();
-  LUXEL_CHECK(count == work.batch.rays.size());
+  LUXEL_CHECK(count == samples.count());
   tile.ends.insert(tile.ends.end(), before.ends.begin(), before.ends.end());
   const std::span<RayEnd> ends = std::span(tile.ends).last(count);
   for (const RayEnd end : {RayEnd::back, RayEnd::behind, RayEnd::escaped})

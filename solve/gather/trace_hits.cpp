@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include "base/buffer_pool.h"
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/random.h"
@@ -54,6 +55,12 @@ TracedHits no_hits(size_t elements, size_t layers) {
 
 namespace {
 
+/// StoredHit::base() of the last texel that has another below and to the right, plus one.
+uint32_t places_of(const atlas::Atlas& atlas) {
+  const uint32_t side = uint32_t(atlas.resolution);
+  return (side + 2) * (side + 1) - 1;
+}
+
 /// One round's way through the elements.
 struct Round {
   const RayWorld& world;
@@ -92,25 +99,27 @@ void trace_all(const trace::RayTracer& tracer, RayWork& work) {
   tracer.tint(work.batch.rays, work.hits, work.tint);
 }
 
-/// Fills the batch, with directions of those rays at least that may meet something else than in the
-/// earlier bake, and those that are followed on: what they bring depends on reflectances and lamps.
-/// Of rays that escaped through something coloured the colour is not known. All that do are in
-/// work.again then.
+/// Finds the rays that may meet something else than in the earlier bake, and those that are
+/// followed on: what they bring depends on reflectances and lamps. Of rays that escaped through
+/// something coloured the colour is not known. All that do are in work.again then, and have
+/// directions in the batch, which is filled unless there are none.
 void Round::choose_again(size_t i, Vec3 origin, Samples samples, const EarlierElement& before,
                          RayWork& work) const {
   const Vec3 normal = elements.normal[i], geometric = elements.geometric_normal[i];
-  const uint64_t seed_of_element = hash64(seed ^ 0x6a7e, i);
-  fill_samples(seed_of_element, samples, work.batch);
   // Directions that are mirrored above the triangle are not where their cells are.
   const uint64_t cells = normal == geometric && before.escaped
                              ? cells_towards(earlier->boxes, origin, normal, cell_cones)
                              : ~uint64_t(0);
-  work.marked.assign(samples.count(), 0);
   work.maybe.clear(), work.again.clear();
+  const bool tinted = tracer.has_tints();
+  const auto marked_at_once = [tinted](RayEnd end) {
+    return end == RayEnd::followed || (tinted && end == RayEnd::escaped);
+  };
+  if (cells == 0 && std::ranges::none_of(before.ends, marked_at_once)) return;
+  fill_samples(hash64(seed ^ 0x6a7e, i), samples, work.batch);
+  work.marked.assign(samples.count(), 0);
   for (uint32_t k = 0; k < samples.count(); ++k) {
-    const RayEnd end = before.ends[k];
-    if (end == RayEnd::followed || (end == RayEnd::escaped && tracer.has_tints()))
-      work.marked[k] = 1;
+    if (marked_at_once(before.ends[k])) work.marked[k] = 1;
     if (work.marked[k] || cells >> work.batch.cell[k] & 1) work.maybe.push_back(k);
   }
   fill_directions(origin, normal, geometric, work.maybe, work.batch);
@@ -122,6 +131,7 @@ void Round::choose_again(size_t i, Vec3 origin, Samples samples, const EarlierEl
 /// Traces work.again.
 void trace_again(const trace::RayTracer& tracer, RayWork& work) {
   const size_t count = work.again.size();
+  if (count == 0) return;
   const bool tinted = tracer.has_tints();
   work.few_rays.clear();
   for (const uint32_t k : work.again) work.few_rays.push_back(work.batch.rays[k]);
@@ -209,20 +219,45 @@ struct EarlierCursor {
   }
 };
 
-/// Traces the elements [begin, end), unless the work is cancelled.
-TracedTile trace_tile(const Round& round, size_t begin, size_t end, const RayTile* earlier,
-                      TracedHits& hits, Progress& progress) {
-  constexpr uint64_t kRaysPerAdvance = 8192;
+/// What tracing a tile needs, reused from tile to tile.
+struct TileWork {
   RayWork work;
+  RayTileBuffer earlier;
   TracedTile tile;
-  EarlierCursor before{earlier};
+};
+
+void clear(TracedTile& tile) {
+  RayTile& rays = tile.rays_met;
+  rays.ends.clear(), rays.escaped.clear(), rays.hits.end.clear(), rays.hits.entries.clear();
+  tile.rays = tile.kept = 0;
+}
+
+/// What an earlier bake knew of the elements [begin, end); null: nothing.
+const RayTile* earlier_tile(const Round& round, size_t begin, size_t end, uint64_t planned,
+                            RayTileBuffer& buffer) {
+  if (!round.earlier) return nullptr;
+  const RayTile* rays = find_rays(*round.earlier->file, round.number, begin / kTileElements,
+                                  end - begin, places_of(round.world.atlas), buffer);
+  // Maybe of a round with other samples.
+  return rays && rays->ends.size() == planned ? rays : nullptr;
+}
+
+/// Traces the elements [begin, end) into buffers.tile, unless the work is cancelled.
+void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers, TracedHits& hits,
+                Progress& progress) {
+  constexpr uint64_t kRaysPerAdvance = 8192;
+  RayWork& work = buffers.work;
+  TracedTile& tile = buffers.tile;
+  clear(tile);
   uint64_t untold = 0, kept = 0;
   // Through glass rays escape in a colour that is not known.
-  const bool knows_escaped = earlier && !round.earlier->surroundings && !round.tracer.has_tints();
+  const bool knows_escaped =
+      round.earlier && !round.earlier->surroundings && !round.tracer.has_tints();
   const uint64_t planned = planned_samples(round.target, hits, begin, end);
+  EarlierCursor before{earlier_tile(round, begin, end, planned, buffers.earlier)};
   tile.rays_met.hits.entries.reserve(planned), tile.rays_met.ends.reserve(planned);
   for (size_t i = begin; i < end; ++i) {
-    if (progress.cancelled()) return tile;
+    if (progress.cancelled()) return;
     const uint64_t samples = planned_samples(round.target, hits, i, i + 1);
     const bool known =
         before.advance(i - begin, samples, knows_escaped) && !round.earlier->moved[i];
@@ -235,39 +270,37 @@ TracedTile trace_tile(const Round& round, size_t begin, size_t end, const RayTil
     progress.advance(untold - std::min(untold, tile.kept - kept));
     untold = 0, kept = tile.kept;
   }
-  return tile;
 }
 
 /// Traces the round's elements into `store`. Errors: disk full.
 Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, TracedHits& hits,
                    HitStore& store, Progress& progress) {
   std::atomic<uint64_t> rays{0}, rays_kept{0};
+  BufferPool<TileWork> pool;
   std::mutex mutex;
   Status status;
-  // StoredHit::base() of the last texel that has another below and to the right, plus one.
-  const uint32_t side = uint32_t(round.world.atlas.resolution);
-  const uint32_t places = (side + 2) * (side + 1) - 1;
+  const uint32_t places = places_of(round.world.atlas);
   parallel_for(hits.size(), kTileElements, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     const size_t number = begin / kTileElements;
     const uint64_t planned = planned_samples(round.target, hits, begin, end);
-    std::optional<FoundTile> tile = find_tile(kept, begin, end, places, hits);
-    if (tile) {
+    Status put;
+    if (std::optional<FoundTile> found = find_tile(kept, begin, end, places, hits)) {
       progress.skip(planned);
+      rays += found->tile.rays;
+      put = store.put(number, std::move(found->tile.rays_met.hits), found->entries);
     } else {
-      std::optional<RayTile> earlier;
-      if (round.earlier)
-        earlier = find_rays(*round.earlier->file, round.number, number, end - begin, places);
-      // Of a round with other samples.
-      if (earlier && earlier->ends.size() != planned) earlier.reset();
-      tile.emplace(FoundTile{
-          trace_tile(round, begin, end, earlier ? &*earlier : nullptr, hits, progress), {}});
+      TileWork work = pool.take();
+      const TracedTile& tile = work.tile;
+      trace_tile(round, begin, end, work, hits, progress);
       if (progress.cancelled()) return;
-      tile->entries = keep_tile(kept, begin, end, tile->tile, hits);
-      keep_rays(keep, round.number, number, tile->tile.rays_met);
+      const transport::KeptEntries entries = keep_tile(kept, begin, end, tile, hits);
+      keep_rays(keep, round.number, number, tile.rays_met);
+      rays += tile.rays, rays_kept += tile.kept;
+      // A copy, without room to spare.
+      put = store.put(number, HitTile(tile.rays_met.hits), entries);
+      pool.give(std::move(work));
     }
-    rays += tile->tile.rays, rays_kept += tile->tile.kept;
-    const Status put = store.put(number, std::move(tile->tile.rays_met.hits), tile->entries);
     if (!put) {
       const std::lock_guard lock(mutex);
       if (status) status = put;

@@ -1,5 +1,7 @@
 #include "pipeline/bake.h"
 
+#include <array>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
@@ -281,11 +283,30 @@ std::vector<OutputFile> picture_files(std::span<const image::Image8> pages, std:
   return files;
 }
 
+/// What takes longest to encode.
+struct Encoded {
+  Result<LightmapFiles> lightmap;
+  Result<std::vector<std::byte>> glb;
+  std::vector<std::byte> preview;
+};
+
+/// At the same time: each is work for one thread, more or less.
+Encoded encode(const BakeSettings& settings, const Bake& bake) {
+  Encoded out;
+  const std::array<std::function<void()>, 3> tasks{
+      [&] { out.lightmap = lightmap_files(bake.lightmaps, settings.formats, settings.output); },
+      [&] { out.glb = glb_of(settings, bake); },
+      [&] { out.preview = image::encode_png(bake.preview); }};
+  parallel_for(tasks.size(), 1, [&](size_t task, size_t) { tasks[task](); });
+  return out;
+}
+
 /// Everything but bake.json, and what bake.json says about it.
 Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bake& bake,
                                          nlohmann::json& json) {
-  LUXEL_TRY(LightmapFiles lightmap,
-            lightmap_files(bake.lightmaps, settings.formats, settings.output));
+  Encoded encoded = encode(settings, bake);
+  LUXEL_TRY(LightmapFiles lightmap, std::move(encoded.lightmap));
+  LUXEL_TRY(std::vector<std::byte> glb, std::move(encoded.glb));
   std::vector<OutputFile> files = std::move(lightmap.files);
   if (lightmap.rgbm_range > 0) json["lightmap"]["rgbm_range"] = lightmap.rgbm_range;
   const auto append = [&](std::vector<OutputFile> more) {
@@ -304,7 +325,6 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
     json["probes"] = {{"placed", bake.probes->probes.size()},
                       {"inside_solids", bake.probes->row.size() - bake.probes->probes.size()}};
   }
-  LUXEL_TRY(std::vector<std::byte> glb, glb_of(settings, bake));
   if (settings.html) {
     LUXEL_TRY(OutputFile page, view_page(settings, bake, glb));
     files.push_back(std::move(page));
@@ -312,7 +332,7 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
   files.push_back({settings.output / "baked.glb", std::move(glb)});
   append(picture_files(bake.texel_pictures, "texels", settings.output));
   append(picture_files(bake.error_pictures, "error", settings.output));
-  files.push_back({settings.output / "preview.png", image::encode_png(bake.preview)});
+  files.push_back({settings.output / "preview.png", std::move(encoded.preview)});
   return files;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/parallel.h"
 #include "base/warp.h"
@@ -82,26 +83,18 @@ double sun_of_share(double share) {
   return std::copysign(s * s, s);
 }
 
-/// A point of the way of a ray, from its start.
-struct Step {
-  Medium medium;
-  DVec3 place;
-  double radius = 0;
-  DVec3 reaches;  ///< integral over the step of the transmittance back to the start [km]
-};
-
-/// Calls visit for steps that grow along the way, as places near the start show most; returns the
-/// transmittance of the whole.
-template <class Visit>
-DVec3 march(const Atmosphere& air, DVec3 start, DVec3 d, double length, int steps,
-            const Visit& visit) {
-  DVec3 through{1, 1, 1};
+/// The steps of a ray from `radius` at a cosine with the vertical. They grow along the way, as
+/// places near the start show most.
+AirRay march(const Atmosphere& air, double radius, double cosine, double length, int steps) {
+  AirRay out{radius, {}, {1, 1, 1}};
+  DVec3& through = out.through;
   for (int i = 0; i < steps; ++i) {
     const double a = double(i) / steps, b = double(i + 1) / steps;
     const double dt = length * (b * b - a * a), t = 0.5 * length * (b * b + a * a);
-    Step s;
-    s.place = start + d * t;
-    s.radius = std::max(air.ground_km, luxel::length(s.place));
+    AirStep s;
+    s.way = t;
+    s.radius =
+        std::max(air.ground_km, std::sqrt(radius * radius + t * t + 2 * radius * t * cosine));
     s.medium = medium_at(air, s.radius - air.ground_km);
     const DVec3 left = exp_minus(s.medium.extinction * dt);
     const auto mean = [dt](double kept, double extinction) {
@@ -110,36 +103,60 @@ DVec3 march(const Atmosphere& air, DVec3 start, DVec3 d, double length, int step
     s.reaches =
         times(through, {mean(left.x, s.medium.extinction.x), mean(left.y, s.medium.extinction.y),
                         mean(left.z, s.medium.extinction.z)});
-    visit(s);
+    out.steps.push_back(s);
     through = times(through, left);
   }
-  return through;
+  return out;
+}
+
+/// The sun's cosine with the vertical at a step of a ray, whose start it has `at_start`; `angle`:
+/// the cosine between ray and sun.
+double sun_cosine_at(const AirRay& ray, const AirStep& s, double at_start, double angle) {
+  return (ray.radius * at_start + s.way * angle) / s.radius;
+}
+
+/// A ray through the air, to its end or to the ground.
+struct WayOut {
+  double cosine = 0;   ///< with the vertical
+  double ground = -1;  ///< the way there; < 0: it passes over it
+  AirRay ray;
+};
+WayOut way_out(const AirTables& t, double radius, double cosine, int steps) {
+  const double ground = to_ground(t.air, radius, cosine);
+  const double way = ground >= 0 ? ground : to_sphere(radius, cosine, t.air.top_km);
+  return {cosine, ground, march(t.air, radius, cosine, way, steps)};
+}
+
+/// Rays to all sides on a Fibonacci spiral, from the top down.
+std::vector<WayOut> ways_out(const AirTables& t, double radius) {
+  std::vector<WayOut> out;
+  for (int k = 0; k < kAgainDirections; ++k)
+    out.push_back(way_out(t, radius, 1 - 2 * (k + 0.5) / kAgainDirections, kAgainSteps));
+  return out;
 }
 
 /// [Hillaire20, eqs. 5 to 10] at one place: the second scattering, and all after it as a geometric
 /// series.
-DVec3 scattered_again_at(const AirTables& t, double radius, double sun_cosine) {
-  const DVec3 eye{0, radius, 0};
-  const DVec3 sun{std::sqrt(std::max(0.0, 1 - sun_cosine * sun_cosine)), sun_cosine, 0};
+DVec3 scattered_again_at(const AirTables& t, std::span<const WayOut> ways, double sun_cosine) {
+  const double sun_sine = std::sqrt(std::max(0.0, 1 - sun_cosine * sun_cosine));
   DVec3 second{}, share{};
-  for (int k = 0; k < kAgainDirections; ++k) {
-    const double down = 1 - 2 * (k + 0.5) / kAgainDirections;  // Fibonacci's spiral
-    const double phi = 2.399963229728653 * k, r = std::sqrt(1 - down * down);
-    const DVec3 d{r * std::cos(phi), down, r * std::sin(phi)};
-    const double ground = to_ground(t.air, radius, down);
-    const double way = ground >= 0 ? ground : to_sphere(radius, down, t.air.top_km);
-    const DVec3 through = march(t.air, eye, d, way, kAgainSteps, [&](const Step& s) {
+  for (size_t k = 0; k < ways.size(); ++k) {
+    const auto& [up, ground, ray] = ways[k];
+    const double phi = 2.399963229728653 * double(k);
+    const double angle = std::sqrt(1 - up * up) * std::cos(phi) * sun_sine + up * sun_cosine;
+    for (const AirStep& s : ray.steps) {
       const DVec3 scattered = times(s.medium.rayleigh + s.medium.aerosol, s.reaches);
-      const double cosine = dot(s.place, sun) * (1 / s.radius);
+      const double cosine = sun_cosine_at(ray, s, sun_cosine, angle);
       second += times(scattered, transmittance_to_sun(t, s.radius, cosine)) * (1 / (4 * kPiDouble));
       share += scattered;
-    });
+    }
     if (ground < 0) continue;
-    const double cosine = dot(eye + d * ground, sun) * (1 / t.air.ground_km);
-    second += times(through, transmittance_to_sun(t, t.air.ground_km, cosine)) *
+    const double cosine = (ray.radius * sun_cosine + ground * angle) / t.air.ground_km;
+    second += times(ray.through, transmittance_to_sun(t, t.air.ground_km, cosine)) *
               (t.air.ground_albedo / kPiDouble * std::max(0.0, cosine));
   }
-  second = second * (1.0 / kAgainDirections), share = share * (1.0 / kAgainDirections);
+  const double each = 1.0 / double(ways.size());
+  second = second * each, share = share * each;
   return {second.x / (1 - share.x), second.y / (1 - share.y), second.z / (1 - share.z)};
 }
 
@@ -148,13 +165,15 @@ DVec3 scattered_again(const AirTables& t, double radius, double sun_cosine) {
   return look_up(t.scattered_again, t.suns, t.radii, share_of_sun(sun_cosine), std::sqrt(height));
 }
 
-void fill(std::vector<DVec3>& table, int width, int height, const auto& entry) {
+/// `row_at(v)` makes a row's entries: those at the shares u.
+void fill(std::vector<DVec3>& table, int width, int height, const auto& row_at) {
   table.resize(size_t(width) * size_t(height));
   parallel_for(size_t(height), 1, [&](size_t begin, size_t end) {
-    for (size_t j = begin; j < end; ++j)
+    for (size_t j = begin; j < end; ++j) {
+      const auto entry = row_at(double(j) / (height - 1));
       for (int i = 0; i < width; ++i)
-        table[j * size_t(width) + size_t(i)] =
-            entry(double(i) / (width - 1), double(j) / (height - 1));
+        table[j * size_t(width) + size_t(i)] = entry(double(i) / (width - 1));
+    }
   });
 }
 
@@ -192,14 +211,17 @@ AirTables make_air_tables(const Atmosphere& air) {
   AirTables t;
   t.air = air;
   t.width = 256, t.height = 64;
-  fill(t.transmittance, t.width, t.height, [&](double u, double v) {
-    const double radius = radius_of(air, v);
-    return exp_minus(optical_depth(air, radius, cosine_of(air, radius, u)));
+  fill(t.transmittance, t.width, t.height, [&air](double v) {
+    return [&air, radius = radius_of(air, v)](double u) {
+      return exp_minus(optical_depth(air, radius, cosine_of(air, radius, u)));
+    };
   });
   t.suns = 65, t.radii = 32;
-  fill(t.scattered_again, t.suns, t.radii, [&](double u, double v) {
-    const double radius = air.ground_km + v * v * (air.top_km - air.ground_km);
-    return scattered_again_at(t, radius, sun_of_share(u));
+  fill(t.scattered_again, t.suns, t.radii, [&t](double v) {
+    const double radius = t.air.ground_km + v * v * (t.air.top_km - t.air.ground_km);
+    return [&t, ways = ways_out(t, radius)](double u) {
+      return scattered_again_at(t, ways, sun_of_share(u));
+    };
   });
   return t;
 }
@@ -224,21 +246,21 @@ DVec3 transmittance_to_sun(const AirTables& t, double radius_km, double sun_cosi
          (up * up * (3 - 2 * up));
 }
 
-DVec3 sky_radiance(const AirTables& t, DVec3 eye_km, DVec3 d, DVec3 towards_sun, int steps) {
-  const double radius = length(eye_km), cosine = dot(eye_km, d) / radius;
-  const double ground = to_ground(t.air, radius, cosine);
-  const double way = ground >= 0 ? ground : to_sphere(radius, cosine, t.air.top_km);
-  const double angle = dot(d, towards_sun);
+AirRay sky_ray(const AirTables& t, double eye_km, double cosine, int steps) {
+  return way_out(t, eye_km, cosine, steps).ray;
+}
+
+DVec3 sky_radiance(const AirTables& t, const AirRay& ray, double sun_cosine, double angle) {
   const double of_air = rayleigh_phase(angle), of_haze = aerosol_phase(t.air.aerosol_g, angle);
   DVec3 out{};
-  march(t.air, eye_km, d, way, steps, [&](const Step& s) {
-    const double sun = dot(s.place, towards_sun) / s.radius;
+  for (const AirStep& s : ray.steps) {
+    const double sun = sun_cosine_at(ray, s, sun_cosine, angle);
     const DVec3 once = times(s.medium.rayleigh * of_air + s.medium.aerosol * of_haze,
                              transmittance_to_sun(t, s.radius, sun));
     const DVec3 again =
         times(s.medium.rayleigh + s.medium.aerosol, scattered_again(t, s.radius, sun));
     out += times(once + again, s.reaches);
-  });
+  }
   return out;
 }
 

@@ -55,9 +55,25 @@ DVec3 transmittance_to_top(const AirTables& t, double radius_km, double cosine);
 /// The same towards the sun's disc: less as it sets behind the earth.
 DVec3 transmittance_to_sun(const AirTables& t, double radius_km, double sun_cosine);
 
-/// Radiance / illuminance of the sun above the air [1/sr] that arrives at `eye_km` (from the
-/// earth's centre) from the unit direction `d`, by `steps` steps to the top or the ground. The
+/// A part of a ray's way.
+struct AirStep {
+  Medium medium;
+  double way = 0, radius = 0;  ///< from the ray's start, and of its middle [km]
+  DVec3 reaches;  ///< integral over the step of the transmittance back to the start [km]
+};
+/// Wherever the sun stands, and whichever way the ray looks around the vertical.
+struct AirRay {
+  double radius = 0;  ///< of its start [km]
+  std::vector<AirStep> steps;
+  DVec3 through;  ///< transmittance of the whole
+};
+/// From `eye_km` (from the earth's centre) at a cosine with the vertical, by `steps` steps to the
+/// top or the ground.
+AirRay sky_ray(const AirTables& t, double eye_km, double cosine, int steps);
+
+/// Radiance / illuminance of the sun above the air [1/sr] that arrives along a ray; `sun_cosine`:
+/// between the sun and the vertical where it starts, `angle`: the cosine between sun and ray. The
 /// sun's disc and the ground are left out.
-DVec3 sky_radiance(const AirTables& t, DVec3 eye_km, DVec3 d, DVec3 towards_sun, int steps);
+DVec3 sky_radiance(const AirTables& t, const AirRay& ray, double sun_cosine, double angle);
 
 }  // namespace luxel::scene

@@ -81,8 +81,7 @@ TEST(Atmosphere, ThinAirScattersOnce) {
   air.rayleigh_per_km = {1e-4, 1e-4, 1e-4}, air.ozone_per_km = {}, air.ground_albedo = 0;
   const AirTables t = make_air_tables(air);
   const double c = 0.6, depth = 1e-4 * air.rayleigh_height_km;
-  const DVec3 l =
-      sky_radiance(t, {0, air.ground_km, 0}, {0, 1, 0}, {std::sqrt(1 - c * c), c, 0}, 256);
+  const DVec3 l = sky_radiance(t, sky_ray(t, air.ground_km, 1, 256), c, c);
   EXPECT_NEAR(l.y, depth * rayleigh_phase(c), 5e-3 * depth * rayleigh_phase(c));
 }
 
@@ -92,8 +91,8 @@ TEST(Atmosphere, BrightGroundBrightensTheSky) {
   for (const double albedo : {0.0, 0.3, 0.9}) {
     Atmosphere air = atmosphere_of(2);
     air.ground_albedo = albedo;
-    const DVec3 l =
-        sky_radiance(make_air_tables(air), {0, air.ground_km, 0}, {0, 1, 0}, {0.8, 0.6, 0}, 64);
+    const AirTables t = make_air_tables(air);
+    const DVec3 l = sky_radiance(t, sky_ray(t, air.ground_km, 1, 64), 0.6, 0.6);
     EXPECT_GT(l.z, before);
     before = l.z;
   }

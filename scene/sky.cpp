@@ -36,13 +36,18 @@ DVec3 direction_at(const Environment& map, int x, int y) {
   return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
 }
 
+/// All of a row look as steeply up: they go through the same air.
 void draw_upper_half(const AirTables& t, DVec3 towards_sun, double lux, Environment& map) {
-  const DVec3 eye{0, t.air.ground_km + kEyeKm, 0};
   parallel_for(size_t(map.height / 2), 1, [&](size_t begin, size_t end) {
-    for (size_t y = begin; y < end; ++y)
-      for (size_t x = 0; x < size_t(map.width); ++x)
-        map.radiance[y * size_t(map.width) + x] = to_float(
-            sky_radiance(t, eye, direction_at(map, int(x), int(y)), towards_sun, kSteps) * lux);
+    for (size_t y = begin; y < end; ++y) {
+      const AirRay ray =
+          sky_ray(t, t.air.ground_km + kEyeKm, direction_at(map, 0, int(y)).y, kSteps);
+      for (size_t x = 0; x < size_t(map.width); ++x) {
+        const double angle = dot(direction_at(map, int(x), int(y)), towards_sun);
+        map.radiance[y * size_t(map.width) + x] =
+            to_float(sky_radiance(t, ray, towards_sun.y, angle) * lux);
+      }
+    }
   });
 }
 

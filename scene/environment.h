@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/vec.h"
@@ -27,6 +29,9 @@ Vec3 direction_of(const Environment& map, Vec2 uv);
 
 /// The pixel in which a unit direction lies.
 size_t pixel_towards(const Environment& map, Vec3 direction);
+/// The same of many.
+void pixels_towards(const Environment& map, std::span<const Vec3> directions,
+                    std::span<uint32_t> pixels);
 inline Rgb radiance_towards(const Environment& map, Vec3 direction) {
   return map.radiance[pixel_towards(map, direction)];
 }

@@ -1,9 +1,11 @@
 #include "transport/surroundings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/check.h"
+#include "base/circle.h"
 #include "base/vec_double.h"
 #include "scene/environment.h"
 
@@ -47,6 +49,33 @@ float soft_share(float luminance_of_pixel, float limit) {
   return luminance_of_pixel > limit ? limit / luminance_of_pixel : 1.0f;
 }
 
+Rgb soft_part(const Surroundings& s, Rgb l) {
+  return s.background + l * soft_share(luminance(l), s.limit);
+}
+
+/// Where in `below` the search for a part of the power begins: for so many parts as there are
+/// peaks.
+std::vector<uint32_t> guide_of(std::span<const double> below) {
+  const size_t peaks = below.size() - 1;
+  std::vector<uint32_t> out(peaks);
+  uint32_t k = 0;
+  for (size_t part = 0; part < peaks; ++part) {
+    // Not beyond, whatever is rounded.
+    const double at = (double(part) / double(peaks) - 1e-12) * below.back();
+    while (k + 1 < peaks && below[k + 1] <= at) ++k;
+    out[part] = k;
+  }
+  return out;
+}
+
+/// The peak at a part u of the power, in [0, 1).
+size_t peak_at(const Surroundings& s, double u) {
+  const double at = u * s.below.back();
+  size_t k = s.guide[size_t(u * double(s.peak.size()))];
+  while (k + 1 < s.peak.size() && s.below[k + 1] <= at) ++k;
+  return k;
+}
+
 }  // namespace
 
 Surroundings surroundings_of(const scene::Scene& scene) {
@@ -70,13 +99,28 @@ Surroundings surroundings_of(const scene::Scene& scene) {
     out.below.push_back(out.below.back() +
                         over * scene::pixel_solid_angle(map, int(i) / map.width));
   }
+  out.guide = guide_of(out.below);
   return out;
 }
 
 Rgb soft_radiance(const scene::Scene& scene, const Surroundings& s, Vec3 direction) {
   if (scene.environment.empty()) return s.background;
-  const Rgb l = scene::radiance_towards(scene.environment, direction);
-  return s.background + l * soft_share(luminance(l), s.limit);
+  return soft_part(s, scene::radiance_towards(scene.environment, direction));
+}
+
+void soft_radiance(const scene::Scene& scene, const Surroundings& s,
+                   std::span<const Vec3> directions, std::vector<Rgb>& out) {
+  out.assign(directions.size(), s.background);
+  if (scene.environment.empty()) return;
+  constexpr size_t kAtOnce = 64;
+  std::array<uint32_t, kAtOnce> pixel;
+  for (size_t begin = 0; begin < directions.size(); begin += kAtOnce) {
+    const size_t count = std::min(kAtOnce, directions.size() - begin);
+    scene::pixels_towards(scene.environment, directions.subspan(begin, count),
+                          std::span(pixel).first(count));
+    for (size_t k = 0; k < count; ++k)
+      out[begin + k] = soft_part(s, scene.environment.radiance[pixel[k]]);
+  }
 }
 
 PeakSample sample_peaks(const scene::Scene& scene, const Surroundings& s, Vec2 u) {
@@ -84,8 +128,7 @@ PeakSample sample_peaks(const scene::Scene& scene, const Surroundings& s, Vec2 u
   const scene::Environment& map = scene.environment;
   const double power = s.below.back();
   const double at = double(u.x) * power;
-  const auto found = std::upper_bound(s.below.begin() + 1, s.below.end() - 1, at);
-  const size_t k = size_t(found - s.below.begin()) - 1;
+  const size_t k = peak_at(s, double(u.x));
   // What is left of u.x within the pixel's share is uniform again.
   const double within = std::clamp((at - s.below[k]) / (s.below[k + 1] - s.below[k]), 0.0, 1.0);
   const uint32_t pixel = s.peak[k];
@@ -94,9 +137,11 @@ PeakSample sample_peaks(const scene::Scene& scene, const Surroundings& s, Vec2 u
   const double upper = s.row_cosine[size_t(y)], lower = s.row_cosine[size_t(y) + 1];
   const double up = upper + (lower - upper) * double(u.y);
   const double sine = std::sqrt(std::max(0.0, (1 - up) * (1 + up)));
-  const float phi =
-      2 * kPi * ((float(x) + float(within)) / float(map.width) - 0.5f) + map.rotation_rad;
-  const Vec3 direction{float(sine) * std::cos(phi), float(up), float(sine) * std::sin(phi)};
+  const float turns =
+      (float(x) + float(within)) / float(map.width) - 0.5f + map.rotation_rad * (1 / (2 * kPi));
+  const float wrapped = turns - std::floor(turns);
+  const Vec2 around = unit_circle(wrapped < 1 ? wrapped : 0.0f);
+  const Vec3 direction{float(sine) * around.x, float(up), float(sine) * around.y};
   const Rgb l = map.radiance[pixel];
   const float l_luminance = luminance(l);
   // Density = (lum L - limit) / power per steradian, radiance = L (lum L - limit) / lum L.

@@ -24,6 +24,9 @@ struct Surroundings {
   /// Power of all peaks before each one, the integral of their luminance [W/m^2]; one extra entry,
   /// the power of all.
   std::vector<double> below;
+  /// Per part of the power, of as many as there are peaks, the peak in which it begins, or one
+  /// before it.
+  std::vector<uint32_t> guide;
   /// Cosine of the angle from up where each row of the map begins; one extra entry, its end.
   std::vector<double> row_cosine;
 };
@@ -34,6 +37,10 @@ Surroundings surroundings_of(const scene::Scene& scene);
 
 /// Radiance of the soft layer, background included.
 Rgb soft_radiance(const scene::Scene& scene, const Surroundings& s, Vec3 direction);
+/// The same of many, which takes less time: their pixels lie far apart in memory, and are waited
+/// for at the same time.
+void soft_radiance(const scene::Scene& scene, const Surroundings& s,
+                   std::span<const Vec3> directions, std::vector<Rgb>& out);
 
 /// A direction towards a peak. Zero power: there is none, do not ask.
 struct PeakSample {

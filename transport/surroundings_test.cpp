@@ -103,5 +103,46 @@ TEST(Surroundings, FoldingKeepsTheIntegralOfTheCosine) {
   EXPECT_NEAR(sum * 4 * kPiDouble / kSamples, kPiDouble, 1e-3);
 }
 
+// The guide leads to the same peak as a search through all: shares of what they bring are those of
+// their power, for which each must be met by just its part of u.
+TEST(Surroundings, PeaksAreMetByTheirPower) {
+  scene::Scene scene;
+  scene::Environment& map = scene.environment;
+  map = {64, 32, std::vector<Rgb>(64 * 32, {0.1f, 0.1f, 0.1f}), 0};
+  for (uint32_t k = 0; k < 50; ++k)  // from bright to a thousand times as bright
+    map.radiance[(k * 37) % map.radiance.size()] = Rgb{1, 1, 1} * std::pow(1.15f, float(k)) * 10.0f;
+  const Surroundings s = surroundings_of(scene);
+  ASSERT_GT(s.peak.size(), 20u);
+  constexpr int kSteps = 100000;
+  std::vector<double> met(map.radiance.size());
+  for (int k = 0; k < kSteps; ++k) {
+    const PeakSample p = sample_peaks(scene, s, {(float(k) + 0.5f) / kSteps, 0.5f});
+    met[scene::pixel_towards(map, p.direction)] += 1.0 / kSteps;
+  }
+  for (size_t k = 0; k < s.peak.size(); ++k) {
+    const double share = (s.below[k + 1] - s.below[k]) / s.below.back();
+    // At both ends of its part a step may be missed or taken; and at its pixel's border, by
+    // rounding.
+    EXPECT_NEAR(met[s.peak[k]], share, 3.0 / kSteps) << k;
+  }
+}
+
+TEST(Surroundings, ManyAtOnceAreThoseOneByOne) {
+  const scene::Scene scene = sky_with_sun();
+  const Surroundings s = surroundings_of(scene);
+  std::vector<Vec3> directions;
+  for (uint32_t k = 0; k < 1000; ++k)
+    directions.push_back(uniform_sphere_sample(sobol_owen_2d(k, 9)));
+  std::vector<Rgb> found{{9, 9, 9}};  // of before
+  soft_radiance(scene, s, directions, found);
+  ASSERT_EQ(found.size(), directions.size());
+  for (size_t k = 0; k < found.size(); ++k)
+    EXPECT_EQ(found[k], soft_radiance(scene, s, directions[k]));
+  scene::Scene plain;
+  plain.background = {1, 2, 3};
+  soft_radiance(plain, surroundings_of(plain), std::span(directions).first(3), found);
+  EXPECT_EQ(found, std::vector<Rgb>(3, {1, 2, 3}));
+}
+
 }  // namespace
 }  // namespace luxel::transport

@@ -31,32 +31,44 @@ void count_ends(RayEnd end, int rays, size_t element, TracedHits& out) {
 
 bool is_hit(RayEnd end) { return end == RayEnd::hit || end == RayEnd::behind; }
 
-/// What the batch's k-th ray sees outside, when it has escaped.
-Rgb light_outside(const RayWorld& world, const RayWork& work, size_t k, bool tinted) {
-  const Rgb l = transport::soft_radiance(world.scene, world.around, work.batch.rays[k].direction);
-  return tinted && !work.tint.empty() ? l * work.tint[k] : l;
+/// What rays of the batch see outside, in `light`, without what they have passed.
+void look_outside(const RayWorld& world, const RayBatch& batch, OutsideLook& look) {
+  look.directions.clear();
+  for (const uint32_t k : look.rays) look.directions.push_back(batch.rays[k].direction);
+  transport::soft_radiance(world.scene, world.around, look.directions, look.light);
 }
 
 /// Light of the batch's escaped rays, all of which have a direction.
-EscapedLight escaped_light(const RayWorld& world, const RayWork& work, Samples samples,
+EscapedLight escaped_light(const RayWorld& world, RayWork& work, Samples samples,
                            std::span<const RayEnd> ends) {
+  OutsideLook& look = work.outside;
+  look.rays.clear();
+  for (uint32_t k = 0; k < ends.size(); ++k)
+    if (ends[k] == RayEnd::escaped) look.rays.push_back(k);
+  look_outside(world, work.batch, look);
   EscapedLight out;
-  for (size_t k = 0; k < ends.size(); ++k)
-    if (ends[k] == RayEnd::escaped)
-      out.add(light_outside(world, work, k, true), samples.in_second_half(work.batch.sample[k]));
+  for (size_t at = 0; at < look.rays.size(); ++at) {
+    const uint32_t k = look.rays[at];
+    const Rgb l = work.tint.empty() ? look.light[at] : look.light[at] * work.tint[k];
+    out.add(l, samples.in_second_half(work.batch.sample[k]));
+  }
   return out;
 }
 
 /// The same from what was known: what was traced again no longer brings what it brought.
-EscapedLight escaped_light(const RayWorld& world, const RayWork& work, Samples samples,
+EscapedLight escaped_light(const RayWorld& world, RayWork& work, Samples samples,
                            const EarlierElement& before, std::span<const RayEnd> ends) {
   if (!before.escaped) return escaped_light(world, work, samples, ends);
+  OutsideLook& look = work.outside;
+  look.rays = work.again;
+  look_outside(world, work.batch, look);
   EscapedLight out = *before.escaped;
-  for (const uint32_t k : work.again) {
+  for (size_t at = 0; at < look.rays.size(); ++at) {
+    const uint32_t k = look.rays[at];
+    const Rgb l = look.light[at];
     const bool second_half = samples.in_second_half(work.batch.sample[k]);
-    if (before.ends[k] == RayEnd::escaped)
-      out.take_away(light_outside(world, work, k, false), second_half);
-    if (ends[k] == RayEnd::escaped) out.add(light_outside(world, work, k, true), second_half);
+    if (before.ends[k] == RayEnd::escaped) out.take_away(l, second_half);
+    if (ends[k] == RayEnd::escaped) out.add(work.tint.empty() ? l : l * work.tint[k], second_half);
   }
   out.sum = max(out.sum, Rgb{}), out.luminance2 = std::max(out.luminance2, 0.0f);
   return out;

@@ -21,12 +21,20 @@ struct RayWorld {
   const transport::LightLayers* layers = nullptr;
 };
 
+/// What some rays see outside.
+struct OutsideLook {
+  std::vector<uint32_t> rays;  ///< of the batch
+  std::vector<Vec3> directions;
+  std::vector<Rgb> light;  ///< radiance
+};
+
 /// Everything a worker needs, reused from element to element.
 struct RayWork {
   RayBatch batch;
   std::vector<trace::Hit> hits;  ///< of the batch's rays, where they were traced
   std::vector<Rgb> tint;         ///< of what rays have passed; empty where nothing has a colour
   NearWork near;
+  OutsideLook outside;
   /// Where rays of an earlier bake are known: those that may meet something else, which have a
   /// direction, and of them those that are traced again; ascending.
   std::vector<uint32_t> maybe, again;

@@ -9,19 +9,31 @@
 
 namespace luxel::transport {
 
-BacksSeen backs_seen(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
-                     Vec3 normal, int rays) {
-  constexpr size_t kMost = 64;
-  LUXEL_CHECK(rays > 0 && size_t(rays) <= kMost);
-  const size_t count = size_t(rays);
-  const auto frame = frame_around(normal);
-  std::array<trace::Ray, kMost> batch;
+namespace {
+
+constexpr size_t kMost = 64;
+
+/// The first rays of the set, and what they meet.
+struct Look {
+  std::array<trace::Ray, kMost> rays;
   std::array<trace::Hit, kMost> hits;
+  size_t count = 0;
+};
+
+Look look_from(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, size_t count) {
+  Look out;
+  out.count = count;
+  const auto frame = frame_around(normal);
   for (uint32_t k = 0; k < count; ++k)
-    batch[k] = {from, 0, frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 3))), INFINITY};
-  tracer.closest_hits(std::span(batch).first(count), std::span(hits).first(count));
-  BacksSeen seen{rays, 0, 0};
-  for (const trace::Hit& hit : std::span(hits).first(count)) {
+    out.rays[k] = {from, 0, frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 3))),
+                   INFINITY};
+  tracer.closest_hits(std::span(out.rays).first(count), std::span(out.hits).first(count));
+  return out;
+}
+
+BacksSeen backs_of(const scene::Scene& scene, const Look& look) {
+  BacksSeen seen{int(look.count), 0, 0};
+  for (const trace::Hit& hit : std::span(look.hits).first(look.count)) {
     if (!hit.found() || !hit.back_face) continue;
     const scene::Material& material = scene::material_at(scene, hit.point());
     ++(scene::reflects_from_behind(material) ? seen.double_sided : seen.one_sided);
@@ -29,15 +41,60 @@ BacksSeen backs_seen(const scene::Scene& scene, const trace::RayTracer& tracer, 
   return seen;
 }
 
+int backs_in(const BacksSeen& seen) { return seen.one_sided + seen.double_sided; }
+
+/// But for a few fronts, of which it is worth knowing what they are.
+bool sees_nearly_backs_alone(const BacksSeen& seen) { return 8 * backs_in(seen) >= 7 * seen.rays; }
+
+/// By all rays of the set.
+bool sees_backs_alone(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
+                      Vec3 normal) {
+  return is_enclosed(backs_of(scene, look_from(tracer, from, normal, kMost)));
+}
+
+/// The same, but a front that itself sees nothing but backs counts as one: the floor within a box
+/// whose own bottom lies just as high, so that rays meet either.
+bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
+                float diagonal_m) {
+  const Look look = look_from(tracer, from, normal, kMost);
+  BacksSeen seen = backs_of(scene, look);
+  if (is_enclosed(seen)) return true;
+  if (!sees_nearly_backs_alone(seen)) return false;
+  int open = 0;
+  for (const trace::Hit& hit : look.hits) {
+    if (!hit.found() || max_component(scene::emission_at(scene, hit.point())) > 0) return false;
+    if (hit.back_face) continue;
+    const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
+    const Vec3 at =
+        trace::offset_origin(scene::world_position(scene, hit.point()), front, diagonal_m);
+    // One may be anything, as in is_enclosed.
+    if (!sees_backs_alone(scene, tracer, at, front) && ++open > 1) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+BacksSeen backs_seen(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
+                     Vec3 normal, int rays) {
+  LUXEL_CHECK(rays > 0 && size_t(rays) <= kMost);
+  return backs_of(scene, look_from(tracer, from, normal, size_t(rays)));
+}
+
+bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
+                 int rays, float diagonal_m) {
+  const BacksSeen seen = backs_seen(scene, tracer, from, normal, rays);
+  return is_enclosed(seen) ||
+         (sees_nearly_backs_alone(seen) && is_shut_in(scene, tracer, from, normal, diagonal_m));
+}
+
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                  const Elements& elements, size_t i, const BacksSeen& own, float diagonal_m) {
-  constexpr int kRays = 64;
-  const int backs = own.one_sided + own.double_sided;
-  if (4 * own.one_sided < own.rays && 8 * backs < 7 * own.rays) return false;
+  if (4 * own.one_sided < own.rays && 8 * backs_in(own) < 7 * own.rays) return false;
   if (4 * own.one_sided > 3 * own.rays) return true;
   const Vec3 from =
       trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
-  return is_enclosed(backs_seen(scene, tracer, from, elements.normal[i], kRays));
+  return is_shut_in(scene, tracer, from, elements.normal[i], diagonal_m);
 }
 
 std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,

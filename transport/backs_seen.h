@@ -29,6 +29,12 @@ inline bool is_enclosed(const BacksSeen& b) {
   return is_hidden(b) || 100 * (b.one_sided + b.double_sided) >= 98 * b.rays;
 }
 
+/// Whether a place lies inside a solid, by so many of those rays. Where nearly all of them see
+/// backs, but not all, 64 decide, for which a front that sees nothing but backs is as good as one,
+/// unless it shines: of the floor within a box whose bottom lies just as high rays meet either.
+bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
+                 int rays, float diagonal_m);
+
 /// Whether element i lies inside a solid. `own` is what its own rays met; where they are not sure,
 /// a fixed set decides, so that other samples or another seed do not turn a texel on and off, and
 /// solvers agree.

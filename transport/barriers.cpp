@@ -59,7 +59,7 @@ struct Search {
   bool in_the_open(uint32_t texel) const {
     const Place p = place(texel);
     const Vec3 from = trace::offset_origin(p.position, p.normal, diagonal_m);
-    return !is_enclosed(backs_seen(scene, tracer, from, p.normal, kRaysForOpen));
+    return !is_enclosed(scene, tracer, from, p.normal, kRaysForOpen, diagonal_m);
   }
 
   /// The pairs of texels [begin, end) whose lowest line is blocked by anything.

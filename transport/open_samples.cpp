@@ -31,7 +31,7 @@ struct Work {
     const Place at = place_of(scene, p);
     // Most places under things see nothing but backs: a few rays tell.
     return !is_enclosed(backs_seen(scene, tracer, just_above(at), at.normal, kFirstRays)) &&
-           !is_enclosed(backs_seen(scene, tracer, just_above(at), at.normal, kRaysForOpen));
+           !is_enclosed(scene, tracer, just_above(at), at.normal, kRaysForOpen, diagonal_m);
   }
   /// Short rays around the sample, twenty degrees above the surface.
   void add_feelers(const atlas::Texel& texel, std::vector<trace::Ray>& rays) const {

@@ -30,7 +30,7 @@ struct Place {
 
 /// Whether a point lies inside a solid; of each place the same answer in every bake.
 bool is_enclosed(const Place& at, const Receiver& r, int rays = kEnclosureRays) {
-  return is_enclosed(backs_seen(at.scene, at.tracer, r.origin, r.normal, rays));
+  return transport::is_enclosed(at.scene, at.tracer, r.origin, r.normal, rays, at.diagonal_m);
 }
 
 Receiver receiver_at(const Place& at, const SmoothPoint& s, uint64_t seed) {

@@ -8,10 +8,6 @@ inline namespace base {
 namespace {
 /// Of a stage that has come this far its own speed is known.
 constexpr double kShareToTrust = 0.2;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 }  // namespace
 
 double seconds_left(const Expected& e) {

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/clock.h"
 
 namespace luxel {
 inline namespace base {
@@ -79,7 +80,6 @@ class Progress {
   void clean_up() const;
 
  private:
-  using Clock = std::chrono::steady_clock;
   mutable std::mutex mutex_;
   std::vector<Stage> stages_;
   std::vector<Stage> expected_, expected_at_end_;  ///< those that have come are taken away

@@ -70,7 +70,7 @@ Status look_ahead(const SolveInput& in, const BakeSettings& settings, gather::Ga
     progress.expect(stages_of(forecast));
     return {};
   }
-  double left = settings.time_budget_s - stage_seconds(progress)["total"].get<double>();
+  double left = settings.time_budget_s - stage_seconds(progress.stages())["total"].get<double>();
   for (const Stage& stage : after) left -= stage.seconds;
   if (left < forecast.seconds() / params.samples)
     warnings.push_back(

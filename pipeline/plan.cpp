@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "pipeline/gather_light.h"
 #include "pipeline/solver_memory.h"
+#include "pipeline/stage_seconds.h"
 #include "solve/gather/adaptive.h"
 
 namespace luxel::pipeline {
@@ -94,10 +95,8 @@ Result<Plan> plan(const SolveInput& in, const BakeSettings& settings, Progress& 
 }
 
 nlohmann::json to_json(const Plan& plan) {
-  nlohmann::json seconds = nlohmann::json::object();
-  for (const Stage& stage : plan.stages)
-    seconds[stage.name] = seconds.value(stage.name, 0.0) + stage.seconds;
-  seconds["total"] = plan.seconds;
+  nlohmann::json seconds = stage_seconds(plan.stages);
+  seconds["total"] = plan.seconds;  // with a time budget it ends before all stages are over
   return {{"resolution", plan.resolution},
           {"texels", plan.texels},
           {"rays", std::round(plan.rays)},

@@ -15,8 +15,9 @@ namespace {
 
 /// Of the texels, in a trial for a plan: half a percent of the bake, but some thousand of them.
 constexpr int kPlanPart = 200;
-/// The same of the rounds to an error, which are many more rays for some texels than for others.
-constexpr int kRoundsPart = 10;
+/// The same of the rounds to an error: of more texels, because some get many times the rays of
+/// others.
+constexpr int kRoundsPart = 16;
 /// Measured on one core of an AMD EPYC; short beside the light of all bakes that are worth a plan.
 constexpr double kDrawSeconds = 0.6, kSeamSecondsPerTexel = 4e-7, kWriteSecondsPerTexel = 4e-7;
 

@@ -54,5 +54,18 @@ TEST(ForecastRounds, AreNoneWhereNoneAreNeeded) {
   EXPECT_GT(planned->bounces_s, 0);
 }
 
+TEST(ForecastRounds, CanBeStopped) {
+  const auto room = lay_out(scene::cornell_box(), 24);
+  GatherParams params = with_samples(32, 16);
+  params.max_error = 0.01f;
+  Progress progress;
+  progress.request_cancel();
+  const auto planned = forecast_rounds(
+      {room->scene, room->atlas, room->map, room->elements, room->lights, *room->tracer}, params, 1,
+      progress);
+  ASSERT_FALSE(planned);
+  EXPECT_EQ(planned.error().code, ErrorCode::cancelled);
+}
+
 }  // namespace
 }  // namespace luxel::gather

@@ -8,10 +8,6 @@ inline namespace base {
 namespace {
 /// Of a stage that has come this far its own speed is known.
 constexpr double kShareToTrust = 0.2;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 }  // namespace
 
 double seconds_left(const Expected& e) {
@@ -28,7 +24,16 @@ double seconds_left(const Expected& e) {
 
 void Progress::expect(std::vector<Stage> stages) {
   const std::lock_guard lock(mutex_);
-  expected_ = std::move(stages);
+  expected_ = std::move(stages), end_begins_.reset();
+  sees_the_end_ = true;
+}
+
+void Progress::expect_within(double seconds) {
+  const std::lock_guard lock(mutex_);
+  expected_.clear();
+  end_begins_ = Clock::now() +
+                std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  sees_the_end_ = true;
 }
 
 void Progress::expect_at_end(std::vector<Stage> stages) {
@@ -47,7 +52,8 @@ void Progress::begin(std::string_view stage, uint64_t total) {
     awaited_ = *found;
     list->erase(list->begin(), found + 1);
     // Nothing of the first list comes after the second has begun.
-    if (list == &expected_at_end_) expected_.clear();
+    if (list == &expected_at_end_) expected_.clear(), end_begins_.reset();
+    sees_the_end_ = true;
     break;
   }
   stages_.push_back({std::string(stage), 0});
@@ -78,7 +84,9 @@ Progress::Snapshot Progress::snapshot() const {
   s.skipped = skipped_;
   s.stage_seconds = running_ ? seconds_since(stage_start_) : stages_.back().seconds;
   s.stage_index = int(stages_.size()) - 1;
-  if (awaited_.name.empty() && expected_.empty() && expected_at_end_.empty()) return s;
+  if (!sees_the_end_) return s;
+  if (awaited_.name.empty() && expected_.empty() && expected_at_end_.empty() && !end_begins_)
+    return s;
   Expected e{expected_s_, taken_s_, awaited_.seconds, 0, 0, 0};
   if (!awaited_.name.empty()) {
     e.now_taken = s.stage_seconds;
@@ -89,6 +97,7 @@ Progress::Snapshot Progress::snapshot() const {
   }
   for (const std::vector<Stage>* list : {&expected_, &expected_at_end_})
     for (const Stage& stage : *list) e.future += stage.seconds;
+  if (end_begins_) e.future += std::max(0.0, -seconds_since(*end_begins_));
   s.seconds_left = luxel::seconds_left(e);
   return s;
 }

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/clock.h"
 
 namespace luxel {
 inline namespace base {
@@ -47,9 +49,12 @@ class Progress {
   }
 
   /// What stages to come are expected to take, in order, instead of what was said before; and those
-  /// that come after all of them. A stage that comes unexpected takes no place in either.
+  /// that come after all of them, which alone say nothing about what comes before them. A stage
+  /// that comes unexpected takes no place in either.
   void expect(std::vector<Stage> stages);
   void expect_at_end(std::vector<Stage> stages);
+  /// All before the end takes so many seconds from now, whatever stages come.
+  void expect_within(double seconds);
 
   void request_cancel() { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
@@ -60,7 +65,7 @@ class Progress {
     uint64_t skipped = 0;  ///< of done
     double stage_seconds = 0;
     int stage_index = -1;
-    double seconds_left = -1;  ///< of all that is expected; < 0: nothing is
+    double seconds_left = -1;  ///< of all that is expected; < 0: not known
   };
   Snapshot snapshot() const;
   /// The stages so far with their wall-clock seconds.
@@ -79,12 +84,14 @@ class Progress {
   void clean_up() const;
 
  private:
-  using Clock = std::chrono::steady_clock;
   mutable std::mutex mutex_;
   std::vector<Stage> stages_;
   std::vector<Stage> expected_, expected_at_end_;  ///< those that have come are taken away
-  Stage awaited_;                                  ///< the running stage, as it was expected
-  double expected_s_ = 0, taken_s_ = 0;            ///< of expected stages that have ended
+  /// When the end begins, whatever stages come before it.
+  std::optional<Clock::time_point> end_begins_;
+  bool sees_the_end_ = false;            ///< what comes before it is expected, or it has begun
+  Stage awaited_;                        ///< the running stage, as it was expected
+  double expected_s_ = 0, taken_s_ = 0;  ///< of expected stages that have ended
   Clock::time_point stage_start_;
   bool running_ = false;
   std::atomic<uint64_t> done_{0}, total_{0}, skipped_{0};

@@ -107,6 +107,30 @@ TEST(Progress, ExpectedStagesAreTakenAwayAsTheyCome) {
   EXPECT_LT(progress.snapshot().seconds_left, 1) << "no bounces any more";
 }
 
+// Nobody has said what comes before the end: it is known when it begins.
+TEST(Progress, TheEndAloneIsNotTheWhole) {
+  Progress progress;
+  progress.expect_at_end({{"draw", 50}, {"write", 100}});
+  progress.begin("trace", 10);
+  EXPECT_LT(progress.snapshot().seconds_left, 0);
+  progress.begin("draw", 10);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 150, 1);
+}
+
+// Stages of rounds come as they may: time runs on until the end is there.
+TEST(Progress, ATimeIsExpectedWhateverComes) {
+  Progress progress;
+  progress.expect_at_end({{"write", 100}});
+  progress.expect_within(1000);
+  progress.begin("trace", 10);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 1100, 1);
+  const double before = progress.snapshot().seconds_left;
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_LE(progress.snapshot().seconds_left, before - 0.005);
+  progress.begin("write", 10);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 100, 1);
+}
+
 // Half of the stage was there already: what is left takes half as long, and goes at its own speed.
 TEST(Progress, WhatIsSkippedIsDoneButTakesNoTime) {
   Progress progress;

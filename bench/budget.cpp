@@ -122,17 +122,30 @@ Status compare_adaptive(const std::filesystem::path& scene, Table& table) {
   return {};
 }
 
-/// What was shown when a tenth of the bake was over, over what was left then.
 struct Watched {
   double seconds = 0;
-  std::vector<std::pair<double, double>> shown;  ///< when, and seconds left
+  std::vector<std::pair<double, double>> shown;  ///< when, and seconds left, < 0: not known
 
+  /// What was shown when a share of the bake was over, over what was left then; < 0: nothing was.
   double ratio_at(double share) const {
     for (const auto& [at, left] : shown)
-      if (at >= share * seconds && left >= 0) return left / (seconds - at);
-    return 0;
+      if (at >= share * seconds) return left < 0 ? -1 : left / (seconds - at);
+    return -1;
+  }
+  /// The share of the bake that was over when time left was first shown; 1: it never was.
+  double first_known() const {
+    for (const auto& [at, left] : shown)
+      if (left >= 0) return at / seconds;
+    return 1;
   }
 };
+
+std::string ratio_text(double ratio) {
+  return ratio < 0 ? "not yet known" : fmt::format("{:.2f}", ratio);
+}
+nlohmann::json known_or_null(double ratio) {
+  return ratio < 0 ? nlohmann::json() : nlohmann::json(ratio);
+}
 
 Result<Watched> watch(const pipeline::BakeSettings& settings) {
   Watched out;
@@ -160,16 +173,21 @@ Status measure_plan(const std::filesystem::path& scene, Table& table) {
   Progress progress;
   LUXEL_TRY(const pipeline::Plan plan, pipeline::plan_bake(settings, progress));
   LUXEL_TRY(const Watched watched, watch(settings));
+  const double first = watched.first_known();
   table.notes.push_back(fmt::format(
       "{}, 1024 x 1024, sun and sky: planned {:.1f} s, took {:.1f} s, ratio {:.2f}; time left "
-      "shown over the truth when a tenth was over {:.2f}, half {:.2f}.",
+      "first shown when {:.0f} % was over; over the truth then {}, when a tenth was over {}, half "
+      "{}.",
       scene.stem().string(), plan.seconds, watched.seconds, plan.seconds / watched.seconds,
-      watched.ratio_at(0.1), watched.ratio_at(0.5)));
+      100 * first, ratio_text(watched.ratio_at(first)), ratio_text(watched.ratio_at(0.1)),
+      ratio_text(watched.ratio_at(0.5))));
   table.json.push_back({{"scene", scene.stem().string()},
                         {"planned_s", plan.seconds},
                         {"seconds", watched.seconds},
-                        {"left_at_a_tenth", watched.ratio_at(0.1)},
-                        {"left_at_half", watched.ratio_at(0.5)}});
+                        {"left_first_known_at", first},
+                        {"left_when_first_known", known_or_null(watched.ratio_at(first))},
+                        {"left_at_a_tenth", known_or_null(watched.ratio_at(0.1))},
+                        {"left_at_half", known_or_null(watched.ratio_at(0.5))}});
   return {};
 }
 

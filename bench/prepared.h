@@ -1,19 +1,14 @@
 // A scene ready for a solver.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string_view>
 
+#include "base/clock.h"
 #include "pipeline/solvers.h"
 
 namespace luxel::bench {
-
-using Clock = std::chrono::steady_clock;
-inline double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Members refer to each other: it is made in place and not moved.
 struct Prepared {

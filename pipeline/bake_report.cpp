@@ -57,7 +57,7 @@ nlohmann::json about_error(const BakeSettings& settings, const Bake& bake) {
 
 nlohmann::json bake_report(const BakeSettings& settings, const Bake& bake,
                            const Progress& progress) {
-  const nlohmann::json seconds = stage_seconds(progress);
+  const nlohmann::json seconds = stage_seconds(progress.stages());
   const double tracing = seconds.value("direct light", 0.0) + seconds.value("supersample", 0.0) +
                          seconds.value("trace rays", 0.0) + seconds.value("trace paths", 0.0) +
                          seconds.value("hemicubes", 0.0) + seconds.value("directions", 0.0) +

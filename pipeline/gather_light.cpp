@@ -19,7 +19,8 @@ namespace {
 constexpr int kFirstSamples = 32;
 /// A trial lights one texel in so many, which costs as much of the bake.
 constexpr int kTrialPart = 100;
-/// Bakes below so many rays are over before anybody looks at the clock.
+/// Bakes below so many rays are over before anybody looks at the clock: what their light takes
+/// stays unknown.
 constexpr double kRaysWorthATrial = 2e7;
 /// What the first direct light and the first rays may take of a time budget.
 constexpr double kFirstShare = 0.3;
@@ -57,20 +58,22 @@ void shrink_first_round(const gather::Forecast& forecast, double seconds,
     params.samples = std::max(1, int(params.samples * share / forecast.trace_s));
 }
 
-/// Tells how long it will take, and fits the first round into a time budget.
+/// Tells how long it will take, where a trial can know it and is worth it, and fits the first round
+/// into a time budget. With max_error it is told by gather, after the first round.
 Status look_ahead(const SolveInput& in, const BakeSettings& settings, gather::GatherParams& params,
                   std::vector<std::string>& warnings, Progress& progress) {
   const std::vector<Stage> after = stages_after_solving(in, settings);
   progress.expect_at_end(after);
   const double rays = double(in.elements.size()) * (params.samples + params.direct_samples);
-  if (rays < kRaysWorthATrial && settings.time_budget_s <= 0) return {};
+  const bool trial = rays >= kRaysWorthATrial && settings.max_error <= 0;
+  if (!trial && settings.time_budget_s <= 0) return {};
   LUXEL_TRY(const gather::Forecast forecast, gather::forecast(in, params, kTrialPart, progress));
   progress.finish();
   if (settings.time_budget_s <= 0) {
     progress.expect(stages_of(forecast));
     return {};
   }
-  double left = settings.time_budget_s - stage_seconds(progress)["total"].get<double>();
+  double left = settings.time_budget_s - stage_seconds(progress.stages())["total"].get<double>();
   for (const Stage& stage : after) left -= stage.seconds;
   if (left < forecast.seconds() / params.samples)
     warnings.push_back(
@@ -79,6 +82,7 @@ Status look_ahead(const SolveInput& in, const BakeSettings& settings, gather::Ga
                     settings.time_budget_s, std::max(left, 0.0)));
   shrink_first_round(forecast, left, params);
   params.seconds = std::max(left, 1e-3);
+  progress.expect_within(params.seconds);
   return {};
 }
 

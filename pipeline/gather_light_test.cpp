@@ -52,6 +52,53 @@ TEST(SlowMaxError, TheTruthLiesWithinTheClaim) {
   EXPECT_GT(judged, 2000);
 }
 
+/// What was shown as time left when light was shown.
+std::vector<double> seconds_left_while_lit(const BakeSettings& settings) {
+  std::vector<double> out;
+  Progress progress;
+  const Result<Bake> result =
+      bake_scene(settings, progress, {}, [&](const SolveInput&, const transport::LightEstimate&) {
+        out.push_back(progress.snapshot().seconds_left);
+      });
+  EXPECT_TRUE(result) << result.error().message;
+  return out;
+}
+
+// Seams and files are forecast, but light is most of the time, and no trial is made for so little:
+// nothing is shown rather than what the end takes.
+TEST(TimeLeft, IsUnknownUntilLightIsForecast) {
+  const std::vector<double> shown = seconds_left_while_lit(box_at(16));
+  ASSERT_GT(shown.size(), 2u);
+  for (const double left : shown) EXPECT_LT(left, 0);
+}
+
+// The first estimates are shown before the first round's errors say how many are to come.
+TEST(TimeLeft, ToAnErrorIsKnownAfterTheFirstRound) {
+  BakeSettings settings = box_at(16);
+  settings.max_error = 0.05;
+  const std::vector<double> shown = seconds_left_while_lit(settings);
+  ASSERT_GT(shown.size(), 5u);
+  EXPECT_LT(shown.front(), 0);
+  EXPECT_GT(shown.back(), 0) << "files are still to be written";
+}
+
+// What the budget leaves, and not only what the end takes. Nobody waits for it.
+TEST(TimeLeft, IsThatOfABudget) {
+  BakeSettings settings = box_at(32);
+  settings.time_budget_s = 1000;
+  Progress progress;
+  double left = -1;
+  const Result<Bake> stopped =
+      bake_scene(settings, progress, {}, [&](const SolveInput&, const transport::LightEstimate&) {
+        left = progress.snapshot().seconds_left;
+        progress.request_cancel();
+      });
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
+  EXPECT_LE(left, 1000);
+  EXPECT_GT(left, 900) << "reading and direct light take a second";
+}
+
 TEST(Plan, IsForTheGatherSolver) {
   BakeSettings settings = box_at(16);
   settings.solver = "hemicube";

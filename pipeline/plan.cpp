@@ -7,43 +7,19 @@
 #include "base/parallel.h"
 #include "pipeline/gather_light.h"
 #include "pipeline/solver_memory.h"
-#include "solve/gather/adaptive.h"
+#include "pipeline/stage_seconds.h"
+#include "solve/gather/forecast_rounds.h"
 
 namespace luxel::pipeline {
 namespace {
 
 /// Of the texels, in a trial for a plan: half a percent of the bake, but some thousand of them.
 constexpr int kPlanPart = 200;
+/// The same of the rounds to an error: of more texels, because some get many times the rays of
+/// others.
+constexpr int kRoundsPart = 16;
 /// Measured on one core of an AMD EPYC; short beside the light of all bakes that are worth a plan.
 constexpr double kDrawSeconds = 0.6, kSeamSecondsPerTexel = 4e-7, kWriteSecondsPerTexel = 4e-7;
-
-struct Rounds {
-  double seconds = 0, rays = 0, hit_bytes = 0;
-};
-
-/// What comes after the first round, which is made to know. How errors fall from there is a guess,
-/// right within a factor of two or so. Errors: cancelled, disk full.
-Result<Rounds> rounds_of(const SolveInput& in, const BakeSettings& settings,
-                         const gather::Forecast& first, Progress& progress) {
-  const gather::GatherParams params = gather_params(settings);
-  gather::GatherParams once = params;
-  once.max_error = 0;
-  LUXEL_TRY(const gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
-                                                        in.lights, in.tracer, once, progress));
-  const double texels = double(in.elements.size()), before = texels * params.samples;
-  const std::vector<uint64_t> added = gather::rounds_to_come(
-      result.errors, result.gathered_errors, params.max_error, params.max_samples, result.samples);
-  Rounds out;
-  double samples = before;
-  for (const uint64_t round : added) {
-    samples += double(round);
-    out.seconds += double(round) / before * first.trace_s + samples / before * first.bounces_s;
-  }
-  out.rays = (samples - before) / before * (first.rays - texels * params.direct_samples);
-  // They go where it is dark: most of them meet something.
-  out.hit_bytes = (samples - before) * double(sizeof(gather::StoredHit));
-  return out;
-}
 
 }  // namespace
 
@@ -78,10 +54,10 @@ Result<Plan> plan(const SolveInput& in, const BakeSettings& settings, Progress& 
   gather::GatherParams params = gather_params(settings);
   LUXEL_TRY(const gather::Forecast forecast, gather::forecast(in, params, kPlanPart, progress));
   for (const Stage& stage : stages_of(forecast)) out.stages.push_back(stage);
-  Rounds rounds;
+  gather::RoundsForecast rounds;
   if (settings.max_error > 0) {
-    LUXEL_TRY(rounds, rounds_of(in, settings, forecast, progress));
-    out.stages.push_back({"rounds", rounds.seconds});
+    LUXEL_TRY(rounds, gather::forecast_rounds(in, params, kRoundsPart, progress));
+    out.stages.push_back({"rounds", rounds.trace_s + rounds.bounces_s});
   }
   for (const Stage& stage : stages_after_solving(in, settings)) out.stages.push_back(stage);
   for (const Stage& stage : out.stages) out.seconds += stage.seconds;
@@ -94,10 +70,8 @@ Result<Plan> plan(const SolveInput& in, const BakeSettings& settings, Progress& 
 }
 
 nlohmann::json to_json(const Plan& plan) {
-  nlohmann::json seconds = nlohmann::json::object();
-  for (const Stage& stage : plan.stages)
-    seconds[stage.name] = seconds.value(stage.name, 0.0) + stage.seconds;
-  seconds["total"] = plan.seconds;
+  nlohmann::json seconds = stage_seconds(plan.stages);
+  seconds["total"] = plan.seconds;  // with a time budget it ends before all stages are over
   return {{"resolution", plan.resolution},
           {"texels", plan.texels},
           {"rays", std::round(plan.rays)},

@@ -9,7 +9,7 @@
 
 namespace luxel::pipeline {
 
-/// From a trial of a few texels, all but what settings ask for besides the lightmap: probes.
+/// From trials of a few texels, all but what settings ask for besides the lightmap: probes.
 struct Plan {
   int resolution = 0;
   size_t texels = 0;

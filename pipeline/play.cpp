@@ -1,9 +1,9 @@
 #include "pipeline/play.h"
 
-#include <chrono>
 #include <memory>
 #include <optional>
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/parallel.h"
 #include "display/draw.h"
@@ -25,11 +25,6 @@ namespace {
 
 /// As many rays along a pixel's side as make edges smooth.
 constexpr int kRaysPerAxis = 2;
-
-using Clock = std::chrono::steady_clock;
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// What is drawn.
 struct View {
@@ -204,7 +199,7 @@ Result<std::vector<OutputFile>> draw_frames(const PlaySettings& s, const LightSc
     LUXEL_TRY(const image::Image picture, draw_frame(view, indirect, lights, script, progress));
     const matrix::Relighter::Seconds seconds = relighter.seconds();
     out.frames.push_back({time_s, 1e3 * seconds.direct, 1e3 * seconds.bounces, 1e3 * seconds.places,
-                          milliseconds_since(start)});
+                          1e3 * seconds_since(start)});
     if (k == 0) exposure = exposure_factor(script.exposure, picture);
     files.push_back({s.output / fmt::format("frame-{:04}.png", k),
                      image::encode_png(display::tone_map(picture, exposure))});

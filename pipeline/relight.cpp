@@ -160,7 +160,7 @@ nlohmann::json report(const RelightSettings& s, const matrix::RelightData& data,
             {"triangles", data.occluders.triangle.size()}}},
           {"bytes", {{"file", bytes}, {"matrix", matrix::bytes_of(data.codec)}}},
           {"codec_error", data.codec_error},
-          {"seconds", stage_seconds(progress)},
+          {"seconds", stage_seconds(progress.stages())},
           {"peak_memory_bytes", peak_resident_bytes()},
           {"warnings", warnings}};
 }

@@ -4,10 +4,10 @@
 
 namespace luxel::pipeline {
 
-nlohmann::json stage_seconds(const Progress& progress) {
+nlohmann::json stage_seconds(std::span<const Stage> stages) {
   nlohmann::json seconds = nlohmann::json::object();
   double total = 0;
-  for (const Stage& stage : progress.stages()) {
+  for (const Stage& stage : stages) {
     seconds[stage.name] = seconds.value(stage.name, 0.0) + stage.seconds;
     total += stage.seconds;
   }

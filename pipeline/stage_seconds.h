@@ -2,12 +2,13 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 
 #include "base/progress.h"
 
 namespace luxel::pipeline {
 
 /// Wall-clock seconds per stage, one entry for stages of the same name, and their `total`.
-nlohmann::json stage_seconds(const Progress& progress);
+nlohmann::json stage_seconds(std::span<const Stage> stages);
 
 }  // namespace luxel::pipeline

@@ -119,6 +119,17 @@ TEST(SlowPlanCommand, KnowsTheRaysAndTheMemory) {
   EXPECT_NEAR(double(plan["memory_bytes"]) / double(done["peak_memory_bytes"]), 1, 0.25);
 }
 
+// What an error takes is promised as well: the rounds are made for some texels only.
+TEST(SlowPlanCommand, KnowsTheRaysToAnError) {
+  const ScratchFolder s;
+  const std::string bake = "bake " + scene_file("cornell-box.glb") +
+                           " --resolution 256 --max-error 0.03 -o " + s.path.string() +
+                           " --quiet --json";
+  const nlohmann::json plan = nlohmann::json::parse(luxel(bake + " --plan").out);
+  const nlohmann::json done = nlohmann::json::parse(luxel(bake).out);
+  EXPECT_NEAR(double(plan["rays"]) / double(done["counts"]["rays"]), 1, 0.25);
+}
+
 // An hour is far more than 16,384 rays for each of some hundred texels take.
 TEST(SlowTimeBudget, EndsWhenNothingIsLeftToDo) {
   const ScratchFolder s;

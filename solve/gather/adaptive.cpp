@@ -31,10 +31,15 @@ struct Sums {
   double ratio() const { return variance > 0 ? split / variance : 1; }
 };
 
-/// Per element: read for 25 neighbours of each.
-std::vector<uint32_t> charts_of(const atlas::Atlas& atlas, const atlas::TexelMap& map) {
-  std::vector<uint32_t> out(map.texels.size());
-  for (size_t i = 0; i < out.size(); ++i) out[i] = atlas.chart[map.texels[i].triangle_number];
+/// Per element: read for 25 neighbours of each. If `among` names some, all others are of one more
+/// chart.
+std::vector<uint32_t> charts_of(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                std::span<const uint32_t> among) {
+  const auto chart_at = [&](size_t i) { return atlas.chart[map.texels[i].triangle_number]; };
+  std::vector<uint32_t> out(map.texels.size(), uint32_t(atlas.chart_count));
+  for (const uint32_t i : among) out[i] = chart_at(i);
+  if (!among.empty()) return out;
+  for (size_t i = 0; i < out.size(); ++i) out[i] = chart_at(i);
   return out;
 }
 
@@ -54,11 +59,11 @@ Sums sums_around(const atlas::TexelMap& map, std::span<const uint32_t> chart,
 }  // namespace
 
 std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                                    VariancePair variance) {
+                                    VariancePair variance, std::span<const uint32_t> among) {
   LUXEL_CHECK(variance.independent.size() == map.texels.size());
   LUXEL_CHECK(variance.split.size() == map.texels.size());
-  const std::vector<uint32_t> chart = charts_of(atlas, map);
-  std::vector<Sums> charts(size_t(atlas.chart_count));
+  const std::vector<uint32_t> chart = charts_of(atlas, map, among);
+  std::vector<Sums> charts(size_t(atlas.chart_count) + 1);
   for (size_t i = 0; i < chart.size(); ++i) charts[chart[i]].add(variance, i);
   std::vector<float> out(map.texels.size());
   parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {

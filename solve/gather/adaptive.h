@@ -20,9 +20,10 @@ struct VariancePair {
 };
 
 /// Stratification gains about as much for neighbours: the first estimate, smoothed, times the ratio
-/// of both, summed over the neighbours of the same chart. docs/gather.md
+/// of both, summed over the neighbours of the same chart; if `among` names some elements, those of
+/// them that are `among` too, for the others have fewer samples. docs/gather.md
 std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                                    VariancePair variance);
+                                    VariancePair variance, std::span<const uint32_t> among = {});
 
 /// Per element, its standard error over its own luminance, or over a tenth of the mean luminance
 /// where it is darker: what nobody sees is not worth the rays. Hidden elements have none.

@@ -59,6 +59,20 @@ TEST(Rounds, GoToFilesWhenMemoryIsShort) {
 
 // Errors fall by 2^-0.7 = 0.62 when samples double: 0.03 is below 0.02 after one doubling, 0.06 is
 // not after two, which are asked for at once; 0.01 is.
+// One value everywhere, whose ratio is a quarter: the mean is that of the split estimate, whatever
+// all those are who have fewer samples.
+TEST(PooledVariances, LeaveOutWhoIsNotAmong) {
+  const auto room = lay_out(scene::cornell_box(), 32);
+  const size_t n = room->elements.size();
+  std::vector<float> independent(n, 4000), split(n, 9000);
+  std::vector<uint32_t> among;
+  for (uint32_t i = 0; i < n; ++i)
+    if (room->map.texels[i].x % 6 < 3) among.push_back(i);
+  for (const uint32_t i : among) independent[i] = 4, split[i] = 1;
+  const auto pooled = pooled_variances(room->atlas, room->map, {independent, split}, among);
+  for (const uint32_t i : among) ASSERT_FLOAT_EQ(pooled[i], 1);
+}
+
 TEST(NextSamples, DoubleOrQuadrupleWhereTheErrorIsTooLarge) {
   const std::vector<float> errors{0.01f, 0.03f, 0.06f, 0.06f};
   const std::vector<uint16_t> samples{32, 32, 32, 1024};

@@ -1,29 +1,27 @@
 #include "solve/gather/forecast.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
+#include "base/clock.h"
 #include "base/parallel.h"
-#include "base/random.h"
 #include "solve/gather/adaptive.h"
 
 namespace luxel::gather {
 namespace {
 
 constexpr uint32_t kSquare = 5;
-constexpr size_t kFewestTexels = 4096;
 
 template <class Work>
 Result<double> seconds_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   LUXEL_TRY_STATUS(work());
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return seconds_since(start);
 }
 
-/// About `count` texels, those of some cells of the map: all texels are as likely, also those at
-/// the borders of charts, where light is the dearest.
+}  // namespace
+
 std::vector<uint32_t> texels_to_try(const atlas::TexelMap& map, size_t count) {
   const size_t n = map.texels.size();
   if (count >= n) {
@@ -32,14 +30,21 @@ std::vector<uint32_t> texels_to_try(const atlas::TexelMap& map, size_t count) {
     return all;
   }
   const double part = double(count) / double(n);
+  // Cells where a lattice of well spread points [Roberts18] is below `part`: they lie in all
+  // regions of the map alike.
+  const auto place = [](const atlas::Texel& texel) {
+    const double p =
+        0.7548776662466927 * (texel.x / kSquare) + 0.5698402909980532 * (texel.y / kSquare);
+    return p - std::floor(p);
+  };
   std::vector<uint32_t> out;
-  for (uint32_t i = 0; i < n; ++i) {
-    const uint64_t cell = hash64(map.texels[i].x / kSquare, map.texels[i].y / kSquare);
-    if (double(unit_float(uint32_t(cell >> 32))) < part) out.push_back(i);
-  }
+  for (uint32_t i = 0; i < n; ++i)
+    if (place(map.texels[i]) < part) out.push_back(i);
   if (out.empty()) out.push_back(uint32_t(n / 2));
   return out;
 }
+
+namespace {
 
 /// Those of `tried` whose neighbours were all tried too: of others it is not known whether light
 /// varies around them.
@@ -137,7 +142,7 @@ Result<Forecast> forecast(const transport::TexelScene& world, const GatherParams
                           Progress& progress) {
   const size_t n = world.elements.size();
   const size_t most = size_t(kTrialRays / double(params.samples));
-  const size_t count = std::min({n, most, std::max(kFewestTexels, n / size_t(part))});
+  const size_t count = std::min({n, most, std::max(kFewestTried, n / size_t(part))});
   Trial trial{world, params, texels_to_try(world.map, std::max<size_t>(count, 1)), 1, {}, {}};
   trial.scale = double(n) / double(trial.texels.size());
   progress.begin("trial", 0);

@@ -19,5 +19,11 @@ struct Forecast {
 Result<Forecast> forecast(const transport::TexelScene& world, const GatherParams& params, int part,
                           Progress& progress);
 inline constexpr double kTrialRays = 2e7;
+/// Of fewer texels, and some cells of them, little is known.
+inline constexpr size_t kFewestTried = 4096;
+
+/// About `count` texels, those of some cells of the map: all texels are as likely, also those at
+/// the borders of charts, where light is the dearest.
+std::vector<uint32_t> texels_to_try(const atlas::TexelMap& map, size_t count);
 
 }  // namespace luxel::gather

@@ -1,9 +1,9 @@
 #include "solve/gather/gather.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "base/clock.h"
 #include "solve/gather/bounce_layers.h"
 #include "solve/gather/earlier_direct.h"
 #include "transport/backs_seen.h"
@@ -29,10 +29,6 @@ constexpr double kFineOverRough = 4;
 constexpr double kSmallestRound = 1.0 / 16;
 /// Of a round's rays, those that may go to lamps.
 constexpr double kDirectShare = 0.25;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// Pooled variances, and relative errors by them.
 struct Errors {
@@ -107,7 +103,7 @@ Status trace_round(const transport::TexelScene& world, const GatherParams& param
                           params.keep,
                           params.earlier ? &params.earlier->rays : nullptr,
                           params.layers};
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   const uint64_t before = work.hits.rays, samples = sum_of(work.hits.samples);
   LUXEL_TRY_STATUS(trace_more(world.scene, world.atlas, world.elements, world.lights.around,
                               world.tracer, target, trace, work.hits, progress));
@@ -122,7 +118,7 @@ Status trace_round(const transport::TexelScene& world, const GatherParams& param
 
 Status bounce_round(const transport::TexelScene& world, std::span<const StoredHit> behind,
                     BounceParams params, Work& work, Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   const std::vector<Rgb> guess = std::move(work.bounced.irradiance);
   params.start = guess;
   LUXEL_TRY(work.bounced, bounce(world.map, world.elements, work.hits, work.direct.irradiance,
@@ -255,7 +251,7 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                       const atlas::TexelMap& map, const transport::Elements& elements,
                       const transport::Lights& lights, const trace::RayTracer& tracer,
                       const GatherParams& params, Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   const transport::TexelScene world{scene, atlas, map, elements, lights, tracer};
   Work work;
   LUXEL_TRY_STATUS(begin_direct(world, params, work, progress));

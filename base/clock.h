@@ -1,0 +1,16 @@
+// What work has taken.
+#pragma once
+
+#include <chrono>
+
+namespace luxel {
+inline namespace base {
+
+using Clock = std::chrono::steady_clock;
+
+inline double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace base
+}  // namespace luxel

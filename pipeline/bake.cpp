@@ -15,6 +15,7 @@
 #include "pipeline/denoise_light.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/shown_light.h"
+#include "pipeline/solver_memory.h"
 #include "pipeline/texel_picture.h"
 #include "pipeline/two_sides.h"
 #include "pipeline/vertex_lit.h"
@@ -203,12 +204,14 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const 
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
-  LUXEL_TRY(const Ready ready, make_ready(settings, bake, keepers, progress));
+  LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
   SolveInput input{{bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
                    keepers.checkpoint ? keepers.checkpoint->parts() : nullptr};
   input.cache = keepers.cache;
   if (on_estimate)
     input.on_estimate = [&](const transport::LightEstimate& e) { on_estimate(input, e); };
+  else if (!looks_at_places(settings))
+    input.on_traced = [&] { transport::drop_places(ready.elements); };
   LUXEL_TRY_STATUS(solve(settings, input, bake, progress));
   if (keepers.cache) keepers.cache->solved();
   LUXEL_TRY_STATUS(repair(settings, ready.tracer, bake, progress));

@@ -13,6 +13,7 @@
 #include "pipeline/bake_report.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/denoise_light.h"
+#include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/shown_light.h"
 #include "pipeline/solver_memory.h"
@@ -192,6 +193,7 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
   LUXEL_TRY_STATUS(not_cancelled(progress));
   bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
   bake.atlas_stats = layout.stats, bake.repair = std::move(layout.repair);
+  return_free_memory();  // of charts, bitmaps and bins: many small ones
   return Ready{std::move(layout.tracer),
                transport::elements_from_texels(bake.scene, bake.atlas, bake.map),
                transport::collect_lights(bake.scene)};

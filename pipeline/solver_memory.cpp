@@ -15,6 +15,8 @@ namespace {
 constexpr uint64_t kPlaces = 36;
 /// transport::DirectLight, gather::TracedHits and where the hits of each element end.
 constexpr uint64_t kDirect = 20, kTraced = 29 + 4;
+/// Of these, counts of rays that are done with when it is known which elements are enclosed.
+constexpr uint64_t kCounts = 4, kEnclosed = 1;
 /// How many samples each element is to have; with rounds how finely lamps were looked at, too.
 constexpr uint64_t kTarget = 2, kLevels = 2;
 /// gather::Bounced; the guess that sweeps start from, and how far they are from it.
@@ -27,12 +29,12 @@ constexpr uint64_t kLight = 39;
 /// What other solvers leave for each texel, and what they and the steps after them take.
 constexpr uint64_t kOther = 72, kSquareOther = 20;
 /// What denoising needs besides: places, planes, what neighbours show, the level of noise.
-constexpr uint64_t kDenoiseBytesPerElement = 140;
+constexpr uint64_t kDenoise = 140;
 /// E for five normals and what becomes of it, with --directional.
-constexpr uint64_t kDirectionBytesPerElement = 110;
+constexpr uint64_t kDirection = 110;
 /// With --layers each takes, per element: direct light, that of rays, the solution and its copy,
 /// later the lightmap and its files; and a sweep's map, which is five layers wide, per texel.
-constexpr uint64_t kLayerBytesPerElement = 48, kLayerMapBytesPerSquareTexel = 64;
+constexpr uint64_t kLayer = 48, kSquareLayerMap = 64;
 /// What the process holds differs from run to run: by this much less than the size that is advised.
 constexpr uint64_t kResidentNoiseMb = 8;
 
@@ -40,7 +42,7 @@ std::string size_text(uint64_t bytes) {
   return bytes < 1u << 20 ? fmt::format("{} bytes", bytes) : fmt::format("{}M", bytes >> 20);
 }
 
-/// The most that gather holds at a time, and what becomes of its light, without hits.
+/// The most that gather holds at a time, hits aside, and that becomes of its light later.
 uint64_t bytes_of_gather(const SolveInput& in, const BakeSettings& settings, uint64_t n,
                          uint64_t square) {
   const bool rounds = settings.max_error > 0 || settings.time_budget_s > 0 || in.on_estimate ||
@@ -48,10 +50,21 @@ uint64_t bytes_of_gather(const SolveInput& in, const BakeSettings& settings, uin
   const uint64_t given_back = looks_at_places(settings) || in.on_estimate ? 0 : kPlaces * n;
   const uint64_t levels = rounds || settings.keep ? kLevels : 0;
   const uint64_t traced = (kDirect + kTraced + levels) * n;
-  const uint64_t last_bounces =
-      traced + (kBounced + (rounds ? kGuess : 0)) * n + kSquareMap * square;
-  return std::max({traced + kTarget * n, last_bounces - given_back, rounds ? last_bounces : 0,
-                   kLight * n + kSquareFiles * square - given_back});
+  const uint64_t bounced = traced + (kBounced + (rounds ? kGuess : 0)) * n + kSquareMap * square;
+  const uint64_t last = bounced + kEnclosed * n - kCounts * n;
+  const uint64_t denoised = settings.denoise ? (kLight + kDenoise) * n : 0;
+  const uint64_t turned = settings.directional == Directional::none ? 0 : kDirection * n;
+  const uint64_t files = kLight * n + turned + kSquareFiles * square;
+  return std::max({traced + kTarget * n, rounds ? bounced : 0, last - given_back, denoised,
+                   files - given_back});
+}
+
+/// Of other solvers; nearly all of what comes after them is counted as if it were there at once.
+uint64_t bytes_of_others(const BakeSettings& settings, uint64_t n, uint64_t square) {
+  return (kOther + (settings.denoise ? kDenoise : 0) +
+          (settings.directional == Directional::none ? 0 : kDirection)) *
+             n +
+         kSquareOther * square;
 }
 
 }  // namespace
@@ -63,12 +76,8 @@ bool looks_at_places(const BakeSettings& settings) {
 uint64_t bytes_besides_hits(const SolveInput& in, const BakeSettings& settings, size_t layers) {
   const uint64_t n = in.elements.size(), side = uint64_t(in.map.resolution), square = side * side;
   uint64_t bytes = settings.solver == "gather" ? bytes_of_gather(in, settings, n, square)
-                                               : kOther * n + kSquareOther * square;
-  // What comes after solving: not all of it at once, but most.
-  if (settings.denoise) bytes += kDenoiseBytesPerElement * n;
-  if (settings.directional != Directional::none) bytes += kDirectionBytesPerElement * n;
-  bytes +=
-      layers * kLayerBytesPerElement * n + (layers > 0 ? kLayerMapBytesPerSquareTexel : 0) * square;
+                                               : bytes_of_others(settings, n, square);
+  bytes += layers * kLayer * n + (layers > 0 ? kSquareLayerMap : 0) * square;
   return resident_bytes() + bytes;
 }
 

@@ -37,13 +37,15 @@ struct Atlas {
 };
 
 /// One lightmap texel with a sample on a surface. The sample lies at the centroid of the part of
-/// the texel that its triangle covers, so a triangle thinner than a texel has samples too.
+/// the texel that its triangle covers, so a triangle thinner than a texel has samples too. In 24
+/// bytes: there are millions, all the time.
 struct Texel {
-  uint32_t x = 0, y = 0;
+  uint16_t x = 0, y = 0;  ///< of the square; its side is below 2^15
   scene::SurfacePoint sample;
-  uint32_t triangle_number = 0;
-  bool centre_covered = false;  ///< the texel's centre lies in a triangle
+  uint32_t triangle_number : 31 = 0;
+  bool centre_covered : 1 = false;  ///< the texel's centre lies in a triangle
 };
+static_assert(sizeof(Texel) == 24);
 
 /// All texels that any triangle touches, in rows from the top, left to right.
 struct TexelMap {

@@ -3,6 +3,7 @@
 #include "atlas/atlas.h"
 #include "atlas/cover.h"
 #include "base/check.h"
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "scene/drawn_triangle.h"
 
@@ -131,8 +132,8 @@ std::vector<Texel> band_texels(const Atlas& atlas, const std::vector<Owner>& own
       triangle = uv_triangle(corners);
     }
     Texel texel;
-    texel.x = uint32_t(k % size_t(n));
-    texel.y = uint32_t(rows.begin) + uint32_t(k / size_t(n));
+    texel.x = uint16_t(k % size_t(n));
+    texel.y = uint16_t(size_t(rows.begin) + k / size_t(n));
     texel.sample = {drawn.instance, drawn.triangle,
                     sample_in(corners, triangle, int(texel.x), int(texel.y))};
     texel.triangle_number = o.triangle;
@@ -159,7 +160,7 @@ TexelMap rasterise(const scene::Scene&, const Atlas& atlas) {
   texels.reserve(count);
   for (auto& band : bands) {
     texels.insert(texels.end(), band.begin(), band.end());
-    band = {};
+    free_memory(band);
   }
   return map_of(atlas, std::move(texels));
 }
@@ -168,8 +169,7 @@ TexelMap map_of(const Atlas& atlas, std::vector<Texel> texels) {
   TexelMap map{atlas.resolution, std::move(texels), {}};
   map.texel_at.assign(size_t(atlas.resolution) * size_t(atlas.resolution), kNone);
   for (uint32_t t = 0; t < map.texels.size(); ++t) {
-    LUXEL_CHECK(map.texels[t].x < uint32_t(atlas.resolution) &&
-                map.texels[t].y < uint32_t(atlas.resolution));
+    LUXEL_CHECK(int(map.texels[t].x) < atlas.resolution && int(map.texels[t].y) < atlas.resolution);
     map.texel_at[size_t(map.texels[t].y) * size_t(atlas.resolution) + map.texels[t].x] = t;
   }
   return map;

@@ -15,8 +15,10 @@
 #include "pipeline/bake_report.h"
 #include "pipeline/checkpoint.h"
 #include "pipeline/denoise_light.h"
+#include "pipeline/memory.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/shown_light.h"
+#include "pipeline/solver_memory.h"
 #include "pipeline/texel_picture.h"
 #include "pipeline/two_sides.h"
 #include "pipeline/vertex_lit.h"
@@ -193,6 +195,7 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
   LUXEL_TRY_STATUS(not_cancelled(progress));
   bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
   bake.atlas_stats = layout.stats, bake.repair = std::move(layout.repair);
+  return_free_memory();  // of charts, bitmaps and bins: many small ones
   return Ready{std::move(layout.tracer),
                transport::elements_from_texels(bake.scene, bake.atlas, bake.map),
                transport::collect_lights(bake.scene)};
@@ -205,12 +208,14 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const 
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
-  LUXEL_TRY(const Ready ready, make_ready(settings, bake, keepers, progress));
+  LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
   SolveInput input{{bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
                    keepers.checkpoint ? keepers.checkpoint->parts() : nullptr};
   input.cache = keepers.cache;
   if (on_estimate)
     input.on_estimate = [&](const transport::LightEstimate& e) { on_estimate(input, e); };
+  else if (!looks_at_places(settings))
+    input.on_traced = [&] { transport::drop_places(ready.elements); };
   LUXEL_TRY_STATUS(solve(settings, input, bake, progress));
   if (keepers.cache) keepers.cache->solved();
   LUXEL_TRY_STATUS(repair(settings, ready.tracer, bake, progress));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/free_memory.h"
 #include "pipeline/bake_cache.h"
 #include "pipeline/output_folder.h"
 #include "pipeline/plan.h"
@@ -141,7 +142,7 @@ KeptBake kept_bake(const SolveInput& in, const transport::LightLayers& layers,
 }
 
 /// Nobody has asked for them.
-void drop_layers(TexelLight& light) { light.layers = {}, light.layer_irradiance = {}; }
+void drop_layers(TexelLight& light) { light.layers.clear(), free_memory(light.layer_irradiance); }
 
 }  // namespace
 
@@ -177,6 +178,7 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
   if (!params.layers) params.parts = in.parts;
   if (keeps) params.keep = in.cache->rays();
   params.on_estimate = in.on_estimate;
+  params.on_traced = in.on_traced;
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   const transport::LightLayers all_layers = layers;

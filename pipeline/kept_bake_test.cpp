@@ -306,7 +306,7 @@ TEST(KeptBake, ThatRefersToWhatIsNotThereIsRefused) {
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_surroundings = 2; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.mesh_of_instance[0] = 2; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[0].x = 16; }));
-  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[1].y = UINT32_MAX; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[1].y = UINT16_MAX; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[1].sample.instance = 2; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[1].triangle_number = 2; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.atlas.resolution = -1; }));

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "base/check.h"
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "pipeline/shown_light.h"
 #include "post/dilate.h"
@@ -56,7 +57,7 @@ std::vector<BakedLayer> bake_layers(const scene::Scene& scene, const atlas::Atla
     if (scatters)
       out[l].shown =
           dilated_pages(atlas, map, shown_irradiance(scene, atlas, map, irradiance), rings);
-    irradiance = {};
+    free_memory(irradiance);
   });
   light.layers.clear(), light.layer_irradiance.clear();
   double all = 0;

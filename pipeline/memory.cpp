@@ -1,5 +1,6 @@
 #include "pipeline/memory.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -20,6 +21,8 @@ uint64_t peak_resident_bytes() {
   ::getrusage(RUSAGE_SELF, &usage);
   return uint64_t(usage.ru_maxrss) * 1024;
 }
+
+void return_free_memory() { ::malloc_trim(0); }
 
 uint64_t available_bytes() {
   std::ifstream in("/proc/meminfo");

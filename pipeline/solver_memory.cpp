@@ -1,22 +1,40 @@
 #include "pipeline/solver_memory.h"
 
+#include <algorithm>
+
+#include "pipeline/bake_cache.h"
 #include "pipeline/memory.h"
 
 namespace luxel::pipeline {
 namespace {
 
-/// What gather and the steps after it need besides the stored hits, per element and per texel of
-/// the square: direct light, two maps of irradiance, variances, two radiosity maps; later, when the
-/// hits are gone, the lightmap and its encoded files, which take less. Paths need about the same:
-/// three results of 12 bytes per element, and less per texel.
-constexpr uint64_t kBytesPerElement = 72, kBytesPerSquareTexel = 20;
+// In bytes per element, and per texel of the square where `square` is in the name. They are sums of
+// the arrays' sizes; what a process takes was held against them (docs/gather.md, memory).
+
+/// Of elements: position and two normals, which gather gives back when all rays are traced.
+constexpr uint64_t kPlaces = 36;
+/// transport::DirectLight, gather::TracedHits and where the hits of each element end.
+constexpr uint64_t kDirect = 20, kTraced = 29 + 4;
+/// Of these, counts of rays that are done with when it is known which elements are enclosed.
+constexpr uint64_t kCounts = 4, kEnclosed = 1;
+/// How many samples each element is to have; with rounds how finely lamps were looked at, too.
+constexpr uint64_t kTarget = 2, kLevels = 2;
+/// gather::Bounced; the guess that sweeps start from, and how far they are from it.
+constexpr uint64_t kBounced = 20, kGuess = 24;
+/// The map of radiosity. The lightmap that takes its place, and the most that becomes of it at once
+/// before files are written.
+constexpr uint64_t kSquareMap = 16, kSquareFiles = 38;
+/// TexelLight, which outlives the solver.
+constexpr uint64_t kLight = 39;
+/// What other solvers leave for each texel, and what they and the steps after them take.
+constexpr uint64_t kOther = 72, kSquareOther = 20;
 /// What denoising needs besides: places, planes, what neighbours show, the level of noise.
-constexpr uint64_t kDenoiseBytesPerElement = 140;
+constexpr uint64_t kDenoise = 140;
 /// E for five normals and what becomes of it, with --directional.
-constexpr uint64_t kDirectionBytesPerElement = 110;
+constexpr uint64_t kDirection = 110;
 /// With --layers each takes, per element: direct light, that of rays, the solution and its copy,
 /// later the lightmap and its files; and a sweep's map, which is five layers wide, per texel.
-constexpr uint64_t kLayerBytesPerElement = 48, kLayerMapBytesPerSquareTexel = 64;
+constexpr uint64_t kLayer = 48, kSquareLayerMap = 64;
 /// What the process holds differs from run to run: by this much less than the size that is advised.
 constexpr uint64_t kResidentNoiseMb = 8;
 
@@ -24,17 +42,43 @@ std::string size_text(uint64_t bytes) {
   return bytes < 1u << 20 ? fmt::format("{} bytes", bytes) : fmt::format("{}M", bytes >> 20);
 }
 
+/// The most that gather holds at a time, hits aside, and that becomes of its light later.
+uint64_t bytes_of_gather(const SolveInput& in, const BakeSettings& settings, uint64_t n,
+                         uint64_t square) {
+  const bool rounds = settings.max_error > 0 || settings.time_budget_s > 0 || in.on_estimate ||
+                      (in.cache && in.cache->found());
+  const uint64_t given_back = looks_at_places(settings) || in.on_estimate ? 0 : kPlaces * n;
+  const uint64_t levels = rounds || settings.keep ? kLevels : 0;
+  const uint64_t traced = (kDirect + kTraced + levels) * n;
+  const uint64_t bounced = traced + (kBounced + (rounds ? kGuess : 0)) * n + kSquareMap * square;
+  const uint64_t last = bounced + kEnclosed * n - kCounts * n;
+  const uint64_t denoised = settings.denoise ? (kLight + kDenoise) * n : 0;
+  const uint64_t turned = settings.directional == Directional::none ? 0 : kDirection * n;
+  const uint64_t files = kLight * n + turned + kSquareFiles * square;
+  return std::max({traced + kTarget * n, rounds ? bounced : 0, last - given_back, denoised,
+                   files - given_back});
+}
+
+/// Of other solvers; nearly all of what comes after them is counted as if it were there at once.
+uint64_t bytes_of_others(const BakeSettings& settings, uint64_t n, uint64_t square) {
+  return (kOther + (settings.denoise ? kDenoise : 0) +
+          (settings.directional == Directional::none ? 0 : kDirection)) *
+             n +
+         kSquareOther * square;
+}
+
 }  // namespace
 
+bool looks_at_places(const BakeSettings& settings) {
+  return settings.denoise || settings.directional != Directional::none || settings.keep;
+}
+
 uint64_t bytes_besides_hits(const SolveInput& in, const BakeSettings& settings, size_t layers) {
-  const uint64_t side = uint64_t(in.map.resolution);
-  // What comes after solving: not all of it at once, but most.
-  uint64_t per_element = kBytesPerElement;
-  if (settings.denoise) per_element += kDenoiseBytesPerElement;
-  if (settings.directional != Directional::none) per_element += kDirectionBytesPerElement;
-  per_element += layers * kLayerBytesPerElement;
-  const uint64_t per_texel = kBytesPerSquareTexel + (layers > 0 ? kLayerMapBytesPerSquareTexel : 0);
-  return resident_bytes() + per_element * in.elements.size() + per_texel * side * side;
+  const uint64_t n = in.elements.size(), side = uint64_t(in.map.resolution), square = side * side;
+  uint64_t bytes = settings.solver == "gather" ? bytes_of_gather(in, settings, n, square)
+                                               : bytes_of_others(settings, n, square);
+  bytes += layers * kLayer * n + (layers > 0 ? kSquareLayerMap : 0) * square;
+  return resident_bytes() + bytes;
 }
 
 Result<uint64_t> memory_to_spare(const SolveInput& in, const BakeSettings& settings, uint64_t spare,

@@ -1,6 +1,7 @@
 // The table of solvers: the only place that names one by string.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,6 +29,8 @@ struct SolveInput : transport::TexelScene {
   PartStore* parts = nullptr;  ///< where its finished parts are kept and found; null: nowhere
   transport::OnLightEstimate on_estimate{};  ///< gets gather's light as it grows
   BakeCache* cache = nullptr;  ///< what gather builds on, and where it keeps itself; null: neither
+  /// Called, or not, when the solver looks at no place of an element any more: they take memory.
+  std::function<void()> on_traced{};
 };
 
 /// What every solver gives.

@@ -44,6 +44,7 @@ Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, Te
   scene = std::move(cut.scene);
   atlas::AtlasParams grouped = params;
   grouped.group = std::move(cut.group);
+  layout.atlas = {}, layout.map = {};  // a large one would not find place beside the next
   LUXEL_TRY(layout, lay_out_once(grouped, scene, progress));
   layout.repair.cuts = cut.cuts;
   layout.repair.parted =

@@ -1,5 +1,6 @@
 #include "transport/elements.h"
 
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "scene/sides.h"
 
@@ -66,6 +67,11 @@ Vec3 smooth_position(const scene::Scene& scene, const scene::SurfacePoint& p) {
 constexpr float kNoBulge = 1e-4f;
 
 }  // namespace
+
+void drop_places(Elements& elements) {
+  free_memory(elements.position), free_memory(elements.normal);
+  free_memory(elements.geometric_normal);
+}
 
 SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p) {
   const Vec3 flat = scene::world_position(scene, p);

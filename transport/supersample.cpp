@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/check.h"
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "transport/backs_seen.h"
@@ -174,7 +175,7 @@ Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atl
       out.points.geometric_normal.push_back(r.geometric_normal);
     }
     out.first.push_back(uint32_t(out.points.size()));
-    found[i] = {};
+    free_memory(found[i]);
   }
   return out;
 }

@@ -1,12 +1,13 @@
 #include "solve/gather/bounces.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <numeric>
+#include <utility>
 
 #include "base/check.h"
+#include "base/clock.h"
 #include "base/parallel.h"
 #include "solve/gather/tile_hits.h"
 
@@ -99,13 +100,17 @@ void gather_round(const RadiosityMap& m, std::span<const StoredHit> hits, size_t
   g.first_less_second += round.first_less_second;
 }
 
+/// E_0 of an element: what arrives without any reflection. A ray that escapes sees the sky.
+Rgb source_of(const TracedHits& hits, std::span<const Rgb> direct, size_t element) {
+  return direct[element] + hits.sky[element] * (kPi / float(hits.samples[element]));
+}
+
 /// One sweep's input and output. `change2` holds the squared change per tile: summed in a fixed
 /// order.
 struct Sweep {
-  std::span<const Rgb> source;    ///< E_0
-  std::span<const Rgb> previous;  ///< E of the sweep before
-  std::span<Rgb> next;
-  std::span<float> variance;  ///< of the gathered part and the sky
+  std::span<const Rgb> direct;  ///< empty: E_0 is none
+  std::span<Rgb> irradiance;    ///< E of the sweep before, then of this one
+  std::span<float> variance;    ///< of the gathered part and the sky
   std::span<float> split_variance;
   size_t stride = 1;  ///< only every stride-th ray is looked at
   std::vector<double> change2;
@@ -145,12 +150,13 @@ double sweep_tile(const RadiosityMap& m, const TracedHits& hits, const TileHits&
       gather_round(m, own, start, sweep.stride, r == hits.last_round[i], g);
     }
     const Rgb gathered = Rgb{g.sum[0], g.sum[1], g.sum[2]} * (1.0f / float(hits.samples[i]));
-    sweep.next[i] = sweep.source[i] + gathered;
+    const Rgb source = sweep.direct.empty() ? Rgb{} : source_of(hits, sweep.direct, i);
+    const Rgb before = std::exchange(sweep.irradiance[i], source + gathered);
     if (sweep.stride == 1) {
       sweep.variance[i] = variance_of_mean(g, hits, i);
       sweep.split_variance[i] = split_variance(g, hits, i);
     }
-    const Rgb d = sweep.next[i] - sweep.previous[i];
+    const Rgb d = sweep.irradiance[i] - before;
     change2 += double(dot(d, d));
   }
   return change2;
@@ -227,12 +233,11 @@ struct Bouncing {
   const atlas::TexelMap& map;
   const transport::Elements& elements;
   const TracedHits& hits;
+  std::span<const Rgb> direct;
   std::span<const StoredHit> behind;
   Progress& progress;
   ReflectanceRange reflectance;
-  std::vector<Rgb> source{};  ///< E_0: what arrives without any reflection
   RadiosityMap radiosity{};
-  std::vector<Rgb> next{};
   Bounced out{};
 
   Result<double> sweep(size_t stride);
@@ -244,27 +249,24 @@ struct Bouncing {
 /// Returns the root mean square change, relative to the mean irradiance.
 Result<double> Bouncing::sweep(size_t stride) {
   fill_radiosity(radiosity, map, elements, hits, behind, out.irradiance);
-  Sweep sweep{source, out.irradiance, next, out.variance, out.split_variance, stride, {}};
+  Sweep sweep{direct, out.irradiance, out.variance, out.split_variance, stride, {}};
   LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
-  out.irradiance.swap(next);
   ++out.sweeps;
   progress.advance(1);
   const double sum2 = std::accumulate(sweep.change2.begin(), sweep.change2.end(), 0.0);
   const double mean = mean_luminance(out.irradiance);
-  return mean > 0 ? std::sqrt(sum2 / (3 * double(source.size()))) / mean : 0.0;
+  return mean > 0 ? std::sqrt(sum2 / (3 * double(hits.size()))) / mean : 0.0;
 }
 
 /// Adds what a change makes of itself in later bounces, looking at some rays only: as exact,
 /// relative to the change, as these are. Returns the ratio of its last two steps.
 Result<double> Bouncing::look_ahead(std::vector<Rgb> change, size_t stride) {
-  const size_t n = source.size();
-  const std::vector<Rgb> none(n);
+  const size_t n = change.size();
   double first = 0, before = 0, ratio = 0;
   for (int k = 0; k < kMaxSparse; ++k) {
     fill_radiosity(radiosity, map, elements, hits, behind, change);
-    Sweep sweep{none, change, next, out.variance, out.split_variance, stride, {}};
+    Sweep sweep{{}, change, out.variance, out.split_variance, stride, {}};
     LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
-    change.swap(next);
     double sum2 = 0;
     for (size_t i = 0; i < n; ++i)
       out.irradiance[i] += change[i], sum2 += double(dot(change[i], change[i]));
@@ -321,18 +323,16 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
                        std::span<const StoredHit> behind, const BounceParams& params,
                        Progress& progress) {
   const size_t n = elements.size();
-  LUXEL_CHECK(direct.size() == n && map.texels.size() == n && hits.escaped.size() == n);
+  LUXEL_CHECK(direct.size() == n && map.texels.size() == n && hits.sky.size() == n);
   LUXEL_CHECK(behind.size() == elements.transmittance.size());
-  Bouncing work{map, elements, hits, behind, progress, reflectance_range(elements)};
-  work.source.assign(direct.begin(), direct.end());
-  // A ray that escapes sees the sky.
-  for (size_t i = 0; i < n; ++i) work.source[i] += hits.sky[i] * (kPi / float(hits.samples[i]));
+  Bouncing work{map, elements, hits, direct, behind, progress, reflectance_range(elements)};
   const bool guessed = params.bounces < 0 && !params.start.empty();
   LUXEL_CHECK(!guessed || params.start.size() == n);
-  work.out.irradiance = work.source;
-  if (guessed) work.out.irradiance.assign(params.start.begin(), params.start.end());
+  work.out.irradiance.assign(guessed ? params.start.begin() : direct.begin(),
+                             guessed ? params.start.end() : direct.end());
+  if (!guessed)
+    for (size_t i = 0; i < n; ++i) work.out.irradiance[i] = source_of(hits, direct, i);
   work.out.variance.assign(n, 0.0f), work.out.split_variance.assign(n, 0.0f);
-  work.next.resize(n);
   work.radiosity = empty_map(map.resolution);
   progress.begin("bounces", 0);
   for (int k = 0; k < params.bounces; ++k) {
@@ -355,7 +355,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
 
 double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits) {
   const RadiosityMap m = empty_map(map.resolution);
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   Gathered g;
   size_t looked_at = 0;
   for (const HitStore& round : hits.rounds)
@@ -366,8 +366,7 @@ double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits) {
       gather_round(m, (*tile)->entries, 0, 1, true, g);
       looked_at += (*tile)->entries.size();
     }
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = seconds_since(start);
   // The sum is zero, which the compiler does not know.
   return looked_at == 0 ? 0 : (seconds + double(g.sum[0])) / double(looked_at);
 }

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/clock.h"
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "solve/gather/adaptive.h"
 
@@ -122,6 +123,7 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
 Status try_tracing(Trial& trial, Forecast& out, Progress& progress) {
   const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
   trial.hits = no_hits(elements.size());
+  trial.direct = {};
   std::vector<uint16_t> target(elements.size());
   for (const uint32_t i : trial.texels) target[i] = uint16_t(trial.params.samples);
   const TraceParams params{trial.params.seed, UINT64_MAX, trial.params.scratch_folder,
@@ -133,6 +135,9 @@ Status try_tracing(Trial& trial, Forecast& out, Progress& progress) {
   out.trace_s = trial.scale * seconds;
   out.rays += trial.scale * double(trial.hits.rays);
   out.hit_bytes = trial.scale * double(trial.hits.bytes_in_memory());
+  // Sweeps need a whole map of radiosity, which is as large as all this.
+  free_memory(trial.hits.sky);
+  free_memory(trial.hits.sky_luminance2), free_memory(trial.hits.sky_first_less_second);
   return {};
 }
 

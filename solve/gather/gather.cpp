@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/clock.h"
+#include "base/free_memory.h"
 #include "solve/gather/bounce_layers.h"
 #include "solve/gather/earlier_direct.h"
 #include "transport/backs_seen.h"
@@ -49,15 +50,15 @@ struct Work {
 };
 
 Errors errors_of(const transport::TexelScene& world, const Work& work) {
-  const auto direct =
+  auto direct =
       pooled_variances(world.atlas, world.map, {work.direct.variance, work.direct.split_variance});
   const auto gathered = pooled_variances(world.atlas, world.map,
                                          {work.bounced.variance, work.bounced.split_variance});
   Errors out;
-  out.variance.resize(gathered.size());
-  for (size_t i = 0; i < gathered.size(); ++i) out.variance[i] = direct[i] + gathered[i];
   out.direct = relative_errors(direct, work.bounced.irradiance, work.hits);
   out.gathered = relative_errors(gathered, work.bounced.irradiance, work.hits);
+  out.variance = std::move(direct);
+  for (size_t i = 0; i < gathered.size(); ++i) out.variance[i] += gathered[i];
   out.all = relative_errors(out.variance, work.bounced.irradiance, work.hits);
   return out;
 }
@@ -69,6 +70,16 @@ transport::SupersampleParams supersample_params(const GatherParams& params) {
                      .parts = params.parts,
                      .layers = params.layers}};
 }
+
+void show(const GatherParams& params, const Work& work) {
+  if (!params.on_estimate) return;
+  const double n = double(std::max<size_t>(work.hits.size(), 1));
+  params.on_estimate({work.bounced.irradiance, double(sum_of(work.hits.samples)) / n,
+                      percentile_95(work.errors.all)});
+}
+
+/// Whether rays are added where light is not known well enough.
+bool adds_rounds(const GatherParams& params) { return params.max_error > 0 || params.seconds > 0; }
 
 Status begin_direct(const transport::TexelScene& world, const GatherParams& params, Work& work,
                     Progress& progress) {
@@ -87,6 +98,7 @@ Status begin_direct(const transport::TexelScene& world, const GatherParams& para
                                    world.lights, world.tracer, supersample, work.direct, progress));
   work.direct.rays += averaged.rays;
   work.averaged = averaged.texels.size();
+  if (!adds_rounds(params) && params.keep == nullptr) return {};  // nobody asks how finely
   work.levels = {std::vector<uint8_t>(world.elements.size()),
                  std::vector<uint8_t>(world.elements.size())};
   for (const uint32_t i : averaged.texels) work.levels.averaged[i] = 1;
@@ -121,9 +133,9 @@ Status bounce_round(const transport::TexelScene& world, std::span<const StoredHi
   const auto start = Clock::now();
   const std::vector<Rgb> guess = std::move(work.bounced.irradiance);
   params.start = guess;
+  work.bounced = {}, work.errors = {};
   LUXEL_TRY(work.bounced, bounce(world.map, world.elements, work.hits, work.direct.irradiance,
                                  behind, params, progress));
-  work.errors = errors_of(world, work);
   work.bounced_s = seconds_since(start);
   return {};
 }
@@ -133,6 +145,15 @@ float last_tolerance(const GatherParams& params) {
   if (!params.earlier) return params.tolerance;
   const double of_error = kPartOfError * params.earlier->relative_error;
   return std::max(params.tolerance, float(std::min(of_error, kRoughestFromEarlier)));
+}
+
+/// The light of the rays so far, which are not all, and how well it is known.
+Status look_round(const transport::TexelScene& world, const GatherParams& params,
+                  std::span<const StoredHit> behind, Work& work, Progress& progress) {
+  LUXEL_TRY_STATUS(bounce_round(world, behind, {params.bounces, kRoughTolerance}, work, progress));
+  work.errors = errors_of(world, work);
+  show(params, work);
+  return {};
 }
 
 /// How many rays the next round may have, such that it and the last bounces end in time.
@@ -214,13 +235,6 @@ std::vector<int> growing(int samples) {
   return out;
 }
 
-void show(const GatherParams& params, const Work& work) {
-  if (!params.on_estimate) return;
-  const double n = double(std::max<size_t>(work.hits.size(), 1));
-  params.on_estimate({work.bounced.irradiance, double(sum_of(work.hits.samples)) / n,
-                      percentile_95(work.errors.all)});
-}
-
 /// The rays that every element gets. Errors: cancelled, disk full.
 Status trace_first(const transport::TexelScene& world, const GatherParams& params,
                    std::span<const StoredHit> behind, Work& work, Progress& progress) {
@@ -238,10 +252,35 @@ Status trace_first(const transport::TexelScene& world, const GatherParams& param
     const std::vector<uint16_t> target(n, uint16_t(samples));
     LUXEL_TRY_STATUS(trace_round(world, params, target, work, progress));
     if (samples == params.samples) break;  // what follows bounces them
-    LUXEL_TRY_STATUS(
-        bounce_round(world, behind, {params.bounces, kRoughTolerance}, work, progress));
-    show(params, work);
+    LUXEL_TRY_STATUS(look_round(world, params, behind, work, progress));
   }
+  return {};
+}
+
+/// What bounces have read. The counts of rays stay.
+void drop_light(TracedHits& hits) {
+  hits.rounds.clear();
+  free_memory(hits.sky), free_memory(hits.sky_by_layer);
+  free_memory(hits.sky_luminance2), free_memory(hits.sky_first_less_second);
+}
+
+/// All bounces, those of layers too, and how well their light is known. Places of elements may be
+/// gone.
+Status bounce_last(const transport::TexelScene& world, const GatherParams& params,
+                   std::span<const StoredHit> behind, Work& work, Gather& out, Progress& progress) {
+  LUXEL_TRY_STATUS(
+      bounce_round(world, behind, {params.bounces, last_tolerance(params)}, work, progress));
+  if (params.layers) {
+    LUXEL_TRY(LayersBounced layers,
+              bounce_layers(world.map, world.elements, work.hits,
+                            layer_sources(work.hits, std::move(work.direct.by_layer)), behind,
+                            work.bounced.irradiance, params.bounces, progress));
+    out.layers = std::move(layers.irradiance), out.layers_shared_out = layers.shared_out;
+  }
+  out.hit_bytes_in_file = work.hits.bytes_in_file();
+  drop_light(work.hits);
+  work.errors = errors_of(world, work);
+  show(params, work);
   return {};
 }
 
@@ -259,25 +298,20 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   work.hits = no_hits(elements.size(), params.layers ? params.layers->size() : 0);
   if (params.earlier) work.bounced.irradiance = std::move(params.earlier->irradiance);
   LUXEL_TRY_STATUS(trace_first(world, params, behind, work, progress));
-  for (bool more = params.max_error > 0 || params.seconds > 0; more;) {
-    LUXEL_TRY_STATUS(
-        bounce_round(world, behind, {params.bounces, kRoughTolerance}, work, progress));
-    show(params, work);
+  for (bool more = adds_rounds(params); more;) {
+    LUXEL_TRY_STATUS(look_round(world, params, behind, work, progress));
     LUXEL_TRY(more,
               next_round(world, params, params.seconds - seconds_since(start), work, progress));
   }
-  LUXEL_TRY_STATUS(
-      bounce_round(world, behind, {params.bounces, last_tolerance(params)}, work, progress));
-  show(params, work);
   Gather out;
+  out.enclosed = transport::find_enclosed(scene, tracer, elements, [&](size_t i) {
+    return transport::BacksSeen{int(work.hits.samples[i]), int(work.hits.met_back[i]),
+                                int(work.hits.met_double_sided_back[i])};
+  });
+  free_memory(work.hits.escaped), free_memory(work.hits.met_double_sided_back);
+  if (params.on_traced) params.on_traced();
   if (params.keep) out.kept_direct = work.direct, out.kept_levels = work.levels;
-  if (params.layers) {
-    LUXEL_TRY(LayersBounced layers,
-              bounce_layers(map, elements, work.hits,
-                            layer_sources(work.hits, std::move(work.direct.by_layer)), behind,
-                            work.bounced.irradiance, params.bounces, progress));
-    out.layers = std::move(layers.irradiance), out.layers_shared_out = layers.shared_out;
-  }
+  LUXEL_TRY_STATUS(bounce_last(world, params, behind, work, out, progress));
   out.relative_error = relative_error(work.bounced.irradiance, work.errors.variance);
   out.irradiance = std::move(work.bounced.irradiance);
   out.direct = std::move(work.direct.irradiance);
@@ -287,16 +321,11 @@ Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
   out.relative_error_p95 = percentile_95(work.errors.all);
   out.errors = std::move(work.errors.all);
   out.gathered_errors = std::move(work.errors.gathered);
-  out.enclosed = transport::find_enclosed(scene, tracer, elements, [&](size_t i) {
-    return transport::BacksSeen{int(work.hits.samples[i]), int(work.hits.met_back[i]),
-                                int(work.hits.met_double_sided_back[i])};
-  });
   out.met_back = std::move(work.hits.met_back);
   out.samples = std::move(work.hits.samples);
   out.rays = work.direct.rays + work.hits.rays, out.rays_kept = work.hits.rays_kept;
   out.supersampled = work.averaged;
   out.sweeps = work.bounced.sweeps;
-  out.hit_bytes_in_file = work.hits.bytes_in_file();
   return out;
 }
 

@@ -1,6 +1,8 @@
 // Radiosity maps: Monte Carlo gather per texel. [Moreno05]
 #pragma once
 
+#include <functional>
+
 #include "solve/gather/adaptive.h"
 #include "solve/gather/bounces.h"
 #include "solve/gather/trace_hits.h"
@@ -45,6 +47,8 @@ struct GatherParams {
   /// rays, of twice as many, and so on, the last being what gather() returns. `samples` come in
   /// rounds then, and the result is that without it up to rounding (adaptive_test.cpp).
   transport::OnLightEstimate on_estimate{};
+  /// Called when every ray is traced: drop_places() may be called on the elements then.
+  std::function<void()> on_traced{};
 };
 
 struct Gather {

@@ -29,6 +29,26 @@ double mean_irradiance(const Room& room, const Gather& result, uint32_t material
   return sum / count;
 }
 
+// Bounces, layers and errors ask where texels lie in the map, not where they lie in the scene.
+TEST(Gather, NeedsNoPlacesOnceAllRaysAreTraced) {
+  const auto room = lay_out(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 2, 0.5f}), 32);
+  GatherParams params = with_samples(32, 8);
+  for (const float max_error : {0.0f, 0.2f}) {
+    params.max_error = max_error, params.on_traced = {};
+    const Gather kept = solve(*room, params);
+    const auto other = lay_out(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 2, 0.5f}), 32);
+    int calls = 0;
+    params.on_traced = [&] { ++calls, transport::drop_places(other->elements); };
+    const Gather dropped = solve(*other, params);
+    EXPECT_EQ(calls, 1);
+    EXPECT_EQ(other->elements.position.capacity(), 0u);
+    EXPECT_EQ(other->elements.size(), room->elements.size());
+    EXPECT_EQ(dropped.irradiance, kept.irradiance);
+    EXPECT_EQ(dropped.errors, kept.errors);
+    EXPECT_EQ(dropped.enclosed, kept.enclosed);
+  }
+}
+
 // Exact solution 1: B = e / (1 - rho) at every point of a closed scene with uniform emission and
 // reflectance, so E = (B - e) / rho, or e itself where nothing is reflected.
 TEST(SlowGather, AFurnaceIsUniformAtEveryTexel) {

@@ -11,7 +11,7 @@
 namespace luxel::bench {
 namespace {
 
-constexpr int kRounds = 3;
+constexpr int kRounds = 2, kResolution = 1024;
 
 struct Edit {
   const char* name;
@@ -125,8 +125,7 @@ Result<Table> measure_rebake(const std::filesystem::path& shared, int threads) {
   Table table = new_table("rebake", {"scene", "edit", "bake that is kept, s", "from scratch, s",
                                      "with --keep, s", "ratio", "rays traced", "difference"});
   for (const EditedScene& s : kScenes)
-    for (const int resolution : {512, 1024})
-      LUXEL_TRY_STATUS(measure(shared, s, resolution, threads, table));
+    LUXEL_TRY_STATUS(measure(shared, s, kResolution, threads, table));
   table.notes.push_back(fmt::format(
       "Sun, sky and a lamp; 256 samples, all bounces, files included. Seconds are the best of {} "
       "rounds in turn, but for the bake that is kept. The difference is that of the lightmaps' "

@@ -57,8 +57,6 @@ TEST(Rounds, GoToFilesWhenMemoryIsShort) {
   EXPECT_EQ(in_files.irradiance, in_memory.irradiance);
 }
 
-// Errors fall by 2^-0.7 = 0.62 when samples double: 0.03 is below 0.02 after one doubling, 0.06 is
-// not after two, which are asked for at once; 0.01 is.
 // One value everywhere, whose ratio is a quarter: the mean is that of the split estimate, whatever
 // all those are who have fewer samples.
 TEST(PooledVariances, LeaveOutWhoIsNotAmong) {
@@ -73,6 +71,8 @@ TEST(PooledVariances, LeaveOutWhoIsNotAmong) {
   for (const uint32_t i : among) ASSERT_FLOAT_EQ(pooled[i], 1);
 }
 
+// Errors fall by 2^-0.7 = 0.62 when samples double: 0.03 is below 0.02 after one doubling, 0.06 is
+// not after two, which are asked for at once; 0.01 is.
 TEST(NextSamples, DoubleOrQuadrupleWhereTheErrorIsTooLarge) {
   const std::vector<float> errors{0.01f, 0.03f, 0.06f, 0.06f};
   const std::vector<uint16_t> samples{32, 32, 32, 1024};

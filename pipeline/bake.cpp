@@ -359,6 +359,7 @@ Status write_results(std::span<const OutputFile> files, Checkpoint& checkpoint, 
 
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(check(settings));
+  const ThreadLimit threads(settings.threads);
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
   Checkpoint checkpoint(settings);

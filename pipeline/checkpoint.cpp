@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// Of the records' content; goes up when what a part holds, or how it is computed, changes.
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 
 /// Settings that leave every bit of the light as it is. Of what files hold there are digests:
 /// where they lie does not matter.

@@ -26,6 +26,12 @@ constexpr uint64_t kBounced = 20, kGuess = 24;
 constexpr uint64_t kSquareMap = 16, kSquareFiles = 38;
 /// TexelLight, which outlives the solver.
 constexpr uint64_t kLight = 39;
+/// With --keep: direct light and its levels a second time, from the bounces on; light a second time
+/// and digests of places, until all of it, and where texels lie, is one piece for the file. Lights
+/// have layers in each of the two.
+constexpr uint64_t kKeptDirect = 22, kKeptLight = kLight + 8, kKeptTexels = 24, kKeptLayer = 12;
+/// Where something scatters light through: the place behind each texel.
+constexpr uint64_t kBehind = 8;
 /// What other solvers leave for each texel, and what they and the steps after them take.
 constexpr uint64_t kOther = 72, kSquareOther = 20;
 /// What denoising needs besides: places, planes, what neighbours show, the level of noise.
@@ -42,19 +48,36 @@ std::string size_text(uint64_t bytes) {
   return bytes < 1u << 20 ? fmt::format("{} bytes", bytes) : fmt::format("{}M", bytes >> 20);
 }
 
+/// What a bake that is kept holds besides, in its bounces and when all is over.
+struct KeptBytes {
+  uint64_t bouncing = 0, ending = 0;
+};
+KeptBytes bytes_of_keeping(const SolveInput& in, const BakeSettings& settings, uint64_t n,
+                           uint64_t layers) {
+  if (!settings.keep || (in.cache && in.cache->found())) return {};
+  const uint64_t direct = kKeptDirect + kKeptLayer * layers;
+  const uint64_t all = direct + kKeptLight + kKeptLayer * layers;
+  return {direct * n, (all + all + kKeptTexels) * n};
+}
+
 /// The most that gather holds at a time, hits aside, and that becomes of its light later.
 uint64_t bytes_of_gather(const SolveInput& in, const BakeSettings& settings, uint64_t n,
-                         uint64_t square) {
+                         uint64_t square, uint64_t layers) {
+  const KeptBytes kept = bytes_of_keeping(in, settings, n, layers);
+  const bool scatters = !in.elements.transmittance.empty();
   const bool rounds = settings.max_error > 0 || settings.time_budget_s > 0 || in.on_estimate ||
                       (in.cache && in.cache->found());
   const uint64_t given_back = looks_at_places(settings) || in.on_estimate ? 0 : kPlaces * n;
   const uint64_t levels = rounds || settings.keep ? kLevels : 0;
   const uint64_t traced = (kDirect + kTraced + levels) * n;
-  const uint64_t bounced = traced + (kBounced + (rounds ? kGuess : 0)) * n + kSquareMap * square;
-  const uint64_t last = bounced + kEnclosed * n - kCounts * n;
+  const uint64_t bounced = traced +
+                           (kBounced + (rounds ? kGuess : 0) + (scatters ? kBehind : 0)) * n +
+                           (scatters ? 2 : 1) * kSquareMap * square;
+  const uint64_t last = bounced + kEnclosed * n - kCounts * n + kept.bouncing;
   const uint64_t denoised = settings.denoise ? (kLight + kDenoise) * n : 0;
   const uint64_t turned = settings.directional == Directional::none ? 0 : kDirection * n;
-  const uint64_t files = kLight * n + turned + kSquareFiles * square;
+  const uint64_t files =
+      kLight * n + turned + (kSquareFiles + (scatters ? kSquareMap : 0)) * square + kept.ending;
   return std::max({traced + kTarget * n, rounds ? bounced : 0, last - given_back, denoised,
                    files - given_back});
 }
@@ -75,7 +98,7 @@ bool looks_at_places(const BakeSettings& settings) {
 
 uint64_t bytes_besides_hits(const SolveInput& in, const BakeSettings& settings, size_t layers) {
   const uint64_t n = in.elements.size(), side = uint64_t(in.map.resolution), square = side * side;
-  uint64_t bytes = settings.solver == "gather" ? bytes_of_gather(in, settings, n, square)
+  uint64_t bytes = settings.solver == "gather" ? bytes_of_gather(in, settings, n, square, layers)
                                                : bytes_of_others(settings, n, square);
   bytes += layers * kLayer * n + (layers > 0 ? kSquareLayerMap : 0) * square;
   return resident_bytes() + bytes;

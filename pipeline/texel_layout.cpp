@@ -4,6 +4,7 @@
 
 #include "atlas/cut_charts.h"
 #include "base/check.h"
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "scene/drawn_triangle.h"
 #include "transport/barriers.h"
@@ -128,7 +129,8 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
   }
   for (size_t i = 0; i < scene.instances.size(); ++i)
     scene.instances[i].mesh = kept.mesh_of_instance[i];
-  // Where texels lie in their triangles does not depend on where those are.
+  // Samples that were moved out of solids begin at their own places again where things have moved.
+  if (!same_places) free_memory(kept.texels);
   atlas::TexelMap map = same_places ? atlas::map_of(kept.atlas, std::move(kept.texels))
                                     : atlas::rasterise(scene, kept.atlas);
   progress.begin("build ray tracer", 0);

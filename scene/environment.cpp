@@ -22,7 +22,7 @@ inline Vec2 place_of(float rotation_rad, Vec3 d) {
 
 inline uint32_t pixel_at(int width, int height, Vec2 uv) {
   const int x = std::min(int(uv.x * float(width)), width - 1);
-  const int y = std::min(int(uv.y * float(height)), height - 1);
+  const int y = std::clamp(int(uv.y * float(height)), 0, height - 1);  // NaN is anything
   return uint32_t(y) * uint32_t(width) + uint32_t(x);
 }
 

@@ -299,7 +299,7 @@ TEST(SameBitsSlow, WithHitsOnTheDisk) {
 // What is there per texel outweighs the rest of the process by far here.
 TEST(MaxMemorySlow, TheLeastThatWorksIsKept) {
   const std::string scene = scene_file("cornell-box.glb");
-  for (const char* more : {"", "--denoise "}) {
+  for (const char* more : {"", "--denoise ", "--keep "}) {
     const ScratchFolder s;
     const std::string options = std::string("--resolution 1024 --samples 4 ") + more;
     const std::string least = least_memory(scene, s.path, options);

@@ -160,9 +160,7 @@ void BakeCache::give_up(std::string reason, Progress& progress) {
   progress.note("warning: " + failure_);
 }
 
-void BakeCache::solved() {
-  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
+void BakeCache::solved() { seconds_ = seconds_since(start_); }
 
 void BakeCache::finish(Progress& progress) {
   if (!rays_ || !kept_) return;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/free_memory.h"
 #include "base/parallel.h"
 
 namespace luxel::pipeline {
@@ -196,7 +197,7 @@ std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays
   if (update.surfaces_anew || !same_layers) return out;
   out.direct = std::move(kept.direct), out.levels = std::move(kept.levels);
   if (!as_before(update.scale)) rescale(update.scale, out.direct);
-  if (!layers) out.direct.by_layer = {};
+  if (!layers) free_memory(out.direct.by_layer);
   out.lamps_anew = only(in.lights, update.lamps_anew);
   return out;
 }

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "solve/gather/neighbours.h"
 
 namespace luxel::gather {
 namespace {
@@ -46,13 +47,10 @@ std::vector<uint32_t> charts_of(const atlas::Atlas& atlas, const atlas::TexelMap
 /// Those of the same chart, itself included.
 Sums sums_around(const atlas::TexelMap& map, std::span<const uint32_t> chart,
                  const VariancePair& pair, size_t i) {
-  const int side = map.resolution, x = int(map.texels[i].x), y = int(map.texels[i].y);
   Sums sums;
-  for (int v = std::max(0, y - kReach); v <= std::min(side - 1, y + kReach); ++v) {
-    const uint32_t* row = map.texel_at.data() + size_t(v) * size_t(side);
-    for (int u = std::max(0, x - kReach); u <= std::min(side - 1, x + kReach); ++u)
-      if (row[u] != atlas::kNone && chart[row[u]] == chart[i]) sums.add(pair, row[u]);
-  }
+  for_neighbours(map, i, kReach, [&](uint32_t j) {
+    if (chart[j] == chart[i]) sums.add(pair, j);
+  });
   return sums;
 }
 

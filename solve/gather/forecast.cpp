@@ -8,6 +8,7 @@
 #include "base/free_memory.h"
 #include "base/parallel.h"
 #include "solve/gather/adaptive.h"
+#include "solve/gather/neighbours.h"
 
 namespace luxel::gather {
 namespace {
@@ -52,16 +53,10 @@ namespace {
 std::vector<uint32_t> within(const atlas::TexelMap& map, std::span<const uint32_t> tried) {
   std::vector<uint8_t> is_tried(map.texels.size());
   for (const uint32_t i : tried) is_tried[i] = 1;
-  const int side = map.resolution;
   std::vector<uint32_t> out;
   for (const uint32_t i : tried) {
-    const int x0 = int(map.texels[i].x), y0 = int(map.texels[i].y);
     bool whole = true;
-    for (int y = std::max(0, y0 - 1); y <= std::min(side - 1, y0 + 1); ++y)
-      for (int x = std::max(0, x0 - 1); x <= std::min(side - 1, x0 + 1); ++x) {
-        const uint32_t j = map.texel_at[size_t(y) * size_t(side) + size_t(x)];
-        whole = whole && (j == atlas::kNone || is_tried[j]);
-      }
+    for_neighbours(map, i, 1, [&](uint32_t j) { whole = whole && is_tried[j]; });
     if (whole) out.push_back(i);
   }
   return out;

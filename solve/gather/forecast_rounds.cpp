@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "solve/gather/adaptive.h"
+#include "solve/gather/neighbours.h"
 
 namespace luxel::gather {
 namespace {
@@ -33,17 +34,6 @@ struct Trial {
   }
   uint64_t rays() const { return direct.rays + hits.rays; }
 };
-
-/// The elements at most `reach` texels from element i.
-template <class Work>
-void for_neighbours(const atlas::TexelMap& map, uint32_t i, int reach, const Work& work) {
-  const int side = map.resolution, x = int(map.texels[i].x), y = int(map.texels[i].y);
-  for (int v = std::max(0, y - reach); v <= std::min(side - 1, y + reach); ++v)
-    for (int u = std::max(0, x - reach); u <= std::min(side - 1, x + reach); ++u) {
-      const uint32_t j = map.texel_at[size_t(v) * size_t(side) + size_t(u)];
-      if (j != atlas::kNone) work(j);
-    }
-}
 
 /// Means over neighbours of the same chart, those inside of solids left out.
 std::vector<Rgb> smooth(const transport::TexelScene& world, const Gather& light) {

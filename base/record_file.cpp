@@ -18,7 +18,7 @@ namespace {
 
 /// The number is that of the format; the line's end shows what a transfer as text has done.
 constexpr std::array<char, 16> kMagic{'l', 'u', 'x', 'e', 'l', ' ', 'r',  'e',
-                                      'c', 'o', 'r', 'd', 's', '1', '\r', '\n'};
+                                      'c', 'o', 'r', 'd', 's', '2', '\r', '\n'};
 
 struct FileStart {
   std::array<char, 16> magic = kMagic;
@@ -135,7 +135,7 @@ Status RecordFile::read_header(uint64_t file_bytes) {
   if (const int error = read_at(file_, 0, std::span(&start, 1)))
     return io_error("read", path_, error);
   if (start.magic != kMagic)
-    return damaged(path_, 0, "it does not begin like a file of records, format 1");
+    return damaged(path_, 0, "it does not begin like a file of records, format 2");
   if (start.digest != digest_of_start(start))
     return damaged(path_, 0, "its start is not as written");
   if (start.header_bytes > file_bytes - sizeof(start))

@@ -155,7 +155,7 @@ TEST_F(RecordFiles, CheckedWhenReadLoseOneRecordToADamagedByte) {
 TEST_F(RecordFiles, OfOthersAreRefused) {
   EXPECT_THAT(RecordFile::open(path_).error().message, HasSubstr("No such file"));
   write(Bytes(4096, std::byte{0}));
-  EXPECT_THAT(RecordFile::open(path_).error().message, HasSubstr("format 1"));
+  EXPECT_THAT(RecordFile::open(path_).error().message, HasSubstr("format 2"));
   EXPECT_FALSE(RecordFile::open(folder_));
   const auto made = RecordFile::create(folder_ / "none" / "work", "");
   ASSERT_FALSE(made);

@@ -40,7 +40,7 @@ Ray CameraRays::through(float x, float y) const {
 std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer,
                               std::span<Ray> rays) {
   std::vector<Hit> hits(rays.size());
-  tracer.closest_hits(rays, hits);
+  tracer.closest_hits(rays, hits, Packets::bundles);
   std::vector<size_t> open;
   for (size_t i = 0; i < hits.size(); ++i)
     if (invisible(scene, hits[i])) open.push_back(i);

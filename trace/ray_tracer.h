@@ -33,7 +33,7 @@ struct Hit {
 /// What the tracer may expect of 16 rays that follow each other in a batch.
 enum class Packets : uint8_t {
   any,
-  bundles  ///< one origin and nearly one direction, like neighbouring pixels: twice as fast
+  bundles  ///< near to each other all the way, like neighbouring pixels: twice as fast
 };
 
 /// Two levels: a mesh with several instances is stored once, with its instances on top, in scenes

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// Of the cache's files; goes up when what they hold changes.
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 constexpr RecordKey kRest{0, 0};
 
 /// Settings that leave gathered light as it is; those of outside light are in the scene.

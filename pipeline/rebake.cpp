@@ -180,8 +180,12 @@ std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays
   const float margin_m = 1e-4f * scene::world_bounds(in.scene).diagonal();
   // What rays escape through may have had another colour.
   const bool seen_otherwise = change.surroundings || !change.reshaped.empty();
-  out.rays = {&rays, with_margin(change.boxes, margin_m), moved_elements(kept.places, in.elements),
-              seen_otherwise};
+  out.rays.file = &rays;
+  out.rays.boxes = with_margin(change.boxes, margin_m);
+  out.rays.moved = moved_elements(kept.places, in.elements);
+  out.rays.surroundings = seen_otherwise;
+  out.rays.same_light = !update.surfaces_anew && update.lamps_anew.empty() &&
+                        as_before(update.scale) && change.recoloured.empty() && !seen_otherwise;
   out.irradiance = std::move(kept.light.irradiance);
   out.relative_error = kept.light.relative_error;
   if (!update.scale.empty()) {

@@ -35,9 +35,10 @@ Status add_lamps(const transport::TexelScene& world, const transport::Supersampl
   return {};
 }
 
-/// Elements whose direct light may be another.
-std::vector<uint32_t> touched(const transport::TexelScene& world, const EarlierRays& rays) {
-  std::vector<float> reach_m(world.elements.size());
+/// Elements whose direct light may be another; and notes near which it is not.
+std::vector<uint32_t> touched(const transport::TexelScene& world, EarlierRays& rays) {
+  std::vector<float>& reach_m = rays.same_light_m;
+  reach_m.resize(world.elements.size());
   for (size_t i = 0; i < reach_m.size(); ++i) {
     const scene::SurfacePoint& p = world.map.texels[i].sample;
     reach_m[i] =
@@ -46,8 +47,10 @@ std::vector<uint32_t> touched(const transport::TexelScene& world, const EarlierR
   const std::vector<uint8_t> reached =
       transport::elements_in_reach(world.scene, world.elements, reach_m, world.lights, rays.boxes);
   std::vector<uint32_t> out;
-  for (uint32_t i = 0; i < reached.size(); ++i)
+  for (uint32_t i = 0; i < reached.size(); ++i) {
+    if (reached[i]) reach_m[i] = -1;
     if (reached[i] || rays.moved[i]) out.push_back(i);
+  }
   return out;
 }
 

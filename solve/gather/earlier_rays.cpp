@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/bytes.h"
 
@@ -14,8 +15,9 @@ bool is_sound(const RayTile& rays, uint32_t places) {
   for (const RayEnd e : rays.ends) end = std::max(end, uint8_t(e));
   StoredHit farthest;
   for (const StoredHit& hit : rays.hits.entries) farthest.bits = std::max(farthest.bits, hit.bits);
+  const auto followed = size_t(std::ranges::count(rays.ends, RayEnd::followed));
   return end <= uint8_t(RayEnd::followed) && farthest.base() < places &&
-         std::ranges::is_sorted(rays.hits.end);
+         followed == rays.followed.size() && std::ranges::is_sorted(rays.hits.end);
 }
 
 /// Whether the half-line meets the box.
@@ -68,15 +70,17 @@ const RayTile* find_rays(const RecordFile& file, uint64_t round, uint64_t tile, 
   if (!file.read_whole({round, tile}, buffer.bytes)) return nullptr;
   ByteReader in{buffer.bytes};
   RayTile& out = buffer.rays;
-  out.hits.end.resize(elements), out.escaped.resize(elements);
-  in.get(std::span(out.hits.end)), in.get(std::span(out.escaped));
-  const uint64_t rays = in.get_value<uint64_t>();
+  out.hits.end.resize(elements), out.escaped.resize(elements), out.near_m.resize(elements);
+  in.get(std::span(out.hits.end)), in.get(std::span(out.escaped)), in.get(std::span(out.near_m));
+  const uint64_t rays = in.get_value<uint64_t>(), followed = in.get_value<uint64_t>();
   // Each for itself first: their sum could wrap around.
-  if (!in.ok || rays > in.bytes.size() ||
-      in.bytes.size() - rays != size_t(out.hits.end.back()) * sizeof(StoredHit))
+  if (!in.ok || rays > in.bytes.size() || followed > rays ||
+      in.bytes.size() - rays !=
+          followed * sizeof(FollowedRay) + size_t(out.hits.end.back()) * sizeof(StoredHit))
     return nullptr;
-  out.ends.resize(rays), out.hits.entries.resize(out.hits.end.back());
-  in.get(std::span(out.ends)), in.get(std::span(out.hits.entries));
+  out.ends.resize(rays), out.followed.resize(followed);
+  out.hits.entries.resize(out.hits.end.back());
+  in.get(std::span(out.ends)), in.get(std::span(out.followed)), in.get(std::span(out.hits.entries));
   return is_sound(out, places) ? &out : nullptr;
 }
 
@@ -84,12 +88,15 @@ void keep_rays(PartStore* store, uint64_t round, uint64_t tile, const RayTile& r
   const KeptStage kept{store, round};
   if (!kept.wants()) return;
   ByteWriter out;
-  out.bytes.reserve(std::as_bytes(std::span(rays.hits.end)).size() +
-                    std::as_bytes(std::span(rays.escaped)).size() + sizeof(uint64_t) +
-                    rays.ends.size() + rays.hits.entries.size() * sizeof(StoredHit));
+  const size_t per_element = sizeof(rays.hits.end[0]) + sizeof(EscapedLight) + sizeof(float);
+  out.bytes.reserve(rays.hits.end.size() * per_element + 2 * sizeof(uint64_t) + rays.ends.size() +
+                    rays.followed.size() * sizeof(FollowedRay) +
+                    rays.hits.entries.size() * sizeof(StoredHit));
   out.put(std::span(rays.hits.end)), out.put(std::span(rays.escaped));
-  out.put_value(uint64_t(rays.ends.size()));
-  out.put(std::span(rays.ends)), out.put(std::span(rays.hits.entries));
+  out.put(std::span(rays.near_m));
+  out.put_value(uint64_t(rays.ends.size())), out.put_value(uint64_t(rays.followed.size()));
+  out.put(std::span(rays.ends)), out.put(std::span(rays.followed));
+  out.put(std::span(rays.hits.entries));
   kept.keep(tile, out.bytes);
 }
 
@@ -109,18 +116,51 @@ void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
   }
 }
 
-uint64_t cells_towards(std::span<const Box3> boxes, Vec3 from, Vec3 normal,
+size_t next_followed(std::span<const RayEnd> ends, size_t from) {
+  if (from >= ends.size()) return ends.size();
+  const void* found = std::memchr(ends.data() + from, int(RayEnd::followed), ends.size() - from);
+  return found ? size_t(static_cast<const RayEnd*>(found) - ends.data()) : ends.size();
+}
+
+void mark_followed(std::span<const Box3> boxes, Vec3 from, float near_m,
+                   std::span<const RayEnd> ends, std::span<const FollowedRay> followed,
+                   std::span<uint8_t> again) {
+  // A way that starts within near_m and meets a box leads in the same direction from `from` into
+  // the box grown by as much; and by what is not known of the direction.
+  const auto may_meet = [&](const Box3& box, Vec3 direction) {
+    const float farthest_m = length(box.centre() - from) + box.diagonal();
+    const float r = near_m + 2 * kWayError * farthest_m;
+    return meets({box.lower - Vec3{r, r, r}, box.upper + Vec3{r, r, r}}, from, direction);
+  };
+  auto next = followed.begin();
+  for (size_t k = next_followed(ends, 0); k < ends.size(); k = next_followed(ends, k + 1)) {
+    const FollowedWay way = (next++)->way();
+    if (!way.is_plain ||
+        std::ranges::any_of(boxes, [&](const Box3& box) { return may_meet(box, way.direction); }))
+      again[k] = 1;
+  }
+}
+
+uint64_t cells_towards(std::span<const Box3> boxes, Vec3 from, Vec3 normal, Vec3 geometric_normal,
                        const std::array<Cone, kCells>& cells) {
   static_assert(kCells == 64);
   const Frame frame = frame_around(normal);
   uint64_t out = 0;
+  const auto add = [&](Cone cone) {
+    cone.axis = {dot(frame.tangent, cone.axis), dot(frame.bitangent, cone.axis),
+                 dot(frame.normal, cone.axis)};
+    for (size_t c = 0; c < kCells; ++c)
+      if (cells[c].may_meet(cone)) out |= uint64_t(1) << c;
+  };
+  const bool bent = !(normal == geometric_normal);
   for (const Box3& box : boxes) {
     std::optional<Cone> cone = cone_to(box, from);
     if (!cone) return ~uint64_t(0);
-    cone->axis = {dot(frame.tangent, cone->axis), dot(frame.bitangent, cone->axis),
-                  dot(frame.normal, cone->axis)};
-    for (size_t c = 0; c < kCells; ++c)
-      if (cells[c].may_meet(*cone)) out |= uint64_t(1) << c;
+    add(*cone);
+    if (!bent) continue;
+    // A mirrored ray meets the box where the ray itself would meet its image.
+    cone->axis = cone->axis - geometric_normal * (2 * dot(cone->axis, geometric_normal));
+    add(*cone);
   }
   return out;
 }

@@ -9,6 +9,7 @@
 
 #include "base/part_store.h"
 #include "solve/gather/element_rays.h"
+#include "solve/gather/followed_rays.h"
 #include "solve/gather/hit_store.h"
 #include "trace/ray_tracer.h"
 
@@ -42,9 +43,13 @@ struct EscapedLight {
 struct RayTile {
   /// Element after element, each's rays in the order of RayBatch.
   std::vector<RayEnd> ends;
-  /// Per element, those of its hits in the order of `ends`, and then those of rays followed on.
+  /// Per element, those of its hits in the order of `ends`, and then, in that order, too, those of
+  /// rays followed on.
   HitTile hits;
   std::vector<EscapedLight> escaped;  ///< per element
+  std::vector<FollowedRay> followed;  ///< one for each such end
+  /// Per element, how far from where its rays start the plain ones of `followed` met something [m].
+  std::vector<float> near_m;
 };
 
 /// Rounds of a finished bake in a file of records: of each round, by its number, its tiles by
@@ -54,6 +59,12 @@ struct EarlierRays {
   std::vector<Box3> boxes;     ///< where rays may meet something else than then [m]
   std::vector<uint8_t> moved;  ///< per element, 1: it lies elsewhere, and none of its rays is known
   bool surroundings = false;   ///< rays that escaped see something else than then
+  /// Reflectances and all that shines are as they were: only something that lies elsewhere can
+  /// change what rays bring that are followed on.
+  bool same_light = false;
+  /// With same_light, per element: so near to it the same light arrives from lamps [m]; < 0: not
+  /// even there; empty: it is not known where.
+  std::vector<float> same_light_m;
 };
 inline constexpr uint64_t kSamplesPart = UINT64_MAX;
 
@@ -79,9 +90,19 @@ void keep_samples(PartStore* store, uint64_t round, std::span<const uint16_t> sa
 void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
                std::span<const uint32_t> which, std::span<uint8_t> again);
 
-/// Cells of directions (element_rays.h) in which rays from a place, about `normal`, may meet a box,
-/// as one bit each.
-uint64_t cells_towards(std::span<const Box3> boxes, Vec3 from, Vec3 normal,
+/// The first ray from `from` on that was followed on; ends.size() where there is none.
+size_t next_followed(std::span<const RayEnd> ends, size_t from);
+
+/// Sets again[k] to 1 for those of an element's rays, which start at `from`, that were followed on
+/// and took another way than a plain one, or one that may meet one of the boxes after what it met
+/// within near_m. `followed` are those of `ends`.
+void mark_followed(std::span<const Box3> boxes, Vec3 from, float near_m,
+                   std::span<const RayEnd> ends, std::span<const FollowedRay> followed,
+                   std::span<uint8_t> again);
+
+/// Cells of directions (element_rays.h) whose rays from a place, about `normal` and mirrored above
+/// the triangle, may meet a box, as one bit each.
+uint64_t cells_towards(std::span<const Box3> boxes, Vec3 from, Vec3 normal, Vec3 geometric_normal,
                        const std::array<Cone, kCells>& cells);
 
 }  // namespace luxel::gather

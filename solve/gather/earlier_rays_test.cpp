@@ -146,26 +146,30 @@ TEST(MarkRays, LooksOnlyAtThoseThatAreAskedFor) {
 /// An element that looks at a box, and its rays.
 struct Watched {
   Look look;
-  Vec3 normal;
+  Vec3 normal, geometric;
   RayBatch batch;
 };
-Watched watch(RandomStream& random) {
-  Watched w{random_look(random), {}, {}};
-  w.normal = normalize(Vec3{random.next(), random.next(), random.next()} - Vec3{0.5f, 0.5f, 0.5f});
-  fill_rays(w.look.from, w.normal, w.normal, hash64(7, uint64_t(1e6f * random.next())), {0, 256},
+/// `bent`: how far its normal is from that of the triangle, about.
+Watched watch(RandomStream& random, float bent = 0) {
+  Watched w{random_look(random), {}, {}, {}};
+  const auto any = [&] { return Vec3{random.next(), random.next(), random.next()}; };
+  w.normal = normalize(any() - Vec3{0.5f, 0.5f, 0.5f});
+  w.geometric = bent > 0 ? normalize(w.normal + (any() - Vec3{0.5f, 0.5f, 0.5f}) * bent) : w.normal;
+  fill_rays(w.look.from, w.normal, w.geometric, hash64(7, uint64_t(1e6f * random.next())), {0, 256},
             w.batch);
   return w;
 }
 
-// Each ray that meets a box is in a cell that may; and of those of small boxes far away most cells
-// are free.
+// Each ray that meets a box is in a cell that may, also where some are mirrored above the triangle;
+// and of those of small boxes far away most cells are free.
 TEST(CellsTowards, HoldEveryRayThatMeetsABox) {
   RandomStream random{13};
   const auto cones = cell_cones();
   size_t met = 0, small = 0, bits = 0;
   for (int k = 0; k < 2000; ++k) {
-    const Watched w = watch(random);
-    const uint64_t cells = cells_towards(std::span(&w.look.box, 1), w.look.from, w.normal, cones);
+    const Watched w = watch(random, k % 2 == 0 ? 0.0f : 2.0f);
+    const uint64_t cells =
+        cells_towards(std::span(&w.look.box, 1), w.look.from, w.normal, w.geometric, cones);
     for (size_t r = 0; r < w.batch.rays.size(); ++r) {
       if (!meets_exactly(w.look.box, w.batch.rays[r], 0)) continue;
       ++met;
@@ -215,6 +219,8 @@ constexpr size_t kElements = 3;
 constexpr uint32_t kPlaces = 1000;
 RayTile some_tile() {
   RayTile out;
+  out.followed = {FollowedRay::pack({1, 2, 3}, {true, {0, 0.6f, -0.8f}, true, true})};
+  out.near_m = {0.25f, 0, 0};
   out.ends = {RayEnd::hit, RayEnd::escaped, RayEnd::followed, RayEnd::behind, RayEnd::back};
   out.hits.end = {2, 2, 3};  // that of the ray followed on, too
   for (const uint32_t base : {0u, 17u, kPlaces - 1})
@@ -287,13 +293,17 @@ TEST_F(KeptRays, AreFoundAsTheyWere) {
   EXPECT_FLOAT_EQ(found->escaped[0].luminance2, first * first + second * second);
   EXPECT_FLOAT_EQ(found->escaped[0].second_luminance, second);
   EXPECT_EQ(found->escaped[2].sum, Rgb{});
+  ASSERT_EQ(found->followed.size(), 1u);
+  EXPECT_EQ(found->followed[0].light, (Rgb{1, 2, 3}));
+  EXPECT_EQ(found->followed[0].bits, tile.followed[0].bits);
+  EXPECT_EQ(found->near_m, tile.near_m);
   EXPECT_FALSE(found_at(file, 2, 6)) << "of another tile";
   EXPECT_FALSE(found_at(file, 1, 7)) << "of another round";
 }
 
 TEST_F(KeptRays, OfATileWithoutAnyAreFound) {
   RayTile tile;
-  tile.hits.end = {0, 0, 0}, tile.escaped.resize(kElements);
+  tile.hits.end = {0, 0, 0}, tile.escaped.resize(kElements), tile.near_m.resize(kElements);
   const auto found = found_in(bytes_of(tile));
   ASSERT_TRUE(found);
   EXPECT_TRUE(found->ends.empty() && found->hits.entries.empty());
@@ -323,7 +333,11 @@ TEST_F(KeptRays, ThatEndWhereNothingIsAreRefused) {
   EXPECT_TRUE(hit_at(kPlaces - 1));
   EXPECT_FALSE(hit_at(kPlaces));
   EXPECT_FALSE(found_of([](RayTile& t) { t.hits.entries[2].bits = UINT64_MAX; }));
-  EXPECT_TRUE(found_of([](RayTile& t) { t.ends[4] = RayEnd::followed; }));
+  EXPECT_TRUE(found_of([](RayTile& t) { std::swap(t.ends[4], t.ends[2]); }));
+  EXPECT_FALSE(found_of([](RayTile& t) { t.ends[4] = RayEnd::followed; }))
+      << "of one nothing is known";
+  EXPECT_FALSE(found_of([](RayTile& t) { t.ends[2] = RayEnd::back; }))
+      << "of one too much is known";
   EXPECT_FALSE(found_of([](RayTile& t) { t.ends[4] = RayEnd(uint8_t(RayEnd::followed) + 1); }));
   EXPECT_FALSE(found_of([](RayTile& t) { t.ends[0] = RayEnd(255); }));
   EXPECT_FALSE(found_of([](RayTile& t) { t.hits.end = {3, 2, 3}; })) << "before they begin";
@@ -334,14 +348,21 @@ TEST_F(KeptRays, ThatEndWhereNothingIsAreRefused) {
 TEST_F(KeptRays, WithImpossibleNumbersAreRefused) {
   const Bytes bytes = bytes_of(some_tile());
   const size_t end_at = (kElements - 1) * sizeof(uint32_t);
-  const size_t rays_at = kElements * (sizeof(uint32_t) + sizeof(EscapedLight));
-  const size_t rest = bytes.size() - rays_at - sizeof(uint64_t);
+  const size_t rays_at = kElements * (sizeof(uint32_t) + sizeof(EscapedLight) + sizeof(float));
+  const size_t followed_at = rays_at + sizeof(uint64_t);
+  const size_t rest = bytes.size() - rays_at - 2 * sizeof(uint64_t);
   for (const uint32_t hits : {4u, 1000u, UINT32_MAX}) {
     const uint64_t rays = rest - uint64_t(hits) * sizeof(StoredHit);  // wraps
     Bytes damaged = bytes;
     std::memcpy(damaged.data() + end_at, &hits, sizeof(hits));
     std::memcpy(damaged.data() + rays_at, &rays, sizeof(rays));
     EXPECT_FALSE(found_in(damaged)) << hits;
+  }
+  // Of a power of two bytes each, 2^60 are none and 2^60 + 1 are one.
+  for (const uint64_t followed : {uint64_t(1) << 60, (uint64_t(1) << 60) + 1, UINT64_MAX}) {
+    Bytes damaged = bytes;
+    std::memcpy(damaged.data() + followed_at, &followed, sizeof(followed));
+    EXPECT_FALSE(found_in(damaged)) << followed;
   }
 }
 
@@ -367,6 +388,72 @@ TEST_F(KeptRays, ComeInRoundsWithTheirSamples) {
   EXPECT_FALSE(earlier_rounds(file, kElements + 1));
   const RecordFile none = kept([&](PartStore& store) { keep_rays(&store, 0, 0, some_tile()); });
   EXPECT_FALSE(earlier_rounds(none, kElements)) << "of no finished round";
+}
+
+// Directions are known to kWayError, and 0 is 0; flags are what they were.
+TEST(FollowedRay, IsUnpackedAsItWasPacked) {
+  RandomStream random{15};
+  for (uint32_t k = 0; k < 1000; ++k) {
+    FollowedWay way{k % 2 == 0, {}, (k & 2) != 0, (k & 4) != 0};
+    const auto component = [&] { return 2 * random.next() - 1; };
+    if (k > 8) way.direction = normalize(Vec3{component(), component(), component()});
+    if (k % 100 == 9) way.direction = {0, -1, 0};
+    const FollowedRay ray = FollowedRay::pack({1, 2, float(k)}, way);
+    const FollowedWay back = ray.way();
+    EXPECT_EQ(ray.light, (Rgb{1, 2, float(k)}));
+    EXPECT_EQ(back.is_plain, way.is_plain);
+    EXPECT_EQ(back.has_hit, way.has_hit);
+    EXPECT_EQ(ray.has_hit(), way.has_hit);
+    EXPECT_EQ(back.second_half, way.second_half);
+    if (!way.is_plain) continue;
+    const Vec3 d = back.direction - way.direction;
+    // And the rounding of floats around 1.
+    EXPECT_LE(max_component(max(d, -d)), kWayError + 1e-6f);
+    EXPECT_EQ(back.direction == Vec3{}, k <= 8);
+  }
+}
+
+// Ways that start within some distance of the element: each that meets a box is marked, most others
+// are not.
+TEST(MarkFollowed, HoldsEveryWayThatMeetsABox) {
+  RandomStream random{16};
+  const auto component = [&] { return 2 * random.next() - 1; };
+  size_t met = 0, marked = 0, all = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const Look look = random_look(random);
+    const float near_m = 0.05f * random.next();
+    std::vector<RayEnd> ends;
+    std::vector<FollowedRay> followed;
+    std::vector<uint8_t> meets;
+    for (int r = 0; r < 16; ++r) {
+      ends.push_back(r % 3 == 0 ? RayEnd::hit : RayEnd::followed);
+      meets.push_back(0);
+      if (ends.back() == RayEnd::hit) continue;
+      const Vec3 aside = normalize(Vec3{component(), component(), component()});
+      const Vec3 direction = normalize(Vec3{component(), component(), component()});
+      followed.push_back(FollowedRay::pack({}, {true, direction, false, false}));
+      const trace::Ray way{look.from + aside * (near_m * random.next()), 0, direction, INFINITY};
+      meets.back() = meets_exactly(look.box, way, 0);
+    }
+    std::vector<uint8_t> again(ends.size(), 0);
+    mark_followed(std::span(&look.box, 1), look.from, near_m, ends, followed, again);
+    for (size_t r = 0; r < ends.size(); ++r) {
+      EXPECT_LE(meets[r], again[r]);
+      EXPECT_TRUE(again[r] == 0 || ends[r] == RayEnd::followed);
+      met += meets[r], marked += again[r], all += ends[r] == RayEnd::followed;
+    }
+  }
+  EXPECT_GT(met, 1000u);
+  EXPECT_LT(marked - met, all / 10);
+}
+
+TEST(MarkFollowed, WaysThatAreNotKnownAre) {
+  const std::vector<RayEnd> ends{RayEnd::followed, RayEnd::escaped, RayEnd::followed};
+  const std::vector<FollowedRay> followed{FollowedRay::pack({}, {true, {1, 0, 0}, true, false}),
+                                          FollowedRay::pack({}, {false, {1, 0, 0}, true, false})};
+  std::vector<uint8_t> again(3, 0);
+  mark_followed({}, {}, 0.1f, ends, followed, again);
+  EXPECT_EQ(again, (std::vector<uint8_t>{0, 0, 1}));
 }
 
 // Light that is taken away again is gone.

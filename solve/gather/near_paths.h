@@ -25,10 +25,13 @@ std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas&
 /// What is left of a ray of an element.
 struct NearPath {
   uint32_t sample = 0;      ///< of its element: its random numbers are the same in any round
+  uint32_t ray = 0;         ///< of its element's batch
   Rgb throughput{1, 1, 1};  ///< of reflectances and glass, over the chances to go on
   Rgb light{};              ///< radiance that it has brought so far
   trace::Hit hit;           ///< where it is
-  Vec3 direction;           ///< of its last ray
+  Vec3 direction;           ///< of its last ray; before the first step it has none
+  float first_m = 0;        ///< how long its element's own ray was
+  bool is_plain = true;     ///< it met a front there, and has taken one step at most
 };
 
 /// What paths look at.
@@ -75,10 +78,12 @@ uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, cons
     rays += step_near(world, seed + depth, work);
     work.paths.clear();
     for (const NearPath& path : work.going_on) {
-      if (goes_on(world, path))
-        work.paths.push_back(path);
-      else
+      if (!goes_on(world, path)) {
         end(path);
+        continue;
+      }
+      work.paths.push_back(path);
+      work.paths.back().is_plain = false;
     }
   }
   return rays;

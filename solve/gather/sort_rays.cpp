@@ -90,8 +90,10 @@ RayEnd end_of(const RayWorld& world, RayWork& work, size_t k) {
   if (hit.back_face && !scene::reflects_from_behind(scene::material_at(world.scene, hit.point())))
     return RayEnd::back;
   if (world.near != nullptr) {
-    const NearPath path{
-        work.batch.sample[k], work.tint.empty() ? Rgb{1, 1, 1} : work.tint[k], {}, hit, {}};
+    NearPath path;
+    path.sample = work.batch.sample[k], path.ray = uint32_t(k);
+    if (!work.tint.empty()) path.throughput = work.tint[k];
+    path.hit = hit, path.first_m = hit.t, path.is_plain = !hit.back_face;
     if (goes_on(*world.near, path)) {
       work.near.paths.push_back(path);
       return RayEnd::followed;
@@ -171,29 +173,80 @@ void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples sa
   add_escaped(world, escaped_light(world, work, samples, before, ends), element, out, tile);
 }
 
-uint64_t follow_on(const RayWorld& world, RayWork& work, size_t element, Samples samples,
-                   uint64_t seed, TracedHits& out, RayTile& tile) {
+namespace {
+
+/// Takes work.near.paths to where they end, into work.followed, in the order of rays.
+uint64_t follow_paths(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+                      uint64_t seed, TracedHits& out) {
+  work.followed.clear();
+  if (work.near.paths.empty()) return 0;
   if (world.layers)
     work.near.by_layer =
         std::span(out.sky_by_layer).subspan(element * world.layers->size(), world.layers->size());
-  return follow_near(*world.near, seed, work.near, [&](const NearPath& path) {
+  const uint64_t rays = follow_near(*world.near, seed, work.near, [&](const NearPath& path) {
     const bool second_half = samples.in_second_half(path.sample);
+    const bool alive = max_component(path.throughput) > 0, found = alive && path.hit.found();
     Rgb light = path.light;
-    const bool alive = max_component(path.throughput) > 0;
-    if (alive && !path.hit.found()) {
+    if (alive && !found) {
       const Rgb l =
           path.throughput * transport::soft_radiance(world.scene, world.around, path.direction);
       add_sky(world, l, element, out);
       light += l;
     }
-    add_light(light, second_half, element, out);
-    if (!alive || !path.hit.found()) return;
-    if (path.hit.back_face &&
-        !scene::reflects_from_behind(scene::material_at(world.scene, path.hit.point())))
-      return;
-    const uint32_t tint = pack_tint(path.throughput, hash64(seed, path.sample ^ 0x4e37u));
-    tile.hits.entries.push_back(store(world.atlas, path.hit.point(), {tint, second_half}));
+    const bool has_hit =
+        found && (!path.hit.back_face ||
+                  scene::reflects_from_behind(scene::material_at(world.scene, path.hit.point())));
+    const FollowedWay way{path.is_plain, alive ? path.direction : Vec3{}, has_hit, second_half};
+    FollowedPath end{path.ray, path.first_m, FollowedRay::pack(light, way), {}};
+    if (has_hit)
+      end.hit =
+          store(world.atlas, path.hit.point(),
+                {pack_tint(path.throughput, hash64(seed, path.sample ^ 0x4e37u)), second_half});
+    work.followed.push_back(end);
   });
+  std::ranges::sort(work.followed, {}, &FollowedPath::ray);
+  return rays;
+}
+
+}  // namespace
+
+uint64_t follow_on(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+                   uint64_t seed, const EarlierElement* before, TracedHits& out, RayTile& tile) {
+  const uint64_t rays = follow_paths(world, work, element, samples, seed, out);
+  const std::span<const RayEnd> ends = std::span(tile.ends).last(samples.count());
+  float& near_m = tile.near_m.emplace_back();
+  const auto add = [&](const FollowedRay& ray, StoredHit hit) {
+    tile.followed.push_back(ray);
+    add_light(ray.light, ray.way().second_half, element, out);
+    if (ray.has_hit()) tile.hits.entries.push_back(hit);
+  };
+  std::span<const FollowedRay> known = before ? before->followed : std::span<const FollowedRay>{};
+  const auto known_hits = size_t(std::ranges::count_if(known, &FollowedRay::has_hit));
+  auto known_hit = before ? before->hits.end() - std::ptrdiff_t(known_hits)
+                          : std::span<const StoredHit>::iterator{};
+  if (!known.empty()) near_m = before->near_m;
+  const std::span<const RayEnd> known_ends = known.empty() ? ends : before->ends;
+  auto next = work.followed.begin();
+  const auto after = [&](size_t k) {
+    return std::min(next_followed(ends, k), next_followed(known_ends, k));
+  };
+  for (size_t k = after(0); k < ends.size(); k = after(k + 1)) {
+    const bool was = !known.empty() && known_ends[k] == RayEnd::followed;
+    if (ends[k] == RayEnd::followed) {
+      if (was && !work.marked[k]) {
+        add(known.front(), known.front().has_hit() ? *known_hit : StoredHit{});
+      } else if (next != work.followed.end() && next->ray == k) {
+        if (next->brought.way().is_plain) near_m = std::max(near_m, next->first_m);
+        add(next->brought, next->hit), ++next;
+      } else {
+        add({}, {});  // dropped: see Round::drop_enclosed_paths()
+      }
+    }
+    if (!was) continue;
+    if (known.front().has_hit()) ++known_hit;
+    known = known.subspan(1);
+  }
+  return rays;
 }
 
 }  // namespace luxel::gather

@@ -21,6 +21,14 @@ struct RayWorld {
   const transport::LightLayers* layers = nullptr;
 };
 
+/// A path of an element's batch that has been followed to its end.
+struct FollowedPath {
+  uint32_t ray = 0;  ///< of the batch
+  float first_m = 0;
+  FollowedRay brought;
+  StoredHit hit;
+};
+
 /// What some rays see outside.
 struct OutsideLook {
   std::vector<uint32_t> rays;  ///< of the batch
@@ -34,6 +42,7 @@ struct RayWork {
   std::vector<trace::Hit> hits;  ///< of the batch's rays, where they were traced
   std::vector<Rgb> tint;         ///< of what rays have passed; empty where nothing has a colour
   NearWork near;
+  std::vector<FollowedPath> followed;
   OutsideLook outside;
   /// Where rays of an earlier bake are known: those that may meet something else, which have a
   /// direction, and of them those that are traced again; ascending.
@@ -51,6 +60,9 @@ struct EarlierElement {
   /// Light of those that escaped, as they would see it now; null: not known, and all rays of the
   /// batch need a direction.
   const EscapedLight* escaped = nullptr;
+  /// Those of `ends` that were followed on, and RayTile::near_m; empty: all are followed on again.
+  std::span<const FollowedRay> followed{};
+  float near_m = 0;
 };
 
 /// The place of the map at a point of the scene.
@@ -64,8 +76,10 @@ void sort_rays(const RayWorld& world, RayWork& work, size_t element, Samples sam
 void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
                 const EarlierElement& before, TracedHits& out, RayTile& tile);
 
-/// Follows work.near.paths on. Returns the number of rays.
+/// Follows work.near.paths on, and adds to `tile` and the element's light what all its rays of that
+/// kind bring. Those that were not traced again bring what they brought in the earlier bake.
+/// `before`: null where all were traced. Returns the number of rays.
 uint64_t follow_on(const RayWorld& world, RayWork& work, size_t element, Samples samples,
-                   uint64_t seed, TracedHits& out, RayTile& tile);
+                   uint64_t seed, const EarlierElement* before, TracedHits& out, RayTile& tile);
 
 }  // namespace luxel::gather

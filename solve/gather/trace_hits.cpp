@@ -99,29 +99,31 @@ void trace_all(const trace::RayTracer& tracer, RayWork& work) {
   tracer.tint(work.batch.rays, work.hits, work.tint);
 }
 
-/// Finds the rays that may meet something else than in the earlier bake, and those that are
-/// followed on: what they bring depends on reflectances and lamps. Of rays that escaped through
-/// something coloured the colour is not known. All that do are in work.again then, and have
-/// directions in the batch, which is filled unless there are none.
+/// Finds the rays that may meet something else than in the earlier bake, and of those that were
+/// followed on the ones that may bring something else. Of rays that escaped through something
+/// coloured the colour is not known. All that do are in work.again then, and have directions in the
+/// batch, which is filled unless there are none.
 void Round::choose_again(size_t i, Vec3 origin, Samples samples, const EarlierElement& before,
                          RayWork& work) const {
   const Vec3 normal = elements.normal[i], geometric = elements.geometric_normal[i];
-  // Directions that are mirrored above the triangle are not where their cells are.
-  const uint64_t cells = normal == geometric && before.escaped
-                             ? cells_towards(earlier->boxes, origin, normal, cell_cones)
+  const uint64_t cells = before.escaped
+                             ? cells_towards(earlier->boxes, origin, normal, geometric, cell_cones)
                              : ~uint64_t(0);
   work.maybe.clear(), work.again.clear();
-  const bool tinted = tracer.has_tints();
-  const auto marked_at_once = [tinted](RayEnd end) {
-    return end == RayEnd::followed || (tinted && end == RayEnd::escaped);
-  };
-  if (cells == 0 && std::ranges::none_of(before.ends, marked_at_once)) return;
-  fill_samples(hash64(seed ^ 0x6a7e, i), samples, work.batch);
   work.marked.assign(samples.count(), 0);
-  for (uint32_t k = 0; k < samples.count(); ++k) {
-    if (marked_at_once(before.ends[k])) work.marked[k] = 1;
+  if (before.followed.empty())
+    for (size_t k = next_followed(before.ends, 0); k < before.ends.size();
+         k = next_followed(before.ends, k + 1))
+      work.marked[k] = 1;
+  else
+    mark_followed(earlier->boxes, origin, before.near_m, before.ends, before.followed, work.marked);
+  if (tracer.has_tints())
+    for (size_t k = 0; k < before.ends.size(); ++k)
+      if (before.ends[k] == RayEnd::escaped) work.marked[k] = 1;
+  if (cells == 0 && std::ranges::find(work.marked, 1) == work.marked.end()) return;
+  fill_samples(hash64(seed ^ 0x6a7e, i), samples, work.batch);
+  for (uint32_t k = 0; k < samples.count(); ++k)
     if (work.marked[k] || cells >> work.batch.cell[k] & 1) work.maybe.push_back(k);
-  }
   fill_directions(origin, normal, geometric, work.maybe, work.batch);
   mark_rays(earlier->boxes, work.batch.rays, work.maybe, work.marked);
   for (const uint32_t k : work.maybe)
@@ -151,7 +153,7 @@ void Round::trace_element(size_t i, const EarlierElement* before, RayWork& work,
                           TracedTile& tile) const {
   const Samples samples{out.samples[i], std::max(out.samples[i], target[i])};
   if (samples.count() == 0) {
-    tile.rays_met.escaped.emplace_back();
+    tile.rays_met.escaped.emplace_back(), tile.rays_met.near_m.emplace_back();
     return;
   }
   // What was there before is of the first half now.
@@ -174,8 +176,8 @@ void Round::trace_element(size_t i, const EarlierElement* before, RayWork& work,
   drop_enclosed_paths(i, work, out);
   tile.kept += samples.count() - traced;
   tile.rays += traced;
-  if (!work.near.paths.empty())
-    tile.rays += follow_on(world, work, i, samples, hash64(seed ^ 0x7ea4, i), out, tile.rays_met);
+  tile.rays +=
+      follow_on(world, work, i, samples, hash64(seed ^ 0x7ea4, i), before, out, tile.rays_met);
 }
 
 /// The most samples that the round adds to one element.
@@ -202,20 +204,24 @@ uint64_t planned_samples(std::span<const uint16_t> target, const TracedHits& hit
 /// Takes the rays of a tile's elements one after another from what an earlier bake knew.
 struct EarlierCursor {
   const RayTile* tile = nullptr;  ///< null: nothing is known
-  size_t next_ray = 0;
+  size_t next_ray = 0, next_followed = 0;
   EarlierElement of{};
 
   /// Those of the tile's k-th element, whose rays are `count`. False: they are not known.
   bool advance(size_t k, size_t count, bool knows_escaped) {
     if (tile == nullptr || next_ray + count > tile->ends.size()) return false;
     const uint32_t first = k == 0 ? 0 : tile->hits.end[k - 1];
-    of = {std::span(tile->ends).subspan(next_ray, count),
-          std::span(tile->hits.entries).subspan(first, tile->hits.end[k] - first),
-          knows_escaped ? &tile->escaped[k] : nullptr};
-    next_ray += count;
+    const auto of_ends = std::span(tile->ends).subspan(next_ray, count);
+    of = {of_ends, std::span(tile->hits.entries).subspan(first, tile->hits.end[k] - first),
+          knows_escaped ? &tile->escaped[k] : nullptr,
+          std::span(tile->followed)
+              .subspan(next_followed, size_t(std::ranges::count(of_ends, RayEnd::followed))),
+          tile->near_m[k]};
+    next_ray += count, next_followed += of.followed.size();
     const auto hits = std::ranges::count_if(
         of.ends, [](RayEnd end) { return end == RayEnd::hit || end == RayEnd::behind; });
-    return size_t(hits) <= of.hits.size();
+    const auto of_followed = std::ranges::count_if(of.followed, &FollowedRay::has_hit);
+    return size_t(hits + of_followed) == of.hits.size();
   }
 };
 
@@ -229,6 +235,7 @@ struct TileWork {
 void clear(TracedTile& tile) {
   RayTile& rays = tile.rays_met;
   rays.ends.clear(), rays.escaped.clear(), rays.hits.end.clear(), rays.hits.entries.clear();
+  rays.followed.clear(), rays.near_m.clear();
   tile.rays = tile.kept = 0;
 }
 
@@ -240,6 +247,14 @@ const RayTile* earlier_tile(const Round& round, size_t begin, size_t end, uint64
                                   end - begin, places_of(round.world.atlas), buffer);
   // Maybe of a round with other samples.
   return rays && rays->ends.size() == planned ? rays : nullptr;
+}
+
+/// Whether an element's rays that were followed on may bring what they brought, as far as lamps and
+/// reflectances are concerned. They are not told apart by layers.
+bool stay_followed(const Round& round, size_t element, float near_m) {
+  const EarlierRays& earlier = *round.earlier;
+  return earlier.same_light && !earlier.same_light_m.empty() && round.world.layers == nullptr &&
+         near_m <= earlier.same_light_m[element];
 }
 
 /// Traces the elements [begin, end) into buffers.tile, unless the work is cancelled.
@@ -261,6 +276,7 @@ void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers,
     const uint64_t samples = planned_samples(round.target, hits, i, i + 1);
     const bool known =
         before.advance(i - begin, samples, knows_escaped) && !round.earlier->moved[i];
+    if (known && !stay_followed(round, i, before.of.near_m)) before.of.followed = {};
     round.trace_element(i, known ? &before.of : nullptr, work, hits, tile);
     tile.rays_met.hits.end.push_back(uint32_t(tile.rays_met.hits.entries.size()));
     // Not for every element: the counter is shared by all threads.

@@ -111,7 +111,13 @@ class Reach {
  public:
   Reach(const scene::Scene& scene, const Lights& lights, std::span<const Box3> boxes)
       : lights_(lights), has_peaks_(!lights.around.peak.empty()) {
-    if (has_peaks_) peaks_ = cone_of_peaks(scene.environment, lights.around);
+    if (has_peaks_)
+      if (const auto cone = cone_of_peaks(scene.environment, lights.around))
+        peaks_ = directions_of(cone->axis, cone->half_angle);
+    for (const scene::PunctualLight& lamp : lights.punctual)
+      suns_.push_back(lamp.kind == scene::PunctualLight::Kind::directional
+                          ? directions_of(-lamp.direction, double(lamp.angular_radius_rad))
+                          : Sides{});
     Box3 all = scene::world_bounds(scene);
     for (const Box3& box : boxes)
       if (!box.empty()) all.extend(box.lower), all.extend(box.upper);
@@ -129,7 +135,7 @@ class Reach {
  private:
   bool around_crosses(const Box3& place, const Box3& box) const {
     if (!has_peaks_) return false;
-    return !peaks_ || may_cross(place, peaks_->axis, float(peaks_->half_angle), box);
+    return !peaks_ || sweeps_over(place, *peaks_, HUGE_VAL, box);
   }
 
   bool lamps_cross(const Box3& place, const Box3& box) const {
@@ -137,7 +143,8 @@ class Reach {
         lights_.punctual.begin(), lights_.punctual.end(), [&](const scene::PunctualLight& lamp) {
           if (max_component(lamp.intensity) <= 0) return false;
           if (lamp.kind == scene::PunctualLight::Kind::directional)
-            return may_cross(place, -lamp.direction, lamp.angular_radius_rad, box);
+            return sweeps_over(place, suns_[size_t(&lamp - lights_.punctual.data())], HUGE_VAL,
+                               box);
           const float nearest =
               length(max(place.lower, min(lamp.position, place.upper)) - lamp.position);
           if (lamp.range_m > 0 && nearest > lamp.range_m) return false;
@@ -162,7 +169,8 @@ class Reach {
 
   const Lights& lights_;
   bool has_peaks_ = false;
-  std::optional<Cone> peaks_;  ///< nothing: from everywhere, where there are any
+  std::optional<Sides> peaks_;  ///< of directions; nothing: from everywhere, where there are any
+  std::vector<Sides> suns_;     ///< the same of each directional lamp
   std::vector<Box3> boxes_;
 };
 

@@ -21,6 +21,14 @@ struct BounceParams {
   /// With all bounces asked for: a guess of E per element to start from, as that of fewer samples;
   /// or nothing.
   std::span<const Rgb> start{};
+  /// With a start: by how much a sweep over all rays would change it, per element, but for those of
+  /// `unknown` (1 each); or nothing. It need not be exact: the light that is returned does not
+  /// depend on it but for its tolerance.
+  std::span<const Rgb> first_change{};
+  std::span<const uint8_t> unknown{};
+  /// Memory that may be taken besides the hits: sweeps over every 16th ray have a copy of those
+  /// where it fits, which changes no bit.
+  uint64_t spare_bytes = UINT64_MAX;
 };
 
 struct Bounced {

@@ -15,9 +15,9 @@ bool is_sound(const RayTile& rays, uint32_t places) {
   for (const RayEnd e : rays.ends) end = std::max(end, uint8_t(e));
   StoredHit farthest;
   for (const StoredHit& hit : rays.hits.entries) farthest.bits = std::max(farthest.bits, hit.bits);
-  const auto followed = size_t(std::ranges::count(rays.ends, RayEnd::followed));
   return end <= uint8_t(RayEnd::followed) && farthest.base() < places &&
-         followed == rays.followed.size() && std::ranges::is_sorted(rays.hits.end);
+         count_of(rays.ends, RayEnd::followed) == rays.followed.size() &&
+         std::ranges::is_sorted(rays.hits.end);
 }
 
 /// Whether the half-line meets the box.
@@ -114,6 +114,18 @@ void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
           meets(box, rays[k].origin, rays[k].direction))
         again[k] = 1;
   }
+}
+
+size_t count_of(std::span<const RayEnd> ends, RayEnd end) {
+  // Blocks whose count fits in a byte: several dozen are compared and counted in one instruction.
+  constexpr size_t kBlock = 128;
+  size_t out = 0;
+  for (; !ends.empty(); ends = ends.subspan(std::min(kBlock, ends.size()))) {
+    uint8_t count = 0;
+    for (const RayEnd e : ends.first(std::min(kBlock, ends.size()))) count += e == end ? 1 : 0;
+    out += count;
+  }
+  return out;
 }
 
 size_t next_followed(std::span<const RayEnd> ends, size_t from) {

@@ -11,6 +11,7 @@
 #include "solve/gather/element_rays.h"
 #include "solve/gather/followed_rays.h"
 #include "solve/gather/hit_store.h"
+#include "solve/gather/radiosity_map.h"
 #include "trace/ray_tracer.h"
 
 namespace luxel::gather {
@@ -65,6 +66,8 @@ struct EarlierRays {
   /// With same_light, per element: so near to it the same light arrives from lamps [m]; < 0: not
   /// even there; empty: it is not known where.
   std::vector<float> same_light_m;
+  /// With same_light: what every texel sent then, if TracedHits::change is wanted; null: it is not.
+  const RadiosityMap* sent = nullptr;
 };
 inline constexpr uint64_t kSamplesPart = UINT64_MAX;
 
@@ -90,6 +93,8 @@ void keep_samples(PartStore* store, uint64_t round, std::span<const uint16_t> sa
 void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
                std::span<const uint32_t> which, std::span<uint8_t> again);
 
+/// How many rays have ended so.
+size_t count_of(std::span<const RayEnd> ends, RayEnd end);
 /// The first ray from `from` on that was followed on; ends.size() where there is none.
 size_t next_followed(std::span<const RayEnd> ends, size_t from);
 

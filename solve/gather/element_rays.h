@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/random.h"
 #include "trace/ray_tracer.h"
 
 namespace luxel::gather {
@@ -29,6 +30,11 @@ struct RayBatch {
   std::vector<uint8_t> cell_of_point;
   std::vector<uint32_t> point;  ///< per ray, of u and v
 };
+
+/// Of an element's rays.
+inline uint64_t seed_of_rays(uint64_t seed, size_t element) {
+  return hash64(seed ^ 0x6a7e, element);
+}
 
 /// Cosine-distributed about `normal`, those below the triangle mirrored to above it; sorted so that
 /// neighbours in a packet point in similar directions. A sample's ray is the same in any batch.

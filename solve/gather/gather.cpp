@@ -40,11 +40,13 @@ struct Errors {
 /// What there is so far.
 struct Work {
   transport::DirectLight direct;
+  std::vector<Rgb> direct_before;  ///< of an earlier bake
   DirectLevels levels;
   size_t averaged = 0;
   TracedHits hits;
   Bounced bounced;
   Errors errors;
+  std::vector<Rgb> first_change;       ///< BounceParams
   double traced_s = 0, bounced_s = 0;  ///< of the last round, of which something was traced
   uint64_t traced_rays = 0, traced_samples = 0;
 };
@@ -85,6 +87,7 @@ Status begin_direct(const transport::TexelScene& world, const GatherParams& para
                     Progress& progress) {
   const transport::SupersampleParams supersample = supersample_params(params);
   if (params.earlier && !params.earlier->direct.irradiance.empty()) {
+    work.direct_before = params.earlier->direct.irradiance;
     LUXEL_TRY_STATUS(update_direct(world, supersample, *params.earlier, progress));
     work.direct = std::move(params.earlier->direct);
     work.levels = std::move(params.earlier->levels);
@@ -128,14 +131,23 @@ Status trace_round(const transport::TexelScene& world, const GatherParams& param
   return {};
 }
 
-Status bounce_round(const transport::TexelScene& world, std::span<const StoredHit> behind,
-                    BounceParams params, Work& work, Progress& progress) {
+Status bounce_round(const transport::TexelScene& world, const GatherParams& all,
+                    std::span<const StoredHit> behind, float tolerance, Work& work,
+                    Progress& progress) {
   const auto start = Clock::now();
   const std::vector<Rgb> guess = std::move(work.bounced.irradiance);
-  params.start = guess;
+  const uint64_t used = work.hits.bytes_in_memory();
+  const BounceParams params{
+      .bounces = all.bounces,
+      .tolerance = tolerance,
+      .start = guess,
+      .first_change = work.first_change,
+      .unknown = work.hits.unknown,
+      .spare_bytes = all.hit_memory_bytes - std::min(used, all.hit_memory_bytes)};
   work.bounced = {}, work.errors = {};
   LUXEL_TRY(work.bounced, bounce(world.map, world.elements, work.hits, work.direct.irradiance,
                                  behind, params, progress));
+  free_memory(work.first_change), free_memory(work.hits.unknown);
   work.bounced_s = seconds_since(start);
   return {};
 }
@@ -150,7 +162,7 @@ float last_tolerance(const GatherParams& params) {
 /// The light of the rays so far, which are not all, and how well it is known.
 Status look_round(const transport::TexelScene& world, const GatherParams& params,
                   std::span<const StoredHit> behind, Work& work, Progress& progress) {
-  LUXEL_TRY_STATUS(bounce_round(world, behind, {params.bounces, kRoughTolerance}, work, progress));
+  LUXEL_TRY_STATUS(bounce_round(world, params, behind, kRoughTolerance, work, progress));
   work.errors = errors_of(world, work);
   show(params, work);
   return {};
@@ -235,15 +247,34 @@ std::vector<int> growing(int samples) {
   return out;
 }
 
+/// The rays of an earlier bake. Where only what lies elsewhere changes them, they tell by how much
+/// the light of then changes in a sweep, too. Errors: cancelled, disk full.
+Status trace_earlier(const transport::TexelScene& world, const GatherParams& params,
+                     std::span<const StoredHit> behind, Work& work, Progress& progress) {
+  EarlierRays& rays = params.earlier->rays;
+  const bool tells = rays.same_light && !work.direct_before.empty() && !adds_rounds(params);
+  RadiosityMap sent = empty_radiosity_map(tells ? world.map.resolution : 0);
+  if (tells) {
+    fill_radiosity(sent, world.map, world.elements, work.hits, behind, work.bounced.irradiance);
+    rays.sent = &sent;
+  }
+  for (const std::vector<uint16_t>& target : params.earlier->rounds)
+    LUXEL_TRY_STATUS(trace_round(world, params, target, work, progress));
+  rays.sent = nullptr;
+  if (!tells) return {};
+  work.first_change = std::move(work.hits.change);
+  for (size_t i = 0; i < work.first_change.size(); ++i)
+    work.first_change[i] = work.first_change[i] * (1 / float(work.hits.samples[i])) +
+                           work.direct.irradiance[i] - work.direct_before[i];
+  free_memory(work.direct_before);
+  return {};
+}
+
 /// The rays that every element gets. Errors: cancelled, disk full.
 Status trace_first(const transport::TexelScene& world, const GatherParams& params,
                    std::span<const StoredHit> behind, Work& work, Progress& progress) {
   const size_t n = world.elements.size();
-  if (params.earlier) {
-    for (const std::vector<uint16_t>& target : params.earlier->rounds)
-      LUXEL_TRY_STATUS(trace_round(world, params, target, work, progress));
-    return {};
-  }
+  if (params.earlier) return trace_earlier(world, params, behind, work, progress);
   if (!params.on_estimate)
     return trace_round(world, params, std::vector<uint16_t>(n, uint16_t(params.samples)), work,
                        progress);
@@ -268,8 +299,7 @@ void drop_light(TracedHits& hits) {
 /// gone.
 Status bounce_last(const transport::TexelScene& world, const GatherParams& params,
                    std::span<const StoredHit> behind, Work& work, Gather& out, Progress& progress) {
-  LUXEL_TRY_STATUS(
-      bounce_round(world, behind, {params.bounces, last_tolerance(params)}, work, progress));
+  LUXEL_TRY_STATUS(bounce_round(world, params, behind, last_tolerance(params), work, progress));
   if (params.layers) {
     LUXEL_TRY(LayersBounced layers,
               bounce_layers(world.map, world.elements, work.hits,

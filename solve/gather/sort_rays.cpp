@@ -118,6 +118,22 @@ void take_traced(const RayWorld& world, const RayWork& work, size_t k, RayEnd en
       store(world.atlas, work.hits[k].point(), {tint, samples.in_second_half(sample)}));
 }
 
+/// A hit that an element's rays have won (1) or lost (-1).
+void note_change(const RayWorld& world, StoredHit hit, float sign, size_t element,
+                 TracedHits& out) {
+  if (!world.sent) return;
+  const Float4 b = lookup(*world.sent, hit);
+  out.change[element] += Rgb{b[0], b[1], b[2]} * sign;
+}
+
+/// The same of a ray that was followed on. `hit` is its own, if it has one.
+void note_change(const RayWorld& world, const FollowedRay& ray, StoredHit hit, float sign,
+                 size_t element, TracedHits& out) {
+  if (!world.sent) return;
+  out.change[element] += ray.light * (sign * kPi);
+  if (ray.has_hit()) note_change(world, hit, sign, element, out);
+}
+
 }  // namespace
 
 StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray) {
@@ -151,11 +167,12 @@ void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples sa
   tile.ends.insert(tile.ends.end(), before.ends.begin(), before.ends.end());
   const std::span<RayEnd> ends = std::span(tile.ends).last(count);
   for (const RayEnd end : {RayEnd::back, RayEnd::behind, RayEnd::escaped})
-    count_ends(end, int(std::ranges::count(before.ends, end)), element, out);
+    count_ends(end, int(count_of(before.ends, end)), element, out);
   size_t next = 0, hit = 0;
   // The hits of rays from `next` on, up to `end`, stay.
   const auto keep_up_to = [&](size_t end) {
-    const auto stay = size_t(std::ranges::count_if(before.ends.subspan(next, end - next), is_hit));
+    const std::span<const RayEnd> kept = before.ends.subspan(next, end - next);
+    const size_t stay = count_of(kept, RayEnd::hit) + count_of(kept, RayEnd::behind);
     const auto from = before.hits.begin() + std::ptrdiff_t(hit);
     tile.hits.entries.insert(tile.hits.entries.end(), from, from + std::ptrdiff_t(stay));
     next = end, hit += stay;
@@ -164,13 +181,17 @@ void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples sa
     keep_up_to(k);
     const RayEnd known = before.ends[k];
     count_ends(known, -1, element, out);
-    if (is_hit(known)) ++hit;
+    if (is_hit(known)) note_change(world, before.hits[hit++], -1, element, out);
     ends[k] = end_of(world, work, k);
     take_traced(world, work, k, ends[k], element, samples, out, tile);
+    if (is_hit(ends[k])) note_change(world, tile.hits.entries.back(), 1, element, out);
     next = k + 1;
   }
   keep_up_to(count);
-  add_escaped(world, escaped_light(world, work, samples, before, ends), element, out, tile);
+  const EscapedLight escaped = escaped_light(world, work, samples, before, ends);
+  if (world.sent && before.escaped)
+    out.change[element] += (escaped.sum - before.escaped->sum) * kPi;
+  add_escaped(world, escaped, element, out, tile);
 }
 
 namespace {
@@ -208,6 +229,12 @@ uint64_t follow_paths(const RayWorld& world, RayWork& work, size_t element, Samp
   return rays;
 }
 
+void add_followed(const FollowedPath& path, size_t element, TracedHits& out, RayTile& tile) {
+  tile.followed.push_back(path.brought);
+  add_light(path.brought.light, path.brought.way().second_half, element, out);
+  if (path.brought.has_hit()) tile.hits.entries.push_back(path.hit);
+}
+
 }  // namespace
 
 uint64_t follow_on(const RayWorld& world, RayWork& work, size_t element, Samples samples,
@@ -215,36 +242,30 @@ uint64_t follow_on(const RayWorld& world, RayWork& work, size_t element, Samples
   const uint64_t rays = follow_paths(world, work, element, samples, seed, out);
   const std::span<const RayEnd> ends = std::span(tile.ends).last(samples.count());
   float& near_m = tile.near_m.emplace_back();
-  const auto add = [&](const FollowedRay& ray, StoredHit hit) {
-    tile.followed.push_back(ray);
-    add_light(ray.light, ray.way().second_half, element, out);
-    if (ray.has_hit()) tile.hits.entries.push_back(hit);
-  };
   std::span<const FollowedRay> known = before ? before->followed : std::span<const FollowedRay>{};
   const auto known_hits = size_t(std::ranges::count_if(known, &FollowedRay::has_hit));
   auto known_hit = before ? before->hits.end() - std::ptrdiff_t(known_hits)
                           : std::span<const StoredHit>::iterator{};
   if (!known.empty()) near_m = before->near_m;
   const std::span<const RayEnd> known_ends = known.empty() ? ends : before->ends;
-  auto next = work.followed.begin();
   const auto after = [&](size_t k) {
     return std::min(next_followed(ends, k), next_followed(known_ends, k));
   };
+  auto next = work.followed.begin();
   for (size_t k = after(0); k < ends.size(); k = after(k + 1)) {
     const bool was = !known.empty() && known_ends[k] == RayEnd::followed;
-    if (ends[k] == RayEnd::followed) {
-      if (was && !work.marked[k]) {
-        add(known.front(), known.front().has_hit() ? *known_hit : StoredHit{});
-      } else if (next != work.followed.end() && next->ray == k) {
-        if (next->brought.way().is_plain) near_m = std::max(near_m, next->first_m);
-        add(next->brought, next->hit), ++next;
-      } else {
-        add({}, {});  // dropped: see Round::drop_enclosed_paths()
-      }
-    }
-    if (!was) continue;
-    if (known.front().has_hit()) ++known_hit;
-    known = known.subspan(1);
+    const FollowedRay old = was ? known.front() : FollowedRay{};
+    const StoredHit old_hit = old.has_hit() ? *known_hit++ : StoredHit{};
+    if (was) known = known.subspan(1);
+    const bool stays = was && !work.marked[k];
+    if (was && !stays) note_change(world, old, old_hit, -1, element, out);
+    if (ends[k] != RayEnd::followed) continue;
+    FollowedPath path{uint32_t(k), 0, old, old_hit};
+    if (!stays) path.brought = {};  // where it was dropped: see Round::drop_enclosed_paths()
+    if (!stays && next != work.followed.end() && next->ray == k) path = *next++;
+    if (path.brought.way().is_plain) near_m = std::max(near_m, path.first_m);
+    if (!stays) note_change(world, path.brought, path.hit, 1, element, out);
+    add_followed(path, element, out, tile);
   }
   return rays;
 }

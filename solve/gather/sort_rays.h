@@ -19,6 +19,7 @@ struct RayWorld {
   const transport::Surroundings& around;
   const NearWorld* near = nullptr;  ///< null: rays are not followed on
   const transport::LightLayers* layers = nullptr;
+  const RadiosityMap* sent = nullptr;  ///< see EarlierRays
 };
 
 /// A path of an element's batch that has been followed to its end.
@@ -48,9 +49,6 @@ struct RayWork {
   /// direction, and of them those that are traced again; ascending.
   std::vector<uint32_t> maybe, again;
   std::vector<uint8_t> marked;  ///< per ray, 1: traced again
-  std::vector<trace::Ray> few_rays;
-  std::vector<trace::Hit> few_hits;
-  std::vector<Rgb> few_tints;
 };
 
 /// An element's rays of an earlier bake.
@@ -58,11 +56,11 @@ struct EarlierElement {
   std::span<const RayEnd> ends;
   std::span<const StoredHit> hits;
   /// Light of those that escaped, as they would see it now; null: not known, and all rays of the
-  /// batch need a direction.
+  /// batch need a direction when they are merged.
   const EscapedLight* escaped = nullptr;
-  /// Those of `ends` that were followed on, and RayTile::near_m; empty: all are followed on again.
-  std::span<const FollowedRay> followed{};
-  float near_m = 0;
+  std::span<const FollowedRay> followed{};  ///< those of `ends`
+  float near_m = 0;                         ///< RayTile::near_m
+  bool follows_again = true;                ///< they may all bring something else
 };
 
 /// The place of the map at a point of the scene.

@@ -13,6 +13,7 @@
 #include "scene/sides.h"
 #include "solve/gather/element_rays.h"
 #include "solve/gather/kept_hits.h"
+#include "solve/gather/rays_again.h"
 #include "solve/gather/sort_rays.h"
 #include "transport/backs_seen.h"
 
@@ -73,11 +74,23 @@ struct Round {
   const EarlierRays* earlier = nullptr;  ///< null: nothing is known
   std::array<Cone, kCells> cell_cones = gather::cell_cones();
 
-  /// `before`: what is known of the element's rays; null: nothing.
+  Samples samples_of(size_t i, const TracedHits& hits) const {
+    return {hits.samples[i], std::max(hits.samples[i], target[i])};
+  }
+  void fill_batch(size_t i, Samples samples, RayBatch& batch) const {
+    fill_rays(origin_of(i), elements.normal[i], elements.geometric_normal[i], seed_of_rays(seed, i),
+              samples, batch);
+  }
+  Vec3 origin_of(size_t i) const {
+    return trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
+  }
+  /// The rays that are known of the tile of elements [begin, end), and what those of them meet that
+  /// are traced again.
+  void trace_known(size_t begin, size_t end, const RayTile* known, const TracedHits& hits,
+                   RayWork& work, RaysAgain& out) const;
+  /// `before`: what is known of the element's rays, and work.again has been traced; null: nothing.
   void trace_element(size_t i, const EarlierElement* before, RayWork& work, TracedHits& out,
                      TracedTile& tile) const;
-  void choose_again(size_t i, Vec3 origin, Samples samples, const EarlierElement& before,
-                    RayWork& work) const;
   /// Inside of solids it is dark: paths along their walls, which are long, would bring nothing.
   void drop_enclosed_paths(size_t i, RayWork& work, const TracedHits& hits) const;
 };
@@ -99,59 +112,9 @@ void trace_all(const trace::RayTracer& tracer, RayWork& work) {
   tracer.tint(work.batch.rays, work.hits, work.tint);
 }
 
-/// Finds the rays that may meet something else than in the earlier bake, and of those that were
-/// followed on the ones that may bring something else. Of rays that escaped through something
-/// coloured the colour is not known. All that do are in work.again then, and have directions in the
-/// batch, which is filled unless there are none.
-void Round::choose_again(size_t i, Vec3 origin, Samples samples, const EarlierElement& before,
-                         RayWork& work) const {
-  const Vec3 normal = elements.normal[i], geometric = elements.geometric_normal[i];
-  const uint64_t cells = before.escaped
-                             ? cells_towards(earlier->boxes, origin, normal, geometric, cell_cones)
-                             : ~uint64_t(0);
-  work.maybe.clear(), work.again.clear();
-  work.marked.assign(samples.count(), 0);
-  if (before.followed.empty())
-    for (size_t k = next_followed(before.ends, 0); k < before.ends.size();
-         k = next_followed(before.ends, k + 1))
-      work.marked[k] = 1;
-  else
-    mark_followed(earlier->boxes, origin, before.near_m, before.ends, before.followed, work.marked);
-  if (tracer.has_tints())
-    for (size_t k = 0; k < before.ends.size(); ++k)
-      if (before.ends[k] == RayEnd::escaped) work.marked[k] = 1;
-  if (cells == 0 && std::ranges::find(work.marked, 1) == work.marked.end()) return;
-  fill_samples(hash64(seed ^ 0x6a7e, i), samples, work.batch);
-  for (uint32_t k = 0; k < samples.count(); ++k)
-    if (work.marked[k] || cells >> work.batch.cell[k] & 1) work.maybe.push_back(k);
-  fill_directions(origin, normal, geometric, work.maybe, work.batch);
-  mark_rays(earlier->boxes, work.batch.rays, work.maybe, work.marked);
-  for (const uint32_t k : work.maybe)
-    if (work.marked[k]) work.again.push_back(k);
-}
-
-/// Traces work.again.
-void trace_again(const trace::RayTracer& tracer, RayWork& work) {
-  const size_t count = work.again.size();
-  if (count == 0) return;
-  const bool tinted = tracer.has_tints();
-  work.few_rays.clear();
-  for (const uint32_t k : work.again) work.few_rays.push_back(work.batch.rays[k]);
-  work.few_hits.resize(count);
-  tracer.closest_hits(work.few_rays, work.few_hits);
-  work.few_tints.assign(count, {1, 1, 1});
-  if (tinted) tracer.tint(work.few_rays, work.few_hits, work.few_tints);
-  work.hits.resize(work.batch.rays.size());
-  if (tinted) work.tint.assign(work.batch.rays.size(), {1, 1, 1});
-  for (size_t at = 0; at < count; ++at) {
-    work.hits[work.again[at]] = work.few_hits[at];
-    if (tinted) work.tint[work.again[at]] = work.few_tints[at];
-  }
-}
-
 void Round::trace_element(size_t i, const EarlierElement* before, RayWork& work, TracedHits& out,
                           TracedTile& tile) const {
-  const Samples samples{out.samples[i], std::max(out.samples[i], target[i])};
+  const Samples samples = samples_of(i, out);
   if (samples.count() == 0) {
     tile.rays_met.escaped.emplace_back(), tile.rays_met.near_m.emplace_back();
     return;
@@ -159,17 +122,14 @@ void Round::trace_element(size_t i, const EarlierElement* before, RayWork& work,
   // What was there before is of the first half now.
   out.sky_first_less_second[i] = luminance(out.sky[i]);
   out.samples[i] = uint16_t(samples.end), out.last_round[i] = uint8_t(out.rounds.size());
-  const Vec3 origin =
-      trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
+  if (world.sent && !(before && before->escaped)) out.unknown[i] = 1;
   size_t traced = samples.count();
   if (before) {
-    choose_again(i, origin, samples, *before, work);
-    trace_again(tracer, work);
     traced = work.again.size();
+    if (!before->escaped) fill_batch(i, samples, work.batch);
     merge_rays(world, work, i, samples, *before, out, tile.rays_met);
   } else {
-    fill_rays(origin, elements.normal[i], elements.geometric_normal[i], hash64(seed ^ 0x6a7e, i),
-              samples, work.batch);
+    fill_batch(i, samples, work.batch);
     trace_all(tracer, work);
     sort_rays(world, work, i, samples, out, tile.rays_met);
   }
@@ -201,34 +161,11 @@ uint64_t planned_samples(std::span<const uint16_t> target, const TracedHits& hit
   return planned;
 }
 
-/// Takes the rays of a tile's elements one after another from what an earlier bake knew.
-struct EarlierCursor {
-  const RayTile* tile = nullptr;  ///< null: nothing is known
-  size_t next_ray = 0, next_followed = 0;
-  EarlierElement of{};
-
-  /// Those of the tile's k-th element, whose rays are `count`. False: they are not known.
-  bool advance(size_t k, size_t count, bool knows_escaped) {
-    if (tile == nullptr || next_ray + count > tile->ends.size()) return false;
-    const uint32_t first = k == 0 ? 0 : tile->hits.end[k - 1];
-    const auto of_ends = std::span(tile->ends).subspan(next_ray, count);
-    of = {of_ends, std::span(tile->hits.entries).subspan(first, tile->hits.end[k] - first),
-          knows_escaped ? &tile->escaped[k] : nullptr,
-          std::span(tile->followed)
-              .subspan(next_followed, size_t(std::ranges::count(of_ends, RayEnd::followed))),
-          tile->near_m[k]};
-    next_ray += count, next_followed += of.followed.size();
-    const auto hits = std::ranges::count_if(
-        of.ends, [](RayEnd end) { return end == RayEnd::hit || end == RayEnd::behind; });
-    const auto of_followed = std::ranges::count_if(of.followed, &FollowedRay::has_hit);
-    return size_t(hits + of_followed) == of.hits.size();
-  }
-};
-
 /// What tracing a tile needs, reused from tile to tile.
 struct TileWork {
   RayWork work;
   RayTileBuffer earlier;
+  RaysAgain again;
   TracedTile tile;
 };
 
@@ -257,6 +194,27 @@ bool stay_followed(const Round& round, size_t element, float near_m) {
          near_m <= earlier.same_light_m[element];
 }
 
+void Round::trace_known(size_t begin, size_t end, const RayTile* known, const TracedHits& hits,
+                        RayWork& work, RaysAgain& out) const {
+  // Through glass rays escape in a colour that is not known.
+  const bool knows_escaped = !earlier->surroundings && !tracer.has_tints();
+  clear(out);
+  EarlierCursor cursor{known};
+  for (size_t i = begin; i < end; ++i) {
+    const Samples samples = samples_of(i, hits);
+    const bool knows = cursor.advance(i - begin, samples.count(), knows_escaped) &&
+                       !earlier->moved[i] && samples.count() > 0;
+    work.again.clear();
+    if (knows) {
+      cursor.of.follows_again = !stay_followed(*this, i, cursor.of.near_m);
+      choose_again({elements, *earlier, cell_cones, tracer.has_tints()}, i, origin_of(i),
+                   seed_of_rays(seed, i), samples, cursor.of, work);
+    }
+    add_again(knows ? &cursor.of : nullptr, work, out);
+  }
+  trace_again(tracer, out);
+}
+
 /// Traces the elements [begin, end) into buffers.tile, unless the work is cancelled.
 void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers, TracedHits& hits,
                 Progress& progress) {
@@ -265,19 +223,16 @@ void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers,
   TracedTile& tile = buffers.tile;
   clear(tile);
   uint64_t untold = 0, kept = 0;
-  // Through glass rays escape in a colour that is not known.
-  const bool knows_escaped =
-      round.earlier && !round.earlier->surroundings && !round.tracer.has_tints();
   const uint64_t planned = planned_samples(round.target, hits, begin, end);
-  EarlierCursor before{earlier_tile(round, begin, end, planned, buffers.earlier)};
+  const RayTile* known = earlier_tile(round, begin, end, planned, buffers.earlier);
+  if (known) round.trace_known(begin, end, known, hits, work, buffers.again);
   tile.rays_met.hits.entries.reserve(planned), tile.rays_met.ends.reserve(planned);
   for (size_t i = begin; i < end; ++i) {
     if (progress.cancelled()) return;
     const uint64_t samples = planned_samples(round.target, hits, i, i + 1);
-    const bool known =
-        before.advance(i - begin, samples, knows_escaped) && !round.earlier->moved[i];
-    if (known && !stay_followed(round, i, before.of.near_m)) before.of.followed = {};
-    round.trace_element(i, known ? &before.of : nullptr, work, hits, tile);
+    const EarlierElement* before = known ? buffers.again.of(i - begin) : nullptr;
+    if (before) take_again(buffers.again, i - begin, work);
+    round.trace_element(i, before, work, hits, tile);
     tile.rays_met.hits.end.push_back(uint32_t(tile.rays_met.hits.entries.size()));
     // Not for every element: the counter is shared by all threads.
     untold += samples;
@@ -350,7 +305,9 @@ Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
     near.emplace(
         NearWorld{scene, atlas, *params.near_lights, tracer, widths, diagonal_m, params.layers});
   }
-  const RayWorld world{scene, atlas, around, near ? &*near : nullptr, params.layers};
+  const RadiosityMap* sent = params.earlier ? params.earlier->sent : nullptr;
+  if (sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());
+  const RayWorld world{scene, atlas, around, near ? &*near : nullptr, params.layers, sent};
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   const uint64_t number = hits.rounds.size();

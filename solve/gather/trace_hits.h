@@ -50,8 +50,13 @@ struct TracedHits {
   std::vector<Rgb> sky;
   std::vector<float> sky_luminance2, sky_first_less_second;
   std::vector<Rgb> sky_by_layer;  ///< with layers: `sky`, layer by layer for each element
-  uint64_t rays = 0;              ///< that were traced
-  uint64_t rays_kept = 0;         ///< that an earlier bake had traced
+  /// With EarlierRays::sent, per element: by how much more its rays bring of the light of then than
+  /// they did, as a sum of radiosities; and 1 where of some of them nothing was known, so that it
+  /// is not all. Empty otherwise.
+  std::vector<Rgb> change;
+  std::vector<uint8_t> unknown;
+  uint64_t rays = 0;       ///< that were traced
+  uint64_t rays_kept = 0;  ///< that an earlier bake had traced
 
   size_t size() const { return samples.size(); }
   uint64_t bytes_in_memory() const;

@@ -1,0 +1,195 @@
+#include "solve/gather/sweep.h"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "solve/gather/tile_hits.h"
+
+namespace luxel::gather {
+
+void gather_round(const RadiosityMap& m, std::span<const StoredHit> hits, bool last, Gathered& g) {
+  Gathered round;
+  for (const StoredHit& hit : hits) {
+    const Float4 b = lookup(m, hit);
+    const float l = luminance({b[0], b[1], b[2]});
+    round.sum += b;
+    round.sum_luminance2 += l * l;
+    round.first_less_second += last && hit.second_half() ? -l : l;
+  }
+  g.sum += round.sum;
+  g.sum_luminance2 += round.sum_luminance2;
+  g.first_less_second += round.first_less_second;
+}
+
+Rgb source_of(const TracedHits& hits, std::span<const Rgb> direct, size_t element) {
+  return direct[element] + hits.sky[element] * (kPi / float(hits.samples[element]));
+}
+
+namespace {
+
+/// Variance of the mean over an element's rays, taken as independent.
+float variance_of_mean(const Gathered& g, const TracedHits& hits, size_t element) {
+  const float n = float(hits.samples[element]);
+  const float sum = luminance({g.sum[0], g.sum[1], g.sum[2]}) + kPi * luminance(hits.sky[element]);
+  const float sum2 = g.sum_luminance2 + kPi * kPi * hits.sky_luminance2[element];
+  return std::max(0.0f, sum2 / n - (sum / n) * (sum / n)) / n;
+}
+
+/// ((A - B) / 2)^2 of the halves' means A and B; without halves, of one sample, there is nothing to
+/// say.
+float split_variance(const Gathered& g, const TracedHits& hits, size_t element) {
+  const int samples = int(hits.samples[element]);
+  if (samples < 2) return variance_of_mean(g, hits, element);
+  const int first = (samples + 1) / 2, second = samples - first;
+  const float sum = luminance({g.sum[0], g.sum[1], g.sum[2]}) + kPi * luminance(hits.sky[element]);
+  const float difference = g.first_less_second + kPi * hits.sky_first_less_second[element];
+  const float a = 0.5f * (sum + difference), b = 0.5f * (sum - difference);
+  const float d = 0.5f * (a / float(first) - b / float(second));
+  return d * d;
+}
+
+/// Gives an element the light of what its rays have gathered. Returns the squared change.
+double update(const TracedHits& hits, size_t element, Float4 sum, Sweep& sweep) {
+  const Rgb gathered = Rgb{sum[0], sum[1], sum[2]} * (1.0f / float(hits.samples[element]));
+  const Rgb source = sweep.direct.empty() ? Rgb{} : source_of(hits, sweep.direct, element);
+  const Rgb before = std::exchange(sweep.irradiance[element], source + gathered);
+  const Rgb d = sweep.irradiance[element] - before;
+  return double(dot(d, d));
+}
+
+/// Returns the sum of squared changes of a tile's elements.
+double sweep_tile(const RadiosityMap& m, const TracedHits& hits, const TileHits& tile,
+                  size_t first_element, Sweep& sweep) {
+  double change2 = 0;
+  const size_t end = std::min(first_element + kTileElements, hits.size());
+  for (size_t i = first_element; i < end; ++i) {
+    if (!sweep.only.empty() && !sweep.only[i]) continue;
+    Gathered g;
+    for (size_t r = 0; r <= hits.last_round[i]; ++r)
+      gather_round(m, tile.of(r, i - first_element), r == hits.last_round[i], g);
+    change2 += update(hits, i, g.sum, sweep);
+    sweep.variance[i] = variance_of_mean(g, hits, i);
+    sweep.split_variance[i] = split_variance(g, hits, i);
+  }
+  return change2;
+}
+
+/// Calls take(hit, weight) for every stride-th hit of an element, counted for all of its round.
+template <class Take>
+void for_each_sparse(const TracedHits& hits, const TileHits& tile, size_t element, size_t stride,
+                     const Take& take) {
+  for (size_t r = 0; r <= hits.last_round[element]; ++r) {
+    const std::span<const StoredHit> own = tile.of(r, element % kTileElements);
+    const size_t first = first_hit(element, stride, own.size());
+    if (own.empty()) continue;
+    const float weight = float(own.size()) / float((own.size() - first - 1) / stride + 1);
+    for (size_t k = first; k < own.size(); k += stride) take(own[k], weight);
+  }
+}
+
+void add(const RadiosityMap& m, StoredHit hit, float weight, Float4& sum) {
+  sum += lookup(m, hit) * weight;
+}
+
+double sweep_sparse(const RadiosityMap& m, const TracedHits& hits, const TileHits& tile,
+                    size_t first_element, Sweep& sweep) {
+  double change2 = 0;
+  const size_t end = std::min(first_element + kTileElements, hits.size());
+  for (size_t i = first_element; i < end; ++i) {
+    Float4 sum{};
+    for_each_sparse(hits, tile, i, sweep.stride,
+                    [&](StoredHit hit, float weight) { add(m, hit, weight, sum); });
+    change2 += update(hits, i, sum, sweep);
+  }
+  return change2;
+}
+
+/// The same bits from the copy.
+double sweep_thinned(const RadiosityMap& m, const TracedHits& hits, const ThinnedHits::Tile& tile,
+                     size_t first_element, Sweep& sweep) {
+  double change2 = 0;
+  uint32_t hit = 0;
+  for (size_t k = 0; k < tile.end.size(); ++k) {
+    Float4 sum{};
+    for (; hit < tile.end[k]; ++hit) add(m, tile.hits[hit], tile.weight[hit], sum);
+    change2 += update(hits, first_element + k, sum, sweep);
+  }
+  return change2;
+}
+
+uint64_t stored_hits(const TracedHits& hits) {
+  return (hits.bytes_in_memory() + hits.bytes_in_file()) / sizeof(StoredHit);
+}
+
+size_t tile_count(const TracedHits& hits) {
+  return (hits.size() + kTileElements - 1) / kTileElements;
+}
+
+/// Calls take(t, tile) for each tile, on several threads. Errors: the file of hits cannot be read,
+/// cancelled.
+template <class Take>
+Status for_each_tile(const TracedHits& hits, Progress& progress, const Take& take) {
+  std::mutex mutex;
+  Status status;
+  parallel_for(tile_count(hits), 1, [&](size_t t, size_t) {
+    if (progress.cancelled()) return;
+    TileHits tile;
+    if (const Status read = tile.read(hits, t); !read) {
+      const std::lock_guard lock(mutex);
+      status = read;
+      return;
+    }
+    take(t, tile);
+  });
+  if (!status) return status;
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return {};
+}
+
+}  // namespace
+
+Result<std::optional<ThinnedHits>> thin(const TracedHits& hits, size_t stride, uint64_t bytes,
+                                        Progress& progress) {
+  // Of each element in each round it is one hit more than the part at most.
+  const uint64_t most = stored_hits(hits) / stride + hits.size() * hits.rounds.size();
+  const uint64_t bytes_of_ends = hits.size() * sizeof(uint32_t);
+  if (most * (sizeof(StoredHit) + sizeof(float)) + bytes_of_ends > bytes) return std::nullopt;
+  ThinnedHits out;
+  out.stride = stride;
+  out.tiles.resize(tile_count(hits));
+  LUXEL_TRY_STATUS(for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
+    const size_t begin = t * kTileElements, end = std::min(begin + kTileElements, hits.size());
+    size_t count = 0;
+    for (const HitTile* round : tile.round) count += round->entries.size() / stride + (end - begin);
+    ThinnedHits::Tile& thinned = out.tiles[t];
+    thinned.hits.reserve(count), thinned.weight.reserve(count), thinned.end.reserve(end - begin);
+    for (size_t i = begin; i < end; ++i) {
+      for_each_sparse(hits, tile, i, stride, [&](StoredHit hit, float weight) {
+        thinned.hits.push_back(hit), thinned.weight.push_back(weight);
+      });
+      thinned.end.push_back(uint32_t(thinned.hits.size()));
+    }
+  }));
+  return out;
+}
+
+Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress) {
+  sweep.change2.assign(tile_count(hits), 0.0);
+  if (!sweep.thinned)
+    return for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
+      const auto sweep_one = sweep.stride > 1 ? sweep_sparse : sweep_tile;
+      sweep.change2[t] = sweep_one(m, hits, tile, t * kTileElements, sweep);
+    });
+  LUXEL_CHECK(sweep.thinned->stride == sweep.stride);
+  parallel_for(sweep.change2.size(), 1, [&](size_t t, size_t) {
+    if (!progress.cancelled())
+      sweep.change2[t] = sweep_thinned(m, hits, sweep.thinned->tiles[t], t * kTileElements, sweep);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return {};
+}
+
+}  // namespace luxel::gather

@@ -1,11 +1,13 @@
 #include "pipeline/bake_cache.h"
 
 #include <array>
+#include <atomic>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/check.h"
 #include "base/digest.h"
+#include "base/parallel.h"
 #include "pipeline/checkpoint.h"
 
 namespace luxel::pipeline {
@@ -16,7 +18,7 @@ using nlohmann::json;
 
 /// Of the cache's files; goes up when what they hold changes.
 constexpr int kFormat = 3;
-constexpr RecordKey kRest{0, 0};
+RecordKey key_of(size_t part) { return {0, part}; }
 
 /// Settings that leave gathered light as it is; those of outside light are in the scene.
 constexpr std::array kWithoutEffect{"denoise",    "stitch", "directional", "probe_spacing_m",
@@ -40,7 +42,25 @@ json identity_of(const BakeSettings& settings) {
 uint64_t digest_of_state(const scene::SceneState& state) {
   KeptBake kept;
   kept.scene = state;
-  return digest_of(bytes_of(kept));
+  return digest_of(bytes_of(kept, 0));
+}
+
+/// Nothing where it is damaged.
+std::optional<KeptBake> read_kept(const RecordFile& file) {
+  KeptBake kept;
+  std::atomic<bool> good{true};
+  parallel_for(kKeptParts, 1, [&](size_t part, size_t) {
+    const auto bytes = file.read_whole(key_of(part));
+    if (!bytes || !read_part(*bytes, part, kept)) good = false;
+  });
+  if (!good || !is_whole(kept)) return std::nullopt;
+  return kept;
+}
+
+Status write_kept(const KeptBake& kept, RecordFile& file) {
+  for (size_t part = 0; part < kKeptParts; ++part)
+    LUXEL_TRY_STATUS(file.append(key_of(part), bytes_of(kept, part)));
+  return {};
 }
 
 std::string header_of(const BakeSettings& settings, const scene::SceneState& state) {
@@ -97,10 +117,8 @@ bool BakeCache::find(const scene::Scene& scene) {
     return no("it was kept by another version of luxel");
   const std::string different = difference(header, identity_of(settings_));
   if (!different.empty()) return no("it is of another bake: " + different);
-  const auto bytes = found->read_whole(kRest);
-  if (!bytes) return no("light.luxel is damaged");
-  found_ = kept_bake_of(*bytes);
-  if (!found_) return no("light.luxel is not whole");
+  found_ = read_kept(*found);
+  if (!found_) return no("light.luxel is damaged");
   change_ = scene::change_between(found_->scene, state_);
   // Whether light gets behind it decides which surfaces have light of their own on both sides.
   for (const uint32_t m : change_.reshaped)
@@ -169,7 +187,7 @@ void BakeCache::finish(Progress& progress) {
   const fs::path file = light_file(folder_);
   Result<RecordFile> light = RecordFile::create(unfinished(file), header_of(settings_, state_));
   if (!light) return give_up(light.error().message, progress);
-  const Status written = light->append(kRest, bytes_of(*kept_));
+  const Status written = write_kept(*kept_, *light);
   if (!written) return give_up(written.error().message, progress);
   // Without light the rays are not looked at: at no moment do the two not belong together.
   std::error_code error;

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "base/bytes.h"
+#include "base/check.h"
 #include "base/digest.h"
 #include "base/parallel.h"
 
@@ -141,12 +142,6 @@ void walk(Visit& visit, Like<LayersOfLights> auto& l) {
 }
 
 template <class Visit>
-void walk(Visit& visit, Like<transport::DirectLight> auto& d) {
-  auto& [irradiance, variance, split_variance, by_layer, rays] = d;
-  visit(irradiance), visit(variance), visit(split_variance), visit(by_layer), visit(rays);
-}
-
-template <class Visit>
 void walk(Visit& visit, Like<gather::DirectLevels> auto& l) {
   auto& [level, averaged] = l;
   visit(level), visit(averaged);
@@ -158,20 +153,41 @@ void walk(Visit& visit, Like<transport::LightLayer> auto& l) {
   visit(name), visit(lights);
 }
 
-/// What gather fills in.
+/// What gather fills in, but for layers.
 template <class Visit>
 void walk(Visit& visit, Like<TexelLight> auto& l) {
   visit(l.irradiance), visit(l.variance), visit(l.direct), visit(l.direct_variance);
-  visit(l.errors), visit(l.error_p95), visit(l.layers), visit(l.layer_irradiance);
-  visit(l.samples), visit(l.rays), visit(l.supersampled_texels), visit(l.sweeps);
+  visit(l.errors), visit(l.error_p95), visit(l.samples), visit(l.rays),
+      visit(l.supersampled_texels), visit(l.sweeps);
   visit(l.relative_error), visit(l.hidden), visit(l.suspicious_texels);
 }
 
+/// Parts of about the same size, so that threads share them out well.
 template <class Visit>
-void walk(Visit& visit, Like<KeptBake> auto& k) {
+void walk_part(Visit& visit, size_t part, Like<KeptBake> auto& k) {
   auto& [scene, seconds, layout, places, layer_names, layers, direct, levels, light] = k;
-  visit(scene), visit(seconds), visit(layout), visit(places), visit(layer_names), visit(layers);
-  visit(direct), visit(levels), visit(light);
+  switch (part) {
+    case 0:
+      visit(scene), visit(seconds), visit(layer_names), visit(layers), visit(levels);
+      break;
+    case 1:
+      visit(layout);
+      break;
+    case 2:
+      visit(places), visit(direct.irradiance), visit(direct.variance);
+      break;
+    case 3:
+      visit(direct.split_variance), visit(direct.by_layer), visit(direct.rays);
+      break;
+    case 4:
+      visit(light);
+      break;
+    case 5:
+      visit(light.layers), visit(light.layer_irradiance);
+      break;
+    default:
+      LUXEL_CHECK(part < kKeptParts);
+  }
 }
 
 /// Whether everything per element, lamp and instance has as many entries as there are.
@@ -247,18 +263,18 @@ LayersOfLights layers_of_lights(const scene::Scene& scene, const transport::Ligh
   return out;
 }
 
-std::vector<std::byte> bytes_of(const KeptBake& kept) {
+std::vector<std::byte> bytes_of(const KeptBake& kept, size_t part) {
   Saver save;
-  walk(save, kept);
+  walk_part(save, part, kept);
   return std::move(save.out.bytes);
 }
 
-std::optional<KeptBake> kept_bake_of(std::span<const std::byte> bytes) {
+bool read_part(std::span<const std::byte> bytes, size_t part, KeptBake& kept) {
   Loader load{{bytes}};
-  KeptBake kept;
-  walk(load, kept);
-  if (!load.in.ended_well() || !is_sound(kept) || !refers_to_itself(kept)) return std::nullopt;
-  return kept;
+  walk_part(load, part, kept);
+  return load.in.ended_well();
 }
+
+bool is_whole(const KeptBake& kept) { return is_sound(kept) && refers_to_itself(kept); }
 
 }  // namespace luxel::pipeline

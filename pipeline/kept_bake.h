@@ -40,8 +40,12 @@ std::vector<uint64_t> places_of(const transport::Elements& elements);
 LayersOfLights layers_of_lights(const scene::Scene& scene, const transport::Lights& lights,
                                 const transport::LightLayers& layers);
 
-std::vector<std::byte> bytes_of(const KeptBake& kept);
-/// Nothing where the bytes are not those of a kept bake.
-std::optional<KeptBake> kept_bake_of(std::span<const std::byte> bytes);
+/// In parts, which are written and read one by one, those of a size.
+inline constexpr size_t kKeptParts = 6;
+std::vector<std::byte> bytes_of(const KeptBake& kept, size_t part);
+/// Reads a part into `kept`. False where the bytes are not those of it.
+bool read_part(std::span<const std::byte> bytes, size_t part, KeptBake& kept);
+/// Whether the parts, all of which have been read, are those of one bake.
+bool is_whole(const KeptBake& kept);
 
 }  // namespace luxel::pipeline

@@ -190,6 +190,32 @@ void expect_same(const KeptBake& a, const KeptBake& b) {
   expect_same(a.light, b.light);
 }
 
+/// Its parts, each with its size before it.
+Bytes bytes_of(const KeptBake& kept) {
+  Bytes out;
+  for (size_t part = 0; part < kKeptParts; ++part) {
+    const Bytes bytes = pipeline::bytes_of(kept, part);
+    const uint64_t size = bytes.size();
+    const auto size_bytes = std::as_bytes(std::span(&size, 1));
+    out.insert(out.end(), size_bytes.begin(), size_bytes.end());
+    out.insert(out.end(), bytes.begin(), bytes.end());
+  }
+  return out;
+}
+
+std::optional<KeptBake> kept_bake_of(std::span<const std::byte> bytes) {
+  KeptBake out;
+  for (size_t part = 0; part < kKeptParts; ++part) {
+    uint64_t size = 0;
+    if (bytes.size() < sizeof(size)) return std::nullopt;
+    std::memcpy(&size, bytes.data(), sizeof(size));
+    bytes = bytes.subspan(sizeof(size));
+    if (bytes.size() < size || !read_part(bytes.first(size), part, out)) return std::nullopt;
+    bytes = bytes.subspan(size);
+  }
+  return bytes.empty() && is_whole(out) ? std::optional(out) : std::nullopt;
+}
+
 bool is_refused(const std::function<void(KeptBake&)>& edit) {
   KeptBake kept = some_bake();
   edit(kept);

@@ -25,9 +25,9 @@ constexpr int kMaxSweeps = 4000;
 constexpr size_t kSparsest = 16;
 
 /// A guess whose light to come is more times the tolerance is brought closer by sparse sweeps:
-/// until they change less than a part of their first change, or so many; what is left is taken for
-/// a geometric series.
-constexpr double kFarFrom = 4, kSmallPart = 0.03;
+/// until they change less than a part of their first change, or what is left is below a part of the
+/// tolerance, or so many; what is left is taken for a geometric series.
+constexpr double kFarFrom = 4, kSmallPart = 0.03, kSmallRest = 0.25;
 constexpr int kMaxSparse = 8;
 /// Sparse sweeps may bring a guess so much less closer than the last time (1.46 was seen).
 constexpr double kUnsure = 1.5;
@@ -81,7 +81,7 @@ struct Bouncing {
   Result<double> sweep(size_t stride);
   double relative(double change2) const;
   Result<double> first_sweep(const BounceParams& params);
-  Result<double> look_ahead(std::vector<Rgb> change, size_t stride);
+  Result<double> look_ahead(std::vector<Rgb> change, size_t stride, double tolerance);
   Status settle(size_t stride, float tolerance);
   Status settle_guess(size_t sparse, const BounceParams& params);
 };
@@ -135,7 +135,7 @@ Result<double> Bouncing::first_sweep(const BounceParams& params) {
 
 /// Adds what a change makes of itself in later bounces, looking at some rays only: as exact,
 /// relative to the change, as these are. Returns the ratio of its last two steps.
-Result<double> Bouncing::look_ahead(std::vector<Rgb> change, size_t stride) {
+Result<double> Bouncing::look_ahead(std::vector<Rgb> change, size_t stride, double tolerance) {
   LUXEL_TRY_STATUS(make_thinned(stride));
   const size_t n = change.size();
   double first = 0, before = 0, ratio = 0;
@@ -149,6 +149,7 @@ Result<double> Bouncing::look_ahead(std::vector<Rgb> change, size_t stride) {
     if (k == 0) first = sum2;
     ratio = before > 0 ? std::sqrt(sum2 / before) : 0, before = sum2;
     if (sum2 <= kSmallPart * kSmallPart * first) break;
+    if (light_to_come(relative(sum2), ratio, reflectance) <= kSmallRest * tolerance) break;
   }
   // By now each step is nearly the same as the one before, but smaller.
   const double q = std::min(ratio, reflectance.max);
@@ -187,7 +188,7 @@ Status Bouncing::settle_guess(size_t sparse, const BounceParams& params) {
     const bool has_come_closer = to_come_before > to_come;
     if (!has_come_closer && to_come < kFarFrom * double(tolerance)) continue;
     for (size_t i = 0; i < changed.size(); ++i) changed[i] = out.irradiance[i] - changed[i];
-    LUXEL_TRY(ratio, look_ahead(std::move(changed), sparse));
+    LUXEL_TRY(ratio, look_ahead(std::move(changed), sparse, double(tolerance)));
     if (has_come_closer && kUnsure * to_come * to_come / to_come_before <= double(tolerance)) break;
     to_come_before = to_come;
     before = 0;  // the next change does not follow this one

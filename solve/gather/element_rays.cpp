@@ -82,21 +82,32 @@ std::array<Cone, kCells> cell_cones() {
 }
 
 // In the order of their cells: a counting sort.
-void fill_samples(uint64_t seed, Samples samples, RayBatch& batch) {
+void find_ray_cells(uint64_t seed, Samples samples, RayBatch& batch) {
+  static_assert(std::tuple_size_v<decltype(batch.first_of_cell)> == kCells + 1);
   const uint32_t count = samples.count();
   batch.u.resize(count), batch.v.resize(count), batch.cell_of_point.resize(count);
   batch.rays.resize(count), batch.sample.resize(count), batch.cell.resize(count);
   batch.point.resize(count);
   sobol_owen_2d_points(seed, batch.u, batch.v, samples.first);
   find_cells(batch.u.data(), batch.v.data(), batch.cell_of_point.data(), count);
-  std::array<uint32_t, kCells + 1> place{};
-  for (uint32_t i = 0; i < count; ++i) ++place[batch.cell_of_point[i] + 1];
-  for (size_t c = 0; c < kCells; ++c) place[c + 1] += place[c];
-  for (uint32_t i = 0; i < count; ++i) {
-    const uint32_t at = place[batch.cell_of_point[i]]++;
-    batch.point[at] = i, batch.sample[at] = samples.first + i;
-    batch.cell[at] = batch.cell_of_point[i];
+  batch.first_of_cell = {};
+  for (uint32_t i = 0; i < count; ++i) ++batch.first_of_cell[batch.cell_of_point[i] + 1];
+  for (size_t c = 0; c < kCells; ++c) batch.first_of_cell[c + 1] += batch.first_of_cell[c];
+}
+
+void fill_samples_of(uint64_t cells, Samples samples, RayBatch& batch) {
+  auto place = batch.first_of_cell;
+  for (uint32_t i = 0; i < samples.count(); ++i) {
+    const uint8_t cell = batch.cell_of_point[i];
+    if (!(cells >> cell & 1)) continue;
+    const uint32_t at = place[cell]++;
+    batch.point[at] = i, batch.sample[at] = samples.first + i, batch.cell[at] = cell;
   }
+}
+
+void fill_samples(uint64_t seed, Samples samples, RayBatch& batch) {
+  find_ray_cells(seed, samples, batch);
+  fill_samples_of(~uint64_t(0), samples, batch);
 }
 
 void fill_directions(Vec3 origin, Vec3 normal, Vec3 geometric_normal,

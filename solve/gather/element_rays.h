@@ -28,7 +28,8 @@ struct RayBatch {
   std::vector<uint8_t> cell;  ///< of the unit square, per ray: rays are in the order of their cells
   std::vector<float> u, v, few_u, few_v, x, y, z;
   std::vector<uint8_t> cell_of_point;
-  std::vector<uint32_t> point;  ///< per ray, of u and v
+  std::vector<uint32_t> point;               ///< per ray, of u and v
+  std::array<uint32_t, 65> first_of_cell{};  ///< the first ray of each cell; and how many there are
 };
 
 /// Of an element's rays.
@@ -59,6 +60,10 @@ std::array<Cone, kCells> cell_cones();
 
 /// The same rays in the same order, but without directions: fill_directions() gives them to some.
 void fill_samples(uint64_t seed, Samples samples, RayBatch& batch);
+/// The same in two steps, for the rays of some cells only, one bit each: the first finds
+/// batch.first_of_cell.
+void find_ray_cells(uint64_t seed, Samples samples, RayBatch& batch);
+void fill_samples_of(uint64_t cells, Samples samples, RayBatch& batch);
 /// Gives rays[k] for each k of `which`, ascending, what fill_rays() gives it.
 void fill_directions(Vec3 origin, Vec3 normal, Vec3 geometric_normal,
                      std::span<const uint32_t> which, RayBatch& batch);

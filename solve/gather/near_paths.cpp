@@ -38,8 +38,10 @@ uint64_t add_direct_light(const NearWorld& world, NearWork& work) {
   for (size_t i = 0; i < work.paths.size(); ++i) {
     work.paths[i].light += work.paths[i].throughput * work.light[i].irradiance / kPi;
     if (world.layers)
-      transport::add_light_by_layer(work.shots, i, *world.layers, work.paths[i].throughput / kPi,
-                                    work.by_layer);
+      transport::add_light_by_layer(
+          work.shots, i, *world.layers, work.paths[i].throughput / kPi,
+          work.by_layer.subspan(work.paths[i].element * world.layers->size(),
+                                world.layers->size()));
   }
   return work.shots.rays.size();
 }
@@ -81,7 +83,7 @@ bool goes_on(const NearWorld& world, const NearPath& path) {
          kNearTexels * world.texel_width_m[world.atlas.triangle_number(hit.instance, hit.triangle)];
 }
 
-uint64_t step_near(const NearWorld& world, uint64_t seed, NearWork& work) {
+uint64_t step_near(const NearWorld& world, uint64_t depth, NearWork& work) {
   work.receivers.clear(), work.rays.clear(), work.going_on.clear();
   std::erase_if(work.paths, [&](NearPath& path) {
     path.throughput = path.throughput * scene::reflectance_at(world.scene, path.hit.point());
@@ -94,13 +96,13 @@ uint64_t step_near(const NearWorld& world, uint64_t seed, NearWork& work) {
     work.receivers.push_back(
         {p.position, p.normal, p.geometric_normal,
          trace::offset_origin(p.position, p.geometric_normal, world.diagonal_m),
-         hash64(seed, path.sample ^ 0x80000000u)});
+         hash64(path.seed + depth, path.sample ^ 0x80000000u)});
   }
   const uint64_t shadow_rays = add_direct_light(world, work);
   size_t alive = 0;
   for (size_t i = 0; i < work.paths.size(); ++i) {
     NearPath& path = work.paths[i];
-    if (!go_on(work.receivers[i], seed, path)) {
+    if (!go_on(work.receivers[i], path.seed + depth, path)) {
       end(path, work);
       continue;
     }

@@ -24,14 +24,17 @@ std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas&
 
 /// What is left of a ray of an element.
 struct NearPath {
-  uint32_t sample = 0;      ///< of its element: its random numbers are the same in any round
-  uint32_t ray = 0;         ///< of its element's batch
-  Rgb throughput{1, 1, 1};  ///< of reflectances and glass, over the chances to go on
-  Rgb light{};              ///< radiance that it has brought so far
-  trace::Hit hit;           ///< where it is
-  Vec3 direction;           ///< of its last ray; before the first step it has none
-  float first_m = 0;        ///< how long its element's own ray was
-  bool is_plain = true;     ///< it met a front there, and has taken one step at most
+  uint32_t element = 0;
+  uint32_t sample = 0;       ///< of its element: its random numbers are the same in any round
+  uint32_t ray = 0;          ///< of its element's batch
+  uint64_t seed = 0;         ///< of its element
+  bool second_half = false;  ///< of its element's samples
+  Rgb throughput{1, 1, 1};   ///< of reflectances and glass, over the chances to go on
+  Rgb light{};               ///< radiance that it has brought so far
+  trace::Hit hit;            ///< where it is
+  Vec3 direction;            ///< of its last ray; before the first step it has none
+  float first_m = 0;         ///< how long its element's own ray was
+  bool is_plain = true;      ///< it met a front there, and has taken one step at most
 };
 
 /// What paths look at.
@@ -54,7 +57,9 @@ struct NearWork {
   std::vector<trace::Hit> hits;
   std::vector<Rgb> tint;
   transport::Shots shots;
-  std::span<Rgb> by_layer;  ///< with layers: the radiance that paths bring is added to these, too
+  /// With layers: the radiance that paths bring is added to these, too, layer by layer for each
+  /// element.
+  std::span<Rgb> by_layer;
 };
 
 /// Takes each of work.paths from its near hit to where it ends, in order of their rays within each
@@ -62,20 +67,20 @@ struct NearWork {
 /// nothing; throughput is that up to there. A path that has died comes with throughput 0.
 /// Returns the number of rays.
 template <class End>
-uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, const End& end);
+uint64_t follow_near(const NearWorld& world, NearWork& work, const End& end);
 
 /// One step of all of work.paths: the light of where they are, and rays on. Paths that end there
-/// come first in work.going_on, with throughput 0.
-uint64_t step_near(const NearWorld& world, uint64_t seed, NearWork& work);
+/// come first in work.going_on, with throughput 0. `depth`: how many steps there have been.
+uint64_t step_near(const NearWorld& world, uint64_t depth, NearWork& work);
 
 /// Whether the map has no answer for the place that a path has met.
 bool goes_on(const NearWorld& world, const NearPath& path);
 
 template <class End>
-uint64_t follow_near(const NearWorld& world, uint64_t seed, NearWork& work, const End& end) {
+uint64_t follow_near(const NearWorld& world, NearWork& work, const End& end) {
   uint64_t rays = 0;
   for (uint64_t depth = 0; !work.paths.empty(); ++depth) {
-    rays += step_near(world, seed + depth, work);
+    rays += step_near(world, depth, work);
     work.paths.clear();
     for (const NearPath& path : work.going_on) {
       if (!goes_on(world, path)) {

@@ -1,6 +1,7 @@
 #include "solve/gather/rays_again.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace luxel::gather {
 
@@ -35,6 +36,17 @@ void mark_at_once(const AgainWorld& world, Vec3 origin, const EarlierElement& be
     if (ends[k] == RayEnd::escaped) work.marked[k] = 1;
 }
 
+/// In which cells rays are that are marked.
+uint64_t cells_of(std::span<const uint8_t> marked, std::span<const uint32_t> first_of_cell) {
+  uint64_t out = 0;
+  for (size_t k = 0; k < marked.size(); ++k) {
+    if (!marked[k]) continue;
+    const auto next = std::ranges::upper_bound(first_of_cell, uint32_t(k));
+    out |= uint64_t(1) << (next - first_of_cell.begin() - 1);
+  }
+  return out;
+}
+
 }  // namespace
 
 void choose_again(const AgainWorld& world, size_t element, Vec3 origin, uint64_t seed,
@@ -42,14 +54,19 @@ void choose_again(const AgainWorld& world, size_t element, Vec3 origin, uint64_t
   const Vec3 normal = world.elements.normal[element];
   const Vec3 geometric = world.elements.geometric_normal[element];
   const std::vector<Box3>& boxes = world.earlier.boxes;
-  const uint64_t cells = cells_towards(boxes, origin, normal, geometric, world.cell_cones);
+  uint64_t cells = cells_towards(boxes, origin, normal, geometric, world.cell_cones);
   work.maybe.clear(), work.again.clear();
   work.marked.assign(samples.count(), 0);
   mark_at_once(world, origin, before, work);
   if (cells == 0 && std::ranges::find(work.marked, 1) == work.marked.end()) return;
-  fill_samples(seed, samples, work.batch);
-  for (uint32_t k = 0; k < samples.count(); ++k)
-    if (work.marked[k] || cells >> work.batch.cell[k] & 1) work.maybe.push_back(k);
+  find_ray_cells(seed, samples, work.batch);
+  cells |= cells_of(work.marked, work.batch.first_of_cell);
+  fill_samples_of(cells, samples, work.batch);
+  for (; cells != 0; cells &= cells - 1) {
+    const auto cell = size_t(std::countr_zero(cells));
+    for (uint32_t k = work.batch.first_of_cell[cell]; k < work.batch.first_of_cell[cell + 1]; ++k)
+      work.maybe.push_back(k);
+  }
   fill_directions(origin, normal, geometric, work.maybe, work.batch);
   mark_rays(boxes, work.batch.rays, work.maybe, work.marked);
   for (const uint32_t k : work.maybe)
@@ -84,12 +101,12 @@ void trace_again(const trace::RayTracer& tracer, RaysAgain& rays) {
 void take_again(const RaysAgain& rays, size_t k, RayWork& work) {
   const EarlierElement& before = rays.known[k];
   const size_t count = before.ends.size();
-  work.again.clear(), work.marked.assign(count, 0);
+  work.again.clear();
   work.hits.resize(count), work.batch.rays.resize(count), work.batch.sample.resize(count);
   if (!rays.tints.empty()) work.tint.assign(count, {1, 1, 1});
   for (uint32_t at = k == 0 ? 0 : rays.end[k - 1]; at < rays.end[k]; ++at) {
     const uint32_t ray = rays.ray[at];
-    work.again.push_back(ray), work.marked[ray] = 1;
+    work.again.push_back(ray);
     work.hits[ray] = rays.hits[at], work.batch.rays[ray] = rays.rays[at];
     work.batch.sample[ray] = rays.sample[at];
     if (!rays.tints.empty()) work.tint[ray] = rays.tints[at];

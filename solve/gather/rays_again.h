@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solve/gather/sort_rays.h"
@@ -45,6 +46,11 @@ struct RaysAgain {
   std::vector<trace::Hit> hits;
   std::vector<Rgb> tints;  ///< empty where nothing has a colour
 
+  /// Numbers of the k-th element's rays.
+  std::span<const uint32_t> rays_of(size_t k) const {
+    const uint32_t first = k == 0 ? 0 : end[k - 1];
+    return std::span(ray).subspan(first, end[k] - first);
+  }
   const EarlierElement* of(size_t k) const { return is_known[k] ? &known[k] : nullptr; }
 };
 

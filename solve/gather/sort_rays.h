@@ -20,11 +20,13 @@ struct RayWorld {
   const NearWorld* near = nullptr;  ///< null: rays are not followed on
   const transport::LightLayers* layers = nullptr;
   const RadiosityMap* sent = nullptr;  ///< see EarlierRays
+  uint64_t seed = 1;
 };
 
-/// A path of an element's batch that has been followed to its end.
+/// A path of a tile's elements that has been followed to its end.
 struct FollowedPath {
-  uint32_t ray = 0;  ///< of the batch
+  uint32_t element = 0;
+  uint32_t ray = 0;  ///< of its batch
   float first_m = 0;
   FollowedRay brought;
   StoredHit hit;
@@ -42,8 +44,11 @@ struct RayWork {
   RayBatch batch;
   std::vector<trace::Hit> hits;  ///< of the batch's rays, where they were traced
   std::vector<Rgb> tint;         ///< of what rays have passed; empty where nothing has a colour
-  NearWork near;
+  NearWork near;                 ///< near.paths: those of a tile's elements so far
+  std::vector<NearPath> waiting;
   std::vector<FollowedPath> followed;
+  HitTile other_hits, followed_hits;  ///< of a tile: than those of rays followed on, and those
+  std::vector<uint32_t> ends_of;      ///< per element of a tile: one past the last of RayTile::ends
   OutsideLook outside;
   /// Where rays of an earlier bake are known: those that may meet something else, which have a
   /// direction, and of them those that are traced again; ascending.
@@ -66,6 +71,11 @@ struct EarlierElement {
 /// The place of the map at a point of the scene.
 StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray);
 
+/// Notes radiance of a ray that has left the scene, of which the light of all layers knows already.
+void add_sky(const RayWorld& world, Rgb radiance, size_t element, TracedHits& out);
+/// A hit that an element's rays have won (1) or lost (-1), if that is wanted.
+void note_change(const RayWorld& world, StoredHit hit, float sign, size_t element, TracedHits& out);
+
 /// Counts what the rays of the batch met, which have all been traced, and adds them to `tile`.
 /// Those that are to be followed on are added to work.near.paths.
 void sort_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
@@ -73,11 +83,5 @@ void sort_rays(const RayWorld& world, RayWork& work, size_t element, Samples sam
 /// The same where only work.again have been traced, and the others met what they met before.
 void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
                 const EarlierElement& before, TracedHits& out, RayTile& tile);
-
-/// Follows work.near.paths on, and adds to `tile` and the element's light what all its rays of that
-/// kind bring. Those that were not traced again bring what they brought in the earlier bake.
-/// `before`: null where all were traced. Returns the number of rays.
-uint64_t follow_on(const RayWorld& world, RayWork& work, size_t element, Samples samples,
-                   uint64_t seed, const EarlierElement* before, TracedHits& out, RayTile& tile);
 
 }  // namespace luxel::gather

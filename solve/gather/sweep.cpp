@@ -9,10 +9,24 @@
 #include "solve/gather/tile_hits.h"
 
 namespace luxel::gather {
+namespace {
+
+/// Hits lie anywhere in the map, which no cache near a core holds: what will be looked up so many
+/// hits later is asked for in time.
+constexpr size_t kAhead = 16;
+
+void prefetch(const RadiosityMap& m, StoredHit hit) {
+  const Float4* upper = m.texels.data() + hit.base();
+  __builtin_prefetch(upper), __builtin_prefetch(upper + m.stride);
+}
+
+}  // namespace
 
 void gather_round(const RadiosityMap& m, std::span<const StoredHit> hits, bool last, Gathered& g) {
   Gathered round;
-  for (const StoredHit& hit : hits) {
+  for (size_t k = 0; k < hits.size(); ++k) {
+    const StoredHit& hit = hits[k];
+    if (k + kAhead < hits.size()) prefetch(m, hits[k + kAhead]);
     const Float4 b = lookup(m, hit);
     const float l = luminance({b[0], b[1], b[2]});
     round.sum += b;
@@ -114,7 +128,10 @@ double sweep_thinned(const RadiosityMap& m, const TracedHits& hits, const Thinne
   uint32_t hit = 0;
   for (size_t k = 0; k < tile.end.size(); ++k) {
     Float4 sum{};
-    for (; hit < tile.end[k]; ++hit) add(m, tile.hits[hit], tile.weight[hit], sum);
+    for (; hit < tile.end[k]; ++hit) {
+      if (hit + kAhead < tile.hits.size()) prefetch(m, tile.hits[hit + kAhead]);
+      add(m, tile.hits[hit], tile.weight[hit], sum);
+    }
     change2 += update(hits, first_element + k, sum, sweep);
   }
   return change2;

@@ -52,7 +52,7 @@ struct Sweep {
   std::span<const uint8_t> only{};  ///< with stride 1, per element, 1: it is looked at; empty: all
   size_t stride = 1;  ///< only every stride-th ray is looked at; variances only with 1
   const ThinnedHits* thinned = nullptr;  ///< of that stride; null: there are none
-  std::vector<double> change2;
+  std::vector<double> change2{};
 };
 
 /// Errors: the file of hits cannot be read, cancelled.

@@ -12,6 +12,7 @@
 #include "base/random.h"
 #include "scene/sides.h"
 #include "solve/gather/element_rays.h"
+#include "solve/gather/follow_on.h"
 #include "solve/gather/kept_hits.h"
 #include "solve/gather/rays_again.h"
 #include "solve/gather/sort_rays.h"
@@ -96,11 +97,12 @@ struct Round {
 };
 
 void Round::drop_enclosed_paths(size_t i, RayWork& work, const TracedHits& hits) const {
-  if (work.near.paths.empty()) return;
+  std::vector<NearPath>& paths = work.near.paths;
+  if (paths.empty() || paths.back().element != i) return;
   const transport::BacksSeen own{int(hits.samples[i]), int(hits.met_back[i]),
                                  int(hits.met_double_sided_back[i])};
   if (transport::is_enclosed(world.scene, tracer, elements, i, own, diagonal_m))
-    std::erase_if(work.near.paths, [](const NearPath& path) { return path.hit.back_face; });
+    std::erase_if(paths, [i](const NearPath& p) { return p.element == i && p.hit.back_face; });
 }
 
 /// Traces all rays of the batch.
@@ -116,7 +118,7 @@ void Round::trace_element(size_t i, const EarlierElement* before, RayWork& work,
                           TracedTile& tile) const {
   const Samples samples = samples_of(i, out);
   if (samples.count() == 0) {
-    tile.rays_met.escaped.emplace_back(), tile.rays_met.near_m.emplace_back();
+    tile.rays_met.escaped.emplace_back();
     return;
   }
   // What was there before is of the first half now.
@@ -136,8 +138,6 @@ void Round::trace_element(size_t i, const EarlierElement* before, RayWork& work,
   drop_enclosed_paths(i, work, out);
   tile.kept += samples.count() - traced;
   tile.rays += traced;
-  tile.rays +=
-      follow_on(world, work, i, samples, hash64(seed ^ 0x7ea4, i), before, out, tile.rays_met);
 }
 
 /// The most samples that the round adds to one element.
@@ -221,7 +221,10 @@ void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers,
   constexpr uint64_t kRaysPerAdvance = 8192;
   RayWork& work = buffers.work;
   TracedTile& tile = buffers.tile;
+  // The tile's own are given away each time.
+  std::swap(tile.rays_met.hits, work.other_hits);
   clear(tile);
+  work.near.paths.clear(), work.ends_of.clear();
   uint64_t untold = 0, kept = 0;
   const uint64_t planned = planned_samples(round.target, hits, begin, end);
   const RayTile* known = earlier_tile(round, begin, end, planned, buffers.earlier);
@@ -234,6 +237,7 @@ void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers,
     if (before) take_again(buffers.again, i - begin, work);
     round.trace_element(i, before, work, hits, tile);
     tile.rays_met.hits.end.push_back(uint32_t(tile.rays_met.hits.entries.size()));
+    work.ends_of.push_back(uint32_t(tile.rays_met.ends.size()));
     // Not for every element: the counter is shared by all threads.
     untold += samples;
     if (untold < kRaysPerAdvance && i + 1 < end) continue;
@@ -241,6 +245,8 @@ void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers,
     progress.advance(untold - std::min(untold, tile.kept - kept));
     untold = 0, kept = tile.kept;
   }
+  tile.rays += follow_on(round.world, begin, work.ends_of, known ? &buffers.again : nullptr, work,
+                         hits, tile.rays_met);
 }
 
 /// Traces the round's elements into `store`. Errors: disk full.
@@ -262,14 +268,13 @@ Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, T
       put = store.put(number, std::move(found->tile.rays_met.hits), found->entries);
     } else {
       TileWork work = pool.take();
-      const TracedTile& tile = work.tile;
+      TracedTile& tile = work.tile;
       trace_tile(round, begin, end, work, hits, progress);
       if (progress.cancelled()) return;
       const transport::KeptEntries entries = keep_tile(kept, begin, end, tile, hits);
       keep_rays(keep, round.number, number, tile.rays_met);
       rays += tile.rays, rays_kept += tile.kept;
-      // A copy, without room to spare.
-      put = store.put(number, HitTile(tile.rays_met.hits), entries);
+      put = store.put(number, std::move(tile.rays_met.hits), entries);
       pool.give(std::move(work));
     }
     if (!put) {
@@ -307,7 +312,8 @@ Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
   }
   const RadiosityMap* sent = params.earlier ? params.earlier->sent : nullptr;
   if (sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());
-  const RayWorld world{scene, atlas, around, near ? &*near : nullptr, params.layers, sent};
+  const RayWorld world{scene,         atlas, around,     near ? &*near : nullptr,
+                       params.layers, sent,  params.seed};
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   const uint64_t number = hits.rounds.size();

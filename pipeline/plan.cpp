@@ -65,7 +65,9 @@ Result<Plan> plan(const SolveInput& in, const BakeSettings& settings, Progress& 
   out.rays = forecast.rays + rounds.rays;
   const double hits = forecast.hit_bytes + rounds.hit_bytes;
   const double kept = std::min(hits, double(hit_memory));
-  out.memory_bytes = besides_hits + kept, out.scratch_bytes = hits - kept;
+  const double copy = gather::copy_bytes(hits, settings.max_error > 0 ? 0 : settings.samples);
+  out.memory_bytes = besides_hits + std::min(kept + copy, double(hit_memory)),
+  out.scratch_bytes = hits - kept;
   return out;
 }
 

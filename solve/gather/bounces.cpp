@@ -198,6 +198,11 @@ Status Bouncing::settle_guess(size_t sparse, const BounceParams& params) {
 
 }  // namespace
 
+double copy_bytes(double hit_bytes, int samples) {
+  constexpr double kPerHit = double(sizeof(StoredHit) + sizeof(float)) / sizeof(StoredHit);
+  return size_t(samples) < kSparsest * kSparsest ? 0 : kPerHit * hit_bytes / kSparsest;
+}
+
 Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& elements,
                        const TracedHits& hits, std::span<const Rgb> direct,
                        std::span<const StoredHit> behind, const BounceParams& params,

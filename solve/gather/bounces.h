@@ -31,6 +31,9 @@ struct BounceParams {
   uint64_t spare_bytes = UINT64_MAX;
 };
 
+/// What that copy takes of elements with so many samples each, whose hits take `hit_bytes`.
+double copy_bytes(double hit_bytes, int samples);
+
 struct Bounced {
   std::vector<Rgb> irradiance;  ///< E per element [W/m^2], direct light included
   std::vector<float> variance;  ///< estimated variance of its luminance, direct light aside

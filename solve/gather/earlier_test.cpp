@@ -477,6 +477,22 @@ TEST_F(EarlierGather, RaysFollowedOnStayWhereTheirLightDoes) {
   EXPECT_LT(some_followed.rays_kept, all_followed.rays_kept + followed);
 }
 
+// With so many bounces and no more no sweep can be left out.
+TEST_F(EarlierGather, SomeBouncesAreThoseFromScratch) {
+  const auto before = lay_out(open_room(), 48);
+  const auto now = edited(*before, move_box);
+  GatherParams params = some_params();
+  params.bounces = 2;
+  const Gather first = keeping(*before, params, "before");
+  const Gather scratch = keeping(*now, params, "scratch");
+  const RecordFile rays = file("before");
+  Earlier earlier = earlier_of(rays, *before, *now, first);
+  give_direct(first, earlier);
+  earlier.rays.same_light = true;
+  params.earlier = &earlier;
+  expect_same_light(keeping(*now, params, "again"), scratch);
+}
+
 // A lamp that was off is added to what the others gave.
 TEST_F(EarlierGather, ALampIsAdded) {
   const auto off = lay_out(open_room(), 48);

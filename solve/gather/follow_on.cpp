@@ -8,9 +8,6 @@
 namespace luxel::gather {
 namespace {
 
-/// Paths that are followed at a time: enough to fill packets, few enough to stay in a core's cache.
-constexpr size_t kPathsAtATime = 1024;
-
 /// What is kept of a path that has ended.
 FollowedPath end_of(const RayWorld& world, const NearPath& path, TracedHits& out) {
   const bool alive = max_component(path.throughput) > 0, found = alive && path.hit.found();
@@ -32,28 +29,8 @@ FollowedPath end_of(const RayWorld& world, const NearPath& path, TracedHits& out
   return end;
 }
 
-/// Takes work.near.paths to where they end, into work.followed, in the order of elements and rays.
-uint64_t follow_paths(const RayWorld& world, RayWork& work, TracedHits& out) {
-  work.followed.clear();
-  if (work.near.paths.empty()) return 0;
-  if (world.layers) work.near.by_layer = out.sky_by_layer;
-  uint64_t rays = 0;
-  std::swap(work.waiting, work.near.paths);
-  for (std::span<const NearPath> left = work.waiting; !left.empty();) {
-    const auto now = left.first(std::min(left.size(), kPathsAtATime));
-    work.near.paths.assign(now.begin(), now.end());
-    rays += follow_near(*world.near, work.near, [&](const NearPath& path) {
-      work.followed.push_back(end_of(world, path, out));
-    });
-    left = left.subspan(now.size());
-  }
-  work.waiting.clear();
-  std::ranges::sort(work.followed, {},
-                    [](const FollowedPath& p) { return std::tuple(p.element, p.ray); });
-  return rays;
-}
-
-/// The same of a ray that was followed on. `hit` is its own, if it has one.
+/// Notes what a ray that was followed on brings (1) or no longer brings (-1). `hit` is its own, if
+/// it has one.
 void note_change(const RayWorld& world, const FollowedRay& ray, StoredHit hit, float sign,
                  size_t element, TracedHits& out) {
   if (!world.sent) return;
@@ -142,9 +119,19 @@ HitTile joined(const HitTile& a, const HitTile& b) {
 
 }  // namespace
 
+uint64_t follow_paths(const RayWorld& world, RayWork& work, TracedHits& out) {
+  if (work.near.paths.empty()) return 0;
+  if (world.layers) work.near.by_layer = out.sky_by_layer;
+  return follow_near(*world.near, work.near, [&](const NearPath& path) {
+    work.followed.push_back(end_of(world, path, out));
+  });
+}
+
 uint64_t follow_on(const RayWorld& world, size_t first, std::span<const uint32_t> ends_of,
                    const RaysAgain* again, RayWork& work, TracedHits& out, RayTile& tile) {
   const uint64_t rays = follow_paths(world, work, out);
+  std::ranges::sort(work.followed, {},
+                    [](const FollowedPath& p) { return std::tuple(p.element, p.ray); });
   std::span<const FollowedPath> traced = work.followed;
   work.followed_hits.entries.clear(), work.followed_hits.end.clear();
   tile.near_m.assign(ends_of.size(), 0.0f);

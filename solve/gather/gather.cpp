@@ -252,7 +252,9 @@ std::vector<int> growing(int samples) {
 Status trace_earlier(const transport::TexelScene& world, const GatherParams& params,
                      std::span<const StoredHit> behind, Work& work, Progress& progress) {
   EarlierRays& rays = params.earlier->rays;
-  const bool tells = rays.same_light && !work.direct_before.empty() && !adds_rounds(params);
+  const bool tells =
+      rays.same_light && !work.direct_before.empty() && params.bounces < 0 && !adds_rounds(params);
+  if (!tells) free_memory(work.direct_before);
   RadiosityMap sent = empty_radiosity_map(tells ? world.map.resolution : 0);
   if (tells) {
     fill_radiosity(sent, world.map, world.elements, work.hits, behind, work.bounced.irradiance);

@@ -91,12 +91,15 @@ uint64_t step_near(const NearWorld& world, uint64_t depth, NearWork& work) {
     if (black) end(path, work);
     return black;
   });
-  for (const NearPath& path : work.paths) {
+  for (NearPath& path : work.paths) {
     const transport::SmoothPoint p = place_of(world.scene, path.hit);
     work.receivers.push_back(
         {p.position, p.normal, p.geometric_normal,
          trace::offset_origin(p.position, p.geometric_normal, world.diagonal_m),
          hash64(path.seed + depth, path.sample ^ 0x80000000u)});
+    if (depth > 0) continue;
+    const Vec3 met = scene::world_position(world.scene, path.hit.point());
+    path.first_m = path.hit.t + length(work.receivers.back().origin - met);
   }
   const uint64_t shadow_rays = add_direct_light(world, work);
   size_t alive = 0;

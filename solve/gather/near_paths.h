@@ -33,8 +33,10 @@ struct NearPath {
   Rgb light{};               ///< radiance that it has brought so far
   trace::Hit hit;            ///< where it is
   Vec3 direction;            ///< of its last ray; before the first step it has none
-  float first_m = 0;         ///< how long its element's own ray was
-  bool is_plain = true;      ///< it met a front there, and has taken one step at most
+  /// How far from where its element's own ray starts its first step does, at most: as far as the
+  /// ray was long, and as the place is lifted where the surface bulges.
+  float first_m = 0;
+  bool is_plain = true;  ///< it met a front there, and has taken one step at most
 };
 
 /// What paths look at.

@@ -82,7 +82,7 @@ RayEnd end_of(const RayWorld& world, RayWork& work, size_t k, size_t element, Sa
     path.seed = hash64(world.seed ^ 0x7ea4, element);
     path.second_half = samples.in_second_half(path.sample);
     if (!work.tint.empty()) path.throughput = work.tint[k];
-    path.hit = hit, path.first_m = hit.t, path.is_plain = !hit.back_face;
+    path.hit = hit, path.is_plain = !hit.back_face;
     if (goes_on(*world.near, path)) {
       work.near.paths.push_back(path);
       return RayEnd::followed;

@@ -44,11 +44,10 @@ struct RayWork {
   RayBatch batch;
   std::vector<trace::Hit> hits;  ///< of the batch's rays, where they were traced
   std::vector<Rgb> tint;         ///< of what rays have passed; empty where nothing has a colour
-  NearWork near;                 ///< near.paths: those of a tile's elements so far
-  std::vector<NearPath> waiting;
-  std::vector<FollowedPath> followed;
-  HitTile other_hits, followed_hits;  ///< of a tile: than those of rays followed on, and those
-  std::vector<uint32_t> ends_of;      ///< per element of a tile: one past the last of RayTile::ends
+  NearWork near;                 ///< near.paths: those that wait to be followed on
+  std::vector<FollowedPath> followed;  ///< of a tile's elements so far
+  HitTile other_hits, followed_hits;   ///< of a tile: than those of rays followed on, and those
+  std::vector<uint32_t> ends_of;  ///< per element of a tile: one past the last of RayTile::ends
   OutsideLook outside;
   /// Where rays of an earlier bake are known: those that may meet something else, which have a
   /// direction, and of them those that are traced again; ascending.

@@ -224,7 +224,7 @@ void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers,
   // The tile's own are given away each time.
   std::swap(tile.rays_met.hits, work.other_hits);
   clear(tile);
-  work.near.paths.clear(), work.ends_of.clear();
+  work.near.paths.clear(), work.followed.clear(), work.ends_of.clear();
   uint64_t untold = 0, kept = 0;
   const uint64_t planned = planned_samples(round.target, hits, begin, end);
   const RayTile* known = earlier_tile(round, begin, end, planned, buffers.earlier);
@@ -238,6 +238,7 @@ void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers,
     round.trace_element(i, before, work, hits, tile);
     tile.rays_met.hits.end.push_back(uint32_t(tile.rays_met.hits.entries.size()));
     work.ends_of.push_back(uint32_t(tile.rays_met.ends.size()));
+    if (work.near.paths.size() >= kPathsAtATime) tile.rays += follow_paths(round.world, work, hits);
     // Not for every element: the counter is shared by all threads.
     untold += samples;
     if (untold < kRaysPerAdvance && i + 1 < end) continue;

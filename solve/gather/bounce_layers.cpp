@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 #include <numeric>
 
 #include "base/check.h"
@@ -161,25 +160,6 @@ void sweep_tile(const Sweep& sweep, const TracedHits& hits, const TileHits& tile
   }
 }
 
-Status run_sweep(const Sweep& sweep, const TracedHits& hits, Progress& progress) {
-  const size_t tiles = (hits.size() + kTileElements - 1) / kTileElements;
-  std::mutex mutex;
-  Status status;
-  parallel_for(tiles, 1, [&](size_t t, size_t) {
-    if (progress.cancelled()) return;
-    TileHits tile;
-    if (const Status read = tile.read(hits, t); !read) {
-      const std::lock_guard lock(mutex);
-      status = read;
-      return;
-    }
-    sweep_tile(sweep, hits, tile, t * kTileElements);
-  });
-  if (!status) return status;
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  return {};
-}
-
 /// Gives each layer its share of the whole. Returns the sum of squares of what was missing.
 double share_out(std::span<const Rgb> whole, const LayeredLight& light) {
   constexpr size_t kGrain = 4096;
@@ -250,7 +230,10 @@ Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport:
     for (Block block; block.first < layers; block.first += kBlock) {
       block.count = std::min(kBlock, layers - block.first);
       fill_radiosity(radiosity, map, elements, hits, behind, light, block);
-      LUXEL_TRY_STATUS(run_sweep({radiosity, sources, light, block, stride}, hits, progress));
+      const Sweep sweep{radiosity, sources, light, block, stride};
+      LUXEL_TRY_STATUS(for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
+        sweep_tile(sweep, hits, tile, t * kTileElements);
+      }));
     }
     progress.advance(1);
     return {};

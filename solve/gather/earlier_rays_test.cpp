@@ -1,7 +1,6 @@
 #include "solve/gather/earlier_rays.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
@@ -12,6 +11,7 @@
 
 #include "base/bytes.h"
 #include "base/random.h"
+#include "solve/gather/gather_test_support.h"
 
 namespace luxel::gather {
 namespace {
@@ -230,16 +230,8 @@ RayTile some_tile() {
   return out;
 }
 
-class KeptRays : public ::testing::Test {
+class KeptRays : public WithFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("luxel-rays-" + std::to_string(::getpid()) + "-" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// What is written into a file by way of a store that keeps everything.
   RecordFile kept(const std::function<void(PartStore&)>& write) {
     const fs::path file = folder_ / "rays";
@@ -272,7 +264,6 @@ class KeptRays : public ::testing::Test {
     return found_in(bytes_of(tile));
   }
 
-  fs::path folder_;
   Progress progress_;
   RayTileBuffer buffer_;  ///< of whatever was found before: that must not show
 };

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <functional>
@@ -56,11 +55,7 @@ inline std::unique_ptr<Room> edited(const Room& room, const Edit& edit) {
   edit(out->scene);
   out->atlas = room.atlas;
   out->map = atlas::rasterise(out->scene, out->atlas);
-  out->elements = transport::elements_from_texels(out->scene, out->atlas, out->map);
-  out->lights = transport::collect_lights(out->scene);
-  auto tracer = trace::RayTracer::build(out->scene);
-  EXPECT_TRUE(tracer);
-  out->tracer.emplace(std::move(*tracer));
+  make_ready(*out);
   return out;
 }
 
@@ -87,16 +82,8 @@ inline size_t tile_size(size_t elements, size_t tile) {
   return std::min(kTileElements, elements - tile * kTileElements);
 }
 
-class EarlierGather : public ::testing::Test {
+class EarlierGather : public WithFolder {
  public:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("luxel-earlier-" + std::to_string(::getpid()) + "-" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// Solves, and keeps the rays under a name.
   Gather keeping(const Room& room, GatherParams params, const std::string& name) {
     PartStore store({folder_ / name, "", "", 1e-9, std::chrono::steady_clock::now()}, progress_);
@@ -131,7 +118,6 @@ class EarlierGather : public ::testing::Test {
     keep_samples(&store, 0, earlier_rounds(file(from), room.elements.size())->front());
   }
 
-  fs::path folder_;
   Progress progress_;
 };
 

@@ -83,7 +83,6 @@ std::array<Cone, kCells> cell_cones() {
 
 // In the order of their cells: a counting sort.
 void find_ray_cells(uint64_t seed, Samples samples, RayBatch& batch) {
-  static_assert(std::tuple_size_v<decltype(batch.first_of_cell)> == kCells + 1);
   const uint32_t count = samples.count();
   batch.u.resize(count), batch.v.resize(count), batch.cell_of_point.resize(count);
   batch.rays.resize(count), batch.sample.resize(count), batch.cell.resize(count);

@@ -20,6 +20,10 @@ struct Samples {
   bool in_second_half(uint32_t sample) const { return 2 * sample >= end; }
 };
 
+/// Directions are sorted by cells of the unit square, 8 x 8 in Morton order.
+inline constexpr int kCellsPerAxis = 8;
+inline constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
+
 /// Rays of one element with the number of the sample that each belongs to; and buffers, reused from
 /// element to element.
 struct RayBatch {
@@ -28,8 +32,9 @@ struct RayBatch {
   std::vector<uint8_t> cell;  ///< of the unit square, per ray: rays are in the order of their cells
   std::vector<float> u, v, few_u, few_v, x, y, z;
   std::vector<uint8_t> cell_of_point;
-  std::vector<uint32_t> point;               ///< per ray, of u and v
-  std::array<uint32_t, 65> first_of_cell{};  ///< the first ray of each cell; and how many there are
+  std::vector<uint32_t> point;  ///< per ray, of u and v
+  std::array<uint32_t, kCells + 1>
+      first_of_cell{};  ///< the first ray of each cell; and how many there are
 };
 
 /// Of an element's rays.
@@ -41,10 +46,6 @@ inline uint64_t seed_of_rays(uint64_t seed, size_t element) {
 /// neighbours in a packet point in similar directions. A sample's ray is the same in any batch.
 void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Samples samples,
                RayBatch& batch);
-
-/// Directions are sorted by cells of the unit square, 8 x 8 in Morton order.
-inline constexpr int kCellsPerAxis = 8;
-inline constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
 
 /// Directions within an angle below a right one of `axis`.
 struct Cone {

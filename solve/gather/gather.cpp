@@ -87,7 +87,7 @@ Status begin_direct(const transport::TexelScene& world, const GatherParams& para
                     Progress& progress) {
   const transport::SupersampleParams supersample = supersample_params(params);
   if (params.earlier && !params.earlier->direct.irradiance.empty()) {
-    work.direct_before = params.earlier->direct.irradiance;
+    if (params.earlier->rays.same_light) work.direct_before = params.earlier->direct.irradiance;
     LUXEL_TRY_STATUS(update_direct(world, supersample, *params.earlier, progress));
     work.direct = std::move(params.earlier->direct);
     work.levels = std::move(params.earlier->levels);

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "solve/gather/gather.h"
 
@@ -20,6 +23,15 @@ struct Room {
   std::optional<trace::RayTracer> tracer;
 };
 
+/// What follows from its scene and map.
+inline void make_ready(Room& room) {
+  room.elements = transport::elements_from_texels(room.scene, room.atlas, room.map);
+  room.lights = transport::collect_lights(room.scene);
+  auto tracer = trace::RayTracer::build(room.scene);
+  EXPECT_TRUE(tracer);
+  room.tracer.emplace(std::move(*tracer));
+}
+
 inline std::unique_ptr<Room> lay_out(scene::Scene scene, int resolution) {
   auto room = std::make_unique<Room>();
   room->scene = std::move(scene);
@@ -31,11 +43,7 @@ inline std::unique_ptr<Room> lay_out(scene::Scene scene, int resolution) {
   EXPECT_TRUE(atlas) << atlas.error().message;
   room->atlas = std::move(*atlas);
   room->map = atlas::rasterise(room->scene, room->atlas);
-  room->elements = transport::elements_from_texels(room->scene, room->atlas, room->map);
-  room->lights = transport::collect_lights(room->scene);
-  auto tracer = trace::RayTracer::build(room->scene);
-  EXPECT_TRUE(tracer);
-  room->tracer.emplace(std::move(*tracer));
+  make_ready(*room);
   return room;
 }
 
@@ -52,5 +60,19 @@ inline GatherParams with_samples(int samples, int direct_samples = 64) {
   params.samples = samples, params.direct_samples = direct_samples;
   return params;
 }
+
+/// A test that has a folder, which goes with it.
+class WithFolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("luxel-gather-" + std::to_string(::getpid()) + "-" +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path folder_;
+};
 
 }  // namespace luxel::gather

@@ -1,6 +1,5 @@
 // Gather goes on with parts that were kept, and ends with the same bits.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <set>
@@ -23,15 +22,8 @@ GatherParams some_params() {
   return params;
 }
 
-class KeptParts : public ::testing::Test {
+class KeptParts : public WithFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("luxel-kept-" + std::to_string(::getpid()) + "-" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   fs::path file(const std::string& name) const { return folder_ / name; }
 
   /// Everything is kept from the first part on.
@@ -53,7 +45,6 @@ class KeptParts : public ::testing::Test {
     }
   }
 
-  fs::path folder_;
   Progress progress_;
 };
 

@@ -1,7 +1,6 @@
 #include "solve/gather/sweep.h"
 
 #include <algorithm>
-#include <mutex>
 #include <utility>
 
 #include "base/check.h"
@@ -139,31 +138,6 @@ double sweep_thinned(const RadiosityMap& m, const TracedHits& hits, const Thinne
 
 uint64_t stored_hits(const TracedHits& hits) {
   return (hits.bytes_in_memory() + hits.bytes_in_file()) / sizeof(StoredHit);
-}
-
-size_t tile_count(const TracedHits& hits) {
-  return (hits.size() + kTileElements - 1) / kTileElements;
-}
-
-/// Calls take(t, tile) for each tile, on several threads. Errors: the file of hits cannot be read,
-/// cancelled.
-template <class Take>
-Status for_each_tile(const TracedHits& hits, Progress& progress, const Take& take) {
-  std::mutex mutex;
-  Status status;
-  parallel_for(tile_count(hits), 1, [&](size_t t, size_t) {
-    if (progress.cancelled()) return;
-    TileHits tile;
-    if (const Status read = tile.read(hits, t); !read) {
-      const std::lock_guard lock(mutex);
-      status = read;
-      return;
-    }
-    take(t, tile);
-  });
-  if (!status) return status;
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  return {};
 }
 
 }  // namespace

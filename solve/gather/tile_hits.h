@@ -1,9 +1,12 @@
 // The stored hits of neighbouring elements, as sweeps read them.
 #pragma once
 
+#include <mutex>
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "base/result.h"
 #include "solve/gather/trace_hits.h"
 
@@ -28,6 +31,31 @@ struct TileHits {
     return std::span(tile.entries).subspan(first, tile.end[k] - first);
   }
 };
+
+inline size_t tile_count(const TracedHits& hits) {
+  return (hits.size() + kTileElements - 1) / kTileElements;
+}
+
+/// Calls take(t, tile) for each tile, on several threads. Errors: the file of hits cannot be read,
+/// cancelled.
+template <class Take>
+Status for_each_tile(const TracedHits& hits, Progress& progress, const Take& take) {
+  std::mutex mutex;
+  Status status;
+  parallel_for(tile_count(hits), 1, [&](size_t t, size_t) {
+    if (progress.cancelled()) return;
+    TileHits tile;
+    if (const Status read = tile.read(hits, t); !read) {
+      const std::lock_guard lock(mutex);
+      status = read;
+      return;
+    }
+    take(t, tile);
+  });
+  if (!status) return status;
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return {};
+}
 
 /// Where a sweep begins that looks at every stride-th of an element's `count` hits. Neighbours look
 /// at different rays, so that what a sparse sweep misses averages out.

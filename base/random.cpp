@@ -1,6 +1,7 @@
 #include "base/random.h"
 
 #include "base/check.h"
+#include "base/sobol_eighths.h"
 #include "base/vectorize.h"
 
 namespace luxel {
@@ -14,6 +15,9 @@ inline uint32_t reverse_bits(uint32_t x) {
   x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
   return (x >> 16) | (x << 16);
 }
+
+/// Of a number below 8.
+inline uint8_t reverse_3_bits(uint32_t x) { return uint8_t((x & 1) << 2 | (x & 2) | (x & 4) >> 2); }
 
 // A bijection in which each bit depends only on lower bits: on bit-reversed input this is nested
 // (Owen) scrambling. Constants from Vegdahl's search, as published. [Vegdahl21]
@@ -61,6 +65,39 @@ void sobol_owen_2d_points(uint64_t seed, std::span<float> x, std::span<float> y,
     out_x[i] = float(int32_t(a)) * 0x1p-24f;
     out_y[i] = float(int32_t(b)) * 0x1p-24f;
   }
+}
+
+LUXEL_VECTOR_CLONES
+void sobol_owen_2d_points(uint64_t seed, std::span<const uint32_t> indices, std::span<float> x,
+                          std::span<float> y) {
+  LUXEL_CHECK(x.size() == indices.size() && y.size() == indices.size());
+  const uint32_t seed_x = uint32_t(seed), seed_y = uint32_t(seed >> 32);
+  const uint32_t* index = indices.data();
+  float* out_x = x.data();
+  float* out_y = y.data();
+  const uint32_t count = uint32_t(x.size());
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint32_t a = reverse_bits(scramble_upwards(index[i], seed_x)) >> 8;
+    const uint32_t b = reverse_bits(scramble_upwards(sobol_second_reversed(index[i]), seed_y)) >> 8;
+    out_x[i] = float(int32_t(a)) * 0x1p-24f;
+    out_y[i] = float(int32_t(b)) * 0x1p-24f;
+  }
+}
+
+// The first three digits of a coordinate are the lowest bits of its reversal, on which alone those
+// of the scrambled one depend.
+SobolEighths sobol_owen_eighths(uint64_t seed) {
+  SobolEighths out;
+  for (uint32_t k = 0; k < 8; ++k) {
+    const uint8_t from = reverse_3_bits(k);
+    out.x[from] = reverse_3_bits(scramble_upwards(k, uint32_t(seed)) & 7);
+    out.y[from] = reverse_3_bits(scramble_upwards(k, uint32_t(seed >> 32)) & 7);
+  }
+  return out;
+}
+
+SobolEighth sobol_eighth(uint32_t index) {
+  return {reverse_3_bits(index & 7), reverse_3_bits(sobol_second_reversed(index) & 7)};
 }
 
 }  // namespace base

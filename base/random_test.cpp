@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <vector>
+
+#include "base/sobol_eighths.h"
 
 namespace luxel {
 namespace {
@@ -33,6 +36,27 @@ TEST(SobolOwen2d, ManyAtOnceAreTheSamePoints) {
     sobol_owen_2d_points(0x1234567890abcdef, x, y, 300);
     for (size_t i = 0; i < count; ++i)
       ASSERT_EQ((Vec2{x[i], y[i]}), sobol_owen_2d(300 + uint32_t(i), 0x1234567890abcdef)) << i;
+  }
+}
+
+TEST(SobolOwen2d, ThoseOfSomeIndicesAreTheSamePoints) {
+  const std::vector<uint32_t> indices{0, 3, 1, 255, 70000, 4000000000u, 12, 12, 5};
+  std::vector<float> x(indices.size()), y(indices.size());
+  sobol_owen_2d_points(0x1234567890abcdef, indices, x, y);
+  for (size_t i = 0; i < indices.size(); ++i)
+    EXPECT_EQ((Vec2{x[i], y[i]}), sobol_owen_2d(indices[i], 0x1234567890abcdef)) << indices[i];
+}
+
+TEST(SobolOwen2d, LiesInTheEighthsThatAreSaid) {
+  for (const uint64_t seed : {0ull, 7ull, 0x1234567890abcdefull, 0xfedcba9876543210ull}) {
+    const SobolEighths to = sobol_owen_eighths(seed);
+    for (uint32_t k = 0; k < 3000; ++k) {
+      const uint32_t index = k < 2000 ? k : uint32_t(hash64(k));
+      const Vec2 p = sobol_owen_2d(index, seed);
+      const SobolEighth plain = sobol_eighth(index);
+      ASSERT_EQ(int(to.x[plain.x]), int(p.x * 8)) << index;
+      ASSERT_EQ(int(to.y[plain.y]), int(p.y * 8)) << index;
+    }
   }
 }
 

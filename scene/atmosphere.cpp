@@ -250,18 +250,27 @@ AirRay sky_ray(const AirTables& t, double eye_km, double cosine, int steps) {
   return way_out(t, eye_km, cosine, steps).ray;
 }
 
-DVec3 sky_radiance(const AirTables& t, const AirRay& ray, double sun_cosine, double angle) {
-  const double of_air = rayleigh_phase(angle), of_haze = aerosol_phase(t.air.aerosol_g, angle);
-  DVec3 out{};
+SkyLight sky_light(const AirTables& t, const AirRay& ray, double sun_cosine, double angle) {
+  SkyLight out{};
   for (const AirStep& s : ray.steps) {
     const double sun = sun_cosine_at(ray, s, sun_cosine, angle);
-    const DVec3 once = times(s.medium.rayleigh * of_air + s.medium.aerosol * of_haze,
-                             transmittance_to_sun(t, s.radius, sun));
-    const DVec3 again =
-        times(s.medium.rayleigh + s.medium.aerosol, scattered_again(t, s.radius, sun));
-    out += times(once + again, s.reaches);
+    const DVec3 once = times(transmittance_to_sun(t, s.radius, sun), s.reaches);
+    out.by_air += times(s.medium.rayleigh, once);
+    out.by_haze += times(s.medium.aerosol, once);
+    const DVec3 again = times(scattered_again(t, s.radius, sun), s.reaches);
+    out.again += times(s.medium.rayleigh + s.medium.aerosol, again);
   }
   return out;
+}
+
+SkyLight mix(const SkyLight& a, const SkyLight& b, double part) {
+  return {mix(a.by_air, b.by_air, part), mix(a.by_haze, b.by_haze, part),
+          mix(a.again, b.again, part)};
+}
+
+DVec3 sky_radiance(const AirTables& t, const SkyLight& light, double angle) {
+  return light.by_air * rayleigh_phase(angle) +
+         light.by_haze * aerosol_phase(t.air.aerosol_g, angle) + light.again;
 }
 
 }  // namespace luxel::scene

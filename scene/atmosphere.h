@@ -71,9 +71,18 @@ struct AirRay {
 /// top or the ground.
 AirRay sky_ray(const AirTables& t, double eye_km, double cosine, int steps);
 
-/// Radiance / illuminance of the sun above the air [1/sr] that arrives along a ray; `sun_cosine`:
-/// between the sun and the vertical where it starts, `angle`: the cosine between sun and ray. The
-/// sun's disc and the ground are left out.
-DVec3 sky_radiance(const AirTables& t, const AirRay& ray, double sun_cosine, double angle);
+/// What arrives along a ray, without the phase functions of light that is scattered once, which
+/// change fast around the sun: the rest is smooth in the angle between ray and sun.
+struct SkyLight {
+  DVec3 by_air, by_haze;  ///< scattered once
+  DVec3 again;            ///< more often
+};
+/// `sun_cosine`: between the sun and the vertical where the ray starts, `angle`: the cosine between
+/// sun and ray. The sun's disc and the ground are left out.
+SkyLight sky_light(const AirTables& t, const AirRay& ray, double sun_cosine, double angle);
+/// Between two, `part` of the way.
+SkyLight mix(const SkyLight& a, const SkyLight& b, double part);
+/// Radiance / illuminance of the sun above the air [1/sr] of such light.
+DVec3 sky_radiance(const AirTables& t, const SkyLight& light, double angle);
 
 }  // namespace luxel::scene

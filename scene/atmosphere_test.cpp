@@ -81,7 +81,7 @@ TEST(Atmosphere, ThinAirScattersOnce) {
   air.rayleigh_per_km = {1e-4, 1e-4, 1e-4}, air.ozone_per_km = {}, air.ground_albedo = 0;
   const AirTables t = make_air_tables(air);
   const double c = 0.6, depth = 1e-4 * air.rayleigh_height_km;
-  const DVec3 l = sky_radiance(t, sky_ray(t, air.ground_km, 1, 256), c, c);
+  const DVec3 l = sky_radiance(t, sky_light(t, sky_ray(t, air.ground_km, 1, 256), c, c), c);
   EXPECT_NEAR(l.y, depth * rayleigh_phase(c), 5e-3 * depth * rayleigh_phase(c));
 }
 
@@ -92,7 +92,8 @@ TEST(Atmosphere, BrightGroundBrightensTheSky) {
     Atmosphere air = atmosphere_of(2);
     air.ground_albedo = albedo;
     const AirTables t = make_air_tables(air);
-    const DVec3 l = sky_radiance(t, sky_ray(t, air.ground_km, 1, 64), 0.6, 0.6);
+    const SkyLight light = sky_light(t, sky_ray(t, air.ground_km, 1, 64), 0.6, 0.6);
+    const DVec3 l = sky_radiance(t, light, 0.6);
     EXPECT_GT(l.z, before);
     before = l.z;
   }

@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "image/color.h"
+#include "scene/facet.h"
 
 namespace luxel::scene {
 namespace {
@@ -88,15 +89,22 @@ Triangle3 world_triangle(const Scene& scene, uint32_t instance, uint32_t triangl
           transform_point(m, mesh.positions[t[2]])};
 }
 
-Vec3 front_normal(const Scene& scene, uint32_t instance, uint32_t triangle) {
+Facet facet_of(const Scene& scene, uint32_t instance, uint32_t triangle) {
   const Triangle3 t = world_triangle(scene, instance, triangle);
   const bool mirrored = determinant(scene.instances[instance].world_from_object) < 0;
   const Vec3 n = normalize(geometric_normal_area2(t));
-  return mirrored ? -n : n;
+  return {t, mirrored ? -n : n};
+}
+
+Vec3 front_normal(const Scene& scene, uint32_t instance, uint32_t triangle) {
+  return facet_of(scene, instance, triangle).front;
 }
 
 Vec3 shading_normal(const Scene& scene, const SurfacePoint& p) {
-  const Vec3 front = front_normal(scene, p.instance, p.triangle);
+  return shading_normal(scene, p, front_normal(scene, p.instance, p.triangle));
+}
+
+Vec3 shading_normal(const Scene& scene, const SurfacePoint& p, Vec3 front) {
   const Mesh& mesh = mesh_of(scene, p.instance);
   if (mesh.normals.empty()) return front;
   const Vec3 object = attribute_at(mesh.normals, mesh.triangles[p.triangle], p.at);

@@ -1,6 +1,7 @@
 #include "scene/sky.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/check.h"
@@ -29,23 +30,46 @@ DVec3 through_air(const AirTables& t, double elevation_rad) {
   return sum * (1 / weights);
 }
 
-/// direction_of a pixel's centre, in double.
-DVec3 direction_at(const Environment& map, int x, int y) {
-  const double theta = kPiDouble * (y + 0.5) / map.height;
-  const double phi = 2 * kPiDouble * ((x + 0.5) / map.width - 0.5);
-  return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+/// Light of one height above the horizon, at kAzimuths + 1 azimuths from the sun's to the opposite.
+/// In between it is interpolated: but for the phase functions it is smooth, to 0.1 % by day.
+constexpr int kAzimuths = 64;
+using RowLight = std::array<SkyLight, kAzimuths + 1>;
+
+/// The cosine of the angle between the sun and a direction with the cosine `up` with the vertical.
+double angle_to_sun(DVec3 towards_sun, double up, double azimuth_rad) {
+  const double sines = std::sqrt((1 - up * up) * std::max(0.0, 1 - towards_sun.y * towards_sun.y));
+  return sines * std::cos(azimuth_rad) + up * towards_sun.y;
+}
+
+RowLight row_light(const AirTables& t, DVec3 towards_sun, double up) {
+  const AirRay ray = sky_ray(t, t.air.ground_km + kEyeKm, up, kSteps);
+  RowLight out;
+  for (size_t k = 0; k < out.size(); ++k)
+    out[k] = sky_light(t, ray, towards_sun.y,
+                       angle_to_sun(towards_sun, up, kPiDouble * double(k) / kAzimuths));
+  return out;
+}
+
+/// `azimuth_rad`: from the sun's, in [0, pi].
+SkyLight light_at(const RowLight& row, double azimuth_rad) {
+  const double at = azimuth_rad / kPiDouble * kAzimuths;
+  const size_t k = std::min(size_t(at), size_t(kAzimuths) - 1);
+  return mix(row[k], row[k + 1], at - double(k));
 }
 
 /// All of a row look as steeply up: they go through the same air.
 void draw_upper_half(const AirTables& t, DVec3 towards_sun, double lux, Environment& map) {
+  const double sun_azimuth = std::atan2(towards_sun.z, towards_sun.x);
   parallel_for(size_t(map.height / 2), 1, [&](size_t begin, size_t end) {
     for (size_t y = begin; y < end; ++y) {
-      const AirRay ray =
-          sky_ray(t, t.air.ground_km + kEyeKm, direction_at(map, 0, int(y)).y, kSteps);
+      const double up = std::cos(kPiDouble * (double(y) + 0.5) / map.height);
+      const RowLight row = row_light(t, towards_sun, up);
       for (size_t x = 0; x < size_t(map.width); ++x) {
-        const double angle = dot(direction_at(map, int(x), int(y)), towards_sun);
+        const double phi = 2 * kPiDouble * ((double(x) + 0.5) / map.width - 0.5);
+        const double azimuth = std::abs(std::remainder(phi - sun_azimuth, 2 * kPiDouble));
+        const double angle = angle_to_sun(towards_sun, up, azimuth);
         map.radiance[y * size_t(map.width) + x] =
-            to_float(sky_radiance(t, ray, towards_sun.y, angle) * lux);
+            to_float(sky_radiance(t, light_at(row, azimuth), angle) * lux);
       }
     }
   });

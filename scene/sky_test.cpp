@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "base/vec_double.h"
+#include "scene/atmosphere.h"
 
 namespace luxel::scene {
 namespace {
@@ -90,6 +91,29 @@ TEST(Sky, IsSymmetricAboutTheSunAndTurnsWithIt) {
       EXPECT_NEAR(luminance(here), luminance(there), 1e-4f * luminance(here)) << x << " " << y;
       EXPECT_NEAR(luminance(here), luminance(turned), 1e-4f * luminance(here)) << x << " " << y;
     }
+}
+
+// Each pixel against its own way through the air: between the azimuths that are worked out light is
+// interpolated. After sunset the earth's shadow crosses the sky.
+TEST(SkySlow, IsTheLightOfEachPixelsOwnDirection) {
+  const AirTables air = make_air_tables(atmosphere_of(2));
+  for (const auto& [elevation_deg, tolerance] :
+       {std::pair{60.0, 1e-4}, {20.0, 1e-4}, {3.0, 1e-3}, {-3.0, 3e-3}}) {
+    const Sky sky = sky_at(elevation_deg, 2, 77, 32);
+    const DVec3 sun = to_double(sun_at(77, elevation_deg));
+    for (int y = 0; y < 16; ++y) {
+      const Vec3 up = direction_of(sky.radiance, {0, (float(y) + 0.5f) / 32});
+      const AirRay ray = sky_ray(air, air.air.ground_km + 0.002, double(up.y), 96);
+      for (int x = 0; x < 64; ++x) {
+        const Vec2 at{(float(x) + 0.5f) / 64, (float(y) + 0.5f) / 32};
+        const double angle = dot(to_double(direction_of(sky.radiance, at)), sun);
+        const DVec3 l = sky_radiance(air, sky_light(air, ray, sun.y, angle), angle) * kSunLux;
+        const double expected = double(luminance(to_float(l)));
+        EXPECT_NEAR(double(luminance(pixel(sky, x, y))), expected, tolerance * expected)
+            << elevation_deg << " " << x << " " << y;
+      }
+    }
+  }
 }
 
 TEST(SkySlow, IsBrightestAroundTheSun) {

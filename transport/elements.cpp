@@ -2,6 +2,7 @@
 
 #include "base/free_memory.h"
 #include "base/parallel.h"
+#include "scene/facet.h"
 #include "scene/sides.h"
 
 namespace luxel::transport {
@@ -39,28 +40,48 @@ Rgb mean_over_texel(const scene::Scene& scene, const atlas::Atlas& atlas, const 
 /// eight segments, and little enough not to come out behind a neighbouring wall.
 constexpr float kMaxBulge = 0.25f;
 
-/// The point lifted to the surface that the vertex normals bend over the triangle: the mean, by
-/// barycentric weights, of its projections on the three tangent planes above it. [Hanika21]
-Vec3 smooth_position(const scene::Scene& scene, const scene::SurfacePoint& p) {
-  const scene::Instance& instance = scene.instances[p.instance];
-  const scene::Mesh& mesh = scene.meshes[instance.mesh];
-  const scene::Triangle3 t = scene::world_triangle(scene, p.instance, p.triangle);
-  const Vec3 at = interpolate(t.a, t.b, t.c, p.at);
-  if (mesh.normals.empty()) return at;
+/// A triangle and the surface that its vertex normals bend over it.
+struct BentFacet {
+  scene::Facet flat;
+  bool bends = false;
+  std::array<Vec3, 3> normals;  ///< of the vertices, unit, where it bends
+  float size_m = 0;             ///< the root of its area
+};
+
+BentFacet bent_facet(const scene::Scene& scene, uint32_t instance, uint32_t triangle) {
+  const scene::Instance& placed = scene.instances[instance];
+  const scene::Mesh& mesh = scene.meshes[placed.mesh];
+  BentFacet out;
+  out.flat = scene::facet_of(scene, instance, triangle);
+  out.size_m = std::sqrt(scene::area_m2(out.flat.corners));
+  out.bends = !mesh.normals.empty();
+  for (size_t k = 0; k < 3 && out.bends; ++k) {
+    const Vec3 object = mesh.normals[mesh.triangles[triangle][k]];
+    out.normals[k] = normalize(transform_normal(placed.world_from_object, object));
+    // Beyond 60 degrees from the triangle a normal is not that of a smooth surface.
+    out.bends = dot(out.normals[k], out.flat.front) >= 0.5f;
+  }
+  return out;
+}
+
+/// The point lifted to that surface: the mean, by barycentric weights, of its projections on the
+/// three tangent planes above it. [Hanika21]
+Vec3 lifted(const BentFacet& facet, Vec3 at, Barycentric place) {
+  const scene::Triangle3& t = facet.flat.corners;
   const std::array<Vec3, 3> corners{t.a, t.b, t.c};
-  const std::array<float, 3> weights{1 - p.at.u - p.at.v, p.at.u, p.at.v};
-  const Vec3 front = scene::front_normal(scene, p.instance, p.triangle);
+  const std::array<float, 3> weights{1 - place.u - place.v, place.u, place.v};
   Vec3 lift{};
   for (size_t k = 0; k < 3; ++k) {
-    const Vec3 object = mesh.normals[mesh.triangles[p.triangle][k]];
-    const Vec3 n = normalize(transform_normal(instance.world_from_object, object));
-    // Beyond 60 degrees from the triangle a normal is not that of a smooth surface.
-    if (dot(n, front) < 0.5f) return at;
+    const Vec3 n = facet.normals[k];
     lift += n * (weights[k] * std::max(0.0f, dot(corners[k] - at, n)));
   }
-  const float limit = kMaxBulge * std::sqrt(scene::area_m2(t));
+  const float limit = kMaxBulge * facet.size_m;
   const float height = length(lift);
   return height <= limit ? at + lift : at + lift * (limit / height);
+}
+
+bool in_same_triangle(const scene::SurfacePoint& a, const scene::SurfacePoint& b) {
+  return a.instance == b.instance && a.triangle == b.triangle;
 }
 
 /// Lower than this part of the triangle's size a bulge is rounding.
@@ -73,14 +94,23 @@ void drop_places(Elements& elements) {
   free_memory(elements.geometric_normal);
 }
 
-SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p) {
-  const Vec3 flat = scene::world_position(scene, p);
-  SmoothPoint out{smooth_position(scene, p), scene::shading_normal(scene, p), {}};
-  const float size =
-      std::sqrt(scene::area_m2(scene::world_triangle(scene, p.instance, p.triangle)));
-  const bool bulges = length(out.position - flat) > kNoBulge * size;
-  out.geometric_normal = bulges ? out.normal : scene::front_normal(scene, p.instance, p.triangle);
+namespace {
+
+SmoothPoint smooth_point(const scene::Scene& scene, const BentFacet& facet,
+                         const scene::SurfacePoint& p) {
+  const scene::Triangle3& t = facet.flat.corners;
+  const Vec3 at = interpolate(t.a, t.b, t.c, p.at);
+  SmoothPoint out{at, scene::shading_normal(scene, p, facet.flat.front), facet.flat.front};
+  if (!facet.bends) return out;
+  out.position = lifted(facet, at, p.at);
+  if (length(out.position - at) > kNoBulge * facet.size_m) out.geometric_normal = out.normal;
   return out;
+}
+
+}  // namespace
+
+SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p) {
+  return smooth_point(scene, bent_facet(scene, p.instance, p.triangle), p);
 }
 
 Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
@@ -91,10 +121,14 @@ Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atl
   const bool scatters = scene::scatters_light(scene);
   if (scatters) e.transmittance.resize(n);
   parallel_for(n, 4096, [&](size_t begin, size_t end) {
+    BentFacet facet;
     for (size_t i = begin; i < end; ++i) {
       const atlas::Texel& texel = map.texels[i];
       const scene::SurfacePoint& p = texel.sample;
-      const SmoothPoint at = smooth_point(scene, p);
+      // Neighbours in a row mostly lie in one triangle.
+      if (i == begin || !in_same_triangle(p, map.texels[i - 1].sample))
+        facet = bent_facet(scene, p.instance, p.triangle);
+      const SmoothPoint at = smooth_point(scene, facet, p);
       e.position[i] = at.position, e.normal[i] = at.normal;
       e.geometric_normal[i] = at.geometric_normal;
       const bool varies = varies_over_texels(scene::material_at(scene, p));

@@ -154,15 +154,14 @@ void mark_followed(std::span<const Box3> boxes, Vec3 from, float near_m,
 }
 
 uint64_t cells_towards(std::span<const Box3> boxes, Vec3 from, Vec3 normal, Vec3 geometric_normal,
-                       const std::array<Cone, kCells>& cells) {
+                       const CellCones& cells) {
   static_assert(kCells == 64);
   const Frame frame = frame_around(normal);
   uint64_t out = 0;
   const auto add = [&](Cone cone) {
     cone.axis = {dot(frame.tangent, cone.axis), dot(frame.bitangent, cone.axis),
                  dot(frame.normal, cone.axis)};
-    for (size_t c = 0; c < kCells; ++c)
-      if (cells[c].may_meet(cone)) out |= uint64_t(1) << c;
+    out |= cells_that_meet(cells, cone);
   };
   const bool bent = !(normal == geometric_normal);
   for (const Box3& box : boxes) {

@@ -108,6 +108,6 @@ void mark_followed(std::span<const Box3> boxes, Vec3 from, float near_m,
 /// Cells of directions (element_rays.h) whose rays from a place, about `normal` and mirrored above
 /// the triangle, may meet a box, as one bit each.
 uint64_t cells_towards(std::span<const Box3> boxes, Vec3 from, Vec3 normal, Vec3 geometric_normal,
-                       const std::array<Cone, kCells>& cells);
+                       const CellCones& cells);
 
 }  // namespace luxel::gather

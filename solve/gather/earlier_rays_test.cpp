@@ -173,7 +173,7 @@ TEST(CellsTowards, HoldEveryRayThatMeetsABox) {
     for (size_t r = 0; r < w.batch.rays.size(); ++r) {
       if (!meets_exactly(w.look.box, w.batch.rays[r], 0)) continue;
       ++met;
-      EXPECT_TRUE(cells >> w.batch.cell[r] & 1);
+      EXPECT_TRUE(cells >> w.batch.cell_of(uint32_t(r)) & 1);
     }
     if (length(w.look.box.centre() - w.look.from) < 4 * w.look.box.diagonal()) continue;
     ++small, bits += size_t(std::popcount(cells));

@@ -1,10 +1,11 @@
 #include "solve/gather/element_rays.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/circle.h"
-#include "base/random.h"
+#include "base/sobol_eighths.h"
 #include "base/vectorize.h"
 #include "base/warp.h"
 #include "transport/surroundings.h"
@@ -12,14 +13,21 @@
 namespace luxel::gather {
 namespace {
 
-/// The cell of each point.
-LUXEL_VECTOR_CLONES
-void find_cells(const float* u, const float* v, uint8_t* cell, size_t count) {
-  for (size_t i = 0; i < count; ++i) {
-    const int a = int(u[i] * kCellsPerAxis), b = int(v[i] * kCellsPerAxis);
-    cell[i] =
-        uint8_t((a & 1) | (a & 2) << 1 | (a & 4) << 2 | (b & 1) << 1 | (b & 2) << 2 | (b & 4) << 3);
-  }
+/// The number of the cell in column x and row y.
+size_t cell_at(SobolEighth at) {
+  const auto spread = [](size_t bits) { return (bits & 1) | (bits & 2) << 1 | (bits & 4) << 2; };
+  return spread(at.x) | spread(at.y) << 1;
+}
+
+/// A counting sort.
+void sort_by_plain_cell(Samples samples, PlainCells& out) {
+  out.of = samples, out.first_of = {}, out.sample.resize(samples.count());
+  for (uint32_t s = samples.first; s < samples.end; ++s)
+    ++out.first_of[cell_at(sobol_eighth(s)) + 1];
+  for (size_t c = 0; c < kCells; ++c) out.first_of[c + 1] += out.first_of[c];
+  auto place = out.first_of;
+  for (uint32_t s = samples.first; s < samples.end; ++s)
+    out.sample[place[cell_at(sobol_eighth(s))]++] = s;
 }
 
 /// Directions about +z from points of the unit square.
@@ -30,6 +38,15 @@ void local_directions(const float* u, const float* v, float* x, float* y, float*
     const float r = std::sqrt(v[i]);
     x[i] = circle.x * r, y[i] = circle.y * r, z[i] = std::sqrt(1 - v[i]);
   }
+}
+
+/// Those of samples of the batch, into its x, y and z.
+void directions_of(std::span<const uint32_t> samples, RayBatch& batch) {
+  for (auto* buffer : {&batch.u, &batch.v, &batch.x, &batch.y, &batch.z})
+    buffer->resize(samples.size());
+  sobol_owen_2d_points(batch.seed, samples, batch.u, batch.v);
+  local_directions(batch.u.data(), batch.v.data(), batch.x.data(), batch.y.data(), batch.z.data(),
+                   samples.size());
 }
 
 /// From such to the world.
@@ -61,11 +78,11 @@ Vec3 direction_in(size_t cell, float across, float along) {
 
 }  // namespace
 
-std::array<Cone, kCells> cell_cones() {
+CellCones cell_cones() {
   // The farthest from the middle is on the border; between its points it bulges by less than this.
   constexpr int kSteps = 16;
   constexpr float kMargin_rad = 0.02f;
-  std::array<Cone, kCells> out;
+  CellCones out;
   for (size_t c = 0; c < kCells; ++c) {
     const Vec3 axis = direction_in(c, 0.5f, 0.5f);
     float cosine = 1;
@@ -76,67 +93,92 @@ std::array<Cone, kCells> cell_cones() {
             {cosine, dot(axis, direction_in(c, at, side)), dot(axis, direction_in(c, side, at))});
       }
     const float angle = std::acos(std::clamp(cosine, -1.0f, 1.0f)) + kMargin_rad;
-    out[c] = {axis, std::cos(angle), std::sin(angle)};
+    out.x[c] = axis.x, out.y[c] = axis.y, out.z[c] = axis.z;
+    out.cosine[c] = std::cos(angle), out.sine[c] = std::sin(angle);
   }
   return out;
 }
 
-// In the order of their cells: a counting sort.
-void find_ray_cells(uint64_t seed, Samples samples, RayBatch& batch) {
-  const uint32_t count = samples.count();
-  batch.u.resize(count), batch.v.resize(count), batch.cell_of_point.resize(count);
-  batch.rays.resize(count), batch.sample.resize(count), batch.cell.resize(count);
-  batch.point.resize(count);
-  sobol_owen_2d_points(seed, batch.u, batch.v, samples.first);
-  find_cells(batch.u.data(), batch.v.data(), batch.cell_of_point.data(), count);
-  batch.first_of_cell = {};
-  for (uint32_t i = 0; i < count; ++i) ++batch.first_of_cell[batch.cell_of_point[i] + 1];
-  for (size_t c = 0; c < kCells; ++c) batch.first_of_cell[c + 1] += batch.first_of_cell[c];
+LUXEL_VECTOR_CLONES
+uint64_t cells_that_meet(const CellCones& cells, const Cone& cone) {
+  const Vec3 axis = cone.axis;
+  const float cosine = cone.cosine, sine = cone.sine;
+  std::array<uint8_t, kCells> meets;
+  for (size_t c = 0; c < kCells; ++c)
+    meets[c] = cells.x[c] * axis.x + cells.y[c] * axis.y + cells.z[c] * axis.z >=
+               cells.cosine[c] * cosine - cells.sine[c] * sine;
+  uint64_t out = 0;
+  for (size_t c = 0; c < kCells; c += 8) {
+    // Eight bytes of 0 or 1 become bits: the product's top byte has each of them once.
+    uint64_t eight = 0;
+    for (size_t k = 0; k < 8; ++k) eight |= uint64_t(meets[c + k]) << (8 * k);
+    out |= eight * 0x0102040810204080ull >> 56 << c;
+  }
+  return out;
 }
 
-void fill_samples_of(uint64_t cells, Samples samples, RayBatch& batch) {
-  auto place = batch.first_of_cell;
-  for (uint32_t i = 0; i < samples.count(); ++i) {
-    const uint8_t cell = batch.cell_of_point[i];
-    if (!(cells >> cell & 1)) continue;
-    const uint32_t at = place[cell]++;
-    batch.point[at] = i, batch.sample[at] = samples.first + i, batch.cell[at] = cell;
+size_t RayBatch::cell_of(uint32_t k) const {
+  return size_t(std::ranges::upper_bound(first_of_cell, k) - first_of_cell.begin()) - 1;
+}
+
+namespace {
+
+/// The plain cell that scrambling moves to each cell.
+std::array<uint8_t, kCells> plain_cells(uint64_t seed) {
+  const SobolEighths to = sobol_owen_eighths(seed);
+  std::array<uint8_t, kCells> out;
+  for (uint8_t x = 0; x < kCellsPerAxis; ++x)
+    for (uint8_t y = 0; y < kCellsPerAxis; ++y)
+      out[cell_at({to.x[x], to.y[y]})] = uint8_t(cell_at({x, y}));
+  return out;
+}
+
+}  // namespace
+
+void find_ray_cells(uint64_t seed, Samples samples, RayBatch& batch) {
+  if (!(batch.plain.of == samples)) sort_by_plain_cell(samples, batch.plain);
+  batch.seed = seed;
+  batch.rays.resize(samples.count()), batch.sample.resize(samples.count());
+  batch.plain_of_cell = plain_cells(seed);
+  const auto& first = batch.plain.first_of;
+  for (size_t c = 0; c < kCells; ++c) {
+    const size_t plain = batch.plain_of_cell[c];
+    batch.first_of_cell[c + 1] = batch.first_of_cell[c] + first[plain + 1] - first[plain];
+  }
+}
+
+void fill_samples_of(uint64_t cells, RayBatch& batch) {
+  const PlainCells& plain = batch.plain;
+  for (; cells != 0; cells &= cells - 1) {
+    const auto c = size_t(std::countr_zero(cells));
+    const uint32_t* from = plain.sample.data() + plain.first_of[batch.plain_of_cell[c]];
+    std::copy_n(from, batch.first_of_cell[c + 1] - batch.first_of_cell[c],
+                batch.sample.data() + batch.first_of_cell[c]);
   }
 }
 
 void fill_samples(uint64_t seed, Samples samples, RayBatch& batch) {
   find_ray_cells(seed, samples, batch);
-  fill_samples_of(~uint64_t(0), samples, batch);
+  fill_samples_of(~uint64_t(0), batch);
 }
 
 void fill_directions(Vec3 origin, Vec3 normal, Vec3 geometric_normal,
                      std::span<const uint32_t> which, RayBatch& batch) {
-  const size_t count = which.size();
-  for (auto* buffer : {&batch.few_u, &batch.few_v, &batch.x, &batch.y, &batch.z})
-    buffer->resize(count);
-  for (size_t j = 0; j < count; ++j) {
-    const uint32_t point = batch.point[which[j]];
-    batch.few_u[j] = batch.u[point], batch.few_v[j] = batch.v[point];
-  }
-  local_directions(batch.few_u.data(), batch.few_v.data(), batch.x.data(), batch.y.data(),
-                   batch.z.data(), count);
+  batch.few.resize(which.size());
+  for (size_t j = 0; j < which.size(); ++j) batch.few[j] = batch.sample[which[j]];
+  directions_of(batch.few, batch);
   const Turn turn(normal, geometric_normal);
-  for (size_t j = 0; j < count; ++j)
+  for (size_t j = 0; j < which.size(); ++j)
     batch.rays[which[j]] = {origin, 0, turn({batch.x[j], batch.y[j], batch.z[j]}), INFINITY};
 }
 
 void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Samples samples,
                RayBatch& batch) {
-  const size_t count = samples.count();
   fill_samples(seed, samples, batch);
-  for (std::vector<float>* buffer : {&batch.x, &batch.y, &batch.z}) buffer->resize(count);
-  local_directions(batch.u.data(), batch.v.data(), batch.x.data(), batch.y.data(), batch.z.data(),
-                   count);
+  directions_of(batch.sample, batch);
   const Turn turn(normal, geometric_normal);
-  for (size_t at = 0; at < count; ++at) {
-    const uint32_t i = batch.point[at];
-    batch.rays[at] = {origin, 0, turn({batch.x[i], batch.y[i], batch.z[i]}), INFINITY};
-  }
+  for (size_t k = 0; k < batch.rays.size(); ++k)
+    batch.rays[k] = {origin, 0, turn({batch.x[k], batch.y[k], batch.z[k]}), INFINITY};
 }
 
 void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,

@@ -15,6 +15,7 @@ namespace luxel::gather {
 struct Samples {
   uint32_t first = 0, end = 0;
 
+  friend bool operator==(const Samples&, const Samples&) = default;
   uint32_t count() const { return end - first; }
   /// Whether a sample belongs to the second half of all up to `end`.
   bool in_second_half(uint32_t sample) const { return 2 * sample >= end; }
@@ -24,17 +25,29 @@ struct Samples {
 inline constexpr int kCellsPerAxis = 8;
 inline constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
 
+/// Samples by the cell in which they lie before they are scrambled, which is the same for all
+/// elements.
+struct PlainCells {
+  Samples of{};
+  std::vector<uint32_t> sample;                 ///< cell after cell, ascending within one
+  std::array<uint32_t, kCells + 1> first_of{};  ///< the first of each cell
+};
+
 /// Rays of one element with the number of the sample that each belongs to; and buffers, reused from
 /// element to element.
 struct RayBatch {
-  std::vector<trace::Ray> rays;
+  std::vector<trace::Ray> rays;  ///< in the order of their cells
   std::vector<uint32_t> sample;
-  std::vector<uint8_t> cell;  ///< of the unit square, per ray: rays are in the order of their cells
-  std::vector<float> u, v, few_u, few_v, x, y, z;
-  std::vector<uint8_t> cell_of_point;
-  std::vector<uint32_t> point;  ///< per ray, of u and v
   std::array<uint32_t, kCells + 1>
       first_of_cell{};  ///< the first ray of each cell; and how many there are
+  uint64_t seed = 0;    ///< of the samples
+  PlainCells plain;
+  std::array<uint8_t, kCells> plain_of_cell{};  ///< which of them scrambling moves to each cell
+  std::vector<uint32_t> few;
+  std::vector<float> u, v, x, y, z;
+
+  /// Of the k-th ray.
+  size_t cell_of(uint32_t k) const;
 };
 
 /// Of an element's rays.
@@ -51,20 +64,22 @@ void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, S
 struct Cone {
   Vec3 axis{0, 0, 1};
   float cosine = 0, sine = 1;  ///< of that angle
-
-  bool may_meet(const Cone& other) const {
-    return dot(axis, other.axis) >= cosine * other.cosine - sine * other.sine;
-  }
 };
-/// What holds the directions of each cell, about the normal +z.
-std::array<Cone, kCells> cell_cones();
+/// A cone for each cell that holds its directions, about the normal +z.
+struct CellCones {
+  std::array<float, kCells> x, y, z;  ///< their axes
+  std::array<float, kCells> cosine, sine;
+};
+CellCones cell_cones();
+/// The cells that may have directions of the cone, one bit each.
+uint64_t cells_that_meet(const CellCones& cells, const Cone& cone);
 
 /// The same rays in the same order, but without directions: fill_directions() gives them to some.
 void fill_samples(uint64_t seed, Samples samples, RayBatch& batch);
 /// The same in two steps, for the rays of some cells only, one bit each: the first finds
 /// batch.first_of_cell.
 void find_ray_cells(uint64_t seed, Samples samples, RayBatch& batch);
-void fill_samples_of(uint64_t cells, Samples samples, RayBatch& batch);
+void fill_samples_of(uint64_t cells, RayBatch& batch);
 /// Gives rays[k] for each k of `which`, ascending, what fill_rays() gives it.
 void fill_directions(Vec3 origin, Vec3 normal, Vec3 geometric_normal,
                      std::span<const uint32_t> which, RayBatch& batch);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace luxel::gather {
 
@@ -22,6 +23,13 @@ bool EarlierCursor::advance(size_t k, size_t count, bool knows_escaped) {
 
 namespace {
 
+/// The first ray from `from` on that is marked; marked.size() where there is none.
+size_t next_marked(std::span<const uint8_t> marked, size_t from) {
+  if (from >= marked.size()) return marked.size();
+  const void* found = std::memchr(marked.data() + from, 1, marked.size() - from);
+  return found ? size_t(static_cast<const uint8_t*>(found) - marked.data()) : marked.size();
+}
+
 /// Sets work.marked where a ray's direction alone does not tell that it stays.
 void mark_at_once(const AgainWorld& world, Vec3 origin, const EarlierElement& before,
                   RayWork& work) {
@@ -37,13 +45,10 @@ void mark_at_once(const AgainWorld& world, Vec3 origin, const EarlierElement& be
 }
 
 /// In which cells rays are that are marked.
-uint64_t cells_of(std::span<const uint8_t> marked, std::span<const uint32_t> first_of_cell) {
+uint64_t cells_of(std::span<const uint8_t> marked, const RayBatch& batch) {
   uint64_t out = 0;
-  for (size_t k = 0; k < marked.size(); ++k) {
-    if (!marked[k]) continue;
-    const auto next = std::ranges::upper_bound(first_of_cell, uint32_t(k));
-    out |= uint64_t(1) << (next - first_of_cell.begin() - 1);
-  }
+  for (size_t k = next_marked(marked, 0); k < marked.size(); k = next_marked(marked, k + 1))
+    out |= uint64_t(1) << batch.cell_of(uint32_t(k));
   return out;
 }
 
@@ -58,10 +63,10 @@ void choose_again(const AgainWorld& world, size_t element, Vec3 origin, uint64_t
   work.maybe.clear(), work.again.clear();
   work.marked.assign(samples.count(), 0);
   mark_at_once(world, origin, before, work);
-  if (cells == 0 && std::ranges::find(work.marked, 1) == work.marked.end()) return;
+  if (cells == 0 && next_marked(work.marked, 0) == work.marked.size()) return;
   find_ray_cells(seed, samples, work.batch);
-  cells |= cells_of(work.marked, work.batch.first_of_cell);
-  fill_samples_of(cells, samples, work.batch);
+  cells |= cells_of(work.marked, work.batch);
+  fill_samples_of(cells, work.batch);
   for (; cells != 0; cells &= cells - 1) {
     const auto cell = size_t(std::countr_zero(cells));
     for (uint32_t k = work.batch.first_of_cell[cell]; k < work.batch.first_of_cell[cell + 1]; ++k)

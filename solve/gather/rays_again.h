@@ -24,7 +24,7 @@ struct EarlierCursor {
 struct AgainWorld {
   const transport::Elements& elements;
   const EarlierRays& earlier;
-  const std::array<Cone, kCells>& cell_cones;
+  const CellCones& cell_cones;
   bool tints = false;  ///< RayTracer::has_tints()
 };
 

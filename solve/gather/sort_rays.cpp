@@ -91,6 +91,14 @@ RayEnd end_of(const RayWorld& world, RayWork& work, size_t k, size_t element, Sa
   return hit.back_face ? RayEnd::behind : RayEnd::hit;
 }
 
+/// What a ray met then and meets now; null: it has no hit. Most meet what they met.
+void note_change(const RayWorld& world, const StoredHit* then, const StoredHit* now, size_t element,
+                 TracedHits& out) {
+  if (then && now && then->bits == now->bits) return;
+  if (then) gather::note_change(world, *then, -1, element, out);
+  if (now) gather::note_change(world, *now, 1, element, out);
+}
+
 /// Counts the end of a ray that was traced, and keeps its hit.
 void take_traced(const RayWorld& world, const RayWork& work, size_t k, RayEnd end, size_t element,
                  Samples samples, TracedHits& out, RayTile& tile) {
@@ -166,10 +174,11 @@ void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples sa
     keep_up_to(k);
     const RayEnd known = before.ends[k];
     count_ends(known, -1, element, out);
-    if (is_hit(known)) note_change(world, before.hits[hit++], -1, element, out);
     ends[k] = end_of(world, work, k, element, samples);
     take_traced(world, work, k, ends[k], element, samples, out, tile);
-    if (is_hit(ends[k])) note_change(world, tile.hits.entries.back(), 1, element, out);
+    const StoredHit* then = is_hit(known) ? &before.hits[hit++] : nullptr;
+    const StoredHit* now = is_hit(ends[k]) ? &tile.hits.entries.back() : nullptr;
+    note_change(world, then, now, element, out);
     next = k + 1;
   }
   keep_up_to(count);

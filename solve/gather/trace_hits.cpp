@@ -73,7 +73,7 @@ struct Round {
   float diagonal_m = 0;
   uint64_t number = 0;
   const EarlierRays* earlier = nullptr;  ///< null: nothing is known
-  std::array<Cone, kCells> cell_cones = gather::cell_cones();
+  CellCones cell_cones = gather::cell_cones();
 
   Samples samples_of(size_t i, const TracedHits& hits) const {
     return {hits.samples[i], std::max(hits.samples[i], target[i])};

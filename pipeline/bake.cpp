@@ -164,8 +164,8 @@ Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, B
   const auto warn = [&] { warnings.insert(warnings.end(), sides.begin(), sides.end()); };
   if (KeptBake* found = cache ? cache->found() : nullptr) {
     sides = found->layout.warnings, warn();
-    const bool same_places = cache->change().moved.empty() && cache->change().boxes.empty();
-    return lay_out_again(settings, std::move(found->layout), same_places, scene, progress);
+    return lay_out_again(settings, std::move(found->layout), cache->change().boxes, scene,
+                         progress);
   }
   const bool keeps = cache && cache->rays();
   std::vector<std::vector<uint32_t>> numbers;

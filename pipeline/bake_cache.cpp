@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// Of the cache's files; goes up when what they hold changes.
-constexpr int kFormat = 3;
+constexpr int kFormat = 4;
 RecordKey key_of(size_t part) { return {0, part}; }
 
 /// Settings that leave gathered light as it is; those of outside light are in the scene.

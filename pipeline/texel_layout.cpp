@@ -28,7 +28,7 @@ Result<TexelLayout> lay_out_once(const atlas::AtlasParams& params, const scene::
   atlas::TexelMap map = atlas::rasterise(scene, atlas);
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
-  return TexelLayout{std::move(atlas), std::move(map), {}, std::move(tracer), {}};
+  return TexelLayout{std::move(atlas), std::move(map), {}, std::move(tracer), {}, {}};
 }
 
 /// Cuts the scene where its charts run under barriers. Cut charts are smaller and pack another way,
@@ -92,6 +92,11 @@ void add_open(const scene::Scene& scene, const atlas::Atlas& atlas, const trace:
   }
 }
 
+void take_opened(transport::OpenedSamples opened, TexelLayout& layout) {
+  layout.repair.moved = std::move(opened.moved);
+  layout.near_backs = std::move(opened.near_backs);
+}
+
 }  // namespace
 
 Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& scene,
@@ -101,7 +106,7 @@ Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& s
   if (settings.repair_leaks) {
     LUXEL_TRY_STATUS(cut_at_barriers(params, scene, layout, progress));
     progress.begin("samples", 0);
-    layout.repair.moved = transport::open_samples(scene, layout.atlas, layout.tracer, layout.map);
+    take_opened(transport::open_samples(scene, layout.atlas, layout.tracer, layout.map), layout);
   }
   layout.repair.overlapping = atlas::overlapping_texels(layout.atlas, layout.map);
   layout.stats = atlas::atlas_stats(scene, layout.atlas, layout.map);
@@ -114,12 +119,13 @@ KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout) {
   for (const scene::Instance& instance : scene.instances)
     out.mesh_of_instance.push_back(instance.mesh);
   out.atlas = layout.atlas, out.texels = layout.map.texels;
-  out.stats = layout.stats, out.repair = layout.repair;
+  out.stats = layout.stats, out.repair = layout.repair, out.near_backs = layout.near_backs;
   return out;
 }
 
-Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept, bool same_places,
-                                  scene::Scene& scene, Progress& progress) {
+Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
+                                  std::span<const Box3> boxes, scene::Scene& scene,
+                                  Progress& progress) {
   LUXEL_CHECK(kept.mesh_of_instance.size() == scene.instances.size());
   progress.begin("charts", 0);
   scene.meshes = std::move(kept.meshes);
@@ -129,17 +135,20 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
   }
   for (size_t i = 0; i < scene.instances.size(); ++i)
     scene.instances[i].mesh = kept.mesh_of_instance[i];
+  const bool same_places = boxes.empty();
   // Samples that were moved out of solids begin at their own places again where things have moved.
   if (!same_places) free_memory(kept.texels);
   atlas::TexelMap map = same_places ? atlas::map_of(kept.atlas, std::move(kept.texels))
                                     : atlas::rasterise(scene, kept.atlas);
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
-  TexelLayout layout{std::move(kept.atlas), std::move(map), kept.stats, std::move(tracer),
-                     std::move(kept.repair)};
+  TexelLayout layout{std::move(kept.atlas), std::move(map),         kept.stats,
+                     std::move(tracer),     std::move(kept.repair), {}};
   if (!same_places && settings.repair_leaks) {
     progress.begin("samples", 0);
-    layout.repair.moved = transport::open_samples(scene, layout.atlas, layout.tracer, layout.map);
+    take_opened(transport::open_samples_again(scene, layout.atlas, layout.tracer, boxes,
+                                              kept.near_backs, layout.map),
+                layout);
   }
   return layout;
 }

@@ -1,6 +1,7 @@
 // Where texels lie, such that none of them lets light through a wall.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct TexelLayout {
   atlas::AtlasStats stats;
   trace::RayTracer tracer;  ///< of the scene as it is now
   LeakRepair repair;
+  std::vector<uint32_t> near_backs;  ///< OpenedSamples::near_backs
 };
 
 /// Lays the scene out and rasterises it. With settings.repair_leaks, samples move out of solids,
@@ -49,16 +51,19 @@ struct KeptLayout {
   std::vector<atlas::Texel> texels;  ///< of the map
   atlas::AtlasStats stats;
   LeakRepair repair;
+  std::vector<uint32_t> near_backs;
   std::vector<std::string> warnings;
 };
 /// `one_sided_of` and `warnings` are not filled in.
 KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout);
 
 /// The kept layout for `scene`, which has the same meshes, as they were read, in the same number of
-/// places. With `same_places` its texels' samples stay; else they are moved out of solids again
-/// where settings.repair_leaks says so. `scene` gets the layout's meshes. Errors: no memory.
-Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept, bool same_places,
-                                  scene::Scene& scene, Progress& progress);
+/// places. What has moved did so within `boxes`; without any its texels' samples stay, else they
+/// are moved out of solids again where settings.repair_leaks says so. `scene` gets the layout's
+/// meshes. Errors: no memory.
+Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
+                                  std::span<const Box3> boxes, scene::Scene& scene,
+                                  Progress& progress);
 
 /// Whether a barrier stands between two texels of one chart. Refers to its arguments.
 post::Parted parted_texels(const scene::Scene& scene, const atlas::Atlas& atlas,

@@ -56,16 +56,16 @@ void pixels_towards(const Environment& map, std::span<const Vec3> directions,
 
 Rgb smooth_radiance_towards(const Environment& map, Vec3 direction) {
   const Vec2 uv = uv_of(map, direction);
-  const float x = uv.x * float(map.width) - 0.5f + float(map.width);
+  const float x = uv.x * float(map.width) - 0.5f;
   const float y = std::clamp(uv.y * float(map.height) - 0.5f, 0.0f, float(map.height - 1));
-  const int x0 = int(x), y0 = int(y);
+  const int x0 = int(std::floor(x)), y0 = int(y);
   const float fx = x - float(x0), fy = y - float(y0);
-  const auto at = [&](int column, int row) {
-    return map.radiance[size_t(std::min(row, map.height - 1)) * size_t(map.width) +
-                        size_t(column % map.width)];
+  const int left = x0 < 0 ? map.width - 1 : x0, right = x0 + 1 < map.width ? x0 + 1 : 0;
+  const auto row = [&](int number) {
+    const Rgb* pixels = &map.radiance[size_t(std::min(number, map.height - 1)) * size_t(map.width)];
+    return pixels[left] * (1 - fx) + pixels[right] * fx;
   };
-  return (at(x0, y0) * (1 - fx) + at(x0 + 1, y0) * fx) * (1 - fy) +
-         (at(x0, y0 + 1) * (1 - fx) + at(x0 + 1, y0 + 1) * fx) * fy;
+  return row(y0) * (1 - fy) + row(y0 + 1) * fy;
 }
 
 double pixel_solid_angle(const Environment& map, int row) {

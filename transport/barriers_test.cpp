@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "scene/shapes.h"
 #include "transport/open_samples.h"
@@ -96,14 +97,44 @@ TEST(OpenSamples, MoveOutFromUnderABox) {
   floor.add_box({1.02f, 0, -1}, {3, 1, 3});  // texels of column 16 span 1 .. 1.0625
   const trace::RayTracer rays = floor.tracer();
   const std::vector<atlas::Texel> before = floor.map.texels;
-  const auto moved = open_samples(floor.scene, floor.atlas, rays, floor.map);
-  EXPECT_EQ(moved.size(), size_t(Floor::kSide));
+  const OpenedSamples opened = open_samples(floor.scene, floor.atlas, rays, floor.map);
+  EXPECT_EQ(opened.moved.size(), size_t(Floor::kSide));
   for (size_t i = 0; i < before.size(); ++i) {
     const float x = scene::world_position(floor.scene, floor.map.texels[i].sample).x;
     if (before[i].x == 16)
       EXPECT_TRUE(x > 1 && x < 1.02f) << x;
     else
       EXPECT_EQ(x, scene::world_position(floor.scene, before[i].sample).x);
+  }
+}
+
+/// A large box that stays and a small one that moves: again as from scratch, but only texels around
+/// the small one and those that had backs near them are looked at.
+TEST(OpenSamples, AgainAreThoseFromScratch) {
+  const Box3 there{{0.21f, 0, 0.21f}, {0.49f, 0.3f, 0.49f}};
+  const Box3 here{{0.34f, 0, 1.21f}, {0.62f, 0.3f, 1.49f}};
+  const auto floor_with = [](const Box3& small) {
+    Floor floor;
+    floor.add_box({1.02f, 0, -1}, {3, 1, 3});
+    floor.add_box(small.lower, small.upper);
+    return floor;
+  };
+  Floor before = floor_with(there), now = floor_with(here), again = floor_with(here);
+  const trace::RayTracer rays_before = before.tracer(), rays = now.tracer();
+  const trace::RayTracer rays_again = again.tracer();
+  const OpenedSamples kept = open_samples(before.scene, before.atlas, rays_before, before.map);
+  const OpenedSamples full = open_samples(now.scene, now.atlas, rays, now.map);
+  EXPECT_NE(kept.moved, full.moved);
+  EXPECT_LT(full.near_backs.size(), now.map.texels.size() / 2) << "the rest is left alone";
+  const std::array boxes{there, here};
+  const OpenedSamples opened =
+      open_samples_again(again.scene, again.atlas, rays_again, boxes, kept.near_backs, again.map);
+  EXPECT_EQ(opened.moved, full.moved);
+  EXPECT_EQ(opened.near_backs, full.near_backs);
+  for (size_t i = 0; i < now.map.texels.size(); ++i) {
+    const Barycentric a = now.map.texels[i].sample.at, b = again.map.texels[i].sample.at;
+    EXPECT_EQ(a.u, b.u);
+    EXPECT_EQ(a.v, b.v);
   }
 }
 

@@ -1,11 +1,12 @@
 #include "transport/open_samples.h"
 
 #include <algorithm>
-#include <array>
+#include <numeric>
 #include <optional>
 
 #include "base/parallel.h"
 #include "base/warp.h"
+#include "scene/drawn_triangle.h"
 #include "transport/backs_seen.h"
 #include "transport/barriers.h"
 #include "transport/texel_width.h"
@@ -74,34 +75,94 @@ std::optional<scene::SurfacePoint> Work::open_place(const atlas::Texel& texel) c
   return {};
 }
 
-}  // namespace
-
-std::vector<uint32_t> open_samples(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                   const trace::RayTracer& tracer, atlas::TexelMap& map) {
+/// Looks at some texels' samples, and moves them.
+OpenedSamples open_some(const Work& work, std::span<const uint32_t> texels, atlas::TexelMap& map) {
   constexpr size_t kBlock = 2048;
-  const Work work{scene, atlas, tracer, scene::world_bounds(scene).diagonal()};
-  std::vector<uint8_t> moved(map.texels.size());
-  parallel_for(map.texels.size(), kBlock, [&](size_t begin, size_t end) {
+  enum : uint8_t { nothing_near = 0, back_near, moved };
+  std::vector<uint8_t> found(texels.size());
+  parallel_for(texels.size(), kBlock, [&](size_t begin, size_t end) {
     std::vector<trace::Ray> rays;
-    for (size_t i = begin; i < end; ++i) work.add_feelers(map.texels[i], rays);
+    for (size_t k = begin; k < end; ++k) work.add_feelers(map.texels[texels[k]], rays);
     std::vector<trace::Hit> hits(rays.size());
-    tracer.closest_hits(rays, hits);
-    for (size_t i = begin; i < end; ++i) {
-      const auto first = hits.begin() + long((i - begin) * kFeelers);
-      const bool back_near = std::any_of(first, first + kFeelers, [](const trace::Hit& hit) {
-        return hit.found() && hit.back_face;
-      });
-      if (!back_near || work.in_the_open(map.texels[i].sample)) continue;
-      const auto place = work.open_place(map.texels[i]);
+    work.tracer.closest_hits(rays, hits);
+    for (size_t k = begin; k < end; ++k) {
+      const auto first = hits.begin() + long((k - begin) * kFeelers);
+      if (std::none_of(first, first + kFeelers,
+                       [](const trace::Hit& hit) { return hit.found() && hit.back_face; }))
+        continue;
+      found[k] = back_near;
+      atlas::Texel& texel = map.texels[texels[k]];
+      if (work.in_the_open(texel.sample)) continue;
+      const auto place = work.open_place(texel);
       if (!place) continue;
-      map.texels[i].sample = *place;
-      moved[i] = 1;
+      texel.sample = *place;
+      found[k] = moved;
     }
   });
-  std::vector<uint32_t> all;
-  for (uint32_t i = 0; i < moved.size(); ++i)
-    if (moved[i]) all.push_back(i);
-  return all;
+  OpenedSamples out;
+  for (size_t k = 0; k < found.size(); ++k) {
+    if (found[k] != nothing_near) out.near_backs.push_back(texels[k]);
+    if (found[k] == moved) out.moved.push_back(texels[k]);
+  }
+  return out;
+}
+
+bool meets_any(std::span<const Box3> boxes, const Box3& other, float within_m) {
+  const Vec3 r{within_m, within_m, within_m};
+  return std::ranges::any_of(boxes, [&](const Box3& box) {
+    const Vec3 lower = max(box.lower - r, other.lower), upper = min(box.upper + r, other.upper);
+    return lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z;
+  });
+}
+
+/// Per triangle of the atlas, how near to a box its samples' feelers meet it; < 0: it is too far
+/// away for all of them.
+std::vector<float> reaches_to(const Work& work, std::span<const Box3> boxes) {
+  std::vector<float> out(work.atlas.corners.size(), -1.0f);
+  parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) {
+      const auto [instance, triangle] =
+          scene::drawn_triangle(work.atlas.first_triangle, uint32_t(k));
+      // Feelers start a little above their sample, which rounding may put beside the triangle.
+      const float reach = kReach * texel_width_m(work.scene, work.atlas, instance, triangle) +
+                          1e-4f * work.diagonal_m;
+      const scene::Triangle3 t = scene::world_triangle(work.scene, instance, triangle);
+      Box3 bounds;
+      for (const Vec3& corner : {t.a, t.b, t.c}) bounds.extend(corner);
+      if (meets_any(boxes, bounds, reach)) out[k] = reach;
+    }
+  });
+  return out;
+}
+
+}  // namespace
+
+OpenedSamples open_samples(const scene::Scene& scene, const atlas::Atlas& atlas,
+                           const trace::RayTracer& tracer, atlas::TexelMap& map) {
+  std::vector<uint32_t> all(map.texels.size());
+  std::iota(all.begin(), all.end(), 0);
+  return open_some({scene, atlas, tracer, scene::world_bounds(scene).diagonal()}, all, map);
+}
+
+OpenedSamples open_samples_again(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const trace::RayTracer& tracer, std::span<const Box3> boxes,
+                                 std::span<const uint32_t> near_backs, atlas::TexelMap& map) {
+  const Work work{scene, atlas, tracer, scene::world_bounds(scene).diagonal()};
+  const std::vector<float> reaches = reaches_to(work, boxes);
+  std::vector<uint8_t> look(map.texels.size());
+  for (const uint32_t i : near_backs) look[i] = 1;
+  parallel_for(look.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const float reach = reaches[map.texels[i].triangle_number];
+      if (look[i] || reach < 0) continue;
+      const Vec3 at = scene::world_position(scene, map.texels[i].sample);
+      if (meets_any(boxes, {at, at}, reach)) look[i] = 1;
+    }
+  });
+  std::vector<uint32_t> texels;
+  for (uint32_t i = 0; i < look.size(); ++i)
+    if (look[i]) texels.push_back(i);
+  return open_some(work, texels, map);
 }
 
 }  // namespace luxel::transport

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "atlas/atlas.h"
@@ -9,12 +10,24 @@
 
 namespace luxel::transport {
 
+/// Texels, ascending.
+struct OpenedSamples {
+  std::vector<uint32_t> moved;       ///< those whose samples were moved
+  std::vector<uint32_t> near_backs;  ///< those whose samples were looked at, `moved` among them
+};
+
 /// A texel across the foot of a wall has one sample, which may lie under the wall while half of the
 /// texel lies in the room: it would be dark, or dropped. Samples that see the back of a surface
 /// within a texel and a half, and nothing but backs altogether, move to the nearest place of their
 /// texel, on a grid of 4 x 4 in their own triangle, that is in the open; without one they stay.
-/// Returns the texels whose samples were moved.
-std::vector<uint32_t> open_samples(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                   const trace::RayTracer& tracer, atlas::TexelMap& map);
+OpenedSamples open_samples(const scene::Scene& scene, const atlas::Atlas& atlas,
+                           const trace::RayTracer& tracer, atlas::TexelMap& map);
+
+/// The same after something in `boxes` has moved [m], in a map whose samples all are where they
+/// were before they were opened: of texels away from the boxes only those that had backs near them
+/// then are looked at. Returns what open_samples() does.
+OpenedSamples open_samples_again(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const trace::RayTracer& tracer, std::span<const Box3> boxes,
+                                 std::span<const uint32_t> near_backs, atlas::TexelMap& map);
 
 }  // namespace luxel::transport

@@ -1,5 +1,5 @@
-// Where points of the Sobol sequence lie, without looking at each: scrambling moves whole eighths
-// of an axis. base/random.h has the points.
+// Some of the points of base/random.h's Sobol sequence: in which part of the square they lie,
+// without making them, for scrambling moves whole eighths of an axis; and points of some indices.
 #pragma once
 
 #include <array>

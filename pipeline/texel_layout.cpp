@@ -143,11 +143,11 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
   TexelLayout layout{std::move(kept.atlas), std::move(map),         kept.stats,
-                     std::move(tracer),     std::move(kept.repair), {}};
+                     std::move(tracer),     std::move(kept.repair), std::move(kept.near_backs)};
   if (!same_places && settings.repair_leaks) {
     progress.begin("samples", 0);
     take_opened(transport::open_samples_again(scene, layout.atlas, layout.tracer, boxes,
-                                              kept.near_backs, layout.map),
+                                              layout.near_backs, layout.map),
                 layout);
   }
   return layout;

@@ -51,16 +51,16 @@ struct KeptLayout {
   std::vector<atlas::Texel> texels;  ///< of the map
   atlas::AtlasStats stats;
   LeakRepair repair;
-  std::vector<uint32_t> near_backs;
+  std::vector<uint32_t> near_backs;  ///< TexelLayout::near_backs
   std::vector<std::string> warnings;
 };
 /// `one_sided_of` and `warnings` are not filled in.
 KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout);
 
 /// The kept layout for `scene`, which has the same meshes, as they were read, in the same number of
-/// places. What has moved did so within `boxes`; without any its texels' samples stay, else they
-/// are moved out of solids again where settings.repair_leaks says so. `scene` gets the layout's
-/// meshes. Errors: no memory.
+/// places. Rays meet something else than then within `boxes` alone; without any its texels' samples
+/// stay, else they are moved out of solids again where settings.repair_leaks says so. `scene` gets
+/// the layout's meshes. Errors: no memory.
 Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
                                   std::span<const Box3> boxes, scene::Scene& scene,
                                   Progress& progress);

@@ -31,7 +31,8 @@ DVec3 through_air(const AirTables& t, double elevation_rad) {
 }
 
 /// Light of one height above the horizon, at kAzimuths + 1 azimuths from the sun's to the opposite.
-/// In between it is interpolated: but for the phase functions it is smooth, to 0.1 % by day.
+/// In between it is interpolated, which is right to 0.01 % by day and to 1 % at the end of
+/// twilight: but for the phase functions it is smooth.
 constexpr int kAzimuths = 64;
 using RowLight = std::array<SkyLight, kAzimuths + 1>;
 

@@ -12,8 +12,9 @@ namespace luxel::transport {
 
 /// Texels, ascending.
 struct OpenedSamples {
-  std::vector<uint32_t> moved;       ///< those whose samples were moved
-  std::vector<uint32_t> near_backs;  ///< those whose samples were looked at, `moved` among them
+  std::vector<uint32_t> moved;  ///< those whose samples were moved
+  /// Those with the back of a surface near their own sample, `moved` among them.
+  std::vector<uint32_t> near_backs;
 };
 
 /// A texel across the foot of a wall has one sample, which may lie under the wall while half of the
@@ -23,9 +24,9 @@ struct OpenedSamples {
 OpenedSamples open_samples(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const trace::RayTracer& tracer, atlas::TexelMap& map);
 
-/// The same after something in `boxes` has moved [m], in a map whose samples all are where they
-/// were before they were opened: of texels away from the boxes only those that had backs near them
-/// then are looked at. Returns what open_samples() does.
+/// The same where rays meet something else than then within `boxes` alone [m], in a map whose
+/// samples all are where they were before they were opened: of texels away from the boxes only
+/// those that had backs near them then are looked at. Returns what open_samples() does.
 OpenedSamples open_samples_again(const scene::Scene& scene, const atlas::Atlas& atlas,
                                  const trace::RayTracer& tracer, std::span<const Box3> boxes,
                                  std::span<const uint32_t> near_backs, atlas::TexelMap& map);

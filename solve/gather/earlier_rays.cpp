@@ -128,10 +128,14 @@ size_t count_of(std::span<const RayEnd> ends, RayEnd end) {
   return out;
 }
 
+size_t next_of(std::span<const std::byte> bytes, uint8_t value, size_t from) {
+  if (from >= bytes.size()) return bytes.size();
+  const void* found = std::memchr(bytes.data() + from, value, bytes.size() - from);
+  return found ? size_t(static_cast<const std::byte*>(found) - bytes.data()) : bytes.size();
+}
+
 size_t next_followed(std::span<const RayEnd> ends, size_t from) {
-  if (from >= ends.size()) return ends.size();
-  const void* found = std::memchr(ends.data() + from, int(RayEnd::followed), ends.size() - from);
-  return found ? size_t(static_cast<const RayEnd*>(found) - ends.data()) : ends.size();
+  return next_of(std::as_bytes(ends), uint8_t(RayEnd::followed), from);
 }
 
 void mark_followed(std::span<const Box3> boxes, Vec3 from, float near_m,

@@ -95,6 +95,8 @@ void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
 
 /// How many rays have ended so.
 size_t count_of(std::span<const RayEnd> ends, RayEnd end);
+/// The first byte from `from` on that has the value; bytes.size() where there is none.
+size_t next_of(std::span<const std::byte> bytes, uint8_t value, size_t from);
 /// The first ray from `from` on that was followed on; ends.size() where there is none.
 size_t next_followed(std::span<const RayEnd> ends, size_t from);
 

@@ -183,24 +183,6 @@ TEST(CellsTowards, HoldEveryRayThatMeetsABox) {
   EXPECT_LT(bits, 16 * small);
 }
 
-TEST(ElementRays, SomeAreThoseOfAll) {
-  RandomStream random{14};
-  for (int k = 0; k < 50; ++k) {
-    const Watched w = watch(random);
-    const Vec3 geometric = normalize(w.normal + Vec3{0.2f, 0.1f, -0.1f} * random.next());
-    const uint64_t seed = hash64(3, uint64_t(k));
-    RayBatch all, some;
-    fill_rays(w.look.from, w.normal, geometric, seed, {32, 200}, all);
-    fill_samples(seed, {32, 200}, some);
-    EXPECT_EQ(some.sample, all.sample);
-    std::vector<uint32_t> which;
-    for (uint32_t r = 0; r < all.rays.size(); ++r)
-      if (random.next() < 0.3f) which.push_back(r);
-    fill_directions(w.look.from, w.normal, geometric, which, some);
-    for (const uint32_t r : which) EXPECT_EQ(some.rays[r].direction, all.rays[r].direction);
-  }
-}
-
 TEST(MarkRays, OfSeveralBoxesAnyCountsAndNoneIsTakenBack) {
   const std::vector<Box3> boxes{{{1, -1, -1}, {2, 1, 1}}, {{-2, -1, -1}, {-1, 1, 1}}, {}};
   std::vector<trace::Ray> rays;

@@ -43,8 +43,8 @@ struct RayBatch {
   uint64_t seed = 0;    ///< of the samples
   PlainCells plain;
   std::array<uint8_t, kCells> plain_of_cell{};  ///< which of them scrambling moves to each cell
-  std::vector<uint32_t> few;
-  std::vector<float> u, v, x, y, z;
+  std::vector<uint32_t> few;                    ///< buffer: samples of some rays
+  std::vector<float> u, v, x, y, z;  ///< buffers: points of the square, directions about +z
 
   /// Of the k-th ray.
   size_t cell_of(uint32_t k) const;
@@ -67,8 +67,8 @@ struct Cone {
 };
 /// A cone for each cell that holds its directions, about the normal +z.
 struct CellCones {
-  std::array<float, kCells> x, y, z;  ///< their axes
-  std::array<float, kCells> cosine, sine;
+  std::array<float, kCells> x{}, y{}, z{};  ///< their axes
+  std::array<float, kCells> cosine{}, sine{};
 };
 CellCones cell_cones();
 /// The cells that may have directions of the cone, one bit each.

@@ -33,7 +33,7 @@ FollowedPath end_of(const RayWorld& world, const NearPath& path, TracedHits& out
 /// it has one.
 void note_change(const RayWorld& world, const FollowedRay& ray, StoredHit hit, float sign,
                  size_t element, TracedHits& out) {
-  if (!world.sent || out.unknown[element]) return;  // it is not all that would be missing
+  if (!world.sent || out.unknown[element]) return;
   out.change[element] += ray.light * (sign * kPi);
   if (ray.has_hit()) gather::note_change(world, hit, sign, element, out);
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 namespace luxel::gather {
 
@@ -25,9 +24,7 @@ namespace {
 
 /// The first ray from `from` on that is marked; marked.size() where there is none.
 size_t next_marked(std::span<const uint8_t> marked, size_t from) {
-  if (from >= marked.size()) return marked.size();
-  const void* found = std::memchr(marked.data() + from, 1, marked.size() - from);
-  return found ? size_t(static_cast<const uint8_t*>(found) - marked.data()) : marked.size();
+  return next_of(std::as_bytes(marked), 1, from);
 }
 
 /// Sets work.marked where a ray's direction alone does not tell that it stays.

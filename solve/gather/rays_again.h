@@ -1,7 +1,6 @@
 // Which rays of an earlier bake are traced again, all those of a tile together. docs/rebake.md
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>

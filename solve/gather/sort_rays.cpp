@@ -124,7 +124,7 @@ void add_sky(const RayWorld& world, Rgb l, size_t element, TracedHits& out) {
 
 void note_change(const RayWorld& world, StoredHit hit, float sign, size_t element,
                  TracedHits& out) {
-  if (!world.sent) return;
+  if (!world.sent || out.unknown[element]) return;
   const Float4 b = lookup(*world.sent, hit);
   out.change[element] += Rgb{b[0], b[1], b[2]} * sign;
 }

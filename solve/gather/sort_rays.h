@@ -72,7 +72,8 @@ StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredH
 
 /// Notes radiance of a ray that has left the scene, of which the light of all layers knows already.
 void add_sky(const RayWorld& world, Rgb radiance, size_t element, TracedHits& out);
-/// A hit that an element's rays have won (1) or lost (-1), if that is wanted.
+/// A hit that an element's rays have won (1) or lost (-1), if that is wanted; not where something
+/// is unknown, as all is looked up there.
 void note_change(const RayWorld& world, StoredHit hit, float sign, size_t element, TracedHits& out);
 
 /// Counts what the rays of the batch met, which have all been traced, and adds them to `tile`.

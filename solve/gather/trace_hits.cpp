@@ -1,7 +1,6 @@
 #include "solve/gather/trace_hits.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <mutex>
 #include <optional>

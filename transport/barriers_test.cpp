@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
 
 #include "scene/shapes.h"
+#include "transport/backs_seen.h"
 #include "transport/open_samples.h"
+#include "transport/supersample.h"
 
 namespace luxel::transport {
 namespace {
@@ -48,6 +52,16 @@ struct Floor {
     for (uint32_t i = 0; i < map.texels.size(); ++i)
       map.texel_at[map.texels[i].y * kSide + map.texels[i].x] = i;
     return *trace::RayTracer::build(scene);
+  }
+  /// A box without a bottom.
+  void add_shell(Vec3 low, Vec3 high) {
+    scene::Mesh box;
+    scene::add_box(box, low, high, 0);
+    std::erase_if(box.triangles, [&](const std::array<uint32_t, 3>& t) {
+      return std::ranges::all_of(t, [&](uint32_t v) { return box.positions[v].y == low.y; });
+    });
+    box.triangle_material.resize(box.triangles.size());
+    scene::place(scene, std::move(box));
   }
   std::vector<atlas::PartedPoints> parted() {
     const trace::RayTracer rays = tracer();
@@ -142,6 +156,94 @@ TEST(OpenSamples, AgainAreThoseFromScratch) {
        open_samples_again(unsaid.scene, unsaid.atlas, rays_unsaid, boxes, {}, unsaid.map)
            .near_backs)
     EXPECT_LT(unsaid.map.texels[i].x, 16);
+}
+
+const Vec3 kLamp{0.33f, 0.1f, 1};
+
+/// A shell over the floor that stands on nothing, with a lamp that shines in under its edge.
+Floor floor_under_a_shell() {
+  Floor floor;
+  floor.add_shell({0.53f, 0.15f, 0.53f}, {1.47f, 0.6f, 1.47f});
+  scene::PunctualLight lamp;
+  lamp.position = kLamp;
+  floor.scene.lights.push_back(lamp);
+  return floor;
+}
+
+/// By another set of rays than open_samples() takes.
+bool in_the_open(const Floor& floor, const trace::RayTracer& rays, Barycentric at,
+                 uint32_t triangle) {
+  const Vec3 p = scene::world_position(floor.scene, {0, triangle, at});
+  return !is_enclosed(floor.scene, rays, p + Vec3{0, 1e-4f, 0}, {0, 1, 0}, 64, 4);
+}
+
+/// The backs are farther away than any feeler reaches. A texel of which a quarter or more lies in
+/// the open for sure has its sample there.
+TEST(OpenSamples, MoveOutFromUnderAShell) {
+  Floor floor = floor_under_a_shell();
+  const trace::RayTracer rays = floor.tracer();
+  const OpenedSamples opened = open_samples(floor.scene, floor.atlas, rays, floor.map);
+  EXPECT_TRUE(opened.near_backs.size() < floor.map.texels.size());
+  EXPECT_GT(opened.moved.size(), 20u);
+  size_t enclosed = 0, edges = 0;
+  for (const atlas::Texel& texel : floor.map.texels) {
+    int open = 0;
+    for (int k = 0; k < 16; ++k) {
+      const Vec2 p{float(texel.x) + (float(k % 4) + 0.5f) / 4,
+                   float(texel.y) + (float(k / 4) + 0.5f) / 4};
+      open += in_the_open(floor, rays,
+                          atlas::barycentric_in(floor.atlas.corners[texel.triangle_number], p),
+                          texel.triangle_number);
+    }
+    if (open == 0) ++enclosed;
+    if (open < 4 || open == 16) continue;
+    ++edges;
+    EXPECT_TRUE(in_the_open(floor, rays, texel.sample.at, texel.triangle_number))
+        << texel.x << " " << texel.y;
+  }
+  EXPECT_GT(enclosed, 50u);
+  EXPECT_GT(edges, 20u);
+}
+
+/// Direct light is averaged over the judge's points, which leave out those under the shell also
+/// where the lamp reaches them.
+TEST(OpenSamples, LightIsAveragedOverPlacesInTheOpen) {
+  Floor floor = floor_under_a_shell();
+  const trace::RayTracer rays = floor.tracer();
+  open_samples(floor.scene, floor.atlas, rays, floor.map);
+  const Elements elements = elements_from_texels(floor.scene, floor.atlas, floor.map);
+  const Lights lights = collect_lights(floor.scene);
+  const size_t n = elements.size();
+  Progress progress;
+  SupersampleParams params;
+  params.direct = {8, 1};
+  const auto judge = footprints(floor.scene, floor.atlas, floor.map, elements, rays, params.points,
+                                params.direct.seed, progress);
+  ASSERT_TRUE(judge);
+  DirectLight direct;
+  direct.irradiance.assign(n, Rgb{1, 1, 1}), direct.variance.resize(n);
+  direct.split_variance.resize(n);
+  std::vector<uint32_t> all(n);
+  std::iota(all.begin(), all.end(), 0);
+  ASSERT_TRUE(average_texels(floor.scene, floor.atlas, floor.map, elements, lights, rays, all,
+                             params, direct, progress));
+  size_t partly = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const size_t first = judge->first[i], count = judge->first[i + 1] - first;
+    if (count < 2 || count == size_t(params.points)) continue;  // 1: its own, maybe inside
+    ++partly;
+    float sum = 0;
+    for (size_t k = first; k < first + count; ++k) {
+      const Vec3 from = judge->points.position[k] + Vec3{0, 1e-5f, 0}, to = kLamp - from;
+      const trace::Ray ray{from, 0, normalize(to), length(to)};
+      std::array<trace::Hit, 1> hit;
+      rays.closest_hits(std::span(&ray, 1), hit);
+      if (!hit[0].found()) sum += to.y / (length(to) * dot(to, to));
+    }
+    // Rays start a little above the floor: 1e-5 of the lamp's height.
+    EXPECT_NEAR(direct.irradiance[i].x, sum / float(count), 1e-3f * sum / float(count)) << i;
+  }
+  EXPECT_GT(partly, 20u);
 }
 
 }  // namespace

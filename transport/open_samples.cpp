@@ -30,8 +30,10 @@ struct Work {
   }
   bool in_the_open(const scene::SurfacePoint& p) const {
     const Place at = place_of(scene, p);
-    // Most places under things see nothing but backs: a few rays tell.
-    return !is_enclosed(backs_seen(scene, tracer, just_above(at), at.normal, kFirstRays)) &&
+    // Most places see no backs, and most under things nothing else: a few rays tell.
+    const BacksSeen few = backs_seen(scene, tracer, just_above(at), at.normal, kFirstRays);
+    if (few.one_sided + few.double_sided == 0) return true;
+    return !is_enclosed(few) &&
            !is_enclosed(scene, tracer, just_above(at), at.normal, kRaysForOpen, diagonal_m);
   }
   /// Short rays around the sample, twenty degrees above the surface.
@@ -48,38 +50,45 @@ struct Work {
     }
   }
 
+  /// Of the texel's places on a grid the one nearest to the middle of those in the open; nothing:
+  /// all are, or none.
   std::optional<scene::SurfacePoint> open_place(const atlas::Texel& texel) const;
 };
 
 std::optional<scene::SurfacePoint> Work::open_place(const atlas::Texel& texel) const {
   const auto& corners = atlas.corners[texel.triangle_number];
-  const Vec2 sample = interpolate(corners[0], corners[1], corners[2], texel.sample.at);
   struct Candidate {
-    float distance;
+    Vec2 place;
     Barycentric at;
   };
-  std::vector<Candidate> candidates;
+  std::vector<Candidate> open;
+  Vec2 middle{0, 0};
+  size_t closed = 0;
   for (int j = 0; j < kGrid; ++j)
     for (int i = 0; i < kGrid; ++i) {
       const Vec2 p{float(texel.x) + (float(i) + 0.5f) / kGrid,
                    float(texel.y) + (float(j) + 0.5f) / kGrid};
       const Barycentric at = atlas::barycentric_in(corners, p);
-      if (at.u > 0 && at.v > 0 && at.u + at.v < 1) candidates.push_back({length(p - sample), at});
+      if (at.u <= 0 || at.v <= 0 || at.u + at.v >= 1) continue;
+      if (in_the_open({texel.sample.instance, texel.sample.triangle, at}))
+        open.push_back({p, at}), middle = middle + p;
+      else
+        ++closed;
     }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& p, const Candidate& q) { return p.distance < q.distance; });
-  for (const Candidate& c : candidates) {
-    const scene::SurfacePoint place{texel.sample.instance, texel.sample.triangle, c.at};
-    if (in_the_open(place)) return place;
-  }
-  return {};
+  if (open.empty() || closed == 0) return {};
+  middle = middle * (1 / float(open.size()));
+  const auto nearest = std::ranges::min_element(
+      open, {}, [&](const Candidate& c) { return length(c.place - middle); });
+  return scene::SurfacePoint{texel.sample.instance, texel.sample.triangle, nearest->at};
 }
 
-/// Looks at some texels' samples, and moves them.
-OpenedSamples open_some(const Work& work, std::span<const uint32_t> texels, atlas::TexelMap& map) {
+/// What is known of a texel.
+enum class Found : uint8_t { nothing, back_near, enclosed, moved };
+
+/// Looks at some texels' samples, and sets what is found per texel of the map.
+void look_around(const Work& work, std::span<const uint32_t> texels, const atlas::TexelMap& map,
+                 std::span<Found> found) {
   constexpr size_t kBlock = 2048;
-  enum : uint8_t { nothing_near = 0, back_near, moved };
-  std::vector<uint8_t> found(texels.size());
   parallel_for(texels.size(), kBlock, [&](size_t begin, size_t end) {
     std::vector<trace::Ray> rays;
     for (size_t k = begin; k < end; ++k) work.add_feelers(map.texels[texels[k]], rays);
@@ -90,20 +99,89 @@ OpenedSamples open_some(const Work& work, std::span<const uint32_t> texels, atla
       if (std::none_of(first, first + kFeelers,
                        [](const trace::Hit& hit) { return hit.found() && hit.back_face; }))
         continue;
-      found[k] = back_near;
-      atlas::Texel& texel = map.texels[texels[k]];
-      if (work.in_the_open(texel.sample)) continue;
-      const auto place = work.open_place(texel);
-      if (!place) continue;
-      texel.sample = *place;
-      found[k] = moved;
+      const bool open = work.in_the_open(map.texels[texels[k]].sample);
+      found[texels[k]] = open ? Found::back_near : Found::enclosed;
     }
   });
-  OpenedSamples out;
-  for (size_t k = 0; k < found.size(); ++k) {
-    if (found[k] != nothing_near) out.near_backs.push_back(texels[k]);
-    if (found[k] == moved) out.moved.push_back(texels[k]);
+}
+
+uint32_t texel_at(const atlas::TexelMap& map, int x, int y) {
+  if (x < 0 || y < 0 || x >= map.resolution || y >= map.resolution) return atlas::kNone;
+  return map.texel_at[size_t(y) * size_t(map.resolution) + size_t(x)];
+}
+
+/// Finds the borders of enclosed regions whose backs are farther away, such as the floor under a
+/// shell without a bottom: between texels of a lattice of which one is enclosed and another is not
+/// all are looked at.
+void look_for_regions(const Work& work, const atlas::TexelMap& map, std::span<Found> found) {
+  constexpr int kStep = 4;
+  const int across = (map.resolution + kStep - 1) / kStep;
+  const auto on_lattice = [&](int u, int v) { return texel_at(map, u * kStep, v * kStep); };
+  std::vector<uint8_t> enclosed(size_t(across) * size_t(across));
+  parallel_for(enclosed.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k)
+      if (const uint32_t i = on_lattice(int(k) % across, int(k) / across); i != atlas::kNone)
+        enclosed[k] = !work.in_the_open(map.texels[i].sample);
+  });
+  const auto is_enclosed_at = [&](int u, int v) {
+    return u >= 0 && v >= 0 && u < across && v < across &&
+           enclosed[size_t(v) * size_t(across) + size_t(u)];
+  };
+  const auto is_inner = [&](int u, int v) {
+    for (int dv = -1; dv <= 1; ++dv)
+      for (int du = -1; du <= 1; ++du)
+        if (!is_enclosed_at(u + du, v + dv)) return false;
+    return true;
+  };
+  std::vector<uint8_t> look(found.size());
+  for (int v = 0; v < across; ++v)
+    for (int u = 0; u < across; ++u) {
+      if (!is_enclosed_at(u, v) || is_inner(u, v)) continue;
+      for (int y = (v - 1) * kStep + 1; y < (v + 1) * kStep; ++y)
+        for (int x = (u - 1) * kStep + 1; x < (u + 1) * kStep; ++x)
+          if (const uint32_t i = texel_at(map, x, y); i != atlas::kNone) look[i] = 1;
+    }
+  parallel_for(look.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      if (look[i] && found[i] != Found::enclosed && !work.in_the_open(map.texels[i].sample))
+        found[i] = Found::enclosed;
+  });
+}
+
+/// Those that are enclosed and their neighbours in the map.
+std::vector<uint32_t> at_the_edge(const atlas::TexelMap& map, std::span<const Found> found) {
+  std::vector<uint8_t> is_at_edge(found.size());
+  for (uint32_t i = 0; i < found.size(); ++i) {
+    if (found[i] != Found::enclosed) continue;
+    const int x = int(map.texels[i].x), y = int(map.texels[i].y);
+    for (int v = y - 1; v <= y + 1; ++v)
+      for (int u = x - 1; u <= x + 1; ++u)
+        if (const uint32_t j = texel_at(map, u, v); j != atlas::kNone) is_at_edge[j] = 1;
   }
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < is_at_edge.size(); ++i)
+    if (is_at_edge[i]) out.push_back(i);
+  return out;
+}
+
+/// Opens the samples of the map's texels, of which only some can have backs near them.
+OpenedSamples open_some(const Work& work, std::span<const uint32_t> texels, atlas::TexelMap& map) {
+  std::vector<Found> found(map.texels.size());
+  look_around(work, texels, map, found);
+  OpenedSamples out;
+  for (uint32_t i = 0; i < found.size(); ++i)
+    if (found[i] != Found::nothing) out.near_backs.push_back(i);
+  look_for_regions(work, map, found);
+  const std::vector<uint32_t> edge = at_the_edge(map, found);
+  parallel_for(edge.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) {
+      atlas::Texel& texel = map.texels[edge[k]];
+      const auto place = work.open_place(texel);
+      if (place) texel.sample = *place, found[edge[k]] = Found::moved;
+    }
+  });
+  for (uint32_t i = 0; i < found.size(); ++i)
+    if (found[i] == Found::moved) out.moved.push_back(i);
   return out;
 }
 

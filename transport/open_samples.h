@@ -13,14 +13,16 @@ namespace luxel::transport {
 /// Texels, ascending.
 struct OpenedSamples {
   std::vector<uint32_t> moved;  ///< those whose samples were moved
-  /// Those with the back of a surface near their own sample, `moved` among them.
+  /// Those with the back of a surface near their own sample.
   std::vector<uint32_t> near_backs;
 };
 
 /// A texel across the foot of a wall has one sample, which may lie under the wall while half of the
-/// texel lies in the room: it would be dark, or dropped. Samples that see the back of a surface
-/// within a texel and a half, and nothing but backs altogether, move to the nearest place of their
-/// texel, on a grid of 4 x 4 in their own triangle, that is in the open; without one they stay.
+/// texel lies in the room: it would be dark, or dropped; or just beside the wall, where it is
+/// darkest. Texels whose samples see nothing but backs, and their neighbours, are looked at on a
+/// grid of 4 x 4 in their own triangle: where the back of a surface is within a texel and a half,
+/// and along the borders of larger regions of such samples. Where some places are in the open and
+/// some are not, the sample moves to the one in the middle of those that are; elsewhere it stays.
 OpenedSamples open_samples(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const trace::RayTracer& tracer, atlas::TexelMap& map);
 

@@ -45,6 +45,13 @@ Receiver own_receiver(const Place& at, const Elements& elements, size_t i) {
                      0);
 }
 
+/// Whether the sample of a texel has the backs of some surfaces before it.
+bool sees_backs(const Place& at, const Elements& elements, size_t i) {
+  const Receiver own = own_receiver(at, elements, i);
+  const BacksSeen seen = backs_seen(at.scene, at.tracer, own.origin, own.normal, kEnclosureRays);
+  return seen.one_sided + seen.double_sided > 0;
+}
+
 /// Light at the points of one texel.
 struct PointLight {
   Vec3 position;
@@ -352,6 +359,8 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
         const Receiver own = own_receiver(place, elements, i);
         if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
       }
+      const bool near_backs = sees_backs(place, elements, i);
+      traced += uint64_t(kEnclosureRays);
       points.clear();
       std::ranges::fill(by_layer, Rgb{});
       atlas::spread_points(atlas, map.texels[i], cover.of(k), params.points, each.seed,
@@ -359,11 +368,12 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
       light_points(place, lights, each, i, work);
       traced += work.shots.rays.size();
       for (size_t j = 0; j < work.light.size(); ++j) {
-        // Where a wall stands on the surface, its inside is dark, and nobody sees it.
+        // Where a wall stands on the surface, its inside is dark, and nobody sees it; under the
+        // edge of a shell without a bottom, whose backs the texel sees, it need not be dark.
         const LightAt& light = work.light[j];
-        const bool dark = is_dark(light.irradiance);
-        traced += dark ? uint64_t(kEnclosureRays) : 0;
-        if (dark && is_enclosed(place, work.receivers[j])) continue;
+        const bool doubtful = near_backs || is_dark(light.irradiance);
+        traced += doubtful ? uint64_t(kEnclosureRays) : 0;
+        if (doubtful && is_enclosed(place, work.receivers[j])) continue;
         points.push_back({work.receivers[j].position, light.irradiance, light.variance});
         if (each.layers) add_light_by_layer(work.shots, j, *each.layers, {1, 1, 1}, by_layer);
       }

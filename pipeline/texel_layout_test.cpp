@@ -34,24 +34,33 @@ Box3 bounds_of(const scene::Scene& scene, uint32_t instance) {
   return out;
 }
 
+/// A layout that is kept, of a room in which nothing has moved yet.
+struct Kept {
+  BakeSettings settings;
+  Progress progress;
+  scene::Scene scene = room();
+  KeptLayout layout;
+
+  Kept() {
+    settings.resolution = 128;
+    const auto laid_out = lay_out_texels(settings, scene, progress);
+    EXPECT_TRUE(laid_out);
+    if (laid_out) layout = keep_layout(scene, *laid_out);
+  }
+};
+
 // The layout of then, with the samples that opening all anew would give.
 TEST(LayOutAgain, OpensTheSamplesThatOpeningAllWould) {
-  BakeSettings settings;
-  settings.resolution = 128;
-  Progress progress;
-  scene::Scene then = room(), now = room();
-  const auto layout = lay_out_texels(settings, then, progress);
-  ASSERT_TRUE(layout);
-  const KeptLayout kept = keep_layout(then, *layout);
-  const std::vector<uint32_t> moved_then = kept.repair.moved;
-  ASSERT_FALSE(moved_then.empty());
+  Kept kept;
+  scene::Scene now = room();
+  ASSERT_FALSE(kept.layout.repair.moved.empty());
   now.instances[kSmall].world_from_object.row[0][3] += 0.4f;
-  const std::array boxes{bounds_of(then, kSmall), bounds_of(now, kSmall)};
-  const auto again = lay_out_again(settings, kept, boxes, now, progress);
+  const std::array boxes{bounds_of(kept.scene, kSmall), bounds_of(now, kSmall)};
+  const auto again = lay_out_again(kept.settings, kept.layout, boxes, now, kept.progress);
   ASSERT_TRUE(again);
   atlas::TexelMap map = atlas::rasterise(now, again->atlas);
   const auto all = transport::open_samples(now, again->atlas, again->tracer, map);
-  EXPECT_NE(all.moved, moved_then);
+  EXPECT_NE(all.moved, kept.layout.repair.moved);
   EXPECT_EQ(again->repair.moved, all.moved);
   EXPECT_EQ(again->near_backs, all.near_backs);
   ASSERT_EQ(again->map.texels.size(), map.texels.size());
@@ -62,18 +71,15 @@ TEST(LayOutAgain, OpensTheSamplesThatOpeningAllWould) {
 }
 
 TEST(LayOutAgain, LeavesSamplesWhereNothingMoved) {
-  BakeSettings settings;
-  settings.resolution = 128;
-  Progress progress;
-  scene::Scene then = room(), now = room();
-  const auto layout = lay_out_texels(settings, then, progress);
-  ASSERT_TRUE(layout);
-  const auto again = lay_out_again(settings, keep_layout(then, *layout), {}, now, progress);
+  Kept kept;
+  scene::Scene now = room();
+  const auto again = lay_out_again(kept.settings, kept.layout, {}, now, kept.progress);
   ASSERT_TRUE(again);
-  EXPECT_EQ(again->repair.moved, layout->repair.moved);
-  EXPECT_EQ(again->near_backs, layout->near_backs);
-  for (size_t i = 0; i < layout->map.texels.size(); ++i)
-    EXPECT_EQ(again->map.texels[i].sample.at.u, layout->map.texels[i].sample.at.u);
+  EXPECT_EQ(again->repair.moved, kept.layout.repair.moved);
+  EXPECT_EQ(again->near_backs, kept.layout.near_backs);
+  ASSERT_EQ(again->map.texels.size(), kept.layout.texels.size());
+  for (size_t i = 0; i < kept.layout.texels.size(); ++i)
+    EXPECT_EQ(again->map.texels[i].sample.at.u, kept.layout.texels[i].sample.at.u);
 }
 
 }  // namespace

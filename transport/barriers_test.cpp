@@ -122,6 +122,20 @@ TEST(OpenSamples, MoveOutFromUnderABox) {
   }
 }
 
+/// A wall of a centimetre on the samples of a column, between the grid's places.
+TEST(OpenSamples, MoveOutOfAThinWall) {
+  Floor floor;
+  floor.add_box({1.026f, 0, -1}, {1.036f, 1, 3});  // their centre is at 1.03125
+  const trace::RayTracer rays = floor.tracer();
+  const OpenedSamples opened = open_samples(floor.scene, floor.atlas, rays, floor.map);
+  // The texel on the floor's diagonal has its sample elsewhere.
+  EXPECT_EQ(opened.moved.size(), size_t(Floor::kSide - 1));
+  for (const atlas::Texel& texel : floor.map.texels) {
+    const float x = scene::world_position(floor.scene, texel.sample).x;
+    EXPECT_FALSE(x > 1.026f && x < 1.036f) << x;
+  }
+}
+
 /// A large box that stays and a small one that moves: again as from scratch, but only texels around
 /// the small one and those that had backs near them are looked at.
 TEST(OpenSamples, AgainAreThoseFromScratch) {

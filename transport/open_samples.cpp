@@ -51,11 +51,11 @@ struct Work {
   }
 
   /// Of the texel's places on a grid the one nearest to the middle of those in the open; nothing:
-  /// all are, or none.
-  std::optional<scene::SurfacePoint> open_place(const atlas::Texel& texel) const;
+  /// none is, or all are and the sample, too.
+  std::optional<scene::SurfacePoint> open_place(const atlas::Texel& texel, bool is_open) const;
 };
 
-std::optional<scene::SurfacePoint> Work::open_place(const atlas::Texel& texel) const {
+std::optional<scene::SurfacePoint> Work::open_place(const atlas::Texel& texel, bool is_open) const {
   const auto& corners = atlas.corners[texel.triangle_number];
   struct Candidate {
     Vec2 place;
@@ -63,7 +63,7 @@ std::optional<scene::SurfacePoint> Work::open_place(const atlas::Texel& texel) c
   };
   std::vector<Candidate> open;
   Vec2 middle{0, 0};
-  size_t closed = 0;
+  bool all_open = is_open;
   for (int j = 0; j < kGrid; ++j)
     for (int i = 0; i < kGrid; ++i) {
       const Vec2 p{float(texel.x) + (float(i) + 0.5f) / kGrid,
@@ -73,9 +73,9 @@ std::optional<scene::SurfacePoint> Work::open_place(const atlas::Texel& texel) c
       if (in_the_open({texel.sample.instance, texel.sample.triangle, at}))
         open.push_back({p, at}), middle = middle + p;
       else
-        ++closed;
+        all_open = false;
     }
-  if (open.empty() || closed == 0) return {};
+  if (open.empty() || all_open) return {};
   middle = middle * (1 / float(open.size()));
   const auto nearest = std::ranges::min_element(
       open, {}, [&](const Candidate& c) { return length(c.place - middle); });
@@ -176,7 +176,7 @@ OpenedSamples open_some(const Work& work, std::span<const uint32_t> texels, atla
   parallel_for(edge.size(), 64, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       atlas::Texel& texel = map.texels[edge[k]];
-      const auto place = work.open_place(texel);
+      const auto place = work.open_place(texel, found[edge[k]] != Found::enclosed);
       if (place) texel.sample = *place, found[edge[k]] = Found::moved;
     }
   });

@@ -46,8 +46,7 @@ Receiver own_receiver(const Place& at, const Elements& elements, size_t i) {
 }
 
 /// Whether the sample of a texel has the backs of some surfaces before it.
-bool sees_backs(const Place& at, const Elements& elements, size_t i) {
-  const Receiver own = own_receiver(at, elements, i);
+bool sees_backs(const Place& at, const Receiver& own) {
   const BacksSeen seen = backs_seen(at.scene, at.tracer, own.origin, own.normal, kEnclosureRays);
   return seen.one_sided + seen.double_sided > 0;
 }
@@ -354,12 +353,12 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
       const uint32_t i = which[k];
+      const Receiver own = own_receiver(place, elements, i);
       if (is_dark(direct.irradiance[i])) {
         traced += uint64_t(kEnclosureRaysOfTexel);
-        const Receiver own = own_receiver(place, elements, i);
         if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
       }
-      const bool near_backs = sees_backs(place, elements, i);
+      const bool near_backs = sees_backs(place, own);
       traced += uint64_t(kEnclosureRays);
       points.clear();
       std::ranges::fill(by_layer, Rgb{});

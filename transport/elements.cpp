@@ -94,6 +94,18 @@ void drop_places(Elements& elements) {
   free_memory(elements.geometric_normal);
 }
 
+Elements subset(const Elements& elements, std::span<const uint32_t> chosen) {
+  const auto pick = [&](const std::vector<Vec3>& all) {
+    std::vector<Vec3> out;
+    if (all.empty()) return out;
+    out.reserve(chosen.size());
+    for (const uint32_t i : chosen) out.push_back(all[i]);
+    return out;
+  };
+  return {pick(elements.position), pick(elements.normal), pick(elements.geometric_normal),
+          pick(elements.reflectance), pick(elements.transmittance)};
+}
+
 namespace {
 
 SmoothPoint smooth_point(const scene::Scene& scene, const BentFacet& facet,

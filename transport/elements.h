@@ -30,6 +30,9 @@ struct Elements {
 /// exchange light from now on.
 void drop_places(Elements& elements);
 
+/// Some elements, in the order of `chosen`.
+Elements subset(const Elements& elements, std::span<const uint32_t> chosen);
+
 /// A point of the front side, moved to the smooth surface that vertex normals bend over its
 /// triangle.
 struct SmoothPoint {

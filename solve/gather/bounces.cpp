@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "base/check.h"
-#include "base/clock.h"
+#include "solve/gather/convergence.h"
 #include "solve/gather/sweep.h"
 
 namespace luxel::gather {
@@ -21,9 +21,6 @@ double mean_luminance(std::span<const Rgb> values) {
 /// is wrong.
 constexpr int kMaxSweeps = 4000;
 
-/// Of sweeps over some rays.
-constexpr size_t kSparsest = 16;
-
 /// A guess whose light to come is more times the tolerance is brought closer by sparse sweeps:
 /// until they change less than a part of their first change, or what is left is below a part of the
 /// tolerance, or so many; what is left is taken for a geometric series.
@@ -31,34 +28,6 @@ constexpr double kFarFrom = 4, kSmallPart = 0.03, kSmallRest = 0.25;
 constexpr int kMaxSparse = 8;
 /// Sparse sweeps may bring a guess so much less closer than the last time (1.46 was seen).
 constexpr double kUnsure = 1.5;
-
-/// About so many sweeps follow sparser ones.
-constexpr double kSweepsAfterSparse = 3;
-
-/// Of what surfaces send back of the light on both their sides.
-struct ReflectanceRange {
-  double mean = 0, max = 0;
-};
-
-ReflectanceRange reflectance_range(const transport::Elements& elements) {
-  ReflectanceRange range;
-  for (size_t i = 0; i < elements.size(); ++i) {
-    const Rgb tau = elements.transmittance.empty() ? Rgb{} : elements.transmittance[i];
-    const Rgb rho = elements.reflectance[i] + tau;
-    range.mean += double(luminance(rho)) / double(elements.size());
-    range.max = std::max(range.max, double(max_component(rho)));
-  }
-  return range;
-}
-
-/// The sum of all changes still to come when each is q times the one before: change q / (1 - q).
-/// The ratio of two changes that follow each other tends to the largest q there is; it is not
-/// trusted outside of what the reflectances allow. 0: nothing is known of it.
-double light_to_come(double change, double ratio, const ReflectanceRange& reflectance) {
-  const double seen = ratio > 0 ? ratio : reflectance.max;
-  const double q = std::clamp(seen, reflectance.mean, reflectance.max);
-  return change * q / (1 - q);
-}
 
 /// The solution on its way.
 struct Bouncing {
@@ -235,81 +204,18 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   }
   if (params.bounces >= 0) return std::move(work.out);
   const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
-  const size_t sparse = fewest >= 256 ? kSparsest : fewest >= 64 ? 4 : 1;
+  const size_t sparse =
+      *std::ranges::find_if(kStrides, [&](size_t s) { return has_sweeps_of(s, fewest); });
   if (guessed && sparse > 1) {
     LUXEL_TRY_STATUS(work.settle_guess(sparse, params));
     return std::move(work.out);
   }
-  for (const size_t stride : {kSparsest, size_t(4), size_t(1)}) {
-    if (stride > 1 && (guessed || fewest < 16 * stride)) continue;
+  for (const size_t stride : kStrides) {
+    if (stride > 1 && (guessed || !has_sweeps_of(stride, fewest))) continue;
     LUXEL_TRY_STATUS(work.settle(stride, params.tolerance));
     work.thinned.reset();
   }
   return std::move(work.out);
-}
-
-namespace {
-
-/// Looks all hits up. Returns how many they are.
-size_t look_up_all(const RadiosityMap& m, const TracedHits& hits, Gathered& g) {
-  size_t looked_at = 0;
-  for (const HitStore& round : hits.rounds)
-    for (size_t t = 0; t < round.tile_count(); ++t) {
-      HitTile buffer;
-      const Result<const HitTile*> tile = round.get(t, buffer);
-      if (!tile) continue;
-      gather_round(m, (*tile)->entries, true, g);
-      looked_at += (*tile)->entries.size();
-    }
-  return looked_at;
-}
-
-}  // namespace
-
-double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits) {
-  const RadiosityMap m = empty_radiosity_map(map.resolution);
-  Gathered g;
-  // Once to bring the map into caches: a sweep has many times as many hits and finds it there.
-  look_up_all(m, hits, g);
-  const auto start = Clock::now();
-  const size_t looked_at = look_up_all(m, hits, g);
-  const double seconds = seconds_since(start);
-  // The sum is zero, which the compiler does not know.
-  return looked_at == 0 ? 0 : (seconds + double(g.sum[0])) / double(looked_at);
-}
-
-double expected_sweeps(const atlas::TexelMap& map, const transport::Elements& elements,
-                       const TracedHits& hits, int samples, const BounceParams& params) {
-  if (params.bounces >= 0) return params.bounces;
-  // What a sweep leaves of the light, in the mean: the reflectance that rays see.
-  const uint32_t stride = uint32_t(map.resolution + 2);
-  double sum = 0, rays = 0;
-  for (const uint16_t n : hits.samples) rays += double(n);
-  for (const HitStore& round : hits.rounds)
-    for (size_t t = 0; t < round.tile_count(); ++t) {
-      HitTile buffer;
-      const Result<const HitTile*> tile = round.get(t, buffer);
-      if (!tile) continue;
-      for (const StoredHit& hit : (*tile)->entries) {
-        const uint32_t x = hit.base() % stride, y = hit.base() / stride;
-        if (x == 0 || y == 0) continue;
-        const uint32_t i = map.texel_at[size_t(y - 1) * size_t(map.resolution) + (x - 1)];
-        if (i != atlas::kNone) sum += double(luminance(elements.reflectance[i]));
-      }
-    }
-  const double q = std::clamp(sum / std::max(rays, 1.0), 0.01, 0.99);
-  double out = 0;
-  bool first = true;
-  for (const size_t step : {kSparsest, size_t(4), size_t(1)}) {
-    if (step > 1 && size_t(samples) < 16 * step) continue;
-    // Until q^k q / (1 - q) is below the tolerance; what the sparser sweeps leave is their noise,
-    // which few sweeps average out.
-    const double end = double(params.tolerance) * double(step) * (1 - q) / q;
-    const double sweeps = first ? std::max(1.0, std::log(end) / std::log(q)) : kSweepsAfterSparse;
-    out += sweeps / double(step);
-    first = false;
-  }
-  return out;
 }
 
 }  // namespace luxel::gather

@@ -59,13 +59,4 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
                        std::span<const StoredHit> behind, const BounceParams& params,
                        Progress& progress);
 
-/// What a look at one hit of the map takes one thread [s], measured on the hits that there are, all
-/// of them in memory.
-double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits);
-
-/// About how many sweeps over all rays bounce() will need, sparse ones by their part, when hits are
-/// like those that there are.
-double expected_sweeps(const atlas::TexelMap& map, const transport::Elements& elements,
-                       const TracedHits& hits, int samples, const BounceParams& params);
-
 }  // namespace luxel::gather

@@ -8,6 +8,7 @@
 #include "base/free_memory.h"
 #include "base/parallel.h"
 #include "solve/gather/adaptive.h"
+#include "solve/gather/expected_bounces.h"
 #include "solve/gather/neighbours.h"
 
 namespace luxel::gather {
@@ -115,24 +116,35 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
   return {};
 }
 
+/// The elements tried are traced as if there were no others: were they to lie in the midst of
+/// others that get no rays, little of what rays share would be shared.
 Status try_tracing(Trial& trial, Forecast& out, Progress& progress) {
   const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
-  trial.hits = no_hits(elements.size());
-  trial.direct = {};
-  std::vector<uint16_t> target(elements.size());
-  for (const uint32_t i : trial.texels) target[i] = uint16_t(trial.params.samples);
+  const transport::Elements tried = transport::subset(elements, trial.texels);
   const TraceParams params{trial.params.seed, UINT64_MAX, trial.params.scratch_folder,
                            trial.params.bounces < 0 ? &lights : nullptr};
-  LUXEL_TRY(const double seconds, seconds_of([&] {
-              return trace_more(scene, atlas, elements, lights.around, tracer, target, params,
-                                trial.hits, progress);
+  LUXEL_TRY(const double seconds, seconds_of([&]() -> Status {
+              LUXEL_TRY(trial.hits, trace_hits(scene, atlas, tried, lights.around, tracer,
+                                               trial.params.samples, params, progress));
+              return {};
             }));
   out.trace_s = trial.scale * seconds;
   out.rays += trial.scale * double(trial.hits.rays);
   out.hit_bytes = trial.scale * double(trial.hits.bytes_in_memory());
-  // Sweeps need a whole map of radiosity, which is as large as all this.
-  free_memory(trial.hits.sky);
-  free_memory(trial.hits.sky_luminance2), free_memory(trial.hits.sky_first_less_second);
+  return {};
+}
+
+Status try_bounces(Trial& trial, Forecast& out) {
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const GatherParams& params = trial.params;
+  std::vector<Rgb> direct;
+  for (const uint32_t i : trial.texels) direct.push_back(trial.direct.irradiance[i]);
+  LUXEL_TRY(const double sweeps,
+            expected_sweeps(map, elements, {trial.hits, trial.texels, direct}, params.samples,
+                            {params.bounces, params.tolerance}));
+  trial.direct = {};  // sweeps need a whole map of radiosity, which is as large
+  const double hits = out.hit_bytes / double(sizeof(StoredHit));
+  out.bounces_s = sweeps * hits * seconds_per_hit(map, trial.hits) / double(thread_count());
   return {};
 }
 
@@ -151,11 +163,8 @@ Result<Forecast> forecast(const transport::TexelScene& world, const GatherParams
   LUXEL_TRY_STATUS(try_direct(trial, out, own));
   LUXEL_TRY_STATUS(try_supersample(trial, out, own));
   LUXEL_TRY_STATUS(try_tracing(trial, out, own));
+  LUXEL_TRY_STATUS(try_bounces(trial, out));
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  const double sweeps = expected_sweeps(world.map, world.elements, trial.hits, params.samples,
-                                        {params.bounces, params.tolerance});
-  out.bounces_s = sweeps * (seconds_per_hit(world.map, trial.hits) * out.hit_bytes /
-                            double(sizeof(StoredHit)) / double(thread_count()));
   return out;
 }
 

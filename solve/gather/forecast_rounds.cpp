@@ -1,10 +1,12 @@
 #include "solve/gather/forecast_rounds.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "solve/gather/adaptive.h"
+#include "solve/gather/expected_bounces.h"
 #include "solve/gather/neighbours.h"
 
 namespace luxel::gather {
@@ -206,8 +208,11 @@ Result<RoundsForecast> forecast_rounds(const transport::TexelScene& world,
   out.hit_bytes = trial.scale * (bytes - before);
   forget_coarse_light(trial);
   // What the bounces look at: each round's hits, and in the end those of all.
-  const double fine = expected_sweeps(world.map, world.elements, trial.hits, params.samples,
-                                      {params.bounces, params.tolerance});
+  std::vector<uint32_t> all(n);
+  std::iota(all.begin(), all.end(), 0u);
+  LUXEL_TRY(const double fine,
+            expected_sweeps(world.map, world.elements, {trial.hits, all, trial.direct.irradiance},
+                            params.samples, {params.bounces, params.tolerance}));
   double looks = fine * samples.back();
   for (size_t k = 1; k < samples.size(); ++k) looks += kSweepsOfRound * samples[k];
   const double hits_per_sample = bytes / double(sizeof(StoredHit)) / samples.back();

@@ -13,8 +13,8 @@
 namespace luxel::pipeline {
 namespace {
 
-/// Of the texels, in a trial for a plan: half a percent of the bake, but some thousand of them.
-constexpr int kPlanPart = 200;
+/// Of the texels, in a trial for a plan: a percent of the bake, but some thousand of them.
+constexpr int kPlanPart = 100;
 /// The same of the rounds to an error: of more texels, because some get many times the rays of
 /// others.
 constexpr int kRoundsPart = 16;

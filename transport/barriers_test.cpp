@@ -136,6 +136,37 @@ TEST(OpenSamples, MoveOutOfAThinWall) {
   }
 }
 
+/// Two walls from end to end and a gap between them. Returns how many samples were moved into it.
+size_t samples_moved_into_gap(float from_x, float to_x) {
+  Floor floor;
+  floor.add_box({0.1f, 0, -1}, {from_x, 1, 3});
+  floor.add_box({to_x, 0, -1}, {1.95f, 1, 3});
+  const trace::RayTracer rays = floor.tracer();
+  const OpenedSamples opened = open_samples(floor.scene, floor.atlas, rays, floor.map);
+  size_t in_gap = 0;
+  for (const uint32_t i : opened.moved) {
+    const float x = scene::world_position(floor.scene, floor.map.texels[i].sample).x;
+    in_gap += x > from_x && x < to_x;
+  }
+  return in_gap;
+}
+
+/// A texel on the floor's diagonal looks at its own triangle alone.
+constexpr size_t kRowsOffDiagonal = Floor::kSide - 1;
+
+/// Half a texel wide, between two columns of samples, which all lie under walls. Of the texel on
+/// the diagonal in the first the half that is its own does not reach the slit.
+TEST(OpenSamples, MoveIntoASlit) {
+  EXPECT_EQ(samples_moved_into_gap(1.05f, 1.08f), Floor::kSide + kRowsOffDiagonal);
+}
+
+/// Of its three columns of texels one has its samples under a wall, one beside the other wall, and
+/// the middle one lies wholly in the alley: those stay. The half of the diagonal's texel in the
+/// third does not reach the wall.
+TEST(OpenSamples, MoveIntoAnAlley) {
+  EXPECT_EQ(samples_moved_into_gap(1.10f, 1.24f), Floor::kSide + kRowsOffDiagonal);
+}
+
 /// A large box that stays and a small one that moves: again as from scratch, but only texels around
 /// the small one and those that had backs near them are looked at.
 TEST(OpenSamples, AgainAreThoseFromScratch) {

@@ -79,7 +79,8 @@ std::optional<scene::SurfacePoint> Work::open_place(const atlas::Texel& texel, b
   Vec2 middle{0, 0};
   size_t in_triangle = 0;
   for (size_t k = 0; k < kPlaces.size(); ++k) {
-    // Four corners like the sample between them: so is the texel, as most are.
+    // Four corners like the sample between them: so are most texels all over, and one across a
+    // straight edge never is.
     if (k == 4 && in_triangle == 4 && open.size() == (is_open ? 4u : 0u)) return {};
     const Vec2 p = Vec2{float(texel.x), float(texel.y)} + kPlaces[k];
     const Barycentric at = atlas::barycentric_in(corners, p);
@@ -125,7 +126,7 @@ uint32_t texel_at(const atlas::TexelMap& map, int x, int y) {
 
 /// Finds the borders of enclosed regions whose backs are farther away, such as the floor under a
 /// shell without a bottom: between texels of a lattice of which one is enclosed and another is not
-/// all are looked at; those among enclosed ones are taken for such.
+/// all are looked at.
 void look_for_regions(const Work& work, const atlas::TexelMap& map, std::span<Found> found) {
   constexpr int kStep = 4;
   const int across = (map.resolution + kStep - 1) / kStep;
@@ -146,40 +147,31 @@ void look_for_regions(const Work& work, const atlas::TexelMap& map, std::span<Fo
         if (!is_enclosed_at(u + du, v + dv)) return false;
     return true;
   };
-  std::vector<uint8_t> look(found.size()), inner(found.size());
+  std::vector<uint8_t> look(found.size());
   for (int v = 0; v < across; ++v)
     for (int u = 0; u < across; ++u) {
-      if (!is_enclosed_at(u, v)) continue;
-      std::vector<uint8_t>& mark = is_inner(u, v) ? inner : look;
+      if (!is_enclosed_at(u, v) || is_inner(u, v)) continue;
       for (int y = (v - 1) * kStep + 1; y < (v + 1) * kStep; ++y)
         for (int x = (u - 1) * kStep + 1; x < (u + 1) * kStep; ++x)
-          if (const uint32_t i = texel_at(map, x, y); i != atlas::kNone) mark[i] = 1;
+          if (const uint32_t i = texel_at(map, x, y); i != atlas::kNone) look[i] = 1;
     }
   parallel_for(look.size(), 256, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      if (found[i] == Found::enclosed) continue;
-      const bool is_enclosed = look[i] ? !work.in_the_open(map.texels[i].sample)
-                                       : inner[i] && found[i] == Found::nothing;
-      if (is_enclosed) found[i] = Found::enclosed;
-    }
+    for (size_t i = begin; i < end; ++i)
+      if (look[i] && found[i] == Found::nothing && !work.in_the_open(map.texels[i].sample))
+        found[i] = Found::enclosed;
   });
 }
 
-/// Those that are enclosed and have a neighbour in the map that is not, or none; and the other way
-/// round.
+/// Those that are enclosed and their neighbours in the map.
 std::vector<uint32_t> at_the_edge(const atlas::TexelMap& map, std::span<const Found> found) {
-  const auto is_enclosed = [&](uint32_t i) {
-    return i != atlas::kNone && found[i] == Found::enclosed;
-  };
   std::vector<uint8_t> is_at_edge(found.size());
-  parallel_for(found.size(), 4096, [&](size_t begin, size_t end) {
-    for (uint32_t i = uint32_t(begin); i < end; ++i) {
-      const int x = int(map.texels[i].x), y = int(map.texels[i].y);
-      for (int v = y - 1; v <= y + 1; ++v)
-        for (int u = x - 1; u <= x + 1; ++u)
-          if (is_enclosed(texel_at(map, u, v)) != is_enclosed(i)) is_at_edge[i] = 1;
-    }
-  });
+  for (uint32_t i = 0; i < found.size(); ++i) {
+    if (found[i] != Found::enclosed) continue;
+    const int x = int(map.texels[i].x), y = int(map.texels[i].y);
+    for (int v = y - 1; v <= y + 1; ++v)
+      for (int u = x - 1; u <= x + 1; ++u)
+        if (const uint32_t j = texel_at(map, u, v); j != atlas::kNone) is_at_edge[j] = 1;
+  }
   std::vector<uint32_t> out;
   for (uint32_t i = 0; i < is_at_edge.size(); ++i)
     if (is_at_edge[i]) out.push_back(i);

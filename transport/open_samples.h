@@ -21,8 +21,9 @@ struct OpenedSamples {
 /// texel lies in the room: it would be dark, or dropped; or just beside the wall, where it is
 /// darkest. Texels whose samples see nothing but backs, and their neighbours, are looked at on a
 /// grid of 4 x 4 in their own triangle: where the back of a surface is within a texel and a half,
-/// and along the borders of larger regions of such samples. Where some places are in the open and
-/// some are not, the sample moves to the one in the middle of those that are; elsewhere it stays.
+/// and along the borders of larger regions of such samples. Where the grid's corners are like the
+/// sample, so is the rest taken to be. Where some places are in the open and some are not, the
+/// sample moves to the one in the middle of those that are; elsewhere it stays.
 OpenedSamples open_samples(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const trace::RayTracer& tracer, atlas::TexelMap& map);
 

@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/vectorize.h"
+#include "solve/gather/convergence.h"
 #include "solve/gather/tile_hits.h"
 #include "transport/light_layers.h"
 
@@ -182,7 +183,7 @@ constexpr size_t kSparseSweeps = 10;
 /// The strides of all sweeps but the last. A given number of bounces has as many sweeps.
 std::vector<size_t> sparse_strides(int bounces, const TracedHits& hits) {
   const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
-  const size_t middle = fewest >= 64 ? 4 : 1, sparsest = fewest >= 256 ? 16 : middle;
+  const size_t sparsest = sparsest_stride(fewest), middle = std::min<size_t>(sparsest, 4);
   if (bounces >= 0) return std::vector<size_t>(size_t(std::max(bounces - 1, 0)), middle);
   std::vector<size_t> strides(kSparseSweeps, sparsest);
   strides.push_back(middle);

@@ -169,7 +169,7 @@ Status Bouncing::settle_guess(size_t sparse, const BounceParams& params) {
 
 double copy_bytes(double hit_bytes, int samples) {
   constexpr double kPerHit = double(sizeof(StoredHit) + sizeof(float)) / sizeof(StoredHit);
-  return size_t(samples) < kSparsest * kSparsest ? 0 : kPerHit * hit_bytes / kSparsest;
+  return !has_sweeps_of(kSparsest, size_t(samples)) ? 0 : kPerHit * hit_bytes / kSparsest;
 }
 
 Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& elements,
@@ -204,8 +204,7 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   }
   if (params.bounces >= 0) return std::move(work.out);
   const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
-  const size_t sparse =
-      *std::ranges::find_if(kStrides, [&](size_t s) { return has_sweeps_of(s, fewest); });
+  const size_t sparse = sparsest_stride(fewest);
   if (guessed && sparse > 1) {
     LUXEL_TRY_STATUS(work.settle_guess(sparse, params));
     return std::move(work.out);

@@ -1,6 +1,7 @@
 // When sweeps may stop, and which rays they look at until then.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -14,6 +15,10 @@ inline constexpr size_t kSparsest = kStrides.front();
 /// With fewer than 16 rays looked at of an element its noise is more than later sweeps average out.
 inline bool has_sweeps_of(size_t stride, size_t samples) {
   return stride == 1 || samples >= 16 * stride;
+}
+/// That of the first sweeps.
+inline size_t sparsest_stride(size_t samples) {
+  return *std::ranges::find_if(kStrides, [&](size_t s) { return has_sweeps_of(s, samples); });
 }
 
 /// Of what surfaces send back of the light on both their sides.

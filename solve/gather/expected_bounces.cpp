@@ -50,7 +50,8 @@ constexpr double kSparseCost = 1.3, kCopyCost = 0.3;
 /// So many hits of an element are looked at: rooms are what decides, not noise.
 constexpr size_t kHitsLookedAt = 16;
 
-constexpr int kMostSweeps = 200;
+/// So many sweeps are made of the trial; by then each is a known part of the one before.
+constexpr int kMostSweeps = 100;
 
 /// Where elements were tried, and for places where none were the nearest in the map.
 struct TriedCells {
@@ -105,64 +106,82 @@ uint32_t element_at(const atlas::TexelMap& map, const StoredHit& hit) {
 struct TriedLight {
   struct Link {
     uint32_t from;  ///< number among those tried
-    float part;     ///< of its light that arrives
+    Rgb part;       ///< of its light that arrives
   };
   std::vector<Link> links;
   std::vector<size_t> link_end;  ///< per element tried
-  std::vector<double> source, light;
+  std::vector<Rgb> source, light;
 
-  /// A sweep. Returns its root mean square change, relative to the mean.
+  /// A sweep. Returns its root mean square change, relative to the mean luminance.
   double sweep() {
     double change2 = 0, sum = 0;
-    std::vector<double> next = source;
+    std::vector<Rgb> next = source;
     for (size_t k = 0, l = 0; k < next.size(); ++k) {
-      for (; l < link_end[k]; ++l) next[k] += double(links[l].part) * light[links[l].from];
-      change2 += (next[k] - light[k]) * (next[k] - light[k]), sum += next[k];
+      for (; l < link_end[k]; ++l) next[k] += links[l].part * light[links[l].from];
+      const Rgb change = next[k] - light[k];
+      change2 += double(dot(change, change)), sum += double(luminance(next[k]));
     }
     light = std::move(next);
-    return sum > 0 ? std::sqrt(change2 * double(light.size())) / sum : 0;
+    return sum > 0 ? std::sqrt(change2 / 3 * double(light.size())) / sum : 0;
   }
 };
 
-/// Adds the light that reaches an element of `tried`, from one hit in some.
-void add_links(const atlas::TexelMap& map, const transport::Elements& elements,
-               const TriedCells& cells, const TracedHits& hits, size_t i, const TileHits& tile,
-               TriedLight& out) {
-  const size_t stride = std::max<size_t>(1, hits.samples[i] / kHitsLookedAt);
-  const float part = float(stride) / float(hits.samples[i]);
-  for (size_t r = 0; r <= hits.last_round[i]; ++r) {
-    const std::span<const StoredHit> own = tile.of(r, i % kTileElements);
-    for (size_t k = first_hit(i, stride, own.size()); k < own.size(); k += stride) {
-      const uint32_t j = element_at(map, own[k]);
-      if (j == atlas::kNone) continue;
-      const std::span<const uint32_t> near = cells.near(map.texels[j]);
-      out.links.push_back(
-          {near[out.links.size() % near.size()], part * luminance(elements.reflectance[j])});
-    }
-  }
-  out.link_end.push_back(out.links.size());
+/// What a hit sends of the light that arrives at element i, its lamps' aside.
+Rgb sent_of(const transport::Elements& elements, uint32_t i, const StoredHit& hit) {
+  const Rgb tau = elements.transmittance.empty() ? Rgb{} : elements.transmittance[i];
+  const Rgb part = elements.reflectance[i] + tau;
+  return hit.tint() == kNoTint ? part : part * unpack_tint(hit.tint());
 }
 
 /// Errors: the file of hits cannot be read.
 Result<TriedLight> tried_light(const atlas::TexelMap& map, const transport::Elements& elements,
                                const TriedHits& tried) {
   const TracedHits& hits = tried.hits;
-  std::vector<uint32_t> own, element;  // those with samples: of `hits`, of all
+  std::vector<uint32_t> own, element;  // those with samples, in the open: of `hits`, of all
   for (uint32_t i = 0; i < hits.size(); ++i)
-    if (hits.samples[i] > 0) own.push_back(i), element.push_back(tried.element[i]);
+    if (hits.samples[i] > 0 && !is_hidden(hits, i))
+      own.push_back(i), element.push_back(tried.element[i]);
   const TriedCells cells = find_cells(map, element);
   TriedLight out;
   TileHits tile;
   size_t tile_read = SIZE_MAX;
   for (const uint32_t i : own) {
-    out.source.push_back(double(luminance(source_of(hits, tried.direct, i))));
     if (const size_t t = i / kTileElements; t != tile_read) {
       LUXEL_TRY_STATUS(tile.read(hits, t));
       tile_read = t;
     }
-    add_links(map, elements, cells, hits, i, tile, out);
+    const size_t stride = std::max<size_t>(1, hits.samples[i] / kHitsLookedAt);
+    for_each_sparse(hits, tile, i, stride, [&](const StoredHit& hit, float weight) {
+      const uint32_t j = element_at(map, hit);
+      if (j == atlas::kNone) return;
+      const std::span<const uint32_t> near = cells.near(map.texels[j]);
+      out.links.push_back({near[out.links.size() % near.size()],
+                           sent_of(elements, j, hit) * (weight / float(hits.samples[i]))});
+    });
+    out.link_end.push_back(out.links.size());
+    out.source.push_back(source_of(hits, tried.direct, i));
   }
   out.light = out.source;
+  return out;
+}
+
+/// How many sweeps bring the light to come below `goal`, and the ratio of the last two changes.
+struct FirstSweeps {
+  double count = 0, ratio = 0;
+};
+
+FirstSweeps sweep_until(double goal, const ReflectanceRange& range, TriedLight& light) {
+  FirstSweeps out;
+  double before = 0;
+  for (; out.count < kMostSweeps;) {
+    const double change = light.sweep();
+    ++out.count;
+    if (before > 0) out.ratio = change / before;
+    before = change;
+    if (light_to_come(change, out.ratio, range) <= goal) return out;
+  }
+  const double to_come = light_to_come(before, out.ratio, range);
+  out.count += std::log(to_come / goal) / -std::log(std::clamp(out.ratio, 0.1, 0.99));
   return out;
 }
 
@@ -174,29 +193,17 @@ Result<double> expected_sweeps(const atlas::TexelMap& map, const transport::Elem
               tried.direct.size() == tried.hits.size());
   if (params.bounces >= 0) return params.bounces;
   LUXEL_TRY(TriedLight light, tried_light(map, elements, tried));
-  const ReflectanceRange range = reflectance_range(elements);
-  double out = 0, ratio = 0;
-  bool first = true;
+  const size_t sparsest = sparsest_stride(size_t(samples));
+  const double goal = double(params.tolerance) * double(sparsest);
+  const FirstSweeps first = sweep_until(goal, reflectance_range(elements), light);
+  // Each step's tolerance is a quarter of that of the one before, and so has to be what is left;
+  // one sweep more averages the noise of the sparser ones.
+  const double later = 1 + std::log(4.0) / -std::log(std::clamp(first.ratio, 0.1, 0.99));
+  double out = sparsest == kSparsest ? kCopyCost : 0;
   for (const size_t stride : kStrides) {
-    if (!has_sweeps_of(stride, size_t(samples))) continue;
+    if (stride > sparsest) continue;
     const double cost = stride > 1 ? kSparseCost / double(stride) : 1;
-    if (stride == kSparsest) out += kCopyCost;
-    if (!first) {
-      // Each step is a quarter of the one before, and so has to be what is left; one sweep more
-      // averages the noise of the sparser ones.
-      const double q = std::clamp(ratio, 0.1, 0.99);
-      out += cost * (1 + std::log(4.0) / -std::log(q));
-      continue;
-    }
-    double before = 0;
-    for (int k = 0; k < kMostSweeps; ++k) {
-      const double change = light.sweep();
-      out += cost;
-      if (before > 0) ratio = change / before;
-      if (light_to_come(change, ratio, range) <= double(params.tolerance) * double(stride)) break;
-      before = change;
-    }
-    first = false;
+    out += cost * (stride == sparsest ? first.count : later);
   }
   return out;
 }

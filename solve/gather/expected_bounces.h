@@ -12,7 +12,7 @@ namespace luxel::gather {
 /// of them in memory.
 double seconds_per_hit(const atlas::TexelMap& map, const TracedHits& hits);
 
-/// Some elements, bounced by themselves.
+/// What the rays of some elements met, and their light.
 struct TriedHits {
   const TracedHits& hits;
   std::span<const uint32_t> element;  ///< per element of `hits`, its number among all

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <numeric>
 
 #include "base/clock.h"
-#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "solve/gather/adaptive.h"
 #include "solve/gather/expected_bounces.h"
@@ -21,6 +21,14 @@ Result<double> seconds_of(const Work& work) {
   const auto start = Clock::now();
   LUXEL_TRY_STATUS(work());
   return seconds_since(start);
+}
+
+/// Processor time: what else the machine does meanwhile is not in it.
+template <class Work>
+Result<double> processor_seconds_of(const Work& work) {
+  const std::clock_t start = std::clock();
+  LUXEL_TRY_STATUS(work());
+  return double(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 }  // namespace
@@ -96,12 +104,13 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
   const std::vector<uint32_t> known = within(map, trial.texels);
   if (known.empty()) return {};
   const double scale = double(elements.size()) / double(known.size());
-  // They are too few for many threads, and a call looks at the whole map once: that is no texel's.
+  // They are too few for many threads, and a call looks at the whole map once: that is no texel's,
+  // and much longer than what is looked for.
   const int threads = thread_count();
   const ThreadLimit one(1);
   uint64_t rays = 0;
   const auto seconds_for = [&](std::span<const uint32_t> among) {
-    return seconds_of([&]() -> Status {
+    return processor_seconds_of([&]() -> Status {
       LUXEL_TRY(const transport::Supersampled done,
                 transport::supersample(scene, atlas, map, elements, lights, tracer, among, params,
                                        trial.direct, progress));
@@ -163,8 +172,8 @@ Result<Forecast> forecast(const transport::TexelScene& world, const GatherParams
   LUXEL_TRY_STATUS(try_direct(trial, out, own));
   LUXEL_TRY_STATUS(try_supersample(trial, out, own));
   LUXEL_TRY_STATUS(try_tracing(trial, out, own));
-  LUXEL_TRY_STATUS(try_bounces(trial, out));
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(try_bounces(trial, out));
   return out;
 }
 

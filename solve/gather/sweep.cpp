@@ -90,19 +90,6 @@ double sweep_tile(const RadiosityMap& m, const TracedHits& hits, const TileHits&
   return change2;
 }
 
-/// Calls take(hit, weight) for every stride-th hit of an element, counted for all of its round.
-template <class Take>
-void for_each_sparse(const TracedHits& hits, const TileHits& tile, size_t element, size_t stride,
-                     const Take& take) {
-  for (size_t r = 0; r <= hits.last_round[element]; ++r) {
-    const std::span<const StoredHit> own = tile.of(r, element % kTileElements);
-    const size_t first = first_hit(element, stride, own.size());
-    if (own.empty()) continue;
-    const float weight = float(own.size()) / float((own.size() - first - 1) / stride + 1);
-    for (size_t k = first; k < own.size(); k += stride) take(own[k], weight);
-  }
-}
-
 void add(const RadiosityMap& m, StoredHit hit, float weight, Float4& sum) {
   sum += lookup(m, hit) * weight;
 }

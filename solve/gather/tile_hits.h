@@ -63,4 +63,17 @@ inline size_t first_hit(size_t element, size_t stride, size_t count) {
   return count == 0 ? 0 : std::min((element * 5) % stride, count - 1);
 }
 
+/// Calls take(hit, weight) for every stride-th hit of an element, counted for all of its round.
+template <class Take>
+void for_each_sparse(const TracedHits& hits, const TileHits& tile, size_t element, size_t stride,
+                     const Take& take) {
+  for (size_t r = 0; r <= hits.last_round[element]; ++r) {
+    const std::span<const StoredHit> own = tile.of(r, element % kTileElements);
+    const size_t first = first_hit(element, stride, own.size());
+    if (own.empty()) continue;
+    const float weight = float(own.size()) / float((own.size() - first - 1) / stride + 1);
+    for (size_t k = first; k < own.size(); k += stride) take(own[k], weight);
+  }
+}
+
 }  // namespace luxel::gather

@@ -201,23 +201,13 @@ bool cut_worst(Field& field, const HemicubeParams& params, size_t goal, double s
   return field.mesh.nodes.size() > before;
 }
 
-transport::Elements some_of(const transport::Elements& all, std::span<const uint32_t> chosen) {
-  transport::Elements out;
-  for (const uint32_t i : chosen) {
-    out.position.push_back(all.position[i]);
-    out.normal.push_back(all.normal[i]);
-    out.geometric_normal.push_back(all.geometric_normal[i]);
-    out.reflectance.push_back(all.reflectance[i]);
-  }
-  return out;
-}
-
 /// Light for new elements, from what the mesh around sends.
 Status light_new_elements(const Surroundings& around, const HemicubeParams& params,
                           std::span<const uint32_t> elements, std::span<const Rgb> sent,
                           Solution& s, Progress& progress) {
   LUXEL_TRY(const Sight sight,
-            look_from(around, some_of(s.field.receivers.elements, elements), params, s, progress));
+            look_from(around, transport::subset(s.field.receivers.elements, elements), params, s,
+                      progress));
   std::vector<Rgb> gathered = sight.source;
   if (params.bounces != 0)
     LUXEL_TRY_STATUS(sweep(sight.rows, sight.source, sent, gathered, progress));

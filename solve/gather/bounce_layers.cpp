@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/vectorize.h"
 #include "solve/gather/convergence.h"
+#include "solve/gather/thinned_hits.h"
 #include "solve/gather/tile_hits.h"
 #include "transport/light_layers.h"
 
@@ -73,32 +74,53 @@ struct Lanes {
   Float8 low{}, high{};
 };
 
-/// Adds the bilinear lookup at a hit, its weights renormalised over the texels that have an
-/// element.
-[[gnu::always_inline]] inline void add_lookup(const BlockMap& m, const StoredHit& hit, Lanes& sum) {
+/// Adds `weight` times what a hit sends, in its tint.
+[[gnu::always_inline]] inline void add(const StoredHit& hit, float weight, Lanes sent, Lanes& sum) {
+  if (hit.tint() == kNoTint) {
+    sum.low += sent.low * weight, sum.high += sent.high * weight;
+    return;
+  }
+  const Rgb t = unpack_tint(hit.tint()) * weight;
+  sum.low += sent.low * Float8{t.x, t.y, t.z, t.x, t.y, t.z, t.x, t.y};
+  sum.high += sent.high * Float8{t.z, t.x, t.y, t.z, t.x, t.y, t.z, 0};
+}
+
+/// Adds `weight` times the bilinear lookup at a hit, whose own weights are renormalised over the
+/// texels that have an element.
+[[gnu::always_inline]] inline void add_lookup(const BlockMap& m, const StoredHit& hit, float weight,
+                                              Lanes& sum) {
   constexpr float kUnit = 1.0f / float(StoredHit::kSteps);
   const float fx = float(hit.fx()) * kUnit, fy = float(hit.fy()) * kUnit;
   const BlockTexel* upper = m.texels.data() + hit.base();
   const BlockTexel* lower = upper + m.stride;
   const std::array<const BlockTexel*, 4> texel{upper, upper + 1, lower, lower + 1};
-  const std::array<float, 4> weight{(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
-  Float8 low{}, high{};
+  const std::array<float, 4> part{(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
+  Lanes sent;
   for (size_t k = 0; k < 4; ++k) {
     Float8 a, b;
     load8(texel[k]->value.data(), a), load8(texel[k]->value.data() + 8, b);
-    low += a * weight[k], high += b * weight[k];
+    sent.low += a * part[k], sent.high += b * part[k];
   }
   // Coverage is zero only where all texels around the hit are hidden.
-  const float coverage = high[kCoverage - 8];
-  if (!(coverage > 0)) return;
-  const float inverse = 1.0f / coverage;
-  if (hit.tint() == kNoTint) {
-    sum.low += low * inverse, sum.high += high * inverse;
-    return;
-  }
-  const Rgb t = unpack_tint(hit.tint()) * inverse;
-  sum.low += low * Float8{t.x, t.y, t.z, t.x, t.y, t.z, t.x, t.y};
-  sum.high += high * Float8{t.z, t.x, t.y, t.z, t.x, t.y, t.z, 0};
+  const float coverage = sent.high[kCoverage - 8];
+  if (coverage > 0) add(hit, weight / coverage, sent, sum);
+}
+
+[[gnu::always_inline]] inline const BlockTexel& nearest(const BlockMap& m, const StoredHit& hit) {
+  const uint32_t right = 2 * hit.fx() >= StoredHit::kSteps,
+                 down = 2 * hit.fy() >= StoredHit::kSteps;
+  return m.texels[hit.base() + right + down * m.stride];
+}
+
+/// The same of the nearest texel alone, where that has an element: a quarter of the memory is read,
+/// which is what sparse sweeps, whose hits lie far apart, take their time for.
+[[gnu::always_inline]] inline void add_nearest(const BlockMap& m, const StoredHit& hit,
+                                               float weight, Lanes& sum) {
+  const BlockTexel& texel = nearest(m, hit);
+  if (!(texel.value[kCoverage] > 0)) return add_lookup(m, hit, weight, sum);
+  Lanes sent;
+  load8(texel.value.data(), sent.low), load8(texel.value.data() + 8, sent.high);
+  add(hit, weight, sent, sum);
 }
 
 /// B = rho E + tau E behind, as bounces.cpp has it.
@@ -117,48 +139,93 @@ void fill_radiosity(BlockMap& m, const atlas::TexelMap& map, const transport::El
   fill(m, map, hits, block, [&](size_t i, size_t l) {
     if (max_component(elements.transmittance[i]) <= 0) return reflected(i, l);
     Lanes other;
-    add_lookup(all, behind[i], other);
+    add_lookup(all, behind[i], 1, other);
     std::array<float, kLanes> e;
     store8(other.low, e.data()), store8(other.high, e.data() + 8);
     return reflected(i, l) + elements.transmittance[i] * Rgb{e[3 * l], e[3 * l + 1], e[3 * l + 2]};
   });
 }
 
-/// Every stride-th of an element's hits of one round, counted for all of them.
-[[gnu::always_inline]] inline void gather_round(const BlockMap& m, std::span<const StoredHit> hits,
-                                                size_t first, size_t stride, Lanes& sum) {
-  Lanes round;
-  size_t used = 0;
-  for (size_t k = first; k < hits.size(); k += stride, ++used) add_lookup(m, hits[k], round);
-  const float scale = used > 0 ? float(hits.size()) / float(used) : 0;
-  sum.low += round.low * scale, sum.high += round.high * scale;
-}
-
-struct Sweep {
+struct LayerSweep {
   const BlockMap& radiosity;
   LayeredLight source, light;
   Block block;
   size_t stride = 1;
+  const ThinnedHits* thinned = nullptr;  ///< of that stride; null: there are none
 };
 
+/// Gives an element the light of what its rays have gathered.
+[[gnu::always_inline]] inline void update(const LayerSweep& sweep, const TracedHits& hits,
+                                          size_t element, const Lanes& sum) {
+  std::array<float, kLanes> e;
+  store8(sum.low, e.data()), store8(sum.high, e.data() + 8);
+  const float inverse = 1.0f / float(hits.samples[element]);
+  const Block& block = sweep.block;
+  const std::span<const Rgb> source = sweep.source.of(element, block.first, block.count);
+  const std::span<Rgb> light = sweep.light.of(element, block.first, block.count);
+  for (size_t l = 0; l < light.size(); ++l)
+    light[l] = source[l] + Rgb{e[3 * l], e[3 * l + 1], e[3 * l + 2]} * inverse;
+}
+
 LUXEL_VECTOR_CLONES
-void sweep_tile(const Sweep& sweep, const TracedHits& hits, const TileHits& tile,
+void sweep_tile(const LayerSweep& sweep, const TracedHits& hits, const TileHits& tile,
                 size_t first_element) {
   const size_t end = std::min(first_element + kTileElements, hits.size());
   for (size_t i = first_element; i < end; ++i) {
     Lanes sum;
     for (size_t r = 0; r <= hits.last_round[i]; ++r) {
       const std::span<const StoredHit> own = tile.of(r, i - first_element);
-      gather_round(sweep.radiosity, own, first_hit(i, sweep.stride, own.size()), sweep.stride, sum);
+      for (const StoredHit& hit : own) add_lookup(sweep.radiosity, hit, 1, sum);
     }
-    std::array<float, kLanes> e;
-    store8(sum.low, e.data()), store8(sum.high, e.data() + 8);
-    const float inverse = 1.0f / float(hits.samples[i]);
-    const std::span<const Rgb> source = sweep.source.of(i, sweep.block.first, sweep.block.count);
-    const std::span<Rgb> light = sweep.light.of(i, sweep.block.first, sweep.block.count);
-    for (size_t l = 0; l < light.size(); ++l)
-      light[l] = source[l] + Rgb{e[3 * l], e[3 * l + 1], e[3 * l + 2]} * inverse;
+    update(sweep, hits, i, sum);
   }
+}
+
+LUXEL_VECTOR_CLONES
+void sweep_sparse(const LayerSweep& sweep, const TracedHits& hits, const TileHits& tile,
+                  size_t first_element) {
+  const size_t end = std::min(first_element + kTileElements, hits.size());
+  for (size_t i = first_element; i < end; ++i) {
+    Lanes sum;
+    for_each_sparse(hits, tile, i, sweep.stride, [&](const StoredHit& hit, float weight) {
+      add_nearest(sweep.radiosity, hit, weight, sum);
+    });
+    update(sweep, hits, i, sum);
+  }
+}
+
+/// What will be looked up so many hits later is asked for in time.
+constexpr size_t kAhead = 16;
+
+/// The same bits from the copy.
+LUXEL_VECTOR_CLONES
+void sweep_thinned(const LayerSweep& sweep, const TracedHits& hits, const ThinnedHits::Tile& tile,
+                   size_t first_element) {
+  uint32_t hit = 0;
+  for (size_t k = 0; k < tile.end.size(); ++k) {
+    Lanes sum;
+    for (; hit < tile.end[k]; ++hit) {
+      if (hit + kAhead < tile.hits.size())
+        __builtin_prefetch(&nearest(sweep.radiosity, tile.hits[hit + kAhead]));
+      add_nearest(sweep.radiosity, tile.hits[hit], tile.weight[hit], sum);
+    }
+    update(sweep, hits, first_element + k, sum);
+  }
+}
+
+/// Errors: the file of hits cannot be read, cancelled.
+Status run_layer_sweep(const LayerSweep& sweep, const TracedHits& hits, Progress& progress) {
+  if (!sweep.thinned)
+    return for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
+      const auto sweep_one = sweep.stride > 1 ? sweep_sparse : sweep_tile;
+      sweep_one(sweep, hits, tile, t * kTileElements);
+    });
+  parallel_for(tile_count(hits), 1, [&](size_t t, size_t) {
+    if (!progress.cancelled())
+      sweep_thinned(sweep, hits, sweep.thinned->tiles[t], t * kTileElements);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return {};
 }
 
 /// Gives each layer its share of the whole. Returns the sum of squares of what was missing.
@@ -220,21 +287,27 @@ std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct) 
 Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport::Elements& elements,
                                     const TracedHits& hits, std::vector<Rgb> source,
                                     std::span<const StoredHit> behind, std::span<const Rgb> whole,
-                                    int bounces, Progress& progress) {
+                                    const LayerBounceParams& params, Progress& progress) {
   const size_t n = elements.size();
   LUXEL_CHECK(n > 0 && source.size() % n == 0 && whole.size() == n);
   const size_t layers = source.size() / n;
+  const int bounces = params.bounces;
   std::vector<Rgb> solution = source;
   const LayeredLight light{solution, layers}, sources{source, layers};
   BlockMap radiosity = empty_map(map.resolution);
+  std::optional<ThinnedHits> thinned;
+  const std::vector<size_t> sparse = sparse_strides(bounces, hits);
+  if (std::ranges::count(sparse, kSparsest) > 1) {
+    LUXEL_TRY(thinned, thin(hits, kSparsest, params.spare_bytes, progress));
+  }
   const auto sweep_all = [&](size_t stride) -> Status {
+    const bool is_copied = thinned && thinned->stride == stride;
     for (Block block; block.first < layers; block.first += kBlock) {
       block.count = std::min(kBlock, layers - block.first);
       fill_radiosity(radiosity, map, elements, hits, behind, light, block);
-      const Sweep sweep{radiosity, sources, light, block, stride};
-      LUXEL_TRY_STATUS(for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
-        sweep_tile(sweep, hits, tile, t * kTileElements);
-      }));
+      const LayerSweep sweep{radiosity, sources, light,
+                             block,     stride,  is_copied ? &*thinned : nullptr};
+      LUXEL_TRY_STATUS(run_layer_sweep(sweep, hits, progress));
     }
     progress.advance(1);
     return {};
@@ -242,7 +315,7 @@ Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport:
   progress.begin("layers", 0);
   // Of a guess's errors, and a sparse solution's noise, only those of the share are left.
   size_t before = SIZE_MAX;
-  for (const size_t stride : sparse_strides(bounces, hits)) {
+  for (const size_t stride : sparse) {
     if (bounces < 0 && before > stride) share_out(whole, light);
     LUXEL_TRY_STATUS(sweep_all(stride));
     before = stride;

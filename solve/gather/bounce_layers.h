@@ -19,6 +19,11 @@ struct LayersBounced {
   double shared_out = 0;
 };
 
+struct LayerBounceParams {
+  int bounces = -1;                   ///< as in bounce()
+  uint64_t spare_bytes = UINT64_MAX;  ///< memory that may be taken besides, as in bounce()
+};
+
 /// Solves  E_l = E_0,l + (1/N) sum over rays of B_l at the hit  for each layer l. E is linear in
 /// E_0, so that the layers' solutions add up to that of the whole, which is known: `whole`, of
 /// bounce() over the same hits with `bounces`. With all bounces (< 0) that saves most of the work.
@@ -28,15 +33,16 @@ struct LayersBounced {
 ///
 /// by what it has of E_0. Ten sweeps look at one ray in 16 (of fewer than 256: in 4, of fewer than
 /// 64: at all); then light is shared out anew, so that of the noise of sparse sweeps only that of
-/// the share is left. A sweep over every fourth ray and one over all follow, and what these leave
-/// of rounding and of that noise is shared out in the same way: the layers add up to the whole.
-/// With a given number of bounces N - 1 sweeps are over every fourth ray and the last over all.
-/// `source` is E_0 layer by layer for each element: direct light and what rays brought without the
-/// map. Errors: cancelled, the file of hits cannot be read.
+/// the share is left. A sweep over every fourth ray and one over all follow (all but the last look
+/// up the texel nearest to a hit, where bounce() is bilinear: that is far below their noise), and
+/// what these leave of rounding and of that noise is shared out in the same way: the layers add up
+/// to the whole. With a given number of bounces N - 1 sweeps are over every fourth ray and the last
+/// over all. `source` is E_0 layer by layer for each element: direct light and what rays brought
+/// without the map. Errors: cancelled, the file of hits cannot be read.
 Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport::Elements& elements,
                                     const TracedHits& hits, std::vector<Rgb> source,
                                     std::span<const StoredHit> behind, std::span<const Rgb> whole,
-                                    int bounces, Progress& progress);
+                                    const LayerBounceParams& params, Progress& progress);
 
 /// E_0 of bounce_layers() from `direct`, that of lamps, layer by layer for each element.
 std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct);

@@ -7,6 +7,7 @@
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 #include "scene/sides.h"
+#include "solve/gather/bounces.h"
 #include "solve/gather/gather_test_support.h"
 
 namespace luxel::gather {
@@ -94,6 +95,34 @@ TEST(GatherLayers, AddUpToTheWhole) {
       for (const Rgb& e : layer) ASSERT_GE(min_component(e), 0.0f);
     }
   }
+}
+
+// Where there is no memory for a copy of the hits that sparse sweeps look at, those themselves give
+// the same bits.
+TEST(GatherLayers, DoNotDependOnTheCopyOfHits) {
+  const auto room = lay_out(scene::cornell_box(), 32);
+  const size_t n = room->elements.size();
+  Progress progress;
+  const auto hits = trace_hits(room->scene, room->atlas, room->elements, room->lights.around,
+                               *room->tracer, 256, {}, progress);
+  ASSERT_TRUE(hits);
+  std::vector<Rgb> both(n), layered(2 * n);
+  for (size_t i = 0; i < n; ++i) {
+    const Vec3 p = room->elements.position[i];
+    layered[2 * i] = {p.x, 1, 0}, layered[2 * i + 1] = {0, p.y, 1};
+    both[i] = layered[2 * i] + layered[2 * i + 1];
+  }
+  const auto whole = bounce(room->map, room->elements, *hits, both, {}, {}, progress);
+  ASSERT_TRUE(whole);
+  const auto bounced = [&](uint64_t spare_bytes) {
+    return bounce_layers(room->map, room->elements, *hits, layered, {}, whole->irradiance,
+                         {.spare_bytes = spare_bytes}, progress);
+  };
+  const auto with = bounced(UINT64_MAX), without = bounced(0);
+  ASSERT_TRUE(with && without);
+  EXPECT_EQ(with->irradiance, without->irradiance);
+  // The layers know by themselves what they add up to.
+  EXPECT_LT(with->shared_out, 5e-3);
 }
 
 // Lamps without area are exact, and so their direct light, and the rays are those of the whole: a

@@ -131,19 +131,22 @@ Status trace_round(const transport::TexelScene& world, const GatherParams& param
   return {};
 }
 
+/// What hits leave of the memory that they may take.
+uint64_t spare_bytes(const GatherParams& params, const TracedHits& hits) {
+  return params.hit_memory_bytes - std::min(hits.bytes_in_memory(), params.hit_memory_bytes);
+}
+
 Status bounce_round(const transport::TexelScene& world, const GatherParams& all,
                     std::span<const StoredHit> behind, float tolerance, Work& work,
                     Progress& progress) {
   const auto start = Clock::now();
   const std::vector<Rgb> guess = std::move(work.bounced.irradiance);
-  const uint64_t used = work.hits.bytes_in_memory();
-  const BounceParams params{
-      .bounces = all.bounces,
-      .tolerance = tolerance,
-      .start = guess,
-      .first_change = work.first_change,
-      .unknown = work.hits.unknown,
-      .spare_bytes = all.hit_memory_bytes - std::min(used, all.hit_memory_bytes)};
+  const BounceParams params{.bounces = all.bounces,
+                            .tolerance = tolerance,
+                            .start = guess,
+                            .first_change = work.first_change,
+                            .unknown = work.hits.unknown,
+                            .spare_bytes = spare_bytes(all, work.hits)};
   work.bounced = {}, work.errors = {};
   LUXEL_TRY(work.bounced, bounce(world.map, world.elements, work.hits, work.direct.irradiance,
                                  behind, params, progress));
@@ -306,7 +309,8 @@ Status bounce_last(const transport::TexelScene& world, const GatherParams& param
     LUXEL_TRY(LayersBounced layers,
               bounce_layers(world.map, world.elements, work.hits,
                             layer_sources(work.hits, std::move(work.direct.by_layer)), behind,
-                            work.bounced.irradiance, params.bounces, progress));
+                            work.bounced.irradiance,
+                            {params.bounces, spare_bytes(params, work.hits)}, progress));
     out.layers = std::move(layers.irradiance), out.layers_shared_out = layers.shared_out;
   }
   out.hit_bytes_in_file = work.hits.bytes_in_file();

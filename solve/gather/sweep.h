@@ -1,13 +1,13 @@
 // One pass over the stored hits: each element gathers what the map sends to its rays.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/progress.h"
 #include "base/result.h"
 #include "solve/gather/radiosity_map.h"
+#include "solve/gather/thinned_hits.h"
 #include "solve/gather/trace_hits.h"
 
 namespace luxel::gather {
@@ -24,23 +24,6 @@ void gather_round(const RadiosityMap& m, std::span<const StoredHit> hits, bool l
 
 /// E_0 of an element: what arrives without any reflection. A ray that escapes sees the sky.
 Rgb source_of(const TracedHits& hits, std::span<const Rgb> direct, size_t element);
-
-/// A copy of every stride-th hit of each element: sweeps over some rays need not pass by the
-/// others.
-struct ThinnedHits {
-  struct Tile {
-    std::vector<uint32_t> end;  ///< per element: one past its last hit
-    std::vector<StoredHit> hits;
-    std::vector<float> weight;  ///< per hit: how many of its round it stands for
-  };
-  size_t stride = 1;
-  std::vector<Tile> tiles;
-};
-
-/// Nothing where it might take more than `bytes`. Errors: the file of hits cannot be read,
-/// cancelled.
-Result<std::optional<ThinnedHits>> thin(const TracedHits& hits, size_t stride, uint64_t bytes,
-                                        Progress& progress);
 
 /// One sweep's input and output. `change2` holds the squared change per tile: summed in a fixed
 /// order.

@@ -102,7 +102,8 @@ uint64_t bytes_besides_hits(const SolveInput& in, const BakeSettings& settings, 
   const uint64_t n = in.elements.size(), side = uint64_t(in.map.resolution), square = side * side;
   uint64_t bytes = settings.solver == "gather" ? bytes_of_gather(in, settings, n, square, layers)
                                                : bytes_of_others(settings, n, square);
-  bytes += layers * kLayer * n + (layers > 0 ? kSquareLayerMap : 0) * square;
+  const uint64_t maps = layers == 0 ? 0 : in.elements.transmittance.empty() ? 1 : 2;
+  bytes += layers * kLayer * n + maps * kSquareLayerMap * square;
   return resident_bytes() + bytes;
 }
 

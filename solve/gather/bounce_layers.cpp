@@ -75,7 +75,8 @@ struct Lanes {
 };
 
 /// Adds `weight` times what a hit sends, in its tint.
-[[gnu::always_inline]] inline void add(const StoredHit& hit, float weight, Lanes sent, Lanes& sum) {
+[[gnu::always_inline]] inline void add(const StoredHit& hit, float weight, const Lanes& sent,
+                                       Lanes& sum) {
   if (hit.tint() == kNoTint) {
     sum.low += sent.low * weight, sum.high += sent.high * weight;
     return;
@@ -194,9 +195,6 @@ void sweep_sparse(const LayerSweep& sweep, const TracedHits& hits, const TileHit
   }
 }
 
-/// What will be looked up so many hits later is asked for in time.
-constexpr size_t kAhead = 16;
-
 /// The same bits from the copy.
 LUXEL_VECTOR_CLONES
 void sweep_thinned(const LayerSweep& sweep, const TracedHits& hits, const ThinnedHits::Tile& tile,
@@ -220,12 +218,10 @@ Status run_layer_sweep(const LayerSweep& sweep, const TracedHits& hits, Progress
       const auto sweep_one = sweep.stride > 1 ? sweep_sparse : sweep_tile;
       sweep_one(sweep, hits, tile, t * kTileElements);
     });
-  parallel_for(tile_count(hits), 1, [&](size_t t, size_t) {
-    if (!progress.cancelled())
-      sweep_thinned(sweep, hits, sweep.thinned->tiles[t], t * kTileElements);
+  LUXEL_CHECK(sweep.thinned->stride == sweep.stride);
+  return for_each_tile(*sweep.thinned, progress, [&](size_t t, const ThinnedHits::Tile& tile) {
+    sweep_thinned(sweep, hits, tile, t * kTileElements);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  return {};
 }
 
 /// Gives each layer its share of the whole. Returns the sum of squares of what was missing.
@@ -250,7 +246,7 @@ constexpr size_t kSparseSweeps = 10;
 /// The strides of all sweeps but the last. A given number of bounces has as many sweeps.
 std::vector<size_t> sparse_strides(int bounces, const TracedHits& hits) {
   const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
-  const size_t sparsest = sparsest_stride(fewest), middle = std::min<size_t>(sparsest, 4);
+  const size_t sparsest = sparsest_stride(fewest), middle = std::min(sparsest, kStrides[1]);
   if (bounces >= 0) return std::vector<size_t>(size_t(std::max(bounces - 1, 0)), middle);
   std::vector<size_t> strides(kSparseSweeps, sparsest);
   strides.push_back(middle);
@@ -297,22 +293,22 @@ Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport:
   BlockMap radiosity = empty_map(map.resolution);
   std::optional<ThinnedHits> thinned;
   const std::vector<size_t> sparse = sparse_strides(bounces, hits);
+  progress.begin("layers", 0);
   if (std::ranges::count(sparse, kSparsest) > 1) {
     LUXEL_TRY(thinned, thin(hits, kSparsest, params.spare_bytes, progress));
   }
   const auto sweep_all = [&](size_t stride) -> Status {
-    const bool is_copied = thinned && thinned->stride == stride;
+    if (stride != kSparsest) thinned.reset();
     for (Block block; block.first < layers; block.first += kBlock) {
       block.count = std::min(kBlock, layers - block.first);
       fill_radiosity(radiosity, map, elements, hits, behind, light, block);
       const LayerSweep sweep{radiosity, sources, light,
-                             block,     stride,  is_copied ? &*thinned : nullptr};
+                             block,     stride,  thinned ? &*thinned : nullptr};
       LUXEL_TRY_STATUS(run_layer_sweep(sweep, hits, progress));
     }
     progress.advance(1);
     return {};
   };
-  progress.begin("layers", 0);
   // Of a guess's errors, and a sparse solution's noise, only those of the share are left.
   size_t before = SIZE_MAX;
   for (const size_t stride : sparse) {

@@ -33,12 +33,12 @@ struct LayerBounceParams {
 ///
 /// by what it has of E_0. Ten sweeps look at one ray in 16 (of fewer than 256: in 4, of fewer than
 /// 64: at all); then light is shared out anew, so that of the noise of sparse sweeps only that of
-/// the share is left. A sweep over every fourth ray and one over all follow (all but the last look
-/// up the texel nearest to a hit, where bounce() is bilinear: that is far below their noise), and
-/// what these leave of rounding and of that noise is shared out in the same way: the layers add up
-/// to the whole. With a given number of bounces N - 1 sweeps are over every fourth ray and the last
-/// over all. `source` is E_0 layer by layer for each element: direct light and what rays brought
-/// without the map. Errors: cancelled, the file of hits cannot be read.
+/// the share is left. A sweep over every fourth ray and one over all follow, and what these leave
+/// of rounding and of that noise is shared out in the same way: the layers add up to the whole.
+/// With a given number of bounces N - 1 sweeps are over every fourth ray and the last over all.
+/// `source` is E_0 layer by layer for each element: direct light and what rays brought without the
+/// map. Sweeps over some of the rays look up the texel nearest to a hit, and not four. Errors:
+/// cancelled, the file of hits cannot be read.
 Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport::Elements& elements,
                                     const TracedHits& hits, std::vector<Rgb> source,
                                     std::span<const StoredHit> behind, std::span<const Rgb> whole,

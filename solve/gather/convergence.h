@@ -16,7 +16,7 @@ inline constexpr size_t kSparsest = kStrides.front();
 inline bool has_sweeps_of(size_t stride, size_t samples) {
   return stride == 1 || samples >= 16 * stride;
 }
-/// That of the first sweeps.
+/// The stride of the first sweeps.
 inline size_t sparsest_stride(size_t samples) {
   return *std::ranges::find_if(kStrides, [&](size_t s) { return has_sweeps_of(s, samples); });
 }

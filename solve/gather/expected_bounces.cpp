@@ -126,7 +126,8 @@ struct TriedLight {
   }
 };
 
-/// What a hit sends of the light that arrives at element i, its lamps' aside.
+/// What a hit on element i sends on of the light there. That on its other side is taken to be the
+/// same.
 Rgb sent_of(const transport::Elements& elements, uint32_t i, const StoredHit& hit) {
   const Rgb tau = elements.transmittance.empty() ? Rgb{} : elements.transmittance[i];
   const Rgb part = elements.reflectance[i] + tau;
@@ -173,7 +174,7 @@ struct FirstSweeps {
 FirstSweeps sweep_until(double goal, const ReflectanceRange& range, TriedLight& light) {
   FirstSweeps out;
   double before = 0;
-  for (; out.count < kMostSweeps;) {
+  while (out.count < kMostSweeps) {
     const double change = light.sweep();
     ++out.count;
     if (before > 0) out.ratio = change / before;

@@ -21,7 +21,8 @@ struct TriedHits {
 
 /// About how many sweeps over all rays bounce() will need, sparse ones by their part, with so many
 /// samples per element. What lies where none was tried is taken to be as bright as the nearest in
-/// the map that was; those without samples were not. Errors: the file of hits cannot be read.
+/// the map that was; those without samples or inside of solids were
+/// not. Errors: the file of hits cannot be read.
 Result<double> expected_sweeps(const atlas::TexelMap& map, const transport::Elements& elements,
                                const TriedHits& tried, int samples, const BounceParams& params);
 

@@ -23,7 +23,7 @@ Result<double> seconds_of(const Work& work) {
   return seconds_since(start);
 }
 
-/// Processor time: what else the machine does meanwhile is not in it.
+/// Processor time: what other programs do meanwhile is not in it.
 template <class Work>
 Result<double> processor_seconds_of(const Work& work) {
   const std::clock_t start = std::clock();

@@ -10,10 +10,6 @@
 namespace luxel::gather {
 namespace {
 
-/// Hits lie anywhere in the map, which no cache near a core holds: what will be looked up so many
-/// hits later is asked for in time.
-constexpr size_t kAhead = 16;
-
 void prefetch(const RadiosityMap& m, StoredHit hit) {
   const Float4* upper = m.texels.data() + hit.base();
   __builtin_prefetch(upper), __builtin_prefetch(upper + m.stride);
@@ -133,12 +129,9 @@ Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Pr
       sweep.change2[t] = sweep_one(m, hits, tile, t * kTileElements, sweep);
     });
   LUXEL_CHECK(sweep.thinned->stride == sweep.stride);
-  parallel_for(sweep.change2.size(), 1, [&](size_t t, size_t) {
-    if (!progress.cancelled())
-      sweep.change2[t] = sweep_thinned(m, hits, sweep.thinned->tiles[t], t * kTileElements, sweep);
+  return for_each_tile(*sweep.thinned, progress, [&](size_t t, const ThinnedHits::Tile& tile) {
+    sweep.change2[t] = sweep_thinned(m, hits, tile, t * kTileElements, sweep);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  return {};
 }
 
 }  // namespace luxel::gather

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "base/result.h"
 #include "solve/gather/trace_hits.h"
@@ -26,5 +27,15 @@ struct ThinnedHits {
 /// cancelled.
 Result<std::optional<ThinnedHits>> thin(const TracedHits& hits, size_t stride, uint64_t bytes,
                                         Progress& progress);
+
+/// Calls take(t, tile) for each tile, on several threads. Errors: cancelled.
+template <class Take>
+Status for_each_tile(const ThinnedHits& hits, Progress& progress, const Take& take) {
+  parallel_for(hits.tiles.size(), 1, [&](size_t t, size_t) {
+    if (!progress.cancelled()) take(t, hits.tiles[t]);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return {};
+}
 
 }  // namespace luxel::gather

@@ -32,6 +32,10 @@ struct TileHits {
   }
 };
 
+/// Hits lie anywhere in the map, which no cache near a core holds: what will be looked up so many
+/// hits later is asked for in time.
+inline constexpr size_t kAhead = 16;
+
 inline size_t tile_count(const TracedHits& hits) {
   return (hits.size() + kTileElements - 1) / kTileElements;
 }

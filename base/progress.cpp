@@ -1,13 +1,24 @@
 #include "base/progress.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace luxel {
 inline namespace base {
 namespace {
-/// Of a stage that has come this far its own speed is known.
-constexpr double kShareToTrust = 0.2;
+
+/// How far the running stage's own speed is trusted, when it says so many times what was expected.
+/// What was expected comes from work all over the stage, but its speed from that done so far, which
+/// can be easier or harder than what is left: as far as that may be the reason it is trusted only
+/// as far as the stage has come. From twice or half on the reason is the machine, which is sure
+/// after a fifth.
+double trust_in_speed(double times, double share) {
+  const double doublings = std::abs(std::log2(times));
+  const double sure_at = std::clamp(1 - 1.6 * (doublings - 0.5), 0.2, 1.0);
+  return std::min(1.0, share / sure_at);
+}
+
 }  // namespace
 
 double seconds_left(const Expected& e) {
@@ -15,7 +26,8 @@ double seconds_left(const Expected& e) {
   const double slow = e.past > 0 ? e.past_taken / e.past : 1;
   const double by_plan = e.now * slow;
   const double by_speed = e.now_share > 0 ? e.now_taken / e.now_share : by_plan;
-  const double trust = std::min(1.0, e.now_share / kShareToTrust);
+  const bool both = by_plan > 0 && by_speed > 0;
+  const double trust = both ? trust_in_speed(by_speed / by_plan, e.now_share) : 1;
   const double whole = std::max(by_plan + trust * (by_speed - by_plan), e.now_taken);
   const double past = e.past + e.now;
   const double slow_now = past > 0 ? (e.past_taken + whole) / past : 1;

@@ -89,6 +89,8 @@ TEST(SecondsLeft, FollowFromWhatTheWorkHasTakenSoFar) {
 TEST(SecondsLeft, FollowFromTheSpeedOfTheRunningStage) {
   EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 20, 0.5, 5}), 20 + 4 * 5);
   EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 30, 0, 0}), 0) << "never below nothing";
+  // Half took 4 s of 10: it may have been the easier half. It will take 9 and not 8.
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 4, 0.5, 0}), 5);
 }
 
 TEST(Progress, ExpectedStagesAreTakenAwayAsTheyCome) {

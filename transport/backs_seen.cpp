@@ -41,8 +41,6 @@ BacksSeen backs_of(const scene::Scene& scene, const Look& look) {
   return seen;
 }
 
-int backs_in(const BacksSeen& seen) { return seen.one_sided + seen.double_sided; }
-
 /// But for a few fronts, of which it is worth knowing what they are.
 bool sees_nearly_backs_alone(const BacksSeen& seen) { return 8 * backs_in(seen) >= 7 * seen.rays; }
 
@@ -90,7 +88,7 @@ bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3
 
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                  const Elements& elements, size_t i, const BacksSeen& own, float diagonal_m) {
-  if (4 * own.one_sided < own.rays && 8 * backs_in(own) < 7 * own.rays) return false;
+  if (4 * own.one_sided < own.rays && !sees_nearly_backs_alone(own)) return false;
   if (4 * own.one_sided > 3 * own.rays) return true;
   const Vec3 from =
       trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);

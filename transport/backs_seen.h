@@ -16,6 +16,8 @@ struct BacksSeen {
   int rays = 0, one_sided = 0, double_sided = 0;
 };
 
+inline int backs_in(const BacksSeen& seen) { return seen.one_sided + seen.double_sided; }
+
 /// 64 rays at most, cosine-distributed about `normal`, the same set for every place. They start at
 /// `from`, which lies just off the surface (trace::offset_origin).
 BacksSeen backs_seen(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
@@ -26,7 +28,7 @@ inline bool is_hidden(const BacksSeen& b) { return 2 * b.one_sided > b.rays; }
 /// It is hidden or sees nothing but backs, also of double-sided surfaces: the floor under a box.
 /// Many exporters call every material double-sided.
 inline bool is_enclosed(const BacksSeen& b) {
-  return is_hidden(b) || 100 * (b.one_sided + b.double_sided) >= 98 * b.rays;
+  return is_hidden(b) || 100 * backs_in(b) >= 98 * b.rays;
 }
 
 /// Whether a place lies inside a solid, by so many of those rays. Where nearly all of them see

@@ -33,7 +33,7 @@ struct Work {
     const Place at = place_of(scene, p);
     // Most places see no backs, and most under things nothing else: a few rays tell.
     const BacksSeen few = backs_seen(scene, tracer, just_above(at), at.normal, kFirstRays);
-    if (few.one_sided + few.double_sided == 0) return true;
+    if (backs_in(few) == 0) return true;
     return !is_enclosed(few) &&
            !is_enclosed(scene, tracer, just_above(at), at.normal, kRaysForOpen, diagonal_m);
   }

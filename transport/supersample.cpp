@@ -47,8 +47,7 @@ Receiver own_receiver(const Place& at, const Elements& elements, size_t i) {
 
 /// Whether the sample of a texel has the backs of some surfaces before it.
 bool sees_backs(const Place& at, const Receiver& own) {
-  const BacksSeen seen = backs_seen(at.scene, at.tracer, own.origin, own.normal, kEnclosureRays);
-  return seen.one_sided + seen.double_sided > 0;
+  return backs_in(backs_seen(at.scene, at.tracer, own.origin, own.normal, kEnclosureRays)) > 0;
 }
 
 /// Light at the points of one texel.

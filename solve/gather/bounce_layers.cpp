@@ -262,12 +262,6 @@ std::vector<std::vector<Rgb>> layer_by_layer(const LayeredLight& light, size_t e
   return out;
 }
 
-double mean_luminance(std::span<const Rgb> values) {
-  double sum = 0;
-  for (const Rgb& v : values) sum += double(luminance(v));
-  return values.empty() ? 0 : sum / double(values.size());
-}
-
 }  // namespace
 
 std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct) {

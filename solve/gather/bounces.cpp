@@ -11,12 +11,6 @@
 namespace luxel::gather {
 namespace {
 
-double mean_luminance(std::span<const Rgb> values) {
-  double sum = 0;
-  for (const Rgb& v : values) sum += luminance(v);
-  return values.empty() ? 0 : sum / double(values.size());
-}
-
 /// With rho = 0.99 the light to come falls below 1e-4 after 1,400 sweeps; more means that something
 /// is wrong.
 constexpr int kMaxSweeps = 4000;

@@ -15,6 +15,12 @@ ReflectanceRange reflectance_range(const transport::Elements& elements) {
   return range;
 }
 
+double mean_luminance(std::span<const Rgb> values) {
+  double sum = 0;
+  for (const Rgb& v : values) sum += double(luminance(v));
+  return values.empty() ? 0 : sum / double(values.size());
+}
+
 double light_to_come(double change, double ratio, const ReflectanceRange& reflectance) {
   const double seen = ratio > 0 ? ratio : reflectance.max;
   const double q = std::clamp(seen, reflectance.mean, reflectance.max);

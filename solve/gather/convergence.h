@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "transport/elements.h"
 
@@ -26,6 +27,9 @@ struct ReflectanceRange {
   double mean = 0, max = 0;
 };
 ReflectanceRange reflectance_range(const transport::Elements& elements);
+
+/// What changes are relative to.
+double mean_luminance(std::span<const Rgb> values);
 
 /// The sum of all changes still to come when each is q times the one before: change q / (1 - q).
 /// The ratio of two changes that follow each other tends to the largest q there is; it is not

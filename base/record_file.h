@@ -24,7 +24,7 @@ struct RecordKey {
   friend auto operator<=>(const RecordKey&, const RecordKey&) = default;
 };
 
-/// The file's bytes are those of docs/checkpoints.md, numbers in the machine's byte order: a header
+/// The file's bytes are those of docs/method/checkpoints.md, numbers in the machine's byte order: a header
 /// (a text of the owner's) and then records, each with a digest of its own. A record that is cut
 /// off by the end of the file was being written when the writer died: it is as if it had never
 /// been.

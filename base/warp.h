@@ -7,7 +7,7 @@ namespace luxel {
 inline namespace base {
 
 /// A direction about +z with density cos(theta) / pi. (Paper 000 prints this formula with a slip;
-/// see docs/gather.md.)
+/// see docs/method/gather.md.)
 inline Vec3 cosine_hemisphere_sample(Vec2 u) {
   const float r = std::sqrt(u.y);
   const float phi = 2 * kPi * u.x;

@@ -55,7 +55,7 @@ Result<Table> measure_budget(const std::filesystem::path& shared, int threads);
 /// What a lightmap for each of 20 lamps costs besides that of all.
 Result<Table> measure_layers(const std::filesystem::path& shared, int threads);
 
-/// What a bake after an edit costs that builds on one that is kept (docs/rebake.md).
+/// What a bake after an edit costs that builds on one that is kept (docs/method/rebake.md).
 Result<Table> measure_rebake(const std::filesystem::path& shared, int threads);
 
 struct Bench {

@@ -188,7 +188,7 @@ Result<Table> energy_table(Progress& progress) {
   }
   t.notes.push_back(
       "Absorbed over emitted light; by the functions that light may be over elements. Box: the "
-      "closed one of docs/hemicube.md, its lamp beside the ceiling. The goal: within 1 %.");
+      "closed one of docs/method/hemicube.md, its lamp beside the ceiling. The goal: within 1 %.");
   return t;
 }
 

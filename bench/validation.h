@@ -1,4 +1,4 @@
-// The page that shows that luxel is right: docs/validation.md, written by `luxel bench validation`.
+// The page that shows that luxel is right: docs/bench/validation.md, written by `luxel bench validation`.
 #pragma once
 
 #include <filesystem>

@@ -27,7 +27,7 @@ struct LightmapLayer {
 /// its own), TEXCOORD_1 holds the lightmap coordinates, vertices are split where charts part and
 /// shared elsewhere; positions, normals, TEXCOORD_0, colours, materials, textures, lights and
 /// cameras are kept. The lightmap is attached as extension MOZ_lightmap of every material (texCoord
-/// 1, `intensity`), its picture an 8-bit sRGB PNG of E / intensity; docs/bake.md describes it.
+/// 1, `intensity`), its picture an 8-bit sRGB PNG of E / intensity; docs/format/bake.md describes it.
 /// `lightmaps` is E, 4 channels, one for each page of the atlas. With several pages a material has
 /// a version for each that it lies on, and a mesh that lies on several a primitive for each.
 /// asset.extras.luxel.layers lists `layers`, each with a texture per page and its own intensity

@@ -23,7 +23,7 @@ Result<Mask> covered_pixels(const Image& a, std::string_view name_a, const Image
                             std::string_view name_b);
 
 /// Measures over the covered pixels p and the channels c = R, G, B, with d = a - b. A mean is one
-/// over both. Formulas: docs/compare.md.
+/// over both. Formulas: docs/method/compare.md.
 struct Difference {
   uint64_t texels = 0;          ///< covered pixels
   double mean = 0;              ///< mean of b

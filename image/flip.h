@@ -1,5 +1,5 @@
 // FLIP: the difference that a person sees who flips between two pictures. [Andersson20], and its
-// extension to high dynamic range [Andersson21]. docs/compare.md has the equations.
+// extension to high dynamic range [Andersson21]. docs/method/compare.md has the equations.
 #pragma once
 
 #include "base/progress.h"

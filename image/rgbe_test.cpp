@@ -1,4 +1,4 @@
-// Pictures of light in 8 bits a channel, decoded here by the formulas of docs/bake.md.
+// Pictures of light in 8 bits a channel, decoded here by the formulas of docs/format/bake.md.
 #include "image/rgbe.h"
 
 #include <gtest/gtest.h>

@@ -125,7 +125,7 @@ float dielectric_f0(const tinygltf::Material& in) {
   return ior >= 0 ? float(r * r) : scene::kDielectricF0;
 }
 
-/// Phong's highlight from roughness, metallic and KHR_materials_specular; docs/display.md. One
+/// Phong's highlight from roughness, metallic and KHR_materials_specular; docs/method/display.md. One
 /// value per material: of the metallic-roughness texture the mean counts, of others the factor.
 void set_highlight(const GltfReader& reader, const tinygltf::Material& in, scene::Material& m) {
   if (m.unlit) return;

@@ -1,4 +1,4 @@
-// DIR/cache: what a bake with --keep leaves, and what the next one finds. docs/rebake.md
+// DIR/cache: what a bake with --keep leaves, and what the next one finds. docs/method/rebake.md
 #pragma once
 
 #include <chrono>

@@ -7,7 +7,7 @@
 
 namespace luxel::pipeline {
 
-/// Settings, counts, seconds, what is known of errors, seams and leaks: docs/bake.md has the keys.
+/// Settings, counts, seconds, what is known of errors, seams and leaks: docs/format/bake.md has the keys.
 /// `progress` is that of the finished bake.
 nlohmann::json bake_report(const BakeSettings& settings, const Bake& bake,
                            const Progress& progress);

@@ -26,7 +26,7 @@ nlohmann::json checkpoint_header(const BakeSettings& settings, const scene::Scen
 /// Which of either differs, in words; empty: nothing.
 std::string difference(const nlohmann::json& there, const nlohmann::json& here);
 
-/// The checkpoint of one bake: docs/checkpoints.md. Solvers that keep no parts have none.
+/// The checkpoint of one bake: docs/method/checkpoints.md. Solvers that keep no parts have none.
 class Checkpoint {
  public:
   /// The bake begins now. `settings` outlives this.

@@ -97,7 +97,7 @@ Result<std::vector<Pages>> read_directions(const std::filesystem::path& folder, 
   return out;
 }
 
-/// E of a bent normal, `bend` away from the surface's own: docs/directional.md.
+/// E of a bent normal, `bend` away from the surface's own: docs/method/directional.md.
 Rgb irradiance_of_bent(const scene::Scene& scene, std::span<const Pages> directions,
                        const scene::SurfacePoint& p, Vec3 bend, Rgb e) {
   const auto read = [&](size_t k) {

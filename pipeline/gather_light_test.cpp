@@ -24,7 +24,7 @@ Bake bake(const BakeSettings& settings) {
   return std::move(*result);
 }
 
-// What docs/baking.md promises: the light of 9 texels of 10 and more lies within twice the claimed
+// What docs/guide/quality-and-time.md promises: the light of 9 texels of 10 and more lies within twice the claimed
 // error and a thousandth of the mean of the truth, which a path tracer knows up to its own noise.
 // Paths know nothing of texels that stand for all of their area in later bounces: that error of
 // gather is inside of the claim, too.

@@ -1,4 +1,4 @@
-// How lamps move: the file that `luxel relight --play` follows (docs/relight.md describes it).
+// How lamps move: the file that `luxel relight --play` follows (docs/method/relight.md describes it).
 #pragma once
 
 #include <optional>

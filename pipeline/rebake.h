@@ -1,4 +1,4 @@
-// What a change of the scene means for the light of a bake that is kept. docs/rebake.md
+// What a change of the scene means for the light of a bake that is kept. docs/method/rebake.md
 #pragma once
 
 #include <optional>

@@ -116,7 +116,7 @@ struct BakeSettings {
   Directional directional = Directional::none;
   double probe_spacing_m = 0;                                ///< 0: no probes
   transport::LayerMode layers = transport::LayerMode::none;  ///< lightmaps per light, too
-  bool denoise = false;        ///< take the grain out of texels, docs/denoise.md
+  bool denoise = false;        ///< take the grain out of texels, docs/method/denoise.md
   bool stitch = true;          ///< make charts agree along seams
   bool repair_leaks = true;    ///< cut charts at thin walls, move samples out of solids
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
@@ -124,10 +124,10 @@ struct BakeSettings {
   bool error_map = false;      ///< error.png too
   LightmapFormats formats;     ///< files beside lightmap.exr
   bool html = false;           ///< view.html too
-  /// Finished parts are kept once the bake has taken so long [s], docs/checkpoints.md; 0: never.
+  /// Finished parts are kept once the bake has taken so long [s], docs/method/checkpoints.md; 0: never.
   double checkpoint_s = 30;
   bool resume = false;  ///< go on with what another bake has kept
-  bool keep = false;    ///< build on the bake in DIR/cache, or leave one there; docs/rebake.md
+  bool keep = false;    ///< build on the bake in DIR/cache, or leave one there; docs/method/rebake.md
 };
 
 /// Checks every number against its range. Errors (bad_setting) name the option, the value, and what

@@ -9,7 +9,7 @@ namespace luxel::pipeline {
 namespace {
 
 // In bytes per element, and per texel of the square where `square` is in the name. They are sums of
-// the arrays' sizes; what a process takes was held against them (docs/gather.md, memory).
+// the arrays' sizes; what a process takes was held against them (docs/method/gather.md, memory).
 
 /// Of elements: position and two normals, which gather gives back when all rays are traced.
 constexpr uint64_t kPlaces = 36;

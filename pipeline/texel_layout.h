@@ -15,7 +15,7 @@
 
 namespace luxel::pipeline {
 
-/// What was found and done against leaks; docs/leaks.md. Texels are indices into
+/// What was found and done against leaks; docs/method/leaks.md. Texels are indices into
 /// TexelMap::texels.
 struct LeakRepair {
   uint32_t cuts = 0;                  ///< planes along which charts were cut

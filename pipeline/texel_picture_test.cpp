@@ -35,7 +35,7 @@ struct Sheet {
   }
 };
 
-/// The table of docs/leaks.md.
+/// The table of docs/method/leaks.md.
 TEST(TexelPicture, ShowsWhatIsKnown) {
   const Sheet sheet;
   std::vector<uint8_t> hidden(sheet.map.texels.size());

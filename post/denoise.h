@@ -44,7 +44,7 @@ std::string_view denoiser_name();
 /// Filters each part by itself. A texel becomes the value at its own place of a plane fitted to the
 /// texels around it on the same surface, on whichever charts they lie; windows grow in steps, and a
 /// neighbour counts for as long as its estimate agrees with that plane to within what their
-/// variances explain (propagation and separation [Polzehl00, Polzehl06]; docs/denoise.md). Texels
+/// variances explain (propagation and separation [Polzehl00, Polzehl06]; docs/method/denoise.md). Texels
 /// without variance around them keep their values bit for bit. Values stay finite and non-negative.
 /// The same bits for any number of threads. Errors: cancelled.
 Status denoise(const TexelPlaces& places, std::span<const NoisyLight> parts,

@@ -2,7 +2,7 @@
 //
 // Shares with the solvers the scene's facts (reflectance, emission, masks), the ray tracer and the
 // places of texels, and nothing else: it samples lights in its own, plain way and never looks into
-// a lightmap. docs/reference.md has the estimator.
+// a lightmap. docs/method/reference.md has the estimator.
 #pragma once
 
 #include <cstdint>

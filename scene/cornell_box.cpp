@@ -1,4 +1,4 @@
-// The measured Cornell box; where each number comes from stands in docs/cornell-box.md.
+// The measured Cornell box; where each number comes from stands in docs/bench/cornell-box.md.
 #include "scene/procedural.h"
 #include "scene/shapes.h"
 

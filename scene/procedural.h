@@ -8,7 +8,7 @@
 
 namespace luxel::scene {
 
-/// Which RGB triples stand for the Cornell box's measured spectra; docs/cornell-box.md has the
+/// Which RGB triples stand for the Cornell box's measured spectra; docs/bench/cornell-box.md has the
 /// numbers. d65 = the spectra under D65 with a neutral lamp of the luminance of set pbrt's; mitsuba
 /// and pbrt = those renderers' scenes.
 enum class CornellColors { d65, mitsuba, pbrt };

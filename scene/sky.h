@@ -1,4 +1,4 @@
-// A clear sky and its sun, computed from the air. [Hillaire20; docs/lights.md]
+// A clear sky and its sun, computed from the air. [Hillaire20; docs/method/lights.md]
 #pragma once
 
 #include "base/vec.h"

@@ -1,4 +1,4 @@
-// Bakes that are killed, stopped or run out of disk, and go on: docs/checkpoints.md.
+// Bakes that are killed, stopped or run out of disk, and go on: docs/method/checkpoints.md.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -41,7 +41,7 @@ TEST(Leaks, UncutChartsLetLightThrough) {
 }
 
 /// Light that is computed exactly where it is asked for hands the same darkness over. (The elements
-/// of the hemicube and matrix solvers are larger than walls are thick: docs/leaks.md.)
+/// of the hemicube and matrix solvers are larger than walls are thick: docs/method/leaks.md.)
 TEST(Leaks, HierarchicalRadiosityKeepsItBlack) {
   Progress progress;
   BakeSettings settings = settings_for("closed-corner.glb", 256);

@@ -24,7 +24,7 @@ TEST(MatrixBake, SaysWhatItUsed) {
   const auto json = nlohmann::json::parse(r.out);
   EXPECT_EQ(json["settings"]["matrix"]["patches"], 500);
   EXPECT_EQ(json["settings"]["matrix"]["rays"], 256);
-  EXPECT_NEAR(double(json["counts"]["elements"]), 500, 75);  // within 15 %, docs/matrix.md
+  EXPECT_NEAR(double(json["counts"]["elements"]), 500, 75);  // within 15 %, docs/method/matrix.md
   EXPECT_GT(double(json["relative_error"]), 0);
   for (const char* stage : {"patches", "form factors", "direct light", "bounces", "transfer"})
     EXPECT_TRUE(json["seconds"].contains(stage)) << stage;

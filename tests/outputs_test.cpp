@@ -44,7 +44,7 @@ TEST(BakeOutputs, AreAllThereAndWhatTheContractSays) {
   EXPECT_TRUE(coverage.contains(1));
 }
 
-// Decoded by the formulas of docs/bake.md; the bounds are those of its table.
+// Decoded by the formulas of docs/format/bake.md; the bounds are those of its table.
 TEST(BakeOutputs, EveryFormatHoldsTheSameLight) {
   const ScratchFolder s;
   const auto folder = s.path / "b";

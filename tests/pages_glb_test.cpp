@@ -87,7 +87,7 @@ Rgb looked_up(const image::Image& picture, Vec2 uv) {
 
 // Bilinear lookups of a linear function give it back, up to where it was sampled: texels at a
 // chart's rim are sampled up to 0.71 texel off their centre, or take the mean of neighbours two
-// texels away at most; and up to the picture's steps, 2 / 220 where E is 2 (docs/bake.md). The
+// texels away at most; and up to the picture's steps, 2 / 220 where E is 2 (docs/format/bake.md). The
 // ramp's slope is 1 over the box.
 TEST(PagesGlb, EveryPlaceFindsItsLight) {
   const scene::Scene scene = scene::spheres_and_cube();

@@ -133,7 +133,7 @@ class RebakeEdits : public Rebake, public ::testing::WithParamInterface<Case> {}
 // The same atlas and the same rays, but for what has changed: light differs by the tolerance of the
 // bounces, 1e-4 of the mean for each of the two bakes, and at some texels by what supersampling
 // does beside what has not changed, or for one lamp alone: it may average over other texels. Sums
-// of layers are as good as these (docs/layers.md): at 64 samples some tenths of a percent. A single
+// of layers are as good as these (docs/method/layers.md): at 64 samples some tenths of a percent. A single
 // texel that only one bake averages is off by a part of the light that a shadow's edge takes away.
 TEST_P(RebakeEdits, GivesTheLightOfABakeFromScratch) {
   keep();
@@ -283,7 +283,7 @@ TEST_F(Rebake, LayersOfAKeptBake) {
   for (size_t l = 0; l < 4; ++l) {
     const double now = again["layers"][l]["share"], truth = scratch["layers"][l]["share"];
     EXPECT_EQ(again["layers"][l]["name"], scratch["layers"][l]["name"]);
-    // A layer is as good as its sparse sweeps, docs/layers.md.
+    // A layer is as good as its sparse sweeps, docs/method/layers.md.
     EXPECT_NEAR(now, truth, 0.01) << again["layers"][l];
   }
 }

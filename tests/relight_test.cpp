@@ -23,7 +23,7 @@ TEST(RelightCommand, SaysWhatItMade) {
   EXPECT_EQ(json["settings"]["max_error"], 0.05);
   EXPECT_EQ(json["settings"]["bounces"], -1);
   EXPECT_EQ(json["settings"]["target"], "texels");
-  EXPECT_NEAR(double(json["counts"]["patches"]), 300, 45);  // within 15 %, docs/matrix.md
+  EXPECT_NEAR(double(json["counts"]["patches"]), 300, 45);  // within 15 %, docs/method/matrix.md
   EXPECT_GT(json["counts"]["places"], 100);
   EXPECT_LE(json["counts"]["places"], 32 * 32);
   EXPECT_EQ(json["counts"]["triangles"], 38);  // info's

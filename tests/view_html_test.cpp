@@ -441,7 +441,7 @@ TEST_F(ViewHtml, APageOfOnesOwnShowsWhatThePreviewShows) {
 }
 
 TEST(ThreeExample, StandsInTheDocumentation) {
-  EXPECT_THAT(slurp(LUXEL_SOURCE_DIR "/docs/bake.md"),
+  EXPECT_THAT(slurp(LUXEL_SOURCE_DIR "/docs/format/bake.md"),
               HasSubstr("```js\n" + slurp(LUXEL_SOURCE_DIR "/examples/three/lightmap.js") + "```"));
 }
 

@@ -1,6 +1,6 @@
 // Draws clear skies with the sun at several heights as one sheet: how docs/images/sky.png was made.
 //   build/release/bin/luxel_draw_skies docs/images/sky.png
-// and, on the standard output, the table of docs/lights.md.
+// and, on the standard output, the table of docs/method/lights.md.
 // Each is the picture's part from the top to 10 degrees below the horizon, with an exposure of its
 // own; the sun (without its disc) stands in the middle.
 #include <cstdio>

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Takes a lightmap's picture out of a baked .glb: tools/lightmap_png.py BAKED.glb OUT.png [PAGE]
 
-The picture is E / intensity as 8-bit sRGB (docs/bake.md); lightmap.exr has the full range."""
+The picture is E / intensity as 8-bit sRGB (docs/format/bake.md); lightmap.exr has the full range."""
 import json
 import struct
 import sys

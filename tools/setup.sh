@@ -5,7 +5,7 @@
 #   tools/setup.sh          what luxel is built from
 #   tools/setup.sh tests    and what only tests use
 #
-# luxel builds without node, npm and chromium, with less (docs/bake.md, view.html): where they
+# luxel builds without node, npm and chromium, with less (docs/format/bake.md, view.html): where they
 # cannot be installed, that is said and no error.
 set -euo pipefail
 

@@ -47,7 +47,7 @@ struct DirectLight {
 /// E at every element from emissive triangles, point, spot and directional lights, peaks of the
 /// environment, and the rest of the surroundings where sky_samples asks for it. Each source's
 /// unshadowed irradiance is exact; only the visible share is sampled, so that where a source is
-/// seen whole, or not at all, the result has no noise. [Heitz18; docs/gather.md]. Errors:
+/// seen whole, or not at all, the result has no noise. [Heitz18; docs/method/gather.md]. Errors:
 /// cancelled.
 Result<DirectLight> direct_light(const scene::Scene& scene, const Elements& elements,
                                  const Lights& lights, const trace::RayTracer& tracer,

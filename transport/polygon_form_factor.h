@@ -10,7 +10,7 @@ namespace luxel::transport {
 /// lie behind the other are clipped away. Exactly 0 for polygons in one plane, polygons that turn
 /// their backs and polygons without area. Relative error about 1e-10, also where polygons share an
 /// edge or a corner; 1e-7 and more where they are slivers or close to one plane, because there the
-/// rounding of the corners themselves matters. See docs/view-factors.md.
+/// rounding of the corners themselves matters. See docs/method/view-factors.md.
 double polygon_form_factor(PolygonView a, PolygonView b);
 
 /// The exchange area A_a F(a -> b) = A_b F(b -> a) [m^2], and the part of it that rounding may

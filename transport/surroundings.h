@@ -5,7 +5,7 @@
 //
 // Rays with the density of the cosine gather the first with little noise, whatever the scene, and
 // the second has few pixels, which samples in proportion to their power hit all the time. Both
-// layers are estimated without bias and nothing has to be weighted. [docs/lights.md]
+// layers are estimated without bias and nothing has to be weighted. [docs/method/lights.md]
 #pragma once
 
 #include <cstdint>

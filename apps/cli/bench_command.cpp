@@ -137,7 +137,7 @@ int run_bench(const BenchOptions& options) {
 
 void register_bench(CLI::App& app, Action& action) {
   CLI::App* bench = app.add_subcommand(
-      "bench", "Print the tables of docs/benchmarks.md, or write docs/validation.md");
+      "bench", "Print the tables of docs/bench/benchmarks.md, or write docs/bench/validation.md");
   auto options = std::make_shared<BenchOptions>();
   std::vector<std::string> names{"all", kValidation, kHemicube, kRelight, kHierarchical};
   for (const bench::Bench& b : bench::kBenches) names.emplace_back(b.name);

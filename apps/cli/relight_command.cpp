@@ -163,7 +163,7 @@ void register_relight(CLI::App& app, Action& action) {
   relight->add_option("--play", options->lxr, "Draw this .lxr file, frame by frame")
       ->type_name("FILE.lxr")
       ->excludes(scene);
-  relight->add_option("--script", options->script, "How lamps move (docs/relight.md)")
+  relight->add_option("--script", options->script, "How lamps move (docs/method/relight.md)")
       ->type_name("FILE.json");
   add_outside_light(*relight, options->outside);
   for (const char* name : {"--background", "--environment", "--sun", "--sky", "--ies"})

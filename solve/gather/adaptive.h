@@ -21,7 +21,7 @@ struct VariancePair {
 
 /// Stratification gains about as much for neighbours: the first estimate, smoothed, times the ratio
 /// of both, summed over the neighbours of the same chart; if `among` names some elements, those of
-/// them that are `among` too, for the others have fewer samples. docs/gather.md
+/// them that are `among` too, for the others have fewer samples. docs/method/gather.md
 std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                     VariancePair variance, std::span<const uint32_t> among = {});
 
@@ -33,7 +33,7 @@ std::vector<float> relative_errors(std::span<const float> variance, std::span<co
 /// The value that 95 of 100 elements with an error stay below.
 float percentile_95(std::span<const float> errors);
 
-/// Standard errors of stratified samples fall like n^-kDecay and a bit faster (docs/gather.md): it
+/// Standard errors of stratified samples fall like n^-kDecay and a bit faster (docs/method/gather.md): it
 /// says how many samples more are needed.
 inline constexpr float kDecay = 0.7f;
 

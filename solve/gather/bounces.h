@@ -40,7 +40,7 @@ struct Bounced {
   /// A second estimate of it, from the difference of two halves of the samples: ((A - B) / 2)^2.
   /// Each half is stratified, as the whole is, so that it is larger than the truth by a factor of
   /// 1.4 to 2 where `variance` may be 30 times too large; but each is a single square, as uncertain
-  /// as that: for means over neighbours. docs/denoise.md.
+  /// as that: for means over neighbours. docs/method/denoise.md.
   std::vector<float> split_variance;
   int sweeps = 0;
 };

@@ -1,5 +1,5 @@
 // The rays of an earlier bake: what each of them met, for a bake of the changed scene, which traces
-// only those that can meet something else. docs/rebake.md
+// only those that can meet something else. docs/method/rebake.md
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Rays that were followed on (near_paths.h), as a bake keeps them for later ones: what each
-// brought, and which way it took, so that it stays where neither can have changed. docs/rebake.md
+// brought, and which way it took, so that it stays where neither can have changed. docs/method/rebake.md
 #pragma once
 
 #include <cstdint>

@@ -78,7 +78,7 @@ struct Gather {
   double relative_error = 0;
 };
 
-/// Direct light, rays, bounces: the chain of docs/gather.md. Errors: cancelled, disk full.
+/// Direct light, rays, bounces: the chain of docs/method/gather.md. Errors: cancelled, disk full.
 Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
                       const atlas::TexelMap& map, const transport::Elements& elements,
                       const transport::Lights& lights, const trace::RayTracer& tracer,

@@ -5,7 +5,7 @@
 // most part in the sun, or for the bright edge of a sill. There the light of the place itself is
 // worked out: what comes straight from lamps, and one more ray, which ends farther away and reads
 // the map there, or is followed on again. The map holds the light of fronts only: on the back of a
-// double-sided surface the same is done, however far it is. docs/gather.md
+// double-sided surface the same is done, however far it is. docs/method/gather.md
 #pragma once
 
 #include <cstdint>

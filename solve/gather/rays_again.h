@@ -1,4 +1,4 @@
-// Which rays of an earlier bake are traced again, all those of a tile together. docs/rebake.md
+// Which rays of an earlier bake are traced again, all those of a tile together. docs/method/rebake.md
 #pragma once
 
 #include <cstdint>

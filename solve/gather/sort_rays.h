@@ -1,4 +1,4 @@
-// What the rays of one element met, as counts, hits and light. docs/gather.md, docs/rebake.md
+// What the rays of one element met, as counts, hits and light. docs/method/gather.md, docs/method/rebake.md
 #pragma once
 
 #include <cstdint>

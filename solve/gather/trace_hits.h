@@ -40,7 +40,7 @@ struct TracedHits {
   /// Per element, how many of its rays left the scene, and how many met the back of a one-sided
   /// surface close by or far: those bring no light, and many of them mean that the element lies
   /// inside a solid (kept for leak repair).
-  /// Backs of double-sided surfaces send the light of their front (docs/gather.md); they are
+  /// Backs of double-sided surfaces send the light of their front (docs/method/gather.md); they are
   /// counted too.
   std::vector<uint16_t> escaped, met_back, met_double_sided_back;
   /// Per element, what its escaped rays saw of the surroundings' soft light, and what rays brought

@@ -27,7 +27,7 @@ struct Link {
 /// Beyond so many, points look at all of them no longer: rays decide.
 inline constexpr size_t kMostBlockers = 48;
 
-/// What light is over elements. Linear pays (docs/hierarchical.md); the others are there to show
+/// What light is over elements. Linear pays (docs/method/hierarchical.md); the others are there to show
 /// it.
 enum class Basis : uint8_t {
   constant,          ///< as [Hanrahan91; Hardt96] have it

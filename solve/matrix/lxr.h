@@ -1,4 +1,4 @@
-// The .lxr file: a scene prepared for light that moves. docs/lxr.md describes it byte by byte.
+// The .lxr file: a scene prepared for light that moves. docs/format/lxr.md describes it byte by byte.
 #pragma once
 
 #include <filesystem>

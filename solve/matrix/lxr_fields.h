@@ -1,4 +1,4 @@
-// What the structs of an .lxr file hold, in the order of the file: docs/lxr.md has the same lists.
+// What the structs of an .lxr file hold, in the order of the file: docs/format/lxr.md has the same lists.
 // A field added, removed or moved makes a new major version of the format (lxr.h). Structs are
 // taken apart by name: one that has a field more than is said here does not compile.
 #pragma once

@@ -150,7 +150,7 @@ TEST(Lxr, ComesBackFromARealScene) {
 }
 
 TEST(Lxr, IsWhatItsPageSays) {
-  // forged() writes it from docs/lxr.md, with a CRC-32 of its own. The check value of CRC-32 is
+  // forged() writes it from docs/format/lxr.md, with a CRC-32 of its own. The check value of CRC-32 is
   // published with it.
   const std::string_view digits = "123456789";
   EXPECT_EQ(testing::plain_crc(std::as_bytes(std::span(digits))), 0xcbf43926u);

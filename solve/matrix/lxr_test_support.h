@@ -33,7 +33,7 @@ void put_at(Bytes& bytes, size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
-/// Makes all checksums and the file's length right again, as docs/lxr.md says where they are.
+/// Makes all checksums and the file's length right again, as docs/format/lxr.md says where they are.
 inline void mend(Bytes& file) {
   put_at(file, 16, uint64_t(file.size()));
   put_at(file, 28, plain_crc(std::span(file).first(28)));

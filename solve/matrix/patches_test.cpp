@@ -159,7 +159,7 @@ bool is_hidden_on_floor(const Cut& cut, float x, float z) {
 
 TEST(Patches, FloorInsideASolidIsInNone) {
   const Cut cut(scene::cornell_box(), 1000);
-  // The middles of the blocks' footprints (docs/cornell-box.md), and places beside them.
+  // The middles of the blocks' footprints (docs/bench/cornell-box.md), and places beside them.
   EXPECT_TRUE(is_hidden_on_floor(cut, 0.1855f, 0.169f));
   EXPECT_TRUE(is_hidden_on_floor(cut, 0.3685f, 0.35125f));
   EXPECT_FALSE(is_hidden_on_floor(cut, 0.05f, 0.05f));

@@ -68,7 +68,7 @@ constexpr Tolerance kTolerances[] = {
     {"reference", "coloured glass", 0.16, 0.009, "its own noise: 0.12; most paths miss the sky"},
 };
 
-/// What a solver says that it cannot do (docs/lights.md).
+/// What a solver says that it cannot do (docs/method/lights.md).
 struct LeftOut {
   std::string_view solver, scene, reason;
 };

@@ -1,13 +1,13 @@
 // luxel bench atlas, memory: what a bake of the shared scenes takes.
 #include <unistd.h>
 
-#include "atlas/atlas.h"
-#include "base/parallel.h"
 #include "bench/bench.h"
 #include "bench/child.h"
-#include "bench/prepared.h"
-#include "import/import.h"
-#include "pipeline/bake.h"
+#include "luxel/atlas/atlas.h"
+#include "luxel/base/parallel.h"
+#include "luxel/import/import.h"
+#include "luxel/pipeline/bake/bake.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {

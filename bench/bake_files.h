@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "base/file.h"
-#include "bench/prepared.h"
-#include "image/codec.h"
-#include "pipeline/bake.h"
+#include "luxel/base/file.h"
+#include "luxel/image/codec.h"
+#include "luxel/pipeline/bake/bake.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <thread>
 
-#include "base/parallel.h"
 #include "bench/bench.h"
-#include "bench/prepared.h"
-#include "pipeline/bake.h"
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/bake/bake.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "base/result.h"
+#include "luxel/base/result.h"
 
 namespace luxel::bench {
 

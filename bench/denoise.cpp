@@ -1,12 +1,12 @@
 // luxel bench denoise: what --denoise takes away of the error, and what it adds to light that has
 // none.
-#include "base/parallel.h"
-#include "bench/agreement.h"
 #include "bench/bench.h"
-#include "bench/prepared.h"
-#include "import/import.h"
-#include "pipeline/denoise_light.h"
-#include "scene/procedural.h"
+#include "luxel/base/parallel.h"
+#include "luxel/import/import.h"
+#include "luxel/pipeline/bake/denoise_light.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/validate/agreement.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {
@@ -26,11 +26,12 @@ pipeline::BakeSettings settings_of(int samples, uint64_t seed) {
   return settings;
 }
 
-Result<std::vector<Rgb>> reference_of(const Prepared& p, Progress& progress) {
+Result<std::vector<Rgb>> reference_of(const validate::Prepared& p, Progress& progress) {
   std::vector<Rgb> mean(p.elements.size());
   for (int k = 0; k < kReferenceBakes; ++k) {
-    LUXEL_TRY(const Timed bake,
-              solve(p, "gather", settings_of(kReferenceSamples, uint64_t(1000 + k)), progress));
+    LUXEL_TRY(
+        const validate::Timed bake,
+        validate::solve(p, "gather", settings_of(kReferenceSamples, uint64_t(1000 + k)), progress));
     for (size_t i = 0; i < mean.size(); ++i)
       mean[i] += bake.light.irradiance[i] / float(kReferenceBakes);
   }
@@ -39,15 +40,18 @@ Result<std::vector<Rgb>> reference_of(const Prepared& p, Progress& progress) {
 
 Status measure(const std::string& name, scene::Scene scene, Table& table) {
   Progress progress;
-  LUXEL_TRY(const auto p, prepare(std::move(scene), kResolution, progress));
+  LUXEL_TRY(const auto p, validate::prepare(std::move(scene), kResolution, progress));
   LUXEL_TRY(const std::vector<Rgb> reference, reference_of(*p, progress));
   for (const int samples : kSamples) {
-    LUXEL_TRY(Timed bake, solve(*p, "gather", settings_of(samples, 1), progress));
-    const Errors before = errors_of(bake.light.irradiance, reference, bake.light.hidden);
+    LUXEL_TRY(validate::Timed bake,
+              validate::solve(*p, "gather", settings_of(samples, 1), progress));
+    const validate::Errors before =
+        validate::errors_of(bake.light.irradiance, reference, bake.light.hidden);
     const auto start = Clock::now();
     LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), bake.light, progress));
     const double seconds = seconds_since(start);
-    const Errors after = errors_of(bake.light.irradiance, reference, bake.light.hidden);
+    const validate::Errors after =
+        validate::errors_of(bake.light.irradiance, reference, bake.light.hidden);
     const auto percent = [](double v) { return fmt::format("{:.3f} %", 100 * v); };
     table.rows.push_back(
         {name, fmt::format("{}", samples), percent(before.relative), percent(after.relative),
@@ -68,8 +72,8 @@ Status measure(const std::string& name, scene::Scene scene, Table& table) {
 /// Seconds of the filter alone at 1024 x 1024.
 Status measure_large(Table& table) {
   Progress progress;
-  LUXEL_TRY(const auto p, prepare(scene::cornell_box(), 1024, progress));
-  LUXEL_TRY(Timed bake, solve(*p, "gather", settings_of(64, 1), progress));
+  LUXEL_TRY(const auto p, validate::prepare(scene::cornell_box(), 1024, progress));
+  LUXEL_TRY(validate::Timed bake, validate::solve(*p, "gather", settings_of(64, 1), progress));
   const auto start = Clock::now();
   LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), bake.light, progress));
   table.notes.push_back(

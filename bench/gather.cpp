@@ -5,15 +5,15 @@
 #include <atomic>
 #include <chrono>
 
-#include "base/parallel.h"
-#include "base/random.h"
 #include "bench/bench.h"
-#include "bench/prepared.h"
-#include "import/import.h"
-#include "scene/procedural.h"
-#include "solve/gather/element_rays.h"
-#include "solve/gather/gather.h"
-#include "trace/ray_tracer.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/import/import.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/solve/gather/gather.h"
+#include "luxel/solve/gather/rays/element_rays.h"
+#include "luxel/trace/ray_tracer.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {
@@ -83,7 +83,7 @@ class BareEmbree {
 };
 
 /// Rays per second of the bare loop over gather's own rays; making the rays is not counted.
-double bare_rate(const Prepared& p, int samples) {
+double bare_rate(const validate::Prepared& p, int samples) {
   const BareEmbree embree(p.scene);
   const float diagonal = scene::world_bounds(p.scene).diagonal();
   std::atomic<uint64_t> nanoseconds{0};
@@ -101,7 +101,7 @@ double bare_rate(const Prepared& p, int samples) {
   return double(p.elements.size()) * samples / (double(nanoseconds) * 1e-9 / thread_count());
 }
 
-double gather_rate(const Prepared& p, int samples) {
+double gather_rate(const validate::Prepared& p, int samples) {
   Progress progress;
   const auto start = Clock::now();
   const auto hits = gather::trace_hits(p.scene, p.atlas, p.elements, p.lights.around, *p.tracer,
@@ -148,7 +148,7 @@ Result<Table> measure_rays(const std::filesystem::path& shared, int threads) {
     if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
     Progress layout;
-    LUXEL_TRY(const auto p, prepare(std::move(scene), 512, layout));
+    LUXEL_TRY(const auto p, validate::prepare(std::move(scene), 512, layout));
     // In turn, so that a machine that speeds up or slows down does it to both.
     std::vector<double> bare, ours, ratio;
     for (int round = 0; round < kRounds; ++round) {
@@ -182,7 +182,7 @@ Result<Table> measure_maps(const std::filesystem::path&, int threads) {
               nlohmann::json::array()};
   for (const auto& [resolution, paper_s] : kPaper) {
     Progress progress;
-    LUXEL_TRY(const auto p, prepare(scene::cornell_box(), resolution, progress));
+    LUXEL_TRY(const auto p, validate::prepare(scene::cornell_box(), resolution, progress));
     gather::GatherParams params;
     params.direct_samples = 200;
     params.samples = 800;
@@ -210,7 +210,7 @@ Result<Table> measure_threads(const std::filesystem::path& shared, int) {
     if (!is_here(named, table)) continue;
     LUXEL_TRY(scene::Scene scene, load(named));
     Progress layout;
-    LUXEL_TRY(const auto p, prepare(std::move(scene), 512, layout));
+    LUXEL_TRY(const auto p, validate::prepare(std::move(scene), 512, layout));
     const auto run = [&](int threads) {
       const ThreadLimit limit(threads);
       gather::GatherParams params;

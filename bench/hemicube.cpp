@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "base/parallel.h"
 #include "bench/child.h"
-#include "export/plot.h"
-#include "scene/procedural.h"
+#include "luxel/base/parallel.h"
+#include "luxel/export/plot.h"
+#include "luxel/scene/procedural.h"
 
 namespace luxel::bench {
 namespace {

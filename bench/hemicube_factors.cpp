@@ -1,17 +1,17 @@
 // What the solver's own hemicubes see of a square, against closed forms.
 #include <cmath>
 
-#include "base/file.h"
-#include "base/text_tables.h"
 #include "bench/hemicube.h"
-#include "scene/shapes.h"
-#include "transport/point_form_factor.h"
-#include "transport/quadrature.h"
+#include "luxel/base/file.h"
+#include "luxel/base/text_tables.h"
+#include "luxel/scene/shapes.h"
+#include "luxel/viewfactor/point_form_factor.h"
+#include "luxel/viewfactor/quadrature.h"
 
 namespace luxel::bench {
 namespace {
 
-using transport::Polygon;
+using viewfactor::Polygon;
 
 /// Nodes along each side of the square that is looked from.
 constexpr int kNodes = 8;
@@ -56,10 +56,10 @@ struct Point {
 
 std::vector<Point> gauss_points(const Squares& s, DVec3 normal) {
   std::vector<Point> points;
-  for (const transport::Node& u : transport::gauss_rule(kNodes))
-    for (const transport::Node& v : transport::gauss_rule(kNodes)) {
+  for (const viewfactor::Node& u : viewfactor::gauss_rule(kNodes))
+    for (const viewfactor::Node& v : viewfactor::gauss_rule(kNodes)) {
       const DVec3 p = s.a[0] + (s.a[1] - s.a[0]) * u.at + (s.a[3] - s.a[0]) * v.at;
-      points.push_back({p, u.weight * v.weight, transport::point_to_polygon(p, normal, s.b)});
+      points.push_back({p, u.weight * v.weight, viewfactor::point_to_polygon(p, normal, s.b)});
     }
   return points;
 }
@@ -87,9 +87,9 @@ Status measure_squares(const Squares& s, std::vector<FactorErrors>& out, Progres
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(const hemicube::Mesh mesh, hemicube::make_mesh(scene, {}, progress));
   const auto receivers = hemicube::make_receivers(scene, mesh, hemicube::ElementKind::triangle);
-  const transport::Surroundings around;
+  const light::Surroundings around;
   const hemicube::Senders senders{scene, tracer, mesh, receivers, around};
-  const DVec3 normal = normalize(transport::area_vector(s.a));
+  const DVec3 normal = normalize(viewfactor::area_vector(s.a));
   const std::vector<Point> points = gauss_points(s, normal);
   std::vector<hemicube::Viewpoint> from;
   for (const Point& p : points)

@@ -1,6 +1,6 @@
 // One whole solution of a box.
 #include "bench/hemicube.h"
-#include "bench/prepared.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 
@@ -17,7 +17,7 @@ Result<BoxRun> run_box(std::string test, const scene::Scene& scene, float elemen
   params.max_error = 0;
   params.bounces = passes;
   LUXEL_TRY(const hemicube::Solution solution,
-            hemicube::solve(scene, transport::collect_lights(scene), tracer, params, progress));
+            hemicube::solve(scene, light::collect_lights(scene), tracer, params, progress));
   run.seconds = seconds_since(start);
   run.vertices = solution.field.receivers.size();
   run.triangles = solution.field.mesh.triangle_count;

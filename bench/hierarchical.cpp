@@ -4,14 +4,14 @@
 
 #include <algorithm>
 
-#include "bench/prepared.h"
 #include "bench/timing.h"
-#include "pipeline/draw_hierarchical.h"
-#include "scene/procedural.h"
-#include "scene/shapes.h"
-#include "scene/surface_points.h"
-#include "solve/hierarchical/represent.h"
-#include "solve/hierarchical/surface.h"
+#include "luxel/pipeline/render/draw_hierarchical.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/scene/shapes.h"
+#include "luxel/scene/surface_points.h"
+#include "luxel/solve/hierarchical/represent.h"
+#include "luxel/solve/hierarchical/surface.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {

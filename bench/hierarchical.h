@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "base/result.h"
 #include "bench/bench.h"
 #include "bench/validation.h"
-#include "scene/scene.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/scene/scene.h"
 
 namespace luxel::bench {
 

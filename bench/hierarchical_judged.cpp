@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
-#include "base/random.h"
-#include "base/warp.h"
-#include "bench/agreement.h"
 #include "bench/hierarchical.h"
-#include "scene/procedural.h"
-#include "scene/surface_points.h"
-#include "solve/hierarchical/represent.h"
-#include "solve/hierarchical/surface.h"
-#include "trace/camera_rays.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/base/warp.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/scene/surface_points.h"
+#include "luxel/solve/hierarchical/represent.h"
+#include "luxel/solve/hierarchical/surface.h"
+#include "luxel/trace/camera_rays.h"
+#include "luxel/validate/agreement.h"
 
 namespace luxel::bench {
 namespace {
@@ -26,12 +26,12 @@ constexpr int kPictureWidth = 160, kPictureHeight = 120;
 constexpr size_t kPoints = 200;
 constexpr uint32_t kRays = 1'000'000;
 
-std::vector<std::string> agreement_row(std::string scene, std::string what, const Agreement& a,
-                                       double seconds) {
+std::vector<std::string> agreement_row(std::string scene, std::string what,
+                                       const validate::Agreement& a, double seconds) {
   return {std::move(scene),
           std::move(what),
           fmt::format("{}", a.texels),
-          relative_rmse_text(a),
+          validate::relative_rmse_text(a),
           fmt::format("{:.2f} %", 100 * a.resolution),
           fmt::format("{:+.2f} %", 100 * a.bias_over_mean),
           fmt::format("{:.1f}", seconds)};
@@ -39,13 +39,13 @@ std::vector<std::string> agreement_row(std::string scene, std::string what, cons
 
 Result<std::vector<std::string>> lightmap_row(std::string name, scene::Scene scene,
                                               std::optional<double> eps, Progress& progress) {
-  LUXEL_TRY(const auto p, prepare(std::move(scene), kLightmap, progress));
-  LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1, progress));
+  LUXEL_TRY(const auto p, validate::prepare(std::move(scene), kLightmap, progress));
+  LUXEL_TRY(const validate::Judged judged, validate::judge(*p, kPaths, 1, progress));
   pipeline::BakeSettings settings;
   settings.hierarchical.eps = eps;
-  LUXEL_TRY(const Timed solved, solve(*p, "hierarchical", settings, progress));
+  LUXEL_TRY(const validate::Timed solved, validate::solve(*p, "hierarchical", settings, progress));
   return agreement_row(std::move(name), "lightmap",
-                       agreement(solved.light.irradiance, solved.light.hidden, judged),
+                       validate::agreement(solved.light.irradiance, solved.light.hidden, judged),
                        solved.seconds);
 }
 
@@ -72,9 +72,10 @@ Result<std::vector<std::string>> picture_row(std::string name, const scene::Scen
     normal.push_back(scene::front_normal(scene, hit.instance, hit.triangle));
     solved.push_back(h::irradiance_at(solution, mesh, scene, hit.point()));
   }
-  LUXEL_TRY(const Judged judged,
-            judge(scene, tracer, {position, normal, normal}, kPaths, 1, progress));
-  return agreement_row(std::move(name), "picture", agreement(solved, {}, judged), seconds);
+  LUXEL_TRY(const validate::Judged judged,
+            validate::judge(scene, tracer, {position, normal, normal}, kPaths, 1, progress));
+  return agreement_row(std::move(name), "picture", validate::agreement(solved, {}, judged),
+                       seconds);
 }
 
 Result<Table> path_table(Progress& progress) {

@@ -1,11 +1,11 @@
 // luxel bench layers: what a lightmap for each of 20 lamps costs besides that of all.
 #include <cmath>
 
-#include "base/parallel.h"
 #include "bench/bake_files.h"
 #include "bench/bench.h"
-#include "export/baked_glb.h"
-#include "scene/shapes.h"
+#include "luxel/base/parallel.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/scene/shapes.h"
 
 namespace luxel::bench {
 namespace {
@@ -90,9 +90,9 @@ Result<Table> measure_layers(const std::filesystem::path&, int threads) {
     settings.threads = threads;
     TimedFiles alone, layered;
     for (int round = 0; round < kRounds; ++round) {
-      settings.output = folder.path / "one", settings.layers = transport::LayerMode::none;
+      settings.output = folder.path / "one", settings.layers = light::LayerMode::none;
       LUXEL_TRY_STATUS(time_again(settings, alone));
-      settings.output = folder.path / "all", settings.layers = transport::LayerMode::per_light;
+      settings.output = folder.path / "all", settings.layers = light::LayerMode::per_light;
       LUXEL_TRY_STATUS(time_again(settings, layered));
     }
     const nlohmann::json& layers = layered.report["layers"];

@@ -2,11 +2,11 @@
 #include <cmath>
 #include <functional>
 
-#include "base/parallel.h"
 #include "bench/bake_files.h"
 #include "bench/bench.h"
-#include "export/baked_glb.h"
-#include "import/import.h"
+#include "luxel/base/parallel.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/import/import.h"
 
 namespace luxel::bench {
 namespace {

@@ -1,8 +1,8 @@
 // luxel bench relight: what is measured, on which scenes.
 #include "bench/relight.h"
 
-#include "import/import.h"
-#include "scene/procedural.h"
+#include "luxel/import/import.h"
+#include "luxel/scene/procedural.h"
 
 namespace luxel::bench {
 namespace {

@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <array>
 
-#include "bench/prepared.h"
 #include "bench/relight.h"
 #include "bench/timing.h"
-#include "scene/procedural.h"
-#include "solve/matrix/codec.h"
-#include "solve/matrix/make_codec.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/solve/matrix/codec.h"
+#include "luxel/solve/matrix/make_codec.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {

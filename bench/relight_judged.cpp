@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/random.h"
-#include "base/warp.h"
-#include "bench/agreement.h"
 #include "bench/relight.h"
 #include "bench/timing.h"
-#include "solve/matrix/relight.h"
-#include "solve/matrix/relighter.h"
+#include "luxel/base/random.h"
+#include "luxel/base/warp.h"
+#include "luxel/solve/matrix/relight.h"
+#include "luxel/solve/matrix/relighter.h"
+#include "luxel/validate/agreement.h"
 
 namespace luxel::bench {
 namespace {
@@ -32,7 +32,7 @@ bool is_in_the_air(const trace::RayTracer& tracer, Vec3 position, float diagonal
   return float(met) >= kMet * float(kRays);
 }
 
-Result<std::vector<Vec3>> positions_in(const Prepared& p, size_t count) {
+Result<std::vector<Vec3>> positions_in(const validate::Prepared& p, size_t count) {
   const Box3 box = scene::world_bounds(p.scene);
   const Vec3 size = box.upper - box.lower;
   RandomStream random{kSeed};
@@ -48,7 +48,7 @@ Result<std::vector<Vec3>> positions_in(const Prepared& p, size_t count) {
 
 /// About `count` of the texels, spread over the map: what the judge's noise hides falls faster with
 /// paths per texel than with texels.
-matrix::Target take_texels(Prepared& p, size_t count) {
+matrix::Target take_texels(validate::Prepared& p, size_t count) {
   matrix::Target target;
   target.kind = matrix::Target::Kind::texels;
   target.width = target.height = uint32_t(p.map.resolution);
@@ -70,8 +70,9 @@ matrix::Target take_texels(Prepared& p, size_t count) {
 
 /// The judge's indirect light: its light but what comes straight from the lamp, which one path
 /// finds exactly.
-Result<Judged> judge_indirect(const Prepared& p, int paths_each, Progress& progress) {
-  LUXEL_TRY(Judged judged, judge(p, paths_each, kSeed, progress));
+Result<validate::Judged> judge_indirect(const validate::Prepared& p, int paths_each,
+                                        Progress& progress) {
+  LUXEL_TRY(validate::Judged judged, validate::judge(p, paths_each, kSeed, progress));
   LUXEL_TRY(const reference::TexelPaths direct,
             reference::irradiance_by_paths(p.scene, reference::receivers(p.elements), *p.tracer,
                                            {.samples = 1, .bounces = 0}, progress));
@@ -84,7 +85,7 @@ Result<Judged> judge_indirect(const Prepared& p, int paths_each, Progress& progr
 /// With two independent answers a and b of the judge, (g - a)(g - b) has the mean of the square of
 /// g's error, and a b that of the light. Where g is right, the former's variance is the product of
 /// those of a and b, each twice that of their mean, s^2.
-JudgedLight compare(std::span<const Rgb> solved, const Judged& judged) {
+JudgedLight compare(std::span<const Rgb> solved, const validate::Judged& judged) {
   double error = 0, light = 0, noise = 0, noise2 = 0;
   for (size_t i = 0; i < solved.size(); ++i) {
     if (judged.hidden[i]) continue;
@@ -97,7 +98,7 @@ JudgedLight compare(std::span<const Rgb> solved, const Judged& judged) {
   out.relative = std::sqrt(std::max(0.0, error) / light);
   out.noise = std::sqrt(noise / light);
   out.resolution = std::sqrt(2 * std::sqrt(noise2) / light);
-  const Agreement a = agreement(solved, {}, judged);
+  const validate::Agreement a = validate::agreement(solved, {}, judged);
   out.per_texel = a.relative_rmse, out.bias = a.bias_over_mean;
   return out;
 }
@@ -108,7 +109,7 @@ Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
                                     const JudgeSettings& settings, Progress& progress) {
   for (scene::Material& material : scene.materials) material.emission = {};
   scene.background = {}, scene.lights = {scene::PunctualLight{}};
-  LUXEL_TRY(const auto p, prepare(std::move(scene), settings.resolution, progress));
+  LUXEL_TRY(const auto p, validate::prepare(std::move(scene), settings.resolution, progress));
   matrix::Target target = take_texels(*p, settings.texels);
   JudgedRelight out;
   out.scene = std::move(name), out.texels = target.position.size(), out.paths = settings.paths;
@@ -126,7 +127,7 @@ Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
   for (const Vec3 position : positions) {
     p->scene.lights[0].position = position;
     relighter.update({p->scene.lights, {}, {}});
-    LUXEL_TRY(const Judged judged, judge_indirect(*p, settings.paths / 2, progress));
+    LUXEL_TRY(const validate::Judged judged, judge_indirect(*p, settings.paths / 2, progress));
     out.lights.push_back(compare(relighter.latest().indirect_at_place, judged));
     out.lights.back().position = position;
   }

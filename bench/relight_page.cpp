@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <map>
 
-#include "base/parallel.h"
 #include "bench/relight.h"
-#include "export/plot.h"
+#include "luxel/base/parallel.h"
+#include "luxel/export/plot.h"
 
 namespace luxel::bench {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/parallel.h"
-#include "export/plot.h"
+#include "luxel/base/parallel.h"
+#include "luxel/export/plot.h"
 
 namespace luxel::bench {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "base/result.h"
 #include "bench/bench.h"
 #include "bench/validation.h"
-#include "solve/matrix/bc1.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/solve/matrix/bc1.h"
 
 namespace luxel::bench {
 

@@ -4,16 +4,16 @@
 #include <functional>
 #include <numeric>
 
-#include "base/parallel.h"
-#include "base/random.h"
-#include "bench/prepared.h"
 #include "bench/relight_paper.h"
 #include "bench/timing.h"
-#include "scene/procedural.h"
-#include "solve/matrix/bc1_picture.h"
-#include "solve/matrix/bounces.h"
-#include "solve/matrix/dense.h"
-#include "solve/matrix/matrix.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/solve/matrix/bc1_picture.h"
+#include "luxel/solve/matrix/bounces.h"
+#include "luxel/solve/matrix/dense.h"
+#include "luxel/solve/matrix/matrix.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {
@@ -47,8 +47,8 @@ Status light_up(Room& room, const trace::RayTracer& tracer, Progress& progress) 
     lamp.position = position;
     room.scene.lights = {lamp};
     LUXEL_TRY(const matrix::Solution lit,
-              matrix::solve(room.scene, transport::collect_lights(room.scene), tracer,
-                            room.prepared, room.params, progress));
+              matrix::solve(room.scene, light::collect_lights(room.scene), tracer, room.prepared,
+                            room.params, progress));
     std::vector<Rgb> sent = lit.direct;
     for (size_t i = 0; i < sent.size(); ++i) sent[i] = sent[i] * room.reflectance()[i];
     room.sent.push_back(std::move(sent));

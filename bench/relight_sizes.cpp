@@ -1,11 +1,11 @@
 // The hierarchy from four thousand patches to sixty-four.
-#include "bench/prepared.h"
 #include "bench/relight.h"
 #include "bench/timing.h"
-#include "scene/procedural.h"
-#include "solve/matrix/codec.h"
-#include "solve/matrix/relight.h"
-#include "solve/matrix/trials.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/solve/matrix/codec.h"
+#include "luxel/solve/matrix/relight.h"
+#include "luxel/solve/matrix/trials.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 

@@ -2,12 +2,12 @@
 // against the path tracer; what real light and many lamps cost.
 #include <cmath>
 
-#include "base/parallel.h"
 #include "bench/bench.h"
-#include "bench/prepared.h"
 #include "bench/scenes.h"
-#include "pipeline/bake.h"
-#include "scene/procedural.h"
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/bake/bake.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {
@@ -59,10 +59,10 @@ Status bake_outdoors(const std::filesystem::path& file, Table& table) {
 Status measure_real_light(Table& table) {
   Progress progress;
   const auto seconds_of = [&](scene::Scene scene) -> Result<double> {
-    LUXEL_TRY(const auto p, prepare(std::move(scene), 512, progress));
+    LUXEL_TRY(const auto p, validate::prepare(std::move(scene), 512, progress));
     double best = HUGE_VAL;
     for (int k = 0; k < 3; ++k) {
-      LUXEL_TRY(const Timed timed, solve(*p, "gather", {}, progress));
+      LUXEL_TRY(const validate::Timed timed, validate::solve(*p, "gather", {}, progress));
       best = std::min(best, timed.seconds);
     }
     return best;

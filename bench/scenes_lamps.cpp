@@ -1,10 +1,10 @@
 // What many lamps cost.
 #include <cmath>
 
-#include "bench/agreement.h"
-#include "bench/prepared.h"
 #include "bench/scenes.h"
-#include "scene/shapes.h"
+#include "luxel/scene/shapes.h"
+#include "luxel/validate/agreement.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {
@@ -56,18 +56,19 @@ struct Cost {
 Result<Cost> cost_of(scene::Scene scene) {
   constexpr int kResolution = 192;
   Progress progress;
-  LUXEL_TRY(const auto p, prepare(std::move(scene), kResolution, progress));
+  LUXEL_TRY(const auto p, validate::prepare(std::move(scene), kResolution, progress));
   pipeline::BakeSettings settings;
   settings.samples = 64, settings.direct_samples = 32;
-  Timed few;
+  validate::Timed few;
   few.seconds = HUGE_VAL;
   for (int k = 0; k < 3; ++k) {
-    LUXEL_TRY(Timed again, solve(*p, "gather", settings, progress));
+    LUXEL_TRY(validate::Timed again, validate::solve(*p, "gather", settings, progress));
     if (again.seconds < few.seconds) few = std::move(again);
   }
   settings.samples = 1024, settings.direct_samples = 512, settings.seed = 2;
-  LUXEL_TRY(const Timed many, solve(*p, "gather", settings, progress));
-  return Cost{few.seconds, errors_of(few.light.irradiance, many.light.irradiance, {}).relative};
+  LUXEL_TRY(const validate::Timed many, validate::solve(*p, "gather", settings, progress));
+  return Cost{few.seconds,
+              validate::errors_of(few.light.irradiance, many.light.irradiance, {}).relative};
 }
 
 /// Error falls with the root of time, at worst: the time to reach the other's error.

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/random.h"
-#include "bench/agreement.h"
 #include "bench/scenes.h"
-#include "import/environment.h"
-#include "import/import.h"
+#include "luxel/base/random.h"
+#include "luxel/import/environment.h"
+#include "luxel/import/import.h"
+#include "luxel/validate/agreement.h"
 
 namespace luxel::bench {
 namespace {
@@ -35,24 +35,26 @@ std::vector<T> chosen(std::span<const T> values, std::span<const size_t> texels)
 
 Status measure_at(const scene::Scene& scene, int resolution, Table& table) {
   Progress progress;
-  LUXEL_TRY(const auto p, prepare(scene, resolution, progress));
+  LUXEL_TRY(const auto p, validate::prepare(scene, resolution, progress));
   const std::vector<size_t> texels = some_texels(p->elements.size());
   const auto position = chosen<Vec3>(p->elements.position, texels);
   const auto normal = chosen<Vec3>(p->elements.normal, texels);
   const auto flat = chosen<Vec3>(p->elements.geometric_normal, texels);
-  LUXEL_TRY(const Judged judged,
-            judge(p->scene, *p->tracer, {position, normal, flat}, kPaths, 1, progress));
+  LUXEL_TRY(const validate::Judged judged,
+            validate::judge(p->scene, *p->tracer, {position, normal, flat}, kPaths, 1, progress));
   pipeline::BakeSettings settings;
   settings.samples = kSamples, settings.direct_samples = kSamples / 4;
-  LUXEL_TRY(const Timed solved, solve(*p, "gather", settings, progress));
-  const Agreement a = agreement(chosen<Rgb>(solved.light.irradiance, texels),
-                                chosen<uint8_t>(solved.light.hidden, texels), judged);
+  LUXEL_TRY(const validate::Timed solved, validate::solve(*p, "gather", settings, progress));
+  const validate::Agreement a =
+      validate::agreement(chosen<Rgb>(solved.light.irradiance, texels),
+                          chosen<uint8_t>(solved.light.hidden, texels), judged);
   table.notes.push_back(fmt::format(
       "kloppenheim_05_1k on living_room, {0} x {0}, {1} samples: relative RMSE {2} against twice "
       "{3} paths at {4} of {5} texels (resolution {6:.2f} %), bias {7:+.3f} % of the mean, {8:.1f} "
       "s; the paths took {9:.0f} s.",
-      resolution, kSamples, relative_rmse_text(a), kPaths, texels.size(), p->elements.size(),
-      100 * a.resolution, 100 * a.bias_over_mean, solved.seconds, judged.seconds));
+      resolution, kSamples, validate::relative_rmse_text(a), kPaths, texels.size(),
+      p->elements.size(), 100 * a.resolution, 100 * a.bias_over_mean, solved.seconds,
+      judged.seconds));
   table.json.push_back({{"scene", "living_room under kloppenheim_05_1k"},
                         {"resolution_texels", resolution},
                         {"relative_rmse", a.relative_rmse},

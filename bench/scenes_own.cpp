@@ -1,10 +1,10 @@
 // Scenes of our own, and what they must show: dark houses, whole floors, leaves that let light
 // through.
-#include "base/file.h"
-#include "bench/own_scenes.h"
 #include "bench/scenes.h"
-#include "export/baked_glb.h"
-#include "scene/procedural.h"
+#include "luxel/base/file.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/validate/own_scenes.h"
 
 namespace luxel::bench {
 namespace {
@@ -28,7 +28,7 @@ Status measure_house(Table& table) {
     pipeline::BakeSettings settings;
     settings.resolution = resolution, settings.samples = 64, settings.direct_samples = 16;
     LUXEL_TRY(const pipeline::Bake bake, bake_of(scene::closed_corner(), settings));
-    const HouseLight light = house_light(bake);
+    const validate::HouseLight light = validate::house_light(bake);
     const double worst = double(std::max(light.texel, light.lookup)) / light.lawn;
     table.notes.push_back(fmt::format(
         "Closed corner (walls of 1 cm, no door) at {0} x {0}: the brightest of all texels and {1} "
@@ -58,11 +58,11 @@ Status measure_tiles(Table& table) {
 
 Status measure_foliage(Table& table) {
   Progress progress;
-  LUXEL_TRY(const FoliageLight light, foliage_light(1024, progress));
+  LUXEL_TRY(const validate::FoliageLight light, validate::foliage_light(1024, progress));
   table.notes.push_back(fmt::format(
       "Foliage: {} texels of the floor against twice 1024 paths: relative RMSE {}; {} of them in "
       "shadow, their mean {:+.2f} %.",
-      light.texels, relative_rmse_text(light.floor), light.in_shadow,
+      light.texels, validate::relative_rmse_text(light.floor), light.in_shadow,
       100 * (light.shadow_mean - 1)));
   table.json.push_back({{"scene", "foliage"},
                         {"relative_rmse", light.floor.relative_rmse},

@@ -2,12 +2,12 @@
 // of their error.
 #include <cmath>
 
-#include "base/parallel.h"
 #include "bench/bench.h"
-#include "bench/prepared.h"
-#include "reference/path_tracer.h"
-#include "scene/procedural.h"
-#include "solve/gather/gather.h"
+#include "luxel/base/parallel.h"
+#include "luxel/reference/path_tracer.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/solve/gather/gather.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {
@@ -30,10 +30,10 @@ scene::Scene box_with_point_lamp() {
   return scene;
 }
 
-Result<std::vector<Rgb>> mean_over_texels(const Prepared& p, Progress& progress) {
-  LUXEL_TRY(const transport::Footprints footprints,
-            transport::footprints(p.scene, p.atlas, p.map, p.elements, *p.tracer, kJudgePoints,
-                                  1234, progress));
+Result<std::vector<Rgb>> mean_over_texels(const validate::Prepared& p, Progress& progress) {
+  LUXEL_TRY(const light::Footprints footprints,
+            light::footprints(p.scene, p.atlas, p.map, p.elements, *p.tracer, kJudgePoints, 1234,
+                              progress));
   reference::Receivers receivers = reference::receivers(footprints.points);
   receivers.first = footprints.first;
   LUXEL_TRY(const reference::TexelPaths judged,
@@ -59,7 +59,7 @@ struct Run {
   double seconds = INFINITY;  ///< the best of all rounds
 };
 
-Result<std::array<Run, kPoints.size()>> run_all(const Prepared& p, Progress& progress) {
+Result<std::array<Run, kPoints.size()>> run_all(const validate::Prepared& p, Progress& progress) {
   std::array<Run, kPoints.size()> runs;
   for (int round = 0; round < kRounds; ++round)
     for (size_t k = 0; k < kPoints.size(); ++k) {
@@ -77,7 +77,7 @@ Result<std::array<Run, kPoints.size()>> run_all(const Prepared& p, Progress& pro
 Status measure(const std::string& name, scene::Scene scene, int resolution, bool judged,
                Table& table) {
   Progress progress;
-  LUXEL_TRY(const auto p, prepare(std::move(scene), resolution, progress));
+  LUXEL_TRY(const auto p, validate::prepare(std::move(scene), resolution, progress));
   LUXEL_TRY(const auto runs, run_all(*p, progress));
   std::vector<Rgb> reference;
   if (judged) {

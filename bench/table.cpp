@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "base/parallel.h"
 #include "bench/bench.h"
+#include "luxel/base/parallel.h"
 
 namespace luxel::bench {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bench/prepared.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 namespace {

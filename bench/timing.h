@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "luxel/base/progress.h"
 
 namespace luxel::bench {
 

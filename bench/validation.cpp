@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "base/file.h"
-#include "base/parallel.h"
 #include "bench/bench.h"
-#include "bench/prepared.h"
-#include "pipeline/version.h"
+#include "luxel/base/file.h"
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/settings/version.h"
+#include "luxel/validate/prepared.h"
 
 namespace luxel::bench {
 
@@ -32,7 +32,7 @@ PageFile png_file(std::string name, const image::Image8& picture) {
 }
 
 std::string show(const PageFile& file, std::string_view words) {
-  return fmt::format("![{}](images/validation-{})", words, file.name);
+  return fmt::format("![{}](../images/validation-{})", words, file.name);
 }
 
 Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
@@ -58,7 +58,7 @@ Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
       "validation`:\nview factors against closed forms, solvers against exact solutions, and "
       "solvers "
       "against a brute-force path tracer that shares\nnothing with them but the scene and the ray "
-      "tracer ([reference.md](reference.md)).\n\n"
+      "tracer ([reference.md](../method/reference.md)).\n\n"
       "This run: version {}, {}, {} threads, {:.0f} s. The exact values are those of "
       "`shared/reference`.\n\n",
       pipeline::kVersion, machine_name(), thread_count(), seconds_since(start));

@@ -1,4 +1,5 @@
-// The page that shows that luxel is right: docs/bench/validation.md, written by `luxel bench validation`.
+// The page that shows that luxel is right: docs/bench/validation.md, written by `luxel bench
+// validation`.
 #pragma once
 
 #include <filesystem>
@@ -6,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "base/result.h"
-#include "image/codec.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/image/codec.h"
 
 namespace luxel::bench {
 

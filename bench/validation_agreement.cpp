@@ -1,8 +1,8 @@
 // Small scenes by every solver, against the path tracer.
 #include <fmt/format.h>
 
-#include "bench/agreement.h"
 #include "bench/validation.h"
+#include "luxel/validate/agreement.h"
 
 namespace luxel::bench {
 
@@ -11,19 +11,21 @@ Result<Section> validate_agreement(Progress& progress) {
   section.json = nlohmann::json::array();
   std::vector<std::vector<std::string>> rows;
   constexpr int kPaths = 384, kSamples = 1024, kDirect = 256, kElements = 10000;
-  for (AgreementScene& s : agreement_scenes()) {
-    LUXEL_TRY(const auto p, prepare(std::move(s.scene), s.resolution, progress));
-    LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1, progress));
+  for (validate::AgreementScene& s : validate::agreement_scenes()) {
+    LUXEL_TRY(const auto p, validate::prepare(std::move(s.scene), s.resolution, progress));
+    LUXEL_TRY(const validate::Judged judged, validate::judge(*p, kPaths, 1, progress));
     for (const pipeline::Solver& solver : pipeline::solvers()) {
       pipeline::BakeSettings settings;
       settings.samples = solver.name == "reference" ? kPaths : kSamples;
       settings.direct_samples = kDirect;
       settings.seed = 7;
       settings.hemicube.max_elements = kElements;
-      LUXEL_TRY(const Timed solved, solve(*p, solver.name, settings, progress));
-      const Agreement a = agreement(solved.light.irradiance, solved.light.hidden, judged);
+      LUXEL_TRY(const validate::Timed solved, validate::solve(*p, solver.name, settings, progress));
+      const validate::Agreement a =
+          validate::agreement(solved.light.irradiance, solved.light.hidden, judged);
       rows.push_back({s.name, s.shows, std::string(solver.name), std::to_string(a.texels),
-                      relative_rmse_text(a), fmt::format("{:+.3f} %", 100 * a.bias_over_mean),
+                      validate::relative_rmse_text(a),
+                      fmt::format("{:+.3f} %", 100 * a.bias_over_mean),
                       fmt::format("{:.1f}", solved.seconds)});
       section.json.push_back({{"scene", s.name},
                               {"solver", solver.name},

@@ -6,17 +6,17 @@
 #include <map>
 #include <numeric>
 
-#include "base/random.h"
-#include "bench/agreement.h"
 #include "bench/validation.h"
-#include "display/draw.h"
-#include "display/tone_map.h"
-#include "export/plot.h"
-#include "image/display_measures.h"
-#include "image/false_color.h"
-#include "post/dilate.h"
-#include "scene/procedural.h"
-#include "transport/irradiance_field.h"
+#include "luxel/base/random.h"
+#include "luxel/display/draw.h"
+#include "luxel/display/tone_map.h"
+#include "luxel/export/plot.h"
+#include "luxel/image/display_measures.h"
+#include "luxel/image/false_color.h"
+#include "luxel/post/dilate.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/transport/irradiance_field.h"
+#include "luxel/validate/agreement.h"
 
 namespace luxel::bench {
 namespace {
@@ -38,15 +38,18 @@ struct Curve {
   std::vector<std::array<double, 2>> by_samples, by_seconds;
 };
 
-Result<Curve> measure_curve(const Prepared& p, const Judged& judged, std::string_view solver,
-                            const std::vector<int>& samples,
+Result<Curve> measure_curve(const validate::Prepared& p, const validate::Judged& judged,
+                            std::string_view solver, const std::vector<int>& samples,
                             std::vector<std::vector<std::string>>& rows, Progress& progress) {
   Curve curve{std::string(solver), {}, {}};
   for (const int n : samples) {
-    LUXEL_TRY(const Timed solved, solve(p, solver, with_samples(n, 5), progress));
-    const Agreement a = agreement(solved.light.irradiance, solved.light.hidden, judged);
+    LUXEL_TRY(const validate::Timed solved,
+              validate::solve(p, solver, with_samples(n, 5), progress));
+    const validate::Agreement a =
+        validate::agreement(solved.light.irradiance, solved.light.hidden, judged);
     rows.push_back({std::string(solver), std::to_string(n), fmt::format("{:.2f}", solved.seconds),
-                    relative_rmse_text(a), fmt::format("{:+.3f} %", 100 * a.bias_over_mean)});
+                    validate::relative_rmse_text(a),
+                    fmt::format("{:+.3f} %", 100 * a.bias_over_mean)});
     curve.by_samples.push_back({double(n), a.relative_rmse});
     curve.by_seconds.push_back({solved.seconds, a.relative_rmse});
   }
@@ -64,8 +67,8 @@ export_::Plot error_plot(const std::string& title, const std::string& x_label) {
 
 Status convergence(Section& section, Progress& progress) {
   constexpr int kResolution = 128, kPaths = 1024;
-  LUXEL_TRY(const auto p, prepare(scene::cornell_box(), kResolution, progress));
-  LUXEL_TRY(const Judged judged, judge(*p, kPaths, 1, progress));
+  LUXEL_TRY(const auto p, validate::prepare(scene::cornell_box(), kResolution, progress));
+  LUXEL_TRY(const validate::Judged judged, validate::judge(*p, kPaths, 1, progress));
   std::vector<std::vector<std::string>> rows;
   export_::Plot samples = error_plot("Cornell box: error against samples", "samples per texel");
   export_::Plot seconds = error_plot("Cornell box: error against time", "seconds");
@@ -120,8 +123,9 @@ struct Round {
   float largest = 0;  ///< difference of those that passed
 };
 
-Result<reference::TexelPaths> judge_texels(const Prepared& p, std::span<const uint32_t> texels,
-                                           int paths, uint64_t seed, Progress& progress) {
+Result<reference::TexelPaths> judge_texels(const validate::Prepared& p,
+                                           std::span<const uint32_t> texels, int paths,
+                                           uint64_t seed, Progress& progress) {
   std::vector<Vec3> position, normal, geometric;
   for (const uint32_t i : texels) {
     position.push_back(p.elements.position[i]);
@@ -159,9 +163,10 @@ int paths_for(float noise, int paths) {
 
 /// Judges until all texels pass or have had kMostPaths; those are `left`. What made a texel fail
 /// stays in its mean, so that it does not pass by chance sooner than one with new paths alone.
-Result<std::vector<Round>> judge_again(const Prepared& p, std::span<const Rgb> solved,
-                                       const Screen& screen, const Judged& first, int first_paths,
-                                       std::vector<uint32_t>& left, Progress& progress) {
+Result<std::vector<Round>> judge_again(const validate::Prepared& p, std::span<const Rgb> solved,
+                                       const Screen& screen, const validate::Judged& first,
+                                       int first_paths, std::vector<uint32_t>& left,
+                                       Progress& progress) {
   std::vector<Known> known(solved.size());
   std::map<int, Round> rounds;  // by the paths that texels have had
   std::map<std::pair<int, int>, std::vector<uint32_t>> waiting;  // by those wanted and those had
@@ -201,20 +206,22 @@ Result<std::vector<Round>> judge_again(const Prepared& p, std::span<const Rgb> s
   return out;
 }
 
-image::Image lightmap(const Prepared& p, std::span<const Rgb> irradiance) {
+image::Image lightmap(const validate::Prepared& p, std::span<const Rgb> irradiance) {
   return post::lightmap_from_texels(p.map, irradiance);
 }
 
-Status every_texel(const Prepared& p, const Timed& solved, Section& section, Progress& progress) {
+Status every_texel(const validate::Prepared& p, const validate::Timed& solved, Section& section,
+                   Progress& progress) {
   constexpr int kPaths = 64;
-  LUXEL_TRY(const Judged judged, judge(p, kPaths, 2, progress));
+  LUXEL_TRY(const validate::Judged judged, validate::judge(p, kPaths, 2, progress));
   std::vector<Rgb> truth;
   for (size_t i = 0; i < judged.first.size(); ++i) truth.push_back(judged.mean(i));
   const Screen screen{display::auto_exposure(lightmap(p, truth))};
   std::vector<uint32_t> left;
   LUXEL_TRY(const std::vector<Round> rounds,
             judge_again(p, solved.light.irradiance, screen, judged, 2 * kPaths, left, progress));
-  const Agreement a = agreement(solved.light.irradiance, solved.light.hidden, judged);
+  const validate::Agreement a =
+      validate::agreement(solved.light.irradiance, solved.light.hidden, judged);
   const auto is_covered = [&](uint32_t i) { return p.map.texels[i].centre_covered; };
   const auto off = std::count_if(left.begin(), left.end(), is_covered);
   size_t covered = 0;
@@ -313,7 +320,8 @@ void show_pictures(const Shown& ours, const Shown& judge, const image::Mask& all
   for (PageFile& file : files) section.files.push_back(std::move(file));
 }
 
-Status pictures(const Prepared& p, const Timed& solved, Section& section, Progress& progress) {
+Status pictures(const validate::Prepared& p, const validate::Timed& solved, Section& section,
+                Progress& progress) {
   constexpr int kSide = 320, kPaths = 400, kRaysPerAxis = 8;
   const scene::Camera& camera = p.scene.cameras.front();
   const transport::TexelField field{&p.atlas, &p.map, solved.light.irradiance};
@@ -338,8 +346,9 @@ Result<Section> validate_cornell_box(Progress& progress) {
   section.json = nlohmann::json::object();
   section.markdown = "## The Cornell box\n\n";
   LUXEL_TRY_STATUS(convergence(section, progress));
-  LUXEL_TRY(const auto p, prepare(scene::cornell_box(), 512, progress));
-  LUXEL_TRY(const Timed solved, solve(*p, "gather", with_samples(2000), progress));
+  LUXEL_TRY(const auto p, validate::prepare(scene::cornell_box(), 512, progress));
+  LUXEL_TRY(const validate::Timed solved,
+            validate::solve(*p, "gather", with_samples(2000), progress));
   LUXEL_TRY_STATUS(every_texel(*p, solved, section, progress));
   LUXEL_TRY_STATUS(pictures(*p, solved, section, progress));
   return section;

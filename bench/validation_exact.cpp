@@ -1,25 +1,26 @@
 // Exact solutions by every solver of the pipeline's table.
 #include <fmt/format.h>
 
-#include "base/file.h"
-#include "bench/exact_measure.h"
 #include "bench/validation.h"
+#include "luxel/base/file.h"
+#include "luxel/validate/exact_measure.h"
 
 namespace luxel::bench {
 namespace {
 
 std::string percent(double v) { return fmt::format("{:+.3f} %", 100 * v); }
 
-constexpr MeasureEffort kEffort;
+constexpr validate::MeasureEffort kEffort;
 
-Status add_case(const ExactCase& c, std::string_view solver,
+Status add_case(const validate::ExactCase& c, std::string_view solver,
                 std::vector<std::vector<std::string>>& rows, nlohmann::json& json,
                 Progress& progress) {
-  LUXEL_TRY(const auto p, prepare(c.scene, c.resolution, progress));
-  LUXEL_TRY(const std::vector<Measured> measured, measure(*p, c, solver, kEffort, progress));
+  LUXEL_TRY(const auto p, validate::prepare(c.scene, c.resolution, progress));
+  LUXEL_TRY(const std::vector<validate::Measured> measured,
+            validate::measure(*p, c, solver, kEffort, progress));
   for (size_t k = 0; k < c.parts.size(); ++k) {
-    const ExactPart& part = c.parts[k];
-    const Measured& m = measured[k];
+    const validate::ExactPart& part = c.parts[k];
+    const validate::Measured& m = measured[k];
     const double error = m.mean / m.exact - 1;
     rows.push_back(
         {c.section, c.name, part.name, std::string(solver), fmt::format("{:.6g}", m.exact),
@@ -47,10 +48,10 @@ Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Pr
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::vector<std::vector<std::string>> rows;
   section.json = nlohmann::json::array();
-  LUXEL_TRY(const std::vector<ExactCase> cases, exact_cases(text));
-  for (const ExactCase& c : cases)
+  LUXEL_TRY(const std::vector<validate::ExactCase> cases, validate::exact_cases(text));
+  for (const validate::ExactCase& c : cases)
     for (const pipeline::Solver& solver : pipeline::solvers())
-      if (is_ready_for(solver.name, c))
+      if (validate::is_ready_for(solver.name, c))
         LUXEL_TRY_STATUS(add_case(c, solver.name, rows, section.json, progress));
   section.markdown = fmt::format(
       "## Solvers against exact solutions\n\n"

@@ -5,20 +5,20 @@
 #include <array>
 #include <cmath>
 
-#include "base/file.h"
-#include "base/parallel.h"
-#include "base/text_tables.h"
-#include "bench/prepared.h"
 #include "bench/validation.h"
-#include "export/plot.h"
-#include "transport/point_form_factor.h"
-#include "transport/sampled_factors.h"
-#include "transport/visible_form_factor.h"
+#include "luxel/base/file.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/text_tables.h"
+#include "luxel/export/plot.h"
+#include "luxel/validate/prepared.h"
+#include "luxel/viewfactor/point_form_factor.h"
+#include "luxel/viewfactor/sampled_factors.h"
+#include "luxel/viewfactor/visible_form_factor.h"
 
 namespace luxel::bench {
 namespace {
 
-using transport::Polygon;
+using viewfactor::Polygon;
 
 struct Row {
   std::string name, note;
@@ -56,15 +56,15 @@ Result<std::vector<Row>> read_rows(std::string_view csv, const std::filesystem::
 }
 
 double analytic(const Row& row) {
-  if (row.is_point) return transport::point_to_polygon(row.a[0], row.normal, row.b);
-  return transport::form_factor(row.a, row.b, row.blockers, 1e-5).value;
+  if (row.is_point) return viewfactor::point_to_polygon(row.a[0], row.normal, row.b);
+  return viewfactor::form_factor(row.a, row.b, row.blockers, 1e-5).value;
 }
 
-Result<double> sampled(const Row& row, const transport::SampledParams& params) {
-  LUXEL_TRY(const transport::SampledFactor f,
-            row.is_point
-                ? transport::sampled_point_factor(row.a[0], row.normal, row.b, row.blockers, params)
-                : transport::sampled_form_factor(row.a, row.b, row.blockers, params));
+Result<double> sampled(const Row& row, const viewfactor::SampledParams& params) {
+  LUXEL_TRY(const viewfactor::SampledFactor f,
+            row.is_point ? viewfactor::sampled_point_factor(row.a[0], row.normal, row.b,
+                                                            row.blockers, params)
+                         : viewfactor::sampled_form_factor(row.a, row.b, row.blockers, params));
   return f.value;
 }
 
@@ -82,9 +82,9 @@ using Points = std::vector<std::array<double, 2>>;  ///< (rays per factor, error
 /// Root mean square of the relative errors: of rays over the polygon rows with F >= 0.02, of
 /// hemicubes over the point rows (between points of a surface, hemicubes are no better than rays).
 Result<Points> measure_rate(const std::vector<Row>& rows,
-                            const std::vector<transport::SampledParams>& steps) {
+                            const std::vector<viewfactor::SampledParams>& steps) {
   Points points;
-  for (const transport::SampledParams& params : steps) {
+  for (const viewfactor::SampledParams& params : steps) {
     const bool hemicube = params.hemicube > 0;
     double sum = 0, count = 0;
     for (const Row& row : rows) {
@@ -119,13 +119,13 @@ double pairs_per_second(const std::vector<Row>& rows) {
   while (seconds_since(start) < 1) {
     for (const Row& row : rows)
       if (!row.is_point && row.blockers.empty())
-        sum += transport::polygon_form_factor(row.a, row.b), ++pairs;
+        sum += viewfactor::polygon_form_factor(row.a, row.b), ++pairs;
   }
   return sum > 0 ? pairs / seconds_since(start) : 0;
 }
 
-constexpr transport::SampledParams kHemicube{.samples = 64, .hemicube = 128};
-constexpr transport::SampledParams kRays{.samples = 1u << 18};
+constexpr viewfactor::SampledParams kHemicube{.samples = 64, .hemicube = 128};
+constexpr viewfactor::SampledParams kRays{.samples = 1u << 18};
 
 struct Table {
   std::vector<std::vector<std::string>> rows;
@@ -165,7 +165,7 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
             read_rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file));
   progress.begin("view factors", 0);
   LUXEL_TRY(const Table table, measure_rows(rows, progress));
-  std::vector<transport::SampledParams> hemicubes, rays;
+  std::vector<viewfactor::SampledParams> hemicubes, rays;
   for (const int n : {8, 16, 32, 64, 128, 256, 512})
     hemicubes.push_back({.samples = 1, .hemicube = n});
   for (const uint32_t n : {8u, 10u, 12u, 14u, 16u, 18u}) rays.push_back({.samples = 1u << n});

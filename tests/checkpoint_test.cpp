@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "base/random.h"
+#include "luxel/base/random.h"
 #include "tests/command.h"
 #include "tests/running.h"
 

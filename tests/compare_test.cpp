@@ -7,7 +7,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "image/codec.h"
+#include "luxel/image/codec.h"
 #include "tests/command.h"
 
 namespace luxel::testing_support {

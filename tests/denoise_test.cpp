@@ -54,8 +54,8 @@ TEST(SlowDenoise, HalvesTheErrorAndSparesConvergedLight) {
   const std::string box = "cornell-box.glb", base = "--resolution 128 --no-stitch ";
   const image::Image exact =
       bake(s.path / "exact", box, base + "--samples 4096 --direct-samples 1024 --seed 7");
-  // The noise of few samples is skewed, and the filter leans towards its median: docs/method/denoise.md
-  // states by how much the mean may fall, and these are those numbers.
+  // The noise of few samples is skewed, and the filter leans towards its median:
+  // docs/method/denoise.md states by how much the mean may fall, and these are those numbers.
   for (const auto& [samples, change] :
        {std::pair("--samples 16 --direct-samples 16 ", 0.004), std::pair("--samples 64 ", 0.002)}) {
     const Difference raw = difference(bake(s.path / "raw", box, base + samples), exact);

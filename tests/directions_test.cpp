@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/spherical_harmonics.h"
+#include "luxel/base/spherical_harmonics.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "image/codec.h"
+#include "luxel/image/codec.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
 #include "tests/support.h"

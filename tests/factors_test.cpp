@@ -7,8 +7,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "base/base64.h"
-#include "pipeline/factors.h"
+#include "luxel/base/base64.h"
+#include "luxel/pipeline/command/factors.h"
 #include "tests/command.h"
 
 namespace luxel::testing_support {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "import/import.h"
+#include "luxel/import/import.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
 

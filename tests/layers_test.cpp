@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "export/baked_glb.h"
-#include "scene/procedural.h"
-#include "scene/shapes.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/scene/shapes.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
 

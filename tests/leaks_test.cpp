@@ -1,7 +1,7 @@
 // A house of walls thinner than texels, without door or window, in full sun: inside it is black.
 #include <gtest/gtest.h>
 
-#include "bench/own_scenes.h"
+#include "luxel/validate/own_scenes.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -20,7 +20,7 @@ TEST(Leaks, AClosedHouseIsBlackInside) {
     Progress progress;
     const auto bake = bake_scene(settings_for("closed-corner.glb", resolution), progress);
     ASSERT_TRUE(bake) << bake.error().message;
-    const bench::HouseLight b = bench::house_light(*bake);
+    const validate::HouseLight b = validate::house_light(*bake);
     ASSERT_GT(b.lookups, 10000);
     EXPECT_GT(b.lawn, 5) << resolution;  // the sun alone gives 9 x 0.66
     EXPECT_LE(b.texel, 1e-3 * b.lawn) << resolution;
@@ -36,7 +36,7 @@ TEST(Leaks, UncutChartsLetLightThrough) {
   settings.repair_leaks = false;
   const auto bake = bake_scene(settings, progress);
   ASSERT_TRUE(bake) << bake.error().message;
-  const bench::HouseLight b = bench::house_light(*bake);
+  const validate::HouseLight b = validate::house_light(*bake);
   EXPECT_GT(b.lookup, 0.1 * b.lawn);
 }
 
@@ -48,7 +48,7 @@ TEST(Leaks, HierarchicalRadiosityKeepsItBlack) {
   settings.solver = "hierarchical";
   const auto bake = bake_scene(settings, progress);
   ASSERT_TRUE(bake) << bake.error().message;
-  const bench::HouseLight b = bench::house_light(*bake);
+  const validate::HouseLight b = validate::house_light(*bake);
   EXPECT_LE(b.texel, 1e-3 * b.lawn);
   EXPECT_LE(b.lookup, 1e-3 * b.lawn);
 }

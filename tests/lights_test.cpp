@@ -89,7 +89,7 @@ TEST(Profiles, WhatCannotBeIsSaid) {
 
 // A plate under an open sky gets what the sky and its sun bring to the horizontal; at 50 degrees
 // [IES84] says 127.5 exp(-0.21 / sin h) sin h + 0.8 + 15.5 sqrt(sin h) = 88.7 klx. Within a tenth,
-// see scene/sky_test.cpp.
+// see luxel/scene/sky_test.cpp.
 TEST(SkyOption, APlateIsAsBrightAsDay) {
   const ScratchFolder s;
   const auto plate = s.write("plate.obj", "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n");

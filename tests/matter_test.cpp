@@ -5,16 +5,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
-#include "base/vec_double.h"
-#include "display/lightmap_lookup.h"
-#include "export/baked_glb.h"
-#include "image/codec.h"
-#include "import/import.h"
-#include "scene/shapes.h"
-#include "scene/sides.h"
+#include "luxel/base/file.h"
+#include "luxel/base/vec_double.h"
+#include "luxel/display/lightmap_lookup.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/image/codec.h"
+#include "luxel/import/import.h"
+#include "luxel/scene/shapes.h"
+#include "luxel/scene/sides.h"
+#include "luxel/trace/ray_tracer.h"
 #include "tests/command.h"
-#include "trace/ray_tracer.h"
 
 namespace luxel::testing_support {
 namespace {

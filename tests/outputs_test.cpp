@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "base/file.h"
-#include "image/codec.h"
-#include "import/import.h"
+#include "luxel/base/file.h"
+#include "luxel/image/codec.h"
+#include "luxel/import/import.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
 

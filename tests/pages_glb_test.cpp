@@ -3,13 +3,13 @@
 
 #include <map>
 
-#include "atlas/pages.h"
-#include "export/baked_glb.h"
-#include "export/glb_test_support.h"
-#include "image/codec.h"
-#include "image/color.h"
-#include "post/dilate.h"
-#include "scene/procedural.h"
+#include "luxel/atlas/pages.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/export/glb_test_support.h"
+#include "luxel/image/codec.h"
+#include "luxel/image/color.h"
+#include "luxel/post/dilate.h"
+#include "luxel/scene/procedural.h"
 
 namespace luxel {
 namespace {
@@ -87,8 +87,8 @@ Rgb looked_up(const image::Image& picture, Vec2 uv) {
 
 // Bilinear lookups of a linear function give it back, up to where it was sampled: texels at a
 // chart's rim are sampled up to 0.71 texel off their centre, or take the mean of neighbours two
-// texels away at most; and up to the picture's steps, 2 / 220 where E is 2 (docs/format/bake.md). The
-// ramp's slope is 1 over the box.
+// texels away at most; and up to the picture's steps, 2 / 220 where E is 2 (docs/format/bake.md).
+// The ramp's slope is 1 over the box.
 TEST(PagesGlb, EveryPlaceFindsItsLight) {
   const scene::Scene scene = scene::spheres_and_cube();
   const Box3 box = scene::world_bounds(scene);

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
-#include "image/codec.h"
+#include "luxel/base/file.h"
+#include "luxel/image/codec.h"
 #include "tests/command.h"
 
 namespace luxel::testing_support {

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "base/file.h"
-#include "image/codec.h"
+#include "luxel/base/file.h"
+#include "luxel/image/codec.h"
 
 namespace luxel::testing_support {
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "export/baked_glb.h"
-#include "scene/shapes.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/scene/shapes.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
 
@@ -133,8 +133,9 @@ class RebakeEdits : public Rebake, public ::testing::WithParamInterface<Case> {}
 // The same atlas and the same rays, but for what has changed: light differs by the tolerance of the
 // bounces, 1e-4 of the mean for each of the two bakes, and at some texels by what supersampling
 // does beside what has not changed, or for one lamp alone: it may average over other texels. Sums
-// of layers are as good as these (docs/method/layers.md): at 64 samples some tenths of a percent. A single
-// texel that only one bake averages is off by a part of the light that a shadow's edge takes away.
+// of layers are as good as these (docs/method/layers.md): at 64 samples some tenths of a percent. A
+// single texel that only one bake averages is off by a part of the light that a shadow's edge takes
+// away.
 TEST_P(RebakeEdits, GivesTheLightOfABakeFromScratch) {
   keep();
   const Case& c = GetParam();

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/text_tables.h"
-#include "base/vec.h"
+#include "luxel/base/text_tables.h"
+#include "luxel/base/vec.h"
 #include "tests/support.h"
 
 namespace luxel::testing_support {

@@ -1,8 +1,8 @@
 // What the tests of `luxel relight` share: small files, and looking at what they play.
 #pragma once
 
-#include "base/file.h"
-#include "image/codec.h"
+#include "luxel/base/file.h"
+#include "luxel/image/codec.h"
 #include "tests/command.h"
 
 namespace luxel::testing_support {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
-#include "image/codec.h"
+#include "luxel/base/file.h"
+#include "luxel/image/codec.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
 
@@ -38,7 +38,7 @@ struct Plate {
 };
 
 // Ambient 0.1 and, with a sun behind the viewer, light 0.8 that faces the plate; 45 degrees from
-// above it is cos 45 of that. The closed forms of display/local_light_test.cpp, from outside.
+// above it is cos 45 of that. The closed forms of luxel/display/local_light_test.cpp, from outside.
 TEST(Techniques, LocalLightOnAPlate) {
   const Plate plate;
   EXPECT_NEAR(plate.middle("--technique c"), 0.5f, 1e-5f);

@@ -1,11 +1,11 @@
 // The files in scenes/ are what the procedural scenes write, and read back as the same scenes.
 #include <gtest/gtest.h>
 
-#include "base/file.h"
-#include "export/baked_glb.h"
-#include "import/import.h"
-#include "scene/procedural.h"
-#include "scene/validate.h"
+#include "luxel/base/file.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/import/import.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/scene/validate.h"
 #include "tests/support.h"
 
 namespace luxel {

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "scene/scene.h"
+#include "luxel/scene/scene.h"
 
 namespace luxel::testing_support {
 

@@ -1,16 +1,16 @@
 // What a browser draws from a bake, held against preview.png: Chromium and WebGL share no line with
-// display/draw.cpp.
+// luxel/display/draw.cpp.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
-#include "export/baked_glb.h"
-#include "image/codec.h"
-#include "image/color.h"
-#include "scene/procedural.h"
-#include "scene/shapes.h"
+#include "luxel/base/file.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/image/codec.h"
+#include "luxel/image/color.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/scene/shapes.h"
 #include "tests/command.h"
 
 namespace luxel::testing_support {

@@ -5,7 +5,8 @@
     tools/check_arrows.py --self-test   proves on made-up trees that each kind of fault is found
 
 The rule: a room includes itself, base, the rooms of its row, and what those may include in turn;
-its CMakeLists.txt links only rooms of its row.
+its CMakeLists.txt links only rooms of its row. Rooms lie in luxel/, but for the programs and bench.
+Folders within a room do not include one another in circles.
 """
 import pathlib
 import re
@@ -17,9 +18,10 @@ PROGRAMS = ("apps", "examples")  # may print and exit; nothing includes them
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 PRINT = re.compile(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(?:std::)?"
                    r"(printf|fprintf|vprintf|puts|fputs|putchar|perror|exit|_exit|quick_exit|abort)\s*\(")
-PRINT_EXCEPT = {"base/check.cpp",  # says which contract broke, then aborts
+PRINT_EXCEPT = {"luxel/base/check.cpp",  # says which contract broke, then aborts
                 "bench/child.cpp"}  # ends the child process that it forked to measure
-TBB_ONLY = {"base/parallel.h", "base/parallel.cpp"}
+TBB_ONLY = {"luxel/base/parallel.h", "luxel/base/parallel.cpp"}
+TOP = ("apps", "bench", "examples")  # rooms that do not lie in luxel/
 
 
 class Table:
@@ -65,8 +67,18 @@ class Table:
         parts = path.split("/")
         if parts[0] in OUTSIDE:
             return parts[0]
+        if parts[0] == "luxel":
+            parts = parts[1:]
+        elif parts[0] not in TOP:
+            return None
+        if not parts:
+            return None
         two = "/".join(parts[:2])
         return two if two in self.direct else parts[0] if parts[0] in self.direct else None
+
+
+def folder_of_room(room):
+    return room if room.startswith(TOP) else "luxel/" + room
 
 
 def without_comments_and_strings(code):
@@ -79,7 +91,7 @@ def include_faults(table, path, room, code):
         where = f"{path}:{code.count(chr(10), 0, match.start(2)) + 1}"
         quote, name = match.groups()
         if re.match(r"(oneapi/)?tbb/|execution$", name) and path not in TBB_ONLY:
-            yield f"{where}: includes <{name}>; only base/parallel.* may (use its loops)"
+            yield f"{where}: includes <{name}>; only luxel/base/parallel.* may (use its loops)"
         if quote != '"':
             continue
         target = table.room_of(name)
@@ -115,12 +127,36 @@ def link_faults(table, path, code):
                 yield f"{path}: {name} links {used}, which is not in its row"
 
 
+def folder_of(path, room):
+    """The folder of a room that a file lies in, "" on its top."""
+    inside = path[len(folder_of_room(room)) + 1:]
+    return inside.split("/")[0] if "/" in inside else ""
+
+
+def circle_faults(arrows):
+    """`arrows`: (room, folder, folder) -> where. One fault for each pair that include each other,
+    directly or through others."""
+    def reaches(room, start, end):
+        found, todo = set(), [start]
+        while todo:
+            at = todo.pop()
+            for r, a, b in arrows:
+                if r == room and a == at and b not in found:
+                    found.add(b)
+                    todo.append(b)
+        return end in found
+    for (room, a, b), where in sorted(arrows.items()):
+        if reaches(room, b, a):
+            yield f"{where}: within {room}, {a or 'its top'} includes {b or 'its top'}, which includes it"
+
+
 def faults(root):
     table = Table((root / "ARCHITECTURE.md").read_text())
     for room in table.direct:
-        if (room in table.planned) == (root / room / "CMakeLists.txt").exists():
+        if (room in table.planned) == (root / folder_of_room(room) / "CMakeLists.txt").exists():
             yield f"ARCHITECTURE.md: {room} is " + (
                 "marked (planned), but is here" if room in table.planned else "not here; mark it (planned)")
+    arrows = {}
     for file in sorted(root.rglob("*")):
         path = file.relative_to(root).as_posix()
         top = path.split("/")[0]
@@ -137,6 +173,13 @@ def faults(root):
         code = file.read_text()
         yield from include_faults(table, path, room, code)
         yield from print_faults(path, room, code)
+        if room in table.direct and not path.endswith("_test.cpp") and "_test_" not in path:
+            for match in INCLUDE.finditer(code):
+                if match.group(1) == '"' and table.room_of(match.group(2)) == room:
+                    a, b = folder_of(path, room), folder_of(match.group(2), room)
+                    if a != b:
+                        arrows.setdefault((room, a, b), f"{path}:{code.count(chr(10), 0, match.start(2)) + 1}")
+    yield from circle_faults(arrows)
 
 
 GOOD = {
@@ -145,44 +188,44 @@ GOOD = {
                        "| solve/b | b | transport |\n| later (planned) | l | solve/a |\n"
                        "| pipeline | p | all of the above |\n| examples/e | e | all of the above |\n"
                        "| apps/cli | c | pipeline |\n",
-    "base/CMakeLists.txt": "luxel_room(base LIBS fmt::fmt)",
-    "base/parallel.cpp": "#include <tbb/parallel_for.h>",
-    "base/check.cpp": "std::fprintf(stderr, text); std::abort();",
-    "scene/CMakeLists.txt": "luxel_room(scene USES base LIBS a::b)",
-    "scene/scene.h": '#include "base/vec.h"\n// printf() is not for us\nauto s = "exit(1)"; snprintf(a);',
-    "scene/scene_test.cpp": '#include "tests/support.h"\nprintf("x");',
-    "transport/CMakeLists.txt": "luxel_room(transport USES scene)",
-    "solve/a/CMakeLists.txt": "luxel_room(solve/a USES transport)",
-    "solve/a/a.cpp": '#include "solve/a/a.h"\n#include "scene/scene.h"\n#include <vector>',
-    "solve/b/CMakeLists.txt": "luxel_room(solve/b USES transport)",
-    "pipeline/CMakeLists.txt": "luxel_room(pipeline USES solve_a solve_b)",
-    "pipeline/p.cpp": '#include "solve/a/a.h"',
+    "luxel/base/CMakeLists.txt": "luxel_room(base LIBS fmt::fmt)",
+    "luxel/base/parallel.cpp": "#include <tbb/parallel_for.h>",
+    "luxel/base/check.cpp": "std::fprintf(stderr, text); std::abort();",
+    "luxel/scene/CMakeLists.txt": "luxel_room(scene USES base LIBS a::b)",
+    "luxel/scene/scene.h": '#include "luxel/base/vec.h"\n// printf() is not for us\nauto s = "exit(1)"; snprintf(a);',
+    "luxel/scene/scene_test.cpp": '#include "tests/support.h"\nprintf("x");',
+    "luxel/transport/CMakeLists.txt": "luxel_room(transport USES scene)",
+    "luxel/solve/a/CMakeLists.txt": "luxel_room(solve/a USES transport)",
+    "luxel/solve/a/a.cpp": '#include "luxel/solve/a/a.h"\n#include "luxel/scene/scene.h"\n#include <vector>',
+    "luxel/solve/b/CMakeLists.txt": "luxel_room(solve/b USES transport)",
+    "luxel/pipeline/CMakeLists.txt": "luxel_room(pipeline USES solve_a solve_b)",
+    "luxel/pipeline/p.cpp": '#include "luxel/solve/a/a.h"',
     "apps/cli/CMakeLists.txt": "add_executable(luxel main.cpp)",
-    "apps/cli/main.cpp": '#include "pipeline/p.h"\n#include "base/vec.h"\nint main() { std::exit(printf("")); }',
+    "apps/cli/main.cpp": '#include "luxel/pipeline/p.h"\n#include "luxel/base/vec.h"\nint main() { std::exit(printf("")); }',
     "examples/e/CMakeLists.txt": "add_executable(example main.cpp)",
-    "examples/e/main.cpp": '#include "solve/a/a.h"\nint main() { std::printf("x"); }',
-    "tests/agree_test.cpp": '#include "solve/a/a.h"\n#include "solve/b/b.h"',
+    "examples/e/main.cpp": '#include "luxel/solve/a/a.h"\nint main() { std::printf("x"); }',
+    "tests/agree_test.cpp": '#include "luxel/solve/a/a.h"\n#include "luxel/solve/b/b.h"',
 }
 # Each changes the good tree into one with exactly one fault, whose line contains the text.
 BAD = [
-    ("solve/b/b.cpp", '#include "solve/a/a.h"', "solve/b may not include solve/a"),
-    ("scene/s.cpp", '\n#include "transport/t.h"', "scene/s.cpp:2: scene may not include transport"),
-    ("base/b.cpp", '#  include "scene/scene.h"', "base may not include scene"),
-    ("pipeline/q.cpp", '#include "apps/cli/cli.h"', "nothing includes a program"),
+    ("luxel/solve/b/b.cpp", '#include "luxel/solve/a/a.h"', "solve/b may not include solve/a"),
+    ("luxel/scene/s.cpp", '\n#include "luxel/transport/t.h"', "luxel/scene/s.cpp:2: scene may not include transport"),
+    ("luxel/base/b.cpp", '#  include "luxel/scene/scene.h"', "base may not include scene"),
+    ("luxel/pipeline/q.cpp", '#include "apps/cli/cli.h"', "nothing includes a program"),
     ("tests/e_test.cpp", '#include "examples/e/e.h"', "nothing includes a program"),
     ("tests/cli_test.cpp", '#include "apps/cli/cli.h"', "nothing includes a program"),
-    ("scene/s.cpp", '#include "tests/support.h"', "only tests may"),
-    ("scene/s.cpp", "#include <tbb/task_group.h>", "only base/parallel.* may"),
-    ("scene/s_test.cpp", "#include <oneapi/tbb/mutex.h>", "only base/parallel.* may"),
-    ("scene/s.cpp", '#include "vec.h"', "names no room"),
-    ("scene/s.cpp", "std::cout << 1;", "prints or exits"),
-    ("scene/s.cpp", 'std::printf("x");', "prints or exits"),
-    ("scene/s.cpp", "std::exit(1);", "prints or exits"),
-    ("attic/a.cpp", "", "lies in no room"),
-    ("attic/CMakeLists.txt", "luxel_room(attic USES base)", "room attic has no row"),
-    ("scene/CMakeLists.txt", "luxel_room(scene\n USES base transport\n LIBS a)", "scene links transport"),
-    ("solve/b/CMakeLists.txt", "luxel_room(solve/b USES transport solve_a)", "solve/b links solve_a"),
-    ("later/CMakeLists.txt", "luxel_room(later)", "marked (planned), but is here"),
+    ("luxel/scene/s.cpp", '#include "tests/support.h"', "only tests may"),
+    ("luxel/scene/s.cpp", "#include <tbb/task_group.h>", "only luxel/base/parallel.* may"),
+    ("luxel/scene/s_test.cpp", "#include <oneapi/tbb/mutex.h>", "only luxel/base/parallel.* may"),
+    ("luxel/scene/s.cpp", '#include "vec.h"', "names no room"),
+    ("luxel/scene/s.cpp", "std::cout << 1;", "prints or exits"),
+    ("luxel/scene/s.cpp", 'std::printf("x");', "prints or exits"),
+    ("luxel/scene/s.cpp", "std::exit(1);", "prints or exits"),
+    ("luxel/attic/a.cpp", "", "lies in no room"),
+    ("luxel/attic/CMakeLists.txt", "luxel_room(attic USES base)", "room attic has no row"),
+    ("luxel/scene/CMakeLists.txt", "luxel_room(scene\n USES base transport\n LIBS a)", "scene links transport"),
+    ("luxel/solve/b/CMakeLists.txt", "luxel_room(solve/b USES transport solve_a)", "solve/b links solve_a"),
+    ("luxel/later/CMakeLists.txt", "luxel_room(later)", "marked (planned), but is here"),
 ]
 
 

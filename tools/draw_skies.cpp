@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <vector>
 
-#include "base/file.h"
-#include "display/contact_sheet.h"
-#include "display/tone_map.h"
-#include "scene/sky.h"
+#include "luxel/base/file.h"
+#include "luxel/display/contact_sheet.h"
+#include "luxel/display/tone_map.h"
+#include "luxel/scene/sky.h"
 
 namespace {
 

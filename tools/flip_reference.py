@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The numbers that image/flip_test.cpp expects: tools/flip_reference.py (half a minute)
+"""The numbers that luxel/image/flip_test.cpp expects: tools/flip_reference.py (half a minute)
 
 FLIP [Andersson20] and HDR-FLIP [Andersson21], written from the papers' equations and apart from image/flip*:
 double precision, whole YCxCz and L*a*b*, dense two-dimensional kernels, nothing separated, trimmed or left out."""

@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "base/file.h"
-#include "export/baked_glb.h"
-#include "scene/procedural.h"
+#include "luxel/base/file.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/scene/procedural.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

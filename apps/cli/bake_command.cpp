@@ -3,8 +3,8 @@
 #include <set>
 
 #include "apps/cli/cli.h"
-#include "pipeline/bake.h"
-#include "pipeline/solvers.h"
+#include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/solver/solvers.h"
 
 namespace luxel::cli {
 namespace {

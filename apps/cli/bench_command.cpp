@@ -1,17 +1,18 @@
 // `luxel bench NAME`: the tables and the page in docs/. What they measure: bench/.
 #include <cstdio>
 #include <cstdlib>
+#include <span>
 
 #include "apps/cli/cli.h"
-#include "base/file.h"
-#include "base/parallel.h"
 #include "bench/bench.h"
 #include "bench/hemicube.h"
 #include "bench/hierarchical.h"
 #include "bench/relight.h"
 #include "bench/validation.h"
-#include "pipeline/bake.h"
-#include "pipeline/output_folder.h"
+#include "luxel/base/file.h"
+#include "luxel/base/output_folder.h"
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/bake/bake.h"
 
 namespace luxel::cli {
 namespace {
@@ -31,18 +32,31 @@ std::filesystem::path default_shared() {
   return "../shared";
 }
 
+/// Writes bench/NAME.EXTENSION and images/NAME-* in `folder`, all of them or none.
+Status write_with_pictures(const OutputFile& page, const std::string& name,
+                           std::span<const bench::PageFile> pictures,
+                           const std::filesystem::path& folder) {
+  OutputFolder pages(folder / "bench"), images(folder / "images");
+  LUXEL_TRY_STATUS(pages.make());
+  LUXEL_TRY_STATUS(images.make());
+  std::vector<OutputFile> files{page};
+  for (const bench::PageFile& file : pictures)
+    files.push_back({folder / "images" / (name + "-" + file.name), file.bytes});
+  LUXEL_TRY_STATUS(write_files_atomically(files));
+  pages.keep(), images.keep();
+  return {};
+}
+
+std::filesystem::path validation_page(const std::filesystem::path& folder) {
+  return folder / "bench" / "validation.md";
+}
+
 /// validation.md and its pictures.
 Status write_page(const bench::Page& page, const std::filesystem::path& folder,
                   Progress& progress) {
   progress.begin(pipeline::kWriteStage, 0);
-  pipeline::OutputFolder images(folder / "images");
-  LUXEL_TRY_STATUS(images.make());
-  std::vector<OutputFile> files{text_file(folder / "validation.md", page.markdown)};
-  for (const bench::PageFile& file : page.files)
-    files.push_back({folder / "images" / ("validation-" + file.name), file.bytes});
-  LUXEL_TRY_STATUS(write_files_atomically(files));
-  images.keep();
-  return {};
+  return write_with_pictures(text_file(validation_page(folder), page.markdown), kValidation,
+                             page.files, folder);
 }
 
 int run_validation(const BenchOptions& options, const std::filesystem::path& shared) {
@@ -50,7 +64,7 @@ int run_validation(const BenchOptions& options, const std::filesystem::path& sha
   const std::filesystem::path folder = options.output;
   bench::Page page;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
-    LUXEL_TRY_STATUS(pipeline::OutputFolder(folder / "images").try_out());
+    LUXEL_TRY_STATUS(OutputFolder(folder / "images").try_out());
     LUXEL_TRY(page, bench::validate(shared, progress));
     return write_page(page, folder, progress);
   });
@@ -58,7 +72,7 @@ int run_validation(const BenchOptions& options, const std::filesystem::path& sha
   if (options.common.json)
     std::printf("%s\n", page.json.dump(2).c_str());
   else if (!options.common.quiet)
-    std::printf("wrote %s\n", (folder / "validation.md").c_str());
+    std::printf("wrote %s\n", validation_page(folder).c_str());
   return kDone;
 }
 
@@ -66,14 +80,8 @@ int run_validation(const BenchOptions& options, const std::filesystem::path& sha
 /// measure_ function below gives.
 template <class Page>
 Status write_plots(const Page& page, const std::string& name, const std::filesystem::path& folder) {
-  pipeline::OutputFolder images(folder / "images");
-  LUXEL_TRY_STATUS(images.make());
-  std::vector<OutputFile> files{text_file(folder / (name + ".csv"), page.csv)};
-  for (const bench::PageFile& file : page.pictures)
-    files.push_back({folder / "images" / (name + "-" + file.name), file.bytes});
-  LUXEL_TRY_STATUS(write_files_atomically(files));
-  images.keep();
-  return {};
+  return write_with_pictures(text_file(folder / "bench" / (name + ".csv"), page.csv), name,
+                             page.pictures, folder);
 }
 
 /// Files are written when it was asked for by name, not with all tables.
@@ -86,7 +94,7 @@ int run_page(const BenchOptions& options, const std::string& name,
   const bool write = options.name == name;
   Page page;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
-    if (write) LUXEL_TRY_STATUS(pipeline::OutputFolder(folder / "images").try_out());
+    if (write) LUXEL_TRY_STATUS(OutputFolder(folder / "images").try_out());
     LUXEL_TRY(page, measure(shared, progress));
     return write ? write_plots(page, name, folder) : Status{};
   });
@@ -151,7 +159,8 @@ void register_bench(CLI::App& app, Action& action) {
                     "Folder with scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
   bench->add_option(
       "-o,--output", options->output,
-      "validation, hemicube, relight, hierarchical: folder for the page or the .csv, and images/ "
+      "validation, hemicube, relight, hierarchical: folder in which bench/ gets the page or the "
+      ".csv, and images/ the pictures "
       "(default: docs)");
   add_common(*bench, options->common);
   bench->callback([options, &action] { action = [options] { return run_bench(*options); }; });

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "atlas/atlas.h"
-#include "base/progress.h"
-#include "base/result.h"
-#include "pipeline/settings.h"
+#include "luxel/atlas/atlas.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/pipeline/settings/settings.h"
 
 namespace luxel::cli {
 

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "apps/cli/cli.h"
-#include "pipeline/bake.h"
+#include "luxel/pipeline/bake/bake.h"
 
 namespace luxel::cli {
 namespace {

@@ -2,8 +2,8 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
-#include "base/parallel.h"
-#include "pipeline/compare.h"
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/command/compare.h"
 
 namespace luxel::cli {
 namespace {

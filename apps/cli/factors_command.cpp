@@ -1,9 +1,9 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
-#include "base/parallel.h"
-#include "pipeline/factors.h"
-#include "pipeline/settings.h"
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/command/factors.h"
+#include "luxel/pipeline/settings/settings.h"
 
 namespace luxel::cli {
 namespace {

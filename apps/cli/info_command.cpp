@@ -1,8 +1,8 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
-#include "import/import.h"
-#include "scene/scene.h"
+#include "luxel/import/import.h"
+#include "luxel/scene/scene.h"
 
 namespace luxel::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <exception>
 
 #include "apps/cli/cli.h"
-#include "pipeline/version.h"
+#include "luxel/pipeline/settings/version.h"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
-#include "pipeline/probe.h"
+#include "luxel/pipeline/command/probe.h"
 
 namespace luxel::cli {
 namespace {

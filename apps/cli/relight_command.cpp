@@ -2,9 +2,9 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
-#include "base/parallel.h"
-#include "pipeline/play.h"
-#include "pipeline/relight.h"
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/command/play.h"
+#include "luxel/pipeline/command/relight.h"
 
 namespace luxel::cli {
 namespace {

@@ -2,10 +2,10 @@
 #include <filesystem>
 
 #include "apps/cli/cli.h"
-#include "base/parallel.h"
-#include "pipeline/overlays.h"
-#include "pipeline/render.h"
-#include "pipeline/techniques.h"
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/render/overlays.h"
+#include "luxel/pipeline/render/render.h"
+#include "luxel/pipeline/render/techniques.h"
 
 namespace luxel::cli {
 namespace {

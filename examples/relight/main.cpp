@@ -11,8 +11,8 @@
 #include <cstdlib>
 #include <thread>
 
-#include "solve/matrix/lxr.h"
-#include "solve/matrix/relighter.h"
+#include "luxel/solve/matrix/lxr.h"
+#include "luxel/solve/matrix/relighter.h"
 
 using namespace luxel;
 

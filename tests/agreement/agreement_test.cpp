@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "base/random.h"
-#include "bench/agreement.h"
+#include "luxel/base/random.h"
+#include "luxel/validate/agreement.h"
 
-namespace luxel::bench {
+namespace luxel::validate {
 namespace {
 
 /// What a solver may differ by, and why.
@@ -175,4 +175,4 @@ TEST(Agreement, LeavesOutWhatIsHidden) {
 }
 
 }  // namespace
-}  // namespace luxel::bench
+}  // namespace luxel::validate

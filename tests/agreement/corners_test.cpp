@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "base/random.h"
-#include "reference/path_tracer.h"
-#include "scene/procedural.h"
-#include "solve/hemicube/hemicube.h"
+#include "luxel/base/random.h"
+#include "luxel/reference/path_tracer.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/solve/hemicube/hemicube.h"
 
 namespace luxel::hemicube {
 namespace {
@@ -84,7 +84,7 @@ TEST(SlowCorners, NoElementErrsByMoreThanFivePercent) {
     params.elements = c.kind, params.max_error = c.max_error;
     params.max_elements = 8000, params.resolution = 32;
     Progress progress;
-    const auto s = solve(scene, transport::collect_lights(scene), *tracer, params, progress);
+    const auto s = solve(scene, light::collect_lights(scene), *tracer, params, progress);
     ASSERT_TRUE(s) << s.error().message;
     const Judged j = judged(scene, *tracer, *s, corners_first(scene, *s, 8), kPaths);
     std::printf(

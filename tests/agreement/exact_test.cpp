@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/exact_measure.h"
+#include "luxel/validate/exact_measure.h"
 #include "tests/reference_data.h"
 
-namespace luxel::bench {
+namespace luxel::validate {
 namespace {
 
 namespace shared = luxel::testing_support;
@@ -105,4 +105,4 @@ TEST(SlowExact, EverySolverReachesEveryExactSolution) {
 }
 
 }  // namespace
-}  // namespace luxel::bench
+}  // namespace luxel::validate

@@ -1,12 +1,12 @@
 // Light beneath leaves: masks, two sides, light scattered through.
 #include <gtest/gtest.h>
 
-#include "base/random.h"
-#include "bench/own_scenes.h"
-#include "scene/shapes.h"
-#include "transport/direct_light.h"
+#include "luxel/base/random.h"
+#include "luxel/light/direct_light.h"
+#include "luxel/scene/shapes.h"
+#include "luxel/validate/own_scenes.h"
 
-namespace luxel::bench {
+namespace luxel::validate {
 namespace {
 
 // The floor under twigs, texel by texel and in the mean, also of the texels in shadow alone. The
@@ -59,8 +59,7 @@ TEST(Foliage, AMaskLetsThroughTheShareOfItsHoles) {
   const auto prepared = prepare(std::move(s), 256, progress);
   ASSERT_TRUE(prepared) << prepared.error().message;
   const Prepared& p = **prepared;
-  const auto light =
-      transport::direct_light(p.scene, p.elements, p.lights, *p.tracer, {}, progress);
+  const auto light = light::direct_light(p.scene, p.elements, p.lights, *p.tracer, {}, progress);
   ASSERT_TRUE(light);
   double sum = 0, texels = 0;
   for (size_t i = 0; i < p.map.texels.size(); ++i)
@@ -74,4 +73,4 @@ TEST(Foliage, AMaskLetsThroughTheShareOfItsHoles) {
 }
 
 }  // namespace
-}  // namespace luxel::bench
+}  // namespace luxel::validate

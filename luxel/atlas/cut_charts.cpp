@@ -1,0 +1,257 @@
+#include "luxel/atlas/cut_charts.h"
+
+#include <algorithm>
+
+#include "luxel/base/check.h"
+#include "luxel/scene/cut_mesh.h"
+
+namespace luxel::atlas {
+namespace {
+
+using Pairs = std::vector<PartedPoints>;
+
+/// A vertex this close to a plane, in distances of the pairs, lies on it.
+constexpr double kOnPlane = 0.02;
+constexpr size_t kFewestJoined = 4;
+/// More planes than these are not looked at in one piece.
+constexpr size_t kMostCandidates = 256, kMostScored = 32;
+
+struct Candidate {
+  Plane plane;
+  size_t count = 0;
+};
+
+bool same_plane(const Plane& p, const Plane& q, DVec3 at, double reach) {
+  return std::abs(dot(p.normal, q.normal)) > 0.9995 && std::abs(p.height(at)) < 0.25 * reach;
+}
+
+bool parts(const Plane& plane, const PartedPoints& pair) {
+  const double a = plane.height(to_double(pair.a)), b = plane.height(to_double(pair.b));
+  return (a < 0) != (b < 0);
+}
+
+/// The planes between the pairs, those of most pairs first.
+std::vector<Candidate> candidates_of(const Pairs& pairs) {
+  std::vector<Candidate> found;
+  for (const PartedPoints& pair : pairs) {
+    const DVec3 a = to_double(pair.a), b = to_double(pair.b);
+    if (!parts(pair.between, pair)) continue;
+    const double reach = length(b - a);
+    const auto same = std::find_if(found.begin(), found.end(), [&](const Candidate& c) {
+      const double s = pair.between.height(a) / (pair.between.height(a) - pair.between.height(b));
+      return same_plane(c.plane, pair.between, a + (b - a) * s, reach);
+    });
+    if (same != found.end())
+      ++same->count;
+    else if (found.size() < kMostCandidates)
+      found.push_back({pair.between, 1});
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& p, const Candidate& q) { return p.count > q.count; });
+  if (found.size() > kMostScored) found.resize(kMostScored);
+  return found;
+}
+
+/// The plane that parts most pairs, and how many.
+Candidate best_plane(const Pairs& pairs) {
+  Candidate best;
+  for (const Candidate& c : candidates_of(pairs)) {
+    const auto parted = size_t(std::count_if(
+        pairs.begin(), pairs.end(), [&](const PartedPoints& p) { return parts(c.plane, p); }));
+    if (parted > best.count) best = {c.plane, parted};
+  }
+  return best;
+}
+
+/// A node of the partition of one chart. Leaves are pieces.
+struct Node {
+  uint32_t piece = 0;                     ///< of a leaf: the label of its triangles
+  uint32_t below = kNone, above = kNone;  ///< nodes
+  Plane plane{};
+};
+
+/// Works on one instance, whose mesh is its own.
+class Cutter {
+ public:
+  Cutter(scene::Mesh& mesh, const Mat34& world_from_object, std::vector<uint32_t> chart)
+      : mesh_(mesh), world_from_object_(world_from_object), label_(std::move(chart)) {
+    for (const uint32_t c : label_) next_ = std::max(next_, c + 1);
+  }
+
+  /// Cuts one chart. Its triangles are labelled by piece; returns the group of each piece, as
+  /// (label, colour).
+  std::vector<std::pair<uint32_t, uint32_t>> cut(uint32_t chart, const Pairs& pairs) {
+    nodes_ = {Node{chart}};
+    divide(0, pairs);
+    return colour_pieces(pairs);
+  }
+
+  const std::vector<uint32_t>& labels() const { return label_; }
+  uint32_t cuts() const { return cuts_; }
+
+ private:
+  void divide(uint32_t node, const Pairs& pairs) {
+    if (pairs.size() < kFewestParted) return;
+    const Candidate best = best_plane(pairs);
+    if (best.count < kFewestParted) return;
+    const uint32_t piece = nodes_[node].piece;
+    const uint32_t other = apply(piece, best.plane, length(pairs.front().b - pairs.front().a));
+    const auto below = uint32_t(nodes_.size()), above = below + 1;
+    nodes_[node].plane = best.plane, nodes_[node].below = below, nodes_[node].above = above;
+    nodes_.push_back(Node{piece});
+    nodes_.push_back(Node{other});
+    Pairs lower, upper;
+    for (const PartedPoints& p : pairs)
+      if (!parts(best.plane, p))
+        (best.plane.height(to_double(p.a)) < 0 ? lower : upper).push_back(p);
+    divide(below, lower);
+    divide(above, upper);
+  }
+
+  /// What lies above the plane gets a new label, which is returned.
+  uint32_t apply(uint32_t piece, const Plane& world, float reach) {
+    const Plane plane = scene::plane_in_object(world, world_from_object_);
+    std::vector<uint8_t> chosen(label_.size());
+    for (size_t t = 0; t < label_.size(); ++t) chosen[t] = label_[t] == piece;
+    for (const uint32_t t : scene::cut_mesh(mesh_, chosen, plane, kOnPlane * double(reach)))
+      label_.push_back(label_[t]);
+    const uint32_t other = next_++;
+    for (size_t t = 0; t < label_.size(); ++t)
+      if (label_[t] == piece && lies_above(plane, t)) label_[t] = other;
+    ++cuts_;
+    return other;
+  }
+
+  bool lies_above(const Plane& plane, size_t triangle) const {
+    double farthest = 0;
+    for (const uint32_t v : mesh_.triangles[triangle]) {
+      const double h = plane.height(to_double(mesh_.positions[v]));
+      if (std::abs(h) > std::abs(farthest)) farthest = h;
+    }
+    return farthest > 0;
+  }
+
+  uint32_t piece_at(Vec3 p) const {
+    uint32_t node = 0;
+    while (nodes_[node].below != kNone)
+      node = nodes_[node].plane.height(to_double(p)) < 0 ? nodes_[node].below : nodes_[node].above;
+    return nodes_[node].piece;
+  }
+
+  /// Each piece takes the first colour that no piece has with which kFewestJoined pairs connect it:
+  /// fewer lie at the ends of a barrier, where light comes around it.
+  std::vector<std::pair<uint32_t, uint32_t>> colour_pieces(const Pairs& pairs) const {
+    std::vector<std::pair<uint32_t, uint32_t>> edges;
+    for (const PartedPoints& p : pairs) {
+      const uint32_t a = piece_at(p.a), b = piece_at(p.b);
+      if (a != b) edges.push_back({a, b}), edges.push_back({b, a});
+    }
+    std::sort(edges.begin(), edges.end());
+    size_t kept = 0;
+    for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+      while (end < edges.size() && edges[end] == edges[begin]) ++end;
+      if (end - begin >= kFewestJoined) edges[kept++] = edges[begin];
+    }
+    edges.resize(kept);
+    std::vector<std::pair<uint32_t, uint32_t>> coloured;
+    for (const Node& node : nodes_) {
+      if (node.below != kNone) continue;
+      std::vector<uint32_t> taken;
+      for (const auto& [piece, colour] : coloured)
+        if (std::binary_search(edges.begin(), edges.end(), std::pair(node.piece, piece)))
+          taken.push_back(colour);
+      uint32_t colour = 0;
+      while (std::find(taken.begin(), taken.end(), colour) != taken.end()) ++colour;
+      coloured.push_back({node.piece, colour});
+    }
+    return coloured;
+  }
+
+  scene::Mesh& mesh_;
+  Mat34 world_from_object_;
+  std::vector<uint32_t> label_;  ///< per triangle: its chart, or its piece of one
+  std::vector<Node> nodes_;      ///< of the chart that is being cut
+  uint32_t next_ = 0;
+  uint32_t cuts_ = 0;
+};
+
+/// Instance by instance, so that the mesh of a heavy scene is copied only where it is cut.
+struct Work {
+  CutScene& out;
+  std::vector<std::vector<uint32_t>> group;  ///< per instance and triangle
+  uint32_t groups = 1;                       ///< group 0 holds what was not cut
+};
+
+void cut_instance(Work& work, uint32_t instance, std::vector<uint32_t> chart, const Pairs& pairs) {
+  scene::Scene& scene = work.out.scene;
+  scene::Mesh mesh = scene.meshes[scene.instances[instance].mesh];
+  Cutter cutter(mesh, scene.instances[instance].world_from_object, std::move(chart));
+  std::vector<std::pair<uint32_t, uint32_t>> group_of_piece;
+  for (size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
+    while (end < pairs.size() && pairs[end].chart == pairs[begin].chart) ++end;
+    const auto coloured =
+        cutter.cut(pairs[begin].chart, {pairs.begin() + long(begin), pairs.begin() + long(end)});
+    if (coloured.size() < 2) continue;
+    uint32_t colours = 0;
+    for (const auto& [piece, colour] : coloured) {
+      group_of_piece.push_back({piece, work.groups + colour});
+      colours = std::max(colours, colour + 1);
+    }
+    work.groups += colours;
+  }
+  if (cutter.cuts() == 0) return;
+  work.out.cuts += cutter.cuts();
+  std::sort(group_of_piece.begin(), group_of_piece.end());
+  std::vector<uint32_t>& group = work.group[instance];
+  group.assign(cutter.labels().size(), 0);
+  for (size_t t = 0; t < group.size(); ++t) {
+    const auto found = std::lower_bound(group_of_piece.begin(), group_of_piece.end(),
+                                        std::pair(cutter.labels()[t], 0u));
+    if (found != group_of_piece.end() && found->first == cutter.labels()[t])
+      group[t] = found->second;
+  }
+  const uint32_t old = scene.instances[instance].mesh;
+  const auto users = std::count_if(scene.instances.begin(), scene.instances.end(),
+                                   [&](const scene::Instance& i) { return i.mesh == old; });
+  if (users == 1) {
+    scene.meshes[old] = std::move(mesh);
+    return;
+  }
+  scene.instances[instance].mesh = uint32_t(scene.meshes.size());
+  scene.meshes.push_back(std::move(mesh));
+}
+
+}  // namespace
+
+CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const PartedPoints> parted) {
+  CutScene out;
+  out.scene = std::move(scene);
+  LUXEL_CHECK(atlas.first_triangle.size() == out.scene.instances.size() + 1);
+  std::vector<uint32_t> instance_of_chart(atlas.chart_count);
+  Work work{out, {}, 1};
+  work.group.resize(out.scene.instances.size());
+  for (uint32_t i = 0; i < out.scene.instances.size(); ++i)
+    for (uint32_t t = atlas.first_triangle[i]; t < atlas.first_triangle[i + 1]; ++t)
+      instance_of_chart[atlas.chart[t]] = i;
+  Pairs pairs(parted.begin(), parted.end());
+  std::stable_sort(pairs.begin(), pairs.end(), [&](const PartedPoints& p, const PartedPoints& q) {
+    return std::pair(instance_of_chart[p.chart], p.chart) <
+           std::pair(instance_of_chart[q.chart], q.chart);
+  });
+  for (size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
+    const uint32_t i = instance_of_chart[pairs[begin].chart];
+    while (end < pairs.size() && instance_of_chart[pairs[end].chart] == i) ++end;
+    cut_instance(work, i,
+                 {atlas.chart.begin() + atlas.first_triangle[i],
+                  atlas.chart.begin() + atlas.first_triangle[i + 1]},
+                 {pairs.begin() + long(begin), pairs.begin() + long(end)});
+  }
+  for (uint32_t i = 0; i < out.scene.instances.size(); ++i) {
+    std::vector<uint32_t>& group = work.group[i];
+    group.resize(out.scene.meshes[out.scene.instances[i].mesh].triangles.size());
+    out.group.insert(out.group.end(), group.begin(), group.end());
+  }
+  return out;
+}
+
+}  // namespace luxel::atlas

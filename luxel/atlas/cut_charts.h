@@ -1,0 +1,40 @@
+// Cuts charts where something stands on them that parts the light.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "luxel/atlas/atlas.h"
+#include "luxel/base/plane.h"
+
+namespace luxel::atlas {
+
+/// Two places of one chart about a texel apart, and the plane of what stands between them.
+struct PartedPoints {
+  uint32_t chart = 0;
+  Vec3 a, b;  ///< on the surface, world [m]
+  Plane between;
+};
+
+/// A scene whose charts have been cut.
+struct CutScene {
+  scene::Scene scene;
+  /// Per drawn triangle: triangles of different groups must not share a chart
+  /// (AtlasParams::group).
+  std::vector<uint32_t> group;
+  uint32_t cuts = 0;  ///< planes used; 0: the scene is as it was
+};
+
+/// Divides the triangles of each chart along planes until no plane parts kFewestParted pairs in one
+/// piece any more: the plane that parts most pairs first, each piece for itself (a binary space
+/// partition). Pieces that no pair connects may share a group, so a house on a lawn cuts it into
+/// the part inside and the part outside. Planes cross a whole piece, not only where the barrier
+/// stands: that is what keeps the cut lines straight and the triangles few. An instance that shares
+/// its mesh gets one of its own. `atlas` is that of `scene`.
+CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const PartedPoints> parted);
+
+/// A barrier about four texels long: thinner than a texel, it parts three pairs per texel of its
+/// length (one of neighbours, two of next neighbours).
+inline constexpr size_t kFewestParted = 12;
+
+}  // namespace luxel::atlas

@@ -1,0 +1,108 @@
+#include "luxel/atlas/cut_charts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "luxel/scene/shapes.h"
+
+namespace luxel::atlas {
+namespace {
+
+Vec2 unit(Vec2 a) { return a * (1 / length(a)); }
+
+/// A floor of 4 x 4 m in two triangles, 16 texels per metre.
+struct Floor {
+  scene::Scene scene;
+  Atlas atlas;
+  std::vector<PartedPoints> parted;
+
+  Floor() {
+    const uint32_t gray = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
+    scene::add_rectangle(scene, {0, 4, 0, 4}, 0, true, gray);
+    atlas.first_triangle = {0, 2};
+    atlas.chart = {0, 0}, atlas.chart_count = 1;
+  }
+  /// A wall through the points (x, z) from a to b: pairs of places a texel apart along it.
+  void add_wall(Vec2 a, Vec2 b) {
+    const float step = 1.0f / 16;
+    const Vec2 along = unit(b - a), across{-along.y, along.x};
+    const DVec3 normal{across.x, 0, across.y};
+    const double offset = double(dot(across, a));
+    for (float s = 0; s < length(b - a); s += step / 3) {
+      const Vec2 p = a + along * s - across * (0.5f * step), q = p + across * step;
+      parted.push_back({0, {p.x, 0, p.y}, {q.x, 0, q.y}, {normal, offset}});
+    }
+  }
+};
+
+/// The group of the triangle of the cut floor that holds a place.
+uint32_t group_at(const CutScene& cut, Vec2 p) {
+  const scene::Mesh& mesh = cut.scene.meshes[0];
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    std::array<Vec2, 3> c;
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec3 v = mesh.positions[mesh.triangles[t][k]];
+      c[k] = {v.x, v.z};
+    }
+    const Barycentric at = barycentric_in(c, p);
+    if (at.u >= 0 && at.v >= 0 && at.u + at.v <= 1) return cut.group[t];
+  }
+  ADD_FAILURE() << p.x << " " << p.y << " lies in no triangle";
+  return kNone;
+}
+
+/// Four walls of a house that stands askew: what is inside is one group, what is outside another.
+TEST(CutCharts, AHouseHasAnInsideAndAnOutside) {
+  Floor floor;
+  const Vec2 corners[4] = {{1, 1.2f}, {2.9f, 0.8f}, {3.2f, 2.6f}, {1.3f, 3.0f}};
+  for (int k = 0; k < 4; ++k) floor.add_wall(corners[k], corners[(k + 1) % 4]);
+  const CutScene cut = cut_charts(floor.scene, floor.atlas, floor.parted);
+  EXPECT_EQ(cut.cuts, 4u);
+  ASSERT_EQ(cut.group.size(), cut.scene.meshes[0].triangles.size());
+  const Vec2 middle{2.1f, 1.9f};
+  const uint32_t inside = group_at(cut, middle), outside = group_at(cut, {0.1f, 0.1f});
+  EXPECT_NE(inside, outside);
+  for (int k = 0; k < 4; ++k)
+    for (const float s : {0.02f, 0.3f, 0.6f, 0.98f}) {
+      const Vec2 on_wall = corners[k] * (1 - s) + corners[(k + 1) % 4] * s;
+      const Vec2 inwards = unit(middle - on_wall) * 0.03f;  // half a texel
+      EXPECT_EQ(group_at(cut, on_wall + inwards), inside) << k << " " << s;
+      EXPECT_EQ(group_at(cut, on_wall - inwards), outside) << k << " " << s;
+    }
+  EXPECT_EQ(std::set<uint32_t>(cut.group.begin(), cut.group.end()).size(), 2u);
+}
+
+/// A stub of three texels leaves the floor whole; so does nothing at all.
+TEST(CutCharts, ShortBarriersAreLeftAlone) {
+  Floor floor;
+  EXPECT_EQ(cut_charts(floor.scene, floor.atlas, {}).cuts, 0u);
+  floor.add_wall({1, 1}, {1.19f, 1});
+  const CutScene cut = cut_charts(floor.scene, floor.atlas, floor.parted);
+  EXPECT_EQ(cut.cuts, 0u);
+  EXPECT_EQ(cut.scene.meshes[0].triangles.size(), 2u);
+  EXPECT_EQ(cut.group, (std::vector<uint32_t>{0, 0}));
+}
+
+/// Of two floors of one mesh only the one under the wall is cut, and gets a mesh of its own.
+TEST(CutCharts, OtherInstancesStayWhole) {
+  Floor floor;
+  scene::Instance other = floor.scene.instances[0];
+  other.world_from_object.row[1][3] = 3;
+  floor.scene.instances.push_back(other);
+  floor.atlas.first_triangle = {0, 2, 4};
+  floor.atlas.chart = {0, 0, 1, 1}, floor.atlas.chart_count = 2;
+  floor.add_wall({0, 2}, {4, 2.5f});
+  const CutScene cut = cut_charts(floor.scene, floor.atlas, floor.parted);
+  EXPECT_EQ(cut.cuts, 1u);
+  ASSERT_EQ(cut.scene.meshes.size(), 2u);
+  EXPECT_EQ(cut.scene.instances[0].mesh, 1u);
+  EXPECT_EQ(cut.scene.meshes[0].triangles.size(), 2u);
+  EXPECT_GT(cut.scene.meshes[1].triangles.size(), 3u);
+  const std::vector<uint32_t> last(cut.group.end() - 2, cut.group.end());
+  EXPECT_EQ(last, (std::vector<uint32_t>{0, 0}));
+}
+
+}  // namespace
+}  // namespace luxel::atlas

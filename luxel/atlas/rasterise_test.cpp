@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include "luxel/atlas/atlas.h"
+#include "luxel/atlas/cover.h"
+#include "luxel/atlas/test_scenes.h"
+#include "luxel/base/random.h"
+
+namespace luxel::atlas {
+namespace {
+
+Atlas atlas_of(int resolution, std::vector<std::array<Vec2, 3>> corners) {
+  Atlas a;
+  a.resolution = resolution;
+  a.first_triangle = {0, uint32_t(corners.size())};
+  a.chart.assign(corners.size(), 0);
+  a.chart_count = 1;
+  a.corners = std::move(corners);
+  return a;
+}
+
+TEST(Rasterise, ClipsSumToTheTrianglesArea) {
+  RandomStream random{3};
+  for (int k = 0; k < 200; ++k) {
+    std::array<DVec2, 3> c;
+    for (DVec2& p : c) p = to_double(random.next2() * 9.0f);
+    const UvTriangle t = uv_triangle(c);
+    double area = 0;
+    DVec2 moment;
+    const Span rows = touched_rows(t);
+    for (int j = rows.begin; j < rows.end; ++j) {
+      const Span s = touched_texels(t, j);
+      for (int i = s.begin; i < s.end; ++i) {
+        const Clip clip = clip_to_texel(t, i, j);
+        EXPECT_GT(clip.area, 0) << "touched without area";
+        area += clip.area;
+        moment = moment + clip.centroid * clip.area;
+      }
+    }
+    EXPECT_NEAR(area, t.area2 / 2, 1e-9);
+    const DVec2 centroid = (c[0] + c[1] + c[2]) * (1.0 / 3);
+    EXPECT_NEAR(moment.x, centroid.x * area, 1e-8);
+    EXPECT_NEAR(moment.y, centroid.y * area, 1e-8);
+  }
+}
+
+TEST(Rasterise, EdgesThroughTexelCornersTouchOneSideOnly) {
+  const UvTriangle t = uv_triangle({{{0, 0}, {4, 0}, {0, 4}}});
+  EXPECT_EQ(touched_rows(t).end, 4);
+  for (int j = 0; j < 4; ++j) {
+    EXPECT_EQ(touched_texels(t, j).begin, 0);
+    EXPECT_EQ(touched_texels(t, j).end, 4 - j);
+    EXPECT_EQ(centre_texels(t, j, CentreRule::inside_or_border).end, 4 - j);
+    const Span strict = centre_texels(t, j, CentreRule::strictly_inside);
+    EXPECT_EQ(strict.end - strict.begin, 3 - j);
+  }
+}
+
+TEST(Rasterise, CentreWinsOverAreaAndAreaOverNumber) {
+  // Texel (0, 0): triangle 1 holds its centre. Texel (2, 0): no centre; triangle 3 covers more.
+  const Atlas atlas = atlas_of(4, {{{{0, 0}, {0.4f, 0}, {0, 1}}},
+                                   {{{0.4f, 0}, {1, 0}, {0.4f, 1}}},
+                                   {{{2.9f, 0}, {3, 0}, {3, 0.1f}}},
+                                   {{{2, 0}, {2.4f, 0}, {2, 0.4f}}}});
+  const TexelMap map = rasterise({}, atlas);
+  ASSERT_EQ(map.texels.size(), 2u);
+  EXPECT_EQ(map.texels[0].triangle_number, 1u);
+  EXPECT_TRUE(map.texels[0].centre_covered);
+  EXPECT_EQ(map.texels[1].triangle_number, 3u);
+  EXPECT_FALSE(map.texels[1].centre_covered);
+  // The sample is the centroid of the clip: here the whole triangle.
+  EXPECT_NEAR(map.texels[1].sample.at.u, 1.0 / 3, 1e-4);
+  EXPECT_NEAR(map.texels[1].sample.at.v, 1.0 / 3, 1e-4);
+}
+
+TEST(Rasterise, SharedEdgeThroughCentresGoesToTheLowerNumber) {
+  const Atlas atlas = atlas_of(4, {{{{0, 0}, {4, 0}, {4, 4}}}, {{{0, 0}, {4, 4}, {0, 4}}}});
+  const TexelMap map = rasterise({}, atlas);
+  EXPECT_EQ(map.texels.size(), 16u);
+  for (uint32_t k = 0; k < 4; ++k) EXPECT_EQ(map.texels[map.texel_at[5 * k]].triangle_number, 0u);
+}
+
+TEST(Rasterise, TrianglesWithoutAreaAndOnTheBorderGetTexels) {
+  const Atlas atlas =
+      atlas_of(4, {{{{0.5f, 1.5f}, {3.5f, 1.5f}, {2, 1.5f}}}, {{{4, 4}, {4, 4}, {4, 4}}}});
+  const TexelMap map = rasterise({}, atlas);
+  ASSERT_EQ(map.texels.size(), 5u);
+  EXPECT_EQ(map.texels[4].x, 3u);
+  EXPECT_EQ(map.texels[4].y, 3u);
+  for (const Texel& t : map.texels) {
+    EXPECT_GT(t.sample.at.u, 0);
+    EXPECT_GT(t.sample.at.v, 0);
+    EXPECT_LT(t.sample.at.u + t.sample.at.v, 1);
+  }
+}
+
+TEST(Rasterise, StretchOfAKnownMap) {
+  // A square metre on 8 x 2 texels: derivatives 1/8 and 1/2; L2 = sqrt((1/64 + 1/4) / 2) * 4.
+  scene::Mesh mesh;
+  testing::add_quad(mesh, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+  const scene::Scene scene = testing::scene_of(mesh);
+  const Atlas atlas = atlas_of(8, {{{{0, 0}, {8, 0}, {8, 2}}}, {{{0, 0}, {8, 2}, {0, 2}}}});
+  const AtlasStats stats = atlas_stats(scene, atlas, rasterise(scene, atlas));
+  EXPECT_NEAR(stats.mean_stretch_l2, std::sqrt((1.0 / 64 + 0.25) / 2) * 4, 1e-6);
+  EXPECT_DOUBLE_EQ(stats.utilisation, 0.25);
+  EXPECT_NEAR(stats.texels_per_metre, 4, 1e-6);
+  EXPECT_EQ(stats.owning_triangles, 1);
+}
+
+}  // namespace
+}  // namespace luxel::atlas

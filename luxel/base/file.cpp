@@ -1,0 +1,133 @@
+#include "luxel/base/file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <utility>
+
+namespace luxel {
+inline namespace base {
+namespace {
+
+tl::unexpected<Error> write_error(const std::filesystem::path& path, int error) {
+  const bool full = error == ENOSPC || error == EDQUOT;
+  return fail(full ? ErrorCode::out_of_disk : ErrorCode::io, "cannot write {}: {}", path.string(),
+              std::strerror(error));
+}
+
+/// Returns 0 or the errno of the first call that failed.
+int write_all(int file, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(file, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return n < 0 ? errno : EIO;
+    bytes = bytes.subspan(size_t(n));
+  }
+  return ::fsync(file) == 0 || errno == EINVAL ? 0 : errno;
+}
+
+/// A file that is removed with this object unless its name was cleared.
+struct TemporaryFile {
+  std::string name;
+  TemporaryFile() = default;
+  TemporaryFile(TemporaryFile&& other) noexcept : name(std::exchange(other.name, {})) {}
+  TemporaryFile& operator=(TemporaryFile&&) = delete;
+  ~TemporaryFile() {
+    if (!name.empty()) ::unlink(name.c_str());
+  }
+};
+
+Result<TemporaryFile> write_temporary(const std::filesystem::path& path,
+                                      std::span<const std::byte> bytes) {
+  // Renaming onto a folder would fail too, but after the files before this one got their names.
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return fail(ErrorCode::io, "cannot write {}: a folder of this name is in the way",
+                path.string());
+  TemporaryFile temporary;
+  temporary.name = path.string() + ".partial-" + std::to_string(::getpid());
+  const int file = ::open(temporary.name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) return write_error(path, errno);
+  int error = write_all(file, bytes);
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error != 0) return write_error(path, error);
+  return temporary;
+}
+
+/// A second name for the file under `path`, if there is one, so that it can be brought back; where
+/// a file system knows no second names the file gives up its first. Returns 0 or an errno.
+int keep_old(const std::filesystem::path& path, TemporaryFile& old) {
+  std::string name = path.string() + ".replaced-" + std::to_string(::getpid());
+  if (::link(path.c_str(), name.c_str()) != 0) {
+    if (errno == ENOENT) return 0;
+    if (::rename(path.c_str(), name.c_str()) != 0) return errno;
+  }
+  old.name = std::move(name);
+  return 0;
+}
+
+/// Undoes a rename onto `path`. Of two names of one file rename() leaves both: the name of `old` is
+/// not cleared, so that it is removed in any case.
+void bring_back(const std::filesystem::path& path, const TemporaryFile& old) {
+  if (old.name.empty())
+    ::unlink(path.c_str());
+  else
+    ::rename(old.name.c_str(), path.c_str());
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    return fail(ErrorCode::io, "{}: no such file", path.string());
+  if (std::filesystem::is_directory(path, ignored))
+    return fail(ErrorCode::io, "{} is a folder, not a file", path.string());
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) return fail(ErrorCode::io, "cannot read {}: {}", path.string(), std::strerror(errno));
+  std::vector<std::byte> bytes(size_t(in.tellg()));
+  in.seekg(0);
+  in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
+  if (!in) return fail(ErrorCode::io, "cannot read {}: the read stopped early", path.string());
+  return bytes;
+}
+
+OutputFile text_file(std::filesystem::path path, std::string_view text) {
+  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+  return {std::move(path), {begin, begin + text.size()}};
+}
+
+Status write_files_atomically(std::span<const OutputFile> files) {
+  std::vector<TemporaryFile> temporaries;
+  for (const OutputFile& file : files) {
+    LUXEL_TRY(TemporaryFile temporary, write_temporary(file.path, file.bytes));
+    temporaries.push_back(std::move(temporary));
+  }
+  std::vector<TemporaryFile> old(files.size());
+  for (size_t i = 0; i < files.size(); ++i) {
+    int error = keep_old(files[i].path, old[i]);
+    if (error == 0 && ::rename(temporaries[i].name.c_str(), files[i].path.c_str()) != 0)
+      error = errno;
+    if (error != 0) {
+      if (!old[i].name.empty()) bring_back(files[i].path, old[i]);
+      for (size_t k = 0; k < i; ++k) bring_back(files[k].path, old[k]);
+      return write_error(files[i].path, error);
+    }
+    temporaries[i].name.clear();
+  }
+  return {};
+}
+
+Status write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  LUXEL_TRY(TemporaryFile temporary, write_temporary(path, bytes));
+  if (::rename(temporary.name.c_str(), path.c_str()) != 0) return write_error(path, errno);
+  temporary.name.clear();
+  return {};
+}
+
+}  // namespace base
+}  // namespace luxel

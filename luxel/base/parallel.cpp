@@ -1,0 +1,64 @@
+#include "luxel/base/parallel.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <thread>
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+#include "luxel/base/check.h"
+
+namespace luxel {
+inline namespace base {
+namespace {
+
+/// Sets flush-to-zero and denormals-are-zero while it lives, then restores what was there.
+class FlushDenormals {
+ public:
+#if defined(__SSE2__)
+  FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
+  ~FlushDenormals() { _mm_setcsr(before_); }
+
+ private:
+  unsigned before_;
+#else
+  FlushDenormals() {}
+  ~FlushDenormals() {}
+#endif
+};
+
+}  // namespace
+
+struct ThreadLimit::State {
+  tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int threads) {
+  LUXEL_CHECK(threads >= 0);
+  const size_t all = std::max(1u, std::thread::hardware_concurrency());
+  const size_t limit = threads == 0 ? all : size_t(threads);
+  state_.reset(new State{{tbb::global_control::max_allowed_parallelism, limit}});
+}
+ThreadLimit::~ThreadLimit() = default;
+
+int thread_count() {
+  const size_t allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return int(allowed);
+}
+
+void parallel_for(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body) {
+  LUXEL_CHECK(grain > 0);
+  const size_t blocks = (count + grain - 1) / grain;
+  tbb::parallel_for(size_t(0), blocks, [&](size_t block) {
+    const FlushDenormals flush;
+    body(block * grain, std::min(count, (block + 1) * grain));
+  });
+}
+
+}  // namespace base
+}  // namespace luxel

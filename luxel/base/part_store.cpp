@@ -1,0 +1,92 @@
+#include "luxel/base/part_store.h"
+
+#include <utility>
+
+namespace luxel {
+inline namespace base {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Clock::duration seconds(double s) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+}
+
+}  // namespace
+
+PartStore::PartStore(PartStoreParams params, Progress& progress, std::optional<RecordFile> found)
+    : params_(std::move(params)), progress_(progress), file_(std::move(found)) {
+  has_file_ = file_.has_value();
+  if (has_file_) progress_.set_way_on(params_.way_on);
+  flush_at_ = (params_.start + seconds(params_.interval_s)).time_since_epoch().count();
+}
+
+bool PartStore::wants() const {
+  if (failed_ || params_.interval_s <= 0) return false;
+  return has_file_ || Clock::now() >= params_.start + seconds(params_.interval_s);
+}
+
+bool PartStore::keep(RecordKey part, std::span<const std::byte> bytes) {
+  if (!wants() || !make_file()) return false;
+  const Status kept = file_->append(part, bytes);
+  if (!kept) {
+    const std::lock_guard lock(mutex_);
+    fail_locked(kept.error());
+    return false;
+  }
+  ++kept_;
+  flush_now_and_then();
+  return true;
+}
+
+bool PartStore::make_file() {
+  if (has_file_) return true;
+  const std::lock_guard lock(mutex_);
+  if (has_file_ || failed_) return has_file_;
+  Result<RecordFile> made = RecordFile::create(params_.file, params_.header);
+  if (!made) {
+    fail_locked(made.error());
+    return false;
+  }
+  file_.emplace(std::move(*made));
+  has_file_ = true;
+  progress_.set_way_on(params_.way_on);
+  return true;
+}
+
+void PartStore::fail_locked(const Error& error) {
+  if (failed_.exchange(true)) return;
+  failure_ = error.message + "; the work goes on, but what is finished from now on is not kept";
+  progress_.note("warning: " + failure_);
+}
+
+std::string PartStore::failure() const {
+  const std::lock_guard lock(mutex_);
+  return failure_;
+}
+
+/// Whoever comes first when it is time waits for the disk; the others go on.
+void PartStore::flush_now_and_then() {
+  Clock::rep due = flush_at_;
+  const Clock::time_point now = Clock::now();
+  if (now.time_since_epoch().count() < due) return;
+  const Clock::rep next = (now + seconds(params_.interval_s)).time_since_epoch().count();
+  if (flush_at_.compare_exchange_strong(due, next)) file_->flush();
+}
+
+std::optional<std::vector<std::byte>> PartStore::find(RecordKey part) const {
+  if (!has_file_) return std::nullopt;
+  const std::optional<uint64_t> size = file_->size_of(part);
+  if (!size) return std::nullopt;
+  std::vector<std::byte> bytes(*size);
+  if (!file_->read(part, 0, bytes)) return std::nullopt;
+  ++found_;
+  return bytes;
+}
+
+bool PartStore::read(RecordKey part, uint64_t offset, std::span<std::byte> out) const {
+  return has_file_ && file_->read(part, offset, out);
+}
+
+}  // namespace base
+}  // namespace luxel

@@ -1,0 +1,92 @@
+// Finished parts of long work, kept so that the work can go on after its process has ended.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "luxel/base/digest.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/record_file.h"
+
+namespace luxel {
+inline namespace base {
+
+struct PartStoreParams {
+  std::filesystem::path file;
+  std::string header;  ///< of a file that is made
+  /// How the work can go on when it is stopped: Progress::way_on() once there is a file.
+  std::string way_on;
+  /// What is finished earlier than this after `start` is not kept: short work writes nothing. So
+  /// often everything is flushed to the disk, too. 0: nothing is ever added.
+  double interval_s = 30;
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+};
+
+/// Parts are found again by what they were made from: a stage is the digest of its name and of
+/// everything that its parts depend on besides what the file's header says. Work that has come to
+/// a stage on another way than before, so that its input differs, finds nothing and does it anew.
+///
+/// A file that cannot be written any more (the disk is full) gets no more parts; the work goes on,
+/// and `progress` gets a note. Thread-safe.
+class PartStore {
+ public:
+  /// With `found`, a file to go on with, parts are kept from the start on. `progress` outlives
+  /// this.
+  PartStore(PartStoreParams params, Progress& progress, std::optional<RecordFile> found = {});
+  PartStore(const PartStore&) = delete;
+  PartStore& operator=(const PartStore&) = delete;
+
+  /// Whether keep() would keep a part now: without that it need not be put together.
+  bool wants() const;
+  /// Returns whether it was kept.
+  bool keep(RecordKey part, std::span<const std::byte> bytes);
+  std::optional<std::vector<std::byte>> find(RecordKey part) const;
+  /// Bytes of a part that was kept or found, from an offset on. False when the disk fails.
+  bool read(RecordKey part, uint64_t offset, std::span<std::byte> out) const;
+
+  const std::filesystem::path& file() const { return params_.file; }
+  bool has_failed() const { return failed_; }
+  /// The note about that; empty: it has not.
+  std::string failure() const;
+  uint64_t parts_found() const { return found_; }
+  uint64_t parts_kept() const { return kept_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool make_file();
+  void fail_locked(const Error& error);
+  void flush_now_and_then();
+
+  PartStoreParams params_;
+  Progress& progress_;
+  mutable std::mutex mutex_;
+  std::optional<RecordFile> file_;  ///< made under the mutex, never taken away
+  std::atomic<bool> has_file_{false}, failed_{false};
+  std::string failure_;
+  std::atomic<Clock::rep> flush_at_{0};
+  mutable std::atomic<uint64_t> found_{0};
+  std::atomic<uint64_t> kept_{0};
+};
+
+/// A stage of the work and where its parts are kept: nowhere, where there is no store.
+struct KeptStage {
+  PartStore* store = nullptr;
+  uint64_t stage = 0;
+
+  bool wants() const { return store != nullptr && store->wants(); }
+  bool keep(uint64_t part, std::span<const std::byte> bytes) const {
+    return store != nullptr && store->keep({stage, part}, bytes);
+  }
+  std::optional<std::vector<std::byte>> find(uint64_t part) const {
+    return store == nullptr ? std::nullopt : store->find({stage, part});
+  }
+};
+
+}  // namespace base
+}  // namespace luxel

@@ -1,0 +1,105 @@
+// Progress and cancellation of long work, shared between the worker and whoever watches.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "luxel/base/clock.h"
+
+namespace luxel {
+inline namespace base {
+
+/// One finished or running stage of the work.
+struct Stage {
+  std::string name;
+  double seconds = 0;
+};
+
+/// How work goes against what was expected of it [s].
+struct Expected {
+  double past = 0, past_taken = 0;  ///< of stages that have ended, and what they took
+  double now = 0, now_taken = 0;    ///< of the running one
+  double now_share = 0;             ///< of it that is done; 0: not known
+  double future = 0;                ///< of stages to come
+};
+/// Seconds to the end, if what is to come is as much slower than expected as what has come. How
+/// fast the running stage goes counts for more the more of it is done.
+double seconds_left(const Expected& e);
+
+/// Work calls begin() per stage and advance() per tile or iteration, never per ray. A watcher may
+/// read at any time from another thread. request_cancel() may be called from a signal handler;
+/// work polls cancelled() at the same places where it advances, and at least every 0.2 s.
+class Progress {
+ public:
+  /// Starts a stage of `total` units of work and ends the one before. Called by one thread.
+  void begin(std::string_view stage, uint64_t total);
+  /// Ends the last stage.
+  void finish();
+  void advance(uint64_t units) { done_.fetch_add(units, std::memory_order_relaxed); }
+  /// Units that were there already, which says nothing about how long the others take.
+  void skip(uint64_t units) {
+    skipped_.fetch_add(units, std::memory_order_relaxed);
+    advance(units);
+  }
+
+  /// What stages to come are expected to take, in order, instead of what was said before; and those
+  /// that come after all of them, which alone say nothing about what comes before them. A stage
+  /// that comes unexpected takes no place in either.
+  void expect(std::vector<Stage> stages);
+  void expect_at_end(std::vector<Stage> stages);
+  /// All before the end takes so many seconds from now, whatever stages come.
+  void expect_within(double seconds);
+
+  void request_cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+
+  struct Snapshot {
+    std::string stage;
+    uint64_t done = 0, total = 0;
+    uint64_t skipped = 0;  ///< of done
+    double stage_seconds = 0;
+    int stage_index = -1;
+    double seconds_left = -1;  ///< of all that is expected; < 0: not known
+  };
+  Snapshot snapshot() const;
+  /// The stages so far with their wall-clock seconds.
+  std::vector<Stage> stages() const;
+
+  /// A sentence that people should read now rather than when the work is done. Thread-safe.
+  void note(std::string text);
+  /// All from number `first` on.
+  std::vector<std::string> notes(size_t first) const;
+  /// What can be said to someone who stops the work; empty: that it is lost. Thread-safe.
+  void set_way_on(std::string text);
+  std::string way_on() const;
+  /// What must be done by whoever ends the process while the work still runs; empty: nothing.
+  /// Thread-safe.
+  void set_clean_up(std::function<void()> clean_up);
+  void clean_up() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<Stage> stages_;
+  std::vector<Stage> expected_, expected_at_end_;  ///< those that have come are taken away
+  /// When the end begins, whatever stages come before it.
+  std::optional<Clock::time_point> end_begins_;
+  bool sees_the_end_ = false;            ///< what comes before it is expected, or it has begun
+  Stage awaited_;                        ///< the running stage, as it was expected
+  double expected_s_ = 0, taken_s_ = 0;  ///< of expected stages that have ended
+  Clock::time_point stage_start_;
+  bool running_ = false;
+  std::atomic<uint64_t> done_{0}, total_{0}, skipped_{0};
+  std::vector<std::string> notes_;
+  std::string way_on_;
+  std::function<void()> clean_up_;
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace base
+}  // namespace luxel

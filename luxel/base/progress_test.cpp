@@ -1,0 +1,166 @@
+#include "luxel/base/progress.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace luxel {
+namespace {
+
+TEST(Progress, StartsWithNothing) {
+  const Progress progress;
+  const Progress::Snapshot s = progress.snapshot();
+  EXPECT_EQ(s.stage_index, -1);
+  EXPECT_EQ(s.done, 0u);
+  EXPECT_TRUE(progress.stages().empty());
+  EXPECT_FALSE(progress.cancelled());
+}
+
+TEST(Progress, CountsWithinTheRunningStage) {
+  Progress progress;
+  progress.begin("one", 10);
+  progress.advance(3);
+  progress.advance(4);
+  Progress::Snapshot s = progress.snapshot();
+  EXPECT_EQ(s.stage, "one");
+  EXPECT_EQ(s.stage_index, 0);
+  EXPECT_EQ(s.done, 7u);
+  EXPECT_EQ(s.total, 10u);
+  progress.begin("two", 5);
+  s = progress.snapshot();
+  EXPECT_EQ(s.stage, "two");
+  EXPECT_EQ(s.stage_index, 1);
+  EXPECT_EQ(s.done, 0u) << "a new stage starts at nothing";
+  EXPECT_EQ(s.total, 5u);
+}
+
+TEST(Progress, KeepsTheSecondsOfFinishedStages) {
+  Progress progress;
+  progress.begin("slow", 1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  progress.begin("quick", 1);
+  progress.finish();
+  const double quick = progress.stages()[1].seconds;
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  progress.finish();  // a second time: nothing to end
+  const auto stages = progress.stages();
+  ASSERT_EQ(stages.size(), 2u);
+  EXPECT_EQ(stages[0].name, "slow");
+  EXPECT_GE(stages[0].seconds, 0.03);
+  EXPECT_EQ(stages[1].seconds, quick);
+  EXPECT_EQ(progress.snapshot().stage_seconds, quick);
+}
+
+TEST(Progress, AddsUpAcrossThreads) {
+  Progress progress;
+  progress.begin("shared", 4000);
+  std::vector<std::thread> threads;
+  threads.reserve(4);
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 1000; ++i) progress.advance(1);
+    });
+  for (std::thread& t : threads) t.join();
+  EXPECT_EQ(progress.snapshot().done, 4000u);
+}
+
+TEST(Progress, CancelReachesTheWorker) {
+  Progress progress;
+  std::thread worker([&] {
+    while (!progress.cancelled()) std::this_thread::yield();
+  });
+  progress.request_cancel();
+  worker.join();
+  EXPECT_TRUE(progress.cancelled());
+  progress.begin("after", 1);
+  EXPECT_TRUE(progress.cancelled()) << "a new stage does not forget it";
+}
+
+// 10 s were expected and took 20: all that comes takes twice as long.
+TEST(SecondsLeft, FollowFromWhatTheWorkHasTakenSoFar) {
+  EXPECT_DOUBLE_EQ(seconds_left({10, 10, 0, 0, 0, 30}), 30);
+  EXPECT_DOUBLE_EQ(seconds_left({10, 20, 0, 0, 0, 30}), 60);
+  // A stage of 10 s that has just begun, and 30 s after it.
+  EXPECT_DOUBLE_EQ(seconds_left({10, 20, 10, 0, 0, 30}), 80);
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 4, 0, 0}), 6) << "no share is known: as was expected";
+}
+
+// Half of a stage of 10 s took 20 s: it will take 40, and what follows is four times as slow.
+TEST(SecondsLeft, FollowFromTheSpeedOfTheRunningStage) {
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 20, 0.5, 5}), 20 + 4 * 5);
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 30, 0, 0}), 0) << "never below nothing";
+  // Half took 4 s of 10: it may have been the easier half. It will take 9 and not 8.
+  EXPECT_DOUBLE_EQ(seconds_left({0, 0, 10, 4, 0.5, 0}), 5);
+}
+
+TEST(Progress, ExpectedStagesAreTakenAwayAsTheyCome) {
+  Progress progress;
+  EXPECT_LT(progress.snapshot().seconds_left, 0) << "nothing is expected";
+  progress.expect_at_end({{"write", 100}});
+  progress.expect({{"trace", 1000}, {"bounce", 1000}});
+  progress.begin("read", 0);
+  EXPECT_DOUBLE_EQ(progress.snapshot().seconds_left, 2100);
+  progress.begin("trace", 10);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 2100, 1);
+  progress.expect({{"bounce", 500}});  // said anew
+  EXPECT_NEAR(progress.snapshot().seconds_left, 1600, 1);
+  // Stages of no time: what was expected of them is far too much, and is forgotten by degrees.
+  progress.begin("write", 10);
+  EXPECT_LT(progress.snapshot().seconds_left, 1) << "no bounces any more";
+}
+
+// Nobody has said what comes before the end: it is known when it begins.
+TEST(Progress, TheEndAloneIsNotTheWhole) {
+  Progress progress;
+  progress.expect_at_end({{"draw", 50}, {"write", 100}});
+  progress.begin("trace", 10);
+  EXPECT_LT(progress.snapshot().seconds_left, 0);
+  progress.begin("draw", 10);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 150, 1);
+}
+
+// Stages of rounds come as they may: time runs on until the end is there.
+TEST(Progress, ATimeIsExpectedWhateverComes) {
+  Progress progress;
+  progress.expect_at_end({{"write", 100}});
+  progress.expect_within(1000);
+  progress.begin("trace", 10);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 1100, 1);
+  const double before = progress.snapshot().seconds_left;
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_LE(progress.snapshot().seconds_left, before - 0.005);
+  progress.begin("write", 10);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 100, 1);
+}
+
+// Half of the stage was there already: what is left takes half as long, and goes at its own speed.
+TEST(Progress, WhatIsSkippedIsDoneButTakesNoTime) {
+  Progress progress;
+  progress.expect({{"trace", 1000}});
+  progress.begin("trace", 100);
+  progress.skip(50);
+  EXPECT_EQ(progress.snapshot().done, 50u);
+  EXPECT_EQ(progress.snapshot().skipped, 50u);
+  EXPECT_NEAR(progress.snapshot().seconds_left, 500, 1);
+  progress.begin("next", 10);
+  EXPECT_EQ(progress.snapshot().skipped, 0u);
+}
+
+TEST(Progress, CarriesWhatIsToBeSaidAndDone) {
+  Progress progress;
+  EXPECT_EQ(progress.way_on(), "");
+  progress.clean_up();  // nothing to do
+  progress.note("one"), progress.note("two");
+  EXPECT_EQ(progress.notes(0), (std::vector<std::string>{"one", "two"}));
+  EXPECT_EQ(progress.notes(1), std::vector<std::string>{"two"});
+  EXPECT_TRUE(progress.notes(2).empty());
+  progress.set_way_on("there");
+  EXPECT_EQ(progress.way_on(), "there");
+  int cleaned = 0;
+  progress.set_clean_up([&] { ++cleaned; });
+  progress.clean_up();
+  EXPECT_EQ(cleaned, 1);
+}
+
+}  // namespace
+}  // namespace luxel

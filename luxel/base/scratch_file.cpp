@@ -1,0 +1,57 @@
+#include "luxel/base/scratch_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "luxel/base/transfer.h"
+
+namespace luxel {
+
+ScratchFile::ScratchFile(std::filesystem::path folder, int file)
+    : folder_(std::move(folder)), file_(file) {}
+ScratchFile::ScratchFile(ScratchFile&& other) noexcept
+    : folder_(std::move(other.folder_)), file_(std::exchange(other.file_, -1)) {}
+ScratchFile& ScratchFile::operator=(ScratchFile&& other) noexcept {
+  std::swap(folder_, other.folder_);
+  std::swap(file_, other.file_);
+  return *this;
+}
+ScratchFile::~ScratchFile() {
+  if (file_ >= 0) ::close(file_);
+}
+
+Result<ScratchFile> ScratchFile::create(const std::filesystem::path& folder) {
+  const std::filesystem::path where = folder.empty() ? "." : folder;
+  // O_TMPFILE needs a file system that supports it; a name that is removed at once does not.
+  std::string name = (where / "luxel-scratch-XXXXXX").string();
+  const int file = ::mkstemp(name.data());
+  if (file < 0)
+    return fail(ErrorCode::io, "cannot make a temporary file in {}: {}", where.string(),
+                std::strerror(errno));
+  ::unlink(name.c_str());
+  return ScratchFile(where, file);
+}
+
+Status ScratchFile::write(uint64_t offset, const void* bytes, size_t count) const {
+  const int error =
+      transfer_all(::pwrite, file_, static_cast<const char*>(bytes), count, off_t(offset));
+  if (error == 0) return {};
+  return fail(error == ENOSPC ? ErrorCode::out_of_disk : ErrorCode::io,
+              "cannot write temporary data to {}: {}; give more --max-memory or a folder with more "
+              "room",
+              folder_.string(), std::strerror(error));
+}
+
+Status ScratchFile::read(uint64_t offset, void* bytes, size_t count) const {
+  const int error = transfer_all(::pread, file_, static_cast<char*>(bytes), count, off_t(offset));
+  if (error == 0) return {};
+  return fail(ErrorCode::io, "cannot read temporary data back from {}: {}", folder_.string(),
+              std::strerror(error));
+}
+
+}  // namespace luxel

@@ -1,0 +1,43 @@
+// Pictures of surfaces: what a camera sees when a function says how each point looks, above all
+// when surfaces are lit only by a solver's answer.
+#pragma once
+
+#include <functional>
+
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/image/image.h"
+#include "luxel/scene/scene.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::display {
+
+struct DrawParams {
+  int width = 960, height = 720;
+  int samples_per_axis = 3;           ///< n x n rays per pixel
+  float brightest_behind = INFINITY;  ///< what is seen of the surroundings is cut off there
+};
+
+/// How the surface that a camera's ray met looks from there. Called by many threads at once.
+using SeenAt = std::function<Rgb(const trace::Hit&)>;
+
+/// What is seen per pixel, 4 channels (A = share of the pixel that shows a surface). Back faces of
+/// one-sided materials are invisible, as in a real-time engine, so a closed room can be looked into
+/// from outside. Where no surface is seen: the surroundings.
+Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer& tracer,
+                               const scene::Camera& camera, const SeenAt& seen_at,
+                               const DrawParams& params, Progress& progress);
+
+/// E [W/m^2] of the front side at a surface point.
+using IrradianceAt = std::function<Rgb(const scene::SurfacePoint&)>;
+
+/// draw_seen of radiance: emitted plus rho E / pi.
+Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tracer,
+                          const scene::Camera& camera, const IrradianceAt& irradiance_at,
+                          const DrawParams& params, Progress& progress);
+
+/// A camera that shows the scene well: of some candidates around it (and inside it, when nothing
+/// can be seen from outside) the one that sees the most front faces of different triangles.
+scene::Camera fit_camera(const scene::Scene& scene, const trace::RayTracer& tracer, float aspect);
+
+}  // namespace luxel::display

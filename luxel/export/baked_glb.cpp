@@ -1,0 +1,251 @@
+#include "luxel/export/baked_glb.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+
+#include "luxel/atlas/pages.h"
+#include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/vec_double.h"
+#include "luxel/export/gltf_mesh.h"
+#include "luxel/export/gltf_node.h"
+#include "luxel/image/codec.h"
+
+namespace luxel::export_ {
+namespace {
+
+using nlohmann::json;
+
+/// The irradiance that white stands for in the 8-bit picture: the 99.9th percentile of the largest
+/// channel over covered texels, so that a few texels beside a lamp do not take all the steps from
+/// the rest (they clip; lightmap.exr has them). 1 where no light falls.
+float lightmap_intensity(std::span<const image::Image> lightmaps) {
+  std::vector<float> values;
+  for (const image::Image& lightmap : lightmaps)
+    for (int y = 0; y < lightmap.height; ++y)
+      for (int x = 0; x < lightmap.width; ++x)
+        if (lightmap.at(x, y)[3] > 0) values.push_back(max_component(lightmap.rgb(x, y)));
+  if (values.empty()) return 1;
+  const size_t rank = size_t(double(values.size() - 1) * 0.999);
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
+  if (values[rank] > 0) return values[rank];
+  const float largest = *std::max_element(values.begin(), values.end());
+  return largest > 0 ? largest : 1;
+}
+
+/// linear(picture) * intensity = E, up to 8 bits and clipping.
+std::vector<std::byte> lightmap_png(const image::Image& lightmap, float intensity) {
+  image::Image scaled(lightmap.width, lightmap.height, 3);
+  for (int y = 0; y < lightmap.height; ++y)
+    for (int x = 0; x < lightmap.width; ++x)
+      scaled.set_rgb(x, y, lightmap.rgb(x, y) * (1 / intensity));
+  return image::encode_png(image::to_srgb8(scaled));
+}
+
+/// KHR_lights_punctual knows no profiles: such a lamp gets the mean of what it sends into its cone,
+/// a point light into all directions, so that its flux stays.
+scene::PunctualLight as_even_light(const scene::Scene& scene, scene::PunctualLight light) {
+  if (light.profile == scene::kNone) return light;
+  const bool is_spot = light.kind == scene::PunctualLight::Kind::spot;
+  light.intensity *= float(scene::mean_candela(scene.profiles[light.profile],
+                                               is_spot ? double(light.outer_cone_rad) : kPiDouble));
+  return light;
+}
+
+void append_lights_and_cameras(Glb& glb, const scene::Scene& scene, json& roots) {
+  for (const scene::PunctualLight& light : scene.lights)
+    roots.push_back(append_light(glb, as_even_light(scene, light)));
+  const float diagonal = std::max(world_bounds(scene).diagonal(), 1e-6f);
+  for (const scene::Camera& camera : scene.cameras)
+    roots.push_back(append_camera(glb, camera, 1e-3f * diagonal, 10 * diagonal));
+}
+
+Result<std::vector<std::byte>> finish_scene(Glb& glb, const scene::Scene& scene, json roots) {
+  json root = json::object();
+  if (!roots.empty()) root["nodes"] = std::move(roots);
+  if (!scene.name.empty()) root["name"] = scene.name;
+  if (scene.background != Rgb{})  // glTF has no word for it
+    root["extras"]["luxel"]["background"] = {scene.background.x, scene.background.y,
+                                             scene.background.z};
+  glb.json["asset"]["version"] = "2.0";
+  glb.json["asset"]["generator"] = "luxel";
+  glb.json["scenes"] = json::array({std::move(root)});
+  glb.json["scene"] = 0;
+  return finish(glb);
+}
+
+json instance_node(const scene::Instance& instance, size_t mesh) {
+  json node = {{"mesh", mesh}};
+  if (!instance.name.empty()) node["name"] = instance.name;
+  return node;
+}
+
+LightmapPlaces lightmap_places(const atlas::Atlas& atlas, const std::vector<atlas::Page>& pages,
+                               uint32_t instance) {
+  LightmapPlaces out;
+  for (uint32_t t = atlas.first_triangle[instance]; t < atlas.first_triangle[instance + 1]; ++t) {
+    out.page.push_back(atlas::page_of(atlas, t));
+    const atlas::Page& page = pages[out.page.back()];
+    std::array<Vec2, 3> uv = atlas.corners[t];
+    for (Vec2& c : uv)
+      c = {(c.x - float(page.x)) / float(page.side), (c.y - float(page.y)) / float(page.side)};
+    out.uv.push_back(uv);
+  }
+  return out;
+}
+
+/// One intensity for all pages: the same light is the same byte on each.
+void append_lightmaps(Glb& glb, MaterialBook& book, std::span<const image::Image> lightmaps) {
+  const float intensity = lightmap_intensity(lightmaps);
+  json names = json::array();
+  for (size_t p = 0; p < lightmaps.size(); ++p) {
+    const std::string name = lightmap_name(p, lightmaps.size());
+    const size_t texture =
+        append_lightmap_texture(glb, book, lightmap_png(lightmaps[p], intensity), name);
+    book.lightmap.push_back(
+        {{{"index", texture}, {"texCoord", 1}, {"intensity", intensity}}, name});
+    names.push_back(name + ".exr");
+  }
+  glb.json["asset"]["extras"]["luxel"] = {
+      {"irradiance",
+       "E [W/m^2] = intensity * linear(picture), the picture in sRGB; " +
+           std::string(lightmaps.size() == 1 ? "lightmap.exr holds" : "lightmap-N.exr hold") +
+           " E itself"}};
+  if (lightmaps.size() == 1)
+    glb.json["asset"]["extras"]["luxel"]["lightmap"] = names[0];
+  else
+    glb.json["asset"]["extras"]["luxel"]["lightmaps"] = names;
+}
+
+/// Pictures are encoded side by side: there may be dozens.
+struct EncodedLayer {
+  float intensity = 1;
+  std::vector<std::vector<std::byte>> png;  ///< per page
+};
+std::vector<EncodedLayer> encode_layers(std::span<const LightmapLayer> layers) {
+  std::vector<EncodedLayer> out(layers.size());
+  parallel_for(layers.size(), 1, [&](size_t l, size_t) {
+    out[l].intensity = lightmap_intensity(layers[l].lightmaps);
+    for (const image::Image& page : layers[l].lightmaps)
+      out[l].png.push_back(lightmap_png(page, out[l].intensity));
+  });
+  return out;
+}
+
+void append_layers(Glb& glb, MaterialBook& book, std::span<const LightmapLayer> layers) {
+  const std::vector<EncodedLayer> encoded = encode_layers(layers);
+  for (size_t l = 0; l < layers.size(); ++l) {
+    json about = {{"name", layers[l].name}, {"lights", layers[l].lights}};
+    if (layers[l].surroundings) about["surroundings"] = true;
+    const size_t pages = encoded[l].png.size();
+    if (pages > 0) about["intensity"] = encoded[l].intensity;
+    for (size_t p = 0; p < pages; ++p)
+      about["textures"].push_back(append_lightmap_texture(glb, book, encoded[l].png[p],
+                                                          lightmap_name(p, pages, layers[l].name)));
+    glb.json["asset"]["extras"]["luxel"]["layers"].push_back(std::move(about));
+  }
+}
+
+Result<std::vector<std::byte>> write_baked(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                           std::span<const image::Image> lightmaps,
+                                           std::span<const LightmapLayer> layers) {
+  Glb glb;
+  MaterialBook book;
+  append_lightmaps(glb, book, lightmaps);
+  append_layers(glb, book, layers);
+  const std::vector<atlas::Page> pages = atlas::pages_of(atlas);
+  json roots = json::array();
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+    if (mesh.triangles.empty()) continue;
+    const size_t index = append_mesh(glb, book, scene, mesh, lightmap_places(atlas, pages, i));
+    json node = instance_node(scene.instances[i], index);
+    for (const LightmapLayer& layer : layers)
+      if (std::ranges::find(layer.instances, i) != layer.instances.end())
+        node["extras"]["luxel"]["layer"] = layer.name;
+    roots.push_back(append_node(glb, scene.instances[i].world_from_object, std::move(node)));
+  }
+  append_lights_and_cameras(glb, scene, roots);
+  return finish_scene(glb, scene, std::move(roots));
+}
+
+Result<std::vector<std::byte>> write_scene(const scene::Scene& scene, json luxel_extras) {
+  Glb glb;
+  MaterialBook book;
+  if (!luxel_extras.empty()) glb.json["asset"]["extras"]["luxel"] = std::move(luxel_extras);
+  std::vector<size_t> index_of(scene.meshes.size(), SIZE_MAX);
+  json roots = json::array();
+  for (const scene::Instance& instance : scene.instances) {
+    const scene::Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.triangles.empty()) continue;
+    size_t& index = index_of[instance.mesh];
+    if (index == SIZE_MAX) index = append_mesh(glb, book, scene, mesh, {});
+    roots.push_back(append_node(glb, instance.world_from_object, instance_node(instance, index)));
+  }
+  append_lights_and_cameras(glb, scene, roots);
+  return finish_scene(glb, scene, std::move(roots));
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                         std::span<const image::Image> lightmaps,
+                                         std::span<const LightmapLayer> layers) {
+  LUXEL_CHECK(lightmaps.size() == atlas::pages_of(atlas).size());
+  for (const image::Image& lightmap : lightmaps) LUXEL_CHECK(lightmap.channels == 4);
+  LUXEL_CHECK(atlas.first_triangle.size() == scene.instances.size() + 1);
+  try {
+    return write_baked(scene, atlas, lightmaps, layers);
+  } catch (const std::exception& e) {  // nlohmann-json and memory
+    return fail(ErrorCode::io, "the baked scene cannot be written as .glb: {}", e.what());
+  }
+}
+
+std::string lightmap_name(size_t page, size_t pages, std::string_view layer) {
+  const std::string name = layer.empty() ? "lightmap" : fmt::format("lightmap-{}", layer);
+  return pages == 1 ? name : fmt::format("{}-{}", name, page);
+}
+
+Result<std::vector<std::string>> lightmap_files_of(std::span<const std::byte> glb,
+                                                   const std::string& name) {
+  // Header, then the JSON chunk's length and type.
+  constexpr size_t kBefore = 20;
+  uint32_t length = 0;
+  if (glb.size() >= kBefore) std::memcpy(&length, glb.data() + 12, sizeof length);
+  const bool whole = glb.size() >= kBefore && length <= glb.size() - kBefore;
+  const char* text = reinterpret_cast<const char*>(glb.data()) + kBefore;
+  const json document =
+      whole ? json::parse(text, text + length, nullptr, false) : json(json::value_t::discarded);
+  if (!document.is_object())
+    return fail(ErrorCode::bad_input, "{} is no binary glTF file; bake the scene again", name);
+  std::vector<std::string> out;
+  const json::json_pointer where("/extras/luxel/lightmap");
+  for (const json& material : document.value("materials", json::array()))
+    out.push_back(material.contains(where) && material[where].is_string()
+                      ? material[where].get<std::string>()
+                      : std::string());
+  return out;
+}
+
+Result<std::vector<std::byte>> vertex_lit_glb(const scene::Scene& scene, float intensity) {
+  try {
+    return write_scene(scene, {{"intensity", intensity},
+                               {"irradiance",
+                                "E [W/m^2] = intensity * COLOR_0, linear; where the "
+                                "scene had vertex colours, times those"}});
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::io, "the baked scene cannot be written as .glb: {}", e.what());
+  }
+}
+
+Result<std::vector<std::byte>> scene_glb(const scene::Scene& scene) {
+  try {
+    return write_scene(scene, json::object());
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::io, "the scene cannot be written as .glb: {}", e.what());
+  }
+}
+
+}  // namespace luxel::export_

@@ -1,0 +1,63 @@
+// The scene with its lightmap, as one binary glTF file.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "luxel/atlas/atlas.h"
+#include "luxel/base/result.h"
+#include "luxel/image/image.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::export_ {
+
+/// The light of some of the lamps. Layers add up to the lightmap.
+struct LightmapLayer {
+  std::string name;
+  std::vector<std::string> lights;          ///< that it is of
+  std::vector<uint32_t> instances;          ///< whose surfaces shine in its light
+  bool surroundings = false;                ///< background and environment are of it
+  std::span<const image::Image> lightmaps;  ///< E, 4 channels, one for each page
+};
+
+/// glTF 2.0 binary: every instance becomes a node with a mesh of its own (its place in the atlas is
+/// its own), TEXCOORD_1 holds the lightmap coordinates, vertices are split where charts part and
+/// shared elsewhere; positions, normals, TEXCOORD_0, colours, materials, textures, lights and
+/// cameras are kept. The lightmap is attached as extension MOZ_lightmap of every material (texCoord
+/// 1, `intensity`), its picture an 8-bit sRGB PNG of E / intensity; docs/format/bake.md describes
+/// it. `lightmaps` is E, 4 channels, one for each page of the atlas. With several pages a material
+/// has a version for each that it lies on, and a mesh that lies on several a primitive for each.
+/// asset.extras.luxel.layers lists `layers`, each with a texture per page and its own intensity
+/// (without pictures: none), and nodes that shine name theirs in extras.luxel.layer. Passes the
+/// Khronos validator without errors.
+Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                         std::span<const image::Image> lightmaps,
+                                         std::span<const LightmapLayer> layers = {});
+inline Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene,
+                                                const atlas::Atlas& atlas,
+                                                const image::Image& lightmap) {
+  return baked_glb(scene, atlas, std::span(&lightmap, 1));
+}
+
+/// What the files of a page are called, up to their extension: "lightmap", or of several pages
+/// "lightmap-0", "lightmap-1", ... Those of a layer: "lightmap-LAYER", "lightmap-LAYER-0", ...
+std::string lightmap_name(size_t page, size_t pages, std::string_view layer = {});
+
+/// Of a file that baked_glb() wrote: per material the file with its light, "lightmap.exr"; "" where
+/// it names none. Error (bad_input): no .glb.
+Result<std::vector<std::string>> lightmap_files_of(std::span<const std::byte> glb,
+                                                   const std::string& name);
+
+/// A scene whose meshes carry light per vertex: `colors` is E / `intensity`, times the vertex
+/// colours that the materials had. Materials become unlit (KHR_materials_unlit), so that every
+/// viewer shows base colour times light.
+Result<std::vector<std::byte>> vertex_lit_glb(const scene::Scene& scene, float intensity);
+
+/// A scene without a lightmap as .glb (meshes shared by instances stay shared): how the procedural
+/// scenes are written to scenes/.
+Result<std::vector<std::byte>> scene_glb(const scene::Scene& scene);
+
+}  // namespace luxel::export_

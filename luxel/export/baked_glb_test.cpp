@@ -1,0 +1,327 @@
+#include "luxel/export/baked_glb.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "luxel/base/file.h"
+#include "luxel/export/glb_test_support.h"
+#include "luxel/export/scene_test_support.h"
+#include "luxel/image/codec.h"
+#include "tests/support.h"
+
+namespace luxel::export_ {
+namespace {
+
+using testing::ElementsAre;
+
+struct Baked {
+  scene::Scene scene = rich_scene();
+  atlas::Atlas atlas = made_up_atlas(scene);
+  image::Image lightmap = ramp_lightmap();
+  std::vector<std::byte> bytes;
+  Document document;
+
+  Baked() {
+    const auto glb = baked_glb(scene, atlas, lightmap);
+    EXPECT_TRUE(glb);
+    bytes = *glb;
+    document = parse(bytes);
+  }
+};
+
+/// The triangles of an instance in the order of the file: by material, in order of first use.
+std::vector<uint32_t> file_order(const scene::Mesh& mesh) {
+  std::vector<uint32_t> materials, order;
+  for (const uint32_t m : mesh.triangle_material)
+    if (std::find(materials.begin(), materials.end(), m) == materials.end()) materials.push_back(m);
+  for (const uint32_t m : materials)
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      if (mesh.triangle_material[t] == m) order.push_back(t);
+  return order;
+}
+
+void expect_close(Vec3 a, Vec3 b, float tolerance) {
+  EXPECT_LE(length(a - b), tolerance)
+      << a.x << " " << a.y << " " << a.z << " for " << b.x << " " << b.y << " " << b.z;
+}
+
+void expect_same_triangle(const scene::Scene& scene, uint32_t instance, uint32_t t,
+                          const ReadTriangle& read) {
+  const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
+  EXPECT_EQ(read.node, scene.instances[instance].name);
+  EXPECT_EQ(read.material["name"], scene.materials[mesh.triangle_material[t]].name);
+  const scene::Triangle3 world = world_triangle(scene, instance, t);
+  const std::array<Vec3, 3> positions{world.a, world.b, world.c};
+  for (size_t c = 0; c < 3; ++c) {
+    const uint32_t v = mesh.triangles[t][c];
+    const Corner& corner = read.corner[c];
+    expect_close(corner.position, positions[c], 1e-6f * (10 + length(positions[c])));
+    if (!mesh.normals.empty()) {
+      EXPECT_EQ(corner.normal, mesh.normals[v]);
+    }
+    if (!mesh.colors.empty()) {
+      EXPECT_EQ(corner.color, mesh.colors[v]);
+    }
+    if (!mesh.uv0.empty()) {
+      EXPECT_EQ(corner.uv0, mesh.uv0[v]);
+    }
+  }
+}
+
+TEST(BakedGlb, ReadBackGivesTheSameTriangles) {
+  const Baked baked;
+  const std::vector<ReadTriangle> triangles = read_triangles(baked.document);
+  ASSERT_EQ(triangles.size(), baked.atlas.corners.size());
+  size_t next = 0;
+  for (uint32_t i = 0; i < baked.scene.instances.size(); ++i)
+    for (const uint32_t t : file_order(baked.scene.meshes[baked.scene.instances[i].mesh])) {
+      const ReadTriangle& read = triangles[next++];
+      expect_same_triangle(baked.scene, i, t, read);
+      const auto& place = baked.atlas.corners[baked.atlas.triangle_number(i, t)];
+      for (size_t c = 0; c < 3; ++c)
+        EXPECT_EQ(read.corner[c].uv1, (Vec2{place[c].x / 1024, place[c].y / 1024}));
+    }
+}
+
+TEST(BakedGlb, VerticesAreSplitOnlyWhereChartsPart) {
+  scene::Scene scene;
+  scene.materials.resize(1);
+  scene.meshes.push_back(grid_mesh());
+  scene.meshes[0].triangle_material.assign(72, 0);
+  scene.instances.push_back({"one", 0, {}});
+  const auto glb = baked_glb(scene, made_up_atlas(scene), ramp_lightmap());
+  ASSERT_TRUE(glb);
+  const Document d = parse(*glb);
+  const size_t positions = d.j["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
+  // Three strips of 3 x 7 vertices.
+  EXPECT_EQ(d.j["accessors"][positions]["count"], 63);
+}
+
+TEST(BakedGlb, AccessorsAreAlignedBoundedAndInside) {
+  const Baked baked;
+  const json& j = baked.document.j;
+  EXPECT_EQ(j["buffers"].size(), 1u);
+  EXPECT_EQ(j["buffers"][0]["byteLength"], baked.document.binary.size());
+  for (const json& view : j["bufferViews"]) {
+    EXPECT_EQ(view["byteOffset"].get<size_t>() % 4, 0u);
+    EXPECT_GT(view["byteLength"], 0u);
+    EXPECT_LE(view["byteOffset"].get<size_t>() + view["byteLength"].get<size_t>(),
+              baked.document.binary.size());
+  }
+  for (const json& accessor : j["accessors"]) {
+    const json& view = j["bufferViews"][accessor["bufferView"].get<size_t>()];
+    if (accessor["type"] == "SCALAR") {
+      EXPECT_EQ(view["target"], 34963);
+      EXPECT_FALSE(view.contains("byteStride"));
+      continue;
+    }
+    EXPECT_EQ(view["target"], 34962);
+    const std::vector<float> values = floats(baked.document, accessor);
+    const size_t n = accessor["min"].size();
+    EXPECT_EQ(view["byteStride"], 4 * n);
+    for (size_t c = 0; c < n; ++c) {
+      float lower = INFINITY, upper = -INFINITY;
+      for (size_t i = c; i < values.size(); i += n)
+        lower = std::min(lower, values[i]), upper = std::max(upper, values[i]);
+      EXPECT_EQ(accessor["min"][c].get<float>(), lower);
+      EXPECT_EQ(accessor["max"][c].get<float>(), upper);
+    }
+  }
+  for (const json& mesh : j["meshes"])
+    for (const json& primitive : mesh["primitives"]) {
+      const size_t vertices =
+          j["accessors"][primitive["attributes"]["POSITION"].get<size_t>()]["count"];
+      for (const uint32_t i : indices(baked.document, primitive)) EXPECT_LT(i, vertices);
+      for (const json& a : primitive["attributes"])
+        EXPECT_EQ(j["accessors"][a.get<size_t>()]["count"], vertices);
+    }
+}
+
+TEST(BakedGlb, MaterialsKeepTheirMeaning) {
+  const Baked baked;
+  std::map<std::string, json> materials;
+  for (const json& m : baked.document.j["materials"]) materials[m["name"]] = m;
+  ASSERT_EQ(materials.size(), 4u);
+
+  const json painted = materials["painted"];
+  EXPECT_THAT(painted["pbrMetallicRoughness"]["baseColorFactor"].get<std::vector<float>>(),
+              ElementsAre(0.1f, 0.2f, 0.3f, 1.0f));
+  const json info = painted["pbrMetallicRoughness"]["baseColorTexture"];
+  EXPECT_EQ(info["extensions"]["KHR_texture_transform"]["offset"][0], 0.5f);
+  EXPECT_EQ(info["extensions"]["KHR_texture_transform"]["rotation"], 1.0f);
+
+  const json lamp = materials["lamp"];
+  EXPECT_EQ(lamp["doubleSided"], true);
+  const float strength = lamp["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"];
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_LE(lamp["emissiveFactor"][c], 1);
+    EXPECT_EQ(lamp["emissiveFactor"][c].get<float>() * strength,
+              baked.scene.materials[1].emission[int(c)]);
+  }
+  EXPECT_EQ(materials["leaf"]["alphaMode"], "MASK");
+  EXPECT_EQ(materials["leaf"]["alphaCutoff"], 0.25f);
+  EXPECT_EQ(materials["sign"]["alphaMode"], "BLEND");
+  EXPECT_TRUE(materials["sign"]["extensions"].contains("KHR_materials_unlit"));
+  EXPECT_FALSE(materials["sign"]["extensions"].contains("MOZ_lightmap"));
+  EXPECT_FALSE(materials["sign"]["pbrMetallicRoughness"].contains("baseColorTexture"));
+
+  const std::set<std::string> used = baked.document.j["extensionsUsed"];
+  EXPECT_THAT(used, ElementsAre("KHR_lights_punctual", "KHR_materials_emissive_strength",
+                                "KHR_materials_unlit", "KHR_texture_transform", "MOZ_lightmap"));
+}
+
+TEST(BakedGlb, LightmapPictureTimesIntensityIsIrradiance) {
+  const Baked baked;
+  const json& j = baked.document.j;
+  const json& extension = j["materials"][0]["extensions"]["MOZ_lightmap"];
+  EXPECT_EQ(extension["texCoord"], 1);
+  const float intensity = extension["intensity"];
+  const json& texture = j["textures"][extension["index"].get<size_t>()];
+  const json& picture = j["images"][texture["source"].get<size_t>()];
+  const json& view = j["bufferViews"][picture["bufferView"].get<size_t>()];
+  const auto png = std::span(baked.document.binary)
+                       .subspan(view["byteOffset"].get<size_t>(), view["byteLength"].get<size_t>());
+  const image::Image& e = baked.lightmap;
+  image::Image scaled(64, 64, 3);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) scaled.set_rgb(x, y, e.rgb(x, y) / intensity);
+  EXPECT_THAT(std::vector(png.begin(), png.end()),
+              testing::ContainerEq(image::encode_png(image::to_srgb8(scaled))));
+  // One covered texel in a thousand may clip: 3840 texels, the ramp's largest values in the end.
+  int clipped = 0;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 60; ++x) clipped += max_component(e.rgb(x, y)) > intensity ? 1 : 0;
+  EXPECT_GE(clipped, 1);
+  EXPECT_LE(clipped, 4);
+}
+
+TEST(BakedGlb, ABlackLightmapHasIntensityOne) {
+  const scene::Scene scene = rich_scene();
+  const auto glb = baked_glb(scene, made_up_atlas(scene), image::Image(8, 8, 4));
+  ASSERT_TRUE(glb);
+  EXPECT_EQ(parse(*glb).j["materials"][0]["extensions"]["MOZ_lightmap"]["intensity"], 1);
+}
+
+TEST(SceneGlb, SharedMeshesStayShared) {
+  const scene::Scene scene = rich_scene();
+  const auto glb = scene_glb(scene);
+  ASSERT_TRUE(glb);
+  const Document d = parse(*glb);
+  EXPECT_EQ(d.j["meshes"].size(), 2u);
+  const std::vector<ReadTriangle> triangles = read_triangles(d);
+  size_t next = 0;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    for (const uint32_t t : file_order(scene.meshes[scene.instances[i].mesh]))
+      expect_same_triangle(scene, i, t, triangles[next++]);
+  EXPECT_EQ(next, triangles.size());
+  EXPECT_FALSE(d.j["materials"][0].value("extensions", json::object()).contains("MOZ_lightmap"));
+}
+
+// WebP may come in by an extension; what goes out needs none.
+TEST(SceneGlb, PicturesThatGltfDoesNotKnowBecomePngs) {
+  scene::Scene scene = rich_scene();
+  const std::string webp = "RIFF....WEBP";
+  const auto* first = reinterpret_cast<const std::byte*>(webp.data());
+  scene.textures[0].encoded.assign(first, first + webp.size());
+  scene.textures[0].mime_type = "image/webp";
+  const Document d = parse(*scene_glb(scene));
+  ASSERT_FALSE(d.j["images"].empty());
+  EXPECT_EQ(d.j["images"][0]["mimeType"], "image/png");
+  const json& view = d.j["bufferViews"][d.j["images"][0]["bufferView"].get<size_t>()];
+  const auto picture =
+      image::decode_ldr(std::span(d.binary).subspan(view["byteOffset"].get<size_t>(),
+                                                    view["byteLength"].get<size_t>()),
+                        "picture");
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->data, scene.textures[0].rgba);
+}
+
+TEST(SceneGlb, LightsShineAlongTheirDirection) {
+  const scene::Scene scene = rich_scene();
+  const Document d = parse(*scene_glb(scene));
+  const json& lights = d.j["extensions"]["KHR_lights_punctual"]["lights"];
+  ASSERT_EQ(lights.size(), 3u);
+  for (const json& node : d.j["nodes"]) {
+    if (!node.contains("extensions")) continue;
+    const size_t index = node["extensions"]["KHR_lights_punctual"]["light"];
+    const scene::PunctualLight& light = scene.lights[index];
+    const json& read = lights[index];
+    const Mat34 m = local_matrix(node);
+    if (index > 0) expect_close(transform_vector(m, {0, 0, -1}), light.direction, 1e-6f);
+    expect_close(transform_point(m, {}), light.position, 1e-6f);
+    for (size_t c = 0; c < 3; ++c)
+      EXPECT_FLOAT_EQ(read["color"][c].get<float>() * read["intensity"].get<float>(),
+                      light.intensity[int(c)]);
+  }
+  EXPECT_EQ(lights[0]["range"], 7.0f);
+  EXPECT_EQ(lights[1]["type"], "spot");
+  EXPECT_FLOAT_EQ(lights[1]["spot"]["outerConeAngle"].get<float>(), kPi / 4);
+  EXPECT_EQ(lights[2]["type"], "directional");
+}
+
+// 100 cos v below, dark above: a quarter over all directions, (1 + cos a) / 2 over a cone of a.
+TEST(SceneGlb, LampsWithProfilesGetTheirMean) {
+  scene::Scene scene = rich_scene();
+  scene::LightProfile plate;
+  plate.horizontal_rad = {0};
+  for (int v = 0; v <= 90; ++v) {
+    plate.vertical_rad.push_back(float(v) * kPi / 180);
+    plate.candela.push_back(100 * std::max(0.0f, std::cos(plate.vertical_rad.back())));
+  }
+  for (size_t i : {0, 1}) scene::attach_profile(scene, i, plate, 2);
+  scene.lights[1].outer_cone_rad = 0.5f;
+  const Document d = parse(*scene_glb(scene));
+  const json& lights = d.j["extensions"]["KHR_lights_punctual"]["lights"];
+  // Interpolation between degrees loses 2.5e-5 of a cosine.
+  EXPECT_NEAR(lights[0]["intensity"].get<float>(), 2 * 25, 5e-3f);
+  EXPECT_NEAR(lights[1]["intensity"].get<float>(), 100 * (1 + std::cos(0.5f)), 2e-2f);
+  EXPECT_EQ(lights[1]["type"], "spot");
+}
+
+TEST(SceneGlb, CamerasAreKept) {
+  const Document d = parse(*scene_glb(rich_scene()));
+  ASSERT_EQ(d.j["cameras"].size(), 2u);
+  EXPECT_EQ(d.j["cameras"][0]["perspective"]["yfov"], 0.8f);
+  EXPECT_EQ(d.j["cameras"][0]["perspective"]["aspectRatio"], 1.5f);
+  EXPECT_EQ(d.j["cameras"][1]["orthographic"]["ymag"], 2.0f);
+}
+
+TEST(SceneGlb, ManyVerticesGetWideIndices) {
+  scene::Scene scene;
+  scene.materials.resize(1);
+  scene::Mesh mesh;
+  for (uint32_t i = 0; i < 70000; ++i) {
+    mesh.positions.push_back({float(i), float(i % 7), 0});
+    if (i >= 2) mesh.triangles.push_back({i - 2, i - 1, i});
+  }
+  mesh.triangle_material.assign(mesh.triangles.size(), 0);
+  scene.meshes.push_back(mesh);
+  scene.instances.push_back({"strip", 0, {}});
+  const Document d = parse(*scene_glb(scene));
+  const json& primitive = d.j["meshes"][0]["primitives"][0];
+  EXPECT_EQ(d.j["accessors"][primitive["indices"].get<size_t>()]["componentType"], 5125);
+  EXPECT_EQ(read_triangles(d).size(), mesh.triangles.size());
+}
+
+TEST(SceneGlb, NamesThatAreNotUtf8DoNotStopIt) {
+  scene::Scene scene = rich_scene();
+  scene.instances[0].name = "caf\xe9";
+  const auto glb = scene_glb(scene);
+  ASSERT_TRUE(glb);
+  EXPECT_EQ(parse(*glb).j["nodes"][0]["name"], "caf\xef\xbf\xbd");
+}
+
+/// tools/validate_gltf.mjs puts these before the Khronos validator.
+TEST(SceneGlb, LeavesSamplesForTheValidator) {
+  const std::filesystem::path folder = std::filesystem::path(LUXEL_BINARY_DIR) / "glb_samples";
+  std::filesystem::create_directories(folder);
+  EXPECT_TRUE(write_file_atomically(folder / "baked.glb", Baked().bytes));
+  EXPECT_TRUE(write_file_atomically(folder / "scene.glb", *scene_glb(rich_scene())));
+}
+
+}  // namespace
+}  // namespace luxel::export_

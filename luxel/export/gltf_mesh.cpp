@@ -1,0 +1,153 @@
+#include "luxel/export/gltf_mesh.h"
+
+#include <algorithm>
+#include <compare>
+#include <map>
+
+#include "luxel/base/check.h"
+
+namespace luxel::export_ {
+namespace {
+
+using nlohmann::json;
+
+constexpr uint32_t kNone = UINT32_MAX;
+
+/// The vertices of one primitive: where each comes from, and its place in the lightmap.
+struct Vertices {
+  std::vector<uint32_t> source;  ///< vertex of the mesh
+  std::vector<Vec2> lightmap;
+  std::vector<uint32_t> indices;  ///< three per triangle
+};
+
+/// Hands out the vertices of one primitive after the other; a mesh vertex becomes several where its
+/// triangles disagree about the lightmap. The versions of a vertex form a list: few are long.
+class Splitter {
+ public:
+  explicit Splitter(size_t vertex_count) : first_(vertex_count, kNone) {}
+
+  uint32_t vertex(Vertices& out, uint32_t source, Vec2 lightmap) {
+    for (uint32_t v = first_[source]; v != kNone; v = next_[v])
+      if (out.lightmap[v] == lightmap) return v;
+    const uint32_t fresh = uint32_t(out.source.size());
+    out.source.push_back(source);
+    out.lightmap.push_back(lightmap);
+    next_.push_back(first_[source]);
+    first_[source] = fresh;
+    return fresh;
+  }
+
+  void start_next_primitive(const Vertices& done) {
+    for (const uint32_t source : done.source) first_[source] = kNone;
+    next_.clear();
+  }
+
+ private:
+  std::vector<uint32_t> first_, next_;
+};
+
+template <class T>
+std::vector<T> picked(const std::vector<T>& values, std::span<const uint32_t> source) {
+  std::vector<T> out;
+  out.reserve(source.size());
+  for (const uint32_t i : source) out.push_back(values[i]);
+  return out;
+}
+
+bool needs_uv_set(const scene::Material& m, int set) {
+  for (const scene::TextureRef* ref : scene::textures_of(m))
+    if (ref->texture != scene::kNone && (ref->uv_set == 1) == (set == 1)) return true;
+  return false;
+}
+
+/// Texture coordinates must be numbered without gaps: a missing TEXCOORD_0 is stood in for by the
+/// accessor of TEXCOORD_1.
+TexcoordSlots append_texcoords(Glb& glb, const scene::Mesh& mesh, const scene::Material& material,
+                               const Vertices& vertices, bool lightmapped, json& attributes) {
+  TexcoordSlots slots{-1, -1};
+  if (!mesh.uv0.empty()) {
+    attributes["TEXCOORD_0"] =
+        append_accessor(glb, std::span<const Vec2>(picked(mesh.uv0, vertices.source)));
+    slots[0] = 0;
+  }
+  if (lightmapped)
+    attributes["TEXCOORD_1"] = append_accessor(glb, std::span<const Vec2>(vertices.lightmap));
+  // Without a lightmap the second set is kept as it is: it may be one for the lightmap to come.
+  if (!mesh.uv1.empty() && (!lightmapped || needs_uv_set(material, 1))) {
+    slots[1] = lightmapped ? 2 : 1;
+    attributes[lightmapped ? "TEXCOORD_2" : "TEXCOORD_1"] =
+        append_accessor(glb, std::span<const Vec2>(picked(mesh.uv1, vertices.source)));
+  }
+  if (slots[0] < 0 && attributes.contains("TEXCOORD_1"))
+    attributes["TEXCOORD_0"] = attributes["TEXCOORD_1"];
+  return slots;
+}
+
+/// What the triangles of a primitive have in common.
+struct Part {
+  uint32_t material = 0, page = 0;
+  friend auto operator<=>(const Part&, const Part&) = default;
+};
+
+json primitive(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scene::Mesh& mesh,
+               Part part, const Vertices& vertices, bool lightmapped) {
+  json attributes;
+  attributes["POSITION"] =
+      append_accessor(glb, std::span<const Vec3>(picked(mesh.positions, vertices.source)));
+  if (!mesh.normals.empty()) {
+    std::vector<Vec3> normals = picked(mesh.normals, vertices.source);
+    for (Vec3& n : normals)
+      if (const float l = length(n); !(std::abs(l - 1) < 1e-3f))  // glTF wants unit normals
+        n = l > 0 ? n / l : Vec3{0, 1, 0};
+    attributes["NORMAL"] = append_accessor(glb, std::span<const Vec3>(normals));
+  }
+  if (!mesh.colors.empty())
+    attributes["COLOR_0"] =
+        append_accessor(glb, std::span<const Vec3>(picked(mesh.colors, vertices.source)));
+  const TexcoordSlots slots = append_texcoords(glb, mesh, scene.materials[part.material], vertices,
+                                               lightmapped, attributes);
+  return {{"attributes", std::move(attributes)},
+          {"indices", append_indices(glb, vertices.indices)},
+          {"material", material_index(glb, book, scene, part.material, slots, part.page)}};
+}
+
+}  // namespace
+
+size_t append_mesh(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scene::Mesh& mesh,
+                   const LightmapPlaces& lightmap) {
+  LUXEL_CHECK(!mesh.triangles.empty());
+  LUXEL_CHECK(lightmap.uv.empty() || lightmap.uv.size() == mesh.triangles.size());
+  LUXEL_CHECK(lightmap.page.size() == lightmap.uv.size());
+  // Triangles by part, parts in the order of their first triangle.
+  std::vector<Part> parts;
+  std::map<Part, size_t> rank;
+  std::vector<std::vector<uint32_t>> triangles_of;
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Part part{mesh.triangle_material[t], lightmap.page.empty() ? 0 : lightmap.page[t]};
+    const auto [known, fresh] = rank.emplace(part, parts.size());
+    if (fresh) {
+      parts.push_back(part);
+      triangles_of.emplace_back();
+    }
+    triangles_of[known->second].push_back(t);
+  }
+
+  Splitter splitter(mesh.positions.size());
+  json primitives = json::array();
+  for (size_t k = 0; k < parts.size(); ++k) {
+    Vertices vertices;
+    for (const uint32_t t : triangles_of[k])
+      for (size_t c = 0; c < 3; ++c) {
+        const Vec2 place = lightmap.uv.empty() ? Vec2{} : lightmap.uv[t][c];
+        vertices.indices.push_back(splitter.vertex(vertices, mesh.triangles[t][c], place));
+      }
+    primitives.push_back(
+        primitive(glb, book, scene, mesh, parts[k], vertices, !lightmap.uv.empty()));
+    splitter.start_next_primitive(vertices);
+  }
+  json out = {{"primitives", std::move(primitives)}};
+  if (!mesh.name.empty()) out["name"] = mesh.name;
+  return append(glb, "meshes", std::move(out));
+}
+
+}  // namespace luxel::export_

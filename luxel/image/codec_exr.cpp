@@ -1,0 +1,161 @@
+// OpenEXR in memory. OpenEXR reports by exceptions; they end in this file.
+#include <OpenEXR/Iex.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+
+#include <array>
+#include <cstring>
+#include <exception>
+#include <string>
+
+#include "luxel/base/check.h"
+#include "luxel/image/codec.h"
+
+namespace luxel::image {
+namespace {
+
+constexpr std::array<const char*, 4> kChannelNames{"R", "G", "B", "A"};
+/// A broken header may claim any size: this many pixels (16384 squared) are the most we believe.
+constexpr uint64_t kMaxPixels = uint64_t(1) << 28;
+
+class MemoryOutput : public Imf::OStream {
+ public:
+  MemoryOutput() : Imf::OStream("memory") {}
+  void write(const char data[], int size) override {
+    const size_t end = position_ + size_t(size);
+    if (end > bytes.size()) bytes.resize(end);
+    std::memcpy(bytes.data() + position_, data, size_t(size));
+    position_ = end;
+  }
+  uint64_t tellp() override { return position_; }
+  void seekp(uint64_t position) override { position_ = size_t(position); }
+
+  std::vector<std::byte> bytes;
+
+ private:
+  size_t position_ = 0;
+};
+
+class MemoryInput : public Imf::IStream {
+ public:
+  explicit MemoryInput(std::span<const std::byte> bytes) : Imf::IStream("memory"), bytes_(bytes) {}
+  bool read(char data[], int size) override {
+    if (size < 0 || position_ > bytes_.size() || size_t(size) > bytes_.size() - position_)
+      throw Iex::InputExc("the file ends too early");
+    std::memcpy(data, bytes_.data() + position_, size_t(size));
+    position_ += size_t(size);
+    return position_ < bytes_.size();
+  }
+  uint64_t tellg() override { return position_; }
+  void seekg(uint64_t position) override { position_ = size_t(position); }
+
+ private:
+  std::span<const std::byte> bytes_;
+  size_t position_ = 0;
+};
+
+Imf::Header make_header(const Image& image) {
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (int c = 0; c < image.channels; ++c)
+    header.channels().insert(kChannelNames[size_t(c)], Imf::Channel(Imf::FLOAT));
+  return header;
+}
+
+/// Slices over `image` whose pixel (0, 0) is the file's pixel (origin_x, origin_y).
+Imf::FrameBuffer make_frame_buffer(const Image& image, int origin_x, int origin_y) {
+  const size_t x_stride = sizeof(float) * size_t(image.channels);
+  const size_t y_stride = x_stride * size_t(image.width);
+  Imf::FrameBuffer buffer;
+  for (int c = 0; c < image.channels; ++c) {
+    // OpenEXR's buffers are not const even where it only reads them.
+    char* base = reinterpret_cast<char*>(const_cast<float*>(image.data.data() + c));
+    // Slice::Make moves the base by the data window without overflowing the pointer.
+    buffer.insert(kChannelNames[size_t(c)],
+                  Imf::Slice::Make(Imf::FLOAT, base, Imath::V2i(origin_x, origin_y), image.width,
+                                   image.height, x_stride, y_stride, 1, 1, c == 3 ? 1.0 : 0.0));
+  }
+  return buffer;
+}
+
+/// The channels asked of a file: 3, or 4 when it has A. Errors name the missing channel.
+Result<int> channels_of(const Imf::ChannelList& list, std::string_view name) {
+  for (size_t c = 0; c < 4; ++c) {
+    const Imf::Channel* channel = list.findChannel(kChannelNames[c]);
+    if (!channel && c == 3) return 3;
+    if (!channel)
+      return fail(ErrorCode::bad_input,
+                  "{}: the EXR file has no channel {}; save it with channels R, G and B", name,
+                  kChannelNames[c]);
+    if (channel->xSampling != 1 || channel->ySampling != 1)
+      return fail(ErrorCode::unsupported,
+                  "{}: channel {} of the EXR file is subsampled; save it at full resolution", name,
+                  kChannelNames[c]);
+  }
+  return 4;
+}
+
+Status check_finite(const Image& image, std::string_view name) {
+  for (size_t i = 0; i < image.data.size(); ++i) {
+    if (std::isfinite(image.data[i])) continue;
+    const size_t pixel = i / size_t(image.channels);
+    return fail(ErrorCode::bad_input,
+                "{}: pixel ({}, {}) of the EXR file is {}; repair the picture", name,
+                pixel % size_t(image.width), pixel / size_t(image.width), image.data[i]);
+  }
+  return {};
+}
+
+Result<Image> read_exr(std::span<const std::byte> bytes, std::string_view name) {
+  MemoryInput stream(bytes);
+  Imf::InputFile file(stream);
+  const Imath::Box2i window = file.header().dataWindow();
+  const int64_t width = int64_t(window.max.x) - window.min.x + 1;
+  const int64_t height = int64_t(window.max.y) - window.min.y + 1;
+  if (width <= 0 || height <= 0 || uint64_t(width) > kMaxPixels / uint64_t(height))
+    return fail(ErrorCode::bad_input, "{}: the EXR file claims {} x {} pixels; the most is {}",
+                name, width, height, kMaxPixels);
+  LUXEL_TRY(const int channels, channels_of(file.header().channels(), name));
+  if (!file.isComplete())
+    return fail(ErrorCode::bad_input, "{}: the EXR file ends too early; fetch or save it again",
+                name);
+  Image image(int(width), int(height), channels);
+  file.setFrameBuffer(make_frame_buffer(image, window.min.x, window.min.y));
+  file.readPixels(window.min.y, window.max.y);
+  LUXEL_TRY_STATUS(check_finite(image, name));
+  return image;
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> encode_exr(const Image& image) {
+  LUXEL_CHECK(image.width > 0 && image.height > 0);
+  LUXEL_CHECK(image.channels >= 1 && image.channels <= 4);
+  for (const float v : image.data) LUXEL_CHECK(std::isfinite(v));
+  try {
+    MemoryOutput stream;
+    {
+      Imf::OutputFile file(stream, make_header(image), 0);
+      file.setFrameBuffer(make_frame_buffer(image, 0, 0));
+      file.writePixels(image.height);
+    }  // the line offsets are written when the file closes
+    return std::move(stream.bytes);
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::io, "an EXR picture of {} x {} pixels cannot be encoded: {}",
+                image.width, image.height, e.what());
+  }
+}
+
+Result<Image> decode_exr(std::span<const std::byte> bytes, std::string_view name) {
+  try {
+    return read_exr(bytes, name);
+  } catch (const std::exception& e) {
+    return fail(ErrorCode::bad_input, "{}: this is not a readable EXR file: {}", name, e.what());
+  }
+}
+
+}  // namespace luxel::image

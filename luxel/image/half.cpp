@@ -1,0 +1,42 @@
+#include "luxel/image/half.h"
+
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/base/check.h"
+
+namespace luxel::image {
+namespace {
+
+constexpr int kTopExponent = 15;  ///< scaled colours lie below 2^15
+
+float scale_of(const Image& image) {
+  float largest = 0;
+  for (size_t i = 0; i < image.data.size(); ++i)
+    if (image.channels < 4 || i % size_t(image.channels) < 3)
+      largest = std::max(largest, std::abs(image.data[i]));
+  if (!(largest > 0)) return 1;
+  int exponent = 0;  // largest = m 2^exponent with m in [1/2, 1)
+  (void)std::frexp(largest, &exponent);
+  return std::ldexp(1.0f, std::clamp(exponent - kTopExponent, -100, 127));
+}
+
+}  // namespace
+
+HalfImage to_half(const Image& image) {
+  LUXEL_CHECK(image.channels >= 1);
+  for (const float v : image.data) LUXEL_CHECK(std::isfinite(v));
+  HalfImage out{image.width, image.height, image.channels, scale_of(image), {}};
+  out.data.resize(image.data.size());
+  const size_t channels = size_t(image.channels);
+  for (size_t i = 0; i < image.data.size(); ++i) {
+    const bool is_alpha = channels == 4 && i % channels == 3;
+    const float scaled = is_alpha ? image.data[i] : image.data[i] / out.scale;
+    out.data[i] = Imath::half(scaled).bits();
+  }
+  return out;
+}
+
+}  // namespace luxel::image

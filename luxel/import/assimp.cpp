@@ -1,0 +1,264 @@
+// Every format but glTF, through Assimp. Its convention: Y up, right-handed, v grows upwards.
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <map>
+#include <stdexcept>
+
+#include "luxel/image/color.h"
+#include "luxel/import/assimp_parts.h"
+#include "luxel/import/obj_groups.h"
+
+namespace Assimp {
+/// Debian's Assimp is built with its assertions, and a wrong .fbx or .x that meets one would end
+/// the process. The library calls this function through the dynamic linker, which takes ours before
+/// its own; Importer::ReadFile catches what is thrown, and ours is then an error like others.
+void aiAssertViolation(const char* expression, const char* file, int line) {
+  const std::string_view path(file);
+  throw std::runtime_error(fmt::format("Assimp does not understand it ({} at {}:{})", expression,
+                                       path.substr(path.rfind('/') + 1), line));
+}
+}  // namespace Assimp
+
+namespace luxel::import {
+namespace {
+
+/// PLY holds colours as 8-bit display values, or as linear floats.
+bool has_display_colors(const SourceFile& source) {
+  const std::string_view header(reinterpret_cast<const char*>(source.bytes.data()),
+                                std::min<size_t>(source.bytes.size(), 4096));
+  return source.extension == ".ply" && (header.find("property uchar red") != header.npos ||
+                                        header.find("property uint8 red") != header.npos);
+}
+
+Rgb linear(Rgb c) {
+  return {image::linear_from_srgb(c.x), image::linear_from_srgb(c.y), image::linear_from_srgb(c.z)};
+}
+
+/// Fills `to` for the vertices of a part that starts at `start`; parts without the attribute get
+/// `filling` when another part has it.
+template <class T, class Get>
+void append(std::vector<T>& to, bool wanted, bool has, size_t start, size_t count, T filling,
+            const Get& get) {
+  if (!wanted) return;
+  to.resize(start + count, filling);
+  if (has)
+    for (size_t i = 0; i < count; ++i) to[start + i] = get(i);
+}
+
+struct Wanted {
+  bool normals = false, uv0 = false, uv1 = false, colors = false;
+};
+
+void append_part(scene::Mesh& mesh, const aiMesh& part, const Wanted& wanted, bool srgb_colors) {
+  const size_t start = mesh.positions.size(), count = part.mNumVertices;
+  append(mesh.positions, true, true, start, count, Vec3{},
+         [&](size_t i) { return vec3_of(part.mVertices[i]); });
+  // A zero normal is later replaced by that of the triangles around it.
+  append(mesh.normals, wanted.normals, part.HasNormals(), start, count, Vec3{},
+         [&](size_t i) { return vec3_of(part.mNormals[i]); });
+  const auto uv = [&](unsigned set) {
+    return [&part, set](size_t i) {
+      const aiVector3D& v = part.mTextureCoords[set][i];
+      return Vec2{v.x, 1 - v.y};
+    };
+  };
+  append(mesh.uv0, wanted.uv0, part.HasTextureCoords(0), start, count, Vec2{}, uv(0));
+  append(mesh.uv1, wanted.uv1, part.HasTextureCoords(1), start, count, Vec2{}, uv(1));
+  append(mesh.colors, wanted.colors, part.HasVertexColors(0), start, count, Rgb{1, 1, 1},
+         [&](size_t i) {
+           const aiColor4D& c = part.mColors[0][i];
+           return srgb_colors ? linear({c.r, c.g, c.b}) : Rgb{c.r, c.g, c.b};
+         });
+  for (unsigned f = 0; f < part.mNumFaces; ++f) {
+    const aiFace& face = part.mFaces[f];
+    if (face.mNumIndices != 3) continue;  // triangulated; what is left are points and lines
+    mesh.triangles.push_back({uint32_t(start + face.mIndices[0]),
+                              uint32_t(start + face.mIndices[1]),
+                              uint32_t(start + face.mIndices[2])});
+    mesh.triangle_material.push_back(part.mMaterialIndex);
+  }
+}
+
+/// Assimp splits a surface by material; the parts that one node draws belong together (the `o` or
+/// `g` group of an .obj).
+scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, bool srgb_colors) {
+  Wanted wanted;
+  for (const unsigned p : parts) {
+    wanted.normals |= in.mMeshes[p]->HasNormals();
+    wanted.uv0 |= in.mMeshes[p]->HasTextureCoords(0);
+    wanted.uv1 |= in.mMeshes[p]->HasTextureCoords(1);
+    wanted.colors |= in.mMeshes[p]->HasVertexColors(0);
+  }
+  scene::Mesh mesh;
+  for (const unsigned p : parts) append_part(mesh, *in.mMeshes[p], wanted, srgb_colors);
+  join_identical_vertices(mesh);
+  return mesh;
+}
+
+/// Gives Assimp a text of ours in the place of one file; other files it reads itself.
+class TextInsteadOfFile : public Assimp::DefaultIOSystem {
+ public:
+  TextInsteadOfFile(std::string path, const std::string& text)
+      : path_(std::move(path)), text_(text) {}
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    if (path_ != file) return DefaultIOSystem::Open(file, mode);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(text_.data()), text_.size());
+  }
+
+ private:
+  std::string path_;
+  const std::string& text_;
+};
+
+/// A node that draws something.
+struct DrawnNode {
+  std::string name;
+  std::vector<unsigned> parts;
+  Mat34 world;
+};
+
+/// The nodes that draw something, in the order of the tree, and where each named node is, which
+/// lights and cameras look up.
+std::vector<DrawnNode> drawn_nodes(const aiScene& in, const Mat34& world_from_file,
+                                   NodeTransforms& transforms) {
+  struct Visit {
+    const aiNode* node;
+    Mat34 parent;
+  };
+  std::vector<DrawnNode> drawn;
+  std::vector<Visit> stack{{in.mRootNode, world_from_file}};
+  while (!stack.empty()) {
+    const auto [node, parent] = stack.back();
+    stack.pop_back();
+    const Mat34 world = parent * mat34_of(node->mTransformation);
+    transforms.emplace(node->mName.C_Str(), world);
+    for (unsigned i = node->mNumChildren; i-- > 0;) stack.push_back({node->mChildren[i], world});
+    if (node->mNumMeshes == 0) continue;
+    drawn.push_back(
+        {node->mName.C_Str(), {node->mMeshes, node->mMeshes + node->mNumMeshes}, world});
+  }
+  return drawn;
+}
+
+/// Gives the groups of an .obj their names back. A group that is opened again became another node
+/// of the same number, and is the same group.
+void join_groups(const ObjGroups& groups, std::vector<DrawnNode>& drawn) {
+  std::map<std::string, size_t> first;
+  std::vector<DrawnNode> joined;
+  for (DrawnNode& node : drawn) {
+    const auto [at, is_new] = first.try_emplace(node.name, joined.size());
+    if (is_new) {
+      node.name = name_of_group(groups, node.name);
+      joined.push_back(std::move(node));
+      continue;
+    }
+    std::vector<unsigned>& parts = joined[at->second].parts;
+    parts.insert(parts.end(), node.parts.begin(), node.parts.end());
+  }
+  drawn = std::move(joined);
+}
+
+/// Nodes that draw the same parts share one mesh.
+void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, bool srgb_colors,
+                   scene::Scene& out) {
+  std::map<std::vector<unsigned>, uint32_t> known;
+  for (const DrawnNode& node : drawn) {
+    const auto [mesh, is_new] = known.try_emplace(node.parts, uint32_t(out.meshes.size()));
+    if (is_new) {
+      out.meshes.push_back(merged_mesh(in, node.parts, srgb_colors));
+      out.meshes.back().name = node.name;
+    }
+    out.instances.push_back({node.name, mesh->second, node.world});
+  }
+}
+
+/// Assimp's readers of its own dump and of X3D trust every size in the file: a damaged one ends the
+/// process.
+bool is_trusting(std::string_view extension) {
+  return extension == ".assbin" || extension == ".x3d" || extension == ".x3db";
+}
+
+const aiScene* read_file_with(Assimp::Importer& importer, const SourceFile& source,
+                              std::vector<std::string>& warnings) {
+  constexpr unsigned kSteps =
+      aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_ValidateDataStructure;
+  const std::string path = source.path.string();
+  const aiScene* in = importer.ReadFile(path, kSteps);
+  if (in != nullptr || source.extension != ".fbx" || !is_about_names(importer.GetErrorString()))
+    return in;
+  if (importer.ReadFile(path, 0) == nullptr) return nullptr;
+  // The scene is the importer's and not constant; GetScene() says so only for its users' sake.
+  make_names_unique(const_cast<aiScene&>(*importer.GetScene()), warnings);
+  return importer.ApplyPostProcessing(kSteps);
+}
+
+std::vector<std::string> known_extensions() {
+  Assimp::Importer importer;
+  aiString list;  // "*.3d;*.3ds;..."
+  importer.GetExtensionList(list);
+  std::vector<std::string> extensions{".gltf", ".glb"};
+  std::string text = list.C_Str();
+  for (size_t at = 0; at < text.size();) {
+    const size_t end = std::min(text.find(';', at), text.size());
+    if (end > at + 1) extensions.push_back(text.substr(at + 1, end - at - 1));
+    at = end + 1;
+  }
+  std::erase_if(extensions, is_trusting);
+  std::sort(extensions.begin(), extensions.end());
+  extensions.erase(std::unique(extensions.begin(), extensions.end()), extensions.end());
+  return extensions;
+}
+
+}  // namespace
+
+Status check_extension(const SourceFile& source) {
+  if (source.extension == ".gltf" || source.extension == ".glb") return {};
+  const std::vector<std::string> known = known_extensions();
+  if (std::find(known.begin(), known.end(), source.extension) != known.end()) return {};
+  std::string list;
+  for (const std::string& extension : known) list += " " + extension;
+  return fail(ErrorCode::unsupported, "{}: files ending in '{}' cannot be read; these can:{}",
+              source.name, source.extension, list);
+}
+
+Result<Imported> read_with_assimp(const SourceFile& source) {
+  Imported imported;
+  std::set<std::string> with_color;
+  ObjGroups groups;
+  const bool is_obj = source.extension == ".obj";
+  if (is_obj) {
+    LUXEL_TRY(with_color, check_obj(source, imported.warnings));
+    groups = number_groups(source);
+  }
+  if (source.extension == ".ply") LUXEL_TRY_STATUS(check_ply(source));
+  if (source.extension == ".x") LUXEL_TRY_STATUS(check_x(source));
+  if (source.extension == ".dae") LUXEL_TRY_STATUS(check_collada(source));
+
+  Assimp::Importer importer;
+  if (is_obj) importer.SetIOHandler(new TextInsteadOfFile(source.path.string(), groups.text));
+  // Points and lines are sorted out into meshes of their own and dropped.
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* in = read_file_with(importer, source, imported.warnings);
+  if (in == nullptr || in->mRootNode == nullptr)
+    return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
+                one_sentence(importer.GetErrorString()));
+
+  LUXEL_TRY_STATUS(read_assimp_materials(*in, source, with_color, imported));
+  NodeTransforms transforms;
+  std::vector<DrawnNode> drawn =
+      drawn_nodes(*in, world_from_file(*in, source, imported.warnings), transforms);
+  if (is_obj) join_groups(groups, drawn);
+  add_instances(*in, drawn, has_display_colors(source), imported.scene);
+  add_assimp_lights(*in, source, transforms, imported);
+  add_assimp_cameras(*in, source, transforms, imported.scene);
+  return imported;
+}
+
+}  // namespace luxel::import

@@ -1,0 +1,165 @@
+// Materials and textures of the files that Assimp reads.
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include "luxel/base/file.h"
+#include "luxel/import/assimp_parts.h"
+
+namespace luxel::import {
+namespace {
+
+using scene::TextureRef;
+
+struct Textures {
+  const aiScene& in;
+  const SourceFile& source;
+  const std::set<std::string>& with_color;
+  Imported& out;
+  std::map<std::string, uint32_t> known;  ///< by the path in the file
+};
+
+/// Files from Windows name "textures\brick.png", and some exporters the place on their author's
+/// disk: the path is tried as it stands, then its last part beside the scene.
+Result<std::vector<std::byte>> read_beside(const SourceFile& source, const std::string& path,
+                                           const std::string& user) {
+  std::string slashed = path;
+  std::replace(slashed.begin(), slashed.end(), '\\', '/');
+  const std::filesystem::path stated(slashed);
+  const std::filesystem::path folder = source.path.parent_path();
+  for (const std::filesystem::path& candidate : {folder / stated, folder / stated.filename()}) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(candidate, ignored)) return read_file(candidate);
+  }
+  return fail(ErrorCode::io, "{}: the texture {} of {} is missing; put it beside the scene",
+              source.name, slashed, user);
+}
+
+/// Uncompressed: mWidth x mHeight texels in the order b, g, r, a.
+scene::Texture raw_texture(const aiTexture& in, const std::string& name) {
+  scene::Texture texture;
+  texture.name = name;
+  texture.width = int(in.mWidth);
+  texture.height = int(in.mHeight);
+  for (size_t i = 0; i < size_t(in.mWidth) * in.mHeight; ++i) {
+    const aiTexel& t = in.pcData[i];
+    texture.rgba.insert(texture.rgba.end(), {t.r, t.g, t.b, t.a});
+  }
+  return texture;
+}
+
+Result<scene::Texture> load_texture(const Textures& textures, const std::string& path,
+                                    const std::string& user) {
+  const std::string name = textures.source.name + ": " + path;
+  std::vector<std::byte> encoded;
+  if (const aiTexture* embedded = textures.in.GetEmbeddedTexture(path.c_str())) {
+    if (embedded->mHeight != 0) return raw_texture(*embedded, path);
+    encoded.resize(embedded->mWidth);  // then its size in bytes
+    std::memcpy(encoded.data(), embedded->pcData, encoded.size());
+  } else {
+    LUXEL_TRY(encoded, read_beside(textures.source, path, user));
+  }
+  LUXEL_TRY(scene::Texture texture, decode_texture(std::move(encoded), name, user));
+  texture.name = path;
+  return texture;
+}
+
+scene::Wrap wrap_of(aiTextureMapMode mode) {
+  if (mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal) return scene::Wrap::clamp;
+  return mode == aiTextureMapMode_Mirror ? scene::Wrap::mirror : scene::Wrap::repeat;
+}
+
+/// The first texture of a kind; none when the material has none.
+Result<TextureRef> read_ref(Textures& textures, const aiMaterial& in, aiTextureType type,
+                            const std::string& user) {
+  TextureRef ref;
+  aiString path;
+  unsigned uv_set = 0;
+  aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+  if (in.GetTexture(type, 0, &path, nullptr, &uv_set, nullptr, nullptr, modes) != aiReturn_SUCCESS)
+    return ref;
+  const auto [known, is_new] =
+      textures.known.try_emplace(path.C_Str(), uint32_t(textures.out.scene.textures.size()));
+  if (is_new) {
+    LUXEL_TRY(scene::Texture texture, load_texture(textures, path.C_Str(), user));
+    textures.out.scene.textures.push_back(std::move(texture));
+  }
+  ref.texture = known->second;
+  ref.uv_set = uv_set == 1 ? 1 : 0;
+  ref.wrap_u = wrap_of(modes[0]);
+  ref.wrap_v = wrap_of(modes[1]);
+  return ref;
+}
+
+Rgb color_of(const aiMaterial& in, const char* key, unsigned type, unsigned index, Rgb fallback) {
+  aiColor3D c;
+  return in.Get(key, type, index, c) == aiReturn_SUCCESS ? Rgb{c.r, c.g, c.b} : fallback;
+}
+
+/// Assimp states a specular colour for Lambertian materials too, and makes up grey for Collada's.
+/// An .mtl often has Ks without the `illum` that would ask for it, and Assimp adds none.
+bool has_highlight(const aiMaterial& in, const SourceFile& source) {
+  int model = aiShadingMode_Gouraud;
+  in.Get(AI_MATKEY_SHADING_MODEL, model);
+  return source.extension == ".obj" || model == aiShadingMode_Phong || model == aiShadingMode_Blinn;
+}
+
+Result<scene::Material> read_material(Textures& textures, unsigned index) {
+  const aiMaterial& in = *textures.in.mMaterials[index];
+  aiString name;
+  in.Get(AI_MATKEY_NAME, name);
+  scene::Material out = default_material();
+  // What Assimp makes up for faces without a material; that of an .x has no name.
+  if (std::strcmp(name.C_Str(), AI_DEFAULT_MATERIAL_NAME) == 0) return out;
+  if (textures.source.extension == ".x" && name.length == 0) return out;
+  out.name = name.C_Str();
+  const std::string user = label("material", index, out.name);
+  out.base_color = color_of(in, AI_MATKEY_COLOR_DIFFUSE, out.base_color);
+  out.base_color = color_of(in, AI_MATKEY_BASE_COLOR, out.base_color);
+  out.emission = color_of(in, AI_MATKEY_COLOR_EMISSIVE, {});
+  if (has_highlight(in, textures.source)) {
+    float factor = 1;  // FBX's SpecularFactor, which Assimp leaves to us, unlike the others
+    in.Get(AI_MATKEY_SHININESS_STRENGTH, factor);
+    out.specular = color_of(in, AI_MATKEY_COLOR_SPECULAR, out.specular) * factor;
+    in.Get(AI_MATKEY_SHININESS, out.sharpness);
+  }
+  in.Get(AI_MATKEY_METALLIC_FACTOR, out.metallic);
+  in.Get(AI_MATKEY_OPACITY, out.alpha);
+  if (out.alpha < 1) out.alpha_mode = scene::AlphaMode::blend;
+  int two_sided = 0;
+  in.Get(AI_MATKEY_TWOSIDED, two_sided);
+  out.double_sided = two_sided != 0;
+
+  LUXEL_TRY(out.base_color_texture, read_ref(textures, in, aiTextureType_DIFFUSE, user));
+  if (out.base_color_texture.texture == scene::kNone) {
+    LUXEL_TRY(out.base_color_texture, read_ref(textures, in, aiTextureType_BASE_COLOR, user));
+  }
+  LUXEL_TRY(out.emission_texture, read_ref(textures, in, aiTextureType_EMISSIVE, user));
+  // An .mtl with map_Ke and no Ke means the picture as it is.
+  if (out.emission_texture.texture != scene::kNone && max_component(out.emission) <= 0)
+    out.emission = {1, 1, 1};
+  // Assimp's own grey of 0.6 says that the .mtl is missing or has no Kd.
+  const bool made_up = textures.source.extension == ".obj" &&
+                       !textures.with_color.contains(out.name) &&
+                       out.base_color == Rgb{0.6f, 0.6f, 0.6f};
+  if (made_up)
+    out.base_color = out.base_color_texture.texture == scene::kNone ? default_material().base_color
+                                                                    : Rgb{1, 1, 1};
+  return out;
+}
+
+}  // namespace
+
+Status read_assimp_materials(const aiScene& in, const SourceFile& source,
+                             const std::set<std::string>& with_color, Imported& out) {
+  Textures textures{in, source, with_color, out, {}};
+  for (unsigned i = 0; i < in.mNumMaterials; ++i) {
+    LUXEL_TRY(scene::Material material, read_material(textures, i));
+    out.scene.materials.push_back(std::move(material));
+  }
+  return {};
+}
+
+}  // namespace luxel::import

@@ -1,0 +1,53 @@
+#include "luxel/import/environment.h"
+
+#include "luxel/base/file.h"
+#include "luxel/image/codec.h"
+
+namespace luxel::import {
+namespace {
+
+Result<image::Image> decode(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
+  if (extension == ".hdr" || extension == ".HDR") return image::decode_hdr(bytes, file.string());
+  if (extension == ".exr" || extension == ".EXR") return image::decode_exr(bytes, file.string());
+  return fail(ErrorCode::bad_input,
+              "{}: an environment is an .hdr or .exr picture, not {}; 8-bit pictures do not hold "
+              "the light of a sky",
+              file.string(), extension.empty() ? "a file without ending" : extension);
+}
+
+}  // namespace
+
+Result<ImportedEnvironment> environment_from(const image::Image& picture, const std::string& name,
+                                             float rotation_rad, float scale) {
+  if (picture.width != 2 * picture.height || picture.height == 0)
+    return fail(ErrorCode::bad_input,
+                "{}: {} x {} pixels; an equirectangular environment is twice as wide as high", name,
+                picture.width, picture.height);
+  ImportedEnvironment out;
+  out.map.width = picture.width, out.map.height = picture.height;
+  out.map.rotation_rad = rotation_rad;
+  out.map.radiance.reserve(size_t(picture.width) * size_t(picture.height));
+  size_t negative = 0;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const Rgb l = picture.rgb(x, y) * scale;
+      if (!is_finite(l))
+        return fail(ErrorCode::bad_input, "{}: pixel ({}, {}) is {}, {}, {}, which is no light",
+                    name, x, y, l.x, l.y, l.z);
+      if (l.x < 0 || l.y < 0 || l.z < 0) ++negative;
+      out.map.radiance.push_back(max(l, Rgb{}));
+    }
+  if (negative > 0)
+    out.warnings.push_back(fmt::format("{}: {} pixels are negative; taken for 0", name, negative));
+  return out;
+}
+
+Result<ImportedEnvironment> read_environment(const std::filesystem::path& file, float rotation_rad,
+                                             float scale) {
+  LUXEL_TRY(const image::Image picture, decode(file));
+  return environment_from(picture, file.string(), rotation_rad, scale);
+}
+
+}  // namespace luxel::import

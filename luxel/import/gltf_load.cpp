@@ -1,0 +1,94 @@
+#include "luxel/import/gltf_load.h"
+
+#include <algorithm>
+#include <span>
+
+#include "luxel/import/gltf_check_steps.h"
+#include "luxel/import/gltf_checks.h"
+
+namespace luxel::import {
+namespace {
+
+/// Keeps the encoded bytes: pictures are decoded where a material asks for them.
+bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  image->image.assign(bytes, bytes + std::max(size, 0));
+  return true;
+}
+
+Result<tinygltf::Model> load_model(const SourceFile& source, const std::string& text,
+                                   std::span<const std::byte> glb) {
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(keep_encoded, nullptr);
+  tinygltf::Model model;
+  std::string error, warning;
+  const std::string folder = (source.path.parent_path() / ".").string();
+  if (source.bytes.size() > UINT32_MAX)
+    return fail(ErrorCode::unsupported, "{}: glTF files over 4 GB cannot be read", source.name);
+  const bool loaded =
+      source.extension == ".glb"
+          ? loader.LoadBinaryFromMemory(&model, &error, &warning,
+                                        reinterpret_cast<const unsigned char*>(glb.data()),
+                                        static_cast<unsigned int>(glb.size()), folder)
+          : loader.LoadASCIIFromString(&model, &error, &warning, text.data(),
+                                       static_cast<unsigned int>(text.size()), folder);
+  if (!loaded)
+    return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name, one_sentence(error));
+  return model;
+}
+
+/// check_document() went by the stated lengths; this is what really came.
+Status check_buffers(const tinygltf::Model& model, const Json& document,
+                     const std::vector<bool>& is_placeholder, const std::string& file) {
+  for (size_t i = 0; i < is_placeholder.size(); ++i)
+    if (!is_placeholder[i] &&
+        (i >= model.buffers.size() ||
+         double(model.buffers[i].data.size()) < document["buffers"][i]["byteLength"].get<double>()))
+      return fail(ErrorCode::bad_input, "{}: buffer {} has fewer bytes than its byteLength", file,
+                  i);
+  return {};
+}
+
+Result<std::string> text_of(const SourceFile& source) {
+  if (source.extension == ".glb") return json_of_glb(source.bytes, source.name);
+  return std::string(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+}
+
+/// The document as tinygltf takes it. It takes no buffer without bytes, and would give a .glb's
+/// only ones to every buffer that has no uri: one byte stands for what nobody reads. It takes no
+/// indices without bytes either, as Draco's are: decode_draco() puts them in.
+Json for_tinygltf(Json document, const std::vector<bool>& is_placeholder) {
+  for (size_t i = 0; i < is_placeholder.size(); ++i)
+    if (is_placeholder[i])
+      document["buffers"][i] = {{"byteLength", 1},
+                                {"uri", "data:application/octet-stream;base64,AA=="}};
+  if (!document.contains("meshes")) return document;
+  for (Json& mesh : document["meshes"])
+    for (Json& primitive : mesh["primitives"])
+      if (is_draco(primitive)) primitive.erase("indices");
+  return document;
+}
+
+}  // namespace
+
+Result<LoadedGltf> load_gltf(const SourceFile& source) {
+  LUXEL_TRY(std::string text, text_of(source));
+  LUXEL_TRY(Json document, parse_json(text, source.name));
+  LUXEL_TRY_STATUS(check_document(document, source.name));
+
+  const std::vector<bool> is_placeholder = placeholder_buffers(document);
+  std::vector<std::byte> new_glb;
+  std::span<const std::byte> glb = source.bytes;
+  if (const Json adapted = for_tinygltf(document, is_placeholder); adapted != document) {
+    text = adapted.dump();
+    if (source.extension == ".glb") glb = new_glb = glb_with_json(source.bytes, text);
+  }
+  LUXEL_TRY(tinygltf::Model model, load_model(source, text, glb));
+  LUXEL_TRY_STATUS(check_buffers(model, document, is_placeholder, source.name));
+  LUXEL_TRY_STATUS(decode_meshopt(model, document, source.name));
+  LUXEL_TRY_STATUS(decode_draco(model, document, source.name));
+  convert_specular_glossiness(model);
+  return LoadedGltf{std::move(document), std::move(model)};
+}
+
+}  // namespace luxel::import

@@ -1,0 +1,177 @@
+// The nodes of the default scene: instances, lights, cameras, each with its place in the world.
+#include "luxel/import/gltf_accessor.h"
+#include "luxel/import/gltf_parts.h"
+
+namespace luxel::import {
+namespace {
+
+/// A rotation by a quaternion (x, y, z, w), which files store only nearly of unit length.
+Mat34 rotation(double x, double y, double z, double w) {
+  const double length2 = x * x + y * y + z * z + w * w;
+  if (!(length2 > 0)) return {};
+  const double s = 2 / length2;
+  const auto f = [](double v) { return float(v); };
+  return from_columns({f(1 - s * (y * y + z * z)), f(s * (x * y + z * w)), f(s * (x * z - y * w))},
+                      {f(s * (x * y - z * w)), f(1 - s * (x * x + z * z)), f(s * (y * z + x * w))},
+                      {f(s * (x * z + y * w)), f(s * (y * z - x * w)), f(1 - s * (x * x + y * y))},
+                      {});
+}
+
+Mat34 local_transform(const tinygltf::Node& node) {
+  if (node.matrix.size() == 16) {  // column by column
+    const std::vector<double>& m = node.matrix;
+    const auto column_at = [&](size_t j) {
+      return Vec3{float(m[4 * j]), float(m[4 * j + 1]), float(m[4 * j + 2])};
+    };
+    return from_columns(column_at(0), column_at(1), column_at(2), column_at(3));
+  }
+  const std::vector<double>& q = node.rotation;
+  const Mat34 turn = q.size() == 4 ? rotation(q[0], q[1], q[2], q[3]) : Mat34{};
+  return translation(vec3_of(node.translation, {})) * turn *
+         scaling(vec3_of(node.scale, {1, 1, 1}));
+}
+
+scene::PunctualLight::Kind kind_of(const std::string& type) {
+  if (type == "spot") return scene::PunctualLight::Kind::spot;
+  if (type == "directional") return scene::PunctualLight::Kind::directional;
+  return scene::PunctualLight::Kind::point;
+}
+
+/// [KHR_lights_punctual]: a light shines along its node's -z; scale does not change it.
+void add_light(GltfReader& reader, const tinygltf::Node& node, const Mat34& world) {
+  const auto extension = node.extensions.find("KHR_lights_punctual");
+  if (extension == node.extensions.end()) return;
+  const double index = number_in(extension->second, "light", -1);
+  if (index < 0 || index >= double(reader.model.lights.size())) return;
+  const tinygltf::Light& in = reader.model.lights[size_t(index)];
+  if (in.type != "point" && in.type != "spot" && in.type != "directional") {
+    reader.warn("{} has the unknown type '{}' and is skipped",
+                label("light", size_t(index), in.name), in.type);
+    return;
+  }
+  scene::PunctualLight light;
+  light.name = node.name.empty() ? in.name : node.name;
+  light.kind = kind_of(in.type);
+  light.intensity = vec3_of(in.color, {1, 1, 1}) * float(in.intensity);
+  light.position = transform_point(world, {});
+  light.direction = normalize(-column(world, 2));
+  light.side = normalize(column(world, 0));
+  light.range_m = float(in.range);
+  light.inner_cone_rad = float(in.spot.innerConeAngle);
+  light.outer_cone_rad = float(in.spot.outerConeAngle);
+  reader.out.scene.lights.push_back(light);
+}
+
+void add_camera(GltfReader& reader, const tinygltf::Node& node, const Mat34& world) {
+  if (node.camera < 0) return;
+  const tinygltf::Camera& in = reader.model.cameras[size_t(node.camera)];
+  scene::Camera camera;
+  camera.name = !node.name.empty() ? node.name : in.name;
+  camera.world_from_camera = from_columns(normalize(column(world, 0)), normalize(column(world, 1)),
+                                          normalize(column(world, 2)), transform_point(world, {}));
+  if (in.type == "orthographic") {
+    camera.orthographic_height_m = 2 * float(in.orthographic.ymag);  // ymag is half of it
+    camera.aspect =
+        in.orthographic.ymag > 0 ? float(in.orthographic.xmag / in.orthographic.ymag) : 0.0f;
+    camera.fov_y_rad = 0;  // so that a height of 0 leaves no view
+  } else {
+    camera.fov_y_rad = float(in.perspective.yfov);
+    camera.aspect = float(in.perspective.aspectRatio);
+  }
+  reader.out.scene.cameras.push_back(camera);
+}
+
+int accessor_of(const tinygltf::Value& attributes, const char* key) {
+  return int(number_in(attributes, key, -1));
+}
+
+/// The transforms of EXT_mesh_gpu_instancing below the node's own; one identity without it.
+Result<std::vector<Mat34>> copies_of(const GltfReader& reader, const tinygltf::Node& node,
+                                     const std::string& where) {
+  const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
+  if (extension == node.extensions.end()) return std::vector<Mat34>(1);
+  const tinygltf::Value& attributes = extension->second.Get("attributes");
+  Numbers t, r, s;
+  size_t count = 0;
+  const auto read = [&](const char* key, size_t components, Numbers& out) -> Status {
+    const int accessor = accessor_of(attributes, key);
+    if (accessor < 0) return {};
+    LUXEL_TRY(out, read_numbers(reader.model, accessor, {components}, where + ", " + key));
+    if (count != 0 && out.count() != count)
+      return fail(ErrorCode::bad_input, "{}: instance attributes differ in length", where);
+    count = out.count();
+    return {};
+  };
+  LUXEL_TRY_STATUS(read("TRANSLATION", 3, t));
+  LUXEL_TRY_STATUS(read("ROTATION", 4, r));
+  LUXEL_TRY_STATUS(read("SCALE", 3, s));
+  std::vector<Mat34> copies(count);
+  for (size_t i = 0; i < count; ++i) {
+    const auto vec3_at = [&](const Numbers& n, Vec3 fallback) {
+      return n.values.empty() ? fallback
+                              : Vec3{n.values[3 * i], n.values[3 * i + 1], n.values[3 * i + 2]};
+    };
+    const float* q = r.values.empty() ? nullptr : &r.values[4 * i];
+    copies[i] = translation(vec3_at(t, {})) * (q ? rotation(q[0], q[1], q[2], q[3]) : Mat34{}) *
+                scaling(vec3_at(s, {1, 1, 1}));
+  }
+  return copies;
+}
+
+Status add_instances(GltfReader& reader, size_t index, const Mat34& world) {
+  const tinygltf::Node& node = reader.model.nodes[index];
+  if (node.mesh < 0 || reader.out.scene.meshes[size_t(node.mesh)].triangles.empty()) return {};
+  LUXEL_TRY(const std::vector<Mat34> copies,
+            copies_of(reader, node, reader.source.name + ": " + label("node", index, node.name)));
+  const std::string& mesh_name = reader.model.meshes[size_t(node.mesh)].name;
+  for (const Mat34& copy : copies)
+    reader.out.scene.instances.push_back(
+        {node.name.empty() ? mesh_name : node.name, uint32_t(node.mesh), world * copy});
+  return {};
+}
+
+/// The nodes to start from: those of the default scene, of the first one, or all roots.
+std::vector<int> root_nodes(GltfReader& reader) {
+  const tinygltf::Model& model = reader.model;
+  if (!model.scenes.empty()) return model.scenes[size_t(std::max(model.defaultScene, 0))].nodes;
+  std::vector<bool> is_child(model.nodes.size());
+  for (const tinygltf::Node& node : model.nodes)
+    for (const int child : node.children) is_child[size_t(child)] = true;
+  std::vector<int> roots;
+  for (size_t i = 0; i < model.nodes.size(); ++i)
+    if (!is_child[i]) roots.push_back(int(i));
+  if (!roots.empty()) reader.warn("it has no scene; all its nodes are used");
+  return roots;
+}
+
+}  // namespace
+
+Status read_nodes(GltfReader& reader) {
+  struct Visit {
+    int node;
+    Mat34 parent;
+  };
+  // A stack of our own: a chain of nodes may be longer than the program's. Children are pushed last
+  // first, so that instances come in the order of the file.
+  std::vector<Visit> stack;
+  const auto push = [&](const std::vector<int>& nodes, const Mat34& parent) {
+    for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) stack.push_back({*it, parent});
+  };
+  push(root_nodes(reader), {});
+  bool skins = false;
+  while (!stack.empty()) {
+    const Visit visit = stack.back();
+    stack.pop_back();
+    const tinygltf::Node& node = reader.model.nodes[size_t(visit.node)];
+    const Mat34 world = visit.parent * local_transform(node);
+    LUXEL_TRY_STATUS(add_instances(reader, size_t(visit.node), world));
+    add_light(reader, node, world);
+    add_camera(reader, node, world);
+    skins |= node.skin >= 0;
+    push(node.children, world);
+  }
+  if (skins) reader.warn("it has skinned meshes; they stay in their rest pose");
+  return {};
+}
+
+}  // namespace luxel::import

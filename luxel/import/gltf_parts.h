@@ -1,0 +1,45 @@
+// The parts of a glTF document that become parts of the scene. For the glTF reader only.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <string>
+#include <vector>
+
+#include "luxel/base/result.h"
+#include "luxel/import/import.h"
+#include "luxel/import/readers.h"
+
+namespace luxel::import {
+
+/// What the steps of the reader share. Materials and meshes keep their glTF index in the scene.
+struct GltfReader {
+  const tinygltf::Model& model;
+  const SourceFile& source;
+  Imported& out;
+  uint32_t default_material = scene::kNone;  ///< made when a primitive first needs it
+
+  template <class... Args>
+  void warn(fmt::format_string<Args...> text, Args&&... args) {
+    out.warnings.push_back(source.name + ": " + fmt::format(text, std::forward<Args>(args)...));
+  }
+};
+
+/// Fills scene.materials and the textures they use. Errors: a texture that is missing or corrupt.
+Status read_materials(GltfReader& reader);
+
+/// One scene::Mesh per glTF mesh: its primitives merged. Errors: indices beyond the vertices.
+Status read_meshes(GltfReader& reader);
+
+/// Instances, lights and cameras of the default scene's nodes.
+Status read_nodes(GltfReader& reader);
+
+/// A number, or numbers, of an extension; the fallback when absent or of another kind.
+double number_in(const tinygltf::Value& object, const char* key, double fallback);
+Vec2 vec2_in(const tinygltf::Value& object, const char* key, Vec2 fallback);
+Rgb vec3_in(const tinygltf::Value& object, const char* key, Rgb fallback);
+inline Vec3 vec3_of(const std::vector<double>& v, Vec3 fallback) {
+  return v.size() < 3 ? fallback : Vec3{float(v[0]), float(v[1]), float(v[2])};
+}
+
+}  // namespace luxel::import

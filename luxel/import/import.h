@@ -1,0 +1,25 @@
+// Files to scenes.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "luxel/base/result.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::import {
+
+struct Imported {
+  scene::Scene scene;                 ///< validated (luxel/scene/validate.h)
+  std::vector<std::string> warnings;  ///< one sentence each
+};
+
+/// Reads .gltf and .glb with tinygltf, everything else that Assimp knows (.obj, .x, .fbx, .dae,
+/// .ply, ...) through Assimp. Errors say file, field, value and what to do.
+Result<Imported> import_scene(const std::filesystem::path& path);
+
+/// The same of a binary glTF file that lies in memory, self-contained; `name` is for messages.
+Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name);
+
+}  // namespace luxel::import

@@ -1,0 +1,209 @@
+// A walk through a .ply file before Assimp gets it: header, then every element, text or binary.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+
+#include "luxel/import/readers.h"
+
+namespace luxel::import {
+namespace {
+
+enum class Kind { none, i8, u8, i16, u16, i32, u32, f32, f64 };
+
+Kind kind_of(std::string_view name) {
+  if (name == "char" || name == "int8") return Kind::i8;
+  if (name == "uchar" || name == "uint8") return Kind::u8;
+  if (name == "short" || name == "int16") return Kind::i16;
+  if (name == "ushort" || name == "uint16") return Kind::u16;
+  if (name == "int" || name == "int32") return Kind::i32;
+  if (name == "uint" || name == "uint32") return Kind::u32;
+  if (name == "float" || name == "float32") return Kind::f32;
+  if (name == "double" || name == "float64") return Kind::f64;
+  return Kind::none;
+}
+
+size_t size_of(Kind kind) {
+  constexpr size_t kSizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 8};
+  return kSizes[size_t(kind)];
+}
+
+struct Property {
+  Kind kind = Kind::none;
+  Kind list_count = Kind::none;  ///< of a list; none for a single number
+  std::string name;
+};
+
+struct Element {
+  std::string name;
+  uint64_t count = 0;
+  std::vector<Property> properties;
+};
+
+struct Header {
+  enum class Format { ascii, little, big } format = Format::ascii;
+  std::vector<Element> elements;
+  std::string_view body;
+};
+
+template <class T>
+T reversed_if(bool reverse, const char* p) {
+  char bytes[sizeof(T)];
+  std::memcpy(bytes, p, sizeof(T));
+  if (reverse) std::reverse(bytes, bytes + sizeof(T));
+  T value;
+  std::memcpy(&value, bytes, sizeof(T));
+  return value;
+}
+
+double number_at(const char* p, Kind kind, bool reverse) {
+  switch (kind) {
+    case Kind::i8:
+      return double(reversed_if<int8_t>(false, p));
+    case Kind::u8:
+      return double(reversed_if<uint8_t>(false, p));
+    case Kind::i16:
+      return double(reversed_if<int16_t>(reverse, p));
+    case Kind::u16:
+      return double(reversed_if<uint16_t>(reverse, p));
+    case Kind::i32:
+      return double(reversed_if<int32_t>(reverse, p));
+    case Kind::u32:
+      return double(reversed_if<uint32_t>(reverse, p));
+    case Kind::f32:
+      return double(reversed_if<float>(reverse, p));
+    case Kind::f64:
+      return reversed_if<double>(reverse, p);
+    case Kind::none:
+      break;
+  }
+  return NAN;
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (size_t at = 0; (at = line.find_first_not_of(" \t\r", at)) != line.npos;) {
+    const size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
+  return words;
+}
+
+/// One line of the header; false when it makes no sense.
+bool read_header_line(const std::vector<std::string_view>& words, Header& header) {
+  if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return true;
+  if (words[0] == "format" && words.size() >= 2) {
+    header.format = words[1] == "ascii"                  ? Header::Format::ascii
+                    : words[1] == "binary_little_endian" ? Header::Format::little
+                                                         : Header::Format::big;
+    return words[1] == "ascii" || words[1].starts_with("binary_");
+  }
+  if (words[0] == "element" && words.size() == 3) {
+    Element element{std::string(words[1]), 0, {}};
+    const char* end = words[2].data() + words[2].size();
+    const auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
+    header.elements.push_back(std::move(element));
+    return error == std::errc() && stop == end;
+  }
+  if (words[0] != "property" || header.elements.empty()) return false;
+  Property property;
+  if (words.size() == 5 && words[1] == "list")
+    property = {kind_of(words[3]), kind_of(words[2]), std::string(words[4])};
+  else if (words.size() == 3)
+    property = {kind_of(words[1]), Kind::none, std::string(words[2])};
+  header.elements.back().properties.push_back(property);
+  return property.kind != Kind::none && (words.size() == 3 || property.list_count != Kind::none);
+}
+
+Result<Header> read_header(const SourceFile& source) {
+  std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
+  Header header;
+  for (size_t number = 1;; ++number) {
+    const size_t end = text.find('\n');
+    if (end == text.npos)
+      return fail(ErrorCode::bad_input, "{}: its header ends early", source.name);
+    const auto words = words_of(text.substr(0, end));
+    text.remove_prefix(end + 1);
+    if (number == 1) {
+      if (words.size() == 1 && words[0] == "ply") continue;
+      return fail(ErrorCode::bad_input, "{}: it is not a .ply file: its first line is not 'ply'",
+                  source.name);
+    }
+    if (!words.empty() && words[0] == "end_header") break;
+    if (!read_header_line(words, header))
+      return fail(ErrorCode::bad_input, "{}, line {}: this line of the header makes no sense",
+                  source.name, number);
+  }
+  header.body = text;
+  return header;
+}
+
+/// Hands out the numbers of the body one by one.
+struct Reader {
+  Header::Format format;
+  std::string_view rest;
+
+  /// False at the end of the file, or at a word that is no number.
+  bool next(Kind kind, double& value) {
+    if (format != Header::Format::ascii) {
+      if (rest.size() < size_of(kind)) return false;
+      value = number_at(rest.data(), kind, format == Header::Format::big);
+      rest.remove_prefix(size_of(kind));
+      return true;
+    }
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
+    if (rest.starts_with('+')) rest.remove_prefix(1);
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    if (error == std::errc::invalid_argument) return false;
+    rest.remove_prefix(size_t(end - rest.data()));
+    return true;
+  }
+};
+
+/// One number or list. Errors: not finite, no vertex of that index.
+/// `where` is a function: a sentence is made only for the number that is wrong.
+template <class Where>
+Status check_property(const Property& property, Reader& reader, uint64_t vertices,
+                      const Where& where) {
+  double count = 1, value = 0;
+  const bool is_list = property.list_count != Kind::none;
+  if (is_list && (!reader.next(property.list_count, count) || count < 0))
+    return fail(ErrorCode::bad_input, "{}: the file ends early, or a number is broken", where());
+  const bool is_index = property.name == "vertex_indices" || property.name == "vertex_index";
+  for (double i = 0; i < count; ++i) {
+    if (!reader.next(property.kind, value))
+      return fail(ErrorCode::bad_input, "{}: the file ends early, or a number is broken", where());
+    if (!std::isfinite(value))
+      return fail(ErrorCode::bad_input, "{}: {} is {}, not a finite number", where(), property.name,
+                  value);
+    if (is_index && (value < 0 || value >= double(vertices)))
+      return fail(ErrorCode::bad_input,
+                  "{}: vertex index {} is out of range, there are {} vertices", where(), value,
+                  vertices);
+  }
+  return {};
+}
+
+}  // namespace
+
+Status check_ply(const SourceFile& source) {
+  LUXEL_TRY(const Header header, read_header(source));
+  uint64_t vertices = 0;
+  for (const Element& element : header.elements)
+    if (element.name == "vertex") vertices = element.count;
+  Reader reader{header.format, header.body};
+  for (const Element& element : header.elements) {
+    // Nothing to read means nothing that a wrong count would run into.
+    if (element.properties.empty()) continue;
+    for (uint64_t i = 0; i < element.count; ++i) {
+      const auto where = [&] { return fmt::format("{}: {} {}", source.name, element.name, i); };
+      for (const Property& property : element.properties)
+        LUXEL_TRY_STATUS(check_property(property, reader, vertices, where));
+    }
+  }
+  return {};
+}
+
+}  // namespace luxel::import

@@ -1,0 +1,57 @@
+// What the files of this room share. For this room only.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "luxel/base/result.h"
+#include "luxel/import/import.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::import {
+
+/// A file to read, already in memory.
+struct SourceFile {
+  std::filesystem::path path;
+  std::string name;       ///< what messages call it
+  std::string extension;  ///< lower case, with the dot
+  std::vector<std::byte> bytes;
+};
+
+/// An error that lists what can be read when this is not among it.
+Status check_extension(const SourceFile& source);
+
+Result<Imported> read_gltf(const SourceFile& source);
+Result<Imported> read_with_assimp(const SourceFile& source);
+
+/// Assimp's readers trust their input, and Debian's build aborts where an assertion fails: what can
+/// be told cheaply is told before. Errors: NaN, index out of range, a file that ends early.
+/// Returns the names of the materials whose .mtl states a diffuse colour: Assimp makes up 0.6 for
+/// the others. A missing .mtl is a warning.
+Result<std::set<std::string>> check_obj(const SourceFile& source,
+                                        std::vector<std::string>& warnings);
+Status check_ply(const SourceFile& source);
+Status check_x(const SourceFile& source);
+Status check_collada(const SourceFile& source);
+
+/// Decodes `encoded` and keeps it. `name` is the picture's file or number, `user` who asked for it.
+Result<scene::Texture> decode_texture(std::vector<std::byte> encoded, const std::string& name,
+                                      const std::string& user);
+
+/// Merges vertices that agree in every bit of every attribute, in the order of their first use.
+void join_identical_vertices(scene::Mesh& mesh);
+
+/// What a surface is made of when its file does not say: white that reflects 0.8. glTF's own
+/// default would be base colour 1 with metallic 1, that is black to a diffuse solver; a white of 1
+/// never loses light and would be clamped.
+scene::Material default_material();
+
+/// What a library says (several lines, full stops) as the end of a sentence of ours.
+std::string one_sentence(std::string text);
+
+/// "mesh 3 (chair)"
+std::string label(const char* kind, size_t index, const std::string& name);
+
+}  // namespace luxel::import

@@ -1,0 +1,238 @@
+#include "luxel/light/direct_light.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <optional>
+
+#include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/light/direct_shots.h"
+#include "luxel/light/kept_light.h"
+
+namespace luxel::light {
+namespace {
+
+/// Variance of what systematic sampling has drawn: half the mean square of the differences between
+/// neighbours on the line, which share their place and differ by chance [Wolter85, eq. 7.2.4].
+struct DrawnVariance {
+  float before = 0, squares = 0;
+  uint32_t count = 0;
+
+  void add(float light) {
+    const float d = light - before;
+    if (count > 0) squares += 0.5f * d * d;
+    before = light, ++count;
+  }
+  float sum() const {
+    if (count < 2) return before * before;
+    return squares * float(count) / float(count - 1);
+  }
+};
+
+/// Traces the shots and adds up what arrives in their sources.
+void trace_shots(const trace::RayTracer& tracer, Shots& shots) {
+  shots.arriving.resize(shots.rays.size());
+  tracer.transmitted(shots.rays, shots.arriving);
+  for (size_t k = 0; k < shots.shots.size(); ++k) {
+    if (max_component(shots.arriving[k]) <= 0) continue;
+    const Shot& shot = shots.shots[k];
+    Source& source = shots.sources[shot.source];
+    const Rgb arrived = shot.radiance * shots.arriving[k];
+    source.sum += arrived;
+    const float l = luminance(arrived);
+    source.sum_luminance2 += l * l;
+    if (shot.second_half) source.second_luminance += l;
+  }
+}
+
+Rgb light_of(const Source& s) {
+  return s.sum * s.tint * (s.exact ? s.scale / s.sum_weight : s.scale);
+}
+
+/// As if its shots were independent.
+float variance_of(const Source& s, float light) {
+  const float n = float(s.shots);
+  if (s.exact) {
+    const float share = std::min(1.0f, light / std::max(s.unshadowed, 1e-30f));
+    return s.unshadowed * s.unshadowed * share * (1 - share) / n;
+  }
+  const float mean = luminance(s.sum) / n, mean2 = s.sum_luminance2 / n;
+  return std::max(0.0f, mean2 - mean * mean) * s.scale * s.scale * n;
+}
+
+/// ((A - B) / 2)^2 of the light by either half of its shots. `whole` where there are no halves.
+float split_variance_of(const Source& s, float light, float whole) {
+  const float sum = luminance(s.sum), first_weight = s.sum_weight - s.second_weight;
+  if (!(first_weight > 0) || !(s.second_weight > 0) || !(sum > 0)) return whole;
+  const float a = s.exact ? (sum - s.second_luminance) / first_weight * s.sum_weight
+                          : 2 * (sum - s.second_luminance);
+  const float b =
+      s.exact ? s.second_luminance / s.second_weight * s.sum_weight : 2 * s.second_luminance;
+  const float half = 0.5f * (a - b) / sum * light;
+  return half * half;
+}
+
+size_t layer_of(const LightLayers& layers, LightId light) {
+  switch (light.kind) {
+    case LightId::Kind::triangle:
+      return layers.of_triangle[light.index];
+    case LightId::Kind::punctual:
+      return layers.of_punctual[light.index];
+    case LightId::Kind::surroundings:
+      break;
+  }
+  LUXEL_CHECK(layers.of_surroundings.has_value());
+  return *layers.of_surroundings;
+}
+
+LightAt sum_of(std::span<const Source> sources) {
+  LightAt out;
+  DrawnVariance drawn;
+  for (const Source& s : sources) {
+    if (s.drawn) drawn.add(luminance(s.sum * s.tint) * s.scale);
+    if (s.shots == 0 || s.sum_weight <= 0) continue;
+    const Rgb light = light_of(s);
+    out.irradiance += light;
+    if (s.drawn) continue;
+    const float variance = variance_of(s, luminance(light));
+    out.variance += variance;
+    out.split_variance += split_variance_of(s, luminance(light), variance);
+  }
+  out.variance += drawn.sum(), out.split_variance += drawn.sum();
+  return out;
+}
+
+}  // namespace
+
+void direct_light_at(const scene::Scene& scene, const Lights& lights,
+                     const trace::RayTracer& tracer, const DirectParams& params,
+                     std::span<const Receiver> receivers, float diagonal_m, Shots& shots,
+                     std::span<LightAt> out) {
+  LUXEL_CHECK(out.size() == receivers.size());
+  shots.sources.clear(), shots.sources_end.clear(), shots.shots.clear(), shots.rays.clear();
+  for (const Receiver& r : receivers) {
+    shoot_at_triangles(scene, lights, params.samples, r, diagonal_m, shots);
+    shoot_at_lamps(lights, params.samples, r, shots);
+    shoot_at_peaks(scene, lights.around, params.samples, r, shots);
+    shoot_at_soft_sky(scene, lights.around, params.sky_samples, r, shots);
+    shots.sources_end.push_back(shots.sources.size());
+  }
+  trace_shots(tracer, shots);
+  const std::span<const Source> sources = shots.sources;
+  for (size_t i = 0, begin = 0; i < out.size(); begin = shots.sources_end[i++])
+    out[i] = sum_of(sources.subspan(begin, shots.sources_end[i] - begin));
+}
+
+void add_light_by_layer(const Shots& shots, size_t receiver, const LightLayers& layers, Rgb factor,
+                        std::span<Rgb> out) {
+  LUXEL_CHECK(out.size() == layers.size());
+  const size_t begin = receiver == 0 ? 0 : shots.sources_end[receiver - 1];
+  for (size_t k = begin; k < shots.sources_end[receiver]; ++k) {
+    const Source& s = shots.sources[k];
+    if (s.shots == 0 || s.sum_weight <= 0) continue;
+    out[layer_of(layers, s.light)] += light_of(s) * factor;
+  }
+}
+
+LightAt direct_light_at(const scene::Scene& scene, const Lights& lights,
+                        const trace::RayTracer& tracer, const DirectParams& params,
+                        const Receiver& r, float diagonal_m, Shots& shots) {
+  LightAt out;
+  direct_light_at(scene, lights, tracer, params, {&r, 1}, diagonal_m, shots, {&out, 1});
+  return out;
+}
+
+namespace {
+
+constexpr size_t kPartElements = 256;
+
+KeptStage kept_stage(const DirectParams& params, std::span<const uint32_t> which) {
+  if (params.parts == nullptr) return {};
+  Digest digest;
+  digest.add("direct light"), add_to(digest, params), digest.add(which);
+  return {params.parts, digest.value()};
+}
+
+/// Returns the number of rays.
+std::optional<uint64_t> find_part(const KeptStage& kept, size_t part,
+                                  std::span<const uint32_t> which, DirectLight& direct) {
+  const auto bytes = kept.find(part);
+  if (!bytes) return std::nullopt;
+  ByteReader in{*bytes};
+  const uint64_t rays = in.get_value<uint64_t>();
+  if (!get_light(in, which, direct) || !in.ended_well()) return std::nullopt;
+  return rays;
+}
+
+void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> which,
+               const DirectLight& direct, uint64_t rays) {
+  if (!kept.wants()) return;
+  ByteWriter out;
+  out.put_value(rays);
+  put_light(direct, which, out);
+  kept.keep(part, out.bytes);
+}
+
+}  // namespace
+
+Status direct_light_again(const scene::Scene& scene, const transport::Elements& elements,
+                          const Lights& lights, const trace::RayTracer& tracer,
+                          std::span<const uint32_t> which, const DirectParams& params,
+                          DirectLight& direct, Progress& progress) {
+  LUXEL_CHECK(params.samples >= 1 && direct.irradiance.size() == elements.size());
+  LUXEL_CHECK(direct.by_layer.size() ==
+              (params.layers ? params.layers->size() : 0) * elements.size());
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  const KeptStage kept = kept_stage(params, which);
+  std::atomic<uint64_t> rays{0};
+  progress.begin("direct light", which.size());
+  parallel_for(which.size(), kPartElements, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
+    const std::span<const uint32_t> these = which.subspan(begin, end - begin);
+    if (const auto found = find_part(kept, begin / kPartElements, these, direct)) {
+      rays += *found;
+      return progress.skip(end - begin);
+    }
+    Shots shots;
+    uint64_t traced = 0;
+    for (size_t k = begin; k < end; ++k) {
+      const size_t i = which[k];
+      const Receiver r{
+          elements.position[i], elements.normal[i], elements.geometric_normal[i],
+          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
+          hash64(params.seed, params.same_points ? 0 : i)};
+      const LightAt light = direct_light_at(scene, lights, tracer, params, r, diagonal_m, shots);
+      direct.irradiance[i] = light.irradiance;
+      direct.variance[i] = light.variance, direct.split_variance[i] = light.split_variance;
+      if (params.layers) {
+        const std::span<Rgb> own = direct.layers_of(i, *params.layers);
+        std::ranges::fill(own, Rgb{});
+        add_light_by_layer(shots, 0, *params.layers, {1, 1, 1}, own);
+      }
+      traced += shots.rays.size();
+    }
+    rays += traced;
+    keep_part(kept, begin / kPartElements, these, direct, traced);
+    progress.advance(end - begin);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  direct.rays += rays;
+  return {};
+}
+
+Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
+                                 const DirectParams& params, Progress& progress) {
+  DirectLight out;
+  out.irradiance.resize(elements.size());
+  out.variance.resize(elements.size()), out.split_variance.resize(elements.size());
+  if (params.layers) out.by_layer.resize(elements.size() * params.layers->size());
+  std::vector<uint32_t> all(elements.size());
+  std::iota(all.begin(), all.end(), 0u);
+  LUXEL_TRY_STATUS(direct_light_again(scene, elements, lights, tracer, all, params, out, progress));
+  return out;
+}
+
+}  // namespace luxel::light

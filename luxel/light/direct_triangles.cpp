@@ -1,0 +1,204 @@
+// Shadow rays towards emissive triangles.
+#include <algorithm>
+#include <array>
+
+#include "luxel/base/random.h"
+#include "luxel/base/warp.h"
+#include "luxel/light/direct_shots.h"
+#include "luxel/light/light_draw.h"
+#include "luxel/light/spherical_triangle.h"
+#include "luxel/viewfactor/point_form_factor.h"
+
+namespace luxel::light {
+namespace {
+
+/// Up to so many lights every one is looked at; of more, some are drawn.
+constexpr size_t kMaxAll = 32;
+/// Below it a triangle is so small that sampling its area is as good, and more exact in floats.
+constexpr float kMinSolidAngle = 1e-3f;
+
+/// pi F(point -> triangle light): irradiance per unit of radiance, nothing in between. Zero in the
+/// light's own plane and behind a one-sided light.
+float irradiance_per_radiance(const TriangleLight& light, Vec3 position, Vec3 normal) {
+  const float side = dot(position - light.a, light.normal);
+  const float reach = length(position - light.a);
+  // In the light's plane, or in ours, rounding would decide between nothing and a half space.
+  constexpr float kPlaneTolerance = 1e-6f;
+  if (std::abs(side) <= kPlaneTolerance * reach || (side < 0 && !light.two_sided)) return 0;
+  const float highest = std::max({dot(light.a - position, normal), dot(light.b - position, normal),
+                                  dot(light.c - position, normal)});
+  if (highest <= 10 * kPlaneTolerance * reach) return 0;
+  const std::array<Vec3, 3> corners{light.a, side > 0 ? light.b : light.c,
+                                    side > 0 ? light.c : light.b};
+  return kPi * float(viewfactor::point_to_polygon(position, normal, corners));
+}
+
+/// One point of a triangle light: w = cos (solid angle density) or cos cos / d^2 (area density);
+/// both up to a constant of the light, `measure`, which a group needs and an exact source does not.
+struct LightPoint {
+  Vec3 target;
+  Barycentric at;
+  float weight = 0, measure = 0;
+};
+
+LightPoint sample_solid_angle(const TriangleLight& light, const SphericalTriangle& spherical,
+                              const Receiver& r, Vec2 u) {
+  const Vec3 d = spherical_triangle_sample(spherical, u);
+  const float along = dot(d, light.normal);
+  const float t = along != 0 ? dot(light.a - r.position, light.normal) / along : 0.0f;
+  const Vec3 p = r.position + d * t;
+  const Vec3 ab = light.b - light.a, ac = light.c - light.a, ap = p - light.a;
+  const Vec3 n = cross(ab, ac);
+  const float inverse = 1 / dot(n, n);
+  return {p,
+          {dot(cross(ap, ac), n) * inverse, dot(cross(ab, ap), n) * inverse},
+          std::max(0.0f, dot(d, r.normal)),
+          spherical.solid_angle};
+}
+
+LightPoint sample_area(const TriangleLight& light, const Receiver& r, Vec2 u) {
+  const Barycentric at = triangle_sample(u);
+  const Vec3 p = interpolate(light.a, light.b, light.c, at);
+  const Vec3 d = p - r.position;
+  const float d2 = dot(d, d);
+  float light_side = -dot(d, light.normal);
+  if (light.two_sided) light_side = std::abs(light_side);
+  if (d2 <= 0 || light_side <= 0) return {p, at, 0, light.area_m2};
+  return {p, at, std::max(0.0f, dot(d, r.normal)) * light_side / (d2 * d2), light.area_m2};
+}
+
+void shoot_at(const scene::Scene& scene, const TriangleLight& light, const LightPoint& point,
+              uint32_t source, float factor, const Receiver& r, float diagonal_m, Shots& shots) {
+  const bool front = dot(r.position - light.a, light.normal) > 0;
+  // The ray ends just before the light, so that the light itself does not block it, nor a wall that
+  // touches the light when the point lies on their common edge.
+  constexpr float kEnd = 1 - 1e-4f;
+  const Vec3 end =
+      trace::offset_origin(point.target, front ? light.normal : -light.normal, diagonal_m);
+  const Rgb radiance = light.textured ? radiance_at(scene, light, point.at) : light.mean_radiance;
+  const float w = point.weight * factor;
+  add_shot(shots, r, {source, w, radiance * w}, end - r.origin, kEnd);
+}
+
+/// Shots at one triangle. Points below the receiver's horizon bring nothing and would starve the
+/// ratio: the sequence is followed until `count` points lie above it.
+void shoot_at_triangle(const scene::Scene& scene, const TriangleLight& light, uint32_t source,
+                       uint32_t count, const Receiver& r, float diagonal_m, Shots& shots) {
+  const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
+  const bool by_angle = spherical.solid_angle > kMinSolidAngle;
+  uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
+  if (light.piece > 0) seed = hash64(seed, light.piece);
+  uint32_t kept = 0;
+  for (uint32_t k = 0; kept < count && k < 8 * count + 64; ++k) {
+    const Vec2 u = sobol_owen_2d(k, seed);
+    const LightPoint point =
+        by_angle ? sample_solid_angle(light, spherical, r, u) : sample_area(light, r, u);
+    if (point.weight <= 0) continue;
+    shoot_at(scene, light, point, source, 1, r, diagonal_m, shots);
+    ++kept;
+  }
+}
+
+bool shines_on(const TriangleLight& light, const Receiver& r) {
+  return light.two_sided || dot(r.position - light.a, light.normal) > 0;
+}
+
+/// One shot at a triangle that stands for many.
+void shoot_at_drawn(const scene::Scene& scene, const Lights& lights, const LightDraw& draw,
+                    const Receiver& r, float diagonal_m, Shots& shots) {
+  const TriangleLight& light = lights.triangles[draw.light];
+  const uint32_t source = uint32_t(shots.sources.size());
+  shots.sources.push_back(
+      {.scale = 1 / draw.chance, .drawn = true, .light = {LightId::Kind::triangle, draw.light}});
+  const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
+  const uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
+  const Vec2 u = RandomStream{seed}.next2();
+  const LightPoint point = spherical.solid_angle > kMinSolidAngle
+                               ? sample_solid_angle(light, spherical, r, u)
+                               : sample_area(light, r, u);
+  if (point.weight > 0 && shines_on(light, r))
+    shoot_at(scene, light, point, source, point.measure, r, diagonal_m, shots);
+}
+
+/// More lights than a cut holds: some of them. Those that get a ray for certain are exact but for
+/// the visible share; of the others each one that is drawn stands for its neighbours too.
+void shoot_at_many(const scene::Scene& scene, const Lights& lights, int samples, const Receiver& r,
+                   float diagonal_m, Shots& shots) {
+  const auto leaf = [&](const LightNode& node) {
+    return importance_at(node, r.position, r.normal);
+  };
+  RandomStream random{hash64(r.seed, 0x11)};
+  // A cut shares several rays out better; for a single one the way down from the root is enough.
+  const DrawParams params{
+      .samples = samples, .max_cut = samples == 1 ? 1u : 16u, .start = random.next()};
+  draw_lights(lights.nodes, r.position, r.normal, leaf, params, shots.draws);
+  for (const LightDraw& draw : shots.draws.draws) {
+    if (draw.chance < 1) {
+      shoot_at_drawn(scene, lights, draw, r, diagonal_m, shots);
+      continue;
+    }
+    const TriangleLight& light = lights.triangles[draw.light];
+    const float whole = irradiance_per_radiance(light, r.position, r.normal);
+    if (whole <= 0) continue;
+    const uint32_t source = uint32_t(shots.sources.size());
+    shots.sources.push_back({.scale = whole,
+                             .exact = true,
+                             .planned = draw.count,
+                             .unshadowed = whole * luminance(light.mean_radiance),
+                             .light = {LightId::Kind::triangle, draw.light}});
+    shoot_at_triangle(scene, light, source, draw.count, r, diagonal_m, shots);
+  }
+}
+
+/// Few lights: `samples` shots are shared out in proportion to what each brings, at least one to
+/// each while there are twice as many shots as lights. Where there are fewer, a light that deserves
+/// less than one gets one with that chance (systematic sampling), and counts for more then.
+void shoot_at_all(const scene::Scene& scene, const Lights& lights, int samples, const Receiver& r,
+                  float diagonal_m, Shots& shots) {
+  shots.whole.clear();
+  float total = 0;
+  size_t shining = 0;
+  for (const TriangleLight& light : lights.triangles) {
+    shots.whole.push_back(irradiance_per_radiance(light, r.position, r.normal));
+    total += shots.whole.back() * luminance(light.mean_radiance);
+    shining += shots.whole.back() > 0;
+  }
+  if (!(total > 0)) return;
+  RandomStream random{hash64(r.seed, 0x11)};
+  float owed = random.next();
+  const float least = size_t(samples) >= 2 * shining ? 1.0f : 0.0f;
+  for (size_t i = 0; i < lights.triangles.size(); ++i) {
+    if (shots.whole[i] <= 0) continue;
+    const TriangleLight& light = lights.triangles[i];
+    const float unshadowed = shots.whole[i] * luminance(light.mean_radiance);
+    const float deserved = std::max(least, float(samples) * unshadowed / total);
+    uint32_t count = uint32_t(std::lround(deserved));
+    if (deserved < 1) {
+      owed += deserved;
+      count = owed >= 1 ? 1 : 0;
+      owed -= float(count);
+    }
+    if (count == 0) continue;
+    const float chance = std::min(1.0f, deserved);
+    const uint32_t source = uint32_t(shots.sources.size());
+    shots.sources.push_back({.scale = shots.whole[i] / chance,
+                             .exact = true,
+                             .planned = count,
+                             .unshadowed = unshadowed / chance,
+                             .light = {LightId::Kind::triangle, uint32_t(i)}});
+    shoot_at_triangle(scene, light, source, count, r, diagonal_m, shots);
+  }
+}
+
+}  // namespace
+
+void shoot_at_triangles(const scene::Scene& scene, const Lights& lights, int samples,
+                        const Receiver& r, float diagonal_m, Shots& shots) {
+  if (lights.triangles.empty()) return;
+  if (lights.triangles.size() <= kMaxAll)
+    shoot_at_all(scene, lights, samples, r, diagonal_m, shots);
+  else
+    shoot_at_many(scene, lights, samples, r, diagonal_m, shots);
+}
+
+}  // namespace luxel::light

@@ -1,0 +1,73 @@
+// Light that arrives at points from all sides, by direction: what probes and directional lightmaps
+// are made of.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/base/spherical_harmonics.h"
+#include "luxel/light/lights.h"
+#include "luxel/scene/scene.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::light {
+
+/// What the light is taken from: a scene with its lamps, and a solver's answer for E of every
+/// surface's front side.
+struct LitScene {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  const Lights& lights;
+  std::function<Rgb(const scene::SurfacePoint&)> irradiance_at;  ///< called by many threads
+};
+
+struct AroundParams {
+  int samples = 512;        ///< rays per point towards surfaces and sky
+  int direct_samples = 16;  ///< shadow rays per point and direction towards area lights
+  uint64_t seed = 1;
+};
+
+/// E(n) [W/m^2] at a point in the air as spherical harmonics of the direction n that a surface
+/// there would face: E(n) = sum c_k Y_k(n), to 1 % of a lamp's light [Ramamoorthi01].
+struct Probe {
+  Vec3 position;
+  std::array<Rgb, kSh2> irradiance{};
+  float backs = 0;  ///< share of the surfaces around that are seen from behind
+};
+
+struct Probes {
+  std::vector<Probe> probes;
+  uint64_t rays = 0;
+};
+
+/// Light straight from lamps is taken for kProbeNormals directions, of which the least squares are
+/// the coefficients, with everything that direct_light knows; the rest comes by rays, whose
+/// radiance is convolved with the cosine band by band: factors pi, 2 pi / 3, pi / 4. Errors:
+/// cancelled.
+Result<Probes> light_probes(const LitScene& lit, std::span<const Vec3> positions,
+                            const AroundParams& params, Progress& progress);
+inline constexpr uint32_t kProbeNormals = 48;
+
+/// How E changes when a surface's normal is bent: E(m) = E + (m - n) . V, V a vector per channel.
+struct Bent {
+  std::array<Rgb, 3> v;  ///< its x, y and z, in the world
+};
+struct BentLight {
+  std::vector<Bent> bent;
+  uint64_t rays = 0;
+};
+
+/// From E for normals that are tilted by kTilt to four sides; light from below the surface itself
+/// does not count. Exact for one distant lamp that none of the four faces away from, and for a sky
+/// of one colour. Spans are of one length. Errors: cancelled.
+Result<BentLight> bent_irradiance(const LitScene& lit, std::span<const Vec3> positions,
+                                  std::span<const Vec3> normals,
+                                  std::span<const Vec3> geometric_normals,
+                                  const AroundParams& params, Progress& progress);
+inline constexpr float kTilt = 0.7f;
+
+}  // namespace luxel::light

@@ -1,0 +1,23 @@
+// Light that is still being worked out, for whoever watches.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "luxel/base/vec.h"
+
+namespace luxel::light {
+
+/// E per element as far as it is known [W/m^2].
+struct LightEstimate {
+  std::span<const Rgb> irradiance;  ///< valid during the call
+  /// Rays per element in the mean; 0: none yet, what surfaces send each other is an ambient term.
+  double samples = 0;
+  float relative_error_p95 = 0;  ///< that 95 of 100 elements stay below; 0: not known yet
+};
+
+/// Called by the thread that called the solver, between its stages: the work goes on when it
+/// returns.
+using OnLightEstimate = std::function<void(const LightEstimate&)>;
+
+}  // namespace luxel::light

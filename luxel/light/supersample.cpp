@@ -1,0 +1,399 @@
+#include "luxel/light/supersample.h"
+
+#include <algorithm>
+#include <atomic>
+#include <iterator>
+#include <numeric>
+#include <optional>
+
+#include "luxel/base/check.h"
+#include "luxel/base/free_memory.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/light/direct_shots.h"
+#include "luxel/light/kept_light.h"
+#include "luxel/transport/backs_seen.h"
+
+namespace luxel::light {
+namespace {
+
+constexpr size_t kGrain = 16;
+/// For one of many points, and for the sample of a texel, as gather asks.
+constexpr int kEnclosureRays = 16, kEnclosureRaysOfTexel = 64;
+constexpr uint64_t kPointSeed = 0x70e1;
+
+/// What all points share.
+struct Place {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  float diagonal_m;
+};
+
+/// Whether a point lies inside a solid; of each place the same answer in every bake.
+bool is_enclosed(const Place& at, const Receiver& r, int rays = kEnclosureRays) {
+  return transport::is_enclosed(at.scene, at.tracer, r.origin, r.normal, rays, at.diagonal_m);
+}
+
+Receiver receiver_at(const Place& at, const transport::SmoothPoint& s, uint64_t seed) {
+  return {s.position, s.normal, s.geometric_normal,
+          trace::offset_origin(s.position, s.geometric_normal, at.diagonal_m), seed};
+}
+
+/// Only to be asked whether it is enclosed: it has no seed.
+Receiver own_receiver(const Place& at, const transport::Elements& elements, size_t i) {
+  return receiver_at(at, {elements.position[i], elements.normal[i], elements.geometric_normal[i]},
+                     0);
+}
+
+/// Whether the sample of a texel has the backs of some surfaces before it.
+bool sees_backs(const Place& at, const Receiver& own) {
+  return transport::backs_in(transport::backs_seen(at.scene, at.tracer, own.origin, own.normal,
+                                                   kEnclosureRays)) > 0;
+}
+
+/// Light at the points of one texel.
+struct PointLight {
+  Vec3 position;
+  Rgb irradiance;
+  float variance = 0;
+};
+
+/// Estimates the variance of the mean's luminance. Points are stratified: what counts is how much
+/// the light varies within each one's share of the texel, and half the squared difference to the
+/// nearest other point stands for that, and for the noise of the point itself.
+float variance_of_mean(std::span<const PointLight> points) {
+  const size_t n = points.size();
+  if (n == 1) return points[0].variance;
+  double sum = 0;
+  for (size_t i = 0; i < n; ++i) {
+    size_t nearest = i == 0 ? 1 : 0;
+    const auto distance2 = [&](size_t j) {
+      const Vec3 d = points[j].position - points[i].position;
+      return dot(d, d);
+    };
+    for (size_t j = 0; j < n; ++j)
+      if (j != i && distance2(j) < distance2(nearest)) nearest = j;
+    const double d =
+        double(luminance(points[i].irradiance)) - double(luminance(points[nearest].irradiance));
+    sum += 0.5 * d * d;
+  }
+  return float(sum / (double(n) * double(n)));
+}
+
+struct NoisyLight {
+  Rgb irradiance;
+  float variance = 0;
+};
+
+bool differ(NoisyLight a, NoisyLight b, float threshold) {
+  const Rgb p = a.irradiance, q = b.irradiance;
+  const float difference = max_component(max(p - q, q - p));
+  const float noise = std::sqrt(a.variance + b.variance);
+  return difference > threshold * max_component(max(p, q)) && difference > 3 * noise;
+}
+
+bool is_dark(Rgb light) { return max_component(light) <= 0; }
+
+int samples_per_point(int samples) { return std::max(std::min(samples, 8), samples / 8); }
+
+/// Of a texel at a chart's border, when it is asked whether light varies.
+constexpr int kBorderPoints = 8;
+
+/// Buffers of one thread.
+struct PointWork {
+  std::vector<scene::SurfacePoint> spread;
+  std::vector<Receiver> receivers;
+  std::vector<LightAt> light;
+  Shots shots;
+};
+
+/// The direct light at work.spread, the points of texel `i`.
+void light_points(const Place& place, const Lights& lights, const DirectParams& each, size_t i,
+                  PointWork& work) {
+  work.receivers.clear();
+  for (const scene::SurfacePoint& p : work.spread) {
+    const uint64_t seed = hash64(hash64(each.seed, kPointSeed + work.receivers.size()), i);
+    work.receivers.push_back(receiver_at(place, transport::smooth_point(place.scene, p), seed));
+  }
+  work.light.resize(work.receivers.size());
+  direct_light_at(place.scene, lights, place.tracer, each, work.receivers, place.diagonal_m,
+                  work.shots, work.light);
+}
+
+}  // namespace
+
+std::vector<uint32_t> uneven_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                    const DirectLight& direct, float threshold) {
+  const int side = map.resolution;
+  std::vector<uint8_t> uneven(map.texels.size());
+  const auto chart_of = [&](size_t i) { return atlas.chart[map.texels[i].triangle_number]; };
+  parallel_for(map.texels.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const int x = int(map.texels[i].x), y = int(map.texels[i].y);
+      for (int v = std::max(0, y - 1); v <= std::min(side - 1, y + 1) && !uneven[i]; ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(side - 1, x + 1) && !uneven[i]; ++u) {
+          const uint32_t j = map.texel_at[size_t(v) * size_t(side) + size_t(u)];
+          if (j == atlas::kNone || j == i || chart_of(i) != chart_of(j)) continue;
+          uneven[i] = differ({direct.irradiance[i], direct.variance[i]},
+                             {direct.irradiance[j], direct.variance[j]}, threshold);
+        }
+    }
+  });
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < uneven.size(); ++i)
+    if (uneven[i]) out.push_back(i);
+  return out;
+}
+
+Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atlas,
+                              const atlas::TexelMap& map, const transport::Elements& elements,
+                              const trace::RayTracer& tracer, int points, uint64_t seed,
+                              Progress& progress) {
+  LUXEL_CHECK(points >= 1);
+  std::vector<uint32_t> all(map.texels.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const atlas::Cover cover = atlas::cover_of(atlas, map, all);
+  const Place place{scene, tracer, scene::world_bounds(scene).diagonal()};
+  std::vector<std::vector<Receiver>> found(all.size());
+  progress.begin("footprints", all.size());
+  parallel_for(all.size(), kGrain, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
+    std::vector<scene::SurfacePoint> spread;
+    for (size_t i = begin; i < end; ++i) {
+      const Receiver own = own_receiver(place, elements, i);
+      if (!is_enclosed(place, own, kEnclosureRaysOfTexel)) {
+        atlas::spread_points(atlas, map.texels[i], cover.of(i), points, seed, spread);
+        for (const scene::SurfacePoint& p : spread) {
+          const Receiver r = receiver_at(place, transport::smooth_point(scene, p), 0);
+          if (!is_enclosed(place, r)) found[i].push_back(r);
+        }
+      }
+      if (found[i].empty()) found[i].push_back(own);
+    }
+    progress.advance(end - begin);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  Footprints out;
+  out.first.push_back(0);
+  for (size_t i = 0; i < all.size(); ++i) {
+    for (const Receiver& r : found[i]) {
+      out.points.position.push_back(r.position), out.points.normal.push_back(r.normal);
+      out.points.geometric_normal.push_back(r.geometric_normal);
+    }
+    out.first.push_back(uint32_t(out.points.size()));
+    free_memory(found[i]);
+  }
+  return out;
+}
+
+namespace {
+
+/// Texels with a place beside them that is not of their chart, but for those in `known`, which is
+/// in the order of the map.
+std::vector<uint32_t> border_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                    std::span<const uint32_t> known) {
+  const int side = map.resolution;
+  const auto chart_of = [&](size_t i) { return atlas.chart[map.texels[i].triangle_number]; };
+  std::vector<uint8_t> border(map.texels.size());
+  parallel_for(map.texels.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const int x = int(map.texels[i].x), y = int(map.texels[i].y);
+      for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
+        const int u = x + dx, v = y + dy;
+        const uint32_t j = u < 0 || v < 0 || u >= side || v >= side
+                               ? atlas::kNone
+                               : map.texel_at[size_t(v) * size_t(side) + size_t(u)];
+        if (j == atlas::kNone || chart_of(i) != chart_of(j)) border[i] = 1;
+      }
+    }
+  });
+  for (const uint32_t i : known) border[i] = 0;
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < border.size(); ++i)
+    if (border[i]) out.push_back(i);
+  return out;
+}
+
+/// Of `which`, those whose light differs at some of a few points: where a chart ends there is no
+/// neighbour who would tell of a shadow's edge. Returns the number of rays.
+Result<uint64_t> keep_uneven(const Place& place, const atlas::Atlas& atlas,
+                             const atlas::TexelMap& map, const Lights& lights,
+                             const SupersampleParams& params, const DirectLight& direct,
+                             std::vector<uint32_t>& which, Progress& progress) {
+  const atlas::Cover cover = atlas::cover_of(atlas, map, which);
+  DirectParams each = params.direct;
+  each.samples = samples_per_point(params.direct.samples);
+  std::atomic<uint64_t> rays{0};
+  std::vector<uint8_t> uneven(which.size());
+  progress.begin("supersample", which.size());
+  parallel_for(which.size(), kGrain, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
+    PointWork work;
+    uint64_t traced = 0;
+    for (size_t k = begin; k < end; ++k) {
+      const uint32_t i = which[k];
+      atlas::spread_points(atlas, map.texels[i], cover.of(k), kBorderPoints, each.seed,
+                           work.spread);
+      light_points(place, lights, each, i, work);
+      traced += work.shots.rays.size();
+      for (const LightAt& l : work.light)
+        if (differ({l.irradiance, l.variance}, {direct.irradiance[i], direct.variance[i]},
+                   params.threshold))
+          uneven[k] = 1;
+    }
+    rays += traced;
+    progress.advance(end - begin);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  size_t kept = 0;
+  for (size_t k = 0; k < which.size(); ++k)
+    if (uneven[k]) which[kept++] = which[k];
+  which.resize(kept);
+  return uint64_t(rays);
+}
+
+}  // namespace
+
+Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const atlas::TexelMap& map, const transport::Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
+                                 const SupersampleParams& params, DirectLight& direct,
+                                 Progress& progress) {
+  std::vector<uint32_t> all(map.texels.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return supersample(scene, atlas, map, elements, lights, tracer, all, params, direct, progress);
+}
+
+Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const atlas::TexelMap& map, const transport::Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
+                                 std::span<const uint32_t> among, const SupersampleParams& params,
+                                 DirectLight& direct, Progress& progress) {
+  if (params.points == 1) return Supersampled{};
+  const Place place{scene, tracer, scene::world_bounds(scene).diagonal()};
+  std::vector<uint32_t> uneven, borders, which;
+  std::ranges::set_intersection(uneven_texels(atlas, map, direct, params.threshold), among,
+                                std::back_inserter(uneven));
+  std::ranges::set_intersection(border_texels(atlas, map, uneven), among,
+                                std::back_inserter(borders));
+  LUXEL_TRY(const uint64_t rays,
+            keep_uneven(place, atlas, map, lights, params, direct, borders, progress));
+  std::ranges::merge(uneven, borders, std::back_inserter(which));
+  LUXEL_TRY(Supersampled out, average_texels(scene, atlas, map, elements, lights, tracer, which,
+                                             params, direct, progress));
+  out.rays += rays;
+  return out;
+}
+
+namespace {
+
+KeptStage kept_stage(const SupersampleParams& params, std::span<const uint32_t> which,
+                     const DirectLight& direct) {
+  if (params.direct.parts == nullptr) return {};
+  Digest digest;
+  digest.add("supersample"), digest.add(params.points), add_to(digest, params.direct);
+  digest.add(which);
+  for (const uint32_t i : which) digest.add(is_dark(direct.irradiance[i]));
+  return {params.direct.parts, digest.value()};
+}
+
+/// Returns the number of rays; fills one flag per texel, whether it was averaged.
+std::optional<uint64_t> find_part(const KeptStage& kept, size_t part,
+                                  std::span<const uint32_t> which, std::span<uint8_t> is_averaged,
+                                  DirectLight& direct) {
+  const auto bytes = kept.find(part);
+  if (!bytes) return std::nullopt;
+  ByteReader in{*bytes};
+  const uint64_t rays = in.get_value<uint64_t>();
+  std::vector<uint8_t> flags(is_averaged.size());
+  in.get(std::span(flags));
+  if (!in.ok || !get_light(in, which, direct)) return std::nullopt;
+  std::copy(flags.begin(), flags.end(), is_averaged.begin());
+  return rays;
+}
+
+void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> which,
+               std::span<const uint8_t> is_averaged, const DirectLight& direct, uint64_t rays) {
+  if (!kept.wants()) return;
+  ByteWriter out;
+  out.put_value(rays);
+  out.put(is_averaged);
+  put_light(direct, which, out);
+  kept.keep(part, out.bytes);
+}
+
+}  // namespace
+
+Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                    const atlas::TexelMap& map, const transport::Elements& elements,
+                                    const Lights& lights, const trace::RayTracer& tracer,
+                                    std::span<const uint32_t> which,
+                                    const SupersampleParams& params, DirectLight& direct,
+                                    Progress& progress) {
+  LUXEL_CHECK(params.points >= 1);
+  const atlas::Cover cover = atlas::cover_of(atlas, map, which);
+  const Place place{scene, tracer, scene::world_bounds(scene).diagonal()};
+  DirectParams each = params.direct;
+  each.samples = samples_per_point(params.direct.samples);
+  std::atomic<uint64_t> rays{0};
+  std::vector<uint8_t> is_averaged(which.size());
+  const KeptStage kept = kept_stage(params, which, direct);
+  progress.begin("supersample", which.size());
+  parallel_for(which.size(), kGrain, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
+    const std::span<const uint32_t> these = which.subspan(begin, end - begin);
+    const std::span<uint8_t> averaged = std::span(is_averaged).subspan(begin, end - begin);
+    if (const auto found = find_part(kept, begin / kGrain, these, averaged, direct)) {
+      rays += *found;
+      return progress.skip(end - begin);
+    }
+    PointWork work;
+    std::vector<PointLight> points;
+    std::vector<Rgb> by_layer(each.layers ? each.layers->size() : 0);
+    uint64_t traced = 0;
+    for (size_t k = begin; k < end; ++k) {
+      const uint32_t i = which[k];
+      const Receiver own = own_receiver(place, elements, i);
+      if (is_dark(direct.irradiance[i])) {
+        traced += uint64_t(kEnclosureRaysOfTexel);
+        if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
+      }
+      const bool near_backs = sees_backs(place, own);
+      traced += uint64_t(kEnclosureRays);
+      points.clear();
+      std::ranges::fill(by_layer, Rgb{});
+      atlas::spread_points(atlas, map.texels[i], cover.of(k), params.points, each.seed,
+                           work.spread);
+      light_points(place, lights, each, i, work);
+      traced += work.shots.rays.size();
+      for (size_t j = 0; j < work.light.size(); ++j) {
+        // Where a wall stands on the surface, its inside is dark, and nobody sees it; under the
+        // edge of a shell without a bottom, whose backs the texel sees, it need not be dark.
+        const LightAt& light = work.light[j];
+        const bool doubtful = near_backs || is_dark(light.irradiance);
+        traced += doubtful ? uint64_t(kEnclosureRays) : 0;
+        if (doubtful && is_enclosed(place, work.receivers[j])) continue;
+        points.push_back({work.receivers[j].position, light.irradiance, light.variance});
+        if (each.layers) add_light_by_layer(work.shots, j, *each.layers, {1, 1, 1}, by_layer);
+      }
+      if (points.empty()) continue;
+      Rgb sum{};
+      for (const PointLight& p : points) sum += p.irradiance;
+      direct.irradiance[i] = sum / float(points.size());
+      direct.variance[i] = direct.split_variance[i] = variance_of_mean(points);
+      for (size_t l = 0; l < by_layer.size(); ++l)
+        direct.layers_of(i, *each.layers)[l] = by_layer[l] / float(points.size());
+      is_averaged[k] = 1;
+    }
+    rays += traced;
+    keep_part(kept, begin / kGrain, these, averaged, direct, traced);
+    progress.advance(end - begin);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  Supersampled out{{}, rays};
+  for (size_t k = 0; k < which.size(); ++k)
+    if (is_averaged[k]) out.texels.push_back(which[k]);
+  return out;
+}
+
+}  // namespace luxel::light

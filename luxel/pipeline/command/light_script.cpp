@@ -1,0 +1,304 @@
+#include "luxel/pipeline/command/light_script.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+
+namespace luxel::pipeline {
+namespace {
+
+using nlohmann::json;
+
+/// One object of the file and where it stands, for messages.
+struct Node {
+  const json& value;
+  std::string where;  ///< "moves.json: lights[0]"
+
+  bool has(const char* field) const { return value.contains(field); }
+  Node at(const char* field) const { return {value[field], where + "." + field}; }
+  Node at(size_t k) const { return {value[k], fmt::format("{}[{}]", where, k)}; }
+};
+
+tl::unexpected<Error> wrong(const Node& node, std::string_view wanted) {
+  return fail(ErrorCode::bad_input, "{} is {}; it should be {}", node.where,
+              node.value.dump().substr(0, 60), wanted);
+}
+
+Status only_fields(const Node& node, std::span<const std::string_view> known,
+                   std::string_view what) {
+  if (!node.value.is_object()) return wrong(node, what);
+  for (const auto& [field, value] : node.value.items())
+    if (std::find(known.begin(), known.end(), field) == known.end()) {
+      std::string names;
+      for (const std::string_view k : known) names += (names.empty() ? "" : ", ") + std::string(k);
+      return fail(ErrorCode::bad_input, "{}: '{}' is not known; there is: {}", node.where, field,
+                  names);
+    }
+  return {};
+}
+
+Result<double> number(const Node& node, double least, double most) {
+  if (!node.value.is_number() || !(node.value.get<double>() >= least) ||
+      !(node.value.get<double>() <= most))
+    return wrong(node, fmt::format("a number from {} to {}", least, most));
+  return node.value.get<double>();
+}
+
+Result<int> whole_number(const Node& node, int least, int most) {
+  const auto value = number(node, least, most);
+  if (!value || *value != std::floor(*value))
+    return wrong(node, fmt::format("a whole number from {} to {}", least, most));
+  return int(*value);
+}
+
+Result<Vec3> triple(const Node& node) {
+  const bool good = node.value.is_array() && node.value.size() == 3 &&
+                    std::all_of(node.value.begin(), node.value.end(),
+                                [](const json& v) { return v.is_number(); });
+  const Vec3 v = good ? Vec3{node.value[0].get<float>(), node.value[1].get<float>(),
+                             node.value[2].get<float>()}
+                      : Vec3{};
+  if (!good || !is_finite(v)) return wrong(node, "three numbers, as [1, 2, 0.5]");
+  return v;
+}
+
+/// A triple, or keys {"at": seconds, "value": triple}.
+Result<Track> track(const Node& node) {
+  Track out;
+  const bool keyed = node.value.is_array() && !node.value.empty() && node.value[0].is_object();
+  if (!keyed) {
+    LUXEL_TRY(const Vec3 value, triple(node));
+    out.keys.push_back({0, value});
+    return out;
+  }
+  constexpr std::array<std::string_view, 2> known{"at", "value"};
+  for (size_t k = 0; k < node.value.size(); ++k) {
+    const Node key = node.at(k);
+    LUXEL_TRY_STATUS(only_fields(key, known, "a key, as {\"at\": 0.5, \"value\": [1, 2, 0.5]}"));
+    if (!key.has("at") || !key.has("value"))
+      return wrong(key, "a key, as {\"at\": 0.5, \"value\": [1, 2, 0.5]}");
+    LUXEL_TRY(const double at_s, number(key.at("at"), -1e6, 1e6));
+    LUXEL_TRY(const Vec3 value, triple(key.at("value")));
+    if (!out.keys.empty() && !(at_s > out.keys.back().at_s))
+      return wrong(key.at("at"), "later than the key before it");
+    out.keys.push_back({at_s, value});
+  }
+  return out;
+}
+
+Result<Track> light_track(const Node& node) {
+  LUXEL_TRY(Track out, track(node));
+  for (const Track::Key& key : out.keys)
+    if (std::min({key.value.x, key.value.y, key.value.z}) < 0)
+      return wrong(node, "light, which is never negative");
+  return out;
+}
+
+Result<Track> direction_track(const Node& node) {
+  LUXEL_TRY(Track out, track(node));
+  for (Track::Key& key : out.keys) {
+    if (!(dot(key.value, key.value) > 0)) return wrong(node, "a direction that is not 0, 0, 0");
+    key.value = normalize(key.value);
+  }
+  return out;
+}
+
+Result<scene::PunctualLight::Kind> kind_of(const Node& node) {
+  using Kind = scene::PunctualLight::Kind;
+  if (node.value == "point") return Kind::point;
+  if (node.value == "spot") return Kind::spot;
+  if (node.value == "directional") return Kind::directional;
+  return wrong(node, "\"point\", \"spot\" or \"directional\"");
+}
+
+Status read_cone(const Node& node, scene::PunctualLight& light) {
+  double inner = 0, outer = 45;
+  if (node.has("outer_cone_deg")) {
+    LUXEL_TRY(outer, number(node.at("outer_cone_deg"), 0.01, 90));
+  }
+  if (node.has("inner_cone_deg")) {
+    LUXEL_TRY(inner, number(node.at("inner_cone_deg"), 0, outer));
+  }
+  light.inner_cone_rad = float(inner) * kPi / 180, light.outer_cone_rad = float(outer) * kPi / 180;
+  return {};
+}
+
+Result<LightScript::Lamp> lamp_of(const Node& node) {
+  constexpr std::array<std::string_view, 7> known{
+      "kind", "intensity", "position", "direction", "range_m", "inner_cone_deg", "outer_cone_deg"};
+  LUXEL_TRY_STATUS(only_fields(node, known, "a lamp, as {\"kind\": \"point\", ...}"));
+  using Kind = scene::PunctualLight::Kind;
+  LightScript::Lamp lamp;
+  lamp.position.keys = {{0, {}}}, lamp.direction.keys = {{0, {0, -1, 0}}};
+  lamp.intensity.keys = {{0, {1, 1, 1}}};
+  if (node.has("kind")) {
+    LUXEL_TRY(lamp.light.kind, kind_of(node.at("kind")));
+  }
+  const bool has_place = lamp.light.kind != Kind::directional;
+  const bool has_direction = lamp.light.kind != Kind::point;
+  if (has_place != node.has("position"))
+    return fail(ErrorCode::bad_input, "{}: {}", node.where,
+                has_place ? "a point or spot light needs a position"
+                          : "a directional light has no position; leave it out");
+  if (has_direction != node.has("direction"))
+    return fail(ErrorCode::bad_input, "{}: {}", node.where,
+                has_direction ? "a spot or directional light needs a direction"
+                              : "a point light has no direction; leave it out");
+  if (has_place) {
+    LUXEL_TRY(lamp.position, track(node.at("position")));
+  }
+  if (has_direction) {
+    LUXEL_TRY(lamp.direction, direction_track(node.at("direction")));
+  }
+  if (node.has("intensity")) {
+    LUXEL_TRY(lamp.intensity, light_track(node.at("intensity")));
+  }
+  if (node.has("range_m")) {
+    LUXEL_TRY(const double range, number(node.at("range_m"), 0, 1e9));
+    lamp.light.range_m = float(range);
+  }
+  LUXEL_TRY_STATUS(read_cone(node, lamp.light));
+  return lamp;
+}
+
+Result<LightScript::Glow> glow_of(const Node& node) {
+  constexpr std::array<std::string_view, 2> known{"material", "radiance"};
+  constexpr std::string_view wanted =
+      "a glowing material, as {\"material\": \"lamp\", \"radiance\": [10, 9, 8]}";
+  LUXEL_TRY_STATUS(only_fields(node, known, wanted));
+  if (!node.has("material") || !node.at("material").value.is_string() || !node.has("radiance"))
+    return wrong(node, wanted);
+  LightScript::Glow glow;
+  glow.material = node.value["material"].get<std::string>();
+  LUXEL_TRY(glow.radiance, light_track(node.at("radiance")));
+  return glow;
+}
+
+Status read_camera(const Node& node, LightScript& out) {
+  if (node.value.is_string()) {
+    out.camera = node.value.get<std::string>();
+    return {};
+  }
+  constexpr std::array<std::string_view, 3> known{"eye", "look_at", "fov_deg"};
+  constexpr std::string_view wanted =
+      "a camera's name, or {\"eye\": [x, y, z], \"look_at\": [x, y, z], \"fov_deg\": 45}";
+  LUXEL_TRY_STATUS(only_fields(node, known, wanted));
+  if (!node.has("eye") || !node.has("look_at")) return wrong(node, wanted);
+  LightScript::View view;
+  LUXEL_TRY(view.eye, triple(node.at("eye")));
+  LUXEL_TRY(view.look_at, triple(node.at("look_at")));
+  if (view.eye == view.look_at) return wrong(node, "a camera that looks somewhere");
+  if (node.has("fov_deg")) {
+    LUXEL_TRY(view.fov_deg, number(node.at("fov_deg"), 1, 170));
+  }
+  out.camera = view;
+  return {};
+}
+
+Status read_size(const Node& node, LightScript& out) {
+  if (!node.value.is_array() || node.value.size() != 2) return wrong(node, "[width, height]");
+  LUXEL_TRY(out.width, whole_number(node.at(size_t(0)), 1, 8192));
+  LUXEL_TRY(out.height, whole_number(node.at(size_t(1)), 1, 8192));
+  return {};
+}
+
+Status read_timing(const Node& root, LightScript& out) {
+  if (root.has("frames")) {
+    LUXEL_TRY(out.frames, whole_number(root.at("frames"), 1, 100000));
+  }
+  if (root.has("frames_per_second")) {
+    LUXEL_TRY(out.frames_per_second, number(root.at("frames_per_second"), 0.001, 1000));
+  }
+  return {};
+}
+
+Status read_picture(const Node& root, LightScript& out) {
+  if (root.has("size")) LUXEL_TRY_STATUS(read_size(root.at("size"), out));
+  if (root.has("camera")) LUXEL_TRY_STATUS(read_camera(root.at("camera"), out));
+  if (root.has("exposure")) {
+    const json& value = root.value["exposure"];
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    const auto exposure = parse_exposure(text);
+    if (!exposure) return wrong(root.at("exposure"), "\"auto\" or a number of stops");
+    out.exposure = *exposure;
+  }
+  return {};
+}
+
+Status read_lights(const Node& root, LightScript& out) {
+  for (const char* list : {"lights", "emission"})
+    if (root.has(list) && !root.value[list].is_array())
+      return wrong(root.at(list), "a list, [...]");
+  for (size_t k = 0; root.has("lights") && k < root.value["lights"].size(); ++k) {
+    LUXEL_TRY(LightScript::Lamp lamp, lamp_of(root.at("lights").at(k)));
+    out.lamps.push_back(std::move(lamp));
+  }
+  for (size_t k = 0; root.has("emission") && k < root.value["emission"].size(); ++k) {
+    LUXEL_TRY(LightScript::Glow glow, glow_of(root.at("emission").at(k)));
+    out.glows.push_back(std::move(glow));
+  }
+  if (root.has("keep_lights")) {
+    if (!root.value["keep_lights"].is_boolean())
+      return wrong(root.at("keep_lights"), "true or false");
+    out.keep_lights = root.value["keep_lights"].get<bool>();
+  }
+  if (root.has("background")) {
+    LUXEL_TRY(out.background, light_track(root.at("background")));
+  }
+  return {};
+}
+
+}  // namespace
+
+Vec3 value_at(const Track& track, double time_s) {
+  const auto after = std::find_if(track.keys.begin(), track.keys.end(),
+                                  [time_s](const Track::Key& key) { return key.at_s > time_s; });
+  if (after == track.keys.begin()) return track.keys.front().value;
+  if (after == track.keys.end()) return track.keys.back().value;
+  const Track::Key& before = *(after - 1);
+  const auto share = float((time_s - before.at_s) / (after->at_s - before.at_s));
+  return before.value * (1 - share) + after->value * share;
+}
+
+Result<LightScript> parse_light_script(const std::string& text, const std::string& name) {
+  // Deeper than any script: dump() would recurse until the stack ends.
+  bool too_deep = false;
+  const auto look = [&too_deep](int depth, json::parse_event_t, json&) {
+    too_deep = too_deep || depth > 32;
+    return true;
+  };
+  const json document = json::parse(text, look, false);
+  if (document.is_discarded() || too_deep)
+    return fail(ErrorCode::bad_input,
+                "{}: it is not JSON that could be a script; look for a missing comma or bracket",
+                name);
+  const Node root{document, name};
+  constexpr std::array<std::string_view, 9> known{"frames",      "frames_per_second", "size",
+                                                  "camera",      "exposure",          "lights",
+                                                  "keep_lights", "emission",          "background"};
+  LUXEL_TRY_STATUS(only_fields(root, known, "an object, {...}"));
+  LightScript out;
+  LUXEL_TRY_STATUS(read_timing(root, out));
+  LUXEL_TRY_STATUS(read_picture(root, out));
+  LUXEL_TRY_STATUS(read_lights(root, out));
+  return out;
+}
+
+std::vector<scene::PunctualLight> lamps_at(const LightScript& script, double time_s) {
+  std::vector<scene::PunctualLight> out;
+  for (const LightScript::Lamp& lamp : script.lamps) {
+    scene::PunctualLight light = lamp.light;
+    light.intensity = value_at(lamp.intensity, time_s);
+    light.position = value_at(lamp.position, time_s);
+    // Between two directions the mean may vanish; then the first one holds.
+    const Vec3 direction = value_at(lamp.direction, time_s);
+    light.direction = dot(direction, direction) > 1e-12f ? normalize(direction)
+                                                         : lamp.direction.keys.front().value;
+    out.push_back(light);
+  }
+  return out;
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,57 @@
+// How lamps move: the file that `luxel relight --play` follows (docs/method/relight.md describes
+// it).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "luxel/base/result.h"
+#include "luxel/base/vec.h"
+#include "luxel/pipeline/render/exposure.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::pipeline {
+
+/// A value that changes with time: linear between its keys, constant outside them.
+struct Track {
+  struct Key {
+    double at_s = 0;
+    Vec3 value;
+  };
+  std::vector<Key> keys;  ///< ascending; never empty once read
+};
+Vec3 value_at(const Track& track, double time_s);
+
+struct LightScript {
+  struct Lamp {
+    scene::PunctualLight light;  ///< what does not move
+    Track intensity, position, direction;
+  };
+  struct Glow {
+    std::string material;
+    Track radiance;
+  };
+  struct View {
+    Vec3 eye, look_at;
+    double fov_deg = 45;
+  };
+  int frames = 24;
+  double frames_per_second = 24;
+  int width = 640, height = 480;
+  std::variant<std::monostate, std::string, View> camera;  ///< none: as luxel render chooses
+  Exposure exposure;
+  bool keep_lights = false;  ///< the scene's own lamps stay on
+  std::vector<Lamp> lamps;
+  std::vector<Glow> glows;
+  std::optional<Track> background;  ///< none: as baked
+};
+
+/// Errors name the file, the field, its value and what it should be; unknown fields are errors.
+Result<LightScript> parse_light_script(const std::string& text, const std::string& name);
+
+/// The lamps of a frame.
+std::vector<scene::PunctualLight> lamps_at(const LightScript& script, double time_s);
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,216 @@
+#include "luxel/pipeline/command/relight.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "luxel/base/file.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/process_memory.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/import/import.h"
+#include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/settings/version.h"
+#include "luxel/pipeline/solver/check_settings.h"
+#include "luxel/pipeline/solver/stage_seconds.h"
+#include "luxel/post/dilate.h"
+#include "luxel/solve/matrix/codec.h"
+#include "luxel/solve/matrix/lxr.h"
+#include "luxel/solve/matrix/relighter.h"
+#include "luxel/transport/elements.h"
+
+namespace luxel::pipeline {
+namespace {
+
+struct CodecName {
+  std::string_view name;
+  matrix::CodecKind kind;
+};
+constexpr std::array kCodecs{CodecName{"hierarchical", matrix::CodecKind::hierarchical},
+                             CodecName{"lowrank", matrix::CodecKind::lowrank},
+                             CodecName{"bc1", matrix::CodecKind::bc1},
+                             CodecName{"dense32", matrix::CodecKind::dense32},
+                             CodecName{"dense16", matrix::CodecKind::dense16}};
+constexpr std::array<std::string_view, 3> kTargets{"texels", "vertices", "none"};
+
+Result<matrix::CodecKind> codec_of(const std::string& name) {
+  for (const CodecName& codec : kCodecs)
+    if (codec.name == name) return codec.kind;
+  return fail(ErrorCode::bad_setting, "--codec {} is not known; there is: {}", name, codec_names());
+}
+
+/// Whether there was a map, which is an even background now.
+bool flatten_sky(scene::Scene& scene) {
+  if (scene.environment.empty()) return false;
+  scene.background += scene::horizontal_irradiance(scene.environment) * (1 / kPi);
+  scene.environment = {};
+  return true;
+}
+
+Status check(const RelightSettings& s) {
+  LUXEL_TRY_STATUS(check(s.matrix));
+  LUXEL_TRY(const matrix::CodecKind codec, codec_of(s.codec));
+  if (matrix::looks_at_all_pairs(codec) && size_t(s.matrix.patches) > matrix::kMaxDensePatches)
+    return fail(ErrorCode::bad_setting,
+                "--patches {} are too many for --codec {}, which looks at all pairs of up to {}; "
+                "ask for fewer, or for --codec hierarchical",
+                s.matrix.patches, s.codec, matrix::kMaxDensePatches);
+  if (std::find(kTargets.begin(), kTargets.end(), s.target) == kTargets.end())
+    return fail(ErrorCode::bad_setting,
+                "--target {} is not known; there is: texels, vertices, none", s.target);
+  if (!s.outside.ies.empty())
+    return fail(ErrorCode::bad_setting,
+                "--ies {}={}: .lxr files do not keep light profiles; leave it out",
+                s.outside.ies[0].lamp, s.outside.ies[0].file.string());
+  if (s.output.extension() != ".lxr")
+    return fail(ErrorCode::bad_setting, "-o {}: the file is to end in .lxr", s.output.string());
+  if (!(s.max_error >= 1e-5 && s.max_error <= 1))
+    return fail(ErrorCode::bad_setting, "--max-error {} is outside 0.00001 to 1", s.max_error);
+  if (s.bounces > 1000)
+    return fail(ErrorCode::bad_setting, "--bounces {} is outside 0 to 1000; inf counts all",
+                s.bounces);
+  BakeSettings map;  // the ranges of a lightmap
+  map.resolution = s.resolution, map.texels_per_metre = s.texels_per_metre, map.scene = s.scene;
+  map.output = s.output, map.threads = s.threads, map.seed = s.seed;
+  return check(map);
+}
+
+/// Where light is wanted, and the scene as its file is to have it.
+struct Wanted {
+  matrix::Target target;
+  std::vector<std::byte> glb;
+};
+
+Result<Wanted> texels_of(const scene::Scene& scene, const RelightSettings& s, Progress& progress) {
+  LUXEL_TRY(const atlas::Atlas atlas,
+            atlas::make_atlas(scene, {s.uv, s.resolution, s.texels_per_metre}, progress));
+  const atlas::TexelMap map = atlas::rasterise(scene, atlas);
+  const transport::Elements elements = transport::elements_from_texels(scene, atlas, map);
+  Wanted out;
+  out.target.kind = matrix::Target::Kind::texels;
+  out.target.width = out.target.height = uint32_t(atlas.resolution);
+  for (const atlas::Texel& t : map.texels)
+    out.target.texel.push_back({uint16_t(t.x), uint16_t(t.y)});
+  out.target.position = elements.position;
+  out.target.normal = elements.normal;
+  out.target.geometric_normal = elements.geometric_normal;
+  // The file's lightmap is black: light comes from the relighter.
+  const std::vector<Rgb> dark(map.texels.size());
+  LUXEL_TRY(out.glb, export_::baked_glb(scene, atlas, post::lightmap_from_texels(map, dark)));
+  return out;
+}
+
+/// Vertices of instance after instance, as whoever reads the file's scene numbers them. A vertex of
+/// no triangle faces upwards.
+matrix::Target vertices_of(const scene::Scene& scene) {
+  matrix::Target target;
+  target.kind = matrix::Target::Kind::vertices;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+    std::vector<Vec3> facing(mesh.positions.size());
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      for (const uint32_t v : mesh.triangles[t])
+        facing[v] +=
+            scene::front_normal(scene, i, t) * scene::area_m2(scene::world_triangle(scene, i, t));
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Vec3 normal = dot(facing[v], facing[v]) > 0 ? normalize(facing[v]) : Vec3{0, 1, 0};
+      target.position.push_back(
+          transform_point(scene.instances[i].world_from_object, mesh.positions[v]));
+      target.normal.push_back(normal), target.geometric_normal.push_back(normal);
+    }
+  }
+  return target;
+}
+
+Result<Wanted> wanted_of(const scene::Scene& scene, const RelightSettings& s, Progress& progress) {
+  if (s.target == "texels") return texels_of(scene, s, progress);
+  Wanted out;
+  LUXEL_TRY(out.glb, export_::scene_glb(scene));
+  if (s.target == "none") return out;
+  LUXEL_TRY(const import::Imported as_read, import::import_glb(out.glb, s.scene.string()));
+  out.target = vertices_of(as_read.scene);
+  return out;
+}
+
+Status fits(const RelightSettings& s) {
+  const uint64_t needed =
+      resident_bytes() + matrix::bytes_of_preparation(size_t(s.matrix.patches), s.matrix.rays);
+  const uint64_t given =
+      s.max_memory_bytes > 0 ? s.max_memory_bytes : available_bytes() / 5 * 4 + resident_bytes();
+  if (needed <= given) return {};
+  return fail(
+      ErrorCode::out_of_memory,
+      "{} patches with {} rays each need about {} MiB and {} MiB may be used; ask for fewer "
+      "--patches or --rays, or allow more by --max-memory",
+      s.matrix.patches, s.matrix.rays, needed >> 20, given >> 20);
+}
+
+nlohmann::json report(const RelightSettings& s, const matrix::RelightData& data, uint64_t bytes,
+                      const std::vector<std::string>& warnings, const Progress& progress) {
+  return {{"version", kVersion},
+          {"settings",
+           {{"patches", s.matrix.patches},
+            {"rays", s.matrix.rays},
+            {"codec", s.codec},
+            {"max_error", s.max_error},
+            {"bounces", s.bounces},
+            {"target", s.target}}},
+          {"counts",
+           {{"patches", data.size()},
+            {"places", data.target.position.size()},
+            {"triangles", data.occluders.triangle.size()}}},
+          {"bytes", {{"file", bytes}, {"matrix", matrix::bytes_of(data.codec)}}},
+          {"codec_error", data.codec_error},
+          {"seconds", stage_seconds(progress.stages())},
+          {"peak_memory_bytes", peak_resident_bytes()},
+          {"warnings", warnings}};
+}
+
+}  // namespace
+
+std::string codec_names() {
+  std::string names;
+  for (const CodecName& codec : kCodecs)
+    names += (names.empty() ? "" : ", ") + std::string(codec.name);
+  return names;
+}
+
+Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
+  LUXEL_TRY_STATUS(check(s));
+  const ThreadLimit threads(s.threads);
+  progress.begin("import", 0);
+  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
+  scene::Scene& scene = imported.scene;
+  std::vector<std::string> warnings = std::move(imported.warnings);
+  // A scene without light is no mistake here: its lamps come later.
+  if (s.outside.background || s.outside.environment || s.outside.sun || s.outside.sky)
+    LUXEL_TRY_STATUS(add_outside_light(s.outside, scene));
+  if (flatten_sky(scene))
+    warnings.push_back(
+        "the sky of an .lxr file has one colour: the map counts as an even sky that lights the "
+        "ground as much");
+  LUXEL_TRY_STATUS(fits(s));
+  LUXEL_TRY(Wanted wanted, wanted_of(scene, s, progress));
+  progress.begin("build ray tracer", 0);
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  matrix::RelightParams params;
+  params.patches = {size_t(s.matrix.patches), 48, s.seed};
+  params.factors = {s.matrix.rays, s.seed};
+  LUXEL_TRY(params.codec, codec_of(s.codec));
+  params.max_error = float(s.max_error), params.bounces = s.bounces;
+  LUXEL_TRY(matrix::RelightData data,
+            matrix::make_relight_data(scene, tracer, std::move(wanted.target), params, progress));
+  data.scene_glb = std::move(wanted.glb);
+  if (data.codec_error > s.max_error)
+    warnings.push_back(
+        fmt::format("the codec loses {:.2g} where {:.2g} was asked for: more --rays would help",
+                    data.codec_error, s.max_error));
+  progress.begin(kWriteStage, 0);
+  const std::vector<std::byte> bytes = matrix::encode_lxr(data);
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(write_file_atomically(s.output, bytes));
+  progress.finish();
+  return report(s, data, bytes.size(), warnings, progress);
+}
+
+}  // namespace luxel::pipeline

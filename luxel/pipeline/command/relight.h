@@ -1,0 +1,37 @@
+// A scene in, the file that relights it out: `luxel relight`.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/pipeline/settings/settings.h"
+#include "luxel/solve/matrix/relight.h"
+
+namespace luxel::pipeline {
+
+struct RelightSettings {
+  std::filesystem::path scene;
+  std::filesystem::path output;   ///< .lxr
+  std::string target = "texels";  ///< or "vertices", "none"
+  int resolution = 256;           ///< texels: side of the map
+  float texels_per_metre = 0;     ///< texels: > 0: chooses the resolution
+  atlas::UvMode uv = atlas::UvMode::automatic;
+  MatrixSettings matrix{.rays = 8192};  ///< the codec tells noise from light when there is little
+  std::string codec = "hierarchical";   ///< one of codec_names()
+  double max_error = 0.01;              ///< what the codec may lose
+  int bounces = -1;                     ///< < 0: all
+  uint64_t max_memory_bytes = 0;        ///< 0: four fifths of what is free
+  uint64_t seed = 1;
+  int threads = 0;  ///< 0: all cores
+  OutsideLight outside;
+};
+
+/// "hierarchical, ...".
+std::string codec_names();
+
+/// Writes settings.output. Returns what `--json` prints: settings, counts, bytes, seconds. Errors:
+/// whatever the stages say; settings out of range.
+Result<nlohmann::json> relight(const RelightSettings& settings, Progress& progress);
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,64 @@
+#include "luxel/pipeline/render/camera.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "luxel/scene/procedural.h"
+
+namespace luxel::pipeline {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Room {
+  scene::Scene scene = scene::cornell_box();
+  trace::RayTracer tracer = *trace::RayTracer::build(scene);
+  Result<scene::Camera> camera(const CameraChoice& choice) const {
+    return choose_camera(choice, scene, tracer, "box.glb");
+  }
+};
+
+TEST(ChooseCamera, LooksFromTheEyeAtThePlace) {
+  // Its axes are unit, at right angles and right-handed; -z goes to the place, x stays level.
+  const Room room;
+  for (const Vec3 look_at : {Vec3{1, 2, 8}, {4, 2, -1}, {1, -7, 3}, {1, 9, 3}, {0, 0, 0}}) {
+    const Vec3 eye{1, 2, 3};
+    CameraChoice choice;
+    choice.eye = eye, choice.look_at = look_at, choice.fov_deg = 60;
+    const auto camera = room.camera(choice);
+    ASSERT_TRUE(camera);
+    const Mat34& pose = camera->world_from_camera;
+    const Vec3 x = column(pose, 0), y = column(pose, 1), z = column(pose, 2);
+    // Normalising rounds to 6e-8, a few times.
+    EXPECT_LT(length(-z - normalize(look_at - eye)), 1e-6f);
+    EXPECT_LT(length(cross(x, y) - z), 1e-6f);
+    EXPECT_NEAR(length(x), 1, 1e-6f);
+    EXPECT_NEAR(dot(x, y), 0, 1e-6f);
+    EXPECT_NEAR(x.y, 0, 1e-6f);
+    EXPECT_GE(y.y, -1e-6f);
+    EXPECT_EQ(column(pose, 3), eye);
+    EXPECT_FLOAT_EQ(camera->fov_y_rad, kPi / 3);
+  }
+}
+
+TEST(ChooseCamera, TakesTheScenesByName) {
+  Room room;
+  room.scene.cameras.push_back(room.scene.cameras[0]);
+  room.scene.cameras[1].name = "door", room.scene.cameras[1].fov_y_rad = 1;
+  CameraChoice choice;
+  EXPECT_EQ(room.camera(choice)->name, "published");  // the first
+  choice.name = "door";
+  EXPECT_EQ(room.camera(choice)->fov_y_rad, 1);
+  choice.name = "window";
+  EXPECT_THAT(room.camera(choice).error().message,
+              HasSubstr("--camera window is not in box.glb; there is: published, door"));
+  room.scene.cameras.clear();
+  EXPECT_THAT(room.camera(choice).error().message, HasSubstr("there is: none"));
+  choice.name.clear();
+  EXPECT_TRUE(room.camera(choice));  // fitted
+  choice.eye = choice.look_at;
+  EXPECT_THAT(room.camera(choice).error().message, HasSubstr("the same point"));
+}
+
+}  // namespace
+}  // namespace luxel::pipeline

@@ -1,0 +1,19 @@
+// Pictures of lightmaps.
+#pragma once
+
+#include "luxel/pipeline/render/techniques.h"
+
+namespace luxel::pipeline {
+
+/// The bake in settings.from; without one, a small bake made on the spot.
+Result<image::Image> draw_lightmap(const Subject& subject, const RenderSettings& settings,
+                                   Rendered& out, Progress& progress);
+
+/// The same bake's texels.png on its surfaces; luxel/pipeline/texels/texel_picture.h.
+Result<image::Image> draw_texels_of_bake(const Subject& subject, const RenderSettings& settings,
+                                         Rendered& out, Progress& progress);
+/// And its error.png.
+Result<image::Image> draw_errors_of_bake(const Subject& subject, const RenderSettings& settings,
+                                         Rendered&, Progress& progress);
+
+}  // namespace luxel::pipeline

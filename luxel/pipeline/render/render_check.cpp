@@ -1,0 +1,96 @@
+#include "luxel/pipeline/render/render_check.h"
+
+#include "luxel/pipeline/render/techniques.h"
+
+namespace luxel::pipeline {
+namespace {
+
+constexpr int kMaxPictureSide = 16384, kMaxTileSide = 2048;
+constexpr int kMaxPathSamples = 1 << 20;
+
+Status check_output(const RenderSettings& s, const Technique* technique) {
+  const std::string extension = s.output.extension().string(), name = s.output.string();
+  const bool png = extension == ".png";
+  if (!png && extension != ".exr" && extension != ".hdr")
+    return fail(ErrorCode::bad_setting, "--output {} is neither .png, .exr nor .hdr", name);
+  if (!technique && !png)
+    return fail(ErrorCode::bad_setting,
+                "--output {}: a contact sheet shows colours of a screen; name it .png", name);
+  for (const auto& [option, given] : {std::pair{"--exposure", s.exposure.has_value()},
+                                      {"--tone-map", s.tone_map.has_value()},
+                                      {"--overlay", !s.overlays.empty()}})
+    if (given && !png)
+      return fail(ErrorCode::bad_setting,
+                  "{} means nothing for {}, which holds the light as it is; leave it out, or write "
+                  "a .png",
+                  option, name);
+  std::error_code ignored;
+  const std::filesystem::path folder = s.output.parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+    return fail(ErrorCode::bad_setting, "--output {}: there is no folder {}; make it first", name,
+                folder.string());
+  return {};
+}
+
+/// "c, ca, ...": the techniques that have a feature.
+std::string users_of(bool Technique::*feature) {
+  std::string names;
+  for (const Technique& technique : techniques())
+    if (technique.*feature) names += (names.empty() ? "" : ", ") + std::string(technique.name);
+  return names;
+}
+
+/// What a technique would not look at must not be given: its user expects something of it.
+Status check_used(const RenderSettings& s, const Technique& technique) {
+  struct Option {
+    const char* name;
+    bool given;
+    bool Technique::*used;
+  };
+  const Option options[] = {{"--from", !s.from.empty(), &Technique::needs_bake},
+                            {"--samples", s.samples.has_value(), &Technique::traces_paths},
+                            {"--seed", s.seed.has_value(), &Technique::traces_paths},
+                            {"--bounces", s.bounces.has_value(), &Technique::counts_bounces},
+                            {"--elements, --hemicube, --element-size, --max-elements, --max-error "
+                             "and --smooth",
+                             s.hemicube.has_value(), &Technique::has_elements},
+                            {"--eps, --min-area, --no-discontinuities, --max-leaf-lines and "
+                             "--min-weight",
+                             s.hierarchical.has_value(), &Technique::has_links},
+                            {"--overlay", !s.overlays.empty(), &Technique::has_links},
+                            {"--sun", s.outside.sun.has_value(), &Technique::has_lamps}};
+  for (const Option& option : options)
+    if (option.given && !(technique.*option.used))
+      return fail(ErrorCode::bad_setting,
+                  "--technique {} does not use {}; leave {} out (it is for {}){}", technique.name,
+                  option.name, option.name, users_of(option.used),
+                  technique.needs_bake ? "; a bake has its light from `luxel bake`" : "");
+  if (technique.needs_bake && !technique.bakes_itself && s.from.empty())
+    return fail(ErrorCode::bad_setting,
+                "--technique {} draws a bake; name its folder with --from, or use --technique path",
+                technique.name);
+  return {};
+}
+
+}  // namespace
+
+Status check(const RenderSettings& s) {
+  const Technique* technique = find_technique(s.technique);
+  if (!technique && s.technique != kAllTechniques)
+    return fail(ErrorCode::bad_setting, "--technique {} is not known; there is: {}", s.technique,
+                technique_names());
+  const int most = technique ? kMaxPictureSide : kMaxTileSide;
+  if (s.width < 1 || s.height < 1 || s.width > most || s.height > most)
+    return fail(ErrorCode::bad_setting, "--size {}x{} is outside 1x1 to {}x{}", s.width, s.height,
+                most, most);
+  if (s.samples && (*s.samples < 1 || *s.samples > kMaxPathSamples))
+    return fail(ErrorCode::bad_setting, "--samples {} is outside 1 to {}", *s.samples,
+                kMaxPathSamples);
+  if (s.hemicube) LUXEL_TRY_STATUS(check(*s.hemicube));
+  if (s.hierarchical) LUXEL_TRY_STATUS(check(*s.hierarchical));
+  LUXEL_TRY_STATUS(check_output(s, technique));
+  if (technique) return check_used(s, *technique);
+  return {};
+}
+
+}  // namespace luxel::pipeline

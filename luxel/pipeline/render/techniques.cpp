@@ -1,0 +1,174 @@
+#include "luxel/pipeline/render/techniques.h"
+
+#include <algorithm>
+#include <array>
+
+#include "luxel/display/local_light.h"
+#include "luxel/display/normals_view.h"
+#include "luxel/pipeline/render/draw_bake.h"
+#include "luxel/pipeline/render/draw_hierarchical.h"
+#include "luxel/pipeline/solver/solvers.h"
+#include "luxel/reference/path_tracer.h"
+
+namespace luxel::pipeline {
+namespace {
+
+using display::LocalTechnique;
+
+/// Colours of a screen before a background that a screen can show.
+display::DrawParams params_for_colors(const RenderSettings& settings) {
+  display::DrawParams params;
+  params.width = settings.width, params.height = settings.height;
+  params.brightest_behind = 1;
+  return params;
+}
+
+template <LocalTechnique technique>
+Result<image::Image> draw_local(const Subject& subject, const RenderSettings& settings, Rendered&,
+                                Progress& progress) {
+  const display::LocalLights lights = display::local_lights(subject.scene, subject.camera);
+  const display::Viewer viewer(subject.camera);
+  const auto seen_at = [&](const trace::Hit& hit) {
+    return display::local_light_at(subject.scene, hit, technique, lights, viewer);
+  };
+  return display::draw_seen(subject.scene, subject.tracer, subject.camera, seen_at,
+                            params_for_colors(settings), progress);
+}
+
+Result<image::Image> draw_normals(const Subject& subject, const RenderSettings& settings, Rendered&,
+                                  Progress& progress) {
+  return display::draw_normals(subject.scene, subject.tracer, subject.camera,
+                               params_for_colors(settings), progress);
+}
+
+/// The hemicube solver's own answer, without a lightmap in between.
+Result<image::Image> draw_radiosity(const Subject& subject, const RenderSettings& settings,
+                                    Rendered&, Progress& progress) {
+  BakeSettings bake;
+  bake.hemicube = settings.hemicube.value_or(HemicubeSettings{});
+  bake.bounces = settings.bounces.value_or(-1);
+  LUXEL_TRY(const hemicube::Solution solution,
+            hemicube::solve(subject.scene, light::collect_lights(subject.scene), subject.tracer,
+                            hemicube_params(bake), progress));
+  display::DrawParams params;
+  params.width = settings.width, params.height = settings.height;
+  const auto irradiance = [&](const scene::SurfacePoint& p) {
+    return hemicube::irradiance_at(solution.field, p);
+  };
+  return display::draw(subject.scene, subject.tracer, subject.camera, irradiance, params, progress);
+}
+
+Result<image::Image> draw_paths(const Subject& subject, const RenderSettings& s, Rendered& out,
+                                Progress& progress) {
+  reference::PathParams params;
+  params.samples = s.samples.value_or(kDefaultPathSamples);
+  params.bounces = s.bounces.value_or(-1), params.seed = s.seed.value_or(1);
+  LUXEL_TRY(reference::Picture picture,
+            reference::radiance_by_paths(subject.scene, subject.tracer, subject.camera, s.width,
+                                         s.height, params, progress));
+  out.rays = picture.rays, out.relative_error = picture.relative_error;
+  return std::move(picture.radiance);
+}
+
+/// Pictures of one solution: a contact sheet would show six nearly alike.
+constexpr Technique hierarchical(std::string_view name, std::string_view help, DrawFunction draw) {
+  return {.name = name,
+          .help = help,
+          .draw = draw,
+          .counts_bounces = true,
+          .has_links = true,
+          .has_lamps = true,
+          .on_sheet = false};
+}
+
+constexpr std::array kTechniques{
+    Technique{.name = "c",
+              .help = "the material's colour",
+              .draw = draw_local<LocalTechnique::c>,
+              .is_light = false},
+    Technique{.name = "ca",
+              .help = "colour under ambient light",
+              .draw = draw_local<LocalTechnique::ca>,
+              .is_light = false},
+    Technique{.name = "cad",
+              .help = "ambient and diffuse light, per vertex",
+              .draw = draw_local<LocalTechnique::cad>,
+              .is_light = false,
+              .has_lamps = true},
+    Technique{.name = "cas",
+              .help = "ambient and specular light, per vertex",
+              .draw = draw_local<LocalTechnique::cas>,
+              .is_light = false,
+              .has_lamps = true},
+    Technique{.name = "cads",
+              .help = "ambient, diffuse and specular light, per vertex",
+              .draw = draw_local<LocalTechnique::cads>,
+              .is_light = false,
+              .has_lamps = true},
+    Technique{.name = "cas-pixel",
+              .help = "cas per pixel",
+              .draw = draw_local<LocalTechnique::cas_pixel>,
+              .is_light = false,
+              .has_lamps = true},
+    Technique{.name = "cads-pixel",
+              .help = "cads per pixel",
+              .draw = draw_local<LocalTechnique::cads_pixel>,
+              .is_light = false,
+              .has_lamps = true},
+    Technique{.name = "normals",
+              .help = "shading normals as red lines",
+              .draw = draw_normals,
+              .is_light = false},
+    Technique{.name = "radiosity",
+              .help = "solve by hemicubes and draw",
+              .draw = draw_radiosity,
+              .counts_bounces = true,
+              .has_elements = true,
+              .has_lamps = true},
+    hierarchical("flat", "hierarchical radiosity: one value per element", draw_flat),
+    hierarchical("gouraud", "exact light at elements' corners, linear between", draw_gouraud),
+    hierarchical("gouraud-disc", "the same, cut along the edges of shadows", draw_gouraud_disc),
+    hierarchical("interpolant", "quadratic light, one ray per pixel", draw_interpolant),
+    hierarchical("lerpshade", "quadratic light, four rays per pixel", draw_lerpshade),
+    hierarchical("rayshade", "exact light at every pixel", draw_rayshade),
+    Technique{.name = "lightmap", .help = "draw a bake", .draw = draw_lightmap, .needs_bake = true},
+    Technique{.name = "texels",
+              .help = "a bake's texels: density, chart borders, moved, refilled, seams",
+              .draw = draw_texels_of_bake,
+              .is_light = false,
+              .needs_bake = true,
+              .bakes_itself = true,
+              .on_sheet = false},
+    Technique{
+        .name = "error",
+        .help = "how sure a bake's texels are: dark 0.1 %, bright 10 % of their light and more",
+        .draw = draw_errors_of_bake,
+        .is_light = false,
+        .needs_bake = true,
+        .bakes_itself = true,
+        .on_sheet = false},
+    Technique{.name = "path",
+              .help = "trace paths",
+              .draw = draw_paths,
+              .traces_paths = true,
+              .counts_bounces = true,
+              .has_lamps = true},
+};
+
+}  // namespace
+
+std::span<const Technique> techniques() { return kTechniques; }
+
+const Technique* find_technique(std::string_view name) {
+  const auto found = std::find_if(kTechniques.begin(), kTechniques.end(),
+                                  [name](const Technique& t) { return t.name == name; });
+  return found == kTechniques.end() ? nullptr : &*found;
+}
+
+std::string technique_names() {
+  std::string names;
+  for (const Technique& technique : kTechniques) names += std::string(technique.name) + ", ";
+  return names + std::string(kAllTechniques);
+}
+
+}  // namespace luxel::pipeline

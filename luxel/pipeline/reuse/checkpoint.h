@@ -1,0 +1,57 @@
+// What is left of a bake that was stopped or killed, for the next one to go on with.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "luxel/base/part_store.h"
+#include "luxel/base/progress.h"
+#include "luxel/pipeline/settings/settings.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::pipeline {
+
+/// DIR/checkpoint.luxel.
+std::filesystem::path checkpoint_file(const BakeSettings& settings);
+
+/// What the light of a bake depends on besides its scene: luxel's version and the settings, but for
+/// those that change no bit of it.
+nlohmann::json bake_identity(const BakeSettings& settings);
+/// That, and the scene's digests.
+nlohmann::json checkpoint_header(const BakeSettings& settings, const scene::Scene& scene);
+/// Which of either differs, in words; empty: nothing.
+std::string difference(const nlohmann::json& there, const nlohmann::json& here);
+
+/// The checkpoint of one bake: docs/method/checkpoints.md. Solvers that keep no parts have none.
+class Checkpoint {
+ public:
+  /// The bake begins now. `settings` outlives this.
+  explicit Checkpoint(const BakeSettings& settings)
+      : settings_(settings), start_(std::chrono::steady_clock::now()) {}
+
+  /// The scene is known, with its outside light. With settings.resume goes on with the file that is
+  /// there; says in a note when there is none, or one that is not gone on with. Errors: it is of
+  /// another bake, or damaged.
+  Status open(const scene::Scene& scene, Progress& progress);
+  /// Null before open(), and where nothing is kept.
+  PartStore* parts() { return parts_ ? &*parts_ : nullptr; }
+  /// For bake.json; null where nothing is kept.
+  nlohmann::json about() const;
+  /// Whether a file is there that takes room on the disk.
+  bool has_file() const;
+  /// The bake is done, or must do without: nothing of it stays.
+  void remove();
+
+ private:
+  const BakeSettings& settings_;
+  std::chrono::steady_clock::time_point start_;
+  bool resumed_ = false;
+  std::string note_;
+  std::optional<PartStore> parts_;
+};
+
+}  // namespace luxel::pipeline

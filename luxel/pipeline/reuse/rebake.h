@@ -1,0 +1,37 @@
+// What a change of the scene means for the light of a bake that is kept. docs/method/rebake.md
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "luxel/pipeline/reuse/kept_bake.h"
+#include "luxel/solve/gather/gather.h"
+
+namespace luxel::pipeline {
+
+/// How the lights of a kept bake shine now.
+struct LightUpdate {
+  /// Per layer, what its light is multiplied by, per channel; nothing: its lights shine otherwise
+  /// than before.
+  std::vector<std::optional<Rgb>> scale;
+  std::vector<uint32_t> lamps_anew;  ///< lamps that do, and those of layers that have them
+  bool surfaces_anew = false;        ///< so do surfaces, or the surroundings
+};
+/// `change` is that from kept.scene to `scene`, which may have more materials by now.
+LightUpdate light_update(const KeptBake& kept, const scene::SceneChange& change,
+                         const scene::Scene& scene);
+
+/// Whether the light now is a sum of what the layers had, each multiplied by something: E is linear
+/// in its sources, channel by channel, as long as nothing moves and all reflects as before.
+bool is_sum_of_layers(const LightUpdate& update, const scene::SceneChange& change);
+/// That sum. How sure it is, relative to its value, is taken to be as before.
+TexelLight sum_of_layers(KeptBake& kept, const LightUpdate& update);
+
+/// What gather needs of the kept bake where that is not enough. `elements` are those of the map
+/// now; `layers`: those of this bake, or null. Uses `kept` up. Nothing: its rays are damaged.
+std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays,
+                                          const LightUpdate& update,
+                                          const scene::SceneChange& change, const SolveInput& in,
+                                          const light::LightLayers* layers);
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,80 @@
+#include "luxel/pipeline/settings/ies_setting.h"
+
+#include <algorithm>
+
+#include "luxel/base/text_tables.h"
+#include "luxel/import/ies.h"
+
+namespace luxel::pipeline {
+namespace {
+
+bool can_have(const scene::PunctualLight& light) {
+  return light.kind != scene::PunctualLight::Kind::directional;
+}
+
+/// "'a', 'b' and 7 more"
+std::string names_of_lamps(const scene::Scene& scene) {
+  constexpr size_t kShown = 20;
+  std::vector<std::string> names;
+  for (const scene::PunctualLight& light : scene.lights)
+    if (can_have(light) && std::find(names.begin(), names.end(), light.name) == names.end())
+      names.push_back(light.name);
+  std::string out;
+  for (size_t i = 0; i < std::min(names.size(), kShown); ++i)
+    out += fmt::format("{}'{}'", i ? ", " : "", names[i]);
+  if (names.size() > kShown) out += fmt::format(" and {} more", names.size() - kShown);
+  return out;
+}
+
+}  // namespace
+
+Result<IesSetting> parse_ies_setting(std::string_view text) {
+  const size_t equals = text.find('=');
+  IesSetting out;
+  if (equals != std::string_view::npos) {
+    out.lamp = text.substr(0, equals);
+    std::string_view file = text.substr(equals + 1);
+    const size_t comma = file.rfind(',');
+    if (comma != std::string_view::npos) {
+      if (const Result<double> scale = luxel::parse_number(file.substr(comma + 1))) {
+        if (!(*scale >= 0 && *scale <= 1e9))
+          return fail(ErrorCode::bad_setting, "--ies '{}': the scale {} is outside 0 to 1e9", text,
+                      *scale);
+        out.scale = float(*scale), file = file.substr(0, comma);
+      }
+    }
+    out.file = file;
+  }
+  if (out.lamp.empty() || out.file.empty())
+    return fail(ErrorCode::bad_setting,
+                "--ies '{}' is not LAMP=FILE or LAMP=FILE,SCALE, as in --ies desk=spot.ies", text);
+  return out;
+}
+
+Result<std::vector<std::string>> add_profiles(std::span<const IesSetting> settings,
+                                              scene::Scene& scene) {
+  std::vector<std::string> warnings;
+  std::vector<std::string> seen;
+  for (const IesSetting& s : settings) {
+    if (std::find(seen.begin(), seen.end(), s.lamp) != seen.end())
+      return fail(ErrorCode::bad_setting, "--ies {}={}: this lamp has another file already", s.lamp,
+                  s.file.string());
+    seen.push_back(s.lamp);
+    LUXEL_TRY(const import::Ies ies, import::read_ies(s.file));
+    warnings.insert(warnings.end(), ies.warnings.begin(), ies.warnings.end());
+    size_t found = 0;
+    for (size_t i = 0; i < scene.lights.size(); ++i) {
+      if (scene.lights[i].name != s.lamp || !can_have(scene.lights[i])) continue;
+      scene::attach_profile(scene, i, ies.profile, s.scale);
+      ++found;
+    }
+    if (found > 0) continue;
+    const std::string names = names_of_lamps(scene);
+    return fail(ErrorCode::bad_setting, "--ies {}={}: no point or spot light has this name; {}{}",
+                s.lamp, s.file.string(),
+                names.empty() ? "the scene has no such lights" : "there is: ", names);
+  }
+  return warnings;
+}
+
+}  // namespace luxel::pipeline

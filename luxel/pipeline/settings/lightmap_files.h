@@ -1,0 +1,44 @@
+// A lightmap as files, one for every taste of engines.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "luxel/base/file.h"
+#include "luxel/base/result.h"
+#include "luxel/image/image.h"
+
+namespace luxel::pipeline {
+
+/// Files beside NAME.exr, which holds E itself.
+struct LightmapFormats {
+  bool hdr = false;   ///< NAME.hdr
+  bool rgbm = false;  ///< NAME.rgbm.png
+  bool rgbe = false;  ///< NAME.rgbe.png
+};
+
+/// "exr,hdr,rgbm,rgbe", in any order; exr is always written, whether it is named or not.
+Result<LightmapFormats> parse_formats(std::string_view text);
+/// ["exr", ...].
+nlohmann::json to_json(const LightmapFormats& formats);
+
+struct LightmapFiles {
+  std::vector<OutputFile> files;
+  float rgbm_range = 0;  ///< E = range a rgb in every NAME.rgbm.png; 0 where there is none
+};
+
+/// Pages of a lightmap as NAME.exr and what `formats` adds, in `folder`. NAME is
+/// export_::lightmap_name's, of a layer where one is named. Error: from the EXR encoder.
+Result<LightmapFiles> lightmap_files(std::span<const image::Image> lightmaps,
+                                     const LightmapFormats& formats,
+                                     const std::filesystem::path& folder,
+                                     std::string_view layer = {});
+
+/// The lightmaps of the bake in `folder`, as bake.json lists them; lightmap.exr where it lists none
+/// or is not there.
+std::vector<std::filesystem::path> lightmaps_in(const std::filesystem::path& folder);
+
+}  // namespace luxel::pipeline

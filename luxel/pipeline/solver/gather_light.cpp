@@ -1,0 +1,194 @@
+#include "luxel/pipeline/solver/gather_light.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "luxel/base/free_memory.h"
+#include "luxel/base/output_folder.h"
+#include "luxel/pipeline/reuse/bake_cache.h"
+#include "luxel/pipeline/reuse/rebake.h"
+#include "luxel/pipeline/solver/plan.h"
+#include "luxel/pipeline/solver/solver_memory.h"
+#include "luxel/pipeline/solver/stage_seconds.h"
+#include "luxel/pipeline/solver/texel_light.h"
+#include "luxel/solve/gather/forecast/forecast.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Of the first round, when an error is asked for.
+constexpr int kFirstSamples = 32;
+/// A trial lights one texel in so many, which costs as much of the bake.
+constexpr int kTrialPart = 100;
+/// Bakes below so many rays are over before anybody looks at the clock: what their light takes
+/// stays unknown.
+constexpr double kRaysWorthATrial = 2e7;
+/// What the first direct light and the first rays may take of a time budget.
+constexpr double kFirstShare = 0.3;
+
+void warn_about_rounds(const BakeSettings& settings, const gather::GatherParams& params,
+                       const gather::Gather& result, std::vector<std::string>& warnings) {
+  const std::string winner = settings.max_error > 0
+                                 ? fmt::format("--max-error {}", settings.max_error)
+                                 : fmt::format("--time-budget {}", settings.time_budget_s);
+  if (settings.samples_given)
+    warnings.push_back(
+        fmt::format("{} wins: it says how many rays there are, and --samples {} is not looked at",
+                    winner, settings.samples));
+  if (settings.max_error <= 0 || double(result.relative_error_p95) <= settings.max_error) return;
+  warnings.push_back(fmt::format(
+      "--max-error {} was not reached: 95 of 100 texels are known to {:.2g} of their light, {}",
+      settings.max_error, result.relative_error_p95,
+      settings.time_budget_s > 0
+          ? fmt::format("when --time-budget {} was over", settings.time_budget_s)
+          : fmt::format("and none gets more than {} rays", params.max_samples)));
+}
+
+/// Makes the first round small enough for `seconds`. The forecast is that of `params`.
+void shrink_first_round(const gather::Forecast& forecast, double seconds,
+                        gather::GatherParams& params) {
+  const double share = kFirstShare * std::max(seconds, 0.0);
+  double points_s = forecast.supersample_s;
+  if (forecast.direct_s + points_s > share) {
+    const double part = share / (forecast.direct_s + points_s);
+    params.direct_samples = std::max(1, int(params.direct_samples * part));
+    // Points have a few shadow rays each, however few there are of the texel.
+    if (points_s > share) params.supersample = std::max(1, int(params.supersample * part));
+  }
+  if (forecast.trace_s > share)
+    params.samples = std::max(1, int(params.samples * share / forecast.trace_s));
+}
+
+/// Tells how long it will take, where a trial can know it and is worth it, and fits the first round
+/// into a time budget. With max_error it is told by gather, after the first round.
+Status look_ahead(const SolveInput& in, const BakeSettings& settings, gather::GatherParams& params,
+                  std::vector<std::string>& warnings, Progress& progress) {
+  const std::vector<Stage> after = stages_after_solving(in, settings);
+  progress.expect_at_end(after);
+  const double rays = double(in.elements.size()) * (params.samples + params.direct_samples);
+  const bool trial = rays >= kRaysWorthATrial && settings.max_error <= 0;
+  if (!trial && settings.time_budget_s <= 0) return {};
+  LUXEL_TRY(const gather::Forecast forecast, gather::forecast(in, params, kTrialPart, progress));
+  progress.finish();
+  if (settings.time_budget_s <= 0) {
+    progress.expect(stages_of(forecast));
+    return {};
+  }
+  double left = settings.time_budget_s - stage_seconds(progress.stages())["total"].get<double>();
+  for (const Stage& stage : after) left -= stage.seconds;
+  if (left < forecast.seconds() / params.samples)
+    warnings.push_back(
+        fmt::format("--time-budget {} leaves {:.1f} s for light, after reading and laying out the "
+                    "scene and before drawing and writing: too little, it takes longer",
+                    settings.time_budget_s, std::max(left, 0.0)));
+  shrink_first_round(forecast, left, params);
+  params.seconds = std::max(left, 1e-3);
+  progress.expect_within(params.seconds);
+  return {};
+}
+
+}  // namespace
+
+gather::GatherParams gather_params(const BakeSettings& settings) {
+  gather::GatherParams params;
+  const bool rounds = settings.max_error > 0 || settings.time_budget_s > 0;
+  params.samples = rounds ? kFirstSamples : settings.samples;
+  params.max_error = float(settings.max_error);
+  params.direct_samples = settings.direct_samples;
+  params.supersample = settings.supersample;
+  params.bounces = settings.bounces;
+  params.seed = settings.seed;
+  params.scratch_folder = nearest_folder(settings.output);
+  return params;
+}
+
+namespace {
+
+/// Of gather's result; without warnings.
+TexelLight light_of(gather::Gather& result, light::LightLayers& layers) {
+  TexelLight out = texel_light(std::move(result));
+  out.errors = std::move(result.errors), out.error_p95 = result.relative_error_p95;
+  out.samples = std::move(result.samples);
+  out.layers = std::move(layers.layers), out.layer_irradiance = std::move(result.layers);
+  out.direct = std::move(result.direct);
+  out.direct_variance = std::move(result.direct_variance);
+  out.variance = std::move(result.indirect_variance);
+  out.sweeps = result.sweeps, out.supersampled_texels = result.supersampled;
+  out.scratch_bytes = result.hit_bytes_in_file, out.rays_kept = result.rays_kept;
+  return out;
+}
+
+/// Which layers light is told apart into; none where nobody asks, or, for a bake that is kept,
+/// where there are too many. Errors: too many.
+Result<light::LightLayers> layers_of(const SolveInput& in, const BakeSettings& settings,
+                                     bool keeps) {
+  if (settings.layers != light::LayerMode::none)
+    return light::light_layers(in.scene, in.lights, settings.layers);
+  if (!keeps) return light::LightLayers{};
+  return light::light_layers(in.scene, in.lights, light::LayerMode::per_light)
+      .value_or(light::LightLayers{});
+}
+
+/// The bake's light with what later bakes can build on.
+KeptBake kept_bake(const SolveInput& in, const light::LightLayers& layers, gather::Gather& result,
+                   const TexelLight& light) {
+  KeptBake kept;
+  kept.places = places_of(in.elements);
+  for (const light::LightLayer& layer : light.layers) kept.layer_names.push_back(layer.name);
+  if (!kept.layer_names.empty()) kept.layers = layers_of_lights(in.scene, in.lights, layers);
+  kept.direct = std::move(result.kept_direct), kept.levels = std::move(result.kept_levels);
+  kept.light = light;
+  return kept;
+}
+
+/// Nobody has asked for them.
+void drop_layers(TexelLight& light) { light.layers.clear(), free_memory(light.layer_irradiance); }
+
+}  // namespace
+
+Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
+                                Progress& progress) {
+  gather::GatherParams params = gather_params(settings);
+  const bool keeps = in.cache && in.cache->rays();
+  LUXEL_TRY(light::LightLayers layers, layers_of(in, settings, keeps));
+  if (layers.size() > 0) params.layers = &layers;
+  std::optional<gather::Earlier> earlier;
+  if (KeptBake* found = in.cache ? in.cache->found() : nullptr) {
+    const scene::SceneChange& change = in.cache->change();
+    const LightUpdate update = light_update(*found, change, in.scene);
+    // Layers that are asked for are those of now: a lamp that is out has none, another name counts.
+    const bool same_layers = settings.layers == light::LayerMode::none ||
+                             layers_of_lights(in.scene, in.lights, layers) == found->layers;
+    if (is_sum_of_layers(update, change) && same_layers) {
+      TexelLight out = sum_of_layers(*found, update);
+      out.layers = std::move(layers.layers);
+      if (settings.layers == light::LayerMode::none) drop_layers(out);
+      return out;
+    }
+    if (const RecordFile* rays = in.cache->found_rays(progress))
+      earlier = earlier_of(*found, *rays, update, change, in, params.layers);
+  }
+  LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
+  std::vector<std::string> warnings;
+  if (earlier)
+    params.earlier = &*earlier;
+  else
+    LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
+  // Not for the trial; and the light of layers is not kept yet.
+  if (!params.layers) params.parts = in.parts;
+  if (keeps) params.keep = in.cache->rays();
+  params.on_estimate = in.on_estimate;
+  params.on_traced = in.on_traced;
+  LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
+                                                  in.lights, in.tracer, params, progress));
+  const light::LightLayers all_layers = layers;
+  TexelLight out = light_of(result, layers);
+  if (keeps) in.cache->keep(kept_bake(in, all_layers, result, out));
+  if (settings.layers == light::LayerMode::none) drop_layers(out);
+  if (settings.max_error > 0 || settings.time_budget_s > 0)
+    warn_about_rounds(settings, params, result, warnings);
+  out.warnings = std::move(warnings);
+  return out;
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,181 @@
+#include "luxel/pipeline/texels/texel_layout.h"
+
+#include <algorithm>
+
+#include "luxel/atlas/cut_charts.h"
+#include "luxel/base/check.h"
+#include "luxel/base/free_memory.h"
+#include "luxel/base/parallel.h"
+#include "luxel/scene/drawn_triangle.h"
+#include "luxel/transport/barriers.h"
+#include "luxel/transport/open_samples.h"
+
+namespace luxel::pipeline {
+namespace {
+
+atlas::AtlasParams params_of(const BakeSettings& settings) {
+  atlas::AtlasParams params;
+  params.uv = settings.uv;
+  params.resolution = settings.resolution;
+  params.texels_per_metre = settings.texels_per_metre;
+  params.page_mode = settings.pages.mode, params.pages = settings.pages.count;
+  return params;
+}
+
+Result<TexelLayout> lay_out_once(const atlas::AtlasParams& params, const scene::Scene& scene,
+                                 Progress& progress) {
+  LUXEL_TRY(atlas::Atlas atlas, atlas::make_atlas(scene, params, progress));
+  atlas::TexelMap map = atlas::rasterise(scene, atlas);
+  progress.begin("build ray tracer", 0);
+  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
+  return TexelLayout{std::move(atlas), std::move(map), {}, std::move(tracer), {}, {}};
+}
+
+/// Cuts the scene where its charts run under barriers. Cut charts are smaller and pack another way,
+/// at another density, so that a few barriers can lie between other texels than before: what is
+/// parted then is counted.
+Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, TexelLayout& layout,
+                       Progress& progress) {
+  progress.begin("walls", 0);
+  const auto parted = transport::find_parted(scene, layout.atlas, layout.map, layout.tracer);
+  layout.repair.parted = parted.size();
+  if (layout.atlas.kept || parted.size() < atlas::kFewestParted) return {};
+  atlas::CutScene cut = atlas::cut_charts(scene, layout.atlas, parted);
+  if (cut.cuts == 0) return {};
+  scene = std::move(cut.scene);
+  atlas::AtlasParams grouped = params;
+  grouped.group = std::move(cut.group);
+  layout.atlas = {}, layout.map = {};  // a large one would not find place beside the next
+  LUXEL_TRY(layout, lay_out_once(grouped, scene, progress));
+  layout.repair.cuts = cut.cuts;
+  layout.repair.parted =
+      transport::find_parted(scene, layout.atlas, layout.map, layout.tracer).size();
+  return {};
+}
+
+Vec2 between(Vec2 a, Vec2 b, float s) { return a * (1 - s) + b * s; }
+
+/// The place of a drawn triangle's plane half a texel from an edge, on its side of it.
+transport::Place beside_edge(const scene::Scene& scene, const atlas::Atlas& atlas,
+                             uint32_t triangle, Vec2 on_edge, Vec2 along) {
+  const auto drawn = scene::drawn_triangle(atlas.first_triangle, triangle);
+  const auto& corners = atlas.corners[triangle];
+  const Vec2 middle = (corners[0] + corners[1] + corners[2]) * (1.0f / 3);
+  Vec2 inwards = Vec2{-along.y, along.x} * (0.5f / std::max(length(along), 1e-6f));
+  if (dot(inwards, middle - on_edge) < 0) inwards = inwards * -1.0f;
+  const Barycentric at = atlas::barycentric_in(corners, on_edge + inwards);
+  return transport::place_of(scene, {drawn.instance, drawn.triangle, at});
+}
+
+/// The stretches of one seam that are open, whole texels each.
+void add_open(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,
+              const post::Seam& seam, std::vector<post::Seam>& out) {
+  const Vec2 a = seam.a1 - seam.a0, b = seam.b1 - seam.b0;
+  const int count = std::max(1, int(std::ceil(std::max(length(a), length(b)))));
+  const auto open = [&](int k) {
+    const float s = (float(k) + 0.5f) / float(count);
+    const auto p = beside_edge(scene, atlas, seam.triangle_a, between(seam.a0, seam.a1, s), a);
+    const auto q = beside_edge(scene, atlas, seam.triangle_b, between(seam.b0, seam.b1, s), b);
+    return !transport::barrier_between(scene, atlas, tracer, atlas::kNone, p, q,
+                                       length(q.position - p.position));
+  };
+  for (int begin = 0, end = 0; begin < count; begin = end + 1) {
+    for (end = begin; end < count && open(end);) ++end;
+    if (end == begin) continue;
+    post::Seam stretch = seam;
+    const float s0 = float(begin) / float(count), s1 = float(end) / float(count);
+    if (begin > 0)
+      stretch.a0 = between(seam.a0, seam.a1, s0), stretch.b0 = between(seam.b0, seam.b1, s0);
+    if (end < count)
+      stretch.a1 = between(seam.a0, seam.a1, s1), stretch.b1 = between(seam.b0, seam.b1, s1);
+    out.push_back(stretch);
+  }
+}
+
+void take_opened(transport::OpenedSamples opened, TexelLayout& layout) {
+  layout.repair.moved = std::move(opened.moved);
+  layout.near_backs = std::move(opened.near_backs);
+}
+
+}  // namespace
+
+Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& scene,
+                                   Progress& progress) {
+  const atlas::AtlasParams params = params_of(settings);
+  LUXEL_TRY(TexelLayout layout, lay_out_once(params, scene, progress));
+  if (settings.repair_leaks) {
+    LUXEL_TRY_STATUS(cut_at_barriers(params, scene, layout, progress));
+    progress.begin("samples", 0);
+    take_opened(transport::open_samples(scene, layout.atlas, layout.tracer, layout.map), layout);
+  }
+  layout.repair.overlapping = atlas::overlapping_texels(layout.atlas, layout.map);
+  layout.stats = atlas::atlas_stats(scene, layout.atlas, layout.map);
+  return layout;
+}
+
+KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout) {
+  KeptLayout out;
+  out.meshes = scene.meshes;
+  for (const scene::Instance& instance : scene.instances)
+    out.mesh_of_instance.push_back(instance.mesh);
+  out.atlas = layout.atlas, out.texels = layout.map.texels;
+  out.stats = layout.stats, out.repair = layout.repair, out.near_backs = layout.near_backs;
+  return out;
+}
+
+Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
+                                  std::span<const Box3> boxes, scene::Scene& scene,
+                                  Progress& progress) {
+  LUXEL_CHECK(kept.mesh_of_instance.size() == scene.instances.size());
+  progress.begin("charts", 0);
+  scene.meshes = std::move(kept.meshes);
+  for (const uint32_t material : kept.one_sided_of) {
+    scene.materials.push_back(scene::Material(scene.materials[material]));
+    scene.materials.back().double_sided = false;
+  }
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    scene.instances[i].mesh = kept.mesh_of_instance[i];
+  const bool same_places = boxes.empty();
+  // Samples that were moved out of solids begin at their own places again where things have moved.
+  if (!same_places) free_memory(kept.texels);
+  atlas::TexelMap map = same_places ? atlas::map_of(kept.atlas, std::move(kept.texels))
+                                    : atlas::rasterise(scene, kept.atlas);
+  progress.begin("build ray tracer", 0);
+  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
+  TexelLayout layout{std::move(kept.atlas), std::move(map),         kept.stats,
+                     std::move(tracer),     std::move(kept.repair), std::move(kept.near_backs)};
+  if (!same_places && settings.repair_leaks) {
+    progress.begin("samples", 0);
+    take_opened(transport::open_samples_again(scene, layout.atlas, layout.tracer, boxes,
+                                              layout.near_backs, layout.map),
+                layout);
+  }
+  return layout;
+}
+
+post::Parted parted_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
+                           const atlas::TexelMap& map, const trace::RayTracer& tracer) {
+  return [&](uint32_t a, uint32_t b) {
+    const atlas::Texel &s = map.texels[a], &t = map.texels[b];
+    const auto p = transport::place_of(scene, s.sample), q = transport::place_of(scene, t.sample);
+    const float steps = std::hypot(float(s.x) - float(t.x), float(s.y) - float(t.y));
+    return transport::barrier_between(scene, atlas, tracer, atlas.chart[s.triangle_number], p, q,
+                                      length(q.position - p.position) / steps)
+        .has_value();
+  };
+}
+
+std::vector<post::Seam> open_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                   const trace::RayTracer& tracer, std::vector<post::Seam> seams) {
+  constexpr size_t kBlock = 256;
+  std::vector<std::vector<post::Seam>> open((seams.size() + kBlock - 1) / kBlock);
+  parallel_for(seams.size(), kBlock, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      add_open(scene, atlas, tracer, seams[i], open[begin / kBlock]);
+  });
+  std::vector<post::Seam> all;
+  for (const auto& block : open) all.insert(all.end(), block.begin(), block.end());
+  return all;
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,76 @@
+// Where texels lie, such that none of them lets light through a wall.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "luxel/atlas/atlas.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/pipeline/settings/settings.h"
+#include "luxel/post/refill.h"
+#include "luxel/post/seams.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::pipeline {
+
+/// What was found and done against leaks; docs/method/leaks.md. Texels are indices into
+/// TexelMap::texels.
+struct LeakRepair {
+  uint32_t cuts = 0;                  ///< planes along which charts were cut
+  size_t parted = 0;                  ///< pairs of texels that still mix across a barrier
+  std::vector<uint32_t> overlapping;  ///< that belong to more than one chart
+  std::vector<uint32_t> moved;        ///< samples moved out of solids
+  std::vector<uint32_t> refilled;     ///< inside solids, with the light of their neighbours
+};
+
+struct TexelLayout {
+  atlas::Atlas atlas;
+  atlas::TexelMap map;
+  atlas::AtlasStats stats;
+  trace::RayTracer tracer;  ///< of the scene as it is now
+  LeakRepair repair;
+  std::vector<uint32_t> near_backs;  ///< OpenedSamples::near_backs
+};
+
+/// Lays the scene out and rasterises it. With settings.repair_leaks, samples move out of solids,
+/// and where barriers stand on charts (luxel/transport/barriers.h) the scene's triangles are cut
+/// along them and laid out anew, unless TEXCOORD_1 is kept. `scene` changes by these cuts and must
+/// stay where it is while the tracer is used.
+Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& scene,
+                                   Progress& progress);
+
+/// A layout that is kept for later bakes: of what it is made, and what it became.
+struct KeptLayout {
+  std::vector<scene::Mesh> meshes;  ///< backs added, cut along barriers
+  /// One-sided copies of materials, at the end of all, for surfaces with backs: of which each is.
+  std::vector<uint32_t> one_sided_of;
+  std::vector<uint32_t> mesh_of_instance;
+  atlas::Atlas atlas;
+  std::vector<atlas::Texel> texels;  ///< of the map
+  atlas::AtlasStats stats;
+  LeakRepair repair;
+  std::vector<uint32_t> near_backs;  ///< TexelLayout::near_backs
+  std::vector<std::string> warnings;
+};
+/// `one_sided_of` and `warnings` are not filled in.
+KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout);
+
+/// The kept layout for `scene`, which has the same meshes, as they were read, in the same number of
+/// places. Rays meet something else than then within `boxes` alone; without any its texels' samples
+/// stay, else they are moved out of solids again where settings.repair_leaks says so. `scene` gets
+/// the layout's meshes. Errors: no memory.
+Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
+                                  std::span<const Box3> boxes, scene::Scene& scene,
+                                  Progress& progress);
+
+/// Whether a barrier stands between two texels of one chart. Refers to its arguments.
+post::Parted parted_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
+                           const atlas::TexelMap& map, const trace::RayTracer& tracer);
+
+/// Seams without the stretches on which a barrier stands: there light differs for good.
+std::vector<post::Seam> open_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                   const trace::RayTracer& tracer, std::vector<post::Seam> seams);
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,298 @@
+#include "luxel/pipeline/texels/two_sides.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "luxel/atlas/keep_uv.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/base/warp.h"
+#include "luxel/scene/places.h"
+#include "luxel/scene/sides.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::pipeline {
+namespace {
+
+constexpr uint32_t kWalks = 64, kSteps = 4;
+/// Walks from the inside of an open box get out more often than this, those that slip through the
+/// joints of a closed one far less.
+constexpr double kOpenShare = 0.1;
+/// How far a shell's surroundings reach beyond its box, relative to the box's diagonal.
+constexpr float kMargin = 0.1f;
+/// Of a mesh that stands in many places, so many are looked at.
+constexpr size_t kMostPlaces = 4;
+
+/// The parts of a mesh that hang together by their corners.
+struct Shells {
+  std::vector<uint32_t> of_triangle;
+  std::vector<Box3> bounds;                       ///< object space
+  std::vector<uint8_t> closed;                    ///< every edge has triangles on both sides
+  std::vector<std::vector<uint32_t>> candidates;  ///< triangles that may need a back
+};
+
+uint32_t root_of(std::vector<uint32_t>& parent, uint32_t v) {
+  while (parent[v] != v) v = parent[v] = parent[parent[v]];
+  return v;
+}
+
+/// What scatters light through itself is lit on both sides, inside of lampshades as well.
+bool scatters(const scene::Scene& scene, const scene::Mesh& mesh, uint32_t triangle) {
+  return scene.materials[mesh.triangle_material[triangle]].diffuse_transmission > 0;
+}
+
+bool may_need_back(const scene::Scene& scene, const scene::Mesh& mesh, uint32_t triangle) {
+  if (!mesh.other_side.empty() && mesh.other_side[triangle] != scene::kNone) return false;
+  return scene.materials[mesh.triangle_material[triangle]].double_sided ||
+         scatters(scene, mesh, triangle);
+}
+
+/// Marks shells with an edge that is run along an odd number of times: their border.
+void find_borders(const scene::Mesh& mesh, std::span<const uint32_t> place, Shells& shells) {
+  struct Edge {
+    uint32_t low, high, shell;
+    auto operator<=>(const Edge&) const = default;
+  };
+  std::vector<Edge> edges;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t a = place[mesh.triangles[t][k]], b = place[mesh.triangles[t][(k + 1) % 3]];
+      edges.push_back({std::min(a, b), std::max(a, b), shells.of_triangle[t]});
+    }
+  std::sort(edges.begin(), edges.end());
+  for (size_t i = 0; i < edges.size();) {
+    const auto end = std::upper_bound(edges.begin() + std::ptrdiff_t(i), edges.end(), edges[i]);
+    const size_t count = size_t(end - edges.begin()) - i;
+    if (count % 2 == 1) shells.closed[edges[i].shell] = 0;
+    i += count;
+  }
+}
+
+Shells shells_of(const scene::Scene& scene, const scene::Mesh& mesh) {
+  const std::vector<uint32_t> place = scene::place_numbers(mesh.positions);
+  std::vector<uint32_t> parent(mesh.positions.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  for (const auto& [a, b, c] : mesh.triangles)
+    for (const uint32_t v : {b, c}) parent[root_of(parent, place[v])] = root_of(parent, place[a]);
+  Shells out;
+  std::vector<uint32_t> number(mesh.positions.size(), scene::kNone);
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    uint32_t& shell = number[root_of(parent, place[mesh.triangles[t][0]])];
+    if (shell == scene::kNone) {
+      shell = uint32_t(out.bounds.size());
+      out.bounds.emplace_back();
+      out.candidates.emplace_back();
+    }
+    out.of_triangle.push_back(shell);
+    for (const uint32_t v : mesh.triangles[t]) out.bounds[shell].extend(mesh.positions[v]);
+    if (may_need_back(scene, mesh, t)) out.candidates[shell].push_back(t);
+  }
+  out.closed.assign(out.bounds.size(), 1);
+  find_borders(mesh, place, out);
+  return out;
+}
+
+Box3 moved(const Mat34& m, const Box3& box) {
+  Box3 out;
+  for (int k = 0; k < 8; ++k)
+    out.extend(
+        transform_point(m, {k & 1 ? box.upper.x : box.lower.x, k & 2 ? box.upper.y : box.lower.y,
+                            k & 4 ? box.upper.z : box.lower.z}));
+  return out;
+}
+
+bool contains(const Box3& box, Vec3 p) { return max(box.lower, p) == p && min(box.upper, p) == p; }
+bool contains(const Box3& box, const Box3& other) {
+  return contains(box, other.lower) && contains(box, other.upper);
+}
+
+Box3 grown(Box3 box, float by) {
+  const Vec3 d{by, by, by};
+  return {box.lower - d, box.upper + d};
+}
+
+/// What walks look at.
+struct World {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  const std::vector<Shells>& shells;  ///< per mesh
+  std::vector<Vec3> lamps;            ///< where point and spot lights stand
+  bool sky_shines = false;            ///< light comes from where there is no surface
+  float diagonal_m = 0;
+
+  const Shells& shells_at(uint32_t instance) const {
+    return shells[scene.instances[instance].mesh];
+  }
+};
+
+/// One shell of one instance.
+struct Placed {
+  uint32_t instance = 0, shell = 0;
+  Box3 box, surroundings;
+  bool closed = false;
+};
+
+World world_of(const scene::Scene& scene, const trace::RayTracer& tracer,
+               const std::vector<Shells>& shells) {
+  World world{scene, tracer, shells, {}, false, scene::world_bounds(scene).diagonal()};
+  world.sky_shines = max_component(scene.background) > 0 || !scene.environment.empty();
+  for (const scene::PunctualLight& light : scene.lights)
+    if (light.kind == scene::PunctualLight::Kind::directional)
+      world.sky_shines = true;
+    else
+      world.lamps.push_back(light.position);
+  return world;
+}
+
+enum class Step : uint8_t { on, out, stuck };
+
+Step judge(const World& world, const Placed& own, const trace::Ray& ray, const trace::Hit& hit) {
+  if (!hit.found()) return world.sky_shines ? Step::out : Step::stuck;
+  if (hit.back_face && !scene::reflects_from_behind(material_at(world.scene, hit.point())))
+    return Step::stuck;
+  const Vec3 p = ray.origin + ray.direction * hit.t;
+  if (!contains(own.surroundings, p)) return !own.closed || !hit.back_face ? Step::out : Step::on;
+  const Shells& shells = world.shells_at(hit.instance);
+  const uint32_t shell = shells.of_triangle[hit.triangle];
+  if (hit.back_face || (hit.instance == own.instance && shell == own.shell)) return Step::on;
+  const Mat34& m = world.scene.instances[hit.instance].world_from_object;
+  return contains(own.box, moved(m, shells.bounds[shell])) ? Step::out : Step::on;
+}
+
+trace::Ray ray_from(const World& world, const scene::SurfacePoint& p, Vec3 side,
+                    RandomStream& random) {
+  const Vec3 origin =
+      trace::offset_origin(scene::world_position(world.scene, p), side, world.diagonal_m);
+  const Vec3 d = frame_around(side).to_world(cosine_hemisphere_sample(random.next2()));
+  return {origin, 0, d, INFINITY};
+}
+
+/// Whether one of the lamps, by chance, shines on a place.
+bool sees_lamp(const World& world, Vec3 origin, Vec3 side, RandomStream& random) {
+  if (world.lamps.empty()) return false;
+  const size_t k =
+      std::min(size_t(random.next() * float(world.lamps.size())), world.lamps.size() - 1);
+  const Vec3 towards = world.lamps[k] - origin;
+  return dot(towards, side) > 0 && !world.tracer.closest_hit({origin, 0, towards, 1}).found();
+}
+
+/// Whether a walk from the back of a triangle gets out, or has a lamp before it.
+bool gets_out(const World& world, const Placed& own, const scene::SurfacePoint& from,
+              RandomStream& random) {
+  const Vec3 behind = -scene::front_normal(world.scene, from.instance, from.triangle);
+  trace::Ray ray = ray_from(world, from, behind, random);
+  if (sees_lamp(world, ray.origin, behind, random)) return true;
+  for (uint32_t step = 0; step < kSteps; ++step) {
+    const trace::Hit hit = world.tracer.closest_hit(ray);
+    const Step what = judge(world, own, ray, hit);
+    if (what != Step::on) return what == Step::out;
+    const Vec3 front = scene::front_normal(world.scene, hit.instance, hit.triangle);
+    ray = ray_from(world, hit.point(), hit.back_face ? -front : front, random);
+  }
+  return false;
+}
+
+/// The share of walks that get out, from points spread over the candidates in proportion to area.
+double share_out(const World& world, const Placed& own, uint64_t seed) {
+  const std::vector<uint32_t>& candidates = world.shells_at(own.instance).candidates[own.shell];
+  std::vector<double> below{0};
+  for (const uint32_t t : candidates)
+    below.push_back(below.back() +
+                    double(area_m2(scene::world_triangle(world.scene, own.instance, t))));
+  uint32_t out = 0;
+  for (uint32_t k = 0; k < kWalks; ++k) {
+    RandomStream random{hash64(seed, k)};
+    const double at = (double(k) + double(random.next())) / kWalks * below.back();
+    const auto found = std::upper_bound(below.begin() + 1, below.end() - 1, at);
+    const uint32_t t = candidates[size_t(found - below.begin()) - 1];
+    out += gets_out(world, own, {own.instance, t, triangle_sample(random.next2())}, random);
+  }
+  return double(out) / kWalks;
+}
+
+/// Shells of instances to look at: all that have candidates, in some of a mesh's places.
+std::vector<Placed> placed_shells(const scene::Scene& scene, const std::vector<Shells>& shells) {
+  std::vector<std::vector<uint32_t>> places(scene.meshes.size());
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    places[scene.instances[i].mesh].push_back(i);
+  std::vector<Placed> out;
+  for (size_t m = 0; m < shells.size(); ++m)
+    for (size_t k = 0; k < std::min(kMostPlaces, places[m].size()); ++k) {
+      const uint32_t i = places[m][k * places[m].size() / std::min(kMostPlaces, places[m].size())];
+      for (uint32_t s = 0; s < shells[m].bounds.size(); ++s) {
+        if (shells[m].candidates[s].empty()) continue;
+        const Box3 box = moved(scene.instances[i].world_from_object, shells[m].bounds[s]);
+        out.push_back({i, s, box, grown(box, kMargin * box.diagonal()), shells[m].closed[s] != 0});
+      }
+    }
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene,
+                                                     Progress& progress) {
+  std::vector<std::vector<uint8_t>> chosen(scene.meshes.size());
+  const bool any = std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const auto& mesh) {
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      if (may_need_back(scene, mesh, t)) return true;
+    return false;
+  });
+  if (!any) return chosen;
+  std::vector<Shells> shells(scene.meshes.size());
+  parallel_for(shells.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t m = begin; m < end; ++m) shells[m] = shells_of(scene, scene.meshes[m]);
+  });
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  const World world = world_of(scene, tracer, shells);
+  const std::vector<Placed> placed = placed_shells(scene, shells);
+  progress.begin("sides", placed.size());
+  std::vector<uint8_t> open(placed.size());
+  parallel_for(placed.size(), 16, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end && !progress.cancelled(); ++k)
+      open[k] = share_out(world, placed[k], k) >= kOpenShare;
+    progress.advance(end - begin);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  for (size_t k = 0; k < placed.size(); ++k) {
+    const uint32_t m = scene.instances[placed[k].instance].mesh;
+    chosen[m].resize(scene.meshes[m].triangles.size());
+    for (const uint32_t t : shells[m].candidates[placed[k].shell])
+      chosen[m][t] |= open[k] || scatters(scene, scene.meshes[m], t);
+  }
+  return chosen;
+}
+
+Result<std::vector<std::string>> split_sides(scene::Scene& scene, atlas::UvMode uv, int resolution,
+                                             Progress& progress) {
+  LUXEL_TRY(const auto open, open_backs(scene, progress));
+  size_t count = 0;
+  for (const auto& flags : open) count += size_t(std::count(flags.begin(), flags.end(), 1));
+  if (count == 0) return std::vector<std::string>{};
+  const bool keeps_uv =
+      uv == atlas::UvMode::keep ||
+      (uv == atlas::UvMode::automatic && atlas::keep_uv1(scene, resolution, progress).has_value());
+  if (keeps_uv)
+    return std::vector{fmt::format(
+        "{} double-sided triangles see light on both sides, but have one place in TEXCOORD_1: "
+        "their backs show the light of their fronts; --uv unwrap gives each side its own",
+        count)};
+  for (uint32_t m = 0; m < open.size(); ++m)
+    if (!open[m].empty()) scene::add_backs(scene, m, open[m]);
+  return std::vector<std::string>{};
+}
+
+std::vector<uint32_t> one_sided_copies(std::span<const std::vector<uint32_t>> before, size_t known,
+                                       const scene::Scene& after) {
+  std::vector<uint32_t> out(after.materials.size() - known);
+  // Backs come after all triangles that were there.
+  for (size_t m = 0; m < before.size(); ++m)
+    for (size_t t = 0; t < before[m].size(); ++t)
+      if (const uint32_t copy = after.meshes[m].triangle_material[t]; copy >= known)
+        out[copy - known] = before[m][t];
+  return out;
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,36 @@
+// Which double-sided surfaces get light of their own on each side.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "luxel/atlas/atlas.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::pipeline {
+
+/// Per mesh, one flag per triangle: 1 where it is double-sided and its back sees the open. Empty
+/// for meshes without any. Many exporters call every material double-sided: what matters is
+/// whether light can get behind. Decided for each shell, the triangles of a mesh that hang together
+/// by their corners: random walks start on its backs, and those get out that leave the scene for a
+/// sky that shines, see a lamp, meet something beyond the shell's surroundings, or the front of
+/// something that stands inside the shell. Closed solids, boxes that stand on a floor without a
+/// bottom and rugs that lie on it stay as they are. What scatters light through itself has two
+/// sides in any case. Errors: cancelled, no memory for the ray tracer.
+Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene, Progress& progress);
+
+/// Gives them a side of their own behind (luxel/scene/sides.h), unless the file's own lightmap
+/// coordinates are kept: those have one place for both. Then they stay double-sided, and a warning
+/// is returned.
+Result<std::vector<std::string>> split_sides(scene::Scene& scene, atlas::UvMode uv, int resolution,
+                                             Progress& progress);
+
+/// Materials that split_sides has added to a scene, at the end: of which each is a copy.
+/// `before`: the material numbers that each mesh had, of `known` materials.
+std::vector<uint32_t> one_sided_copies(std::span<const std::vector<uint32_t>> before, size_t known,
+                                       const scene::Scene& after);
+
+}  // namespace luxel::pipeline

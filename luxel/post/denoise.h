@@ -1,0 +1,53 @@
+// Takes the grain of sampling out of irradiance without touching what is light.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "luxel/atlas/atlas.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::post {
+
+/// Where the texels of a map lie; spans have one entry per texel.
+struct TexelPlaces {
+  const scene::Scene& scene;
+  const atlas::Atlas& atlas;
+  const atlas::TexelMap& map;
+  std::span<const Vec3> position;   ///< world [m]
+  std::span<const Vec3> normal;     ///< unit shading normal
+  std::span<const uint8_t> hidden;  ///< 1: its light means nothing; neither read nor changed
+};
+
+struct DenoiseParams {
+  float radius = 9;                    ///< largest distance of a neighbour, in texels
+  float max_normal_angle_rad = 0.35f;  ///< neighbours that face farther apart share no light
+  /// How many standard deviations of their difference two texels may lie apart and still count as
+  /// the same light.
+  float max_deviations = 2.5f;
+};
+
+/// A part of the light, one value per texel [any unit], and the estimated variance of its luminance
+/// [unit^2]: an upper bound, which is lowered to what neighbours show.
+struct NoisyLight {
+  std::span<Rgb> values;
+  std::span<const float> variance;
+};
+
+/// Which filter this build has: "luxel", or "oidn" where Open Image Denoise was found.
+std::string_view denoiser_name();
+
+/// Filters each part by itself. A texel becomes the value at its own place of a plane fitted to the
+/// texels around it on the same surface, on whichever charts they lie; windows grow in steps, and a
+/// neighbour counts for as long as its estimate agrees with that plane to within what their
+/// variances explain (propagation and separation [Polzehl00, Polzehl06]; docs/method/denoise.md).
+/// Texels without variance around them keep their values bit for bit. Values stay finite and
+/// non-negative. The same bits for any number of threads. Errors: cancelled.
+Status denoise(const TexelPlaces& places, std::span<const NoisyLight> parts,
+               const DenoiseParams& params, Progress& progress);
+
+}  // namespace luxel::post

@@ -1,0 +1,163 @@
+#include "luxel/post/neighbours.h"
+
+#include <algorithm>
+#include <array>
+
+#include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
+
+namespace luxel::post {
+namespace {
+
+/// Side of a texel in the world, per chart.
+std::vector<float> chart_spacing(const scene::Scene& scene, const atlas::Atlas& atlas) {
+  std::vector<double> world(atlas.chart_count), drawn(atlas.chart_count);
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    for (uint32_t n = atlas.first_triangle[i]; n < atlas.first_triangle[i + 1]; ++n) {
+      const auto& c = atlas.corners[n];
+      world[atlas.chart[n]] +=
+          double(area_m2(scene::world_triangle(scene, i, n - atlas.first_triangle[i])));
+      drawn[atlas.chart[n]] += 0.5 * std::abs(double(cross(c[1] - c[0], c[2] - c[0])));
+    }
+  std::vector<float> spacing(atlas.chart_count);
+  for (size_t c = 0; c < spacing.size(); ++c)
+    spacing[c] = drawn[c] > 0 ? float(std::sqrt(world[c] / drawn[c])) : 0.0f;
+  return spacing;
+}
+
+/// Texels sorted by the cell of a grid that they lie in.
+struct Grid {
+  float cell_m = 1;
+  Vec3 lower;
+  std::vector<uint64_t> key;  ///< sorted
+  std::vector<uint32_t> texel;
+
+  std::array<int64_t, 3> cell_of(Vec3 p) const {
+    const auto along = [&](float x, float x0) {
+      return std::clamp<int64_t>(int64_t((x - x0) / cell_m), 0, (1 << 21) - 1);
+    };
+    return {along(p.x, lower.x), along(p.y, lower.y), along(p.z, lower.z)};
+  }
+  static uint64_t key_of(int64_t x, int64_t y, int64_t z) {
+    return uint64_t(x) << 42 | uint64_t(y) << 21 | uint64_t(z);
+  }
+};
+
+float median_spacing(const std::vector<Place>& places) {
+  std::vector<float> sizes;
+  for (const Place& p : places)
+    if (p.spacing > 0) sizes.push_back(p.spacing);
+  if (sizes.empty()) return 0;
+  const auto middle = sizes.begin() + std::ptrdiff_t(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle;
+}
+
+Grid make_grid(const std::vector<Place>& places, float cell_m) {
+  Box3 box;
+  for (const Place& p : places) box.extend(p.position);
+  Grid grid;
+  grid.lower = box.lower;
+  // 21 bits an axis.
+  grid.cell_m = std::max(cell_m, box.diagonal() / float(1 << 20));
+  std::vector<std::pair<uint64_t, uint32_t>> order;
+  order.reserve(places.size());
+  for (uint32_t i = 0; i < places.size(); ++i) {
+    if (places[i].spacing <= 0) continue;
+    const auto c = grid.cell_of(places[i].position);
+    order.push_back({Grid::key_of(c[0], c[1], c[2]), i});
+  }
+  std::sort(order.begin(), order.end());
+  for (const auto& [key, texel] : order) grid.key.push_back(key), grid.texel.push_back(texel);
+  return grid;
+}
+
+/// Whether something of a texel's window is missing: only there may its surface go on elsewhere.
+/// Every other texel is looked at, for charts lie two apart.
+bool is_near_a_border(const Neighbourhood& n, uint32_t i) {
+  const atlas::TexelMap& map = *n.map;
+  const atlas::Texel& t = map.texels[i];
+  const int side = map.resolution;
+  // Twice the radius: the window's corners are farther away than its sides.
+  const Around self = around(n.place[i], 2 * float(n.radius), n.min_cosine);
+  for (int y = int(t.y) - n.radius; y <= int(t.y) + n.radius; y += 2)
+    for (int x = int(t.x) - n.radius; x <= int(t.x) + n.radius; x += 2) {
+      if (x < 0 || y < 0 || x >= side || y >= side) return true;
+      const uint32_t j = map.texel_at[size_t(y) * size_t(side) + size_t(x)];
+      if (j == atlas::kNone) return true;
+      if (neighbour(self, n.place[j]).weight <= 0) return true;
+    }
+  return false;
+}
+
+struct Candidate {
+  float distance2;
+  uint32_t texel;
+};
+
+/// Neighbours of texel i that its window in the atlas does not hold.
+void find_far(const Neighbourhood& n, const Grid& grid, uint32_t i, std::vector<Candidate>& found) {
+  const Place& own = n.place[i];
+  const Around self = around(own, float(n.radius), n.min_cosine);
+  const atlas::Texel& t = n.map->texels[i];
+  // A texel far larger than most looks no farther than two cells.
+  const float reach = std::min(float(n.radius) * own.spacing, 2 * grid.cell_m);
+  const Vec3 r{reach, reach, reach};
+  const auto low = grid.cell_of(own.position - r), high = grid.cell_of(own.position + r);
+  for (int64_t x = low[0]; x <= high[0]; ++x)
+    for (int64_t y = low[1]; y <= high[1]; ++y) {
+      // Cells along z follow each other.
+      auto at = std::lower_bound(grid.key.begin(), grid.key.end(), Grid::key_of(x, y, low[2]));
+      for (; at != grid.key.end() && *at <= Grid::key_of(x, y, high[2]); ++at) {
+        const uint32_t j = grid.texel[size_t(at - grid.key.begin())];
+        const atlas::Texel& o = n.map->texels[j];
+        if (std::abs(int(o.x) - int(t.x)) <= n.radius && std::abs(int(o.y) - int(t.y)) <= n.radius)
+          continue;
+        if (neighbour(self, n.place[j]).weight <= 0) continue;
+        const Vec3 d = n.place[j].position - own.position;
+        found.push_back({dot(d, d), j});
+      }
+    }
+  std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
+    return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : a.texel < b.texel;
+  });
+  if (found.size() > kMaxFar) found.resize(kMaxFar);
+}
+
+}  // namespace
+
+Result<Neighbourhood> make_neighbourhood(const TexelPlaces& places, const DenoiseParams& params,
+                                         Progress& progress) {
+  const size_t count = places.map.texels.size();
+  LUXEL_CHECK(places.position.size() == count && places.normal.size() == count);
+  LUXEL_CHECK(places.hidden.size() == count && params.radius >= 1);
+  Neighbourhood n;
+  n.map = &places.map;
+  n.radius = int(params.radius);
+  n.min_cosine = std::cos(params.max_normal_angle_rad);
+  const std::vector<float> spacing = chart_spacing(places.scene, places.atlas);
+  n.place.resize(count);
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t chart = places.atlas.chart[places.map.texels[i].triangle_number];
+    n.place[i] = {places.position[i], places.hidden[i] ? 0.0f : spacing[chart], places.normal[i]};
+  }
+  n.far.resize((count + kBlockTexels - 1) / kBlockTexels);
+  const float typical = median_spacing(n.place);
+  if (typical <= 0) return n;
+  const Grid grid = make_grid(n.place, float(n.radius) * typical);
+  parallel_for(count, kBlockTexels, [&](size_t begin, size_t end) {
+    FarBlock& block = n.far[begin / kBlockTexels];
+    std::vector<Candidate> found;
+    for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
+      found.clear();
+      if (n.place[i].spacing > 0 && is_near_a_border(n, uint32_t(i)))
+        find_far(n, grid, uint32_t(i), found);
+      for (const Candidate& c : found) block.texel.push_back(c.texel);
+      block.end.push_back(uint32_t(block.texel.size()));
+    }
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return n;
+}
+
+}  // namespace luxel::post

@@ -1,0 +1,192 @@
+#include "luxel/reference/path_tracer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
+#include "luxel/reference/paths.h"
+#include "luxel/trace/camera_rays.h"
+
+namespace luxel::reference {
+namespace {
+
+/// Paths that are followed together: many enough for full packets, few enough for a core's cache.
+constexpr size_t kBatch = 2048;
+
+/// Sums of independent values: their mean and its standard error. In double, which adds up 2^29
+/// floats of one size without a rounding.
+struct Sums {
+  double r = 0, g = 0, b = 0, l = 0;
+  double r2 = 0, g2 = 0, b2 = 0, l2 = 0;
+
+  void add(Rgb value) {
+    const double x = double(value.x), y = double(value.y), z = double(value.z);
+    const double y_lum = double(luminance(value));
+    r += x, g += y, b += z, l += y_lum;
+    r2 += x * x, g2 += y * y, b2 += z * z, l2 += y_lum * y_lum;
+  }
+};
+
+/// sqrt(s^2 / n), s^2 the unbiased estimate of the variance. One value says nothing about its own
+/// error: it counts as wholly uncertain.
+double standard_error(double sum, double sum2, double n) {
+  if (n < 2) return std::abs(sum);
+  const double variance = (sum2 - sum * sum / n) / (n - 1);
+  return variance < 0 ? 0 : std::sqrt(variance / n);
+}
+Rgb mean_of(const Sums& s, double n) { return {float(s.r / n), float(s.g / n), float(s.b / n)}; }
+Rgb error_of(const Sums& s, double n) {
+  return {float(standard_error(s.r, s.r2, n)), float(standard_error(s.g, s.g2, n)),
+          float(standard_error(s.b, s.b2, n))};
+}
+
+/// Receivers or pixels that one task works on: some batches' worth, so that buffers are reused, yet
+/// enough tasks for all threads. Depends on nothing but the size of the work.
+size_t grain_for(size_t count, int samples) {
+  const size_t full = std::clamp<size_t>(8 * kBatch / size_t(samples), 8, kBatch / 4);
+  return std::clamp<size_t>(count / 64, 1, full);
+}
+
+/// Samples [first_sample, last_sample) of receivers or pixels [begin, end).
+struct Batch {
+  size_t begin, end, first_sample, last_sample;
+};
+
+/// Goes through `count` receivers or pixels in tasks, and through their paths in batches of about
+/// kBatch: start(batch, paths) makes a batch's paths, sample by sample of each receiver; each(i,
+/// path) sees every path of receiver i at its end; finish(i, sums, n) takes what its n paths have
+/// summed to.
+template <class Start, class Each, class Finish>
+Result<uint64_t> run_tasks(const World& world, size_t count, const PathParams& params,
+                           Progress& progress, const Start& start, const Each& each,
+                           const Finish& finish) {
+  std::atomic<uint64_t> rays{0};
+  const size_t samples = size_t(params.samples);
+  parallel_for(count, grain_for(count, params.samples), [&](size_t begin, size_t end) {
+    PathWork work;
+    std::vector<Path> paths;
+    std::vector<Sums> sums(end - begin);
+    const size_t per_batch = std::max<size_t>(1, kBatch / (end - begin));
+    uint64_t traced = 0;
+    for (size_t first = 0; first < samples && !progress.cancelled(); first += per_batch) {
+      const size_t last = std::min(samples, first + per_batch);
+      paths.clear();
+      start(Batch{begin, end, first, last}, paths);
+      traced += follow(world, params.bounces, paths, work);
+      for (size_t k = 0; k < paths.size(); ++k) {
+        const size_t i = k / (last - first);
+        sums[i].add(paths[k].value);
+        each(begin + i, paths[k]);
+      }
+      progress.advance(paths.size());
+    }
+    for (size_t i = begin; i < end; ++i) finish(i, sums[i - begin], double(samples));
+    rays += traced;
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return rays.load();
+}
+
+double relative_error(std::span<const float> errors, double sum_of_luminance) {
+  double sum2 = 0;
+  for (const float e : errors) sum2 += double(e) * double(e);
+  return sum_of_luminance > 0 ? std::sqrt(sum2 * double(errors.size())) / sum_of_luminance : 0;
+}
+
+uint64_t path_seed(uint64_t seed, size_t item, size_t sample) {
+  return hash64(hash64(seed, item), sample);
+}
+
+/// Where a sample of a receiver starts.
+size_t point_of(const Receivers& receivers, size_t i, size_t sample) {
+  if (receivers.first.empty()) return i;
+  const size_t first = receivers.first[i];
+  return first + sample % (receivers.first[i + 1] - first);
+}
+
+}  // namespace
+
+Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receivers& receivers,
+                                       const trace::RayTracer& tracer, const PathParams& params,
+                                       Progress& progress) {
+  const size_t count = receivers.size();
+  LUXEL_CHECK(params.samples >= 1);
+  LUXEL_CHECK(receivers.normal.size() == receivers.position.size());
+  LUXEL_CHECK(receivers.geometric_normal.size() == receivers.position.size());
+  const World world = world_of(scene, tracer);
+  TexelPaths out;
+  out.irradiance.resize(count), out.standard_error.resize(count), out.luminance_error.resize(count);
+  out.met_back.resize(count), out.met_double_sided_back.resize(count), out.enclosed.resize(count);
+  progress.begin("trace paths", uint64_t(count) * uint64_t(params.samples));
+  const auto start = [&](const Batch& batch, std::vector<Path>& paths) {
+    for (size_t i = batch.begin; i < batch.end; ++i)
+      for (size_t s = batch.first_sample; s < batch.last_sample; ++s) {
+        const size_t k = point_of(receivers, i, s);
+        const Receiver at{receivers.position[k], receivers.normal[k],
+                          receivers.geometric_normal[k]};
+        paths.push_back(path_from(world, at, {path_seed(params.seed, i, s)}));
+      }
+  };
+  const auto each = [&](size_t i, const Path& path) {
+    out.met_back[i] += path.first_hit == FirstHit::back;
+    out.met_double_sided_back[i] += path.first_hit == FirstHit::double_sided_back;
+  };
+  const auto finish = [&](size_t i, const Sums& sums, double n) {
+    out.irradiance[i] = mean_of(sums, n) * kPi;
+    out.standard_error[i] = error_of(sums, n) * kPi;
+    out.luminance_error[i] = float(standard_error(sums.l, sums.l2, n)) * kPi;
+    const double backs = double(out.met_back[i]) + double(out.met_double_sided_back[i]);
+    out.enclosed[i] = 2 * double(out.met_back[i]) > n || backs >= 0.98 * n;
+  };
+  LUXEL_TRY(out.rays, run_tasks(world, count, params, progress, start, each, finish));
+  double sum = 0;
+  for (const Rgb& e : out.irradiance) sum += double(luminance(e));
+  out.relative_error = relative_error(out.luminance_error, sum);
+  return out;
+}
+
+Result<Picture> radiance_by_paths(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                  const scene::Camera& camera, int width, int height,
+                                  const PathParams& params, Progress& progress) {
+  LUXEL_CHECK(params.samples >= 1 && width > 0 && height > 0);
+  const World world = world_of(scene, tracer);
+  const trace::CameraRays camera_rays(camera, width, height);
+  const size_t count = size_t(width) * size_t(height);
+  Picture out;
+  out.radiance = image::Image(width, height, 4);
+  out.luminance_error.resize(count);
+  progress.begin("trace paths", uint64_t(count) * uint64_t(params.samples));
+  std::vector<uint32_t> covered(count);
+  const auto start = [&](const Batch& batch, std::vector<Path>& paths) {
+    std::vector<trace::Ray> rays;
+    std::vector<RandomStream> randoms;
+    for (size_t i = batch.begin; i < batch.end; ++i)
+      for (size_t s = batch.first_sample; s < batch.last_sample; ++s) {
+        RandomStream random{path_seed(params.seed, i, s)};
+        const Vec2 jitter = random.next2();
+        rays.push_back(camera_rays.through(float(i % size_t(width)) + jitter.x,
+                                           float(i / size_t(width)) + jitter.y));
+        randoms.push_back(random);
+      }
+    const std::vector<trace::Hit> hits = trace::visible_hits(scene, tracer, rays);
+    for (size_t k = 0; k < hits.size(); ++k)
+      paths.push_back(path_from_eye(world, rays[k].direction, hits[k], randoms[k]));
+  };
+  const auto each = [&](size_t i, const Path& path) { covered[i] += path.shows_surface; };
+  const auto finish = [&](size_t i, const Sums& sums, double n) {
+    const int x = int(i % size_t(width)), y = int(i / size_t(width));
+    out.radiance.set_rgb(x, y, mean_of(sums, n));
+    out.radiance.at(x, y)[3] = float(double(covered[i]) / n);
+    out.luminance_error[i] = float(standard_error(sums.l, sums.l2, n));
+  };
+  LUXEL_TRY(out.rays, run_tasks(world, count, params, progress, start, each, finish));
+  double sum = 0;
+  for (size_t i = 0; i < count; ++i)
+    sum += double(luminance(out.radiance.rgb(int(i % size_t(width)), int(i / size_t(width)))));
+  out.relative_error = relative_error(out.luminance_error, sum);
+  return out;
+}
+
+}  // namespace luxel::reference

@@ -1,0 +1,70 @@
+// The estimator: many paths at once, one bounce after the other.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "luxel/base/random.h"
+#include "luxel/reference/light_sampling.h"
+#include "luxel/reference/surfaces.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::reference {
+
+/// Everything that paths look at.
+struct World {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  Surfaces surfaces;
+  Emitters emitters;
+  SkySampler sky;
+  float diagonal_m = 0;
+};
+World world_of(const scene::Scene& scene, const trace::RayTracer& tracer);
+
+enum class FirstHit : uint8_t { other, back, double_sided_back };
+
+/// A path on its way. `value` is the light that it brings to its start: E / pi for a path that
+/// started at a receiver with throughput 1.
+struct Path {
+  Receiver at;
+  Vec3 origin;              ///< at.position moved off the surface: where rays start
+  Rgb throughput{1, 1, 1};  ///< product of reflectances, over the chances to survive
+  Rgb value{};
+  RandomStream random;
+  FirstHit first_hit = FirstHit::other;  ///< what its first ray met
+  bool shows_surface = false;            ///< of paths from the eye
+};
+Path path_from(const World& world, const Receiver& at, RandomStream random);
+/// A path from a camera's ray: its value is radiance, L + rho E / pi of the surface that the ray
+/// met, or that of the surroundings.
+Path path_from_eye(const World& world, Vec3 direction, const trace::Hit& hit, RandomStream random);
+
+/// A ray towards an emitter, and what its radiance is worth where it is seen.
+struct EmitterRay {
+  uint32_t path = 0;
+  EmitterPoint point;
+  Rgb factor;
+};
+struct LampRay {
+  uint32_t path = 0;
+  Rgb light;
+};
+
+/// Buffers of one worker, reused from batch to batch.
+struct PathWork {
+  std::vector<uint32_t> active, next;
+  std::vector<EmitterRay> emitter_rays;
+  std::vector<LampRay> lamp_rays;  ///< towards the sky, too
+  std::vector<trace::Ray> rays, shadow_rays;
+  std::vector<trace::Hit> hits;
+  std::vector<Rgb> tint, arriving;  ///< of rays; share of shadow rays' light
+  std::vector<float> lamp_weights;
+};
+
+/// Follows all paths that carry something to their ends, and adds what they gather to their values.
+/// `bounces` < 0: no limit. Returns the number of rays.
+uint64_t follow(const World& world, int bounces, std::span<Path> paths, PathWork& work);
+
+}  // namespace luxel::reference

@@ -1,0 +1,199 @@
+// Each test breaks one thing of a good scene and states what must become of it.
+#include "luxel/scene/validate.h"
+
+#include <gmock/gmock.h>
+
+namespace luxel::scene {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// The unit square, drawn once.
+Scene good_scene() {
+  Scene scene;
+  Mesh mesh;
+  mesh.name = "quad";
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.triangle_material = {0, 0};
+  scene.meshes = {mesh};
+  scene.instances = {{"it", 0, {}}};
+  Material material;
+  material.name = "paint";
+  material.base_color = {0.5f, 0.5f, 0.5f};
+  scene.materials = {material};
+  return scene;
+}
+
+std::string warnings_of(Scene& scene) {
+  const auto warnings = validate(scene, "f.glb");
+  if (!warnings) return "error: " + warnings.error().message;
+  std::string text;
+  for (const std::string& w : *warnings) text += w + "\n";
+  return text;
+}
+
+std::string error_of(Scene scene) {
+  const auto warnings = validate(scene, "f.glb");
+  return warnings ? "no error" : warnings.error().message;
+}
+
+TEST(Validate, GoodSceneIsLeftAlone) {
+  Scene scene = good_scene();
+  scene.meshes[0].normals.assign(4, {0, 0, 1});
+  EXPECT_EQ(warnings_of(scene), "");
+  EXPECT_EQ(scene.meshes[0].triangles.size(), 2u);
+}
+
+TEST(Validate, ZeroAreaTrianglesAreDroppedAndCounted) {
+  Scene scene = good_scene();
+  Mesh& mesh = scene.meshes[0];
+  mesh.positions.insert(mesh.positions.end(),
+                        {{0.1f, 0.2f, 0.7f}, {0.2f, 0.4f, 1.4f}, {0.3f, 0.6f, 2.1f}, {1, 0, 0}});
+  mesh.triangles = {{1, 1, 2}, {0, 1, 2}, {4, 5, 6}, {1, 7, 2}};  // the first: corners repeated;
+  mesh.triangle_material = {0, 0, 0, 0};  // the third: on a line up to rounding; the last: twins
+  EXPECT_THAT(warnings_of(scene), HasSubstr("3 zero-area triangles dropped from mesh 0 (quad)"));
+  ASSERT_EQ(mesh.triangles.size(), 1u);
+  EXPECT_EQ(mesh.triangles[0][1], 1u);
+  EXPECT_EQ(mesh.triangle_material.size(), 1u);
+}
+
+// Area has no smallest value: the scene's unit of length is nobody's business.
+TEST(Validate, SliversAndSmallScenesStay) {
+  for (const float scale : {1e-4f, 1.0f, 1e6f}) {
+    Scene scene = good_scene();
+    scene.meshes[0].positions[2] = {1, 1e-5f, 0};
+    scene.instances[0].world_from_object = scaling({scale, scale, scale});
+    EXPECT_EQ(warnings_of(scene), "") << scale;
+    EXPECT_EQ(scene.meshes[0].triangles.size(), 2u) << scale;
+  }
+}
+
+TEST(Validate, NoTriangleWithoutDirectionInTheWorld) {
+  Scene scene = good_scene();
+  scene.instances.push_back({"far", 0, translation({1e9f, 0, 0})});
+  EXPECT_THAT(warnings_of(scene), HasSubstr("no triangles"));
+}
+
+TEST(Validate, SquashedInstancesAreDropped) {
+  Scene scene = good_scene();
+  scene.instances.push_back({"flat", 0, scaling({1, 0, 1})});
+  EXPECT_THAT(warnings_of(scene), HasSubstr("instance 1 (flat)"));
+  EXPECT_EQ(scene.instances.size(), 1u);
+}
+
+TEST(Validate, ReflectanceIsClampedByItsFactor) {
+  Scene scene = good_scene();
+  scene.materials[0].base_color = {2, 0.5f, 1};
+  scene.materials[0].metallic = 0.25f;
+  EXPECT_THAT(warnings_of(scene),
+              AllOf(HasSubstr("reflectance over 0.99"), HasSubstr("material 0 (paint)")));
+  EXPECT_FLOAT_EQ(scene.materials[0].base_color.x * 0.75f, 0.99f);
+  EXPECT_EQ(scene.materials[0].base_color.y, 0.5f);
+  EXPECT_EQ(scene.materials[0].base_color.z, 1) << "0.75 is no news";
+}
+
+// Clamping the factor of a textured material would darken its dark texels too.
+TEST(Validate, TexturedReflectanceIsWarnedOfAndKept) {
+  Scene scene = good_scene();
+  scene.materials[0].base_color = {1, 1, 1};
+  scene.materials[0].base_color_texture.texture = 0;
+  Texture texture;
+  texture.width = 2, texture.height = 1;
+  texture.rgba = {255, 9, 9, 255, 128, 9, 9, 255};
+  scene.textures = {texture};
+  EXPECT_THAT(warnings_of(scene), HasSubstr("reflectance over 0.99"));
+  EXPECT_EQ(scene.materials[0].base_color, (Rgb{1, 1, 1}));
+  scene.textures[0].rgba[0] = 200;
+  EXPECT_EQ(warnings_of(scene), "");
+}
+
+TEST(Validate, NormalsBecomeUnitAndBadOnesFlat) {
+  Scene scene = good_scene();
+  scene.meshes[0].normals = {{0, 0, 3}, {NAN, 0, 0}, {0, 0, 0}, {1e-30f, 0, 0}};
+  EXPECT_THAT(warnings_of(scene), HasSubstr("2 vertex normals"));
+  const std::vector<Vec3>& normals = scene.meshes[0].normals;
+  for (const int v : {0, 1, 2}) EXPECT_NEAR(length(normals[size_t(v)] - Vec3{0, 0, 1}), 0, 1e-6f);
+  EXPECT_NEAR(length(normals[3] - Vec3{1, 0, 0}), 0, 1e-6f) << "tiny, but it has a direction";
+}
+
+TEST(Validate, NotFiniteNumbersAreErrorsThatNameTheirPlace) {
+  Scene scene = good_scene();
+  scene.meshes[0].positions[2].y = NAN;
+  EXPECT_THAT(error_of(scene), HasSubstr("f.glb: mesh 0 (quad), vertex 2"));
+  scene = good_scene();
+  scene.instances[0].world_from_object.row[1][3] = INFINITY;
+  EXPECT_THAT(error_of(scene), HasSubstr("instance 0 (it)"));
+  scene = good_scene();
+  scene.materials[0].emission.x = NAN;
+  EXPECT_THAT(error_of(scene), HasSubstr("material 0 (paint)"));
+  scene = good_scene();
+  scene.lights.push_back({});
+  scene.lights[0].intensity.z = INFINITY;
+  EXPECT_THAT(error_of(scene), HasSubstr("light 0"));
+}
+
+TEST(Validate, ProfilesAreGridsOfCandela) {
+  Scene scene = good_scene();
+  scene.profiles.push_back({"lamp.ies", LightProfile::Angles::c, {0, 1}, {0}, {5, 4}});
+  EXPECT_EQ(error_of(scene), "no error");
+  scene.profiles[0].candela[1] = NAN;
+  EXPECT_THAT(error_of(scene), HasSubstr("profile 0 (lamp.ies): nan is no number"));
+  scene.profiles[0].candela = {5};
+  EXPECT_THAT(error_of(scene), HasSubstr("1 candela for 2 x 1 angles"));
+  scene.profiles[0].candela = {5, 4}, scene.profiles[0].vertical_rad = {1, 1};
+  EXPECT_THAT(error_of(scene), HasSubstr("do not ascend"));
+}
+
+TEST(Validate, EveryIndexIsChecked) {
+  Scene scene = good_scene();
+  scene.meshes[0].triangles[1][2] = 4;
+  EXPECT_THAT(error_of(scene), HasSubstr("mesh 0 (quad), triangle 1: vertex index 4"));
+  scene = good_scene();
+  scene.meshes[0].triangle_material[1] = 1;
+  EXPECT_THAT(error_of(scene), HasSubstr("triangle 1: material index 1"));
+  scene = good_scene();
+  scene.instances[0].mesh = 1;
+  EXPECT_THAT(error_of(scene), HasSubstr("mesh index 1"));
+  scene = good_scene();
+  scene.materials[0].emission_texture.texture = 0;
+  EXPECT_THAT(error_of(scene), HasSubstr("texture index 0"));
+  scene = good_scene();
+  scene.meshes[0].uv1.resize(3);
+  EXPECT_THAT(error_of(scene), HasSubstr("3 uv1 for 4 positions"));
+  scene = good_scene();
+  scene.textures.push_back({"t", 2, 2, std::vector<uint8_t>(15), {}, ""});
+  EXPECT_THAT(error_of(scene), HasSubstr("15 bytes"));
+  scene = good_scene();
+  scene.lights.push_back({});
+  scene.lights[0].profile = 0;
+  EXPECT_THAT(error_of(scene), HasSubstr("light 0: profile index 0"));
+}
+
+TEST(Validate, SceneWithoutTrianglesIsRefused) {
+  Scene scene = good_scene();
+  scene.instances.clear();
+  EXPECT_THAT(error_of(scene), HasSubstr("no triangles"));
+  EXPECT_THAT(error_of(Scene{}), HasSubstr("no triangles"));
+}
+
+TEST(HasLight, AnyOfThreeWillDo) {
+  Scene scene = good_scene();
+  EXPECT_FALSE(has_light(scene));
+  scene.background = {0, 0.1f, 0};
+  EXPECT_TRUE(has_light(scene));
+  scene = good_scene();
+  scene.lights.push_back({});
+  EXPECT_TRUE(has_light(scene));
+  scene.lights[0].intensity = {};
+  EXPECT_FALSE(has_light(scene));
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].emission = {1, 0, 0};
+  EXPECT_FALSE(has_light(scene)) << "no triangle has it";
+  scene.meshes[0].triangle_material[1] = 1;
+  EXPECT_TRUE(has_light(scene));
+}
+
+}  // namespace
+}  // namespace luxel::scene

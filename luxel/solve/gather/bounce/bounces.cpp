@@ -1,0 +1,214 @@
+#include "luxel/solve/gather/bounce/bounces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "luxel/base/check.h"
+#include "luxel/solve/gather/bounce/convergence.h"
+#include "luxel/solve/gather/bounce/sweep.h"
+
+namespace luxel::gather {
+namespace {
+
+/// With rho = 0.99 the light to come falls below 1e-4 after 1,400 sweeps; more means that something
+/// is wrong.
+constexpr int kMaxSweeps = 4000;
+
+/// A guess whose light to come is more times the tolerance is brought closer by sparse sweeps:
+/// until they change less than a part of their first change, or what is left is below a part of the
+/// tolerance, or so many; what is left is taken for a geometric series.
+constexpr double kFarFrom = 4, kSmallPart = 0.03, kSmallRest = 0.25;
+constexpr int kMaxSparse = 8;
+/// Sparse sweeps may bring a guess so much less closer than the last time (1.46 was seen).
+constexpr double kUnsure = 1.5;
+
+/// The solution on its way.
+struct Bouncing {
+  const atlas::TexelMap& map;
+  const transport::Elements& elements;
+  const TracedHits& hits;
+  std::span<const Rgb> direct;
+  std::span<const StoredHit> behind;
+  Progress& progress;
+  uint64_t spare_bytes = 0;
+  ReflectanceRange reflectance;
+  RadiosityMap radiosity{};
+  std::optional<ThinnedHits> thinned{};
+  Bounced out{};
+
+  Status make_thinned(size_t stride);
+  const ThinnedHits* thinned_to(size_t stride) const {
+    return thinned && thinned->stride == stride ? &*thinned : nullptr;
+  }
+  Result<double> sweep(size_t stride);
+  double relative(double change2) const;
+  Result<double> first_sweep(const BounceParams& params);
+  Result<double> look_ahead(std::vector<Rgb> change, size_t stride, double tolerance);
+  Status settle(size_t stride, float tolerance);
+  Status settle_guess(size_t sparse, const BounceParams& params);
+};
+
+/// A copy of a quarter would take too much beside the hits.
+Status Bouncing::make_thinned(size_t stride) {
+  if (stride < kSparsest || thinned) return {};
+  LUXEL_TRY(thinned, thin(hits, stride, spare_bytes, progress));
+  return {};
+}
+
+/// Returns the root mean square change, relative to the mean irradiance.
+Result<double> Bouncing::sweep(size_t stride) {
+  fill_radiosity(radiosity, map, elements, hits, behind, out.irradiance);
+  Sweep sweep{.direct = direct,
+              .irradiance = out.irradiance,
+              .variance = out.variance,
+              .split_variance = out.split_variance,
+              .stride = stride,
+              .thinned = thinned_to(stride)};
+  LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
+  ++out.sweeps;
+  progress.advance(1);
+  return relative(std::accumulate(sweep.change2.begin(), sweep.change2.end(), 0.0));
+}
+
+/// A squared change over all elements as a root mean square, relative to the mean irradiance.
+double Bouncing::relative(double change2) const {
+  const double mean = mean_luminance(out.irradiance);
+  return mean > 0 ? std::sqrt(change2 / (3 * double(hits.size()))) / mean : 0.0;
+}
+
+/// What sweep(1) does to irradiance where params.first_change is known; nothing to variances.
+Result<double> Bouncing::first_sweep(const BounceParams& params) {
+  fill_radiosity(radiosity, map, elements, hits, behind, out.irradiance);
+  Sweep sweep{.direct = direct,
+              .irradiance = out.irradiance,
+              .variance = out.variance,
+              .split_variance = out.split_variance,
+              .only = params.unknown};
+  LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
+  double change2 = std::accumulate(sweep.change2.begin(), sweep.change2.end(), 0.0);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    if (params.unknown[i]) continue;
+    const Rgb change = params.first_change[i];
+    out.irradiance[i] = max(out.irradiance[i] + change, Rgb{});
+    change2 += double(dot(change, change));
+  }
+  return relative(change2);
+}
+
+/// Adds what a change makes of itself in later bounces, looking at some rays only: as exact,
+/// relative to the change, as these are. Returns the ratio of its last two steps.
+Result<double> Bouncing::look_ahead(std::vector<Rgb> change, size_t stride, double tolerance) {
+  LUXEL_TRY_STATUS(make_thinned(stride));
+  const size_t n = change.size();
+  double first = 0, before = 0, ratio = 0;
+  for (int k = 0; k < kMaxSparse; ++k) {
+    fill_radiosity(radiosity, map, elements, hits, behind, change);
+    Sweep sweep{.irradiance = change, .stride = stride, .thinned = thinned_to(stride)};
+    LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
+    double sum2 = 0;
+    for (size_t i = 0; i < n; ++i)
+      out.irradiance[i] += change[i], sum2 += double(dot(change[i], change[i]));
+    if (k == 0) first = sum2;
+    ratio = before > 0 ? std::sqrt(sum2 / before) : 0, before = sum2;
+    if (sum2 <= kSmallPart * kSmallPart * first) break;
+    if (light_to_come(relative(sum2), ratio, reflectance) <= kSmallRest * tolerance) break;
+  }
+  // By now each step is nearly the same as the one before, but smaller.
+  const double q = std::min(ratio, reflectance.max);
+  const float left = float(q / (1 - q));
+  for (size_t i = 0; i < n; ++i) out.irradiance[i] += change[i] * left;
+  for (Rgb& e : out.irradiance) e = max(e, Rgb{});
+  return ratio;
+}
+
+/// Sweeps until the light to come is below the tolerance.
+Status Bouncing::settle(size_t stride, float tolerance) {
+  LUXEL_TRY_STATUS(make_thinned(stride));
+  double before = 0, ratio = 0;
+  for (int k = 0; k < kMaxSweeps; ++k) {
+    LUXEL_TRY(const double change, sweep(stride));
+    if (before > 0) ratio = change / before;
+    if (light_to_come(change, ratio, reflectance) <= double(tolerance) * double(stride)) break;
+    before = change;
+  }
+  return {};
+}
+
+/// The same from a guess: what a sweep over all rays changes is carried on by sparse ones. How much
+/// closer that has come is seen by the next, and is what can be expected of another time.
+Status Bouncing::settle_guess(size_t sparse, const BounceParams& params) {
+  const float tolerance = params.tolerance;
+  double before = 0, ratio = 0, to_come_before = 0;
+  for (int k = 0; k < kMaxSweeps; ++k) {
+    std::vector<Rgb> changed = out.irradiance;
+    const bool is_known = k == 0 && !params.first_change.empty();
+    LUXEL_TRY(const double change, is_known ? first_sweep(params) : sweep(1));
+    if (before > 0) ratio = change / before;
+    const double to_come = light_to_come(change, ratio, reflectance);
+    if (to_come <= double(tolerance) && !is_known) break;
+    before = change;
+    const bool has_come_closer = to_come_before > to_come;
+    if (!has_come_closer && to_come < kFarFrom * double(tolerance)) continue;
+    for (size_t i = 0; i < changed.size(); ++i) changed[i] = out.irradiance[i] - changed[i];
+    LUXEL_TRY(ratio, look_ahead(std::move(changed), sparse, double(tolerance)));
+    if (has_come_closer && kUnsure * to_come * to_come / to_come_before <= double(tolerance)) break;
+    to_come_before = to_come;
+    before = 0;  // the next change does not follow this one
+  }
+  return {};
+}
+
+}  // namespace
+
+double copy_bytes(double hit_bytes, int samples) {
+  constexpr double kPerHit = double(sizeof(StoredHit) + sizeof(float)) / sizeof(StoredHit);
+  return !has_sweeps_of(kSparsest, size_t(samples)) ? 0 : kPerHit * hit_bytes / kSparsest;
+}
+
+Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& elements,
+                       const TracedHits& hits, std::span<const Rgb> direct,
+                       std::span<const StoredHit> behind, const BounceParams& params,
+                       Progress& progress) {
+  const size_t n = elements.size();
+  LUXEL_CHECK(direct.size() == n && map.texels.size() == n && hits.sky.size() == n);
+  LUXEL_CHECK(behind.size() == elements.transmittance.size());
+  Bouncing work{map,
+                elements,
+                hits,
+                direct,
+                behind,
+                progress,
+                params.spare_bytes,
+                reflectance_range(elements)};
+  const bool guessed = params.bounces < 0 && !params.start.empty();
+  LUXEL_CHECK(!guessed || params.start.size() == n);
+  LUXEL_CHECK(params.first_change.empty() ||
+              (guessed && params.first_change.size() == n && params.unknown.size() == n));
+  work.out.irradiance.assign(guessed ? params.start.begin() : direct.begin(),
+                             guessed ? params.start.end() : direct.end());
+  if (!guessed)
+    for (size_t i = 0; i < n; ++i) work.out.irradiance[i] = source_of(hits, direct, i);
+  work.out.variance.assign(n, 0.0f), work.out.split_variance.assign(n, 0.0f);
+  work.radiosity = empty_radiosity_map(map.resolution);
+  progress.begin("bounces", 0);
+  for (int k = 0; k < params.bounces; ++k) {
+    const Result<double> change = work.sweep(1);
+    if (!change) return tl::unexpected(change.error());
+  }
+  if (params.bounces >= 0) return std::move(work.out);
+  const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
+  const size_t sparse = sparsest_stride(fewest);
+  if (guessed && sparse > 1) {
+    LUXEL_TRY_STATUS(work.settle_guess(sparse, params));
+    return std::move(work.out);
+  }
+  for (const size_t stride : kStrides) {
+    if (stride > 1 && (guessed || !has_sweeps_of(stride, fewest))) continue;
+    LUXEL_TRY_STATUS(work.settle(stride, params.tolerance));
+    work.thinned.reset();
+  }
+  return std::move(work.out);
+}
+
+}  // namespace luxel::gather

@@ -1,0 +1,76 @@
+// How sure each texel's light is, and which texels need more rays.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "luxel/atlas/atlas.h"
+#include "luxel/light/supersample.h"
+#include "luxel/light/texel_scene.h"
+#include "luxel/solve/gather/bounce/bounces.h"
+
+namespace luxel::gather {
+
+/// Two estimates of the variance of each element's luminance [(W/m^2)^2]: as if its rays were
+/// independent, which is steady but too large, because they are stratified; and the squared
+/// difference of its halves, nearly right in the mean, but a single square.
+struct VariancePair {
+  std::span<const float> independent, split;
+};
+
+/// Stratification gains about as much for neighbours: the first estimate, smoothed, times the ratio
+/// of both, summed over the neighbours of the same chart; if `among` names some elements, those of
+/// them that are `among` too, for the others have fewer samples. docs/method/gather.md
+std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                    VariancePair variance, std::span<const uint32_t> among = {});
+
+/// Per element, its standard error over its own luminance, or over a tenth of the mean luminance
+/// where it is darker: what nobody sees is not worth the rays. Hidden elements have none.
+std::vector<float> relative_errors(std::span<const float> variance, std::span<const Rgb> irradiance,
+                                   const TracedHits& hits);
+
+/// The value that 95 of 100 elements with an error stay below.
+float percentile_95(std::span<const float> errors);
+
+/// Standard errors of stratified samples fall like n^-kDecay and a bit faster
+/// (docs/method/gather.md): it says how many samples more are needed.
+inline constexpr float kDecay = 0.7f;
+
+/// What the light from lamps, or the rest, may be off by: half of the square each.
+inline float error_of_part(float max_error) { return max_error * 0.70710678f; }
+
+/// Samples of the next round: of elements whose relative error is larger than max_error two or four
+/// times as many as they have, of others what they have. More than max_samples nobody gets.
+std::vector<uint16_t> next_samples(std::span<const float> errors, float max_error, int max_samples,
+                                   std::span<const uint16_t> samples);
+
+/// How many samples each round will add, until 95 of 100 of `all` errors are below max_error, if
+/// those of the gathered light, which are part of them, fall like n^-kDecay, and lamps are looked
+/// at until theirs are small enough.
+std::vector<uint64_t> rounds_to_come(std::span<const float> all, std::span<const float> gathered,
+                                     float max_error, int max_samples,
+                                     std::span<const uint16_t> samples);
+
+/// Samples of all elements.
+uint64_t sum_of(std::span<const uint16_t> samples);
+
+/// Takes samples back from `target` until no more than `affordable` are added to `samples`: they go
+/// first to where they lower the sum of squared errors most for a ray.
+void keep_affordable(std::span<const float> errors, uint64_t affordable,
+                     std::span<const uint16_t> samples, std::vector<uint16_t>& target);
+
+/// Looks at the direct light of elements whose relative error is larger than max_error again, one
+/// level finer. Returns how many there were: 0 when all are good enough or as fine as they can be.
+/// Errors: cancelled.
+Result<size_t> refine_direct(const light::TexelScene& world, std::span<const float> errors,
+                             float max_error, const light::SupersampleParams& params,
+                             light::DirectLevels& levels, light::DirectLight& direct,
+                             Progress& progress);
+
+/// The smallest max_error, `at_least` or larger, with which refine_direct would trace about `rays`
+/// rays at most.
+float affordable_error(std::span<const float> errors, float at_least, double rays,
+                       const light::SupersampleParams& params, const light::DirectLevels& levels);
+
+}  // namespace luxel::gather

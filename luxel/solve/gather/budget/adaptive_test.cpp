@@ -1,0 +1,246 @@
+// Rounds of samples, and how sure their light is.
+#include "luxel/solve/gather/budget/adaptive.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/scene/procedural.h"
+#include "luxel/solve/gather/gather_test_support.h"
+
+namespace luxel::gather {
+namespace {
+
+// 64 samples and 192 more are the 256 that one round traces: the light differs by the order of the
+// sums, 256 roundings of 6e-8 at most, five times that after all bounces.
+TEST(Rounds, AreTheSamplesOfOneRound) {
+  const auto laid_out = lay_out(scene::cornell_box(), 32);
+  const Room& room = *laid_out;
+  Progress progress;
+  const size_t n = room.elements.size();
+  const std::vector<uint16_t> all(n, 256);
+  std::vector<uint16_t> first(n, 64);
+  for (size_t i = 0; i < n; i += 3) first[i] = 128;
+  for (size_t i = 1; i < n; i += 3) first[i] = 0;
+  TracedHits rounds = no_hits(n);
+  for (const auto& target : {first, all})
+    ASSERT_TRUE(trace_more(room.scene, room.atlas, room.elements, room.lights.around, *room.tracer,
+                           target, {.near_lights = &room.lights}, rounds, progress));
+  const auto once = trace_hits(room.scene, room.atlas, room.elements, room.lights.around,
+                               *room.tracer, 256, {.near_lights = &room.lights}, progress);
+  ASSERT_TRUE(once);
+  EXPECT_EQ(rounds.samples, once->samples);
+  EXPECT_EQ(rounds.escaped, once->escaped);
+  EXPECT_EQ(rounds.rays, once->rays);
+  const std::vector<Rgb> direct(n, {1, 1, 1});
+  const auto a = bounce(room.map, room.elements, rounds, direct, {}, {-1, 1e-6f}, progress);
+  const auto b = bounce(room.map, room.elements, *once, direct, {}, {-1, 1e-6f}, progress);
+  ASSERT_TRUE(a && b);
+  for (size_t i = 0; i < n; ++i) {
+    ASSERT_NEAR(a->irradiance[i].x, b->irradiance[i].x, 8e-5f * b->irradiance[i].x);
+    // A difference of two halves: what is left of the rounding of each, squared.
+    ASSERT_NEAR(std::sqrt(a->split_variance[i]), std::sqrt(b->split_variance[i]),
+                8e-5f * b->irradiance[i].x);
+  }
+}
+
+// Half as many tiles fit into memory as the round needs: the rest is read from files.
+TEST(Rounds, GoToFilesWhenMemoryIsShort) {
+  const auto room = lay_out(scene::cornell_box(), 32);
+  GatherParams params;
+  params.samples = 32, params.max_error = 0.1f;
+  const Gather in_memory = solve(*room, params);
+  params.hit_memory_bytes = 100'000;
+  const Gather in_files = solve(*room, params);
+  EXPECT_GT(in_files.hit_bytes_in_file, 0u);
+  EXPECT_EQ(in_files.irradiance, in_memory.irradiance);
+}
+
+// One value everywhere, whose ratio is a quarter: the mean is that of the split estimate, whatever
+// all those are who have fewer samples.
+TEST(PooledVariances, LeaveOutWhoIsNotAmong) {
+  const auto room = lay_out(scene::cornell_box(), 32);
+  const size_t n = room->elements.size();
+  std::vector<float> independent(n, 4000), split(n, 9000);
+  std::vector<uint32_t> among;
+  for (uint32_t i = 0; i < n; ++i)
+    if (room->map.texels[i].x % 6 < 3) among.push_back(i);
+  for (const uint32_t i : among) independent[i] = 4, split[i] = 1;
+  const auto pooled = pooled_variances(room->atlas, room->map, {independent, split}, among);
+  for (const uint32_t i : among) ASSERT_FLOAT_EQ(pooled[i], 1);
+}
+
+// Errors fall by 2^-0.7 = 0.62 when samples double: 0.03 is below 0.02 after one doubling, 0.06 is
+// not after two, which are asked for at once; 0.01 is.
+TEST(NextSamples, DoubleOrQuadrupleWhereTheErrorIsTooLarge) {
+  const std::vector<float> errors{0.01f, 0.03f, 0.06f, 0.06f};
+  const std::vector<uint16_t> samples{32, 32, 32, 1024};
+  EXPECT_EQ(next_samples(errors, 0.02f, 2048, samples), (std::vector<uint16_t>{32, 64, 128, 2048}));
+  EXPECT_EQ(next_samples(errors, 0.02f, 1024, samples), (std::vector<uint16_t>{32, 64, 128, 1024}));
+}
+
+// To 0.02 with lamps as sure as the rest, each part may be off by 0.0141. 100 texels at 0.02 are at
+// 0.0123 after one doubling. Six of 100 at 0.05 need 2^(log(0.05 / 0.0141) / (0.7 log 2)) = 6.1
+// times the samples: four times at once, then twice, and 94 of 100 are not enough.
+TEST(RoundsToCome, EndWhenNineteenOfTwentyAreSure) {
+  std::vector<float> gathered(100, 0.02f), all(100, 0.03f);
+  const std::vector<uint16_t> samples(100, 32);
+  const auto rounds = [&](float max_error, int max_samples) {
+    return rounds_to_come(all, gathered, max_error, max_samples, samples);
+  };
+  EXPECT_EQ(rounds(0.02f, 2048), (std::vector<uint64_t>{3200}));
+  std::fill_n(gathered.begin(), 6, 0.05f), std::fill_n(all.begin(), 6, 0.06f);
+  EXPECT_EQ(rounds(0.02f, 2048), (std::vector<uint64_t>{94 * 32 + 6 * 96, 6 * 128}));
+  EXPECT_TRUE(rounds(0.06f, 2048).empty());
+  EXPECT_TRUE(rounds(0.02f, 32).empty()) << "nobody may have more";
+}
+
+// Gains e^2 / n are 4, 1, 16 and 2 units: of 32 samples each, 70 pay the two largest.
+TEST(KeepAffordable, SamplesGoWhereTheyHelpMost) {
+  const std::vector<float> errors{0.02f, 0.01f, 0.04f, 0.02f};
+  const std::vector<uint16_t> samples{32, 32, 32, 64};
+  const std::vector<uint16_t> wanted{64, 64, 64, 128};
+  std::vector<uint16_t> target = wanted;
+  keep_affordable(errors, 70, samples, target);
+  EXPECT_EQ(target, (std::vector<uint16_t>{64, 32, 64, 64}));
+  target = wanted;
+  keep_affordable(errors, 1000, samples, target);
+  EXPECT_EQ(target, wanted);
+}
+
+// Four texels with a ray each per sample of 16, the next level takes four times as many: 64 each.
+TEST(AffordableError, LetsInAsManyAsThereAreRaysFor) {
+  const std::vector<float> errors{0.1f, 0.4f, 0.2f, 0.3f};
+  const light::DirectLevels levels{std::vector<uint8_t>(4), std::vector<uint8_t>(4)};
+  const light::SupersampleParams params{.points = 16, .direct = {.samples = 16}};
+  EXPECT_EQ(affordable_error(errors, 0.05f, 1000, params, levels), 0.05f);
+  EXPECT_EQ(affordable_error(errors, 0.05f, 150, params, levels), 0.2f) << "two are above it";
+  EXPECT_EQ(affordable_error(errors, 0.25f, 1000, params, levels), 0.25f);
+}
+
+// With a budget rounds follow as long as there is time; a tenth of a second is worth more than the
+// first 4 samples on any machine, and the hour is not waited for: nobody gets more than 64.
+TEST(Seconds, AreUsedAndNotWaitedFor) {
+  const auto room = lay_out(scene::cornell_box(), 16);
+  GatherParams params;
+  params.samples = 4, params.max_samples = 64, params.seconds = 3600;
+  const Gather light = solve(*room, params);
+  // But for texels that see nothing, whose error is none.
+  EXPECT_GT(std::ranges::count(light.samples, 64),
+            std::ptrdiff_t(0.9 * double(light.samples.size())));
+  params.seconds = 1e-9;
+  const Gather none = solve(*room, params);
+  EXPECT_EQ(none.samples, std::vector<uint16_t>(room->elements.size(), 4));
+}
+
+struct Shown {
+  std::vector<Rgb> irradiance;
+  double samples = 0;
+  float error = 0;
+};
+std::vector<Shown> watched(const Room& room, GatherParams params, Gather& result) {
+  std::vector<Shown> out;
+  params.on_estimate = [&](const light::LightEstimate& e) {
+    out.push_back({{e.irradiance.begin(), e.irradiance.end()}, e.samples, e.relative_error_p95});
+  };
+  result = solve(room, params);
+  return out;
+}
+
+// In a furnace all surfaces get pi e / (1 - rho): direct light and ambient term are the whole of it
+// before the first ray. Its walls are all lamps, whose light has no noise where they are seen
+// whole.
+TEST(Estimates, BeginWithAnAmbientTerm) {
+  const float rho = 0.5f;
+  const auto room = lay_out(scene::furnace_box({rho, rho, rho}, {1, 1, 1}), 32);
+  Gather result;
+  const std::vector<Shown> shown = watched(*room, with_samples(16), result);
+  EXPECT_EQ(shown.front().samples, 0);
+  double mean = 0;
+  for (const Rgb& e : shown.front().irradiance)
+    mean += double(e.x) / double(shown.front().irradiance.size());
+  // Texels in edges have lamps at grazing angles, whose visible share is drawn: 0.1 % in the mean.
+  EXPECT_NEAR(mean, double(kPi) / 0.5, 0.002 * double(kPi) / 0.5);
+}
+
+// 8, 16, 32 and 64 rays: each estimate is surer than the one before, the last is the result, and
+// that is the result of one who is not watched: sums in another order differ by rounding, and
+// sweeps from another start end within 1e-4 of the mean, each.
+TEST(Estimates, GrowIntoTheResult) {
+  const auto room = lay_out(scene::cornell_box(), 32);
+  Gather result;
+  const std::vector<Shown> shown = watched(*room, with_samples(64), result);
+  ASSERT_EQ(shown.size(), 5u);
+  const Gather unwatched = solve(*room, with_samples(64));
+  for (size_t k = 1; k < shown.size(); ++k) {
+    EXPECT_EQ(shown[k].samples, 4 << k);
+    if (k > 1) {
+      EXPECT_LT(shown[k].error, shown[k - 1].error) << k;
+    }
+  }
+  EXPECT_EQ(shown.back().irradiance, result.irradiance);
+  float mean = 0;
+  for (const Rgb& e : result.irradiance) mean += e.x / float(result.irradiance.size());
+  for (size_t i = 0; i < result.irradiance.size(); ++i)
+    ASSERT_NEAR(result.irradiance[i].x, unwatched.irradiance[i].x, 4e-4f * mean);
+}
+
+// Rounds to an error are shown one by one.
+TEST(Estimates, GoOnWithRounds) {
+  const auto room = lay_out(scene::cornell_box(), 32);
+  GatherParams params = with_samples(16);
+  params.max_error = 0.1f;
+  Gather result;
+  const std::vector<Shown> shown = watched(*room, params, result);
+  EXPECT_GT(shown.size(), 4u);
+  EXPECT_LE(shown.back().error, 0.1f);
+  EXPECT_GT(shown.back().samples, 16);
+}
+
+// The judge: 64 times the rays of what is judged, with noise of its own about a tenth as large.
+class SlowAdaptive : public testing::Test {
+ protected:
+  static const Room& room() {
+    static const auto instance = lay_out(scene::cornell_box(), 64);
+    return *instance;
+  }
+  static const Gather& judge() {
+    static const Gather instance =
+        solve(room(), {.samples = 16384, .direct_samples = 4096, .supersample = 256, .seed = 7});
+    return instance;
+  }
+};
+
+// What is claimed: 95 of 100 texels are sure to `max_error` of their light. Their true errors stay
+// below that in the mean over texels, and within twice the estimate at 9 texels of 10 and more (19
+// of 20 for a normal error that is known exactly; the estimate is one from few squares, but rather
+// too large than too small, because halves are less well spread than the whole).
+TEST_F(SlowAdaptive, TheErrorIsWhatWasAskedFor) {
+  for (const float max_error : {0.05f, 0.02f}) {
+    const Gather light = solve(
+        room(), {.samples = 32, .max_error = max_error, .direct_samples = 16, .supersample = 16});
+    EXPECT_LE(light.relative_error_p95, max_error);
+    double mean = 0;
+    for (const Rgb& e : judge().irradiance)
+      mean += double(luminance(e)) / double(judge().irradiance.size());
+    size_t judged = 0, within = 0;
+    double sum2 = 0;
+    for (size_t i = 0; i < light.irradiance.size(); ++i) {
+      if (light.enclosed[i]) continue;
+      const double e = luminance(judge().irradiance[i]);
+      const double error = std::abs(double(luminance(light.irradiance[i])) - e);
+      ++judged;
+      within += error <= 2 * std::sqrt(double(light.pooled_variance[i]));
+      const double relative = error / std::max(e, 0.1 * mean);
+      sum2 += relative * relative;
+    }
+    EXPECT_GT(double(within), 0.9 * double(judged)) << max_error;
+    EXPECT_LT(std::sqrt(sum2 / double(judged)), max_error);
+    // Nor is it much better than asked for: rays are dear.
+    EXPECT_GT(std::sqrt(sum2 / double(judged)), max_error / 5);
+  }
+}
+
+}  // namespace
+}  // namespace luxel::gather

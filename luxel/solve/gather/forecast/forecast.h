@@ -1,0 +1,29 @@
+// What gathering will take, from a trial of a few texels.
+#pragma once
+
+#include "luxel/light/texel_scene.h"
+#include "luxel/solve/gather/gather.h"
+
+namespace luxel::gather {
+
+/// Of gather() with the parameters' samples, without rounds.
+struct Forecast {
+  double direct_s = 0, supersample_s = 0, trace_s = 0, bounces_s = 0;
+  double rays = 0;       ///< shadow rays and those of near paths included
+  double hit_bytes = 0;  ///< of stored hits
+  double seconds() const { return direct_s + supersample_s + trace_s + bounces_s; }
+};
+
+/// Lights squares of 5 x 5 texels, spread over the map, and measures. They are about one texel in
+/// `part`, but some thousand at least, and no more than kTrialRays rays. Errors: cancelled.
+Result<Forecast> forecast(const light::TexelScene& world, const GatherParams& params, int part,
+                          Progress& progress);
+inline constexpr double kTrialRays = 2e7;
+/// Of fewer texels, and some cells of them, little is known.
+inline constexpr size_t kFewestTried = 4096;
+
+/// About `count` texels, those of some cells of the map: all texels are as likely, also those at
+/// the borders of charts, where light is the dearest.
+std::vector<uint32_t> texels_to_try(const atlas::TexelMap& map, size_t count);
+
+}  // namespace luxel::gather

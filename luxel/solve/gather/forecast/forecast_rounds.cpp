@@ -1,0 +1,224 @@
+#include "luxel/solve/gather/forecast/forecast_rounds.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "luxel/base/clock.h"
+#include "luxel/base/parallel.h"
+#include "luxel/solve/gather/budget/adaptive.h"
+#include "luxel/solve/gather/budget/neighbours.h"
+#include "luxel/solve/gather/forecast/expected_bounces.h"
+
+namespace luxel::gather {
+namespace {
+
+/// Rays, and shadow rays, of each texel that the trial's rays meet. Their noise, averaged over
+/// neighbours, is small beside how light varies over what a texel sees.
+constexpr int kCoarseSamples = 8;
+constexpr int kReach = 2;
+constexpr float kRoughTolerance = 1e-2f;
+/// Of the bounces after each round: from the solution of the one before.
+constexpr double kSweepsOfRound = 2;
+
+struct Trial {
+  const light::TexelScene& world;
+  const GatherParams& params;
+  std::vector<uint32_t> texels;
+  double scale = 1;  ///< all texels over those tried
+  std::vector<StoredHit> behind;
+  std::vector<Rgb> coarse;  ///< E of all elements
+  light::DirectLight direct;
+  light::DirectLevels levels;
+  TracedHits hits;  ///< of others: as many samples as the coarse light has, which met nothing
+
+  light::SupersampleParams supersample() const {
+    return {.points = params.supersample, .direct = {params.direct_samples, params.seed}};
+  }
+  uint64_t rays() const { return direct.rays + hits.rays; }
+};
+
+/// Means over neighbours of the same chart, those inside of solids left out.
+std::vector<Rgb> smooth(const light::TexelScene& world, const Gather& light) {
+  const auto chart = [&](uint32_t i) {
+    return world.atlas.chart[world.map.texels[i].triangle_number];
+  };
+  const auto hidden = [&](uint32_t i) { return 2 * light.met_back[i] > light.samples[i]; };
+  std::vector<Rgb> out = light.irradiance;
+  parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
+    for (uint32_t i = uint32_t(begin); i < end; ++i) {
+      Rgb sum{};
+      float count = 0;
+      for_neighbours(world.map, i, kReach, [&](uint32_t j) {
+        if (!hidden(j) && chart(j) == chart(i)) sum += light.irradiance[j], count += 1;
+      });
+      if (count > 0) out[i] = sum * (1 / count);
+    }
+  });
+  return out;
+}
+
+/// The trial's texels and those around them, whose direct light says whether it varies there.
+std::vector<uint32_t> with_neighbours(const atlas::TexelMap& map,
+                                      std::span<const uint32_t> texels) {
+  std::vector<uint8_t> is_near(map.texels.size());
+  for (const uint32_t i : texels) for_neighbours(map, i, 1, [&](uint32_t j) { is_near[j] = 1; });
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < is_near.size(); ++i)
+    if (is_near[i]) out.push_back(i);
+  return out;
+}
+
+Status light_coarsely(Trial& trial, Progress& progress) {
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const GatherParams& all = trial.params;
+  GatherParams params;
+  params.samples = std::min(all.samples, kCoarseSamples);
+  params.direct_samples = std::min(all.direct_samples, kCoarseSamples);
+  params.bounces = all.bounces, params.tolerance = kRoughTolerance, params.seed = all.seed;
+  params.hit_memory_bytes = all.hit_memory_bytes, params.scratch_folder = all.scratch_folder;
+  LUXEL_TRY(Gather light, gather(scene, atlas, map, elements, lights, tracer, params, progress));
+  trial.coarse = smooth(trial.world, light);
+  trial.direct.irradiance = std::move(light.direct);
+  trial.direct.variance = light.direct_variance;
+  trial.direct.split_variance = std::move(light.direct_variance);
+  trial.hits = no_hits(elements.size());
+  trial.hits.samples = std::move(light.samples);
+  trial.hits.met_back = std::move(light.met_back);
+  for (const uint32_t i : trial.texels) trial.hits.samples[i] = trial.hits.met_back[i] = 0;
+  return {};
+}
+
+Status light_directly(Trial& trial, Progress& progress) {
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const light::SupersampleParams params = trial.supersample();
+  LUXEL_TRY_STATUS(direct_light_again(scene, elements, lights, tracer,
+                                      with_neighbours(map, trial.texels), params.direct,
+                                      trial.direct, progress));
+  LUXEL_TRY(const light::Supersampled averaged,
+            light::supersample(scene, atlas, map, elements, lights, tracer, trial.texels, params,
+                               trial.direct, progress));
+  trial.levels.level.resize(elements.size()), trial.levels.averaged.resize(elements.size());
+  for (const uint32_t i : averaged.texels) trial.levels.averaged[i] = 1;
+  return {};
+}
+
+Status trace(Trial& trial, std::span<const uint16_t> target, Progress& progress) {
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const GatherParams& params = trial.params;
+  const TraceParams trace{params.seed, params.hit_memory_bytes, params.scratch_folder,
+                          params.bounces < 0 ? &lights : nullptr};
+  return trace_more(scene, atlas, elements, lights.around, tracer, target, trace, trial.hits,
+                    progress);
+}
+
+/// Relative, of the trial's texels; of all others 0.
+struct Errors {
+  std::vector<float> direct, gathered, all;
+  float p95 = 0;  ///< of all that are tried
+};
+
+/// As gather() knows them, but in the coarse light: one bounce of it.
+Result<Errors> errors_of(const Trial& trial, Progress& progress) {
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  // bounce() starts from what it is given and the soft sky: together the coarse light.
+  std::vector<Rgb> given = trial.coarse;
+  for (const uint32_t i : trial.texels)
+    given[i] = given[i] - trial.hits.sky[i] * (kPi / float(trial.hits.samples[i]));
+  LUXEL_TRY(const Bounced bounced,
+            bounce(map, elements, trial.hits, given, trial.behind,
+                   {.bounces = trial.params.bounces == 0 ? 0 : 1}, progress));
+  std::vector<Rgb> irradiance = trial.coarse;
+  for (const uint32_t i : trial.texels)
+    irradiance[i] = trial.direct.irradiance[i] + (bounced.irradiance[i] - given[i]);
+  const auto direct = pooled_variances(
+      atlas, map, {trial.direct.variance, trial.direct.split_variance}, trial.texels);
+  const auto gathered =
+      pooled_variances(atlas, map, {bounced.variance, bounced.split_variance}, trial.texels);
+  std::vector<float> all(direct.size());
+  for (size_t i = 0; i < all.size(); ++i) all[i] = direct[i] + gathered[i];
+  const auto relative = [&](std::span<const float> variance) {
+    const std::vector<float> errors = relative_errors(variance, irradiance, trial.hits);
+    std::vector<float> out(errors.size());
+    for (const uint32_t i : trial.texels) out[i] = errors[i];
+    return out;
+  };
+  Errors out{relative(direct), relative(gathered), relative(all)};
+  std::vector<float> tried;
+  for (const uint32_t i : trial.texels) tried.push_back(out.all[i]);
+  out.p95 = percentile_95(tried);
+  return out;
+}
+
+/// Leaves what was traced for the trial.
+void forget_coarse_light(Trial& trial) {
+  std::vector<uint16_t> samples(trial.hits.size());
+  for (const uint32_t i : trial.texels) samples[i] = trial.hits.samples[i];
+  trial.hits.samples = std::move(samples);
+}
+
+/// The trial's rays.
+double samples_of(const Trial& trial) {
+  double sum = 0;
+  for (const uint32_t i : trial.texels) sum += trial.hits.samples[i];
+  return sum;
+}
+
+/// Of those, the samples that every sweep looks at, from round to round. Errors: cancelled, disk
+/// full.
+Result<std::vector<double>> make_rounds(Trial& trial, RoundsForecast& out, Progress& progress) {
+  const GatherParams& params = trial.params;
+  const float each = error_of_part(params.max_error);
+  std::vector<double> samples;
+  for (;;) {
+    samples.push_back(samples_of(trial));
+    LUXEL_TRY(const Errors errors, errors_of(trial, progress));
+    if (errors.p95 <= params.max_error) return samples;
+    const std::vector<uint16_t> target =
+        next_samples(errors.gathered, each, params.max_samples, trial.hits.samples);
+    const auto start = Clock::now();
+    const uint64_t rays = trial.rays();
+    LUXEL_TRY(const size_t finer,
+              refine_direct(trial.world, errors.direct, each, trial.supersample(), trial.levels,
+                            trial.direct, progress));
+    if (finer == 0 && target == trial.hits.samples) return samples;
+    if (target != trial.hits.samples) LUXEL_TRY_STATUS(trace(trial, target, progress));
+    out.trace_s += trial.scale * seconds_since(start);
+    out.rays += trial.scale * double(trial.rays() - rays);
+  }
+}
+
+}  // namespace
+
+Result<RoundsForecast> forecast_rounds(const light::TexelScene& world, const GatherParams& params,
+                                       int part, Progress& progress) {
+  const size_t n = world.elements.size();
+  const size_t count = std::max<size_t>(1, std::min(n, std::max(kFewestTried, n / size_t(part))));
+  Trial trial{world, params, texels_to_try(world.map, count), 1, {}, {}, {}, {}, {}};
+  trial.scale = double(n) / double(trial.texels.size());
+  trial.behind = places_behind(world.scene, world.atlas, world.map, world.elements);
+  LUXEL_TRY_STATUS(light_coarsely(trial, progress));
+  LUXEL_TRY_STATUS(light_directly(trial, progress));
+  std::vector<uint16_t> target = trial.hits.samples;
+  for (const uint32_t i : trial.texels) target[i] = uint16_t(params.samples);
+  LUXEL_TRY_STATUS(trace(trial, target, progress));
+  const double before = double(trial.hits.bytes_in_memory() + trial.hits.bytes_in_file());
+  RoundsForecast out;
+  LUXEL_TRY(const std::vector<double> samples, make_rounds(trial, out, progress));
+  const double bytes = double(trial.hits.bytes_in_memory() + trial.hits.bytes_in_file());
+  out.hit_bytes = trial.scale * (bytes - before);
+  forget_coarse_light(trial);
+  // What the bounces look at: each round's hits, and in the end those of all.
+  std::vector<uint32_t> all(n);
+  std::iota(all.begin(), all.end(), 0u);
+  LUXEL_TRY(const double fine,
+            expected_sweeps(world.map, world.elements, {trial.hits, all, trial.direct.irradiance},
+                            params.samples, {params.bounces, params.tolerance}));
+  double looks = fine * samples.back();
+  for (size_t k = 1; k < samples.size(); ++k) looks += kSweepsOfRound * samples[k];
+  const double hits_per_sample = bytes / double(sizeof(StoredHit)) / samples.back();
+  out.bounces_s = trial.scale * looks * hits_per_sample * seconds_per_hit(world.map, trial.hits) /
+                  double(thread_count());
+  return out;
+}
+
+}  // namespace luxel::gather

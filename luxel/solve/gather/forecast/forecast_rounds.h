@@ -1,0 +1,21 @@
+// What rounds to an error will take, from those of some texels.
+#pragma once
+
+#include "luxel/solve/gather/forecast/forecast.h"
+
+namespace luxel::gather {
+
+/// Of gather() with the parameters' max_error, all that comes after the first round.
+struct RoundsForecast {
+  double trace_s = 0;    ///< of rays, and of looks at lamps
+  double bounces_s = 0;  ///< of each round, and the last ones
+  double rays = 0;       ///< shadow rays and those of near paths included
+  double hit_bytes = 0;  ///< of stored hits
+};
+
+/// Lights the map with few rays, and makes all rounds in that light for the texels of some cells,
+/// about one texel in `part`, but some thousand at least. Errors: cancelled, disk full.
+Result<RoundsForecast> forecast_rounds(const light::TexelScene& world, const GatherParams& params,
+                                       int part, Progress& progress);
+
+}  // namespace luxel::gather

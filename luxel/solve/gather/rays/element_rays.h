@@ -1,0 +1,91 @@
+// The rays that an element sends out, in the order in which they are traced.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "luxel/base/random.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::gather {
+
+/// Which samples of an element.
+struct Samples {
+  uint32_t first = 0, end = 0;
+
+  friend bool operator==(const Samples&, const Samples&) = default;
+  uint32_t count() const { return end - first; }
+  /// Whether a sample belongs to the second half of all up to `end`.
+  bool in_second_half(uint32_t sample) const { return 2 * sample >= end; }
+};
+
+/// Directions are sorted by cells of the unit square, 8 x 8 in Morton order.
+inline constexpr int kCellsPerAxis = 8;
+inline constexpr size_t kCells = size_t(kCellsPerAxis * kCellsPerAxis);
+
+/// Samples by the cell in which they lie before they are scrambled, which is the same for all
+/// elements.
+struct PlainCells {
+  Samples of{};
+  std::vector<uint32_t> sample;                 ///< cell after cell, ascending within one
+  std::array<uint32_t, kCells + 1> first_of{};  ///< the first of each cell
+};
+
+/// Rays of one element with the number of the sample that each belongs to; and buffers, reused from
+/// element to element.
+struct RayBatch {
+  std::vector<trace::Ray> rays;  ///< in the order of their cells
+  std::vector<uint32_t> sample;
+  std::array<uint32_t, kCells + 1>
+      first_of_cell{};  ///< the first ray of each cell; and how many there are
+  uint64_t seed = 0;    ///< of the samples
+  PlainCells plain;
+  std::array<uint8_t, kCells> plain_of_cell{};  ///< which of them scrambling moves to each cell
+  std::vector<uint32_t> few;                    ///< buffer: samples of some rays
+  std::vector<float> u, v, x, y, z;  ///< buffers: points of the square, directions about +z
+
+  /// Of the k-th ray.
+  size_t cell_of(uint32_t k) const;
+};
+
+/// Of an element's rays.
+inline uint64_t seed_of_rays(uint64_t seed, size_t element) {
+  return hash64(seed ^ 0x6a7e, element);
+}
+
+/// Cosine-distributed about `normal`, those below the triangle mirrored to above it; sorted so that
+/// neighbours in a packet point in similar directions. A sample's ray is the same in any batch.
+void fill_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed, Samples samples,
+               RayBatch& batch);
+
+/// Directions within an angle below a right one of `axis`.
+struct Cone {
+  Vec3 axis{0, 0, 1};
+  float cosine = 0, sine = 1;  ///< of that angle
+};
+/// A cone for each cell that holds its directions, about the normal +z.
+struct CellCones {
+  std::array<float, kCells> x{}, y{}, z{};  ///< their axes
+  std::array<float, kCells> cosine{}, sine{};
+};
+CellCones cell_cones();
+/// The cells that may have directions of the cone, one bit each.
+uint64_t cells_that_meet(const CellCones& cells, const Cone& cone);
+
+/// The same rays in the same order, but without directions: fill_directions() gives them to some.
+void fill_samples(uint64_t seed, Samples samples, RayBatch& batch);
+/// The same in two steps, for the rays of some cells only, one bit each: the first finds
+/// batch.first_of_cell.
+void find_ray_cells(uint64_t seed, Samples samples, RayBatch& batch);
+void fill_samples_of(uint64_t cells, RayBatch& batch);
+/// Gives rays[k] for each k of `which`, ascending, what fill_rays() gives it.
+void fill_directions(Vec3 origin, Vec3 normal, Vec3 geometric_normal,
+                     std::span<const uint32_t> which, RayBatch& batch);
+
+/// The same for the first rays.size() samples. Shared with `luxel bench rays`.
+void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,
+                  std::span<trace::Ray> rays);
+
+}  // namespace luxel::gather

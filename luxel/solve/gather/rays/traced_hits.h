@@ -1,0 +1,52 @@
+// What the rays of all elements have met, round by round.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "luxel/base/vec.h"
+#include "luxel/solve/gather/rays/hit_store.h"
+
+namespace luxel::gather {
+
+/// What rays have met, in rounds of tracing: each adds samples to some of the elements.
+struct TracedHits {
+  std::vector<HitStore> rounds;
+  std::vector<uint16_t> samples;    ///< per element, of all rounds
+  std::vector<uint8_t> last_round;  ///< per element, that which added to it last
+  /// Per element, how many of its rays left the scene, and how many met the back of a one-sided
+  /// surface close by or far: those bring no light, and many of them mean that the element lies
+  /// inside a solid (kept for leak repair).
+  /// Backs of double-sided surfaces send the light of their front (docs/method/gather.md); they are
+  /// counted too.
+  std::vector<uint16_t> escaped, met_back, met_double_sided_back;
+  /// Per element, what its escaped rays saw of the surroundings' soft light, and what rays brought
+  /// that were followed on, but for what they read in the map in the end: the sum of radiances,
+  /// that of their squared luminances, and that of the first half of the samples' luminances minus
+  /// the other half's.
+  std::vector<Rgb> sky;
+  std::vector<float> sky_luminance2, sky_first_less_second;
+  std::vector<Rgb> sky_by_layer;  ///< with layers: `sky`, layer by layer for each element
+  /// With EarlierRays::sent, per element: by how much more its rays bring of the light of then than
+  /// they did, as a sum of radiosities; and 1 where of some of them nothing was known, so that it
+  /// is not all. Empty otherwise.
+  std::vector<Rgb> change;
+  std::vector<uint8_t> unknown;
+  uint64_t rays = 0;       ///< that were traced
+  uint64_t rays_kept = 0;  ///< that an earlier bake had traced
+
+  size_t size() const { return samples.size(); }
+  uint64_t bytes_in_memory() const;
+  uint64_t bytes_in_file() const;
+};
+
+/// Whether an element lies inside a solid, under a floor or behind a wall: most of what it sees is
+/// the back of one-sided surfaces. Its own light means nothing to anybody.
+inline bool is_hidden(const TracedHits& hits, size_t element) {
+  return 2 * int(hits.met_back[element]) > int(hits.samples[element]);
+}
+
+/// Nothing traced yet. `layers`: how many there are; 0: light is not told apart.
+TracedHits no_hits(size_t elements, size_t layers = 0);
+
+}  // namespace luxel::gather

@@ -1,0 +1,156 @@
+#include "luxel/solve/gather/trace/follow_on.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "luxel/base/random.h"
+
+namespace luxel::gather {
+namespace {
+
+/// What is kept of a path that has ended.
+FollowedPath end_of(const RayWorld& world, const NearPath& path, TracedHits& out) {
+  const bool alive = max_component(path.throughput) > 0, found = alive && path.hit.found();
+  Rgb light = path.light;
+  if (alive && !found) {
+    const Rgb l = path.throughput * light::soft_radiance(world.scene, world.around, path.direction);
+    add_sky(world, l, path.element, out);
+    light += l;
+  }
+  const bool has_hit =
+      found && (!path.hit.back_face ||
+                scene::reflects_from_behind(scene::material_at(world.scene, path.hit.point())));
+  const FollowedWay way{path.is_plain, alive ? path.direction : Vec3{}, has_hit, path.second_half};
+  FollowedPath end{path.element, path.ray, path.first_m, FollowedRay::pack(light, way), {}};
+  if (!has_hit) return end;
+  const uint32_t tint = pack_tint(path.throughput, hash64(path.seed, path.sample ^ 0x4e37u));
+  end.hit = store(world.atlas, path.hit.point(), {tint, path.second_half});
+  return end;
+}
+
+/// Notes what a ray that was followed on brings (1) or no longer brings (-1). `hit` is its own, if
+/// it has one.
+void note_change(const RayWorld& world, const FollowedRay& ray, StoredHit hit, float sign,
+                 size_t element, TracedHits& out) {
+  if (!world.sent || out.unknown[element]) return;
+  out.change[element] += ray.light * (sign * kPi);
+  if (ray.has_hit()) gather::note_change(world, hit, sign, element, out);
+}
+
+/// Adds radiance that a ray has brought without the map.
+void add_light(const FollowedRay& ray, size_t element, TracedHits& out) {
+  const float l = luminance(ray.light);
+  out.sky[element] += ray.light;
+  out.sky_luminance2[element] += l * l;
+  out.sky_first_less_second[element] += ray.way().second_half ? -l : l;
+}
+
+/// The followed rays of an earlier bake's element, one after another.
+struct KnownFollowed {
+  std::span<const FollowedRay> rays;
+  std::span<const StoredHit> hits;  ///< of those that have one
+  std::span<const uint32_t> again;  ///< numbers of the element's rays that were traced again
+
+  explicit KnownFollowed(const EarlierElement& e, std::span<const uint32_t> traced_again)
+      : rays(e.followed), again(traced_again) {
+    const auto count = size_t(std::ranges::count_if(rays, &FollowedRay::has_hit));
+    hits = e.hits.last(count);
+  }
+  KnownFollowed() = default;
+
+  /// The next one, which is the element's k-th ray.
+  FollowedPath next(size_t element, size_t k) {
+    FollowedPath out{uint32_t(element), uint32_t(k), 0, rays.front(), {}};
+    rays = rays.subspan(1);
+    if (!out.brought.has_hit()) return out;
+    out.hit = hits.front(), hits = hits.subspan(1);
+    return out;
+  }
+  bool is_traced_again(size_t k) {
+    while (!again.empty() && again.front() < k) again = again.subspan(1);
+    return !again.empty() && again.front() == k;
+  }
+};
+
+/// One element's: `now` and `then` are the ends of its rays now and in the earlier bake, if that is
+/// known; `traced` begins with the first of work.followed that is its own or later.
+void add_element(const RayWorld& world, size_t element, std::span<const RayEnd> now,
+                 std::span<const RayEnd> then, KnownFollowed known,
+                 std::span<const FollowedPath>& traced, float& near_m, TracedHits& out,
+                 RayTile& tile, std::vector<StoredHit>& hits) {
+  const auto after = [&](size_t k) {
+    return std::min(next_followed(now, k), then.empty() ? now.size() : next_followed(then, k));
+  };
+  for (size_t k = after(0); k < now.size(); k = after(k + 1)) {
+    const bool was = !then.empty() && then[k] == RayEnd::followed;
+    FollowedPath path{uint32_t(element), uint32_t(k), 0, {}, {}};
+    if (was) path = known.next(element, k);
+    const bool stays = was && !known.is_traced_again(k);
+    if (was && !stays) note_change(world, path.brought, path.hit, -1, element, out);
+    if (now[k] != RayEnd::followed) continue;
+    if (!stays) {
+      path.brought = {};  // unless it was dropped: see Round::drop_enclosed_paths()
+      if (!traced.empty() && traced.front().element == element && traced.front().ray == k)
+        path = traced.front(), traced = traced.subspan(1);
+      if (path.brought.way().is_plain) near_m = std::max(near_m, path.first_m);
+      note_change(world, path.brought, path.hit, 1, element, out);
+    }
+    add_light(path.brought, element, out);
+    tile.followed.push_back(path.brought);
+    if (path.brought.has_hit()) hits.push_back(path.hit);
+  }
+}
+
+/// Each element's hits of both, in memory of just that size.
+HitTile joined(const HitTile& a, const HitTile& b) {
+  HitTile out;
+  out.end.reserve(a.end.size()), out.entries.reserve(a.entries.size() + b.entries.size());
+  for (size_t k = 0; k < a.end.size(); ++k) {
+    for (const HitTile* part : {&a, &b}) {
+      const auto begin = part->entries.begin();
+      const auto first = k == 0 ? 0 : std::ptrdiff_t(part->end[k - 1]);
+      out.entries.insert(out.entries.end(), begin + first, begin + std::ptrdiff_t(part->end[k]));
+    }
+    out.end.push_back(uint32_t(out.entries.size()));
+  }
+  return out;
+}
+
+}  // namespace
+
+uint64_t follow_paths(const RayWorld& world, RayWork& work, TracedHits& out) {
+  if (work.near.paths.empty()) return 0;
+  if (world.layers) work.near.by_layer = out.sky_by_layer;
+  return follow_near(*world.near, work.near, [&](const NearPath& path) {
+    work.followed.push_back(end_of(world, path, out));
+  });
+}
+
+uint64_t follow_on(const RayWorld& world, size_t first, std::span<const uint32_t> ends_of,
+                   const RaysAgain* again, RayWork& work, TracedHits& out, RayTile& tile) {
+  const uint64_t rays = follow_paths(world, work, out);
+  std::ranges::sort(work.followed, {},
+                    [](const FollowedPath& p) { return std::tuple(p.element, p.ray); });
+  std::span<const FollowedPath> traced = work.followed;
+  work.followed_hits.entries.clear(), work.followed_hits.end.clear();
+  tile.near_m.assign(ends_of.size(), 0.0f);
+  for (size_t k = 0; k < ends_of.size(); ++k) {
+    const uint32_t begin = k == 0 ? 0 : ends_of[k - 1];
+    const auto now = std::span(tile.ends).subspan(begin, ends_of[k] - begin);
+    const EarlierElement* before = again ? again->of(k) : nullptr;
+    std::span<const RayEnd> then;
+    KnownFollowed known;
+    if (before && !before->followed.empty()) {
+      tile.near_m[k] = before->near_m, then = before->ends;
+      known = KnownFollowed(*before, again->rays_of(k));
+    }
+    add_element(world, first + k, now, then, known, traced, tile.near_m[k], out, tile,
+                work.followed_hits.entries);
+    work.followed_hits.end.push_back(uint32_t(work.followed_hits.entries.size()));
+  }
+  std::swap(tile.hits, work.other_hits);
+  tile.hits = joined(work.other_hits, work.followed_hits);
+  return rays;
+}
+
+}  // namespace luxel::gather

@@ -1,0 +1,26 @@
+// The rays of a tile's elements that are followed on (near_paths.h), all together: those of one
+// element would be few.
+#pragma once
+
+#include <span>
+
+#include "luxel/solve/gather/reuse/rays_again.h"
+#include "luxel/solve/gather/trace/sort_rays.h"
+
+namespace luxel::gather {
+
+/// Paths that are followed at a time: enough to fill packets, few enough to stay in a core's cache.
+inline constexpr size_t kPathsAtATime = 1024;
+
+/// Follows work.near.paths on and adds where they end to work.followed. Returns the number of rays.
+uint64_t follow_paths(const RayWorld& world, RayWork& work, TracedHits& out);
+
+/// The same for those of a tile that are left; and adds what all of work.followed bring to the
+/// elements' light and to `tile`, whose ends and other hits are known: the first element is
+/// `first`, and ends_of[k] is one past the last of the k-th one's ends. Those of `again` that were
+/// followed on and not traced again bring what they brought in the earlier bake (null: nothing is
+/// known). Returns the number of rays.
+uint64_t follow_on(const RayWorld& world, size_t first, std::span<const uint32_t> ends_of,
+                   const RaysAgain* again, RayWork& work, TracedHits& out, RayTile& tile);
+
+}  // namespace luxel::gather

@@ -1,0 +1,35 @@
+// Tiles of traced hits as parts that are kept (luxel/base/part_store.h).
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "luxel/solve/gather/trace/trace_hits.h"
+
+namespace luxel::gather {
+
+/// The round of tracing that takes `hits` on to `target`.
+KeptStage kept_round(const TracedHits& hits, std::span<const uint16_t> target,
+                     const TraceParams& params);
+
+/// A tile of a round with the rays that it took.
+struct TracedTile {
+  RayTile rays_met;  ///< ends only where it was traced
+  uint64_t rays = 0;
+  uint64_t kept = 0;  ///< of an earlier bake, besides
+};
+
+/// Keeps the tile of elements [begin, end) and what `hits` counts for them. Returns where its
+/// entries stand then, if anywhere.
+KeptEntries keep_tile(const KeptStage& kept, size_t begin, size_t end, const TracedTile& tile,
+                      const TracedHits& hits);
+
+struct FoundTile {
+  TracedTile tile;
+  KeptEntries entries;
+};
+/// A tile that was kept, and into `hits` what it counted. `places`: StoredHit::base() is below.
+std::optional<FoundTile> find_tile(const KeptStage& kept, size_t begin, size_t end, uint32_t places,
+                                   TracedHits& hits);
+
+}  // namespace luxel::gather

@@ -1,0 +1,179 @@
+// Gather goes on with parts that were kept, and ends with the same bits.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "luxel/scene/procedural.h"
+#include "luxel/solve/gather/gather_test_support.h"
+
+namespace luxel::gather {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::byte>;
+
+/// A room with a penumbra, so that texels are averaged, and glass, so that rays have tints.
+std::unique_ptr<Room> some_room() { return lay_out(scene::cornell_box(), 48); }
+
+GatherParams some_params() {
+  GatherParams params = with_samples(16, 8);
+  params.supersample = 4;
+  return params;
+}
+
+class KeptParts : public WithFolder {
+ protected:
+  fs::path file(const std::string& name) const { return folder_ / name; }
+
+  /// Everything is kept from the first part on.
+  std::unique_ptr<PartStore> store(const std::string& name, std::optional<RecordFile> found = {}) {
+    return std::make_unique<PartStore>(
+        PartStoreParams{file(name), "", "", 1e-9, std::chrono::steady_clock::now()}, progress_,
+        std::move(found));
+  }
+  /// Copies the records that `wanted` takes, with their bytes changed by `edit`.
+  void copy(const std::string& from, const std::string& to, const std::vector<RecordKey>& keys,
+            const std::function<void(Bytes&)>& edit = {}) {
+    const auto in = RecordFile::open(file(from));
+    auto out = RecordFile::create(file(to), "");
+    for (const RecordKey& key : keys) {
+      Bytes bytes(*in->size_of(key));
+      ASSERT_TRUE(in->read(key, 0, bytes));
+      if (edit) edit(bytes);
+      ASSERT_TRUE(out->append(key, bytes));
+    }
+  }
+
+  Progress progress_;
+};
+
+void expect_same(const Gather& a, const Gather& b) {
+  EXPECT_EQ(a.irradiance, b.irradiance);
+  EXPECT_EQ(a.direct, b.direct);
+  EXPECT_EQ(a.direct_variance, b.direct_variance);
+  EXPECT_EQ(a.indirect_variance, b.indirect_variance);
+  EXPECT_EQ(a.met_back, b.met_back);
+  EXPECT_EQ(a.enclosed, b.enclosed);
+  EXPECT_EQ(a.samples, b.samples);
+  EXPECT_EQ(a.rays, b.rays);
+  EXPECT_EQ(a.supersampled, b.supersampled);
+  EXPECT_EQ(a.sweeps, b.sweeps);
+}
+
+Gather solve_with(const Room& room, GatherParams params, PartStore* parts) {
+  params.parts = parts;
+  return solve(room, params);
+}
+
+TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
+  const auto room = some_room();
+  for (const float max_error :
+       {0.0f, 0.05f})  // in one round; in several, which build on each other
+    for (const uint64_t memory : {UINT64_MAX, uint64_t(0)}) {  // 0: no hits in memory
+      GatherParams params = some_params();
+      params.max_error = max_error, params.max_samples = 128, params.hit_memory_bytes = memory;
+      params.scratch_folder = folder_;
+      const Gather expected = solve(*room, params);
+      uint64_t all = 0;
+      {
+        const auto first = store("all");
+        expect_same(solve_with(*room, params, first.get()), expected);
+        all = first->parts_kept();
+        EXPECT_EQ(first->parts_found(), 0u);
+      }
+      ASSERT_GT(all, 20u);
+      auto found = RecordFile::open(file("all"));
+      const std::vector<RecordKey> keys = found->keys();
+      EXPECT_EQ(keys.size(), all);
+      const auto again = store("all", std::move(*found));
+      expect_same(solve_with(*room, params, again.get()), expected);
+      EXPECT_EQ(again->parts_found(), all);
+      EXPECT_EQ(again->parts_kept(), 0u);
+      std::vector<RecordKey> half;
+      for (const RecordKey& key : keys)
+        if (hash64(key.stage, key.part) % 2) half.push_back(key);
+      copy("all", "half", half);
+      const auto some = store("half", *RecordFile::open(file("half")));
+      expect_same(solve_with(*room, params, some.get()), expected);
+      EXPECT_EQ(some->parts_found(), half.size());
+      EXPECT_EQ(some->parts_kept(), all - half.size());
+    }
+}
+
+// What was kept is what is used: other light in a part is other light in the result.
+TEST_F(KeptParts, AreUsed) {
+  const auto room = some_room();
+  const GatherParams params = some_params();
+  Gather expected;
+  {
+    const auto first = store("all");
+    expected = solve_with(*room, params, first.get());
+  }
+  const std::vector<RecordKey> keys = RecordFile::open(file("all"))->keys();
+  std::set<uint64_t> stages;
+  for (const RecordKey& key : keys) stages.insert(key.stage);
+  EXPECT_EQ(stages.size(), 3u) << "direct light, points of texels, rays";
+  for (const uint64_t stage : stages) {
+    std::vector<RecordKey> of_stage;
+    for (const RecordKey& key : keys)
+      if (key.stage == stage) of_stage.push_back(key);
+    // The first number of every kind of part is that of its rays.
+    copy("all", "edited", of_stage, [](Bytes& bytes) { bytes[2] ^= std::byte{1}; });
+    const auto edited = store("edited", *RecordFile::open(file("edited")));
+    const Gather result = solve_with(*room, params, edited.get());
+    EXPECT_EQ(result.rays, expected.rays + of_stage.size() * 65536);
+    EXPECT_EQ(result.irradiance, expected.irradiance);
+  }
+}
+
+TEST_F(KeptParts, OfAnotherSizeAreMadeAgain) {
+  const auto room = some_room();
+  const GatherParams params = some_params();
+  Gather expected;
+  {
+    const auto first = store("all");
+    expected = solve_with(*room, params, first.get());
+  }
+  const std::vector<RecordKey> keys = RecordFile::open(file("all"))->keys();
+  for (const bool longer : {false, true}) {
+    copy("all", "edited", keys,
+         [&](Bytes& bytes) { bytes.resize(longer ? bytes.size() + 1 : bytes.size() / 2); });
+    const auto edited = store("edited", *RecordFile::open(file("edited")));
+    expect_same(solve_with(*room, params, edited.get()), expected);
+  }
+}
+
+// The place of a hit is looked up without a check later.
+TEST_F(KeptParts, WithHitsOutsideTheMapAreMadeAgain) {
+  const auto room = some_room();
+  const GatherParams params = some_params();
+  Gather expected;
+  {
+    const auto first = store("all");
+    expected = solve_with(*room, params, first.get());
+  }
+  copy("all", "edited", RecordFile::open(file("all"))->keys(), [&](Bytes& bytes) {
+    if (bytes.size() < 20000) return;  // direct light
+    std::fill(bytes.end() - sizeof(StoredHit), bytes.end(), std::byte{0xff});
+  });
+  const auto edited = store("edited", *RecordFile::open(file("edited")));
+  expect_same(solve_with(*room, params, edited.get()), expected);
+}
+
+// Other settings than the ones that parts were made with find nothing.
+TEST_F(KeptParts, AreFoundByWhatTheyWereMadeFrom) {
+  const auto room = some_room();
+  {
+    const auto first = store("all");
+    solve_with(*room, some_params(), first.get());
+  }
+  GatherParams other = some_params();
+  other.seed = 2;
+  const auto again = store("all", *RecordFile::open(file("all")));
+  expect_same(solve_with(*room, other, again.get()), solve(*room, other));
+  EXPECT_EQ(again->parts_found(), 0u);
+}
+
+}  // namespace
+}  // namespace luxel::gather

@@ -1,0 +1,127 @@
+#include "luxel/solve/gather/trace/near_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/base/warp.h"
+#include "luxel/transport/elements.h"
+#include "luxel/transport/texel_width.h"
+
+namespace luxel::gather {
+namespace {
+
+/// A ray that has ended nearer than a texel there is wide asks for more than the map knows.
+constexpr float kNearTexels = 1;
+/// Paths that carry more are never ended by chance, which would be noise where light is even.
+constexpr float kSureThroughput = 0.1f;
+
+/// The side of the surface that a ray has met; the back is that of the flat triangle.
+transport::SmoothPoint place_of(const scene::Scene& scene, const trace::Hit& hit) {
+  if (!hit.back_face) return transport::smooth_point(scene, hit.point());
+  return {scene::world_position(scene, hit.point()), -scene::shading_normal(scene, hit.point()),
+          -scene::front_normal(scene, hit.instance, hit.triangle)};
+}
+
+/// A path that brings nothing more.
+void end(NearPath path, NearWork& work) {
+  path.throughput = {};
+  work.going_on.push_back(path);
+}
+
+/// The light that lamps send to where the paths are.
+uint64_t add_direct_light(const NearWorld& world, NearWork& work) {
+  work.light.resize(work.receivers.size());
+  light::direct_light_at(world.scene, world.lights, world.tracer, {.samples = 1}, work.receivers,
+                         world.diagonal_m, work.shots, work.light);
+  for (size_t i = 0; i < work.paths.size(); ++i) {
+    work.paths[i].light += work.paths[i].throughput * work.light[i].irradiance / kPi;
+    if (world.layers)
+      light::add_light_by_layer(work.shots, i, *world.layers, work.paths[i].throughput / kPi,
+                                work.by_layer.subspan(work.paths[i].element * world.layers->size(),
+                                                      world.layers->size()));
+  }
+  return work.shots.rays.size();
+}
+
+/// The path's ray on. False: the path ends there, by chance, in proportion to what it carries.
+bool go_on(const light::Receiver& at, uint64_t seed, NearPath& path) {
+  RandomStream random{hash64(seed, path.sample)};
+  const float chance = std::min(1.0f, max_component(path.throughput) / kSureThroughput);
+  if (random.next() >= chance) return false;
+  path.throughput = path.throughput / chance;
+  path.direction = frame_around(at.normal).to_world(cosine_hemisphere_sample(random.next2()));
+  path.direction = light::mirrored_above(path.direction, at.geometric_normal);
+  return true;
+}
+
+}  // namespace
+
+std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas& atlas) {
+  std::vector<float> width(atlas.corners.size());
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const size_t count = scene.meshes[scene.instances[i].mesh].triangles.size();
+    parallel_for(count, 4096, [&](size_t begin, size_t end) {
+      for (uint32_t t = uint32_t(begin); t < end; ++t) {
+        width[atlas.triangle_number(i, t)] = transport::texel_width_m(scene, atlas, i, t);
+      }
+    });
+  }
+  return width;
+}
+
+bool goes_on(const NearWorld& world, const NearPath& path) {
+  const trace::Hit& hit = path.hit;
+  if (!hit.found() || max_component(path.throughput) <= 0) return false;
+  // What scatters light through shines by the light behind it, which the map knows.
+  if (scene::material_at(world.scene, hit.point()).diffuse_transmission > 0) return false;
+  if (hit.back_face)
+    return scene::reflects_from_behind(scene::material_at(world.scene, hit.point()));
+  return hit.t <
+         kNearTexels * world.texel_width_m[world.atlas.triangle_number(hit.instance, hit.triangle)];
+}
+
+uint64_t step_near(const NearWorld& world, uint64_t depth, NearWork& work) {
+  work.receivers.clear(), work.rays.clear(), work.going_on.clear();
+  std::erase_if(work.paths, [&](NearPath& path) {
+    path.throughput = path.throughput * scene::reflectance_at(world.scene, path.hit.point());
+    const bool black = max_component(path.throughput) <= 0;
+    if (black) end(path, work);
+    return black;
+  });
+  for (NearPath& path : work.paths) {
+    const transport::SmoothPoint p = place_of(world.scene, path.hit);
+    work.receivers.push_back(
+        {p.position, p.normal, p.geometric_normal,
+         trace::offset_origin(p.position, p.geometric_normal, world.diagonal_m),
+         hash64(path.seed + depth, path.sample ^ 0x80000000u)});
+    if (depth > 0) continue;
+    const Vec3 met = scene::world_position(world.scene, path.hit.point());
+    path.first_m = path.hit.t + length(work.receivers.back().origin - met);
+  }
+  const uint64_t shadow_rays = add_direct_light(world, work);
+  size_t alive = 0;
+  for (size_t i = 0; i < work.paths.size(); ++i) {
+    NearPath& path = work.paths[i];
+    if (!go_on(work.receivers[i], path.seed + depth, path)) {
+      end(path, work);
+      continue;
+    }
+    work.rays.push_back({work.receivers[i].origin, 0, path.direction, INFINITY});
+    work.paths[alive++] = path;
+  }
+  work.paths.resize(alive);
+  work.hits.resize(alive);
+  world.tracer.closest_hits(work.rays, work.hits);
+  work.tint.assign(alive, {1, 1, 1});
+  if (world.tracer.has_tints()) world.tracer.tint(work.rays, work.hits, work.tint);
+  for (size_t i = 0; i < alive; ++i) {
+    work.paths[i].hit = work.hits[i];
+    work.paths[i].throughput = work.paths[i].throughput * work.tint[i];
+    work.going_on.push_back(work.paths[i]);
+  }
+  return shadow_rays + alive;
+}
+
+}  // namespace luxel::gather

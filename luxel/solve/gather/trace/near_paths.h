@@ -1,0 +1,99 @@
+// Rays that end nearby, or on the back of a surface, are followed on.
+//
+// What a texel of the map holds stands for all of the texel. A ray that ends nearer than a texel is
+// wide asks for less: for the dark inside of a joint between two solids, whose texel lies for the
+// most part in the sun, or for the bright edge of a sill. There the light of the place itself is
+// worked out: what comes straight from lamps, and one more ray, which ends farther away and reads
+// the map there, or is followed on again. The map holds the light of fronts only: on the back of a
+// double-sided surface the same is done, however far it is. docs/method/gather.md
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "luxel/atlas/atlas.h"
+#include "luxel/light/direct_shots.h"
+#include "luxel/scene/scene.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::gather {
+
+/// transport::texel_width_m() per drawn triangle.
+std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas& atlas);
+
+/// What is left of a ray of an element.
+struct NearPath {
+  uint32_t element = 0;
+  uint32_t sample = 0;       ///< of its element: its random numbers are the same in any round
+  uint32_t ray = 0;          ///< of its element's batch
+  uint64_t seed = 0;         ///< of its element
+  bool second_half = false;  ///< of its element's samples
+  Rgb throughput{1, 1, 1};   ///< of reflectances and glass, over the chances to go on
+  Rgb light{};               ///< radiance that it has brought so far
+  trace::Hit hit;            ///< where it is
+  Vec3 direction;            ///< of its last ray; before the first step it has none
+  /// How far from where its element's own ray starts its first step does, at most: as far as the
+  /// ray was long, and as the place is lifted where the surface bulges.
+  float first_m = 0;
+  bool is_plain = true;  ///< it met a front there, and has taken one step at most
+};
+
+/// What paths look at.
+struct NearWorld {
+  const scene::Scene& scene;
+  const atlas::Atlas& atlas;
+  const light::Lights& lights;
+  const trace::RayTracer& tracer;
+  std::span<const float> texel_width_m;
+  float diagonal_m = 0;
+  const light::LightLayers* layers = nullptr;  ///< null: light is not told apart
+};
+
+/// Buffers of one thread.
+struct NearWork {
+  std::vector<NearPath> paths, going_on;
+  std::vector<light::Receiver> receivers;  ///< where the paths are
+  std::vector<light::LightAt> light;
+  std::vector<trace::Ray> rays;
+  std::vector<trace::Hit> hits;
+  std::vector<Rgb> tint;
+  light::Shots shots;
+  /// With layers: the radiance that paths bring is added to these, too, layer by layer for each
+  /// element.
+  std::span<Rgb> by_layer;
+};
+
+/// Takes each of work.paths from its near hit to where it ends, in order of their rays within each
+/// length; `end` gets them one by one: `hit` is far away, on the back of a one-sided surface, or
+/// nothing; throughput is that up to there. A path that has died comes with throughput 0.
+/// Returns the number of rays.
+template <class End>
+uint64_t follow_near(const NearWorld& world, NearWork& work, const End& end);
+
+/// One step of all of work.paths: the light of where they are, and rays on. Paths that end there
+/// come first in work.going_on, with throughput 0. `depth`: how many steps there have been.
+uint64_t step_near(const NearWorld& world, uint64_t depth, NearWork& work);
+
+/// Whether the map has no answer for the place that a path has met.
+bool goes_on(const NearWorld& world, const NearPath& path);
+
+template <class End>
+uint64_t follow_near(const NearWorld& world, NearWork& work, const End& end) {
+  uint64_t rays = 0;
+  for (uint64_t depth = 0; !work.paths.empty(); ++depth) {
+    rays += step_near(world, depth, work);
+    work.paths.clear();
+    for (const NearPath& path : work.going_on) {
+      if (!goes_on(world, path)) {
+        end(path);
+        continue;
+      }
+      work.paths.push_back(path);
+      work.paths.back().is_plain = false;
+    }
+  }
+  return rays;
+}
+
+}  // namespace luxel::gather

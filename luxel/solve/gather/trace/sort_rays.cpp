@@ -1,0 +1,192 @@
+#include "luxel/solve/gather/trace/sort_rays.h"
+
+#include <algorithm>
+
+#include "luxel/base/check.h"
+#include "luxel/base/random.h"
+#include "luxel/solve/gather/bounce/radiosity_map.h"
+
+namespace luxel::gather {
+namespace {
+
+/// Counts `rays` rays of an element that end alike.
+void count_ends(RayEnd end, int rays, size_t element, TracedHits& out) {
+  const auto add = [&](uint16_t& counter) { counter = uint16_t(int(counter) + rays); };
+  if (end == RayEnd::back) add(out.met_back[element]);
+  if (end == RayEnd::behind) add(out.met_double_sided_back[element]);
+  if (end == RayEnd::escaped) add(out.escaped[element]);
+}
+
+bool is_hit(RayEnd end) { return end == RayEnd::hit || end == RayEnd::behind; }
+
+/// What rays of the batch see outside, in `light`, without what they have passed.
+void look_outside(const RayWorld& world, const RayBatch& batch, OutsideLook& look) {
+  look.directions.clear();
+  for (const uint32_t k : look.rays) look.directions.push_back(batch.rays[k].direction);
+  light::soft_radiance(world.scene, world.around, look.directions, look.light);
+}
+
+/// Light of the batch's escaped rays, all of which have a direction.
+EscapedLight escaped_light(const RayWorld& world, RayWork& work, Samples samples,
+                           std::span<const RayEnd> ends) {
+  OutsideLook& look = work.outside;
+  look.rays.clear();
+  for (uint32_t k = 0; k < ends.size(); ++k)
+    if (ends[k] == RayEnd::escaped) look.rays.push_back(k);
+  look_outside(world, work.batch, look);
+  EscapedLight out;
+  for (size_t at = 0; at < look.rays.size(); ++at) {
+    const uint32_t k = look.rays[at];
+    const Rgb l = work.tint.empty() ? look.light[at] : look.light[at] * work.tint[k];
+    out.add(l, samples.in_second_half(work.batch.sample[k]));
+  }
+  return out;
+}
+
+/// The same from what was known: what was traced again no longer brings what it brought.
+EscapedLight escaped_light(const RayWorld& world, RayWork& work, Samples samples,
+                           const EarlierElement& before, std::span<const RayEnd> ends) {
+  if (!before.escaped) return escaped_light(world, work, samples, ends);
+  OutsideLook& look = work.outside;
+  look.rays = work.again;
+  look_outside(world, work.batch, look);
+  EscapedLight out = *before.escaped;
+  for (size_t at = 0; at < look.rays.size(); ++at) {
+    const uint32_t k = look.rays[at];
+    const Rgb l = look.light[at];
+    const bool second_half = samples.in_second_half(work.batch.sample[k]);
+    if (before.ends[k] == RayEnd::escaped) out.take_away(l, second_half);
+    if (ends[k] == RayEnd::escaped) out.add(work.tint.empty() ? l : l * work.tint[k], second_half);
+  }
+  out.sum = max(out.sum, Rgb{}), out.luminance2 = std::max(out.luminance2, 0.0f);
+  return out;
+}
+
+/// Notes the light of the element's escaped rays.
+void add_escaped(const RayWorld& world, const EscapedLight& light, size_t element, TracedHits& out,
+                 RayTile& tile) {
+  tile.escaped.push_back(light);
+  out.sky[element] += light.sum, out.sky_luminance2[element] += light.luminance2;
+  out.sky_first_less_second[element] += luminance(light.sum) - 2 * light.second_luminance;
+  add_sky(world, light.sum, element, out);
+}
+
+/// How the batch's k-th ray has ended; one to be followed on is added to work.near.paths.
+RayEnd end_of(const RayWorld& world, RayWork& work, size_t k, size_t element, Samples samples) {
+  const trace::Hit& hit = work.hits[k];
+  if (!hit.found()) return RayEnd::escaped;
+  if (hit.back_face && !scene::reflects_from_behind(scene::material_at(world.scene, hit.point())))
+    return RayEnd::back;
+  if (world.near != nullptr) {
+    NearPath path;
+    path.element = uint32_t(element), path.ray = uint32_t(k), path.sample = work.batch.sample[k];
+    path.seed = hash64(world.seed ^ 0x7ea4, element);
+    path.second_half = samples.in_second_half(path.sample);
+    if (!work.tint.empty()) path.throughput = work.tint[k];
+    path.hit = hit, path.is_plain = !hit.back_face;
+    if (goes_on(*world.near, path)) {
+      work.near.paths.push_back(path);
+      return RayEnd::followed;
+    }
+  }
+  return hit.back_face ? RayEnd::behind : RayEnd::hit;
+}
+
+/// What a ray met then and meets now; null: it has no hit. Most meet what they met.
+void note_change(const RayWorld& world, const StoredHit* then, const StoredHit* now, size_t element,
+                 TracedHits& out) {
+  if (then && now && then->bits == now->bits) return;
+  if (then) gather::note_change(world, *then, -1, element, out);
+  if (now) gather::note_change(world, *now, 1, element, out);
+}
+
+/// Counts the end of a ray that was traced, and keeps its hit.
+void take_traced(const RayWorld& world, const RayWork& work, size_t k, RayEnd end, size_t element,
+                 Samples samples, TracedHits& out, RayTile& tile) {
+  if (end == RayEnd::followed) {
+    if (work.near.paths.back().hit.back_face) ++out.met_double_sided_back[element];
+    return;
+  }
+  count_ends(end, 1, element, out);
+  if (!is_hit(end)) return;
+  const uint32_t sample = work.batch.sample[k];
+  const uint32_t tint =
+      work.tint.empty() ? kNoTint : pack_tint(work.tint[k], hash64(element, sample ^ 0x7147u));
+  tile.hits.entries.push_back(
+      store(world.atlas, work.hits[k].point(), {tint, samples.in_second_half(sample)}));
+}
+
+}  // namespace
+
+void add_sky(const RayWorld& world, Rgb l, size_t element, TracedHits& out) {
+  if (world.layers && world.layers->of_surroundings)
+    out.sky_by_layer[element * world.layers->size() + *world.layers->of_surroundings] += l;
+}
+
+void note_change(const RayWorld& world, StoredHit hit, float sign, size_t element,
+                 TracedHits& out) {
+  if (!world.sent || out.unknown[element]) return;
+  const Float4 b = lookup(*world.sent, hit);
+  out.change[element] += Rgb{b[0], b[1], b[2]} * sign;
+}
+
+StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray) {
+  const auto& corners = atlas.corners[atlas.triangle_number(p.instance, p.triangle)];
+  const Vec2 at = interpolate(corners[0], corners[1], corners[2], p.at);
+  const float limit = float(atlas.resolution);
+  const float x = std::clamp(at.x, 0.0f, limit) + 0.5f, y = std::clamp(at.y, 0.0f, limit) + 0.5f;
+  const uint32_t x0 = uint32_t(x), y0 = uint32_t(y);  // with the border of one texel
+  constexpr float kSteps = float(StoredHit::kSteps);
+  return StoredHit::pack(y0 * uint32_t(atlas.resolution + 2) + x0,
+                         uint32_t((x - float(x0)) * kSteps + 0.5f),
+                         uint32_t((y - float(y0)) * kSteps + 0.5f), ray);
+}
+
+void sort_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+               TracedHits& out, RayTile& tile) {
+  const size_t count = work.batch.rays.size();
+  for (size_t k = 0; k < count; ++k) {
+    const RayEnd end = end_of(world, work, k, element, samples);
+    tile.ends.push_back(end);
+    take_traced(world, work, k, end, element, samples, out, tile);
+  }
+  const std::span<const RayEnd> ends = std::span(tile.ends).last(count);
+  add_escaped(world, escaped_light(world, work, samples, ends), element, out, tile);
+}
+
+void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+                const EarlierElement& before, TracedHits& out, RayTile& tile) {
+  const size_t count = before.ends.size();
+  LUXEL_CHECK(count == samples.count());
+  tile.ends.insert(tile.ends.end(), before.ends.begin(), before.ends.end());
+  const std::span<RayEnd> ends = std::span(tile.ends).last(count);
+  for (const RayEnd end : {RayEnd::back, RayEnd::behind, RayEnd::escaped})
+    count_ends(end, int(count_of(before.ends, end)), element, out);
+  size_t next = 0, hit = 0;
+  // The hits of rays from `next` on, up to `end`, stay.
+  const auto keep_up_to = [&](size_t end) {
+    const std::span<const RayEnd> kept = before.ends.subspan(next, end - next);
+    const size_t stay = count_of(kept, RayEnd::hit) + count_of(kept, RayEnd::behind);
+    const auto from = before.hits.begin() + std::ptrdiff_t(hit);
+    tile.hits.entries.insert(tile.hits.entries.end(), from, from + std::ptrdiff_t(stay));
+    next = end, hit += stay;
+  };
+  for (const uint32_t k : work.again) {
+    keep_up_to(k);
+    const RayEnd known = before.ends[k];
+    count_ends(known, -1, element, out);
+    ends[k] = end_of(world, work, k, element, samples);
+    take_traced(world, work, k, ends[k], element, samples, out, tile);
+    const StoredHit* then = is_hit(known) ? &before.hits[hit++] : nullptr;
+    const StoredHit* now = is_hit(ends[k]) ? &tile.hits.entries.back() : nullptr;
+    note_change(world, then, now, element, out);
+    next = k + 1;
+  }
+  keep_up_to(count);
+  const EscapedLight escaped = escaped_light(world, work, samples, before, ends);
+  if (world.sent && before.escaped)
+    out.change[element] += (escaped.sum - before.escaped->sum) * kPi;
+  add_escaped(world, escaped, element, out, tile);
+}
+
+}  // namespace luxel::gather

@@ -1,0 +1,319 @@
+#include "luxel/solve/gather/trace/trace_hits.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <optional>
+
+#include "luxel/base/buffer_pool.h"
+#include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/scene/sides.h"
+#include "luxel/solve/gather/rays/element_rays.h"
+#include "luxel/solve/gather/reuse/rays_again.h"
+#include "luxel/solve/gather/trace/follow_on.h"
+#include "luxel/solve/gather/trace/kept_hits.h"
+#include "luxel/solve/gather/trace/sort_rays.h"
+#include "luxel/transport/backs_seen.h"
+
+namespace luxel::gather {
+
+std::vector<StoredHit> places_behind(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                     const atlas::TexelMap& map,
+                                     const transport::Elements& elements) {
+  std::vector<StoredHit> out(elements.transmittance.size());
+  parallel_for(out.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const scene::SurfacePoint& p = map.texels[i].sample;
+      out[i] = store(atlas, scene::other_side_of(scene, p).value_or(p), {});
+    }
+  });
+  return out;
+}
+
+namespace {
+
+/// StoredHit::base() of the last texel that has another below and to the right, plus one.
+uint32_t places_of(const atlas::Atlas& atlas) {
+  const uint32_t side = uint32_t(atlas.resolution);
+  return (side + 2) * (side + 1) - 1;
+}
+
+/// One round's way through the elements.
+struct Round {
+  const RayWorld& world;
+  const transport::Elements& elements;
+  const trace::RayTracer& tracer;
+  std::span<const uint16_t> target;
+  uint64_t seed = 0;
+  float diagonal_m = 0;
+  uint64_t number = 0;
+  const EarlierRays* earlier = nullptr;  ///< null: nothing is known
+  CellCones cell_cones = gather::cell_cones();
+
+  Samples samples_of(size_t i, const TracedHits& hits) const {
+    return {hits.samples[i], std::max(hits.samples[i], target[i])};
+  }
+  void fill_batch(size_t i, Samples samples, RayBatch& batch) const {
+    fill_rays(origin_of(i), elements.normal[i], elements.geometric_normal[i], seed_of_rays(seed, i),
+              samples, batch);
+  }
+  Vec3 origin_of(size_t i) const {
+    return trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
+  }
+  /// The rays that are known of the tile of elements [begin, end), and what those of them meet that
+  /// are traced again.
+  void trace_known(size_t begin, size_t end, const RayTile* known, const TracedHits& hits,
+                   RayWork& work, RaysAgain& out) const;
+  /// `before`: what is known of the element's rays, and work.again has been traced; null: nothing.
+  void trace_element(size_t i, const EarlierElement* before, RayWork& work, TracedHits& out,
+                     TracedTile& tile) const;
+  /// Inside of solids it is dark: paths along their walls, which are long, would bring nothing.
+  void drop_enclosed_paths(size_t i, RayWork& work, const TracedHits& hits) const;
+};
+
+void Round::drop_enclosed_paths(size_t i, RayWork& work, const TracedHits& hits) const {
+  std::vector<NearPath>& paths = work.near.paths;
+  if (paths.empty() || paths.back().element != i) return;
+  const transport::BacksSeen own{int(hits.samples[i]), int(hits.met_back[i]),
+                                 int(hits.met_double_sided_back[i])};
+  if (transport::is_enclosed(world.scene, tracer, elements, i, own, diagonal_m))
+    std::erase_if(paths, [i](const NearPath& p) { return p.element == i && p.hit.back_face; });
+}
+
+/// Traces all rays of the batch.
+void trace_all(const trace::RayTracer& tracer, RayWork& work) {
+  work.hits.resize(work.batch.rays.size());
+  tracer.closest_hits(work.batch.rays, work.hits);
+  if (!tracer.has_tints()) return;
+  work.tint.assign(work.batch.rays.size(), {1, 1, 1});
+  tracer.tint(work.batch.rays, work.hits, work.tint);
+}
+
+void Round::trace_element(size_t i, const EarlierElement* before, RayWork& work, TracedHits& out,
+                          TracedTile& tile) const {
+  const Samples samples = samples_of(i, out);
+  if (samples.count() == 0) {
+    tile.rays_met.escaped.emplace_back();
+    return;
+  }
+  // What was there before is of the first half now.
+  out.sky_first_less_second[i] = luminance(out.sky[i]);
+  out.samples[i] = uint16_t(samples.end), out.last_round[i] = uint8_t(out.rounds.size());
+  if (world.sent && !(before && before->escaped)) out.unknown[i] = 1;
+  size_t traced = samples.count();
+  if (before) {
+    traced = work.again.size();
+    if (!before->escaped) fill_batch(i, samples, work.batch);
+    merge_rays(world, work, i, samples, *before, out, tile.rays_met);
+  } else {
+    fill_batch(i, samples, work.batch);
+    trace_all(tracer, work);
+    sort_rays(world, work, i, samples, out, tile.rays_met);
+  }
+  drop_enclosed_paths(i, work, out);
+  tile.kept += samples.count() - traced;
+  tile.rays += traced;
+}
+
+/// The most samples that the round adds to one element.
+size_t most_added(std::span<const uint16_t> target, const TracedHits& hits) {
+  size_t most = 0;
+  for (size_t i = 0; i < target.size(); ++i) {
+    if (target[i] <= hits.samples[i]) continue;
+    const size_t added = size_t(target[i] - hits.samples[i]);
+    LUXEL_CHECK(added >= hits.samples[i]);
+    most = std::max(most, added);
+  }
+  return most;
+}
+
+/// How many samples some elements will get in a round.
+uint64_t planned_samples(std::span<const uint16_t> target, const TracedHits& hits, size_t begin,
+                         size_t end) {
+  uint64_t planned = 0;
+  for (size_t i = begin; i < end; ++i)
+    planned += uint64_t(std::max(0, int(target[i]) - int(hits.samples[i])));
+  return planned;
+}
+
+/// What tracing a tile needs, reused from tile to tile.
+struct TileWork {
+  RayWork work;
+  RayTileBuffer earlier;
+  RaysAgain again;
+  TracedTile tile;
+};
+
+void clear(TracedTile& tile) {
+  RayTile& rays = tile.rays_met;
+  rays.ends.clear(), rays.escaped.clear(), rays.hits.end.clear(), rays.hits.entries.clear();
+  rays.followed.clear(), rays.near_m.clear();
+  tile.rays = tile.kept = 0;
+}
+
+/// What an earlier bake knew of the elements [begin, end); null: nothing.
+const RayTile* earlier_tile(const Round& round, size_t begin, size_t end, uint64_t planned,
+                            RayTileBuffer& buffer) {
+  if (!round.earlier) return nullptr;
+  const RayTile* rays = find_rays(*round.earlier->file, round.number, begin / kTileElements,
+                                  end - begin, places_of(round.world.atlas), buffer);
+  // Maybe of a round with other samples.
+  return rays && rays->ends.size() == planned ? rays : nullptr;
+}
+
+/// Whether an element's rays that were followed on may bring what they brought, as far as lamps and
+/// reflectances are concerned. They are not told apart by layers.
+bool stay_followed(const Round& round, size_t element, float near_m) {
+  const EarlierRays& earlier = *round.earlier;
+  return earlier.same_light && !earlier.same_light_m.empty() && round.world.layers == nullptr &&
+         near_m <= earlier.same_light_m[element];
+}
+
+void Round::trace_known(size_t begin, size_t end, const RayTile* known, const TracedHits& hits,
+                        RayWork& work, RaysAgain& out) const {
+  // Through glass rays escape in a colour that is not known.
+  const bool knows_escaped = !earlier->surroundings && !tracer.has_tints();
+  clear(out);
+  EarlierCursor cursor{known};
+  for (size_t i = begin; i < end; ++i) {
+    const Samples samples = samples_of(i, hits);
+    const bool knows = cursor.advance(i - begin, samples.count(), knows_escaped) &&
+                       !earlier->moved[i] && samples.count() > 0;
+    work.again.clear();
+    if (knows) {
+      cursor.of.follows_again = !stay_followed(*this, i, cursor.of.near_m);
+      choose_again({elements, *earlier, cell_cones, tracer.has_tints()}, i, origin_of(i),
+                   seed_of_rays(seed, i), samples, cursor.of, work);
+    }
+    add_again(knows ? &cursor.of : nullptr, work, out);
+  }
+  trace_again(tracer, out);
+}
+
+/// Traces the elements [begin, end) into buffers.tile, unless the work is cancelled.
+void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers, TracedHits& hits,
+                Progress& progress) {
+  constexpr uint64_t kRaysPerAdvance = 8192;
+  RayWork& work = buffers.work;
+  TracedTile& tile = buffers.tile;
+  // The tile's own are given away each time.
+  std::swap(tile.rays_met.hits, work.other_hits);
+  clear(tile);
+  work.near.paths.clear(), work.followed.clear(), work.ends_of.clear();
+  uint64_t untold = 0, kept = 0;
+  const uint64_t planned = planned_samples(round.target, hits, begin, end);
+  const RayTile* known = earlier_tile(round, begin, end, planned, buffers.earlier);
+  if (known) round.trace_known(begin, end, known, hits, work, buffers.again);
+  tile.rays_met.hits.entries.reserve(planned), tile.rays_met.ends.reserve(planned);
+  for (size_t i = begin; i < end; ++i) {
+    if (progress.cancelled()) return;
+    const uint64_t samples = planned_samples(round.target, hits, i, i + 1);
+    const EarlierElement* before = known ? buffers.again.of(i - begin) : nullptr;
+    if (before) take_again(buffers.again, i - begin, work);
+    round.trace_element(i, before, work, hits, tile);
+    tile.rays_met.hits.end.push_back(uint32_t(tile.rays_met.hits.entries.size()));
+    work.ends_of.push_back(uint32_t(tile.rays_met.ends.size()));
+    if (work.near.paths.size() >= kPathsAtATime) tile.rays += follow_paths(round.world, work, hits);
+    // Not for every element: the counter is shared by all threads.
+    untold += samples;
+    if (untold < kRaysPerAdvance && i + 1 < end) continue;
+    progress.skip(std::min(untold, tile.kept - kept));
+    progress.advance(untold - std::min(untold, tile.kept - kept));
+    untold = 0, kept = tile.kept;
+  }
+  tile.rays += follow_on(round.world, begin, work.ends_of, known ? &buffers.again : nullptr, work,
+                         hits, tile.rays_met);
+}
+
+/// Traces the round's elements into `store`. Errors: disk full.
+Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, TracedHits& hits,
+                   HitStore& store, Progress& progress) {
+  std::atomic<uint64_t> rays{0}, rays_kept{0};
+  BufferPool<TileWork> pool;
+  std::mutex mutex;
+  Status status;
+  const uint32_t places = places_of(round.world.atlas);
+  parallel_for(hits.size(), kTileElements, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
+    const size_t number = begin / kTileElements;
+    const uint64_t planned = planned_samples(round.target, hits, begin, end);
+    Status put;
+    if (std::optional<FoundTile> found = find_tile(kept, begin, end, places, hits)) {
+      progress.skip(planned);
+      rays += found->tile.rays;
+      put = store.put(number, std::move(found->tile.rays_met.hits), found->entries);
+    } else {
+      TileWork work = pool.take();
+      TracedTile& tile = work.tile;
+      trace_tile(round, begin, end, work, hits, progress);
+      if (progress.cancelled()) return;
+      const KeptEntries entries = keep_tile(kept, begin, end, tile, hits);
+      keep_rays(keep, round.number, number, tile.rays_met);
+      rays += tile.rays, rays_kept += tile.kept;
+      put = store.put(number, std::move(tile.rays_met.hits), entries);
+      pool.give(std::move(work));
+    }
+    if (!put) {
+      const std::lock_guard lock(mutex);
+      if (status) status = put;
+      progress.request_cancel();
+    }
+  });
+  hits.rays += rays, hits.rays_kept += rays_kept;
+  return status;
+}
+
+}  // namespace
+
+Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
+                  const transport::Elements& elements, const light::Surroundings& around,
+                  const trace::RayTracer& tracer, std::span<const uint16_t> target,
+                  const TraceParams& params, TracedHits& hits, Progress& progress) {
+  LUXEL_CHECK(target.size() == elements.size() && hits.size() == elements.size());
+  LUXEL_CHECK(hits.rounds.size() < 256);
+  LUXEL_CHECK(hits.sky_by_layer.size() ==
+              elements.size() * (params.layers ? params.layers->size() : 0));
+  const uint64_t used = hits.bytes_in_memory();
+  LUXEL_TRY(HitStore store,
+            HitStore::create(elements.size(), kTileElements, most_added(target, hits),
+                             params.memory_limit_bytes - std::min(used, params.memory_limit_bytes),
+                             params.scratch_folder));
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  std::optional<NearWorld> near;
+  std::vector<float> widths;
+  if (params.near_lights != nullptr) {
+    widths = texel_widths_m(scene, atlas);
+    near.emplace(
+        NearWorld{scene, atlas, *params.near_lights, tracer, widths, diagonal_m, params.layers});
+  }
+  const RadiosityMap* sent = params.earlier ? params.earlier->sent : nullptr;
+  if (sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());
+  const RayWorld world{scene,         atlas, around,     near ? &*near : nullptr,
+                       params.layers, sent,  params.seed};
+  const KeptStage kept = kept_round(hits, target, params);
+  progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
+  const uint64_t number = hits.rounds.size();
+  LUXEL_TRY_STATUS(trace_tiles(
+      {world, elements, tracer, target, params.seed, diagonal_m, number, params.earlier}, kept,
+      params.keep, hits, store, progress));
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  keep_samples(params.keep, number, hits.samples);
+  hits.rounds.push_back(std::move(store));
+  return {};
+}
+
+Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
+                              const transport::Elements& elements,
+                              const light::Surroundings& around, const trace::RayTracer& tracer,
+                              int samples, const TraceParams& params, Progress& progress) {
+  LUXEL_CHECK(samples >= 1 && samples <= 65535);
+  TracedHits hits = no_hits(elements.size(), params.layers ? params.layers->size() : 0);
+  const std::vector<uint16_t> target(elements.size(), uint16_t(samples));
+  LUXEL_TRY_STATUS(
+      trace_more(scene, atlas, elements, around, tracer, target, params, hits, progress));
+  return hits;
+}
+
+}  // namespace luxel::gather

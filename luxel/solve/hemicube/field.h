@@ -1,0 +1,22 @@
+// The answer: irradiance at every point of the mesh.
+#pragma once
+
+#include "luxel/solve/hemicube/receivers.h"
+
+namespace luxel::hemicube {
+
+/// Linear over each triangle when there is light per vertex; constant when it is per triangle.
+struct Field {
+  Mesh mesh;
+  Receivers receivers;
+  std::vector<Rgb> irradiance;  ///< E per element [W/m^2]
+};
+
+Rgb irradiance_at(const Field& field, const scene::SurfacePoint& p);
+
+/// Light per vertex from light per triangle: the mean of the triangles around each, by their areas.
+/// `hidden` (per triangle) are left out, and stay hidden where nothing else is around.
+Field smoothed(const scene::Scene& scene, const Field& per_triangle,
+               std::span<const uint8_t> hidden);
+
+}  // namespace luxel::hemicube

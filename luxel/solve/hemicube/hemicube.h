@@ -1,0 +1,54 @@
+// Hemicube radiosity on the scene's own mesh, per vertex or per triangle. [Cohen85; Rodriguez06]
+#pragma once
+
+#include "luxel/light/lights.h"
+#include "luxel/solve/hemicube/field.h"
+#include "luxel/solve/hemicube/rows.h"
+
+namespace luxel::hemicube {
+
+struct HemicubeParams {
+  ElementKind elements = ElementKind::vertex;
+  int resolution = 64;  ///< pixels along an edge of the hemicube's top, even, 2 to kMaxResolution
+  /// Triangles start about this small [m]; 0: so that there are about max_elements of them, or a
+  /// third of that when more are to be cut where the light varies.
+  float element_size_m = 0;
+  /// 0: 20,000, or half as many again as the scene's own when that is more.
+  size_t max_elements = 0;
+  /// Triangles are cut while linear interpolation over them errs by more than this part of the
+  /// light there. 0: none is.
+  float max_error = 0.01f;
+  int direct_samples = 256;  ///< shadow rays per element towards emissive surfaces
+  int bounces = -1;          ///< < 0: until the light to come is below `tolerance`
+  float tolerance = 1e-4f;   ///< root mean square over the elements, relative to the mean
+  uint64_t seed = 1;
+  bool smooth = false;  ///< triangle: interpolate between their middles, too
+  uint64_t row_memory_bytes = UINT64_MAX;
+  std::filesystem::path scratch_folder = ".";
+};
+
+inline constexpr int kMaxResolution = 2048;
+
+/// What the pixels of a hemicube take on each thread and once, before anything is seen.
+uint64_t bytes_of_hemicube(int resolution, int threads);
+
+struct Solution {
+  Field field;
+  std::vector<uint8_t> hidden;    ///< per element of the field: 1 inside a solid
+  std::vector<uint8_t> enclosed;  ///< per element: 1 where is_enclosed
+  uint64_t rays = 0;
+  int sweeps = 0;  ///< of the last exchange
+  uint64_t row_bytes = 0, row_bytes_in_file = 0;
+  /// Estimated root mean square error of the interpolation over the mean irradiance.
+  double relative_error = 0;
+  LookSeconds seconds;
+};
+
+/// Cuts the scene's triangles, looks from each element, exchanges light until it settles, then cuts
+/// on where it varies, and lets all elements of the finished mesh look and exchange light anew.
+/// Errors: settings, cancelled, disk full.
+Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
+                       const trace::RayTracer& tracer, const HemicubeParams& params,
+                       Progress& progress);
+
+}  // namespace luxel::hemicube

@@ -1,0 +1,76 @@
+// Looking at the scene from elements through a hemicube. [Cohen85; Rodriguez06, sections 4.5, 5.6]
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/light/surroundings.h"
+#include "luxel/solve/hemicube/receivers.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::hemicube {
+
+/// What is looked at: a mesh, whose elements send light.
+struct Senders {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  const Mesh& mesh;
+  const Receivers& receivers;
+  const light::Surroundings& around;  ///< their soft light is seen by pixels, too
+  /// The light of emissive surfaces is taken from the pixels that see them. False when it is
+  /// computed otherwise and would count twice.
+  bool emission_by_pixels = false;
+};
+
+/// Where elements look from: a part of transport::Elements.
+struct Viewpoint {
+  Vec3 position, normal, geometric_normal;
+};
+
+/// What one element sees, with the shares of its hemisphere that lead there; with what is below its
+/// own triangle, which is black, they sum to 1.
+struct View {
+  /// Shares by the senders' elements, in the order of their numbers: a form factor each. Of what a
+  /// pixel sees of a triangle with light per vertex, each vertex has its barycentric part, so a sum
+  /// over these times the vertices' radiosity is the sum over pixels of the linear radiosity there.
+  std::vector<uint32_t> element;
+  std::vector<float> share;
+  Rgb emitted{};             ///< irradiance from emissive surfaces and the sky [W/m^2]
+  float back = 0;            ///< share of backs of one-sided surfaces, which are black
+  float two_sided_back = 0;  ///< share of backs of two-sided surfaces, which shine like their front
+};
+
+/// Whether an element lies inside a solid, by the share of backs: its light means nothing.
+inline bool is_hidden(const View& v) { return v.back > 0.5f; }
+inline bool is_enclosed(const View& v) { return is_hidden(v) || v.back + v.two_sided_back > 0.98f; }
+
+/// CPU time spent, over all threads.
+struct LookSeconds {
+  double visibility = 0;  ///< tracing
+  double summation = 0;   ///< everything else
+};
+
+/// Pixels of a hemicube: its top and four half sides.
+inline uint64_t pixels_of(int resolution) {
+  return 3 * uint64_t(resolution) * uint64_t(resolution);
+}
+
+struct LookParams {
+  int resolution = 64;  ///< pixels along an edge of the hemicube's top, even
+};
+
+/// Viewpoints are looked from in groups of so many neighbours, in order, by one thread each.
+inline constexpr size_t kTileElements = 16;
+
+/// Calls done(i, view) for every viewpoint, from many threads; the view is only valid during the
+/// call. The stage "hemicubes". Errors: cancelled, or what done returns.
+Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from,
+                         const LookParams& params,
+                         const std::function<Status(size_t, const View&)>& done,
+                         Progress& progress);
+
+std::vector<Viewpoint> viewpoints(const transport::Elements& elements);
+
+}  // namespace luxel::hemicube

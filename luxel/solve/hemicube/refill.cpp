@@ -1,0 +1,42 @@
+#include "luxel/solve/hemicube/refill.h"
+
+namespace luxel::hemicube {
+
+RefillPlan plan_refill(const Neighbours& neighbours, std::span<const uint8_t> hidden) {
+  RefillPlan plan;
+  std::vector<uint8_t> has_light(hidden.size());
+  std::vector<uint32_t> waiting;
+  for (uint32_t i = 0; i < hidden.size(); ++i) {
+    has_light[i] = !hidden[i];
+    if (hidden[i]) waiting.push_back(i);
+  }
+  while (!waiting.empty()) {
+    std::vector<uint32_t> ring, rest;
+    for (const uint32_t i : waiting) {
+      const size_t before = plan.from.size();
+      for (const uint32_t j : neighbours.of(i))
+        if (has_light[j]) plan.from.push_back(j);
+      if (plan.from.size() == before) {
+        rest.push_back(i);
+        continue;
+      }
+      plan.element.push_back(i), plan.first.push_back(uint32_t(before));
+      ring.push_back(i);
+    }
+    if (ring.empty()) break;
+    for (const uint32_t i : ring) has_light[i] = 1;
+    waiting = std::move(rest);
+  }
+  plan.first.push_back(uint32_t(plan.from.size()));
+  return plan;
+}
+
+void refill(const RefillPlan& plan, std::span<Rgb> irradiance) {
+  for (size_t k = 0; k < plan.element.size(); ++k) {
+    Rgb sum{};
+    for (uint32_t j = plan.first[k]; j < plan.first[k + 1]; ++j) sum += irradiance[plan.from[j]];
+    irradiance[plan.element[k]] = sum / float(plan.first[k + 1] - plan.first[k]);
+  }
+}
+
+}  // namespace luxel::hemicube

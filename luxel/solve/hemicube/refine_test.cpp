@@ -1,0 +1,194 @@
+// Where triangles are cut: at shadow borders, and nowhere when there is nothing to see.
+#include "luxel/solve/hemicube/refine.h"
+
+#include <gtest/gtest.h>
+
+#include "luxel/solve/hemicube/hemicube_test_support.h"
+
+namespace luxel::hemicube {
+namespace {
+
+using testing::scene_of;
+using testing::solved;
+
+constexpr ElementKind kKinds[] = {ElementKind::vertex, ElementKind::triangle};
+
+/// A floor of 4 x 4 m, a plate of 1 x 1 m 1 m above its middle, a lamp without size 2 m above it:
+/// the shadow is a square of 2 x 2 m with a sharp border.
+scene::Scene sharp_shadow() {
+  scene::Scene scene;
+  scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
+  scene::add_rectangle(scene, {-2, 2, -2, 2}, 0, true, 0);
+  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, true, 0);
+  scene::PunctualLight lamp;
+  lamp.position = {0, 2, 0};
+  scene.lights.push_back(lamp);
+  return scene;
+}
+
+double distance_to_border(Vec3 p) { return std::abs(std::max(std::abs(p.x), std::abs(p.z)) - 1); }
+
+bool on_floor(const Solution& s, size_t i) {
+  return s.field.receivers.kind == ElementKind::vertex
+             ? s.field.mesh.vertices[i].instance == 0
+             : s.field.mesh.nodes[s.field.receivers.leaves[i]].instance == 0;
+}
+
+// Within 5 cm of the border lie 5 % of the floor.
+TEST(Refine, PutsElementsAtTheShadowsBorder) {
+  const scene::Scene scene = sharp_shadow();
+  for (const ElementKind kind : kKinds) {
+    HemicubeParams params;
+    params.elements = kind, params.resolution = 8, params.max_elements = 4000;
+    const Solution s = solved(scene, params);
+    EXPECT_LE(s.field.irradiance.size(), 4000u);
+    EXPECT_GT(s.field.irradiance.size(), 3000u);
+    double near = 0, all = 0;
+    for (size_t i = 0; i < s.field.irradiance.size(); ++i)
+      if (on_floor(s, i))
+        near += distance_to_border(s.field.receivers.elements.position[i]) < 0.05, ++all;
+    EXPECT_GT(near / all, 0.3);
+    std::printf("%.1f %% of %g elements on 5 %% of the floor\n", 100 * near / all, all);
+  }
+}
+
+// Away from the border E of the floor is known: I cos / d^2, or nothing. As much light as in truth
+// falls on the floor as a whole, though the border runs through triangles.
+TEST(Refine, LightBesideTheBorderIsExact) {
+  const scene::Scene scene = sharp_shadow();
+  for (const ElementKind kind : kKinds) {
+    HemicubeParams params;
+    params.elements = kind, params.resolution = 8, params.max_elements = 4000;
+    params.bounces = 0;
+    const Solution s = solved(scene, params);
+    RandomStream random{1};
+    double sum = 0, exact_sum = 0;
+    constexpr int kPoints = 20000;
+    for (int i = 0; i < kPoints; ++i) {
+      const float x = random.next(), y = random.next();
+      const scene::SurfacePoint p{0, uint32_t(i % 2), {std::min(x, y), std::abs(x - y)}};
+      const Vec3 at = scene::world_position(scene, p);
+      const float d2 = at.x * at.x + at.z * at.z + 4;
+      const bool dark = std::max(std::abs(at.x), std::abs(at.z)) < 1;
+      const float exact = dark ? 0 : 2 / (d2 * std::sqrt(d2));
+      const float found = irradiance_at(s.field, p).x;
+      sum += double(found), exact_sum += double(exact);
+      if (distance_to_border(at) > 0.1) {
+        ASSERT_NEAR(found, exact, kind == ElementKind::vertex ? 0.004f : 0.03f)
+            << at.x << " " << at.z;
+      }
+    }
+    EXPECT_NEAR(sum / exact_sum, 1, 0.01);
+  }
+}
+
+/// A floor of rings, each half as wide as the one around it: a cut in the middle wants many others
+/// before it, out to the rim.
+scene::Mesh ringed_floor() {
+  scene::Mesh mesh;
+  constexpr int kRings = 9, kSides = 7;
+  const auto at = [](int ring, int k) {
+    const float a = (float(k) + 0.3f * float(ring % 2)) * 2 * kPi / kSides,
+                r = std::ldexp(2.0f, -ring);
+    return Vec3{r * std::sin(a), 0, r * std::cos(a)};
+  };
+  for (int ring = 0; ring + 1 < kRings; ++ring)
+    for (int k = 0; k < kSides; ++k)
+      scene::add_quad(mesh,
+                      {at(ring, k), at(ring, (k + 1) % kSides), at(ring + 1, (k + 1) % kSides),
+                       at(ring + 1, k)},
+                      0);
+  for (int k = 0; k < kSides; ++k)
+    scene::add_triangle(mesh, {}, at(kRings - 1, k), at(kRings - 1, (k + 1) % kSides), 0);
+  return mesh;
+}
+
+TEST(Refine, NeverMakesMoreElementsThanAllowed) {
+  scene::Scene scene = sharp_shadow();
+  scene.meshes[0] = ringed_floor();
+  scene.instances[1].world_from_object = translation({0.5f, 0, 0.2f});
+  for (const ElementKind kind : kKinds)
+    for (size_t most = 160; most < 400; most += 7) {
+      HemicubeParams params;
+      params.elements = kind, params.resolution = 2, params.max_elements = most;
+      params.max_error = 1e-4f;
+      const Solution s = solved(scene, params);
+      EXPECT_LE(s.field.irradiance.size(), most) << int(kind);
+      EXPECT_GT(s.field.irradiance.size(), most * 8 / 10) << int(kind);
+    }
+}
+
+bool was_cut_on(const Solution& s) {
+  return s.field.mesh.nodes.size() > s.field.mesh.triangle_count;
+}
+
+TEST(Refine, AnErrorOfZeroCutsNothing) {
+  const scene::Scene scene = sharp_shadow();
+  for (const ElementKind kind : kKinds) {
+    HemicubeParams params;
+    params.elements = kind, params.resolution = 4, params.max_elements = 2000;
+    params.max_error = 0;
+    const Solution s = solved(scene, params);
+    EXPECT_FALSE(was_cut_on(s));
+    EXPECT_GT(s.field.irradiance.size(), 1000u);  // all of them are in the first mesh
+    EXPECT_LE(s.field.irradiance.size(), 2000u);
+  }
+}
+
+TEST(Refine, ConstantLightIsNotCut) {
+  const scene::Scene box = scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1});
+  for (const ElementKind kind : kKinds) {
+    HemicubeParams params;
+    params.elements = kind, params.resolution = 8, params.max_elements = 1000;
+    const Solution s = solved(box, params);
+    EXPECT_FALSE(was_cut_on(s));
+    EXPECT_LT(s.relative_error, 1e-3);
+  }
+}
+
+/// A field over the unit square with light by a function of the place.
+template <class Light>
+Field field_of(ElementKind kind, float size, const Light& light) {
+  const scene::Scene scene = scene_of(testing::unit_square());
+  Field field;
+  field.mesh = testing::mesh_of(scene, size);
+  field.receivers = make_receivers(scene, field.mesh, kind);
+  for (size_t i = 0; i < field.receivers.size(); ++i) {
+    const Vec3 at = kind == ElementKind::vertex ? field.mesh.points[field.mesh.point_of[i]]
+                                                : field.receivers.elements.position[i];
+    field.irradiance.push_back(Rgb{1, 1, 1} * light(at));
+  }
+  return field;
+}
+
+// Linear light is interpolated without error. Of constant curvature k the error is k h^2 / 8 in the
+// middle of an edge h; the estimate is within a factor of 2 of that.
+TEST(InterpolationErrors, AreThoseOfKnownFunctions) {
+  for (const float error : interpolation_errors(
+           field_of(ElementKind::vertex, 0.1f, [](Vec3 p) { return 1 + 2 * p.x + 3 * p.z; })))
+    EXPECT_NEAR(error, 0, 1e-6f);
+  const float h = 0.1f, k = 4;
+  const Field field = field_of(ElementKind::vertex, h, [&](Vec3 p) { return k / 2 * p.x * p.x; });
+  const std::vector<float> errors = interpolation_errors(field);
+  const float exact = k * h * h / 8;
+  for (size_t i = 0; i < errors.size(); ++i) {
+    EXPECT_LT(errors[i], exact * 2 + 1e-6f);
+    // A triangle whose side stands at the rim knows nothing of what the light does there.
+    const Node& n = field.mesh.nodes[field.receivers.leaves[i]];
+    const float x = (field.mesh.points[n.point[0]].x + field.mesh.points[n.point[1]].x +
+                     field.mesh.points[n.point[2]].x) /
+                    3;
+    if (x > 0.4f * h && x < 1 - 0.4f * h) {
+      EXPECT_GT(errors[i], exact / 2);
+    }
+  }
+  // Constant over triangles: half the jump to the neighbour. Centroids lie h/3 apart in x or not.
+  for (const float error : interpolation_errors(
+           field_of(ElementKind::triangle, h, [](Vec3 p) { return 1 + 6 * p.x; }))) {
+    EXPECT_GT(error, 6 * h / 3 / 2 * 0.99f);
+    EXPECT_LT(error, 6 * h * 2 / 3 / 2 * 1.01f);
+  }
+}
+
+}  // namespace
+}  // namespace luxel::hemicube

@@ -1,0 +1,32 @@
+#include "luxel/solve/hierarchical/enclosed.h"
+
+#include "luxel/base/parallel.h"
+#include "luxel/transport/backs_seen.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+constexpr int kRays = 64;
+/// Of the mean: a place that sees as much light is in the open.
+constexpr float kDark = 0.02f;
+
+}  // namespace
+
+std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                   std::span<const Vec3> position, std::span<const Vec3> normal,
+                                   std::span<const Rgb> irradiance) {
+  double mean = 0;
+  for (const Rgb& e : irradiance) mean += double(luminance(e)) / double(irradiance.size());
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  std::vector<uint8_t> out(position.size());
+  parallel_for(position.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      out[i] = luminance(irradiance[i]) < kDark * float(mean) &&
+               is_hidden(transport::backs_seen(
+                   scene, tracer, trace::offset_origin(position[i], normal[i], diagonal_m),
+                   normal[i], kRays));
+  });
+  return out;
+}
+
+}  // namespace luxel::hierarchical

@@ -1,0 +1,138 @@
+#include "luxel/solve/hierarchical/irradiance.h"
+
+#include <algorithm>
+
+#include "luxel/base/parallel.h"
+#include "luxel/light/direct_light.h"
+#include "luxel/solve/hierarchical/gathering.h"
+#include "luxel/solve/hierarchical/surface.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+/// Beyond so many faces the background is looked for by rays instead of as what no face hides.
+constexpr size_t kMostFacesBeforeSky = 256;
+/// The rays are so many over the tolerance, but no fewer than keep their steps below what
+/// interpolants may be off by.
+constexpr double kSkyRays = 0.5;
+constexpr double kLeastSkyRays = 1024, kMostSkyRays = 8192;
+
+double limit_of(const Solution& s, const PointParams& params) {
+  return params.tolerance * double(max_component(totals_of(s).irradiance));
+}
+
+bool is_sharp(const scene::PunctualLight& lamp) { return lamp.angular_radius_rad == 0; }
+
+/// E of lamps without area.
+Result<std::vector<Rgb>> from_lamps(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                    const light::Lights& lamps, std::span<const Receiver> receivers,
+                                    Progress& progress) {
+  if (lamps.punctual.empty() && lamps.around.peak.empty())
+    return std::vector<Rgb>(receivers.size());
+  transport::Elements points;
+  for (const Receiver& r : receivers) {
+    points.position.push_back(to_float(r.position));
+    points.normal.push_back(to_float(r.normal));
+    points.geometric_normal.push_back(to_float(r.geometric_normal));
+    points.reflectance.push_back({});
+  }
+  LUXEL_TRY(light::DirectLight direct,
+            light::direct_light(scene, points, lamps, tracer, {256, 1, true}, progress));
+  return std::move(direct.irradiance);
+}
+
+}  // namespace
+
+Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& scene,
+                                       const trace::RayTracer& tracer,
+                                       std::span<const Receiver> receivers,
+                                       const PointParams& params, Progress& progress) {
+  Lamps lamps = s.lamps;
+  if (!params.sharp_lamps) std::erase_if(lamps.lights.punctual, is_sharp);
+  LUXEL_TRY(std::vector<Rgb> out, from_lamps(scene, tracer, lamps.lights, receivers, progress));
+  // A sky of one radiance is what no face hides; one that varies is looked at.
+  const bool count_all =
+      lamps.has_sky && scene.environment.empty() && s.faces.size() <= kMostFacesBeforeSky;
+  const double whole_sky = kPiDouble * double(max_component(scene.background));
+  const GatheringParams gathered{limit_of(s, params), count_all ? whole_sky : 0};
+  const RaySources sources = ray_sources(s);
+  const auto sky_rays =
+      uint32_t(std::clamp(kSkyRays / params.tolerance, kLeastSkyRays, kMostSkyRays));
+  const auto sky_at = [&](const Receiver& r) {
+    return soft_sky_at(scene, lamps.lights.around, tracer, to_float(r.position), to_float(r.normal),
+                       to_float(r.geometric_normal), s.diagonal_m, sky_rays);
+  };
+  progress.begin("irradiance", receivers.size());
+  parallel_for(receivers.size(), 32, [&](size_t begin, size_t end) {
+    Gathering gathering(s, tracer, sources, gathered);
+    for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
+      out[i] += gathering.from_faces(receivers[i], nullptr);
+      if (!lamps.has_sky) continue;
+      out[i] += count_all ? scene.background * (kPi * float(std::max(0.0, 1 - gathering.covered())))
+                          : sky_at(receivers[i]);
+    }
+    progress.advance(end - begin);
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  return out;
+}
+
+Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
+                                             const trace::RayTracer& tracer,
+                                             std::span<const Receiver> receivers,
+                                             Progress& progress) {
+  light::Lights lamps;
+  lamps.punctual = scene.lights;
+  std::erase_if(lamps.punctual, [](const auto& lamp) { return !is_sharp(lamp); });
+  return from_lamps(scene, tracer, lamps, receivers, progress);
+}
+
+std::vector<Seen> sources_at(const Solution& s, const trace::RayTracer& tracer,
+                             const Receiver& receiver, const PointParams& params) {
+  std::vector<Seen> parts, out;
+  Gathering(s, tracer, ray_sources(s), {limit_of(s, params), 0}).from_faces(receiver, &parts);
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Seen& a, const Seen& b) { return a.face < b.face; });
+  for (const Seen& part : parts) {
+    if (out.empty() || out.back().face != part.face)
+      out.push_back({.face = part.face, .irradiance = {}});
+    out.back().visible += part.visible, out.back().whole += part.whole;
+    out.back().irradiance += part.irradiance;
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Seen& a, const Seen& b) {
+    return luminance(a.irradiance) > luminance(b.irradiance);
+  });
+  return out;
+}
+
+Backprojection backproject(const Solution& s, const Receiver& receiver, uint32_t face) {
+  Backprojection out;
+  const Face& f = s.faces.faces[face];
+  const Plane horizon{receiver.geometric_normal, dot(receiver.geometric_normal, receiver.position)};
+  out.source = viewfactor::clip_above(f.corners, horizon, s.blockers.slack_m * 1e-3);
+  if (out.source.empty()) return out;
+  if (f.plane.height(receiver.position) < 0) std::reverse(out.source.begin(), out.source.end());
+  std::vector<uint32_t> blockers;
+  find_before(s.blockers, receiver.position, out.source, blockers);
+  std::erase(blockers, face), std::erase(blockers, receiver.face);
+  std::vector<uint8_t> casts(s.blockers.all.size());
+  viewfactor::VisibilityScratch scratch;
+  viewfactor::visible_point_factor(receiver.position, receiver.normal, out.source, s.blockers.all,
+                                   blockers, s.blockers.slack_m * 1e-3, casts, scratch);
+  for (size_t k = 0; k < scratch.visible.size(); ++k) {
+    out.visible.emplace_back();
+    for (const DVec3& p : scratch.visible[k]) out.visible.back().push_back(p + receiver.position);
+  }
+  return out;
+}
+
+Receiver receiver_at(const Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+                     uint32_t face, DVec3 place) {
+  const Face& f = s.faces.faces[face];
+  if (!f.curved) return {place, f.plane.normal, f.plane.normal, face};
+  const transport::SmoothPoint p =
+      transport::smooth_point(scene, surface_point(scene, s.faces, tracer, face, place));
+  return {to_double(p.position), to_double(p.normal), to_double(p.geometric_normal), face};
+}
+
+}  // namespace luxel::hierarchical

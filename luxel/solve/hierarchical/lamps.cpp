@@ -1,0 +1,185 @@
+#include "luxel/solve/hierarchical/lamps.h"
+
+#include <algorithm>
+
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/base/warp.h"
+#include "luxel/light/direct_light.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+constexpr uint32_t kSkyRays = 256;
+/// Light is not known better than what so many rays bring: differences below that are none.
+constexpr float kUnsureRays = 4;
+/// Points of a leaf of the unit's area at which lamps are looked for, at least, so that no patch of
+/// sun is missed.
+constexpr double kPoints = 64;
+
+/// Where lamps are looked for on a leaf: at Gauss's points, which are corners of a smaller copy of
+/// it, and on a grid, as fine as the leaf is large.
+struct Probe {
+  uint32_t corners = 4;
+  std::vector<std::array<double, 2>> at;  ///< s and t of linear_at
+
+  /// From the middle to Gauss's points: so far of the way to the corners.
+  double inside() const { return corners == 4 ? 0.57735027 : 0.5; }
+};
+
+Probe probe_of(const Element& e, double unit_area_m2) {
+  Probe out{e.corners, {}};
+  const double h = out.inside() / (e.corners == 4 ? 2 : 3);
+  if (e.corners == 4)
+    out.at = {{0.5 - h, 0.5 - h}, {0.5 + h, 0.5 - h}, {0.5 + h, 0.5 + h}, {0.5 - h, 0.5 + h}};
+  else
+    out.at = {
+        {1 / 3.0 - h, 1 / 3.0 - h}, {1 / 3.0 + 2 * h, 1 / 3.0 - h}, {1 / 3.0 - h, 1 / 3.0 + 2 * h}};
+  const double points = std::min(1.0, e.area_m2 / unit_area_m2) * kPoints;
+  // An odd number of points a side, so that the middle is one of them.
+  const int n = 1 + 2 * int(std::sqrt(points) / 2);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const double s = (i + 0.5) / n, t = (j + 0.5) / n;
+      if (e.corners == 4)
+        out.at.push_back({s, t});
+      else if (n == 1)
+        out.at.push_back({1 / 3.0, 1 / 3.0});
+      else
+        out.at.push_back({s, t * (1 - s)});
+    }
+  return out;
+}
+
+/// The function through Gauss's points, given by its corners, bent as far up as it would be
+/// negative; and how far it is off elsewhere.
+struct Fit {
+  std::array<Rgb, 4> corner{};
+  float error = 0;
+};
+Fit fit_of(const Probe& probe, std::span<const Rgb> light) {
+  Fit out;
+  const uint32_t n = probe.corners;
+  Rgb mean{}, twist{};
+  for (uint32_t k = 0; k < n; ++k) mean += light[k] / float(n);
+  if (n == 4) twist = (light[0] - light[1] + light[2] - light[3]) * 0.25f;
+  const auto inside = float(probe.inside());
+  float shrink = 1;  // of what differs from the mean
+  for (uint32_t k = 0; k < n; ++k) {
+    const Rgb bent = twist * (k % 2 == 0 ? 1.0f : -1.0f);
+    out.corner[k] = (light[k] - mean - bent) / inside + bent / (inside * inside);
+    for (const auto c : {&Rgb::x, &Rgb::y, &Rgb::z})
+      if (mean.*c + out.corner[k].*c < 0) shrink = std::min(shrink, -mean.*c / out.corner[k].*c);
+  }
+  for (uint32_t k = 0; k < n; ++k) out.corner[k] = mean + out.corner[k] * shrink;
+  for (size_t i = 0; i < probe.at.size(); ++i) {
+    const Rgb d = linear_at(out.corner, n, float(probe.at[i][0]), float(probe.at[i][1])) - light[i];
+    out.error = std::max({out.error, max_component(d), max_component(-d)});
+  }
+  return out;
+}
+
+void add_points(const Element& e, const Faces& faces, const Probe& probe,
+                transport::Elements& out) {
+  const Vec3 normal = to_float(faces.faces[e.face].plane.normal);
+  for (const auto& [s, t] : probe.at) {
+    out.position.push_back(to_float(linear_at(e.corner, e.corners, s, t)));
+    out.normal.push_back(normal), out.geometric_normal.push_back(normal);
+    out.reflectance.push_back({});
+  }
+}
+
+/// E of the soft sky at each point.
+std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x, const Lamps& lamps,
+                           const transport::Elements& points) {
+  std::vector<Rgb> out(points.size());
+  if (!lamps.has_sky) return out;
+  parallel_for(points.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      out[i] = soft_sky_at(scene, lamps.lights.around, x.tracer, points.position[i],
+                           points.normal[i], points.normal[i], x.diagonal_m, kSkyRays);
+  });
+  return out;
+}
+
+}  // namespace
+
+Rgb soft_sky_at(const scene::Scene& scene, const light::Surroundings& around,
+                const trace::RayTracer& tracer, const Vec3& position, Vec3 normal,
+                Vec3 geometric_normal, float diagonal_m, uint32_t count) {
+  const auto frame = frame_around(normal);
+  const Vec3 from = trace::offset_origin(position, geometric_normal, diagonal_m);
+  std::vector<trace::Ray> rays;
+  for (uint32_t k = 0; k < count; ++k) {
+    const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 5)));
+    if (dot(d, geometric_normal) > 0) rays.push_back({from, 0, d, INFINITY});
+  }
+  std::vector<uint8_t> blocked(rays.size());
+  tracer.occluded(rays, blocked);
+  // Summed in double: a sky of one radiance gives its share of the rays, whatever their order.
+  double r = 0, g = 0, b = 0;
+  for (size_t k = 0; k < rays.size(); ++k) {
+    if (blocked[k]) continue;
+    const Rgb l = light::soft_radiance(scene, around, rays[k].direction);
+    r += double(l.x), g += double(l.y), b += double(l.z);
+  }
+  const double share = kPiDouble / double(count);
+  return {float(r * share), float(g * share), float(b * share)};
+}
+
+float brightest_sky(const scene::Scene& scene, const light::Surroundings& around) {
+  float most = max_component(around.background);
+  if (scene.environment.empty()) return most;
+  float brightest = 0;
+  for (const Rgb& l : scene.environment.radiance) {
+    const float y = luminance(l);
+    brightest = std::max(brightest, max_component(l) * (y > around.limit ? around.limit / y : 1));
+  }
+  return most + brightest;
+}
+
+Lamps lamps_of(const scene::Scene& scene) {
+  Lamps out;
+  out.lights.punctual = scene.lights, out.lights.profiles = scene.profiles;
+  out.lights.around = light::surroundings_of(scene);
+  out.has_sky = max_component(scene.background) > 0 || !scene.environment.empty();
+  return out;
+}
+
+Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
+                    const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress) {
+  if (!lamps.any()) return {};
+  const float unsure = lamps.has_sky ? brightest_sky(state.scene, lamps.lights.around) * kPi *
+                                           (kUnsureRays / kSkyRays)
+                                     : 0.0f;
+  for (;;) {
+    lit.resize(state.tree.elements.size());
+    std::vector<size_t> leaves;
+    std::vector<Probe> probes;
+    transport::Elements points;
+    for (size_t e = 0; e < lit.size(); ++e) {
+      if (lit[e] || !state.tree.elements[e].is_leaf()) continue;
+      lit[e] = 1;
+      leaves.push_back(e);
+      probes.push_back(probe_of(state.tree.elements[e], x.unit_area_m2));
+      add_points(state.tree.elements[e], x.faces, probes.back(), points);
+    }
+    if (leaves.empty()) return {};
+    LUXEL_TRY(light::DirectLight direct, light::direct_light(state.scene, points, lamps.lights,
+                                                             x.tracer, {64, 1, true}, progress));
+    const std::vector<Rgb> sky = sky_light(state.scene, x, lamps, points);
+    for (size_t i = 0; i < sky.size(); ++i) direct.irradiance[i] += sky[i];
+    std::span<const Rgb> light = direct.irradiance;
+    for (size_t k = 0; k < leaves.size(); ++k) {
+      const Fit fit = fit_of(probes[k], light.first(probes[k].at.size()));
+      light = light.subspan(probes[k].at.size());
+      state.light.elements[leaves[k]].unlinked = fit.corner;
+      const double area = state.tree.elements[leaves[k]].area_m2;
+      if (double(fit.error - unsure) * area / x.unit_area_m2 > params.eps &&
+          area > 4 * params.min_area_m2 && state.tree.elements.size() + 4 <= params.max_elements)
+        divide_element(state, x, leaves[k]);
+    }
+  }
+}
+
+}  // namespace luxel::hierarchical

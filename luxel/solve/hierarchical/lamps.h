@@ -1,0 +1,31 @@
+// Light that comes from no surface: lamps without area, the background.
+#pragma once
+
+#include "luxel/light/lights.h"
+#include "luxel/solve/hierarchical/refine.h"
+
+namespace luxel::hierarchical {
+
+/// What shines besides surfaces.
+struct Lamps {
+  light::Lights lights;  ///< no triangles
+  bool has_sky = false;  ///< background or a map
+  bool any() const { return has_sky || !lights.punctual.empty(); }
+};
+Lamps lamps_of(const scene::Scene& scene);
+
+/// E of the soft light of the surroundings at a point: by so many rays, the same directions
+/// everywhere.
+Rgb soft_sky_at(const scene::Scene& scene, const light::Surroundings& around,
+                const trace::RayTracer& tracer, const Vec3& position, Vec3 normal,
+                Vec3 geometric_normal, float diagonal_m, uint32_t count);
+/// No more than this comes from the whole of it.
+float brightest_sky(const scene::Scene& scene, const light::Surroundings& around);
+
+/// Sets ElementLight::unlinked of all leaves that have none yet (`lit` counts elements, in order),
+/// dividing leaves over which it is farther than eps from linear. As with links, large leaves count
+/// for more: see error_of.
+Status light_leaves(Refined& state, const Exchange& exchange, const Lamps& lamps,
+                    const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress);
+
+}  // namespace luxel::hierarchical

@@ -1,0 +1,341 @@
+#include "luxel/solve/hierarchical/link.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/viewfactor/point_form_factor.h"
+#include "luxel/viewfactor/polygon_form_factor.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+/// Elements whose middles are nearer than this many times their radii exchange light that a few
+/// points do not find the mean of: they get the closed form.
+constexpr double kNear = 2.5;
+constexpr double kClosedFormTolerance = 1e-4;
+/// Shadow rays of a link that involves a cluster, or more blockers than are looked at.
+constexpr uint32_t kRays = 8;
+/// Gauss's points of a quadrilateral span a smaller copy of it, in 1 / sqrt 3; those of a triangle
+/// in 1 / 2.
+constexpr double kOutwards[2] = {1.7320508, 2};
+
+/// Where an element is looked from: Gauss's points.
+struct Points {
+  std::array<DVec3, 5> at;  ///< and last the middle
+  uint32_t count = 0;       ///< without the middle
+};
+Points points_of(const Element& e) {
+  Points out;
+  const auto& c = e.corner;
+  if (e.corners == 3) {
+    out.count = 3;
+    for (uint32_t k = 0; k < 3; ++k)
+      out.at[k] = c[k] * (2.0 / 3) + (c[(k + 1) % 3] + c[(k + 2) % 3]) * (1.0 / 6);
+    out.at[3] = e.centre;
+    return out;
+  }
+  constexpr double low = 0.21132487, high = 1 - low;
+  out.count = 4;
+  constexpr double s[4] = {low, high, high, low}, t[4] = {low, low, high, high};
+  for (uint32_t k = 0; k < 4; ++k) out.at[k] = linear_at(c, 4, s[k], t[k]);
+  out.at[4] = e.centre;
+  return out;
+}
+
+/// What the function that is 1 at corner a and 0 at the others, linear between, is at point k.
+double corner_weight(uint32_t corners, uint32_t a, uint32_t k) {
+  if (corners == 3) return a == k ? 2.0 / 3 : 1.0 / 6;
+  constexpr double near = 0.78867513, far = 0.21132487;
+  const uint32_t apart = (a + 4 - k) % 4;
+  return apart == 0 ? near * near : apart == 2 ? far * far : near * far;
+}
+
+Vec3 lifted(const Exchange& x, DVec3 p, DVec3 normal) {
+  return trace::offset_origin(to_float(p), to_float(normal), x.diagonal_m);
+}
+
+/// Of pairs of points on two elements, the share that see each other.
+float seen_by_rays(const Exchange& x, const Element& r, const Element& s, uint64_t seed) {
+  const DVec3 from_normal = x.faces.faces[r.face].plane.normal;
+  const Plane& to_plane = x.faces.faces[s.face].plane;
+  std::array<trace::Ray, kRays> rays;
+  for (uint32_t k = 0; k < kRays; ++k) {
+    const DVec3 a = point_in(r, sobol_owen_2d(k, hash64(seed, 1)));
+    const DVec3 b = point_in(s, sobol_owen_2d(k, hash64(seed, 2)));
+    const DVec3 side = to_plane.height(a) >= 0 ? to_plane.normal : -to_plane.normal;
+    const Vec3 from = lifted(x, a, from_normal), to = lifted(x, b, side);
+    rays[k] = {from, 0, to - from, 1};
+  }
+  std::array<uint8_t, kRays> blocked{};
+  x.tracer.occluded(rays, blocked);
+  return 1 - float(std::count(blocked.begin(), blocked.end(), 1)) / kRays;
+}
+
+void find_blockers(const Exchange& x, const Element& r, const Element& s, const Link* parent,
+                   Link& link) {
+  if (parent && !parent->crowded)
+    filter_between(x.blockers, r.polygon(), s.polygon(), parent->blockers, link.blockers);
+  else
+    find_between(x.blockers, r.polygon(), s.polygon(), link.blockers);
+  std::erase(link.blockers, r.face), std::erase(link.blockers, s.face);
+  if (link.blockers.size() > kMostBlockers || has_holes(x.faces, link.blockers))
+    link.blockers.clear(), link.crowded = true;
+}
+
+/// What an element's points see of another one, and its middle.
+struct Views {
+  std::array<double, 5> whole{}, visible{};
+  double whole_sum = 0, visible_sum = 0;  ///< without the middle
+  uint32_t count = 0;
+
+  double share() const { return whole_sum > 0 ? visible_sum / whole_sum : 1; }
+};
+
+Views look(const Exchange& x, const Element& from, const Element& at, const Link& link,
+           viewfactor::VisibilityScratch& scratch) {
+  Views out;
+  const Plane& horizon = x.faces.faces[from.face].plane;
+  const Face& face = x.faces.faces[at.face];
+  const Points points = points_of(from);
+  out.count = points.count;
+  const Polygon front = viewfactor::clip_above(at.polygon(), horizon, x.blockers.slack_m);
+  if (front.empty()) return out;
+  const Polygon back(front.rbegin(), front.rend());
+  static thread_local std::vector<uint8_t> casts;
+  casts.resize(x.blockers.all.size());
+  for (uint32_t k = 0; k <= points.count; ++k) {
+    const bool behind = face.plane.height(points.at[k]) < 0;
+    if (behind && !face.two_sided) continue;
+    const Polygon& seen = behind ? back : front;
+    out.whole[k] = viewfactor::point_to_polygon(points.at[k], horizon.normal, seen);
+    out.visible[k] = out.whole[k];
+    if (out.whole[k] > 0 && !link.blockers.empty())
+      out.visible[k] =
+          viewfactor::visible_point_factor(points.at[k], horizon.normal, seen, x.blockers.all,
+                                           link.blockers, x.blockers.slack_m, casts, scratch)
+              .visible;
+    if (k < points.count) out.whole_sum += out.whole[k], out.visible_sum += out.visible[k];
+  }
+  return out;
+}
+
+/// How far the middle is from the mean of the points, and a part of their differences.
+double spread_of(const Views& v) {
+  const auto [least, most] = std::minmax_element(v.visible.begin(), v.visible.begin() + v.count);
+  return std::max(2 * std::abs(v.visible[v.count] - v.visible_sum / v.count),
+                  0.1 * (*most - *least));
+}
+
+/// The linear function through the points, moved so that it has the link's mean.
+void set_receiver(const Views& v, Link& link) {
+  const double mean = v.visible_sum / v.count;
+  for (uint32_t k = 0; k < v.count; ++k)
+    link.to[k] =
+        mean > 0 ? float((1 + (v.visible[k] / mean - 1) * kOutwards[v.count == 3])) * link.factor
+                 : link.factor;
+}
+
+/// The weights of the corners' radiosities when what the points see weighs those.
+void set_source(const Views& v, Link& link) {
+  // Of a corner's function at a point: that of its own corner, and the others'.
+  for (uint32_t a = 0; a < v.count; ++a) {
+    double sum = 0;
+    for (uint32_t k = 0; k < v.count; ++k) sum += v.visible[k] * corner_weight(v.count, a, k);
+    link.from[a] = v.visible_sum > 0 ? float(sum / v.visible_sum) : 1 / float(v.count);
+  }
+}
+
+/// Between two elements: what points of the receiver see of the source, and the other way round.
+Link link_elements(const Exchange& x, uint32_t receiver, uint32_t source, const Link* parent,
+                   viewfactor::VisibilityScratch& scratch) {
+  Link link{.source = source};
+  const Element &r = x.tree.element(receiver), &s = x.tree.element(source);
+  if (r.face == s.face) return link;
+  const Plane& r_plane = x.faces.faces[r.face].plane;
+  const Face& s_face = x.faces.faces[s.face];
+  const Polygon seen = viewfactor::clip_above(s.polygon(), r_plane, x.blockers.slack_m);
+  if (seen.empty()) return link;
+  const auto closed_form = [&](double tolerance) {
+    return viewfactor::polygon_exchange_area(r.polygon(), seen, tolerance, x.blockers.slack_m)
+        .value;
+  };
+  const bool near = length(r.centre - s.centre) < kNear * (r.radius_m + s.radius_m);
+  if (!s_face.two_sided) {
+    if (viewfactor::clip_above(r.polygon(), s_face.plane, x.blockers.slack_m).empty()) return link;
+    if (near && !(closed_form(1e-2) > 0)) return link;
+  }
+  find_blockers(x, r, s, parent, link);
+  const Views there = look(x, r, s, link, scratch);
+  if (!near && !(there.whole_sum > 0)) return link;
+  link.visible =
+      link.crowded ? seen_by_rays(x, r, s, hash64(receiver, source)) : float(there.share());
+  const double mean = near && !s_face.two_sided ? closed_form(kClosedFormTolerance) / r.area_m2
+                                                : there.whole_sum / there.count;
+  link.factor = float(mean) * link.visible;
+  if (x.basis == Basis::constant)
+    link.to.fill(link.factor);
+  else
+    set_receiver(there, link);
+  Views back;
+  back.count = s.corners;
+  if (!s_face.two_sided) back = look(x, s, r, link, scratch);
+  if (x.basis != Basis::linear) back.visible_sum = 0;  // corners count alike
+  set_source(back, link);
+  link.spread = float(spread_of(there));
+  if (back.visible_sum > 0)
+    link.spread = std::max(link.spread, float(spread_of(back) * s.area_m2 / r.area_m2));
+  return link;
+}
+
+struct Ball {
+  DVec3 centre;
+  double radius_m = 0;
+};
+Ball ball_of(const Tree& tree, uint32_t id) {
+  if (tree.is_cluster(id)) return {tree.clusters[id].centre, tree.clusters[id].radius_m};
+  const Element& e = tree.element(id);
+  return {e.centre, e.radius_m};
+}
+
+/// A place on some element below that faces `other`: chance takes halves of clusters, and those
+/// that turn their backs are not asked. Nothing after some trials.
+std::optional<Vec3> place_facing(const Exchange& x, uint32_t id, DVec3 other,
+                                 RandomStream& random) {
+  constexpr int kTrials = 8;
+  for (int k = 0; k < kTrials; ++k) {
+    uint32_t at = id;
+    while (x.tree.is_cluster(at)) at = x.tree.clusters[at].child[random.next() < 0.5f];
+    const Element& e = x.tree.element(at);
+    const Face& face = x.faces.faces[e.face];
+    const DVec3 place = point_in(e, random.next2());
+    if (face.plane.height(other) > 0) return lifted(x, place, face.plane.normal);
+    if (face.two_sided) return lifted(x, place, -face.plane.normal);
+  }
+  return std::nullopt;
+}
+
+/// Of pairs of places that face each other, the share that see each other.
+float seen_between(const Exchange& x, uint32_t receiver, uint32_t source) {
+  const DVec3 r = ball_of(x.tree, receiver).centre, s = ball_of(x.tree, source).centre;
+  RandomStream random{hash64(receiver, source)};
+  std::array<trace::Ray, kRays> rays;
+  size_t count = 0;
+  for (uint32_t k = 0; k < kRays; ++k) {
+    const auto from = place_facing(x, receiver, s, random);
+    const auto to = place_facing(x, source, r, random);
+    if (from && to) rays[count++] = {*from, 0, *to - *from, 1};
+  }
+  if (count == 0) return 0;
+  std::array<uint8_t, kRays> blocked{};
+  x.tracer.occluded({rays.data(), count}, {blocked.data(), count});
+  return 1 - float(std::count(blocked.begin(), blocked.end(), 1)) / float(count);
+}
+
+/// From far away: a point that sends to a point.
+Link link_far(const Exchange& x, uint32_t receiver, uint32_t source) {
+  Link link{.source = source};
+  const Ball r = ball_of(x.tree, receiver), s = ball_of(x.tree, source);
+  const DVec3 d = s.centre - r.centre;
+  const double distance = length(d);
+  if (!(distance > 0)) {
+    link.factor = link.spread = INFINITY;
+    return link;
+  }
+  link.direction = to_float(d * (1 / distance));
+  double cosine = 1;
+  if (!x.tree.is_cluster(receiver)) {
+    const DVec3 normal = x.faces.faces[x.tree.element(receiver).face].plane.normal;
+    // The highest part of the source that the receiver's horizon lets through.
+    if (dot(d, normal) + s.radius_m <= 0) return link;
+    cosine = std::max(0.0, dot(d, normal) / distance);
+  }
+  if (distance < 2 * (r.radius_m + s.radius_m)) {  // too near for that: to be divided
+    link.factor = link.spread = INFINITY;
+    return link;
+  }
+  link.visible = seen_between(x, receiver, source);
+  link.factor = float(cosine / (kPiDouble * distance * distance)) * link.visible;
+  // Wrong by what distances and angles differ by over both, and by shadows that fall on a part.
+  const double part = (r.radius_m + s.radius_m) / distance;
+  const double unseen = double(std::min(link.visible, 1 - link.visible));
+  link.spread = float((part + 2 * unseen) / (kPiDouble * distance * distance));
+  return link;
+}
+
+/// What an element or cluster sends along a direction: B A cos, summed [W].
+Rgb sent_along(const Exchange& x, const Light& light, uint32_t id, Vec3 direction) {
+  if (x.tree.is_cluster(id)) return light.clusters[id].sent.at(direction);
+  const Element& e = x.tree.element(id);
+  const Face& face = x.faces.faces[e.face];
+  const float cosine = dot(to_float(face.plane.normal), direction);
+  return light.elements[id - x.tree.clusters.size()].radiosity *
+         (float(e.area_m2) * (face.two_sided ? std::abs(cosine) : std::max(0.0f, cosine)));
+}
+
+}  // namespace
+
+Link make_link(const Exchange& x, uint32_t receiver, uint32_t source, const Link* parent,
+               viewfactor::VisibilityScratch& scratch) {
+  if (x.tree.is_cluster(receiver) || x.tree.is_cluster(source))
+    return link_far(x, receiver, source);
+  return link_elements(x, receiver, source, parent, scratch);
+}
+
+/// The mean radiosity of a source element as its receiver sees it.
+static Rgb sent_over(const Link& link, const Exchange& x, const Light& light) {
+  const std::array<Rgb, 4>& b = light.elements[link.source - x.tree.clusters.size()].shining;
+  return b[0] * link.from[0] + b[1] * link.from[1] + b[2] * link.from[2] + b[3] * link.from[3];
+}
+
+Rgb irradiance_of(const Link& link, const Exchange& x, const Light& light) {
+  if (link.direction == Vec3{}) return sent_over(link, x, light) * link.factor;
+  return sent_along(x, light, link.source, -link.direction) * link.factor;
+}
+
+/// [Hanrahan91] compares B F A, the power over a link, with a limit. Here the limit is eps on an
+/// element of the unit's area, so that eps is what it is in [Hardt96]: W/m^2.
+float error_of(const Link& link, uint32_t receiver, const Exchange& x, const Light& light) {
+  if (std::isinf(link.spread)) return INFINITY;
+  float error = 0;
+  if (x.tree.is_cluster(link.source)) {
+    error = max_component(sent_along(x, light, link.source, -link.direction)) * link.spread;
+  } else {
+    const ElementLight& l = light.elements[link.source - x.tree.clusters.size()];
+    error = link.direction == Vec3{}
+                ? std::max(l.most * link.spread, l.rough * link.factor)
+                : l.most * float(x.tree.element(link.source).area_m2) * link.spread;
+  }
+  const double area = x.tree.is_cluster(receiver) ? x.tree.clusters[receiver].area_m2
+                                                  : x.tree.element(receiver).area_m2;
+  return error * float(area / x.unit_area_m2);
+}
+
+void gather(const Exchange& x, std::span<const std::vector<Link>> links, Light& light) {
+  const size_t clusters = x.tree.clusters.size();
+  parallel_for(links.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t id = begin; id < end; ++id) {
+      if (id < clusters) {
+        Cosines& received = light.clusters[id].received;
+        received = {};
+        for (const Link& link : links[id])
+          received.add(link.direction, irradiance_of(link, x, light));
+        continue;
+      }
+      std::array<Rgb, 4> sum{};
+      for (const Link& link : links[id]) {
+        if (link.direction == Vec3{}) {
+          const Rgb b = sent_over(link, x, light);
+          for (size_t k = 0; k < 4; ++k) sum[k] += b * link.to[k];
+        } else {
+          const Rgb e = irradiance_of(link, x, light);
+          for (Rgb& corner : sum) corner += e;
+        }
+      }
+      light.elements[id - clusters].received = sum;
+    }
+  });
+}
+
+}  // namespace luxel::hierarchical

@@ -1,0 +1,258 @@
+#include "luxel/solve/hierarchical/refine.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/solve/hierarchical/surface.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+/// Points of an element of the unit's area, and of small ones, at which textures are looked at.
+/// They are scattered: a grid would see no more than some squares of a checkerboard.
+constexpr double kTexturePoints = 1024, kLeastTexturePoints = 32;
+
+/// A link to be divided.
+struct Open {
+  uint32_t receiver = 0;
+  Link link;
+};
+/// What it is divided into.
+struct Pair {
+  uint32_t receiver = 0, source = 0;
+  uint32_t parent = 0;  ///< of the open links
+};
+
+bool has_texture(const scene::Scene& scene, const Face& face) {
+  const scene::Material& m = scene.materials[face.material];
+  return m.base_color_texture.texture != kNone || m.metallic_texture.texture != kNone ||
+         m.emission_texture.texture != kNone ||
+         !scene.meshes[scene.instances[face.instance].mesh].colors.empty();
+}
+
+/// Another one for each place, whatever is divided first.
+uint64_t seed_of(const Element& e) {
+  return hash64(std::bit_cast<uint64_t>(e.centre.x),
+                hash64(std::bit_cast<uint64_t>(e.centre.y), std::bit_cast<uint64_t>(e.centre.z)));
+}
+
+/// A link that says nothing yet.
+Link undivided(uint32_t source) {
+  return {.source = source, .factor = INFINITY, .spread = INFINITY};
+}
+
+struct Rules {
+  const Tree& tree;
+  const RefineParams& params;
+  bool full = false;  ///< no more elements
+
+  double radius(uint32_t id) const {
+    return tree.is_cluster(id) ? tree.clusters[id].radius_m : tree.element(id).radius_m;
+  }
+  bool can_divide(uint32_t id) const {
+    if (tree.is_cluster(id)) return true;
+    const Element& e = tree.element(id);
+    return !e.is_leaf() || (!full && e.area_m2 > 4 * params.min_area_m2);
+  }
+};
+
+enum class Division { none, receiver, source, both };
+
+/// The larger of the two is divided. A source whose parts differ in light is, when that is what
+/// makes the error.
+Division division_of(const Rules& rules, const Light& light, uint32_t receiver, const Link& link) {
+  const Tree& tree = rules.tree;
+  const uint32_t source = link.source;
+  if (receiver == source) return tree.is_cluster(receiver) ? Division::both : Division::none;
+  const bool r = rules.can_divide(receiver), s = rules.can_divide(source);
+  if (!r || !s) return r ? Division::receiver : s ? Division::source : Division::none;
+  if (!tree.is_cluster(receiver) && !tree.is_cluster(source)) {
+    const ElementLight& l = light.elements[source - tree.clusters.size()];
+    if (!tree.element(source).is_leaf() && l.rough * link.factor > l.most * link.spread)
+      return Division::source;
+    return tree.element(receiver).area_m2 >= tree.element(source).area_m2 ? Division::receiver
+                                                                          : Division::source;
+  }
+  return rules.radius(receiver) >= rules.radius(source) ? Division::receiver : Division::source;
+}
+
+/// The parts of a cluster or an element, which is divided when it was not.
+struct Parts {
+  std::array<uint32_t, 4> id{};
+  uint32_t count = 0;
+};
+Parts parts_of(Refined& state, const Exchange& x, uint32_t id) {
+  if (state.tree.is_cluster(id)) {
+    const auto& child = state.tree.clusters[id].child;
+    return {{child[0], child[1]}, 2};
+  }
+  const size_t e = id - state.tree.clusters.size();
+  if (state.tree.elements[e].is_leaf()) divide_element(state, x, e);
+  const uint32_t first = state.tree.id_of(state.tree.elements[e].child);
+  return {{first, first + 1, first + 2, first + 3}, 4};
+}
+
+void add_pairs(Refined& state, const Exchange& x, const Open& open, Division division,
+               uint32_t parent, std::vector<Pair>& out) {
+  const uint32_t r = open.receiver, s = open.link.source;
+  if (division == Division::both) {
+    const Parts parts = parts_of(state, x, r);
+    for (uint32_t i = 0; i < parts.count; ++i)
+      for (uint32_t j = 0; j < parts.count; ++j)
+        if (i != j || state.tree.is_cluster(parts.id[i]))
+          out.push_back({parts.id[i], parts.id[j], parent});
+    return;
+  }
+  const Parts parts = parts_of(state, x, division == Division::receiver ? r : s);
+  for (uint32_t i = 0; i < parts.count; ++i)
+    out.push_back(division == Division::receiver ? Pair{parts.id[i], s, parent}
+                                                 : Pair{r, parts.id[i], parent});
+}
+
+std::vector<Link> make_links(const Exchange& x, std::span<const Pair> pairs,
+                             std::span<const Open> open, Progress& progress) {
+  std::vector<Link> made(pairs.size());
+  parallel_for(pairs.size(), 64, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
+    viewfactor::VisibilityScratch scratch;
+    for (size_t k = begin; k < end; ++k) {
+      const auto& [receiver, source, parent] = pairs[k];
+      if (receiver == source) {
+        made[k] = undivided(receiver);
+        continue;
+      }
+      const Open& from = open[parent];
+      const bool inherits =
+          !x.tree.is_cluster(from.receiver) && !x.tree.is_cluster(from.link.source);
+      made[k] = make_link(x, receiver, source, inherits ? &from.link : nullptr, scratch);
+    }
+    progress.advance(end - begin);
+  });
+  return made;
+}
+
+/// Divides open links until all have little error, or cannot be divided.
+Status settle(Refined& state, const Exchange& x, const RefineParams& params, std::vector<Open> open,
+              Progress& progress) {
+  while (!open.empty()) {
+    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    Rules rules{state.tree, params};
+    std::vector<Pair> pairs;
+    std::vector<Open> divided;
+    for (Open& o : open) {
+      rules.full = state.tree.elements.size() + 4 > params.max_elements;
+      const Division division =
+          state.links.count + pairs.size() >= params.max_links && !std::isinf(o.link.spread)
+              ? Division::none
+              : division_of(rules, state.light, o.receiver, o.link);
+      state.links.bounded |= rules.full || state.links.count + pairs.size() >= params.max_links;
+      if (division == Division::none) {
+        ++state.links.at_least_area, ++state.links.count;
+        state.links.of[o.receiver].push_back(std::move(o.link));
+        continue;
+      }
+      add_pairs(state, x, o, division, uint32_t(divided.size()), pairs);
+      divided.push_back(std::move(o));
+    }
+    std::vector<Link> made = make_links(x, pairs, divided, progress);
+    open.clear();
+    for (size_t k = 0; k < pairs.size(); ++k) {
+      if (made[k].factor == 0 && made[k].spread == 0) continue;
+      if (double(error_of(made[k], pairs[k].receiver, x, state.light)) > params.eps) {
+        open.push_back({pairs[k].receiver, std::move(made[k])});
+        continue;
+      }
+      ++state.links.count;
+      state.links.of[pairs[k].receiver].push_back(std::move(made[k]));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+ElementLight bare_light(const scene::Scene& scene, const Exchange& x, const Element& e) {
+  ElementLight out;
+  const Face& face = x.faces.faces[e.face];
+  if (!has_texture(scene, face)) {
+    const scene::SurfacePoint p{face.instance, face.triangle, {1.0f / 3, 1.0f / 3}};
+    out.reflectance = scene::reflectance_at(scene, p);
+    out.emission = scene::emission_at(scene, p) * kPi;
+    return out;
+  }
+  const auto count = uint32_t(
+      std::clamp(kTexturePoints * e.area_m2 / x.unit_area_m2, kLeastTexturePoints, kTexturePoints));
+  const uint64_t seed = seed_of(e);
+  for (uint32_t k = 0; k < count; ++k) {
+    const DVec3 place = point_in(e, sobol_owen_2d(k, seed));
+    std::optional<scene::SurfacePoint> p;
+    if (face.has_holes)
+      p = solid_point(x.faces, x.tracer, e.face, place);  // a hole sends nothing
+    else
+      p = surface_point(scene, x.faces, x.tracer, e.face, place);
+    if (!p) continue;
+    out.reflectance += scene::reflectance_at(scene, *p);
+    out.emission += scene::emission_at(scene, *p) * kPi;
+  }
+  out.reflectance = out.reflectance / float(count), out.emission = out.emission / float(count);
+  return out;
+}
+
+void divide_element(Refined& state, const Exchange& x, size_t element) {
+  divide(state.tree, element);
+  const ElementLight from = state.light.elements[element];
+  const Element whole = state.tree.elements[element];
+  for (uint32_t part = 0; part < 4; ++part) {
+    ElementLight l = bare_light(state.scene, x, state.tree.elements[whole.child + part]);
+    const auto of = [&](const std::array<Rgb, 4>& v) {
+      return part_of(v, whole.corners, part, whole.parts);
+    };
+    l.arriving = of(from.arriving), l.unlinked = of(from.unlinked), l.shining = of(from.shining);
+    for (uint32_t k = 0; k < whole.corners; ++k) {
+      l.irradiance += (l.arriving[k] + l.unlinked[k]) / float(whole.corners);
+      l.radiosity += l.shining[k] / float(whole.corners);
+    }
+    l.most = max_component(l.radiosity);
+    state.light.elements.push_back(l);
+    state.links.of.emplace_back();
+  }
+}
+
+Status link_all(Refined& state, const Exchange& x, const RefineParams& params, Progress& progress) {
+  state.links.of.resize(state.tree.size());
+  if (state.tree.clusters.empty()) return {};
+  progress.begin("link", 0);
+  return settle(state, x, params, {{0, undivided(0)}}, progress);
+}
+
+Result<size_t> refine(Refined& state, const Exchange& x, const RefineParams& params,
+                      Progress& progress) {
+  std::vector<Open> open;
+  state.links.at_least_area = 0;
+  const Rules rules{state.tree, params, state.tree.elements.size() + 4 > params.max_elements};
+  for (uint32_t id = 0; id < state.links.of.size(); ++id) {
+    auto& links = state.links.of[id];
+    size_t kept = 0;
+    for (Link& link : links) {
+      if (double(error_of(link, id, x, state.light)) > params.eps) {
+        if (division_of(rules, state.light, id, link) != Division::none) {
+          open.push_back({id, std::move(link)});
+          continue;
+        }
+        ++state.links.at_least_area;
+      }
+      if (&links[kept] != &link) links[kept] = std::move(link);
+      ++kept;
+    }
+    links.resize(kept);
+  }
+  const size_t count = open.size();
+  state.links.count -= count;
+  progress.begin("refine", 0);
+  LUXEL_TRY_STATUS(settle(state, x, params, std::move(open), progress));
+  return count;
+}
+
+}  // namespace luxel::hierarchical

@@ -1,0 +1,154 @@
+#include "luxel/solve/hierarchical/represent.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/solve/hierarchical/feedback.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+/// A triangle whose samples are off a plane by less than this part of what its interpolant may be
+/// off by is not looked at.
+constexpr double kFlat = 0.25;
+/// Of what links may be off by.
+constexpr double kUsualPart = 0.25;
+/// Light at points only says what to divide and to correct before the last mesh: it may be so much
+/// less exact.
+constexpr double kRougher = 4;
+/// Sources may be wrong at points by this part of what interpolants may be off by; but no less than
+/// that of the mean light.
+constexpr double kExacter = 0.2, kExactest = 1e-5;
+/// When light has changed by no more than so many eps, the next change would be half of eps: each
+/// is a fifth of the one before, or less.
+constexpr double kSettled = 2.5;
+constexpr int kMostFeedbacks = 4;
+
+struct Looked {
+  const Solution& s;
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  const PointParams& params;
+};
+
+double area_of(const LightMesh& mesh, const LightTriangle& t) {
+  const DVec3 a = mesh.vertices[t.vertex[0]];
+  return 0.5 * length(cross(mesh.vertices[t.vertex[1]] - a, mesh.vertices[t.vertex[2]] - a));
+}
+
+/// How far the middles of edges are from the means of their ends, at most.
+float bend_of(const Interpolant& r) {
+  const Rgb a = value_of(r, 0, 0), b = value_of(r, 1, 0), c = value_of(r, 0, 1);
+  float bend = 0;
+  for (const Rgb& d :
+       {value_of(r, 0.5f, 0) - (a + b) * 0.5f, value_of(r, 0.5f, 0.5f) - (b + c) * 0.5f,
+        value_of(r, 0, 0.5f) - (c + a) * 0.5f})
+    bend = std::max({bend, max_component(d), max_component(-d)});
+  return bend;
+}
+
+/// Per triangle; 0 for those that are not asked for.
+Result<std::vector<float>> measure(const Looked& at, std::span<const size_t> triangles,
+                                   KnownLight& known, const LightMesh& mesh, Progress& progress) {
+  std::vector<Receiver> receivers;
+  for (const size_t k : triangles) {
+    const LightTriangle& t = mesh.triangles[k];
+    receivers.push_back(receiver_at(at.s, at.scene, at.tracer, t.face, middle_of(mesh, t)));
+  }
+  LUXEL_TRY(const std::vector<Rgb> e, continuous_irradiance_at(at.s, at.scene, at.tracer, receivers,
+                                                               at.params, known, progress));
+  LUXEL_TRY(const std::vector<Rgb> sharp,
+            sharp_irradiance_at(at.scene, at.tracer, receivers, progress));
+  std::vector<float> error(mesh.triangles.size());
+  for (size_t i = 0; i < triangles.size(); ++i) {
+    const Rgb d = e[i] + sharp[i] - value_of(mesh.interpolant[triangles[i]], 1 / 3.0f, 1 / 3.0f);
+    error[triangles[i]] = std::max(max_component(d), max_component(-d));
+  }
+  return error;
+}
+
+/// Leaves whose interpolants are off by more than eps, looked for where triangles are bent.
+Result<std::vector<size_t>> leaves_off(const Looked& at, double eps, KnownLight& known,
+                                       const LightMesh& mesh, Progress& progress) {
+  const double unit_m2 = at.s.unit_area_m2;
+  std::vector<size_t> bent;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (double(bend_of(mesh.interpolant[t])) *
+            std::sqrt(area_of(mesh, mesh.triangles[t]) / unit_m2) >
+        kFlat * eps)
+      bent.push_back(t);
+  LUXEL_TRY(const std::vector<float> error, measure(at, bent, known, mesh, progress));
+  std::vector<size_t> out;
+  for (size_t e = 0; e < at.s.tree.elements.size(); ++e) {
+    double squares = 0;
+    for (uint32_t t = mesh.first_of_element[e]; t < mesh.first_of_element[e + 1]; ++t)
+      squares += double(error[t]) * double(error[t]) * area_of(mesh, mesh.triangles[t]);
+    if (squares > eps * eps * unit_m2 && at.s.tree.elements[e].area_m2 > 4 * at.s.min_area_m2)
+      out.push_back(e);
+  }
+  return out;
+}
+
+void divide_all(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+                std::span<const size_t> leaves, size_t max_elements) {
+  const Exchange x = s.exchange(tracer);
+  Refined state{scene, s.tree, s.light, s.links};
+  drop_pieces(s.light);  // theirs are the elements there were
+  for (const size_t leaf : leaves) {
+    if (s.tree.elements.size() + 4 > max_elements) break;
+    divide_element(state, x, leaf);
+  }
+}
+
+/// Feeds back, and gathers anew, until that changes light no more.
+Status settle(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+              const MeshParams& params, double eps, Known& known, LightMesh mesh,
+              Progress& progress) {
+  for (int k = 0; k < kMostFeedbacks; ++k) {
+    LUXEL_TRY(const double change, feed_back(s, tracer, mesh, progress));
+    if (change <= kSettled * eps) break;
+    known.light.at.clear();
+    LUXEL_TRY(mesh, make_light_mesh(s, scene, tracer, params, known, progress));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<float>> measure_error(const Solution& s, const scene::Scene& scene,
+                                         const trace::RayTracer& tracer, const PointParams& params,
+                                         const LightMesh& mesh, Progress& progress) {
+  std::vector<size_t> all(mesh.triangles.size());
+  for (size_t t = 0; t < all.size(); ++t) all[t] = t;
+  KnownLight none;
+  return measure({s, scene, tracer, params}, all, none, mesh, progress);
+}
+
+Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+                            const MeshParams& mesh_params, const RepresentParams& params,
+                            Progress& progress) {
+  const double mean = double(max_component(totals_of(s).irradiance));
+  MeshParams fine = mesh_params;
+  double eps = params.eps.value_or(s.eps * kUsualPart);
+  if (mean > 0)
+    fine.point.tolerance = std::clamp(
+        kExacter * eps / mean, std::min(kExactest, fine.point.tolerance), fine.point.tolerance);
+  MeshParams rough = fine;
+  rough.point.tolerance *= kRougher;
+  eps = std::max(eps, rough.point.tolerance * mean);
+  Known known;
+  for (int round = 0;; ++round) {
+    LUXEL_TRY(LightMesh mesh, make_light_mesh(s, scene, tracer, rough, known, progress));
+    LUXEL_TRY(const std::vector<size_t> leaves,
+              leaves_off({s, scene, tracer, rough.point}, eps, known.light, mesh, progress));
+    if (leaves.empty() || round == params.max_rounds ||
+        s.tree.elements.size() + 4 > params.max_elements) {
+      LUXEL_TRY_STATUS(settle(s, scene, tracer, rough, eps, known, std::move(mesh), progress));
+      known.light.at.clear();
+      return make_light_mesh(s, scene, tracer, fine, known, progress);
+    }
+    divide_all(s, scene, tracer, leaves, params.max_elements);
+  }
+}
+
+}  // namespace luxel::hierarchical

@@ -1,0 +1,33 @@
+// Refinement by what interpolants show, after that by what links carry. [Hardt96, section 4.4.2]
+#pragma once
+
+#include "luxel/solve/hierarchical/light_mesh.h"
+
+namespace luxel::hierarchical {
+
+struct RepresentParams {
+  /// How far interpolants may be off over an element of the unit's area [W/m^2]; nothing: a quarter
+  /// of what links may.
+  std::optional<double> eps;
+  int max_rounds = 8;
+  size_t max_elements = 1u << 20;
+};
+
+/// The light mesh, after dividing leaves as long as their interpolants are off: the root of the sum
+/// of squares of each triangle's error, at its middle, times the triangle's area over the unit, is
+/// held against eps. The thesis takes the largest error alone, which divides on and on along
+/// whatever edge of a shadow the mesh does not follow; here short edges count for little. Triangles
+/// whose six samples lie on a plane are not looked at. Light of earlier rounds is kept, so each
+/// costs only what it divides. The smaller eps is, the more exact is light at points; it is no
+/// smaller than what that can tell. In the end the solution learns from the interpolants
+/// (feedback.h), and the last mesh is made from what it is then. Errors: cancelled.
+Result<LightMesh> represent(Solution& solution, const scene::Scene& scene,
+                            const trace::RayTracer& tracer, const MeshParams& mesh_params,
+                            const RepresentParams& params, Progress& progress);
+
+/// How far interpolants are off at the middles of their triangles [W/m^2]. Errors: cancelled.
+Result<std::vector<float>> measure_error(const Solution& solution, const scene::Scene& scene,
+                                         const trace::RayTracer& tracer, const PointParams& params,
+                                         const LightMesh& mesh, Progress& progress);
+
+}  // namespace luxel::hierarchical

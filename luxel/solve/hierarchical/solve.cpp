@@ -1,0 +1,181 @@
+#include "luxel/solve/hierarchical/solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/solve/hierarchical/contacts.h"
+#include "luxel/solve/hierarchical/lamps.h"
+#include "luxel/solve/hierarchical/overlaps.h"
+
+namespace luxel::hierarchical {
+namespace {
+
+constexpr int kMostIterations = 24, kMostSweeps = 2000;
+/// Of the mean irradiance, when nobody says more.
+constexpr double kUsualEps = 0.01;
+/// Nobody gets less: exact light at points is not known better, and links without end would be.
+constexpr double kLeastEps = 1e-4;
+/// Errors count in full on receivers of a face's mean size, but of no more faces than so many: what
+/// is asked for must not depend on how finely a surface is cut into triangles.
+constexpr size_t kMostUnits = 1024;
+constexpr double kLeastPart = 1.0 / (1 << 18);
+
+double area_of(const Tree& tree) {
+  double area = 0;
+  for (size_t e = 0; e < tree.first_root.back(); ++e) area += tree.elements[e].area_m2;
+  return area;
+}
+
+double mean_irradiance(const Tree& tree, const Light& light) {
+  double sum = 0, area = 0;
+  for (size_t e = 0; e < tree.first_root.back(); ++e) {
+    sum += tree.elements[e].area_m2 * double(max_component(light.elements[e].irradiance));
+    area += tree.elements[e].area_m2;
+  }
+  return area > 0 ? sum / area : 0;
+}
+
+/// Root mean square of the differences of roots and leaves, over the mean.
+double change_of(const Tree& tree, const Light& light, std::span<const Rgb> before) {
+  double sum = 0, all = 0;
+  for (size_t e = 0; e < tree.elements.size(); ++e) {
+    if (!tree.elements[e].is_leaf()) continue;
+    const Rgb d = light.elements[e].irradiance - before[e];
+    sum += tree.elements[e].area_m2 * double(dot(d, d));
+    all += tree.elements[e].area_m2 *
+           double(dot(light.elements[e].irradiance, light.elements[e].irradiance));
+  }
+  return all > 0 ? std::sqrt(sum / all) : 0;
+}
+
+struct Work {
+  Solution& s;
+  const Exchange x;
+  std::vector<uint8_t> lit;
+  Refined state;
+};
+
+/// From emission alone: so many reflections and no more. Points gather what has been reflected one
+/// time less than the last gather brings.
+void count_bounces(Work& w, int bounces) {
+  std::vector<ElementLight>& light = w.s.light.elements;
+  for (ElementLight& l : light) l.received = {}, l.irradiance = {}, l.radiosity = l.emission;
+  for (ClusterLight& l : w.s.light.clusters) l.received = {};
+  std::vector<std::array<Rgb, 4>> unlinked;  // it is there from the first reflection on
+  for (ElementLight& l : light) unlinked.push_back(l.unlinked), l.unlinked = {};
+  push_pull(w.s.faces, w.s.tree, w.s.light);
+  for (size_t e = 0; e < light.size(); ++e) light[e].unlinked = unlinked[e];
+  std::vector<ElementLight> before;
+  for (int k = 0; k <= bounces; ++k) {
+    if (k == bounces) before = light;
+    gather(w.x, w.s.links.of, w.s.light);
+    push_pull(w.s.faces, w.s.tree, w.s.light);
+  }
+  for (size_t e = 0; e < light.size(); ++e)
+    light[e].shining = before[e].shining, light[e].most = before[e].most,
+    light[e].rough = before[e].rough;
+}
+
+Status run(Work& w, const SolveParams& params, Progress& progress) {
+  RefineParams refine_params{0, w.s.min_area_m2, params.max_elements, params.max_links};
+  for (const Element& e : w.s.tree.elements)
+    w.s.light.elements.push_back(bare_light(w.state.scene, w.x, e));
+  w.s.light.clusters.resize(w.s.tree.clusters.size());
+  push_pull(w.s.faces, w.s.tree, w.s.light);
+  w.s.links.of.resize(w.s.tree.size());
+  // A first guess, from the power there is; it is made better when light has arrived.
+  const double power = double(max_component(totals_of(w.s).emission));
+  refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * power) : 0.1 * power;
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps,
+                                {refine_params.eps > 0 ? refine_params.eps : INFINITY,
+                                 w.s.min_area_m2, params.max_elements, params.max_links},
+                                w.lit, progress));
+  LUXEL_TRY_STATUS(link_all(w.state, w.x, refine_params, progress));
+  for (w.s.iterations = 0; w.s.iterations < kMostIterations; ++w.s.iterations) {
+    LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
+    const double mean = mean_irradiance(w.s.tree, w.s.light);
+    refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * mean) : kUsualEps * mean;
+    w.s.eps = refine_params.eps;
+    const size_t leaves = w.s.tree.elements.size();
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, refine_params, w.lit, progress));
+    LUXEL_TRY(const size_t refined, refine(w.state, w.x, refine_params, progress));
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, refine_params, w.lit, progress));
+    if (refined == 0 && leaves == w.s.tree.elements.size()) break;
+  }
+  LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
+  w.s.all_bounces = params.bounces < 0;
+  if (!w.s.all_bounces) count_bounces(w, params.bounces);
+  return {};
+}
+
+}  // namespace
+
+Status iterate(Solution& s, const trace::RayTracer& tracer, double tolerance, Progress& progress) {
+  const Exchange x = s.exchange(tracer);
+  std::vector<Rgb> before;
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    before.resize(s.tree.elements.size());
+    for (size_t e = 0; e < before.size(); ++e) before[e] = s.light.elements[e].irradiance;
+    gather(x, s.links.of, s.light);
+    push_pull(s.faces, s.tree, s.light);
+    ++s.sweeps;
+    if (change_of(s.tree, s.light, before) < tolerance) break;
+  }
+  return {};
+}
+
+Totals totals_of(const Solution& s) {
+  Totals out;
+  for (size_t e = 0; e < s.tree.first_root.back(); ++e) {
+    const auto area = float(s.tree.elements[e].area_m2);
+    const ElementLight& l = s.light.elements[e];
+    out.area_m2 += s.tree.elements[e].area_m2;
+    out.irradiance += l.irradiance * area, out.radiosity += l.radiosity * area;
+    out.emission += l.emission * area;
+  }
+  const float scale = out.area_m2 > 0 ? float(1 / out.area_m2) : 0;
+  out.irradiance = out.irradiance * scale, out.radiosity = out.radiosity * scale;
+  out.emission = out.emission * scale;
+  return out;
+}
+
+double absorbed_over_emitted(const Solution& s) {
+  double absorbed = 0, emitted = 0;
+  for (size_t e = 0; e < s.tree.elements.size(); ++e) {
+    if (!s.tree.elements[e].is_leaf()) continue;
+    const ElementLight& l = s.light.elements[e];
+    absorbed += s.tree.elements[e].area_m2 *
+                double(luminance((Rgb{1, 1, 1} - l.reflectance) * l.irradiance));
+    emitted += s.tree.elements[e].area_m2 * double(luminance(l.emission));
+  }
+  return absorbed / emitted;
+}
+
+Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,
+                       const SolveParams& params, Progress& progress) {
+  Solution s;
+  LUXEL_TRY(s.faces, make_faces(scene, progress));
+  s.blockers = make_blockers(s.faces);
+  s.tree = make_tree(cut_at_contacts(s.faces, s.blockers));
+  s.warnings = overlap_warnings(scene, s.faces, s.blockers);
+  s.basis = params.basis;
+  s.diagonal_m = scene::world_bounds(scene).diagonal();
+  s.unit_area_m2 = area_of(s.tree) / double(std::clamp<size_t>(s.faces.size(), 1, kMostUnits));
+  s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;
+  s.lamps = lamps_of(scene);
+  Work work{s, s.exchange(tracer), {}, {scene, s.tree, s.light, s.links}};
+  LUXEL_TRY_STATUS(run(work, params, progress));
+  if (params.eps && *params.eps < s.eps)
+    s.warnings.push_back(
+        fmt::format("--eps {} is below a ten-thousandth of the mean light; {:.3g} W/m^2 was used",
+                    *params.eps, s.eps));
+  if (s.links.bounded)
+    s.warnings.push_back(fmt::format(
+        "refinement ended at {} elements and {} links, before all errors were below {:.3g} W/m^2; "
+        "ask for a larger --eps or --min-area",
+        s.tree.elements.size(), s.links.count, s.eps));
+  return s;
+}
+
+}  // namespace luxel::hierarchical

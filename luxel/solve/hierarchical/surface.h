@@ -1,0 +1,27 @@
+// From places on faces to surface points of the scene, and back.
+#pragma once
+
+#include <optional>
+
+#include "luxel/solve/hierarchical/tree.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::hierarchical {
+
+/// The point of the scene at a place of a face; nothing in a hole of a mask.
+std::optional<scene::SurfacePoint> solid_point(const Faces& faces, const trace::RayTracer& tracer,
+                                               uint32_t face, DVec3 place);
+
+/// The point of the scene's triangles at a place of a face: on a curved face in closed form, on
+/// others what a short ray meets there.
+scene::SurfacePoint surface_point(const scene::Scene& scene, const Faces& faces,
+                                  const trace::RayTracer& tracer, uint32_t face, DVec3 place);
+
+/// The face and the place of a surface point; face is kNone on a triangle without area.
+struct Place {
+  uint32_t face = kNone;
+  DVec3 position;
+};
+Place place_of(const scene::Scene& scene, const Faces& faces, const scene::SurfacePoint& p);
+
+}  // namespace luxel::hierarchical

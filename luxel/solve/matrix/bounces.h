@@ -1,0 +1,57 @@
+// From the light of one bounce to that of all.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "luxel/solve/matrix/cluster_tree.h"
+#include "luxel/solve/matrix/form_factors.h"
+
+namespace luxel::matrix {
+
+/// A few hundred clusters that stand in for the scene where late bounces are concerned.
+struct CoarseScene {
+  std::vector<uint32_t> cluster_of;  ///< per patch
+  std::vector<float> area_m2;        ///< per cluster
+  /// Per channel: mean irradiance on cluster S from the second to all further bounces of power q_T
+  /// that the clusters reflect, count x count, column (T) by column [1/m^2].
+  std::array<std::vector<float>, 3> response;
+
+  size_t count() const { return area_m2.size(); }
+};
+
+/// About `clusters` of them, and more where patches of a cluster see different things. `factors`
+/// are reciprocal.
+CoarseScene make_coarse_scene(const FormFactors& factors, const ClusterTree& tree,
+                              std::span<const float> area_m2, std::span<const Rgb> reflectance,
+                              size_t clusters);
+
+/// E = F B for the patches; must not allocate.
+using Multiply = std::function<void(std::span<const Rgb> radiosity, std::span<Rgb> irradiance)>;
+
+/// Room for a solution.
+struct BounceWork {
+  std::vector<Rgb> first, radiosity, gathered;  ///< per patch
+  std::vector<Rgb> power, late;                 ///< per cluster
+};
+BounceWork make_bounce_work(size_t patches, size_t clusters);
+
+/// Irradiance after `bounces` products:  E_1 = F B_0,  E_k = F (B_0 + rho E_(k-1)). Allocates
+/// nothing.
+void count_bounces(const Multiply& multiply, std::span<const Rgb> reflectance,
+                   std::span<const Rgb> sent, int bounces, std::span<Rgb> irradiance,
+                   BounceWork& work);
+
+/// The limit, by `sweeps` products. What is still missing after a sweep is reflected between the
+/// clusters without end, and one more sweep makes it smooth: a two-grid iteration for equations of
+/// the second kind [Atkinson76; Hackbusch81], which loses far less per sweep than a bounce brings.
+/// Two sweeps are enough for a room; more where neighbouring patches see different rooms. Allocates
+/// nothing.
+void all_bounces(const Multiply& multiply, const CoarseScene& coarse,
+                 std::span<const Rgb> reflectance, std::span<const float> area_m2,
+                 std::span<const Rgb> sent, int sweeps, std::span<Rgb> irradiance,
+                 BounceWork& work);
+
+}  // namespace luxel::matrix

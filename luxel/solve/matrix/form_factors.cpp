@@ -1,0 +1,279 @@
+#include "luxel/solve/matrix/form_factors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
+#include "luxel/base/random.h"
+#include "luxel/base/warp.h"
+
+namespace luxel::matrix {
+namespace {
+
+constexpr int kCellsPerAxis = 8;
+
+/// What a thread needs to look from one patch.
+struct Work {
+  explicit Work(size_t rays) : u(rays), v(rays), ray(rays), hit(rays) {}
+  std::vector<float> u, v;
+  std::vector<trace::Ray> ray;
+  std::vector<trace::Hit> hit;
+  std::vector<uint32_t> met;
+};
+
+/// Rays from a patch's points in turn, in the order of their directions, so that neighbours are
+/// alike: each of the points takes its share of every direction.
+void fill_rays(std::span<const PatchPoint> points, uint64_t seed, float diagonal_m, Work& work) {
+  const size_t count = work.ray.size();
+  sobol_owen_2d_points(seed, work.u, work.v);
+  const auto cell = [&](size_t i) {
+    const int a = int(work.u[i] * kCellsPerAxis), b = int(work.v[i] * kCellsPerAxis);
+    return size_t(b * kCellsPerAxis + (b % 2 ? kCellsPerAxis - 1 - a : a));
+  };
+  std::array<uint32_t, kCellsPerAxis * kCellsPerAxis + 1> place{};
+  for (size_t i = 0; i < count; ++i) ++place[cell(i) + 1];
+  for (size_t c = 0; c + 1 < place.size(); ++c) place[c + 1] += place[c];
+  for (size_t i = 0; i < count; ++i) {
+    const PatchPoint& p = points[i % points.size()];
+    const Vec3 d =
+        frame_around(p.normal).to_world(cosine_hemisphere_sample({work.u[i], work.v[i]}));
+    work.ray[place[cell(i)]++] = {trace::offset_origin(p.position, p.normal, diagonal_m), 0, d,
+                                  INFINITY};
+  }
+}
+
+struct Row {
+  std::vector<uint32_t> column;
+  std::vector<float> factor;
+};
+
+/// The patches that rays met, and how often.
+Row row_of(std::vector<uint32_t>& met, size_t rays) {
+  std::sort(met.begin(), met.end());
+  Row row;
+  for (size_t k = 0; k < met.size();) {
+    size_t end = k;
+    while (end < met.size() && met[end] == met[k]) ++end;
+    row.column.push_back(met[k]), row.factor.push_back(float(end - k) / float(rays));
+    k = end;
+  }
+  return row;
+}
+
+FormFactors joined(std::vector<Row>& rows) {
+  FormFactors out;
+  out.first.push_back(0);
+  for (const Row& row : rows) out.first.push_back(out.first.back() + row.column.size());
+  out.column.reserve(out.first.back()), out.factor.reserve(out.first.back());
+  for (Row& row : rows) {
+    out.column.insert(out.column.end(), row.column.begin(), row.column.end());
+    out.factor.insert(out.factor.end(), row.factor.begin(), row.factor.end());
+    row = {};
+  }
+  return out;
+}
+
+/// S = (A F + (A F)^T) / 2. Both have ascending columns, so rows merge.
+FormFactors symmetric(const FormFactors& traced, std::span<const float> area_m2) {
+  const size_t n = traced.size();
+  FormFactors transposed;
+  transposed.first.assign(n + 1, 0);
+  for (const uint32_t j : traced.column) ++transposed.first[j + 1];
+  for (size_t j = 0; j < n; ++j) transposed.first[j + 1] += transposed.first[j];
+  transposed.column.resize(traced.column.size()), transposed.factor.resize(traced.column.size());
+  std::vector<uint64_t> place(transposed.first.begin(), transposed.first.end() - 1);
+  for (uint32_t i = 0; i < n; ++i)
+    for (uint64_t k = traced.first[i]; k < traced.first[i + 1]; ++k) {
+      const uint64_t at = place[traced.column[k]]++;
+      transposed.column[at] = i;
+      transposed.factor[at] = traced.factor[k] * area_m2[i];
+    }
+  FormFactors out;
+  out.first.push_back(0);
+  out.column.reserve(2 * traced.column.size()), out.factor.reserve(2 * traced.column.size());
+  for (size_t i = 0; i < n; ++i) {
+    uint64_t a = traced.first[i], b = transposed.first[i];
+    while (a < traced.first[i + 1] || b < transposed.first[i + 1]) {
+      const uint32_t ca = a < traced.first[i + 1] ? traced.column[a] : kNone;
+      const uint32_t cb = b < transposed.first[i + 1] ? transposed.column[b] : kNone;
+      float s = 0;
+      if (ca <= cb) s += traced.factor[a++] * area_m2[i];
+      if (cb <= ca) s += transposed.factor[b++];
+      out.column.push_back(std::min(ca, cb)), out.factor.push_back(s / 2);
+    }
+    out.first.push_back(out.column.size());
+  }
+  return out;
+}
+
+/// Root mean square of what rows may miss, over what they should be. The noise of rays is 1e-2.
+constexpr double kBalanced = 1e-5;
+constexpr int kNewtonSteps = 2, kInnerSteps = 60, kPasses = 20;
+/// Two sides that only see each other must add up to the same, which rays do not quite find: the
+/// system is singular then. This much of the diagonal on top of it leaves that mode alone.
+constexpr double kRidge = 1e-3;
+/// No factor beyond this and its inverse: what needs one is no noise of rays.
+constexpr double kLargestFactor = 2;
+
+/// out_i = d_i sum_j S_ij d_j x_j
+void scaled_product(const FormFactors& s, std::span<const double> d, std::span<const double> x,
+                    std::span<double> out) {
+  parallel_for(s.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      double sum = 0;
+      for (uint64_t k = s.first[i]; k < s.first[i + 1]; ++k)
+        sum += double(s.factor[k]) * d[s.column[k]] * x[s.column[k]];
+      out[i] = d[i] * sum;
+    }
+  });
+}
+
+double dot_product(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// Solves ((1 + kRidge) diag(row) + D S D) x = b by conjugate gradients, as far as `enough`.
+std::vector<double> newton_step(const FormFactors& s, std::span<const double> d,
+                                std::span<const double> row, std::vector<double> b, double enough) {
+  const size_t n = b.size();
+  std::vector<double> x(n), z(n), p(n), ap(n);
+  const auto precondition = [&] {
+    for (size_t i = 0; i < n; ++i) z[i] = row[i] > 0 ? b[i] / row[i] : 0;
+  };
+  precondition();
+  p = z;
+  double rz = dot_product(b, z);
+  for (int k = 0; k < kInnerSteps && rz > 0 && std::sqrt(dot_product(b, b)) > enough; ++k) {
+    scaled_product(s, d, p, ap);
+    for (size_t i = 0; i < n; ++i) ap[i] += (1 + kRidge) * row[i] * p[i];
+    const double alpha = rz / std::max(dot_product(p, ap), 1e-300);
+    for (size_t i = 0; i < n; ++i) x[i] += alpha * p[i], b[i] -= alpha * ap[i];
+    precondition();
+    const double next = dot_product(b, z);
+    for (size_t i = 0; i < n; ++i) p[i] = z[i] + next / rz * p[i];
+    rz = next;
+  }
+  return x;
+}
+
+/// d with sum_j d_i S_ij d_j = wanted_i, nearly: Newton's method for log d [Knight13], then a few
+/// passes of d_i *= sqrt(wanted_i / row_i) for what is far from linear. Passes alone would need
+/// hundreds where light goes back and forth between two sides, as between plates.
+std::vector<double> scaling(const FormFactors& s, std::span<const double> wanted) {
+  const size_t n = s.size();
+  const std::vector<double> one(n, 1.0);
+  std::vector<double> d(n, 1.0), row(n), missing(n);
+  const double enough = kBalanced * std::sqrt(dot_product(wanted, wanted));
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    scaled_product(s, d, one, row);
+    for (size_t i = 0; i < n; ++i) missing[i] = row[i] > 0 ? wanted[i] - row[i] : 0;
+    if (std::sqrt(dot_product(missing, missing)) <= enough) break;
+    const std::vector<double> change = newton_step(s, d, row, missing, 0.1 * enough);
+    for (size_t i = 0; i < n; ++i)
+      d[i] = std::clamp(d[i] * std::exp(std::clamp(change[i], -0.5, 0.5)), 1 / kLargestFactor,
+                        kLargestFactor);
+  }
+  for (int pass = 0; pass < kPasses; ++pass) {
+    scaled_product(s, d, one, row);
+    for (size_t i = 0; i < n; ++i)
+      if (row[i] > 0 && wanted[i] > 0)
+        d[i] = std::clamp(d[i] * std::sqrt(wanted[i] / row[i]), 1 / kLargestFactor, kLargestFactor);
+  }
+  return d;
+}
+
+}  // namespace
+
+double row_sum(const FormFactors& factors, size_t row) {
+  double sum = 0;
+  for (const float f : factors.factors_of(row)) sum += double(f);
+  return sum;
+}
+
+Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                    const PatchWork& work, const FactorParams& params,
+                                    Progress& progress) {
+  LUXEL_CHECK(params.rays_per_patch >= 1);
+  const Patches& patches = work.patches;
+  const size_t rays = size_t(params.rays_per_patch);
+  const Box3 bounds = scene::world_bounds(scene);
+  const float diagonal_m = length(bounds.upper - bounds.lower);
+  TracedFactors out;
+  out.sky.resize(patches.size());
+  std::vector<Row> rows(patches.size());
+  progress.begin("form factors", patches.size());
+  parallel_for(patches.size(), 16, [&](size_t begin, size_t end) {
+    Work w(rays);
+    for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
+      fill_rays(patches.points_of(i), hash64(params.seed, i), diagonal_m, w);
+      tracer.closest_hits(w.ray, w.hit);
+      w.met.clear();
+      size_t escaped = 0;
+      for (const trace::Hit& hit : w.hit) {
+        if (!hit.found()) {
+          ++escaped;
+          continue;
+        }
+        const scene::Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
+        const uint32_t material = mesh.triangle_material[hit.triangle];
+        if (hit.back_face && !scene::reflects_from_behind(scene.materials[material])) continue;
+        const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
+        const uint32_t j = work.locator.locate(scene::world_position(scene, hit.point()),
+                                               hit.back_face ? -front : front, material, tracer);
+        if (j != kNone) w.met.push_back(j);
+      }
+      rows[i] = row_of(w.met, rays);
+      out.sky[i] = float(escaped) / float(rays);
+      progress.advance(1);
+    }
+  });
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  out.factors = joined(rows);
+  out.rays = uint64_t(rays) * patches.size();
+  return out;
+}
+
+FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2) {
+  FormFactors s = symmetric(traced, area_m2);
+  std::vector<double> wanted(traced.size());
+  for (size_t i = 0; i < wanted.size(); ++i)
+    wanted[i] = std::min(1.0, row_sum(traced, i)) * double(area_m2[i]);
+  const std::vector<double> d = scaling(s, wanted);
+  std::vector<float> limit(s.size());
+  parallel_for(s.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      double sum = 0;
+      for (uint64_t k = s.first[i]; k < s.first[i + 1]; ++k) {
+        s.factor[k] = float(double(s.factor[k]) * d[i] * d[s.column[k]]);
+        sum += double(s.factor[k]);
+      }
+      const double share = sum / double(area_m2[i]);
+      limit[i] = share > 1 ? float(1 / share) : 1.0f;
+    }
+  });
+  parallel_for(s.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      for (uint64_t k = s.first[i]; k < s.first[i + 1]; ++k)
+        s.factor[k] *= std::min(limit[i], limit[s.column[k]]) / area_m2[i];
+  });
+  return s;
+}
+
+void multiply(const FormFactors& factors, std::span<const Rgb> radiosity,
+              std::span<Rgb> irradiance) {
+  LUXEL_CHECK(radiosity.size() == factors.size() && irradiance.size() == factors.size());
+  parallel_for(factors.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      Rgb sum{};
+      for (uint64_t k = factors.first[i]; k < factors.first[i + 1]; ++k)
+        sum += factors.factor[k] * radiosity[factors.column[k]];
+      irradiance[i] = sum;
+    }
+  });
+}
+
+}  // namespace luxel::matrix

@@ -1,0 +1,21 @@
+// A scene's transport in one codec.
+#pragma once
+
+#include "luxel/solve/matrix/matrix.h"
+#include "luxel/solve/matrix/relight.h"
+#include "luxel/solve/matrix/trials.h"
+
+namespace luxel::matrix {
+
+/// What codecs are made of.
+struct CodecInput {
+  const Prepared& prepared;
+  const CoarseScene& coarse;
+  const Trials& trials;  ///< of RelightParams::bounces
+};
+
+/// Of params.codec, as small as keeps to params.max_error of the trials, as far as can be. Errors:
+/// cancelled; a codec that cannot hold so many patches.
+Result<Codec> make_codec(const CodecInput& t, const RelightParams& params, Progress& progress);
+
+}  // namespace luxel::matrix

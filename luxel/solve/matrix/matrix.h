@@ -1,0 +1,54 @@
+// Radiosity between patches by their form-factor matrix, carried back to the places that ask.
+// [Shcherbakov17, sections 3.2 to 3.4]
+#pragma once
+
+#include "luxel/light/lights.h"
+#include "luxel/solve/matrix/form_factors.h"
+#include "luxel/solve/matrix/patches.h"
+#include "luxel/solve/matrix/transfer.h"
+
+namespace luxel::matrix {
+
+struct MatrixParams {
+  PatchParams patches;
+  FactorParams factors;
+  int direct_samples = 64;  ///< shadow rays per patch towards each light, spread over its points
+  int bounces = -1;         ///< products; < 0: until the light to come is below `tolerance`
+  float tolerance = 1e-4f;  ///< root mean square over the patches, relative to the mean
+  uint64_t seed = 1;
+};
+
+/// A scene prepared: everything that does not depend on its lights.
+struct Prepared {
+  PatchWork work;
+  FormFactors factors;     ///< reciprocal
+  std::vector<float> sky;  ///< per patch: the share of its hemisphere that is background
+  uint64_t rays = 0;
+};
+
+/// What preparation holds at most, about.
+uint64_t bytes_of_preparation(size_t patches, int rays_per_patch);
+
+/// Patches and the exchange between them. Errors: no surface, cancelled.
+Result<Prepared> prepare(const scene::Scene& scene, const trace::RayTracer& tracer,
+                         const MatrixParams& params, Progress& progress);
+
+/// Whether a point lies inside a solid.
+bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer, const PatchWork& work,
+               const scene::SurfacePoint& p);
+
+struct Solution {
+  std::vector<Rgb> direct;    ///< per patch: E straight from lights, without the background
+  std::vector<Rgb> indirect;  ///< per patch: E from the background and from all other patches
+  uint64_t rays = 0;
+  int sweeps = 0;
+  double relative_error = 0;  ///< of the rays, an upper bound: root mean square over the mean light
+};
+
+/// E = pi L sky + F (rho (D + E)), by repeated products [Shcherbakov17, eq. 3, 4]. Errors:
+/// cancelled.
+Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
+                       const trace::RayTracer& tracer, const Prepared& prepared,
+                       const MatrixParams& params, Progress& progress);
+
+}  // namespace luxel::matrix

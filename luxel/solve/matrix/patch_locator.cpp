@@ -1,0 +1,126 @@
+#include "luxel/solve/matrix/patch_locator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace luxel::matrix {
+namespace {
+
+constexpr int kAxisBits = 21;
+constexpr uint64_t kAxisMask = (uint64_t(1) << kAxisBits) - 1;
+/// How far above their surfaces two places look for each other, in voxels: over the unevenness of a
+/// surface, not over a wall.
+constexpr float kLift = 0.05f;
+
+/// Calls visit(voxel) for all voxels within `reach` steps, in a fixed order, the middle first.
+template <class Visit>
+void around(uint64_t voxel, int reach, const Visit& visit) {
+  visit(voxel);
+  const auto axis = [&](int k) { return int64_t(voxel >> (k * kAxisBits) & kAxisMask); };
+  for (int64_t dz = -reach; dz <= reach; ++dz)
+    for (int64_t dy = -reach; dy <= reach; ++dy)
+      for (int64_t dx = -reach; dx <= reach; ++dx) {
+        const int64_t x = axis(0) + dx, y = axis(1) + dy, z = axis(2) + dz;
+        if ((dx == 0 && dy == 0 && dz == 0) || std::min({x, y, z}) < 0 ||
+            std::max({x, y, z}) > int64_t(kAxisMask))
+          continue;
+        visit(uint64_t(x) | uint64_t(y) << kAxisBits | uint64_t(z) << (2 * kAxisBits));
+      }
+}
+
+}  // namespace
+
+uint64_t voxel_of(const VoxelGrid& grid, Vec3 position) {
+  uint64_t voxel = 0;
+  for (int k = 0; k < 3; ++k) {
+    const float at = std::floor((position[k] - grid.origin[k]) / grid.voxel_m);
+    voxel |= uint64_t(std::clamp(at, 0.0f, float(kAxisMask))) << (k * kAxisBits);
+  }
+  return voxel;
+}
+
+bool see_each_other(const trace::RayTracer& tracer, const PatchPoint& a, const PatchPoint& b,
+                    float voxel_m) {
+  const Vec3 from = a.position + a.normal * (kLift * voxel_m);
+  const Vec3 to = b.position + b.normal * (kLift * voxel_m);
+  if (dot(to - from, to - from) <= 1e-12f * voxel_m * voxel_m) return true;
+  const trace::Ray ray{from, 0, to - from, 1};
+  uint8_t blocked = 0;
+  tracer.occluded({&ray, 1}, {&blocked, 1});
+  return blocked == 0;
+}
+
+PatchLocator::PatchLocator(const VoxelGrid& grid, std::span<const uint64_t> voxel,
+                           std::vector<Part> parts)
+    : grid_(grid), parts_(std::move(parts)) {
+  for (uint32_t k = 0; k < voxel.size(); ++k) {
+    Range& range = range_of_voxel_.try_emplace(voxel[k], Range{k, 0}).first->second;
+    ++range.count;
+  }
+}
+
+std::span<const PatchLocator::Part> PatchLocator::parts_in(uint64_t voxel) const {
+  const auto found = range_of_voxel_.find(voxel);
+  if (found == range_of_voxel_.end()) return {};
+  return std::span(parts_).subspan(found->second.first, found->second.count);
+}
+
+const PatchLocator::Part* PatchLocator::part_at(Vec3 position, Vec3 normal, uint32_t material,
+                                                const trace::RayTracer& tracer,
+                                                bool with_hidden) const {
+  const uint64_t voxel = voxel_of(grid_, position);
+  const auto fits = [&](const Part& part) {
+    return part.material == material && dot(part.seed.normal, normal) > kSameDirection &&
+           (with_hidden || part.patch != kNone);
+  };
+  const Part* only = nullptr;
+  int count = 0;
+  for (const Part& part : parts_in(voxel))
+    if (fits(part)) only = &part, ++count;
+  if (count == 1) return only;
+  if (count > 1)
+    for (const Part& part : parts_in(voxel))
+      if (fits(part) && see_each_other(tracer, {position, normal}, part.seed, grid_.voxel_m))
+        return &part;
+  // No point of the voxel's own: the nearest of what is alike around, else of what faces the same
+  // way at all.
+  for (const bool strict : {true, false}) {
+    const Part* nearest = nullptr;
+    float least = INFINITY;
+    around(voxel, 1, [&](uint64_t at) {
+      for (const Part& part : parts_in(at)) {
+        const Vec3 d = part.seed.position - position;
+        const bool alike =
+            strict ? fits(part)
+                   : dot(part.seed.normal, normal) > 0 && (with_hidden || part.patch != kNone);
+        if (alike && dot(d, d) < least) least = dot(d, d), nearest = &part;
+      }
+    });
+    if (nearest) return nearest;
+  }
+  return nullptr;
+}
+
+uint32_t PatchLocator::locate(Vec3 position, Vec3 normal, uint32_t material,
+                              const trace::RayTracer& tracer) const {
+  const Part* part = part_at(position, normal, material, tracer, false);
+  return part ? part->patch : kNone;
+}
+
+bool PatchLocator::is_hidden(Vec3 position, Vec3 normal, uint32_t material,
+                             const trace::RayTracer& tracer) const {
+  const Part* part = part_at(position, normal, material, tracer, true);
+  return part && part->patch == kNone;
+}
+
+void PatchLocator::near(Vec3 position, int reach, std::vector<uint32_t>& patches) const {
+  patches.clear();
+  around(voxel_of(grid_, position), reach, [&](uint64_t at) {
+    for (const Part& part : parts_in(at))
+      if (part.patch != kNone) patches.push_back(part.patch);
+  });
+  std::sort(patches.begin(), patches.end());
+  patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+}
+
+}  // namespace luxel::matrix

@@ -1,0 +1,72 @@
+// Which patch does a ray meet?
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "luxel/base/vec.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::matrix {
+
+inline constexpr uint32_t kNone = UINT32_MAX;
+/// Directions that differ by more are different patches: 37 degrees.
+inline constexpr float kSameDirection = 0.8f;
+
+/// A place on a patch.
+struct PatchPoint {
+  Vec3 position;  ///< [m]
+  Vec3 normal;    ///< unit, geometric, front side
+};
+
+/// The voxel grid that surfaces are cut by.
+struct VoxelGrid {
+  float voxel_m = 1;
+  Vec3 origin;  ///< of voxel 0, 0, 0
+};
+
+/// 21 bits per axis; places outside the grid fall into its border.
+uint64_t voxel_of(const VoxelGrid& grid, Vec3 position);
+
+/// Whether two places of surfaces see each other from a little above their surfaces.
+bool see_each_other(const trace::RayTracer& tracer, const PatchPoint& a, const PatchPoint& b,
+                    float voxel_m);
+
+/// Finds the patch of a surface point that a ray met.
+class PatchLocator {
+ public:
+  /// A part of a voxel's surfaces, known by one of its points.
+  struct Part {
+    PatchPoint seed;
+    uint32_t material = 0, patch = 0;  ///< patch kNone: inside a solid
+  };
+  PatchLocator() = default;
+  /// voxel[k] is where parts[k] lies; ascending.
+  PatchLocator(const VoxelGrid& grid, std::span<const uint64_t> voxel, std::vector<Part> parts);
+
+  /// The patch at a place of the front side; kNone inside a solid, or when no surface of the kind
+  /// is near. Parts of one voxel that look alike are told apart by sight of their seeds.
+  uint32_t locate(Vec3 position, Vec3 normal, uint32_t material,
+                  const trace::RayTracer& tracer) const;
+  /// Whether a place lies inside a solid, where no light comes or goes.
+  bool is_hidden(Vec3 position, Vec3 normal, uint32_t material,
+                 const trace::RayTracer& tracer) const;
+  /// Patches in the voxels within `reach` steps of a place, each once, ascending.
+  void near(Vec3 position, int reach, std::vector<uint32_t>& patches) const;
+
+ private:
+  struct Range {
+    uint32_t first = 0, count = 0;
+  };
+  std::span<const Part> parts_in(uint64_t voxel) const;
+  const Part* part_at(Vec3 position, Vec3 normal, uint32_t material, const trace::RayTracer& tracer,
+                      bool with_hidden) const;
+
+  VoxelGrid grid_;
+  std::unordered_map<uint64_t, Range> range_of_voxel_;
+  std::vector<Part> parts_;  ///< voxel by voxel
+};
+
+}  // namespace luxel::matrix

@@ -1,0 +1,159 @@
+#include "luxel/solve/matrix/relighter.h"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <optional>
+
+#include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
+#include "luxel/solve/matrix/codec.h"
+#include "luxel/solve/matrix/live_light.h"
+
+namespace luxel::matrix {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_between(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double>(end - start).count();
+}
+
+scene::Scene scene_of(const Occluders& occluders) {
+  scene::Scene scene;
+  scene.materials.emplace_back();
+  scene::Mesh mesh;
+  mesh.positions = occluders.position, mesh.triangles = occluders.triangle;
+  mesh.triangle_material.assign(mesh.triangles.size(), 0);
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({"occluders", 0, {}});
+  return scene;
+}
+
+/// B_e of a patch whose material's mean radiosity is to be `wanted` and was `mean`.
+Rgb emission_of(Rgb baked, Rgb mean, Rgb wanted) {
+  const auto channel = [](float own, float was, float is) { return was > 0 ? own / was * is : is; };
+  return {channel(baked.x, mean.x, wanted.x), channel(baked.y, mean.y, wanted.y),
+          channel(baked.z, mean.z, wanted.z)};
+}
+
+}  // namespace
+
+struct Relighter::Impl {
+  RelightData data;
+  RelighterParams params;
+  scene::Scene occluders;  ///< stays where it is: the tracer refers to it
+  std::optional<trace::RayTracer> tracer;
+  float diagonal_m = 0;
+  std::vector<Rgb> mean_emission;  ///< B_e per material, as baked
+  std::vector<Vec3> probe_position, probe_normal;
+
+  CodecWork work;
+  std::vector<Rgb> at_probe, sent;
+
+  // Three results: one is written, one is read, and the third is the latest complete one, which
+  // either side exchanges for its own. `middle` is its number, with kFresh while nobody has read
+  // it.
+  static constexpr uint32_t kFresh = 4;
+  std::array<Relit, 3> result;
+  uint32_t back = 0, front = 1;
+  std::atomic<uint32_t> middle{2};
+  uint64_t updates = 0;
+  Seconds seconds;
+
+  void make_room();
+  void direct_light(const RelightLights& lights, Relit& out);
+  void bounces(const RelightLights& lights, Relit& out);
+  void light_places(const RelightLights& lights, Relit& out);
+};
+
+void Relighter::Impl::make_room() {
+  mean_emission = mean_emission_of(data);
+  for (const PatchPoint& p : data.probe)
+    probe_position.push_back(p.position), probe_normal.push_back(p.normal);
+  work = make_work(data.codec, data.size());
+  at_probe.resize(data.probe.size()), sent.resize(data.size());
+  const size_t places = data.target.position.size();
+  for (Relit& r : result) {
+    r.direct.resize(data.size()), r.indirect.resize(data.size());
+    r.indirect_at_place.resize(places);
+    r.direct_at_place.resize(params.direct_at_places ? places : 0);
+  }
+}
+
+void Relighter::Impl::direct_light(const RelightLights& lights, Relit& out) {
+  live_light({probe_position, probe_normal, probe_normal}, lights.punctual, *tracer, diagonal_m,
+             at_probe);
+  for (size_t i = 0; i < data.size(); ++i) {
+    Rgb sum{};
+    for (uint32_t k = data.first_probe[i]; k < data.first_probe[i + 1]; ++k) sum += at_probe[k];
+    out.direct[i] = sum / std::max(1.0f, float(data.first_probe[i + 1] - data.first_probe[i]));
+  }
+}
+
+void Relighter::Impl::bounces(const RelightLights& lights, Relit& out) {
+  for (size_t i = 0; i < data.size(); ++i) {
+    const uint32_t m = data.material[i];
+    const Rgb own = lights.emission.empty()
+                        ? data.emission[i]
+                        : emission_of(data.emission[i], mean_emission[m], lights.emission[m] * kPi);
+    const Rgb sky = lights.background * (kPi * data.sky[i]);
+    sent[i] = own + data.reflectance[i] * (out.direct[i] + sky);
+  }
+  irradiance_of(data.codec, {sent, data.reflectance, data.area_m2, data.bounces}, out.indirect,
+                work);
+  for (size_t i = 0; i < data.size(); ++i)
+    out.indirect[i] += lights.background * (kPi * data.sky[i]);
+}
+
+void Relighter::Impl::light_places(const RelightLights& lights, Relit& out) {
+  const Target& to = data.target;
+  transfer(to.transfer, out.indirect, out.indirect_at_place);
+  if (params.direct_at_places)
+    live_light({to.position, to.normal, to.geometric_normal}, lights.punctual, *tracer, diagonal_m,
+               out.direct_at_place);
+}
+
+Relighter::Relighter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Relighter::Relighter(Relighter&&) noexcept = default;
+Relighter& Relighter::operator=(Relighter&&) noexcept = default;
+Relighter::~Relighter() = default;
+
+Result<Relighter> Relighter::make(RelightData data, const RelighterParams& params) {
+  auto impl = std::make_unique<Impl>();
+  impl->data = std::move(data), impl->params = params;
+  impl->occluders = scene_of(impl->data.occluders);
+  const Box3 bounds = scene::world_bounds(impl->occluders);
+  impl->diagonal_m = length(bounds.upper - bounds.lower);
+  LUXEL_TRY(impl->tracer, trace::RayTracer::build(impl->occluders));
+  impl->make_room();
+  return Relighter(std::move(impl));
+}
+
+const RelightData& Relighter::data() const { return impl_->data; }
+Relighter::Seconds Relighter::seconds() const { return impl_->seconds; }
+
+void Relighter::update(const RelightLights& lights) {
+  Impl& my = *impl_;
+  LUXEL_CHECK(lights.emission.empty() || lights.emission.size() == my.data.material_name.size());
+  Relit& out = my.result[my.back];
+  const Clock::time_point start = Clock::now();
+  my.direct_light(lights, out);
+  const Clock::time_point direct = Clock::now();
+  my.bounces(lights, out);
+  const Clock::time_point bounced = Clock::now();
+  my.light_places(lights, out);
+  my.seconds = {seconds_between(start, direct), seconds_between(direct, bounced),
+                seconds_between(bounced, Clock::now())};
+  out.update = ++my.updates;
+  // Release: the reader sees all of `out`. Acquire: its last look at what comes back is over.
+  my.back = my.middle.exchange(my.back | Impl::kFresh, std::memory_order_acq_rel) & ~Impl::kFresh;
+}
+
+const Relit& Relighter::latest() {
+  Impl& my = *impl_;
+  if (my.middle.load(std::memory_order_relaxed) & Impl::kFresh)
+    my.front = my.middle.exchange(my.front, std::memory_order_acq_rel) & ~Impl::kFresh;
+  return my.result[my.front];
+}
+
+}  // namespace luxel::matrix

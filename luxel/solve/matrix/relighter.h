@@ -1,0 +1,75 @@
+// Light that moves: an .lxr file's scene, relit as often as its lamps change.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "luxel/base/result.h"
+#include "luxel/scene/scene.h"
+#include "luxel/solve/matrix/relight_data.h"
+
+namespace luxel::matrix {
+
+/// What shines on a relit scene.
+struct RelightLights {
+  std::span<const scene::PunctualLight> punctual{};  ///< without profiles
+  /// Radiance L of each material of RelightData::material_name [W/(sr m^2)]; empty: as baked. A
+  /// material that glowed unevenly keeps its pattern, and L is its mean.
+  std::span<const Rgb> emission{};
+  Rgb background{};  ///< radiance of the surroundings
+};
+
+/// What they make of it. Per patch, and per place of RelightData::target.
+struct Relit {
+  uint64_t update = 0;               ///< how many there were before, and this one; 0: none yet
+  std::vector<Rgb> direct;           ///< E straight from punctual lights [W/m^2]
+  std::vector<Rgb> indirect;         ///< E from surfaces (glowing ones, too) and the background
+  std::vector<Rgb> direct_at_place;  ///< empty unless asked for
+  std::vector<Rgb> indirect_at_place;
+};
+
+struct RelighterParams {
+  /// Direct light at places, too, by a shadow ray per place and lamp; for programs that do not draw
+  /// direct light themselves.
+  bool direct_at_places = false;
+};
+
+/// One thread updates while another reads: neither waits for the other, and neither allocates.
+///
+///     LUXEL_TRY(RelightData data, read_lxr("scene.lxr"));
+///     LUXEL_TRY(Relighter relighter, Relighter::make(std::move(data), {}));
+///     relighter.update({lamps});                   // thread A, per frame
+///     show(relighter.latest().indirect_at_place);  // thread B
+class Relighter {
+ public:
+  /// Builds what shadow rays need and all room that updates need. Errors: triangles that cannot be
+  /// traced.
+  static Result<Relighter> make(RelightData data, const RelighterParams& params);
+  Relighter(Relighter&&) noexcept;
+  Relighter& operator=(Relighter&&) noexcept;
+  ~Relighter();
+
+  const RelightData& data() const;
+
+  /// E after all bounces of the lights, shadows by rays. One thread at a time.
+  void update(const RelightLights& lights);
+
+  /// The result of the last update that was complete when this was called. It does not change until
+  /// the same thread calls latest() again. One thread at a time, maybe another than update()'s.
+  const Relit& latest();
+
+  /// What the last update() took [s]; asked on its thread.
+  struct Seconds {
+    double direct = 0, bounces = 0, places = 0;
+    double total() const { return direct + bounces + places; }
+  };
+  Seconds seconds() const;
+
+ private:
+  struct Impl;
+  explicit Relighter(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace luxel::matrix

@@ -1,0 +1,35 @@
+// The light of patches, carried back to the surfaces they stand for.
+#pragma once
+
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/solve/matrix/patches.h"
+
+namespace luxel::matrix {
+
+/// Where light is wanted: texels, vertices, any points of surfaces.
+struct Places {
+  std::span<const Vec3> position, normal;
+};
+
+/// A linear map from light per patch to light per place.
+struct Transfer {
+  std::vector<uint32_t> first;  ///< per place, one extra entry
+  std::vector<uint32_t> patch;
+  std::vector<float> weight;  ///< those of a place sum to 1
+
+  size_t size() const { return first.empty() ? 0 : first.size() - 1; }
+};
+
+/// At each place the value of a plane fitted to the patches around it, the nearer ones weighing
+/// more [Lancaster81, moving least squares]: constant and linear light is kept, and no border of a
+/// voxel shows. Only patches that face the same way and that the place sees take part, so that
+/// nothing leaks through a wall or round an edge. A place without any takes the nearest. Errors:
+/// cancelled.
+Result<Transfer> make_transfer(const PatchWork& work, const trace::RayTracer& tracer,
+                               const Places& places, Progress& progress);
+
+/// Light per place, never below zero. Allocates nothing.
+void transfer(const Transfer& map, std::span<const Rgb> of_patch, std::span<Rgb> of_place);
+
+}  // namespace luxel::matrix

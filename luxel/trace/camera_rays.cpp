@@ -1,0 +1,70 @@
+#include "luxel/trace/camera_rays.h"
+
+#include <cmath>
+
+#include "luxel/base/check.h"
+
+namespace luxel::trace {
+namespace {
+
+constexpr int kMaxSurfaces = 64;
+
+bool invisible(const scene::Scene& scene, const Hit& hit) {
+  return hit.found() && hit.back_face && !material_at(scene, hit.point()).double_sided;
+}
+
+}  // namespace
+
+CameraRays::CameraRays(const scene::Camera& camera, int width_px, int height_px)
+    : orthographic(camera.orthographic_height_m > 0),
+      width(float(width_px)),
+      height(float(height_px)) {
+  const float aspect = width / height;
+  float half_height =
+      orthographic ? 0.5f * camera.orthographic_height_m : std::tan(0.5f * camera.fov_y_rad);
+  if (camera.aspect > aspect) half_height *= camera.aspect / aspect;
+  // A node may scale its camera; glTF ignores that, so only the axes' directions count.
+  const Mat34& m = camera.world_from_camera;
+  eye = {m.row[0][3], m.row[1][3], m.row[2][3]};
+  right = normalize(column(m, 0)) * (half_height * aspect);
+  up = normalize(column(m, 1)) * half_height;
+  forward = -normalize(column(m, 2));
+}
+
+Ray CameraRays::through(float x, float y) const {
+  const Vec3 aside = right * (2 * x / width - 1) + up * (1 - 2 * y / height);
+  if (orthographic) return {.origin = eye + aside, .direction = forward};
+  return {.origin = eye, .direction = normalize(forward + aside)};
+}
+
+std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer,
+                              std::span<Ray> rays) {
+  std::vector<Hit> hits(rays.size());
+  tracer.closest_hits(rays, hits, Packets::bundles);
+  std::vector<size_t> open;
+  for (size_t i = 0; i < hits.size(); ++i)
+    if (invisible(scene, hits[i])) open.push_back(i);
+
+  std::vector<Ray> on;
+  std::vector<Hit> next;
+  for (int step = 1; step < kMaxSurfaces && !open.empty(); ++step) {
+    on.clear();
+    for (const size_t i : open) {
+      // Just behind the hit, by more than the rounding of t between packets and single rays.
+      rays[i].t_min = std::max(hits[i].t * (1 + 4e-7f), 1e-20f);
+      on.push_back(rays[i]);
+    }
+    next.resize(on.size());
+    tracer.closest_hits(on, next);
+    std::vector<size_t> still_open;
+    for (size_t k = 0; k < open.size(); ++k) {
+      hits[open[k]] = next[k];
+      if (invisible(scene, next[k])) still_open.push_back(open[k]);
+    }
+    open = std::move(still_open);
+  }
+  for (const size_t i : open) hits[i] = {};
+  return hits;
+}
+
+}  // namespace luxel::trace

@@ -1,0 +1,31 @@
+// From pixels to rays, and from rays to the surfaces that a viewer sees.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "luxel/scene/scene.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::trace {
+
+/// The rays of a camera for a picture of some size.
+struct CameraRays {
+  /// A picture narrower than the camera's own aspect shows the camera's full width.
+  CameraRays(const scene::Camera& camera, int width, int height);
+
+  /// Through picture coordinates, (0, 0) = the top left corner, pixels have size 1. Directions are
+  /// of unit length.
+  Ray through(float x, float y) const;
+
+  Vec3 eye, right, up, forward;  ///< right and up reach the picture's edges at distance 1 [m]
+  bool orthographic = false;
+  float width = 1, height = 1;
+};
+
+/// What each ray meets first when the back faces of one-sided materials are invisible. Such a ray
+/// goes on behind the hit, through 64 surfaces at most; `rays` is left where it got to.
+std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer,
+                              std::span<Ray> rays);
+
+}  // namespace luxel::trace

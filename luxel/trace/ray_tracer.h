@@ -1,0 +1,83 @@
+// What a ray hits. Batches in, hits out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "luxel/base/result.h"
+#include "luxel/base/vec.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::trace {
+
+struct Ray {
+  Vec3 origin;
+  float t_min = 0;
+  Vec3 direction;  ///< need not be of unit length; t is in units of its length
+  float t_max = INFINITY;
+};
+
+/// The closest solid surface along a ray. `instance` is kNone when there is none.
+struct Hit {
+  float t = INFINITY;
+  uint32_t instance = scene::kNone;
+  uint32_t triangle = 0;
+  Barycentric at;
+  bool back_face = false;  ///< the ray came from behind the front side
+
+  bool found() const { return instance != scene::kNone; }
+  scene::SurfacePoint point() const { return {instance, triangle, at}; }
+};
+
+/// What the tracer may expect of 16 rays that follow each other in a batch.
+enum class Packets : uint8_t {
+  any,
+  bundles  ///< near to each other all the way, like neighbouring pixels: twice as fast
+};
+
+/// Two levels: a mesh with several instances is stored once, with its instances on top, in scenes
+/// of more than a million drawn triangles; smaller scenes and single instances lie in the top
+/// level, where rays meet one tight hierarchy. Both sides of every triangle block. Holes of alpha
+/// masks do not; blended and transmissive surfaces (scene::Passage) let rays through by chance, the
+/// share 1 - coverage of them: which ones follows from the bits of the ray and of the place it
+/// meets, so that many rays see the right mean and the same ray always the same. Queries are const
+/// and may run on many threads at once. `scene` is kept by reference and must outlive the tracer.
+class RayTracer {
+ public:
+  /// `max_flat_triangles`: drawn triangles above which meshes are shared between instances.
+  static Result<RayTracer> build(const scene::Scene& scene, size_t max_flat_triangles = 1u << 20);
+  RayTracer(RayTracer&&) noexcept;
+  RayTracer& operator=(RayTracer&&) noexcept;
+  ~RayTracer();
+
+  /// hits[i] is what rays[i] meets first. Rays are traced in packets of neighbours: rays with
+  /// nearby origins and directions next to each other run faster. Sizes are equal.
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
+                    Packets packets = Packets::any) const;
+  Hit closest_hit(const Ray& ray) const;
+  /// blocked[i] is 1 when anything solid lies on rays[i] within (t_min, t_max).
+  void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const;
+
+  /// Whether there are surfaces that colour the light they let through.
+  bool has_tints() const;
+  /// Multiplies by the tints of what each ray that closest_hits has traced has passed on its way to
+  /// its hit, or to its end: call it where has_tints().
+  void tint(std::span<const Ray> rays, std::span<const Hit> hits, std::span<Rgb> light) const;
+  /// The share of light that arrives from t_max, per channel: 0 where something opaque stands,
+  /// the product of (1 - coverage) tint of all that lets light through. No chance is involved.
+  /// Where nothing has a tint it is 1 unless occluded.
+  void transmitted(std::span<const Ray> rays, std::span<Rgb> share) const;
+
+ private:
+  struct Impl;
+  explicit RayTracer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A ray's start just off a surface: the point moved along `normal` (the side the ray leaves from)
+/// by a few float steps of its own magnitude and of the scene's size, so that rounding cannot put
+/// it behind the surface.
+Vec3 offset_origin(Vec3 position, Vec3 normal, float scene_diagonal_m);
+
+}  // namespace luxel::trace

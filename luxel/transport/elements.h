@@ -1,0 +1,51 @@
+// Elements: the points at which light is computed. Texels today; vertices, triangles and patches
+// later.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "luxel/atlas/atlas.h"
+#include "luxel/base/vec.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::transport {
+
+/// Structure of arrays, all of the same length.
+struct Elements {
+  std::vector<Vec3> position;          ///< on the surface (the smooth one), world [m]
+  std::vector<Vec3> normal;            ///< unit shading normal of the front side
+  std::vector<Vec3> geometric_normal;  ///< unit; no light comes from below the plane it spans
+  std::vector<Rgb> reflectance;        ///< rho in [0, 0.99]
+  /// tau: what of the irradiance on the other side leaves this one. Empty where nothing scatters
+  /// light through.
+  std::vector<Rgb> transmittance;
+
+  size_t size() const { return std::max(position.size(), reflectance.size()); }
+};
+
+/// Frees positions and normals, which take three quarters of the memory, of elements that only
+/// exchange light from now on.
+void drop_places(Elements& elements);
+
+/// Some elements, in the order of `chosen`.
+Elements subset(const Elements& elements, std::span<const uint32_t> chosen);
+
+/// A point of the front side, moved to the smooth surface that vertex normals bend over its
+/// triangle.
+struct SmoothPoint {
+  Vec3 position, normal, geometric_normal;  ///< as in Elements
+};
+SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p);
+
+/// One element per texel of the map, in its order. Where vertex normals say that the surface bulges
+/// over its triangle, the element lies on the bulge and its horizon is that of the shading normal:
+/// else facets would show at the border of light and shadow [Hanika21]. Reflectance is
+/// the mean over the part of the texel that its triangle covers, so that a fine texture is neither
+/// missed nor aliased.
+Elements elements_from_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
+                              const atlas::TexelMap& map);
+
+}  // namespace luxel::transport

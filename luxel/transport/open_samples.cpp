@@ -1,0 +1,260 @@
+#include "luxel/transport/open_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <optional>
+
+#include "luxel/base/parallel.h"
+#include "luxel/base/warp.h"
+#include "luxel/scene/drawn_triangle.h"
+#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/barriers.h"
+#include "luxel/transport/texel_width.h"
+
+namespace luxel::transport {
+namespace {
+
+constexpr int kGrid = 4;        ///< places looked at along a texel's side
+constexpr int kFeelers = 6;     ///< short rays around a sample
+constexpr float kReach = 1.5f;  ///< their length in texels
+constexpr int kFirstRays = 8, kRaysForOpen = 32;
+
+struct Work {
+  const scene::Scene& scene;
+  const atlas::Atlas& atlas;
+  const trace::RayTracer& tracer;
+  float diagonal_m;
+
+  Vec3 just_above(const Place& p) const {
+    return trace::offset_origin(p.position, p.normal, diagonal_m);
+  }
+  bool in_the_open(const scene::SurfacePoint& p) const {
+    const Place at = place_of(scene, p);
+    // Most places see no backs, and most under things nothing else: a few rays tell.
+    const BacksSeen few = backs_seen(scene, tracer, just_above(at), at.normal, kFirstRays);
+    if (backs_in(few) == 0) return true;
+    return !is_enclosed(few) &&
+           !is_enclosed(scene, tracer, just_above(at), at.normal, kRaysForOpen, diagonal_m);
+  }
+  /// Short rays around the sample, twenty degrees above the surface.
+  void add_feelers(const atlas::Texel& texel, std::vector<trace::Ray>& rays) const {
+    const Place at = place_of(scene, texel.sample);
+    const Vec3 from = just_above(at);
+    const float reach =
+        kReach * texel_width_m(scene, atlas, texel.sample.instance, texel.sample.triangle);
+    const auto frame = frame_around(at.normal);
+    for (int k = 0; k < kFeelers; ++k) {
+      const float turn = 2 * kPi * float(k) / kFeelers;
+      const Vec3 d{0.94f * std::cos(turn), 0.94f * std::sin(turn), 0.34f};
+      rays.push_back({from, 0, frame.to_world(d), reach});
+    }
+  }
+
+  /// Of the texel's places on a grid the one nearest to the middle of those in the open; nothing:
+  /// none is, or all are and the sample, too.
+  std::optional<scene::SurfacePoint> open_place(const atlas::Texel& texel, bool is_open) const;
+};
+
+/// The places of the grid, its corners first.
+constexpr auto kPlaces = [] {
+  std::array<Vec2, kGrid * kGrid> out{};
+  size_t corners = 0, others = 4;
+  for (int j = 0; j < kGrid; ++j)
+    for (int i = 0; i < kGrid; ++i) {
+      const bool is_corner = i % (kGrid - 1) == 0 && j % (kGrid - 1) == 0;
+      out[is_corner ? corners++ : others++] = {(float(i) + 0.5f) / kGrid,
+                                               (float(j) + 0.5f) / kGrid};
+    }
+  return out;
+}();
+
+std::optional<scene::SurfacePoint> Work::open_place(const atlas::Texel& texel, bool is_open) const {
+  const auto& corners = atlas.corners[texel.triangle_number];
+  struct Candidate {
+    Vec2 place;
+    Barycentric at;
+  };
+  std::vector<Candidate> open;
+  Vec2 middle{0, 0};
+  size_t in_triangle = 0;
+  for (size_t k = 0; k < kPlaces.size(); ++k) {
+    // Four corners like the sample between them: so are most texels all over, and one across a
+    // straight edge never is.
+    if (k == 4 && in_triangle == 4 && open.size() == (is_open ? 4u : 0u)) return {};
+    const Vec2 p = Vec2{float(texel.x), float(texel.y)} + kPlaces[k];
+    const Barycentric at = atlas::barycentric_in(corners, p);
+    if (at.u <= 0 || at.v <= 0 || at.u + at.v >= 1) continue;
+    ++in_triangle;
+    if (!in_the_open({texel.sample.instance, texel.sample.triangle, at})) continue;
+    open.push_back({p, at}), middle = middle + p;
+  }
+  if (open.empty() || (is_open && open.size() == in_triangle)) return {};
+  middle = middle * (1 / float(open.size()));
+  const auto nearest = std::ranges::min_element(
+      open, {}, [&](const Candidate& c) { return length(c.place - middle); });
+  return scene::SurfacePoint{texel.sample.instance, texel.sample.triangle, nearest->at};
+}
+
+/// What is known of a texel.
+enum class Found : uint8_t { nothing, back_near, enclosed, moved };
+
+/// Looks at some texels' samples, and sets what is found per texel of the map.
+void look_around(const Work& work, std::span<const uint32_t> texels, const atlas::TexelMap& map,
+                 std::span<Found> found) {
+  constexpr size_t kBlock = 2048;
+  parallel_for(texels.size(), kBlock, [&](size_t begin, size_t end) {
+    std::vector<trace::Ray> rays;
+    for (size_t k = begin; k < end; ++k) work.add_feelers(map.texels[texels[k]], rays);
+    std::vector<trace::Hit> hits(rays.size());
+    work.tracer.closest_hits(rays, hits);
+    for (size_t k = begin; k < end; ++k) {
+      const auto first = hits.begin() + long((k - begin) * kFeelers);
+      if (std::none_of(first, first + kFeelers,
+                       [](const trace::Hit& hit) { return hit.found() && hit.back_face; }))
+        continue;
+      const bool open = work.in_the_open(map.texels[texels[k]].sample);
+      found[texels[k]] = open ? Found::back_near : Found::enclosed;
+    }
+  });
+}
+
+uint32_t texel_at(const atlas::TexelMap& map, int x, int y) {
+  if (x < 0 || y < 0 || x >= map.resolution || y >= map.resolution) return atlas::kNone;
+  return map.texel_at[size_t(y) * size_t(map.resolution) + size_t(x)];
+}
+
+/// Finds the borders of enclosed regions whose backs are farther away, such as the floor under a
+/// shell without a bottom: between texels of a lattice of which one is enclosed and another is not
+/// all are looked at.
+void look_for_regions(const Work& work, const atlas::TexelMap& map, std::span<Found> found) {
+  constexpr int kStep = 4;
+  const int across = (map.resolution + kStep - 1) / kStep;
+  const auto on_lattice = [&](int u, int v) { return texel_at(map, u * kStep, v * kStep); };
+  std::vector<uint8_t> enclosed(size_t(across) * size_t(across));
+  parallel_for(enclosed.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k)
+      if (const uint32_t i = on_lattice(int(k) % across, int(k) / across); i != atlas::kNone)
+        enclosed[k] = !work.in_the_open(map.texels[i].sample);
+  });
+  const auto is_enclosed_at = [&](int u, int v) {
+    return u >= 0 && v >= 0 && u < across && v < across &&
+           enclosed[size_t(v) * size_t(across) + size_t(u)];
+  };
+  const auto is_inner = [&](int u, int v) {
+    for (int dv = -1; dv <= 1; ++dv)
+      for (int du = -1; du <= 1; ++du)
+        if (!is_enclosed_at(u + du, v + dv)) return false;
+    return true;
+  };
+  std::vector<uint8_t> look(found.size());
+  for (int v = 0; v < across; ++v)
+    for (int u = 0; u < across; ++u) {
+      if (!is_enclosed_at(u, v) || is_inner(u, v)) continue;
+      for (int y = (v - 1) * kStep + 1; y < (v + 1) * kStep; ++y)
+        for (int x = (u - 1) * kStep + 1; x < (u + 1) * kStep; ++x)
+          if (const uint32_t i = texel_at(map, x, y); i != atlas::kNone) look[i] = 1;
+    }
+  parallel_for(look.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      if (look[i] && found[i] == Found::nothing && !work.in_the_open(map.texels[i].sample))
+        found[i] = Found::enclosed;
+  });
+}
+
+/// Those that are enclosed and their neighbours in the map.
+std::vector<uint32_t> at_the_edge(const atlas::TexelMap& map, std::span<const Found> found) {
+  std::vector<uint8_t> is_at_edge(found.size());
+  for (uint32_t i = 0; i < found.size(); ++i) {
+    if (found[i] != Found::enclosed) continue;
+    const int x = int(map.texels[i].x), y = int(map.texels[i].y);
+    for (int v = y - 1; v <= y + 1; ++v)
+      for (int u = x - 1; u <= x + 1; ++u)
+        if (const uint32_t j = texel_at(map, u, v); j != atlas::kNone) is_at_edge[j] = 1;
+  }
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < is_at_edge.size(); ++i)
+    if (is_at_edge[i]) out.push_back(i);
+  return out;
+}
+
+/// Opens the samples of the map's texels, of which only some can have backs near them.
+OpenedSamples open_some(const Work& work, std::span<const uint32_t> texels, atlas::TexelMap& map) {
+  std::vector<Found> found(map.texels.size());
+  look_around(work, texels, map, found);
+  OpenedSamples out;
+  for (uint32_t i = 0; i < found.size(); ++i)
+    if (found[i] != Found::nothing) out.near_backs.push_back(i);
+  look_for_regions(work, map, found);
+  const std::vector<uint32_t> edge = at_the_edge(map, found);
+  parallel_for(edge.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) {
+      atlas::Texel& texel = map.texels[edge[k]];
+      const auto place = work.open_place(texel, found[edge[k]] != Found::enclosed);
+      if (place) texel.sample = *place, found[edge[k]] = Found::moved;
+    }
+  });
+  for (uint32_t i = 0; i < found.size(); ++i)
+    if (found[i] == Found::moved) out.moved.push_back(i);
+  return out;
+}
+
+bool meets_any(std::span<const Box3> boxes, const Box3& other, float within_m) {
+  const Vec3 r{within_m, within_m, within_m};
+  return std::ranges::any_of(boxes, [&](const Box3& box) {
+    const Vec3 lower = max(box.lower - r, other.lower), upper = min(box.upper + r, other.upper);
+    return lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z;
+  });
+}
+
+/// Per triangle of the atlas, how near to a box its samples' feelers meet it; < 0: it is too far
+/// away for all of them.
+std::vector<float> reaches_to(const Work& work, std::span<const Box3> boxes) {
+  std::vector<float> out(work.atlas.corners.size(), -1.0f);
+  parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) {
+      const auto [instance, triangle] =
+          scene::drawn_triangle(work.atlas.first_triangle, uint32_t(k));
+      // Feelers start a little above their sample, which rounding may put beside the triangle.
+      const float reach = kReach * texel_width_m(work.scene, work.atlas, instance, triangle) +
+                          1e-4f * work.diagonal_m;
+      const scene::Triangle3 t = scene::world_triangle(work.scene, instance, triangle);
+      Box3 bounds;
+      for (const Vec3& corner : {t.a, t.b, t.c}) bounds.extend(corner);
+      if (meets_any(boxes, bounds, reach)) out[k] = reach;
+    }
+  });
+  return out;
+}
+
+}  // namespace
+
+OpenedSamples open_samples(const scene::Scene& scene, const atlas::Atlas& atlas,
+                           const trace::RayTracer& tracer, atlas::TexelMap& map) {
+  std::vector<uint32_t> all(map.texels.size());
+  std::iota(all.begin(), all.end(), 0);
+  return open_some({scene, atlas, tracer, scene::world_bounds(scene).diagonal()}, all, map);
+}
+
+OpenedSamples open_samples_again(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 const trace::RayTracer& tracer, std::span<const Box3> boxes,
+                                 std::span<const uint32_t> near_backs, atlas::TexelMap& map) {
+  const Work work{scene, atlas, tracer, scene::world_bounds(scene).diagonal()};
+  const std::vector<float> reaches = reaches_to(work, boxes);
+  std::vector<uint8_t> look(map.texels.size());
+  for (const uint32_t i : near_backs) look[i] = 1;
+  parallel_for(look.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const float reach = reaches[map.texels[i].triangle_number];
+      if (look[i] || reach < 0) continue;
+      const Vec3 at = scene::world_position(scene, map.texels[i].sample);
+      if (meets_any(boxes, {at, at}, reach)) look[i] = 1;
+    }
+  });
+  std::vector<uint32_t> texels;
+  for (uint32_t i = 0; i < look.size(); ++i)
+    if (look[i]) texels.push_back(i);
+  return open_some(work, texels, map);
+}
+
+}  // namespace luxel::transport

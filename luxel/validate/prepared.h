@@ -1,0 +1,40 @@
+// A scene ready for a solver.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "luxel/base/clock.h"
+#include "luxel/pipeline/solver/solvers.h"
+
+namespace luxel::validate {
+
+/// Members refer to each other: it is made in place and not moved.
+struct Prepared {
+  scene::Scene scene;
+  atlas::Atlas atlas;
+  atlas::TexelMap map;
+  transport::Elements elements;
+  light::Lights lights;
+  std::optional<trace::RayTracer> tracer;
+
+  pipeline::SolveInput input() const {
+    return {{scene, atlas, map, elements, lights, *tracer}, nullptr};
+  }
+};
+
+/// Lays the scene out on a lightmap of `resolution` squared. A scene without any light gets a white
+/// background.
+Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution, Progress& progress);
+
+struct Timed {
+  pipeline::TexelLight light;
+  double seconds = 0;
+};
+/// Runs a solver of the pipeline's table by name; settings' scene, output and resolution are not
+/// looked at.
+Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSettings settings,
+                    Progress& progress);
+
+}  // namespace luxel::validate

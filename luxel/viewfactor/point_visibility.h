@@ -1,0 +1,60 @@
+// What a point sees of a polygon past opaque polygons: exact shadows.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "luxel/viewfactor/polygon.h"
+
+namespace luxel::viewfactor {
+
+/// A convex opaque polygon; both sides block.
+struct Blocker {
+  Polygon corners;
+  Plane plane;
+  double area_m2 = 0;
+};
+/// Blockers without area block nothing: they come back with area 0.
+Blocker make_blocker(PolygonView corners);
+
+/// Convex polygons one after another.
+struct Fragments {
+  std::vector<DVec3> corners;
+  std::vector<uint32_t> ends;  ///< one past the last corner of each
+
+  size_t size() const { return ends.size(); }
+  PolygonView operator[](size_t i) const {
+    const uint32_t begin = i == 0 ? 0 : ends[i - 1];
+    return {corners.data() + begin, ends[i] - begin};
+  }
+  void clear() { corners.clear(), ends.clear(); }
+  void add(PolygonView polygon) {
+    corners.insert(corners.end(), polygon.begin(), polygon.end());
+    ends.push_back(uint32_t(corners.size()));
+  }
+};
+
+/// Memory that one evaluation leaves to the next; one per thread.
+struct VisibilityScratch {
+  Fragments visible, next;
+  Polygon polygon, rest, inside, outside;
+  std::vector<Plane> shadow;
+};
+
+/// F from a differential element at `point` with unit `normal` to the part of the polygon that it
+/// sees, and to the whole polygon. `polygon` lies above the element's horizon. Each blocker's
+/// shadow, the cone from the point over the blocker, behind its plane, is cut out of the polygon;
+/// what is left is a set of convex fragments, each with Lambert's exact factor.
+/// casts_shadow[b] is set for each of `blockers` (indices into `all`) whose shadow falls on the
+/// polygon; entries of others stay as they are. Corners closer than `slack` to a blocker's plane
+/// lie on it.
+struct SeenFactor {
+  double visible = 0, whole = 0;
+};
+SeenFactor visible_point_factor(DVec3 point, DVec3 normal, PolygonView polygon,
+                                std::span<const Blocker> all, std::span<const uint32_t> blockers,
+                                double slack, std::span<uint8_t> casts_shadow,
+                                VisibilityScratch& scratch);
+
+}  // namespace luxel::viewfactor

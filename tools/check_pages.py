@@ -33,7 +33,7 @@ REFERENCE = re.compile(r"^\s{0,3}\[[^\]]+\]:\s+<?(\S+?)>?\s*$")
 HTML = re.compile(r"<(?:img|a|source)\b[^>]*?\b(?:src|href)\s*=\s*[\"']([^\"']*)[\"']", re.IGNORECASE)
 OPTION = re.compile(r"(?<![\w-])--([a-z][a-z0-9-]*)")
 PROGRAM = re.compile(r"(?:[^\s`]*/)?luxel(?=\s|$)")
-COMMAND = re.compile(r"(?:^|[\s;|&(])(?:[^\s`]*/)?luxel\s+([a-z][a-z-]*)")
+COMMAND = re.compile(r"(?:^|[\s;|&(])(?:[^\s`]*/)?luxel\s+([a-z][a-z-]*)(?=[\s.,;:)|&]|$)")
 
 
 class Line:
@@ -262,7 +262,7 @@ luxel bench rays -o x
   in its second line.
 
 ![{LONG}](docs/images/a.png) ![{LONG}](docs/images/a.png)
-`cmake --preset release` and `luxel bake --good 3` and `bake --good` and `luxel` alone;
+`cmake --preset release` and `luxel bake --good 3` and `bake --good` and `luxel` alone; `luxel records2`,
 [twice](docs/guide/a.md#twice-1).
 """,
     "docs/guide/a.md": "## Of lights, and `luxel bake`\n\n# Twice\n# Twice\n\n[up](../../README.md)\n"

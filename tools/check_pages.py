@@ -267,8 +267,8 @@ luxel bench rays -o x
 """,
     "docs/guide/a.md": "## Of lights, and `luxel bake`\n\n# Twice\n# Twice\n\n[up](../../README.md)\n"
                        "[mail](mailto:a@b.c) [web](https://example.org/none#x) `[no](link.md)`\n\n"
-                       "Twenty words and more stand in a sentence that ends here, as everybody can see, at 1024 x 1024. "
-                       "And then\nanother one, which has a few words of its own, and ends soon after that, too.\n",
+                       "Twenty words and more stand in a sentence that ends here, as everybody can see, "
+                       "with 1024 x 1024 x 1024. And then\nanother one, which has a few words of its own, and ends soon after that, too.\n",
     "docs/method/m.md": f"# Method\n\n{(LONG[:100] + chr(10)) * 3}\n",  # long sentences are allowed here
     "docs/images/a.png": "",
     "elsewhere.md": "[none](none.md)\n",

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "bench/bench.h"
 #include "luxel/base/file.h"
 #include "luxel/base/parallel.h"
@@ -35,6 +37,32 @@ std::string show(const PageFile& file, std::string_view words) {
   return fmt::format("![{}](../images/validation-{})", words, file.name);
 }
 
+namespace {
+
+/// Breaks lines of prose at 120 characters. Tables, pictures, headings and code stay as they are.
+std::string wrapped(std::string_view markdown) {
+  constexpr size_t kWidth = 120;
+  constexpr std::string_view kWhole = "|!# ";  // what a line begins with that is not prose
+  std::string out;
+  while (!markdown.empty()) {
+    const size_t end = std::min(markdown.find('\n'), markdown.size());
+    std::string_view line = markdown.substr(0, end);
+    const bool prose = !line.empty() && kWhole.find(line.front()) == std::string_view::npos;
+    while (prose && line.size() > kWidth) {
+      const size_t space = line.rfind(' ', kWidth);
+      if (space == std::string_view::npos || space == 0) break;
+      out += std::string(line.substr(0, space)) + "\n";
+      line.remove_prefix(space + 1);
+    }
+    out += line;
+    if (end < markdown.size()) out += '\n';
+    markdown.remove_prefix(std::min(end + 1, markdown.size()));
+  }
+  return out;
+}
+
+}  // namespace
+
 Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
   const auto start = Clock::now();
   Page page;
@@ -62,7 +90,7 @@ Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
       "This run: version {}, {}, {} threads, {:.0f} s. The exact values are those of "
       "`shared/reference`.\n\n",
       pipeline::kVersion, machine_name(), thread_count(), seconds_since(start));
-  page.markdown += body;
+  page.markdown = wrapped(page.markdown + body);
   while (page.markdown.ends_with("\n\n")) page.markdown.pop_back();
   return page;
 }

@@ -186,7 +186,7 @@ void register_bake(CLI::App& app, Action& action) {
   bake->add_option("--texels-per-metre", s.texels_per_metre,
                    "Density; the side becomes the smallest power of two that holds the scene");
   bake->add_option("--pages", options->pages,
-                   "Lightmaps: so many; auto, as many as the density needs; mesh, one per mesh")
+                   "Number of lightmaps; auto: as many as the density needs; mesh: one per mesh")
       ->capture_default_str();
   add_uv(*bake, options->uv);
   bake->add_option("--samples", s.samples, "Indirect rays per texel; reference: paths")
@@ -202,57 +202,61 @@ void register_bake(CLI::App& app, Action& action) {
   add_hemicube(*bake, options->hemicube);
   bake->get_option("--max-error")
       ->description(
-          "gather: rays are added until 95 of 100 texels are known to this part of their light, as "
-          "0.02; hemicube: cut triangles over which the light is off by more, 0 cuts none")
+          "gather: add rays until the 95th percentile of the relative standard error is below "
+          "this, e.g. 0.02; hemicube: cut triangles over which interpolation errs by more, 0 cuts "
+          "none")
       ->group("OPTIONS");
   bake->add_option("--time-budget", s.time_budget_s,
-                   "As good as it gets in about so many seconds, whole; with --max-error until "
-                   "either is reached")
+                   "gather: the lowest error within about this many seconds in total; with "
+                   "--max-error until either is reached")
       ->type_name("SECONDS");
   bake->add_flag("--plan", options->plan,
-                 "Do not bake: say what time, memory and rays it would take, from a trial");
+                 "Do not bake: estimate time, memory and rays from a short trial");
   const char* matrix = "Matrix radiosity";
-  bake->add_option("--patches", s.matrix.patches, "About so many pieces of surface exchange light")
+  bake->add_option("--patches", s.matrix.patches,
+                   "Approximate number of patches that exchange light")
       ->capture_default_str()
       ->group(matrix);
-  bake->add_option("--rays", s.matrix.rays, "Per patch, to find what it sees")
+  bake->add_option("--rays", s.matrix.rays, "Rays per patch that estimate its form factors")
       ->capture_default_str()
       ->group(matrix);
   add_hierarchical(*bake, s.hierarchical);
   bake->add_option("--directional", options->directional,
-                   "Also how light changes with the normal: dominant or sh1");
+                   "Also store how irradiance changes with the normal: dominant or sh1");
   bake->add_option("--probes", s.probe_spacing_m,
-                   "Also light probes in the air, so many metres apart")
+                   "Also write light probes on a grid of this spacing in metres")
       ->type_name("SPACING");
   bake->add_option("--layers", options->layers,
-                   "Also a lightmap of each light: per-light; or of each group of lights that have "
-                   "one name but for a number at its end: groups")
+                   "Also write a lightmap of each light (per-light), or of each group of lights "
+                   "whose names differ only by a number at the end (groups)")
       ->type_name("WHICH");
-  bake->add_flag("--denoise", s.denoise, "Take the grain out of texels; edges of shadows stay");
+  bake->add_flag("--denoise", s.denoise, "Remove the noise of few samples; edges of shadows stay");
   bake->add_flag(
       "--texels", s.texels,
-      "Also leave texels.png: what became of each texel (luxel render --technique texels)");
+      "Also write texels.png: how each texel was treated (luxel render --technique texels)");
   bake->add_flag("--error-map", s.error_map,
-                 "Also leave error.png: how sure each texel is (luxel render --technique error)");
+                 "Also write error.png: the relative standard error of each texel (luxel render "
+                 "--technique error)");
   bake->add_flag("!--no-leak-repair", s.repair_leaks,
-                 "Leave charts whole under thin walls, and samples inside of solids");
-  bake->add_flag("!--no-stitch", s.stitch, "Leave charts as they are along seams");
+                 "Do not cut charts under thin walls, nor move samples out of solids");
+  bake->add_flag("!--no-stitch", s.stitch, "Do not blend charts along seams");
   bake->add_flag("--vertex-colors", s.vertex_colors,
                  "hemicube: baked.glb gets light per vertex in COLOR_0 instead of the lightmap");
   bake->add_option("--formats", options->formats,
                    "The lightmap as exr (always), hdr, rgbm and rgbe, with commas between them")
       ->capture_default_str();
-  bake->add_flag("--html", s.html, "Also view.html: the baked scene as a page to walk around in");
+  bake->add_flag("--html", s.html,
+                 "Also write view.html: the baked scene as one page to walk around in");
   bake->add_option("--max-memory", options->max_memory,
                    "Memory to stay under, as 900M or 1.5G (default: most of what is free)");
   bake->add_option("--checkpoint", s.checkpoint_s,
-                   "gather: what is finished later than so many seconds after the start is kept in "
-                   "FOLDER/checkpoint.luxel until the bake is done; 0: nothing is")
+                   "gather: from this many seconds after the start on, keep finished parts in "
+                   "FOLDER/checkpoint.luxel until the bake is done; 0: never")
       ->capture_default_str();
-  bake->add_flag("--resume", s.resume, "gather: go on with the checkpoint that is in the folder");
+  bake->add_flag("--resume", s.resume, "gather: continue from the checkpoint in the folder");
   bake->add_flag("--keep", s.keep,
-                 "gather: build on the bake that is kept in FOLDER/cache, tracing only what has "
-                 "changed in the scene since; without one, bake and keep it there");
+                 "gather: build on the bake kept in FOLDER/cache and retrace only what has changed "
+                 "in the scene since; without one, bake and keep it there");
   bake->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();
   add_outside_light(*bake, options->outside);
   add_common(*bake, options->common);

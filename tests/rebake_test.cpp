@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -125,6 +127,8 @@ struct Case {
   const char* changed;  ///< in words
   double rms = 0.002;   ///< of the difference, at most
 };
+/// For the names of tests.
+void PrintTo(const Case& p, std::ostream* out) { *out << p.name; }
 /// Of sums of layers, and of a lamp that brings most of the light and is supersampled alone.
 constexpr double kRough = 0.005;
 

@@ -12,6 +12,8 @@ struct RealScene {
   uint32_t triangles;   ///< drawn, by the README
   uint32_t degenerate;  ///< of these, how many have no area (counted by another program)
 };
+/// For the names of tests.
+void PrintTo(const RealScene& p, std::ostream* out) { *out << p.file; }
 
 /// The stated counts are of the files; living_room's is mostly triangles of exactly no area.
 class RealScenes : public ::testing::TestWithParam<RealScene> {};

@@ -157,6 +157,8 @@ TEST(DirectX, WithoutFramesAndMaterials) {
 struct Damage {
   const char *from, *to, *says;
 };
+/// For the names of tests.
+void PrintTo(const Damage& p, std::ostream* out) { *out << p.says; }
 class DamagedDirectX : public ::testing::TestWithParam<Damage> {};
 
 TEST_P(DamagedDirectX, IsAnError) {

@@ -11,6 +11,8 @@ struct Change {
   bool surroundings = false;
   bool moves = false;
 };
+/// For the names of tests.
+void PrintTo(const Change& p, std::ostream* out) { *out << p.name; }
 
 class EarlierEdits : public EarlierGather, public ::testing::WithParamInterface<Change> {};
 

@@ -2,6 +2,7 @@
 #
 #   make demo    installs what is missing, builds, bakes the Cornell box
 #   make test    installs what is missing, builds, runs every test
+#   make docs    checks the pages: links, widths, sentences, commands, options, generated pages
 
 SHELL := /bin/bash
 LUXEL := build/release/bin/luxel
@@ -16,7 +17,7 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-.PHONY: setup setup-tests build test demo bench asan format format-check clean
+.PHONY: setup setup-tests build test demo docs bench asan format format-check clean
 
 setup:
 	@tools/setup.sh
@@ -38,6 +39,14 @@ demo: build
 	$(LUXEL) bake scenes/cornell-box.glb -o baked/cornell-box --resolution 256 --samples 512
 	@echo
 	@echo "Open baked/cornell-box/preview.png; baked/cornell-box/baked.glb goes into any glTF viewer."
+
+# docs/options.md is made by tools/make_options_page.py, docs/bench/benchmarks.md by
+# tools/make_bench_page.py from the .csv files beside it.
+docs: build
+	tools/make_options_page.py $(LUXEL) --check
+	tools/make_options_page.py $(LUXEL) --names > build/option_names.txt
+	tools/check_pages.py --options build/option_names.txt
+	tools/make_bench_page.py --check
 
 bench: build
 	$(LUXEL) bench all

@@ -42,8 +42,8 @@ TEST(MaxError, WinsOverSamplesAndSaysSo) {
   const ScratchFolder s;
   const CommandResult r = luxel(box(s, "--max-error 0.2 --samples 4"));
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_THAT(r.err, HasSubstr("--max-error 0.2 wins"));
-  EXPECT_THAT(r.err, HasSubstr("--samples 4 is not looked at"));
+  EXPECT_THAT(r.err, HasSubstr("--max-error 0.2 decides how many rays there are"));
+  EXPECT_THAT(r.err, HasSubstr("--samples 4 is ignored"));
   EXPECT_GE(json_of(s)["error"]["samples"]["fewest"], 32);
 }
 
@@ -144,7 +144,7 @@ TEST(TimeBudget, IsForSamplesToSuit) {
   const ScratchFolder s;
   const CommandResult r = luxel(box(s, "--time-budget 0.01 --samples 4096"));
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_THAT(r.err, HasSubstr("--time-budget 0.01 wins"));
+  EXPECT_THAT(r.err, HasSubstr("--time-budget 0.01 decides how many rays there are"));
   EXPECT_THAT(r.err, HasSubstr("--time-budget 0.01 leaves"));
   EXPECT_LT(json_of(s)["error"]["samples"]["most"], 4096);
 }

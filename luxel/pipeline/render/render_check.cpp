@@ -54,8 +54,8 @@ Status check_used(const RenderSettings& s, const Technique& technique) {
                             {"--elements, --hemicube, --element-size, --max-elements, --max-error "
                              "and --smooth",
                              s.hemicube.has_value(), &Technique::has_elements},
-                            {"--eps, --min-area, --no-discontinuities, --max-leaf-lines and "
-                             "--min-weight",
+                            {"--eps, --min-area, --no-discontinuities, --max-leaf-lines, "
+                             "--min-weight and --ranking",
                              s.hierarchical.has_value(), &Technique::has_links},
                             {"--overlay", !s.overlays.empty(), &Technique::has_links},
                             {"--sun", s.outside.sun.has_value(), &Technique::has_lamps}};

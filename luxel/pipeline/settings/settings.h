@@ -97,8 +97,8 @@ struct BakeSettings {
   atlas::UvMode uv = atlas::UvMode::automatic;
   int samples = 256;
   int direct_samples = 64;
-  /// gather: rays are added until 95 of 100 texels are known to this part of their light, `samples`
-  /// is not looked at; 0: no more than `samples`.
+  /// gather: rays are added until the 95th percentile of the relative standard error over texels is
+  /// below this, and `samples` is ignored; 0: no more than `samples`.
   double max_error = 0;
   /// gather, > 0: as good as it gets in about so many seconds, `samples` is not looked at; with
   /// max_error until either is reached. The result depends on how fast the machine is.

@@ -32,16 +32,16 @@ void warn_about_rounds(const BakeSettings& settings, const gather::GatherParams&
                                  ? fmt::format("--max-error {}", settings.max_error)
                                  : fmt::format("--time-budget {}", settings.time_budget_s);
   if (settings.samples_given)
-    warnings.push_back(
-        fmt::format("{} wins: it says how many rays there are, and --samples {} is not looked at",
-                    winner, settings.samples));
+    warnings.push_back(fmt::format("{} decides how many rays there are; --samples {} is ignored",
+                                   winner, settings.samples));
   if (settings.max_error <= 0 || double(result.relative_error_p95) <= settings.max_error) return;
-  warnings.push_back(fmt::format(
-      "--max-error {} was not reached: 95 of 100 texels are known to {:.2g} of their light, {}",
-      settings.max_error, result.relative_error_p95,
-      settings.time_budget_s > 0
-          ? fmt::format("when --time-budget {} was over", settings.time_budget_s)
-          : fmt::format("and none gets more than {} rays", params.max_samples)));
+  warnings.push_back(
+      fmt::format("--max-error {} was not reached: the 95th percentile of the relative standard "
+                  "error is {:.2g}, {}",
+                  settings.max_error, result.relative_error_p95,
+                  settings.time_budget_s > 0
+                      ? fmt::format("when --time-budget {} was over", settings.time_budget_s)
+                      : fmt::format("and none gets more than {} rays", params.max_samples)));
 }
 
 /// Makes the first round small enough for `seconds`. The forecast is that of `params`.

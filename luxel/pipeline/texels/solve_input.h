@@ -38,7 +38,7 @@ struct TexelLight {
   /// Where the solver knows how sure each texel's luminance is, relative to itself or, where it is
   /// darker, to a tenth of the mean; empty: it does not. Hidden texels have none.
   std::vector<float> errors;
-  float error_p95 = 0;  ///< that 95 of 100 stay below
+  float error_p95 = 0;  ///< their 95th percentile
   /// With --layers: which there are, and E of each per texel; they add up to the irradiance.
   std::vector<light::LightLayer> layers;
   std::vector<std::vector<Rgb>> layer_irradiance;

@@ -111,14 +111,14 @@ Status begin_direct(const light::TexelScene& world, const GatherParams& params, 
 
 Status trace_round(const light::TexelScene& world, const GatherParams& params,
                    std::span<const uint16_t> target, Work& work, Progress& progress) {
-  const TraceParams trace{params.seed,
-                          params.hit_memory_bytes,
-                          params.scratch_folder,
-                          params.bounces < 0 ? &world.lights : nullptr,
-                          params.parts,
-                          params.keep,
-                          params.earlier ? &params.earlier->rays : nullptr,
-                          params.layers};
+  const TraceParams trace{.seed = params.seed,
+                          .memory_limit_bytes = params.hit_memory_bytes,
+                          .scratch_folder = params.scratch_folder,
+                          .near_lights = params.bounces < 0 ? &world.lights : nullptr,
+                          .parts = params.parts,
+                          .keep = params.keep,
+                          .earlier = params.earlier ? &params.earlier->rays : nullptr,
+                          .layers = params.layers};
   const auto start = Clock::now();
   const uint64_t before = work.hits.rays, samples = sum_of(work.hits.samples);
   LUXEL_TRY_STATUS(trace_more(world.scene, world.atlas, world.elements, world.lights.around,

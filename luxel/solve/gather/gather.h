@@ -23,7 +23,7 @@ struct Gather {
   std::vector<float> pooled_variance;  ///< of the luminance, per element: pooled_variances
   std::vector<float> errors;           ///< per element: relative_errors
   std::vector<float> gathered_errors;  ///< the same of what rays brought, light from lamps aside
-  float relative_error_p95 = 0;        ///< that 95 of 100 elements stay below
+  float relative_error_p95 = 0;        ///< 95th percentile of `errors`
   std::vector<uint16_t> samples;       ///< indirect rays per element
   /// With layers, of each: E per element after all bounces. They add up to `irradiance`.
   std::vector<std::vector<Rgb>> layers;

@@ -30,7 +30,7 @@ std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::Texe
 std::vector<float> relative_errors(std::span<const float> variance, std::span<const Rgb> irradiance,
                                    const TracedHits& hits);
 
-/// The value that 95 of 100 elements with an error stay below.
+/// The 95th percentile of the errors, over elements that have one.
 float percentile_95(std::span<const float> errors);
 
 /// Standard errors of stratified samples fall like n^-kDecay and a bit faster
@@ -45,9 +45,9 @@ inline float error_of_part(float max_error) { return max_error * 0.70710678f; }
 std::vector<uint16_t> next_samples(std::span<const float> errors, float max_error, int max_samples,
                                    std::span<const uint16_t> samples);
 
-/// How many samples each round will add, until 95 of 100 of `all` errors are below max_error, if
-/// those of the gathered light, which are part of them, fall like n^-kDecay, and lamps are looked
-/// at until theirs are small enough.
+/// How many samples each round will add, until the 95th percentile of `all` errors is below
+/// max_error, if those of the gathered light, which are part of them, fall like n^-kDecay, and
+/// lamps are looked at until theirs are small enough.
 std::vector<uint64_t> rounds_to_come(std::span<const float> all, std::span<const float> gathered,
                                      float max_error, int max_samples,
                                      std::span<const uint16_t> samples);

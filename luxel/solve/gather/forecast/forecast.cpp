@@ -129,8 +129,9 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
 Status try_tracing(Trial& trial, Forecast& out, Progress& progress) {
   const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
   const transport::Elements tried = transport::subset(elements, trial.texels);
-  const TraceParams params{trial.params.seed, UINT64_MAX, trial.params.scratch_folder,
-                           trial.params.bounces < 0 ? &lights : nullptr};
+  const TraceParams params{.seed = trial.params.seed,
+                           .scratch_folder = trial.params.scratch_folder,
+                           .near_lights = trial.params.bounces < 0 ? &lights : nullptr};
   LUXEL_TRY(const double seconds, seconds_of([&]() -> Status {
               LUXEL_TRY(trial.hits, trace_hits(scene, atlas, tried, lights.around, tracer,
                                                trial.params.samples, params, progress));

@@ -105,8 +105,10 @@ Status light_directly(Trial& trial, Progress& progress) {
 Status trace(Trial& trial, std::span<const uint16_t> target, Progress& progress) {
   const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
   const GatherParams& params = trial.params;
-  const TraceParams trace{params.seed, params.hit_memory_bytes, params.scratch_folder,
-                          params.bounces < 0 ? &lights : nullptr};
+  const TraceParams trace{.seed = params.seed,
+                          .memory_limit_bytes = params.hit_memory_bytes,
+                          .scratch_folder = params.scratch_folder,
+                          .near_lights = params.bounces < 0 ? &lights : nullptr};
   return trace_more(scene, atlas, elements, lights.around, tracer, target, trace, trial.hits,
                     progress);
 }

@@ -145,8 +145,10 @@ def circle_faults(arrows):
                     found.add(b)
                     todo.append(b)
         return end in found
+    found = set()
     for (room, a, b), where in sorted(arrows.items()):
-        if reaches(room, b, a):
+        if (room, b, a) not in found and reaches(room, b, a):
+            found.add((room, a, b))
             yield f"{where}: within {room}, {a or 'its top'} includes {b or 'its top'}, which includes it"
 
 
@@ -199,7 +201,9 @@ GOOD = {
     "luxel/solve/a/a.cpp": '#include "luxel/solve/a/a.h"\n#include "luxel/scene/scene.h"\n#include <vector>',
     "luxel/solve/b/CMakeLists.txt": "luxel_room(solve/b USES transport)",
     "luxel/pipeline/CMakeLists.txt": "luxel_room(pipeline USES solve_a solve_b)",
-    "luxel/pipeline/p.cpp": '#include "luxel/solve/a/a.h"',
+    "luxel/pipeline/p.cpp": '#include "luxel/solve/a/a.h"\n#include "luxel/pipeline/high/h.h"',
+    "luxel/pipeline/high/h.h": '#include "luxel/pipeline/low/l.h"',
+    "luxel/pipeline/low/l.h": "",
     "apps/cli/CMakeLists.txt": "add_executable(luxel main.cpp)",
     "apps/cli/main.cpp": '#include "luxel/pipeline/p.h"\n#include "luxel/base/vec.h"\nint main() { std::exit(printf("")); }',
     "examples/e/CMakeLists.txt": "add_executable(example main.cpp)",
@@ -221,6 +225,7 @@ BAD = [
     ("luxel/scene/s.cpp", "std::cout << 1;", "prints or exits"),
     ("luxel/scene/s.cpp", 'std::printf("x");', "prints or exits"),
     ("luxel/scene/s.cpp", "std::exit(1);", "prints or exits"),
+    ("luxel/pipeline/low/l.h", '#include "luxel/pipeline/high/h.h"', "within pipeline, high includes low"),
     ("luxel/attic/a.cpp", "", "lies in no room"),
     ("luxel/attic/CMakeLists.txt", "luxel_room(attic USES base)", "room attic has no row"),
     ("luxel/scene/CMakeLists.txt", "luxel_room(scene\n USES base transport\n LIBS a)", "scene links transport"),

@@ -47,6 +47,12 @@ Status write_with_pictures(const OutputFile& page, const std::string& name,
   return {};
 }
 
+/// Before work of minutes: whether write_with_pictures() will find its folders writable.
+Status try_out_folders(const std::filesystem::path& folder) {
+  LUXEL_TRY_STATUS(OutputFolder(folder / "bench").try_out());
+  return OutputFolder(folder / "images").try_out();
+}
+
 std::filesystem::path validation_page(const std::filesystem::path& folder) {
   return folder / "bench" / "validation.md";
 }
@@ -64,7 +70,7 @@ int run_validation(const BenchOptions& options, const std::filesystem::path& sha
   const std::filesystem::path folder = options.output;
   bench::Page page;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
-    LUXEL_TRY_STATUS(OutputFolder(folder / "images").try_out());
+    LUXEL_TRY_STATUS(try_out_folders(folder));
     LUXEL_TRY(page, bench::validate(shared, progress));
     return write_page(page, folder, progress);
   });
@@ -94,7 +100,7 @@ int run_page(const BenchOptions& options, const std::string& name,
   const bool write = options.name == name;
   Page page;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
-    if (write) LUXEL_TRY_STATUS(OutputFolder(folder / "images").try_out());
+    if (write) LUXEL_TRY_STATUS(try_out_folders(folder));
     LUXEL_TRY(page, measure(shared, progress));
     return write ? write_plots(page, name, folder) : Status{};
   });

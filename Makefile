@@ -12,6 +12,7 @@ SOURCES := find . \( -path ./build -o -path './.*' -o -name node_modules \) -pru
 # ccache, where there is one, makes rebuilding cheap. It is never required.
 ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
+export CCACHE_SLOPPINESS ?= pch_defines,time_macros
 endif
 # One compiler for every GB of memory, at most one per core: Debian machines swap otherwise.
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \

@@ -136,7 +136,7 @@ struct Table {
 Result<Table> measure_rows(const std::vector<Row>& rows, const Progress& progress) {
   Table table;
   for (const Row& row : rows) {
-    if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+    LUXEL_TRY_STATUS(stopped(progress));
     const double a = error_of(analytic(row), row);
     LUXEL_TRY(const double hemicube, sampled(row, kHemicube));
     LUXEL_TRY(const double rays, sampled(row, kRays));

@@ -10,8 +10,6 @@
 namespace luxel::atlas {
 namespace {
 
-tl::unexpected<Error> cancelled() { return fail(ErrorCode::cancelled, "cancelled"); }
-
 bool is_one_page(const AtlasParams& params) {
   return params.page_mode == PageMode::fixed && params.pages == 1;
 }
@@ -76,7 +74,7 @@ Error too_small(const scene::Scene& scene, const Faces& faces,
     const PageRoom room{.side = params.resolution, .gutter = params.gutter, .count = params.pages};
     if (!holds_charts(room, groups.size())) continue;
     const Result<Atlas> atlas = try_layout(scene, faces, groups, params, progress);
-    if (progress.cancelled()) return cancelled().value();
+    if (const Status going = stopped(progress); !going) return going.error();
     if (atlas)
       return fail(ErrorCode::bad_setting,
                   "resolution {}: too small for the scene's {} charts with {} texels between them; "
@@ -96,7 +94,7 @@ Result<Atlas> unwrap(const scene::Scene& scene, const AtlasParams& params, Progr
   if (!params.group.empty()) part_groups(faces, params.group);
   const std::vector<ChartFaces> groups =
       grow_charts(faces, double(params.max_chart_angle_rad), progress);
-  if (progress.cancelled()) return cancelled();
+  LUXEL_TRY_STATUS(stopped(progress));
   progress.begin("packing", 1);
   Result<Atlas> atlas = try_layout(scene, faces, groups, params, progress);
   const bool small = !atlas && atlas.error().code == ErrorCode::bad_setting;

@@ -96,7 +96,7 @@ Status check_overlap(const scene::Scene& scene, const Atlas& atlas, const Progre
   const int n = atlas.resolution;
   std::vector<uint32_t> holder(size_t(n) * size_t(n), kNone);
   for (uint32_t t = 0; t < atlas.corners.size(); ++t) {
-    if (t % 1024 == 0 && progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    if (t % 1024 == 0) LUXEL_TRY_STATUS(stopped(progress));
     const auto& c = atlas.corners[t];
     const UvTriangle triangle = uv_triangle({to_double(c[0]), to_double(c[1]), to_double(c[2])});
     const Span rows = touched_rows(triangle);

@@ -10,8 +10,6 @@
 namespace luxel::atlas {
 namespace {
 
-tl::unexpected<Error> cancelled() { return fail(ErrorCode::cancelled, "cancelled"); }
-
 /// Charts were checked for overlap at about the density they get; here it is checked at the very
 /// texels they got. Replaces the guilty ones by their parts; false, and nothing done, when there
 /// are none.
@@ -80,7 +78,7 @@ Result<LaidOut> on_fixed_pages(const scene::Scene& scene, const Faces& faces,
   double density = params.resolution / max_length;
   if (dense) density = std::min(double(params.texels_per_metre), kMaxResolution / max_length);
   std::vector<FlatChart> charts = flatten_charts(faces, groups, max_length, density, progress);
-  if (progress.cancelled()) return cancelled();
+  LUXEL_TRY_STATUS(stopped(progress));
   const auto place = [&](const std::vector<FlatChart>& flat, double guess) -> Result<Layout> {
     if (dense) return layout_at_density(flat, params.texels_per_metre, room, progress);
     if (room.count > 1) room.instance = instances_of(scene, flat);
@@ -119,7 +117,7 @@ Result<LaidOut> on_fewest_pages(const scene::Scene& scene, const Faces& faces,
   const double max_length =
       std::min(side_of(faces, groups, 1), std::max(1, params.resolution - 1) / density);
   std::vector<FlatChart> charts = flatten_charts(faces, groups, max_length, density, progress);
-  if (progress.cancelled()) return cancelled();
+  LUXEL_TRY_STATUS(stopped(progress));
   const auto place = [&](const std::vector<FlatChart>& flat, double) -> Result<Layout> {
     LUXEL_TRY_STATUS(check_lengths(scene, flat, params));
     const PageRoom room{
@@ -170,7 +168,7 @@ Result<LaidOut> on_own_page(const Faces& faces, const OwnPage& page, double dens
                             const PageRoom& room, Progress& progress) {
   std::vector<FlatChart> charts =
       flatten_charts(faces, page.groups, page.side_m, density, progress);
-  if (progress.cancelled()) return cancelled();
+  LUXEL_TRY_STATUS(stopped(progress));
   return without_overlaps(faces, std::move(charts),
                           [&](const std::vector<FlatChart>& flat, double) {
                             return layout_at_density(flat, density, room, progress);
@@ -184,7 +182,7 @@ Result<double> density_of_largest(const Faces& faces, const OwnPage& page,
       .side = params.resolution, .gutter = params.gutter, .atlas_side = kMaxMapSide};
   const std::vector<FlatChart> charts =
       flatten_charts(faces, page.groups, page.side_m, params.resolution / page.side_m, progress);
-  if (progress.cancelled()) return cancelled();
+  LUXEL_TRY_STATUS(stopped(progress));
   LUXEL_TRY(const Layout layout, layout_in_squares(charts, room, 0, progress));
   return layout.texels_per_metre;
 }

@@ -132,8 +132,6 @@ double most_density(const std::vector<FlatChart>& charts, const PageRoom& room) 
   return room.count == 1 || !(area > 0) ? INFINITY : (room.side - 1) / std::sqrt(area);
 }
 
-tl::unexpected<Error> cancelled() { return fail(ErrorCode::cancelled, "cancelled"); }
-
 }  // namespace
 
 Corners texel_corners(const FlatChart& chart, double density, int page_side, int atlas_side) {
@@ -175,7 +173,7 @@ Result<Layout> layout_in_squares(const std::vector<FlatChart>& charts, const Pag
   double density = std::min(most, first_guess > 0 ? first_guess : 0.85 * side / side_m);
   Layout best;
   for (int round = 0; round < 60; ++round) {
-    if (progress.cancelled()) return cancelled();
+    LUXEL_TRY_STATUS(stopped(progress));
     Attempt attempt = make_attempt(turned, density, room, atlas_side);
     const double fill = double(mask_texels(attempt.masks)) / texels_of(room);
     Packing packing;
@@ -213,7 +211,7 @@ Result<Layout> layout_at_density(const std::vector<FlatChart>& charts, double te
   const int most = room.side > 0 ? room.side : kMaxResolution;
   const std::vector<TurnedChart> turned = directions_of(charts);
   for (int n = 1; n <= most; n = n < most ? std::min(2 * n, most) : n + 1) {
-    if (progress.cancelled()) return cancelled();
+    LUXEL_TRY_STATUS(stopped(progress));
     const double area = flat_area(charts) * texels_per_metre * texels_per_metre;
     double longest = 0;
     for (const FlatChart& c : charts) longest = std::max({longest, c.size.x, c.size.y});
@@ -225,7 +223,7 @@ Result<Layout> layout_at_density(const std::vector<FlatChart>& charts, double te
     if (packing.placed == 1)
       return place_charts(std::move(attempt), packing, arranged(room), texels_per_metre);
   }
-  if (progress.cancelled()) return cancelled();
+  LUXEL_TRY_STATUS(stopped(progress));
   return fail(
       ErrorCode::bad_setting,
       "texels per metre {}: the scene needs an atlas larger than {}; choose a lower density",
@@ -244,13 +242,13 @@ Result<Layout> layout_on_fewest_pages(const std::vector<FlatChart>& charts, doub
         make_attempt(directions_of(charts), texels_per_metre, room, kMaxMapSide);
     fewest = std::max(1.0, std::ceil(double(mask_texels(attempt.masks)) / page));
     for (room.count = int(std::min(fewest, most + 1.0)); room.count <= most; ++room.count) {
-      if (progress.cancelled()) return cancelled();
+      LUXEL_TRY_STATUS(stopped(progress));
       const Packing packing = pack_in_either_order(attempt.masks, room, progress);
       if (packing.placed == 1)
         return place_charts(attempt, packing, arranged(room), texels_per_metre);
     }
   }
-  if (progress.cancelled()) return cancelled();
+  LUXEL_TRY_STATUS(stopped(progress));
   return fail(ErrorCode::bad_setting,
               "texels per metre {}: the scene needs {} pages of {} x {} texels or more, and there "
               "is room for {}; choose a lower density",

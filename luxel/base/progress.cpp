@@ -150,5 +150,10 @@ void Progress::clean_up() const {
   if (clean_up_) clean_up_();
 }
 
+Status stopped(const Progress& progress) {
+  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  return {};
+}
+
 }  // namespace base
 }  // namespace luxel

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "luxel/base/clock.h"
+#include "luxel/base/result.h"
 
 namespace luxel {
 inline namespace base {
@@ -100,6 +101,11 @@ class Progress {
   std::function<void()> clean_up_;
   std::atomic<bool> cancelled_{false};
 };
+
+/// The error (cancelled) of work that was asked to stop; success while it may go on:
+/// LUXEL_TRY_STATUS(stopped(progress)). Loops over threads end early when progress.cancelled(), and
+/// whoever waits for them says so by this, for what they leave is not whole.
+Status stopped(const Progress& progress);
 
 }  // namespace base
 }  // namespace luxel

@@ -95,7 +95,7 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
     }
   });
   progress.finish();
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "drawing was stopped");
+  LUXEL_TRY_STATUS(stopped(progress));
   return picture;
 }
 

@@ -83,7 +83,7 @@ Result<image::Image> draw_normals(const scene::Scene& scene, const trace::RayTra
   const image::Image drawn =
       draw_lines(scene, tracer, camera, params.width, params.height, lines, progress);
   progress.finish();
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "drawing was stopped");
+  LUXEL_TRY_STATUS(stopped(progress));
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x) {
       const float s = drawn.at(x, y)[3];

@@ -217,7 +217,7 @@ Status direct_light_again(const scene::Scene& scene, const transport::Elements& 
     keep_part(kept, begin / kPartElements, these, direct, traced);
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   direct.rays += rays;
   return {};
 }

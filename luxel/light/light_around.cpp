@@ -131,7 +131,7 @@ Result<Probes> light_probes(const LitScene& lit, std::span<const Vec3> positions
     }
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   const auto add = [&](size_t i, transport::Elements& elements) {
     for (uint32_t k = 0; k < kProbeNormals; ++k) {
       const Vec3 n = spiral_direction(k, kProbeNormals);
@@ -207,7 +207,7 @@ Result<BentLight> bent_irradiance(const LitScene& lit, std::span<const Vec3> pos
     }
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   const auto add = [&](size_t i, transport::Elements& elements) {
     for (const Vec3& m : tilted(frame_around(normals[i]), normals[i]))
       add_element(elements, positions[i], m, geometric_normals[i]);

@@ -172,7 +172,7 @@ Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atl
     }
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   Footprints out;
   out.first.push_back(0);
   for (size_t i = 0; i < all.size(); ++i) {
@@ -244,7 +244,7 @@ Result<uint64_t> keep_uneven(const Place& place, const atlas::Atlas& atlas,
     rays += traced;
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   size_t kept = 0;
   for (size_t k = 0; k < which.size(); ++k)
     if (uneven[k]) which[kept++] = which[k];
@@ -389,7 +389,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
     keep_part(kept, begin / kGrain, these, averaged, direct, traced);
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   Supersampled out{{}, rays};
   for (size_t k = 0; k < which.size(); ++k)
     if (is_averaged[k]) out.texels.push_back(which[k]);

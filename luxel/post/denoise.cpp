@@ -114,8 +114,7 @@ Status grow(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb
     }
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "denoising was stopped");
-  return {};
+  return stopped(progress);
 }
 
 /// Radii of the rounds: windows hold about 9, 21, 49, 113 and 253 texels.

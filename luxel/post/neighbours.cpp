@@ -156,7 +156,7 @@ Result<Neighbourhood> make_neighbourhood(const TexelPlaces& places, const Denois
       block.end.push_back(uint32_t(block.texel.size()));
     }
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   return n;
 }
 

@@ -19,7 +19,7 @@ Status denoise_with_oidn(const TexelPlaces& places, std::span<const NoisyLight> 
   oidn::DeviceRef device = oidn::newDevice(oidn::DeviceType::CPU);
   device.commit();
   for (const NoisyLight& part : parts) {
-    if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+    LUXEL_TRY_STATUS(stopped(progress));
     image::Image square = lightmap_from_texels(places.map, part.values);
     dilate(square, -1);
     const size_t side = size_t(square.width), pixel = 4 * sizeof(float);

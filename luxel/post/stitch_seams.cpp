@@ -180,7 +180,7 @@ Result<Columns> solve(const System& system, const Columns& x, int max_iterations
   Eigen::RowVector3d rz = column_dots(residual, z);
   const Eigen::RowVector3d goal = rz * 1e-10;  // squares: five digits
   for (int i = 0; i < max_iterations && (rz.array() > goal.array()).any(); ++i) {
-    if (progress.cancelled()) return fail(ErrorCode::cancelled, "seam stitching was stopped");
+    LUXEL_TRY_STATUS(stopped(progress));
     multiply(system.difference, direction, on_points);
     multiply(system.transposed, on_points, image);
     image += system.keep2.asDiagonal() * direction;

@@ -85,7 +85,7 @@ Result<uint64_t> run_tasks(const World& world, size_t count, const PathParams& p
     for (size_t i = begin; i < end; ++i) finish(i, sums[i - begin], double(samples));
     rays += traced;
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   return rays.load();
 }
 

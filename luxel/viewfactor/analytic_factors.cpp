@@ -141,8 +141,7 @@ Result<FactorMatrix> analytic_factors(const Surfaces& surfaces, const AnalyticPa
     progress.advance(nothing_to_do);
   }
   flush();
-  if (progress.cancelled())
-    return fail(ErrorCode::cancelled, "the view factors were stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   // From exchange areas to factors; within one surface both directions fell on the same entry.
   for (size_t i = 0; i < matrix.size(); ++i)
     for (size_t j = 0; j < matrix.size(); ++j) {

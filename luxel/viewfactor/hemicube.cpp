@@ -43,8 +43,7 @@ Result<Hemicube> make_hemicube(int resolution, Progress& progress) {
   for (size_t f = 0; f < faces.size(); ++f) {
     const int rows = f == 0 ? resolution : resolution / 2;
     for (int row = 0; row < rows; ++row) {
-      if (progress.cancelled())
-        return fail(ErrorCode::cancelled, "the view factors were stopped by the user");
+      LUXEL_TRY_STATUS(stopped(progress));
       for (int column = 0; column < resolution; ++column)
         add_pixel(faces[f], -1 + (column + 0.5) * size, 1 - (row + 0.5) * size, size, cube);
       progress.advance(n);

@@ -108,8 +108,7 @@ Status find_twins(Merging& m, const Progress& progress) {
   std::vector<uint32_t> before(m.edges.size(), kNone);
   const auto key = [](uint32_t from, uint32_t to) { return uint64_t(from) << 32 | to; };
   for (uint32_t e = 0; e < m.edges.size(); ++e) {
-    if (progress.cancelled())
-      return fail(ErrorCode::cancelled, "the joining of polygons was stopped by the user");
+    LUXEL_TRY_STATUS(stopped(progress));
     const uint32_t from = m.edges[e].corner, to = m.edges[m.edges[e].next].corner;
     if (const auto opposite = last.find(key(to, from)); opposite != last.end()) {
       uint32_t* link = &opposite->second;
@@ -212,8 +211,7 @@ std::optional<std::array<uint32_t, 4>> join(uint32_t edge, Merging& m) {
 Status grow(uint32_t face, Merging& m, const Progress& progress) {
   std::deque<uint32_t> open{3 * face, 3 * face + 1, 3 * face + 2};
   while (!open.empty()) {
-    if (progress.cancelled())
-      return fail(ErrorCode::cancelled, "the joining of polygons was stopped by the user");
+    LUXEL_TRY_STATUS(stopped(progress));
     const uint32_t edge = open.front();
     open.pop_front();
     if (m.edges[edge].gone || m.edges[edge].twin == kNone) continue;
@@ -262,8 +260,7 @@ Result<MergedPolygons> merge_polygons(std::span<const std::array<DVec3, 3>> tria
   Merging m;
   m.slack = slack;
   for (uint32_t t = 0; t < triangles.size(); ++t) {
-    if (progress.cancelled())
-      return fail(ErrorCode::cancelled, "the joining of polygons was stopped by the user");
+    LUXEL_TRY_STATUS(stopped(progress));
     if (add_triangle(triangles[t], m)) triangle_of.push_back(t);
   }
   LUXEL_TRY_STATUS(find_twins(m, progress));
@@ -274,8 +271,7 @@ Result<MergedPolygons> merge_polygons(std::span<const std::array<DVec3, 3>> tria
   progress.advance(triangles.size() - m.faces.size());  // those without area
   std::vector<uint32_t> polygon_of(m.faces.size());
   for (uint32_t f = 0; f < m.faces.size(); ++f) {
-    if (progress.cancelled())
-      return fail(ErrorCode::cancelled, "the joining of polygons was stopped by the user");
+    LUXEL_TRY_STATUS(stopped(progress));
     if (m.faces[f].merged_into != kNone) continue;
     polygon_of[f] = uint32_t(out.polygons.size());
     out.polygons.push_back(straightened(f, m));

@@ -191,8 +191,7 @@ Result<FactorMatrix> sampled_factors(const scene::Scene& scene, const Surfaces& 
     else
       row_by_rays(row, factor, error, progress);
   }
-  if (progress.cancelled())
-    return fail(ErrorCode::cancelled, "the view factors were stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   return matrix;
 }
 

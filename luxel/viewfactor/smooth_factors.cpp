@@ -142,8 +142,7 @@ Result<double> smooth_factors(FactorMatrix& matrix, Progress& progress) {
     residual = largest_relative_residual(exchange, matrix.area_m2, progress);
     if (is_whole && residual < 1e-13) break;
   }
-  if (progress.cancelled())
-    return fail(ErrorCode::cancelled, "the smoothing was stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   if (!(residual < 1e-9))
     return fail(ErrorCode::bad_input,
                 "no symmetric matrix of factors near this one has rows that sum to 1; the surfaces "

@@ -38,11 +38,6 @@ constexpr int kDilationRings = 8;
 constexpr int kRefillRings = 2;
 constexpr int kPreviewWidth = 960, kPreviewHeight = 720;
 
-Status not_cancelled(const Progress& progress) {
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  return {};
-}
-
 Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>& warnings,
                           Progress& progress) {
   progress.begin("import", 0);
@@ -51,7 +46,7 @@ Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>
   LUXEL_TRY(const std::vector<std::string> light,
             add_outside_light(settings.outside, imported.scene));
   warnings.insert(warnings.end(), light.begin(), light.end());
-  LUXEL_TRY_STATUS(not_cancelled(progress));
+  LUXEL_TRY_STATUS(stopped(progress));
   return std::move(imported.scene);
 }
 
@@ -111,7 +106,7 @@ Status repair(const BakeSettings& settings, const trace::RayTracer& tracer, Bake
     for (image::Image& lightmap : bake.shown) post::dilate(lightmap, kDilationRings);
   }
   bake.layers = bake_layers(bake.scene, bake.atlas, bake.map, kDilationRings, bake.light);
-  return not_cancelled(progress);
+  return stopped(progress);
 }
 
 /// What is asked for besides the lightmap, from the light that the lightmap ended up with.
@@ -194,7 +189,7 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
   if (keepers.cache) keepers.cache->open(bake.scene, progress);
   LUXEL_TRY(TexelLayout layout,
             lay_out(settings, bake.scene, keepers.cache, bake.warnings, progress));
-  LUXEL_TRY_STATUS(not_cancelled(progress));
+  LUXEL_TRY_STATUS(stopped(progress));
   bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
   bake.atlas_stats = layout.stats, bake.repair = std::move(layout.repair);
   return_free_memory();  // of charts, bitmaps and bins: many small ones
@@ -373,7 +368,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   progress.begin(kWriteStage, 0);
   nlohmann::json about_files = nlohmann::json::object();
   LUXEL_TRY(std::vector<OutputFile> files, files_of(settings, result, about_files));
-  LUXEL_TRY_STATUS(not_cancelled(progress));
+  LUXEL_TRY_STATUS(stopped(progress));
   progress.finish();
   nlohmann::json json = bake_report(settings, result, progress);
   json["checkpoint"] = checkpoint.about();

@@ -98,12 +98,6 @@ void warn_of_coverage(const image::Image& a, const image::Image& b, uint64_t com
         in_a, in_b, common));
 }
 
-/// Work on a large picture ends early when it is cancelled; what it left is not looked at then.
-Status check_not_stopped(const Progress& progress) {
-  if (!progress.cancelled()) return {};
-  return fail(ErrorCode::cancelled, "the comparison was stopped by the user");
-}
-
 /// The picture as a screen shows it: its display values, or its light tone mapped, by strips, so
 /// that large pictures can be stopped.
 Result<image::Image8> shown_in_strips(const Picture& picture, float exposure,
@@ -115,7 +109,7 @@ Result<image::Image8> shown_in_strips(const Picture& picture, float exposure,
   image::Image8 out{light.width, light.height, 3, {}};
   out.data.reserve(3 * size_t(light.width) * size_t(light.height));
   for (int y = 0; y < light.height; y += kRows) {
-    LUXEL_TRY_STATUS(check_not_stopped(progress));
+    LUXEL_TRY_STATUS(stopped(progress));
     image::Image strip(light.width, std::min(kRows, light.height - y), light.channels);
     std::copy_n(light.data.begin() + std::ptrdiff_t(row * size_t(y)), strip.data.size(),
                 strip.data.begin());
@@ -134,13 +128,13 @@ Result<image::Image> flip_map(const Picture& a, const Picture& b, const image::M
   image::Image map;
   if (b.hdr()) {
     const image::FlipExposures exposures = image::flip_exposures(b.linear, covered, &progress);
-    LUXEL_TRY_STATUS(check_not_stopped(progress));
+    LUXEL_TRY_STATUS(stopped(progress));
     progress.begin("flip", rows * uint64_t(exposures.count));
     map = image::hdr_flip(filled, b.linear, exposures, params);
   } else {
     map = image::flip(filled, b.linear, params);
   }
-  LUXEL_TRY_STATUS(check_not_stopped(progress));
+  LUXEL_TRY_STATUS(stopped(progress));
   return map;
 }
 
@@ -194,14 +188,14 @@ Result<Measured> measure(const Picture& a, const Picture& b, std::optional<doubl
   Compared& n = out.numbers;
   n.hdr = b.hdr();
   n.difference = image::difference(a.linear, b.linear, out.covered, &progress);
-  LUXEL_TRY_STATUS(check_not_stopped(progress));
+  LUXEL_TRY_STATUS(stopped(progress));
   warn_of_coverage(a.linear, b.linear, n.difference.texels, n.warnings);
 
   if (n.hdr) n.exposure = exposure.value_or(double(display::auto_exposure(b.linear)));
-  LUXEL_TRY_STATUS(check_not_stopped(progress));
+  LUXEL_TRY_STATUS(stopped(progress));
   LUXEL_TRY(out.shown_a, shown_in_strips(a, float(n.exposure), progress));
   LUXEL_TRY(out.shown_b, shown_in_strips(b, float(n.exposure), progress));
-  LUXEL_TRY_STATUS(check_not_stopped(progress));
+  LUXEL_TRY_STATUS(stopped(progress));
   n.psnr_db = n.hdr ? n.difference.psnr_db : psnr_of_display(out.shown_a, out.shown_b, out.covered);
   const image::Histogram differences =
       image::histogram(image::pixel_differences(out.shown_a, out.shown_b), out.covered);

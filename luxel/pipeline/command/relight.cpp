@@ -207,7 +207,7 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
                     data.codec_error, s.max_error));
   progress.begin(kWriteStage, 0);
   const std::vector<std::byte> bytes = matrix::encode_lxr(data);
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   LUXEL_TRY_STATUS(write_file_atomically(s.output, bytes));
   progress.finish();
   return report(s, data, bytes.size(), warnings, progress);

@@ -255,7 +255,7 @@ Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene,
       open[k] = share_out(world, placed[k], k) >= kOpenShare;
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   for (size_t k = 0; k < placed.size(); ++k) {
     const uint32_t m = scene.instances[placed[k].instance].mesh;
     chosen[m].resize(scene.meshes[m].triangles.size());

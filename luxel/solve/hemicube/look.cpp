@@ -209,7 +209,7 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
     sum.visibility += work.seconds.visibility, sum.summation += work.seconds.summation;
   });
   if (!status) return tl::unexpected(status.error());
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   return sum;
 }
 

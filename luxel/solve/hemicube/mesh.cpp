@@ -136,7 +136,7 @@ Status cut_to_size(Mesh& mesh, const MeshParams& params, Progress& progress) {
            !is_flat(mesh, mesh.nodes[i]))
       bisector.cut(i);
     if (i % 1024 == 0) {
-      if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+      LUXEL_TRY_STATUS(stopped(progress));
       LUXEL_TRY_STATUS(too_many(mesh.vertices.size(), params));
     }
   }

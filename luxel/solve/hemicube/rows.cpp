@@ -103,8 +103,7 @@ Status sweep(const Rows& rows, std::span<const Rgb> source, std::span<const Rgb>
     }
   });
   if (!status) return status;
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  return {};
+  return stopped(progress);
 }
 
 }  // namespace luxel::hemicube

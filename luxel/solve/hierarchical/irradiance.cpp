@@ -73,7 +73,7 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
     }
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  LUXEL_TRY_STATUS(stopped(progress));
   return out;
 }
 

@@ -163,7 +163,7 @@ Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& 
       work[f] = prepare_face(m, uint32_t(f), limits, known.of_face[f]);
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  LUXEL_TRY_STATUS(stopped(progress));
   progress.begin("triangulate", faces);
   EdgePoints of_outlines(m.slack_m);
   for (uint32_t f = 0; f < faces; ++f) {
@@ -176,7 +176,7 @@ Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& 
   std::vector<std::vector<LightTriangle>> of_element(m.s.tree.elements.size());
   std::map<uint32_t, Welder> of_instance;
   for (uint32_t f = 0; f < faces; ++f) {
-    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    LUXEL_TRY_STATUS(stopped(progress));
     // Faces of a curved surface share their vertices, and with them the light there.
     const Face& face = m.s.faces.faces[f];
     Welder own(m.slack_m);

@@ -137,7 +137,7 @@ std::vector<Link> make_links(const Exchange& x, std::span<const Pair> pairs,
 Status settle(Refined& state, const Exchange& x, const RefineParams& params, std::vector<Open> open,
               Progress& progress) {
   while (!open.empty()) {
-    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    LUXEL_TRY_STATUS(stopped(progress));
     Rules rules{state.tree, params};
     std::vector<Pair> pairs;
     std::vector<Open> divided;

@@ -114,7 +114,7 @@ Status iterate(Solution& s, const trace::RayTracer& tracer, double tolerance, Pr
   const Exchange x = s.exchange(tracer);
   std::vector<Rgb> before;
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    LUXEL_TRY_STATUS(stopped(progress));
     before.resize(s.tree.elements.size());
     for (size_t e = 0; e < before.size(); ++e) before[e] = s.light.elements[e].irradiance;
     gather(x, s.links.of, s.light);

@@ -2,7 +2,6 @@
 #include <stb/stb_dxt.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -118,15 +117,12 @@ Status encode_blocks(const Picture& picture, const Bc1Params& params, Bc1& out,
                      Progress& progress) {
   const size_t wide = out.blocks_per_row();
   out.blocks.resize(wide * wide);
-  std::atomic<bool> cancelled = false;
   parallel_for(wide, 4, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) cancelled = true;
-    if (cancelled) return;
+    if (progress.cancelled()) return;
     for (size_t r = begin; r < end; ++r) encode_block_row(picture, params, r, out);
     progress.advance(end - begin);
   });
-  if (cancelled) return fail(ErrorCode::cancelled, "cancelled");
-  return {};
+  return stopped(progress);
 }
 
 /// By how much the decoded rest of one row is to be scaled: even light is to arrive as it did.
@@ -224,13 +220,13 @@ Result<Bc1> make_bc1(ColourMatrix matrix, Bc1Params params, Progress& progress) 
       params.even_columns ? even_columns(matrix) : std::vector<Rgb>(n, Rgb{1, 1, 1});
   const KeptColumns kept = choose_kept(matrix, params.kept, progress);
   const Picture picture = picture_of(matrix, kept, params, progress);
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  LUXEL_TRY_STATUS(stopped(progress));
   out.log_range = params.log_range;
   choose_order(picture, params.order, progress, out);
   LUXEL_TRY_STATUS(encode_blocks(picture, params, out, progress));
   for (const uint32_t j : out.column) out.column_scale.push_back(mean[j]);
   keep(matrix, picture, kept, params, mean, progress, out);
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  LUXEL_TRY_STATUS(stopped(progress));
   return out;
 }
 

@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <functional>
 
@@ -79,15 +78,12 @@ void reflect_panel(const FormFactors& factors, std::span<const Rgb> reflectance,
 
 Status reflect(const FormFactors& factors, std::span<const Rgb> reflectance, int channel,
                int bounces, std::vector<float>& out, Progress& progress) {
-  std::atomic<bool> cancelled = false;
   parallel_for(factors.size(), kPanel, [&](size_t begin, size_t end) {
-    if (progress.cancelled()) cancelled = true;
-    if (cancelled) return;
+    if (progress.cancelled()) return;
     reflect_panel(factors, reflectance, channel, bounces, begin, end, out);
     progress.advance(end - begin);
   });
-  if (cancelled) return fail(ErrorCode::cancelled, "cancelled");
-  return {};
+  return stopped(progress);
 }
 
 using Matrix = Eigen::MatrixXf;
@@ -105,15 +101,13 @@ Matrix symmetric(const FormFactors& factors, std::span<const float> area_m2) {
   return out;
 }
 
-/// Calls body(first, size) for blocks of [begin, n) until cancelled. Whether it was not.
-bool for_blocks(Eigen::Index begin, Eigen::Index n, Progress& progress,
-                const std::function<void(Eigen::Index, Eigen::Index)>& body) {
-  std::atomic<bool> cancelled = false;
+/// Calls body(first, size) for blocks of [begin, n). Errors: cancelled.
+Status for_blocks(Eigen::Index begin, Eigen::Index n, Progress& progress,
+                  const std::function<void(Eigen::Index, Eigen::Index)>& body) {
   parallel_for(size_t(n - begin), size_t(kBlock), [&](size_t first, size_t end) {
-    if (progress.cancelled()) cancelled = true;
-    if (!cancelled) body(begin + Eigen::Index(first), Eigen::Index(end - first));
+    if (!progress.cancelled()) body(begin + Eigen::Index(first), Eigen::Index(end - first));
   });
-  return !cancelled;
+  return stopped(progress);
 }
 
 /// The lower triangle of a matrix becomes L, L L^T = matrix; block column by block column.
@@ -125,7 +119,7 @@ Status factorise(Matrix& matrix, Progress& progress) {
       matrix.block(row, k, rows, wide).noalias() -=
           matrix.block(row, 0, rows, k) * matrix.block(k, 0, wide, k).transpose();
     };
-    if (!for_blocks(k, n, progress, update)) return fail(ErrorCode::cancelled, "cancelled");
+    LUXEL_TRY_STATUS(for_blocks(k, n, progress, update));
     const Eigen::LLT<Matrix> corner(matrix.block(k, k, wide, wide));
     if (corner.info() != Eigen::Success)
       return fail(ErrorCode::bad_input,
@@ -136,7 +130,7 @@ Status factorise(Matrix& matrix, Progress& progress) {
       auto block = matrix.block(row, k, rows, wide);
       corner.matrixU().solveInPlace<Eigen::OnTheRight>(block);
     };
-    if (!for_blocks(k + wide, n, progress, solve)) return fail(ErrorCode::cancelled, "cancelled");
+    LUXEL_TRY_STATUS(for_blocks(k + wide, n, progress, solve));
   }
   return {};
 }
@@ -186,10 +180,8 @@ Status reflect_for_ever(const Matrix& s, std::span<const Rgb> reflectance,
     }
     progress.advance(uint64_t(count));
   };
-  if (!for_blocks(0, n, progress, solve) || !for_blocks(0, n, progress, sum) ||
-      progress.cancelled())
-    return fail(ErrorCode::cancelled, "cancelled");
-  return {};
+  LUXEL_TRY_STATUS(for_blocks(0, n, progress, solve));
+  return for_blocks(0, n, progress, sum);
 }
 
 }  // namespace

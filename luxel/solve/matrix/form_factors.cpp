@@ -231,7 +231,7 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
       progress.advance(1);
     }
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  LUXEL_TRY_STATUS(stopped(progress));
   out.factors = joined(rows);
   out.rays = uint64_t(rays) * patches.size();
   return out;

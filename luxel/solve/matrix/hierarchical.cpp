@@ -317,7 +317,7 @@ Result<Hierarchical> compress(const FormFactors& factors, const ClusterTree& tre
       progress.advance(1);
     }
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  LUXEL_TRY_STATUS(stopped(progress));
   return assemble(source, found);
 }
 

@@ -83,7 +83,7 @@ Result<LowRank> make_low_rank(const Spectrum& spectrum, size_t rank, std::span<c
     for (size_t i = 0; i < out.size(); ++i)
       weighted.row(Eigen::Index(i)) *= reflectance[i][channel];
     const Eigen::MatrixXd reflected = inner_products(weighted, kept, progress);
-    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    LUXEL_TRY_STATUS(stopped(progress));
     for (Eigen::Index k = 0; k < reflected.size(); ++k)
       out.reflected[size_t(channel)].push_back(float(reflected.data()[k]));
     out.all_bounces[size_t(channel)] = response_of(reflected, step, out);

@@ -161,7 +161,7 @@ Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
   const int sweeps = params.bounces < 0 ? kMaxSweeps : params.bounces;
   std::vector<Rgb> all = change;
   while (out.sweeps < sweeps) {
-    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    LUXEL_TRY_STATUS(stopped(progress));
     for (size_t i = 0; i < n; ++i) sent[i] = patches.elements.reflectance[i] * change[i];
     multiply(prepared.factors, sent, change);
     for (size_t i = 0; i < n; ++i) out.indirect[i] += change[i], all[i] += change[i];

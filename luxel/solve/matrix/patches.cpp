@@ -203,7 +203,7 @@ Result<std::vector<Part>> make_parts(const scene::Scene& scene, std::span<const 
       progress.advance(1);
     }
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  LUXEL_TRY_STATUS(stopped(progress));
   std::vector<Part> parts;
   for (std::vector<Part>& of_voxel : found)
     for (Part& part : of_voxel) parts.push_back(std::move(part));

@@ -102,7 +102,7 @@ Result<Spectrum> spectrum_of(const FormFactors& factors, std::span<const float> 
   for (int k = 0; k <= params.iterations && !progress.cancelled(); ++k)
     q = orthonormal(product_of(q), progress);
   if (!progress.cancelled()) append_pairs(q, product_of(q), params.count, progress, out);
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  LUXEL_TRY_STATUS(stopped(progress));
   return out;
 }
 

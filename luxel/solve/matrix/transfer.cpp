@@ -100,7 +100,7 @@ Result<Transfer> make_transfer(const PatchWork& work, const trace::RayTracer& tr
     }
     progress.advance(end - begin);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+  LUXEL_TRY_STATUS(stopped(progress));
   Transfer out;
   out.first.push_back(0);
   for (std::vector<Share>& shares : found) {

@@ -124,7 +124,7 @@ Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tr
     out.irradiance.push_back(params.bounces < 0 ? exact.all(coarse, sent, kManySweeps)
                                                 : exact.counted(sent, params.bounces));
     out.sent.push_back(std::move(sent));
-    if (progress.cancelled()) return fail(ErrorCode::cancelled, "cancelled");
+    LUXEL_TRY_STATUS(stopped(progress));
     progress.advance(1);
   }
   return out;

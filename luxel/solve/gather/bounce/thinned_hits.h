@@ -34,8 +34,7 @@ Status for_each_tile(const ThinnedHits& hits, Progress& progress, const Take& ta
   parallel_for(hits.tiles.size(), 1, [&](size_t t, size_t) {
     if (!progress.cancelled()) take(t, hits.tiles[t]);
   });
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  return {};
+  return stopped(progress);
 }
 
 }  // namespace luxel::gather

@@ -172,7 +172,7 @@ Result<Forecast> forecast(const light::TexelScene& world, const GatherParams& pa
   LUXEL_TRY_STATUS(try_direct(trial, out, own));
   LUXEL_TRY_STATUS(try_supersample(trial, out, own));
   LUXEL_TRY_STATUS(try_tracing(trial, out, own));
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   LUXEL_TRY_STATUS(try_bounces(trial, out));
   return out;
 }

@@ -57,8 +57,7 @@ Status for_each_tile(const TracedHits& hits, Progress& progress, const Take& tak
     take(t, tile);
   });
   if (!status) return status;
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
-  return {};
+  return stopped(progress);
 }
 
 /// Where a sweep begins that looks at every stride-th of an element's `count` hits. Neighbours look

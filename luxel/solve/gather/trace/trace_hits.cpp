@@ -298,7 +298,7 @@ Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
   LUXEL_TRY_STATUS(trace_tiles(
       {world, elements, tracer, target, params.seed, diagonal_m, number, params.earlier}, kept,
       params.keep, hits, store, progress));
-  if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
+  LUXEL_TRY_STATUS(stopped(progress));
   keep_samples(params.keep, number, hits.samples);
   hits.rounds.push_back(std::move(store));
   return {};

@@ -8,6 +8,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/pipeline/solver/hierarchical.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/solve/hierarchical/represent.h"
@@ -42,7 +43,7 @@ Result<std::vector<std::string>> lightmap_row(std::string name, scene::Scene sce
   LUXEL_TRY(const auto p, validate::prepare(std::move(scene), kLightmap, progress));
   LUXEL_TRY(const validate::Judged judged, validate::judge(*p, kPaths, 1, progress));
   pipeline::BakeSettings settings;
-  settings.hierarchical.eps = eps;
+  settings.own.of<pipeline::HierarchicalSettings>().solve.eps = eps;
   LUXEL_TRY(const validate::Timed solved, validate::solve(*p, "hierarchical", settings, progress));
   return agreement_row(std::move(name), "lightmap",
                        validate::agreement(solved.light.irradiance, solved.light.hidden, judged),

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "bench/validation.h"
+#include "luxel/pipeline/solver/hemicube.h"
 #include "luxel/validate/agreement.h"
 
 namespace luxel::bench {
@@ -19,7 +20,7 @@ Result<Section> validate_agreement(Progress& progress) {
       settings.samples = solver.name == "reference" ? kPaths : kSamples;
       settings.direct_samples = kDirect;
       settings.seed = 7;
-      settings.hemicube.max_elements = kElements;
+      settings.own.of<hemicube::HemicubeParams>().max_elements = kElements;
       LUXEL_TRY(const validate::Timed solved, validate::solve(*p, solver.name, settings, progress));
       const validate::Agreement a =
           validate::agreement(solved.light.irradiance, solved.light.hidden, judged);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/cli/table_options.h"
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
@@ -18,7 +19,7 @@ namespace luxel::cli {
 
 enum ExitCode { kDone = 0, kBadInput = 1, kUsage = 2, kOutOfResource = 3, kInterrupted = 130 };
 
-/// Options that every command has.
+/// Options that every command has; --threads unless the command has one of its own.
 struct Common {
   int threads = 0;
   bool quiet = false;
@@ -26,30 +27,11 @@ struct Common {
 };
 void add_common(CLI::App& command, Common& common);
 
-/// Options for light that the file does not have, as text until the command runs.
-struct OutsideText {
-  std::string background, environment, sun, sky;
-  std::vector<std::string> ies;
-};
-void add_outside_light(CLI::App& command, OutsideText& text);
-Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text);
-
-/// Whether any of them was given.
-bool any_given(const std::vector<CLI::Option*>& options);
-
-/// Options of the hemicube solver.
-struct HemicubeOptions {
-  pipeline::HemicubeSettings settings;
-  std::vector<CLI::Option*> options;
-};
-void add_hemicube(CLI::App& command, HemicubeOptions& hemicube);
+/// --background, --sun, --environment, --sky and --ies.
+std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given);
 
 /// "x,y,z".
 Result<Vec3> parse_point(const char* option, const std::string& text);
-
-/// Options of the hierarchical solver.
-std::vector<CLI::Option*> add_hierarchical(CLI::App& command,
-                                           pipeline::HierarchicalSettings& settings);
 
 /// --uv, as text until the command runs.
 CLI::Option* add_uv(CLI::App& command, std::string& text);

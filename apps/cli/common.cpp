@@ -7,6 +7,7 @@
 
 #include "apps/cli/cli.h"
 #include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/settings/bake_settings_options.h"
 
 namespace luxel::cli {
 namespace {
@@ -145,35 +146,11 @@ std::string clock_text(double seconds) {
 }
 
 void add_common(CLI::App& command, Common& common) {
-  command.add_option("--threads", common.threads, "Threads to use; 0 = all cores")
-      ->capture_default_str();
+  if (!command.get_option_no_throw("--threads"))
+    command.add_option("--threads", common.threads, "Threads to use; 0 = all cores")
+        ->capture_default_str();
   command.add_flag("--quiet", common.quiet, "No progress, no warnings");
   command.add_flag("--json", common.json, "One JSON object on stdout, everything else on stderr");
-}
-
-bool any_given(const std::vector<CLI::Option*>& options) {
-  return std::any_of(options.begin(), options.end(),
-                     [](const CLI::Option* o) { return o->count() > 0; });
-}
-
-void add_hemicube(CLI::App& command, HemicubeOptions& hemicube) {
-  pipeline::HemicubeSettings& s = hemicube.settings;
-  const std::string group = "Hemicube radiosity";
-  hemicube.options = {
-      command.add_option("--elements", s.elements, "Light per vertex or per triangle")
-          ->capture_default_str(),
-      command.add_option("--hemicube", s.resolution, "Pixels along an edge of the hemicube's top")
-          ->capture_default_str(),
-      command.add_option("--element-size", s.element_size_m,
-                         "Size of the first triangles in metres (default: by --max-elements)"),
-      command.add_option("--max-elements", s.max_elements,
-                         "Vertices or triangles at most (default: 20000, more for large scenes)"),
-      command
-          .add_option("--max-error", s.max_error,
-                      "Cut triangles over which the light is off by more; 0 cuts none")
-          ->capture_default_str(),
-      command.add_flag("--smooth", s.smooth, "Interpolate light that is per triangle")};
-  for (CLI::Option* option : hemicube.options) option->group(group);
 }
 
 Result<Vec3> parse_point(const char* option, const std::string& text) {
@@ -184,79 +161,12 @@ Result<Vec3> parse_point(const char* option, const std::string& text) {
   return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option, text);
 }
 
-std::vector<CLI::Option*> add_hierarchical(CLI::App& command, pipeline::HierarchicalSettings& s) {
-  std::vector<CLI::Option*> options{
-      command.add_option(
-          "--eps", s.eps,
-          "How much the light over a link may be off, in W/m^2 on an element of mean "
-          "size (default: a hundredth of the mean light)"),
-      command.add_option("--min-area", s.min_area_m2,
-                         "Elements are not divided below this, in m^2 (default: by the scene)"),
-      command.add_flag("!--no-discontinuities", s.discontinuities,
-                       "Do not mesh along the edges of shadows"),
-      command
-          .add_option("--max-leaf-lines", s.max_leaf_lines,
-                      "Edges of shadows through an element, at most")
-          ->capture_default_str(),
-      command.add_option("--min-weight", s.min_weight,
-                         "Edges over which light changes by less are left out, in W/m^2 per m; "
-                         "with --ranking nearness in W/m^2 (default: by the light there is)"),
-      command
-          .add_option("--ranking", s.ranking,
-                      "Which edges of shadows come first: slope, by how much light changes per "
-                      "metre; nearness, by how near to the surface what throws them is")
-          ->capture_default_str()};
-  for (CLI::Option* option : options) option->group("Hierarchical radiosity");
+std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given) {
+  const auto table = pipeline::outside_light_options();
+  const std::vector<CLI::Option*> options =
+      add_options(command, table, pipeline::OutsideLight{}, given);
+  for (const auto& row : table) exclude_each_other(command, row);
   return options;
-}
-
-void add_outside_light(CLI::App& command, OutsideText& text) {
-  auto* background =
-      command.add_option("--background", text.background, "Radiance of the surroundings as r,g,b")
-          ->type_name("R,G,B");
-  auto* sun = command
-                  .add_option("--sun", text.sun,
-                              "A sun: bearing (0 = -Z, 90 = +X), elevation, illuminance facing it")
-                  ->type_name("AZIMUTH_DEG,ELEVATION_DEG,LUX");
-  command
-      .add_option("--environment", text.environment,
-                  "Equirectangular .hdr or .exr of the surroundings, turned and scaled")
-      ->type_name("FILE[,ROTATE_DEG[,SCALE]]");
-  command
-      .add_option("--sky", text.sky,
-                  "A clear sky with its sun in lux, by the sun's bearing and elevation or by date, "
-                  "time and place (2026-06-21T15:30+02:00,48.85,2.35); turbidity 1 to 10 (2)")
-      ->type_name("AZIMUTH_DEG,ELEVATION_DEG|TIME,LATITUDE,LONGITUDE[,TURBIDITY]")
-      ->excludes(background)
-      ->excludes(sun)
-      ->excludes("--environment");
-  command
-      .add_option("--ies", text.ies,
-                  "The distribution of a point or spot light from an IES file; may be given for "
-                  "several")
-      ->type_name("LAMP=FILE[,SCALE]")
-      ->allow_extra_args(false);
-}
-
-Result<pipeline::OutsideLight> parse_outside_light(const OutsideText& text) {
-  pipeline::OutsideLight outside;
-  if (!text.background.empty()) {
-    LUXEL_TRY(outside.background, pipeline::parse_background(text.background));
-  }
-  if (!text.environment.empty()) {
-    LUXEL_TRY(outside.environment, pipeline::parse_environment(text.environment));
-  }
-  if (!text.sun.empty()) {
-    LUXEL_TRY(outside.sun, pipeline::parse_sun(text.sun));
-  }
-  if (!text.sky.empty()) {
-    LUXEL_TRY(outside.sky, pipeline::parse_sky(text.sky));
-  }
-  for (const std::string& ies : text.ies) {
-    LUXEL_TRY(pipeline::IesSetting setting, pipeline::parse_ies_setting(ies));
-    outside.ies.push_back(std::move(setting));
-  }
-  return outside;
 }
 
 int report(const Error& error) {
@@ -314,9 +224,7 @@ int run_and_print(const Common& common,
 }
 
 CLI::Option* add_uv(CLI::App& command, std::string& text) {
-  return command
-      .add_option("--uv", text,
-                  "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if valid")
+  return command.add_option("--uv", text, std::string(pipeline::kUvHelp))
       ->check(CLI::IsMember({"auto", "keep", "unwrap"}))
       ->capture_default_str();
 }

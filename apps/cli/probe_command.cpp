@@ -9,7 +9,7 @@ namespace {
 
 struct ProbeOptions {
   Common common;
-  OutsideText outside;
+  Given outside, hierarchical;
   std::string at, normal;
   pipeline::ProbeSettings settings;
 };
@@ -21,7 +21,9 @@ Result<pipeline::ProbeSettings> settings_from(const ProbeOptions& options) {
   if (!options.normal.empty()) {
     LUXEL_TRY(s.normal, parse_point("--normal", options.normal));
   }
-  LUXEL_TRY(s.outside, parse_outside_light(options.outside));
+  LUXEL_TRY_STATUS(
+      read_given(options.hierarchical, pipeline::hierarchical_options(), s.hierarchical));
+  LUXEL_TRY_STATUS(read_given(options.outside, pipeline::outside_light_options(), s.outside));
   return s;
 }
 
@@ -97,7 +99,8 @@ void register_probe(CLI::App& app, Action& action) {
       ->type_name("X,Y,Z");
   probe->add_option("-o,--output", s.output,
                     "A .png with the brightest sources: what the point sees of them is white");
-  add_hierarchical(*probe, s.hierarchical);
+  add_options(*probe, pipeline::hierarchical_options(), {}, options->hierarchical,
+              pipeline::kHierarchicalHeading);
   add_outside_light(*probe, options->outside);
   add_common(*probe, options->common);
   probe->callback([options, &action] { action = [options] { return run_probe(*options); }; });

@@ -11,7 +11,7 @@ namespace {
 
 struct RelightOptions {
   Common common;
-  OutsideText outside;
+  Given outside, matrix;
   std::string uv = "auto", bounces = "inf", max_memory;
   pipeline::RelightSettings settings;
   std::filesystem::path lxr, script, output;
@@ -26,7 +26,8 @@ Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
   if (!options.max_memory.empty()) {
     LUXEL_TRY(s.max_memory_bytes, pipeline::parse_size(options.max_memory));
   }
-  LUXEL_TRY(s.outside, parse_outside_light(options.outside));
+  LUXEL_TRY_STATUS(read_given(options.matrix, pipeline::matrix_options(), s.matrix));
+  LUXEL_TRY_STATUS(read_given(options.outside, pipeline::outside_light_options(), s.outside));
   return s;
 }
 
@@ -125,12 +126,9 @@ void add_making(CLI::App& relight, RelightOptions& options) {
                                 "the scene")
                     ->excludes(resolution));
   all.push_back(add_uv(relight, options.uv));
-  all.push_back(relight
-                    .add_option("--patches", s.matrix.patches,
-                                "About so many pieces of surface exchange light")
-                    ->capture_default_str());
-  all.push_back(relight.add_option("--rays", s.matrix.rays, "Per patch, to find what it sees")
-                    ->capture_default_str());
+  for (CLI::Option* option :
+       add_options(relight, pipeline::matrix_options(), s.matrix, options.matrix))
+    all.push_back(option);
   all.push_back(
       relight.add_option("--codec", s.codec, "How it is kept: " + pipeline::codec_names())
           ->capture_default_str());
@@ -165,9 +163,8 @@ void register_relight(CLI::App& app, Action& action) {
       ->excludes(scene);
   relight->add_option("--script", options->script, "How lamps move (docs/method/relight.md)")
       ->type_name("FILE.json");
-  add_outside_light(*relight, options->outside);
-  for (const char* name : {"--background", "--environment", "--sun", "--sky", "--ies"})
-    options->of_making.push_back(relight->get_option(name));
+  for (CLI::Option* option : add_outside_light(*relight, options->outside))
+    options->of_making.push_back(option);
   add_common(*relight, options->common);
   relight->callback([options, &action] { action = [options] { return run_relight(*options); }; });
 }

@@ -12,11 +12,8 @@ namespace {
 
 struct RenderOptions {
   Common common;
-  OutsideText outside;
+  Given outside, hemicube, hierarchical;
   std::string size, eye, look_at, bounces, exposure, tone_map, overlay;
-  HemicubeOptions hemicube;
-  pipeline::HierarchicalSettings hierarchical;
-  std::vector<CLI::Option*> hierarchical_options;
   pipeline::RenderSettings settings;
 };
 
@@ -54,10 +51,14 @@ Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
   if (!options.tone_map.empty()) {
     LUXEL_TRY(s.tone_map, parse_tone_map(options.tone_map));
   }
-  if (any_given(options.hemicube.options)) s.hemicube = options.hemicube.settings;
-  if (any_given(options.hierarchical_options)) s.hierarchical = options.hierarchical;
+  if (!options.hemicube.empty())
+    LUXEL_TRY_STATUS(
+        read_given(options.hemicube, pipeline::hemicube_options(), s.hemicube.emplace()));
+  if (!options.hierarchical.empty())
+    LUXEL_TRY_STATUS(read_given(options.hierarchical, pipeline::hierarchical_options(),
+                                s.hierarchical.emplace()));
   LUXEL_TRY(s.overlays, pipeline::parse_overlays(options.overlay));
-  LUXEL_TRY(s.outside, parse_outside_light(options.outside));
+  LUXEL_TRY_STATUS(read_given(options.outside, pipeline::outside_light_options(), s.outside));
   return s;
 }
 
@@ -156,13 +157,15 @@ void register_render(CLI::App& app, Action& action) {
   render->add_option("--samples", s.samples, "Paths per pixel (path; 64)");
   render->add_option("--bounces", options->bounces, "Reflections to count, or inf (path; inf)");
   render->add_option("--seed", s.seed, "Seed of all random numbers (path; 1)");
-  add_hemicube(*render, options->hemicube);
-  options->hierarchical_options = add_hierarchical(*render, options->hierarchical);
+  add_options(*render, pipeline::hemicube_options(), {}, options->hemicube,
+              pipeline::kHemicubeHeading);
+  add_options(*render, pipeline::hierarchical_options(), {}, options->hierarchical,
+              pipeline::kHierarchicalHeading);
   render
       ->add_option("--overlay", options->overlay,
                    "Lines over pictures of hierarchical radiosity: " + pipeline::overlay_names())
       ->type_name("NAME,NAME,...")
-      ->group("Hierarchical radiosity");
+      ->group(std::string(pipeline::kHierarchicalHeading));
   add_outside_light(*render, options->outside);
   add_common(*render, options->common);
   render->callback([options, &action] { action = [options] { return run_render(*options); }; });

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/pipeline/solver/hemicube.h"
+#include "luxel/pipeline/solver/matrix.h"
 #include "luxel/reference/path_tracer.h"
 #include "luxel/transport/irradiance_field.h"
 
@@ -82,11 +84,11 @@ Result<std::vector<Measured>> measure(const Prepared& p, const ExactCase& c,
   settings.samples = by_paths ? effort.paths : effort.rays;
   settings.direct_samples = effort.shadow_rays;
   // Three vertices for each flat triangle.
-  settings.hemicube.max_elements =
-      std::max(effort.elements, 3 * int64_t(p.atlas.corners.size()) + 64);
-  const bool many = settings.hemicube.max_elements > 4 * effort.elements;
-  settings.hemicube.resolution = many ? 16 : effort.hemicube;
-  settings.matrix.patches = effort.patches;
+  const int64_t elements = std::max(effort.elements, 3 * int64_t(p.atlas.corners.size()) + 64);
+  auto& hemicube = settings.own.of<hemicube::HemicubeParams>();
+  hemicube.max_elements = size_t(elements);
+  hemicube.resolution = elements > 4 * effort.elements ? 16 : effort.hemicube;
+  settings.own.of<matrix::MatrixParams>().patches.count = size_t(effort.patches);
   LUXEL_TRY(const Timed solved, solve(p, solver, settings, progress));
   Answers answers;
   if (by_paths) {

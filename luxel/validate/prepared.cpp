@@ -31,7 +31,7 @@ Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSe
   settings.supersample = 1;  // judged at points, where the judge looks too
   const auto start = Clock::now();
   Timed out;
-  LUXEL_TRY(out.light, found->solve(p.input(), settings, progress));
+  LUXEL_TRY(out.light, found->solve(p.input(), settings, {}, {}, progress));
   out.seconds = seconds_since(start);
   return out;
 }

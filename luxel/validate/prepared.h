@@ -19,9 +19,7 @@ struct Prepared {
   light::Lights lights;
   std::optional<trace::RayTracer> tracer;
 
-  pipeline::SolveInput input() const {
-    return {{scene, atlas, map, elements, lights, *tracer}, nullptr};
-  }
+  light::TexelScene input() const { return {scene, atlas, map, elements, lights, *tracer}; }
 };
 
 /// Lays the scene out on a lightmap of `resolution` squared. A scene without any light gets a white

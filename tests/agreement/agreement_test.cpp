@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "luxel/base/random.h"
+#include "luxel/pipeline/solver/hemicube.h"
 #include "luxel/validate/agreement.h"
 
 namespace luxel::validate {
@@ -126,7 +127,7 @@ TEST_P(SlowAgreement, EverySolverAgreesWithThePathTracer) {
     settings.samples = solver.name == "reference" ? kPaths : 1024;
     settings.direct_samples = 256;
     settings.seed = 7;
-    settings.hemicube.max_elements = 10000;
+    settings.own.of<hemicube::HemicubeParams>().max_elements = 10000;
     const auto solved = solve(**p, solver.name, settings, progress);
     ASSERT_TRUE(solved) << solved.error().message;
     const Agreement a = agreement(solved->light.irradiance, solved->light.hidden, *judged);

@@ -15,11 +15,11 @@
 #include "luxel/import/import.h"
 #include "luxel/pipeline/bake/bake_report.h"
 #include "luxel/pipeline/bake/denoise_light.h"
-#include "luxel/pipeline/bake/vertex_lit.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
 #include "luxel/pipeline/reuse/checkpoint.h"
-#include "luxel/pipeline/solver/check_settings.h"
-#include "luxel/pipeline/solver/solver_memory.h"
+#include "luxel/pipeline/solver/bake_options.h"
+#include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/solver/solvers.h"
 #include "luxel/pipeline/texels/shown_light.h"
 #include "luxel/pipeline/texels/texel_picture.h"
 #include "luxel/pipeline/texels/two_sides.h"
@@ -50,15 +50,16 @@ Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>
   return std::move(imported.scene);
 }
 
-Status solve(const BakeSettings& settings, const SolveInput& input, Bake& bake,
+Status solve(const BakeSettings& settings, const light::TexelScene& input,
+             const SolveStores& stores, const SolveObserver& observer, Bake& bake,
              Progress& progress) {
   const Solver& solver = *find_solver(settings.solver);
-  if (!solver.scatters && scene::scatters_light(input.scene))
+  if (!solver.can.scatters && scene::scatters_light(input.scene))
     bake.warnings.push_back(fmt::format(
         "light that is scattered through surfaces (KHR_materials_diffuse_transmission) is left out "
         "by --solver {}: they are too dark; gather and reference have it",
         settings.solver));
-  LUXEL_TRY(bake.light, solver.solve(input, settings, progress));
+  LUXEL_TRY(bake.light, solver.solve(input, settings, stores, observer, progress));
   if (settings.denoise) LUXEL_TRY_STATUS(denoise_light(input, bake.light, progress));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};
@@ -110,7 +111,7 @@ Status repair(const BakeSettings& settings, const trace::RayTracer& tracer, Bake
 }
 
 /// What is asked for besides the lightmap, from the light that the lightmap ended up with.
-Status add_directions(const BakeSettings& settings, const SolveInput& input, Bake& bake,
+Status add_directions(const BakeSettings& settings, const light::TexelScene& input, Bake& bake,
                       Progress& progress) {
   const std::span<const Rgb> light = bake.light.irradiance;
   if (settings.directional != Directional::none) {
@@ -184,7 +185,7 @@ Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, B
 Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers& keepers,
                          Progress& progress) {
   LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
-  if (keepers.checkpoint && find_solver(settings.solver)->parts)
+  if (keepers.checkpoint && find_solver(settings.solver)->can.parts)
     LUXEL_TRY_STATUS(keepers.checkpoint->open(bake.scene, progress));
   if (keepers.cache) keepers.cache->open(bake.scene, progress);
   LUXEL_TRY(TexelLayout layout,
@@ -206,14 +207,16 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const 
   const ThreadLimit threads(settings.threads);
   Bake bake;
   LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
-  SolveInput input{{bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
-                   keepers.checkpoint ? keepers.checkpoint->parts() : nullptr};
-  input.cache = keepers.cache;
+  const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
+                                ready.elements, ready.lights, ready.tracer};
+  const SolveStores stores{keepers.checkpoint ? keepers.checkpoint->parts() : nullptr,
+                           keepers.cache};
+  SolveObserver observer;
   if (on_estimate)
-    input.on_estimate = [&](const light::LightEstimate& e) { on_estimate(input, e); };
+    observer.on_estimate = [&](const light::LightEstimate& e) { on_estimate(input, e); };
   else if (!looks_at_places(settings))
-    input.on_traced = [&] { transport::drop_places(ready.elements); };
-  LUXEL_TRY_STATUS(solve(settings, input, bake, progress));
+    observer.on_traced = [&] { transport::drop_places(ready.elements); };
+  LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
   if (keepers.cache) keepers.cache->solved();
   LUXEL_TRY_STATUS(repair(settings, ready.tracer, bake, progress));
   LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
@@ -225,11 +228,14 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const 
 Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
+  const Solver& solver = *find_solver(settings.solver);
+  if (!solver.plan)
+    return fail(ErrorCode::bad_setting, "--plan: --solver {} cannot say what it will take",
+                settings.solver);
   Bake bake;
   LUXEL_TRY(const Ready ready, make_ready(settings, bake, {}, progress));
-  return plan(
-      {{bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer}, nullptr},
-      settings, progress);
+  return solver.plan({bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
+                     settings, progress);
 }
 
 namespace {
@@ -252,7 +258,7 @@ Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& 
   if (!settings.vertex_colors)
     return export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake),
                               shown_layers(bake, true));
-  const VertexLit lit = vertex_lit(bake.scene, *bake.light.field);
+  const VertexLit& lit = *bake.light.vertex_lit;
   return export_::vertex_lit_glb(lit.scene, lit.intensity);
 }
 
@@ -359,8 +365,8 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   const ThreadLimit threads(settings.threads);
   OutputFolder folder(settings.output);
   LUXEL_TRY_STATUS(folder.hold(progress));
-  Checkpoint checkpoint(settings);
-  BakeCache cache(settings);
+  Checkpoint checkpoint(settings, settings_of_checkpoint(settings));
+  BakeCache cache(settings, settings_of_kept_bake(settings));
   LUXEL_TRY(Bake result, bake_scene(settings, progress, {&checkpoint, &cache}));
   if (checkpoint.parts() != nullptr && checkpoint.parts()->has_failed())
     result.warnings.push_back(checkpoint.parts()->failure());

@@ -59,7 +59,7 @@ struct Bake {
 
 /// Gets the light of gather as it grows, one value per texel of the map, neither refilled nor
 /// stitched. The bake goes on when it returns.
-using OnBakeEstimate = std::function<void(const SolveInput&, const light::LightEstimate&)>;
+using OnBakeEstimate = std::function<void(const light::TexelScene&, const light::LightEstimate&)>;
 
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
 /// name in or above settings.output, and the checkpoint and the cache, if there are any. Errors:

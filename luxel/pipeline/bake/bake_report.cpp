@@ -8,6 +8,7 @@
 #include "luxel/base/process_memory.h"
 #include "luxel/export/baked_glb.h"
 #include "luxel/pipeline/settings/version.h"
+#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
 
 namespace luxel::pipeline {

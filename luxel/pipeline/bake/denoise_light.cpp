@@ -5,7 +5,7 @@
 
 namespace luxel::pipeline {
 
-Status denoise_light(const SolveInput& in, TexelLight& light, Progress& progress) {
+Status denoise_light(const light::TexelScene& in, TexelLight& light, Progress& progress) {
   LUXEL_CHECK(light.variance.size() == light.irradiance.size());
   const post::TexelPlaces places{in.scene,           in.atlas,    in.map, in.elements.position,
                                  in.elements.normal, light.hidden};

@@ -16,7 +16,7 @@ constexpr int kDilationRings = 8;
 /// A probe around which more than this share of the surfaces is seen from behind stands in a solid.
 constexpr float kInsideSolid = 0.5f;
 
-light::LitScene lit_scene(const SolveInput& in, const transport::TexelField& field) {
+light::LitScene lit_scene(const light::TexelScene& in, const transport::TexelField& field) {
   return {in.scene, in.tracer, in.lights,
           [&field](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }};
 }
@@ -31,7 +31,7 @@ Rgb dominant_of(const light::Bent& bent, Rgb irradiance) {
 
 }  // namespace
 
-Result<DirectionMaps> direction_maps(const SolveInput& in, std::span<const Rgb> irradiance,
+Result<DirectionMaps> direction_maps(const light::TexelScene& in, std::span<const Rgb> irradiance,
                                      std::span<const uint8_t> hidden, Directional kind,
                                      uint64_t seed, Progress& progress) {
   const transport::TexelField field{&in.atlas, &in.map, irradiance};
@@ -71,8 +71,8 @@ Result<std::vector<OutputFile>> direction_files(const DirectionMaps& maps,
   return out;
 }
 
-Result<ProbeGrid> probe_grid(const SolveInput& in, std::span<const Rgb> irradiance, float spacing_m,
-                             uint64_t seed, Progress& progress) {
+Result<ProbeGrid> probe_grid(const light::TexelScene& in, std::span<const Rgb> irradiance,
+                             float spacing_m, uint64_t seed, Progress& progress) {
   const Box3 box = scene::world_bounds(in.scene);
   const Vec3 size = box.upper - box.lower;
   ProbeGrid grid;

@@ -24,7 +24,7 @@ struct DirectionMaps {
   uint64_t rays = 0;
 };
 /// `irradiance` is the finished lightmap's, per texel. Errors: cancelled.
-Result<DirectionMaps> direction_maps(const SolveInput& in, std::span<const Rgb> irradiance,
+Result<DirectionMaps> direction_maps(const light::TexelScene& in, std::span<const Rgb> irradiance,
                                      std::span<const uint8_t> hidden, Directional kind,
                                      uint64_t seed, Progress& progress);
 /// lightmap.direction.exr, or lightmap.x.exr, .y.exr and .z.exr; of several pages
@@ -42,8 +42,8 @@ struct ProbeGrid {
   uint64_t rays = 0;
 };
 /// Errors: cancelled; more than kMostProbes.
-Result<ProbeGrid> probe_grid(const SolveInput& in, std::span<const Rgb> irradiance, float spacing_m,
-                             uint64_t seed, Progress& progress);
+Result<ProbeGrid> probe_grid(const light::TexelScene& in, std::span<const Rgb> irradiance,
+                             float spacing_m, uint64_t seed, Progress& progress);
 inline constexpr double kMostProbes = 1 << 20;
 
 /// probes.exr, a row per probe and nine columns, the coefficients; probes.json, where they stand.

@@ -114,7 +114,7 @@ Status check(const ProbeSettings& s) {
     return fail(ErrorCode::bad_setting, "-o {}: the picture is to end in .png", s.output.string());
   if (s.normal && !(length(*s.normal) > 0))
     return fail(ErrorCode::bad_setting, "--normal 0,0,0 is no direction");
-  return check(s.hierarchical);
+  return check_all(hierarchical_options(), s.hierarchical);
 }
 
 }  // namespace
@@ -131,7 +131,7 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(hierarchical::Solution solution,
-            hierarchical::solve(scene, tracer, solve_params(s.hierarchical, -1), progress));
+            hierarchical::solve(scene, tracer, s.hierarchical.solve, progress));
   out.warnings.insert(out.warnings.end(), solution.warnings.begin(), solution.warnings.end());
   const Nearest nearest = nearest_face(solution.faces, s);
   if (!(nearest.distance_m <= kFar * double(solution.diagonal_m)))
@@ -143,8 +143,7 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   const hierarchical::Receiver at = hierarchical::receiver_at(solution, scene, tracer, nearest.face,
                                                               inwards(face, nearest.place));
   LUXEL_TRY(const hierarchical::LightMesh mesh,
-            hierarchical::represent(solution, scene, tracer, light_mesh_params(s.hierarchical), {},
-                                    progress));
+            hierarchical::represent(solution, scene, tracer, s.hierarchical.mesh, {}, progress));
   LUXEL_TRY(const std::vector<Rgb> exact,
             hierarchical::irradiance_at(solution, scene, tracer, {&at, 1}, {1e-6}, progress));
   const hierarchical::MeshPlace place =

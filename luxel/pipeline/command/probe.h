@@ -9,7 +9,8 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
-#include "luxel/pipeline/settings/settings.h"
+#include "luxel/pipeline/settings/outside_light.h"
+#include "luxel/pipeline/solver/hierarchical.h"
 
 namespace luxel::pipeline {
 

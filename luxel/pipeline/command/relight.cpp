@@ -11,7 +11,7 @@
 #include "luxel/import/import.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/settings/version.h"
-#include "luxel/pipeline/solver/check_settings.h"
+#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/post/dilate.h"
 #include "luxel/solve/matrix/codec.h"
@@ -48,13 +48,13 @@ bool flatten_sky(scene::Scene& scene) {
 }
 
 Status check(const RelightSettings& s) {
-  LUXEL_TRY_STATUS(check(s.matrix));
+  LUXEL_TRY_STATUS(check_all(matrix_options(), s.matrix));
   LUXEL_TRY(const matrix::CodecKind codec, codec_of(s.codec));
-  if (matrix::looks_at_all_pairs(codec) && size_t(s.matrix.patches) > matrix::kMaxDensePatches)
+  if (matrix::looks_at_all_pairs(codec) && s.matrix.patches.count > matrix::kMaxDensePatches)
     return fail(ErrorCode::bad_setting,
                 "--patches {} are too many for --codec {}, which looks at all pairs of up to {}; "
                 "ask for fewer, or for --codec hierarchical",
-                s.matrix.patches, s.codec, matrix::kMaxDensePatches);
+                s.matrix.patches.count, s.codec, matrix::kMaxDensePatches);
   if (std::find(kTargets.begin(), kTargets.end(), s.target) == kTargets.end())
     return fail(ErrorCode::bad_setting,
                 "--target {} is not known; there is: texels, vertices, none", s.target);
@@ -134,7 +134,8 @@ Result<Wanted> wanted_of(const scene::Scene& scene, const RelightSettings& s, Pr
 
 Status fits(const RelightSettings& s) {
   const uint64_t needed =
-      resident_bytes() + matrix::bytes_of_preparation(size_t(s.matrix.patches), s.matrix.rays);
+      resident_bytes() +
+      matrix::bytes_of_preparation(s.matrix.patches.count, s.matrix.factors.rays_per_patch);
   const uint64_t given =
       s.max_memory_bytes > 0 ? s.max_memory_bytes : available_bytes() / 5 * 4 + resident_bytes();
   if (needed <= given) return {};
@@ -142,15 +143,15 @@ Status fits(const RelightSettings& s) {
       ErrorCode::out_of_memory,
       "{} patches with {} rays each need about {} MiB and {} MiB may be used; ask for fewer "
       "--patches or --rays, or allow more by --max-memory",
-      s.matrix.patches, s.matrix.rays, needed >> 20, given >> 20);
+      s.matrix.patches.count, s.matrix.factors.rays_per_patch, needed >> 20, given >> 20);
 }
 
 nlohmann::json report(const RelightSettings& s, const matrix::RelightData& data, uint64_t bytes,
                       const std::vector<std::string>& warnings, const Progress& progress) {
   return {{"version", kVersion},
           {"settings",
-           {{"patches", s.matrix.patches},
-            {"rays", s.matrix.rays},
+           {{"patches", s.matrix.patches.count},
+            {"rays", s.matrix.factors.rays_per_patch},
             {"codec", s.codec},
             {"max_error", s.max_error},
             {"bounces", s.bounces},
@@ -194,8 +195,8 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   matrix::RelightParams params;
-  params.patches = {size_t(s.matrix.patches), 48, s.seed};
-  params.factors = {s.matrix.rays, s.seed};
+  params.patches = s.matrix.patches, params.patches.seed = s.seed;
+  params.factors = s.matrix.factors, params.factors.seed = s.seed;
   LUXEL_TRY(params.codec, codec_of(s.codec));
   params.max_error = float(s.max_error), params.bounces = s.bounces;
   LUXEL_TRY(matrix::RelightData data,

@@ -6,9 +6,17 @@
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 #include "luxel/pipeline/settings/settings.h"
+#include "luxel/pipeline/solver/matrix.h"
 #include "luxel/solve/matrix/relight.h"
 
 namespace luxel::pipeline {
+
+/// More rays than a bake has by default: the codec tells noise from light when there is little.
+inline matrix::MatrixParams relight_matrix() {
+  matrix::MatrixParams params;
+  params.factors.rays_per_patch = 8192;
+  return params;
+}
 
 struct RelightSettings {
   std::filesystem::path scene;
@@ -17,11 +25,11 @@ struct RelightSettings {
   int resolution = 256;           ///< texels: side of the map
   float texels_per_metre = 0;     ///< texels: > 0: chooses the resolution
   atlas::UvMode uv = atlas::UvMode::automatic;
-  MatrixSettings matrix{.rays = 8192};  ///< the codec tells noise from light when there is little
-  std::string codec = "hierarchical";   ///< one of codec_names()
-  double max_error = 0.01;              ///< what the codec may lose
-  int bounces = -1;                     ///< < 0: all
-  uint64_t max_memory_bytes = 0;        ///< 0: four fifths of what is free
+  matrix::MatrixParams matrix = relight_matrix();  ///< what --patches and --rays say
+  std::string codec = "hierarchical";              ///< one of codec_names()
+  double max_error = 0.01;                         ///< what the codec may lose
+  int bounces = -1;                                ///< < 0: all
+  uint64_t max_memory_bytes = 0;                   ///< 0: four fifths of what is free
   uint64_t seed = 1;
   int threads = 0;  ///< 0: all cores
   OutsideLight outside;

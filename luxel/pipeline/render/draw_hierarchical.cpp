@@ -22,6 +22,12 @@ HierarchicalSettings settings_of(const RenderSettings& s) {
   return s.hierarchical.value_or(HierarchicalSettings{});
 }
 
+hierarchical::SolveParams solve_params(const RenderSettings& s) {
+  hierarchical::SolveParams params = settings_of(s).solve;
+  params.bounces = s.bounces.value_or(params.bounces);
+  return params;
+}
+
 /// Light as a picture needs it; stays where it was made.
 struct Lit {
   Solution solution;
@@ -33,11 +39,10 @@ Result<Lit> light_up(const Subject& subject, const RenderSettings& s, bool needs
                      Rendered& out, Progress& progress) {
   Lit lit;
   LUXEL_TRY(lit.solution,
-            hierarchical::solve(subject.scene, subject.tracer,
-                                solve_params(settings_of(s), s.bounces.value_or(-1)), progress));
+            hierarchical::solve(subject.scene, subject.tracer, solve_params(s), progress));
   const std::vector<std::string>& warnings = lit.solution.warnings;
   out.warnings.insert(out.warnings.end(), warnings.begin(), warnings.end());
-  const hierarchical::MeshParams params = light_mesh_params(settings_of(s));
+  const hierarchical::MeshParams params = settings_of(s).mesh;
   if (needs_mesh || overlay_needs_mesh(s.overlays)) {
     LUXEL_TRY(lit.mesh, hierarchical::represent(lit.solution, subject.scene, subject.tracer, params,
                                                 {}, progress));
@@ -153,7 +158,7 @@ Result<image::Image> draw_flat(const Subject& subject, const RenderSettings& s, 
 Result<image::Image> draw_gouraud(const Subject& subject, const RenderSettings& s, Rendered& out,
                                   Progress& progress) {
   LUXEL_TRY(const Lit lit, light_up(subject, s, true, out, progress));
-  hierarchical::MeshParams params = light_mesh_params(settings_of(s));
+  hierarchical::MeshParams params = settings_of(s).mesh;
   params.discontinuities = false;
   LUXEL_TRY(const LightMesh whole, hierarchical::make_light_mesh(lit.solution, subject.scene,
                                                                  subject.tracer, params, progress));

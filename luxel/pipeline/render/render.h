@@ -14,6 +14,8 @@
 #include "luxel/display/tone_map.h"
 #include "luxel/pipeline/render/exposure.h"
 #include "luxel/pipeline/settings/settings.h"
+#include "luxel/pipeline/solver/hemicube.h"
+#include "luxel/pipeline/solver/hierarchical.h"
 
 namespace luxel::pipeline {
 
@@ -40,7 +42,7 @@ struct RenderSettings {
   std::optional<int> samples;                        ///< paths per pixel, 64
   std::optional<int> bounces;                        ///< reflections between surfaces; < 0: all, -1
   std::optional<uint64_t> seed;                      ///< 1
-  std::optional<HemicubeSettings> hemicube;          ///< radiosity
+  std::optional<hemicube::HemicubeParams> hemicube;  ///< radiosity
   std::optional<HierarchicalSettings> hierarchical;  ///< flat, gouraud, ...
   std::vector<std::string> overlays;  ///< the same; names of luxel/pipeline/render/overlays.h
 };

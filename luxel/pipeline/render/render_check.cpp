@@ -43,22 +43,19 @@ std::string users_of(bool Technique::*feature) {
 /// What a technique would not look at must not be given: its user expects something of it.
 Status check_used(const RenderSettings& s, const Technique& technique) {
   struct Option {
-    const char* name;
+    std::string name;
     bool given;
     bool Technique::*used;
   };
-  const Option options[] = {{"--from", !s.from.empty(), &Technique::needs_bake},
-                            {"--samples", s.samples.has_value(), &Technique::traces_paths},
-                            {"--seed", s.seed.has_value(), &Technique::traces_paths},
-                            {"--bounces", s.bounces.has_value(), &Technique::counts_bounces},
-                            {"--elements, --hemicube, --element-size, --max-elements, --max-error "
-                             "and --smooth",
-                             s.hemicube.has_value(), &Technique::has_elements},
-                            {"--eps, --min-area, --no-discontinuities, --max-leaf-lines, "
-                             "--min-weight and --ranking",
-                             s.hierarchical.has_value(), &Technique::has_links},
-                            {"--overlay", !s.overlays.empty(), &Technique::has_links},
-                            {"--sun", s.outside.sun.has_value(), &Technique::has_lamps}};
+  const Option options[] = {
+      {"--from", !s.from.empty(), &Technique::needs_bake},
+      {"--samples", s.samples.has_value(), &Technique::traces_paths},
+      {"--seed", s.seed.has_value(), &Technique::traces_paths},
+      {"--bounces", s.bounces.has_value(), &Technique::counts_bounces},
+      {flags_of(hemicube_options()), s.hemicube.has_value(), &Technique::has_elements},
+      {flags_of(hierarchical_options()), s.hierarchical.has_value(), &Technique::has_links},
+      {"--overlay", !s.overlays.empty(), &Technique::has_links},
+      {"--sun", s.outside.sun.has_value(), &Technique::has_lamps}};
   for (const Option& option : options)
     if (option.given && !(technique.*option.used))
       return fail(ErrorCode::bad_setting,
@@ -86,8 +83,9 @@ Status check(const RenderSettings& s) {
   if (s.samples && (*s.samples < 1 || *s.samples > kMaxPathSamples))
     return fail(ErrorCode::bad_setting, "--samples {} is outside 1 to {}", *s.samples,
                 kMaxPathSamples);
-  if (s.hemicube) LUXEL_TRY_STATUS(check(*s.hemicube));
-  if (s.hierarchical) LUXEL_TRY_STATUS(check(*s.hierarchical));
+  if (s.hemicube) LUXEL_TRY_STATUS(check_all(hemicube_options(), *s.hemicube));
+  if (s.hemicube) LUXEL_TRY_STATUS(check_contradictions(*s.hemicube));
+  if (s.hierarchical) LUXEL_TRY_STATUS(check_all(hierarchical_options(), *s.hierarchical));
   LUXEL_TRY_STATUS(check_output(s, technique));
   if (technique) return check_used(s, *technique);
   return {};

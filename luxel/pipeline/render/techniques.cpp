@@ -7,7 +7,6 @@
 #include "luxel/display/normals_view.h"
 #include "luxel/pipeline/render/draw_bake.h"
 #include "luxel/pipeline/render/draw_hierarchical.h"
-#include "luxel/pipeline/solver/solvers.h"
 #include "luxel/reference/path_tracer.h"
 
 namespace luxel::pipeline {
@@ -44,12 +43,11 @@ Result<image::Image> draw_normals(const Subject& subject, const RenderSettings& 
 /// The hemicube solver's own answer, without a lightmap in between.
 Result<image::Image> draw_radiosity(const Subject& subject, const RenderSettings& settings,
                                     Rendered&, Progress& progress) {
-  BakeSettings bake;
-  bake.hemicube = settings.hemicube.value_or(HemicubeSettings{});
-  bake.bounces = settings.bounces.value_or(-1);
+  hemicube::HemicubeParams solve = settings.hemicube.value_or(hemicube::HemicubeParams{});
+  solve.bounces = settings.bounces.value_or(solve.bounces);
   LUXEL_TRY(const hemicube::Solution solution,
             hemicube::solve(subject.scene, light::collect_lights(subject.scene), subject.tracer,
-                            hemicube_params(bake), progress));
+                            solve, progress));
   display::DrawParams params;
   params.width = settings.width, params.height = settings.height;
   const auto irradiance = [&](const scene::SurfacePoint& p) {

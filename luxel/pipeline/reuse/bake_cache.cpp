@@ -1,6 +1,5 @@
 #include "luxel/pipeline/reuse/bake_cache.h"
 
-#include <array>
 #include <atomic>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -20,18 +19,12 @@ using nlohmann::json;
 constexpr int kFormat = 4;
 RecordKey key_of(size_t part) { return {0, part}; }
 
-/// Settings that leave gathered light as it is; those of outside light are in the scene.
-constexpr std::array kWithoutEffect{"denoise",    "stitch", "directional", "probe_spacing_m",
-                                    "background", "sun",    "sky",         "environment",
-                                    "ies",        "layers"};
-
 fs::path light_file(const fs::path& folder) { return folder / "light.luxel"; }
 fs::path rays_file(const fs::path& folder) { return folder / "rays.luxel"; }
 fs::path unfinished(fs::path file) { return file += ".new"; }
 
-json identity_of(const BakeSettings& settings) {
-  json identity = bake_identity(settings);
-  for (const char* key : kWithoutEffect) identity["settings"].erase(key);
+json identity_of(const BakeSettings& settings, const json& changing) {
+  json identity = bake_identity(changing);
   identity["cache"] = kFormat;
   const bool groups = settings.layers == light::LayerMode::groups;
   identity["settings"]["lights told apart"] = groups ? "by groups" : "one by one";
@@ -63,16 +56,18 @@ Status write_kept(const KeptBake& kept, RecordFile& file) {
   return {};
 }
 
-std::string header_of(const BakeSettings& settings, const scene::SceneState& state) {
-  json header = identity_of(settings);
+std::string header_of(const json& identity, const scene::SceneState& state) {
+  json header = identity;
   header["digest"] = fmt::format("{:016x}", digest_of_state(state));
   return header.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace
 
-BakeCache::BakeCache(const BakeSettings& settings)
-    : settings_(settings), folder_(settings.output / "cache") {}
+BakeCache::BakeCache(const BakeSettings& settings, const json& identity)
+    : settings_(settings),
+      identity_(std::make_unique<json>(identity_of(settings, identity))),
+      folder_(settings.output / "cache") {}
 
 BakeCache::~BakeCache() { remove_unfinished(); }
 
@@ -115,7 +110,7 @@ bool BakeCache::find(const scene::Scene& scene) {
   json header = json::parse(found->header(), nullptr, false);
   if (!header.is_object() || !header.contains("cache") || header["cache"] != kFormat)
     return no("it was kept by another version of luxel");
-  const std::string different = difference(header, identity_of(settings_));
+  const std::string different = difference(header, *identity_);
   if (!different.empty()) return no("it is of another bake: " + different);
   found_ = read_kept(*found);
   if (!found_) return no("light.luxel is damaged");
@@ -140,7 +135,7 @@ const RecordFile* BakeCache::found_rays(Progress& progress) {
   Result<RecordFile> rays = RecordFile::open(rays_file(folder_), RecordFile::Check::when_read);
   if (!rays)
     note_ = rays.error().message;
-  else if (rays->header() != header_of(settings_, found_->scene))
+  else if (rays->header() != header_of(*identity_, found_->scene))
     note_ = rays_file(folder_).string() + " is not of the bake that is kept";
   else
     return &found_rays_.emplace(std::move(*rays));
@@ -157,7 +152,7 @@ void BakeCache::begin(Progress& progress) {
   // It begins long ago: parts are wanted at once, and not waited for.
   constexpr double kForever_s = 1e6;
   rays_.emplace(
-      PartStoreParams{unfinished(rays_file(folder_)), header_of(settings_, state_), "", kForever_s,
+      PartStoreParams{unfinished(rays_file(folder_)), header_of(*identity_, state_), "", kForever_s,
                       std::chrono::steady_clock::now() - std::chrono::seconds(int(kForever_s) + 1)},
       progress);
 }
@@ -185,7 +180,7 @@ void BakeCache::finish(Progress& progress) {
   if (rays_->has_failed()) return give_up(rays_->failure(), progress);
   kept_->scene = state_, kept_->seconds = seconds_, kept_->layout = std::move(layout_);
   const fs::path file = light_file(folder_);
-  Result<RecordFile> light = RecordFile::create(unfinished(file), header_of(settings_, state_));
+  Result<RecordFile> light = RecordFile::create(unfinished(file), header_of(*identity_, state_));
   if (!light) return give_up(light.error().message, progress);
   const Status written = write_kept(*kept_, *light);
   if (!written) return give_up(written.error().message, progress);

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -19,8 +20,9 @@ namespace luxel::pipeline {
 /// itself. A cache that cannot be used is no error: the bake starts from scratch and says why.
 class BakeCache {
  public:
-  /// `settings` outlives this.
-  explicit BakeCache(const BakeSettings& settings);
+  /// `settings` outlives this; `identity` are those of them that must be equal in a bake that
+  /// builds on this one (settings_of_kept_bake).
+  BakeCache(const BakeSettings& settings, const nlohmann::json& identity);
   BakeCache(const BakeCache&) = delete;
   BakeCache& operator=(const BakeCache&) = delete;
   ~BakeCache();  ///< what was begun and not finished goes
@@ -60,6 +62,7 @@ class BakeCache {
   void remove_unfinished();
 
   const BakeSettings& settings_;
+  std::unique_ptr<nlohmann::json> identity_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::filesystem::path folder_;
   scene::SceneState state_;

@@ -1,6 +1,5 @@
 #include "luxel/pipeline/reuse/checkpoint.h"
 
-#include <array>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
@@ -17,21 +16,6 @@ using nlohmann::json;
 
 /// Of the records' content; goes up when what a part holds, or how it is computed, changes.
 constexpr int kFormat = 3;
-
-/// Settings that leave every bit of the light as it is. Of what files hold there are digests:
-/// where they lie does not matter.
-constexpr std::array kWithoutEffect{"scene",        "threads",   "max_memory_bytes",
-                                    "checkpoint_s", "formats",   "html",
-                                    "texels",       "error_map", "keep"};
-
-json settings_with_effect(const BakeSettings& settings) {
-  json out = to_json(settings);
-  for (const char* key : kWithoutEffect) out.erase(key);
-  if (out.contains("environment")) out["environment"].erase("file");
-  if (out.contains("ies"))
-    for (json& ies : out["ies"]) ies.erase("file");
-  return out;
-}
 
 json digests_json(std::span<const scene::ItemDigest> items) {
   json out = json::array();
@@ -78,11 +62,11 @@ fs::path checkpoint_file(const BakeSettings& settings) {
   return settings.output / "checkpoint.luxel";
 }
 
-json bake_identity(const BakeSettings& settings) {
-  return {{"luxel", kVersion}, {"format", kFormat}, {"settings", settings_with_effect(settings)}};
+json bake_identity(const json& settings) {
+  return {{"luxel", kVersion}, {"format", kFormat}, {"settings", settings}};
 }
 
-json checkpoint_header(const BakeSettings& settings, const scene::Scene& scene) {
+json checkpoint_header(const json& settings, const scene::Scene& scene) {
   json header = bake_identity(settings);
   header["scene"] = digests_json(scene::digests_of(scene));
   return header;
@@ -100,12 +84,19 @@ std::string difference(const json& there, const json& here) {
   }
 }
 
+Checkpoint::Checkpoint(const BakeSettings& settings, const json& identity)
+    : settings_(settings),
+      identity_(std::make_unique<json>(identity)),
+      start_(std::chrono::steady_clock::now()) {}
+
+Checkpoint::~Checkpoint() = default;
+
 Status Checkpoint::open(const scene::Scene& scene, Progress& progress) {
   if (settings_.keep) return {};
   const fs::path file = checkpoint_file(settings_);
   // Names of things may be no UTF-8, which JSON knows nothing else of.
   const std::string header =
-      checkpoint_header(settings_, scene).dump(-1, ' ', false, json::error_handler_t::replace);
+      checkpoint_header(*identity_, scene).dump(-1, ' ', false, json::error_handler_t::replace);
   std::optional<RecordFile> found;
   std::error_code ignored;
   const bool there = fs::exists(file, ignored);

@@ -18,20 +18,21 @@ namespace luxel::pipeline {
 /// DIR/checkpoint.luxel.
 std::filesystem::path checkpoint_file(const BakeSettings& settings);
 
-/// What the light of a bake depends on besides its scene: luxel's version and the settings, but for
-/// those that change no bit of it.
-nlohmann::json bake_identity(const BakeSettings& settings);
+/// What the light of a bake depends on besides its scene: luxel's version and `settings`, those
+/// that change it (solver/bake_options.h says which).
+nlohmann::json bake_identity(const nlohmann::json& settings);
 /// That, and the scene's digests.
-nlohmann::json checkpoint_header(const BakeSettings& settings, const scene::Scene& scene);
+nlohmann::json checkpoint_header(const nlohmann::json& settings, const scene::Scene& scene);
 /// Which of either differs, in words; empty: nothing.
 std::string difference(const nlohmann::json& there, const nlohmann::json& here);
 
 /// The checkpoint of one bake: docs/method/checkpoints.md. Solvers that keep no parts have none.
 class Checkpoint {
  public:
-  /// The bake begins now. `settings` outlives this.
-  explicit Checkpoint(const BakeSettings& settings)
-      : settings_(settings), start_(std::chrono::steady_clock::now()) {}
+  /// The bake begins now. `settings` outlives this; `identity` is what must be equal in a bake that
+  /// goes on with it (settings_of_checkpoint).
+  Checkpoint(const BakeSettings& settings, const nlohmann::json& identity);
+  ~Checkpoint();
 
   /// The scene is known, with its outside light. With settings.resume goes on with the file that is
   /// there; says in a note when there is none, or one that is not gone on with. Errors: it is of
@@ -48,6 +49,7 @@ class Checkpoint {
 
  private:
   const BakeSettings& settings_;
+  std::unique_ptr<nlohmann::json> identity_;
   std::chrono::steady_clock::time_point start_;
   bool resumed_ = false;
   std::string note_;

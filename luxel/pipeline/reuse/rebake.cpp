@@ -169,7 +169,8 @@ TexelLight sum_of_layers(KeptBake& kept, const LightUpdate& update) {
 
 std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays,
                                           const LightUpdate& update,
-                                          const scene::SceneChange& change, const SolveInput& in,
+                                          const scene::SceneChange& change,
+                                          const light::TexelScene& in,
                                           const light::LightLayers* layers) {
   const size_t n = in.elements.size();
   auto rounds = gather::earlier_rounds(rays, n);

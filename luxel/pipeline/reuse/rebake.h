@@ -31,7 +31,8 @@ TexelLight sum_of_layers(KeptBake& kept, const LightUpdate& update);
 /// now; `layers`: those of this bake, or null. Uses `kept` up. Nothing: its rays are damaged.
 std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays,
                                           const LightUpdate& update,
-                                          const scene::SceneChange& change, const SolveInput& in,
+                                          const scene::SceneChange& change,
+                                          const light::TexelScene& in,
                                           const light::LightLayers* layers);
 
 }  // namespace luxel::pipeline

@@ -357,8 +357,8 @@ class EarlierOf : public ::testing::Test {
     rays_.emplace(*RecordFile::open(folder_ / "rays"));
     const auto layers =
         light::light_layers(room_->scene, room_->lights, light::LayerMode::per_light);
-    const SolveInput in{
-        {room_->scene, room_->atlas, room_->map, room_->elements, room_->lights, *room_->tracer}};
+    const light::TexelScene in{room_->scene,    room_->atlas,  room_->map,
+                               room_->elements, room_->lights, *room_->tracer};
     return earlier_of(kept_, *rays_, update_, change_, in, with_layers ? &*layers : nullptr);
   }
   /// The light that is a first guess, and direct light: of layers by `scale`.

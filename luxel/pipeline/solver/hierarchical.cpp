@@ -1,23 +1,117 @@
+// Hierarchical radiosity with discontinuity meshing, as a solver of lightmaps.
 #include "luxel/pipeline/solver/hierarchical.h"
 
-namespace luxel::pipeline {
+#include <algorithm>
+#include <cmath>
 
-hierarchical::SolveParams solve_params(const HierarchicalSettings& settings, int bounces) {
-  hierarchical::SolveParams params;
-  params.eps = settings.eps;
-  params.min_area_m2 = settings.min_area_m2;
-  params.bounces = bounces;
-  return params;
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/settings/option_rows.h"
+#include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/solver/solver.h"
+#include "luxel/solve/hierarchical/enclosed.h"
+#include "luxel/solve/hierarchical/represent.h"
+#include "luxel/solve/hierarchical/surface.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Texels at which the interpolants are held against exact irradiance.
+constexpr size_t kCheckedTexels = 400;
+
+/// Root mean square difference between interpolated and exact irradiance over the mean.
+Result<double> interpolation_error(const light::TexelScene& in,
+                                   const hierarchical::Solution& solution,
+                                   std::span<const Rgb> interpolated, Progress& progress) {
+  std::vector<hierarchical::Receiver> receivers;
+  std::vector<size_t> texels;
+  const size_t step = std::max<size_t>(1, in.map.texels.size() / kCheckedTexels);
+  for (size_t i = step / 2; i < in.map.texels.size(); i += step) {
+    const hierarchical::Place place =
+        hierarchical::place_of(in.scene, solution.faces, in.map.texels[i].sample);
+    if (place.face == hierarchical::kNone) continue;
+    receivers.push_back(
+        hierarchical::receiver_at(solution, in.scene, in.tracer, place.face, place.position));
+    texels.push_back(i);
+  }
+  LUXEL_TRY(const std::vector<Rgb> exact,
+            hierarchical::irradiance_at(solution, in.scene, in.tracer, receivers, {}, progress));
+  double squares = 0, sum = 0;
+  for (size_t k = 0; k < texels.size(); ++k) {
+    const double d = double(luminance(interpolated[texels[k]] - exact[k]));
+    squares += d * d, sum += double(luminance(exact[k]));
+  }
+  return sum > 0 ? std::sqrt(squares * double(texels.size())) / sum : 0;
 }
 
-hierarchical::MeshParams light_mesh_params(const HierarchicalSettings& settings) {
-  hierarchical::MeshParams params;
-  params.discontinuities = settings.discontinuities;
-  params.discontinuity.max_per_leaf = uint32_t(settings.max_leaf_lines);
-  params.discontinuity.least_weight = settings.min_weight;
-  params.discontinuity.ranking = settings.ranking == "nearness" ? hierarchical::Ranking::nearness
-                                                                : hierarchical::Ranking::slope;
-  return params;
+Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSettings& settings,
+                                      const SolveStores&, const SolveObserver&,
+                                      Progress& progress) {
+  LUXEL_TRY_STATUS(memory_to_spare(in, settings, bytes_of_light(in, settings), 0));
+  HierarchicalSettings own = settings.own.of<HierarchicalSettings>();
+  own.solve.bounces = settings.bounces;
+  LUXEL_TRY(hierarchical::Solution solution,
+            hierarchical::solve(in.scene, in.tracer, own.solve, progress));
+  LUXEL_TRY(const hierarchical::LightMesh mesh,
+            hierarchical::represent(solution, in.scene, in.tracer, own.mesh, {}, progress));
+  TexelLight out;
+  out.irradiance.resize(in.map.texels.size()), out.hidden.resize(in.map.texels.size());
+  parallel_for(in.map.texels.size(), 1024, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      out.irradiance[i] =
+          hierarchical::irradiance_at(solution, mesh, in.scene, in.map.texels[i].sample);
+  });
+  out.hidden = hierarchical::find_enclosed(in.scene, in.tracer, in.elements.position,
+                                           in.elements.geometric_normal, out.irradiance);
+  out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
+  out.sweeps = solution.sweeps, out.elements = mesh.triangles.size();
+  out.warnings = solution.warnings;
+  LUXEL_TRY(out.relative_error, interpolation_error(in, solution, out.irradiance, progress));
+  return out;
+}
+
+}  // namespace
+
+Options<HierarchicalSettings> hierarchical_options() {
+  using R = Rows<HierarchicalSettings>;
+  return {
+      R::number(
+          "--eps", [](auto& s) -> auto& { return s.solve.eps; },
+          {0, kNoLimit, "is not an error; give W/m^2 >= 0"},
+          "How much the light over a link may be off, in W/m^2 on an element of mean size "
+          "(default: a hundredth of the mean light)")
+          .unit("W/M^2"),
+      R::number(
+          "--min-area", [](auto& s) -> auto& { return s.solve.min_area_m2; },
+          {0, kNoLimit, "is not an area; give m^2 >= 0"},
+          "Elements are not divided below this, in m^2 (default: by the scene)")
+          .key_is("min_area_m2")
+          .unit("M^2"),
+      R::toggle(
+          "--no-discontinuities", [](auto& s) -> auto& { return s.mesh.discontinuities; },
+          "Do not mesh along the edges of shadows"),
+      R::number(
+          "--max-leaf-lines", [](auto& s) -> auto& { return s.mesh.discontinuity.max_per_leaf; },
+          {0, 1000}, "Edges of shadows through an element, at most")
+          .unit("COUNT"),
+      R::number(
+          "--min-weight", [](auto& s) -> auto& { return s.mesh.discontinuity.least_weight; },
+          {0, kNoLimit, "is not a weight; give W/m^2 per m >= 0"},
+          "Edges over which light changes by less are left out, in W/m^2 per m; with --ranking "
+          "nearness in W/m^2 (default: by the light there is)")
+          .unit("WEIGHT"),
+      R::choice(
+          "--ranking", [](auto& s) -> auto& { return s.mesh.discontinuity.ranking; },
+          {{"slope", hierarchical::Ranking::slope}, {"nearness", hierarchical::Ranking::nearness}},
+          "Which edges of shadows come first: slope, by how much light changes per metre; "
+          "nearness, by how near to the surface what throws them is"),
+  };
+}
+
+Solver hierarchical_solver() {
+  return {
+      .name = "hierarchical",
+      .solve = solve_hierarchical,
+      .options = options_of_solver("hierarchical", kHierarchicalHeading, hierarchical_options())};
 }
 
 }  // namespace luxel::pipeline

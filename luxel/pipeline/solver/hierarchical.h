@@ -1,13 +1,19 @@
-// What settings ask of solve/hierarchical.
+// The options of hierarchical radiosity, which `luxel render` and `luxel probe` have, too.
 #pragma once
 
-#include "luxel/pipeline/settings/settings.h"
+#include "luxel/pipeline/settings/option.h"
 #include "luxel/solve/hierarchical/light_mesh.h"
 
 namespace luxel::pipeline {
 
-/// `bounces` < 0: all.
-hierarchical::SolveParams solve_params(const HierarchicalSettings& settings, int bounces);
-hierarchical::MeshParams light_mesh_params(const HierarchicalSettings& settings);
+struct HierarchicalSettings {
+  hierarchical::SolveParams solve;
+  hierarchical::MeshParams mesh;
+};
+
+/// Of these parameters those that a user chooses.
+Options<HierarchicalSettings> hierarchical_options();
+
+inline constexpr std::string_view kHierarchicalHeading = "Hierarchical radiosity";
 
 }  // namespace luxel::pipeline

@@ -4,8 +4,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "luxel/pipeline/solver/solvers.h"
-#include "luxel/solve/gather/forecast/forecast.h"
+#include "luxel/base/progress.h"
+#include "luxel/light/texel_scene.h"
+#include "luxel/pipeline/settings/settings.h"
 
 namespace luxel::pipeline {
 
@@ -19,14 +20,9 @@ struct Plan {
   double scratch_bytes = 0;  ///< of temporary files
 };
 
-/// `progress` has the stages so far. Errors: cancelled; memory is too small; a solver other than
-/// gather (bad_setting).
-Result<Plan> plan(const SolveInput& in, const BakeSettings& settings, Progress& progress);
-
 nlohmann::json to_json(const Plan& plan);
 
-std::vector<Stage> stages_of(const gather::Forecast& forecast);
-/// Seams, preview and files.
-std::vector<Stage> stages_after_solving(const SolveInput& in, const BakeSettings& settings);
+/// Seams, preview and files, with what they are expected to take.
+std::vector<Stage> stages_after_solving(const light::TexelScene& in, const BakeSettings& settings);
 
 }  // namespace luxel::pipeline

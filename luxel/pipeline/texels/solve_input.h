@@ -1,4 +1,4 @@
-// What every solver of the pipeline gets, and what it gives.
+// What every solver of the pipeline gets besides a light::TexelScene, and what it gives.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,29 @@
 #include "luxel/light/light_estimate.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/light/texel_scene.h"
-#include "luxel/solve/hemicube/hemicube.h"
+#include "luxel/scene/scene.h"
 
 namespace luxel::pipeline {
 
 class BakeCache;
 
-/// What every solver gets.
-struct SolveInput : light::TexelScene {
-  PartStore* parts = nullptr;  ///< where its finished parts are kept and found; null: nowhere
-  light::OnLightEstimate on_estimate{};  ///< gets gather's light as it grows
-  BakeCache* cache = nullptr;  ///< what gather builds on, and where it keeps itself; null: neither
+/// What outlives a solver; null where there is nothing of the kind.
+struct SolveStores {
+  PartStore* parts = nullptr;  ///< where its finished parts are kept and found
+  BakeCache* cache = nullptr;  ///< what it builds on, and where it keeps itself for later bakes
+};
+
+/// Who watches a solver; nothing where nobody does.
+struct SolveObserver {
+  light::OnLightEstimate on_estimate{};  ///< gets light as it grows, of a solver with `errors`
   /// Called, or not, when the solver looks at no place of an element any more: they take memory.
   std::function<void()> on_traced{};
+};
+
+/// Light per vertex of a solver's own mesh.
+struct VertexLit {
+  scene::Scene scene;   ///< one mesh per instance, in the world; materials unlit
+  float intensity = 1;  ///< colors * intensity = E [W/m^2], times the scene's own vertex colours
 };
 
 /// What every solver gives.
@@ -53,8 +63,7 @@ struct TexelLight {
   uint64_t scratch_bytes = 0;      ///< in temporary files
   uint64_t elements = 0;           ///< of the solver's own mesh, when it has one
   std::vector<std::string> warnings;
-  /// The solver's own answer, when it is not per texel.
-  std::optional<hemicube::Field> field;
+  std::optional<VertexLit> vertex_lit;  ///< with --vertex-colors
 };
 
 }  // namespace luxel::pipeline

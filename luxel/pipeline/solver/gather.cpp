@@ -1,4 +1,6 @@
-#include "luxel/pipeline/solver/gather_light.h"
+// Radiosity maps by Monte Carlo rays as a solver of lightmaps: to a number of samples, to an error,
+// or to a time, from scratch or on an earlier bake.
+#include "luxel/pipeline/solver/gather.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -7,11 +9,14 @@
 #include "luxel/base/output_folder.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
 #include "luxel/pipeline/reuse/rebake.h"
-#include "luxel/pipeline/solver/plan.h"
-#include "luxel/pipeline/solver/solver_memory.h"
+#include "luxel/pipeline/solver/gather_memory.h"
+#include "luxel/pipeline/solver/gather_plan.h"
+#include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/solver/solver.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/pipeline/solver/texel_light.h"
 #include "luxel/solve/gather/forecast/forecast.h"
+#include "luxel/solve/gather/gather.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -61,8 +66,9 @@ void shrink_first_round(const gather::Forecast& forecast, double seconds,
 
 /// Tells how long it will take, where a trial can know it and is worth it, and fits the first round
 /// into a time budget. With max_error it is told by gather, after the first round.
-Status look_ahead(const SolveInput& in, const BakeSettings& settings, gather::GatherParams& params,
-                  std::vector<std::string>& warnings, Progress& progress) {
+Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
+                  gather::GatherParams& params, std::vector<std::string>& warnings,
+                  Progress& progress) {
   const std::vector<Stage> after = stages_after_solving(in, settings);
   progress.expect_at_end(after);
   const double rays = double(in.elements.size()) * (params.samples + params.direct_samples);
@@ -120,7 +126,7 @@ TexelLight light_of(gather::Gather& result, light::LightLayers& layers) {
 
 /// Which layers light is told apart into; none where nobody asks, or, for a bake that is kept,
 /// where there are too many. Errors: too many.
-Result<light::LightLayers> layers_of(const SolveInput& in, const BakeSettings& settings,
+Result<light::LightLayers> layers_of(const light::TexelScene& in, const BakeSettings& settings,
                                      bool keeps) {
   if (settings.layers != light::LayerMode::none)
     return light::light_layers(in.scene, in.lights, settings.layers);
@@ -130,8 +136,8 @@ Result<light::LightLayers> layers_of(const SolveInput& in, const BakeSettings& s
 }
 
 /// The bake's light with what later bakes can build on.
-KeptBake kept_bake(const SolveInput& in, const light::LightLayers& layers, gather::Gather& result,
-                   const TexelLight& light) {
+KeptBake kept_bake(const light::TexelScene& in, const light::LightLayers& layers,
+                   gather::Gather& result, const TexelLight& light) {
   KeptBake kept;
   kept.places = places_of(in.elements);
   for (const light::LightLayer& layer : light.layers) kept.layer_names.push_back(layer.name);
@@ -146,15 +152,18 @@ void drop_layers(TexelLight& light) { light.layers.clear(), free_memory(light.la
 
 }  // namespace
 
-Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settings,
+namespace {
+
+Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings& settings,
+                                const SolveStores& stores, const SolveObserver& observer,
                                 Progress& progress) {
   gather::GatherParams params = gather_params(settings);
-  const bool keeps = in.cache && in.cache->rays();
+  const bool keeps = stores.cache && stores.cache->rays();
   LUXEL_TRY(light::LightLayers layers, layers_of(in, settings, keeps));
   if (layers.size() > 0) params.layers = &layers;
   std::optional<gather::Earlier> earlier;
-  if (KeptBake* found = in.cache ? in.cache->found() : nullptr) {
-    const scene::SceneChange& change = in.cache->change();
+  if (KeptBake* found = stores.cache ? stores.cache->found() : nullptr) {
+    const scene::SceneChange& change = stores.cache->change();
     const LightUpdate update = light_update(*found, change, in.scene);
     // Layers that are asked for are those of now: a lamp that is out has none, another name counts.
     const bool same_layers = settings.layers == light::LayerMode::none ||
@@ -165,30 +174,49 @@ Result<TexelLight> solve_gather(const SolveInput& in, const BakeSettings& settin
       if (settings.layers == light::LayerMode::none) drop_layers(out);
       return out;
     }
-    if (const RecordFile* rays = in.cache->found_rays(progress))
+    if (const RecordFile* rays = stores.cache->found_rays(progress))
       earlier = earlier_of(*found, *rays, update, change, in, params.layers);
   }
-  LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, kMinHitBytes, layers.size()));
+  const uint64_t bytes =
+      bytes_of_gather(in, settings, stores, bool(observer.on_estimate), layers.size());
+  LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, bytes, kMinHitBytes));
   std::vector<std::string> warnings;
   if (earlier)
     params.earlier = &*earlier;
   else
     LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
   // Not for the trial; and the light of layers is not kept yet.
-  if (!params.layers) params.parts = in.parts;
-  if (keeps) params.keep = in.cache->rays();
-  params.on_estimate = in.on_estimate;
-  params.on_traced = in.on_traced;
+  if (!params.layers) params.parts = stores.parts;
+  if (keeps) params.keep = stores.cache->rays();
+  params.on_estimate = observer.on_estimate;
+  params.on_traced = observer.on_traced;
   LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
                                                   in.lights, in.tracer, params, progress));
   const light::LightLayers all_layers = layers;
   TexelLight out = light_of(result, layers);
-  if (keeps) in.cache->keep(kept_bake(in, all_layers, result, out));
+  if (keeps) stores.cache->keep(kept_bake(in, all_layers, result, out));
   if (settings.layers == light::LayerMode::none) drop_layers(out);
   if (settings.max_error > 0 || settings.time_budget_s > 0)
     warn_about_rounds(settings, params, result, warnings);
   out.warnings = std::move(warnings);
   return out;
+}
+
+}  // namespace
+
+Solver gather_solver() {
+  return {.name = "gather",
+          .can = {.samples = true,
+                  .direct_samples = true,
+                  .supersample = true,
+                  .errors = true,
+                  .noise = true,
+                  .layers = true,
+                  .scatters = true,
+                  .parts = true,
+                  .keeps = true},
+          .solve = solve_gather,
+          .plan = plan_gather};
 }
 
 }  // namespace luxel::pipeline

@@ -56,8 +56,8 @@ TEST(SlowMaxError, TheTruthLiesWithinTheClaim) {
 std::vector<double> seconds_left_while_lit(const BakeSettings& settings) {
   std::vector<double> out;
   Progress progress;
-  const Result<Bake> result =
-      bake_scene(settings, progress, {}, [&](const SolveInput&, const light::LightEstimate&) {
+  const Result<Bake> result = bake_scene(
+      settings, progress, {}, [&](const light::TexelScene&, const light::LightEstimate&) {
         out.push_back(progress.snapshot().seconds_left);
       });
   EXPECT_TRUE(result) << result.error().message;
@@ -88,8 +88,8 @@ TEST(TimeLeft, IsThatOfABudget) {
   settings.time_budget_s = 1000;
   Progress progress;
   double left = -1;
-  const Result<Bake> stopped =
-      bake_scene(settings, progress, {}, [&](const SolveInput&, const light::LightEstimate&) {
+  const Result<Bake> stopped = bake_scene(
+      settings, progress, {}, [&](const light::TexelScene&, const light::LightEstimate&) {
         left = progress.snapshot().seconds_left;
         progress.request_cancel();
       });

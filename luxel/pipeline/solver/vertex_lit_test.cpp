@@ -1,4 +1,4 @@
-#include "luxel/pipeline/bake/vertex_lit.h"
+#include "luxel/pipeline/solver/vertex_lit.h"
 
 #include <gtest/gtest.h>
 

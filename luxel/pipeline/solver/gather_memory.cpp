@@ -1,9 +1,10 @@
-#include "luxel/pipeline/solver/solver_memory.h"
+#include "luxel/pipeline/solver/gather_memory.h"
 
 #include <algorithm>
 
-#include "luxel/base/process_memory.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
+#include "luxel/pipeline/solver/finishing_memory.h"
+#include "luxel/pipeline/solver/memory.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -32,44 +33,30 @@ constexpr uint64_t kLight = 39;
 constexpr uint64_t kKeptDirect = 22, kKeptLight = kLight + 8, kKeptTexels = 24, kKeptLayer = 12;
 /// Where something scatters light through: the place behind each texel.
 constexpr uint64_t kBehind = 8;
-/// What other solvers leave for each texel, and what they and the steps after them take.
-constexpr uint64_t kOther = 72, kSquareOther = 20;
-/// What denoising needs besides: places, planes, what neighbours show, the level of noise.
-constexpr uint64_t kDenoise = 140;
-/// E for five normals and what becomes of it, with --directional.
-constexpr uint64_t kDirection = 110;
 /// With --layers each takes, per element: direct light, that of rays, the solution and its copy,
 /// later the lightmap and its files; and a sweep's map, which is five layers wide, per texel.
 constexpr uint64_t kLayer = 48, kSquareLayerMap = 64;
-/// What threads work in and allocators hold, 6 to 14 MiB beyond all of the above in scenes of half
-/// a million texels, and what differs from run to run: by this much less than the size that is
-/// advised.
-constexpr uint64_t kResidentNoiseMb = 16;
-
-std::string size_text(uint64_t bytes) {
-  return bytes < 1u << 20 ? fmt::format("{} bytes", bytes) : fmt::format("{}M", bytes >> 20);
-}
-
 /// What a bake that is kept holds besides, in its bounces and when all is over.
 struct KeptBytes {
   uint64_t bouncing = 0, ending = 0;
 };
-KeptBytes bytes_of_keeping(const SolveInput& in, const BakeSettings& settings, uint64_t n,
+KeptBytes bytes_of_keeping(const SolveStores& stores, const BakeSettings& settings, uint64_t n,
                            uint64_t layers) {
-  if (!settings.keep || (in.cache && in.cache->found())) return {};
+  if (!settings.keep || (stores.cache && stores.cache->found())) return {};
   const uint64_t direct = kKeptDirect + kKeptLayer * layers;
   const uint64_t all = direct + kKeptLight + kKeptLayer * layers;
   return {direct * n, (all + all + kKeptTexels) * n};
 }
 
 /// The most that gather holds at a time, hits aside, and that becomes of its light later.
-uint64_t bytes_of_gather(const SolveInput& in, const BakeSettings& settings, uint64_t n,
-                         uint64_t square, uint64_t layers) {
-  const KeptBytes kept = bytes_of_keeping(in, settings, n, layers);
+uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& settings,
+                            const SolveStores& stores, bool shows, uint64_t layers) {
+  const uint64_t n = in.elements.size(), side = uint64_t(in.map.resolution), square = side * side;
+  const KeptBytes kept = bytes_of_keeping(stores, settings, n, layers);
   const bool scatters = !in.elements.transmittance.empty();
-  const bool rounds = settings.max_error > 0 || settings.time_budget_s > 0 || in.on_estimate ||
-                      (in.cache && in.cache->found());
-  const uint64_t given_back = looks_at_places(settings) || in.on_estimate ? 0 : kPlaces * n;
+  const bool rounds = settings.max_error > 0 || settings.time_budget_s > 0 || shows ||
+                      (stores.cache && stores.cache->found());
+  const uint64_t given_back = looks_at_places(settings) || shows ? 0 : kPlaces * n;
   const uint64_t levels = rounds || settings.keep ? kLevels : 0;
   const uint64_t traced = (kDirect + kTraced + levels) * n;
   const uint64_t bounced = traced +
@@ -84,47 +71,14 @@ uint64_t bytes_of_gather(const SolveInput& in, const BakeSettings& settings, uin
                    files - given_back});
 }
 
-/// Of other solvers; nearly all of what comes after them is counted as if it were there at once.
-uint64_t bytes_of_others(const BakeSettings& settings, uint64_t n, uint64_t square) {
-  return (kOther + (settings.denoise ? kDenoise : 0) +
-          (settings.directional == Directional::none ? 0 : kDirection)) *
-             n +
-         kSquareOther * square;
-}
-
 }  // namespace
 
-bool looks_at_places(const BakeSettings& settings) {
-  return settings.denoise || settings.directional != Directional::none || settings.keep;
-}
-
-uint64_t bytes_besides_hits(const SolveInput& in, const BakeSettings& settings, size_t layers) {
+uint64_t bytes_of_gather(const light::TexelScene& in, const BakeSettings& settings,
+                         const SolveStores& stores, bool shows, size_t layers) {
   const uint64_t n = in.elements.size(), side = uint64_t(in.map.resolution), square = side * side;
-  uint64_t bytes = settings.solver == "gather" ? bytes_of_gather(in, settings, n, square, layers)
-                                               : bytes_of_others(settings, n, square);
   const uint64_t maps = layers == 0 ? 0 : in.elements.transmittance.empty() ? 1 : 2;
-  bytes += layers * kLayer * n + maps * kSquareLayerMap * square;
-  return resident_bytes() + bytes;
-}
-
-Result<uint64_t> memory_to_spare(const SolveInput& in, const BakeSettings& settings, uint64_t spare,
-                                 size_t layers) {
-  const uint64_t side = uint64_t(in.map.resolution);
-  const uint64_t needed = bytes_besides_hits(in, settings, layers);
-  const uint64_t smallest_mb = ((needed + spare) >> 20) + 1 + kResidentNoiseMb;
-  if (settings.max_memory_bytes == 0) {
-    const uint64_t free = available_bytes() / 5 * 4;
-    if (resident_bytes() + free >= needed + spare) return resident_bytes() + free - needed;
-    return fail(ErrorCode::out_of_memory,
-                "{} x {} texels need {}M of memory, more than is free; lower --resolution", side,
-                side, smallest_mb);
-  }
-  if (settings.max_memory_bytes < needed + spare)
-    return fail(
-        ErrorCode::out_of_memory,
-        "--max-memory {} is too small for this scene at {} x {}: the smallest that works is {}M",
-        size_text(settings.max_memory_bytes), side, side, smallest_mb);
-  return settings.max_memory_bytes - needed;
+  return bytes_of_all_light(in, settings, stores, shows, layers) + layers * kLayer * n +
+         maps * kSquareLayerMap * square;
 }
 
 }  // namespace luxel::pipeline

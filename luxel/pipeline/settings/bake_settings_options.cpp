@@ -1,0 +1,176 @@
+#include "luxel/pipeline/settings/bake_settings_options.h"
+
+#include "luxel/pipeline/settings/option_rows.h"
+
+namespace luxel::pipeline {
+namespace {
+
+using S = BakeSettings;
+using R = Rows<BakeSettings>;
+using Can = Capabilities;
+using nlohmann::json;
+
+/// Solvers count samples in 16 bits.
+constexpr double kMaxSamples = 65535;
+/// Lightmaps of more texels do not fit the numbers of a texel.
+constexpr double kMaxResolution = 16384;
+/// A hundredth of a percent: 100 times the rays of 0.1 %, more than any texel may have.
+constexpr double kSmallestError = 1e-4;
+/// A few months [s].
+constexpr double kLongestBudget_s = 1e7, kShortestBudget_s = 1e-9;
+/// 11 days [s]: later than any bake ends.
+constexpr double kLongestCheckpoint_s = 1e6;
+
+json json_of_bounces(int bounces) { return bounces < 0 ? json("inf") : json(bounces); }
+
+/// How light is sampled, and how well.
+Options<S> sampling_options() {
+  return {
+      R::number("--samples", &S::samples, {1, kMaxSamples}, "Indirect rays per texel")
+          .unit("RAYS")
+          .only(&Can::samples),
+      R::number("--direct-samples", &S::direct_samples, {1, kMaxSamples},
+                "Shadow rays per texel towards area lights")
+          .unit("RAYS")
+          .only(&Can::direct_samples),
+      R::number("--supersample", &S::supersample, {1, 1024},
+                "Points per texel across which direct light varies; 1: none")
+          .unit("POINTS")
+          .only(&Can::supersample),
+      R::text("--bounces", &S::bounces, parse_bounces, json_of_bounces,
+              "Reflections to count, or inf")
+          .unit("COUNT"),
+      R::number("--max-error", &S::max_error,
+                {kSmallestError, 1, "",
+                 "give the part of their light to which texels must be known, as 0.02"},
+                "Add rays until the 95th percentile of the relative standard error is below this, "
+                "e.g. 0.02")
+          .unit("ERROR")
+          .only(&Can::errors),
+      R::number(
+          "--time-budget", &S::time_budget_s,
+          {kShortestBudget_s, kLongestBudget_s, "is not a time to bake in; give seconds, as 60"},
+          "The lowest error within about this many seconds in total; with --max-error until "
+          "either is reached")
+          .key_is("time_budget_s")
+          .unit("SECONDS")
+          .only(&Can::errors),
+      R::number("--seed", &S::seed, {0}, "Seed of all random numbers"),
+  };
+}
+
+/// Where texels lie.
+Options<S> layout_options() {
+  return {
+      R::number("--resolution", &S::resolution, {1, kMaxResolution}, "Side of a lightmap in texels")
+          .unit("TEXELS"),
+      R::number("--texels-per-metre", &S::texels_per_metre,
+                {0, kNoLimit, "is not a density; give a number > 0"},
+                "Density; the side becomes the smallest power of two that holds the scene")
+          .unit("DENSITY"),
+      R::text(
+          "--pages", &S::pages, parse_pages, [](auto& p) { return json(text_of(p)); },
+          "Number of lightmaps; auto: as many as the density needs; mesh: one per mesh")
+          .unit("COUNT|auto|mesh"),
+      R::choice("--uv", &S::uv,
+                {{"auto", atlas::UvMode::automatic},
+                 {"keep", atlas::UvMode::keep},
+                 {"unwrap", atlas::UvMode::unwrap}},
+                std::string(kUvHelp)),
+      R::toggle("--no-leak-repair", &S::repair_leaks,
+                "Do not cut charts under thin walls, nor move samples out of solids")
+          .key_is("repair_leaks"),
+  };
+}
+
+/// What is made of the light.
+Options<S> result_options() {
+  return {
+      R::choice("--directional", &S::directional,
+                {{"dominant", Directional::dominant}, {"sh1", Directional::sh1}},
+                "Also store how irradiance changes with the normal: dominant or sh1")
+          .leaves(Changes::results),
+      R::number("--probes", &S::probe_spacing_m, {0, kNoLimit, "is not a spacing; give metres > 0"},
+                "Also write light probes on a grid of this spacing in metres")
+          .key_is("probe_spacing_m")
+          .unit("METRES")
+          .leaves(Changes::results),
+      R::choice("--layers", &S::layers,
+                {{"per-light", light::LayerMode::per_light}, {"groups", light::LayerMode::groups}},
+                "Also write a lightmap of each light (per-light), or of each group of lights whose "
+                "names differ only by a number at the end (groups)")
+          .never_without(&Can::layers)
+          .leaves(Changes::results),
+      R::toggle("--denoise", &S::denoise, "Remove the noise of few samples; edges of shadows stay")
+          .never_without(&Can::noise)
+          .leaves(Changes::results),
+      R::toggle("--no-stitch", &S::stitch, "Do not blend charts along seams")
+          .leaves(Changes::results),
+      R::toggle("--vertex-colors", &S::vertex_colors,
+                "baked.glb gets light per vertex in COLOR_0 instead of the lightmap")
+          .never_without(&Can::vertex_light)
+          .leaves(Changes::nothing),
+      R::toggle("--texels", &S::texels,
+                "Also write texels.png: how each texel was treated (luxel render --technique "
+                "texels)")
+          .leaves(Changes::nothing),
+      R::toggle("--error-map", &S::error_map,
+                "Also write error.png: the relative standard error of each texel (luxel render "
+                "--technique error)")
+          .only(&Can::errors)
+          .leaves(Changes::nothing),
+      R::text(
+          "--formats", &S::formats, parse_formats, [](auto& f) { return to_json(f); },
+          "The lightmap as exr (always), hdr, rgbm and rgbe, with commas between them")
+          .unit("LIST")
+          .leaves(Changes::nothing),
+      R::toggle("--html", &S::html,
+                "Also write view.html: the baked scene as one page to walk around in")
+          .leaves(Changes::nothing),
+  };
+}
+
+/// How the bake runs.
+Options<S> running_options() {
+  return {
+      R::text(
+          "--max-memory", &S::max_memory_bytes, parse_size,
+          [](uint64_t bytes) { return json(bytes); }, std::string(kMaxMemoryHelp))
+          .key_is("max_memory_bytes")
+          .unit("SIZE")
+          .leaves(Changes::nothing),
+      R::number("--threads", &S::threads, {0, 1024}, "Threads to use; 0 = all cores")
+          .leaves(Changes::nothing),
+      R::number("--checkpoint", &S::checkpoint_s,
+                {0, kLongestCheckpoint_s, "", "give seconds; 0 keeps nothing"},
+                "From this many seconds after the start on, keep finished parts in "
+                "FOLDER/checkpoint.luxel until the bake is done; 0: never")
+          .key_is("checkpoint_s")
+          .unit("SECONDS")
+          .only(&Can::parts)
+          .leaves(Changes::nothing),
+      R::toggle("--resume", &S::resume, "Continue from the checkpoint in the folder")
+          .key_is("")
+          .only(&Can::parts)
+          .leaves(Changes::nothing),
+      R::toggle("--keep", &S::keep,
+                "Build on the bake kept in FOLDER/cache and retrace only what has changed in the "
+                "scene since; without one, bake and keep it there")
+          .never_without(&Can::keeps)
+          .leaves(Changes::nothing),
+  };
+}
+
+}  // namespace
+
+Options<BakeSettings> bake_settings_options() {
+  Options<S> rows;
+  for (Options<S>& part :
+       std::array{layout_options(), sampling_options(), result_options(), running_options(),
+                  options_of_part<S, OutsideLight>(
+                      outside_light_options(), [](S& s) -> OutsideLight& { return s.outside; })})
+    rows.insert(rows.end(), part.begin(), part.end());
+  return rows;
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,19 @@
+// The table of a bake's options that are not one solver's own.
+#pragma once
+
+#include "luxel/pipeline/settings/option.h"
+#include "luxel/pipeline/settings/settings.h"
+
+namespace luxel::pipeline {
+
+/// In the order of --help; those of light from outside come last. The scene, the output and actions
+/// (--plan, --settings) are the command's.
+Options<BakeSettings> bake_settings_options();
+
+/// Options that other commands share with a bake.
+inline constexpr std::string_view kUvHelp =
+    "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if valid";
+inline constexpr std::string_view kMaxMemoryHelp =
+    "Memory to stay under, as 900M or 1.5G (default: most of what is free)";
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,22 @@
+// What a solver can, and which of the options that solvers share it looks at.
+#pragma once
+
+namespace luxel::pipeline {
+
+/// An option names the member that a solver must have to look at it; one that names none is for
+/// every solver.
+struct Capabilities {
+  bool samples = false;         ///< traces rays or paths per texel: --samples
+  bool direct_samples = false;  ///< traces shadow rays towards area lights: --direct-samples
+  bool supersample = false;     ///< averages light over points of a texel: --supersample
+  bool errors = false;          ///< estimates each texel's standard error: --max-error,
+                                ///< --time-budget, --error-map, --plan
+  bool noise = false;           ///< estimates the variance of its light: --denoise
+  bool layers = false;          ///< can tell the light of each lamp apart: --layers
+  bool scatters = false;        ///< follows light that surfaces scatter through
+  bool parts = false;           ///< keeps its finished parts: --checkpoint, --resume
+  bool keeps = false;           ///< leaves what later bakes can build on: --keep
+  bool vertex_light = false;    ///< solves for light per vertex: --vertex-colors
+};
+
+}  // namespace luxel::pipeline

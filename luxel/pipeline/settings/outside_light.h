@@ -1,0 +1,62 @@
+// Light that the scene's file does not have, and its options.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "luxel/base/result.h"
+#include "luxel/base/vec.h"
+#include "luxel/pipeline/settings/ies_setting.h"
+#include "luxel/pipeline/settings/option.h"
+#include "luxel/pipeline/settings/sky_setting.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::pipeline {
+
+/// Where the sun stands and how strong it is.
+struct Sun {
+  float azimuth_deg = 0;     ///< compass bearing: 0 north = -Z, 90 east = +X
+  float elevation_deg = 45;  ///< above the horizon, Y being up
+  float lux = 0;             ///< E on a surface that faces it [W/m^2 or lux]
+};
+
+/// A picture of the surroundings.
+struct EnvironmentSetting {
+  std::filesystem::path file;
+  float rotation_deg = 0;  ///< about the vertical, as a compass turns
+  float scale = 1;         ///< of its radiance
+};
+
+/// Light that the scene's file does not have.
+struct OutsideLight {
+  std::optional<EnvironmentSetting> environment;
+  std::optional<Rgb> background;  ///< radiance of the surroundings; replaces the file's
+  std::optional<Sun> sun;
+  std::optional<SkySetting> sky;  ///< with its own sun
+  std::vector<IesSetting> ies;    ///< add_profiles() reads them
+};
+
+/// --background, --sun, --environment, --sky and --ies.
+Options<OutsideLight> outside_light_options();
+
+/// "r,g,b", three numbers >= 0.
+Result<Rgb> parse_background(std::string_view text);
+/// "FILE", "FILE,rotate_deg" or "FILE,rotate_deg,scale".
+Result<EnvironmentSetting> parse_environment(std::string_view text);
+/// "azimuth_deg,elevation_deg,lux".
+Result<Sun> parse_sun(std::string_view text);
+
+/// The sun's disc is half a degree wide: its shadows have penumbrae.
+scene::PunctualLight sun_light(const Sun& sun);
+
+/// Adds profiles of lamps, environment or sky, background and sun to a scene; an environment or a
+/// sky without a background beside it replaces the file's background. A scene that then has no
+/// light at all gets a white background of radiance 1. Returns warnings; that one comes last.
+/// Errors: those of import::read_environment and add_profiles.
+Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,
+                                                   scene::Scene& scene);
+
+}  // namespace luxel::pipeline

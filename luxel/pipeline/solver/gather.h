@@ -1,0 +1,11 @@
+// What a bake asks of gather: a number of samples, an error, or a time.
+#pragma once
+
+#include "luxel/pipeline/settings/settings.h"
+
+namespace luxel::pipeline {
+
+/// With max_error or a time budget, the parameters of the first round.
+gather::GatherParams gather_params(const BakeSettings& settings);
+
+}  // namespace luxel::pipeline

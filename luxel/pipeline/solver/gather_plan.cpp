@@ -1,0 +1,58 @@
+#include "luxel/pipeline/solver/gather_plan.h"
+
+#include <algorithm>
+
+#include "luxel/base/process_memory.h"
+#include "luxel/pipeline/solver/gather.h"
+#include "luxel/pipeline/solver/gather_memory.h"
+#include "luxel/pipeline/solver/memory.h"
+#include "luxel/solve/gather/forecast/forecast_rounds.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Of the texels, in a trial for a plan: a percent of the bake, but some thousand of them.
+constexpr int kPlanPart = 100;
+/// The same of the rounds to an error: of more texels, because some get many times the rays of
+/// others.
+constexpr int kRoundsPart = 16;
+
+}  // namespace
+
+std::vector<Stage> stages_of(const gather::Forecast& forecast) {
+  return {{"direct light", forecast.direct_s},
+          {"supersample", forecast.supersample_s},
+          {"trace rays", forecast.trace_s},
+          {"bounces", forecast.bounces_s}};
+}
+
+Result<Plan> plan_gather(const light::TexelScene& in, const BakeSettings& settings,
+                         Progress& progress) {
+  Plan out;
+  out.resolution = in.map.resolution, out.texels = in.elements.size();
+  progress.finish();
+  out.stages = progress.stages();
+  const uint64_t bytes = bytes_of_gather(in, settings, {}, false);
+  const double besides_hits = double(resident_bytes() + bytes);
+  LUXEL_TRY(const uint64_t hit_memory, memory_to_spare(in, settings, bytes, 0));
+  gather::GatherParams params = gather_params(settings);
+  LUXEL_TRY(const gather::Forecast forecast, gather::forecast(in, params, kPlanPart, progress));
+  for (const Stage& stage : stages_of(forecast)) out.stages.push_back(stage);
+  gather::RoundsForecast rounds;
+  if (settings.max_error > 0) {
+    LUXEL_TRY(rounds, gather::forecast_rounds(in, params, kRoundsPart, progress));
+    out.stages.push_back({"rounds", rounds.trace_s + rounds.bounces_s});
+  }
+  for (const Stage& stage : stages_after_solving(in, settings)) out.stages.push_back(stage);
+  for (const Stage& stage : out.stages) out.seconds += stage.seconds;
+  if (settings.time_budget_s > 0) out.seconds = std::min(out.seconds, settings.time_budget_s);
+  out.rays = forecast.rays + rounds.rays;
+  const double hits = forecast.hit_bytes + rounds.hit_bytes;
+  const double kept = std::min(hits, double(hit_memory));
+  const double copy = gather::copy_bytes(hits, settings.max_error > 0 ? 0 : settings.samples);
+  out.memory_bytes = besides_hits + std::min(kept + copy, double(hit_memory)),
+  out.scratch_bytes = hits - kept;
+  return out;
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,17 @@
+// What gather's light will take.
+#pragma once
+
+#include "luxel/pipeline/solver/plan.h"
+#include "luxel/solve/gather/forecast/forecast.h"
+
+namespace luxel::pipeline {
+
+/// By trials of a few texels. `progress` has the stages so far. Errors: cancelled; memory is too
+/// small.
+Result<Plan> plan_gather(const light::TexelScene& in, const BakeSettings& settings,
+                         Progress& progress);
+
+/// The stages of gather, and what they are expected to take.
+std::vector<Stage> stages_of(const gather::Forecast& forecast);
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,143 @@
+// Hemicube radiosity as a solver of lightmaps.
+#include "luxel/pipeline/solver/hemicube.h"
+
+#include <algorithm>
+
+#include "luxel/base/output_folder.h"
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/settings/option_rows.h"
+#include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/solver/solver.h"
+#include "luxel/pipeline/solver/vertex_lit.h"
+
+namespace luxel::pipeline {
+namespace {
+
+using P = hemicube::HemicubeParams;
+using R = Rows<P>;
+
+/// 2^26: their numbers, and those of four times as many nodes, fit into 32 bits.
+constexpr double kMaxElements = 1 << 26;
+
+/// Elements are few, and their light is stretched over their triangles: shadows get more rays for
+/// each of --direct-samples, as the help of that option says.
+constexpr int kShadowRaysPerSample = 4, kMostShadowRays = 65535;
+
+/// Whether the field has no light of its own at a texel.
+bool is_hidden_at(const hemicube::Solution& s, const scene::SurfacePoint& p) {
+  const hemicube::Place place = hemicube::locate(s.field.mesh, p);
+  if (s.field.receivers.kind == hemicube::ElementKind::triangle)
+    return s.enclosed[s.field.receivers.leaf_of_node[place.node]];
+  const auto& v = s.field.mesh.nodes[place.node].vertex;
+  return s.enclosed[v[0]] && s.enclosed[v[1]] && s.enclosed[v[2]];
+}
+
+TexelLight texel_light_of(const hemicube::Solution& solution, const atlas::TexelMap& map) {
+  TexelLight out;
+  out.irradiance.resize(map.texels.size()), out.hidden.resize(map.texels.size());
+  parallel_for(map.texels.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      out.irradiance[i] = hemicube::irradiance_at(solution.field, map.texels[i].sample);
+      out.hidden[i] = is_hidden_at(solution, map.texels[i].sample);
+    }
+  });
+  out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
+  out.rays = solution.rays, out.sweeps = solution.sweeps;
+  out.relative_error = solution.relative_error;
+  out.scratch_bytes = solution.row_bytes_in_file;
+  out.elements = solution.field.receivers.size();
+  return out;
+}
+
+Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSettings& settings,
+                                  const SolveStores&, const SolveObserver&, Progress& progress) {
+  hemicube::HemicubeParams params = settings.own.of<hemicube::HemicubeParams>();
+  params.direct_samples = std::min(kShadowRaysPerSample * settings.direct_samples, kMostShadowRays);
+  params.bounces = settings.bounces, params.seed = settings.seed;
+  const uint64_t pixels = hemicube::bytes_of_hemicube(params.resolution, thread_count());
+  LUXEL_TRY(const uint64_t memory,
+            memory_to_spare(in, settings, bytes_of_light(in, settings), pixels + kMinHitBytes));
+  params.row_memory_bytes = memory - pixels;
+  params.scratch_folder = nearest_folder(settings.output);
+  LUXEL_TRY(const hemicube::Solution solution,
+            hemicube::solve(in.scene, in.lights, in.tracer, params, progress));
+  TexelLight out = texel_light_of(solution, in.map);
+  if (settings.vertex_colors) out.vertex_lit = vertex_lit(in.scene, solution.field);
+  return out;
+}
+
+/// What a hemicube of this size would hold before anything is seen.
+std::string hemicube_memory(int resolution) {
+  const double gib = double(hemicube::bytes_of_hemicube(resolution, 1)) / double(1u << 30);
+  return gib < 0.1 ? std::string() : fmt::format("; it would take {:.1f} GiB for its pixels", gib);
+}
+
+/// An even number of pixels that memory can hold.
+Option<P> resolution_option() {
+  Option<P> row = R::number("--hemicube", &P::resolution, {2, double(hemicube::kMaxResolution)},
+                            "Pixels along an edge of the hemicube's top, even")
+                      .key_is("resolution")
+                      .unit("PIXELS");
+  row.check = [](const P& p) -> Status {
+    if (p.resolution < 2 || p.resolution > hemicube::kMaxResolution)
+      return fail(ErrorCode::bad_setting, "--hemicube {} is outside 2 to {} pixels{}", p.resolution,
+                  hemicube::kMaxResolution, hemicube_memory(std::max(p.resolution, 0)));
+    if (p.resolution % 2 != 0)
+      return fail(
+          ErrorCode::bad_setting,
+          "--hemicube {} is odd, and its sides are half as high as wide; give an even number",
+          p.resolution);
+    return {};
+  };
+  row.read_text = [check = row.check, read = row.read_text](P& p, std::string_view text) -> Status {
+    if (const auto value = number_from<int>(text)) return p.resolution = *value, check(p);
+    return read(p, text);
+  };
+  return row;
+}
+
+}  // namespace
+
+Options<hemicube::HemicubeParams> hemicube_options() {
+  return {
+      R::choice("--elements", &P::elements,
+                {{"vertex", hemicube::ElementKind::vertex},
+                 {"triangle", hemicube::ElementKind::triangle}},
+                "Light per vertex or per triangle"),
+      resolution_option(),
+      R::number("--element-size", &P::element_size_m,
+                {0, kNoLimit, "is not a length; give metres > 0"},
+                "Size of the first triangles in metres (default: by --max-elements)")
+          .key_is("element_size_m")
+          .unit("METRES"),
+      R::number("--max-elements", &P::max_elements, {1, kMaxElements},
+                "Vertices or triangles at most (default: 20000, more for large scenes)")
+          .unit("COUNT"),
+      R::number("--max-error", &P::max_error,
+                {0, 1e6,
+                 "is not an error; give a part of the light, as 0.01, or 0 for no "
+                 "refinement"},
+                "Cut triangles over which interpolation errs by more than this part of the light; "
+                "0 cuts none")
+          .unit("ERROR"),
+      R::toggle("--smooth", &P::smooth, "Interpolate light that is per triangle"),
+  };
+}
+
+Status check_contradictions(const hemicube::HemicubeParams& params) {
+  if (!params.smooth || params.elements != hemicube::ElementKind::vertex) return {};
+  return fail(ErrorCode::bad_setting,
+              "--smooth is for light per triangle; add --elements triangle, or leave it out, for "
+              "light per vertex is smooth");
+}
+
+Solver hemicube_solver() {
+  return {.name = "hemicube",
+          .can = {.direct_samples = true, .vertex_light = true},
+          .solve = solve_hemicube,
+          .options = options_of_solver("hemicube", kHemicubeHeading, hemicube_options()),
+          .notes = {{"--direct-samples", "four times as many per element"}},
+          .check = [](const BakeSettings& s) { return check_contradictions(s.own.of<P>()); }};
+}
+
+}  // namespace luxel::pipeline

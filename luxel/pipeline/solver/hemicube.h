@@ -1,0 +1,16 @@
+// The options of hemicube radiosity, which `luxel render` has, too.
+#pragma once
+
+#include "luxel/pipeline/settings/option.h"
+#include "luxel/solve/hemicube/hemicube.h"
+
+namespace luxel::pipeline {
+
+/// Of the solver's parameters those that a user chooses.
+Options<hemicube::HemicubeParams> hemicube_options();
+/// Contradictions between them. Errors (bad_setting).
+Status check_contradictions(const hemicube::HemicubeParams& params);
+
+inline constexpr std::string_view kHemicubeHeading = "Hemicube radiosity";
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,86 @@
+// Radiosity by a matrix of form factors, as a solver of lightmaps.
+#include "luxel/pipeline/solver/matrix.h"
+
+#include <algorithm>
+
+#include "luxel/base/parallel.h"
+#include "luxel/light/supersample.h"
+#include "luxel/pipeline/settings/option_rows.h"
+#include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/solver/solver.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Rays of a patch are counted in 16 bits.
+constexpr double kMaxRays = 65535;
+
+/// Direct light for each texel, indirect light for each patch.
+Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings& settings,
+                                const SolveStores&, const SolveObserver&, Progress& progress) {
+  matrix::MatrixParams params = settings.own.of<matrix::MatrixParams>();
+  params.direct_samples = settings.direct_samples, params.bounces = settings.bounces;
+  params.seed = params.patches.seed = params.factors.seed = settings.seed;
+  const uint64_t needed =
+      matrix::bytes_of_preparation(params.patches.count, params.factors.rays_per_patch);
+  LUXEL_TRY_STATUS(memory_to_spare(in, settings, bytes_of_light(in, settings), needed));
+  LUXEL_TRY(const matrix::Prepared prepared,
+            matrix::prepare(in.scene, in.tracer, params, progress));
+  LUXEL_TRY(const matrix::Solution solution,
+            matrix::solve(in.scene, in.lights, in.tracer, prepared, params, progress));
+  LUXEL_TRY(const matrix::Transfer map,
+            matrix::make_transfer(prepared.work, in.tracer,
+                                  {in.elements.position, in.elements.geometric_normal}, progress));
+  const light::DirectParams direct_params{settings.direct_samples, settings.seed};
+  LUXEL_TRY(light::DirectLight direct, light::direct_light(in.scene, in.elements, in.lights,
+                                                           in.tracer, direct_params, progress));
+  LUXEL_TRY(const light::Supersampled averaged,
+            light::supersample(in.scene, in.atlas, in.map, in.elements, in.lights, in.tracer,
+                               {.points = settings.supersample, .direct = direct_params}, direct,
+                               progress));
+  TexelLight out;
+  out.irradiance.resize(in.elements.size()), out.hidden.resize(in.elements.size());
+  matrix::transfer(map, solution.indirect, out.irradiance);
+  parallel_for(in.elements.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      out.irradiance[i] += direct.irradiance[i];
+      out.hidden[i] =
+          matrix::is_hidden(in.scene, in.tracer, prepared.work, in.map.texels[i].sample);
+    }
+  });
+  out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
+  // What patches exchange has no grain: every texel reads it through the same smooth functions.
+  out.variance.assign(in.elements.size(), 0.0f);
+  out.direct = std::move(direct.irradiance);
+  out.direct_variance = std::move(direct.variance);
+  out.supersampled_texels = averaged.texels.size();
+  out.rays = solution.rays + direct.rays + averaged.rays, out.sweeps = solution.sweeps;
+  out.elements = prepared.work.patches.size();
+  out.relative_error = solution.relative_error;
+  return out;
+}
+
+}  // namespace
+
+Options<matrix::MatrixParams> matrix_options() {
+  using R = Rows<matrix::MatrixParams>;
+  return {
+      R::number(
+          "--patches", [](auto& p) -> auto& { return p.patches.count; },
+          {1, double(matrix::kMaxPatches)}, "Approximate number of patches that exchange light")
+          .unit("COUNT"),
+      R::number(
+          "--rays", [](auto& p) -> auto& { return p.factors.rays_per_patch; }, {1, kMaxRays},
+          "Rays per patch that estimate its form factors")
+          .unit("COUNT"),
+  };
+}
+
+Solver matrix_solver() {
+  return {.name = "matrix",
+          .can = {.direct_samples = true, .supersample = true, .noise = true},
+          .solve = solve_matrix,
+          .options = options_of_solver("matrix", "Matrix radiosity", matrix_options())};
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,52 @@
+// The path tracer as a solver: slow, and right wherever paths reach.
+#include <algorithm>
+
+#include "luxel/light/supersample.h"
+#include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/solver/solver.h"
+#include "luxel/pipeline/solver/texel_light.h"
+#include "luxel/reference/path_tracer.h"
+#include "luxel/transport/backs_seen.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// A point of a texel's footprint, held twice while the list is made.
+constexpr uint64_t kBytesPerFootprintPoint = 120;
+
+Result<TexelLight> solve_reference(const light::TexelScene& in, const BakeSettings& settings,
+                                   const SolveStores&, const SolveObserver&, Progress& progress) {
+  const int points = std::min(settings.supersample, settings.samples);
+  const uint64_t per_element = points > 1 ? uint64_t(points) * kBytesPerFootprintPoint : 0;
+  LUXEL_TRY_STATUS(memory_to_spare(in, settings, bytes_of_light(in, settings),
+                                   per_element * in.elements.size()));
+  const reference::PathParams params{settings.samples, settings.bounces, settings.seed};
+  light::Footprints footprints;
+  reference::Receivers receivers = reference::receivers(in.elements);
+  if (points > 1) {
+    LUXEL_TRY(footprints, light::footprints(in.scene, in.atlas, in.map, in.elements, in.tracer,
+                                            points, settings.seed, progress));
+    receivers = reference::receivers(footprints.points);
+    receivers.first = footprints.first;
+  }
+  LUXEL_TRY(reference::TexelPaths result,
+            reference::irradiance_by_paths(in.scene, receivers, in.tracer, params, progress));
+  result.enclosed = transport::find_enclosed(in.scene, in.tracer, in.elements, [&](size_t i) {
+    return transport::BacksSeen{settings.samples, int(result.met_back[i]),
+                                int(result.met_double_sided_back[i])};
+  });
+  TexelLight out = texel_light(std::move(result));
+  for (const float error : result.luminance_error) out.variance.push_back(error * error);
+  return out;
+}
+
+}  // namespace
+
+Solver reference_solver() {
+  return {.name = "reference",
+          .can = {.samples = true, .supersample = true, .noise = true, .scatters = true},
+          .solve = solve_reference,
+          .notes = {{"--samples", "paths per texel"}}};
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,57 @@
+// What a solver is to the rest of luxel: a row of the table in solvers.cpp, written in the solver's
+// own file in this folder.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/light/texel_scene.h"
+#include "luxel/pipeline/settings/option.h"
+#include "luxel/pipeline/settings/settings.h"
+#include "luxel/pipeline/solver/plan.h"
+#include "luxel/pipeline/texels/solve_input.h"
+
+namespace luxel::pipeline {
+
+/// Works out E at the scene's texels. Memory is bounded by settings.max_memory_bytes (memory.h).
+/// Errors: cancelled, out of memory or disk, and what the method says.
+using SolveFunction = Result<TexelLight> (*)(const light::TexelScene& in,
+                                             const BakeSettings& settings,
+                                             const SolveStores& stores,
+                                             const SolveObserver& observer, Progress& progress);
+
+/// What the light will take, by trials of a few texels. Errors: cancelled, memory is too small.
+using PlanFunction = Result<Plan> (*)(const light::TexelScene& in, const BakeSettings& settings,
+                                      Progress& progress);
+
+/// How a solver reads an option that it shares with others, where that needs a word.
+struct OptionNote {
+  std::string_view flag, text;
+};
+
+struct Solver {
+  std::string_view name;
+  Capabilities can{};
+  SolveFunction solve = nullptr;
+  PlanFunction plan = nullptr;      ///< null: it cannot say what it will take
+  Options<BakeSettings> options{};  ///< that no other solver has; options_of_solver() makes them
+  std::vector<OptionNote> notes{};
+  /// Whether its options contradict each other; null: they cannot. Errors (bad_setting).
+  Status (*check)(const BakeSettings& settings) = nullptr;
+};
+
+/// The options of a solver whose settings are a T in BakeSettings::own, under a heading of --help.
+template <class T>
+Options<BakeSettings> options_of_solver(std::string_view solver, std::string_view heading,
+                                        const Options<T>& options) {
+  Options<BakeSettings> out = options_of_part<BakeSettings, T>(
+      options, [](BakeSettings& s) -> T& { return s.own.of<T>(); });
+  for (Option<BakeSettings>& option : out) option.solver = solver, option.group = heading;
+  return out;
+}
+
+}  // namespace luxel::pipeline

@@ -1,4 +1,5 @@
 #include "luxel/display/local_light.h"
+#include "luxel/scene/light_kinds.h"
 
 #include <algorithm>
 #include <array>
@@ -63,7 +64,7 @@ LocalSurface surface_at(const scene::Scene& scene, const scene::SurfacePoint& p)
 LocalLights local_lights(const scene::Scene& scene, const scene::Camera& camera) {
   LocalLights lights;
   for (const scene::PunctualLight& light : scene.lights)
-    if (light.kind == scene::PunctualLight::Kind::directional) {
+    if (!scene::has_position(light.kind)) {
       lights.direction = normalize(light.direction);
       return lights;
     }

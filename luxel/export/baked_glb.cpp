@@ -12,28 +12,13 @@
 #include "luxel/export/gltf_mesh.h"
 #include "luxel/export/gltf_node.h"
 #include "luxel/image/codec.h"
+#include "luxel/image/white_level.h"
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::export_ {
 namespace {
 
 using nlohmann::json;
-
-/// The irradiance that white stands for in the 8-bit picture: the 99.9th percentile of the largest
-/// channel over covered texels, so that a few texels beside a lamp do not take all the steps from
-/// the rest (they clip; lightmap.exr has them). 1 where no light falls.
-float lightmap_intensity(std::span<const image::Image> lightmaps) {
-  std::vector<float> values;
-  for (const image::Image& lightmap : lightmaps)
-    for (int y = 0; y < lightmap.height; ++y)
-      for (int x = 0; x < lightmap.width; ++x)
-        if (lightmap.at(x, y)[3] > 0) values.push_back(max_component(lightmap.rgb(x, y)));
-  if (values.empty()) return 1;
-  const size_t rank = size_t(double(values.size() - 1) * 0.999);
-  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
-  if (values[rank] > 0) return values[rank];
-  const float largest = *std::max_element(values.begin(), values.end());
-  return largest > 0 ? largest : 1;
-}
 
 /// linear(picture) * intensity = E, up to 8 bits and clipping.
 std::vector<std::byte> lightmap_png(const image::Image& lightmap, float intensity) {
@@ -48,9 +33,9 @@ std::vector<std::byte> lightmap_png(const image::Image& lightmap, float intensit
 /// a point light into all directions, so that its flux stays.
 scene::PunctualLight as_even_light(const scene::Scene& scene, scene::PunctualLight light) {
   if (light.profile == scene::kNone) return light;
-  const bool is_spot = light.kind == scene::PunctualLight::Kind::spot;
-  light.intensity *= float(scene::mean_candela(scene.profiles[light.profile],
-                                               is_spot ? double(light.outer_cone_rad) : kPiDouble));
+  const double half_angle_rad =
+      scene::has_cone(light.kind) ? double(light.outer_cone_rad) : kPiDouble;
+  light.intensity *= float(scene::mean_candela(scene.profiles[light.profile], half_angle_rad));
   return light;
 }
 
@@ -98,7 +83,7 @@ LightmapPlaces lightmap_places(const atlas::Atlas& atlas, const std::vector<atla
 
 /// One intensity for all pages: the same light is the same byte on each.
 void append_lightmaps(Glb& glb, MaterialBook& book, std::span<const image::Image> lightmaps) {
-  const float intensity = lightmap_intensity(lightmaps);
+  const float intensity = image::white_level(lightmaps);
   json names = json::array();
   for (size_t p = 0; p < lightmaps.size(); ++p) {
     const std::string name = lightmap_name(p, lightmaps.size());
@@ -127,7 +112,7 @@ struct EncodedLayer {
 std::vector<EncodedLayer> encode_layers(std::span<const LightmapLayer> layers) {
   std::vector<EncodedLayer> out(layers.size());
   parallel_for(layers.size(), 1, [&](size_t l, size_t) {
-    out[l].intensity = lightmap_intensity(layers[l].lightmaps);
+    out[l].intensity = image::white_level(layers[l].lightmaps);
     for (const image::Image& page : layers[l].lightmaps)
       out[l].png.push_back(lightmap_png(page, out[l].intensity));
   });

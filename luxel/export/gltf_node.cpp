@@ -1,4 +1,5 @@
 #include "luxel/export/gltf_node.h"
+#include "luxel/scene/light_kinds.h"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -52,7 +53,7 @@ size_t append_sheared(Glb& glb, const Mat34& world, json content) {
                  {"children", {inner}}});
 }
 
-/// The rotation that brings -z, along which glTF's lamps shine, to `direction`.
+/// The rotation that brings -z, along which glTF's lights shine, to `direction`.
 Mat34 facing(Vec3 direction, Vec3 position) {
   const Frame frame = frame_around(-normalize(direction));
   return from_columns(frame.tangent, frame.bitangent, frame.normal, position);
@@ -63,18 +64,15 @@ json light_json(const scene::PunctualLight& light) {
   const Rgb color = largest > 0 ? light.intensity / largest : Rgb{1, 1, 1};
   json out = {{"color", {color.x, color.y, color.z}}, {"intensity", std::max(largest, 0.0f)}};
   if (!light.name.empty()) out["name"] = light.name;
-  using Kind = scene::PunctualLight::Kind;
-  out["type"] = light.kind == Kind::point  ? "point"
-                : light.kind == Kind::spot ? "spot"
-                                           : "directional";
-  if (light.kind != Kind::directional && light.range_m > 0) out["range"] = light.range_m;
-  if (light.kind == Kind::spot) {
+  out["type"] = scene::name_of(light.kind);
+  if (scene::has_position(light.kind) && light.range_m > 0) out["range"] = light.range_m;
+  if (scene::has_cone(light.kind)) {
     // glTF wants 0 <= inner < outer <= pi / 2.
     const float outer = std::clamp(light.outer_cone_rad, 1e-4f, kPi / 2);
     out["spot"] = {{"innerConeAngle", std::clamp(light.inner_cone_rad, 0.0f, outer * 0.9999f)},
                    {"outerConeAngle", std::min(double(outer), 1.5707963267948966)}};
   }
-  if (light.kind == Kind::directional && light.angular_radius_rad > 0)
+  if (scene::has_disc(light))
     out["extras"]["luxel"]["angular_radius_rad"] = light.angular_radius_rad;
   return out;
 }
@@ -99,8 +97,7 @@ size_t append_light(Glb& glb, const scene::PunctualLight& light) {
   glb.extensions_used.insert("KHR_lights_punctual");
   json node = {{"extensions", {{"KHR_lights_punctual", {{"light", list.size() - 1}}}}}};
   if (!light.name.empty()) node["name"] = light.name;
-  const Vec3 direction =
-      light.kind == scene::PunctualLight::Kind::point ? Vec3{0, 0, -1} : light.direction;
+  const Vec3 direction = scene::has_direction(light.kind) ? light.direction : Vec3{0, 0, -1};
   return append_node(glb, facing(direction, light.position), std::move(node));
 }
 

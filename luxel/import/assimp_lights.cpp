@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "luxel/import/assimp_parts.h"
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::import {
 namespace {
@@ -32,16 +33,22 @@ void set_lens(const aiCamera& from, scene::Camera& camera) {
   camera.fov_y_rad = 2 * std::atan(std::tan(0.5f * from.mHorizontalFOV) / aspect);
 }
 
+/// Nothing for Assimp's other kinds, ambient and area lights.
+std::optional<scene::LightKind> kind_of(aiLightSourceType type) {
+  if (type == aiLightSource_POINT) return scene::LightKind::point;
+  if (type == aiLightSource_SPOT) return scene::LightKind::spot;
+  if (type == aiLightSource_DIRECTIONAL) return scene::LightKind::directional;
+  return std::nullopt;
+}
+
 }  // namespace
 
 void add_assimp_lights(const aiScene& in, const SourceFile& source,
                        const NodeTransforms& transforms, Imported& out) {
-  using Kind = scene::PunctualLight::Kind;
   for (unsigned i = 0; i < in.mNumLights; ++i) {
     const aiLight& from = *in.mLights[i];
-    const bool known = from.mType == aiLightSource_POINT || from.mType == aiLightSource_SPOT ||
-                       from.mType == aiLightSource_DIRECTIONAL;
-    if (!known) {
+    const std::optional<scene::LightKind> kind = kind_of(from.mType);
+    if (!kind) {
       out.warnings.push_back(
           fmt::format("light '{}' is neither point, spot nor directional and is "
                       "skipped",
@@ -51,9 +58,7 @@ void add_assimp_lights(const aiScene& in, const SourceFile& source,
     const Mat34 world = transform_of(transforms, from.mName);
     scene::PunctualLight light;
     light.name = from.mName.C_Str();
-    light.kind = from.mType == aiLightSource_POINT  ? Kind::point
-                 : from.mType == aiLightSource_SPOT ? Kind::spot
-                                                    : Kind::directional;
+    light.kind = *kind;
     light.intensity = {from.mColorDiffuse.r, from.mColorDiffuse.g, from.mColorDiffuse.b};
     light.position = transform_point(world, vec3_of(from.mPosition));
     light.direction = normalize(transform_vector(world, vec3_of(from.mDirection)));

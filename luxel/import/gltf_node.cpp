@@ -1,6 +1,7 @@
 // The nodes of the default scene: instances, lights, cameras, each with its place in the world.
 #include "luxel/import/gltf_accessor.h"
 #include "luxel/import/gltf_parts.h"
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::import {
 namespace {
@@ -31,12 +32,6 @@ Mat34 local_transform(const tinygltf::Node& node) {
          scaling(vec3_of(node.scale, {1, 1, 1}));
 }
 
-scene::PunctualLight::Kind kind_of(const std::string& type) {
-  if (type == "spot") return scene::PunctualLight::Kind::spot;
-  if (type == "directional") return scene::PunctualLight::Kind::directional;
-  return scene::PunctualLight::Kind::point;
-}
-
 /// [KHR_lights_punctual]: a light shines along its node's -z; scale does not change it.
 void add_light(GltfReader& reader, const tinygltf::Node& node, const Mat34& world) {
   const auto extension = node.extensions.find("KHR_lights_punctual");
@@ -44,14 +39,15 @@ void add_light(GltfReader& reader, const tinygltf::Node& node, const Mat34& worl
   const double index = number_in(extension->second, "light", -1);
   if (index < 0 || index >= double(reader.model.lights.size())) return;
   const tinygltf::Light& in = reader.model.lights[size_t(index)];
-  if (in.type != "point" && in.type != "spot" && in.type != "directional") {
+  const std::optional<scene::LightKind> kind = scene::kind_named(in.type);
+  if (!kind) {
     reader.warn("{} has the unknown type '{}' and is skipped",
                 label("light", size_t(index), in.name), in.type);
     return;
   }
   scene::PunctualLight light;
   light.name = node.name.empty() ? in.name : node.name;
-  light.kind = kind_of(in.type);
+  light.kind = *kind;
   light.intensity = vec3_of(in.color, {1, 1, 1}) * float(in.intensity);
   light.position = transform_point(world, {});
   light.direction = normalize(-column(world, 2));

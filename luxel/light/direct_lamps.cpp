@@ -4,6 +4,7 @@
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/light/direct_shots.h"
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::light {
 namespace {
@@ -33,8 +34,7 @@ void shoot_at_punctual(const Lights& lights, size_t index, float chance, int sam
   const scene::PunctualLight& light = lights.punctual[index];
   const PunctualIncidence in = incidence_at(light, lights.profiles, r.position);
   const float cosine = dot(in.towards, r.normal);
-  const bool disc =
-      light.kind == scene::PunctualLight::Kind::directional && light.angular_radius_rad > 0;
+  const bool disc = scene::has_disc(light);
   if (max_component(in.irradiance) <= 0 || (cosine <= 0 && !disc)) return;
   const uint32_t source = uint32_t(shots.sources.size());
   shots.sources.push_back({});
@@ -65,7 +65,7 @@ void shoot_at_lamps(const Lights& lights, int samples, const Receiver& r, Shots&
     return;
   }
   for (size_t i = 0; i < count; ++i)
-    if (lights.punctual[i].kind == scene::PunctualLight::Kind::directional)
+    if (!scene::has_position(lights.punctual[i].kind))
       shoot_at_punctual(lights, i, 1, samples, r, shots);
   if (lights.lamp_nodes.empty()) return;
   const auto leaf = [&](const LightNode& node) {

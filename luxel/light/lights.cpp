@@ -4,6 +4,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/light/textured_lights.h"
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::light {
 namespace {
@@ -70,8 +71,7 @@ LightLeaf leaf_of(const scene::PunctualLight& lamp, std::span<const scene::Light
   if (lamp.profile != scene::kNone)
     leaf.node.power *= *std::ranges::max_element(profiles[lamp.profile].candela);
   if (lamp.range_m > 0) leaf.node.reach_m = lamp.range_m;
-  const bool spot = lamp.kind == scene::PunctualLight::Kind::spot;
-  set_cone(leaf.node, lamp.direction, spot ? lamp.outer_cone_rad : kPi);
+  set_cone(leaf.node, lamp.direction, scene::has_cone(lamp.kind) ? lamp.outer_cone_rad : kPi);
   return leaf;
 }
 
@@ -88,12 +88,38 @@ void build_triangle_tree(Lights& lights) {
 void build_lamp_tree(Lights& lights) {
   std::vector<LightLeaf> leaves;
   for (uint32_t i = 0; i < lights.punctual.size(); ++i) {
-    if (lights.punctual[i].kind == scene::PunctualLight::Kind::directional) continue;
+    if (!scene::has_position(lights.punctual[i].kind)) continue;
     const LightLeaf leaf = leaf_of(lights.punctual[i], lights.profiles, i);
     if (leaf.node.power > 0) leaves.push_back(leaf);
   }
   lights.lamp_nodes = build_light_tree(leaves);
   for (const LightLeaf& leaf : leaves) lights.lamp_order.push_back(leaf.index);
+}
+
+/// I / d^2 times the range's window, the ramp between the cones and the candela of the profile.
+PunctualIncidence incidence_from_point(const scene::PunctualLight& light,
+                                       std::span<const scene::LightProfile> profiles,
+                                       Vec3 position) {
+  const Vec3 to_light = light.position - position;
+  const float distance = length(to_light);
+  if (distance <= 0) return {};
+  const Vec3 towards = to_light / distance;
+  float factor = 1 / (distance * distance);
+  if (light.range_m > 0) {
+    const float q = distance / light.range_m;
+    factor *= std::clamp(1 - q * q * q * q, 0.0f, 1.0f);
+  }
+  if (scene::has_cone(light.kind)) {
+    const float c = -dot(towards, light.direction);
+    const float outer = std::cos(light.outer_cone_rad), inner = std::cos(light.inner_cone_rad);
+    const float t = std::clamp((c - outer) / std::max(1e-3f, inner - outer), 0.0f, 1.0f);
+    factor *= t * t;
+  }
+  if (light.profile != scene::kNone) {
+    LUXEL_CHECK(light.profile < profiles.size());
+    factor *= scene::candela_at(profiles[light.profile], light.direction, light.side, -towards);
+  }
+  return {light.intensity * factor, towards, distance};
 }
 
 }  // namespace
@@ -133,28 +159,14 @@ Lights collect_lights(const scene::Scene& scene) {
 
 PunctualIncidence incidence_at(const scene::PunctualLight& light,
                                std::span<const scene::LightProfile> profiles, Vec3 position) {
-  using Kind = scene::PunctualLight::Kind;
-  if (light.kind == Kind::directional) return {light.intensity, -light.direction, INFINITY};
-  const Vec3 to_light = light.position - position;
-  const float distance = length(to_light);
-  if (distance <= 0) return {};
-  const Vec3 towards = to_light / distance;
-  float factor = 1 / (distance * distance);
-  if (light.range_m > 0) {
-    const float q = distance / light.range_m;
-    factor *= std::clamp(1 - q * q * q * q, 0.0f, 1.0f);
+  switch (light.kind) {
+    case scene::LightKind::directional:
+      return {light.intensity, -light.direction, INFINITY};
+    case scene::LightKind::point:
+    case scene::LightKind::spot:
+      return incidence_from_point(light, profiles, position);
   }
-  if (light.kind == Kind::spot) {
-    const float c = -dot(towards, light.direction);
-    const float outer = std::cos(light.outer_cone_rad), inner = std::cos(light.inner_cone_rad);
-    const float t = std::clamp((c - outer) / std::max(1e-3f, inner - outer), 0.0f, 1.0f);
-    factor *= t * t;
-  }
-  if (light.profile != scene::kNone) {
-    LUXEL_CHECK(light.profile < profiles.size());
-    factor *= scene::candela_at(profiles[light.profile], light.direction, light.side, -towards);
-  }
-  return {light.intensity * factor, towards, distance};
+  return {};
 }
 
 }  // namespace luxel::light

@@ -9,6 +9,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/vec_double.h"
 #include "luxel/scene/environment.h"
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::light {
 namespace {
@@ -115,9 +116,9 @@ class Reach {
       if (const auto cone = cone_of_peaks(scene.environment, lights.around))
         peaks_ = directions_of(cone->axis, cone->half_angle);
     for (const scene::PunctualLight& lamp : lights.punctual)
-      suns_.push_back(lamp.kind == scene::PunctualLight::Kind::directional
-                          ? directions_of(-lamp.direction, double(lamp.angular_radius_rad))
-                          : Sides{});
+      suns_.push_back(scene::has_position(lamp.kind)
+                          ? Sides{}
+                          : directions_of(-lamp.direction, double(lamp.angular_radius_rad)));
     Box3 all = scene::world_bounds(scene);
     for (const Box3& box : boxes)
       if (!box.empty()) all.extend(box.lower), all.extend(box.upper);
@@ -139,17 +140,26 @@ class Reach {
   }
 
   bool lamps_cross(const Box3& place, const Box3& box) const {
-    return std::any_of(
-        lights_.punctual.begin(), lights_.punctual.end(), [&](const scene::PunctualLight& lamp) {
-          if (max_component(lamp.intensity) <= 0) return false;
-          if (lamp.kind == scene::PunctualLight::Kind::directional)
-            return sweeps_over(place, suns_[size_t(&lamp - lights_.punctual.data())], HUGE_VAL,
-                               box);
-          const float nearest =
-              length(max(place.lower, min(lamp.position, place.upper)) - lamp.position);
-          if (lamp.range_m > 0 && nearest > lamp.range_m) return false;
-          return may_cross(place, {lamp.position, lamp.position}, box);
-        });
+    for (size_t k = 0; k < lights_.punctual.size(); ++k)
+      if (max_component(lights_.punctual[k].intensity) > 0 && punctual_crosses(k, place, box))
+        return true;
+    return false;
+  }
+
+  bool punctual_crosses(size_t number, const Box3& place, const Box3& box) const {
+    const scene::PunctualLight& light = lights_.punctual[number];
+    switch (light.kind) {
+      case scene::LightKind::directional:
+        return sweeps_over(place, suns_[number], HUGE_VAL, box);
+      case scene::LightKind::point:
+      case scene::LightKind::spot: {
+        const float nearest =
+            length(max(place.lower, min(light.position, place.upper)) - light.position);
+        if (light.range_m > 0 && nearest > light.range_m) return false;
+        return may_cross(place, {light.position, light.position}, box);
+      }
+    }
+    return false;
   }
 
   /// Down the hierarchy, into groups of triangles whose spheres' boxes may be seen across the box.

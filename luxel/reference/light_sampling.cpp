@@ -7,6 +7,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/vec_double.h"
 #include "luxel/base/warp.h"
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::reference {
 namespace {
@@ -59,25 +60,32 @@ float falloff(const scene::Scene& scene, const scene::PunctualLight& lamp, Vec3 
   if (lamp.profile != scene::kNone)
     f *= scene::candela_at(scene.profiles[lamp.profile], lamp.direction, lamp.side, -towards);
   if (lamp.range_m > 0) f *= std::clamp(1 - std::pow(distance / lamp.range_m, 4.0f), 0.0f, 1.0f);
-  if (lamp.kind != scene::PunctualLight::Kind::spot) return f;
+  if (!scene::has_cone(lamp.kind)) return f;
   const float outer = std::cos(lamp.outer_cone_rad);
   const float width = std::max(0.001f, std::cos(lamp.inner_cone_rad) - outer);
   const float ramp = std::clamp((dot(-towards, lamp.direction) - outer) / width, 0.0f, 1.0f);
   return f * ramp * ramp;
 }
 
-bool is_directional(const scene::PunctualLight& lamp) {
-  return lamp.kind == scene::PunctualLight::Kind::directional;
-}
-
-/// The lamp's light at its centre, not yet divided by a chance.
-LampSample light_of(const scene::Scene& scene, const scene::PunctualLight& lamp, Vec3 position) {
-  if (is_directional(lamp)) return {lamp.intensity, -lamp.direction, INFINITY};
+LampSample light_from_point(const scene::Scene& scene, const scene::PunctualLight& lamp,
+                            Vec3 position) {
   const Vec3 to_lamp = lamp.position - position;
   const float distance = length(to_lamp);
   if (!(distance > 0)) return {};
   const Vec3 towards = to_lamp / distance;
   return {lamp.intensity * falloff(scene, lamp, towards, distance), towards, distance};
+}
+
+/// The light that comes from the centre of a punctual light, not yet divided by a chance.
+LampSample light_of(const scene::Scene& scene, const scene::PunctualLight& lamp, Vec3 position) {
+  switch (lamp.kind) {
+    case scene::LightKind::directional:
+      return {lamp.intensity, -lamp.direction, INFINITY};
+    case scene::LightKind::point:
+    case scene::LightKind::spot:
+      return light_from_point(scene, lamp, position);
+  }
+  return {};
 }
 
 /// A disc of uniform radiance that brings E to a facing surface has L = E / (pi sin^2 a), and
@@ -181,7 +189,7 @@ LampSample sample_lamps(const scene::Scene& scene, const Receiver& at, RandomStr
     const scene::PunctualLight& lamp = scene.lights[k];
     const LampSample light = light_of(scene, lamp, at.position);
     // A disc reaches over the horizon when its centre is still below it.
-    const float reach = is_directional(lamp) ? std::sin(lamp.angular_radius_rad) : 0.0f;
+    const float reach = scene::has_disc(lamp) ? std::sin(lamp.angular_radius_rad) : 0.0f;
     const float cosine = std::max(0.0f, dot(light.towards, at.normal) + reach);
     scratch[k] = luminance(light.irradiance) * cosine;
     total += scratch[k];
@@ -198,8 +206,7 @@ LampSample sample_lamps(const scene::Scene& scene, const Receiver& at, RandomStr
   }
   LampSample sample = light_of(scene, scene.lights[k], at.position);
   sample.irradiance *= total / scratch[k];
-  if (is_directional(scene.lights[k]) && scene.lights[k].angular_radius_rad > 0)
-    spread_over_disc(scene.lights[k], random, sample);
+  if (scene::has_disc(scene.lights[k])) spread_over_disc(scene.lights[k], random, sample);
   return sample;
 }
 

@@ -5,6 +5,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/vec_double.h"
+#include "luxel/scene/light_kinds.h"
 #include "luxel/scene/scene.h"
 
 namespace luxel::scene {
@@ -85,7 +86,7 @@ double mean_candela(const LightProfile& profile, double half_angle_rad) {
 
 void attach_profile(Scene& scene, size_t light, LightProfile profile, float scale) {
   PunctualLight& lamp = scene.lights[light];
-  LUXEL_CHECK(lamp.kind != PunctualLight::Kind::directional);
+  LUXEL_CHECK(can_have_profile(lamp.kind));
   lamp.direction = normalize(lamp.direction);
   if (lamp.direction == Vec3{}) lamp.direction = {0, -1, 0};
   const Vec3 across = lamp.side - lamp.direction * dot(lamp.side, lamp.direction);

@@ -1,6 +1,7 @@
 // NaN and infinity go no further; factors stay in the range that they mean something in.
 #include <algorithm>
 
+#include "luxel/scene/light_kinds.h"
 #include "luxel/scene/validate_steps.h"
 
 namespace luxel::scene {
@@ -154,7 +155,7 @@ Status check_lights(Scene& scene, Report& report) {
       light.intensity = max(light.intensity, Rgb{});
       report.warn("{}: negative intensity set to 0", name);
     }
-    if (light.kind == PunctualLight::Kind::point) continue;
+    if (!has_direction(light.kind)) continue;
     light.direction = normalize(light.direction);
     if (light.direction == Vec3{})
       return fail(ErrorCode::bad_input, "{}: {}: it has no direction", report.file, name);

@@ -1,4 +1,5 @@
 #include "luxel/pipeline/command/light_script.h"
+#include "luxel/scene/light_kinds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,10 +107,8 @@ Result<Track> direction_track(const Node& node) {
 }
 
 Result<scene::PunctualLight::Kind> kind_of(const Node& node) {
-  using Kind = scene::PunctualLight::Kind;
-  if (node.value == "point") return Kind::point;
-  if (node.value == "spot") return Kind::spot;
-  if (node.value == "directional") return Kind::directional;
+  if (node.value.is_string())
+    if (const auto kind = scene::kind_named(node.value.get<std::string>())) return *kind;
   return wrong(node, "\"point\", \"spot\" or \"directional\"");
 }
 
@@ -129,15 +128,14 @@ Result<LightScript::Lamp> lamp_of(const Node& node) {
   constexpr std::array<std::string_view, 7> known{
       "kind", "intensity", "position", "direction", "range_m", "inner_cone_deg", "outer_cone_deg"};
   LUXEL_TRY_STATUS(only_fields(node, known, "a lamp, as {\"kind\": \"point\", ...}"));
-  using Kind = scene::PunctualLight::Kind;
   LightScript::Lamp lamp;
   lamp.position.keys = {{0, {}}}, lamp.direction.keys = {{0, {0, -1, 0}}};
   lamp.intensity.keys = {{0, {1, 1, 1}}};
   if (node.has("kind")) {
     LUXEL_TRY(lamp.light.kind, kind_of(node.at("kind")));
   }
-  const bool has_place = lamp.light.kind != Kind::directional;
-  const bool has_direction = lamp.light.kind != Kind::point;
+  const bool has_place = scene::has_position(lamp.light.kind);
+  const bool has_direction = scene::has_direction(lamp.light.kind);
   if (has_place != node.has("position"))
     return fail(ErrorCode::bad_input, "{}: {}", node.where,
                 has_place ? "a point or spot light needs a position"

@@ -4,13 +4,12 @@
 
 #include "luxel/base/text_tables.h"
 #include "luxel/import/ies.h"
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::pipeline {
 namespace {
 
-bool can_have(const scene::PunctualLight& light) {
-  return light.kind != scene::PunctualLight::Kind::directional;
-}
+bool can_have(const scene::PunctualLight& light) { return scene::can_have_profile(light.kind); }
 
 /// "'a', 'b' and 7 more"
 std::string names_of_lamps(const scene::Scene& scene) {

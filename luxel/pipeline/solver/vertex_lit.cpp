@@ -1,20 +1,11 @@
 #include "luxel/pipeline/solver/vertex_lit.h"
 
-#include <algorithm>
+#include <utility>
+
+#include "luxel/image/white_level.h"
 
 namespace luxel::pipeline {
 namespace {
-
-float white_level(std::span<const Rgb> irradiance) {
-  std::vector<float> values;
-  for (const Rgb& e : irradiance) values.push_back(max_component(e));
-  if (values.empty()) return 1;
-  const size_t rank = size_t(double(values.size() - 1) * 0.999);
-  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
-  if (values[rank] > 0) return values[rank];
-  const float largest = *std::max_element(values.begin(), values.end());
-  return largest > 0 ? largest : 1;
-}
 
 /// Builds the mesh of one instance; the same vertex of the field becomes one vertex of the mesh.
 struct MeshBuilder {
@@ -70,7 +61,7 @@ struct MeshBuilder {
 
 VertexLit vertex_lit(const scene::Scene& scene, const hemicube::Field& field) {
   VertexLit out;
-  out.intensity = white_level(field.irradiance);
+  out.intensity = image::white_level(field.irradiance);
   out.scene = scene;
   out.scene.meshes.clear(), out.scene.instances.clear(), out.scene.lights.clear();
   for (scene::Material& material : out.scene.materials) material.unlit = true;

@@ -9,6 +9,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/scene/light_kinds.h"
 #include "luxel/scene/places.h"
 #include "luxel/scene/sides.h"
 #include "luxel/trace/ray_tracer.h"
@@ -139,10 +140,10 @@ World world_of(const scene::Scene& scene, const trace::RayTracer& tracer,
   World world{scene, tracer, shells, {}, false, scene::world_bounds(scene).diagonal()};
   world.sky_shines = max_component(scene.background) > 0 || !scene.environment.empty();
   for (const scene::PunctualLight& light : scene.lights)
-    if (light.kind == scene::PunctualLight::Kind::directional)
-      world.sky_shines = true;
-    else
+    if (scene::has_position(light.kind))
       world.lamps.push_back(light.position);
+    else
+      world.sky_shines = true;
   return world;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/scene/light_kinds.h"
 #include "luxel/solve/hierarchical/contacts.h"
 #include "luxel/viewfactor/point_form_factor.h"
 
@@ -241,7 +242,7 @@ void add_lamps(const View& v, const scene::Scene& scene, double least_weight, do
     const float e =
         max_component(light::incidence_at(lamp, scene.profiles, to_float(middle)).irradiance);
     DVec3 place = to_double(lamp.position);
-    if (lamp.kind == scene::PunctualLight::Kind::directional)
+    if (!scene::has_position(lamp.kind))
       place = middle - to_double(lamp.direction) * (1e4 * double(v.s.diagonal_m));
     if (v.height(place) <= 0 || double(e) < least_light) continue;
     const std::array<DVec3, 1> corner{place};

@@ -1,4 +1,5 @@
 #include "luxel/solve/matrix/relight_check.h"
+#include "luxel/scene/light_kinds.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -270,14 +271,12 @@ Status check_probes(const RelightData& d) {
 }
 
 Status check_lights(const RelightData& d) {
-  using Kind = scene::PunctualLight::Kind;
   for (size_t k = 0; k < d.lights.size(); ++k) {
     const scene::PunctualLight& light = d.lights[k];
     const std::array numbers{light.range_m, light.inner_cone_rad, light.outer_cone_rad,
                              light.angular_radius_rad};
-    if (light.kind > Kind::directional || !is_finite(light.position) ||
-        !is_finite(light.direction) || !lies_within(light.intensity, 0, FLT_MAX) ||
-        !lies_within(numbers, -FLT_MAX, FLT_MAX))
+    if (!scene::is_known(light.kind) || !is_finite(light.position) || !is_finite(light.direction) ||
+        !lies_within(light.intensity, 0, FLT_MAX) || !lies_within(numbers, -FLT_MAX, FLT_MAX))
       return fail(ErrorCode::bad_input, "lights: number {} is of no kind or not finite", k);
   }
   return within("background", std::array{d.background}, 0, FLT_MAX);

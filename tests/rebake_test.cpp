@@ -164,14 +164,14 @@ INSTANTIATE_TEST_SUITE_P(
              [](scene::Scene& s) {
                s.lights[kLeft].intensity = {0.1f, 0.8f, 0};
              },
-             0, "lamp 'left' has another intensity", kRough},
+             0, "light 'left' has another intensity", kRough},
         Case{"LampOff", [](scene::Scene& s) { s.lights[kRight].intensity = {}; }, 0,
-             "lamp 'right' has another intensity", kRough},
+             "light 'right' has another intensity", kRough},
         Case{"LampMuchBrighter",
              [](scene::Scene& s) {
                s.lights[kLeft].intensity = {5, 4, 3};
              },
-             0.5, "lamp 'left' has another intensity", kRough},
+             0.5, "light 'left' has another intensity", kRough},
         Case{"GlassMadeOpaque",
              [](scene::Scene& s) { s.materials[kGlass].alpha_mode = scene::AlphaMode::opaque; },
              0.9, "material 'glass' lets light through otherwise"},
@@ -181,12 +181,12 @@ INSTANTIATE_TEST_SUITE_P(
              },
              0, "material 'shine' has another intensity", kRough},
         Case{"LampMoved", [](scene::Scene& s) { s.lights[kLeft].position.z -= 0.8f; }, 0.5,
-             "lamp 'left' shines otherwise"},
+             "light 'left' shines otherwise"},
         Case{"LampOn",
              [](scene::Scene& s) {
                s.lights[kOff].intensity = {0, 0.2f, 0.6f};
              },
-             0.5, "lamp 'off' shines otherwise"},
+             0.5, "light 'off' shines otherwise"},
         Case{"BlockMoved",
              [](scene::Scene& s) {
                move(s, kBlock, {0.5f, 0, 0.25f});
@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
                s.materials[kPlaster].base_color = {0.3f, 0.6f, 0.8f};
              },
              0.7,
-             "instance 'block' moved, material 'plaster' has another colour, lamp 'right' has "
+             "instance 'block' moved, material 'plaster' has another colour, light 'right' has "
              "another "
              "intensity"}),
     [](const auto& c) { return c.param.name; });

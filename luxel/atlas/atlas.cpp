@@ -4,7 +4,7 @@
 
 #include "luxel/atlas/charts.h"
 #include "luxel/atlas/keep_uv.h"
-#include "luxel/atlas/lay_out.h"
+#include "luxel/atlas/page_modes.h"
 #include "luxel/base/check.h"
 
 namespace luxel::atlas {

@@ -176,14 +176,15 @@ class Cutter {
 };
 
 /// Instance by instance, so that the mesh of a heavy scene is copied only where it is cut.
-struct Work {
+struct Cutting {
   CutScene& out;
   std::vector<std::vector<uint32_t>> group;  ///< per instance and triangle
   uint32_t groups = 1;                       ///< group 0 holds what was not cut
 };
 
-void cut_instance(Work& work, uint32_t instance, std::vector<uint32_t> chart, const Pairs& pairs) {
-  scene::Scene& scene = work.out.scene;
+void cut_instance(Cutting& cutting, uint32_t instance, std::vector<uint32_t> chart,
+                  const Pairs& pairs) {
+  scene::Scene& scene = cutting.out.scene;
   scene::Mesh mesh = scene.meshes[scene.instances[instance].mesh];
   Cutter cutter(mesh, scene.instances[instance].world_from_object, std::move(chart));
   std::vector<std::pair<uint32_t, uint32_t>> group_of_piece;
@@ -194,15 +195,15 @@ void cut_instance(Work& work, uint32_t instance, std::vector<uint32_t> chart, co
     if (coloured.size() < 2) continue;
     uint32_t colours = 0;
     for (const auto& [piece, colour] : coloured) {
-      group_of_piece.push_back({piece, work.groups + colour});
+      group_of_piece.push_back({piece, cutting.groups + colour});
       colours = std::max(colours, colour + 1);
     }
-    work.groups += colours;
+    cutting.groups += colours;
   }
   if (cutter.cuts() == 0) return;
-  work.out.cuts += cutter.cuts();
+  cutting.out.cuts += cutter.cuts();
   std::sort(group_of_piece.begin(), group_of_piece.end());
-  std::vector<uint32_t>& group = work.group[instance];
+  std::vector<uint32_t>& group = cutting.group[instance];
   group.assign(cutter.labels().size(), 0);
   for (size_t t = 0; t < group.size(); ++t) {
     const auto found = std::lower_bound(group_of_piece.begin(), group_of_piece.end(),
@@ -228,8 +229,8 @@ CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const Part
   out.scene = std::move(scene);
   LUXEL_CHECK(atlas.first_triangle.size() == out.scene.instances.size() + 1);
   std::vector<uint32_t> instance_of_chart(atlas.chart_count);
-  Work work{out, {}, 1};
-  work.group.resize(out.scene.instances.size());
+  Cutting cutting{out, {}, 1};
+  cutting.group.resize(out.scene.instances.size());
   for (uint32_t i = 0; i < out.scene.instances.size(); ++i)
     for (uint32_t t = atlas.first_triangle[i]; t < atlas.first_triangle[i + 1]; ++t)
       instance_of_chart[atlas.chart[t]] = i;
@@ -241,13 +242,13 @@ CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const Part
   for (size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
     const uint32_t i = instance_of_chart[pairs[begin].chart];
     while (end < pairs.size() && instance_of_chart[pairs[end].chart] == i) ++end;
-    cut_instance(work, i,
+    cut_instance(cutting, i,
                  {atlas.chart.begin() + atlas.first_triangle[i],
                   atlas.chart.begin() + atlas.first_triangle[i + 1]},
                  {pairs.begin() + long(begin), pairs.begin() + long(end)});
   }
   for (uint32_t i = 0; i < out.scene.instances.size(); ++i) {
-    std::vector<uint32_t>& group = work.group[i];
+    std::vector<uint32_t>& group = cutting.group[i];
     group.resize(out.scene.meshes[out.scene.instances[i].mesh].triangles.size());
     out.group.insert(out.group.end(), group.begin(), group.end());
   }

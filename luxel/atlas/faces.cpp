@@ -6,7 +6,7 @@
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
-#include "luxel/scene/places.h"
+#include "luxel/scene/position_numbers.h"
 
 namespace luxel::atlas {
 namespace {
@@ -76,7 +76,7 @@ Faces make_faces(const scene::Scene& scene) {
   faces.across.assign(first.back(), {kNone, kNone, kNone});
   std::vector<std::vector<uint32_t>> places(scene.meshes.size());
   for (size_t m = 0; m < scene.meshes.size(); ++m)
-    places[m] = scene::place_numbers(scene.meshes[m].positions);
+    places[m] = scene::position_numbers(scene.meshes[m].positions);
 
   parallel_for(scene.instances.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

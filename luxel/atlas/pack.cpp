@@ -35,7 +35,7 @@ class FirstRows {
 
 /// A mask where it would go. The lower the score the better; y = -1: no room.
 struct Offer {
-  Place place{-1, -1};
+  ChartPosition place{-1, -1};
   double score = INFINITY;
 };
 
@@ -60,7 +60,7 @@ Offer best_turn(const Strip& strip, const Turns& turns, const FirstRows& first_r
     const Mask& mask = turns[t];
     const double hanging = judge == Judge::bulk ? mean_row(mask) : mask.height;
     const double last = std::min(double(strip.side()), std::ceil(best.score - hanging) - 1);
-    Place place =
+    ChartPosition place =
         strip.topmost(make_shape(mask), first_rows.at(mask.width, mask.height), int(last));
     if (place.y < 0) continue;
     place.turns = int(t);
@@ -93,10 +93,11 @@ struct Sheet {
 };
 
 /// On the wished page, else on the first after it that has room.
-Place place_on_pages(const std::vector<Sheet>& sheets, const Directions& chart, size_t wished) {
+ChartPosition place_on_pages(const std::vector<Sheet>& sheets, const Directions& chart,
+                             size_t wished) {
   for (size_t k = 0; k < sheets.size(); ++k) {
     const size_t page = (wished + k) % sheets.size();
-    Place place = best_place(sheets[page].strip, chart, sheets[page].first_rows).place;
+    ChartPosition place = best_place(sheets[page].strip, chart, sheets[page].first_rows).place;
     place.page = uint32_t(page);
     if (place.y >= 0) return place;
   }
@@ -136,7 +137,7 @@ Packing pack_masks(const std::vector<Directions>& charts, int side, int gutter, 
   for (const uint32_t m : large_first(charts, order)) {
     if (progress.cancelled()) return packing;
     const size_t wished = pages.wished.empty() ? 0 : pages.wished[m];
-    const Place place = place_on_pages(sheets, charts[m], wished);
+    const ChartPosition place = place_on_pages(sheets, charts[m], wished);
     if (place.y < 0) {
       packing.placed = double(placed) / double(total);
       return packing;

@@ -29,7 +29,7 @@ using Turns = std::vector<Mask>;
 using Directions = std::vector<Turns>;
 Turns all_turns(Mask upright);
 
-struct Place {
+struct ChartPosition {
   int x = 0, y = 0;   ///< on the page
   int turns = 0;      ///< quarter turns as turned() makes them
   int direction = 0;  ///< which of the chart's directions
@@ -37,7 +37,7 @@ struct Place {
 };
 
 struct Packing {
-  std::vector<Place> places;
+  std::vector<ChartPosition> places;
   int height = 0;     ///< rows in use, of all pages
   double placed = 0;  ///< share of the mask texels that found room: 1 when all fit
 };

@@ -13,7 +13,7 @@ namespace {
 
 using Cells = std::set<std::pair<int, int>>;  // (x, y)
 
-Cells cells_of(const Mask& mask, Place at = {}) {
+Cells cells_of(const Mask& mask, ChartPosition at = {}) {
   Cells cells;
   for (int j = 0; j < mask.height; ++j)
     for (const Span run : mask.rows[size_t(j)])
@@ -60,7 +60,7 @@ TEST(Pack, AQuarterTurnMovesEveryTexelAsItSays) {
 using Grid = std::vector<std::vector<bool>>;  // [y][x], true: taken
 
 /// The same search, texel by texel.
-Place topmost_by_trying(const Grid& taken, const Mask& mask) {
+ChartPosition topmost_by_trying(const Grid& taken, const Mask& mask) {
   const Cells wanted = cells_of(mask);
   const int side = int(taken.size());
   for (int y = 0; y + mask.height <= side; ++y)
@@ -82,8 +82,8 @@ void pack_both_ways(uint64_t seed, int& placed) {
   for (int k = 0; k < 20; ++k) {
     const int width = 3 + int(random.next() * 30), height = 3 + int(random.next() * 45);
     const Mask mask = random_mask(width, height, random);
-    const Place expected = topmost_by_trying(taken, mask);
-    const Place found = strip.topmost(make_shape(mask), 0, kSide);
+    const ChartPosition expected = topmost_by_trying(taken, mask);
+    const ChartPosition found = strip.topmost(make_shape(mask), 0, kSide);
     ASSERT_EQ(found.x, expected.x) << "seed " << seed << ", " << width << " x " << height;
     ASSERT_EQ(found.y, expected.y) << "seed " << seed << ", " << width << " x " << height;
     if (found.y < 0) continue;

@@ -1,4 +1,5 @@
-// Charts laid flat: parallel projection along the chart's axis, then cut where that does not work.
+// Charts laid flat: parallel projection along the chart's axis, then cut where that does not
+// cutting.
 #pragma once
 
 #include <array>

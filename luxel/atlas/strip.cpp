@@ -118,7 +118,7 @@ void BitRows::add_shifted(const uint64_t* bits, int offset, std::vector<uint64_t
   for (size_t w = inside; w < words_; ++w) blocked[w] = kFull;
 }
 
-void Strip::take_with_gutter(const Mask& mask, Place place, int gutter) {
+void Strip::take_with_gutter(const Mask& mask, ChartPosition place, int gutter) {
   const int top = std::max(0, place.y - gutter);
   const int bottom = std::min(side(), place.y + mask.height + gutter);
   for (int y = top; y < bottom; ++y) {
@@ -136,7 +136,7 @@ void Strip::take_with_gutter(const Mask& mask, Place place, int gutter) {
     BitRows::intersect(taken_, y, kBand, bands_);
 }
 
-Place Strip::topmost(const Shape& shape, int first, int last) const {
+ChartPosition Strip::topmost(const Shape& shape, int first, int last) const {
   std::vector<uint64_t> blocked(blocked_words_);
   last = std::min(last, side() - shape.height);
   for (int y = first; y <= last;) {

@@ -57,10 +57,10 @@ class Strip {
 
   int side() const { return taken_.count(); }
   /// Takes the mask's texels and all within `gutter` of them.
-  void take_with_gutter(const Mask& mask, Place place, int gutter);
+  void take_with_gutter(const Mask& mask, ChartPosition place, int gutter);
   /// The topmost place for a shape with its top between rows [first, last], the leftmost of these;
   /// y = -1: none.
-  Place topmost(const Shape& shape, int first, int last) const;
+  ChartPosition topmost(const Shape& shape, int first, int last) const;
 
  private:
   BitRows taken_;

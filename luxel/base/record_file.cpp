@@ -77,14 +77,14 @@ RecordFile::RecordFile(RecordFile&& other) noexcept
       header_(std::move(other.header_)),
       mutex_(std::move(other.mutex_)),
       end_(other.end_),
-      places_(std::move(other.places_)) {}
+      positions_(std::move(other.positions_)) {}
 RecordFile& RecordFile::operator=(RecordFile&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(file_, other.file_);
   std::swap(header_, other.header_);
   std::swap(mutex_, other.mutex_);
   std::swap(end_, other.end_);
-  std::swap(places_, other.places_);
+  std::swap(positions_, other.positions_);
   return *this;
 }
 RecordFile::~RecordFile() {
@@ -156,7 +156,8 @@ Status RecordFile::read_records(uint64_t file_bytes, Check check) {
     if (const int error = read_at(file_, end_, std::span(&start, 1)))
       return io_error("read", path_, error);
     if (start.digest != digest_of_start(start))
-      return damaged(path_, end_, "the start of record {} is not as written", places_.size() + 1);
+      return damaged(path_, end_, "the start of record {} is not as written",
+                     positions_.size() + 1);
     const uint64_t data = end_ + sizeof(start);
     if (start.bytes > file_bytes - data) break;  // cut off while it was written
     if (check == Check::now) {
@@ -164,9 +165,9 @@ Status RecordFile::read_records(uint64_t file_bytes, Check check) {
       if (const int error = read_at(file_, data, std::span(bytes)))
         return io_error("read", path_, error);
       if (digest_of(bytes) != start.bytes_digest)
-        return damaged(path_, data, "record {} is not as written", places_.size() + 1);
+        return damaged(path_, data, "record {} is not as written", positions_.size() + 1);
     }
-    places_[start.key] = {data, start.bytes, start.bytes_digest};
+    positions_[start.key] = {data, start.bytes, start.bytes_digest};
     end_ = data + start.bytes;
   }
   // What is left of a record must not stand behind a shorter one.
@@ -186,20 +187,20 @@ Status RecordFile::append(RecordKey key, std::span<const std::byte> bytes) {
     if (::ftruncate(file_, off_t(end_)) != 0) errno = 0;
     return io_error("write", path_, error);
   }
-  places_[key] = {end_ + sizeof(start), bytes.size(), start.bytes_digest};
+  positions_[key] = {end_ + sizeof(start), bytes.size(), start.bytes_digest};
   end_ += sizeof(start) + bytes.size();
   return {};
 }
 
 size_t RecordFile::record_count() const {
   const std::lock_guard lock(*mutex_);
-  return places_.size();
+  return positions_.size();
 }
 
 std::vector<RecordKey> RecordFile::keys() const {
   const std::lock_guard lock(*mutex_);
   std::vector<RecordKey> out;
-  for (const auto& [key, place] : places_) out.push_back(key);
+  for (const auto& [key, place] : positions_) out.push_back(key);
   return out;
 }
 
@@ -208,21 +209,21 @@ uint64_t RecordFile::bytes() const {
   return end_;
 }
 
-std::optional<RecordFile::Place> RecordFile::place_of(RecordKey key) const {
+std::optional<RecordFile::RecordPosition> RecordFile::position_of(RecordKey key) const {
   const std::lock_guard lock(*mutex_);
-  const auto found = places_.find(key);
-  if (found == places_.end()) return std::nullopt;
+  const auto found = positions_.find(key);
+  if (found == positions_.end()) return std::nullopt;
   return found->second;
 }
 
 std::optional<uint64_t> RecordFile::size_of(RecordKey key) const {
-  const std::optional<Place> place = place_of(key);
+  const std::optional<RecordPosition> place = position_of(key);
   if (!place) return std::nullopt;
   return place->bytes;
 }
 
 bool RecordFile::read(RecordKey key, uint64_t offset, std::span<std::byte> out) const {
-  const std::optional<Place> place = place_of(key);
+  const std::optional<RecordPosition> place = position_of(key);
   if (!place || offset > place->bytes || out.size() > place->bytes - offset) return false;
   return read_at(file_, place->offset + offset, out) == 0;
 }
@@ -234,7 +235,7 @@ std::optional<std::vector<std::byte>> RecordFile::read_whole(RecordKey key) cons
 }
 
 bool RecordFile::read_whole(RecordKey key, std::vector<std::byte>& out) const {
-  const std::optional<Place> place = place_of(key);
+  const std::optional<RecordPosition> place = position_of(key);
   if (!place) return false;
   out.resize(place->bytes);
   return read_at(file_, place->offset, std::span(out)) == 0 && digest_of(out) == place->digest;

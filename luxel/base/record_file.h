@@ -71,20 +71,20 @@ class RecordFile {
   void flush() const;
 
  private:
-  struct Place {
+  struct RecordPosition {
     uint64_t offset = 0, bytes = 0, digest = 0;
   };
   RecordFile(std::filesystem::path path, int file);
   Status read_header(uint64_t file_bytes);
   Status read_records(uint64_t file_bytes, Check check);
-  std::optional<Place> place_of(RecordKey key) const;
+  std::optional<RecordPosition> position_of(RecordKey key) const;
 
   std::filesystem::path path_;
   int file_ = -1;
   std::string header_;
   std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  ///< of what follows
   uint64_t end_ = 0;
-  std::map<RecordKey, Place> places_;
+  std::map<RecordKey, RecordPosition> positions_;
 };
 
 }  // namespace base

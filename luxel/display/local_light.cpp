@@ -86,7 +86,7 @@ Vec3 Viewer::from(Vec3 position) const { return orthographic ? back : normalize(
 /// `vecLightWorld`, which is d = -L, in the place of eq. 4.22's vector towards the light; section
 /// 5.3.3 itself warns of that mistake. 2 (N.d) N - d is the mirror direction turned round, and with
 /// the saturate() that the print has around N.d it is just -d = L on every surface that is lit: the
-/// highlight would look back at the lamp. R below is eq. 4.22's. The saturate() is kept as what it
+/// highlight would look back at the light. R below is eq. 4.22's. The saturate() is kept as what it
 /// is for: where N.L <= 0 no light arrives, so none is mirrored.
 Rgb local_color(LocalTechnique technique, const LocalSurface& surface, const LocalLights& lights,
                 Vec3 normal, Vec3 to_viewer) {

@@ -1,4 +1,4 @@
-// Local illumination: surfaces under one lamp that knows no shadows and no other surface, to hold
+// Local illumination: surfaces under one light that knows no shadows and no other surface, to hold
 // global illumination against. [Rodriguez06, sections 4.4, 5.3 and 5.4] docs/method/display.md
 //
 // Colours here are what a screen shows, linear in [0, 1], not radiance: the paper's materials and

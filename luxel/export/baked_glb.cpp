@@ -29,8 +29,8 @@ std::vector<std::byte> lightmap_png(const image::Image& lightmap, float intensit
   return image::encode_png(image::to_srgb8(scaled));
 }
 
-/// KHR_lights_punctual knows no profiles: such a lamp gets the mean of what it sends into its cone,
-/// a point light into all directions, so that its flux stays.
+/// KHR_lights_punctual knows no profiles: such a light gets the mean of what it sends into its
+/// cone, a point light into all directions, so that its flux stays.
 scene::PunctualLight as_even_light(const scene::Scene& scene, scene::PunctualLight light) {
   if (light.profile == scene::kNone) return light;
   const double half_angle_rad =
@@ -67,9 +67,9 @@ json instance_node(const scene::Instance& instance, size_t mesh) {
   return node;
 }
 
-LightmapPlaces lightmap_places(const atlas::Atlas& atlas, const std::vector<atlas::Page>& pages,
-                               uint32_t instance) {
-  LightmapPlaces out;
+LightmapCoordinates lightmap_places(const atlas::Atlas& atlas,
+                                    const std::vector<atlas::Page>& pages, uint32_t instance) {
+  LightmapCoordinates out;
   for (uint32_t t = atlas.first_triangle[instance]; t < atlas.first_triangle[instance + 1]; ++t) {
     out.page.push_back(atlas::page_of(atlas, t));
     const atlas::Page& page = pages[out.page.back()];

@@ -14,7 +14,7 @@
 
 namespace luxel::export_ {
 
-/// The light of some of the lamps. Layers add up to the lightmap.
+/// The light of some of the lights. Layers add up to the lightmap.
 struct LightmapLayer {
   std::string name;
   std::vector<std::string> lights;          ///< that it is of

@@ -114,7 +114,7 @@ json primitive(Glb& glb, MaterialBook& book, const scene::Scene& scene, const sc
 }  // namespace
 
 size_t append_mesh(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scene::Mesh& mesh,
-                   const LightmapPlaces& lightmap) {
+                   const LightmapCoordinates& lightmap) {
   LUXEL_CHECK(!mesh.triangles.empty());
   LUXEL_CHECK(lightmap.uv.empty() || lightmap.uv.size() == mesh.triangles.size());
   LUXEL_CHECK(lightmap.page.size() == lightmap.uv.size());

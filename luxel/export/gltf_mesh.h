@@ -9,7 +9,7 @@
 namespace luxel::export_ {
 
 /// Where a mesh's triangles lie in the lightmap; both empty where there is none.
-struct LightmapPlaces {
+struct LightmapCoordinates {
   std::vector<std::array<Vec2, 3>> uv;  ///< per triangle its corners, in [0, 1] of the page
   std::vector<uint32_t> page;           ///< per triangle
 };
@@ -19,6 +19,6 @@ struct LightmapPlaces {
 /// lightmap TEXCOORD_1 holds its coordinates, vertices are split where they differ, and the mesh's
 /// own second set moves to TEXCOORD_2 if a texture needs it. The mesh has triangles.
 size_t append_mesh(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scene::Mesh& mesh,
-                   const LightmapPlaces& lightmap);
+                   const LightmapCoordinates& lightmap);
 
 }  // namespace luxel::export_

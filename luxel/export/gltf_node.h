@@ -1,4 +1,4 @@
-// Places, lamps and cameras as glTF nodes.
+// Transforms, lights and cameras as glTF nodes.
 #pragma once
 
 #include "luxel/export/glb.h"

@@ -1,4 +1,4 @@
-// IES photometric files: how strongly a lamp shines in which direction. [LM63]
+// IES photometric files: how strongly a light shines in which direction. [LM63]
 #pragma once
 
 #include <filesystem>

@@ -8,8 +8,8 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
-#include "luxel/light/direct_shots.h"
 #include "luxel/light/kept_light.h"
+#include "luxel/light/shadow_rays.h"
 
 namespace luxel::light {
 namespace {
@@ -31,19 +31,19 @@ struct DrawnVariance {
   }
 };
 
-/// Traces the shots and adds up what arrives in their sources.
-void trace_shots(const trace::RayTracer& tracer, Shots& shots) {
-  shots.arriving.resize(shots.rays.size());
-  tracer.transmitted(shots.rays, shots.arriving);
-  for (size_t k = 0; k < shots.shots.size(); ++k) {
-    if (max_component(shots.arriving[k]) <= 0) continue;
-    const Shot& shot = shots.shots[k];
-    Source& source = shots.sources[shot.source];
-    const Rgb arrived = shot.radiance * shots.arriving[k];
+/// Traces the shadow rays and adds up what arrives in their sources.
+void trace_batch(const trace::RayTracer& tracer, ShadowRayBatch& batch) {
+  batch.arriving.resize(batch.rays.size());
+  tracer.transmitted(batch.rays, batch.arriving);
+  for (size_t k = 0; k < batch.shadow_rays.size(); ++k) {
+    if (max_component(batch.arriving[k]) <= 0) continue;
+    const ShadowRay& ray = batch.shadow_rays[k];
+    Source& source = batch.sources[ray.source];
+    const Rgb arrived = ray.radiance * batch.arriving[k];
     source.sum += arrived;
     const float l = luminance(arrived);
     source.sum_luminance2 += l * l;
-    if (shot.second_half) source.second_luminance += l;
+    if (ray.second_half) source.second_luminance += l;
   }
 }
 
@@ -51,9 +51,9 @@ Rgb light_of(const Source& s) {
   return s.sum * s.tint * (s.exact ? s.scale / s.sum_weight : s.scale);
 }
 
-/// As if its shots were independent.
+/// As if its shadow rays were independent.
 float variance_of(const Source& s, float light) {
-  const float n = float(s.shots);
+  const float n = float(s.rays);
   if (s.exact) {
     const float share = std::min(1.0f, light / std::max(s.unshadowed, 1e-30f));
     return s.unshadowed * s.unshadowed * share * (1 - share) / n;
@@ -62,7 +62,8 @@ float variance_of(const Source& s, float light) {
   return std::max(0.0f, mean2 - mean * mean) * s.scale * s.scale * n;
 }
 
-/// ((A - B) / 2)^2 of the light by either half of its shots. `whole` where there are no halves.
+/// ((A - B) / 2)^2 of the light by either half of its shadow rays. `whole` where there are no
+/// halves.
 float split_variance_of(const Source& s, float light, float whole) {
   const float sum = luminance(s.sum), first_weight = s.sum_weight - s.second_weight;
   if (!(first_weight > 0) || !(s.second_weight > 0) || !(sum > 0)) return whole;
@@ -92,7 +93,7 @@ LightAt sum_of(std::span<const Source> sources) {
   DrawnVariance drawn;
   for (const Source& s : sources) {
     if (s.drawn) drawn.add(luminance(s.sum * s.tint) * s.scale);
-    if (s.shots == 0 || s.sum_weight <= 0) continue;
+    if (s.rays == 0 || s.sum_weight <= 0) continue;
     const Rgb light = light_of(s);
     out.irradiance += light;
     if (s.drawn) continue;
@@ -108,39 +109,39 @@ LightAt sum_of(std::span<const Source> sources) {
 
 void direct_light_at(const scene::Scene& scene, const Lights& lights,
                      const trace::RayTracer& tracer, const DirectParams& params,
-                     std::span<const Receiver> receivers, float diagonal_m, Shots& shots,
+                     std::span<const Receiver> receivers, float diagonal_m, ShadowRayBatch& batch,
                      std::span<LightAt> out) {
   LUXEL_CHECK(out.size() == receivers.size());
-  shots.sources.clear(), shots.sources_end.clear(), shots.shots.clear(), shots.rays.clear();
+  batch.sources.clear(), batch.sources_end.clear(), batch.shadow_rays.clear(), batch.rays.clear();
   for (const Receiver& r : receivers) {
-    shoot_at_triangles(scene, lights, params.samples, r, diagonal_m, shots);
-    shoot_at_lamps(lights, params.samples, r, shots);
-    shoot_at_peaks(scene, lights.around, params.samples, r, shots);
-    shoot_at_soft_sky(scene, lights.around, params.sky_samples, r, shots);
-    shots.sources_end.push_back(shots.sources.size());
+    aim_at_triangles(scene, lights, params.samples, r, diagonal_m, batch);
+    aim_at_punctual_lights(lights, params.samples, r, batch);
+    aim_at_bright_texels(scene, lights.around, params.samples, r, batch);
+    aim_at_soft_sky(scene, lights.around, params.sky_samples, r, batch);
+    batch.sources_end.push_back(batch.sources.size());
   }
-  trace_shots(tracer, shots);
-  const std::span<const Source> sources = shots.sources;
-  for (size_t i = 0, begin = 0; i < out.size(); begin = shots.sources_end[i++])
-    out[i] = sum_of(sources.subspan(begin, shots.sources_end[i] - begin));
+  trace_batch(tracer, batch);
+  const std::span<const Source> sources = batch.sources;
+  for (size_t i = 0, begin = 0; i < out.size(); begin = batch.sources_end[i++])
+    out[i] = sum_of(sources.subspan(begin, batch.sources_end[i] - begin));
 }
 
-void add_light_by_layer(const Shots& shots, size_t receiver, const LightLayers& layers, Rgb factor,
-                        std::span<Rgb> out) {
+void add_light_by_layer(const ShadowRayBatch& batch, size_t receiver, const LightLayers& layers,
+                        Rgb factor, std::span<Rgb> out) {
   LUXEL_CHECK(out.size() == layers.size());
-  const size_t begin = receiver == 0 ? 0 : shots.sources_end[receiver - 1];
-  for (size_t k = begin; k < shots.sources_end[receiver]; ++k) {
-    const Source& s = shots.sources[k];
-    if (s.shots == 0 || s.sum_weight <= 0) continue;
+  const size_t begin = receiver == 0 ? 0 : batch.sources_end[receiver - 1];
+  for (size_t k = begin; k < batch.sources_end[receiver]; ++k) {
+    const Source& s = batch.sources[k];
+    if (s.rays == 0 || s.sum_weight <= 0) continue;
     out[layer_of(layers, s.light)] += light_of(s) * factor;
   }
 }
 
 LightAt direct_light_at(const scene::Scene& scene, const Lights& lights,
                         const trace::RayTracer& tracer, const DirectParams& params,
-                        const Receiver& r, float diagonal_m, Shots& shots) {
+                        const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
   LightAt out;
-  direct_light_at(scene, lights, tracer, params, {&r, 1}, diagonal_m, shots, {&out, 1});
+  direct_light_at(scene, lights, tracer, params, {&r, 1}, diagonal_m, batch, {&out, 1});
   return out;
 }
 
@@ -195,7 +196,7 @@ Status direct_light_again(const scene::Scene& scene, const transport::Elements& 
       rays += *found;
       return progress.skip(end - begin);
     }
-    Shots shots;
+    ShadowRayBatch batch;
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
       const size_t i = which[k];
@@ -203,15 +204,15 @@ Status direct_light_again(const scene::Scene& scene, const transport::Elements& 
           elements.position[i], elements.normal[i], elements.geometric_normal[i],
           trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
           hash64(params.seed, params.same_points ? 0 : i)};
-      const LightAt light = direct_light_at(scene, lights, tracer, params, r, diagonal_m, shots);
+      const LightAt light = direct_light_at(scene, lights, tracer, params, r, diagonal_m, batch);
       direct.irradiance[i] = light.irradiance;
       direct.variance[i] = light.variance, direct.split_variance[i] = light.split_variance;
       if (params.layers) {
         const std::span<Rgb> own = direct.layers_of(i, *params.layers);
         std::ranges::fill(own, Rgb{});
-        add_light_by_layer(shots, 0, *params.layers, {1, 1, 1}, own);
+        add_light_by_layer(batch, 0, *params.layers, {1, 1, 1}, own);
       }
-      traced += shots.rays.size();
+      traced += batch.rays.size();
     }
     rays += traced;
     keep_part(kept, begin / kPartElements, these, direct, traced);

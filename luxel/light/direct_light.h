@@ -19,11 +19,11 @@ namespace luxel::light {
 struct DirectParams {
   int samples = 64;  ///< shadow rays per element towards triangle lights, and towards each sun disc
   uint64_t seed = 1;
-  /// All elements look at the same points of a light: penumbrae without grain, in steps of
+  /// All elements look at the same points of a light: penumbrae without noise, in steps of
   /// 1 / samples. For solvers whose elements are compared with their neighbours.
   bool same_points = false;
   /// Rays per element towards the soft light of the surroundings. 0: the caller's own rays see it;
-  /// the peaks of an environment count in any case.
+  /// the bright texels of an environment count in any case.
   int sky_samples = 0;
   PartStore* parts = nullptr;           ///< where finished parts are kept and found; null: nowhere
   const LightLayers* layers = nullptr;  ///< null: light is not told apart
@@ -44,8 +44,8 @@ struct DirectLight {
   }
 };
 
-/// E at every element from emissive triangles, point, spot and directional lights, peaks of the
-/// environment, and the rest of the surroundings where sky_samples asks for it. Each source's
+/// E at every element from emissive triangles, point, spot and directional lights, bright texels of
+/// the environment, and the rest of the surroundings where sky_samples asks for it. Each source's
 /// unshadowed irradiance is exact; only the visible share is sampled, so that where a source is
 /// seen whole, or not at all, the result has no noise. [Heitz18; docs/method/gather.md]. Errors:
 /// cancelled.

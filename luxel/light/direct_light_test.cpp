@@ -171,7 +171,7 @@ TEST(DirectLight, ASkyOfKnownGradient) {
 }
 
 // The sun's pixel alone: L times its solid angle times the cosine, and nothing behind a plate.
-TEST(DirectLight, APeakOfTheSkyIsAimedAt) {
+TEST(DirectLight, ABrightTexelOfTheSkyIsAimedAt) {
   scene::Scene scene = one_quad_scene({});
   scene.lights.clear();
   scene.environment = gradient_with_sun(1e5f);

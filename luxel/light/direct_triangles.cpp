@@ -4,8 +4,8 @@
 
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
-#include "luxel/light/direct_shots.h"
 #include "luxel/light/light_draw.h"
+#include "luxel/light/shadow_rays.h"
 #include "luxel/light/spherical_triangle.h"
 #include "luxel/viewfactor/point_form_factor.h"
 
@@ -67,8 +67,9 @@ LightPoint sample_area(const TriangleLight& light, const Receiver& r, Vec2 u) {
   return {p, at, std::max(0.0f, dot(d, r.normal)) * light_side / (d2 * d2), light.area_m2};
 }
 
-void shoot_at(const scene::Scene& scene, const TriangleLight& light, const LightPoint& point,
-              uint32_t source, float factor, const Receiver& r, float diagonal_m, Shots& shots) {
+void aim_at_point(const scene::Scene& scene, const TriangleLight& light, const LightPoint& point,
+                  uint32_t source, float factor, const Receiver& r, float diagonal_m,
+                  ShadowRayBatch& batch) {
   const bool front = dot(r.position - light.a, light.normal) > 0;
   // The ray ends just before the light, so that the light itself does not block it, nor a wall that
   // touches the light when the point lies on their common edge.
@@ -77,13 +78,13 @@ void shoot_at(const scene::Scene& scene, const TriangleLight& light, const Light
       trace::offset_origin(point.target, front ? light.normal : -light.normal, diagonal_m);
   const Rgb radiance = light.textured ? radiance_at(scene, light, point.at) : light.mean_radiance;
   const float w = point.weight * factor;
-  add_shot(shots, r, {source, w, radiance * w}, end - r.origin, kEnd);
+  add_shadow_ray(batch, r, {source, w, radiance * w}, end - r.origin, kEnd);
 }
 
-/// Shots at one triangle. Points below the receiver's horizon bring nothing and would starve the
-/// ratio: the sequence is followed until `count` points lie above it.
-void shoot_at_triangle(const scene::Scene& scene, const TriangleLight& light, uint32_t source,
-                       uint32_t count, const Receiver& r, float diagonal_m, Shots& shots) {
+/// Shadow rays at one triangle. Points below the receiver's horizon bring nothing and would starve
+/// the ratio: the sequence is followed until `count` points lie above it.
+void aim_at_triangle(const scene::Scene& scene, const TriangleLight& light, uint32_t source,
+                     uint32_t count, const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
   const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
   const bool by_angle = spherical.solid_angle > kMinSolidAngle;
   uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
@@ -94,7 +95,7 @@ void shoot_at_triangle(const scene::Scene& scene, const TriangleLight& light, ui
     const LightPoint point =
         by_angle ? sample_solid_angle(light, spherical, r, u) : sample_area(light, r, u);
     if (point.weight <= 0) continue;
-    shoot_at(scene, light, point, source, 1, r, diagonal_m, shots);
+    aim_at_point(scene, light, point, source, 1, r, diagonal_m, batch);
     ++kept;
   }
 }
@@ -103,12 +104,12 @@ bool shines_on(const TriangleLight& light, const Receiver& r) {
   return light.two_sided || dot(r.position - light.a, light.normal) > 0;
 }
 
-/// One shot at a triangle that stands for many.
-void shoot_at_drawn(const scene::Scene& scene, const Lights& lights, const LightDraw& draw,
-                    const Receiver& r, float diagonal_m, Shots& shots) {
+/// One shadow ray at a triangle that stands for many.
+void aim_at_drawn(const scene::Scene& scene, const Lights& lights, const LightDraw& draw,
+                  const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
   const TriangleLight& light = lights.triangles[draw.light];
-  const uint32_t source = uint32_t(shots.sources.size());
-  shots.sources.push_back(
+  const uint32_t source = uint32_t(batch.sources.size());
+  batch.sources.push_back(
       {.scale = 1 / draw.chance, .drawn = true, .light = {LightId::Kind::triangle, draw.light}});
   const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
   const uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
@@ -117,13 +118,13 @@ void shoot_at_drawn(const scene::Scene& scene, const Lights& lights, const Light
                                ? sample_solid_angle(light, spherical, r, u)
                                : sample_area(light, r, u);
   if (point.weight > 0 && shines_on(light, r))
-    shoot_at(scene, light, point, source, point.measure, r, diagonal_m, shots);
+    aim_at_point(scene, light, point, source, point.measure, r, diagonal_m, batch);
 }
 
 /// More lights than a cut holds: some of them. Those that get a ray for certain are exact but for
 /// the visible share; of the others each one that is drawn stands for its neighbours too.
-void shoot_at_many(const scene::Scene& scene, const Lights& lights, int samples, const Receiver& r,
-                   float diagonal_m, Shots& shots) {
+void aim_at_drawn_triangles(const scene::Scene& scene, const Lights& lights, int samples,
+                            const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
   const auto leaf = [&](const LightNode& node) {
     return importance_at(node, r.position, r.normal);
   };
@@ -131,46 +132,47 @@ void shoot_at_many(const scene::Scene& scene, const Lights& lights, int samples,
   // A cut shares several rays out better; for a single one the way down from the root is enough.
   const DrawParams params{
       .samples = samples, .max_cut = samples == 1 ? 1u : 16u, .start = random.next()};
-  draw_lights(lights.nodes, r.position, r.normal, leaf, params, shots.draws);
-  for (const LightDraw& draw : shots.draws.draws) {
+  draw_lights(lights.nodes, r.position, r.normal, leaf, params, batch.draws);
+  for (const LightDraw& draw : batch.draws.draws) {
     if (draw.chance < 1) {
-      shoot_at_drawn(scene, lights, draw, r, diagonal_m, shots);
+      aim_at_drawn(scene, lights, draw, r, diagonal_m, batch);
       continue;
     }
     const TriangleLight& light = lights.triangles[draw.light];
     const float whole = irradiance_per_radiance(light, r.position, r.normal);
     if (whole <= 0) continue;
-    const uint32_t source = uint32_t(shots.sources.size());
-    shots.sources.push_back({.scale = whole,
+    const uint32_t source = uint32_t(batch.sources.size());
+    batch.sources.push_back({.scale = whole,
                              .exact = true,
                              .planned = draw.count,
                              .unshadowed = whole * luminance(light.mean_radiance),
                              .light = {LightId::Kind::triangle, draw.light}});
-    shoot_at_triangle(scene, light, source, draw.count, r, diagonal_m, shots);
+    aim_at_triangle(scene, light, source, draw.count, r, diagonal_m, batch);
   }
 }
 
-/// Few lights: `samples` shots are shared out in proportion to what each brings, at least one to
-/// each while there are twice as many shots as lights. Where there are fewer, a light that deserves
-/// less than one gets one with that chance (systematic sampling), and counts for more then.
-void shoot_at_all(const scene::Scene& scene, const Lights& lights, int samples, const Receiver& r,
-                  float diagonal_m, Shots& shots) {
-  shots.whole.clear();
+/// Few lights: `samples` shadow rays are shared out in proportion to what each brings, at least one
+/// to each while there are twice as many shadow rays as lights. Where there are fewer, a light that
+/// deserves less than one gets one with that chance (systematic sampling), and counts for more
+/// then.
+void aim_at_all_triangles(const scene::Scene& scene, const Lights& lights, int samples,
+                          const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
+  batch.whole.clear();
   float total = 0;
   size_t shining = 0;
   for (const TriangleLight& light : lights.triangles) {
-    shots.whole.push_back(irradiance_per_radiance(light, r.position, r.normal));
-    total += shots.whole.back() * luminance(light.mean_radiance);
-    shining += shots.whole.back() > 0;
+    batch.whole.push_back(irradiance_per_radiance(light, r.position, r.normal));
+    total += batch.whole.back() * luminance(light.mean_radiance);
+    shining += batch.whole.back() > 0;
   }
   if (!(total > 0)) return;
   RandomStream random{hash64(r.seed, 0x11)};
   float owed = random.next();
   const float least = size_t(samples) >= 2 * shining ? 1.0f : 0.0f;
   for (size_t i = 0; i < lights.triangles.size(); ++i) {
-    if (shots.whole[i] <= 0) continue;
+    if (batch.whole[i] <= 0) continue;
     const TriangleLight& light = lights.triangles[i];
-    const float unshadowed = shots.whole[i] * luminance(light.mean_radiance);
+    const float unshadowed = batch.whole[i] * luminance(light.mean_radiance);
     const float deserved = std::max(least, float(samples) * unshadowed / total);
     uint32_t count = uint32_t(std::lround(deserved));
     if (deserved < 1) {
@@ -180,25 +182,25 @@ void shoot_at_all(const scene::Scene& scene, const Lights& lights, int samples, 
     }
     if (count == 0) continue;
     const float chance = std::min(1.0f, deserved);
-    const uint32_t source = uint32_t(shots.sources.size());
-    shots.sources.push_back({.scale = shots.whole[i] / chance,
+    const uint32_t source = uint32_t(batch.sources.size());
+    batch.sources.push_back({.scale = batch.whole[i] / chance,
                              .exact = true,
                              .planned = count,
                              .unshadowed = unshadowed / chance,
                              .light = {LightId::Kind::triangle, uint32_t(i)}});
-    shoot_at_triangle(scene, light, source, count, r, diagonal_m, shots);
+    aim_at_triangle(scene, light, source, count, r, diagonal_m, batch);
   }
 }
 
 }  // namespace
 
-void shoot_at_triangles(const scene::Scene& scene, const Lights& lights, int samples,
-                        const Receiver& r, float diagonal_m, Shots& shots) {
+void aim_at_triangles(const scene::Scene& scene, const Lights& lights, int samples,
+                      const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
   if (lights.triangles.empty()) return;
   if (lights.triangles.size() <= kMaxAll)
-    shoot_at_all(scene, lights, samples, r, diagonal_m, shots);
+    aim_at_all_triangles(scene, lights, samples, r, diagonal_m, batch);
   else
-    shoot_at_many(scene, lights, samples, r, diagonal_m, shots);
+    aim_at_drawn_triangles(scene, lights, samples, r, diagonal_m, batch);
 }
 
 }  // namespace luxel::light

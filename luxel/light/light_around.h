@@ -16,7 +16,7 @@
 
 namespace luxel::light {
 
-/// What the light is taken from: a scene with its lamps, and a solver's answer for E of every
+/// What the light is taken from: a scene with its lights, and a solver's answer for E of every
 /// surface's front side.
 struct LitScene {
   const scene::Scene& scene;
@@ -32,7 +32,7 @@ struct AroundParams {
 };
 
 /// E(n) [W/m^2] at a point in the air as spherical harmonics of the direction n that a surface
-/// there would face: E(n) = sum c_k Y_k(n), to 1 % of a lamp's light [Ramamoorthi01].
+/// there would face: E(n) = sum c_k Y_k(n), to 1 % of a light's irradiance [Ramamoorthi01].
 struct Probe {
   Vec3 position;
   std::array<Rgb, kSh2> irradiance{};
@@ -44,9 +44,9 @@ struct Probes {
   uint64_t rays = 0;
 };
 
-/// Light straight from lamps is taken for kProbeNormals directions, of which the least squares are
-/// the coefficients, with everything that direct_light knows; the rest comes by rays, whose
-/// radiance is convolved with the cosine band by band: factors pi, 2 pi / 3, pi / 4. Errors:
+/// Direct light of punctual lights is taken for kProbeNormals directions, of which the least
+/// squares are the coefficients, with everything that direct_light knows; the rest comes by rays,
+/// whose radiance is convolved with the cosine band by band: factors pi, 2 pi / 3, pi / 4. Errors:
 /// cancelled.
 Result<Probes> light_probes(const LitScene& lit, std::span<const Vec3> positions,
                             const AroundParams& params, Progress& progress);
@@ -62,7 +62,7 @@ struct BentLight {
 };
 
 /// From E for normals that are tilted by kTilt to four sides; light from below the surface itself
-/// does not count. Exact for one distant lamp that none of the four faces away from, and for a sky
+/// does not count. Exact for one distant light that none of the four faces away from, and for a sky
 /// of one colour. Spans are of one length. Errors: cancelled.
 Result<BentLight> bent_irradiance(const LitScene& lit, std::span<const Vec3> positions,
                                   std::span<const Vec3> normals,

@@ -18,9 +18,9 @@
 
 namespace luxel::light {
 
-/// per_light: lamps, instances that shine, and the surroundings, each by itself. groups: lamps of
-/// one name and surfaces that shine by materials of one name, numbers at names' ends left off, and
-/// the surroundings.
+/// per_light: punctual lights, instances that shine, and the surroundings, each by itself. groups:
+/// punctual lights of one name and surfaces that shine by materials of one name, numbers at names'
+/// ends left off, and the surroundings.
 enum class LayerMode : uint8_t { none, per_light, groups };
 
 inline constexpr size_t kMaxLayers = 64;
@@ -39,9 +39,9 @@ struct LightLayers {
   size_t size() const { return layers.size(); }
 };
 
-/// The layers of a scene's lights, mode none aside: lamps in the scene's order, then instances,
-/// then the surroundings, called "sky". Lights without power are left out. Error (bad_setting):
-/// more than kMaxLayers.
+/// The layers of a scene's lights, mode none aside: punctual lights in the scene's order, then
+/// instances, then the surroundings, called "sky". Lights without power are left out. Error
+/// (bad_setting): more than kMaxLayers.
 Result<LightLayers> light_layers(const scene::Scene& scene, const Lights& lights, LayerMode mode);
 
 /// Scales the layers' light at one place, channel by channel, so that it adds up to `whole`. Where

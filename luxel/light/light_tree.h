@@ -13,7 +13,7 @@ namespace luxel::light {
 struct LightNode {
   Vec3 centre;
   float radius_m = 0;  ///< of the sphere about the centre that holds all of it
-  float power = 0;  ///< triangles: sum of luminance(radiance) * area * sides; lamps: of intensity
+  float power = 0;  ///< triangles: sum of luminance(radiance) * area * sides; lights: of intensity
   /// How the power is spread over directions d: even + max(0, d . facing), at least about that.
   Vec3 facing{};
   float even = 1;

@@ -40,7 +40,8 @@ scene::Scene lamps(int count, uint64_t seed) {
 }
 
 float brings(const Lights& lights, uint32_t leaf, Vec3 position, Vec3 normal) {
-  const auto in = incidence_at(lights.punctual[lights.lamp_order[leaf]], lights.profiles, position);
+  const auto in =
+      incidence_at(lights.punctual[lights.punctual_order[leaf]], lights.profiles, position);
   return luminance(in.irradiance) * std::max(0.0f, dot(in.towards, normal));
 }
 
@@ -53,7 +54,7 @@ TEST(LightTree, IsDarkOnlyWhereEveryLightIs) {
     const Lights lights = collect_lights(lamps(24, seed));
     for (int k = 0; k < 200; ++k) {
       const Vec3 x = random_point(random), n = random_direction(random);
-      for (const LightNode& node : lights.lamp_nodes) {
+      for (const LightNode& node : lights.punctual_nodes) {
         if (importance_at(node, x, n) > 0) continue;
         ++dark;
         for (uint32_t i = node.first; i < node.first + node.count; ++i)
@@ -73,7 +74,7 @@ TEST(LightDraw, EveryLightIsDrawnAsOftenAsItsChanceSays) {
   const Vec3 x{0.1f, -1, 0.3f}, n{0, 1, 0};
   const LeafImportance leaf = [&](const LightNode& node) { return importance_at(node, x, n); };
   double light = 0, number = 0, expected_light = 0, expected_number = 0, draws = 0;
-  for (uint32_t i = 0; i < lights.lamp_order.size(); ++i) {
+  for (uint32_t i = 0; i < lights.punctual_order.size(); ++i) {
     const double e = double(brings(lights, i, x, n));
     expected_light += e, expected_number += e > 0;
   }
@@ -81,7 +82,7 @@ TEST(LightDraw, EveryLightIsDrawnAsOftenAsItsChanceSays) {
   LightDraws drawn;
   constexpr int kStarts = 20'000;
   for (int k = 0; k < kStarts; ++k) {
-    draw_lights(lights.lamp_nodes, x, n, leaf,
+    draw_lights(lights.punctual_nodes, x, n, leaf,
                 {.samples = 16, .start = (float(k) + 0.5f) / kStarts}, drawn);
     for (const LightDraw& d : drawn.draws) {
       const double e = double(brings(lights, d.light, x, n));

@@ -61,17 +61,17 @@ LightLeaf leaf_of(const TriangleLight& light, uint32_t index) {
   return leaf;
 }
 
-LightLeaf leaf_of(const scene::PunctualLight& lamp, std::span<const scene::LightProfile> profiles,
+LightLeaf leaf_of(const scene::PunctualLight& light, std::span<const scene::LightProfile> profiles,
                   uint32_t index) {
   LightLeaf leaf;
   leaf.index = index;
-  leaf.place = lamp.position;
-  leaf.bounds.extend(lamp.position);
-  leaf.node.power = luminance(lamp.intensity);
-  if (lamp.profile != scene::kNone)
-    leaf.node.power *= *std::ranges::max_element(profiles[lamp.profile].candela);
-  if (lamp.range_m > 0) leaf.node.reach_m = lamp.range_m;
-  set_cone(leaf.node, lamp.direction, scene::has_cone(lamp.kind) ? lamp.outer_cone_rad : kPi);
+  leaf.place = light.position;
+  leaf.bounds.extend(light.position);
+  leaf.node.power = luminance(light.intensity);
+  if (light.profile != scene::kNone)
+    leaf.node.power *= *std::ranges::max_element(profiles[light.profile].candela);
+  if (light.range_m > 0) leaf.node.reach_m = light.range_m;
+  set_cone(leaf.node, light.direction, scene::has_cone(light.kind) ? light.outer_cone_rad : kPi);
   return leaf;
 }
 
@@ -85,15 +85,15 @@ void build_triangle_tree(Lights& lights) {
   lights.triangles = std::move(sorted);
 }
 
-void build_lamp_tree(Lights& lights) {
+void build_punctual_tree(Lights& lights) {
   std::vector<LightLeaf> leaves;
   for (uint32_t i = 0; i < lights.punctual.size(); ++i) {
     if (!scene::has_position(lights.punctual[i].kind)) continue;
     const LightLeaf leaf = leaf_of(lights.punctual[i], lights.profiles, i);
     if (leaf.node.power > 0) leaves.push_back(leaf);
   }
-  lights.lamp_nodes = build_light_tree(leaves);
-  for (const LightLeaf& leaf : leaves) lights.lamp_order.push_back(leaf.index);
+  lights.punctual_nodes = build_light_tree(leaves);
+  for (const LightLeaf& leaf : leaves) lights.punctual_order.push_back(leaf.index);
 }
 
 /// I / d^2 times the range's window, the ramp between the cones and the candela of the profile.
@@ -153,7 +153,7 @@ Lights collect_lights(const scene::Scene& scene) {
     lights.triangles.insert(lights.triangles.end(), parts.begin(), parts.end());
   }
   build_triangle_tree(lights);
-  build_lamp_tree(lights);
+  build_punctual_tree(lights);
   return lights;
 }
 

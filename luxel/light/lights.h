@@ -37,9 +37,9 @@ struct Lights {
   size_t emissive_triangles = 0;         ///< of the scene: those in pieces count once
   std::vector<LightNode> nodes;          ///< of the triangles; node 0 is the root
   std::vector<scene::PunctualLight> punctual;
-  std::vector<uint32_t> lamp_order;           ///< point and spot lights as leaves of lamp_nodes
-  std::vector<LightNode> lamp_nodes;          ///< of those with any light
-  std::vector<scene::LightProfile> profiles;  ///< what lamps refer to
+  std::vector<uint32_t> punctual_order;       ///< point and spot lights as leaves of punctual_nodes
+  std::vector<LightNode> punctual_nodes;      ///< of those with any light
+  std::vector<scene::LightProfile> profiles;  ///< what lights refer to
   Surroundings around;                        ///< what rays see that leave the scene
 };
 
@@ -59,7 +59,7 @@ struct PunctualIncidence {
   float distance_m = INFINITY;
 };
 /// Point and spot: I / d^2 times glTF's range window and cone falloff [KHR_lights_punctual]; I of a
-/// lamp with a profile is that of the direction. `profiles` are the scene's.
+/// light with a profile is that of the direction. `profiles` are the scene's.
 PunctualIncidence incidence_at(const scene::PunctualLight& light,
                                std::span<const scene::LightProfile> profiles, Vec3 position);
 

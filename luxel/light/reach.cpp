@@ -26,7 +26,7 @@ constexpr double kParameterRounding = 1e-12;
 /// at most, and meet what is there with the precision of float.
 constexpr float kRayRounding = 0x1p-15f;
 
-/// Peaks that lie wider about their middle come from everywhere.
+/// Bright texels that lie wider about their middle come from everywhere.
 constexpr double kWidest = 80 * kPiDouble / 180;
 
 constexpr size_t kGrain = 256;
@@ -78,19 +78,21 @@ struct Cone {
   double half_angle = 0;
 };
 
-/// A cone that holds all peaks of the surroundings; nothing where it is too wide to tell anything.
-std::optional<Cone> cone_of_peaks(const scene::Environment& map, const Surroundings& around) {
+/// A cone that holds all bright texels of the surroundings; nothing where it is too wide to tell
+/// anything.
+std::optional<Cone> cone_of_bright_texels(const scene::Environment& map,
+                                          const Surroundings& around) {
   const auto middle = [&](uint32_t pixel) {
     const uint32_t width = uint32_t(map.width);
     return scene::direction_of(map, {(float(pixel % width) + 0.5f) / float(map.width),
                                      (float(pixel / width) + 0.5f) / float(map.height)});
   };
   Vec3 sum;
-  for (const uint32_t pixel : around.peak) sum += middle(pixel);
+  for (const uint32_t pixel : around.bright_texels) sum += middle(pixel);
   const Cone none{normalize(sum), 0};
   if (none.axis == Vec3{}) return std::nullopt;
   double least = 1;
-  for (const uint32_t pixel : around.peak)
+  for (const uint32_t pixel : around.bright_texels)
     least = std::min(least, double(dot(middle(pixel), none.axis)));
   // From the middle of a pixel to its edge along the meridian and, at most, along the equator.
   const double pixel = kPiDouble / (2 * map.height) + kPiDouble / map.width;
@@ -111,14 +113,14 @@ Box3 box_around(Vec3 centre, float radius_m) { return grown({centre, centre}, ra
 class Reach {
  public:
   Reach(const scene::Scene& scene, const Lights& lights, std::span<const Box3> boxes)
-      : lights_(lights), has_peaks_(!lights.around.peak.empty()) {
-    if (has_peaks_)
-      if (const auto cone = cone_of_peaks(scene.environment, lights.around))
-        peaks_ = directions_of(cone->axis, cone->half_angle);
-    for (const scene::PunctualLight& lamp : lights.punctual)
-      suns_.push_back(scene::has_position(lamp.kind)
+      : lights_(lights), has_bright_texels_(!lights.around.bright_texels.empty()) {
+    if (has_bright_texels_)
+      if (const auto cone = cone_of_bright_texels(scene.environment, lights.around))
+        bright_texels_ = directions_of(cone->axis, cone->half_angle);
+    for (const scene::PunctualLight& light : lights.punctual)
+      suns_.push_back(scene::has_position(light.kind)
                           ? Sides{}
-                          : directions_of(-lamp.direction, double(lamp.angular_radius_rad)));
+                          : directions_of(-light.direction, double(light.angular_radius_rad)));
     Box3 all = scene::world_bounds(scene);
     for (const Box3& box : boxes)
       if (!box.empty()) all.extend(box.lower), all.extend(box.upper);
@@ -129,17 +131,18 @@ class Reach {
 
   bool includes(const Box3& place) const {
     return std::any_of(boxes_.begin(), boxes_.end(), [&](const Box3& box) {
-      return around_crosses(place, box) || lamps_cross(place, box) || triangles_cross(place, box);
+      return around_crosses(place, box) || punctual_lights_cross(place, box) ||
+             triangles_cross(place, box);
     });
   }
 
  private:
   bool around_crosses(const Box3& place, const Box3& box) const {
-    if (!has_peaks_) return false;
-    return !peaks_ || sweeps_over(place, *peaks_, HUGE_VAL, box);
+    if (!has_bright_texels_) return false;
+    return !bright_texels_ || sweeps_over(place, *bright_texels_, HUGE_VAL, box);
   }
 
-  bool lamps_cross(const Box3& place, const Box3& box) const {
+  bool punctual_lights_cross(const Box3& place, const Box3& box) const {
     for (size_t k = 0; k < lights_.punctual.size(); ++k)
       if (max_component(lights_.punctual[k].intensity) > 0 && punctual_crosses(k, place, box))
         return true;
@@ -178,9 +181,10 @@ class Reach {
   }
 
   const Lights& lights_;
-  bool has_peaks_ = false;
-  std::optional<Sides> peaks_;  ///< of directions; nothing: from everywhere, where there are any
-  std::vector<Sides> suns_;     ///< the same of each directional lamp
+  bool has_bright_texels_ = false;
+  std::optional<Sides>
+      bright_texels_;        ///< of directions; nothing: from everywhere, where there are any
+  std::vector<Sides> suns_;  ///< the same of each directional light
   std::vector<Box3> boxes_;
 };
 

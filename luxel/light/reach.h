@@ -23,10 +23,10 @@ bool may_cross(const Box3& from, const Box3& to, const Box3& box);
 /// the cone counts as the box around its directions.
 bool may_cross(const Box3& from, Vec3 towards, float angular_radius_rad, const Box3& box);
 
-/// Per element: 1 where light from some lamp, emissive triangle or peak of the environment may
-/// cross one of `boxes` [m, world] on its way to within `radius_m` of the element. Lights that
-/// bring nothing there because of how they are turned count as well; those of no power and lamps
-/// out of range do not.
+/// Per element: 1 where light from some punctual light, emissive triangle or bright texel of the
+/// environment may cross one of `boxes` [m, world] on its way to within `radius_m` of the element.
+/// Lights that bring nothing there because of how they are turned count as well; those of no power
+/// and lights out of range do not.
 std::vector<uint8_t> elements_in_reach(const scene::Scene& scene,
                                        const transport::Elements& elements,
                                        std::span<const float> radius_m, const Lights& lights,

@@ -296,15 +296,15 @@ scene::Scene floor_under_sky(std::initializer_list<size_t> suns) {
   return scene;
 }
 
-TEST(ElementsInReach, AreTheShadowUnderPeaksOfASky) {
+TEST(ElementsInReach, AreTheShadowUnderBrightTexelsOfASky) {
   const scene::Scene scene = floor_under_sky({6 * 64 + 20, 6 * 64 + 21, 7 * 64 + 20});
   const Lights lights = collect_lights(scene);
-  ASSERT_EQ(lights.around.peak.size(), 3u);
+  ASSERT_EQ(lights.around.bright_texels.size(), 3u);
   const transport::Elements elements = floor_elements();
   const auto reach = reach_of(scene, 0);
   for (size_t i = 0; i < reach.size(); ++i)
     for (uint32_t k = 0; k < 64; ++k) {
-      const Vec3 d = sample_peaks(scene, lights.around, sobol_owen_2d(k, 5)).direction;
+      const Vec3 d = sample_bright_texels(scene, lights.around, sobol_owen_2d(k, 5)).direction;
       if (ray_meets(elements.position[i], d, HUGE_VAL, kBox)) {
         ASSERT_EQ(reach[i], 1) << i;
       }
@@ -320,7 +320,7 @@ TEST(ElementsInReach, AreTheShadowUnderPeaksOfASky) {
     }
 }
 
-TEST(ElementsInReach, AreAllWherePeaksAreAllAround) {
+TEST(ElementsInReach, AreAllWhereBrightTexelsAreAllAround) {
   const std::vector<uint8_t> all(80 * 80, 1);
   EXPECT_EQ(reach_of(floor_under_sky({15 * 64 + 3, 15 * 64 + 35}), 0), all);
   EXPECT_EQ(reach_of(floor_under_sky({12 * 64 + 3, 12 * 64 + 35}), 0, {}),

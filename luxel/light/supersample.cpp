@@ -10,8 +10,8 @@
 #include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
-#include "luxel/light/direct_shots.h"
 #include "luxel/light/kept_light.h"
+#include "luxel/light/shadow_rays.h"
 #include "luxel/transport/backs_seen.h"
 
 namespace luxel::light {
@@ -23,30 +23,30 @@ constexpr int kEnclosureRays = 16, kEnclosureRaysOfTexel = 64;
 constexpr uint64_t kPointSeed = 0x70e1;
 
 /// What all points share.
-struct Place {
+struct PointScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
   float diagonal_m;
 };
 
 /// Whether a point lies inside a solid; of each place the same answer in every bake.
-bool is_enclosed(const Place& at, const Receiver& r, int rays = kEnclosureRays) {
+bool is_enclosed(const PointScene& at, const Receiver& r, int rays = kEnclosureRays) {
   return transport::is_enclosed(at.scene, at.tracer, r.origin, r.normal, rays, at.diagonal_m);
 }
 
-Receiver receiver_at(const Place& at, const transport::SmoothPoint& s, uint64_t seed) {
+Receiver receiver_at(const PointScene& at, const transport::SmoothPoint& s, uint64_t seed) {
   return {s.position, s.normal, s.geometric_normal,
           trace::offset_origin(s.position, s.geometric_normal, at.diagonal_m), seed};
 }
 
 /// Only to be asked whether it is enclosed: it has no seed.
-Receiver own_receiver(const Place& at, const transport::Elements& elements, size_t i) {
+Receiver own_receiver(const PointScene& at, const transport::Elements& elements, size_t i) {
   return receiver_at(at, {elements.position[i], elements.normal[i], elements.geometric_normal[i]},
                      0);
 }
 
 /// Whether the sample of a texel has the backs of some surfaces before it.
-bool sees_backs(const Place& at, const Receiver& own) {
+bool sees_backs(const PointScene& at, const Receiver& own) {
   return transport::backs_in(transport::backs_seen(at.scene, at.tracer, own.origin, own.normal,
                                                    kEnclosureRays)) > 0;
 }
@@ -100,16 +100,16 @@ int samples_per_point(int samples) { return std::max(std::min(samples, 8), sampl
 constexpr int kBorderPoints = 8;
 
 /// Buffers of one thread.
-struct PointWork {
+struct PointBuffers {
   std::vector<scene::SurfacePoint> spread;
   std::vector<Receiver> receivers;
   std::vector<LightAt> light;
-  Shots shots;
+  ShadowRayBatch batch;
 };
 
 /// The direct light at work.spread, the points of texel `i`.
-void light_points(const Place& place, const Lights& lights, const DirectParams& each, size_t i,
-                  PointWork& work) {
+void light_points(const PointScene& place, const Lights& lights, const DirectParams& each, size_t i,
+                  PointBuffers& work) {
   work.receivers.clear();
   for (const scene::SurfacePoint& p : work.spread) {
     const uint64_t seed = hash64(hash64(each.seed, kPointSeed + work.receivers.size()), i);
@@ -117,7 +117,7 @@ void light_points(const Place& place, const Lights& lights, const DirectParams& 
   }
   work.light.resize(work.receivers.size());
   direct_light_at(place.scene, lights, place.tracer, each, work.receivers, place.diagonal_m,
-                  work.shots, work.light);
+                  work.batch, work.light);
 }
 
 }  // namespace
@@ -153,7 +153,7 @@ Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atl
   std::vector<uint32_t> all(map.texels.size());
   std::iota(all.begin(), all.end(), 0u);
   const atlas::Cover cover = atlas::cover_of(atlas, map, all);
-  const Place place{scene, tracer, scene::world_bounds(scene).diagonal()};
+  const PointScene place{scene, tracer, scene::world_bounds(scene).diagonal()};
   std::vector<std::vector<Receiver>> found(all.size());
   progress.begin("footprints", all.size());
   parallel_for(all.size(), kGrain, [&](size_t begin, size_t end) {
@@ -216,7 +216,7 @@ std::vector<uint32_t> border_texels(const atlas::Atlas& atlas, const atlas::Texe
 
 /// Of `which`, those whose light differs at some of a few points: where a chart ends there is no
 /// neighbour who would tell of a shadow's edge. Returns the number of rays.
-Result<uint64_t> keep_uneven(const Place& place, const atlas::Atlas& atlas,
+Result<uint64_t> keep_uneven(const PointScene& place, const atlas::Atlas& atlas,
                              const atlas::TexelMap& map, const Lights& lights,
                              const SupersampleParams& params, const DirectLight& direct,
                              std::vector<uint32_t>& which, Progress& progress) {
@@ -228,14 +228,14 @@ Result<uint64_t> keep_uneven(const Place& place, const atlas::Atlas& atlas,
   progress.begin("supersample", which.size());
   parallel_for(which.size(), kGrain, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
-    PointWork work;
+    PointBuffers work;
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
       const uint32_t i = which[k];
       atlas::spread_points(atlas, map.texels[i], cover.of(k), kBorderPoints, each.seed,
                            work.spread);
       light_points(place, lights, each, i, work);
-      traced += work.shots.rays.size();
+      traced += work.batch.rays.size();
       for (const LightAt& l : work.light)
         if (differ({l.irradiance, l.variance}, {direct.irradiance[i], direct.variance[i]},
                    params.threshold))
@@ -270,7 +270,7 @@ Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& 
                                  std::span<const uint32_t> among, const SupersampleParams& params,
                                  DirectLight& direct, Progress& progress) {
   if (params.points == 1) return Supersampled{};
-  const Place place{scene, tracer, scene::world_bounds(scene).diagonal()};
+  const PointScene place{scene, tracer, scene::world_bounds(scene).diagonal()};
   std::vector<uint32_t> uneven, borders, which;
   std::ranges::set_intersection(uneven_texels(atlas, map, direct, params.threshold), among,
                                 std::back_inserter(uneven));
@@ -332,7 +332,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
                                     Progress& progress) {
   LUXEL_CHECK(params.points >= 1);
   const atlas::Cover cover = atlas::cover_of(atlas, map, which);
-  const Place place{scene, tracer, scene::world_bounds(scene).diagonal()};
+  const PointScene place{scene, tracer, scene::world_bounds(scene).diagonal()};
   DirectParams each = params.direct;
   each.samples = samples_per_point(params.direct.samples);
   std::atomic<uint64_t> rays{0};
@@ -347,7 +347,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
       rays += *found;
       return progress.skip(end - begin);
     }
-    PointWork work;
+    PointBuffers work;
     std::vector<PointLight> points;
     std::vector<Rgb> by_layer(each.layers ? each.layers->size() : 0);
     uint64_t traced = 0;
@@ -365,7 +365,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
       atlas::spread_points(atlas, map.texels[i], cover.of(k), params.points, each.seed,
                            work.spread);
       light_points(place, lights, each, i, work);
-      traced += work.shots.rays.size();
+      traced += work.batch.rays.size();
       for (size_t j = 0; j < work.light.size(); ++j) {
         // Where a wall stands on the surface, its inside is dark, and nobody sees it; under the
         // edge of a shell without a bottom, whose backs the texel sees, it need not be dark.
@@ -374,7 +374,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
         traced += doubtful ? uint64_t(kEnclosureRays) : 0;
         if (doubtful && is_enclosed(place, work.receivers[j])) continue;
         points.push_back({work.receivers[j].position, light.irradiance, light.variance});
-        if (each.layers) add_light_by_layer(work.shots, j, *each.layers, {1, 1, 1}, by_layer);
+        if (each.layers) add_light_by_layer(work.batch, j, *each.layers, {1, 1, 1}, by_layer);
       }
       if (points.empty()) continue;
       Rgb sum{};

@@ -14,9 +14,9 @@ namespace {
 
 /// Light of up to so many times the mean is left to rays with the density of the cosine: a sky's
 /// gradient and its clouds, not its sun.
-constexpr double kPeak = 4;
+constexpr double kBrightTexel = 4;
 
-/// The limit that is kPeak times the mean of min(L, limit): from above, until it stays.
+/// The limit that is kBrightTexel times the mean of min(L, limit): from above, until it stays.
 double limit_of(const scene::Environment& map) {
   double limit = HUGE_VAL;
   for (int round = 0; round < 64; ++round) {
@@ -28,7 +28,7 @@ double limit_of(const scene::Environment& map) {
                         double(luminance(map.radiance[size_t(y) * size_t(map.width) + size_t(x)])));
       sum += row * scene::pixel_solid_angle(map, y);
     }
-    const double next = kPeak * sum / (4 * kPiDouble);
+    const double next = kBrightTexel * sum / (4 * kPiDouble);
     if (next >= limit * (1 - 1e-3)) break;
     limit = next;
   }
@@ -54,25 +54,25 @@ Rgb soft_part(const Surroundings& s, Rgb l) {
 }
 
 /// Where in `below` the search for a part of the power begins: for so many parts as there are
-/// peaks.
+/// bright texels.
 std::vector<uint32_t> guide_of(std::span<const double> below) {
-  const size_t peaks = below.size() - 1;
-  std::vector<uint32_t> out(peaks);
+  const size_t count = below.size() - 1;
+  std::vector<uint32_t> out(count);
   uint32_t k = 0;
-  for (size_t part = 0; part < peaks; ++part) {
+  for (size_t part = 0; part < count; ++part) {
     // Not beyond, whatever is rounded.
-    const double at = (double(part) / double(peaks) - 1e-12) * below.back();
-    while (k + 1 < peaks && below[k + 1] <= at) ++k;
+    const double at = (double(part) / double(count) - 1e-12) * below.back();
+    while (k + 1 < count && below[k + 1] <= at) ++k;
     out[part] = k;
   }
   return out;
 }
 
-/// The peak at a part u of the power, in [0, 1).
-size_t peak_at(const Surroundings& s, double u) {
+/// The bright texel at a part u of the power, in [0, 1).
+size_t bright_texel_at(const Surroundings& s, double u) {
   const double at = u * s.below.back();
-  size_t k = s.guide[size_t(u * double(s.peak.size()))];
-  while (k + 1 < s.peak.size() && s.below[k + 1] <= at) ++k;
+  size_t k = s.guide[size_t(u * double(s.bright_texels.size()))];
+  while (k + 1 < s.bright_texels.size() && s.below[k + 1] <= at) ++k;
   return k;
 }
 
@@ -87,14 +87,14 @@ Surroundings surroundings_of(const scene::Scene& scene) {
   for (int y = 0; y <= map.height; ++y)
     out.row_cosine.push_back(std::cos(kPiDouble * y / map.height));
   for (uint32_t i = 0; i < map.radiance.size(); ++i)
-    if (luminance(map.radiance[i]) > out.limit) out.peak.push_back(i);
+    if (luminance(map.radiance[i]) > out.limit) out.bright_texels.push_back(i);
   const auto code = [&](uint32_t i) {
     return morton(i % uint32_t(map.width), i / uint32_t(map.width));
   };
-  std::sort(out.peak.begin(), out.peak.end(),
+  std::sort(out.bright_texels.begin(), out.bright_texels.end(),
             [&](uint32_t a, uint32_t b) { return code(a) < code(b); });
   out.below.push_back(0);
-  for (const uint32_t i : out.peak) {
+  for (const uint32_t i : out.bright_texels) {
     const double over = double(luminance(map.radiance[i])) - double(out.limit);
     out.below.push_back(out.below.back() +
                         over * scene::pixel_solid_angle(map, int(i) / map.width));
@@ -123,15 +123,15 @@ void soft_radiance(const scene::Scene& scene, const Surroundings& s,
   }
 }
 
-PeakSample sample_peaks(const scene::Scene& scene, const Surroundings& s, Vec2 u) {
-  LUXEL_CHECK(!s.peak.empty());
+BrightTexelSample sample_bright_texels(const scene::Scene& scene, const Surroundings& s, Vec2 u) {
+  LUXEL_CHECK(!s.bright_texels.empty());
   const scene::Environment& map = scene.environment;
   const double power = s.below.back();
   const double at = double(u.x) * power;
-  const size_t k = peak_at(s, double(u.x));
+  const size_t k = bright_texel_at(s, double(u.x));
   // What is left of u.x within the pixel's share is uniform again.
   const double within = std::clamp((at - s.below[k]) / (s.below[k + 1] - s.below[k]), 0.0, 1.0);
-  const uint32_t pixel = s.peak[k];
+  const uint32_t pixel = s.bright_texels[k];
   const int x = int(pixel) % map.width, y = int(pixel) / map.width;
   // Uniform over the pixel's solid angle: linear in the cosine of the angle from up.
   const double upper = s.row_cosine[size_t(y)], lower = s.row_cosine[size_t(y) + 1];

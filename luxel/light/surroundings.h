@@ -1,5 +1,5 @@
 // The light around a scene in two layers: a soft one, which rays find by themselves, and its
-// peaks, above all a sun in a map, which are aimed at.
+// bright texels, above all a sun in a map, which are aimed at.
 //
 //   L = min(L, limit) + (L - limit)+
 //
@@ -18,21 +18,22 @@
 namespace luxel::light {
 
 struct Surroundings {
-  Rgb background{};            ///< radiance of rays that leave the scene, besides that of the map
-  float limit = INFINITY;      ///< luminance of the map [W/(sr m^2)] at which peaks begin
-  std::vector<uint32_t> peak;  ///< pixels of the map that rise above the limit, in Morton order
-  /// Power of all peaks before each one, the integral of their luminance [W/m^2]; one extra entry,
-  /// the power of all.
+  Rgb background{};        ///< radiance of rays that leave the scene, besides that of the map
+  float limit = INFINITY;  ///< luminance of the map [W/(sr m^2)] at which bright texels begin
+  std::vector<uint32_t>
+      bright_texels;  ///< pixels of the map that rise above the limit, in Morton order
+  /// Power of all bright texels before each one, the integral of their luminance [W/m^2]; one extra
+  /// entry, the power of all.
   std::vector<double> below;
-  /// Per part of the power, of as many as there are peaks, the peak in which it begins, or one
-  /// before it.
+  /// Per part of the power, of as many as there are bright texels, the bright texel in which it
+  /// begins, or one before it.
   std::vector<uint32_t> guide;
   /// Cosine of the angle from up where each row of the map begins; one extra entry, its end.
   std::vector<double> row_cosine;
 };
 
-/// Finds the peaks of the scene's map. The limit is kPeak times the mean luminance of what lies
-/// below it.
+/// Finds the bright texels of the scene's map. The limit is kBrightTexel times the mean luminance
+/// of what lies below it.
 Surroundings surroundings_of(const scene::Scene& scene);
 
 /// Radiance of the soft layer, background included.
@@ -42,13 +43,13 @@ Rgb soft_radiance(const scene::Scene& scene, const Surroundings& s, Vec3 directi
 void soft_radiance(const scene::Scene& scene, const Surroundings& s,
                    std::span<const Vec3> directions, std::vector<Rgb>& out);
 
-/// A direction towards a peak. Zero power: there is none, do not ask.
-struct PeakSample {
+/// A direction towards a bright texel. Zero power: there is none, do not ask.
+struct BrightTexelSample {
   Vec3 direction;
-  Rgb radiance_over_pdf;  ///< (L - limit)+ / density: its mean is the integral of the peaks
+  Rgb radiance_over_pdf;  ///< (L - limit)+ / density: its mean is the integral of the bright texels
 };
 /// u in [0, 1)^2, of a sequence that spreads evenly.
-PeakSample sample_peaks(const scene::Scene& scene, const Surroundings& s, Vec2 u);
+BrightTexelSample sample_bright_texels(const scene::Scene& scene, const Surroundings& s, Vec2 u);
 
 /// The cosine with which light from `direction` counts at a point whose shading normal differs from
 /// that of its triangle: directions below the triangle look at their mirror image above it, so that

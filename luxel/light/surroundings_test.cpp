@@ -44,14 +44,14 @@ Rgb integral(const scene::Environment& map, const F& f) {
 TEST(Surroundings, LayersSumToTheMap) {
   const scene::Scene scene = sky_with_sun();
   const Surroundings s = surroundings_of(scene);
-  EXPECT_EQ(s.peak.size(), 4u);
+  EXPECT_EQ(s.bright_texels.size(), 4u);
   const auto up = [](Rgb l, Vec3 d) { return l * std::max(0.0f, d.y); };
   const Rgb whole = integral(scene.environment, up);
   Rgb sum =
       integral(scene.environment, [&](Rgb, Vec3 d) { return up(soft_radiance(scene, s, d), d); });
   constexpr uint32_t kSamples = 4096;
   for (uint32_t k = 0; k < kSamples; ++k) {
-    const PeakSample p = sample_peaks(scene, s, sobol_owen_2d(k, 3));
+    const BrightTexelSample p = sample_bright_texels(scene, s, sobol_owen_2d(k, 3));
     sum += up(p.radiance_over_pdf, p.direction) / float(kSamples);
   }
   // Samples are shared out over the four pixels to one in 4,096, of a sun that brings nearly all.
@@ -73,12 +73,12 @@ TEST(Surroundings, SoftLightEndsAtTheLimit) {
   EXPECT_LT(s.limit, 4 * 0.5f);
 }
 
-TEST(Surroundings, AMapOfOneColourHasNoPeaks) {
+TEST(Surroundings, AMapOfOneColourHasNoBrightTexels) {
   scene::Scene scene;
   scene.environment = {8, 4, std::vector<Rgb>(32, {3, 3, 3}), 0};
   scene.background = {1, 0, 0};
   const Surroundings s = surroundings_of(scene);
-  EXPECT_TRUE(s.peak.empty());
+  EXPECT_TRUE(s.bright_texels.empty());
   EXPECT_EQ(soft_radiance(scene, s, {0, 1, 0}), (Rgb{4, 3, 3}));
 }
 
@@ -87,7 +87,7 @@ TEST(Surroundings, ABlackMapIsDark) {
   scene::Scene scene;
   scene.environment = {8, 4, std::vector<Rgb>(32), 0};
   const Surroundings s = surroundings_of(scene);
-  EXPECT_TRUE(s.peak.empty());
+  EXPECT_TRUE(s.bright_texels.empty());
   EXPECT_EQ(soft_radiance(scene, s, {1, 0, 0}), (Rgb{}));
 }
 
@@ -103,27 +103,27 @@ TEST(Surroundings, FoldingKeepsTheIntegralOfTheCosine) {
   EXPECT_NEAR(sum * 4 * kPiDouble / kSamples, kPiDouble, 1e-3);
 }
 
-// The guide leads to the same peak as a search through all: shares of what they bring are those of
-// their power, for which each must be met by just its part of u.
-TEST(Surroundings, PeaksAreMetByTheirPower) {
+// The guide leads to the same bright texel as a search through all: shares of what they bring are
+// those of their power, for which each must be met by just its part of u.
+TEST(Surroundings, BrightTexelsAreMetByTheirPower) {
   scene::Scene scene;
   scene::Environment& map = scene.environment;
   map = {64, 32, std::vector<Rgb>(64 * 32, {0.1f, 0.1f, 0.1f}), 0};
   for (uint32_t k = 0; k < 50; ++k)  // from bright to a thousand times as bright
     map.radiance[(k * 37) % map.radiance.size()] = Rgb{1, 1, 1} * std::pow(1.15f, float(k)) * 10.0f;
   const Surroundings s = surroundings_of(scene);
-  ASSERT_GT(s.peak.size(), 20u);
+  ASSERT_GT(s.bright_texels.size(), 20u);
   constexpr int kSteps = 100000;
   std::vector<double> met(map.radiance.size());
   for (int k = 0; k < kSteps; ++k) {
-    const PeakSample p = sample_peaks(scene, s, {(float(k) + 0.5f) / kSteps, 0.5f});
+    const BrightTexelSample p = sample_bright_texels(scene, s, {(float(k) + 0.5f) / kSteps, 0.5f});
     met[scene::pixel_towards(map, p.direction)] += 1.0 / kSteps;
   }
-  for (size_t k = 0; k < s.peak.size(); ++k) {
+  for (size_t k = 0; k < s.bright_texels.size(); ++k) {
     const double share = (s.below[k + 1] - s.below[k]) / s.below.back();
     // At both ends of its part a step may be missed or taken; and at its pixel's border, by
     // rounding.
-    EXPECT_NEAR(met[s.peak[k]], share, 3.0 / kSteps) << k;
+    EXPECT_NEAR(met[s.bright_texels[k]], share, 3.0 / kSteps) << k;
   }
 }
 

@@ -146,7 +146,7 @@ Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLi
 
 }  // namespace
 
-Status denoise(const TexelPlaces& places, std::span<const NoisyLight> parts,
+Status denoise(const TexelGeometry& places, std::span<const NoisyLight> parts,
                const DenoiseParams& params, Progress& progress) {
   for (const NoisyLight& part : parts) {
     LUXEL_CHECK(part.values.size() == places.map.texels.size());

@@ -1,4 +1,4 @@
-// Takes the grain of sampling out of irradiance without touching what is light.
+// Takes the noise of sampling out of irradiance without touching what is light.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace luxel::post {
 
 /// Where the texels of a map lie; spans have one entry per texel.
-struct TexelPlaces {
+struct TexelGeometry {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;
   const atlas::TexelMap& map;
@@ -47,7 +47,7 @@ std::string_view denoiser_name();
 /// variances explain (propagation and separation [Polzehl00, Polzehl06]; docs/method/denoise.md).
 /// Texels without variance around them keep their values bit for bit. Values stay finite and
 /// non-negative. The same bits for any number of threads. Errors: cancelled.
-Status denoise(const TexelPlaces& places, std::span<const NoisyLight> parts,
+Status denoise(const TexelGeometry& places, std::span<const NoisyLight> parts,
                const DenoiseParams& params, Progress& progress);
 
 }  // namespace luxel::post

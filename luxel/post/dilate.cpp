@@ -8,22 +8,22 @@
 namespace luxel::post {
 namespace {
 
-struct Place {
+struct Pixel {
   int x, y;
 };
 
-bool covered(const image::Image& lightmap, Place p) { return lightmap.at(p.x, p.y)[3] > 0; }
+bool covered(const image::Image& lightmap, Pixel p) { return lightmap.at(p.x, p.y)[3] > 0; }
 
-/// Calls visit(Place) for the neighbours of p inside the image, row by row.
+/// Calls visit(Pixel) for the neighbours of p inside the image, row by row.
 template <class Visit>
-void for_neighbours(const image::Image& lightmap, Place p, const Visit& visit) {
+void for_neighbours(const image::Image& lightmap, Pixel p, const Visit& visit) {
   for (int y = std::max(p.y - 1, 0); y <= std::min(p.y + 1, lightmap.height - 1); ++y)
     for (int x = std::max(p.x - 1, 0); x <= std::min(p.x + 1, lightmap.width - 1); ++x)
-      if (x != p.x || y != p.y) visit(Place{x, y});
+      if (x != p.x || y != p.y) visit(Pixel{x, y});
 }
 
-std::vector<Place> covered_places(const image::Image& lightmap) {
-  std::vector<Place> places;
+std::vector<Pixel> covered_pixels(const image::Image& lightmap) {
+  std::vector<Pixel> places;
   for (int y = 0; y < lightmap.height; ++y)
     for (int x = 0; x < lightmap.width; ++x)
       if (covered(lightmap, {x, y})) places.push_back({x, y});
@@ -31,11 +31,11 @@ std::vector<Place> covered_places(const image::Image& lightmap) {
 }
 
 /// The empty texels that touch `places`, each once.
-std::vector<Place> ring_around(const image::Image& lightmap, const std::vector<Place>& places,
+std::vector<Pixel> ring_around(const image::Image& lightmap, const std::vector<Pixel>& places,
                                std::vector<bool>& listed) {
-  std::vector<Place> ring;
-  for (const Place place : places)
-    for_neighbours(lightmap, place, [&](Place p) {
+  std::vector<Pixel> ring;
+  for (const Pixel place : places)
+    for_neighbours(lightmap, place, [&](Pixel p) {
       const size_t i = size_t(p.y) * size_t(lightmap.width) + size_t(p.x);
       if (listed[i] || covered(lightmap, p)) return;
       listed[i] = true;
@@ -44,10 +44,10 @@ std::vector<Place> ring_around(const image::Image& lightmap, const std::vector<P
   return ring;
 }
 
-Rgb mean_of_covered_neighbours(const image::Image& lightmap, Place place) {
+Rgb mean_of_covered_neighbours(const image::Image& lightmap, Pixel place) {
   Rgb sum{};
   int count = 0;
-  for_neighbours(lightmap, place, [&](Place p) {
+  for_neighbours(lightmap, place, [&](Pixel p) {
     if (!covered(lightmap, p)) return;
     sum += lightmap.rgb(p.x, p.y);
     ++count;
@@ -88,13 +88,13 @@ void dilate(image::Image& lightmap, int rings) {
   LUXEL_CHECK(lightmap.channels == 4);
   if (rings < 0) rings = std::numeric_limits<int>::max();
   std::vector<bool> listed(size_t(lightmap.width) * size_t(lightmap.height));
-  std::vector<Place> front = covered_places(lightmap);
+  std::vector<Pixel> front = covered_pixels(lightmap);
   for (int ring = 0; ring < rings && !front.empty(); ++ring) {
     front = ring_around(lightmap, front, listed);
     // All values of a ring come from the rings before it: first compute, then write.
     std::vector<Rgb> values;
     values.reserve(front.size());
-    for (const Place p : front) values.push_back(mean_of_covered_neighbours(lightmap, p));
+    for (const Pixel p : front) values.push_back(mean_of_covered_neighbours(lightmap, p));
     for (size_t i = 0; i < front.size(); ++i) {
       lightmap.set_rgb(front[i].x, front[i].y, values[i]);
       lightmap.at(front[i].x, front[i].y)[3] = 0.5f;

@@ -5,7 +5,7 @@
 #include "luxel/base/check.h"
 #include "luxel/post/seams.h"
 #include "luxel/post/touching.h"
-#include "luxel/scene/places.h"
+#include "luxel/scene/position_numbers.h"
 
 namespace luxel::post {
 namespace {
@@ -20,7 +20,7 @@ struct HalfEdge {
 
 /// Sorted, so that the sides of an edge follow each other.
 std::vector<HalfEdge> half_edges(const scene::Mesh& mesh) {
-  const std::vector<uint32_t> place = scene::place_numbers(mesh.positions);
+  const std::vector<uint32_t> place = scene::position_numbers(mesh.positions);
   std::vector<HalfEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (uint32_t t = 0; t < mesh.triangles.size(); ++t)

@@ -43,9 +43,9 @@ struct Grid {
   }
 };
 
-float median_spacing(const std::vector<Place>& places) {
+float median_spacing(const std::vector<SurfaceSample>& places) {
   std::vector<float> sizes;
-  for (const Place& p : places)
+  for (const SurfaceSample& p : places)
     if (p.spacing > 0) sizes.push_back(p.spacing);
   if (sizes.empty()) return 0;
   const auto middle = sizes.begin() + std::ptrdiff_t(sizes.size() / 2);
@@ -53,9 +53,9 @@ float median_spacing(const std::vector<Place>& places) {
   return *middle;
 }
 
-Grid make_grid(const std::vector<Place>& places, float cell_m) {
+Grid make_grid(const std::vector<SurfaceSample>& places, float cell_m) {
   Box3 box;
-  for (const Place& p : places) box.extend(p.position);
+  for (const SurfaceSample& p : places) box.extend(p.position);
   Grid grid;
   grid.lower = box.lower;
   // 21 bits an axis.
@@ -97,7 +97,7 @@ struct Candidate {
 
 /// Neighbours of texel i that its window in the atlas does not hold.
 void find_far(const Neighbourhood& n, const Grid& grid, uint32_t i, std::vector<Candidate>& found) {
-  const Place& own = n.place[i];
+  const SurfaceSample& own = n.place[i];
   const Around self = around(own, float(n.radius), n.min_cosine);
   const atlas::Texel& t = n.map->texels[i];
   // A texel far larger than most looks no farther than two cells.
@@ -126,7 +126,7 @@ void find_far(const Neighbourhood& n, const Grid& grid, uint32_t i, std::vector<
 
 }  // namespace
 
-Result<Neighbourhood> make_neighbourhood(const TexelPlaces& places, const DenoiseParams& params,
+Result<Neighbourhood> make_neighbourhood(const TexelGeometry& places, const DenoiseParams& params,
                                          Progress& progress) {
   const size_t count = places.map.texels.size();
   LUXEL_CHECK(places.position.size() == count && places.normal.size() == count);

@@ -9,7 +9,7 @@
 namespace luxel::post {
 
 /// A texel's sample in the world.
-struct Place {
+struct SurfaceSample {
   Vec3 position;
   float spacing = 0;  ///< side of a texel of its chart in the world [m]; 0: takes no part
   Vec3 normal;
@@ -28,12 +28,12 @@ struct Neighbourhood {
   const atlas::TexelMap* map = nullptr;
   int radius = 0;  ///< of windows of the atlas, in texels
   float min_cosine = 0;
-  std::vector<Place> place;
+  std::vector<SurfaceSample> place;
   std::vector<FarBlock> far;
 };
 
 /// Errors: cancelled.
-Result<Neighbourhood> make_neighbourhood(const TexelPlaces& places, const DenoiseParams& params,
+Result<Neighbourhood> make_neighbourhood(const TexelGeometry& places, const DenoiseParams& params,
                                          Progress& progress);
 
 /// A neighbour's place in the tangent plane of a texel, in texels, and how far it counts: 0 on
@@ -45,7 +45,7 @@ struct Neighbour {
 
 /// A texel that looks around, and what of that does not depend on whom it sees.
 struct Around {
-  Place own;
+  SurfaceSample own;
   Frame frame;
   float min_cosine = 0;
   float texels_per_metre = 0;
@@ -54,7 +54,7 @@ struct Around {
 };
 
 /// `radius` in texels.
-inline Around around(const Place& own, float radius, float min_cosine) {
+inline Around around(const SurfaceSample& own, float radius, float min_cosine) {
   const float scale = own.spacing > 0 ? 1 / own.spacing : 0.0f;
   return {own,   frame_around(own.normal),          min_cosine,
           scale, scale * scale / (radius * radius), 1 / (1 - min_cosine)};
@@ -63,7 +63,7 @@ inline Around around(const Place& own, float radius, float min_cosine) {
 /// The weight falls with the square of the distance and with the angle between the normals. Both
 /// points must lie near each other's tangent plane: a quarter of a texel, or as far as a sphere
 /// rises whose normal turns by 0.4 over that distance.
-inline Neighbour neighbour(const Around& a, const Place& b) {
+inline Neighbour neighbour(const Around& a, const SurfaceSample& b) {
   const Vec3 d = b.position - a.own.position;
   const float d2 = dot(d, d);
   const float near = 1 - d2 * a.per_reach2;

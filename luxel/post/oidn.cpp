@@ -14,7 +14,7 @@ std::string_view denoiser_name() { return kHasOidn ? "oidn" : "luxel"; }
 
 #ifdef LUXEL_OIDN
 
-Status denoise_with_oidn(const TexelPlaces& places, std::span<const NoisyLight> parts,
+Status denoise_with_oidn(const TexelGeometry& places, std::span<const NoisyLight> parts,
                          Progress& progress) {
   oidn::DeviceRef device = oidn::newDevice(oidn::DeviceType::CPU);
   device.commit();
@@ -45,7 +45,7 @@ Status denoise_with_oidn(const TexelPlaces& places, std::span<const NoisyLight> 
 
 #else
 
-Status denoise_with_oidn(const TexelPlaces&, std::span<const NoisyLight>, Progress&) {
+Status denoise_with_oidn(const TexelGeometry&, std::span<const NoisyLight>, Progress&) {
   return fail(ErrorCode::bad_setting, "this build has no Open Image Denoise");
 }
 

@@ -13,7 +13,7 @@ inline constexpr bool kHasOidn = false;
 
 /// Its filter for lightmaps over the square of the atlas, gaps filled from their neighbours first.
 /// It knows neither charts nor variances, and promises no same bits. Errors: what the library says.
-Status denoise_with_oidn(const TexelPlaces& places, std::span<const NoisyLight> parts,
+Status denoise_with_oidn(const TexelGeometry& places, std::span<const NoisyLight> parts,
                          Progress& progress);
 
 }  // namespace luxel::post

@@ -54,36 +54,39 @@ size_t pick(std::span<const double> below, double u) {
 
 /// KHR_lights_punctual: I / d^2, a window that reaches zero at the range, a squared ramp in the
 /// cosine between the spot's cones; a profile's candela.
-float falloff(const scene::Scene& scene, const scene::PunctualLight& lamp, Vec3 towards,
+float falloff(const scene::Scene& scene, const scene::PunctualLight& punctual, Vec3 towards,
               float distance) {
   float f = 1 / (distance * distance);
-  if (lamp.profile != scene::kNone)
-    f *= scene::candela_at(scene.profiles[lamp.profile], lamp.direction, lamp.side, -towards);
-  if (lamp.range_m > 0) f *= std::clamp(1 - std::pow(distance / lamp.range_m, 4.0f), 0.0f, 1.0f);
-  if (!scene::has_cone(lamp.kind)) return f;
-  const float outer = std::cos(lamp.outer_cone_rad);
-  const float width = std::max(0.001f, std::cos(lamp.inner_cone_rad) - outer);
-  const float ramp = std::clamp((dot(-towards, lamp.direction) - outer) / width, 0.0f, 1.0f);
+  if (punctual.profile != scene::kNone)
+    f *= scene::candela_at(scene.profiles[punctual.profile], punctual.direction, punctual.side,
+                           -towards);
+  if (punctual.range_m > 0)
+    f *= std::clamp(1 - std::pow(distance / punctual.range_m, 4.0f), 0.0f, 1.0f);
+  if (!scene::has_cone(punctual.kind)) return f;
+  const float outer = std::cos(punctual.outer_cone_rad);
+  const float width = std::max(0.001f, std::cos(punctual.inner_cone_rad) - outer);
+  const float ramp = std::clamp((dot(-towards, punctual.direction) - outer) / width, 0.0f, 1.0f);
   return f * ramp * ramp;
 }
 
-LampSample light_from_point(const scene::Scene& scene, const scene::PunctualLight& lamp,
-                            Vec3 position) {
-  const Vec3 to_lamp = lamp.position - position;
-  const float distance = length(to_lamp);
+LightSample light_from_point(const scene::Scene& scene, const scene::PunctualLight& punctual,
+                             Vec3 position) {
+  const Vec3 to_light = punctual.position - position;
+  const float distance = length(to_light);
   if (!(distance > 0)) return {};
-  const Vec3 towards = to_lamp / distance;
-  return {lamp.intensity * falloff(scene, lamp, towards, distance), towards, distance};
+  const Vec3 towards = to_light / distance;
+  return {punctual.intensity * falloff(scene, punctual, towards, distance), towards, distance};
 }
 
 /// The light that comes from the centre of a punctual light, not yet divided by a chance.
-LampSample light_of(const scene::Scene& scene, const scene::PunctualLight& lamp, Vec3 position) {
-  switch (lamp.kind) {
+LightSample light_of(const scene::Scene& scene, const scene::PunctualLight& punctual,
+                     Vec3 position) {
+  switch (punctual.kind) {
     case scene::LightKind::directional:
-      return {lamp.intensity, -lamp.direction, INFINITY};
+      return {punctual.intensity, -punctual.direction, INFINITY};
     case scene::LightKind::point:
     case scene::LightKind::spot:
-      return light_from_point(scene, lamp, position);
+      return light_from_point(scene, punctual, position);
   }
   return {};
 }
@@ -91,7 +94,7 @@ LampSample light_of(const scene::Scene& scene, const scene::PunctualLight& lamp,
 /// A disc of uniform radiance that brings E to a facing surface has L = E / (pi sin^2 a), and
 /// directions uniform in its cone have density 1 / (2 pi (1 - cos a)): one of them stands for
 /// L 2 pi (1 - cos a) = E 2 / (1 + cos a).
-void spread_over_disc(const scene::PunctualLight& sun, RandomStream& random, LampSample& sample) {
+void spread_over_disc(const scene::PunctualLight& sun, RandomStream& random, LightSample& sample) {
   const float half_sine = std::sin(0.5f * sun.angular_radius_rad);
   const float height = 2 * half_sine * half_sine;  // 1 - cos a without cancellation
   const Vec2 u = random.next2();
@@ -180,16 +183,16 @@ float sky_pdf(const scene::Environment& map, const SkySampler& sampler, Vec3 dir
   return float(double(luminance(scene::radiance_towards(map, direction))) / sampler.power());
 }
 
-LampSample sample_lamps(const scene::Scene& scene, const Receiver& at, RandomStream& random,
-                        std::vector<float>& scratch) {
+LightSample sample_punctual_lights(const scene::Scene& scene, const Receiver& at,
+                                   RandomStream& random, std::vector<float>& scratch) {
   const size_t count = scene.lights.size();
   scratch.resize(count);
   float total = 0;
   for (size_t k = 0; k < count; ++k) {
-    const scene::PunctualLight& lamp = scene.lights[k];
-    const LampSample light = light_of(scene, lamp, at.position);
+    const scene::PunctualLight& punctual = scene.lights[k];
+    const LightSample light = light_of(scene, punctual, at.position);
     // A disc reaches over the horizon when its centre is still below it.
-    const float reach = scene::has_disc(lamp) ? std::sin(lamp.angular_radius_rad) : 0.0f;
+    const float reach = scene::has_disc(punctual) ? std::sin(punctual.angular_radius_rad) : 0.0f;
     const float cosine = std::max(0.0f, dot(light.towards, at.normal) + reach);
     scratch[k] = luminance(light.irradiance) * cosine;
     total += scratch[k];
@@ -197,14 +200,14 @@ LampSample sample_lamps(const scene::Scene& scene, const Receiver& at, RandomStr
   if (!(total > 0)) return {};
   float left = random.next() * total;
   size_t k = 0;
-  // Rounding may leave a remainder after the last lamp: the last one that brings light takes it.
+  // Rounding may leave a remainder after the last light: the last one that brings light takes it.
   for (size_t next = 0; next < count; ++next) {
     if (scratch[next] <= 0) continue;
     k = next;
     if (left < scratch[next]) break;
     left -= scratch[next];
   }
-  LampSample sample = light_of(scene, scene.lights[k], at.position);
+  LightSample sample = light_of(scene, scene.lights[k], at.position);
   sample.irradiance *= total / scratch[k];
   if (scene::has_disc(scene.lights[k])) spread_over_disc(scene.lights[k], random, sample);
   return sample;

@@ -1,4 +1,5 @@
-// Picking lights for next-event estimation: emissive triangles by power, lamps by what they bring.
+// Picking lights for next-event estimation: emissive triangles by power, punctual lights by what
+// they bring.
 #pragma once
 
 #include <cstdint>
@@ -57,16 +58,16 @@ SkyPoint sample_sky(const scene::Environment& map, const SkySampler& sampler, Ra
 /// The density with which sample_sky finds a direction [1/sr].
 float sky_pdf(const scene::Environment& map, const SkySampler& sampler, Vec3 direction);
 
-/// Light of one lamp without area, as it would arrive unshadowed: one sample of it.
-struct LampSample {
+/// Light of one punctual light, as it would arrive unshadowed: one sample of it.
+struct LightSample {
   Rgb irradiance;  ///< on a surface that faces `towards`, divided by the chance to be picked
                    ///< [W/m^2]
   Vec3 towards;    ///< unit
   float distance_m = INFINITY;
 };
-/// Picks one of the scene's lamps in proportion to what it would bring unshadowed. A sun with a
-/// disc is sampled uniformly over it. No light: irradiance is zero. `scratch` is a buffer.
-LampSample sample_lamps(const scene::Scene& scene, const Receiver& at, RandomStream& random,
-                        std::vector<float>& scratch);
+/// Picks one of the scene's punctual lights in proportion to what it would bring unshadowed. A sun
+/// with a disc is sampled uniformly over it. No light: irradiance is zero. `scratch` is a buffer.
+LightSample sample_punctual_lights(const scene::Scene& scene, const Receiver& at,
+                                   RandomStream& random, std::vector<float>& scratch);
 
 }  // namespace luxel::reference

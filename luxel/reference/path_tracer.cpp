@@ -59,13 +59,13 @@ struct Batch {
 /// path) sees every path of receiver i at its end; finish(i, sums, n) takes what its n paths have
 /// summed to.
 template <class Start, class Each, class Finish>
-Result<uint64_t> run_tasks(const World& world, size_t count, const PathParams& params,
+Result<uint64_t> run_tasks(const TracedScene& world, size_t count, const PathParams& params,
                            Progress& progress, const Start& start, const Each& each,
                            const Finish& finish) {
   std::atomic<uint64_t> rays{0};
   const size_t samples = size_t(params.samples);
   parallel_for(count, grain_for(count, params.samples), [&](size_t begin, size_t end) {
-    PathWork work;
+    PathBuffers work;
     std::vector<Path> paths;
     std::vector<Sums> sums(end - begin);
     const size_t per_batch = std::max<size_t>(1, kBatch / (end - begin));
@@ -115,7 +115,7 @@ Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receiver
   LUXEL_CHECK(params.samples >= 1);
   LUXEL_CHECK(receivers.normal.size() == receivers.position.size());
   LUXEL_CHECK(receivers.geometric_normal.size() == receivers.position.size());
-  const World world = world_of(scene, tracer);
+  const TracedScene world = traced_scene(scene, tracer);
   TexelPaths out;
   out.irradiance.resize(count), out.standard_error.resize(count), out.luminance_error.resize(count);
   out.met_back.resize(count), out.met_double_sided_back.resize(count), out.enclosed.resize(count);
@@ -151,7 +151,7 @@ Result<Picture> radiance_by_paths(const scene::Scene& scene, const trace::RayTra
                                   const scene::Camera& camera, int width, int height,
                                   const PathParams& params, Progress& progress) {
   LUXEL_CHECK(params.samples >= 1 && width > 0 && height > 0);
-  const World world = world_of(scene, tracer);
+  const TracedScene world = traced_scene(scene, tracer);
   const trace::CameraRays camera_rays(camera, width, height);
   const size_t count = size_t(width) * size_t(height);
   Picture out;

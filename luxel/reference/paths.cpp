@@ -34,7 +34,7 @@ trace::Ray random_ray(Path& path) {
 
 /// Next-event estimation: one point of the emissive triangles, weighted against the chance that
 /// random_ray finds it.
-void aim_at_emitter(const World& world, Path& path, uint32_t index, PathWork& work) {
+void aim_at_emitter(const TracedScene& world, Path& path, uint32_t index, PathBuffers& work) {
   const EmitterPoint point = sample_emitters(world.emitters, path.random);
   const Emitter& e = *point.emitter;
   const Vec3 to_light = point.position - path.origin;
@@ -55,29 +55,33 @@ void aim_at_emitter(const World& world, Path& path, uint32_t index, PathWork& wo
   work.rays.push_back({path.origin, 0, to_light, kBeyond});
 }
 
-void aim_at_lamp(const World& world, Path& path, uint32_t index, PathWork& work) {
-  const LampSample lamp = sample_lamps(world.scene, path.at, path.random, work.lamp_weights);
-  const float cosine = dot(lamp.towards, path.at.normal);
-  if (max_component(lamp.irradiance) <= 0 || cosine <= 0) return;
-  if (dot(lamp.towards, path.at.geometric_normal) <= 0) return;
-  work.lamp_rays.push_back({index, path.throughput * lamp.irradiance * (cosine / kPi)});
-  const float t_max = std::isfinite(lamp.distance_m) ? lamp.distance_m * kArrived : INFINITY;
-  work.shadow_rays.push_back({path.origin, 0, lamp.towards, t_max});
+void aim_at_punctual_light(const TracedScene& world, Path& path, uint32_t index,
+                           PathBuffers& work) {
+  const LightSample punctual =
+      sample_punctual_lights(world.scene, path.at, path.random, work.punctual_weights);
+  const float cosine = dot(punctual.towards, path.at.normal);
+  if (max_component(punctual.irradiance) <= 0 || cosine <= 0) return;
+  if (dot(punctual.towards, path.at.geometric_normal) <= 0) return;
+  work.along_shadow_rays.push_back({index, path.throughput * punctual.irradiance * (cosine / kPi)});
+  const float t_max =
+      std::isfinite(punctual.distance_m) ? punctual.distance_m * kArrived : INFINITY;
+  work.shadow_rays.push_back({path.origin, 0, punctual.towards, t_max});
 }
 
 /// One direction of the environment, weighted against the chance that random_ray finds it.
-void aim_at_sky(const World& world, Path& path, uint32_t index, PathWork& work) {
+void aim_at_sky(const TracedScene& world, Path& path, uint32_t index, PathBuffers& work) {
   const SkyPoint sky = sample_sky(world.scene.environment, world.sky, path.random);
   if (!(sky.pdf > 0) || dot(sky.direction, path.at.geometric_normal) <= 0) return;
   const float cosine = folded_cosine(path.at, sky.direction);
   const float weight = mis_weight(sky.pdf, cosine / kPi);
   const Rgb light = scene::radiance_towards(world.scene.environment, sky.direction);
-  work.lamp_rays.push_back({index, path.throughput * light * (cosine / kPi * weight / sky.pdf)});
+  work.along_shadow_rays.push_back(
+      {index, path.throughput * light * (cosine / kPi * weight / sky.pdf)});
   work.shadow_rays.push_back({path.origin, 0, sky.direction, INFINITY});
 }
 
 /// What a random ray sees that has left the scene.
-void add_found_sky(const World& world, Vec3 d, Path& path) {
+void add_found_sky(const TracedScene& world, Vec3 d, Path& path) {
   Rgb light = world.scene.background;
   if (world.sky.power() > 0) {
     const float pdf = sky_pdf(world.scene.environment, world.sky, d);
@@ -87,8 +91,8 @@ void add_found_sky(const World& world, Vec3 d, Path& path) {
   path.value += path.throughput * light;
 }
 
-void add_emitter_light(const World& world, const EmitterRay& ray, const trace::Hit& hit, Rgb tint,
-                       std::span<Path> paths) {
+void add_emitter_light(const TracedScene& world, const EmitterRay& ray, const trace::Hit& hit,
+                       Rgb tint, std::span<Path> paths) {
   const Emitter& e = *ray.point.emitter;
   const bool same = hit.instance == e.instance && hit.triangle == e.triangle;
   if (hit.found() && !same && hit.t < kArrived) return;
@@ -97,7 +101,7 @@ void add_emitter_light(const World& world, const EmitterRay& ray, const trace::H
 }
 
 /// All rays of a bounce. Where nothing colours light, tints are 1.
-void trace(const World& world, PathWork& work) {
+void trace(const TracedScene& world, PathBuffers& work) {
   work.hits.resize(work.rays.size());
   world.tracer.closest_hits(work.rays, work.hits);
   work.tint.assign(work.rays.size(), {1, 1, 1});
@@ -109,7 +113,7 @@ void trace(const World& world, PathWork& work) {
 /// Emission that a random ray has found, weighted against the chance that aim_at_emitter picks the
 /// same point. Emitted light counts with the plain cosine, while the ray's density is that of the
 /// folded one.
-void add_found_emission(const World& world, const trace::Hit& hit, Vec3 d, Path& path) {
+void add_found_emission(const TracedScene& world, const trace::Hit& hit, Vec3 d, Path& path) {
   const Rgb emission = scene::emission_at(world.scene, hit.point());
   const float cosine = dot(d, path.at.normal);
   if (max_component(emission) <= 0 || cosine <= 0) return;
@@ -135,7 +139,7 @@ bool survives(Path& path, int reflections) {
 
 /// Multiplies by the reflectance, or, by chance, by the transmittance: then the path goes on to the
 /// light of the other side. Returns the side whose light is asked for next.
-trace::Hit send_on(const World& world, const trace::Hit& hit, Path& path) {
+trace::Hit send_on(const TracedScene& world, const trace::Hit& hit, Path& path) {
   const Rgb rho = scene::reflectance_at(world.scene, hit.point());
   const Rgb tau = scene::diffuse_transmittance_at(world.scene, hit.point());
   const float sum = luminance(rho) + luminance(tau);
@@ -158,7 +162,7 @@ trace::Hit send_on(const World& world, const trace::Hit& hit, Path& path) {
 }
 
 /// Takes the light that the path's ray has found and moves the path there. False when it ends.
-bool advance(const World& world, const trace::Ray& ray, const trace::Hit& hit, int depth,
+bool advance(const TracedScene& world, const trace::Ray& ray, const trace::Hit& hit, int depth,
              int bounces, Path& path) {
   if (!hit.found()) {
     add_found_sky(world, ray.direction, path);
@@ -182,7 +186,7 @@ bool advance(const World& world, const trace::Ray& ray, const trace::Hit& hit, i
 
 }  // namespace
 
-World world_of(const scene::Scene& scene, const trace::RayTracer& tracer) {
+TracedScene traced_scene(const scene::Scene& scene, const trace::RayTracer& tracer) {
   Surfaces surfaces = surfaces_of(scene);
   Emitters emitters = collect_emitters(scene, surfaces);
   return {scene,
@@ -193,7 +197,7 @@ World world_of(const scene::Scene& scene, const trace::RayTracer& tracer) {
           scene::world_bounds(scene).diagonal()};
 }
 
-Path path_from(const World& world, const Receiver& at, RandomStream random) {
+Path path_from(const TracedScene& world, const Receiver& at, RandomStream random) {
   Path path;
   path.at = at;
   path.origin = trace::offset_origin(at.position, at.geometric_normal, world.diagonal_m);
@@ -201,7 +205,8 @@ Path path_from(const World& world, const Receiver& at, RandomStream random) {
   return path;
 }
 
-Path path_from_eye(const World& world, Vec3 direction, const trace::Hit& hit, RandomStream random) {
+Path path_from_eye(const TracedScene& world, Vec3 direction, const trace::Hit& hit,
+                   RandomStream random) {
   if (!hit.found()) {
     Path path;
     path.throughput = {};
@@ -224,18 +229,18 @@ Path path_from_eye(const World& world, Vec3 direction, const trace::Hit& hit, Ra
   return path;
 }
 
-uint64_t follow(const World& world, int bounces, std::span<Path> paths, PathWork& work) {
+uint64_t follow(const TracedScene& world, int bounces, std::span<Path> paths, PathBuffers& work) {
   uint64_t rays = 0;
   work.active.clear();
   for (uint32_t i = 0; i < paths.size(); ++i)
     if (max_component(paths[i].throughput) > 0) work.active.push_back(i);
   for (int depth = 0; !work.active.empty(); ++depth) {
     work.rays.clear(), work.emitter_rays.clear();
-    work.shadow_rays.clear(), work.lamp_rays.clear();
+    work.shadow_rays.clear(), work.along_shadow_rays.clear();
     for (const uint32_t i : work.active) work.rays.push_back(random_ray(paths[i]));
     for (const uint32_t i : work.active) {
       if (!world.emitters.triangles.empty()) aim_at_emitter(world, paths[i], i, work);
-      if (!world.scene.lights.empty()) aim_at_lamp(world, paths[i], i, work);
+      if (!world.scene.lights.empty()) aim_at_punctual_light(world, paths[i], i, work);
       if (world.sky.power() > 0) aim_at_sky(world, paths[i], i, work);
     }
     trace(world, work);
@@ -244,8 +249,9 @@ uint64_t follow(const World& world, int bounces, std::span<Path> paths, PathWork
     for (size_t k = 0; k < work.emitter_rays.size(); ++k)
       add_emitter_light(world, work.emitter_rays[k], work.hits[count + k], work.tint[count + k],
                         paths);
-    for (size_t k = 0; k < work.lamp_rays.size(); ++k)
-      paths[work.lamp_rays[k].path].value += work.lamp_rays[k].light * work.arriving[k];
+    for (size_t k = 0; k < work.along_shadow_rays.size(); ++k)
+      paths[work.along_shadow_rays[k].path].value +=
+          work.along_shadow_rays[k].light * work.arriving[k];
     work.next.clear();
     for (size_t k = 0; k < count; ++k) {
       const uint32_t i = work.active[k];

@@ -13,7 +13,7 @@
 namespace luxel::reference {
 
 /// Everything that paths look at.
-struct World {
+struct TracedScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
   Surfaces surfaces;
@@ -21,7 +21,7 @@ struct World {
   SkySampler sky;
   float diagonal_m = 0;
 };
-World world_of(const scene::Scene& scene, const trace::RayTracer& tracer);
+TracedScene traced_scene(const scene::Scene& scene, const trace::RayTracer& tracer);
 
 enum class FirstHit : uint8_t { other, back, double_sided_back };
 
@@ -36,10 +36,11 @@ struct Path {
   FirstHit first_hit = FirstHit::other;  ///< what its first ray met
   bool shows_surface = false;            ///< of paths from the eye
 };
-Path path_from(const World& world, const Receiver& at, RandomStream random);
+Path path_from(const TracedScene& world, const Receiver& at, RandomStream random);
 /// A path from a camera's ray: its value is radiance, L + rho E / pi of the surface that the ray
 /// met, or that of the surroundings.
-Path path_from_eye(const World& world, Vec3 direction, const trace::Hit& hit, RandomStream random);
+Path path_from_eye(const TracedScene& world, Vec3 direction, const trace::Hit& hit,
+                   RandomStream random);
 
 /// A ray towards an emitter, and what its radiance is worth where it is seen.
 struct EmitterRay {
@@ -47,24 +48,24 @@ struct EmitterRay {
   EmitterPoint point;
   Rgb factor;
 };
-struct LampRay {
+struct LightAlongRay {
   uint32_t path = 0;
   Rgb light;
 };
 
 /// Buffers of one worker, reused from batch to batch.
-struct PathWork {
+struct PathBuffers {
   std::vector<uint32_t> active, next;
   std::vector<EmitterRay> emitter_rays;
-  std::vector<LampRay> lamp_rays;  ///< towards the sky, too
+  std::vector<LightAlongRay> along_shadow_rays;  ///< towards the sky, too
   std::vector<trace::Ray> rays, shadow_rays;
   std::vector<trace::Hit> hits;
   std::vector<Rgb> tint, arriving;  ///< of rays; share of shadow rays' light
-  std::vector<float> lamp_weights;
+  std::vector<float> punctual_weights;
 };
 
 /// Follows all paths that carry something to their ends, and adds what they gather to their values.
 /// `bounces` < 0: no limit. Returns the number of rays.
-uint64_t follow(const World& world, int bounces, std::span<Path> paths, PathWork& work);
+uint64_t follow(const TracedScene& world, int bounces, std::span<Path> paths, PathBuffers& work);
 
 }  // namespace luxel::reference

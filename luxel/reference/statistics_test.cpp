@@ -111,10 +111,10 @@ TEST(Statistics, CancellingStopsIt) {
 struct Estimate {
   double mean = 0, error = 0;
 };
-Estimate estimate(const World& world, const Receiver& at, int count) {
+Estimate estimate(const TracedScene& world, const Receiver& at, int count) {
   std::vector<Path> paths;
   for (int k = 0; k < count; ++k) paths.push_back(path_from(world, at, {hash64(7, uint64_t(k))}));
-  PathWork work;
+  PathBuffers work;
   follow(world, -1, paths, work);
   double sum = 0, sum2 = 0;
   for (const Path& path : paths)
@@ -135,7 +135,7 @@ TEST(Statistics, PickingEmittersOrMeetingThemByChanceGivesTheSame) {
   const auto tracer = trace::RayTracer::build(scene);
   const Vec3 n{0, 1, 0};
   const Receiver at{Vec3{room.centre().x, room.lower.y, room.centre().z}, n, n};
-  World world = world_of(scene, *tracer);
+  TracedScene world = traced_scene(scene, *tracer);
   ASSERT_EQ(world.emitters.triangles.size(), 2u);
   const Estimate both = estimate(world, at, 100000);
   // Only the first of two triangles is picked, with certainty.

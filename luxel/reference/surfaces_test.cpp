@@ -163,8 +163,8 @@ TEST(SurfacesOfPaths, BentNormalsKeepTheLightOfTheSky) {
 // the triangle's own plane.
 TEST(SurfacesOfPaths, BentNormalsSeeLampsWithTheirCosineAboveTheTriangle) {
   const Vec3 n = normalize(Vec3{1, 1, 0});
-  for (const Vec3 to_lamp : {Vec3{0.2f, 1, 0}, {1, 0.1f, 0}, {1, -0.1f, 0}, {-1, 0.9f, 0}}) {
-    const Vec3 towards = normalize(to_lamp);
+  for (const Vec3 to_light : {Vec3{0.2f, 1, 0}, {1, 0.1f, 0}, {1, -0.1f, 0}, {-1, 0.9f, 0}}) {
+    const Vec3 towards = normalize(to_light);
     const double cosine = towards.y > 0 ? std::max(0.0, double(dot(towards, n))) : 0;
     scene::Scene lit;
     scene::add_material(lit, "lamp", {}, gray(1));

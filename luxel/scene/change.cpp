@@ -90,13 +90,13 @@ SceneState::Material state_of(const Material& material, const Textures& textures
           emitted.value(), emission};
 }
 
-SceneState::Lamp state_of(const Scene& scene, const PunctualLight& lamp) {
-  PunctualLight rest = lamp;
+SceneState::Light state_of(const Scene& scene, const PunctualLight& light) {
+  PunctualLight rest = light;
   rest.intensity = {}, rest.profile = kNone;
   Digest shape;
-  shape.add(digest(rest)), shape.add(lamp.profile != kNone);
-  if (lamp.profile != kNone) shape.add(digest(scene.profiles[lamp.profile]));
-  return {lamp.name, shape.value(), lamp.intensity};
+  shape.add(digest(rest)), shape.add(light.profile != kNone);
+  if (light.profile != kNone) shape.add(digest(scene.profiles[light.profile]));
+  return {light.name, shape.value(), light.intensity};
 }
 
 SceneState::Instance state_of(const Scene& scene, const Instance& instance) {
@@ -115,7 +115,7 @@ std::vector<uint32_t> materials_of(const Mesh& mesh) {
   return out;
 }
 
-/// "3 lamps there, 4 here"; empty where they are as many.
+/// "3 lights there, 4 here"; empty where they are as many.
 std::string other_number(size_t before, size_t now, std::string_view one, std::string_view many) {
   if (before == now) return {};
   return fmt::format("{} {} there, {} here", before, before == 1 ? one : many, now);
@@ -167,7 +167,7 @@ std::string beyond_following(const SceneState& before, const SceneState& now) {
        {other_number(before.meshes.size(), now.meshes.size(), "mesh", "meshes"),
         other_number(before.instances.size(), now.instances.size(), "instance", "instances"),
         other_number(before.materials.size(), now.materials.size(), "material", "materials"),
-        other_number(before.lamps.size(), now.lamps.size(), "lamp", "lamps")})
+        other_number(before.lights.size(), now.lights.size(), "light", "lights")})
     if (!text.empty()) return text;
   for (size_t i = 0; i < now.meshes.size(); ++i)
     if (before.meshes[i] != now.meshes[i])
@@ -218,9 +218,9 @@ std::vector<std::string> sentences(const SceneState& now, const SceneChange& cha
   for (const uint32_t i : change.reshaped)
     out.push_back(material(i) + " lets light through otherwise");
   for (const uint32_t i : change.recoloured) out.push_back(material(i) + " has another colour");
-  for (size_t i = 0; i < change.lamp_scale.size(); ++i)
-    if (change.lamp_scale[i] != kAsItWas)
-      out.push_back(scaled(called("lamp", now.lamps[i].name, i), change.lamp_scale[i]));
+  for (size_t i = 0; i < change.light_scale.size(); ++i)
+    if (change.light_scale[i] != kAsItWas)
+      out.push_back(scaled(called("light", now.lights[i].name, i), change.light_scale[i]));
   for (size_t i = 0; i < change.emission_scale.size(); ++i)
     if (change.emission_scale[i] != kAsItWas)
       out.push_back(scaled(material(i), change.emission_scale[i]));
@@ -243,7 +243,7 @@ SceneState state_of(const Scene& scene) {
     out.instances.push_back(state_of(scene, instance));
   for (const Material& material : scene.materials)
     out.materials.push_back(state_of(material, textures));
-  for (const PunctualLight& lamp : scene.lights) out.lamps.push_back(state_of(scene, lamp));
+  for (const PunctualLight& light : scene.lights) out.lights.push_back(state_of(scene, light));
   Digest around;
   add(around, scene.background);
   if (!scene.environment.empty()) around.add(digest(scene.environment));
@@ -254,7 +254,7 @@ SceneState state_of(const Scene& scene) {
 bool SceneChange::any() const {
   const auto changed = [](const std::optional<Rgb>& scale) { return scale != kAsItWas; };
   return !beyond.empty() || !moved.empty() || !boxes.empty() || !recoloured.empty() ||
-         std::any_of(lamp_scale.begin(), lamp_scale.end(), changed) ||
+         std::any_of(light_scale.begin(), light_scale.end(), changed) ||
          std::any_of(emission_scale.begin(), emission_scale.end(), changed) || surroundings ||
          !reshaped.empty();
 }
@@ -271,9 +271,9 @@ SceneChange change_between(const SceneState& before, const SceneState& now) {
     const bool same = was.shape == is.shape && was.emission_shape == is.emission_shape;
     out.emission_scale.push_back(scale_of(was.emission, is.emission, same));
   }
-  for (size_t i = 0; i < now.lamps.size(); ++i)
-    out.lamp_scale.push_back(scale_of(before.lamps[i].intensity, now.lamps[i].intensity,
-                                      before.lamps[i].shape == now.lamps[i].shape));
+  for (size_t i = 0; i < now.lights.size(); ++i)
+    out.light_scale.push_back(scale_of(before.lights[i].intensity, now.lights[i].intensity,
+                                       before.lights[i].shape == now.lights[i].shape));
   for (uint32_t i = 0; i < now.instances.size(); ++i) {
     const bool moved = before.instances[i].world_from_object != now.instances[i].world_from_object;
     if (moved) out.moved.push_back(i);

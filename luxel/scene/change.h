@@ -25,7 +25,7 @@ struct SceneState {
     uint64_t emission_shape = 0;  ///< digest of what the emission's factor is multiplied by
     Rgb emission{};               ///< that factor [W/(sr m^2)]
   };
-  struct Lamp {
+  struct Light {
     std::string name;
     uint64_t shape = 0;  ///< digest of all but the intensity; of a profile, what it holds
     Rgb intensity{};     ///< as in PunctualLight
@@ -40,7 +40,7 @@ struct SceneState {
   std::vector<std::string> mesh_names;
   std::vector<Instance> instances;
   std::vector<Material> materials;
-  std::vector<Lamp> lamps;
+  std::vector<Light> lights;
   uint64_t surroundings = 0;  ///< digest of background and environment
   /// Materials of each mesh, ascending. Equal meshes have equal ones: a state that was kept in a
   /// file and serves as `before` need not have them.
@@ -52,16 +52,16 @@ SceneState state_of(const Scene& scene);
 /// materials) are no difference.
 struct SceneChange {
   /// Not empty: something changed that cannot be followed up, in words ("mesh 'chair' has changed",
-  /// "3 lamps there, 4 here"). All is different then, and nothing of what follows is filled in.
+  /// "3 lights there, 4 here"). All is different then, and nothing of what follows is filled in.
   std::string beyond;
   std::vector<uint32_t> moved;  ///< instances whose transform differs
   /// Where rays may meet something else than before [m, world]: moved instances as they were and as
   /// they are; instances with a material of another shape.
   std::vector<Box3> boxes;
   std::vector<uint32_t> recoloured;  ///< materials whose `colour` differs
-  /// Per lamp and per material: what its light is multiplied by. {1, 1, 1}: as it was; nothing: it
+  /// Per light and per material: what its light is multiplied by. {1, 1, 1}: as it was; nothing: it
   /// shines otherwise than before, not by a factor per channel.
-  std::vector<std::optional<Rgb>> lamp_scale, emission_scale;
+  std::vector<std::optional<Rgb>> light_scale, emission_scale;
   bool surroundings = false;       ///< background or environment differ
   std::vector<uint32_t> reshaped;  ///< materials whose `shape` differs
   /// Whether anything differs at all.
@@ -70,7 +70,7 @@ struct SceneChange {
 /// `now` is fresh from state_of.
 SceneChange change_between(const SceneState& before, const SceneState& now);
 
-/// "instance 'chair' moved, lamp 'desk' shines otherwise": for people, the first few. Empty where
+/// "instance 'chair' moved, light 'desk' shines otherwise": for people, the first few. Empty where
 /// nothing differs. `now` names things; the state before does as well.
 std::string in_words(const SceneState& now, const SceneChange& change);
 

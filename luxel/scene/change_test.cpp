@@ -76,7 +76,7 @@ TEST(SceneChange, OfTheSameSceneIsNone) {
   const SceneChange change = changed_by([](Scene&) {});
   EXPECT_FALSE(change.any());
   EXPECT_EQ(in_words(state_of(some_scene()), change), "");
-  EXPECT_EQ(change.lamp_scale, std::vector<std::optional<Rgb>>(3, kOne));
+  EXPECT_EQ(change.light_scale, std::vector<std::optional<Rgb>>(3, kOne));
   EXPECT_EQ(change.emission_scale, std::vector<std::optional<Rgb>>(5, kOne));
 }
 
@@ -121,7 +121,7 @@ TEST(SceneChange, IsNotInWhatIsNotLookedUp) {
 }
 
 TEST(SceneChange, SaysWhatCannotBeFollowedUp) {
-  EXPECT_EQ(beyond([](Scene& s) { s.lights.resize(4); }), "3 lamps there, 4 here");
+  EXPECT_EQ(beyond([](Scene& s) { s.lights.resize(4); }), "3 lights there, 4 here");
   EXPECT_EQ(beyond([](Scene& s) { s.meshes.push_back(s.meshes[0]); }), "5 meshes there, 6 here");
   EXPECT_EQ(beyond([](Scene& s) { s.instances.pop_back(); }), "5 instances there, 4 here");
   EXPECT_EQ(beyond([](Scene& s) { s.materials.emplace_back(); }), "5 materials there, 6 here");
@@ -142,7 +142,7 @@ TEST(SceneChange, SaysWhatCannotBeFollowedUp) {
             "material 'leaf' scatters no light through any more");
   const SceneChange change = changed_by([](Scene& s) { s.instances[4].name = "", s.lights = {}; });
   EXPECT_TRUE(change.any());
-  EXPECT_EQ(in_words(state_of(some_scene()), change), "3 lamps there, 0 here");
+  EXPECT_EQ(in_words(state_of(some_scene()), change), "3 lights there, 0 here");
 }
 
 TEST(SceneChange, OfSizeCannotBeFollowedUp) {
@@ -182,16 +182,16 @@ TEST(SceneChange, MovedBoxIsWhereItWasAndWhereItIs) {
 }
 
 TEST(SceneChange, OfLampsIsAFactorOrNothing) {
-  const auto scale = [](size_t lamp, const Edit& edit) {
+  const auto scale = [](size_t light, const Edit& edit) {
     const SceneChange change = changed_by(edit);
     EXPECT_TRUE(change.boxes.empty());
     for (size_t i = 0; i < 3; ++i) {
-      if (i != lamp) {
-        EXPECT_EQ(change.lamp_scale[i], kOne);
+      if (i != light) {
+        EXPECT_EQ(change.light_scale[i], kOne);
       }
     }
     EXPECT_TRUE(change.any());
-    return change.lamp_scale[lamp];
+    return change.light_scale[light];
   };
   EXPECT_EQ(scale(0, [](Scene& s) { s.lights[0].intensity = {1, 2, 16}; }), (Rgb{0.25f, 0.5f, 2}));
   EXPECT_EQ(scale(0, [](Scene& s) { s.lights[0].intensity = {}; }), Rgb{});
@@ -223,7 +223,7 @@ TEST(SceneChange, OfADarkChannelIsNoneOrNothing) {
                 [](Scene& s) {
                   s.lights[0].intensity = {1e-30f, 1, 1};
                 })
-                .lamp_scale[0],
+                .light_scale[0],
             std::nullopt);
 }
 
@@ -328,13 +328,13 @@ TEST(SceneChange, IsSaidInWords) {
     return in_words(state, change_between(state_of(before), state));
   };
   EXPECT_EQ(words(),
-            "instance 'paint box' moved, lamp 'desk' shines otherwise, lamp number 3 has another "
+            "instance 'paint box' moved, light 'desk' shines otherwise, light number 3 has another "
             "intensity");
   now.materials[glass].alpha = 0.9f, now.materials[paint].base_color = {};
   now.background = {1, 1, 1};
   EXPECT_EQ(words(),
             "instance 'paint box' moved, material 'glass' lets light through otherwise, material "
-            "'paint' has another colour, lamp 'desk' shines otherwise and 2 more");
+            "'paint' has another colour, light 'desk' shines otherwise and 2 more");
 }
 
 }  // namespace

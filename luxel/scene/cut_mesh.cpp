@@ -20,7 +20,7 @@ uint64_t key_of(uint32_t low, uint32_t high) { return uint64_t(low) << 32 | high
 bool is_lower(Vec3 p, Vec3 q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); }
 
 /// Equal for equal positions: the sign of zero does not count.
-struct PlaceHash {
+struct PositionHash {
   size_t operator()(Vec3 p) const {
     const auto bits = [](float x) { return uint64_t(std::bit_cast<uint32_t>(x + 0.0f)); };
     return size_t(hash64(bits(p.x) << 32 | bits(p.y), bits(p.z)));
@@ -101,10 +101,10 @@ class CutEdges {
   }
 
   Mesh& mesh_;
-  std::unordered_map<Vec3, uint32_t, PlaceHash> place_;  ///< numbers of ends of cut edges
-  Box3 box_;                                             ///< around these
-  std::unordered_map<uint64_t, float> at_;               ///< by places
-  std::unordered_map<uint64_t, uint32_t> vertex_;        ///< by vertices
+  std::unordered_map<Vec3, uint32_t, PositionHash> place_;  ///< numbers of ends of cut edges
+  Box3 box_;                                                ///< around these
+  std::unordered_map<uint64_t, float> at_;                  ///< by places
+  std::unordered_map<uint64_t, uint32_t> vertex_;           ///< by vertices
 };
 
 /// The pieces of a triangle whose edges (k, k + 1) are cut where cut[k] says, at middle[k].

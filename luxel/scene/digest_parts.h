@@ -23,7 +23,7 @@ void add_lookup(Digest& d, const TextureRef& ref);
 
 uint64_t digest(const Mesh& mesh);
 /// With the number of its profile, not what that holds.
-uint64_t digest(const PunctualLight& lamp);
+uint64_t digest(const PunctualLight& light);
 uint64_t digest(const LightProfile& profile);
 uint64_t digest(const Environment& environment);
 

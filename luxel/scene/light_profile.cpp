@@ -11,13 +11,13 @@
 namespace luxel::scene {
 namespace {
 
-struct Place {
+struct GridCell {
   size_t first = 0;
   float share = 0;  ///< of the entry after `first`
 };
 
 /// Where `angle` lies between ascending angles that reach around it.
-Place place_of(const std::vector<float>& angles, float angle) {
+GridCell cell_of(const std::vector<float>& angles, float angle) {
   const auto above = std::upper_bound(angles.begin() + 1, angles.end() - 1, angle);
   const size_t first = size_t(above - angles.begin()) - 1;
   const float share = (angle - angles[first]) / (angles[first + 1] - angles[first]);
@@ -55,7 +55,7 @@ float candela_at(const LightProfile& profile, Vec3 aim, Vec3 side, Vec3 directio
   const AnglePair at =
       angles_of(profile.angles, dot(direction, side), dot(direction, y_axis), dot(direction, aim));
   if (!reaches(profile.vertical_rad, at.vertical)) return 0;
-  const Place v = place_of(profile.vertical_rad, at.vertical);
+  const GridCell v = cell_of(profile.vertical_rad, at.vertical);
   const size_t rows = profile.vertical_rad.size();
   const auto along = [&](size_t column) {
     const float* c = &profile.candela[column * rows + v.first];
@@ -63,7 +63,7 @@ float candela_at(const LightProfile& profile, Vec3 aim, Vec3 side, Vec3 directio
   };
   if (profile.horizontal_rad.size() == 1) return along(0);
   if (!reaches(profile.horizontal_rad, at.horizontal)) return 0;
-  const Place h = place_of(profile.horizontal_rad, at.horizontal);
+  const GridCell h = cell_of(profile.horizontal_rad, at.horizontal);
   const float low = along(h.first);
   return low + h.share * (along(h.first + 1) - low);
 }
@@ -85,16 +85,17 @@ double mean_candela(const LightProfile& profile, double half_angle_rad) {
 }
 
 void attach_profile(Scene& scene, size_t light, LightProfile profile, float scale) {
-  PunctualLight& lamp = scene.lights[light];
-  LUXEL_CHECK(can_have_profile(lamp.kind));
-  lamp.direction = normalize(lamp.direction);
-  if (lamp.direction == Vec3{}) lamp.direction = {0, -1, 0};
-  const Vec3 across = lamp.side - lamp.direction * dot(lamp.side, lamp.direction);
+  PunctualLight& target = scene.lights[light];
+  LUXEL_CHECK(can_have_profile(target.kind));
+  target.direction = normalize(target.direction);
+  if (target.direction == Vec3{}) target.direction = {0, -1, 0};
+  const Vec3 across = target.side - target.direction * dot(target.side, target.direction);
   constexpr float kTooShort = 1e-3f;  // to tell a direction by
-  lamp.side = length(across) > kTooShort ? normalize(across) : frame_around(lamp.direction).tangent;
-  const float largest = max_component(lamp.intensity);
-  lamp.intensity = (largest > 0 ? lamp.intensity / largest : Rgb{1, 1, 1}) * scale;
-  lamp.profile = uint32_t(scene.profiles.size());
+  target.side =
+      length(across) > kTooShort ? normalize(across) : frame_around(target.direction).tangent;
+  const float largest = max_component(target.intensity);
+  target.intensity = (largest > 0 ? target.intensity / largest : Rgb{1, 1, 1}) * scale;
+  target.profile = uint32_t(scene.profiles.size());
   scene.profiles.push_back(std::move(profile));
 }
 

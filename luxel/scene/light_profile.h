@@ -1,4 +1,4 @@
-// How strongly a lamp shines in which direction: measured far-field photometry.
+// How strongly a light shines in which direction: measured far-field photometry.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace luxel::scene {
 
 struct Scene;
 
-/// Candela on a grid of two angles, bilinear in between. A lamp is measured in a frame of its own:
-/// -z is its aim (the nadir of a lamp that hangs), x the side of horizontal angle 0, as
+/// Candela on a grid of two angles, bilinear in between. A light is measured in a frame of its own:
+/// -z is its aim (the nadir of a light that hangs), x the side of horizontal angle 0, as
 /// EXT_lights_ies has it.
 struct LightProfile {
   /// The goniometer's angles [LM63, Types A, B, C], v vertical and h horizontal:
@@ -29,8 +29,8 @@ struct LightProfile {
   std::vector<float> candela;         ///< [horizontal][vertical], >= 0
 };
 
-/// I [cd] in a unit `direction` that leaves the lamp; `aim` and `side` are the lamp's -z and x in
-/// the world, orthonormal. Beyond the angles of the grid a lamp is dark.
+/// I [cd] in a unit `direction` that leaves the light; `aim` and `side` are the light's -z and x in
+/// the world, orthonormal. Beyond the angles of the grid a light is dark.
 float candela_at(const LightProfile& profile, Vec3 aim, Vec3 side, Vec3 direction);
 
 /// Mean of I over the directions within `half_angle_rad` of the aim, by 512 x 512 directions; over

@@ -108,7 +108,7 @@ struct Instance {
   Mat34 world_from_object;
 };
 
-/// A lamp without area.
+/// A light without area.
 struct PunctualLight {
   enum class Kind : uint8_t { point, spot, directional };
   std::string name;
@@ -142,7 +142,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<PunctualLight> lights;
-  std::vector<LightProfile> profiles;  ///< distributions of lamps
+  std::vector<LightProfile> profiles;  ///< distributions of lights
   std::vector<Camera> cameras;
   Rgb background{0, 0, 0};  ///< radiance seen by rays that leave the scene
   Environment environment;  ///< what they see besides; empty: nothing

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "luxel/base/check.h"
-#include "luxel/scene/places.h"
+#include "luxel/scene/position_numbers.h"
 
 namespace luxel::scene {
 namespace {
@@ -31,20 +31,20 @@ class OneSided {
 };
 
 /// A triangle by its places: the lowest of them first, and then the lower of the other two.
-struct Places {
+struct CornerPositions {
   std::array<uint32_t, 3> sorted{};
   uint32_t triangle = 0;
   uint8_t first_corner = 0;  ///< the corner at sorted[0]
   bool reversed = false;     ///< the places run downwards around the triangle
 
-  friend bool operator<(const Places& p, const Places& q) {
+  friend bool operator<(const CornerPositions& p, const CornerPositions& q) {
     return std::tie(p.sorted, p.triangle) < std::tie(q.sorted, q.triangle);
   }
 };
 
-std::vector<Places> sorted_places(const Mesh& mesh) {
-  const std::vector<uint32_t> place = place_numbers(mesh.positions);
-  std::vector<Places> out(mesh.triangles.size());
+std::vector<CornerPositions> sorted_corner_positions(const Mesh& mesh) {
+  const std::vector<uint32_t> place = position_numbers(mesh.positions);
+  std::vector<CornerPositions> out(mesh.triangles.size());
   for (uint32_t t = 0; t < out.size(); ++t) {
     std::array<uint32_t, 3> p{};
     for (size_t k = 0; k < 3; ++k) p[k] = place[mesh.triangles[t][k]];
@@ -80,7 +80,7 @@ bool let_through_alike(const Scene& scene, const Mesh& mesh, uint32_t material_a
 }
 
 /// Ties the two when they are sides of one sheet.
-bool link(const Scene& scene, Mesh& mesh, const Places& p, const Places& q) {
+bool link(const Scene& scene, Mesh& mesh, const CornerPositions& p, const CornerPositions& q) {
   if (p.sorted != q.sorted || p.reversed == q.reversed) return false;
   const std::array<uint32_t, 3> a = rotated(mesh.triangles[p.triangle], p.first_corner);
   const std::array<uint32_t, 3> b = rotated(mesh.triangles[q.triangle], q.first_corner);
@@ -94,7 +94,7 @@ bool link(const Scene& scene, Mesh& mesh, const Places& p, const Places& q) {
 }
 
 size_t link_sides_of(const Scene& scene, Mesh& mesh) {
-  const std::vector<Places> places = sorted_places(mesh);
+  const std::vector<CornerPositions> places = sorted_corner_positions(mesh);
   size_t pairs = 0;
   for (size_t i = 0; i + 1 < places.size(); ++i) {
     if (places[i].sorted != places[i + 1].sorted) continue;

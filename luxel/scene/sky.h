@@ -22,7 +22,7 @@ struct Sky {
   /// Linear sRGB [cd/m^2], without the sun's disc, not turned. The lower half is the ground:
   /// diffuse, albedo 0.3, lit by this sun and sky, the same everywhere.
   Environment radiance;
-  /// E of a surface that faces the sun [lx], for a lamp whose disc has kSunAngularRadiusRad; zero
+  /// E of a surface that faces the sun [lx], for a light whose disc has kSunAngularRadiusRad; zero
   /// when all of the disc is below the horizon.
   Rgb sun_illuminance{};
   Vec3 towards_sun{};

@@ -7,8 +7,8 @@ namespace luxel::pipeline {
 
 Status denoise_light(const light::TexelScene& in, TexelLight& light, Progress& progress) {
   LUXEL_CHECK(light.variance.size() == light.irradiance.size());
-  const post::TexelPlaces places{in.scene,           in.atlas,    in.map, in.elements.position,
-                                 in.elements.normal, light.hidden};
+  const post::TexelGeometry places{in.scene,           in.atlas,    in.map, in.elements.position,
+                                   in.elements.normal, light.hidden};
   std::vector<Rgb> rest = light.irradiance;
   // A difference of rounded sums may fall below zero.
   for (size_t i = 0; i < light.direct.size(); ++i)

@@ -127,7 +127,7 @@ Status read_cone(const Node& node, scene::PunctualLight& light) {
 Result<LightScript::Lamp> lamp_of(const Node& node) {
   constexpr std::array<std::string_view, 7> known{
       "kind", "intensity", "position", "direction", "range_m", "inner_cone_deg", "outer_cone_deg"};
-  LUXEL_TRY_STATUS(only_fields(node, known, "a lamp, as {\"kind\": \"point\", ...}"));
+  LUXEL_TRY_STATUS(only_fields(node, known, "a light, as {\"kind\": \"point\", ...}"));
   LightScript::Lamp lamp;
   lamp.position.keys = {{0, {}}}, lamp.direction.keys = {{0, {0, -1, 0}}};
   lamp.intensity.keys = {{0, {1, 1, 1}}};

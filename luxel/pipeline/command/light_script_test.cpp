@@ -185,7 +185,7 @@ TEST(LightScript, RefusesWrongLamps) {
   const auto lamp = [](const std::string& fields) { return "{\"lights\": [" + fields + "]}"; };
   expect_refused(
       {{R"({"lights": {}})", ".lights is {}", "a list"},
-       {lamp("3"), ".lights[0] is 3", "a lamp, as {"},
+       {lamp("3"), ".lights[0] is 3", "a light, as {"},
        {lamp(R"({"kind": "area"})"), ".lights[0].kind is \"area\"", "\"point\", \"spot\" or"},
        {lamp("{}"), ".lights[0]", "needs a position"},
        {lamp(R"({"position": [0, 0, 0]}, {"kind": "spot"})"), ".lights[1]", "needs a position"},

@@ -95,7 +95,7 @@ void walk(Visit& visit, Like<scene::SceneState::Material> auto& m) {
 }
 
 template <class Visit>
-void walk(Visit& visit, Like<scene::SceneState::Lamp> auto& l) {
+void walk(Visit& visit, Like<scene::SceneState::Light> auto& l) {
   auto& [name, shape, intensity] = l;
   visit(name), visit(shape), visit(intensity);
 }
@@ -194,7 +194,7 @@ void walk_part(Visit& visit, size_t part, Like<KeptBake> auto& k) {
 /// Whether everything per element, lamp and instance has as many entries as there are.
 bool is_sound(const KeptBake& k) {
   const size_t n = k.layout.texels.size(), layers = k.layer_names.size();
-  const size_t instances = k.scene.instances.size(), lamps = k.scene.lamps.size();
+  const size_t instances = k.scene.instances.size(), lamps = k.scene.lights.size();
   const TexelLight& l = k.light;
   for (const size_t size : {k.places.size(), k.direct.irradiance.size(), k.direct.variance.size(),
                             k.direct.split_variance.size(), k.levels.level.size(),

@@ -33,7 +33,7 @@ KeptBake some_bake() {
   k.scene.instances = {{"a", 0, translation({1, 2, 3}), {{0, 0, 0}, {1, 1, 1}}},
                        {"b", 1, translation({4, 5, 6}), {}}};
   k.scene.materials = {{"m", 21, 22, 23, {1, 2, 3}}, {"n", 24, 25, 26, {4, 5, 6}}};
-  k.scene.lamps = {{"l", 31, {7, 8, 9}}, {"off", 32, {}}};
+  k.scene.lights = {{"l", 31, {7, 8, 9}}, {"off", 32, {}}};
   k.scene.surroundings = 41, k.scene.mesh_materials = {{0}, {0, 1}};
   k.seconds = 12.5;
   k.layout.meshes = {some_mesh(), some_mesh()}, k.layout.mesh_of_instance = {0, 1};
@@ -85,11 +85,11 @@ void expect_same(const scene::SceneState& a, const scene::SceneState& b) {
     EXPECT_EQ(a.materials[i].emission_shape, b.materials[i].emission_shape);
     EXPECT_EQ(a.materials[i].emission, b.materials[i].emission);
   }
-  ASSERT_EQ(a.lamps.size(), b.lamps.size());
-  for (size_t i = 0; i < a.lamps.size(); ++i) {
-    EXPECT_EQ(a.lamps[i].name, b.lamps[i].name);
-    EXPECT_EQ(a.lamps[i].shape, b.lamps[i].shape);
-    EXPECT_EQ(a.lamps[i].intensity, b.lamps[i].intensity);
+  ASSERT_EQ(a.lights.size(), b.lights.size());
+  for (size_t i = 0; i < a.lights.size(); ++i) {
+    EXPECT_EQ(a.lights[i].name, b.lights[i].name);
+    EXPECT_EQ(a.lights[i].shape, b.lights[i].shape);
+    EXPECT_EQ(a.lights[i].intensity, b.lights[i].intensity);
   }
 }
 
@@ -324,7 +324,7 @@ TEST(KeptBake, WithNumbersThatDoNotFitIsRefused) {
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_instance.pop_back(); }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.mesh_of_instance.pop_back(); }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.scene.instances.pop_back(); }));
-  EXPECT_TRUE(is_refused([](KeptBake& k) { k.scene.lamps.pop_back(); }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.scene.lights.pop_back(); }));
 }
 
 TEST(KeptBake, ThatRefersToWhatIsNotThereIsRefused) {

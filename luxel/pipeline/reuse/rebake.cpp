@@ -105,18 +105,18 @@ LightUpdate light_update(const KeptBake& kept, const scene::SceneChange& change,
   LightUpdate out;
   const auto differs = [](const std::optional<Rgb>& s) { return !s || !(*s == kAsBefore); };
   if (layers == 0) {
-    out.surfaces_anew = std::ranges::any_of(change.lamp_scale, differs) ||
+    out.surfaces_anew = std::ranges::any_of(change.light_scale, differs) ||
                         std::ranges::any_of(change.emission_scale, differs) ||
                         change.surroundings || !change.moved.empty();
     return out;
   }
   Scales all(layers);
   std::vector<uint8_t> has_surface(layers);
-  for (uint32_t k = 0; k < change.lamp_scale.size(); ++k) {
+  for (uint32_t k = 0; k < change.light_scale.size(); ++k) {
     const uint8_t layer = kept.layers.of_lamp[k];
     if (layer != kNoLayer)
-      all.add(layer, change.lamp_scale[k]);
-    else if (differs(change.lamp_scale[k]))
+      all.add(layer, change.light_scale[k]);
+    else if (differs(change.light_scale[k]))
       out.lamps_anew.push_back(k);
   }
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {

@@ -10,7 +10,7 @@
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/scene/light_kinds.h"
-#include "luxel/scene/places.h"
+#include "luxel/scene/position_numbers.h"
 #include "luxel/scene/sides.h"
 #include "luxel/trace/ray_tracer.h"
 
@@ -72,7 +72,7 @@ void find_borders(const scene::Mesh& mesh, std::span<const uint32_t> place, Shel
 }
 
 Shells shells_of(const scene::Scene& scene, const scene::Mesh& mesh) {
-  const std::vector<uint32_t> place = scene::place_numbers(mesh.positions);
+  const std::vector<uint32_t> place = scene::position_numbers(mesh.positions);
   std::vector<uint32_t> parent(mesh.positions.size());
   std::iota(parent.begin(), parent.end(), 0u);
   for (const auto& [a, b, c] : mesh.triangles)

@@ -27,7 +27,7 @@ bool is_sharp(const scene::PunctualLight& lamp) { return lamp.angular_radius_rad
 Result<std::vector<Rgb>> from_lamps(const scene::Scene& scene, const trace::RayTracer& tracer,
                                     const light::Lights& lamps, std::span<const Receiver> receivers,
                                     Progress& progress) {
-  if (lamps.punctual.empty() && lamps.around.peak.empty())
+  if (lamps.punctual.empty() && lamps.around.bright_texels.empty())
     return std::vector<Rgb>(receivers.size());
   transport::Elements points;
   for (const Receiver& r : receivers) {

@@ -41,7 +41,7 @@ Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::Ra
   for (const scene::PunctualLight& lamp : scene.lights)
     if (lamp.profile != scene::kNone)
       return fail(ErrorCode::bad_setting,
-                  "lamp '{}' has a light profile, which .lxr files do not keep; leave it out",
+                  "light '{}' has a light profile, which .lxr files do not keep; leave it out",
                   lamp.name);
   LUXEL_TRY(const Prepared prepared,
             prepare(scene, tracer, {params.patches, params.factors}, progress));

@@ -89,7 +89,7 @@ TEST(RelightData, RefusesLampsWithProfiles) {
   Progress progress;
   const auto data = make_relight_data(stage.scene, stage.tracer, {}, stage.params, progress);
   ASSERT_FALSE(data);
-  EXPECT_NE(data.error().message.find("lamp 'left' has a light profile"), std::string::npos);
+  EXPECT_NE(data.error().message.find("light 'left' has a light profile"), std::string::npos);
 }
 
 TEST(Relighter, CountsBouncesWhenAskedTo) {

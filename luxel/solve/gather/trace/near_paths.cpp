@@ -34,15 +34,15 @@ void end(NearPath path, NearWork& work) {
 uint64_t add_direct_light(const NearWorld& world, NearWork& work) {
   work.light.resize(work.receivers.size());
   light::direct_light_at(world.scene, world.lights, world.tracer, {.samples = 1}, work.receivers,
-                         world.diagonal_m, work.shots, work.light);
+                         world.diagonal_m, work.batch, work.light);
   for (size_t i = 0; i < work.paths.size(); ++i) {
     work.paths[i].light += work.paths[i].throughput * work.light[i].irradiance / kPi;
     if (world.layers)
-      light::add_light_by_layer(work.shots, i, *world.layers, work.paths[i].throughput / kPi,
+      light::add_light_by_layer(work.batch, i, *world.layers, work.paths[i].throughput / kPi,
                                 work.by_layer.subspan(work.paths[i].element * world.layers->size(),
                                                       world.layers->size()));
   }
-  return work.shots.rays.size();
+  return work.batch.rays.size();
 }
 
 /// The path's ray on. False: the path ends there, by chance, in proportion to what it carries.

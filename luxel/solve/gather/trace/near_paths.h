@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "luxel/atlas/atlas.h"
-#include "luxel/light/direct_shots.h"
+#include "luxel/light/shadow_rays.h"
 #include "luxel/scene/scene.h"
 #include "luxel/trace/ray_tracer.h"
 
@@ -58,7 +58,7 @@ struct NearWork {
   std::vector<trace::Ray> rays;
   std::vector<trace::Hit> hits;
   std::vector<Rgb> tint;
-  light::Shots shots;
+  light::ShadowRayBatch batch;
   /// With layers: the radiance that paths bring is added to these, too, layer by layer for each
   /// element.
   std::span<Rgb> by_layer;

@@ -1,4 +1,4 @@
-#include "luxel/atlas/lay_out.h"
+#include "luxel/atlas/page_modes.h"
 
 #include <algorithm>
 #include <bit>
@@ -32,11 +32,11 @@ bool cut_overlaps(const Faces& faces, const Layout& layout, std::vector<FlatChar
   return true;
 }
 
-using PlaceCharts = std::function<Result<Layout>(const std::vector<FlatChart>&, double guess)>;
+using FitCharts = std::function<Result<Layout>(const std::vector<FlatChart>&, double guess)>;
 
 /// Places charts again while some have to be cut.
 Result<LaidOut> without_overlaps(const Faces& faces, std::vector<FlatChart> charts,
-                                 const PlaceCharts& place) {
+                                 const FitCharts& place) {
   constexpr int kRounds = 4;  // overlap that slips past the first check is rare; twice unheard of
   double first_guess = 0;
   for (int round = 0;; ++round) {

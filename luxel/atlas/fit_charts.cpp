@@ -1,4 +1,4 @@
-#include "luxel/atlas/layout.h"
+#include "luxel/atlas/fit_charts.h"
 
 #include <algorithm>
 #include <bit>
@@ -46,13 +46,13 @@ Attempt make_attempt(const std::vector<TurnedChart>& charts, double density, con
 Layout place_charts(Attempt attempt, const Packing& packing, const Arrangement& pages,
                     double density) {
   Layout layout{pages.side, density, {}, {}, pages.pages, {}};
-  for (const Place& place : packing.places) layout.page.push_back(place.page);
+  for (const ChartPosition& place : packing.places) layout.page.push_back(place.page);
   for (size_t c = 0; c < attempt.corners.size(); ++c)
     layout.local.push_back(std::move(attempt.corners[c][size_t(packing.places[c].direction)]));
   layout.texels = layout.local;
   parallel_for(layout.texels.size(), 64, [&](size_t begin, size_t end) {
     for (size_t c = begin; c < end; ++c) {
-      const Place place = packing.places[c];
+      const ChartPosition place = packing.places[c];
       const Page& page = layout.pages[place.page];
       const DVec2 corner{double(page.x + place.x), double(page.y + place.y)};
       const Mask& mask = attempt.masks[c][size_t(place.direction)].front();

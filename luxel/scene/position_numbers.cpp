@@ -1,11 +1,11 @@
-#include "luxel/scene/places.h"
+#include "luxel/scene/position_numbers.h"
 
 #include <algorithm>
 #include <tuple>
 
 namespace luxel::scene {
 
-std::vector<uint32_t> place_numbers(std::span<const Vec3> positions) {
+std::vector<uint32_t> position_numbers(std::span<const Vec3> positions) {
   const auto key = [&](uint32_t i) {
     const Vec3 p = positions[i];
     return std::tuple(p.x, p.y, p.z);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "luxel/atlas/atlas.h"
-#include "luxel/atlas/layout.h"
+#include "luxel/atlas/fit_charts.h"
 
 namespace luxel::atlas {
 

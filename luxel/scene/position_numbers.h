@@ -12,6 +12,6 @@ namespace luxel::scene {
 /// A number per position, the same for positions that are equal, bit for bit but for the sign of
 /// zero: exporters split vertices along UV seams and hard edges, and the copies are equal. Numbers
 /// run from 0 without gaps.
-std::vector<uint32_t> place_numbers(std::span<const Vec3> positions);
+std::vector<uint32_t> position_numbers(std::span<const Vec3> positions);
 
 }  // namespace luxel::scene

@@ -32,8 +32,7 @@ scene::Scene box_with_point_lamp() {
 
 Result<std::vector<Rgb>> mean_over_texels(const validate::Prepared& p, Progress& progress) {
   LUXEL_TRY(const light::Footprints footprints,
-            light::footprints(p.scene, p.atlas, p.map, p.elements, *p.tracer, kJudgePoints, 1234,
-                              progress));
+            light::footprints(p.input(), kJudgePoints, 1234, progress));
   reference::Receivers receivers = reference::receivers(footprints.points);
   receivers.first = footprints.first;
   LUXEL_TRY(const reference::TexelPaths judged,

@@ -1,4 +1,4 @@
-// Which faces lie together in a chart.
+// Faces that lie together in a chart.
 #pragma once
 
 #include <cstdint>

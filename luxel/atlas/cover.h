@@ -1,4 +1,4 @@
-// Which texels a triangle touches, and which texel centres it holds.
+// Texels that a triangle touches, and which texel centres it holds.
 //
 // The layout puts all corners on a fixed-point grid of 23 bits (layout.h), so the products below
 // are exact in double precision: the packer and the rasteriser see the same texels, always.

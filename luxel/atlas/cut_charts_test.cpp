@@ -85,7 +85,7 @@ TEST(CutCharts, ShortBarriersAreLeftAlone) {
   EXPECT_EQ(cut.group, (std::vector<uint32_t>{0, 0}));
 }
 
-/// Of two floors of one mesh only the one under the wall is cut, and gets a mesh of its own.
+/// Two floors of one mesh: only the one under the wall is cut, and gets a mesh of its own.
 TEST(CutCharts, OtherInstancesStayWhole) {
   Floor floor;
   scene::Instance other = floor.scene.instances[0];

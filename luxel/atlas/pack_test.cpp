@@ -59,7 +59,7 @@ TEST(Pack, AQuarterTurnMovesEveryTexelAsItSays) {
 
 using Grid = std::vector<std::vector<bool>>;  // [y][x], true: taken
 
-/// The same search, texel by texel.
+/// The strip's search, texel by texel.
 ChartPosition topmost_by_trying(const Grid& taken, const Mask& mask) {
   const Cells wanted = cells_of(mask);
   const int side = int(taken.size());

@@ -73,7 +73,7 @@ DVec2 best_direction(const std::vector<DVec2>& hull) {
 
 double signed_area2(const std::array<DVec2, 3>& t) { return cross(t[1] - t[0], t[2] - t[0]); }
 
-/// Which faces of a chart already hold a texel centre; a bit per texel of its rectangle.
+/// Texel centres that faces of a chart already hold; a bit per texel of its rectangle.
 struct Occupancy {
   int width, height;
   std::vector<bool> taken;

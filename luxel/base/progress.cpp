@@ -22,7 +22,7 @@ double trust_in_speed(double times, double share) {
 }  // namespace
 
 double seconds_left(const Expected& e) {
-  // Of the running stage: as expected so far, or by its own speed.
+  // What is left of the running stage: by the plan so far, or by its own speed.
   const double slow = e.past > 0 ? e.past_taken / e.past : 1;
   const double by_plan = e.now * slow;
   const double by_speed = e.now_share > 0 ? e.now_taken / e.now_share : by_plan;

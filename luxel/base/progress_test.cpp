@@ -109,7 +109,7 @@ TEST(Progress, ExpectedStagesAreTakenAwayAsTheyCome) {
   EXPECT_LT(progress.snapshot().seconds_left, 1) << "no bounces any more";
 }
 
-// Nobody has said what comes before the end: it is known when it begins.
+// No plan says what comes before the end: it is known when it begins.
 TEST(Progress, TheEndAloneIsNotTheWhole) {
   Progress progress;
   progress.expect_at_end({{"draw", 50}, {"write", 100}});

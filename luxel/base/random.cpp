@@ -16,7 +16,7 @@ inline uint32_t reverse_bits(uint32_t x) {
   return (x >> 16) | (x << 16);
 }
 
-/// Of a number below 8.
+/// The three low bits in reverse order; x < 8.
 inline uint8_t reverse_3_bits(uint32_t x) { return uint8_t((x & 1) << 2 | (x & 2) | (x & 4) >> 2); }
 
 // A bijection in which each bit depends only on lower bits: on bit-reversed input this is nested

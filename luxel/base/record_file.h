@@ -64,7 +64,7 @@ class RecordFile {
   /// A record's bytes, checked. Nothing where there is no such record, it is damaged, or the disk
   /// fails. Thread-safe.
   std::optional<std::vector<std::byte>> read_whole(RecordKey key) const;
-  /// The same in place of what `out` holds; false where there is nothing.
+  /// Replaces what `out` holds by a record's bytes; false where there is nothing.
   bool read_whole(RecordKey key, std::vector<std::byte>& out) const;
   /// Waits until everything is on the disk, for the end of the machine rather than that of the
   /// process. Thread-safe, and others may append meanwhile.

@@ -13,7 +13,7 @@ inline namespace base {
 struct SobolEighth {
   uint8_t x = 0, y = 0;
 };
-/// Of a point of the plain sequence, which is not scrambled.
+/// The eighths in which a point of the plain sequence lies, which is not scrambled.
 SobolEighth sobol_eighth(uint32_t index);
 
 /// Where Owen scrambling moves each eighth of an axis: sobol_owen_2d(index, seed) lies in the

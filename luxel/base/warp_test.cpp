@@ -22,7 +22,7 @@ TEST(CosineHemisphere, InvertUndoesSample) {
     }
 }
 
-// Of the uniform distribution the mean is 0 and E[d d^T] = 1 / 3. A mean over a grid of midpoints
+// The mean of the uniform distribution is 0 and E[d d^T] = 1 / 3. A mean over a grid of midpoints
 // of 256 squared errs by its cells' squares, 1e-5; float adds 1e-6.
 TEST(UniformSphere, HasTheMomentsOfTheSphere) {
   constexpr int kSide = 256;

@@ -11,8 +11,8 @@
 
 namespace luxel::display {
 
-/// Which terms are added: Colour, Ambient, Diffuse, Specular; computed at the corners of triangles
-/// and interpolated, or (P) per pixel with interpolated vectors.
+/// The terms that are added: Colour, Ambient, Diffuse, Specular; computed at the corners of
+/// triangles and interpolated, or (P) per pixel with interpolated vectors.
 enum class LocalTechnique : uint8_t { c, ca, cad, cas, cads, cas_pixel, cads_pixel };
 
 /// The paper's demo lights: a dark grey everywhere, and a light grey from far away.

@@ -46,8 +46,8 @@ inline Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene,
 /// "lightmap-0", "lightmap-1", ... Those of a layer: "lightmap-LAYER", "lightmap-LAYER-0", ...
 std::string lightmap_name(size_t page, size_t pages, std::string_view layer = {});
 
-/// Of a file that baked_glb() wrote: per material the file with its light, "lightmap.exr"; "" where
-/// it names none. Error (bad_input): no .glb.
+/// The lightmaps that a file of baked_glb() names: per material the file with its light,
+/// "lightmap.exr"; "" where it names none. Error (bad_input): no .glb.
 Result<std::vector<std::string>> lightmap_files_of(std::span<const std::byte> glb,
                                                    const std::string& name);
 

@@ -10,9 +10,9 @@
 
 namespace luxel::export_ {
 
-/// Which texture coordinates a primitive has for its material's textures: for the scene's UV sets 0
-/// and 1 the number n of TEXCOORD_n, or -1. Where there are none the scene's texture is white, and
-/// glTF wants no texture at all.
+/// The texture coordinates that a primitive has for its material's textures: for the scene's UV
+/// sets 0 and 1 the number n of TEXCOORD_n, or -1. Where there are none the scene's texture is
+/// white, and glTF wants no texture at all.
 using TexcoordSlots = std::array<int, 2>;
 
 /// What is already in the document: materials, textures and samplers are written when first used.

@@ -37,7 +37,7 @@ json translation_of(const Mat34& m) { return {m.row[0][3], m.row[1][3], m.row[2]
 /// A linear map is U S V^T: the inner node turns by V^T, the outer one scales by S and turns by U.
 /// A mirror goes into the sign of a scale.
 size_t append_sheared(Glb& glb, const Mat34& world, json content) {
-  // Of dynamic size: for the fixed one gcc 12 sees an uninitialised value that is none.
+  // The matrix has dynamic size: for the fixed one gcc 12 sees an uninitialised value that is none.
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(linear_part(world),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d u = svd.matrixU(), v = svd.matrixV();

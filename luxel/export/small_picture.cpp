@@ -7,7 +7,7 @@
 namespace luxel::export_ {
 namespace {
 
-/// Which pixels of a row of `from` a pixel of a row of `to` covers, and how much of each.
+/// Pixels of a row of `from` that a pixel of a row of `to` covers, and how much of each.
 struct Cover {
   int first = 0;
   std::vector<double> weight;  ///< their sum is 1

@@ -22,7 +22,8 @@ struct Image8 {
 /// PNG, JPEG (what glTF allows) or WebP (its extension EXT_texture_webp) to RGBA. `name` is the
 /// file or texture named in errors.
 Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name);
-/// The same as display values in [0, 1], four channels, with all 16 bits that a PNG may have.
+/// Display values in [0, 1], four channels, of a file as for decode_ldr, with all 16 bits that a
+/// PNG may have.
 Result<Image> decode_display(std::span<const std::byte> bytes, std::string_view name);
 std::vector<std::byte> encode_png(const Image8& image);
 

@@ -35,7 +35,7 @@ std::array<uint8_t, 4> to_rgbm(Rgb c, double range) {
 float rgbm_range(std::span<const Image> images) {
   float largest = 0;
   for (const Image& image : images) largest = std::max(largest, largest_component(image));
-  // Of a denormal range the smallest step would be no number.
+  // The smallest step of a denormal range would not be a number.
   return largest > 1e-30f ? largest : 1;
 }
 

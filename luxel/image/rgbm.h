@@ -20,7 +20,7 @@ struct RgbmPicture {
 /// component comes back within (m + range / 255) / 510; negative values become 0, black is four
 /// zero bytes. The first three channels are taken.
 RgbmPicture rgbm_picture(const Image& image);
-/// The same with a range that several pictures share; what is larger is clipped.
+/// A picture in a range that several share; what is larger is clipped.
 Image8 rgbm_picture(const Image& image, float range);
 /// The largest component of all images; 1 when they are black.
 float rgbm_range(std::span<const Image> images);

@@ -191,7 +191,7 @@ TEST(BadInput, DamagedGlbAlwaysGivesAResult) {
   EXPECT_GT(errors, glb.size() / 2);
 }
 
-// The same with numbers in the document replaced: digits are where indices and sizes stand.
+// Damaged files with numbers in the document replaced: digits are where indices and sizes stand.
 TEST(BadInput, WrongNumbersInTheDocumentAlwaysGiveAResult) {
   const std::string glb = rich_glb();
   const TemporaryFolder folder;

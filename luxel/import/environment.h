@@ -22,7 +22,7 @@ struct ImportedEnvironment {
 Result<ImportedEnvironment> read_environment(const std::filesystem::path& file, float rotation_rad,
                                              float scale);
 
-/// The same from a picture in memory, which errors call `name`.
+/// An environment from a picture in memory, which errors call `name`.
 Result<ImportedEnvironment> environment_from(const image::Image& picture, const std::string& name,
                                              float rotation_rad, float scale);
 

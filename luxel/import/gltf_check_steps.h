@@ -66,7 +66,7 @@ Result<std::optional<MeshoptView>> meshopt_view_of(const Json& document, const J
 /// Whether KHR_draco_mesh_compression brings the primitive.
 bool is_draco(const Json& primitive);
 
-/// Which buffers hold nothing that is read, because EXT_meshopt_compression brings all of their
+/// Buffers that hold nothing that is read, because EXT_meshopt_compression brings all of their
 /// views. Their bytes need not exist.
 std::vector<bool> placeholder_buffers(const Json& document);
 

@@ -141,7 +141,7 @@ TEST(GltfMaterial, TexturesComeWithSamplerTransformAndEncodedBytes) {
   expect_near(scene::emission_at(scene, p), {2, 0, 0}, 1e-6f);
 }
 
-// Of a base colour of 0.8 the share 0.5 * (102 / 255) goes through, in the colour (0.5, 1, 0.25)
+// A base colour of 0.8: the share 0.5 * (102 / 255) goes through, in the colour (0.5, 1, 0.25)
 // times the texture's (1, 0, 1): 0.2 (0.5, 0, 0.25), and 0.8 * 0.8 is reflected.
 TEST(GltfMaterial, DiffuseTransmission) {
   Gltf gltf = square_with_material(
@@ -283,7 +283,7 @@ TEST(GltfMaterial, Ktx2IsReplacedByItsFallbackOrSaid) {
               HasSubstr("a.glb: texture 0 of material 0 (brick) is there as KTX2 only "
                         "(KHR_texture_basisu), which luxel cannot decode; export it with PNG or "
                         "JPEG textures"));
-  // Nobody needs it as a normal map.
+  // It is not needed as a normal map.
   gltf.json["materials"][0] = {{"normalTexture", {{"index", 0}}}};
   EXPECT_TRUE(import_glb(gltf));
 }

@@ -214,7 +214,7 @@ TEST_F(GltfMeshoptDamage, FallbackBuffersThatSomebodyNeeds) {
   EXPECT_THAT(error(), HasSubstr("image 0 lies in buffer view 0, which EXT_meshopt_compression"));
 }
 
-// The same scene, exported with and without compression: not one bit of its numbers differs.
+// One scene, exported with and without compression: not one bit of its numbers differs.
 TEST(GltfMeshoptScene, TheGardenIsTheGarden) {
   LUXEL_NEEDS_SHARED("scenes/japanese_bridge_garden");
   const auto folder = testing_support::shared_folder() / "scenes/japanese_bridge_garden";

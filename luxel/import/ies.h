@@ -23,7 +23,7 @@ struct Ies {
 /// missing or too many, not finite, negative or out of order, angles that cover no known symmetry.
 Result<Ies> parse_ies(std::string_view text, const std::string& name);
 
-/// The same; errors also: unreadable.
+/// Reads and parses a file. Errors: as parse_ies, and unreadable.
 Result<Ies> read_ies(const std::filesystem::path& path);
 
 }  // namespace luxel::import

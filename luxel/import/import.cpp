@@ -1,4 +1,4 @@
-// Which reader takes a file, and what every file goes through before and after it.
+// The reader that takes a file, and what every file goes through before and after it.
 #include "luxel/import/import.h"
 
 #include <algorithm>

@@ -19,7 +19,7 @@ struct Imported {
 /// .ply, ...) through Assimp. Errors say file, field, value and what to do.
 Result<Imported> import_scene(const std::filesystem::path& path);
 
-/// The same of a binary glTF file that lies in memory, self-contained; `name` is for messages.
+/// Imports a binary glTF file that lies in memory, self-contained; `name` is for messages.
 Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name);
 
 }  // namespace luxel::import

@@ -107,20 +107,20 @@ LightAt sum_of(std::span<const Source> sources) {
 
 }  // namespace
 
-void direct_light_at(const scene::Scene& scene, const Lights& lights,
-                     const trace::RayTracer& tracer, const DirectParams& params,
-                     std::span<const Receiver> receivers, float diagonal_m, ShadowRayBatch& batch,
+void direct_light_at(const DirectScene& lit, const DirectParams& params,
+                     std::span<const Receiver> receivers, ShadowRayBatch& batch,
                      std::span<LightAt> out) {
+  const Lights& lights = lit.lights;
   LUXEL_CHECK(out.size() == receivers.size());
   batch.sources.clear(), batch.sources_end.clear(), batch.shadow_rays.clear(), batch.rays.clear();
   for (const Receiver& r : receivers) {
-    aim_at_triangles(scene, lights, params.samples, r, diagonal_m, batch);
+    aim_at_triangles(lit, params.samples, r, batch);
     aim_at_punctual_lights(lights, params.samples, r, batch);
-    aim_at_bright_texels(scene, lights.around, params.samples, r, batch);
-    aim_at_soft_sky(scene, lights.around, params.sky_samples, r, batch);
+    aim_at_bright_texels(lit.scene, lights.around, params.samples, r, batch);
+    aim_at_soft_sky(lit.scene, lights.around, params.sky_samples, r, batch);
     batch.sources_end.push_back(batch.sources.size());
   }
-  trace_batch(tracer, batch);
+  trace_batch(lit.tracer, batch);
   const std::span<const Source> sources = batch.sources;
   for (size_t i = 0, begin = 0; i < out.size(); begin = batch.sources_end[i++])
     out[i] = sum_of(sources.subspan(begin, batch.sources_end[i] - begin));
@@ -137,11 +137,10 @@ void add_light_by_layer(const ShadowRayBatch& batch, size_t receiver, const Ligh
   }
 }
 
-LightAt direct_light_at(const scene::Scene& scene, const Lights& lights,
-                        const trace::RayTracer& tracer, const DirectParams& params,
-                        const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
+LightAt direct_light_at(const DirectScene& lit, const DirectParams& params, const Receiver& r,
+                        ShadowRayBatch& batch) {
   LightAt out;
-  direct_light_at(scene, lights, tracer, params, {&r, 1}, diagonal_m, batch, {&out, 1});
+  direct_light_at(lit, params, {&r, 1}, batch, {&out, 1});
   return out;
 }
 
@@ -178,14 +177,14 @@ void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> whi
 
 }  // namespace
 
-Status direct_light_again(const scene::Scene& scene, const transport::Elements& elements,
-                          const Lights& lights, const trace::RayTracer& tracer,
-                          std::span<const uint32_t> which, const DirectParams& params,
-                          DirectLight& direct, Progress& progress) {
+Status direct_light_again(const LitElements& in, std::span<const uint32_t> which,
+                          const DirectParams& params, DirectLight& direct, Progress& progress) {
+  const transport::Elements& elements = in.elements;
   LUXEL_CHECK(params.samples >= 1 && direct.irradiance.size() == elements.size());
   LUXEL_CHECK(direct.by_layer.size() ==
               (params.layers ? params.layers->size() : 0) * elements.size());
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  const float diagonal_m = scene::world_bounds(in.scene).diagonal();
+  const DirectScene lit{in.scene, in.lights, in.tracer, diagonal_m};
   const KeptStage kept = kept_stage(params, which);
   std::atomic<uint64_t> rays{0};
   progress.begin("direct light", which.size());
@@ -204,7 +203,7 @@ Status direct_light_again(const scene::Scene& scene, const transport::Elements& 
           elements.position[i], elements.normal[i], elements.geometric_normal[i],
           trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m),
           hash64(params.seed, params.same_points ? 0 : i)};
-      const LightAt light = direct_light_at(scene, lights, tracer, params, r, diagonal_m, batch);
+      const LightAt light = direct_light_at(lit, params, r, batch);
       direct.irradiance[i] = light.irradiance;
       direct.variance[i] = light.variance, direct.split_variance[i] = light.split_variance;
       if (params.layers) {
@@ -232,7 +231,8 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Ele
   if (params.layers) out.by_layer.resize(elements.size() * params.layers->size());
   std::vector<uint32_t> all(elements.size());
   std::iota(all.begin(), all.end(), 0u);
-  LUXEL_TRY_STATUS(direct_light_again(scene, elements, lights, tracer, all, params, out, progress));
+  LUXEL_TRY_STATUS(
+      direct_light_again({scene, elements, lights, tracer}, all, params, out, progress));
   return out;
 }
 

@@ -53,11 +53,17 @@ Result<DirectLight> direct_light(const scene::Scene& scene, const transport::Ele
                                  const Lights& lights, const trace::RayTracer& tracer,
                                  const DirectParams& params, Progress& progress);
 
+/// What direct light is worked out from.
+struct LitElements {
+  const scene::Scene& scene;
+  const transport::Elements& elements;
+  const Lights& lights;
+  const trace::RayTracer& tracer;
+};
+
 /// The light of some elements again, with other samples, in place of what is there. Errors:
 /// cancelled; `direct` is of no use then.
-Status direct_light_again(const scene::Scene& scene, const transport::Elements& elements,
-                          const Lights& lights, const trace::RayTracer& tracer,
-                          std::span<const uint32_t> which, const DirectParams& params,
-                          DirectLight& direct, Progress& progress);
+Status direct_light_again(const LitElements& in, std::span<const uint32_t> which,
+                          const DirectParams& params, DirectLight& direct, Progress& progress);
 
 }  // namespace luxel::light

@@ -44,7 +44,7 @@ Squares squares() {
   return out;
 }
 
-/// The same point many times: every element has a seed of its own.
+/// One point many times: every element has a seed of its own.
 transport::Elements copies(Vec3 position, Vec3 normal, size_t count) {
   transport::Elements e;
   e.position.assign(count, position);

@@ -67,24 +67,24 @@ LightPoint sample_area(const TriangleLight& light, const Receiver& r, Vec2 u) {
   return {p, at, std::max(0.0f, dot(d, r.normal)) * light_side / (d2 * d2), light.area_m2};
 }
 
-void aim_at_point(const scene::Scene& scene, const TriangleLight& light, const LightPoint& point,
-                  uint32_t source, float factor, const Receiver& r, float diagonal_m,
-                  ShadowRayBatch& batch) {
+void aim_at_point(const DirectScene& lit, const TriangleLight& light, const LightPoint& point,
+                  uint32_t source, float factor, const Receiver& r, ShadowRayBatch& batch) {
   const bool front = dot(r.position - light.a, light.normal) > 0;
   // The ray ends just before the light, so that the light itself does not block it, nor a wall that
   // touches the light when the point lies on their common edge.
   constexpr float kEnd = 1 - 1e-4f;
   const Vec3 end =
-      trace::offset_origin(point.target, front ? light.normal : -light.normal, diagonal_m);
-  const Rgb radiance = light.textured ? radiance_at(scene, light, point.at) : light.mean_radiance;
+      trace::offset_origin(point.target, front ? light.normal : -light.normal, lit.diagonal_m);
+  const Rgb radiance =
+      light.textured ? radiance_at(lit.scene, light, point.at) : light.mean_radiance;
   const float w = point.weight * factor;
   add_shadow_ray(batch, r, {source, w, radiance * w}, end - r.origin, kEnd);
 }
 
 /// Shadow rays at one triangle. Points below the receiver's horizon bring nothing and would starve
 /// the ratio: the sequence is followed until `count` points lie above it.
-void aim_at_triangle(const scene::Scene& scene, const TriangleLight& light, uint32_t source,
-                     uint32_t count, const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
+void aim_at_triangle(const DirectScene& lit, const TriangleLight& light, uint32_t source,
+                     uint32_t count, const Receiver& r, ShadowRayBatch& batch) {
   const auto spherical = spherical_triangle(r.position, light.a, light.b, light.c);
   const bool by_angle = spherical.solid_angle > kMinSolidAngle;
   uint64_t seed = hash64(r.seed, (uint64_t(light.instance) << 32) | light.triangle);
@@ -95,7 +95,7 @@ void aim_at_triangle(const scene::Scene& scene, const TriangleLight& light, uint
     const LightPoint point =
         by_angle ? sample_solid_angle(light, spherical, r, u) : sample_area(light, r, u);
     if (point.weight <= 0) continue;
-    aim_at_point(scene, light, point, source, 1, r, diagonal_m, batch);
+    aim_at_point(lit, light, point, source, 1, r, batch);
     ++kept;
   }
 }
@@ -105,9 +105,9 @@ bool shines_on(const TriangleLight& light, const Receiver& r) {
 }
 
 /// One shadow ray at a triangle that stands for many.
-void aim_at_drawn(const scene::Scene& scene, const Lights& lights, const LightDraw& draw,
-                  const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
-  const TriangleLight& light = lights.triangles[draw.light];
+void aim_at_drawn(const DirectScene& lit, const LightDraw& draw, const Receiver& r,
+                  ShadowRayBatch& batch) {
+  const TriangleLight& light = lit.lights.triangles[draw.light];
   const uint32_t source = uint32_t(batch.sources.size());
   batch.sources.push_back(
       {.scale = 1 / draw.chance, .drawn = true, .light = {LightId::Kind::triangle, draw.light}});
@@ -118,13 +118,13 @@ void aim_at_drawn(const scene::Scene& scene, const Lights& lights, const LightDr
                                ? sample_solid_angle(light, spherical, r, u)
                                : sample_area(light, r, u);
   if (point.weight > 0 && shines_on(light, r))
-    aim_at_point(scene, light, point, source, point.measure, r, diagonal_m, batch);
+    aim_at_point(lit, light, point, source, point.measure, r, batch);
 }
 
 /// More lights than a cut holds: some of them. Those that get a ray for certain are exact but for
 /// the visible share; of the others each one that is drawn stands for its neighbours too.
-void aim_at_drawn_triangles(const scene::Scene& scene, const Lights& lights, int samples,
-                            const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
+void aim_at_drawn_triangles(const DirectScene& lit, int samples, const Receiver& r,
+                            ShadowRayBatch& batch) {
   const auto leaf = [&](const LightNode& node) {
     return importance_at(node, r.position, r.normal);
   };
@@ -132,13 +132,13 @@ void aim_at_drawn_triangles(const scene::Scene& scene, const Lights& lights, int
   // A cut shares several rays out better; for a single one the way down from the root is enough.
   const DrawParams params{
       .samples = samples, .max_cut = samples == 1 ? 1u : 16u, .start = random.next()};
-  draw_lights(lights.nodes, r.position, r.normal, leaf, params, batch.draws);
+  draw_lights(lit.lights.nodes, r.position, r.normal, leaf, params, batch.draws);
   for (const LightDraw& draw : batch.draws.draws) {
     if (draw.chance < 1) {
-      aim_at_drawn(scene, lights, draw, r, diagonal_m, batch);
+      aim_at_drawn(lit, draw, r, batch);
       continue;
     }
-    const TriangleLight& light = lights.triangles[draw.light];
+    const TriangleLight& light = lit.lights.triangles[draw.light];
     const float whole = irradiance_per_radiance(light, r.position, r.normal);
     if (whole <= 0) continue;
     const uint32_t source = uint32_t(batch.sources.size());
@@ -147,7 +147,7 @@ void aim_at_drawn_triangles(const scene::Scene& scene, const Lights& lights, int
                              .planned = draw.count,
                              .unshadowed = whole * luminance(light.mean_radiance),
                              .light = {LightId::Kind::triangle, draw.light}});
-    aim_at_triangle(scene, light, source, draw.count, r, diagonal_m, batch);
+    aim_at_triangle(lit, light, source, draw.count, r, batch);
   }
 }
 
@@ -155,12 +155,12 @@ void aim_at_drawn_triangles(const scene::Scene& scene, const Lights& lights, int
 /// to each while there are twice as many shadow rays as lights. Where there are fewer, a light that
 /// deserves less than one gets one with that chance (systematic sampling), and counts for more
 /// then.
-void aim_at_all_triangles(const scene::Scene& scene, const Lights& lights, int samples,
-                          const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
+void aim_at_all_triangles(const DirectScene& lit, int samples, const Receiver& r,
+                          ShadowRayBatch& batch) {
   batch.whole.clear();
   float total = 0;
   size_t shining = 0;
-  for (const TriangleLight& light : lights.triangles) {
+  for (const TriangleLight& light : lit.lights.triangles) {
     batch.whole.push_back(irradiance_per_radiance(light, r.position, r.normal));
     total += batch.whole.back() * luminance(light.mean_radiance);
     shining += batch.whole.back() > 0;
@@ -169,9 +169,9 @@ void aim_at_all_triangles(const scene::Scene& scene, const Lights& lights, int s
   RandomStream random{hash64(r.seed, 0x11)};
   float owed = random.next();
   const float least = size_t(samples) >= 2 * shining ? 1.0f : 0.0f;
-  for (size_t i = 0; i < lights.triangles.size(); ++i) {
+  for (size_t i = 0; i < lit.lights.triangles.size(); ++i) {
     if (batch.whole[i] <= 0) continue;
-    const TriangleLight& light = lights.triangles[i];
+    const TriangleLight& light = lit.lights.triangles[i];
     const float unshadowed = batch.whole[i] * luminance(light.mean_radiance);
     const float deserved = std::max(least, float(samples) * unshadowed / total);
     uint32_t count = uint32_t(std::lround(deserved));
@@ -188,19 +188,19 @@ void aim_at_all_triangles(const scene::Scene& scene, const Lights& lights, int s
                              .planned = count,
                              .unshadowed = unshadowed / chance,
                              .light = {LightId::Kind::triangle, uint32_t(i)}});
-    aim_at_triangle(scene, light, source, count, r, diagonal_m, batch);
+    aim_at_triangle(lit, light, source, count, r, batch);
   }
 }
 
 }  // namespace
 
-void aim_at_triangles(const scene::Scene& scene, const Lights& lights, int samples,
-                      const Receiver& r, float diagonal_m, ShadowRayBatch& batch) {
-  if (lights.triangles.empty()) return;
-  if (lights.triangles.size() <= kMaxAll)
-    aim_at_all_triangles(scene, lights, samples, r, diagonal_m, batch);
+void aim_at_triangles(const DirectScene& lit, int samples, const Receiver& r,
+                      ShadowRayBatch& batch) {
+  if (lit.lights.triangles.empty()) return;
+  if (lit.lights.triangles.size() <= kMaxAll)
+    aim_at_all_triangles(lit, samples, r, batch);
   else
-    aim_at_drawn_triangles(scene, lights, samples, r, diagonal_m, batch);
+    aim_at_drawn_triangles(lit, samples, r, batch);
 }
 
 }  // namespace luxel::light

@@ -1,4 +1,4 @@
-// Which surfaces belong to a layer of light.
+// The surfaces that belong to a layer of light.
 #pragma once
 
 #include <cstdint>

@@ -179,7 +179,7 @@ Result<BentLight> bent_irradiance(const LitScene& lit, std::span<const Vec3> pos
                                   const AroundParams& params, Progress& progress) {
   const size_t n = positions.size();
   LUXEL_CHECK(normals.size() == n && geometric_normals.size() == n);
-  /// Of the four tilted normals; and of the normal itself by the same rays: V is taken from
+  /// E of the four tilted normals, and of the normal itself by the same rays: V is taken from
   /// differences, and noise that all five share does not show in them.
   std::vector<std::array<Rgb, 5>> light(n);
   const float diagonal_m = scene::world_bounds(lit.scene).diagonal();

@@ -213,7 +213,7 @@ TEST(ElementsInReach, AreTheShadowOfABoxUnderALamp) {
   for (const float radius : {0.0f, 0.1f, 0.43f})
     expect_square(reach_of(floor_under(small_lamp()), radius),
                   0.5f * (kLampHeight + radius) / (kLampHeight - 2.5f) + radius);
-  // Of two boxes, of which one is empty.
+  // Two boxes, of which one is empty.
   const std::vector<Box3> boxes{Box3{}, kBox};
   expect_square(reach_of(floor_under(small_lamp()), 0, boxes), 4.0f / 3);
 }

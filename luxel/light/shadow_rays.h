@@ -14,6 +14,14 @@
 
 namespace luxel::light {
 
+/// What shadow rays are traced through and towards.
+struct DirectScene {
+  const scene::Scene& scene;
+  const Lights& lights;
+  const trace::RayTracer& tracer;
+  float diagonal_m = 0;  ///< of the scene: rays start a share of it off the surface
+};
+
 struct Receiver {
   Vec3 position, normal, geometric_normal;
   Vec3 origin;  ///< position moved off the surface: where shadow rays start
@@ -79,8 +87,8 @@ inline void add_shadow_ray(ShadowRayBatch& batch, const Receiver& at, ShadowRay 
 }
 
 /// Each adds what it aims at of one kind, about `samples` shadow rays for it.
-void aim_at_triangles(const scene::Scene& scene, const Lights& lights, int samples,
-                      const Receiver& r, float diagonal_m, ShadowRayBatch& batch);
+void aim_at_triangles(const DirectScene& lit, int samples, const Receiver& r,
+                      ShadowRayBatch& batch);
 void aim_at_punctual_lights(const Lights& lights, int samples, const Receiver& r,
                             ShadowRayBatch& batch);
 /// Bright texels of the environment, in proportion to their power.
@@ -98,15 +106,13 @@ struct LightAt {
 
 /// direct_light at a few receivers, whose shadow rays are traced together: `out` gets the light of
 /// each. The number of rays is that of batch.rays.
-void direct_light_at(const scene::Scene& scene, const Lights& lights,
-                     const trace::RayTracer& tracer, const DirectParams& params,
-                     std::span<const Receiver> receivers, float diagonal_m, ShadowRayBatch& batch,
+void direct_light_at(const DirectScene& lit, const DirectParams& params,
+                     std::span<const Receiver> receivers, ShadowRayBatch& batch,
                      std::span<LightAt> out);
 
-/// The same at one.
-LightAt direct_light_at(const scene::Scene& scene, const Lights& lights,
-                        const trace::RayTracer& tracer, const DirectParams& params,
-                        const Receiver& r, float diagonal_m, ShadowRayBatch& batch);
+/// Direct light at one receiver.
+LightAt direct_light_at(const DirectScene& lit, const DirectParams& params, const Receiver& r,
+                        ShadowRayBatch& batch);
 
 /// The light of receiver number `receiver` of the last direct_light_at(), times `factor`, is added
 /// to the layer that each source belongs to: `out` has an entry per layer.

@@ -29,6 +29,10 @@ struct PointScene {
   float diagonal_m;
 };
 
+PointScene point_scene(const TexelScene& in) {
+  return {in.scene, in.tracer, scene::world_bounds(in.scene).diagonal()};
+}
+
 /// Whether a point lies inside a solid; of each place the same answer in every bake.
 bool is_enclosed(const PointScene& at, const Receiver& r, int rays = kEnclosureRays) {
   return transport::is_enclosed(at.scene, at.tracer, r.origin, r.normal, rays, at.diagonal_m);
@@ -96,7 +100,7 @@ bool is_dark(Rgb light) { return max_component(light) <= 0; }
 
 int samples_per_point(int samples) { return std::max(std::min(samples, 8), samples / 8); }
 
-/// Of a texel at a chart's border, when it is asked whether light varies.
+/// Points of a texel at a chart's border, when it is asked whether light varies.
 constexpr int kBorderPoints = 8;
 
 /// Buffers of one thread.
@@ -116,7 +120,7 @@ void light_points(const PointScene& place, const Lights& lights, const DirectPar
     work.receivers.push_back(receiver_at(place, transport::smooth_point(place.scene, p), seed));
   }
   work.light.resize(work.receivers.size());
-  direct_light_at(place.scene, lights, place.tracer, each, work.receivers, place.diagonal_m,
+  direct_light_at({place.scene, lights, place.tracer, place.diagonal_m}, each, work.receivers,
                   work.batch, work.light);
 }
 
@@ -145,26 +149,23 @@ std::vector<uint32_t> uneven_texels(const atlas::Atlas& atlas, const atlas::Texe
   return out;
 }
 
-Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atlas,
-                              const atlas::TexelMap& map, const transport::Elements& elements,
-                              const trace::RayTracer& tracer, int points, uint64_t seed,
-                              Progress& progress) {
+Result<Footprints> footprints(const TexelScene& in, int points, uint64_t seed, Progress& progress) {
   LUXEL_CHECK(points >= 1);
-  std::vector<uint32_t> all(map.texels.size());
+  std::vector<uint32_t> all(in.map.texels.size());
   std::iota(all.begin(), all.end(), 0u);
-  const atlas::Cover cover = atlas::cover_of(atlas, map, all);
-  const PointScene place{scene, tracer, scene::world_bounds(scene).diagonal()};
+  const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, all);
+  const PointScene place = point_scene(in);
   std::vector<std::vector<Receiver>> found(all.size());
   progress.begin("footprints", all.size());
   parallel_for(all.size(), kGrain, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     std::vector<scene::SurfacePoint> spread;
     for (size_t i = begin; i < end; ++i) {
-      const Receiver own = own_receiver(place, elements, i);
+      const Receiver own = own_receiver(place, in.elements, i);
       if (!is_enclosed(place, own, kEnclosureRaysOfTexel)) {
-        atlas::spread_points(atlas, map.texels[i], cover.of(i), points, seed, spread);
+        atlas::spread_points(in.atlas, in.map.texels[i], cover.of(i), points, seed, spread);
         for (const scene::SurfacePoint& p : spread) {
-          const Receiver r = receiver_at(place, transport::smooth_point(scene, p), 0);
+          const Receiver r = receiver_at(place, transport::smooth_point(in.scene, p), 0);
           if (!is_enclosed(place, r)) found[i].push_back(r);
         }
       }
@@ -214,13 +215,13 @@ std::vector<uint32_t> border_texels(const atlas::Atlas& atlas, const atlas::Texe
   return out;
 }
 
-/// Of `which`, those whose light differs at some of a few points: where a chart ends there is no
-/// neighbour who would tell of a shadow's edge. Returns the number of rays.
-Result<uint64_t> keep_uneven(const PointScene& place, const atlas::Atlas& atlas,
-                             const atlas::TexelMap& map, const Lights& lights,
-                             const SupersampleParams& params, const DirectLight& direct,
-                             std::vector<uint32_t>& which, Progress& progress) {
-  const atlas::Cover cover = atlas::cover_of(atlas, map, which);
+/// Keeps those of `which` whose light differs at some of a few points: where a chart ends there is
+/// no neighbour who would tell of a shadow's edge. Returns the number of rays.
+Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& params,
+                             const DirectLight& direct, std::vector<uint32_t>& which,
+                             Progress& progress) {
+  const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
+  const PointScene place = point_scene(in);
   DirectParams each = params.direct;
   each.samples = samples_per_point(params.direct.samples);
   std::atomic<uint64_t> rays{0};
@@ -232,9 +233,9 @@ Result<uint64_t> keep_uneven(const PointScene& place, const atlas::Atlas& atlas,
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
       const uint32_t i = which[k];
-      atlas::spread_points(atlas, map.texels[i], cover.of(k), kBorderPoints, each.seed,
+      atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), kBorderPoints, each.seed,
                            work.spread);
-      light_points(place, lights, each, i, work);
+      light_points(place, in.lights, each, i, work);
       traced += work.batch.rays.size();
       for (const LightAt& l : work.light)
         if (differ({l.irradiance, l.variance}, {direct.irradiance[i], direct.variance[i]},
@@ -254,33 +255,25 @@ Result<uint64_t> keep_uneven(const PointScene& place, const atlas::Atlas& atlas,
 
 }  // namespace
 
-Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                 const atlas::TexelMap& map, const transport::Elements& elements,
-                                 const Lights& lights, const trace::RayTracer& tracer,
-                                 const SupersampleParams& params, DirectLight& direct,
-                                 Progress& progress) {
-  std::vector<uint32_t> all(map.texels.size());
+Result<Supersampled> supersample(const TexelScene& in, const SupersampleParams& params,
+                                 DirectLight& direct, Progress& progress) {
+  std::vector<uint32_t> all(in.map.texels.size());
   std::iota(all.begin(), all.end(), 0u);
-  return supersample(scene, atlas, map, elements, lights, tracer, all, params, direct, progress);
+  return supersample(in, all, params, direct, progress);
 }
 
-Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                 const atlas::TexelMap& map, const transport::Elements& elements,
-                                 const Lights& lights, const trace::RayTracer& tracer,
-                                 std::span<const uint32_t> among, const SupersampleParams& params,
-                                 DirectLight& direct, Progress& progress) {
+Result<Supersampled> supersample(const TexelScene& in, std::span<const uint32_t> among,
+                                 const SupersampleParams& params, DirectLight& direct,
+                                 Progress& progress) {
   if (params.points == 1) return Supersampled{};
-  const PointScene place{scene, tracer, scene::world_bounds(scene).diagonal()};
   std::vector<uint32_t> uneven, borders, which;
-  std::ranges::set_intersection(uneven_texels(atlas, map, direct, params.threshold), among,
+  std::ranges::set_intersection(uneven_texels(in.atlas, in.map, direct, params.threshold), among,
                                 std::back_inserter(uneven));
-  std::ranges::set_intersection(border_texels(atlas, map, uneven), among,
+  std::ranges::set_intersection(border_texels(in.atlas, in.map, uneven), among,
                                 std::back_inserter(borders));
-  LUXEL_TRY(const uint64_t rays,
-            keep_uneven(place, atlas, map, lights, params, direct, borders, progress));
+  LUXEL_TRY(const uint64_t rays, keep_uneven(in, params, direct, borders, progress));
   std::ranges::merge(uneven, borders, std::back_inserter(which));
-  LUXEL_TRY(Supersampled out, average_texels(scene, atlas, map, elements, lights, tracer, which,
-                                             params, direct, progress));
+  LUXEL_TRY(Supersampled out, average_texels(in, which, params, direct, progress));
   out.rays += rays;
   return out;
 }
@@ -324,15 +317,12 @@ void keep_part(const KeptStage& kept, size_t part, std::span<const uint32_t> whi
 
 }  // namespace
 
-Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                    const atlas::TexelMap& map, const transport::Elements& elements,
-                                    const Lights& lights, const trace::RayTracer& tracer,
-                                    std::span<const uint32_t> which,
+Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32_t> which,
                                     const SupersampleParams& params, DirectLight& direct,
                                     Progress& progress) {
   LUXEL_CHECK(params.points >= 1);
-  const atlas::Cover cover = atlas::cover_of(atlas, map, which);
-  const PointScene place{scene, tracer, scene::world_bounds(scene).diagonal()};
+  const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
+  const PointScene place = point_scene(in);
   DirectParams each = params.direct;
   each.samples = samples_per_point(params.direct.samples);
   std::atomic<uint64_t> rays{0};
@@ -353,7 +343,7 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {
       const uint32_t i = which[k];
-      const Receiver own = own_receiver(place, elements, i);
+      const Receiver own = own_receiver(place, in.elements, i);
       if (is_dark(direct.irradiance[i])) {
         traced += uint64_t(kEnclosureRaysOfTexel);
         if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
@@ -362,9 +352,9 @@ Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atla
       traced += uint64_t(kEnclosureRays);
       points.clear();
       std::ranges::fill(by_layer, Rgb{});
-      atlas::spread_points(atlas, map.texels[i], cover.of(k), params.points, each.seed,
+      atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), params.points, each.seed,
                            work.spread);
-      light_points(place, lights, each, i, work);
+      light_points(place, in.lights, each, i, work);
       traced += work.batch.rays.size();
       for (size_t j = 0; j < work.light.size(); ++j) {
         // Where a wall stands on the surface, its inside is dark, and nobody sees it; under the

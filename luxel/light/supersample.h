@@ -7,14 +7,15 @@
 
 #include "luxel/atlas/footprint.h"
 #include "luxel/light/direct_light.h"
+#include "luxel/light/texel_scene.h"
 
 namespace luxel::light {
 
 struct SupersampleParams {
   int points = 16;         ///< per texel where light varies; 1: none
   float threshold = 0.1f;  ///< neighbours that differ by more of the brighter one make it vary
-  /// Of direct_light. Each point gets an eighth of the samples, but eight at least where that many
-  /// are asked for.
+  /// Settings of direct_light. Each point gets an eighth of the samples, but eight at least where
+  /// that many are asked for.
   DirectParams direct;
 };
 
@@ -42,35 +43,24 @@ struct Footprints {
   std::vector<uint32_t> first;  ///< per texel, one extra entry
   transport::Elements points;   ///< without reflectance
 };
-/// For all texels of the map, as the judge wants them: 16 points need 576 bytes a texel. Errors:
-/// cancelled.
-Result<Footprints> footprints(const scene::Scene& scene, const atlas::Atlas& atlas,
-                              const atlas::TexelMap& map, const transport::Elements& elements,
-                              const trace::RayTracer& tracer, int points, uint64_t seed,
-                              Progress& progress);
+/// Footprints of all texels of the map, as the judge wants them; `in.lights` is not looked at. 16
+/// points need 576 bytes a texel. Errors: cancelled.
+Result<Footprints> footprints(const TexelScene& in, int points, uint64_t seed, Progress& progress);
 
 /// Replaces the direct light of uneven texels, and of those at a chart's border where it differs
 /// between points of the texel, by its mean over `points` points of their footprint,
 /// and its variance by an estimate for that mean; all others, and hidden ones, keep their bits.
-/// `elements` are those of the map. Errors: cancelled.
-Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                 const atlas::TexelMap& map, const transport::Elements& elements,
-                                 const Lights& lights, const trace::RayTracer& tracer,
+/// Errors: cancelled.
+Result<Supersampled> supersample(const TexelScene& in, const SupersampleParams& params,
+                                 DirectLight& direct, Progress& progress);
+
+/// Supersamples the uneven texels and borders that are in `among`, in the order of the map.
+Result<Supersampled> supersample(const TexelScene& in, std::span<const uint32_t> among,
                                  const SupersampleParams& params, DirectLight& direct,
                                  Progress& progress);
 
-/// The same, but looks only at texels `among`, in the order of the map.
-Result<Supersampled> supersample(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                 const atlas::TexelMap& map, const transport::Elements& elements,
-                                 const Lights& lights, const trace::RayTracer& tracer,
-                                 std::span<const uint32_t> among, const SupersampleParams& params,
-                                 DirectLight& direct, Progress& progress);
-
-/// The same for the texels `which`, uneven or not.
-Result<Supersampled> average_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                    const atlas::TexelMap& map, const transport::Elements& elements,
-                                    const Lights& lights, const trace::RayTracer& tracer,
-                                    std::span<const uint32_t> which,
+/// Averages the direct light of the texels `which` over their points, uneven or not.
+Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32_t> which,
                                     const SupersampleParams& params, DirectLight& direct,
                                     Progress& progress);
 

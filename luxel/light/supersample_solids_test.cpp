@@ -23,15 +23,15 @@ TEST(Supersample, LightIsAveragedOverPlacesInTheOpen) {
   Progress progress;
   SupersampleParams params;
   params.direct = {8, 1};
-  const auto judge = footprints(floor.scene, floor.atlas, floor.map, elements, rays, params.points,
-                                params.direct.seed, progress);
+  const auto judge = footprints({floor.scene, floor.atlas, floor.map, elements, lights, rays},
+                                params.points, params.direct.seed, progress);
   ASSERT_TRUE(judge);
   DirectLight direct;
   direct.irradiance.assign(n, Rgb{1, 1, 1}), direct.variance.resize(n);
   direct.split_variance.resize(n);
   std::vector<uint32_t> all(n);
   std::iota(all.begin(), all.end(), 0);
-  ASSERT_TRUE(average_texels(floor.scene, floor.atlas, floor.map, elements, lights, rays, all,
+  ASSERT_TRUE(average_texels({floor.scene, floor.atlas, floor.map, elements, lights, rays}, all,
                              params, direct, progress));
   size_t partly = 0;
   for (size_t i = 0; i < n; ++i) {

@@ -78,7 +78,7 @@ Lit light(const scene::Scene& scene, int points) {
   Progress progress;
   out.before = *direct_light(scene, elements, lights, *tracer, {}, progress);
   out.after = out.before;
-  out.done = *supersample(scene, atlas, out.map, elements, lights, *tracer, {points, 0.1f, {}},
+  out.done = *supersample({scene, atlas, out.map, elements, lights, *tracer}, {points, 0.1f, {}},
                           out.after, progress);
   return out;
 }

@@ -38,8 +38,8 @@ Surroundings surroundings_of(const scene::Scene& scene);
 
 /// Radiance of the soft layer, background included.
 Rgb soft_radiance(const scene::Scene& scene, const Surroundings& s, Vec3 direction);
-/// The same of many, which takes less time: their pixels lie far apart in memory, and are waited
-/// for at the same time.
+/// Soft radiance of many directions, which takes less time: their pixels lie far apart in memory,
+/// and are waited for at the same time.
 void soft_radiance(const scene::Scene& scene, const Surroundings& s,
                    std::span<const Vec3> directions, std::vector<Rgb>& out);
 

@@ -75,7 +75,7 @@ Errors errors_of(const Spot& spot, int samples) {
   return e;
 }
 
-// Of pieces whose edges are the row's, each is seen whole: no noise but what choosing some of them
+// Pieces whose edges are the row's: each is seen whole: no noise but what choosing some of them
 // leaves, whose light differs by their distance. One ray in 16 (in 256) would meet the row without
 // pieces: with 64 rays that is an error of half (of twice) the light.
 TEST(TexturedLights, ABrightRowBringsWhatItsGeometryWould) {

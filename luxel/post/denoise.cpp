@@ -88,11 +88,21 @@ float agreement(const Plane& own, const Shown& other, Rgb per_limit, const Neigh
   return rest > 0 ? rest * (2 - rest) : 0.0f;
 }
 
+struct Round {
+  float radius = 0;           ///< of the windows, in texels
+  float max_deviations2 = 0;  ///< largest squared difference over its variance that counts
+};
+struct Planes {
+  std::vector<Plane> planes;  ///< per texel
+  std::vector<Shown> shown;   ///< what the others see of each: a buffer
+};
+
 /// One round: every texel's plane from the texels around it, weighted by how well the estimates of
-/// the round before agree. `shown` is made anew from `planes`, which are then replaced.
+/// the round before agree. What is shown is made anew from the planes, which are then replaced.
 Status grow(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb> values,
-            float radius, float max_deviations2, std::vector<Plane>& planes,
-            std::vector<Shown>& shown, Progress& progress) {
+            const Round& round, Planes& now, Progress& progress) {
+  std::vector<Plane>& planes = now.planes;
+  std::vector<Shown>& shown = now.shown;
   for (size_t i = 0; i < planes.size(); ++i)
     shown[i] = {planes[i].value, planes[i].variance, values[i], noise.variance[i]};
   parallel_for(values.size(), kBlockTexels, [&](size_t begin, size_t end) {
@@ -102,11 +112,11 @@ Status grow(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb
       const Plane own = planes[i];
       constexpr float kTiny = 1e-30f;  // a channel without noise agrees with its like alone
       const auto per = [&](float channel) {
-        return 1 / (max_deviations2 * std::max(channel, kTiny));
+        return 1 / (round.max_deviations2 * std::max(channel, kTiny));
       };
       const Rgb c = noise.per_channel[i], per_limit{per(c.x), per(c.y), per(c.z)};
       Moments moments;
-      for_neighbours(n, uint32_t(i), radius, [&](uint32_t j, const Neighbour& at) {
+      for_neighbours(n, uint32_t(i), round.radius, [&](uint32_t j, const Neighbour& at) {
         const float agree = j == i ? 1.0f : agreement(own, shown[j], per_limit, at);
         if (agree > 0) moments.add(at, at.weight * agree, shown[j].value, shown[j].variance);
       });
@@ -127,14 +137,14 @@ constexpr float kFirstDeviations = 2;
 Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLight& part,
               Progress& progress) {
   const NoiseLevel noise = noise_level(n, part.values, part.variance);
-  std::vector<Plane> now(part.values.size());
-  std::vector<Shown> shown(part.values.size());
+  Planes planes{std::vector<Plane>(part.values.size()), std::vector<Shown>(part.values.size())};
+  std::vector<Plane>& now = planes.planes;
   for (size_t i = 0; i < now.size(); ++i) now[i] = {part.values[i], {}, {}, noise.variance[i], 0};
   float deviations = params.max_deviations * kFirstDeviations;
   for (const float radius : kRadii) {
     if (radius > params.radius) break;
     LUXEL_TRY_STATUS(
-        grow(n, noise, part.values, radius, deviations * deviations, now, shown, progress));
+        grow(n, noise, part.values, {radius, deviations * deviations}, planes, progress));
     deviations = params.max_deviations;
   }
   for (size_t i = 0; i < now.size(); ++i) {

@@ -38,7 +38,7 @@ struct NoisyLight {
   std::span<const float> variance;
 };
 
-/// Which filter this build has: "luxel", or "oidn" where Open Image Denoise was found.
+/// The filter that this build has: "luxel", or "oidn" where Open Image Denoise was found.
 std::string_view denoiser_name();
 
 /// Filters each part by itself. A texel becomes the value at its own place of a plane fitted to the

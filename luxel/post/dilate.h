@@ -14,7 +14,7 @@ namespace luxel::post {
 /// texel's centre, 0.5 where the texel was sampled off its centre, 0 elsewhere.
 image::Image lightmap_from_texels(const atlas::TexelMap& map, std::span<const Rgb> values);
 
-/// The same per page of the atlas (atlas::pages_of): a lightmap as large as each.
+/// Lightmaps per page of the atlas (atlas::pages_of): a lightmap as large as each.
 std::vector<image::Image> lightmap_pages(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                          std::span<const Rgb> values);
 

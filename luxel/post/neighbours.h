@@ -1,4 +1,4 @@
-// Which texels lie beside each other on a surface, whatever the atlas made of it.
+// Texels that lie beside each other on a surface, whatever the atlas made of it.
 #pragma once
 
 #include <cmath>

@@ -24,7 +24,7 @@ using Parted = std::function<bool(uint32_t, uint32_t)>;
 std::vector<uint32_t> refill_hidden(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                     std::span<const uint8_t> hidden, int rings,
                                     const Parted& parted, std::span<Rgb> values);
-/// The same for several arrays of values.
+/// Refills several arrays of values at once.
 std::vector<uint32_t> refill_hidden(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                     std::span<const uint8_t> hidden, int rings,
                                     const Parted& parted, std::span<const std::span<Rgb>> arrays);

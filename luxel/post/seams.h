@@ -64,9 +64,9 @@ Status stitch_layers(const atlas::TexelMap& map, std::span<const Seam> seams,
 struct SeamResidual {
   /// Root mean square of the difference, all channels, over the mean value of all points.
   double rms_over_mean = 0;
-  /// Of |a - b| / m_p, where |.| is the largest channel's and m_p is as above the mean of both
-  /// sides and all channels at the point itself, plus a thousandth of the mean of all: the 95th
-  /// percentile and the largest.
+  /// Percentiles of |a - b| / m_p, where |.| is the largest channel's and m_p is as above the mean
+  /// of both sides and all channels at the point itself, plus a thousandth of the mean of all: the
+  /// 95th percentile and the largest.
   double relative_p95 = 0, relative_max = 0;
 };
 SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,

@@ -52,7 +52,7 @@ AirTables make_air_tables(const Atmosphere& air);
 /// From a point at `radius_km` along a ray whose cosine with the vertical is `cosine` to the top;
 /// what the earth hides is not left out.
 DVec3 transmittance_to_top(const AirTables& t, double radius_km, double cosine);
-/// The same towards the sun's disc: less as it sets behind the earth.
+/// Transmittance towards the sun's disc: less as it sets behind the earth.
 DVec3 transmittance_to_sun(const AirTables& t, double radius_km, double sun_cosine);
 
 /// A part of a ray's way.

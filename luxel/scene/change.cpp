@@ -50,7 +50,7 @@ void add_texture(Digest& d, const Textures& textures, const TextureRef& ref,
 
 constexpr uint64_t kDoubleSided = 1, kScatters = 2;
 
-/// Which member counts for what: passage_at and reflects_from_behind, reflectance_at and
+/// What each member counts for: passage_at and reflects_from_behind, reflectance_at and
 /// diffuse_transmittance_at, emission_at. All members are named, so that a new one does not compile
 /// until somebody has thought of it.
 SceneState::Material state_of(const Material& material, const Textures& textures) {

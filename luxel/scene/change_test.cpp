@@ -54,7 +54,7 @@ SceneChange changed_by(const Edit& edit, const Edit& before_too = {}) {
   return change_between(state_of(before), state_of(now));
 }
 
-/// The same for one material.
+/// The change by an edit of one material.
 SceneChange changed_in(uint32_t material, const std::function<void(Material&)>& edit) {
   return changed_by([&](Scene& s) { edit(s.materials[material]); });
 }
@@ -202,7 +202,7 @@ TEST(SceneChange, OfLampsIsAFactorOrNothing) {
             std::nullopt);
   EXPECT_EQ(scale(0, [](Scene& s) { s.lights[0].profile = 0; }), std::nullopt);
   EXPECT_EQ(scale(2, [](Scene& s) { s.profiles[0].candela[1] = 7; }), std::nullopt);
-  // The same profile under another number.
+  // A profile under another number, with equal contents.
   EXPECT_FALSE(changed_by([](Scene& s) {
                  s.profiles.push_back(s.profiles[0]), s.lights[2].profile = 1;
                }).any());

@@ -10,8 +10,8 @@
 
 namespace luxel::scene {
 
-/// The same plane for points of object space. Its normal is not a unit vector: heights stay those
-/// of the world.
+/// A plane of the world for points of object space. Its normal is not a unit vector: heights stay
+/// those of the world.
 Plane plane_in_object(const Plane& world, const Mat34& world_from_object);
 
 /// Cuts every triangle with `chosen[t]` != 0 that the plane crosses into pieces on either side of

@@ -29,13 +29,14 @@ Vec3 direction_of(const Environment& map, Vec2 uv);
 
 /// The pixel in which a unit direction lies.
 size_t pixel_towards(const Environment& map, Vec3 direction);
-/// The same of many.
+/// The pixels of many directions. The spans have one length.
 void pixels_towards(const Environment& map, std::span<const Vec3> directions,
                     std::span<uint32_t> pixels);
 inline Rgb radiance_towards(const Environment& map, Vec3 direction) {
   return map.radiance[pixel_towards(map, direction)];
 }
-/// The same between the centres of pixels: for pictures, in which a pixel of the map may be large.
+/// Radiance interpolated between the centres of pixels: for pictures, in which a pixel of the map
+/// may be large.
 Rgb smooth_radiance_towards(const Environment& map, Vec3 direction);
 
 /// Solid angle of every pixel of a row [sr]; the rows' sum times the width is 4 pi.

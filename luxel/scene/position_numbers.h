@@ -1,4 +1,4 @@
-// Which vertices of a mesh lie at one place.
+// Numbers that tell which vertices of a mesh lie at one position.
 #pragma once
 
 #include <cstdint>

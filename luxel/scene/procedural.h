@@ -8,7 +8,7 @@
 
 namespace luxel::scene {
 
-/// Which RGB triples stand for the Cornell box's measured spectra; docs/bench/cornell-box.md has
+/// The RGB triples that stand for the Cornell box's measured spectra; docs/bench/cornell-box.md has
 /// the numbers. d65 = the spectra under D65 with a neutral lamp of the luminance of set pbrt's;
 /// mitsuba and pbrt = those renderers' scenes.
 enum class CornellColors { d65, mitsuba, pbrt };
@@ -36,9 +36,9 @@ Scene spheres_and_cube();
 /// tessellation factors 20, 10, 5 and 4, which stand for quads 0.2, 0.1, 0.05 and 0.04 m wide.
 Scene radiosity_box();
 
-/// The same box with a sphere under the lamp and a torus above it, both smooth. The paper gives no
-/// sizes; the tessellation is ours, such that the vertices are 3.5 times those of the empty box at
-/// factor 20, as the paper's times are: 203 s and 58 s. [Rodriguez06, plate C.10]
+/// The radiosity_box() with a sphere under the lamp and a torus above it, both smooth. The paper
+/// gives no sizes; the tessellation is ours, such that the vertices are 3.5 times those of the
+/// empty box at factor 20, as the paper's times are: 203 s and 58 s. [Rodriguez06, plate C.10]
 Scene radiosity_box_with_shapes();
 
 /// An office: a room of 5 x 4 x 2.8 m with a desk and a screen on it, a chair, a shelf, and two

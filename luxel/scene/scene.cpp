@@ -217,7 +217,8 @@ Passage passage_at(const Scene& scene, const SurfacePoint& p) {
         material.metallic * texture_at(scene, p, material.metallic_texture, false)[2];
     const float through = material.transmission * (1 - std::clamp(metallic, 0.0f, 1.0f)) *
                           texture_at(scene, p, material.transmission_texture, false)[0];
-    // Of what the blend does not cover all goes on; of the rest, `through` does, coloured.
+    // All light goes on where the blend does not cover; elsewhere the share `through` does,
+    // coloured.
     const float open = 1 - out.coverage, glass = out.coverage * std::clamp(through, 0.0f, 1.0f);
     if (open + glass > 0) out.tint = (out.tint * open + color * glass) / (open + glass);
     out.coverage = 1 - open - glass;

@@ -201,7 +201,7 @@ bool tints_light(const Material& material);
 bool reflects_from_behind(const Material& material);
 /// Radiance that a ray sees which leaves the scene: background plus environment.
 Rgb surroundings_towards(const Scene& scene, Vec3 direction);
-/// The same for pictures, in which the map's pixels are not to be seen.
+/// Surroundings for pictures, in which the map's pixels are not to be seen.
 Rgb smooth_surroundings_towards(const Scene& scene, Vec3 direction);
 /// Where a material looks a texture up that has the texture coordinates uv.
 Vec2 transformed_uv(const TextureRef& ref, Vec2 uv);

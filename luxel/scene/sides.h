@@ -7,7 +7,7 @@
 
 namespace luxel::scene {
 
-/// The same place seen from the other side, where the surface has two; else nothing.
+/// A point seen from the other side, where the surface has two; else nothing.
 std::optional<SurfacePoint> other_side_of(const Scene& scene, const SurfacePoint& p);
 
 /// Models of leaves and cloth often hold a sheet twice, once for each side. Finds triangles of a

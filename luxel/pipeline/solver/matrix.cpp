@@ -35,9 +35,8 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   LUXEL_TRY(light::DirectLight direct, light::direct_light(in.scene, in.elements, in.lights,
                                                            in.tracer, direct_params, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample(in.scene, in.atlas, in.map, in.elements, in.lights, in.tracer,
-                               {.points = settings.supersample, .direct = direct_params}, direct,
-                               progress));
+            light::supersample(in, {.points = settings.supersample, .direct = direct_params},
+                               direct, progress));
   TexelLight out;
   out.irradiance.resize(in.elements.size()), out.hidden.resize(in.elements.size());
   matrix::transfer(map, solution.indirect, out.irradiance);

@@ -24,8 +24,7 @@ Result<TexelLight> solve_reference(const light::TexelScene& in, const BakeSettin
   light::Footprints footprints;
   reference::Receivers receivers = reference::receivers(in.elements);
   if (points > 1) {
-    LUXEL_TRY(footprints, light::footprints(in.scene, in.atlas, in.map, in.elements, in.tracer,
-                                            points, settings.seed, progress));
+    LUXEL_TRY(footprints, light::footprints(in, points, settings.seed, progress));
     receivers = reference::receivers(footprints.points);
     receivers.first = footprints.first;
   }

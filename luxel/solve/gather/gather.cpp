@@ -98,8 +98,9 @@ Status begin_direct(const light::TexelScene& world, const GatherParams& params, 
   LUXEL_TRY(work.direct, light::direct_light(world.scene, world.elements, world.lights,
                                              world.tracer, supersample.direct, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample(world.scene, world.atlas, world.map, world.elements, world.lights,
-                               world.tracer, supersample, work.direct, progress));
+            light::supersample(
+                {world.scene, world.atlas, world.map, world.elements, world.lights, world.tracer},
+                supersample, work.direct, progress));
   work.direct.rays += averaged.rays;
   work.averaged = averaged.texels.size();
   if (!adds_rounds(params) && params.keep == nullptr) return {};  // nobody asks how finely

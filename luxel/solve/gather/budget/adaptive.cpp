@@ -202,14 +202,15 @@ Result<size_t> refine_direct(const light::TexelScene& world, std::span<const flo
       light::SupersampleParams finer = params;
       finer.points *= factor;
       LUXEL_TRY(const light::Supersampled points,
-                average_texels(world.scene, world.atlas, world.map, world.elements, world.lights,
-                               world.tracer, averaged, finer, direct, progress));
+                average_texels({world.scene, world.atlas, world.map, world.elements, world.lights,
+                                world.tracer},
+                               averaged, finer, direct, progress));
       direct.rays += points.rays;
     }
     if (!single.empty()) {
       light::DirectParams finer = params.direct;
       finer.samples *= factor;
-      LUXEL_TRY_STATUS(direct_light_again(world.scene, world.elements, world.lights, world.tracer,
+      LUXEL_TRY_STATUS(direct_light_again({world.scene, world.elements, world.lights, world.tracer},
                                           single, finer, direct, progress));
     }
     for (const auto& risen : {averaged, single})

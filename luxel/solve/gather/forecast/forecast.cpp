@@ -87,7 +87,7 @@ Status try_direct(Trial& trial, Forecast& out, Progress& progress) {
   trial.direct.variance.resize(elements.size());
   trial.direct.split_variance.resize(elements.size());
   LUXEL_TRY(const double seconds, seconds_of([&] {
-              return direct_light_again(scene, elements, lights, tracer, trial.texels, params,
+              return direct_light_again({scene, elements, lights, tracer}, trial.texels, params,
                                         trial.direct, progress);
             }));
   out.direct_s = trial.scale * seconds;
@@ -111,7 +111,7 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
   const auto seconds_for = [&](std::span<const uint32_t> among) {
     return processor_seconds_of([&]() -> Status {
       LUXEL_TRY(const light::Supersampled done,
-                light::supersample(scene, atlas, map, elements, lights, tracer, among, params,
+                light::supersample({scene, atlas, map, elements, lights, tracer}, among, params,
                                    trial.direct, progress));
       rays = done.rays;
       return {};

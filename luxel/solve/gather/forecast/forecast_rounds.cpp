@@ -91,11 +91,11 @@ Status light_coarsely(Trial& trial, Progress& progress) {
 Status light_directly(Trial& trial, Progress& progress) {
   const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
   const light::SupersampleParams params = trial.supersample();
-  LUXEL_TRY_STATUS(direct_light_again(scene, elements, lights, tracer,
+  LUXEL_TRY_STATUS(direct_light_again({scene, elements, lights, tracer},
                                       with_neighbours(map, trial.texels), params.direct,
                                       trial.direct, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample(scene, atlas, map, elements, lights, tracer, trial.texels, params,
+            light::supersample({scene, atlas, map, elements, lights, tracer}, trial.texels, params,
                                trial.direct, progress));
   trial.levels.level.resize(elements.size()), trial.levels.averaged.resize(elements.size());
   for (const uint32_t i : averaged.texels) trial.levels.averaged[i] = 1;

@@ -23,8 +23,9 @@ Status add_lamps(const light::TexelScene& world, const light::SupersampleParams&
             light::direct_light(world.scene, world.elements, earlier.lamps_anew, world.tracer,
                                 alone.direct, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample(world.scene, world.atlas, world.map, world.elements,
-                               earlier.lamps_anew, world.tracer, alone, light, progress));
+            light::supersample({world.scene, world.atlas, world.map, world.elements,
+                                earlier.lamps_anew, world.tracer},
+                               alone, light, progress));
   light::DirectLight& all = earlier.direct;
   for (size_t i = 0; i < all.irradiance.size(); ++i) {
     all.irradiance[i] += light.irradiance[i];
@@ -68,12 +69,13 @@ Status update_direct(const light::TexelScene& world, const light::SupersamplePar
   const std::vector<uint32_t> which = touched(world, earlier.rays);
   if (which.empty()) return {};
   for (const uint32_t i : which) earlier.levels.level[i] = earlier.levels.averaged[i] = 0;
-  LUXEL_TRY_STATUS(light::direct_light_again(world.scene, world.elements, world.lights,
-                                             world.tracer, which, params.direct, earlier.direct,
-                                             progress));
+  LUXEL_TRY_STATUS(
+      light::direct_light_again({world.scene, world.elements, world.lights, world.tracer}, which,
+                                params.direct, earlier.direct, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample(world.scene, world.atlas, world.map, world.elements, world.lights,
-                               world.tracer, which, params, earlier.direct, progress));
+            light::supersample(
+                {world.scene, world.atlas, world.map, world.elements, world.lights, world.tracer},
+                which, params, earlier.direct, progress));
   earlier.direct.rays += averaged.rays;
   for (const uint32_t i : averaged.texels) earlier.levels.averaged[i] = 1;
   return {};

@@ -33,8 +33,8 @@ void end(NearPath path, NearWork& work) {
 /// The light that lamps send to where the paths are.
 uint64_t add_direct_light(const NearWorld& world, NearWork& work) {
   work.light.resize(work.receivers.size());
-  light::direct_light_at(world.scene, world.lights, world.tracer, {.samples = 1}, work.receivers,
-                         world.diagonal_m, work.batch, work.light);
+  light::direct_light_at({world.scene, world.lights, world.tracer, world.diagonal_m},
+                         {.samples = 1}, work.receivers, work.batch, work.light);
   for (size_t i = 0; i < work.paths.size(); ++i) {
     work.paths[i].light += work.paths[i].throughput * work.light[i].irradiance / kPi;
     if (world.layers)

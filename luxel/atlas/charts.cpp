@@ -21,6 +21,7 @@ double rounded(double share) { return std::floor(std::log2(std::max(share, 1e-14
 
 /// Coplanar neighbours share a number. Large faces come first: their normals are the best known.
 std::vector<uint32_t> flat_patches(const Faces& faces, uint32_t& count) {
+  // Faces by their share of the area, in steps, so that equal ones keep the order of the mesh.
   double total = 0;
   for (const double a : faces.area) total += a;
   std::vector<uint32_t> order(faces.size());
@@ -30,6 +31,7 @@ std::vector<uint32_t> flat_patches(const Faces& faces, uint32_t& count) {
   std::stable_sort(order.begin(), order.end(),
                    [&](uint32_t a, uint32_t b) { return key[a] < key[b]; });
 
+  // From each face without a number to all that are flat with it, across shared edges.
   std::vector<uint32_t> patch(faces.size(), kNone);
   std::vector<uint32_t> front;
   count = 0;

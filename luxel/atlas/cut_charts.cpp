@@ -234,11 +234,13 @@ CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const Part
   for (uint32_t i = 0; i < out.scene.instances.size(); ++i)
     for (uint32_t t = atlas.first_triangle[i]; t < atlas.first_triangle[i + 1]; ++t)
       instance_of_chart[atlas.chart[t]] = i;
+  // Pairs by instance and chart.
   Pairs pairs(parted.begin(), parted.end());
   std::stable_sort(pairs.begin(), pairs.end(), [&](const PartedPoints& p, const PartedPoints& q) {
     return std::pair(instance_of_chart[p.chart], p.chart) <
            std::pair(instance_of_chart[q.chart], q.chart);
   });
+  // Cut the charts of each instance that has any.
   for (size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
     const uint32_t i = instance_of_chart[pairs[begin].chart];
     while (end < pairs.size() && instance_of_chart[pairs[end].chart] == i) ++end;
@@ -247,6 +249,7 @@ CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const Part
                   atlas.chart.begin() + atlas.first_triangle[i + 1]},
                  {pairs.begin() + long(begin), pairs.begin() + long(end)});
   }
+  // One list of groups over all instances; triangles that were not cut are of group 0.
   for (uint32_t i = 0; i < out.scene.instances.size(); ++i) {
     std::vector<uint32_t>& group = cutting.group[i];
     group.resize(out.scene.meshes[out.scene.instances[i].mesh].triangles.size());

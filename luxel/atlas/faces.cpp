@@ -74,10 +74,12 @@ Faces make_faces(const scene::Scene& scene) {
   faces.normal.resize(first.back());
   faces.area.resize(first.back());
   faces.across.assign(first.back(), {kNone, kNone, kNone});
+  // Vertices at one position count as one: exporters split them along seams.
   std::vector<std::vector<uint32_t>> places(scene.meshes.size());
   for (size_t m = 0; m < scene.meshes.size(); ++m)
     places[m] = scene::position_numbers(scene.meshes[m].positions);
 
+  // Corners, normal and area in the world, then the neighbours across edges.
   parallel_for(scene.instances.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const scene::Instance& instance = scene.instances[i];

@@ -198,6 +198,7 @@ Status lay_out_own_pages(const Faces& faces, double density, const PageRoom& roo
 
 /// Own pages side by side on one atlas.
 Result<LaidOut> joined(std::vector<OwnPage> pages, double density, int gutter) {
+  // Where each page lies on the atlas.
   std::vector<int> sides;
   for (const OwnPage& page : pages) sides.push_back(page.laid_out.layout.resolution);
   const Arrangement arrangement = arrange_pages(sides, gutter);
@@ -206,6 +207,7 @@ Result<LaidOut> joined(std::vector<OwnPage> pages, double density, int gutter) {
                 "the scene's {} pages need an atlas of {} x {} texels, more than {} x {}; choose a "
                 "lower density or resolution",
                 pages.size(), arrangement.side, arrangement.side, kMaxMapSide, kMaxMapSide);
+  // Charts move with their page; what is relative to the chart stays.
   LaidOut out;
   Layout& layout = out.layout;
   layout.resolution = arrangement.side, layout.texels_per_metre = density;

@@ -182,6 +182,7 @@ FlatChart project_chart(const Faces& faces, ChartFaces chart) {
   const DVec3 axis = chart_axis(faces, chart);
   const auto [right, down] = plane_directions(axis);
   const DVec3 origin = faces.corners[chart.front()][0];
+  // Project along the axis, and compare the areas: slanted faces have lost some.
   FlatChart flat;
   flat.corners.resize(chart.size());
   double flat_area = 0, area = 0;
@@ -193,6 +194,7 @@ FlatChart project_chart(const Faces& faces, ChartFaces chart) {
     flat_area += 0.5 * std::abs(signed_area2(flat.corners[i]));
     area += faces.area[chart[i]];
   }
+  // Turn to the smallest rectangle, give the lost area back, and move to the origin.
   const DVec2 d = best_direction(convex_hull(flat.corners));
   const double scale = flat_area > 0 ? std::sqrt(area / flat_area) : 1;
   DVec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};

@@ -124,6 +124,7 @@ std::vector<Texel> band_texels(const Atlas& atlas, const std::vector<Owner>& own
   for (size_t k = 0; k < owners.size(); ++k) {
     const Owner& o = owners[k];
     if (o.triangle == kNone) continue;
+    // Texels of one triangle follow each other: what depends on it alone is worked out once.
     if (o.triangle != cached) {
       cached = o.triangle;
       drawn = scene::drawn_triangle(atlas.first_triangle, o.triangle);

@@ -69,6 +69,7 @@ Frame frame_of(const Plot& plot) {
 }
 
 void draw_axes(const Plot& plot, const Frame& f, Out out) {
+  // Grid lines with labels, finer ones without; then the frame, the title and the axes' labels.
   for (const Tick& t : f.x.ticks) {
     const double x = f.px(t.value);
     fmt::format_to(out, "<path class=\"{}\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>",

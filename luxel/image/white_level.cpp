@@ -6,6 +6,7 @@
 namespace luxel::image {
 namespace {
 
+/// A thousandth of the values clips at most, as few as the texels beside a light are.
 constexpr double kPercentile = 0.999;
 
 float white_level_of(std::vector<float> values) {

@@ -146,6 +146,7 @@ LightAt direct_light_at(const DirectScene& lit, const DirectParams& params, cons
 
 namespace {
 
+/// Elements of a part, which a checkpoint keeps: large enough to be written seldom.
 constexpr size_t kPartElements = 256;
 
 KeptStage kept_stage(const DirectParams& params, std::span<const uint32_t> which) {
@@ -191,10 +192,12 @@ Status direct_light_again(const LitElements& in, std::span<const uint32_t> which
   parallel_for(which.size(), kPartElements, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     const std::span<const uint32_t> these = which.subspan(begin, end - begin);
+    // A part that an earlier run has kept is not sampled again.
     if (const auto found = find_part(kept, begin / kPartElements, these, direct)) {
       rays += *found;
       return progress.skip(end - begin);
     }
+    // One receiver after the other: its light, the variance of it, and the share of each layer.
     ShadowRayBatch batch;
     uint64_t traced = 0;
     for (size_t k = begin; k < end; ++k) {

@@ -9,6 +9,7 @@
 namespace luxel::light {
 namespace {
 
+/// Up to so many lights each one gets its shadow ray; of more, so many are drawn.
 constexpr size_t kMaxPunctual = 64;
 
 /// The directional light of that number, whose disc has some size: directions uniform in its cone.

@@ -10,6 +10,7 @@
 namespace luxel::light {
 namespace {
 
+/// Characters: file names may have 255 in most systems, and get words before and after.
 constexpr size_t kLongestName = 64;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -17,9 +17,11 @@
 namespace luxel::light {
 namespace {
 
+/// Texels of a part: each needs hundreds of rays, and a part is what a checkpoint keeps.
 constexpr size_t kGrain = 16;
 /// For one of many points, and for the sample of a texel, as gather asks.
 constexpr int kEnclosureRays = 16, kEnclosureRaysOfTexel = 64;
+/// Any number: it sets the random numbers of points apart from others of the same seed.
 constexpr uint64_t kPointSeed = 0x70e1;
 
 /// What all points share.
@@ -160,6 +162,7 @@ Result<Footprints> footprints(const TexelScene& in, int points, uint64_t seed, P
   parallel_for(all.size(), kGrain, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     std::vector<scene::SurfacePoint> spread;
+    // Points of each texel that lie in the open; its own sample where there are none.
     for (size_t i = begin; i < end; ++i) {
       const Receiver own = own_receiver(place, in.elements, i);
       if (!is_enclosed(place, own, kEnclosureRaysOfTexel)) {
@@ -174,6 +177,7 @@ Result<Footprints> footprints(const TexelScene& in, int points, uint64_t seed, P
     progress.advance(end - begin);
   });
   LUXEL_TRY_STATUS(stopped(progress));
+  // One array of all, freed texel by texel, so that both are never whole at a time.
   Footprints out;
   out.first.push_back(0);
   for (size_t i = 0; i < all.size(); ++i) {
@@ -344,12 +348,14 @@ Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32
     for (size_t k = begin; k < end; ++k) {
       const uint32_t i = which[k];
       const Receiver own = own_receiver(place, in.elements, i);
+      // A texel whose own sample lies inside a solid is hidden, and keeps its light.
       if (is_dark(direct.irradiance[i])) {
         traced += uint64_t(kEnclosureRaysOfTexel);
         if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
       }
       const bool near_backs = sees_backs(place, own);
       traced += uint64_t(kEnclosureRays);
+      // The light of points all over its footprint, without those inside of solids.
       points.clear();
       std::ranges::fill(by_layer, Rgb{});
       atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), params.points, each.seed,
@@ -366,6 +372,7 @@ Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32
         points.push_back({work.receivers[j].position, light.irradiance, light.variance});
         if (each.layers) add_light_by_layer(work.batch, j, *each.layers, {1, 1, 1}, by_layer);
       }
+      // Their mean takes the place of the light of the sample.
       if (points.empty()) continue;
       Rgb sum{};
       for (const PointLight& p : points) sum += p.irradiance;

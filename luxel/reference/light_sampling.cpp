@@ -109,6 +109,7 @@ void spread_over_disc(const scene::PunctualLight& sun, RandomStream& random, Lig
 }  // namespace
 
 Emitters collect_emitters(const scene::Scene& scene, const Surfaces& surfaces) {
+  // All triangles of emissive materials.
   std::vector<Emitter> candidates;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
@@ -120,11 +121,13 @@ Emitters collect_emitters(const scene::Scene& scene, const Surfaces& surfaces) {
                               material.double_sided});
     }
   }
+  // Their powers, with what textures make of them.
   std::vector<double> power(candidates.size());
   parallel_for(candidates.size(), 256, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) power[k] = power_of(scene, candidates[k]);
   });
   const double total = std::accumulate(power.begin(), power.end(), 0.0);
+  // The chance of each, its sum, and its density on the area for rays that find it by themselves.
   Emitters out;
   out.pdf_area.resize(surfaces.first_triangle.back());
   out.chance_below.push_back(0);

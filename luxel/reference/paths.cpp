@@ -237,12 +237,14 @@ uint64_t follow(const TracedScene& world, int bounces, std::span<Path> paths, Pa
   for (int depth = 0; !work.active.empty(); ++depth) {
     work.rays.clear(), work.emitter_rays.clear();
     work.shadow_rays.clear(), work.along_shadow_rays.clear();
+    // A random ray of each path, then its rays towards lights: hits and tints are in this order.
     for (const uint32_t i : work.active) work.rays.push_back(random_ray(paths[i]));
     for (const uint32_t i : work.active) {
       if (!world.emitters.triangles.empty()) aim_at_emitter(world, paths[i], i, work);
       if (!world.scene.lights.empty()) aim_at_punctual_light(world, paths[i], i, work);
       if (world.sky.power() > 0) aim_at_sky(world, paths[i], i, work);
     }
+    // Trace them all, and take the light that arrives along the rays towards lights.
     trace(world, work);
     rays += work.rays.size() + work.shadow_rays.size();
     const size_t count = work.active.size();
@@ -252,6 +254,7 @@ uint64_t follow(const TracedScene& world, int bounces, std::span<Path> paths, Pa
     for (size_t k = 0; k < work.along_shadow_rays.size(); ++k)
       paths[work.along_shadow_rays[k].path].value +=
           work.along_shadow_rays[k].light * work.arriving[k];
+    // Move each path to where its random ray has hit, until it leaves the scene or is absorbed.
     work.next.clear();
     for (size_t k = 0; k < count; ++k) {
       const uint32_t i = work.active[k];

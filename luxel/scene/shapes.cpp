@@ -48,6 +48,7 @@ void add_box(Mesh& mesh, Vec3 lower, Vec3 upper, uint32_t material) {
 Mesh sphere(std::string name, float radius_m, int slices, int stacks, uint32_t material) {
   Mesh mesh;
   mesh.name = std::move(name);
+  // The pole on top, rings downwards, the pole below.
   mesh.normals.push_back({0, 1, 0});
   for (int ring = 1; ring < stacks; ++ring)
     for (int slice = 0; slice < slices; ++slice) {
@@ -59,6 +60,7 @@ Mesh sphere(std::string name, float radius_m, int slices, int stacks, uint32_t m
   mesh.normals.push_back({0, -1, 0});
   for (const Vec3& n : mesh.normals) mesh.positions.push_back(n * radius_m);
 
+  // Slice by slice: a triangle at each pole, two per quad in between.
   const auto at = [&](int ring, int slice) { return uint32_t(1 + (ring - 1) * slices + slice); };
   const auto bottom = uint32_t(mesh.normals.size() - 1);
   for (int slice = 0; slice < slices; ++slice) {

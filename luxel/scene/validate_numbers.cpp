@@ -86,6 +86,7 @@ Status check_materials(Scene& scene, Report& report) {
     if (!finite)
       return fail(ErrorCode::bad_input, "{}: {}: one of its numbers is not finite", report.file,
                   name);
+    // Clamp what can be clamped, and tell whether that has changed anything.
     const Material before = m;
     m.base_color = max(m.base_color, Rgb{});
     m.emission = max(m.emission, Rgb{});

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "luxel/pipeline/reuse/kept_bake.h"
-#include "luxel/solve/gather/gather.h"
+#include "luxel/solve/gather/reuse/earlier.h"
 
 namespace luxel::pipeline {
 

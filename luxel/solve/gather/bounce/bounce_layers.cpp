@@ -31,7 +31,7 @@ struct BlockMap {
 };
 
 /// Light layer by layer for each element.
-struct LayeredLight {
+struct LightOfLayers {
   std::span<Rgb> light;
   size_t layers = 0;
 
@@ -127,7 +127,7 @@ struct Lanes {
 /// B = rho E + tau E behind, as bounces.cpp has it.
 void fill_radiosity(BlockMap& m, const atlas::TexelMap& map, const transport::Elements& elements,
                     const TracedHits& hits, std::span<const StoredHit> behind,
-                    const LayeredLight& light, const Block& block) {
+                    const LightOfLayers& light, const Block& block) {
   const auto irradiance = [&](size_t i, size_t l) {
     return light.of(i, block.first, block.count)[l];
   };
@@ -149,7 +149,7 @@ void fill_radiosity(BlockMap& m, const atlas::TexelMap& map, const transport::El
 
 struct LayerSweep {
   const BlockMap& radiosity;
-  LayeredLight source, light;
+  LightOfLayers source, light;
   Block block;
   size_t stride = 1;
   const ThinnedHits* thinned = nullptr;  ///< of that stride; null: there are none
@@ -225,7 +225,7 @@ Status run_layer_sweep(const LayerSweep& sweep, const TracedHits& hits, Progress
 }
 
 /// Gives each layer its share of the whole. Returns the sum of squares of what was missing.
-double share_out(std::span<const Rgb> whole, const LayeredLight& light) {
+double share_out(std::span<const Rgb> whole, const LightOfLayers& light) {
   constexpr size_t kGrain = 4096;
   std::vector<double> missing2((whole.size() + kGrain - 1) / kGrain);
   parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
@@ -253,7 +253,7 @@ std::vector<size_t> sparse_strides(int bounces, const TracedHits& hits) {
   return strides;
 }
 
-std::vector<std::vector<Rgb>> layer_by_layer(const LayeredLight& light, size_t elements) {
+std::vector<std::vector<Rgb>> layer_by_layer(const LightOfLayers& light, size_t elements) {
   std::vector<std::vector<Rgb>> out(light.layers, std::vector<Rgb>(elements));
   parallel_for(elements, 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
@@ -275,15 +275,17 @@ std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct) 
 }
 
 Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport::Elements& elements,
-                                    const TracedHits& hits, std::vector<Rgb> source,
-                                    std::span<const StoredHit> behind, std::span<const Rgb> whole,
-                                    const LayerBounceParams& params, Progress& progress) {
+                                    const TracedHits& hits, std::span<const StoredHit> behind,
+                                    LayeredLight given, const LayerBounceParams& params,
+                                    Progress& progress) {
   const size_t n = elements.size();
+  std::vector<Rgb>& source = given.source;
+  const std::span<const Rgb> whole = given.whole;
   LUXEL_CHECK(n > 0 && source.size() % n == 0 && whole.size() == n);
   const size_t layers = source.size() / n;
   const int bounces = params.bounces;
   std::vector<Rgb> solution = source;
-  const LayeredLight light{solution, layers}, sources{source, layers};
+  const LightOfLayers light{solution, layers}, sources{source, layers};
   BlockMap radiosity = empty_map(map.resolution);
   std::optional<ThinnedHits> thinned;
   const std::vector<size_t> sparse = sparse_strides(bounces, hits);

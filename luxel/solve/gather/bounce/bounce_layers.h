@@ -19,6 +19,12 @@ struct LayersBounced {
   double shared_out = 0;
 };
 
+/// Light layer by layer before any bounce, and that of all layers after the bounces.
+struct LayeredLight {
+  std::vector<Rgb> source;     ///< layer by layer for each element: layer_sources()
+  std::span<const Rgb> whole;  ///< E per element, of bounce() over the same hits
+};
+
 struct LayerBounceParams {
   int bounces = -1;                   ///< as in bounce()
   uint64_t spare_bytes = UINT64_MAX;  ///< memory that may be taken besides, as in bounce()
@@ -40,9 +46,9 @@ struct LayerBounceParams {
 /// map. Sweeps over some of the rays look up the texel nearest to a hit, and not four. Errors:
 /// cancelled, the file of hits cannot be read.
 Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport::Elements& elements,
-                                    const TracedHits& hits, std::vector<Rgb> source,
-                                    std::span<const StoredHit> behind, std::span<const Rgb> whole,
-                                    const LayerBounceParams& params, Progress& progress);
+                                    const TracedHits& hits, std::span<const StoredHit> behind,
+                                    LayeredLight light, const LayerBounceParams& params,
+                                    Progress& progress);
 
 /// E_0 of bounce_layers() from `direct`, that of lamps, layer by layer for each element.
 std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct);

@@ -7,6 +7,7 @@
 #include "luxel/scene/shapes.h"
 #include "luxel/solve/gather/bounce/sweep.h"
 #include "luxel/solve/gather/gather_test_support.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
 namespace {
@@ -42,8 +43,7 @@ Traced traced(int samples) {
   Traced out{lay_out(std::move(scene), 48), {}, {}};
   const Room& r = *out.room;
   Progress progress;
-  auto hits =
-      trace_hits(r.scene, r.atlas, r.elements, r.lights.around, *r.tracer, samples, {}, progress);
+  auto hits = trace_hits(trace_scene(scene_of(r)), samples, {}, progress);
   EXPECT_TRUE(hits);
   out.hits = std::move(*hits);
   auto direct = light::direct_light(r.scene, r.elements, r.lights, *r.tracer, {}, progress);

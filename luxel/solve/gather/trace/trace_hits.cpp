@@ -267,36 +267,36 @@ Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, T
 
 }  // namespace
 
-Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
-                  const transport::Elements& elements, const light::Surroundings& around,
-                  const trace::RayTracer& tracer, std::span<const uint16_t> target,
-                  const TraceParams& params, TracedHits& hits, Progress& progress) {
+Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const TraceParams& params,
+                  TracedHits& hits, Progress& progress) {
+  const transport::Elements& elements = in.elements;
   LUXEL_CHECK(target.size() == elements.size() && hits.size() == elements.size());
   LUXEL_CHECK(hits.rounds.size() < 256);
   LUXEL_CHECK(hits.sky_by_layer.size() ==
               elements.size() * (params.layers ? params.layers->size() : 0));
+  // Hits of this round go to memory as far as those of the rounds before leave room.
   const uint64_t used = hits.bytes_in_memory();
   LUXEL_TRY(HitStore store,
             HitStore::create(elements.size(), kTileElements, most_added(target, hits),
                              params.memory_limit_bytes - std::min(used, params.memory_limit_bytes),
                              params.scratch_folder));
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  const float diagonal_m = scene::world_bounds(in.scene).diagonal();
   std::optional<NearWorld> near;
   std::vector<float> widths;
-  if (params.near_lights != nullptr) {
-    widths = texel_widths_m(scene, atlas);
+  if (params.follows_near) {
+    widths = texel_widths_m(in.scene, in.atlas);
     near.emplace(
-        NearWorld{scene, atlas, *params.near_lights, tracer, widths, diagonal_m, params.layers});
+        NearWorld{in.scene, in.atlas, in.lights, in.tracer, widths, diagonal_m, params.layers});
   }
   const RadiosityMap* sent = params.earlier ? params.earlier->sent : nullptr;
   if (sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());
-  const RayWorld world{scene,         atlas, around,     near ? &*near : nullptr,
-                       params.layers, sent,  params.seed};
+  const RayWorld world{in.scene,      in.atlas, in.lights.around, near ? &*near : nullptr,
+                       params.layers, sent,     params.seed};
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   const uint64_t number = hits.rounds.size();
   LUXEL_TRY_STATUS(trace_tiles(
-      {world, elements, tracer, target, params.seed, diagonal_m, number, params.earlier}, kept,
+      {world, elements, in.tracer, target, params.seed, diagonal_m, number, params.earlier}, kept,
       params.keep, hits, store, progress));
   LUXEL_TRY_STATUS(stopped(progress));
   keep_samples(params.keep, number, hits.samples);
@@ -304,15 +304,13 @@ Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
   return {};
 }
 
-Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
-                              const transport::Elements& elements,
-                              const light::Surroundings& around, const trace::RayTracer& tracer,
-                              int samples, const TraceParams& params, Progress& progress) {
+Result<TracedHits> trace_hits(const TraceScene& in, int samples, const TraceParams& params,
+                              Progress& progress) {
   LUXEL_CHECK(samples >= 1 && samples <= 65535);
-  TracedHits hits = no_hits(elements.size(), params.layers ? params.layers->size() : 0);
-  const std::vector<uint16_t> target(elements.size(), uint16_t(samples));
-  LUXEL_TRY_STATUS(
-      trace_more(scene, atlas, elements, around, tracer, target, params, hits, progress));
+  const size_t n = in.elements.size();
+  TracedHits hits = no_hits(n, params.layers ? params.layers->size() : 0);
+  const std::vector<uint16_t> target(n, uint16_t(samples));
+  LUXEL_TRY_STATUS(trace_more(in, target, params, hits, progress));
   return hits;
 }
 

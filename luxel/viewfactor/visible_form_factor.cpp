@@ -107,7 +107,7 @@ Cell evaluate(Work& work, const Triangle& corners, std::span<const uint32_t> can
   for (const RuleNode& node : kRule) {
     const DVec3 x = corners[0] * (1 - node.u - node.v) + corners[1] * node.u + corners[2] * node.v;
     const SeenFactor seen =
-        visible_point_factor(x, work.normal, work.b, work.blockers, cell.blockers, work.slack,
+        visible_point_factor(x, work.normal, work.b, {work.blockers, cell.blockers}, work.slack,
                              work.casts_shadow, work.scratch);
     cell.value += node.weight * area * seen.visible;
     whole += node.weight * area * seen.whole;

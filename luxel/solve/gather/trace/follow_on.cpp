@@ -72,14 +72,21 @@ struct KnownFollowed {
   }
 };
 
-/// One element's: `now` and `then` are the ends of its rays now and in the earlier bake, if that is
-/// known; `traced` begins with the first of work.followed that is its own or later.
-void add_element(const RayWorld& world, size_t element, std::span<const RayEnd> now,
-                 std::span<const RayEnd> then, KnownFollowed known,
-                 std::span<const FollowedPath>& traced, float& near_m, TracedHits& out,
-                 RayTile& tile, std::vector<StoredHit>& hits) {
-  const auto after = [&](size_t k) {
-    return std::min(next_followed(now, k), then.empty() ? now.size() : next_followed(then, k));
+/// How an element's rays end now and, where that is known, ended in the earlier bake.
+struct ElementEnds {
+  size_t element = 0;
+  std::span<const RayEnd> now, then{};
+  KnownFollowed known{};  ///< those of `then` that were followed on
+};
+
+/// Adds what an element's followed rays bring. `traced` begins with the first of work.followed that
+/// is the element's own or a later one's.
+void add_element(const RayWorld& world, ElementEnds ends, std::span<const FollowedPath>& traced,
+                 float& near_m, TracedHits& out, RayTile& tile, std::vector<StoredHit>& hits) {
+  auto& [element, now, then, known] = ends;
+  const auto after = [&ends](size_t k) {
+    return std::min(next_followed(ends.now, k),
+                    ends.then.empty() ? ends.now.size() : next_followed(ends.then, k));
   };
   for (size_t k = after(0); k < now.size(); k = after(k + 1)) {
     const bool was = !then.empty() && then[k] == RayEnd::followed;
@@ -136,16 +143,14 @@ uint64_t follow_on(const RayWorld& world, size_t first, std::span<const uint32_t
   tile.near_m.assign(ends_of.size(), 0.0f);
   for (size_t k = 0; k < ends_of.size(); ++k) {
     const uint32_t begin = k == 0 ? 0 : ends_of[k - 1];
-    const auto now = std::span(tile.ends).subspan(begin, ends_of[k] - begin);
+    ElementEnds ends{.element = first + k,
+                     .now = std::span(tile.ends).subspan(begin, ends_of[k] - begin)};
     const EarlierElement* before = again ? again->of(k) : nullptr;
-    std::span<const RayEnd> then;
-    KnownFollowed known;
     if (before && !before->followed.empty()) {
-      tile.near_m[k] = before->near_m, then = before->ends;
-      known = KnownFollowed(*before, again->rays_of(k));
+      tile.near_m[k] = before->near_m, ends.then = before->ends;
+      ends.known = KnownFollowed(*before, again->rays_of(k));
     }
-    add_element(world, first + k, now, then, known, traced, tile.near_m[k], out, tile,
-                work.followed_hits.entries);
+    add_element(world, ends, traced, tile.near_m[k], out, tile, work.followed_hits.entries);
     work.followed_hits.end.push_back(uint32_t(work.followed_hits.entries.size()));
   }
   std::swap(tile.hits, work.other_hits);

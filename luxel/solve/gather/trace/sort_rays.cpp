@@ -100,9 +100,16 @@ void note_change(const RayWorld& world, const StoredHit* then, const StoredHit* 
   if (now) gather::note_change(world, *now, 1, element, out);
 }
 
+/// The element whose rays are sorted, and which of its samples they are.
+struct RaysOf {
+  size_t element;
+  Samples samples;
+};
+
 /// Counts the end of a ray that was traced, and keeps its hit.
-void take_traced(const RayWorld& world, const RayWork& work, size_t k, RayEnd end, size_t element,
-                 Samples samples, TracedHits& out, RayTile& tile) {
+void take_traced(const RayWorld& world, const RayWork& work, size_t k, RayEnd end,
+                 const RaysOf& rays, TracedHits& out, RayTile& tile) {
+  const auto [element, samples] = rays;
   if (end == RayEnd::followed) {
     if (work.near.paths.back().hit.back_face) ++out.met_double_sided_back[element];
     return;
@@ -148,7 +155,7 @@ void sort_rays(const RayWorld& world, RayWork& work, size_t element, Samples sam
   for (size_t k = 0; k < count; ++k) {
     const RayEnd end = end_of(world, work, k, element, samples);
     tile.ends.push_back(end);
-    take_traced(world, work, k, end, element, samples, out, tile);
+    take_traced(world, work, k, end, {element, samples}, out, tile);
   }
   const std::span<const RayEnd> ends = std::span(tile.ends).last(count);
   add_escaped(world, escaped_light(world, work, samples, ends), element, out, tile);
@@ -176,7 +183,7 @@ void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples sa
     const RayEnd known = before.ends[k];
     count_ends(known, -1, element, out);
     ends[k] = end_of(world, work, k, element, samples);
-    take_traced(world, work, k, ends[k], element, samples, out, tile);
+    take_traced(world, work, k, ends[k], {element, samples}, out, tile);
     const StoredHit* then = is_hit(known) ? &before.hits[hit++] : nullptr;
     const StoredHit* now = is_hit(ends[k]) ? &tile.hits.entries.back() : nullptr;
     note_change(world, then, now, element, out);

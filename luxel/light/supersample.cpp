@@ -12,7 +12,7 @@
 #include "luxel/base/random.h"
 #include "luxel/light/direct_shots.h"
 #include "luxel/light/kept_light.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::light {
 namespace {
@@ -47,8 +47,8 @@ Receiver own_receiver(const Place& at, const transport::Elements& elements, size
 
 /// Whether the sample of a texel has the backs of some surfaces before it.
 bool sees_backs(const Place& at, const Receiver& own) {
-  return transport::backs_in(transport::backs_seen(at.scene, at.tracer, own.origin, own.normal,
-                                                   kEnclosureRays)) > 0;
+  return transport::all_backs(transport::count_back_faces(at.scene, at.tracer, own.origin,
+                                                          own.normal, kEnclosureRays)) > 0;
 }
 
 /// Light at the points of one texel.

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "luxel/base/parallel.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::transport {
 namespace {

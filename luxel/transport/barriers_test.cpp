@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "luxel/scene/shapes.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 #include "luxel/transport/floor_test_support.h"
 #include "luxel/transport/open_samples.h"
 

@@ -8,7 +8,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/warp.h"
 #include "luxel/scene/drawn_triangle.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 #include "luxel/transport/barriers.h"
 #include "luxel/transport/texel_width.h"
 
@@ -32,8 +32,8 @@ struct Work {
   bool in_the_open(const scene::SurfacePoint& p) const {
     const Place at = place_of(scene, p);
     // Most places see no backs, and most under things nothing else: a few rays tell.
-    const BacksSeen few = backs_seen(scene, tracer, just_above(at), at.normal, kFirstRays);
-    if (backs_in(few) == 0) return true;
+    const BackFaces few = count_back_faces(scene, tracer, just_above(at), at.normal, kFirstRays);
+    if (all_backs(few) == 0) return true;
     return !is_enclosed(few) &&
            !is_enclosed(scene, tracer, just_above(at), at.normal, kRaysForOpen, diagonal_m);
   }

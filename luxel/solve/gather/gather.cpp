@@ -11,7 +11,7 @@
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/reuse/earlier_direct.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::gather {
 namespace {
@@ -382,10 +382,8 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   }
   // 4. Which elements lie inside of solids. After this nobody traces rays.
   Gather out;
-  out.enclosed = transport::find_enclosed(scene.scene, scene.tracer, scene.elements, [&](size_t i) {
-    return transport::BacksSeen{int(light.hits.samples[i]), int(light.hits.met_back[i]),
-                                int(light.hits.met_double_sided_back[i])};
-  });
+  out.enclosed = transport::find_enclosed(scene.scene, scene.tracer, scene.elements,
+                                          [&](size_t i) { return back_faces(light.hits, i); });
   free_memory(light.hits.escaped), free_memory(light.hits.met_double_sided_back);
   if (observer.on_traced) observer.on_traced();
   if (stores.keep) out.kept_direct = light.direct, out.kept_levels = light.levels;

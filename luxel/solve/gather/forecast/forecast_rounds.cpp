@@ -42,7 +42,10 @@ struct Trial {
 /// Means over neighbours of the same chart, those inside of solids left out.
 std::vector<Rgb> smooth(const light::TexelScene& in, const Gather& light) {
   const auto chart = [&](uint32_t i) { return in.atlas.chart[in.map.texels[i].triangle_number]; };
-  const auto hidden = [&](uint32_t i) { return 2 * light.met_back[i] > light.samples[i]; };
+  const auto hidden = [&](uint32_t i) {
+    return transport::is_hidden(
+        transport::BackFaces{.rays = light.samples[i], .one_sided = light.met_back[i]});
+  };
   std::vector<Rgb> out = light.irradiance;
   parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
     for (uint32_t i = uint32_t(begin); i < end; ++i) {

@@ -15,7 +15,7 @@
 #include "luxel/solve/gather/trace/follow_on.h"
 #include "luxel/solve/gather/trace/kept_hits.h"
 #include "luxel/solve/gather/trace/sort_rays.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::gather {
 
@@ -76,9 +76,7 @@ struct Round {
 void Round::drop_enclosed_paths(size_t i, RayWork& work, const TracedHits& hits) const {
   std::vector<NearPath>& paths = work.near.paths;
   if (paths.empty() || paths.back().element != i) return;
-  const transport::BacksSeen own{int(hits.samples[i]), int(hits.met_back[i]),
-                                 int(hits.met_double_sided_back[i])};
-  if (transport::is_enclosed(world.scene, tracer, elements, i, own, diagonal_m))
+  if (transport::is_enclosed(world.scene, tracer, elements, i, back_faces(hits, i), diagonal_m))
     std::erase_if(paths, [i](const NearPath& p) { return p.element == i && p.hit.back_face; });
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/part_store.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
@@ -79,6 +80,10 @@ struct Gather {
   /// Root mean square of the estimated standard errors (pooled_variances) over the mean irradiance.
   double relative_error = 0;
 };
+
+inline constexpr uint64_t kEnclosedBytesPerElement = bytes_per_entry(&Gather::enclosed);
+/// While rays are traced: how many samples each element is to have.
+inline constexpr uint64_t kTargetBytesPerElement = bytes_per_entry(&Gather::samples);
 
 /// Direct light, rays, bounces: the chain of docs/method/gather.md. `layers` tells light apart;
 /// null: it does not. Errors: cancelled, disk full.

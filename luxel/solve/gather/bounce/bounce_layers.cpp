@@ -23,6 +23,7 @@ constexpr size_t kLanes = 3 * kBlock + 1, kCoverage = kLanes - 1;
 struct alignas(64) BlockTexel {
   std::array<float, kLanes> value{};
 };
+static_assert(sizeof(BlockTexel) == kLayerMapBytesPerTexel);
 
 /// As bounces.cpp's map of radiosity, with a border of one empty texel.
 struct BlockMap {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/vec.h"
 #include "luxel/solve/gather/rays/hit_store.h"
 #include "luxel/transport/back_faces.h"
@@ -40,6 +41,17 @@ struct TracedHits {
   uint64_t bytes_in_memory() const;
   uint64_t bytes_in_file() const;
 };
+
+/// What TracedHits takes per element besides the hits themselves, in one round: its own arrays, and
+/// where each element's hits end.
+inline constexpr uint64_t kTracedBytesPerElement =
+    bytes_per_entry(&TracedHits::samples, &TracedHits::last_round, &TracedHits::escaped,
+                    &TracedHits::met_back, &TracedHits::met_double_sided_back, &TracedHits::sky,
+                    &TracedHits::sky_luminance2, &TracedHits::sky_first_less_second) +
+    bytes_per_entry(&HitTile::end);
+/// The part of it that gather() gives back when it knows which elements are enclosed.
+inline constexpr uint64_t kEndCountBytesPerElement =
+    bytes_per_entry(&TracedHits::escaped, &TracedHits::met_double_sided_back);
 
 /// Whether an element lies inside a solid, under a floor or behind a wall (transport::is_hidden).
 inline bool is_hidden(const TracedHits& hits, size_t element) {

@@ -32,7 +32,7 @@ constexpr double kPartOfError = 1.0 / 20, kRoughestFromEarlier = 3e-4;
 constexpr double kFineOverRough = 4;
 /// A round that adds less than this part of the rays is not worth its bounces.
 constexpr double kSmallestRound = 1.0 / 16;
-/// Of a round's rays, those that may go to lamps.
+/// Of a round's rays, those that may go to lights.
 constexpr double kDirectShare = 0.25;
 
 /// Pooled variances, and relative errors by them.

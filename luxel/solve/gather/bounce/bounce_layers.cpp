@@ -10,7 +10,7 @@
 #include "luxel/base/vectorize.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/solve/gather/bounce/convergence.h"
-#include "luxel/solve/gather/bounce/thinned_hits.h"
+#include "luxel/solve/gather/bounce/subsampled_hits.h"
 #include "luxel/solve/gather/rays/tile_hits.h"
 
 namespace luxel::gather {
@@ -153,7 +153,7 @@ struct LayerSweep {
   LightOfLayers source, light;
   Block block;
   size_t stride = 1;
-  const ThinnedHits* thinned = nullptr;  ///< of that stride; null: there are none
+  const SubsampledHits* subsampled = nullptr;  ///< of that stride; null: there are none
 };
 
 /// Gives an element the light of what its rays have gathered.
@@ -198,8 +198,8 @@ void sweep_sparse(const LayerSweep& sweep, const TracedHits& hits, const TileHit
 
 /// The same bits from the copy.
 LUXEL_VECTOR_CLONES
-void sweep_thinned(const LayerSweep& sweep, const TracedHits& hits, const ThinnedHits::Tile& tile,
-                   size_t first_element) {
+void sweep_subsampled(const LayerSweep& sweep, const TracedHits& hits,
+                      const SubsampledHits::Tile& tile, size_t first_element) {
   uint32_t hit = 0;
   for (size_t k = 0; k < tile.end.size(); ++k) {
     Lanes sum;
@@ -214,28 +214,29 @@ void sweep_thinned(const LayerSweep& sweep, const TracedHits& hits, const Thinne
 
 /// Errors: the file of hits cannot be read, cancelled.
 Status run_layer_sweep(const LayerSweep& sweep, const TracedHits& hits, Progress& progress) {
-  if (!sweep.thinned)
+  if (!sweep.subsampled)
     return for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
       const auto sweep_one = sweep.stride > 1 ? sweep_sparse : sweep_tile;
       sweep_one(sweep, hits, tile, t * kTileElements);
     });
-  LUXEL_CHECK(sweep.thinned->stride == sweep.stride);
-  return for_each_tile(*sweep.thinned, progress, [&](size_t t, const ThinnedHits::Tile& tile) {
-    sweep_thinned(sweep, hits, tile, t * kTileElements);
-  });
+  LUXEL_CHECK(sweep.subsampled->stride == sweep.stride);
+  return for_each_tile(*sweep.subsampled, progress,
+                       [&](size_t t, const SubsampledHits::Tile& tile) {
+                         sweep_subsampled(sweep, hits, tile, t * kTileElements);
+                       });
 }
 
 /// Gives each layer its share of the whole. Returns the sum of squares of what was missing.
 double share_out(std::span<const Rgb> whole, const LightOfLayers& light) {
-  constexpr size_t kGrain = 4096;
-  std::vector<double> missing2((whole.size() + kGrain - 1) / kGrain);
-  parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
+  constexpr size_t kElementsPerSum = 4096;
+  std::vector<double> missing2((whole.size() + kElementsPerSum - 1) / kElementsPerSum);
+  parallel_for(whole.size(), kElementsPerSum, [&](size_t begin, size_t end) {
     double sum2 = 0;
     for (size_t i = begin; i < end; ++i) {
       const Rgb missing = light::share_out(whole[i], light.of(i, 0, light.layers));
       sum2 += double(dot(missing, missing));
     }
-    missing2[begin / kGrain] = sum2;
+    missing2[begin / kElementsPerSum] = sum2;
   });
   return std::accumulate(missing2.begin(), missing2.end(), 0.0);
 }
@@ -288,19 +289,19 @@ Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport:
   std::vector<Rgb> solution = source;
   const LightOfLayers light{solution, layers}, sources{source, layers};
   BlockMap radiosity = empty_map(map.resolution);
-  std::optional<ThinnedHits> thinned;
+  std::optional<SubsampledHits> subsampled;
   const std::vector<size_t> sparse = sparse_strides(bounces, hits);
   progress.begin("layers", 0);
   if (std::ranges::count(sparse, kSparsest) > 1) {
-    LUXEL_TRY(thinned, thin(hits, kSparsest, params.spare_bytes, progress));
+    LUXEL_TRY(subsampled, subsample(hits, kSparsest, params.spare_bytes, progress));
   }
   const auto sweep_all = [&](size_t stride) -> Status {
-    if (stride != kSparsest) thinned.reset();
+    if (stride != kSparsest) subsampled.reset();
     for (Block block; block.first < layers; block.first += kBlock) {
       block.count = std::min(kBlock, layers - block.first);
       fill_radiosity(radiosity, map, elements, hits, behind, light, block);
       const LayerSweep sweep{radiosity, sources, light,
-                             block,     stride,  thinned ? &*thinned : nullptr};
+                             block,     stride,  subsampled ? &*subsampled : nullptr};
       LUXEL_TRY_STATUS(run_layer_sweep(sweep, hits, progress));
     }
     progress.advance(1);

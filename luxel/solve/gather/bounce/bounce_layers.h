@@ -56,7 +56,7 @@ Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport:
                                     LayeredLight light, const LayerBounceParams& params,
                                     Progress& progress);
 
-/// E_0 of bounce_layers() from `direct`, that of lamps, layer by layer for each element.
+/// E_0 of bounce_layers() from `direct`, that of lights, layer by layer for each element.
 std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct);
 
 }  // namespace luxel::gather

@@ -62,16 +62,16 @@ TEST(Bounces, AreTheSameBitsWithoutRoomForACopy) {
   EXPECT_EQ(with.sweeps, without.sweeps);
 }
 
-TEST(ThinnedHits, AreMadeWhereTheyFit) {
+TEST(SubsampledHits, AreMadeWhereTheyFit) {
   const Traced t = traced(64);
   Progress progress;
-  const auto none = thin(t.hits, 16, 1000, progress);
+  const auto none = subsample(t.hits, 16, 1000, progress);
   ASSERT_TRUE(none);
   EXPECT_FALSE(*none);
-  const auto all = thin(t.hits, 16, UINT64_MAX, progress);
+  const auto all = subsample(t.hits, 16, UINT64_MAX, progress);
   ASSERT_TRUE(all && *all);
   double weight = 0, hits = 0;
-  for (const ThinnedHits::Tile& tile : (*all)->tiles) {
+  for (const SubsampledHits::Tile& tile : (*all)->tiles) {
     ASSERT_EQ(tile.weight.size(), tile.hits.size());
     for (const float w : tile.weight) weight += double(w);
     hits += double(tile.hits.size());

@@ -17,18 +17,18 @@ namespace {
 
 constexpr uint32_t kSquare = 5;
 
-template <class Work>
-Result<double> seconds_of(const Work& work) {
+template <class Task>
+Result<double> seconds_of(const Task& task) {
   const auto start = Clock::now();
-  LUXEL_TRY_STATUS(work());
+  LUXEL_TRY_STATUS(task());
   return seconds_since(start);
 }
 
 /// Processor time: what other programs do meanwhile is not in it.
-template <class Work>
-Result<double> processor_seconds_of(const Work& work) {
+template <class Task>
+Result<double> processor_seconds_of(const Task& task) {
   const std::clock_t start = std::clock();
-  LUXEL_TRY_STATUS(work());
+  LUXEL_TRY_STATUS(task());
   return double(std::clock() - start) / CLOCKS_PER_SEC;
 }
 

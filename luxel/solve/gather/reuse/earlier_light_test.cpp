@@ -122,7 +122,7 @@ TEST_F(EarlierGather, ALampIsAdded) {
   const RecordFile rays = file("before");
   Earlier earlier = earlier_of(rays, *off, *on, first);
   give_direct(first, earlier);
-  earlier.lamps_anew = alone->lights;
+  earlier.changed_lights = alone->lights;
   const Gather again = solve(*on, some_params(), {.earlier = &earlier});
   for (size_t i = 0; i < again.direct.size(); ++i)
     EXPECT_LT(length(again.direct[i] - scratch.direct[i]),

@@ -12,6 +12,7 @@
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/gather/gather.h"
 #include "luxel/solve/gather/rays/element_rays.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/validate/prepared.h"
 
@@ -101,11 +102,15 @@ double bare_rate(const validate::Prepared& p, int samples) {
   return double(p.elements.size()) * samples / (double(nanoseconds) * 1e-9 / thread_count());
 }
 
+light::TexelScene scene_of(const validate::Prepared& p) {
+  return {p.scene, p.atlas, p.map, p.elements, p.lights, *p.tracer};
+}
+
 double gather_rate(const validate::Prepared& p, int samples) {
   Progress progress;
   const auto start = Clock::now();
-  const auto hits = gather::trace_hits(p.scene, p.atlas, p.elements, p.lights.around, *p.tracer,
-                                       samples, {}, progress);
+  const auto hits = gather::trace_hits({p.scene, p.atlas, p.elements, p.lights, *p.tracer}, samples,
+                                       {}, progress);
   return hits ? double(hits->rays) / seconds_since(start) : 0.0;
 }
 
@@ -187,8 +192,8 @@ Result<Table> measure_maps(const std::filesystem::path&, int threads) {
     params.direct_samples = 200;
     params.samples = 800;
     const auto start = Clock::now();
-    LUXEL_TRY(const gather::Gather result, gather::gather(p->scene, p->atlas, p->map, p->elements,
-                                                          p->lights, *p->tracer, params, progress));
+    LUXEL_TRY(const gather::Gather result,
+              gather::gather(scene_of(*p), nullptr, params, {}, {}, progress));
     const double seconds = seconds_since(start);
     table.rows.push_back({fmt::format("{0} x {0}", resolution), fmt::format("{:.3f}", paper_s),
                           fmt::format("{:.3f}", seconds), fmt::format("{:.1f}", paper_s / seconds),
@@ -217,8 +222,7 @@ Result<Table> measure_threads(const std::filesystem::path& shared, int) {
       params.samples = 64;
       Progress progress;
       const auto start = Clock::now();
-      const auto result = gather::gather(p->scene, p->atlas, p->map, p->elements, p->lights,
-                                         *p->tracer, params, progress);
+      const auto result = gather::gather(scene_of(*p), nullptr, params, {}, {}, progress);
       return result ? seconds_since(start) : 0.0;
     };
     std::vector<double> one, two, ratio;

@@ -65,8 +65,9 @@ Result<std::array<Run, kPoints.size()>> run_all(const validate::Prepared& p, Pro
       gather::GatherParams params;
       params.supersample = kPoints[k];
       const auto start = Clock::now();
-      LUXEL_TRY(runs[k].light, gather::gather(p.scene, p.atlas, p.map, p.elements, p.lights,
-                                              *p.tracer, params, progress));
+      LUXEL_TRY(runs[k].light,
+                gather::gather({p.scene, p.atlas, p.map, p.elements, p.lights, *p.tracer}, nullptr,
+                               params, {}, {}, progress));
       runs[k].seconds = std::min(runs[k].seconds, seconds_since(start));
     }
   return runs;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/part_store.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
@@ -43,6 +44,10 @@ struct DirectLight {
     return std::span(by_layer).subspan(element * layers.size(), layers.size());
   }
 };
+/// Besides those of layers.
+inline constexpr uint64_t kDirectBytesPerElement =
+    bytes_per_entry(&DirectLight::irradiance, &DirectLight::variance, &DirectLight::split_variance);
+inline constexpr uint64_t kDirectLayerBytesPerElement = bytes_per_entry(&DirectLight::by_layer);
 
 /// E at every element from emissive triangles, point, spot and directional lights, bright texels of
 /// the environment, and the rest of the surroundings where sky_samples asks for it. Each source's

@@ -12,7 +12,7 @@
 #include "luxel/base/random.h"
 #include "luxel/light/kept_light.h"
 #include "luxel/light/shadow_rays.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::light {
 namespace {
@@ -53,8 +53,8 @@ Receiver own_receiver(const PointScene& at, const transport::Elements& elements,
 
 /// Whether the sample of a texel has the backs of some surfaces before it.
 bool sees_backs(const PointScene& at, const Receiver& own) {
-  return transport::backs_in(transport::backs_seen(at.scene, at.tracer, own.origin, own.normal,
-                                                   kEnclosureRays)) > 0;
+  return transport::all_backs(transport::count_back_faces(at.scene, at.tracer, own.origin,
+                                                          own.normal, kEnclosureRays)) > 0;
 }
 
 /// Light at the points of one texel.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "luxel/atlas/footprint.h"
+#include "luxel/base/bytes_per_entry.h"
 #include "luxel/light/direct_light.h"
 #include "luxel/light/texel_scene.h"
 
@@ -29,6 +30,8 @@ struct DirectLevels {
   std::vector<uint8_t> level;     ///< per element: shadow rays, or points, times 4 to this power
   std::vector<uint8_t> averaged;  ///< per element: 1 where it is a mean over points of its texel
 };
+inline constexpr uint64_t kLevelBytesPerElement =
+    bytes_per_entry(&DirectLevels::level, &DirectLevels::averaged);
 
 /// Texels whose direct light differs from that of one of their eight neighbours in the same chart
 /// by more than `threshold` of the brighter one, in any channel, and by more than three standard

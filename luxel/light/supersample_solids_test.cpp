@@ -5,7 +5,7 @@
 
 #include "luxel/light/supersample.h"
 #include "luxel/transport/floor_test_support.h"
-#include "luxel/transport/open_samples.h"
+#include "luxel/transport/visible_samples.h"
 
 namespace luxel::light {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 TEST(Supersample, LightIsAveragedOverPlacesInTheOpen) {
   transport::Floor floor = transport::floor_under_a_shell();
   const trace::RayTracer rays = floor.tracer();
-  transport::open_samples(floor.scene, floor.atlas, rays, floor.map);
+  transport::move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
   const transport::Elements elements =
       transport::elements_from_texels(floor.scene, floor.atlas, floor.map);
   const Lights lights = collect_lights(floor.scene);

@@ -8,6 +8,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/reference/paths.h"
 #include "luxel/trace/camera_rays.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::reference {
 namespace {
@@ -137,8 +138,8 @@ Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receiver
     out.irradiance[i] = mean_of(sums, n) * kPi;
     out.standard_error[i] = error_of(sums, n) * kPi;
     out.luminance_error[i] = float(standard_error(sums.l, sums.l2, n)) * kPi;
-    const double backs = double(out.met_back[i]) + double(out.met_double_sided_back[i]);
-    out.enclosed[i] = 2 * double(out.met_back[i]) > n || backs >= 0.98 * n;
+    out.enclosed[i] = transport::is_enclosed(
+        transport::BackFaces{int(n), int(out.met_back[i]), int(out.met_double_sided_back[i])});
   };
   LUXEL_TRY(out.rays, run_tasks(world, count, params, progress, start, each, finish));
   double sum = 0;

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "luxel/base/parallel.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::transport {
 namespace {
@@ -19,7 +19,7 @@ struct Offset {
 };
 constexpr std::array<Offset, 4> kOffsets{{{1, 0, 1}, {2, 0, 2}, {0, 1, 1}, {0, 2, 2}}};
 
-trace::Ray line_above(const Place& a, const Place& b, float height_m) {
+trace::Ray line_above(const FlatPoint& a, const FlatPoint& b, float height_m) {
   const Vec3 from = a.position + a.normal * height_m, to = b.position + b.normal * height_m;
   return {from, 0, to - from, 1};
 }
@@ -46,7 +46,7 @@ struct Search {
   float diagonal_m;
 
   uint32_t chart_of(uint32_t texel) const { return atlas.chart[map.texels[texel].triangle_number]; }
-  Place place(uint32_t texel) const { return place_of(scene, map.texels[texel].sample); }
+  FlatPoint place(uint32_t texel) const { return flat_point(scene, map.texels[texel].sample); }
 
   uint32_t neighbour(uint32_t texel, const Offset& o) const {
     const uint32_t x = map.texels[texel].x + o.x, y = map.texels[texel].y + o.y;
@@ -57,7 +57,7 @@ struct Search {
   }
 
   bool in_the_open(uint32_t texel) const {
-    const Place p = place(texel);
+    const FlatPoint p = place(texel);
     const Vec3 from = trace::offset_origin(p.position, p.normal, diagonal_m);
     return !is_enclosed(scene, tracer, from, p.normal, kRaysForOpen, diagonal_m);
   }
@@ -67,11 +67,11 @@ struct Search {
     std::vector<Pair> pairs;
     std::vector<trace::Ray> rays;
     for (uint32_t i = begin; i < end; ++i) {
-      const Place a = place(i);
+      const FlatPoint a = place(i);
       for (const Offset& o : kOffsets) {
         const uint32_t j = neighbour(i, o);
         if (j == atlas::kNone) continue;
-        const Place b = place(j);
+        const FlatPoint b = place(j);
         const float step_m = length(b.position - a.position) / o.steps;
         pairs.push_back({i, j, step_m});
         rays.push_back(line_above(a, b, kHeights[0] * step_m));
@@ -90,7 +90,7 @@ struct Search {
     std::vector<atlas::PartedPoints> found;
     for (const Pair& pair : blocked_pairs(begin, end)) {
       const uint32_t chart = chart_of(pair.a);
-      const Place a = place(pair.a), b = place(pair.b);
+      const FlatPoint a = place(pair.a), b = place(pair.b);
       const auto plane = barrier_between(scene, atlas, tracer, chart, a, b, pair.step_m);
       if (!plane || !in_the_open(pair.a) || !in_the_open(pair.b)) continue;
       found.push_back({chart, a.position, b.position, *plane});
@@ -101,13 +101,13 @@ struct Search {
 
 }  // namespace
 
-Place place_of(const scene::Scene& scene, const scene::SurfacePoint& p) {
+FlatPoint flat_point(const scene::Scene& scene, const scene::SurfacePoint& p) {
   return {scene::world_position(scene, p), scene::front_normal(scene, p.instance, p.triangle)};
 }
 
 std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                     const trace::RayTracer& tracer, uint32_t chart, const Place& a,
-                                     const Place& b, float step_m) {
+                                     const trace::RayTracer& tracer, uint32_t chart,
+                                     const FlatPoint& a, const FlatPoint& b, float step_m) {
   std::optional<Plane> lowest;
   for (const float height : kHeights) {
     const trace::Hit hit = tracer.closest_hit(line_above(a, b, height * step_m));

@@ -14,18 +14,18 @@
 namespace luxel::transport {
 
 /// A place on the front of a surface.
-struct Place {
+struct FlatPoint {
   Vec3 position, normal;  ///< world; the geometric normal
 };
-Place place_of(const scene::Scene& scene, const scene::SurfacePoint& p);
+FlatPoint flat_point(const scene::Scene& scene, const scene::SurfacePoint& p);
 
 /// What parts two neighbouring places: something opaque that cuts the lines between them half a
 /// step, one step and two steps above the surface, a step being `step_m`. A fence of less than two
 /// texels' height is no barrier, because light comes over it within a texel. The surface itself,
 /// `chart`, bends without being one. Returns the plane of what stands nearest to `a`.
 std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                     const trace::RayTracer& tracer, uint32_t chart, const Place& a,
-                                     const Place& b, float step_m);
+                                     const trace::RayTracer& tracer, uint32_t chart,
+                                     const FlatPoint& a, const FlatPoint& b, float step_m);
 
 /// The samples of all pairs of texels of one chart that lie side by side or next but one in a row
 /// or a column, both in the open, that a barrier parts. In the order of the texels.

@@ -8,9 +8,9 @@
 #include <numeric>
 
 #include "luxel/scene/shapes.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 #include "luxel/transport/floor_test_support.h"
-#include "luxel/transport/open_samples.h"
+#include "luxel/transport/visible_samples.h"
 
 namespace luxel::transport {
 namespace {
@@ -57,7 +57,7 @@ TEST(OpenSamples, MoveOutFromUnderABox) {
   floor.add_box({1.02f, 0, -1}, {3, 1, 3});  // texels of column 16 span 1 .. 1.0625
   const trace::RayTracer rays = floor.tracer();
   const std::vector<atlas::Texel> before = floor.map.texels;
-  const OpenedSamples opened = open_samples(floor.scene, floor.atlas, rays, floor.map);
+  const MovedSamples opened = move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
   EXPECT_EQ(opened.moved.size(), size_t(Floor::kSide));
   for (size_t i = 0; i < before.size(); ++i) {
     const float x = scene::world_position(floor.scene, floor.map.texels[i].sample).x;
@@ -73,7 +73,7 @@ TEST(OpenSamples, MoveOutOfAThinWall) {
   Floor floor;
   floor.add_box({1.026f, 0, -1}, {1.036f, 1, 3});  // their centre is at 1.03125
   const trace::RayTracer rays = floor.tracer();
-  const OpenedSamples opened = open_samples(floor.scene, floor.atlas, rays, floor.map);
+  const MovedSamples opened = move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
   // The texel on the floor's diagonal has its sample elsewhere.
   EXPECT_EQ(opened.moved.size(), size_t(Floor::kSide - 1));
   for (const atlas::Texel& texel : floor.map.texels) {
@@ -88,7 +88,7 @@ size_t samples_moved_into_gap(float from_x, float to_x) {
   floor.add_box({0.1f, 0, -1}, {from_x, 1, 3});
   floor.add_box({to_x, 0, -1}, {1.95f, 1, 3});
   const trace::RayTracer rays = floor.tracer();
-  const OpenedSamples opened = open_samples(floor.scene, floor.atlas, rays, floor.map);
+  const MovedSamples opened = move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
   size_t in_gap = 0;
   for (const uint32_t i : opened.moved) {
     const float x = scene::world_position(floor.scene, floor.map.texels[i].sample).x;
@@ -127,12 +127,13 @@ TEST(OpenSamples, AgainAreThoseFromScratch) {
   Floor before = floor_with(there), now = floor_with(here), again = floor_with(here);
   const trace::RayTracer rays_before = before.tracer(), rays = now.tracer();
   const trace::RayTracer rays_again = again.tracer();
-  const OpenedSamples kept = open_samples(before.scene, before.atlas, rays_before, before.map);
-  const OpenedSamples full = open_samples(now.scene, now.atlas, rays, now.map);
+  const MovedSamples kept =
+      move_samples_out_of_solids(before.scene, before.atlas, rays_before, before.map);
+  const MovedSamples full = move_samples_out_of_solids(now.scene, now.atlas, rays, now.map);
   EXPECT_NE(kept.moved, full.moved);
   const std::array boxes{there, here};
-  const OpenedSamples opened =
-      open_samples_again(again.scene, again.atlas, rays_again, boxes, kept.near_backs, again.map);
+  const MovedSamples opened = move_samples_near_changes(again.scene, again.atlas, rays_again, boxes,
+                                                        kept.near_backs, again.map);
   EXPECT_EQ(opened.moved, full.moved);
   EXPECT_EQ(opened.near_backs, full.near_backs);
   for (size_t i = 0; i < now.map.texels.size(); ++i) {
@@ -144,12 +145,12 @@ TEST(OpenSamples, AgainAreThoseFromScratch) {
   Floor unsaid = floor_with(here);
   const trace::RayTracer rays_unsaid = unsaid.tracer();
   for (const uint32_t i :
-       open_samples_again(unsaid.scene, unsaid.atlas, rays_unsaid, boxes, {}, unsaid.map)
+       move_samples_near_changes(unsaid.scene, unsaid.atlas, rays_unsaid, boxes, {}, unsaid.map)
            .near_backs)
     EXPECT_LT(unsaid.map.texels[i].x, 16);
 }
 
-/// By another set of rays than open_samples() takes.
+/// By another set of rays than move_samples_out_of_solids() takes.
 bool in_the_open(const Floor& floor, const trace::RayTracer& rays, Barycentric at,
                  uint32_t triangle) {
   const Vec3 p = scene::world_position(floor.scene, {0, triangle, at});
@@ -161,7 +162,7 @@ bool in_the_open(const Floor& floor, const trace::RayTracer& rays, Barycentric a
 TEST(OpenSamples, MoveOutFromUnderAShell) {
   Floor floor = floor_under_a_shell();
   const trace::RayTracer rays = floor.tracer();
-  const OpenedSamples opened = open_samples(floor.scene, floor.atlas, rays, floor.map);
+  const MovedSamples opened = move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
   EXPECT_TRUE(opened.near_backs.size() < floor.map.texels.size());
   EXPECT_GT(opened.moved.size(), 20u);
   size_t enclosed = 0, edges = 0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "luxel/atlas/atlas.h"
+#include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/vec.h"
 #include "luxel/scene/scene.h"
 
@@ -25,6 +26,10 @@ struct Elements {
 
   size_t size() const { return std::max(position.size(), reflectance.size()); }
 };
+
+/// What drop_places() gives back.
+inline constexpr uint64_t kPlaceBytesPerElement =
+    bytes_per_entry(&Elements::position, &Elements::normal, &Elements::geometric_normal);
 
 /// Frees positions and normals, which take three quarters of the memory, of elements that only
 /// exchange light from now on.

@@ -92,9 +92,8 @@ Blocker make_blocker(PolygonView corners) {
 }
 
 SeenFactor visible_point_factor(DVec3 point, DVec3 normal, PolygonView polygon,
-                                std::span<const Blocker> all, std::span<const uint32_t> blockers,
-                                double slack, std::span<uint8_t> casts_shadow,
-                                VisibilityScratch& s) {
+                                const BlockerSet& set, double slack,
+                                std::span<uint8_t> casts_shadow, VisibilityScratch& s) {
   s.visible.clear();
   s.polygon.clear();
   double reach = 0;
@@ -106,8 +105,8 @@ SeenFactor visible_point_factor(DVec3 point, DVec3 normal, PolygonView polygon,
   const double whole = point_to_polygon(DVec3{}, normal, s.polygon);
   const double rounding = 1e-13 * std::sqrt(reach);
   bool shadowed = false;
-  for (const uint32_t b : blockers) {
-    shadow_planes(point, all[b], slack, s.shadow);
+  for (const uint32_t b : set.blockers) {
+    shadow_planes(point, set.all[b], slack, s.shadow);
     if (s.shadow.empty() || !falls_on(s.polygon, rounding, s)) continue;
     casts_shadow[b] = 1, shadowed = true;
     cut_out(rounding, s);

@@ -52,9 +52,13 @@ struct VisibilityScratch {
 struct SeenFactor {
   double visible = 0, whole = 0;
 };
+/// The blockers that may stand between the point and the polygon.
+struct BlockerSet {
+  std::span<const Blocker> all;
+  std::span<const uint32_t> blockers;  ///< indices into `all`
+};
 SeenFactor visible_point_factor(DVec3 point, DVec3 normal, PolygonView polygon,
-                                std::span<const Blocker> all, std::span<const uint32_t> blockers,
-                                double slack, std::span<uint8_t> casts_shadow,
-                                VisibilityScratch& scratch);
+                                const BlockerSet& set, double slack,
+                                std::span<uint8_t> casts_shadow, VisibilityScratch& scratch);
 
 }  // namespace luxel::viewfactor

@@ -39,7 +39,7 @@ constexpr std::array<RuleNode, 7> kRule{{{1.0 / 3, 1.0 / 3, 0.225},
                                          {kInnerRest, kInnerRest, kInnerWeight}}};
 
 /// One pair of polygons at work.
-struct Work {
+struct PairIntegral {
   Polygon b;
   std::span<const Blocker> blockers;
   DVec3 normal;  ///< of a
@@ -77,50 +77,50 @@ bool stands_beside(const Blocker& blocker, PolygonView a, PolygonView b, double 
 }
 
 /// Keeps the blockers that reach into the shaft. False when one of them hides everything.
-bool keep_reaching(const Work& work, PolygonView a, const Shaft& shaft,
+bool keep_reaching(const PairIntegral& pair, PolygonView a, const Shaft& shaft,
                    std::span<const uint32_t> candidates, std::vector<uint32_t>& kept) {
   for (const uint32_t index : candidates) {
-    const Blocker& blocker = work.blockers[index];
-    if (stands_beside(blocker, a, work.b, work.slack)) continue;
+    const Blocker& blocker = pair.blockers[index];
+    if (stands_beside(blocker, a, pair.b, pair.slack)) continue;
     if (is_outside(shaft, blocker.corners)) continue;
-    if (hides_all(blocker, a, work.b, work.slack)) return false;
+    if (hides_all(blocker, a, pair.b, pair.slack)) return false;
     kept.push_back(index);
   }
   return true;
 }
 
 /// A cell's value and, until splitting tells more, all of it as its error where there are shadows.
-Cell evaluate(Work& work, const Triangle& corners, std::span<const uint32_t> candidates) {
+Cell evaluate(PairIntegral& pair, const Triangle& corners, std::span<const uint32_t> candidates) {
   Cell cell{corners, {}, 0, 0, 0, false};
-  const Shaft shaft = shaft_between(corners, work.b, work.slack);
-  if (!keep_reaching(work, corners, shaft, candidates, cell.blockers)) {
+  const Shaft shaft = shaft_between(corners, pair.b, pair.slack);
+  if (!keep_reaching(pair, corners, shaft, candidates, cell.blockers)) {
     cell.blockers.clear();
     return cell;
   }
   if (cell.blockers.empty()) {
-    cell.value = polygon_exchange_area(corners, work.b, 1e-3 * work.tolerance, work.slack).value;
+    cell.value = polygon_exchange_area(corners, pair.b, 1e-3 * pair.tolerance, pair.slack).value;
     return cell;
   }
-  for (const uint32_t b : cell.blockers) work.casts_shadow[b] = 0;
+  for (const uint32_t b : cell.blockers) pair.casts_shadow[b] = 0;
   const double area = area_m2(corners);
   double whole = 0;
   for (const RuleNode& node : kRule) {
     const DVec3 x = corners[0] * (1 - node.u - node.v) + corners[1] * node.u + corners[2] * node.v;
     const SeenFactor seen =
-        visible_point_factor(x, work.normal, work.b, work.blockers, cell.blockers, work.slack,
-                             work.casts_shadow, work.scratch);
+        visible_point_factor(x, pair.normal, pair.b, {pair.blockers, cell.blockers}, pair.slack,
+                             pair.casts_shadow, pair.scratch);
     cell.value += node.weight * area * seen.visible;
     whole += node.weight * area * seen.whole;
   }
   bool shadowed = false;
   for (const uint32_t b : cell.blockers) {
-    shadowed |= work.casts_shadow[b] != 0;
-    if (work.casts_shadow[b]) continue;
-    const Intrusion into = intrusion(shaft, corners, work.b, work.blockers[b].corners);
+    shadowed |= pair.casts_shadow[b] != 0;
+    if (pair.casts_shadow[b]) continue;
+    const Intrusion into = intrusion(shaft, corners, pair.b, pair.blockers[b].corners);
     cell.unseen += std::min(whole * into.share, into.area_m2);
   }
   if (!shadowed)
-    cell.value = polygon_exchange_area(corners, work.b, 1e-3 * work.tolerance, work.slack).value;
+    cell.value = polygon_exchange_area(corners, pair.b, 1e-3 * pair.tolerance, pair.slack).value;
   cell.shadowed = shadowed;
   cell.unseen = std::min(cell.unseen, cell.value);  // no more than is left can be hidden
   // Where all samples lie in the dark, light can only be near the corners.
@@ -129,11 +129,11 @@ Cell evaluate(Work& work, const Triangle& corners, std::span<const uint32_t> can
   return cell;
 }
 
-std::array<Cell, 4> split(Work& work, const Cell& cell) {
+std::array<Cell, 4> split(PairIntegral& pair, const Cell& cell) {
   const auto& [p, q, r] = cell.corners;
   const DVec3 pq = (p + q) * 0.5, qr = (q + r) * 0.5, rp = (r + p) * 0.5;
-  return {evaluate(work, {p, pq, rp}, cell.blockers), evaluate(work, {pq, q, qr}, cell.blockers),
-          evaluate(work, {rp, qr, r}, cell.blockers), evaluate(work, {pq, qr, rp}, cell.blockers)};
+  return {evaluate(pair, {p, pq, rp}, cell.blockers), evaluate(pair, {pq, q, qr}, cell.blockers),
+          evaluate(pair, {rp, qr, r}, cell.blockers), evaluate(pair, {pq, qr, rp}, cell.blockers)};
 }
 
 /// What splitting changed is the parent's error, and at kinks, where the rule is at its worst, the
@@ -151,20 +151,20 @@ void share_error(const Cell& parent, std::span<Cell> children) {
 }
 
 /// Along a blocker that stands on `a` the visible part of `b` jumps: `a` is cut there first.
-std::vector<Polygon> cut_at_standing_blockers(const Polygon& a, const Work& work,
+std::vector<Polygon> cut_at_standing_blockers(const Polygon& a, const PairIntegral& pair,
                                               std::span<const uint32_t> blockers) {
   constexpr size_t kMaxPieces = 64;
   const Plane ground = plane_of(a);
   std::vector<Polygon> pieces{a};
   for (const uint32_t index : blockers) {
-    const Blocker& blocker = work.blockers[index];
+    const Blocker& blocker = pair.blockers[index];
     double lowest = INFINITY;
     for (const DVec3& p : blocker.corners) lowest = std::min(lowest, ground.height(p));
-    if (lowest > work.slack || pieces.size() >= kMaxPieces) continue;
+    if (lowest > pair.slack || pieces.size() >= kMaxPieces) continue;
     std::vector<Polygon> cut;
     for (const Polygon& piece : pieces)
       for (const Plane& side : {blocker.plane, Plane{-blocker.plane.normal, -blocker.plane.offset}})
-        if (Polygon part = clip_above(piece, side, work.slack); !part.empty())
+        if (Polygon part = clip_above(piece, side, pair.slack); !part.empty())
           cut.push_back(std::move(part));
     pieces = std::move(cut);
   }
@@ -192,7 +192,7 @@ struct ErrorSum {
 };
 
 /// Splits the worst cell until the sum of errors is small against the sum of values.
-VisibleExchange refine(Work& work, std::span<const Polygon> pieces,
+VisibleExchange refine(PairIntegral& pair, std::span<const Polygon> pieces,
                        std::span<const uint32_t> blockers, double unoccluded,
                        const VisibleParams& params) {
   std::priority_queue<Cell, std::vector<Cell>, SmallerError> open;
@@ -206,16 +206,16 @@ VisibleExchange refine(Work& work, std::span<const Polygon> pieces,
   };
   for (const Polygon& piece : pieces)
     for (size_t i = 2; i < piece.size(); ++i)
-      take(evaluate(work, {piece[0], piece[i - 1], piece[i]}, blockers));
-  const double least = work.tolerance * std::max(params.negligible_m2, 1e-3 * unoccluded);
+      take(evaluate(pair, {piece[0], piece[i - 1], piece[i]}, blockers));
+  const double least = pair.tolerance * std::max(params.negligible_m2, 1e-3 * unoccluded);
   const auto is_rough = [&] {
-    return !open.empty() && errors.total() > std::max(least, work.tolerance * sum.value);
+    return !open.empty() && errors.total() > std::max(least, pair.tolerance * sum.value);
   };
   while (is_rough() && sum.cells < params.max_cells &&
          !(params.progress && params.progress->cancelled())) {
     const Cell parent = open.top();
     open.pop();
-    std::array<Cell, 4> children = split(work, parent);
+    std::array<Cell, 4> children = split(pair, parent);
     share_error(parent, children);
     sum.value -= parent.value;
     errors.add(parent, -1);
@@ -234,26 +234,26 @@ VisibleExchange visible_exchange_area(PolygonView a, PolygonView b,
                                       const VisibleParams& params) {
   const Plane plane_a = plane_of(a), plane_b = plane_of(b);
   if (plane_a.normal == DVec3{} || plane_b.normal == DVec3{}) return {};
-  Work work{{}, blockers, plane_a.normal, params.tolerance, params.slack_m, {}, {}};
-  work.slack = std::max(params.slack_m, 1e-13 * std::max(magnitude(a), magnitude(b)));
-  work.b = clip_above(b, plane_a, work.slack);
-  const Polygon front_a = clip_above(a, plane_b, work.slack);
-  if (front_a.empty() || work.b.empty()) return {};
-  work.casts_shadow.assign(blockers.size(), 0);
+  PairIntegral pair{{}, blockers, plane_a.normal, params.tolerance, params.slack_m, {}, {}};
+  pair.slack = std::max(params.slack_m, 1e-13 * std::max(magnitude(a), magnitude(b)));
+  pair.b = clip_above(b, plane_a, pair.slack);
+  const Polygon front_a = clip_above(a, plane_b, pair.slack);
+  if (front_a.empty() || pair.b.empty()) return {};
+  pair.casts_shadow.assign(blockers.size(), 0);
   std::vector<uint32_t> candidates, reaching;
   for (uint32_t i = 0; i < blockers.size(); ++i)
     if (blockers[i].area_m2 > 0) candidates.push_back(i);
-  const Shaft shaft = shaft_between(front_a, work.b, work.slack);
-  if (!keep_reaching(work, front_a, shaft, candidates, reaching)) return {};
+  const Shaft shaft = shaft_between(front_a, pair.b, pair.slack);
+  if (!keep_reaching(pair, front_a, shaft, candidates, reaching)) return {};
   const ExchangeArea unoccluded = polygon_exchange_area(
-      front_a, work.b, reaching.empty() ? 1e-12 : 1e-3 * params.tolerance, work.slack);
+      front_a, pair.b, reaching.empty() ? 1e-12 : 1e-3 * params.tolerance, pair.slack);
   if (reaching.empty()) return {unoccluded.value, unoccluded.rounding, 0, false};
   // Large blockers first: what they hide whole need not be cut.
   std::stable_sort(reaching.begin(), reaching.end(), [&](uint32_t i, uint32_t j) {
     return blockers[i].area_m2 > blockers[j].area_m2;
   });
-  const std::vector<Polygon> pieces = cut_at_standing_blockers(front_a, work, reaching);
-  return refine(work, pieces, reaching, unoccluded.value, params);
+  const std::vector<Polygon> pieces = cut_at_standing_blockers(front_a, pair, reaching);
+  return refine(pair, pieces, reaching, unoccluded.value, params);
 }
 
 FormFactor form_factor(PolygonView a, PolygonView b, std::span<const Polygon> blockers,

@@ -138,8 +138,8 @@ void walk(Visit& visit, Like<KeptLayout> auto& l) {
 
 template <class Visit>
 void walk(Visit& visit, Like<LayersOfLights> auto& l) {
-  auto& [of_lamp, of_instance, of_surroundings] = l;
-  visit(of_lamp), visit(of_instance), visit(of_surroundings);
+  auto& [of_punctual, of_instance, of_surroundings] = l;
+  visit(of_punctual), visit(of_instance), visit(of_surroundings);
 }
 
 template <class Visit>
@@ -206,7 +206,7 @@ bool is_sound(const KeptBake& k) {
   const bool told_apart = layers > 0;
   return k.layout.mesh_of_instance.size() == instances && l.layers.size() == layers &&
          l.layer_irradiance.size() == layers && k.direct.by_layer.size() == n * layers &&
-         k.layers.of_lamp.size() == (told_apart ? lamps : 0) &&
+         k.layers.of_punctual.size() == (told_apart ? lamps : 0) &&
          k.layers.of_instance.size() == (told_apart ? instances : 0);
 }
 
@@ -223,7 +223,7 @@ bool refers_to_itself(const KeptBake& k) {
            t.triangle_number < atlas.corners.size();
   };
   return is_layer_or_none(k.layers.of_surroundings) &&
-         std::ranges::all_of(k.layers.of_lamp, is_layer_or_none) &&
+         std::ranges::all_of(k.layers.of_punctual, is_layer_or_none) &&
          std::ranges::all_of(
              k.layers.of_instance,
              [&](const std::vector<uint8_t>& of) { return std::ranges::all_of(of, is_layer); }) &&
@@ -259,9 +259,9 @@ LayersOfLights layers_of_lights(const scene::Scene& scene, const light::Lights& 
     if (at == of.end() || *at != layers.of_triangle[k]) of.insert(at, layers.of_triangle[k]);
   }
   for (size_t k = 0; k < lights.punctual.size(); ++k)
-    out.of_lamp.push_back(max_component(lights.punctual[k].intensity) > 0
-                              ? layers.of_punctual[k]
-                              : LayersOfLights::kNoLayer);
+    out.of_punctual.push_back(max_component(lights.punctual[k].intensity) > 0
+                                  ? layers.of_punctual[k]
+                                  : LayersOfLights::kNoLayer);
   if (layers.of_surroundings) out.of_surroundings = *layers.of_surroundings;
   return out;
 }

@@ -16,7 +16,7 @@ namespace luxel::pipeline {
 /// Which layer the lights of the scene's file belong to.
 struct LayersOfLights {
   static constexpr uint8_t kNoLayer = 255;
-  std::vector<uint8_t> of_lamp;                   ///< per lamp
+  std::vector<uint8_t> of_punctual;               ///< per punctual light
   std::vector<std::vector<uint8_t>> of_instance;  ///< per instance, ascending: by its surfaces
   uint8_t of_surroundings = kNoLayer;
   friend bool operator==(const LayersOfLights&, const LayersOfLights&) = default;

@@ -320,7 +320,7 @@ TEST(KeptBake, WithNumbersThatDoNotFitIsRefused) {
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.light.layer_irradiance.pop_back(); }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.light.layer_irradiance[1].pop_back(); }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layer_names.pop_back(); }));
-  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_lamp.pop_back(); }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_punctual.pop_back(); }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_instance.pop_back(); }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.mesh_of_instance.pop_back(); }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.scene.instances.pop_back(); }));
@@ -328,7 +328,7 @@ TEST(KeptBake, WithNumbersThatDoNotFitIsRefused) {
 }
 
 TEST(KeptBake, ThatRefersToWhatIsNotThereIsRefused) {
-  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_lamp[0] = 2; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_punctual[0] = 2; }));
   EXPECT_TRUE(
       is_refused([](KeptBake& k) { k.layers.of_instance[1][0] = LayersOfLights::kNoLayer; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layers.of_surroundings = 2; }));
@@ -383,7 +383,7 @@ TEST(LayersOfLights, AreThoseOfLampsAndOfInstancesThatShine) {
   const LayersOfLights found = layers_of_lights(scene, lights, *layers);
   constexpr uint8_t kNone = LayersOfLights::kNoLayer;
   // Lamps first, then what shines, then the surroundings; lights without power are left out.
-  EXPECT_EQ(found.of_lamp, (std::vector<uint8_t>{0, kNone, 1}));
+  EXPECT_EQ(found.of_punctual, (std::vector<uint8_t>{0, kNone, 1}));
   EXPECT_EQ(found.of_instance, (std::vector<std::vector<uint8_t>>{{}, {2}}));
   EXPECT_EQ(found.of_surroundings, 3);
 }

@@ -105,42 +105,42 @@ LightUpdate light_update(const KeptBake& kept, const scene::SceneChange& change,
   LightUpdate out;
   const auto differs = [](const std::optional<Rgb>& s) { return !s || !(*s == kAsBefore); };
   if (layers == 0) {
-    out.surfaces_anew = std::ranges::any_of(change.light_scale, differs) ||
-                        std::ranges::any_of(change.emission_scale, differs) ||
-                        change.surroundings || !change.moved.empty();
+    out.surfaces_changed = std::ranges::any_of(change.light_scale, differs) ||
+                           std::ranges::any_of(change.emission_scale, differs) ||
+                           change.surroundings || !change.moved.empty();
     return out;
   }
   Scales all(layers);
   std::vector<uint8_t> has_surface(layers);
   for (uint32_t k = 0; k < change.light_scale.size(); ++k) {
-    const uint8_t layer = kept.layers.of_lamp[k];
+    const uint8_t layer = kept.layers.of_punctual[k];
     if (layer != kNoLayer)
       all.add(layer, change.light_scale[k]);
     else if (differs(change.light_scale[k]))
-      out.lamps_anew.push_back(k);
+      out.changed_punctual.push_back(k);
   }
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const std::vector<uint8_t>& of = kept.layers.of_instance[i];
     const std::optional<Rgb> scale = scale_of_instance(kept, change, scene, i);
     for (const uint8_t layer : of) all.add(layer, scale), has_surface[layer] = 1;
     if (of.empty() && !scale && std::ranges::find(change.moved, i) == change.moved.end())
-      out.surfaces_anew = true;
+      out.surfaces_changed = true;
   }
-  if (change.surroundings) out.surfaces_anew = true;
+  if (change.surroundings) out.surfaces_changed = true;
   out.scale = std::move(all.scale);
   for (std::optional<Rgb>& scale : out.scale)
     if (scale && max_component(*scale) > kMostBrighter) scale.reset();
   for (size_t l = 0; l < layers; ++l)
-    if (!out.scale[l] && has_surface[l]) out.surfaces_anew = true;
-  for (uint32_t k = 0; k < kept.layers.of_lamp.size(); ++k)
-    if (const uint8_t l = kept.layers.of_lamp[k]; l != kNoLayer && !out.scale[l])
-      out.lamps_anew.push_back(k);
+    if (!out.scale[l] && has_surface[l]) out.surfaces_changed = true;
+  for (uint32_t k = 0; k < kept.layers.of_punctual.size(); ++k)
+    if (const uint8_t l = kept.layers.of_punctual[k]; l != kNoLayer && !out.scale[l])
+      out.changed_punctual.push_back(k);
   return out;
 }
 
 bool is_sum_of_layers(const LightUpdate& update, const scene::SceneChange& change) {
   return change.moved.empty() && change.boxes.empty() && change.recoloured.empty() &&
-         !change.surroundings && !update.surfaces_anew && update.lamps_anew.empty() &&
+         !change.surroundings && !update.surfaces_changed && update.changed_punctual.empty() &&
          std::ranges::all_of(update.scale, [](const auto& s) { return s.has_value(); });
 }
 
@@ -185,7 +185,7 @@ std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays
   out.rays.boxes = with_margin(change.boxes, margin_m);
   out.rays.moved = moved_elements(kept.places, in.elements);
   out.rays.surroundings = seen_otherwise;
-  out.rays.same_light = !update.surfaces_anew && update.lamps_anew.empty() &&
+  out.rays.same_light = !update.surfaces_changed && update.changed_punctual.empty() &&
                         as_before(update.scale) && change.recoloured.empty() && !seen_otherwise;
   out.irradiance = std::move(kept.light.irradiance);
   out.relative_error = kept.light.relative_error;
@@ -197,13 +197,13 @@ std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays
             kept.light.layer_irradiance[l][i] * update.scale[l].value_or(kAsBefore);
   }
   const bool same_layers =
-      !layers ||
-      (update.lamps_anew.empty() && layers_of_lights(in.scene, in.lights, *layers) == kept.layers);
-  if (update.surfaces_anew || !same_layers) return out;
+      !layers || (update.changed_punctual.empty() &&
+                  layers_of_lights(in.scene, in.lights, *layers) == kept.layers);
+  if (update.surfaces_changed || !same_layers) return out;
   out.direct = std::move(kept.direct), out.levels = std::move(kept.levels);
   if (!as_before(update.scale)) rescale(update.scale, out.direct);
   if (!layers) free_memory(out.direct.by_layer);
-  out.lamps_anew = only(in.lights, update.lamps_anew);
+  out.changed_lights = only(in.lights, update.changed_punctual);
   return out;
 }
 

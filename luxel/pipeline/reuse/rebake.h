@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "luxel/pipeline/reuse/kept_bake.h"
-#include "luxel/solve/gather/gather.h"
+#include "luxel/solve/gather/reuse/earlier.h"
 
 namespace luxel::pipeline {
 
@@ -14,8 +14,8 @@ struct LightUpdate {
   /// Per layer, what its light is multiplied by, per channel; nothing: its lights shine otherwise
   /// than before.
   std::vector<std::optional<Rgb>> scale;
-  std::vector<uint32_t> lamps_anew;  ///< lamps that do, and those of layers that have them
-  bool surfaces_anew = false;        ///< so do surfaces, or the surroundings
+  std::vector<uint32_t> changed_punctual;  ///< punctual lights that do, and those of such layers
+  bool surfaces_changed = false;           ///< surfaces, or the surroundings, do
 };
 /// `change` is that from kept.scene to `scene`, which may have more materials by now.
 LightUpdate light_update(const KeptBake& kept, const scene::SceneChange& change,

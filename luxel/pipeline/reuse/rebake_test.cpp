@@ -88,11 +88,11 @@ Scales with(size_t layer, std::optional<Rgb> scale, size_t layers = 4) {
   return out;
 }
 
-void expect(const Updated& found, const Scales& scale, const Indices& lamps_anew,
-            bool surfaces_anew, bool is_sum) {
+void expect(const Updated& found, const Scales& scale, const Indices& changed_punctual,
+            bool surfaces_changed, bool is_sum) {
   EXPECT_EQ(found.update.scale, scale);
-  EXPECT_EQ(found.update.lamps_anew, lamps_anew);
-  EXPECT_EQ(found.update.surfaces_anew, surfaces_anew);
+  EXPECT_EQ(found.update.changed_punctual, changed_punctual);
+  EXPECT_EQ(found.update.surfaces_changed, surfaces_changed);
   EXPECT_EQ(found.is_sum, is_sum);
 }
 
@@ -196,7 +196,7 @@ TEST(LightUpdate, AnInstanceThatShinesAndMovesIsLookedAt) {
 
 TEST(LightUpdate, OtherSurroundingsAreLookedAt) {
   const Updated found = updated([](scene::Scene& s) { s.background = {0.2f, 0.2f, 0.4f}; });
-  EXPECT_TRUE(found.update.surfaces_anew);
+  EXPECT_TRUE(found.update.surfaces_changed);
   EXPECT_FALSE(found.is_sum);
 }
 
@@ -392,7 +392,7 @@ TEST_F(EarlierOf, WithLayersALampThatIsPutOutLeavesNoDirectLight) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->rounds, std::vector(1, std::vector<uint16_t>(room_->elements.size(), 16)));
   EXPECT_EQ(std::ranges::count(found->rays.moved, 1), 0);
-  EXPECT_TRUE(found->lamps_anew.punctual.empty());
+  EXPECT_TRUE(found->changed_lights.punctual.empty());
   // A lamp that is off has no layer any more: its layers are not those of the kept bake.
   EXPECT_TRUE(found->direct.irradiance.empty());
 }
@@ -431,10 +431,10 @@ TEST_F(EarlierOf, LampsThatShineOtherwiseAreTakenOut) {
   Scales direct = with(left_layer, std::nullopt);
   expect_light(*found, Scales(kLayers, kOne), direct);
   EXPECT_TRUE(found->direct.by_layer.empty()) << "nobody tells light apart now";
-  ASSERT_EQ(found->lamps_anew.punctual.size(), 2u);
-  EXPECT_TRUE(found->lamps_anew.triangles.empty());
+  ASSERT_EQ(found->changed_lights.punctual.size(), 2u);
+  EXPECT_TRUE(found->changed_lights.triangles.empty());
   std::vector<std::string> names;
-  for (const auto& lamp : found->lamps_anew.punctual) names.push_back(lamp.name);
+  for (const auto& lamp : found->changed_lights.punctual) names.push_back(lamp.name);
   std::ranges::sort(names);
   EXPECT_EQ(names, (std::vector<std::string>{"lamp.1", "lamp.3"}));
 }

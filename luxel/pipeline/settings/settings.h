@@ -12,7 +12,7 @@
 #include "luxel/pipeline/settings/lightmap_files.h"
 #include "luxel/pipeline/settings/outside_light.h"
 #include "luxel/pipeline/settings/solver_settings.h"
-#include "luxel/solve/gather/budget/gather_params.h"
+#include "luxel/solve/gather/gather.h"
 
 namespace luxel::pipeline {
 

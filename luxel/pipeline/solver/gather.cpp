@@ -67,14 +67,15 @@ void shrink_first_round(const gather::Forecast& forecast, double seconds,
 /// Tells how long it will take, where a trial can know it and is worth it, and fits the first round
 /// into a time budget. With max_error it is told by gather, after the first round.
 Status look_ahead(const light::TexelScene& in, const BakeSettings& settings,
-                  gather::GatherParams& params, std::vector<std::string>& warnings,
-                  Progress& progress) {
+                  const gather::GatherStores& stores, gather::GatherParams& params,
+                  std::vector<std::string>& warnings, Progress& progress) {
   const std::vector<Stage> after = stages_after_solving(in, settings);
   progress.expect_at_end(after);
   const double rays = double(in.elements.size()) * (params.samples + params.direct_samples);
   const bool trial = rays >= kRaysWorthATrial && settings.max_error <= 0;
   if (!trial && settings.time_budget_s <= 0) return {};
-  LUXEL_TRY(const gather::Forecast forecast, gather::forecast(in, params, kTrialPart, progress));
+  LUXEL_TRY(const gather::Forecast forecast,
+            gather::forecast(in, params, stores, kTrialPart, progress));
   progress.finish();
   if (settings.time_budget_s <= 0) {
     progress.expect(stages_of(forecast));
@@ -104,8 +105,11 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   params.supersample = settings.supersample;
   params.bounces = settings.bounces;
   params.seed = settings.seed;
-  params.scratch_folder = nearest_folder(settings.output);
   return params;
+}
+
+gather::GatherStores gather_stores(const BakeSettings& settings) {
+  return {.scratch_folder = nearest_folder(settings.output)};
 }
 
 namespace {
@@ -158,9 +162,10 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
                                 const SolveStores& stores, const SolveObserver& observer,
                                 Progress& progress) {
   gather::GatherParams params = gather_params(settings);
+  gather::GatherStores own = gather_stores(settings);
   const bool keeps = stores.cache && stores.cache->rays();
   LUXEL_TRY(light::LightLayers layers, layers_of(in, settings, keeps));
-  if (layers.size() > 0) params.layers = &layers;
+  const light::LightLayers* told_apart = layers.size() > 0 ? &layers : nullptr;
   std::optional<gather::Earlier> earlier;
   if (KeptBake* found = stores.cache ? stores.cache->found() : nullptr) {
     const scene::SceneChange& change = stores.cache->change();
@@ -175,23 +180,23 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
       return out;
     }
     if (const RecordFile* rays = stores.cache->found_rays(progress))
-      earlier = earlier_of(*found, *rays, update, change, in, params.layers);
+      earlier = earlier_of(*found, *rays, update, change, in, told_apart);
   }
   const uint64_t bytes =
       bytes_of_gather(in, settings, stores, bool(observer.on_estimate), layers.size());
-  LUXEL_TRY(params.hit_memory_bytes, memory_to_spare(in, settings, bytes, kMinHitBytes));
+  LUXEL_TRY(own.hit_memory_bytes, memory_to_spare(in, settings, bytes, kMinHitBytes));
   std::vector<std::string> warnings;
   if (earlier)
-    params.earlier = &*earlier;
+    own.earlier = &*earlier;
   else
-    LUXEL_TRY_STATUS(look_ahead(in, settings, params, warnings, progress));
+    LUXEL_TRY_STATUS(look_ahead(in, settings, own, params, warnings, progress));
   // Not for the trial; and the light of layers is not kept yet.
-  if (!params.layers) params.parts = stores.parts;
-  if (keeps) params.keep = stores.cache->rays();
-  params.on_estimate = observer.on_estimate;
-  params.on_traced = observer.on_traced;
-  LUXEL_TRY(gather::Gather result, gather::gather(in.scene, in.atlas, in.map, in.elements,
-                                                  in.lights, in.tracer, params, progress));
+  if (!told_apart) own.parts = stores.parts;
+  if (keeps) own.keep = stores.cache->rays();
+  LUXEL_TRY(gather::Gather result,
+            gather::gather(in, told_apart, params, own,
+                           {.on_estimate = observer.on_estimate, .on_traced = observer.on_traced},
+                           progress));
   const light::LightLayers all_layers = layers;
   TexelLight out = light_of(result, layers);
   if (keeps) stores.cache->keep(kept_bake(in, all_layers, result, out));

@@ -6,6 +6,7 @@
 #include "luxel/pipeline/solver/gather.h"
 #include "luxel/pipeline/solver/gather_memory.h"
 #include "luxel/pipeline/solver/memory.h"
+#include "luxel/solve/gather/bounce/bounces.h"
 #include "luxel/solve/gather/forecast/forecast_rounds.h"
 
 namespace luxel::pipeline {
@@ -35,12 +36,14 @@ Result<Plan> plan_gather(const light::TexelScene& in, const BakeSettings& settin
   const uint64_t bytes = bytes_of_gather(in, settings, {}, false);
   const double besides_hits = double(resident_bytes() + bytes);
   LUXEL_TRY(const uint64_t hit_memory, memory_to_spare(in, settings, bytes, 0));
-  gather::GatherParams params = gather_params(settings);
-  LUXEL_TRY(const gather::Forecast forecast, gather::forecast(in, params, kPlanPart, progress));
+  const gather::GatherParams params = gather_params(settings);
+  const gather::GatherStores stores = gather_stores(settings);
+  LUXEL_TRY(const gather::Forecast forecast,
+            gather::forecast(in, params, stores, kPlanPart, progress));
   for (const Stage& stage : stages_of(forecast)) out.stages.push_back(stage);
   gather::RoundsForecast rounds;
   if (settings.max_error > 0) {
-    LUXEL_TRY(rounds, gather::forecast_rounds(in, params, kRoundsPart, progress));
+    LUXEL_TRY(rounds, gather::forecast_rounds(in, params, stores, kRoundsPart, progress));
     out.stages.push_back({"rounds", rounds.trace_s + rounds.bounces_s});
   }
   for (const Stage& stage : stages_after_solving(in, settings)) out.stages.push_back(stage);

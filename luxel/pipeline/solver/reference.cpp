@@ -6,7 +6,7 @@
 #include "luxel/pipeline/solver/solver.h"
 #include "luxel/pipeline/solver/texel_light.h"
 #include "luxel/reference/path_tracer.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -31,7 +31,7 @@ Result<TexelLight> solve_reference(const light::TexelScene& in, const BakeSettin
   LUXEL_TRY(reference::TexelPaths result,
             reference::irradiance_by_paths(in.scene, receivers, in.tracer, params, progress));
   result.enclosed = transport::find_enclosed(in.scene, in.tracer, in.elements, [&](size_t i) {
-    return transport::BacksSeen{settings.samples, int(result.met_back[i]),
+    return transport::BackFaces{settings.samples, int(result.met_back[i]),
                                 int(result.met_double_sided_back[i])};
   });
   TexelLight out = texel_light(std::move(result));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/part_store.h"
 #include "luxel/light/light_estimate.h"
 #include "luxel/light/light_layers.h"
@@ -65,5 +66,9 @@ struct TexelLight {
   std::vector<std::string> warnings;
   std::optional<VertexLit> vertex_lit;  ///< with --vertex-colors
 };
+/// What TexelLight takes per element besides that of layers, where a solver fills all of it.
+inline constexpr uint64_t kLightBytesPerElement = bytes_per_entry(
+    &TexelLight::irradiance, &TexelLight::variance, &TexelLight::direct,
+    &TexelLight::direct_variance, &TexelLight::errors, &TexelLight::samples, &TexelLight::hidden);
 
 }  // namespace luxel::pipeline

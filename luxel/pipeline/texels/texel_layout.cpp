@@ -8,7 +8,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/transport/barriers.h"
-#include "luxel/transport/open_samples.h"
+#include "luxel/transport/visible_samples.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -56,15 +56,15 @@ Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, Te
 Vec2 between(Vec2 a, Vec2 b, float s) { return a * (1 - s) + b * s; }
 
 /// The place of a drawn triangle's plane half a texel from an edge, on its side of it.
-transport::Place beside_edge(const scene::Scene& scene, const atlas::Atlas& atlas,
-                             uint32_t triangle, Vec2 on_edge, Vec2 along) {
+transport::FlatPoint beside_edge(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                 uint32_t triangle, Vec2 on_edge, Vec2 along) {
   const auto drawn = scene::drawn_triangle(atlas.first_triangle, triangle);
   const auto& corners = atlas.corners[triangle];
   const Vec2 middle = (corners[0] + corners[1] + corners[2]) * (1.0f / 3);
   Vec2 inwards = Vec2{-along.y, along.x} * (0.5f / std::max(length(along), 1e-6f));
   if (dot(inwards, middle - on_edge) < 0) inwards = inwards * -1.0f;
   const Barycentric at = atlas::barycentric_in(corners, on_edge + inwards);
-  return transport::place_of(scene, {drawn.instance, drawn.triangle, at});
+  return transport::flat_point(scene, {drawn.instance, drawn.triangle, at});
 }
 
 /// The stretches of one seam that are open, whole texels each.
@@ -92,7 +92,7 @@ void add_open(const scene::Scene& scene, const atlas::Atlas& atlas, const trace:
   }
 }
 
-void take_opened(transport::OpenedSamples opened, TexelLayout& layout) {
+void take_moved(transport::MovedSamples opened, TexelLayout& layout) {
   layout.repair.moved = std::move(opened.moved);
   layout.near_backs = std::move(opened.near_backs);
 }
@@ -106,7 +106,9 @@ Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& s
   if (settings.repair_leaks) {
     LUXEL_TRY_STATUS(cut_at_barriers(params, scene, layout, progress));
     progress.begin("samples", 0);
-    take_opened(transport::open_samples(scene, layout.atlas, layout.tracer, layout.map), layout);
+    take_moved(
+        transport::move_samples_out_of_solids(scene, layout.atlas, layout.tracer, layout.map),
+        layout);
   }
   layout.repair.overlapping = atlas::overlapping_texels(layout.atlas, layout.map);
   layout.stats = atlas::atlas_stats(scene, layout.atlas, layout.map);
@@ -146,9 +148,9 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
                      std::move(tracer),     std::move(kept.repair), std::move(kept.near_backs)};
   if (!same_places && settings.repair_leaks) {
     progress.begin("samples", 0);
-    take_opened(transport::open_samples_again(scene, layout.atlas, layout.tracer, boxes,
-                                              layout.near_backs, layout.map),
-                layout);
+    take_moved(transport::move_samples_near_changes(scene, layout.atlas, layout.tracer, boxes,
+                                                    layout.near_backs, layout.map),
+               layout);
   }
   return layout;
 }
@@ -157,7 +159,8 @@ post::Parted parted_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
                            const atlas::TexelMap& map, const trace::RayTracer& tracer) {
   return [&](uint32_t a, uint32_t b) {
     const atlas::Texel &s = map.texels[a], &t = map.texels[b];
-    const auto p = transport::place_of(scene, s.sample), q = transport::place_of(scene, t.sample);
+    const auto p = transport::flat_point(scene, s.sample),
+               q = transport::flat_point(scene, t.sample);
     const float steps = std::hypot(float(s.x) - float(t.x), float(s.y) - float(t.y));
     return transport::barrier_between(scene, atlas, tracer, atlas.chart[s.triangle_number], p, q,
                                       length(q.position - p.position) / steps)

@@ -31,7 +31,7 @@ struct TexelLayout {
   atlas::AtlasStats stats;
   trace::RayTracer tracer;  ///< of the scene as it is now
   LeakRepair repair;
-  std::vector<uint32_t> near_backs;  ///< OpenedSamples::near_backs
+  std::vector<uint32_t> near_backs;  ///< MovedSamples::near_backs
 };
 
 /// Lays the scene out and rasterises it. With settings.repair_leaks, samples move out of solids,

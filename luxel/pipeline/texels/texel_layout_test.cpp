@@ -5,7 +5,7 @@
 #include <array>
 
 #include "luxel/scene/shapes.h"
-#include "luxel/transport/open_samples.h"
+#include "luxel/transport/visible_samples.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -59,7 +59,7 @@ TEST(LayOutAgain, OpensTheSamplesThatOpeningAllWould) {
   const auto again = lay_out_again(kept.settings, kept.layout, boxes, now, kept.progress);
   ASSERT_TRUE(again);
   atlas::TexelMap map = atlas::rasterise(now, again->atlas);
-  const auto all = transport::open_samples(now, again->atlas, again->tracer, map);
+  const auto all = transport::move_samples_out_of_solids(now, again->atlas, again->tracer, map);
   EXPECT_NE(all.moved, kept.layout.repair.moved);
   EXPECT_EQ(again->repair.moved, all.moved);
   EXPECT_EQ(again->near_backs, all.near_backs);

@@ -6,9 +6,12 @@
 #include "luxel/base/clock.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/solve/gather/bounce/bounce_layers.h"
+#include "luxel/solve/gather/bounce/bounces.h"
 #include "luxel/solve/gather/bounce/radiosity_map.h"
+#include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/reuse/earlier_direct.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::gather {
 namespace {
@@ -29,7 +32,7 @@ constexpr double kPartOfError = 1.0 / 20, kRoughestFromEarlier = 3e-4;
 constexpr double kFineOverRough = 4;
 /// A round that adds less than this part of the rays is not worth its bounces.
 constexpr double kSmallestRound = 1.0 / 16;
-/// Of a round's rays, those that may go to lamps.
+/// Of a round's rays, those that may go to lights.
 constexpr double kDirectShare = 0.25;
 
 /// Pooled variances, and relative errors by them.
@@ -38,193 +41,207 @@ struct Errors {
   std::vector<float> direct, gathered, all;  ///< relative
 };
 
-/// What there is so far.
-struct Work {
+/// What gather() was asked for.
+struct Request {
+  const light::TexelScene& scene;
+  const light::LightLayers* layers;
+  const GatherParams& params;
+  const GatherStores& stores;
+  const GatherObserver& observer;
+  std::vector<StoredHit> behind{};  ///< places_behind()
+
+  size_t layer_count() const { return layers ? layers->size() : 0; }
+  /// Whether rays are added where light is not known well enough.
+  bool adds_rounds() const { return params.max_error > 0 || params.seconds > 0; }
+  light::SupersampleParams supersample_params() const {
+    return {.points = params.supersample,
+            .direct = {.samples = params.direct_samples,
+                       .seed = params.seed,
+                       .parts = stores.parts,
+                       .layers = layers}};
+  }
+};
+
+/// The light so far, and the rays that it is made of.
+struct Progressive {
   light::DirectLight direct;
-  std::vector<Rgb> direct_before;  ///< of an earlier bake
+  std::vector<Rgb> direct_before;  ///< direct light of an earlier bake
   light::DirectLevels levels;
   size_t averaged = 0;
   TracedHits hits;
   Bounced bounced;
   Errors errors;
   std::vector<Rgb> first_change;       ///< BounceParams
-  double traced_s = 0, bounced_s = 0;  ///< of the last round, of which something was traced
+  double traced_s = 0, bounced_s = 0;  ///< of the last round in which something was traced
   uint64_t traced_rays = 0, traced_samples = 0;
 };
 
-Errors errors_of(const light::TexelScene& world, const Work& work) {
-  auto direct =
-      pooled_variances(world.atlas, world.map, {work.direct.variance, work.direct.split_variance});
-  const auto gathered = pooled_variances(world.atlas, world.map,
-                                         {work.bounced.variance, work.bounced.split_variance});
+Errors errors_of(const light::TexelScene& scene, const Progressive& light) {
+  auto direct = pooled_variances(scene.atlas, scene.map,
+                                 {light.direct.variance, light.direct.split_variance});
+  const auto gathered = pooled_variances(scene.atlas, scene.map,
+                                         {light.bounced.variance, light.bounced.split_variance});
   Errors out;
-  out.direct = relative_errors(direct, work.bounced.irradiance, work.hits);
-  out.gathered = relative_errors(gathered, work.bounced.irradiance, work.hits);
+  out.direct = relative_errors(direct, light.bounced.irradiance, light.hits);
+  out.gathered = relative_errors(gathered, light.bounced.irradiance, light.hits);
   out.variance = std::move(direct);
   for (size_t i = 0; i < gathered.size(); ++i) out.variance[i] += gathered[i];
-  out.all = relative_errors(out.variance, work.bounced.irradiance, work.hits);
+  out.all = relative_errors(out.variance, light.bounced.irradiance, light.hits);
   return out;
 }
 
-light::SupersampleParams supersample_params(const GatherParams& params) {
-  return {.points = params.supersample,
-          .direct = {.samples = params.direct_samples,
-                     .seed = params.seed,
-                     .parts = params.parts,
-                     .layers = params.layers}};
+void show(const GatherObserver& observer, const Progressive& light) {
+  if (!observer.on_estimate) return;
+  const double n = double(std::max<size_t>(light.hits.size(), 1));
+  observer.on_estimate({light.bounced.irradiance, double(sum_of(light.hits.samples)) / n,
+                        percentile_95(light.errors.all)});
 }
 
-void show(const GatherParams& params, const Work& work) {
-  if (!params.on_estimate) return;
-  const double n = double(std::max<size_t>(work.hits.size(), 1));
-  params.on_estimate({work.bounced.irradiance, double(sum_of(work.hits.samples)) / n,
-                      percentile_95(work.errors.all)});
-}
-
-/// Whether rays are added where light is not known well enough.
-bool adds_rounds(const GatherParams& params) { return params.max_error > 0 || params.seconds > 0; }
-
-Status begin_direct(const light::TexelScene& world, const GatherParams& params, Work& work,
-                    Progress& progress) {
-  const light::SupersampleParams supersample = supersample_params(params);
-  if (params.earlier && !params.earlier->direct.irradiance.empty()) {
-    if (params.earlier->rays.same_light) work.direct_before = params.earlier->direct.irradiance;
-    LUXEL_TRY_STATUS(update_direct(world, supersample, *params.earlier, progress));
-    work.direct = std::move(params.earlier->direct);
-    work.levels = std::move(params.earlier->levels);
-    work.averaged = size_t(std::ranges::count(work.levels.averaged, 1));
+/// Direct light, from scratch or from an earlier bake. Errors: cancelled.
+Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
+  const light::TexelScene& scene = in.scene;
+  const light::SupersampleParams supersample = in.supersample_params();
+  Earlier* earlier = in.stores.earlier;
+  if (earlier && !earlier->direct.irradiance.empty()) {
+    if (earlier->rays.same_light) light.direct_before = earlier->direct.irradiance;
+    LUXEL_TRY_STATUS(update_direct(scene, supersample, *earlier, progress));
+    light.direct = std::move(earlier->direct);
+    light.levels = std::move(earlier->levels);
+    light.averaged = size_t(std::ranges::count(light.levels.averaged, 1));
     return {};
   }
-  LUXEL_TRY(work.direct, light::direct_light(world.scene, world.elements, world.lights,
-                                             world.tracer, supersample.direct, progress));
+  LUXEL_TRY(light.direct, light::direct_light(scene.scene, scene.elements, scene.lights,
+                                              scene.tracer, supersample.direct, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample(
-                {world.scene, world.atlas, world.map, world.elements, world.lights, world.tracer},
-                supersample, work.direct, progress));
-  work.direct.rays += averaged.rays;
-  work.averaged = averaged.texels.size();
-  if (!adds_rounds(params) && params.keep == nullptr) return {};  // nobody asks how finely
-  work.levels = {std::vector<uint8_t>(world.elements.size()),
-                 std::vector<uint8_t>(world.elements.size())};
-  for (const uint32_t i : averaged.texels) work.levels.averaged[i] = 1;
+            light::supersample(scene, supersample, light.direct, progress));
+  light.direct.rays += averaged.rays;
+  light.averaged = averaged.texels.size();
+  // Only rounds, and bakes that are kept, ask how finely light was sampled.
+  if (!in.adds_rounds() && in.stores.keep == nullptr) return {};
+  light.levels = {std::vector<uint8_t>(scene.elements.size()),
+                  std::vector<uint8_t>(scene.elements.size())};
+  for (const uint32_t i : averaged.texels) light.levels.averaged[i] = 1;
   return {};
 }
 
-Status trace_round(const light::TexelScene& world, const GatherParams& params,
-                   std::span<const uint16_t> target, Work& work, Progress& progress) {
-  const TraceParams trace{.seed = params.seed,
-                          .memory_limit_bytes = params.hit_memory_bytes,
-                          .scratch_folder = params.scratch_folder,
-                          .near_lights = params.bounces < 0 ? &world.lights : nullptr,
-                          .parts = params.parts,
-                          .keep = params.keep,
-                          .earlier = params.earlier ? &params.earlier->rays : nullptr,
-                          .layers = params.layers};
+Status trace_round(const Request& in, std::span<const uint16_t> target, Progressive& light,
+                   Progress& progress) {
+  const TraceParams trace{
+      .seed = in.params.seed,
+      .memory_limit_bytes = in.stores.hit_memory_bytes,
+      .scratch_folder = in.stores.scratch_folder,
+      .follows_near = in.params.bounces < 0,
+      .parts = in.stores.parts,
+      .keep = in.stores.keep,
+      .earlier = in.stores.earlier ? &in.stores.earlier->rays : nullptr,
+      .layers = in.layers,
+  };
   const auto start = Clock::now();
-  const uint64_t before = work.hits.rays, samples = sum_of(work.hits.samples);
-  LUXEL_TRY_STATUS(trace_more(world.scene, world.atlas, world.elements, world.lights.around,
-                              world.tracer, target, trace, work.hits, progress));
+  const uint64_t before = light.hits.rays, samples = sum_of(light.hits.samples);
+  LUXEL_TRY_STATUS(trace_more(trace_scene(in.scene), target, trace, light.hits, progress));
   // What was kept says nothing about how long rays take.
   const Progress::Snapshot stage = progress.snapshot();
   if (stage.total == stage.skipped) return {};
-  work.traced_s = seconds_since(start) * double(stage.total) / double(stage.total - stage.skipped);
-  work.traced_rays = work.hits.rays - before;
-  work.traced_samples = sum_of(work.hits.samples) - samples;
+  light.traced_s = seconds_since(start) * double(stage.total) / double(stage.total - stage.skipped);
+  light.traced_rays = light.hits.rays - before;
+  light.traced_samples = sum_of(light.hits.samples) - samples;
   return {};
 }
 
 /// What hits leave of the memory that they may take.
-uint64_t spare_bytes(const GatherParams& params, const TracedHits& hits) {
-  return params.hit_memory_bytes - std::min(hits.bytes_in_memory(), params.hit_memory_bytes);
+uint64_t spare_bytes(const GatherStores& stores, const TracedHits& hits) {
+  return stores.hit_memory_bytes - std::min(hits.bytes_in_memory(), stores.hit_memory_bytes);
 }
 
-Status bounce_round(const light::TexelScene& world, const GatherParams& all,
-                    std::span<const StoredHit> behind, float tolerance, Work& work,
-                    Progress& progress) {
+Status bounce_round(const Request& in, float tolerance, Progressive& light, Progress& progress) {
   const auto start = Clock::now();
-  const std::vector<Rgb> guess = std::move(work.bounced.irradiance);
-  const BounceParams params{.bounces = all.bounces,
+  const std::vector<Rgb> guess = std::move(light.bounced.irradiance);
+  const BounceParams params{.bounces = in.params.bounces,
                             .tolerance = tolerance,
                             .start = guess,
-                            .first_change = work.first_change,
-                            .unknown = work.hits.unknown,
-                            .spare_bytes = spare_bytes(all, work.hits)};
-  work.bounced = {}, work.errors = {};
-  LUXEL_TRY(work.bounced, bounce(world.map, world.elements, work.hits, work.direct.irradiance,
-                                 behind, params, progress));
-  free_memory(work.first_change), free_memory(work.hits.unknown);
-  work.bounced_s = seconds_since(start);
+                            .first_change = light.first_change,
+                            .unknown = light.hits.unknown,
+                            .spare_bytes = spare_bytes(in.stores, light.hits)};
+  light.bounced = {}, light.errors = {};
+  LUXEL_TRY(light.bounced, bounce(in.scene.map, in.scene.elements, light.hits,
+                                  light.direct.irradiance, in.behind, params, progress));
+  free_memory(light.first_change), free_memory(light.hits.unknown);
+  light.bounced_s = seconds_since(start);
   return {};
 }
 
-/// Of the last bounces.
-float last_tolerance(const GatherParams& params) {
-  if (!params.earlier) return params.tolerance;
-  const double of_error = kPartOfError * params.earlier->relative_error;
-  return std::max(params.tolerance, float(std::min(of_error, kRoughestFromEarlier)));
+/// The tolerance of the last bounces.
+float last_tolerance(const Request& in) {
+  if (!in.stores.earlier) return in.params.tolerance;
+  const double of_error = kPartOfError * in.stores.earlier->relative_error;
+  return std::max(in.params.tolerance, float(std::min(of_error, kRoughestFromEarlier)));
 }
 
 /// The light of the rays so far, which are not all, and how well it is known.
-Status look_round(const light::TexelScene& world, const GatherParams& params,
-                  std::span<const StoredHit> behind, Work& work, Progress& progress) {
-  LUXEL_TRY_STATUS(bounce_round(world, params, behind, kRoughTolerance, work, progress));
-  work.errors = errors_of(world, work);
-  show(params, work);
+Status estimate_round(const Request& in, Progressive& light, Progress& progress) {
+  LUXEL_TRY_STATUS(bounce_round(in, kRoughTolerance, light, progress));
+  light.errors = errors_of(in.scene, light);
+  show(in.observer, light);
   return {};
 }
 
-/// How many rays the next round may have, such that it and the last bounces end in time.
-double affordable_rays(const Work& work, double seconds_left) {
-  const double rays = double(work.hits.rays), bounces_s = work.bounced_s * (1 + kFineOverRough);
-  if (work.traced_rays == 0) return kSmallestRound * rays;  // all found: some are traced to know
-  const double per_ray = work.traced_s / double(std::max<uint64_t>(work.traced_rays, 1));
+/// How many rays the next round may have, such that it and the last bounces end in time: tracing
+/// takes as long per ray as the last round, and bounces grow with the number of all rays.
+double affordable_rays(const Progressive& light, double seconds_left) {
+  const double rays = double(light.hits.rays), bounces_s = light.bounced_s * (1 + kFineOverRough);
+  // Where all rays were found, some are traced to know what they take.
+  if (light.traced_rays == 0) return kSmallestRound * rays;
+  const double per_ray = light.traced_s / double(std::max<uint64_t>(light.traced_rays, 1));
   return (seconds_left - bounces_s) / (per_ray + bounces_s / rays);
 }
 
 /// Tells the watcher what is still to come, when an error is asked for.
-void expect_rounds(const GatherParams& params, std::span<const uint16_t> target, const Work& work,
-                   Progress& progress) {
+void expect_rounds(const GatherParams& params, std::span<const uint16_t> target,
+                   const Progressive& light, Progress& progress) {
   std::vector<uint64_t> rounds =
-      rounds_to_come(work.errors.all, work.errors.gathered, params.max_error, params.max_samples,
-                     work.hits.samples);
-  const double before = double(sum_of(work.hits.samples));
+      rounds_to_come(light.errors.all, light.errors.gathered, params.max_error, params.max_samples,
+                     light.hits.samples);
+  const double before = double(sum_of(light.hits.samples));
   if (rounds.empty()) rounds.push_back(0);
   rounds.front() = sum_of(target) - uint64_t(before);  // that is known
-  const double per_sample = work.traced_s / double(std::max<uint64_t>(work.traced_samples, 1));
+  const double per_sample = light.traced_s / double(std::max<uint64_t>(light.traced_samples, 1));
   std::vector<Stage> stages;
   double samples = before;
   for (const uint64_t added : rounds) {
     samples += double(added);
     stages.push_back({"trace rays", double(added) * per_sample});
-    stages.push_back({"bounces", work.bounced_s * samples / before});
+    stages.push_back({"bounces", light.bounced_s * samples / before});
   }
-  stages.push_back({"bounces", kFineOverRough * work.bounced_s * samples / before});
+  stages.push_back({"bounces", kFineOverRough * light.bounced_s * samples / before});
   progress.expect(std::move(stages));
 }
 
 /// Adds rays where they are needed most. False: there is nothing to add, or no time.
-Result<bool> next_round(const light::TexelScene& world, const GatherParams& params,
-                        double seconds_left, Work& work, Progress& progress) {
-  if (percentile_95(work.errors.all) <= params.max_error) return false;
+Result<bool> next_round(const Request& in, double seconds_left, Progressive& light,
+                        Progress& progress) {
+  const GatherParams& params = in.params;
+  if (percentile_95(light.errors.all) <= params.max_error) return false;
+  // Indirect light gets more rays, direct light more shadow rays, where either is off by too much.
   const float each = error_of_part(params.max_error);
-  const light::SupersampleParams supersample = supersample_params(params);
+  const light::SupersampleParams supersample = in.supersample_params();
   std::vector<uint16_t> target =
-      next_samples(work.errors.gathered, each, params.max_samples, work.hits.samples);
+      next_samples(light.errors.gathered, each, params.max_samples, light.hits.samples);
   float direct_above = each;
+  // A time budget takes both back to what it can pay for, and ends the rounds.
   if (params.seconds > 0) {
-    const double rays = affordable_rays(work, seconds_left);
-    if (rays < kSmallestRound * double(work.hits.rays)) return false;
-    const double rays_per_sample = double(work.hits.rays) / double(sum_of(work.hits.samples));
-    keep_affordable(work.errors.gathered, uint64_t((1 - kDirectShare) * rays / rays_per_sample),
-                    work.hits.samples, target);
+    const double rays = affordable_rays(light, seconds_left);
+    if (rays < kSmallestRound * double(light.hits.rays)) return false;
+    const double rays_per_sample = double(light.hits.rays) / double(sum_of(light.hits.samples));
+    keep_affordable(light.errors.gathered, uint64_t((1 - kDirectShare) * rays / rays_per_sample),
+                    light.hits.samples, target);
     direct_above =
-        affordable_error(work.errors.direct, each, kDirectShare * rays, supersample, work.levels);
+        affordable_error(light.errors.direct, each, kDirectShare * rays, supersample, light.levels);
   }
-  if (params.seconds <= 0) expect_rounds(params, target, work, progress);
-  LUXEL_TRY(const size_t finer, refine_direct(world, work.errors.direct, direct_above, supersample,
-                                              work.levels, work.direct, progress));
-  if (target == work.hits.samples) return finer > 0;
-  LUXEL_TRY_STATUS(trace_round(world, params, target, work, progress));
+  if (params.seconds <= 0) expect_rounds(params, target, light, progress);
+  LUXEL_TRY(const size_t finer, refine_direct(in.scene, light.errors.direct, direct_above,
+                                              supersample, light.levels, light.direct, progress));
+  if (target == light.hits.samples) return finer > 0;
+  LUXEL_TRY_STATUS(trace_round(in, target, light, progress));
   return true;
 }
 
@@ -254,43 +271,45 @@ std::vector<int> growing(int samples) {
 
 /// The rays of an earlier bake. Where only what lies elsewhere changes them, they tell by how much
 /// the light of then changes in a sweep, too. Errors: cancelled, disk full.
-Status trace_earlier(const light::TexelScene& world, const GatherParams& params,
-                     std::span<const StoredHit> behind, Work& work, Progress& progress) {
-  EarlierRays& rays = params.earlier->rays;
+Status trace_earlier(const Request& in, Progressive& light, Progress& progress) {
+  const light::TexelScene& scene = in.scene;
+  EarlierRays& rays = in.stores.earlier->rays;
+  // Rays tell what changes where light, reflectances and the number of samples are as they were.
   const bool tells =
-      rays.same_light && !work.direct_before.empty() && params.bounces < 0 && !adds_rounds(params);
-  if (!tells) free_memory(work.direct_before);
-  RadiosityMap sent = empty_radiosity_map(tells ? world.map.resolution : 0);
+      rays.same_light && !light.direct_before.empty() && in.params.bounces < 0 && !in.adds_rounds();
+  if (!tells) free_memory(light.direct_before);
+  RadiosityMap sent = empty_radiosity_map(tells ? scene.map.resolution : 0);
   if (tells) {
-    fill_radiosity(sent, world.map, world.elements, work.hits, behind, work.bounced.irradiance);
+    fill_radiosity(sent, scene.map, scene.elements, light.hits, in.behind,
+                   light.bounced.irradiance);
     rays.sent = &sent;
   }
-  for (const std::vector<uint16_t>& target : params.earlier->rounds)
-    LUXEL_TRY_STATUS(trace_round(world, params, target, work, progress));
+  for (const std::vector<uint16_t>& target : in.stores.earlier->rounds)
+    LUXEL_TRY_STATUS(trace_round(in, target, light, progress));
   rays.sent = nullptr;
   if (!tells) return {};
-  work.first_change = std::move(work.hits.change);
-  for (size_t i = 0; i < work.first_change.size(); ++i)
-    work.first_change[i] = work.first_change[i] * (1 / float(work.hits.samples[i])) +
-                           work.direct.irradiance[i] - work.direct_before[i];
-  free_memory(work.direct_before);
+  // The change of a sweep: that of the mean over rays, and that of the direct light.
+  light.first_change = std::move(light.hits.change);
+  for (size_t i = 0; i < light.first_change.size(); ++i)
+    light.first_change[i] = light.first_change[i] * (1 / float(light.hits.samples[i])) +
+                            light.direct.irradiance[i] - light.direct_before[i];
+  free_memory(light.direct_before);
   return {};
 }
 
 /// The rays that every element gets. Errors: cancelled, disk full.
-Status trace_first(const light::TexelScene& world, const GatherParams& params,
-                   std::span<const StoredHit> behind, Work& work, Progress& progress) {
-  const size_t n = world.elements.size();
-  if (params.earlier) return trace_earlier(world, params, behind, work, progress);
-  if (!params.on_estimate)
-    return trace_round(world, params, std::vector<uint16_t>(n, uint16_t(params.samples)), work,
-                       progress);
-  params.on_estimate({with_ambient(world.elements, work.direct.irradiance)});
-  for (const int samples : growing(params.samples)) {
+Status trace_first(const Request& in, Progressive& light, Progress& progress) {
+  const size_t n = in.scene.elements.size();
+  const int all = in.params.samples;
+  if (in.stores.earlier) return trace_earlier(in, light, progress);
+  if (!in.observer.on_estimate)
+    return trace_round(in, std::vector<uint16_t>(n, uint16_t(all)), light, progress);
+  in.observer.on_estimate({with_ambient(in.scene.elements, light.direct.irradiance)});
+  for (const int samples : growing(all)) {
     const std::vector<uint16_t> target(n, uint16_t(samples));
-    LUXEL_TRY_STATUS(trace_round(world, params, target, work, progress));
-    if (samples == params.samples) break;  // what follows bounces them
-    LUXEL_TRY_STATUS(look_round(world, params, behind, work, progress));
+    LUXEL_TRY_STATUS(trace_round(in, target, light, progress));
+    if (samples == all) break;  // what follows bounces them
+    LUXEL_TRY_STATUS(estimate_round(in, light, progress));
   }
   return {};
 }
@@ -302,68 +321,74 @@ void drop_light(TracedHits& hits) {
   free_memory(hits.sky_luminance2), free_memory(hits.sky_first_less_second);
 }
 
-/// All bounces, those of layers too, and how well their light is known. Places of elements may be
-/// gone.
-Status bounce_last(const light::TexelScene& world, const GatherParams& params,
-                   std::span<const StoredHit> behind, Work& work, Gather& out, Progress& progress) {
-  LUXEL_TRY_STATUS(bounce_round(world, params, behind, last_tolerance(params), work, progress));
-  if (params.layers) {
-    LUXEL_TRY(LayersBounced layers,
-              bounce_layers(world.map, world.elements, work.hits,
-                            layer_sources(work.hits, std::move(work.direct.by_layer)), behind,
-                            work.bounced.irradiance,
-                            {params.bounces, spare_bytes(params, work.hits)}, progress));
+/// All bounces, those of layers too, and how well their light is known. Positions and normals of
+/// elements may be gone.
+Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress& progress) {
+  LUXEL_TRY_STATUS(bounce_round(in, last_tolerance(in), light, progress));
+  if (in.layers) {
+    LayeredLight layered{.source = layer_sources(light.hits, std::move(light.direct.by_layer)),
+                         .whole = light.bounced.irradiance};
+    LUXEL_TRY(
+        LayersBounced layers,
+        bounce_layers(in.scene.map, in.scene.elements, light.hits, in.behind, std::move(layered),
+                      {in.params.bounces, spare_bytes(in.stores, light.hits)}, progress));
     out.layers = std::move(layers.irradiance), out.layers_shared_out = layers.shared_out;
   }
-  out.hit_bytes_in_file = work.hits.bytes_in_file();
-  drop_light(work.hits);
-  work.errors = errors_of(world, work);
-  show(params, work);
+  out.hit_bytes_in_file = light.hits.bytes_in_file();
+  drop_light(light.hits);
+  light.errors = errors_of(in.scene, light);
+  show(in.observer, light);
   return {};
+}
+
+/// Moves what the caller gets out of what is known in the end.
+void take_result(Progressive&& light, Gather& out) {
+  out.relative_error = relative_error(light.bounced.irradiance, light.errors.variance);
+  out.irradiance = std::move(light.bounced.irradiance);
+  out.direct = std::move(light.direct.irradiance);
+  out.direct_variance = std::move(light.direct.variance);
+  out.indirect_variance = std::move(light.bounced.split_variance);
+  out.pooled_variance = std::move(light.errors.variance);
+  out.relative_error_p95 = percentile_95(light.errors.all);
+  out.errors = std::move(light.errors.all);
+  out.gathered_errors = std::move(light.errors.gathered);
+  out.met_back = std::move(light.hits.met_back);
+  out.samples = std::move(light.hits.samples);
+  out.rays = light.direct.rays + light.hits.rays, out.rays_kept = light.hits.rays_kept;
+  out.supersampled = light.averaged;
+  out.sweeps = light.bounced.sweeps;
 }
 
 }  // namespace
 
-Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
-                      const atlas::TexelMap& map, const transport::Elements& elements,
-                      const light::Lights& lights, const trace::RayTracer& tracer,
-                      const GatherParams& params, Progress& progress) {
+Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* layers,
+                      const GatherParams& params, const GatherStores& stores,
+                      const GatherObserver& observer, Progress& progress) {
   const auto start = Clock::now();
-  const light::TexelScene world{scene, atlas, map, elements, lights, tracer};
-  Work work;
-  LUXEL_TRY_STATUS(begin_direct(world, params, work, progress));
-  const std::vector<StoredHit> behind = places_behind(scene, atlas, map, elements);
-  work.hits = no_hits(elements.size(), params.layers ? params.layers->size() : 0);
-  if (params.earlier) work.bounced.irradiance = std::move(params.earlier->irradiance);
-  LUXEL_TRY_STATUS(trace_first(world, params, behind, work, progress));
-  for (bool more = adds_rounds(params); more;) {
-    LUXEL_TRY_STATUS(look_round(world, params, behind, work, progress));
-    LUXEL_TRY(more,
-              next_round(world, params, params.seconds - seconds_since(start), work, progress));
+  Request in{scene, layers, params, stores, observer};
+  Progressive light;
+  // 1. Light straight from the lights, with shadow rays.
+  LUXEL_TRY_STATUS(begin_direct(in, light, progress));
+  // 2. The rays that every element gets, and what they hit.
+  in.behind = places_behind(scene.scene, scene.atlas, scene.map, scene.elements);
+  light.hits = no_hits(scene.elements.size(), in.layer_count());
+  if (stores.earlier) light.bounced.irradiance = std::move(stores.earlier->irradiance);
+  LUXEL_TRY_STATUS(trace_first(in, light, progress));
+  // 3. Rounds of more rays where the estimated error is too large.
+  for (bool more = in.adds_rounds(); more;) {
+    LUXEL_TRY_STATUS(estimate_round(in, light, progress));
+    LUXEL_TRY(more, next_round(in, params.seconds - seconds_since(start), light, progress));
   }
+  // 4. Which elements lie inside of solids. After this nobody traces rays.
   Gather out;
-  out.enclosed = transport::find_enclosed(scene, tracer, elements, [&](size_t i) {
-    return transport::BacksSeen{int(work.hits.samples[i]), int(work.hits.met_back[i]),
-                                int(work.hits.met_double_sided_back[i])};
-  });
-  free_memory(work.hits.escaped), free_memory(work.hits.met_double_sided_back);
-  if (params.on_traced) params.on_traced();
-  if (params.keep) out.kept_direct = work.direct, out.kept_levels = work.levels;
-  LUXEL_TRY_STATUS(bounce_last(world, params, behind, work, out, progress));
-  out.relative_error = relative_error(work.bounced.irradiance, work.errors.variance);
-  out.irradiance = std::move(work.bounced.irradiance);
-  out.direct = std::move(work.direct.irradiance);
-  out.direct_variance = std::move(work.direct.variance);
-  out.indirect_variance = std::move(work.bounced.split_variance);
-  out.pooled_variance = std::move(work.errors.variance);
-  out.relative_error_p95 = percentile_95(work.errors.all);
-  out.errors = std::move(work.errors.all);
-  out.gathered_errors = std::move(work.errors.gathered);
-  out.met_back = std::move(work.hits.met_back);
-  out.samples = std::move(work.hits.samples);
-  out.rays = work.direct.rays + work.hits.rays, out.rays_kept = work.hits.rays_kept;
-  out.supersampled = work.averaged;
-  out.sweeps = work.bounced.sweeps;
+  out.enclosed = transport::find_enclosed(scene.scene, scene.tracer, scene.elements,
+                                          [&](size_t i) { return back_faces(light.hits, i); });
+  free_memory(light.hits.escaped), free_memory(light.hits.met_double_sided_back);
+  if (observer.on_traced) observer.on_traced();
+  if (stores.keep) out.kept_direct = light.direct, out.kept_levels = light.levels;
+  // 5. All bounces, by sweeps over the stored hits.
+  LUXEL_TRY_STATUS(bounce_last(in, light, out, progress));
+  take_result(std::move(light), out);
   return out;
 }
 

@@ -1,34 +1,75 @@
 // Radiosity maps: Monte Carlo gather per texel. [Moreno05]
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <vector>
 
+#include "luxel/base/bytes_per_entry.h"
+#include "luxel/base/part_store.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
 #include "luxel/light/light_estimate.h"
+#include "luxel/light/light_layers.h"
 #include "luxel/light/supersample.h"
-#include "luxel/solve/gather/bounce/bounces.h"
-#include "luxel/solve/gather/budget/adaptive.h"
-#include "luxel/solve/gather/budget/gather_params.h"
-#include "luxel/solve/gather/reuse/earlier.h"
-#include "luxel/solve/gather/trace/trace_hits.h"
+#include "luxel/light/texel_scene.h"
 
 namespace luxel::gather {
 
+struct Earlier;
+
+/// How many rays, and how many bounces of their light.
+struct GatherParams {
+  int samples = 256;  ///< indirect rays per element; with max_error or seconds, of the first round
+  /// > 0: rounds of more samples until 95 % of elements have a smaller relative error (adaptive.h).
+  float max_error = 0;
+  /// > 0: rounds of more samples while they, and the bounces, end within so many seconds from the
+  /// call. The first round and the first direct light are not cut short. Depends on the machine.
+  double seconds = 0;
+  int max_samples = 16384;  ///< with max_error or seconds, per element
+  int direct_samples = 64;  ///< shadow rays per element towards emissive surfaces
+  int supersample = 1;      ///< points per element where direct light varies; 1: none
+  int bounces = -1;         ///< < 0: all
+  float tolerance = 1e-4f;  ///< see BounceParams
+  uint64_t seed = 1;
+};
+
+/// Where gather stores hits and finished parts, and what it finds of an earlier bake.
+struct GatherStores {
+  uint64_t hit_memory_bytes = UINT64_MAX;      ///< for hits; the rest goes to temporary files
+  std::filesystem::path scratch_folder = ".";  ///< where those files are
+  PartStore* parts = nullptr;  ///< where finished parts are kept and found; null: nowhere
+  PartStore* keep = nullptr;   ///< where rays are kept for later bakes of the scene; null: nowhere
+  Earlier* earlier = nullptr;  ///< is used up; its rounds come first; null: nothing is known
+};
+
+/// Who watches gather.
+struct GatherObserver {
+  /// Gets the light as it grows: direct light with an ambient term [Cohen88], then that of a few
+  /// rays, of twice as many, and so on, the last being what gather() returns. `samples` come in
+  /// rounds then, and the result is that without it up to rounding (adaptive_test.cpp).
+  light::OnLightEstimate on_estimate{};
+  /// Called when every ray is traced: drop_places() may be called on the elements then.
+  std::function<void()> on_traced{};
+};
+
 struct Gather {
   std::vector<Rgb> irradiance;  ///< E per element [W/m^2], after all bounces
-  std::vector<Rgb> direct;      ///< the part of it that comes straight from lamps
+  std::vector<Rgb> direct;      ///< the part of it that comes straight from the lights
   /// Estimated variance of the mean's luminance, per element: of the direct part and of the rest.
   std::vector<float> direct_variance, indirect_variance;  ///< indirect: from halves, see Bounced
   std::vector<uint16_t> met_back;  ///< rays per element that met the back of a one-sided surface
   std::vector<uint8_t> enclosed;   ///< per element: 1 inside a solid (transport::is_enclosed)
   std::vector<float> pooled_variance;  ///< of the luminance, per element: pooled_variances
   std::vector<float> errors;           ///< per element: relative_errors
-  std::vector<float> gathered_errors;  ///< the same of what rays brought, light from lamps aside
+  std::vector<float> gathered_errors;  ///< `errors` of the indirect part alone
   float relative_error_p95 = 0;        ///< 95th percentile of `errors`
   std::vector<uint16_t> samples;       ///< indirect rays per element
   /// With layers, of each: E per element after all bounces. They add up to `irradiance`.
   std::vector<std::vector<Rgb>> layers;
   double layers_shared_out = 0;  ///< LayersBounced::shared_out
-  /// With `keep`: direct light as it is in the end, and how finely it was looked at.
+  /// With `keep`: direct light as it is in the end, and how finely it was sampled.
   light::DirectLight kept_direct;
   light::DirectLevels kept_levels;
   uint64_t rays = 0;
@@ -40,10 +81,14 @@ struct Gather {
   double relative_error = 0;
 };
 
-/// Direct light, rays, bounces: the chain of docs/method/gather.md. Errors: cancelled, disk full.
-Result<Gather> gather(const scene::Scene& scene, const atlas::Atlas& atlas,
-                      const atlas::TexelMap& map, const transport::Elements& elements,
-                      const light::Lights& lights, const trace::RayTracer& tracer,
-                      const GatherParams& params, Progress& progress);
+inline constexpr uint64_t kEnclosedBytesPerElement = bytes_per_entry(&Gather::enclosed);
+/// While rays are traced: how many samples each element is to have.
+inline constexpr uint64_t kTargetBytesPerElement = bytes_per_entry(&Gather::samples);
+
+/// Direct light, rays, bounces: the chain of docs/method/gather.md. `layers` tells light apart;
+/// null: it does not. Errors: cancelled, disk full.
+Result<Gather> gather(const light::TexelScene& in, const light::LightLayers* layers,
+                      const GatherParams& params, const GatherStores& stores,
+                      const GatherObserver& observer, Progress& progress);
 
 }  // namespace luxel::gather

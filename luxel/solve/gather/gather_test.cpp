@@ -6,7 +6,9 @@
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/shapes.h"
 #include "luxel/scene/sides.h"
+#include "luxel/solve/gather/bounce/bounces.h"
 #include "luxel/solve/gather/gather_test_support.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
 #include "tests/reference_data.h"
 
 namespace luxel::gather {
@@ -34,12 +36,12 @@ TEST(Gather, NeedsNoPlacesOnceAllRaysAreTraced) {
   const auto room = lay_out(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 2, 0.5f}), 32);
   GatherParams params = with_samples(32, 8);
   for (const float max_error : {0.0f, 0.2f}) {
-    params.max_error = max_error, params.on_traced = {};
+    params.max_error = max_error;
     const Gather kept = solve(*room, params);
     const auto other = lay_out(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 2, 0.5f}), 32);
     int calls = 0;
-    params.on_traced = [&] { ++calls, transport::drop_places(other->elements); };
-    const Gather dropped = solve(*other, params);
+    const auto on_traced = [&] { ++calls, transport::drop_places(other->elements); };
+    const Gather dropped = solve(*other, params, {}, nullptr, {.on_traced = on_traced});
     EXPECT_EQ(calls, 1);
     EXPECT_EQ(other->elements.position.capacity(), 0u);
     EXPECT_EQ(other->elements.size(), room->elements.size());
@@ -203,8 +205,7 @@ TEST(Gather, ParallelPlatesExchangeLight) {
 TEST(Gather, ALightCanChangeWithoutTracingAgain) {
   const auto room = lay_out(scene::cornell_box(), 48);
   Progress progress;
-  auto hits = trace_hits(room->scene, room->atlas, room->elements, room->lights.around,
-                         *room->tracer, 64, {1, UINT64_MAX, "."}, progress);
+  auto hits = trace_hits(trace_scene(scene_of(*room)), 64, {}, progress);
   ASSERT_TRUE(hits);
   const auto direct = light::direct_light(room->scene, room->elements, room->lights, *room->tracer,
                                           {32, 1}, progress);

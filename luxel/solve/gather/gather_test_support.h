@@ -47,10 +47,15 @@ inline std::unique_ptr<Room> lay_out(scene::Scene scene, int resolution) {
   return room;
 }
 
-inline Gather solve(const Room& room, const GatherParams& params) {
+inline light::TexelScene scene_of(const Room& room) {
+  return {room.scene, room.atlas, room.map, room.elements, room.lights, *room.tracer};
+}
+
+inline Gather solve(const Room& room, const GatherParams& params, const GatherStores& stores = {},
+                    const light::LightLayers* layers = nullptr,
+                    const GatherObserver& observer = {}) {
   Progress progress;
-  auto result = gather(room.scene, room.atlas, room.map, room.elements, room.lights, *room.tracer,
-                       params, progress);
+  auto result = gather(scene_of(room), layers, params, stores, observer, progress);
   EXPECT_TRUE(result) << result.error().message;
   return std::move(*result);
 }

@@ -9,6 +9,7 @@
 #include "luxel/light/surroundings.h"
 #include "luxel/solve/hemicube/receivers.h"
 #include "luxel/trace/ray_tracer.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::hemicube {
 
@@ -42,9 +43,10 @@ struct View {
   float two_sided_back = 0;  ///< share of backs of two-sided surfaces, which shine like their front
 };
 
-/// Whether an element lies inside a solid, by the share of backs: its light means nothing.
-inline bool is_hidden(const View& v) { return v.back > 0.5f; }
-inline bool is_enclosed(const View& v) { return is_hidden(v) || v.back + v.two_sided_back > 0.98f; }
+inline transport::BackFaceShares back_faces(const View& v) { return {v.back, v.two_sided_back}; }
+/// Whether an element lies inside a solid (transport/back_faces.h).
+inline bool is_hidden(const View& v) { return transport::is_hidden(back_faces(v)); }
+inline bool is_enclosed(const View& v) { return transport::is_enclosed(back_faces(v)); }
 
 /// CPU time spent, over all threads.
 struct LookSeconds {

@@ -1,7 +1,7 @@
 #include "luxel/solve/hierarchical/enclosed.h"
 
 #include "luxel/base/parallel.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::hierarchical {
 namespace {
@@ -22,7 +22,7 @@ std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTr
   parallel_for(position.size(), 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       out[i] = luminance(irradiance[i]) < kDark * float(mean) &&
-               is_hidden(transport::backs_seen(
+               is_hidden(transport::count_back_faces(
                    scene, tracer, trace::offset_origin(position[i], normal[i], diagonal_m),
                    normal[i], kRays));
   });

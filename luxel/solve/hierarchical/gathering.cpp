@@ -152,8 +152,9 @@ viewfactor::SeenFactor Gathering::look(PolygonView polygon, std::span<const uint
     return {whole, whole};
   }
   for (const uint32_t b : blockers) casts_[b] = 0;
-  return viewfactor::visible_point_factor(at_.position, at_.normal, polygon, s_.blockers.all,
-                                          blockers, s_.blockers.slack_m * 1e-3, casts_, scratch_);
+  return viewfactor::visible_point_factor(at_.position, at_.normal, polygon,
+                                          {s_.blockers.all, blockers}, s_.blockers.slack_m * 1e-3,
+                                          casts_, scratch_);
 }
 
 /// Of the blockers of the last look those whose shadows fell on what was looked at: no others'

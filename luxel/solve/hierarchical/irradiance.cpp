@@ -117,8 +117,9 @@ Backprojection backproject(const Solution& s, const Receiver& receiver, uint32_t
   std::erase(blockers, face), std::erase(blockers, receiver.face);
   std::vector<uint8_t> casts(s.blockers.all.size());
   viewfactor::VisibilityScratch scratch;
-  viewfactor::visible_point_factor(receiver.position, receiver.normal, out.source, s.blockers.all,
-                                   blockers, s.blockers.slack_m * 1e-3, casts, scratch);
+  viewfactor::visible_point_factor(receiver.position, receiver.normal, out.source,
+                                   {s.blockers.all, blockers}, s.blockers.slack_m * 1e-3, casts,
+                                   scratch);
   for (size_t k = 0; k < scratch.visible.size(); ++k) {
     out.visible.emplace_back();
     for (const DVec3& p : scratch.visible[k]) out.visible.back().push_back(p + receiver.position);

@@ -112,10 +112,10 @@ Views look(const Exchange& x, const Element& from, const Element& at, const Link
     out.whole[k] = viewfactor::point_to_polygon(points.at[k], horizon.normal, seen);
     out.visible[k] = out.whole[k];
     if (out.whole[k] > 0 && !link.blockers.empty())
-      out.visible[k] =
-          viewfactor::visible_point_factor(points.at[k], horizon.normal, seen, x.blockers.all,
-                                           link.blockers, x.blockers.slack_m, casts, scratch)
-              .visible;
+      out.visible[k] = viewfactor::visible_point_factor(points.at[k], horizon.normal, seen,
+                                                        {x.blockers.all, link.blockers},
+                                                        x.blockers.slack_m, casts, scratch)
+                           .visible;
     if (k < points.count) out.whole_sum += out.whole[k], out.visible_sum += out.visible[k];
   }
   return out;

@@ -10,7 +10,7 @@
 #include "luxel/base/vectorize.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/solve/gather/bounce/convergence.h"
-#include "luxel/solve/gather/bounce/thinned_hits.h"
+#include "luxel/solve/gather/bounce/subsampled_hits.h"
 #include "luxel/solve/gather/rays/tile_hits.h"
 
 namespace luxel::gather {
@@ -23,6 +23,7 @@ constexpr size_t kLanes = 3 * kBlock + 1, kCoverage = kLanes - 1;
 struct alignas(64) BlockTexel {
   std::array<float, kLanes> value{};
 };
+static_assert(sizeof(BlockTexel) == kLayerMapBytesPerTexel);
 
 /// As bounces.cpp's map of radiosity, with a border of one empty texel.
 struct BlockMap {
@@ -31,7 +32,7 @@ struct BlockMap {
 };
 
 /// Light layer by layer for each element.
-struct LayeredLight {
+struct LightOfLayers {
   std::span<Rgb> light;
   size_t layers = 0;
 
@@ -127,7 +128,7 @@ struct Lanes {
 /// B = rho E + tau E behind, as bounces.cpp has it.
 void fill_radiosity(BlockMap& m, const atlas::TexelMap& map, const transport::Elements& elements,
                     const TracedHits& hits, std::span<const StoredHit> behind,
-                    const LayeredLight& light, const Block& block) {
+                    const LightOfLayers& light, const Block& block) {
   const auto irradiance = [&](size_t i, size_t l) {
     return light.of(i, block.first, block.count)[l];
   };
@@ -149,10 +150,10 @@ void fill_radiosity(BlockMap& m, const atlas::TexelMap& map, const transport::El
 
 struct LayerSweep {
   const BlockMap& radiosity;
-  LayeredLight source, light;
+  LightOfLayers source, light;
   Block block;
   size_t stride = 1;
-  const ThinnedHits* thinned = nullptr;  ///< of that stride; null: there are none
+  const SubsampledHits* subsampled = nullptr;  ///< of that stride; null: there are none
 };
 
 /// Gives an element the light of what its rays have gathered.
@@ -197,8 +198,8 @@ void sweep_sparse(const LayerSweep& sweep, const TracedHits& hits, const TileHit
 
 /// The same bits from the copy.
 LUXEL_VECTOR_CLONES
-void sweep_thinned(const LayerSweep& sweep, const TracedHits& hits, const ThinnedHits::Tile& tile,
-                   size_t first_element) {
+void sweep_subsampled(const LayerSweep& sweep, const TracedHits& hits,
+                      const SubsampledHits::Tile& tile, size_t first_element) {
   uint32_t hit = 0;
   for (size_t k = 0; k < tile.end.size(); ++k) {
     Lanes sum;
@@ -213,28 +214,29 @@ void sweep_thinned(const LayerSweep& sweep, const TracedHits& hits, const Thinne
 
 /// Errors: the file of hits cannot be read, cancelled.
 Status run_layer_sweep(const LayerSweep& sweep, const TracedHits& hits, Progress& progress) {
-  if (!sweep.thinned)
+  if (!sweep.subsampled)
     return for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
       const auto sweep_one = sweep.stride > 1 ? sweep_sparse : sweep_tile;
       sweep_one(sweep, hits, tile, t * kTileElements);
     });
-  LUXEL_CHECK(sweep.thinned->stride == sweep.stride);
-  return for_each_tile(*sweep.thinned, progress, [&](size_t t, const ThinnedHits::Tile& tile) {
-    sweep_thinned(sweep, hits, tile, t * kTileElements);
-  });
+  LUXEL_CHECK(sweep.subsampled->stride == sweep.stride);
+  return for_each_tile(*sweep.subsampled, progress,
+                       [&](size_t t, const SubsampledHits::Tile& tile) {
+                         sweep_subsampled(sweep, hits, tile, t * kTileElements);
+                       });
 }
 
 /// Gives each layer its share of the whole. Returns the sum of squares of what was missing.
-double share_out(std::span<const Rgb> whole, const LayeredLight& light) {
-  constexpr size_t kGrain = 4096;
-  std::vector<double> missing2((whole.size() + kGrain - 1) / kGrain);
-  parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
+double share_out(std::span<const Rgb> whole, const LightOfLayers& light) {
+  constexpr size_t kElementsPerSum = 4096;
+  std::vector<double> missing2((whole.size() + kElementsPerSum - 1) / kElementsPerSum);
+  parallel_for(whole.size(), kElementsPerSum, [&](size_t begin, size_t end) {
     double sum2 = 0;
     for (size_t i = begin; i < end; ++i) {
       const Rgb missing = light::share_out(whole[i], light.of(i, 0, light.layers));
       sum2 += double(dot(missing, missing));
     }
-    missing2[begin / kGrain] = sum2;
+    missing2[begin / kElementsPerSum] = sum2;
   });
   return std::accumulate(missing2.begin(), missing2.end(), 0.0);
 }
@@ -253,7 +255,7 @@ std::vector<size_t> sparse_strides(int bounces, const TracedHits& hits) {
   return strides;
 }
 
-std::vector<std::vector<Rgb>> layer_by_layer(const LayeredLight& light, size_t elements) {
+std::vector<std::vector<Rgb>> layer_by_layer(const LightOfLayers& light, size_t elements) {
   std::vector<std::vector<Rgb>> out(light.layers, std::vector<Rgb>(elements));
   parallel_for(elements, 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
@@ -275,29 +277,31 @@ std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct) 
 }
 
 Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport::Elements& elements,
-                                    const TracedHits& hits, std::vector<Rgb> source,
-                                    std::span<const StoredHit> behind, std::span<const Rgb> whole,
-                                    const LayerBounceParams& params, Progress& progress) {
+                                    const TracedHits& hits, std::span<const StoredHit> behind,
+                                    LayeredLight given, const LayerBounceParams& params,
+                                    Progress& progress) {
   const size_t n = elements.size();
+  std::vector<Rgb>& source = given.source;
+  const std::span<const Rgb> whole = given.whole;
   LUXEL_CHECK(n > 0 && source.size() % n == 0 && whole.size() == n);
   const size_t layers = source.size() / n;
   const int bounces = params.bounces;
   std::vector<Rgb> solution = source;
-  const LayeredLight light{solution, layers}, sources{source, layers};
+  const LightOfLayers light{solution, layers}, sources{source, layers};
   BlockMap radiosity = empty_map(map.resolution);
-  std::optional<ThinnedHits> thinned;
+  std::optional<SubsampledHits> subsampled;
   const std::vector<size_t> sparse = sparse_strides(bounces, hits);
   progress.begin("layers", 0);
   if (std::ranges::count(sparse, kSparsest) > 1) {
-    LUXEL_TRY(thinned, thin(hits, kSparsest, params.spare_bytes, progress));
+    LUXEL_TRY(subsampled, subsample(hits, kSparsest, params.spare_bytes, progress));
   }
   const auto sweep_all = [&](size_t stride) -> Status {
-    if (stride != kSparsest) thinned.reset();
+    if (stride != kSparsest) subsampled.reset();
     for (Block block; block.first < layers; block.first += kBlock) {
       block.count = std::min(kBlock, layers - block.first);
       fill_radiosity(radiosity, map, elements, hits, behind, light, block);
       const LayerSweep sweep{radiosity, sources, light,
-                             block,     stride,  thinned ? &*thinned : nullptr};
+                             block,     stride,  subsampled ? &*subsampled : nullptr};
       LUXEL_TRY_STATUS(run_layer_sweep(sweep, hits, progress));
     }
     progress.advance(1);

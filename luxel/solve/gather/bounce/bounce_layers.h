@@ -19,6 +19,18 @@ struct LayersBounced {
   double shared_out = 0;
 };
 
+/// Light layer by layer before any bounce, and that of all layers after the bounces.
+struct LayeredLight {
+  std::vector<Rgb> source;     ///< layer by layer for each element: layer_sources()
+  std::span<const Rgb> whole;  ///< E per element, of bounce() over the same hits
+};
+
+/// What each layer takes per element: direct light, LayeredLight::source, the solution and
+/// LayersBounced::irradiance.
+inline constexpr uint64_t kLayerBytesPerElement = 4 * sizeof(Rgb);
+/// What a sweep's map of five layers takes per texel of the square, with coverage.
+inline constexpr uint64_t kLayerMapBytesPerTexel = (5 * 3 + 1) * sizeof(float);
+
 struct LayerBounceParams {
   int bounces = -1;                   ///< as in bounce()
   uint64_t spare_bytes = UINT64_MAX;  ///< memory that may be taken besides, as in bounce()
@@ -40,11 +52,11 @@ struct LayerBounceParams {
 /// map. Sweeps over some of the rays look up the texel nearest to a hit, and not four. Errors:
 /// cancelled, the file of hits cannot be read.
 Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport::Elements& elements,
-                                    const TracedHits& hits, std::vector<Rgb> source,
-                                    std::span<const StoredHit> behind, std::span<const Rgb> whole,
-                                    const LayerBounceParams& params, Progress& progress);
+                                    const TracedHits& hits, std::span<const StoredHit> behind,
+                                    LayeredLight light, const LayerBounceParams& params,
+                                    Progress& progress);
 
-/// E_0 of bounce_layers() from `direct`, that of lamps, layer by layer for each element.
+/// E_0 of bounce_layers() from `direct`, that of lights, layer by layer for each element.
 std::vector<Rgb> layer_sources(const TracedHits& hits, std::vector<Rgb> direct);
 
 }  // namespace luxel::gather

@@ -9,6 +9,7 @@
 #include "luxel/scene/sides.h"
 #include "luxel/solve/gather/bounce/bounces.h"
 #include "luxel/solve/gather/gather_test_support.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
 namespace {
@@ -82,8 +83,7 @@ TEST(GatherLayers, AddUpToTheWhole) {
     GatherParams params = with_samples(64, 16);
     params.supersample = 4, params.bounces = bounces;
     const Gather alone = solve(*room, params);
-    params.layers = &layers;
-    const Gather result = solve(*room, params);
+    const Gather result = solve(*room, params, {}, &layers);
     EXPECT_EQ(result.irradiance, alone.irradiance);
     EXPECT_TRUE(alone.layers.empty());
     ASSERT_EQ(result.layers.size(), layers.size());
@@ -103,8 +103,7 @@ TEST(GatherLayers, DoNotDependOnTheCopyOfHits) {
   const auto room = lay_out(scene::cornell_box(), 32);
   const size_t n = room->elements.size();
   Progress progress;
-  const auto hits = trace_hits(room->scene, room->atlas, room->elements, room->lights.around,
-                               *room->tracer, 256, {}, progress);
+  const auto hits = trace_hits(trace_scene(scene_of(*room)), 256, {}, progress);
   ASSERT_TRUE(hits);
   std::vector<Rgb> both(n), layered(2 * n);
   for (size_t i = 0; i < n; ++i) {
@@ -115,7 +114,7 @@ TEST(GatherLayers, DoNotDependOnTheCopyOfHits) {
   const auto whole = bounce(room->map, room->elements, *hits, both, {}, {}, progress);
   ASSERT_TRUE(whole);
   const auto bounced = [&](uint64_t spare_bytes) {
-    return bounce_layers(room->map, room->elements, *hits, layered, {}, whole->irradiance,
+    return bounce_layers(room->map, room->elements, *hits, {}, {layered, whole->irradiance},
                          {.spare_bytes = spare_bytes}, progress);
   };
   const auto with = bounced(UINT64_MAX), without = bounced(0);
@@ -139,16 +138,13 @@ TEST(GatherLayers, AreWhatEachLightAloneGives) {
   const auto room = lay_out(both, 64);
   const light::LightLayers layers = layers_of(*room);
   ASSERT_EQ(layers.size(), 2u);
-  GatherParams params = with_samples(256, 16);
-  params.layers = &layers;
-  const Gather result = solve(*room, params);
+  const GatherParams params = with_samples(256, 16);
+  const Gather result = solve(*room, params, {}, &layers);
   for (size_t l = 0; l < 2; ++l) {
     scene::Scene one = both;
     one.lights = {both.lights[l]};
-    GatherParams own = params;
-    own.layers = nullptr;
     const auto alone = lay_out(one, 64);
-    const Gather expected = solve(*alone, own);
+    const Gather expected = solve(*alone, params);
     EXPECT_LT(rms_difference(result.layers[l], expected.irradiance), 3e-3) << l;
     EXPECT_LT(largest_difference(result.layers[l], expected.irradiance), 2e-2) << l;
     // Against what the bake itself is uncertain by.
@@ -176,8 +172,7 @@ TEST(GatherLayers, AddUpInEveryKindOfScene) {
   for (const auto& [samples, max_error] : {std::pair{32, 0.05f}, {256, 0.01f}}) {
     GatherParams params = with_samples(samples, 8);
     params.max_error = max_error, params.max_samples = 8 * samples;
-    params.layers = &layers;
-    const Gather result = solve(*room, params);
+    const Gather result = solve(*room, params, {}, &layers);
     EXPECT_GT(*std::ranges::max_element(result.samples), samples);
     EXPECT_LT(largest_difference(sum_of(result.layers), result.irradiance), 2e-6);
     EXPECT_LT(result.layers_shared_out, 2e-2);
@@ -187,11 +182,10 @@ TEST(GatherLayers, AddUpInEveryKindOfScene) {
 TEST(GatherLayers, AreTheSameForAnyNumberOfThreads) {
   const auto room = lay_out(lit_room(), 32);
   const light::LightLayers layers = layers_of(*room);
-  GatherParams params = with_samples(256, 8);
-  params.layers = &layers;
-  const Gather many = solve(*room, params);
+  const GatherParams params = with_samples(256, 8);
+  const Gather many = solve(*room, params, {}, &layers);
   const ThreadLimit one(1);
-  EXPECT_EQ(solve(*room, params).layers, many.layers);
+  EXPECT_EQ(solve(*room, params, {}, &layers).layers, many.layers);
 }
 
 }  // namespace

@@ -34,12 +34,12 @@ struct Bouncing {
   uint64_t spare_bytes = 0;
   ReflectanceRange reflectance;
   RadiosityMap radiosity{};
-  std::optional<ThinnedHits> thinned{};
+  std::optional<SubsampledHits> subsampled{};
   Bounced out{};
 
-  Status make_thinned(size_t stride);
-  const ThinnedHits* thinned_to(size_t stride) const {
-    return thinned && thinned->stride == stride ? &*thinned : nullptr;
+  Status make_subsampled(size_t stride);
+  const SubsampledHits* subsampled_at(size_t stride) const {
+    return subsampled && subsampled->stride == stride ? &*subsampled : nullptr;
   }
   Result<double> sweep(size_t stride);
   double relative(double change2) const;
@@ -50,9 +50,9 @@ struct Bouncing {
 };
 
 /// A copy of a quarter would take too much beside the hits.
-Status Bouncing::make_thinned(size_t stride) {
-  if (stride < kSparsest || thinned) return {};
-  LUXEL_TRY(thinned, thin(hits, stride, spare_bytes, progress));
+Status Bouncing::make_subsampled(size_t stride) {
+  if (stride < kSparsest || subsampled) return {};
+  LUXEL_TRY(subsampled, subsample(hits, stride, spare_bytes, progress));
   return {};
 }
 
@@ -64,7 +64,7 @@ Result<double> Bouncing::sweep(size_t stride) {
               .variance = out.variance,
               .split_variance = out.split_variance,
               .stride = stride,
-              .thinned = thinned_to(stride)};
+              .subsampled = subsampled_at(stride)};
   LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
   ++out.sweeps;
   progress.advance(1);
@@ -99,12 +99,12 @@ Result<double> Bouncing::first_sweep(const BounceParams& params) {
 /// Adds what a change makes of itself in later bounces, looking at some rays only: as exact,
 /// relative to the change, as these are. Returns the ratio of its last two steps.
 Result<double> Bouncing::look_ahead(std::vector<Rgb> change, size_t stride, double tolerance) {
-  LUXEL_TRY_STATUS(make_thinned(stride));
+  LUXEL_TRY_STATUS(make_subsampled(stride));
   const size_t n = change.size();
   double first = 0, before = 0, ratio = 0;
   for (int k = 0; k < kMaxSparse; ++k) {
     fill_radiosity(radiosity, map, elements, hits, behind, change);
-    Sweep sweep{.irradiance = change, .stride = stride, .thinned = thinned_to(stride)};
+    Sweep sweep{.irradiance = change, .stride = stride, .subsampled = subsampled_at(stride)};
     LUXEL_TRY_STATUS(run_sweep(radiosity, hits, sweep, progress));
     double sum2 = 0;
     for (size_t i = 0; i < n; ++i)
@@ -124,7 +124,7 @@ Result<double> Bouncing::look_ahead(std::vector<Rgb> change, size_t stride, doub
 
 /// Sweeps until the light to come is below the tolerance.
 Status Bouncing::settle(size_t stride, float tolerance) {
-  LUXEL_TRY_STATUS(make_thinned(stride));
+  LUXEL_TRY_STATUS(make_subsampled(stride));
   double before = 0, ratio = 0;
   for (int k = 0; k < kMaxSweeps; ++k) {
     LUXEL_TRY(const double change, sweep(stride));
@@ -173,42 +173,42 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   const size_t n = elements.size();
   LUXEL_CHECK(direct.size() == n && map.texels.size() == n && hits.sky.size() == n);
   LUXEL_CHECK(behind.size() == elements.transmittance.size());
-  Bouncing work{map,
-                elements,
-                hits,
-                direct,
-                behind,
-                progress,
-                params.spare_bytes,
-                reflectance_range(elements)};
+  Bouncing bouncing{map,
+                    elements,
+                    hits,
+                    direct,
+                    behind,
+                    progress,
+                    params.spare_bytes,
+                    reflectance_range(elements)};
   const bool guessed = params.bounces < 0 && !params.start.empty();
   LUXEL_CHECK(!guessed || params.start.size() == n);
   LUXEL_CHECK(params.first_change.empty() ||
               (guessed && params.first_change.size() == n && params.unknown.size() == n));
-  work.out.irradiance.assign(guessed ? params.start.begin() : direct.begin(),
-                             guessed ? params.start.end() : direct.end());
+  bouncing.out.irradiance.assign(guessed ? params.start.begin() : direct.begin(),
+                                 guessed ? params.start.end() : direct.end());
   if (!guessed)
-    for (size_t i = 0; i < n; ++i) work.out.irradiance[i] = source_of(hits, direct, i);
-  work.out.variance.assign(n, 0.0f), work.out.split_variance.assign(n, 0.0f);
-  work.radiosity = empty_radiosity_map(map.resolution);
+    for (size_t i = 0; i < n; ++i) bouncing.out.irradiance[i] = source_of(hits, direct, i);
+  bouncing.out.variance.assign(n, 0.0f), bouncing.out.split_variance.assign(n, 0.0f);
+  bouncing.radiosity = empty_radiosity_map(map.resolution);
   progress.begin("bounces", 0);
   for (int k = 0; k < params.bounces; ++k) {
-    const Result<double> change = work.sweep(1);
+    const Result<double> change = bouncing.sweep(1);
     if (!change) return tl::unexpected(change.error());
   }
-  if (params.bounces >= 0) return std::move(work.out);
+  if (params.bounces >= 0) return std::move(bouncing.out);
   const size_t fewest = hits.samples.empty() ? 0 : *std::ranges::min_element(hits.samples);
   const size_t sparse = sparsest_stride(fewest);
   if (guessed && sparse > 1) {
-    LUXEL_TRY_STATUS(work.settle_guess(sparse, params));
-    return std::move(work.out);
+    LUXEL_TRY_STATUS(bouncing.settle_guess(sparse, params));
+    return std::move(bouncing.out);
   }
   for (const size_t stride : kStrides) {
     if (stride > 1 && (guessed || !has_sweeps_of(stride, fewest))) continue;
-    LUXEL_TRY_STATUS(work.settle(stride, params.tolerance));
-    work.thinned.reset();
+    LUXEL_TRY_STATUS(bouncing.settle(stride, params.tolerance));
+    bouncing.subsampled.reset();
   }
-  return std::move(work.out);
+  return std::move(bouncing.out);
 }
 
 }  // namespace luxel::gather

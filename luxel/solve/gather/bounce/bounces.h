@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "luxel/atlas/atlas.h"
+#include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 #include "luxel/solve/gather/rays/traced_hits.h"
@@ -44,6 +45,12 @@ struct Bounced {
   std::vector<float> split_variance;
   int sweeps = 0;
 };
+inline constexpr uint64_t kBouncedBytesPerElement =
+    bytes_per_entry(&Bounced::irradiance, &Bounced::variance, &Bounced::split_variance);
+/// With BounceParams::start, besides: the guess, and how far the light is from it.
+inline constexpr uint64_t kGuessBytesPerElement = 2 * bytes_per_entry(&Bounced::irradiance);
+/// With anything that scatters light through, besides: `behind`.
+inline constexpr uint64_t kBehindBytesPerElement = sizeof(StoredHit);
 
 /// Solves  E = E_0 + (1/N) sum over rays of B at the hit,  B = rho E + tau E behind,  E_0 = direct
 /// light + soft sky seen, by Neumann iteration [Moreno05, eq. 3.4, 3.7]. Unlike the paper's running

@@ -7,6 +7,7 @@
 #include "luxel/scene/shapes.h"
 #include "luxel/solve/gather/bounce/sweep.h"
 #include "luxel/solve/gather/gather_test_support.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
 namespace {
@@ -42,8 +43,7 @@ Traced traced(int samples) {
   Traced out{lay_out(std::move(scene), 48), {}, {}};
   const Room& r = *out.room;
   Progress progress;
-  auto hits =
-      trace_hits(r.scene, r.atlas, r.elements, r.lights.around, *r.tracer, samples, {}, progress);
+  auto hits = trace_hits(trace_scene(scene_of(r)), samples, {}, progress);
   EXPECT_TRUE(hits);
   out.hits = std::move(*hits);
   auto direct = light::direct_light(r.scene, r.elements, r.lights, *r.tracer, {}, progress);
@@ -62,16 +62,16 @@ TEST(Bounces, AreTheSameBitsWithoutRoomForACopy) {
   EXPECT_EQ(with.sweeps, without.sweeps);
 }
 
-TEST(ThinnedHits, AreMadeWhereTheyFit) {
+TEST(SubsampledHits, AreMadeWhereTheyFit) {
   const Traced t = traced(64);
   Progress progress;
-  const auto none = thin(t.hits, 16, 1000, progress);
+  const auto none = subsample(t.hits, 16, 1000, progress);
   ASSERT_TRUE(none);
   EXPECT_FALSE(*none);
-  const auto all = thin(t.hits, 16, UINT64_MAX, progress);
+  const auto all = subsample(t.hits, 16, UINT64_MAX, progress);
   ASSERT_TRUE(all && *all);
   double weight = 0, hits = 0;
-  for (const ThinnedHits::Tile& tile : (*all)->tiles) {
+  for (const SubsampledHits::Tile& tile : (*all)->tiles) {
     ASSERT_EQ(tile.weight.size(), tile.hits.size());
     for (const float w : tile.weight) weight += double(w);
     hits += double(tile.hits.size());

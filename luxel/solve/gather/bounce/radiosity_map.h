@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "luxel/atlas/atlas.h"
+#include "luxel/base/bytes_per_entry.h"
 #include "luxel/solve/gather/rays/hit_store.h"
 #include "luxel/transport/elements.h"
 
@@ -23,6 +24,7 @@ struct RadiosityMap {
   uint32_t stride = 0;
   std::vector<Float4> texels;
 };
+inline constexpr uint64_t kRadiosityBytesPerTexel = bytes_per_entry(&RadiosityMap::texels);
 
 RadiosityMap empty_radiosity_map(int resolution);
 

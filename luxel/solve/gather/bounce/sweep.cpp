@@ -104,8 +104,8 @@ double sweep_sparse(const RadiosityMap& m, const TracedHits& hits, const TileHit
 }
 
 /// The same bits from the copy.
-double sweep_thinned(const RadiosityMap& m, const TracedHits& hits, const ThinnedHits::Tile& tile,
-                     size_t first_element, Sweep& sweep) {
+double sweep_subsampled(const RadiosityMap& m, const TracedHits& hits,
+                        const SubsampledHits::Tile& tile, size_t first_element, Sweep& sweep) {
   double change2 = 0;
   uint32_t hit = 0;
   for (size_t k = 0; k < tile.end.size(); ++k) {
@@ -123,15 +123,16 @@ double sweep_thinned(const RadiosityMap& m, const TracedHits& hits, const Thinne
 
 Status run_sweep(const RadiosityMap& m, const TracedHits& hits, Sweep& sweep, Progress& progress) {
   sweep.change2.assign(tile_count(hits), 0.0);
-  if (!sweep.thinned)
+  if (!sweep.subsampled)
     return for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
       const auto sweep_one = sweep.stride > 1 ? sweep_sparse : sweep_tile;
       sweep.change2[t] = sweep_one(m, hits, tile, t * kTileElements, sweep);
     });
-  LUXEL_CHECK(sweep.thinned->stride == sweep.stride);
-  return for_each_tile(*sweep.thinned, progress, [&](size_t t, const ThinnedHits::Tile& tile) {
-    sweep.change2[t] = sweep_thinned(m, hits, tile, t * kTileElements, sweep);
-  });
+  LUXEL_CHECK(sweep.subsampled->stride == sweep.stride);
+  return for_each_tile(
+      *sweep.subsampled, progress, [&](size_t t, const SubsampledHits::Tile& tile) {
+        sweep.change2[t] = sweep_subsampled(m, hits, tile, t * kTileElements, sweep);
+      });
 }
 
 }  // namespace luxel::gather

@@ -7,7 +7,7 @@
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 #include "luxel/solve/gather/bounce/radiosity_map.h"
-#include "luxel/solve/gather/bounce/thinned_hits.h"
+#include "luxel/solve/gather/bounce/subsampled_hits.h"
 #include "luxel/solve/gather/rays/traced_hits.h"
 
 namespace luxel::gather {
@@ -34,7 +34,7 @@ struct Sweep {
   std::span<float> split_variance{};
   std::span<const uint8_t> only{};  ///< with stride 1, per element, 1: it is looked at; empty: all
   size_t stride = 1;  ///< only every stride-th ray is looked at; variances only with 1
-  const ThinnedHits* thinned = nullptr;  ///< of that stride; null: there are none
+  const SubsampledHits* subsampled = nullptr;  ///< of that stride; null: there are none
   std::vector<double> change2{};
 };
 

@@ -18,7 +18,7 @@ constexpr double kPriorElements = 8;
 constexpr float kDarkest = 0.1f;
 constexpr size_t kTexelsForForecast = 20000;
 /// Levels of direct light: 4^4 times the shadow rays, 4^2 times the points, each of which looks at
-/// the lamps with rays of its own.
+/// the lights with rays of its own.
 constexpr int kFinestLevel = 4, kFinestAverage = 2;
 
 struct Sums {
@@ -124,8 +124,8 @@ std::vector<uint64_t> rounds_to_come(std::span<const float> all, std::span<const
   std::vector<float> now, sum, rest;
   std::vector<uint16_t> n;
   for (size_t i = 0; i < all.size(); i += step) {
-    const float of_lamps = std::sqrt(std::max(0.0f, all[i] * all[i] - gathered[i] * gathered[i]));
-    now.push_back(gathered[i]), rest.push_back(std::min(of_lamps, each)), n.push_back(samples[i]);
+    const float of_direct = std::sqrt(std::max(0.0f, all[i] * all[i] - gathered[i] * gathered[i]));
+    now.push_back(gathered[i]), rest.push_back(std::min(of_direct, each)), n.push_back(samples[i]);
   }
   std::vector<uint64_t> rounds;
   for (;;) {
@@ -163,7 +163,7 @@ void keep_affordable(std::span<const float> errors, uint64_t affordable,
 
 float affordable_error(std::span<const float> errors, float at_least, double rays,
                        const light::SupersampleParams& params, const light::DirectLevels& levels) {
-  // Of texels that are one level finer, each lamp of which there may be several counted once.
+  // Of texels that are one level finer, each light of which there may be several counted once.
   const auto cost = [&](size_t i) {
     const int factor = 1 << (2 * (int(levels.level[i]) + 1)), samples = params.direct.samples;
     if (!levels.averaged[i]) return levels.level[i] < kFinestLevel ? factor * samples : 0;
@@ -181,7 +181,7 @@ float affordable_error(std::span<const float> errors, float at_least, double ray
   return at_least;
 }
 
-Result<size_t> refine_direct(const light::TexelScene& world, std::span<const float> errors,
+Result<size_t> refine_direct(const light::TexelScene& in, std::span<const float> errors,
                              float max_error, const light::SupersampleParams& params,
                              light::DirectLevels& levels, light::DirectLight& direct,
                              Progress& progress) {
@@ -202,16 +202,14 @@ Result<size_t> refine_direct(const light::TexelScene& world, std::span<const flo
       light::SupersampleParams finer = params;
       finer.points *= factor;
       LUXEL_TRY(const light::Supersampled points,
-                average_texels({world.scene, world.atlas, world.map, world.elements, world.lights,
-                                world.tracer},
-                               averaged, finer, direct, progress));
+                average_texels(in, averaged, finer, direct, progress));
       direct.rays += points.rays;
     }
     if (!single.empty()) {
       light::DirectParams finer = params.direct;
       finer.samples *= factor;
-      LUXEL_TRY_STATUS(direct_light_again({world.scene, world.elements, world.lights, world.tracer},
-                                          single, finer, direct, progress));
+      LUXEL_TRY_STATUS(direct_light_again({in.scene, in.elements, in.lights, in.tracer}, single,
+                                          finer, direct, progress));
     }
     for (const auto& risen : {averaged, single})
       for (const uint32_t i : risen) ++levels.level[i];

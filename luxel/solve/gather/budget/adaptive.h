@@ -37,7 +37,7 @@ float percentile_95(std::span<const float> errors);
 /// (docs/method/gather.md): it says how many samples more are needed.
 inline constexpr float kDecay = 0.7f;
 
-/// What the light from lamps, or the rest, may be off by: half of the square each.
+/// What the light from lights, or the rest, may be off by: half of the square each.
 inline float error_of_part(float max_error) { return max_error * 0.70710678f; }
 
 /// Samples of the next round: of elements whose relative error is larger than max_error two or four
@@ -47,7 +47,7 @@ std::vector<uint16_t> next_samples(std::span<const float> errors, float max_erro
 
 /// How many samples each round will add, until the 95th percentile of `all` errors is below
 /// max_error, if those of the gathered light, which are part of them, fall like n^-kDecay, and
-/// lamps are looked at until theirs are small enough.
+/// lights are looked at until theirs are small enough.
 std::vector<uint64_t> rounds_to_come(std::span<const float> all, std::span<const float> gathered,
                                      float max_error, int max_samples,
                                      std::span<const uint16_t> samples);
@@ -63,7 +63,7 @@ void keep_affordable(std::span<const float> errors, uint64_t affordable,
 /// Looks at the direct light of elements whose relative error is larger than max_error again, one
 /// level finer. Returns how many there were: 0 when all are good enough or as fine as they can be.
 /// Errors: cancelled.
-Result<size_t> refine_direct(const light::TexelScene& world, std::span<const float> errors,
+Result<size_t> refine_direct(const light::TexelScene& in, std::span<const float> errors,
                              float max_error, const light::SupersampleParams& params,
                              light::DirectLevels& levels, light::DirectLight& direct,
                              Progress& progress);

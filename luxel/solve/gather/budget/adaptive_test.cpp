@@ -8,6 +8,7 @@
 
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/gather/gather_test_support.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
 namespace {
@@ -25,10 +26,9 @@ TEST(Rounds, AreTheSamplesOfOneRound) {
   for (size_t i = 1; i < n; i += 3) first[i] = 0;
   TracedHits rounds = no_hits(n);
   for (const auto& target : {first, all})
-    ASSERT_TRUE(trace_more(room.scene, room.atlas, room.elements, room.lights.around, *room.tracer,
-                           target, {.near_lights = &room.lights}, rounds, progress));
-  const auto once = trace_hits(room.scene, room.atlas, room.elements, room.lights.around,
-                               *room.tracer, 256, {.near_lights = &room.lights}, progress);
+    ASSERT_TRUE(
+        trace_more(trace_scene(scene_of(room)), target, {.follows_near = true}, rounds, progress));
+  const auto once = trace_hits(trace_scene(scene_of(room)), 256, {.follows_near = true}, progress);
   ASSERT_TRUE(once);
   EXPECT_EQ(rounds.samples, once->samples);
   EXPECT_EQ(rounds.escaped, once->escaped);
@@ -51,8 +51,7 @@ TEST(Rounds, GoToFilesWhenMemoryIsShort) {
   GatherParams params;
   params.samples = 32, params.max_error = 0.1f;
   const Gather in_memory = solve(*room, params);
-  params.hit_memory_bytes = 100'000;
-  const Gather in_files = solve(*room, params);
+  const Gather in_files = solve(*room, params, {.hit_memory_bytes = 100'000});
   EXPECT_GT(in_files.hit_bytes_in_file, 0u);
   EXPECT_EQ(in_files.irradiance, in_memory.irradiance);
 }
@@ -139,12 +138,12 @@ struct Shown {
   double samples = 0;
   float error = 0;
 };
-std::vector<Shown> watched(const Room& room, GatherParams params, Gather& result) {
+std::vector<Shown> watched(const Room& room, const GatherParams& params, Gather& result) {
   std::vector<Shown> out;
-  params.on_estimate = [&](const light::LightEstimate& e) {
+  const auto on_estimate = [&](const light::LightEstimate& e) {
     out.push_back({{e.irradiance.begin(), e.irradiance.end()}, e.samples, e.relative_error_p95});
   };
-  result = solve(room, params);
+  result = solve(room, params, {}, nullptr, {.on_estimate = on_estimate});
   return out;
 }
 

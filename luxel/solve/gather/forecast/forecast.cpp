@@ -10,24 +10,25 @@
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/budget/neighbours.h"
 #include "luxel/solve/gather/forecast/expected_bounces.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
 namespace {
 
 constexpr uint32_t kSquare = 5;
 
-template <class Work>
-Result<double> seconds_of(const Work& work) {
+template <class Task>
+Result<double> seconds_of(const Task& task) {
   const auto start = Clock::now();
-  LUXEL_TRY_STATUS(work());
+  LUXEL_TRY_STATUS(task());
   return seconds_since(start);
 }
 
 /// Processor time: what other programs do meanwhile is not in it.
-template <class Work>
-Result<double> processor_seconds_of(const Work& work) {
+template <class Task>
+Result<double> processor_seconds_of(const Task& task) {
   const std::clock_t start = std::clock();
-  LUXEL_TRY_STATUS(work());
+  LUXEL_TRY_STATUS(task());
   return double(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
@@ -72,16 +73,17 @@ std::vector<uint32_t> within(const atlas::TexelMap& map, std::span<const uint32_
 }
 
 struct Trial {
-  const light::TexelScene& world;
+  const light::TexelScene& in;
   const GatherParams& params;
+  const GatherStores& stores;
   std::vector<uint32_t> texels;
   double scale = 1;  ///< all texels over those tried
-  light::DirectLight direct;
-  TracedHits hits;
+  light::DirectLight direct{};
+  TracedHits hits{};
 };
 
 Status try_direct(Trial& trial, Forecast& out, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
   const light::DirectParams params{trial.params.direct_samples, trial.params.seed};
   trial.direct.irradiance.resize(elements.size());
   trial.direct.variance.resize(elements.size());
@@ -96,7 +98,7 @@ Status try_direct(Trial& trial, Forecast& out, Progress& progress) {
 }
 
 Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
   if (trial.params.supersample <= 1) return {};
   const light::SupersampleParams params{.points = trial.params.supersample,
                                         .direct = {trial.params.direct_samples, trial.params.seed}};
@@ -127,13 +129,13 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
 /// The elements tried are traced as if there were no others: were they to lie in the midst of
 /// others that get no rays, little of what rays share would be shared.
 Status try_tracing(Trial& trial, Forecast& out, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
   const transport::Elements tried = transport::subset(elements, trial.texels);
   const TraceParams params{.seed = trial.params.seed,
-                           .scratch_folder = trial.params.scratch_folder,
-                           .near_lights = trial.params.bounces < 0 ? &lights : nullptr};
+                           .scratch_folder = trial.stores.scratch_folder,
+                           .follows_near = trial.params.bounces < 0};
   LUXEL_TRY(const double seconds, seconds_of([&]() -> Status {
-              LUXEL_TRY(trial.hits, trace_hits(scene, atlas, tried, lights.around, tracer,
+              LUXEL_TRY(trial.hits, trace_hits({scene, atlas, tried, lights, tracer},
                                                trial.params.samples, params, progress));
               return {};
             }));
@@ -144,7 +146,7 @@ Status try_tracing(Trial& trial, Forecast& out, Progress& progress) {
 }
 
 Status try_bounces(Trial& trial, Forecast& out) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
   const GatherParams& params = trial.params;
   std::vector<Rgb> direct;
   for (const uint32_t i : trial.texels) direct.push_back(trial.direct.irradiance[i]);
@@ -159,12 +161,15 @@ Status try_bounces(Trial& trial, Forecast& out) {
 
 }  // namespace
 
-Result<Forecast> forecast(const light::TexelScene& world, const GatherParams& params, int part,
-                          Progress& progress) {
-  const size_t n = world.elements.size();
+Result<Forecast> forecast(const light::TexelScene& in, const GatherParams& params,
+                          const GatherStores& stores, int part, Progress& progress) {
+  const size_t n = in.elements.size();
   const size_t most = size_t(kTrialRays / double(params.samples));
   const size_t count = std::min({n, most, std::max(kFewestTried, n / size_t(part))});
-  Trial trial{world, params, texels_to_try(world.map, std::max<size_t>(count, 1)), 1, {}, {}};
+  Trial trial{.in = in,
+              .params = params,
+              .stores = stores,
+              .texels = texels_to_try(in.map, std::max<size_t>(count, 1))};
   trial.scale = double(n) / double(trial.texels.size());
   progress.begin("trial", 0);
   Progress own;  // its stages are not those of the bake

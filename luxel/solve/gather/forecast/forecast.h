@@ -6,7 +6,7 @@
 
 namespace luxel::gather {
 
-/// Of gather() with the parameters' samples, without rounds.
+/// What gather() takes with the parameters' samples, without rounds.
 struct Forecast {
   double direct_s = 0, supersample_s = 0, trace_s = 0, bounces_s = 0;
   double rays = 0;       ///< shadow rays and those of near paths included
@@ -16,10 +16,10 @@ struct Forecast {
 
 /// Lights squares of 5 x 5 texels, spread over the map, and measures. They are about one texel in
 /// `part`, but some thousand at least, and no more than kTrialRays rays. Errors: cancelled.
-Result<Forecast> forecast(const light::TexelScene& world, const GatherParams& params, int part,
-                          Progress& progress);
+Result<Forecast> forecast(const light::TexelScene& in, const GatherParams& params,
+                          const GatherStores& stores, int part, Progress& progress);
 inline constexpr double kTrialRays = 2e7;
-/// Of fewer texels, and some cells of them, little is known.
+/// Fewer texels, which lie in some cells of the map, would say little about the others.
 inline constexpr size_t kFewestTried = 4096;
 
 /// About `count` texels, those of some cells of the map: all texels are as likely, also those at

@@ -8,6 +8,7 @@
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/budget/neighbours.h"
 #include "luxel/solve/gather/forecast/expected_bounces.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
 namespace {
@@ -21,15 +22,16 @@ constexpr float kRoughTolerance = 1e-2f;
 constexpr double kSweepsOfRound = 2;
 
 struct Trial {
-  const light::TexelScene& world;
+  const light::TexelScene& in;
   const GatherParams& params;
+  const GatherStores& stores;
   std::vector<uint32_t> texels;
   double scale = 1;  ///< all texels over those tried
-  std::vector<StoredHit> behind;
-  std::vector<Rgb> coarse;  ///< E of all elements
-  light::DirectLight direct;
-  light::DirectLevels levels;
-  TracedHits hits;  ///< of others: as many samples as the coarse light has, which met nothing
+  std::vector<StoredHit> behind{};
+  std::vector<Rgb> coarse{};  ///< E of all elements
+  light::DirectLight direct{};
+  light::DirectLevels levels{};
+  TracedHits hits{};  ///< of others: as many samples as the coarse light has, which met nothing
 
   light::SupersampleParams supersample() const {
     return {.points = params.supersample, .direct = {params.direct_samples, params.seed}};
@@ -38,17 +40,18 @@ struct Trial {
 };
 
 /// Means over neighbours of the same chart, those inside of solids left out.
-std::vector<Rgb> smooth(const light::TexelScene& world, const Gather& light) {
-  const auto chart = [&](uint32_t i) {
-    return world.atlas.chart[world.map.texels[i].triangle_number];
+std::vector<Rgb> smooth(const light::TexelScene& in, const Gather& light) {
+  const auto chart = [&](uint32_t i) { return in.atlas.chart[in.map.texels[i].triangle_number]; };
+  const auto hidden = [&](uint32_t i) {
+    return transport::is_hidden(
+        transport::BackFaces{.rays = light.samples[i], .one_sided = light.met_back[i]});
   };
-  const auto hidden = [&](uint32_t i) { return 2 * light.met_back[i] > light.samples[i]; };
   std::vector<Rgb> out = light.irradiance;
   parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
     for (uint32_t i = uint32_t(begin); i < end; ++i) {
       Rgb sum{};
       float count = 0;
-      for_neighbours(world.map, i, kReach, [&](uint32_t j) {
+      for_neighbours(in.map, i, kReach, [&](uint32_t j) {
         if (!hidden(j) && chart(j) == chart(i)) sum += light.irradiance[j], count += 1;
       });
       if (count > 0) out[i] = sum * (1 / count);
@@ -69,19 +72,19 @@ std::vector<uint32_t> with_neighbours(const atlas::TexelMap& map,
 }
 
 Status light_coarsely(Trial& trial, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
   const GatherParams& all = trial.params;
   GatherParams params;
   params.samples = std::min(all.samples, kCoarseSamples);
   params.direct_samples = std::min(all.direct_samples, kCoarseSamples);
   params.bounces = all.bounces, params.tolerance = kRoughTolerance, params.seed = all.seed;
-  params.hit_memory_bytes = all.hit_memory_bytes, params.scratch_folder = all.scratch_folder;
-  LUXEL_TRY(Gather light, gather(scene, atlas, map, elements, lights, tracer, params, progress));
-  trial.coarse = smooth(trial.world, light);
+  const GatherStores stores{.hit_memory_bytes = trial.stores.hit_memory_bytes,
+                            .scratch_folder = trial.stores.scratch_folder};
+  LUXEL_TRY(Gather light, gather(trial.in, nullptr, params, stores, {}, progress));
+  trial.coarse = smooth(trial.in, light);
   trial.direct.irradiance = std::move(light.direct);
   trial.direct.variance = light.direct_variance;
   trial.direct.split_variance = std::move(light.direct_variance);
-  trial.hits = no_hits(elements.size());
+  trial.hits = no_hits(trial.in.elements.size());
   trial.hits.samples = std::move(light.samples);
   trial.hits.met_back = std::move(light.met_back);
   for (const uint32_t i : trial.texels) trial.hits.samples[i] = trial.hits.met_back[i] = 0;
@@ -89,7 +92,7 @@ Status light_coarsely(Trial& trial, Progress& progress) {
 }
 
 Status light_directly(Trial& trial, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
   const light::SupersampleParams params = trial.supersample();
   LUXEL_TRY_STATUS(direct_light_again({scene, elements, lights, tracer},
                                       with_neighbours(map, trial.texels), params.direct,
@@ -103,14 +106,11 @@ Status light_directly(Trial& trial, Progress& progress) {
 }
 
 Status trace(Trial& trial, std::span<const uint16_t> target, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
-  const GatherParams& params = trial.params;
-  const TraceParams trace{.seed = params.seed,
-                          .memory_limit_bytes = params.hit_memory_bytes,
-                          .scratch_folder = params.scratch_folder,
-                          .near_lights = params.bounces < 0 ? &lights : nullptr};
-  return trace_more(scene, atlas, elements, lights.around, tracer, target, trace, trial.hits,
-                    progress);
+  const TraceParams trace{.seed = trial.params.seed,
+                          .memory_limit_bytes = trial.stores.hit_memory_bytes,
+                          .scratch_folder = trial.stores.scratch_folder,
+                          .follows_near = trial.params.bounces < 0};
+  return trace_more(trace_scene(trial.in), target, trace, trial.hits, progress);
 }
 
 /// Relative, of the trial's texels; of all others 0.
@@ -121,7 +121,7 @@ struct Errors {
 
 /// As gather() knows them, but in the coarse light: one bounce of it.
 Result<Errors> errors_of(const Trial& trial, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.world;
+  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
   // bounce() starts from what it is given and the soft sky: together the coarse light.
   std::vector<Rgb> given = trial.coarse;
   for (const uint32_t i : trial.texels)
@@ -179,9 +179,8 @@ Result<std::vector<double>> make_rounds(Trial& trial, RoundsForecast& out, Progr
         next_samples(errors.gathered, each, params.max_samples, trial.hits.samples);
     const auto start = Clock::now();
     const uint64_t rays = trial.rays();
-    LUXEL_TRY(const size_t finer,
-              refine_direct(trial.world, errors.direct, each, trial.supersample(), trial.levels,
-                            trial.direct, progress));
+    LUXEL_TRY(const size_t finer, refine_direct(trial.in, errors.direct, each, trial.supersample(),
+                                                trial.levels, trial.direct, progress));
     if (finer == 0 && target == trial.hits.samples) return samples;
     if (target != trial.hits.samples) LUXEL_TRY_STATUS(trace(trial, target, progress));
     out.trace_s += trial.scale * seconds_since(start);
@@ -191,13 +190,13 @@ Result<std::vector<double>> make_rounds(Trial& trial, RoundsForecast& out, Progr
 
 }  // namespace
 
-Result<RoundsForecast> forecast_rounds(const light::TexelScene& world, const GatherParams& params,
-                                       int part, Progress& progress) {
-  const size_t n = world.elements.size();
+Result<RoundsForecast> forecast_rounds(const light::TexelScene& in, const GatherParams& params,
+                                       const GatherStores& stores, int part, Progress& progress) {
+  const size_t n = in.elements.size();
   const size_t count = std::max<size_t>(1, std::min(n, std::max(kFewestTried, n / size_t(part))));
-  Trial trial{world, params, texels_to_try(world.map, count), 1, {}, {}, {}, {}, {}};
+  Trial trial{.in = in, .params = params, .stores = stores, .texels = texels_to_try(in.map, count)};
   trial.scale = double(n) / double(trial.texels.size());
-  trial.behind = places_behind(world.scene, world.atlas, world.map, world.elements);
+  trial.behind = places_behind(in.scene, in.atlas, in.map, in.elements);
   LUXEL_TRY_STATUS(light_coarsely(trial, progress));
   LUXEL_TRY_STATUS(light_directly(trial, progress));
   std::vector<uint16_t> target = trial.hits.samples;
@@ -213,12 +212,12 @@ Result<RoundsForecast> forecast_rounds(const light::TexelScene& world, const Gat
   std::vector<uint32_t> all(n);
   std::iota(all.begin(), all.end(), 0u);
   LUXEL_TRY(const double fine,
-            expected_sweeps(world.map, world.elements, {trial.hits, all, trial.direct.irradiance},
+            expected_sweeps(in.map, in.elements, {trial.hits, all, trial.direct.irradiance},
                             params.samples, {params.bounces, params.tolerance}));
   double looks = fine * samples.back();
   for (size_t k = 1; k < samples.size(); ++k) looks += kSweepsOfRound * samples[k];
   const double hits_per_sample = bytes / double(sizeof(StoredHit)) / samples.back();
-  out.bounces_s = trial.scale * looks * hits_per_sample * seconds_per_hit(world.map, trial.hits) /
+  out.bounces_s = trial.scale * looks * hits_per_sample * seconds_per_hit(in.map, trial.hits) /
                   double(thread_count());
   return out;
 }

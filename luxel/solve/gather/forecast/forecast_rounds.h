@@ -5,9 +5,9 @@
 
 namespace luxel::gather {
 
-/// Of gather() with the parameters' max_error, all that comes after the first round.
+/// What gather() takes with the parameters' max_error after its first round.
 struct RoundsForecast {
-  double trace_s = 0;    ///< of rays, and of looks at lamps
+  double trace_s = 0;    ///< rays, and shadow rays
   double bounces_s = 0;  ///< of each round, and the last ones
   double rays = 0;       ///< shadow rays and those of near paths included
   double hit_bytes = 0;  ///< of stored hits
@@ -15,7 +15,7 @@ struct RoundsForecast {
 
 /// Lights the map with few rays, and makes all rounds in that light for the texels of some cells,
 /// about one texel in `part`, but some thousand at least. Errors: cancelled, disk full.
-Result<RoundsForecast> forecast_rounds(const light::TexelScene& world, const GatherParams& params,
-                                       int part, Progress& progress);
+Result<RoundsForecast> forecast_rounds(const light::TexelScene& in, const GatherParams& params,
+                                       const GatherStores& stores, int part, Progress& progress);
 
 }  // namespace luxel::gather

@@ -16,9 +16,7 @@ double planned_over_real(const Room& room, float max_error, int part) {
   params.max_error = max_error;
   const double real = double(solve(room, params).rays) - first;
   Progress progress;
-  const auto planned =
-      forecast_rounds({room.scene, room.atlas, room.map, room.elements, room.lights, *room.tracer},
-                      params, part, progress);
+  const auto planned = forecast_rounds(scene_of(room), params, {}, part, progress);
   EXPECT_TRUE(planned);
   EXPECT_GT(real, first) << "the rounds are what it is about";
   return planned->rays / real;
@@ -45,9 +43,7 @@ TEST(ForecastRounds, AreNoneWhereNoneAreNeeded) {
   GatherParams params = with_samples(32, 16);
   params.max_error = 1;
   Progress progress;
-  const auto planned = forecast_rounds(
-      {room->scene, room->atlas, room->map, room->elements, room->lights, *room->tracer}, params, 1,
-      progress);
+  const auto planned = forecast_rounds(scene_of(*room), params, {}, 1, progress);
   ASSERT_TRUE(planned);
   EXPECT_EQ(planned->rays, 0);
   EXPECT_EQ(planned->hit_bytes, 0);
@@ -60,9 +56,7 @@ TEST(ForecastRounds, CanBeStopped) {
   params.max_error = 0.01f;
   Progress progress;
   progress.request_cancel();
-  const auto planned = forecast_rounds(
-      {room->scene, room->atlas, room->map, room->elements, room->lights, *room->tracer}, params, 1,
-      progress);
+  const auto planned = forecast_rounds(scene_of(*room), params, {}, 1, progress);
   ASSERT_FALSE(planned);
   EXPECT_EQ(planned.error().code, ErrorCode::cancelled);
 }

@@ -7,13 +7,10 @@
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/gather/forecast/expected_bounces.h"
 #include "luxel/solve/gather/gather_test_support.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
 namespace {
-
-light::TexelScene world_of(const Room& room) {
-  return {room.scene, room.atlas, room.map, room.elements, room.lights, *room.tracer};
-}
 
 // Seconds are the machine's; rays and stored hits are counted. The trial sees one texel in five of
 // the Cornell box: some thousand in squares of 25. Shares of texels that are averaged, and of rays
@@ -24,13 +21,12 @@ TEST(Forecast, CountsTheRaysAndHitsOfTheWhole) {
   GatherParams params;
   params.samples = 64, params.direct_samples = 16, params.supersample = 16;
   Progress progress;
-  const auto forecast = gather::forecast(world_of(*room), params, 5, progress);
+  const auto forecast = gather::forecast(scene_of(*room), params, {}, 5, progress);
   ASSERT_TRUE(forecast);
   const Gather whole = solve(*room, params);
   EXPECT_NEAR(forecast->rays / double(whole.rays), 1, 0.15);
   const auto hits =
-      trace_hits(room->scene, room->atlas, room->elements, room->lights.around, *room->tracer,
-                 params.samples, {.near_lights = &room->lights}, progress);
+      trace_hits(trace_scene(scene_of(*room)), params.samples, {.follows_near = true}, progress);
   ASSERT_TRUE(hits);
   EXPECT_NEAR(forecast->hit_bytes / double(hits->bytes_in_memory()), 1, 0.15);
   EXPECT_GT(forecast->direct_s, 0);
@@ -51,7 +47,7 @@ Result<TracedHits> trace(const Room& room, const transport::Elements& elements, 
   TracedHits hits = no_hits(elements.size());
   for (int r = rounds - 1; r >= 0; --r) {
     const std::vector<uint16_t> target(elements.size(), uint16_t(samples >> r));
-    LUXEL_TRY_STATUS(trace_more(room.scene, room.atlas, elements, room.lights.around, *room.tracer,
+    LUXEL_TRY_STATUS(trace_more({room.scene, room.atlas, elements, room.lights, *room.tracer},
                                 target, {}, hits, progress));
   }
   return hits;

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/vec.h"
 #include "luxel/solve/gather/rays/hit_store.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::gather {
 
@@ -40,10 +42,25 @@ struct TracedHits {
   uint64_t bytes_in_file() const;
 };
 
-/// Whether an element lies inside a solid, under a floor or behind a wall: most of what it sees is
-/// the back of one-sided surfaces. Its own light means nothing to anybody.
+/// What TracedHits takes per element besides the hits themselves, in one round: its own arrays, and
+/// where each element's hits end.
+inline constexpr uint64_t kTracedBytesPerElement =
+    bytes_per_entry(&TracedHits::samples, &TracedHits::last_round, &TracedHits::escaped,
+                    &TracedHits::met_back, &TracedHits::met_double_sided_back, &TracedHits::sky,
+                    &TracedHits::sky_luminance2, &TracedHits::sky_first_less_second) +
+    bytes_per_entry(&HitTile::end);
+/// The part of it that gather() gives back when it knows which elements are enclosed.
+inline constexpr uint64_t kEndCountBytesPerElement =
+    bytes_per_entry(&TracedHits::escaped, &TracedHits::met_double_sided_back);
+
+/// Whether an element lies inside a solid, under a floor or behind a wall (transport::is_hidden).
 inline bool is_hidden(const TracedHits& hits, size_t element) {
-  return 2 * int(hits.met_back[element]) > int(hits.samples[element]);
+  return transport::is_hidden(
+      transport::BackFaces{.rays = hits.samples[element], .one_sided = hits.met_back[element]});
+}
+/// What an element's rays met of backs.
+inline transport::BackFaces back_faces(const TracedHits& hits, size_t element) {
+  return {hits.samples[element], hits.met_back[element], hits.met_double_sided_back[element]};
 }
 
 /// Nothing traced yet. `layers`: how many there are; 0: light is not told apart.

@@ -15,13 +15,13 @@ namespace luxel::gather {
 struct Earlier {
   EarlierRays rays;
   std::vector<std::vector<uint16_t>> rounds;  ///< samples per element after each, at least one
-  /// Light straight from lamps where nothing has come into its way, in place of that of all lamps
-  /// but those of `lamps_anew`; empty: not known.
+  /// Light straight from lights where nothing has come into its way, in place of that of all lights
+  /// but those of `changed_lights`; empty: not known.
   light::DirectLight direct;
   light::DirectLevels levels;
-  light::Lights lamps_anew;     ///< that shine otherwise than then: they are looked at everywhere
-  std::vector<Rgb> irradiance;  ///< a guess at the light after all bounces
-  double relative_error = 0;    ///< of that light: Gather::relative_error
+  light::Lights changed_lights;  ///< that shine otherwise than then: they are looked at everywhere
+  std::vector<Rgb> irradiance;   ///< a guess at the light after all bounces
+  double relative_error = 0;     ///< of that light: Gather::relative_error
 };
 
 }  // namespace luxel::gather

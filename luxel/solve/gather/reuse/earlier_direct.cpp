@@ -15,17 +15,17 @@ bool shines(const light::Lights& lights) {
   return !lights.punctual.empty() || !lights.triangles.empty();
 }
 
-Status add_lamps(const light::TexelScene& world, const light::SupersampleParams& params,
-                 Earlier& earlier, Progress& progress) {
+Status add_changed_lights(const light::TexelScene& in, const light::SupersampleParams& params,
+                          Earlier& earlier, Progress& progress) {
   light::SupersampleParams alone = params;
   alone.direct.layers = nullptr;
   LUXEL_TRY(light::DirectLight light,
-            light::direct_light(world.scene, world.elements, earlier.lamps_anew, world.tracer,
+            light::direct_light(in.scene, in.elements, earlier.changed_lights, in.tracer,
                                 alone.direct, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample({world.scene, world.atlas, world.map, world.elements,
-                                earlier.lamps_anew, world.tracer},
-                               alone, light, progress));
+            light::supersample(
+                {in.scene, in.atlas, in.map, in.elements, earlier.changed_lights, in.tracer}, alone,
+                light, progress));
   light::DirectLight& all = earlier.direct;
   for (size_t i = 0; i < all.irradiance.size(); ++i) {
     all.irradiance[i] += light.irradiance[i];
@@ -37,16 +37,15 @@ Status add_lamps(const light::TexelScene& world, const light::SupersampleParams&
 }
 
 /// Elements whose direct light may be another; and notes near which it is not.
-std::vector<uint32_t> touched(const light::TexelScene& world, EarlierRays& rays) {
+std::vector<uint32_t> touched(const light::TexelScene& in, EarlierRays& rays) {
   std::vector<float>& reach_m = rays.same_light_m;
-  reach_m.resize(world.elements.size());
+  reach_m.resize(in.elements.size());
   for (size_t i = 0; i < reach_m.size(); ++i) {
-    const scene::SurfacePoint& p = world.map.texels[i].sample;
-    reach_m[i] =
-        kTexelReach * transport::texel_width_m(world.scene, world.atlas, p.instance, p.triangle);
+    const scene::SurfacePoint& p = in.map.texels[i].sample;
+    reach_m[i] = kTexelReach * transport::texel_width_m(in.scene, in.atlas, p.instance, p.triangle);
   }
   const std::vector<uint8_t> reached =
-      light::elements_in_reach(world.scene, world.elements, reach_m, world.lights, rays.boxes);
+      light::elements_in_reach(in.scene, in.elements, reach_m, in.lights, rays.boxes);
   std::vector<uint32_t> out;
   for (uint32_t i = 0; i < reached.size(); ++i) {
     if (reached[i]) reach_m[i] = -1;
@@ -57,25 +56,22 @@ std::vector<uint32_t> touched(const light::TexelScene& world, EarlierRays& rays)
 
 }  // namespace
 
-Status update_direct(const light::TexelScene& world, const light::SupersampleParams& params,
+Status update_direct(const light::TexelScene& in, const light::SupersampleParams& params,
                      Earlier& earlier, Progress& progress) {
-  LUXEL_CHECK(earlier.direct.irradiance.size() == world.elements.size());
-  LUXEL_CHECK(earlier.rays.moved.size() == world.elements.size());
+  LUXEL_CHECK(earlier.direct.irradiance.size() == in.elements.size());
+  LUXEL_CHECK(earlier.rays.moved.size() == in.elements.size());
   earlier.direct.rays = 0;
-  if (shines(earlier.lamps_anew)) {
+  if (shines(earlier.changed_lights)) {
     LUXEL_CHECK(params.direct.layers == nullptr);
-    LUXEL_TRY_STATUS(add_lamps(world, params, earlier, progress));
+    LUXEL_TRY_STATUS(add_changed_lights(in, params, earlier, progress));
   }
-  const std::vector<uint32_t> which = touched(world, earlier.rays);
+  const std::vector<uint32_t> which = touched(in, earlier.rays);
   if (which.empty()) return {};
   for (const uint32_t i : which) earlier.levels.level[i] = earlier.levels.averaged[i] = 0;
-  LUXEL_TRY_STATUS(
-      light::direct_light_again({world.scene, world.elements, world.lights, world.tracer}, which,
-                                params.direct, earlier.direct, progress));
+  LUXEL_TRY_STATUS(light::direct_light_again({in.scene, in.elements, in.lights, in.tracer}, which,
+                                             params.direct, earlier.direct, progress));
   LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample(
-                {world.scene, world.atlas, world.map, world.elements, world.lights, world.tracer},
-                which, params, earlier.direct, progress));
+            light::supersample(in, which, params, earlier.direct, progress));
   earlier.direct.rays += averaged.rays;
   for (const uint32_t i : averaged.texels) earlier.levels.averaged[i] = 1;
   return {};

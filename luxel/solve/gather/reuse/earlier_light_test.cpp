@@ -20,9 +20,7 @@ TEST_F(EarlierGather, DirectLightIsFollowedUp) {
   const RecordFile rays = file("before");
   Earlier earlier = earlier_of(rays, *before, *now, first);
   give_direct(first, earlier);
-  GatherParams params = some_params();
-  params.earlier = &earlier;
-  const Gather again = keeping(*now, params, "again");
+  const Gather again = keeping(*now, some_params(), "again", &earlier);
   expect_same_light(again, scratch);
   EXPECT_GT(again.kept_direct.rays, 0u);
   EXPECT_LT(again.kept_direct.rays, scratch.kept_direct.rays / 2);
@@ -37,8 +35,7 @@ TEST_F(EarlierGather, DirectLightIsFollowedUp) {
   blind.rays.boxes = {};
   std::ranges::fill(blind.levels.level, uint8_t(2));
   std::ranges::fill(blind.levels.averaged, uint8_t(1));
-  params.earlier = &blind;
-  const Gather without_boxes = keeping(*now, params, "without boxes");
+  const Gather without_boxes = keeping(*now, some_params(), "without boxes", &blind);
   size_t differ = 0;
   for (size_t i = 0; i < moved.size(); ++i) {
     EXPECT_EQ(without_boxes.direct[i], (moved[i] ? scratch : first).direct[i]) << i;
@@ -65,9 +62,7 @@ Followed followed_with_lamp_at(EarlierGather& test, Vec3 lamp) {
     Earlier earlier = earlier_of(rays, *before, *now, first);
     give_direct(first, earlier);
     earlier.rays.same_light = same_light;
-    GatherParams params = some_params();
-    params.earlier = &earlier;
-    return test.keeping(*now, params, name);
+    return test.keeping(*now, some_params(), name, &earlier);
   };
   const Gather all_followed = again(false, "all"), some_followed = again(true, "some");
   expect_same_light(some_followed, scratch);
@@ -107,8 +102,7 @@ TEST_F(EarlierGather, SomeBouncesAreThoseFromScratch) {
   Earlier earlier = earlier_of(rays, *before, *now, first);
   give_direct(first, earlier);
   earlier.rays.same_light = true;
-  params.earlier = &earlier;
-  expect_same_light(keeping(*now, params, "again"), scratch);
+  expect_same_light(keeping(*now, params, "again", &earlier), scratch);
 }
 
 // A lamp that was off is added to what the others gave.
@@ -128,10 +122,8 @@ TEST_F(EarlierGather, ALampIsAdded) {
   const RecordFile rays = file("before");
   Earlier earlier = earlier_of(rays, *off, *on, first);
   give_direct(first, earlier);
-  earlier.lamps_anew = alone->lights;
-  GatherParams params = some_params();
-  params.earlier = &earlier;
-  const Gather again = solve(*on, params);
+  earlier.changed_lights = alone->lights;
+  const Gather again = solve(*on, some_params(), {.earlier = &earlier});
   for (size_t i = 0; i < again.direct.size(); ++i)
     EXPECT_LT(length(again.direct[i] - scratch.direct[i]),
               1e-6f * length(scratch.direct[i]) + 1e-12f)

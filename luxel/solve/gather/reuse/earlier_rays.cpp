@@ -104,20 +104,20 @@ void keep_samples(PartStore* store, uint64_t round, std::span<const uint16_t> sa
 }
 
 void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
-               std::span<const uint32_t> which, std::span<uint8_t> again) {
+               std::span<const uint32_t> which, std::span<uint8_t> retraced) {
   if (which.empty()) return;
   for (const Box3& box : boxes) {
     const std::optional<Cone> cone = cone_to(box, rays[which[0]].origin);
     for (const uint32_t k : which)
       if ((!cone || dot(cone->axis, rays[k].direction) >= cone->cosine) &&
           meets(box, rays[k].origin, rays[k].direction))
-        again[k] = 1;
+        retraced[k] = 1;
   }
 }
 
 void mark_followed(std::span<const Box3> boxes, Vec3 from, float near_m,
                    std::span<const RayEnd> ends, std::span<const FollowedRay> followed,
-                   std::span<uint8_t> again) {
+                   std::span<uint8_t> retraced) {
   // A way that starts within near_m and meets a box leads in the same direction from `from` into
   // the box grown by as much; and by what is not known of the direction.
   const auto may_meet = [&](const Box3& box, Vec3 direction) {
@@ -130,7 +130,7 @@ void mark_followed(std::span<const Box3> boxes, Vec3 from, float near_m,
     const FollowedWay way = (next++)->way();
     if (!way.is_plain ||
         std::ranges::any_of(boxes, [&](const Box3& box) { return may_meet(box, way.direction); }))
-      again[k] = 1;
+      retraced[k] = 1;
   }
 }
 

@@ -26,7 +26,7 @@ struct EarlierRays {
   /// Reflectances and all that shines are as they were: only something that lies elsewhere can
   /// change what rays bring that are followed on.
   bool same_light = false;
-  /// With same_light, per element: so near to it the same light arrives from lamps [m]; < 0: not
+  /// With same_light, per element: so near to it the same light arrives from lights [m]; < 0: not
   /// even there; empty: it is not known where.
   std::vector<float> same_light_m;
   /// With same_light: what every texel sent then, if TracedHits::change is wanted; null: it is not.
@@ -63,17 +63,17 @@ struct EarlierElement {
   bool follows_again = true;                ///< they may all bring something else
 };
 
-/// Sets again[k] to 1 where rays[k] meets one of the boxes, for each k of `which`; leaves it as it
-/// is elsewhere. The rays start at one place and have unit directions.
+/// Sets retraced[k] to 1 where rays[k] meets one of the boxes, for each k of `which`; leaves it as
+/// it is elsewhere. The rays start at one place and have unit directions.
 void mark_rays(std::span<const Box3> boxes, std::span<const trace::Ray> rays,
-               std::span<const uint32_t> which, std::span<uint8_t> again);
+               std::span<const uint32_t> which, std::span<uint8_t> retraced);
 
-/// Sets again[k] to 1 for those of an element's rays, which start at `from`, that were followed on
-/// and took another way than a plain one, or one that may meet one of the boxes after what it met
-/// within near_m. `followed` are those of `ends`.
+/// Sets retraced[k] to 1 for those of an element's rays, which start at `from`, that were followed
+/// on and took another way than a plain one, or one that may meet one of the boxes after what it
+/// met within near_m. `followed` are those of `ends`.
 void mark_followed(std::span<const Box3> boxes, Vec3 from, float near_m,
                    std::span<const RayEnd> ends, std::span<const FollowedRay> followed,
-                   std::span<uint8_t> again);
+                   std::span<uint8_t> retraced);
 
 /// Cells of directions (element_rays.h) whose rays from a place, about `normal` and mirrored above
 /// the triangle, may meet a box, as one bit each.

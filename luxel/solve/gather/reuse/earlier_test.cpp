@@ -27,9 +27,7 @@ TEST_P(EarlierEdits, GiveWhatIsTracedFromScratch) {
   Earlier earlier = earlier_of(rays, *before, *now, first);
   EXPECT_EQ(!earlier.rays.boxes.empty(), GetParam().moves);
   earlier.rays.surroundings = GetParam().surroundings;
-  GatherParams params = some_params();
-  params.earlier = &earlier;
-  const Gather again = keeping(*now, params, "again");
+  const Gather again = keeping(*now, some_params(), "again", &earlier);
 
   const auto expected = tiles("scratch", *now);
   expect_same_rays(tiles("again", *now), expected);
@@ -89,9 +87,7 @@ TEST_F(EarlierGather, RaysThatAreNotMarkedStayAsTheyWere) {
   const RecordFile rays = file("before");
   Earlier earlier = earlier_of(rays, *before, *now, first);
   earlier.rays.boxes = {};
-  GatherParams params = some_params();
-  params.earlier = &earlier;
-  keeping(*now, params, "again");
+  keeping(*now, some_params(), "again", &earlier);
   const auto old = tiles("before", *now), again = tiles("again", *now);
   const auto scratch = tiles("scratch", *now);
   size_t differ = 0, rays_of_unmoved = 0;
@@ -140,9 +136,7 @@ TEST_F(EarlierGather, OfElementsThatMovedAllRaysAreTraced) {
   const RecordFile rays = file("damaged");
   Earlier earlier = earlier_of(rays, *room, *room, scratch);
   for (size_t i = 0; i < n; ++i) earlier.rays.moved[i] = is_moved(i);
-  GatherParams params = some_params();
-  params.earlier = &earlier;
-  const Gather again = keeping(*room, params, "again");
+  const Gather again = keeping(*room, some_params(), "again", &earlier);
   const auto expected = tiles("scratch", *room);
   expect_same_rays(tiles("again", *room), expected);
   expect_same_light(again, scratch);
@@ -155,8 +149,7 @@ TEST_F(EarlierGather, OfElementsThatMovedAllRaysAreTraced) {
   EXPECT_EQ(again.rays_kept, known);
 
   Earlier believed = earlier_of(rays, *room, *room, scratch);
-  params.earlier = &believed;
-  const Gather wrong = solve(*room, params);
+  const Gather wrong = solve(*room, some_params(), {.earlier = &believed});
   for (size_t i = 0; i < n; ++i)
     EXPECT_EQ(wrong.met_back[i], is_moved(i) ? 32 : scratch.met_back[i]) << i;
 }
@@ -174,9 +167,7 @@ TEST_F(EarlierGather, TilesThatAreMissingAreTraced) {
   });
   const RecordFile rays = file("damaged");
   Earlier earlier = earlier_of(rays, *room, *room, scratch);
-  GatherParams params = some_params();
-  params.earlier = &earlier;
-  const Gather again = keeping(*room, params, "again");
+  const Gather again = keeping(*room, some_params(), "again", &earlier);
   const auto got = tiles("again", *room), expected = tiles("scratch", *room);
   expect_same_rays(got, expected);
   EXPECT_EQ(again.rays + again.rays_kept, scratch.rays);
@@ -204,8 +195,8 @@ TEST_F(EarlierGather, GoesThroughTheSameRounds) {
   EXPECT_EQ(earlier.rounds.back(), first.samples);
   EXPECT_EQ(earlier.rounds.front(), std::vector<uint16_t>(room->elements.size(), 8));
   GatherParams exact = params;
-  exact.max_error = 0, exact.earlier = &earlier;
-  const Gather again = keeping(*room, exact, "again");
+  exact.max_error = 0;
+  const Gather again = keeping(*room, exact, "again", &earlier);
   EXPECT_EQ(again.samples, first.samples);
   EXPECT_EQ(again.met_back, first.met_back);
   for (uint64_t round = 0; round < rounds; ++round)

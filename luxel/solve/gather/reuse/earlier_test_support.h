@@ -8,6 +8,7 @@
 
 #include "luxel/scene/shapes.h"
 #include "luxel/solve/gather/gather_test_support.h"
+#include "luxel/solve/gather/reuse/earlier.h"
 
 namespace luxel::gather {
 
@@ -85,10 +86,10 @@ inline size_t tile_size(size_t elements, size_t tile) {
 class EarlierGather : public WithFolder {
  public:
   /// Solves, and keeps the rays under a name.
-  Gather keeping(const Room& room, GatherParams params, const std::string& name) {
+  Gather keeping(const Room& room, const GatherParams& params, const std::string& name,
+                 Earlier* earlier = nullptr) {
     PartStore store({folder_ / name, "", "", 1e-9, std::chrono::steady_clock::now()}, progress_);
-    params.keep = &store;
-    return solve(room, params);
+    return solve(room, params, {.keep = &store, .earlier = earlier});
   }
   RecordFile file(const std::string& name) {
     auto out = RecordFile::open(folder_ / name);

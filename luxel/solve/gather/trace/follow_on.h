@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "luxel/solve/gather/reuse/rays_again.h"
+#include "luxel/solve/gather/reuse/retraced_rays.h"
 #include "luxel/solve/gather/trace/sort_rays.h"
 
 namespace luxel::gather {
@@ -12,15 +12,17 @@ namespace luxel::gather {
 /// Paths that are followed at a time: enough to fill packets, few enough to stay in a core's cache.
 inline constexpr size_t kPathsAtATime = 1024;
 
-/// Follows work.near.paths on and adds where they end to work.followed. Returns the number of rays.
-uint64_t follow_paths(const RayWorld& world, RayWork& work, TracedHits& out);
+/// Follows buffers.near.paths on and adds where they end to buffers.followed. Returns the number of
+/// rays.
+uint64_t follow_paths(const RayScene& in, RayBuffers& buffers, TracedHits& out);
 
-/// The same for those of a tile that are left; and adds what all of work.followed bring to the
+/// The same for those of a tile that are left; and adds what all of buffers.followed bring to the
 /// elements' light and to `tile`, whose ends and other hits are known: the first element is
-/// `first`, and ends_of[k] is one past the last of the k-th one's ends. Those of `again` that were
-/// followed on and not traced again bring what they brought in the earlier bake (null: nothing is
-/// known). Returns the number of rays.
-uint64_t follow_on(const RayWorld& world, size_t first, std::span<const uint32_t> ends_of,
-                   const RaysAgain* again, RayWork& work, TracedHits& out, RayTile& tile);
+/// `first`, and ends_of[k] is one past the last of the k-th one's ends. Those of `retraced` that
+/// were followed on and not traced again bring what they brought in the earlier bake (null: nothing
+/// is known). Returns the number of rays.
+uint64_t follow_on(const RayScene& in, size_t first, std::span<const uint32_t> ends_of,
+                   const RetracedRays* retraced, RayBuffers& buffers, TracedHits& out,
+                   RayTile& tile);
 
 }  // namespace luxel::gather

@@ -32,7 +32,7 @@ KeptStage kept_round(const TracedHits& hits, std::span<const uint16_t> target,
                      const TraceParams& params) {
   if (params.parts == nullptr) return {};
   Digest digest;
-  digest.add("trace rays"), digest.add(params.seed), digest.add(params.near_lights != nullptr);
+  digest.add("trace rays"), digest.add(params.seed), digest.add(params.follows_near);
   digest.add(hits.rounds.size()), digest.add(target);
   for_each_array(hits, [&](const auto& array) { digest.add(std::span(array)); });
   return {params.parts, digest.value()};

@@ -6,6 +6,7 @@
 
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/gather/gather_test_support.h"
+#include "luxel/solve/gather/rays/hit_store.h"
 
 namespace luxel::gather {
 namespace {
@@ -61,9 +62,10 @@ void expect_same(const Gather& a, const Gather& b) {
   EXPECT_EQ(a.sweeps, b.sweeps);
 }
 
-Gather solve_with(const Room& room, GatherParams params, PartStore* parts) {
-  params.parts = parts;
-  return solve(room, params);
+Gather solve_with(const Room& room, const GatherParams& params, PartStore* parts,
+                  GatherStores stores = {}) {
+  stores.parts = parts;
+  return solve(room, params, stores);
 }
 
 TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
@@ -72,13 +74,13 @@ TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
        {0.0f, 0.05f})  // in one round; in several, which build on each other
     for (const uint64_t memory : {UINT64_MAX, uint64_t(0)}) {  // 0: no hits in memory
       GatherParams params = some_params();
-      params.max_error = max_error, params.max_samples = 128, params.hit_memory_bytes = memory;
-      params.scratch_folder = folder_;
-      const Gather expected = solve(*room, params);
+      params.max_error = max_error, params.max_samples = 128;
+      const GatherStores stores{.hit_memory_bytes = memory, .scratch_folder = folder_};
+      const Gather expected = solve(*room, params, stores);
       uint64_t all = 0;
       {
         const auto first = store("all");
-        expect_same(solve_with(*room, params, first.get()), expected);
+        expect_same(solve_with(*room, params, first.get(), stores), expected);
         all = first->parts_kept();
         EXPECT_EQ(first->parts_found(), 0u);
       }
@@ -87,7 +89,7 @@ TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
       const std::vector<RecordKey> keys = found->keys();
       EXPECT_EQ(keys.size(), all);
       const auto again = store("all", std::move(*found));
-      expect_same(solve_with(*room, params, again.get()), expected);
+      expect_same(solve_with(*room, params, again.get(), stores), expected);
       EXPECT_EQ(again->parts_found(), all);
       EXPECT_EQ(again->parts_kept(), 0u);
       std::vector<RecordKey> half;
@@ -95,7 +97,7 @@ TEST_F(KeptParts, SomeOrAllOfThemGiveTheSameBits) {
         if (hash64(key.stage, key.part) % 2) half.push_back(key);
       copy("all", "half", half);
       const auto some = store("half", *RecordFile::open(file("half")));
-      expect_same(solve_with(*room, params, some.get()), expected);
+      expect_same(solve_with(*room, params, some.get(), stores), expected);
       EXPECT_EQ(some->parts_found(), half.size());
       EXPECT_EQ(some->parts_kept(), all - half.size());
     }

@@ -25,24 +25,25 @@ transport::SmoothPoint place_of(const scene::Scene& scene, const trace::Hit& hit
 }
 
 /// A path that brings nothing more.
-void end(NearPath path, NearWork& work) {
+void end(NearPath path, NearBuffers& buffers) {
   path.throughput = {};
-  work.going_on.push_back(path);
+  buffers.going_on.push_back(path);
 }
 
-/// The light that lamps send to where the paths are.
-uint64_t add_direct_light(const NearWorld& world, NearWork& work) {
-  work.light.resize(work.receivers.size());
-  light::direct_light_at({world.scene, world.lights, world.tracer, world.diagonal_m},
-                         {.samples = 1}, work.receivers, work.batch, work.light);
-  for (size_t i = 0; i < work.paths.size(); ++i) {
-    work.paths[i].light += work.paths[i].throughput * work.light[i].irradiance / kPi;
-    if (world.layers)
-      light::add_light_by_layer(work.batch, i, *world.layers, work.paths[i].throughput / kPi,
-                                work.by_layer.subspan(work.paths[i].element * world.layers->size(),
-                                                      world.layers->size()));
+/// The light that lights send to where the paths are.
+uint64_t add_direct_light(const NearScene& in, NearBuffers& buffers) {
+  buffers.light.resize(buffers.receivers.size());
+  light::direct_light_at({in.scene, in.lights, in.tracer, in.diagonal_m}, {.samples = 1},
+                         buffers.receivers, buffers.batch, buffers.light);
+  for (size_t i = 0; i < buffers.paths.size(); ++i) {
+    buffers.paths[i].light += buffers.paths[i].throughput * buffers.light[i].irradiance / kPi;
+    if (in.layers)
+      light::add_light_by_layer(
+          buffers.batch, i, *in.layers, buffers.paths[i].throughput / kPi,
+          buffers.by_layer.subspan(buffers.paths[i].element * in.layers->size(),
+                                   in.layers->size()));
   }
-  return work.batch.rays.size();
+  return buffers.batch.rays.size();
 }
 
 /// The path's ray on. False: the path ends there, by chance, in proportion to what it carries.
@@ -71,55 +72,54 @@ std::vector<float> texel_widths_m(const scene::Scene& scene, const atlas::Atlas&
   return width;
 }
 
-bool goes_on(const NearWorld& world, const NearPath& path) {
+bool goes_on(const NearScene& in, const NearPath& path) {
   const trace::Hit& hit = path.hit;
   if (!hit.found() || max_component(path.throughput) <= 0) return false;
   // What scatters light through shines by the light behind it, which the map knows.
-  if (scene::material_at(world.scene, hit.point()).diffuse_transmission > 0) return false;
-  if (hit.back_face)
-    return scene::reflects_from_behind(scene::material_at(world.scene, hit.point()));
+  if (scene::material_at(in.scene, hit.point()).diffuse_transmission > 0) return false;
+  if (hit.back_face) return scene::reflects_from_behind(scene::material_at(in.scene, hit.point()));
   return hit.t <
-         kNearTexels * world.texel_width_m[world.atlas.triangle_number(hit.instance, hit.triangle)];
+         kNearTexels * in.texel_width_m[in.atlas.triangle_number(hit.instance, hit.triangle)];
 }
 
-uint64_t step_near(const NearWorld& world, uint64_t depth, NearWork& work) {
-  work.receivers.clear(), work.rays.clear(), work.going_on.clear();
-  std::erase_if(work.paths, [&](NearPath& path) {
-    path.throughput = path.throughput * scene::reflectance_at(world.scene, path.hit.point());
+uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers) {
+  buffers.receivers.clear(), buffers.rays.clear(), buffers.going_on.clear();
+  std::erase_if(buffers.paths, [&](NearPath& path) {
+    path.throughput = path.throughput * scene::reflectance_at(in.scene, path.hit.point());
     const bool black = max_component(path.throughput) <= 0;
-    if (black) end(path, work);
+    if (black) end(path, buffers);
     return black;
   });
-  for (NearPath& path : work.paths) {
-    const transport::SmoothPoint p = place_of(world.scene, path.hit);
-    work.receivers.push_back(
+  for (NearPath& path : buffers.paths) {
+    const transport::SmoothPoint p = place_of(in.scene, path.hit);
+    buffers.receivers.push_back(
         {p.position, p.normal, p.geometric_normal,
-         trace::offset_origin(p.position, p.geometric_normal, world.diagonal_m),
+         trace::offset_origin(p.position, p.geometric_normal, in.diagonal_m),
          hash64(path.seed + depth, path.sample ^ 0x80000000u)});
     if (depth > 0) continue;
-    const Vec3 met = scene::world_position(world.scene, path.hit.point());
-    path.first_m = path.hit.t + length(work.receivers.back().origin - met);
+    const Vec3 met = scene::world_position(in.scene, path.hit.point());
+    path.first_m = path.hit.t + length(buffers.receivers.back().origin - met);
   }
-  const uint64_t shadow_rays = add_direct_light(world, work);
+  const uint64_t shadow_rays = add_direct_light(in, buffers);
   size_t alive = 0;
-  for (size_t i = 0; i < work.paths.size(); ++i) {
-    NearPath& path = work.paths[i];
-    if (!go_on(work.receivers[i], path.seed + depth, path)) {
-      end(path, work);
+  for (size_t i = 0; i < buffers.paths.size(); ++i) {
+    NearPath& path = buffers.paths[i];
+    if (!go_on(buffers.receivers[i], path.seed + depth, path)) {
+      end(path, buffers);
       continue;
     }
-    work.rays.push_back({work.receivers[i].origin, 0, path.direction, INFINITY});
-    work.paths[alive++] = path;
+    buffers.rays.push_back({buffers.receivers[i].origin, 0, path.direction, INFINITY});
+    buffers.paths[alive++] = path;
   }
-  work.paths.resize(alive);
-  work.hits.resize(alive);
-  world.tracer.closest_hits(work.rays, work.hits);
-  work.tint.assign(alive, {1, 1, 1});
-  if (world.tracer.has_tints()) world.tracer.tint(work.rays, work.hits, work.tint);
+  buffers.paths.resize(alive);
+  buffers.hits.resize(alive);
+  in.tracer.closest_hits(buffers.rays, buffers.hits);
+  buffers.tint.assign(alive, {1, 1, 1});
+  if (in.tracer.has_tints()) in.tracer.tint(buffers.rays, buffers.hits, buffers.tint);
   for (size_t i = 0; i < alive; ++i) {
-    work.paths[i].hit = work.hits[i];
-    work.paths[i].throughput = work.paths[i].throughput * work.tint[i];
-    work.going_on.push_back(work.paths[i]);
+    buffers.paths[i].hit = buffers.hits[i];
+    buffers.paths[i].throughput = buffers.paths[i].throughput * buffers.tint[i];
+    buffers.going_on.push_back(buffers.paths[i]);
   }
   return shadow_rays + alive;
 }

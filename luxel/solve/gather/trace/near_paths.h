@@ -3,7 +3,7 @@
 // What a texel of the map holds stands for all of the texel. A ray that ends nearer than a texel is
 // wide asks for less: for the dark inside of a joint between two solids, whose texel lies for the
 // most part in the sun, or for the bright edge of a sill. There the light of the place itself is
-// worked out: what comes straight from lamps, and one more ray, which ends farther away and reads
+// worked out: what comes straight from lights, and one more ray, which ends farther away and reads
 // the map there, or is followed on again. The map holds the light of fronts only: on the back of a
 // double-sided surface the same is done, however far it is. docs/method/gather.md
 #pragma once
@@ -40,7 +40,7 @@ struct NearPath {
 };
 
 /// What paths look at.
-struct NearWorld {
+struct NearScene {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;
   const light::Lights& lights;
@@ -51,7 +51,7 @@ struct NearWorld {
 };
 
 /// Buffers of one thread.
-struct NearWork {
+struct NearBuffers {
   std::vector<NearPath> paths, going_on;
   std::vector<light::Receiver> receivers;  ///< where the paths are
   std::vector<light::LightAt> light;
@@ -64,33 +64,33 @@ struct NearWork {
   std::span<Rgb> by_layer;
 };
 
-/// Takes each of work.paths from its near hit to where it ends, in order of their rays within each
-/// length; `end` gets them one by one: `hit` is far away, on the back of a one-sided surface, or
-/// nothing; throughput is that up to there. A path that has died comes with throughput 0.
+/// Takes each of buffers.paths from its near hit to where it ends, in order of their rays within
+/// each length; `end` gets them one by one: `hit` is far away, on the back of a one-sided surface,
+/// or nothing; throughput is that up to there. A path that has died comes with throughput 0.
 /// Returns the number of rays.
 template <class End>
-uint64_t follow_near(const NearWorld& world, NearWork& work, const End& end);
+uint64_t follow_near(const NearScene& in, NearBuffers& buffers, const End& end);
 
-/// One step of all of work.paths: the light of where they are, and rays on. Paths that end there
-/// come first in work.going_on, with throughput 0. `depth`: how many steps there have been.
-uint64_t step_near(const NearWorld& world, uint64_t depth, NearWork& work);
+/// One step of all of buffers.paths: the light of where they are, and rays on. Paths that end there
+/// come first in buffers.going_on, with throughput 0. `depth`: how many steps there have been.
+uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers);
 
 /// Whether the map has no answer for the place that a path has met.
-bool goes_on(const NearWorld& world, const NearPath& path);
+bool goes_on(const NearScene& in, const NearPath& path);
 
 template <class End>
-uint64_t follow_near(const NearWorld& world, NearWork& work, const End& end) {
+uint64_t follow_near(const NearScene& in, NearBuffers& buffers, const End& end) {
   uint64_t rays = 0;
-  for (uint64_t depth = 0; !work.paths.empty(); ++depth) {
-    rays += step_near(world, depth, work);
-    work.paths.clear();
-    for (const NearPath& path : work.going_on) {
-      if (!goes_on(world, path)) {
+  for (uint64_t depth = 0; !buffers.paths.empty(); ++depth) {
+    rays += step_near(in, depth, buffers);
+    buffers.paths.clear();
+    for (const NearPath& path : buffers.going_on) {
+      if (!goes_on(in, path)) {
         end(path);
         continue;
       }
-      work.paths.push_back(path);
-      work.paths.back().is_plain = false;
+      buffers.paths.push_back(path);
+      buffers.paths.back().is_plain = false;
     }
   }
   return rays;

@@ -7,6 +7,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/gather/gather_test_support.h"
+#include "luxel/solve/gather/rays/hit_store.h"
 
 namespace luxel::gather {
 namespace {
@@ -64,11 +65,11 @@ TEST(Gather, TheSameSeedGivesTheSameBitsForAnyNumberOfThreads) {
 // Tiles in the temporary file hold what tiles in memory hold.
 TEST(Gather, TilesOnDiskGiveTheSameBits) {
   const auto room = lay_out(scene::cornell_box(), 96);
-  GatherParams params = with_samples(64, 8);
-  params.scratch_folder = ::testing::TempDir();
-  const Gather in_memory = solve(*room, params);
-  params.hit_memory_bytes = 2 * kTileElements * 64 * sizeof(StoredHit);
-  const Gather on_disk = solve(*room, params);
+  const GatherParams params = with_samples(64, 8);
+  GatherStores stores{.scratch_folder = ::testing::TempDir()};
+  const Gather in_memory = solve(*room, params, stores);
+  stores.hit_memory_bytes = 2 * kTileElements * 64 * sizeof(StoredHit);
+  const Gather on_disk = solve(*room, params, stores);
   EXPECT_EQ(in_memory.hit_bytes_in_file, 0u);
   EXPECT_GT(on_disk.hit_bytes_in_file, 100000u);
   EXPECT_EQ(hash_of(in_memory.irradiance), hash_of(on_disk.irradiance));

@@ -20,72 +20,73 @@ void count_ends(RayEnd end, int rays, size_t element, TracedHits& out) {
 bool is_hit(RayEnd end) { return end == RayEnd::hit || end == RayEnd::behind; }
 
 /// What rays of the batch see outside, in `light`, without what they have passed.
-void look_outside(const RayWorld& world, const RayBatch& batch, OutsideLook& look) {
+void look_outside(const RayScene& in, const RayBatch& batch, OutsideLook& look) {
   look.directions.clear();
   for (const uint32_t k : look.rays) look.directions.push_back(batch.rays[k].direction);
-  light::soft_radiance(world.scene, world.around, look.directions, look.light);
+  light::soft_radiance(in.scene, in.around, look.directions, look.light);
 }
 
 /// Light of the batch's escaped rays, all of which have a direction.
-EscapedLight escaped_light(const RayWorld& world, RayWork& work, Samples samples,
+EscapedLight escaped_light(const RayScene& in, RayBuffers& buffers, Samples samples,
                            std::span<const RayEnd> ends) {
-  OutsideLook& look = work.outside;
+  OutsideLook& look = buffers.outside;
   look.rays.clear();
   for (uint32_t k = 0; k < ends.size(); ++k)
     if (ends[k] == RayEnd::escaped) look.rays.push_back(k);
-  look_outside(world, work.batch, look);
+  look_outside(in, buffers.batch, look);
   EscapedLight out;
   for (size_t at = 0; at < look.rays.size(); ++at) {
     const uint32_t k = look.rays[at];
-    const Rgb l = work.tint.empty() ? look.light[at] : look.light[at] * work.tint[k];
-    out.add(l, samples.in_second_half(work.batch.sample[k]));
+    const Rgb l = buffers.tint.empty() ? look.light[at] : look.light[at] * buffers.tint[k];
+    out.add(l, samples.in_second_half(buffers.batch.sample[k]));
   }
   return out;
 }
 
 /// The same from what was known: what was traced again no longer brings what it brought.
-EscapedLight escaped_light(const RayWorld& world, RayWork& work, Samples samples,
+EscapedLight escaped_light(const RayScene& in, RayBuffers& buffers, Samples samples,
                            const EarlierElement& before, std::span<const RayEnd> ends) {
-  if (!before.escaped) return escaped_light(world, work, samples, ends);
-  OutsideLook& look = work.outside;
-  look.rays = work.again;
-  look_outside(world, work.batch, look);
+  if (!before.escaped) return escaped_light(in, buffers, samples, ends);
+  OutsideLook& look = buffers.outside;
+  look.rays = buffers.retraced;
+  look_outside(in, buffers.batch, look);
   EscapedLight out = *before.escaped;
   for (size_t at = 0; at < look.rays.size(); ++at) {
     const uint32_t k = look.rays[at];
     const Rgb l = look.light[at];
-    const bool second_half = samples.in_second_half(work.batch.sample[k]);
+    const bool second_half = samples.in_second_half(buffers.batch.sample[k]);
     if (before.ends[k] == RayEnd::escaped) out.take_away(l, second_half);
-    if (ends[k] == RayEnd::escaped) out.add(work.tint.empty() ? l : l * work.tint[k], second_half);
+    if (ends[k] == RayEnd::escaped)
+      out.add(buffers.tint.empty() ? l : l * buffers.tint[k], second_half);
   }
   out.sum = max(out.sum, Rgb{}), out.luminance2 = std::max(out.luminance2, 0.0f);
   return out;
 }
 
 /// Notes the light of the element's escaped rays.
-void add_escaped(const RayWorld& world, const EscapedLight& light, size_t element, TracedHits& out,
+void add_escaped(const RayScene& in, const EscapedLight& light, size_t element, TracedHits& out,
                  RayTile& tile) {
   tile.escaped.push_back(light);
   out.sky[element] += light.sum, out.sky_luminance2[element] += light.luminance2;
   out.sky_first_less_second[element] += luminance(light.sum) - 2 * light.second_luminance;
-  add_sky(world, light.sum, element, out);
+  add_sky(in, light.sum, element, out);
 }
 
-/// How the batch's k-th ray has ended; one to be followed on is added to work.near.paths.
-RayEnd end_of(const RayWorld& world, RayWork& work, size_t k, size_t element, Samples samples) {
-  const trace::Hit& hit = work.hits[k];
+/// How the batch's k-th ray has ended; one to be followed on is added to buffers.near.paths.
+RayEnd end_of(const RayScene& in, RayBuffers& buffers, size_t k, size_t element, Samples samples) {
+  const trace::Hit& hit = buffers.hits[k];
   if (!hit.found()) return RayEnd::escaped;
-  if (hit.back_face && !scene::reflects_from_behind(scene::material_at(world.scene, hit.point())))
+  if (hit.back_face && !scene::reflects_from_behind(scene::material_at(in.scene, hit.point())))
     return RayEnd::back;
-  if (world.near != nullptr) {
+  if (in.near != nullptr) {
     NearPath path;
-    path.element = uint32_t(element), path.ray = uint32_t(k), path.sample = work.batch.sample[k];
-    path.seed = hash64(world.seed ^ 0x7ea4, element);
+    path.element = uint32_t(element), path.ray = uint32_t(k), path.sample = buffers.batch.sample[k];
+    path.seed = hash64(in.seed ^ 0x7ea4, element);
     path.second_half = samples.in_second_half(path.sample);
-    if (!work.tint.empty()) path.throughput = work.tint[k];
+    if (!buffers.tint.empty()) path.throughput = buffers.tint[k];
     path.hit = hit, path.is_plain = !hit.back_face;
-    if (goes_on(*world.near, path)) {
-      work.near.paths.push_back(path);
+    if (goes_on(*in.near, path)) {
+      buffers.near.paths.push_back(path);
       return RayEnd::followed;
     }
   }
@@ -93,40 +94,47 @@ RayEnd end_of(const RayWorld& world, RayWork& work, size_t k, size_t element, Sa
 }
 
 /// What a ray met then and meets now; null: it has no hit. Most meet what they met.
-void note_change(const RayWorld& world, const StoredHit* then, const StoredHit* now, size_t element,
+void note_change(const RayScene& in, const StoredHit* then, const StoredHit* now, size_t element,
                  TracedHits& out) {
   if (then && now && then->bits == now->bits) return;
-  if (then) gather::note_change(world, *then, -1, element, out);
-  if (now) gather::note_change(world, *now, 1, element, out);
+  if (then) gather::note_change(in, *then, -1, element, out);
+  if (now) gather::note_change(in, *now, 1, element, out);
 }
 
+/// The element whose rays are sorted, and which of its samples they are.
+struct RaysOf {
+  size_t element;
+  Samples samples;
+};
+
 /// Counts the end of a ray that was traced, and keeps its hit.
-void take_traced(const RayWorld& world, const RayWork& work, size_t k, RayEnd end, size_t element,
-                 Samples samples, TracedHits& out, RayTile& tile) {
+void take_traced(const RayScene& in, const RayBuffers& buffers, size_t k, RayEnd end,
+                 const RaysOf& rays, TracedHits& out, RayTile& tile) {
+  const auto [element, samples] = rays;
   if (end == RayEnd::followed) {
-    if (work.near.paths.back().hit.back_face) ++out.met_double_sided_back[element];
+    if (buffers.near.paths.back().hit.back_face) ++out.met_double_sided_back[element];
     return;
   }
   count_ends(end, 1, element, out);
   if (!is_hit(end)) return;
-  const uint32_t sample = work.batch.sample[k];
-  const uint32_t tint =
-      work.tint.empty() ? kNoTint : pack_tint(work.tint[k], hash64(element, sample ^ 0x7147u));
+  const uint32_t sample = buffers.batch.sample[k];
+  const uint32_t tint = buffers.tint.empty()
+                            ? kNoTint
+                            : pack_tint(buffers.tint[k], hash64(element, sample ^ 0x7147u));
   tile.hits.entries.push_back(
-      store(world.atlas, work.hits[k].point(), {tint, samples.in_second_half(sample)}));
+      store(in.atlas, buffers.hits[k].point(), {tint, samples.in_second_half(sample)}));
 }
 
 }  // namespace
 
-void add_sky(const RayWorld& world, Rgb l, size_t element, TracedHits& out) {
-  if (world.layers && world.layers->of_surroundings)
-    out.sky_by_layer[element * world.layers->size() + *world.layers->of_surroundings] += l;
+void add_sky(const RayScene& in, Rgb l, size_t element, TracedHits& out) {
+  if (in.layers && in.layers->of_surroundings)
+    out.sky_by_layer[element * in.layers->size() + *in.layers->of_surroundings] += l;
 }
 
-void note_change(const RayWorld& world, StoredHit hit, float sign, size_t element,
-                 TracedHits& out) {
-  if (!world.sent || out.unknown[element]) return;
-  const Float4 b = lookup(*world.sent, hit);
+void note_change(const RayScene& in, StoredHit hit, float sign, size_t element, TracedHits& out) {
+  if (!in.sent || out.unknown[element]) return;
+  const Float4 b = lookup(*in.sent, hit);
   out.change[element] += Rgb{b[0], b[1], b[2]} * sign;
 }
 
@@ -142,19 +150,19 @@ StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredH
                          uint32_t((y - float(y0)) * kSteps + 0.5f), ray);
 }
 
-void sort_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+void sort_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,
                TracedHits& out, RayTile& tile) {
-  const size_t count = work.batch.rays.size();
+  const size_t count = buffers.batch.rays.size();
   for (size_t k = 0; k < count; ++k) {
-    const RayEnd end = end_of(world, work, k, element, samples);
+    const RayEnd end = end_of(in, buffers, k, element, samples);
     tile.ends.push_back(end);
-    take_traced(world, work, k, end, element, samples, out, tile);
+    take_traced(in, buffers, k, end, {element, samples}, out, tile);
   }
   const std::span<const RayEnd> ends = std::span(tile.ends).last(count);
-  add_escaped(world, escaped_light(world, work, samples, ends), element, out, tile);
+  add_escaped(in, escaped_light(in, buffers, samples, ends), element, out, tile);
 }
 
-void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+void merge_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,
                 const EarlierElement& before, TracedHits& out, RayTile& tile) {
   const size_t count = before.ends.size();
   LUXEL_CHECK(count == samples.count());
@@ -171,22 +179,21 @@ void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples sa
     tile.hits.entries.insert(tile.hits.entries.end(), from, from + std::ptrdiff_t(stay));
     next = end, hit += stay;
   };
-  for (const uint32_t k : work.again) {
+  for (const uint32_t k : buffers.retraced) {
     keep_up_to(k);
     const RayEnd known = before.ends[k];
     count_ends(known, -1, element, out);
-    ends[k] = end_of(world, work, k, element, samples);
-    take_traced(world, work, k, ends[k], element, samples, out, tile);
+    ends[k] = end_of(in, buffers, k, element, samples);
+    take_traced(in, buffers, k, ends[k], {element, samples}, out, tile);
     const StoredHit* then = is_hit(known) ? &before.hits[hit++] : nullptr;
     const StoredHit* now = is_hit(ends[k]) ? &tile.hits.entries.back() : nullptr;
-    note_change(world, then, now, element, out);
+    note_change(in, then, now, element, out);
     next = k + 1;
   }
   keep_up_to(count);
-  const EscapedLight escaped = escaped_light(world, work, samples, before, ends);
-  if (world.sent && before.escaped)
-    out.change[element] += (escaped.sum - before.escaped->sum) * kPi;
-  add_escaped(world, escaped, element, out, tile);
+  const EscapedLight escaped = escaped_light(in, buffers, samples, before, ends);
+  if (in.sent && before.escaped) out.change[element] += (escaped.sum - before.escaped->sum) * kPi;
+  add_escaped(in, escaped, element, out, tile);
 }
 
 }  // namespace luxel::gather

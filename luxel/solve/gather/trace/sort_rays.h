@@ -6,18 +6,18 @@
 #include <span>
 #include <vector>
 
-#include "luxel/solve/gather/reuse/rays_again.h"
+#include "luxel/solve/gather/reuse/retraced_rays.h"
 #include "luxel/solve/gather/trace/near_paths.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
 
 /// What rays meet, and what they see beyond.
-struct RayWorld {
+struct RayScene {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;
   const light::Surroundings& around;
-  const NearWorld* near = nullptr;  ///< null: rays are not followed on
+  const NearScene* near = nullptr;  ///< null: rays are not followed on
   const light::LightLayers* layers = nullptr;
   const RadiosityMap* sent = nullptr;  ///< see EarlierRays
   uint64_t seed = 1;
@@ -40,8 +40,8 @@ struct OutsideLook {
 };
 
 /// Everything a worker needs, reused from element to element.
-struct RayWork : RetraceWork {
-  NearWork near;                       ///< near.paths: those that wait to be followed on
+struct RayBuffers : RetraceBuffers {
+  NearBuffers near;                    ///< near.paths: those that wait to be followed on
   std::vector<FollowedPath> followed;  ///< of a tile's elements so far
   HitTile other_hits, followed_hits;   ///< of a tile: than those of rays followed on, and those
   std::vector<uint32_t> ends_of;  ///< per element of a tile: one past the last of RayTile::ends
@@ -52,17 +52,17 @@ struct RayWork : RetraceWork {
 StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray);
 
 /// Notes radiance of a ray that has left the scene, of which the light of all layers knows already.
-void add_sky(const RayWorld& world, Rgb radiance, size_t element, TracedHits& out);
+void add_sky(const RayScene& in, Rgb radiance, size_t element, TracedHits& out);
 /// A hit that an element's rays have won (1) or lost (-1), if that is wanted; not where something
 /// is unknown, as all is looked up there.
-void note_change(const RayWorld& world, StoredHit hit, float sign, size_t element, TracedHits& out);
+void note_change(const RayScene& in, StoredHit hit, float sign, size_t element, TracedHits& out);
 
 /// Counts what the rays of the batch met, which have all been traced, and adds them to `tile`.
-/// Those that are to be followed on are added to work.near.paths.
-void sort_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+/// Those that are to be followed on are added to buffers.near.paths.
+void sort_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,
                TracedHits& out, RayTile& tile);
-/// The same where only work.again have been traced, and the others met what they met before.
-void merge_rays(const RayWorld& world, RayWork& work, size_t element, Samples samples,
+/// The same where only buffers.retraced have been traced, and the others met what they met before.
+void merge_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,
                 const EarlierElement& before, TracedHits& out, RayTile& tile);
 
 }  // namespace luxel::gather

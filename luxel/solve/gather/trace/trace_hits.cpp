@@ -11,11 +11,11 @@
 #include "luxel/base/random.h"
 #include "luxel/scene/sides.h"
 #include "luxel/solve/gather/rays/element_rays.h"
-#include "luxel/solve/gather/reuse/rays_again.h"
+#include "luxel/solve/gather/reuse/retraced_rays.h"
 #include "luxel/solve/gather/trace/follow_on.h"
 #include "luxel/solve/gather/trace/kept_hits.h"
 #include "luxel/solve/gather/trace/sort_rays.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::gather {
 
@@ -42,7 +42,7 @@ uint32_t places_of(const atlas::Atlas& atlas) {
 
 /// One round's way through the elements.
 struct Round {
-  const RayWorld& world;
+  const RayScene& ray_scene;
   const transport::Elements& elements;
   const trace::RayTracer& tracer;
   std::span<const uint16_t> target;
@@ -65,34 +65,33 @@ struct Round {
   /// The rays that are known of the tile of elements [begin, end), and what those of them meet that
   /// are traced again.
   void trace_known(size_t begin, size_t end, const RayTile* known, const TracedHits& hits,
-                   RayWork& work, RaysAgain& out) const;
-  /// `before`: what is known of the element's rays, and work.again has been traced; null: nothing.
-  void trace_element(size_t i, const EarlierElement* before, RayWork& work, TracedHits& out,
+                   RayBuffers& buffers, RetracedRays& out) const;
+  /// `before`: what is known of the element's rays, and buffers.retraced has been traced; null:
+  /// nothing.
+  void trace_element(size_t i, const EarlierElement* before, RayBuffers& buffers, TracedHits& out,
                      TracedTile& tile) const;
   /// Inside of solids it is dark: paths along their walls, which are long, would bring nothing.
-  void drop_enclosed_paths(size_t i, RayWork& work, const TracedHits& hits) const;
+  void drop_enclosed_paths(size_t i, RayBuffers& buffers, const TracedHits& hits) const;
 };
 
-void Round::drop_enclosed_paths(size_t i, RayWork& work, const TracedHits& hits) const {
-  std::vector<NearPath>& paths = work.near.paths;
+void Round::drop_enclosed_paths(size_t i, RayBuffers& buffers, const TracedHits& hits) const {
+  std::vector<NearPath>& paths = buffers.near.paths;
   if (paths.empty() || paths.back().element != i) return;
-  const transport::BacksSeen own{int(hits.samples[i]), int(hits.met_back[i]),
-                                 int(hits.met_double_sided_back[i])};
-  if (transport::is_enclosed(world.scene, tracer, elements, i, own, diagonal_m))
+  if (transport::is_enclosed(ray_scene.scene, tracer, elements, i, back_faces(hits, i), diagonal_m))
     std::erase_if(paths, [i](const NearPath& p) { return p.element == i && p.hit.back_face; });
 }
 
 /// Traces all rays of the batch.
-void trace_all(const trace::RayTracer& tracer, RayWork& work) {
-  work.hits.resize(work.batch.rays.size());
-  tracer.closest_hits(work.batch.rays, work.hits);
+void trace_all(const trace::RayTracer& tracer, RayBuffers& buffers) {
+  buffers.hits.resize(buffers.batch.rays.size());
+  tracer.closest_hits(buffers.batch.rays, buffers.hits);
   if (!tracer.has_tints()) return;
-  work.tint.assign(work.batch.rays.size(), {1, 1, 1});
-  tracer.tint(work.batch.rays, work.hits, work.tint);
+  buffers.tint.assign(buffers.batch.rays.size(), {1, 1, 1});
+  tracer.tint(buffers.batch.rays, buffers.hits, buffers.tint);
 }
 
-void Round::trace_element(size_t i, const EarlierElement* before, RayWork& work, TracedHits& out,
-                          TracedTile& tile) const {
+void Round::trace_element(size_t i, const EarlierElement* before, RayBuffers& buffers,
+                          TracedHits& out, TracedTile& tile) const {
   const Samples samples = samples_of(i, out);
   if (samples.count() == 0) {
     tile.rays_met.escaped.emplace_back();
@@ -101,18 +100,18 @@ void Round::trace_element(size_t i, const EarlierElement* before, RayWork& work,
   // What was there before is of the first half now.
   out.sky_first_less_second[i] = luminance(out.sky[i]);
   out.samples[i] = uint16_t(samples.end), out.last_round[i] = uint8_t(out.rounds.size());
-  if (world.sent && !(before && before->escaped)) out.unknown[i] = 1;
+  if (ray_scene.sent && !(before && before->escaped)) out.unknown[i] = 1;
   size_t traced = samples.count();
   if (before) {
-    traced = work.again.size();
-    if (!before->escaped) fill_batch(i, samples, work.batch);
-    merge_rays(world, work, i, samples, *before, out, tile.rays_met);
+    traced = buffers.retraced.size();
+    if (!before->escaped) fill_batch(i, samples, buffers.batch);
+    merge_rays(ray_scene, buffers, i, samples, *before, out, tile.rays_met);
   } else {
-    fill_batch(i, samples, work.batch);
-    trace_all(tracer, work);
-    sort_rays(world, work, i, samples, out, tile.rays_met);
+    fill_batch(i, samples, buffers.batch);
+    trace_all(tracer, buffers);
+    sort_rays(ray_scene, buffers, i, samples, out, tile.rays_met);
   }
-  drop_enclosed_paths(i, work, out);
+  drop_enclosed_paths(i, buffers, out);
   tile.kept += samples.count() - traced;
   tile.rays += traced;
 }
@@ -139,10 +138,10 @@ uint64_t planned_samples(std::span<const uint16_t> target, const TracedHits& hit
 }
 
 /// What tracing a tile needs, reused from tile to tile.
-struct TileWork {
-  RayWork work;
+struct TileBuffers {
+  RayBuffers rays;
   RayTileBuffer earlier;
-  RaysAgain again;
+  RetracedRays retraced;
   TracedTile tile;
 };
 
@@ -158,21 +157,21 @@ const RayTile* earlier_tile(const Round& round, size_t begin, size_t end, uint64
                             RayTileBuffer& buffer) {
   if (!round.earlier) return nullptr;
   const RayTile* rays = find_rays(*round.earlier->file, round.number, begin / kTileElements,
-                                  end - begin, places_of(round.world.atlas), buffer);
+                                  end - begin, places_of(round.ray_scene.atlas), buffer);
   // Maybe of a round with other samples.
   return rays && rays->ends.size() == planned ? rays : nullptr;
 }
 
-/// Whether an element's rays that were followed on may bring what they brought, as far as lamps and
-/// reflectances are concerned. They are not told apart by layers.
+/// Whether an element's rays that were followed on may bring what they brought, as far as lights
+/// and reflectances are concerned. They are not told apart by layers.
 bool stay_followed(const Round& round, size_t element, float near_m) {
   const EarlierRays& earlier = *round.earlier;
-  return earlier.same_light && !earlier.same_light_m.empty() && round.world.layers == nullptr &&
+  return earlier.same_light && !earlier.same_light_m.empty() && round.ray_scene.layers == nullptr &&
          near_m <= earlier.same_light_m[element];
 }
 
 void Round::trace_known(size_t begin, size_t end, const RayTile* known, const TracedHits& hits,
-                        RayWork& work, RaysAgain& out) const {
+                        RayBuffers& buffers, RetracedRays& out) const {
   // Through glass rays escape in a colour that is not known.
   const bool knows_escaped = !earlier->surroundings && !tracer.has_tints();
   clear(out);
@@ -181,41 +180,42 @@ void Round::trace_known(size_t begin, size_t end, const RayTile* known, const Tr
     const Samples samples = samples_of(i, hits);
     const bool knows = cursor.advance(i - begin, samples.count(), knows_escaped) &&
                        !earlier->moved[i] && samples.count() > 0;
-    work.again.clear();
+    buffers.retraced.clear();
     if (knows) {
       cursor.of.follows_again = !stay_followed(*this, i, cursor.of.near_m);
-      choose_again({elements, *earlier, cell_cones, tracer.has_tints()}, i, origin_of(i),
-                   seed_of_rays(seed, i), samples, cursor.of, work);
+      choose_retraced({elements, *earlier, cell_cones, tracer.has_tints()}, i, origin_of(i),
+                      seed_of_rays(seed, i), samples, cursor.of, buffers);
     }
-    add_again(knows ? &cursor.of : nullptr, work, out);
+    add_retraced(knows ? &cursor.of : nullptr, buffers, out);
   }
-  trace_again(tracer, out);
+  retrace(tracer, out);
 }
 
 /// Traces the elements [begin, end) into buffers.tile, unless the work is cancelled.
-void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers, TracedHits& hits,
-                Progress& progress) {
+void trace_tile(const Round& round, size_t begin, size_t end, TileBuffers& tile_buffers,
+                TracedHits& hits, Progress& progress) {
   constexpr uint64_t kRaysPerAdvance = 8192;
-  RayWork& work = buffers.work;
-  TracedTile& tile = buffers.tile;
+  RayBuffers& buffers = tile_buffers.rays;
+  TracedTile& tile = tile_buffers.tile;
   // The tile's own are given away each time.
-  std::swap(tile.rays_met.hits, work.other_hits);
+  std::swap(tile.rays_met.hits, buffers.other_hits);
   clear(tile);
-  work.near.paths.clear(), work.followed.clear(), work.ends_of.clear();
+  buffers.near.paths.clear(), buffers.followed.clear(), buffers.ends_of.clear();
   uint64_t untold = 0, kept = 0;
   const uint64_t planned = planned_samples(round.target, hits, begin, end);
-  const RayTile* known = earlier_tile(round, begin, end, planned, buffers.earlier);
-  if (known) round.trace_known(begin, end, known, hits, work, buffers.again);
+  const RayTile* known = earlier_tile(round, begin, end, planned, tile_buffers.earlier);
+  if (known) round.trace_known(begin, end, known, hits, buffers, tile_buffers.retraced);
   tile.rays_met.hits.entries.reserve(planned), tile.rays_met.ends.reserve(planned);
   for (size_t i = begin; i < end; ++i) {
     if (progress.cancelled()) return;
     const uint64_t samples = planned_samples(round.target, hits, i, i + 1);
-    const EarlierElement* before = known ? buffers.again.of(i - begin) : nullptr;
-    if (before) take_again(buffers.again, i - begin, work);
-    round.trace_element(i, before, work, hits, tile);
+    const EarlierElement* before = known ? tile_buffers.retraced.of(i - begin) : nullptr;
+    if (before) take_retraced(tile_buffers.retraced, i - begin, buffers);
+    round.trace_element(i, before, buffers, hits, tile);
     tile.rays_met.hits.end.push_back(uint32_t(tile.rays_met.hits.entries.size()));
-    work.ends_of.push_back(uint32_t(tile.rays_met.ends.size()));
-    if (work.near.paths.size() >= kPathsAtATime) tile.rays += follow_paths(round.world, work, hits);
+    buffers.ends_of.push_back(uint32_t(tile.rays_met.ends.size()));
+    if (buffers.near.paths.size() >= kPathsAtATime)
+      tile.rays += follow_paths(round.ray_scene, buffers, hits);
     // Not for every element: the counter is shared by all threads.
     untold += samples;
     if (untold < kRaysPerAdvance && i + 1 < end) continue;
@@ -223,18 +223,18 @@ void trace_tile(const Round& round, size_t begin, size_t end, TileWork& buffers,
     progress.advance(untold - std::min(untold, tile.kept - kept));
     untold = 0, kept = tile.kept;
   }
-  tile.rays += follow_on(round.world, begin, work.ends_of, known ? &buffers.again : nullptr, work,
-                         hits, tile.rays_met);
+  tile.rays += follow_on(round.ray_scene, begin, buffers.ends_of,
+                         known ? &tile_buffers.retraced : nullptr, buffers, hits, tile.rays_met);
 }
 
 /// Traces the round's elements into `store`. Errors: disk full.
 Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, TracedHits& hits,
                    HitStore& store, Progress& progress) {
   std::atomic<uint64_t> rays{0}, rays_kept{0};
-  BufferPool<TileWork> pool;
+  BufferPool<TileBuffers> pool;
   std::mutex mutex;
   Status status;
-  const uint32_t places = places_of(round.world.atlas);
+  const uint32_t places = places_of(round.ray_scene.atlas);
   parallel_for(hits.size(), kTileElements, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     const size_t number = begin / kTileElements;
@@ -245,15 +245,15 @@ Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, T
       rays += found->tile.rays;
       put = store.put(number, std::move(found->tile.rays_met.hits), found->entries);
     } else {
-      TileWork work = pool.take();
-      TracedTile& tile = work.tile;
-      trace_tile(round, begin, end, work, hits, progress);
+      TileBuffers buffers = pool.take();
+      TracedTile& tile = buffers.tile;
+      trace_tile(round, begin, end, buffers, hits, progress);
       if (progress.cancelled()) return;
       const KeptEntries entries = keep_tile(kept, begin, end, tile, hits);
       keep_rays(keep, round.number, number, tile.rays_met);
       rays += tile.rays, rays_kept += tile.kept;
       put = store.put(number, std::move(tile.rays_met.hits), entries);
-      pool.give(std::move(work));
+      pool.give(std::move(buffers));
     }
     if (!put) {
       const std::lock_guard lock(mutex);
@@ -267,52 +267,50 @@ Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, T
 
 }  // namespace
 
-Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
-                  const transport::Elements& elements, const light::Surroundings& around,
-                  const trace::RayTracer& tracer, std::span<const uint16_t> target,
-                  const TraceParams& params, TracedHits& hits, Progress& progress) {
+Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const TraceParams& params,
+                  TracedHits& hits, Progress& progress) {
+  const transport::Elements& elements = in.elements;
   LUXEL_CHECK(target.size() == elements.size() && hits.size() == elements.size());
   LUXEL_CHECK(hits.rounds.size() < 256);
   LUXEL_CHECK(hits.sky_by_layer.size() ==
               elements.size() * (params.layers ? params.layers->size() : 0));
+  // Hits of this round go to memory as far as those of the rounds before leave room.
   const uint64_t used = hits.bytes_in_memory();
   LUXEL_TRY(HitStore store,
             HitStore::create(elements.size(), kTileElements, most_added(target, hits),
                              params.memory_limit_bytes - std::min(used, params.memory_limit_bytes),
                              params.scratch_folder));
-  const float diagonal_m = scene::world_bounds(scene).diagonal();
-  std::optional<NearWorld> near;
+  const float diagonal_m = scene::world_bounds(in.scene).diagonal();
+  std::optional<NearScene> near;
   std::vector<float> widths;
-  if (params.near_lights != nullptr) {
-    widths = texel_widths_m(scene, atlas);
+  if (params.follows_near) {
+    widths = texel_widths_m(in.scene, in.atlas);
     near.emplace(
-        NearWorld{scene, atlas, *params.near_lights, tracer, widths, diagonal_m, params.layers});
+        NearScene{in.scene, in.atlas, in.lights, in.tracer, widths, diagonal_m, params.layers});
   }
   const RadiosityMap* sent = params.earlier ? params.earlier->sent : nullptr;
   if (sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());
-  const RayWorld world{scene,         atlas, around,     near ? &*near : nullptr,
-                       params.layers, sent,  params.seed};
+  const RayScene ray_scene{in.scene,      in.atlas, in.lights.around, near ? &*near : nullptr,
+                           params.layers, sent,     params.seed};
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   const uint64_t number = hits.rounds.size();
   LUXEL_TRY_STATUS(trace_tiles(
-      {world, elements, tracer, target, params.seed, diagonal_m, number, params.earlier}, kept,
-      params.keep, hits, store, progress));
+      {ray_scene, elements, in.tracer, target, params.seed, diagonal_m, number, params.earlier},
+      kept, params.keep, hits, store, progress));
   LUXEL_TRY_STATUS(stopped(progress));
   keep_samples(params.keep, number, hits.samples);
   hits.rounds.push_back(std::move(store));
   return {};
 }
 
-Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
-                              const transport::Elements& elements,
-                              const light::Surroundings& around, const trace::RayTracer& tracer,
-                              int samples, const TraceParams& params, Progress& progress) {
+Result<TracedHits> trace_hits(const TraceScene& in, int samples, const TraceParams& params,
+                              Progress& progress) {
   LUXEL_CHECK(samples >= 1 && samples <= 65535);
-  TracedHits hits = no_hits(elements.size(), params.layers ? params.layers->size() : 0);
-  const std::vector<uint16_t> target(elements.size(), uint16_t(samples));
-  LUXEL_TRY_STATUS(
-      trace_more(scene, atlas, elements, around, tracer, target, params, hits, progress));
+  const size_t n = in.elements.size();
+  TracedHits hits = no_hits(n, params.layers ? params.layers->size() : 0);
+  const std::vector<uint16_t> target(n, uint16_t(samples));
+  LUXEL_TRY_STATUS(trace_more(in, target, params, hits, progress));
   return hits;
 }
 

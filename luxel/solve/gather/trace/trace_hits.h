@@ -1,4 +1,4 @@
-// Shoots every element's cosine-distributed rays once and remembers what they met.
+// Traces every element's cosine-distributed rays once and remembers what they met.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "luxel/base/result.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/light/lights.h"
+#include "luxel/light/texel_scene.h"
 #include "luxel/scene/scene.h"
 #include "luxel/solve/gather/rays/traced_hits.h"
 #include "luxel/solve/gather/reuse/earlier_rays.h"
@@ -20,12 +21,23 @@
 
 namespace luxel::gather {
 
+/// What rays of elements are traced in. The elements need not be those of a map.
+struct TraceScene {
+  const scene::Scene& scene;
+  const atlas::Atlas& atlas;
+  const transport::Elements& elements;
+  const light::Lights& lights;
+  const trace::RayTracer& tracer;
+};
+inline TraceScene trace_scene(const light::TexelScene& in) {
+  return {in.scene, in.atlas, in.elements, in.lights, in.tracer};
+}
+
 struct TraceParams {
   uint64_t seed = 1;
   uint64_t memory_limit_bytes = UINT64_MAX;  ///< for hits; the rest goes to temporary files
   std::filesystem::path scratch_folder = ".";
-  /// What rays look for that are followed on where they end nearby (near_paths.h); null: none are.
-  const light::Lights* near_lights = nullptr;
+  bool follows_near = false;   ///< rays that end nearby are followed on (near_paths.h)
   PartStore* parts = nullptr;  ///< where finished tiles are kept and found; null: nowhere
   PartStore* keep = nullptr;   ///< where each ray's end is kept for later bakes; null: nowhere
   const EarlierRays* earlier = nullptr;        ///< what an earlier bake's rays met; null: nothing
@@ -38,16 +50,12 @@ struct TraceParams {
 /// Directions are those of an Owen-scrambled Sobol sequence of its own per element,
 /// cosine-distributed about the shading normal [Moreno05, eq. 3.7]; those below the triangle itself
 /// are mirrored to above it. Errors: cancelled, disk full; hits are of no use then.
-Status trace_more(const scene::Scene& scene, const atlas::Atlas& atlas,
-                  const transport::Elements& elements, const light::Surroundings& around,
-                  const trace::RayTracer& tracer, std::span<const uint16_t> target,
-                  const TraceParams& params, TracedHits& hits, Progress& progress);
+Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const TraceParams& params,
+                  TracedHits& hits, Progress& progress);
 
 /// One round, the same number of samples for all elements.
-Result<TracedHits> trace_hits(const scene::Scene& scene, const atlas::Atlas& atlas,
-                              const transport::Elements& elements,
-                              const light::Surroundings& around, const trace::RayTracer& tracer,
-                              int samples, const TraceParams& params, Progress& progress);
+Result<TracedHits> trace_hits(const TraceScene& in, int samples, const TraceParams& params,
+                              Progress& progress);
 
 /// Per element, the place on the other side of the surface, as a hit: its own where the surface has
 /// but one side. Empty where nothing scatters light through.

@@ -1,4 +1,4 @@
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ Counts count_enclosed(const scene::Scene& scene, int rays) {
 }
 
 // The walls take up 99 % of the view, the floor or the pillar's own bottom the rest.
-TEST(BacksSeen, APlaceWithinAPillarOnTheFloorIsEnclosed) {
+TEST(BackFaces, APlaceWithinAPillarOnTheFloorIsEnclosed) {
   const scene::Scene scene = hall({});
   for (const int rays : {16, 32, 64}) {
     const Counts counts = count_enclosed(scene, rays);
@@ -62,7 +62,7 @@ TEST(BacksSeen, APlaceWithinAPillarOnTheFloorIsEnclosed) {
 }
 
 // Where something shines it is not dark.
-TEST(BacksSeen, APlaceThatSeesALampIsNot) {
+TEST(BackFaces, APlaceThatSeesALampIsNot) {
   const Counts counts = count_enclosed(hall({5, 5, 5}), 64);
   EXPECT_LT(counts.inside, counts.each / 2);
   EXPECT_EQ(counts.outside, 0);

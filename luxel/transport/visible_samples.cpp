@@ -1,4 +1,4 @@
-#include "luxel/transport/open_samples.h"
+#include "luxel/transport/visible_samples.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/warp.h"
 #include "luxel/scene/drawn_triangle.h"
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 #include "luxel/transport/barriers.h"
 #include "luxel/transport/texel_width.h"
 
@@ -20,26 +20,26 @@ constexpr int kFeelers = 6;     ///< short rays around a sample
 constexpr float kReach = 1.5f;  ///< their length in texels
 constexpr int kFirstRays = 8, kRaysForOpen = 32;
 
-struct Work {
+struct Probe {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;
   const trace::RayTracer& tracer;
   float diagonal_m;
 
-  Vec3 just_above(const Place& p) const {
+  Vec3 just_above(const FlatPoint& p) const {
     return trace::offset_origin(p.position, p.normal, diagonal_m);
   }
   bool in_the_open(const scene::SurfacePoint& p) const {
-    const Place at = place_of(scene, p);
+    const FlatPoint at = flat_point(scene, p);
     // Most places see no backs, and most under things nothing else: a few rays tell.
-    const BacksSeen few = backs_seen(scene, tracer, just_above(at), at.normal, kFirstRays);
-    if (backs_in(few) == 0) return true;
+    const BackFaces few = count_back_faces(scene, tracer, just_above(at), at.normal, kFirstRays);
+    if (all_backs(few) == 0) return true;
     return !is_enclosed(few) &&
            !is_enclosed(scene, tracer, just_above(at), at.normal, kRaysForOpen, diagonal_m);
   }
   /// Short rays around the sample, twenty degrees above the surface.
   void add_feelers(const atlas::Texel& texel, std::vector<trace::Ray>& rays) const {
-    const Place at = place_of(scene, texel.sample);
+    const FlatPoint at = flat_point(scene, texel.sample);
     const Vec3 from = just_above(at);
     const float reach =
         kReach * texel_width_m(scene, atlas, texel.sample.instance, texel.sample.triangle);
@@ -69,7 +69,8 @@ constexpr auto kPlaces = [] {
   return out;
 }();
 
-std::optional<scene::SurfacePoint> Work::open_place(const atlas::Texel& texel, bool is_open) const {
+std::optional<scene::SurfacePoint> Probe::open_place(const atlas::Texel& texel,
+                                                     bool is_open) const {
   const auto& corners = atlas.corners[texel.triangle_number];
   struct Candidate {
     Vec2 place;
@@ -100,20 +101,20 @@ std::optional<scene::SurfacePoint> Work::open_place(const atlas::Texel& texel, b
 enum class Found : uint8_t { nothing, back_near, enclosed, moved };
 
 /// Looks at some texels' samples, and sets what is found per texel of the map.
-void look_around(const Work& work, std::span<const uint32_t> texels, const atlas::TexelMap& map,
+void look_around(const Probe& probe, std::span<const uint32_t> texels, const atlas::TexelMap& map,
                  std::span<Found> found) {
   constexpr size_t kBlock = 2048;
   parallel_for(texels.size(), kBlock, [&](size_t begin, size_t end) {
     std::vector<trace::Ray> rays;
-    for (size_t k = begin; k < end; ++k) work.add_feelers(map.texels[texels[k]], rays);
+    for (size_t k = begin; k < end; ++k) probe.add_feelers(map.texels[texels[k]], rays);
     std::vector<trace::Hit> hits(rays.size());
-    work.tracer.closest_hits(rays, hits);
+    probe.tracer.closest_hits(rays, hits);
     for (size_t k = begin; k < end; ++k) {
       const auto first = hits.begin() + long((k - begin) * kFeelers);
       if (std::none_of(first, first + kFeelers,
                        [](const trace::Hit& hit) { return hit.found() && hit.back_face; }))
         continue;
-      const bool open = work.in_the_open(map.texels[texels[k]].sample);
+      const bool open = probe.in_the_open(map.texels[texels[k]].sample);
       found[texels[k]] = open ? Found::back_near : Found::enclosed;
     }
   });
@@ -127,7 +128,7 @@ uint32_t texel_at(const atlas::TexelMap& map, int x, int y) {
 /// Finds the borders of enclosed regions whose backs are farther away, such as the floor under a
 /// shell without a bottom: between texels of a lattice of which one is enclosed and another is not
 /// all are looked at.
-void look_for_regions(const Work& work, const atlas::TexelMap& map, std::span<Found> found) {
+void look_for_regions(const Probe& probe, const atlas::TexelMap& map, std::span<Found> found) {
   constexpr int kStep = 4;
   const int across = (map.resolution + kStep - 1) / kStep;
   const auto on_lattice = [&](int u, int v) { return texel_at(map, u * kStep, v * kStep); };
@@ -135,7 +136,7 @@ void look_for_regions(const Work& work, const atlas::TexelMap& map, std::span<Fo
   parallel_for(enclosed.size(), 64, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k)
       if (const uint32_t i = on_lattice(int(k) % across, int(k) / across); i != atlas::kNone)
-        enclosed[k] = !work.in_the_open(map.texels[i].sample);
+        enclosed[k] = !probe.in_the_open(map.texels[i].sample);
   });
   const auto is_enclosed_at = [&](int u, int v) {
     return u >= 0 && v >= 0 && u < across && v < across &&
@@ -157,7 +158,7 @@ void look_for_regions(const Work& work, const atlas::TexelMap& map, std::span<Fo
     }
   parallel_for(look.size(), 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      if (look[i] && found[i] == Found::nothing && !work.in_the_open(map.texels[i].sample))
+      if (look[i] && found[i] == Found::nothing && !probe.in_the_open(map.texels[i].sample))
         found[i] = Found::enclosed;
   });
 }
@@ -179,18 +180,18 @@ std::vector<uint32_t> at_the_edge(const atlas::TexelMap& map, std::span<const Fo
 }
 
 /// Opens the samples of the map's texels, of which only some can have backs near them.
-OpenedSamples open_some(const Work& work, std::span<const uint32_t> texels, atlas::TexelMap& map) {
+MovedSamples move_some(const Probe& probe, std::span<const uint32_t> texels, atlas::TexelMap& map) {
   std::vector<Found> found(map.texels.size());
-  look_around(work, texels, map, found);
-  OpenedSamples out;
+  look_around(probe, texels, map, found);
+  MovedSamples out;
   for (uint32_t i = 0; i < found.size(); ++i)
     if (found[i] != Found::nothing) out.near_backs.push_back(i);
-  look_for_regions(work, map, found);
+  look_for_regions(probe, map, found);
   const std::vector<uint32_t> edge = at_the_edge(map, found);
   parallel_for(edge.size(), 64, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       atlas::Texel& texel = map.texels[edge[k]];
-      const auto place = work.open_place(texel, found[edge[k]] != Found::enclosed);
+      const auto place = probe.open_place(texel, found[edge[k]] != Found::enclosed);
       if (place) texel.sample = *place, found[edge[k]] = Found::moved;
     }
   });
@@ -209,16 +210,16 @@ bool meets_any(std::span<const Box3> boxes, const Box3& other, float within_m) {
 
 /// Per triangle of the atlas, how near to a box its samples' feelers meet it; < 0: it is too far
 /// away for all of them.
-std::vector<float> reaches_to(const Work& work, std::span<const Box3> boxes) {
-  std::vector<float> out(work.atlas.corners.size(), -1.0f);
+std::vector<float> reaches_to(const Probe& probe, std::span<const Box3> boxes) {
+  std::vector<float> out(probe.atlas.corners.size(), -1.0f);
   parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       const auto [instance, triangle] =
-          scene::drawn_triangle(work.atlas.first_triangle, uint32_t(k));
+          scene::drawn_triangle(probe.atlas.first_triangle, uint32_t(k));
       // Feelers start a little above their sample, which rounding may put beside the triangle.
-      const float reach = kReach * texel_width_m(work.scene, work.atlas, instance, triangle) +
-                          1e-4f * work.diagonal_m;
-      const scene::Triangle3 t = scene::world_triangle(work.scene, instance, triangle);
+      const float reach = kReach * texel_width_m(probe.scene, probe.atlas, instance, triangle) +
+                          1e-4f * probe.diagonal_m;
+      const scene::Triangle3 t = scene::world_triangle(probe.scene, instance, triangle);
       Box3 bounds;
       for (const Vec3& corner : {t.a, t.b, t.c}) bounds.extend(corner);
       if (meets_any(boxes, bounds, reach)) out[k] = reach;
@@ -229,18 +230,18 @@ std::vector<float> reaches_to(const Work& work, std::span<const Box3> boxes) {
 
 }  // namespace
 
-OpenedSamples open_samples(const scene::Scene& scene, const atlas::Atlas& atlas,
-                           const trace::RayTracer& tracer, atlas::TexelMap& map) {
+MovedSamples move_samples_out_of_solids(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                        const trace::RayTracer& tracer, atlas::TexelMap& map) {
   std::vector<uint32_t> all(map.texels.size());
   std::iota(all.begin(), all.end(), 0);
-  return open_some({scene, atlas, tracer, scene::world_bounds(scene).diagonal()}, all, map);
+  return move_some({scene, atlas, tracer, scene::world_bounds(scene).diagonal()}, all, map);
 }
 
-OpenedSamples open_samples_again(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                 const trace::RayTracer& tracer, std::span<const Box3> boxes,
-                                 std::span<const uint32_t> near_backs, atlas::TexelMap& map) {
-  const Work work{scene, atlas, tracer, scene::world_bounds(scene).diagonal()};
-  const std::vector<float> reaches = reaches_to(work, boxes);
+MovedSamples move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                       const trace::RayTracer& tracer, std::span<const Box3> boxes,
+                                       std::span<const uint32_t> near_backs, atlas::TexelMap& map) {
+  const Probe probe{scene, atlas, tracer, scene::world_bounds(scene).diagonal()};
+  const std::vector<float> reaches = reaches_to(probe, boxes);
   std::vector<uint8_t> look(map.texels.size());
   for (const uint32_t i : near_backs) look[i] = 1;
   parallel_for(look.size(), 4096, [&](size_t begin, size_t end) {
@@ -254,7 +255,7 @@ OpenedSamples open_samples_again(const scene::Scene& scene, const atlas::Atlas& 
   std::vector<uint32_t> texels;
   for (uint32_t i = 0; i < look.size(); ++i)
     if (look[i]) texels.push_back(i);
-  return open_some(work, texels, map);
+  return move_some(probe, texels, map);
 }
 
 }  // namespace luxel::transport

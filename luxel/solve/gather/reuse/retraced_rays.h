@@ -13,13 +13,13 @@ namespace luxel::gather {
 
 /// An element's rays, what those met that were traced, and which of an earlier bake's rays are
 /// traced again; reused from element to element.
-struct RetraceWork {
+struct RetraceBuffers {
   RayBatch batch;
   std::vector<trace::Hit> hits;  ///< of the batch's rays, where they were traced
   std::vector<Rgb> tint;         ///< of what rays have passed; empty where nothing has a colour
   /// Where rays of an earlier bake are known: those that may meet something else, which have a
   /// direction, and of them those that are traced again; ascending.
-  std::vector<uint32_t> maybe, again;
+  std::vector<uint32_t> maybe, retraced;
   std::vector<uint8_t> marked;  ///< per ray, 1: traced again
 };
 
@@ -34,7 +34,7 @@ struct EarlierCursor {
 };
 
 /// What rays are chosen by.
-struct AgainWorld {
+struct RetraceScene {
   const transport::Elements& elements;
   const EarlierRays& earlier;
   const CellCones& cell_cones;
@@ -43,14 +43,14 @@ struct AgainWorld {
 
 /// Finds the rays of an element that may meet something else than in the earlier bake, and of those
 /// that were followed on the ones that may bring something else. Of rays that escaped through
-/// something coloured the colour is not known. All that do are in work.again then, are 1 in
-/// work.marked, and have directions in the batch, which is filled unless there are none.
-void choose_again(const AgainWorld& world, size_t element, Vec3 origin, uint64_t seed,
-                  Samples samples, const EarlierElement& before, RetraceWork& work);
+/// something coloured the colour is not known. All that do are in buffers.retraced then, are 1 in
+/// buffers.marked, and have directions in the batch, which is filled unless there are none.
+void choose_retraced(const RetraceScene& in, size_t element, Vec3 origin, uint64_t seed,
+                     Samples samples, const EarlierElement& before, RetraceBuffers& buffers);
 
 /// The rays of a tile's elements that are traced again: packets of a few elements' rays are full
 /// where those of one would be nearly empty.
-struct RaysAgain {
+struct RetracedRays {
   std::vector<EarlierElement> known;
   std::vector<uint8_t> is_known;  ///< per element; 0: nothing is known of its rays
   std::vector<uint32_t> end;      ///< per element: one past its last ray in what follows
@@ -67,12 +67,12 @@ struct RaysAgain {
   const EarlierElement* of(size_t k) const { return is_known[k] ? &known[k] : nullptr; }
 };
 
-void clear(RaysAgain& rays);
-/// Of the next element, of which something is known (null: nothing), work.again.
-void add_again(const EarlierElement* before, const RetraceWork& work, RaysAgain& out);
-void trace_again(const trace::RayTracer& tracer, RaysAgain& rays);
-/// Puts those of the k-th element, which is known, back into `work`, as if they had been traced
+void clear(RetracedRays& rays);
+/// Of the next element, of which something is known (null: nothing), buffers.retraced.
+void add_retraced(const EarlierElement* before, const RetraceBuffers& buffers, RetracedRays& out);
+void retrace(const trace::RayTracer& tracer, RetracedRays& rays);
+/// Puts those of the k-th element, which is known, back into `buffers`, as if they had been traced
 /// there.
-void take_again(const RaysAgain& rays, size_t k, RetraceWork& work);
+void take_retraced(const RetracedRays& rays, size_t k, RetraceBuffers& buffers);
 
 }  // namespace luxel::gather

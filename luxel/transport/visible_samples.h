@@ -11,7 +11,7 @@
 namespace luxel::transport {
 
 /// Texels, ascending.
-struct OpenedSamples {
+struct MovedSamples {
   std::vector<uint32_t> moved;  ///< those whose samples were moved
   /// Those with the back of a surface near their own sample.
   std::vector<uint32_t> near_backs;
@@ -24,14 +24,15 @@ struct OpenedSamples {
 /// and along the borders of larger regions of such samples. Where the grid's corners are like the
 /// sample, so is the rest taken to be. Where some places are in the open and some are not, the
 /// sample moves to the one in the middle of those that are; elsewhere it stays.
-OpenedSamples open_samples(const scene::Scene& scene, const atlas::Atlas& atlas,
-                           const trace::RayTracer& tracer, atlas::TexelMap& map);
+MovedSamples move_samples_out_of_solids(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                        const trace::RayTracer& tracer, atlas::TexelMap& map);
 
 /// The same where rays meet something else than then within `boxes` alone [m], in a map whose
 /// samples all are where they were before they were opened: of texels away from the boxes only
-/// those that had backs near them then are looked at. Returns what open_samples() does.
-OpenedSamples open_samples_again(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                 const trace::RayTracer& tracer, std::span<const Box3> boxes,
-                                 std::span<const uint32_t> near_backs, atlas::TexelMap& map);
+/// those that had backs near them then are looked at. Returns what move_samples_out_of_solids()
+/// does.
+MovedSamples move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                       const trace::RayTracer& tracer, std::span<const Box3> boxes,
+                                       std::span<const uint32_t> near_backs, atlas::TexelMap& map);
 
 }  // namespace luxel::transport

@@ -1,4 +1,4 @@
-#include "luxel/transport/backs_seen.h"
+#include "luxel/transport/back_faces.h"
 
 #include <array>
 
@@ -31,8 +31,8 @@ Look look_from(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, size_t co
   return out;
 }
 
-BacksSeen backs_of(const scene::Scene& scene, const Look& look) {
-  BacksSeen seen{int(look.count), 0, 0};
+BackFaces backs_of(const scene::Scene& scene, const Look& look) {
+  BackFaces seen{int(look.count), 0, 0};
   for (const trace::Hit& hit : std::span(look.hits).first(look.count)) {
     if (!hit.found() || !hit.back_face) continue;
     const scene::Material& material = scene::material_at(scene, hit.point());
@@ -41,21 +41,24 @@ BacksSeen backs_of(const scene::Scene& scene, const Look& look) {
   return seen;
 }
 
-/// But for a few fronts, of which it is worth knowing what they are.
-bool sees_nearly_backs_alone(const BacksSeen& seen) { return 8 * backs_in(seen) >= 7 * seen.rays; }
+/// Whether all but a few rays met backs: then it is worth knowing what the fronts are.
+bool sees_nearly_backs_alone(const BackFaces& seen) {
+  return 8 * all_backs(seen) >= 7 * int64_t(seen.rays);
+}
 
-/// By all rays of the set.
+/// Whether a place sees nothing but backs, by all rays of the set.
 bool sees_backs_alone(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
                       Vec3 normal) {
   return is_enclosed(backs_of(scene, look_from(tracer, from, normal, kMost)));
 }
 
-/// The same, but a front that itself sees nothing but backs counts as one: the floor within a box
-/// whose own bottom lies just as high, so that rays meet either.
+/// Whether a place lies inside a solid, by all rays of the set. A front that itself sees nothing
+/// but backs counts as a back: the floor within a box whose own bottom lies just as high, so that
+/// rays meet either.
 bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
                 float diagonal_m) {
   const Look look = look_from(tracer, from, normal, kMost);
-  BacksSeen seen = backs_of(scene, look);
+  BackFaces seen = backs_of(scene, look);
   if (is_enclosed(seen)) return true;
   if (!sees_nearly_backs_alone(seen)) return false;
   int open = 0;
@@ -73,21 +76,21 @@ bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 
 
 }  // namespace
 
-BacksSeen backs_seen(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
-                     Vec3 normal, int rays) {
+BackFaces count_back_faces(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
+                           Vec3 normal, int rays) {
   LUXEL_CHECK(rays > 0 && size_t(rays) <= kMost);
   return backs_of(scene, look_from(tracer, from, normal, size_t(rays)));
 }
 
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
                  int rays, float diagonal_m) {
-  const BacksSeen seen = backs_seen(scene, tracer, from, normal, rays);
+  const BackFaces seen = count_back_faces(scene, tracer, from, normal, rays);
   return is_enclosed(seen) ||
          (sees_nearly_backs_alone(seen) && is_shut_in(scene, tracer, from, normal, diagonal_m));
 }
 
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
-                 const Elements& elements, size_t i, const BacksSeen& own, float diagonal_m) {
+                 const Elements& elements, size_t i, const BackFaces& own, float diagonal_m) {
   if (4 * own.one_sided < own.rays && !sees_nearly_backs_alone(own)) return false;
   if (4 * own.one_sided > 3 * own.rays) return true;
   const Vec3 from =
@@ -97,12 +100,12 @@ bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
 
 std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                                    const Elements& elements,
-                                   const std::function<BacksSeen(size_t)>& seen) {
+                                   const std::function<BackFaces(size_t)>& own) {
   const float diagonal_m = scene::world_bounds(scene).diagonal();
   std::vector<uint8_t> out(elements.size());
   parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      out[i] = is_enclosed(scene, tracer, elements, i, seen(i), diagonal_m);
+      out[i] = is_enclosed(scene, tracer, elements, i, own(i), diagonal_m);
   });
   return out;
 }

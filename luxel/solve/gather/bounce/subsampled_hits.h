@@ -13,7 +13,7 @@ namespace luxel::gather {
 
 /// A copy of every stride-th hit of each element: sweeps over some rays need not pass by the
 /// others.
-struct ThinnedHits {
+struct SubsampledHits {
   struct Tile {
     std::vector<uint32_t> end;  ///< per element: one past its last hit
     std::vector<StoredHit> hits;
@@ -25,12 +25,12 @@ struct ThinnedHits {
 
 /// Nothing where it might take more than `bytes`. Errors: the file of hits cannot be read,
 /// cancelled.
-Result<std::optional<ThinnedHits>> thin(const TracedHits& hits, size_t stride, uint64_t bytes,
-                                        Progress& progress);
+Result<std::optional<SubsampledHits>> subsample(const TracedHits& hits, size_t stride,
+                                                uint64_t bytes, Progress& progress);
 
 /// Calls take(t, tile) for each tile, on several threads. Errors: cancelled.
 template <class Take>
-Status for_each_tile(const ThinnedHits& hits, Progress& progress, const Take& take) {
+Status for_each_tile(const SubsampledHits& hits, Progress& progress, const Take& take) {
   parallel_for(hits.tiles.size(), 1, [&](size_t t, size_t) {
     if (!progress.cancelled()) take(t, hits.tiles[t]);
   });

@@ -1,4 +1,4 @@
-#include "luxel/solve/gather/bounce/thinned_hits.h"
+#include "luxel/solve/gather/bounce/subsampled_hits.h"
 
 #include <algorithm>
 
@@ -13,26 +13,27 @@ uint64_t stored_hits(const TracedHits& hits) {
 
 }  // namespace
 
-Result<std::optional<ThinnedHits>> thin(const TracedHits& hits, size_t stride, uint64_t bytes,
-                                        Progress& progress) {
+Result<std::optional<SubsampledHits>> subsample(const TracedHits& hits, size_t stride,
+                                                uint64_t bytes, Progress& progress) {
   // Of each element in each round it is one hit more than the part at most.
   const uint64_t most = stored_hits(hits) / stride + hits.size() * hits.rounds.size();
   const uint64_t bytes_of_ends = hits.size() * sizeof(uint32_t);
   if (most * (sizeof(StoredHit) + sizeof(float)) + bytes_of_ends > bytes) return std::nullopt;
-  ThinnedHits out;
+  SubsampledHits out;
   out.stride = stride;
   out.tiles.resize(tile_count(hits));
   LUXEL_TRY_STATUS(for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
     const size_t begin = t * kTileElements, end = std::min(begin + kTileElements, hits.size());
     size_t count = 0;
     for (const HitTile* round : tile.round) count += round->entries.size() / stride + (end - begin);
-    ThinnedHits::Tile& thinned = out.tiles[t];
-    thinned.hits.reserve(count), thinned.weight.reserve(count), thinned.end.reserve(end - begin);
+    SubsampledHits::Tile& subsampled = out.tiles[t];
+    subsampled.hits.reserve(count), subsampled.weight.reserve(count),
+        subsampled.end.reserve(end - begin);
     for (size_t i = begin; i < end; ++i) {
       for_each_sparse(hits, tile, i, stride, [&](StoredHit hit, float weight) {
-        thinned.hits.push_back(hit), thinned.weight.push_back(weight);
+        subsampled.hits.push_back(hit), subsampled.weight.push_back(weight);
       });
-      thinned.end.push_back(uint32_t(thinned.hits.size()));
+      subsampled.end.push_back(uint32_t(subsampled.hits.size()));
     }
   }));
   return out;

@@ -139,7 +139,7 @@ Result<Table> rays_table(Progress& progress) {
     receivers.push_back(h::receiver_at(s, scene, tracer, place.face, place.position));
   }
   LUXEL_TRY(const std::vector<Rgb> exact,
-            h::irradiance_at(s, scene, tracer, receivers, {1e-6}, progress));
+            h::irradiance_at(s, scene, tracer, receivers, {.tolerance = 1e-6}, progress));
   std::vector<double> off(receivers.size());
   parallel_for(receivers.size(), 1, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k)

@@ -197,7 +197,7 @@ void measure_speed(const Room& room, const matrix::Bc1& bc1, PaperRuns& runs) {
     const auto product = [&](std::span<const Rgb> b, std::span<Rgb> out) {
       multiply(dense, b, out, work);
     };
-    count_bounces(std::ref(product), room.reflectance(), room.sent[0], products, e, bounces);
+    count_bounces(std::ref(product), {room.sent[0], room.reflectance(), {}, products}, e, bounces);
   };
   std::vector<std::function<void()>> tasks;
   for (int products = 1; products <= kBounces; ++products)

@@ -62,7 +62,10 @@ Result<FirstMesh> first_mesh(const scene::Scene& scene, const HemicubeParams& pa
                          ? params.max_elements
                          : std::max(kDefaultElements, own_count + own_count / 2);
   if (params.element_size_m > 0) {
-    LUXEL_TRY(out.mesh, make_mesh(scene, {params.element_size_m, out.max_elements}, progress));
+    LUXEL_TRY(out.mesh,
+              make_mesh(scene,
+                        {.element_size_m = params.element_size_m, .max_vertices = out.max_elements},
+                        progress));
     if (element_count(out.mesh, params.elements) > out.max_elements)
       return fail(ErrorCode::bad_setting,
                   "elements of {} m are {}, more than --max-elements {}; make them larger",
@@ -91,10 +94,10 @@ Status exchange_light(const scene::Scene& scene, const trace::RayTracer& tracer,
   s.hidden = sight.rows.hidden, s.enclosed = sight.rows.enclosed;
   s.row_bytes_in_file = sight.rows.store.bytes_in_file();
   s.row_bytes = sight.rows.store.bytes_in_memory() + s.row_bytes_in_file;
-  LUXEL_TRY(
-      Exchanged exchanged,
-      exchange(receivers, sight.rows, sight.source, plan_refill(receivers.neighbours, s.enclosed),
-               s.field.irradiance, {params.bounces, params.tolerance}, progress));
+  LUXEL_TRY(Exchanged exchanged,
+            exchange(receivers, sight.rows, sight.source,
+                     plan_refill(receivers.neighbours, s.enclosed), s.field.irradiance,
+                     {.bounces = params.bounces, .tolerance = params.tolerance}, progress));
   s.field.irradiance = std::move(exchanged.irradiance);
   s.sweeps = exchanged.sweeps;
   return {};

@@ -330,9 +330,10 @@ TEST(Cuts, ToSizeReachTheGoalAndNotMuchMore) {
 TEST(MakeMesh, RefusesMoreVerticesThanAllowed) {
   Progress progress;
   const scene::Scene scene = scene_of(unit_square());
-  EXPECT_TRUE(make_mesh(scene, {0.1f, 121}, progress));
-  for (const MeshParams& params :
-       {MeshParams{0.1f, 120}, MeshParams{1e-6f, 1000}, MeshParams{0, 3}}) {
+  EXPECT_TRUE(make_mesh(scene, {.element_size_m = 0.1f, .max_vertices = 121}, progress));
+  for (const MeshParams& params : {MeshParams{.element_size_m = 0.1f, .max_vertices = 120},
+                                   MeshParams{.element_size_m = 1e-6f, .max_vertices = 1000},
+                                   MeshParams{.element_size_m = 0, .max_vertices = 3}}) {
     const auto mesh = make_mesh(scene, params, progress);
     ASSERT_FALSE(mesh);
     EXPECT_EQ(mesh.error().code, ErrorCode::bad_setting);

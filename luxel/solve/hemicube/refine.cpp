@@ -164,19 +164,22 @@ double relative_interpolation_error(const Field& field) {
 
 Result<Sight> look_from(const Surroundings& around, const transport::Elements& elements,
                         const HemicubeParams& params, Solution& solution, Progress& progress) {
-  LUXEL_TRY(light::DirectLight direct,
-            light::direct_light(around.scene, elements, around.emission.exact, around.tracer,
-                                {params.direct_samples, params.seed, true}, progress));
+  LUXEL_TRY(
+      light::DirectLight direct,
+      light::direct_light(
+          around.scene, elements, around.emission.exact, around.tracer,
+          {.samples = params.direct_samples, .seed = params.seed, .same_points = true}, progress));
   const Senders senders{around.scene,
                         around.tracer,
                         around.mesh,
                         around.senders,
                         around.emission.exact.around,
                         around.emission.by_pixels};
-  LUXEL_TRY(
-      Rows rows,
-      make_rows(senders, viewpoints(elements),
-                {{params.resolution}, params.row_memory_bytes, params.scratch_folder}, progress));
+  LUXEL_TRY(Rows rows, make_rows(senders, viewpoints(elements),
+                                 {.look = {.resolution = params.resolution},
+                                  .memory_limit_bytes = params.row_memory_bytes,
+                                  .scratch_folder = params.scratch_folder},
+                                 progress));
   for (size_t k = 0; k < elements.size(); ++k) direct.irradiance[k] += rows.emitted[k];
   solution.rays += direct.rays + pixels_of(params.resolution) * elements.size();
   solution.seconds.visibility += rows.seconds.visibility;

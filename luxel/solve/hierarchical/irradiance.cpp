@@ -37,7 +37,8 @@ Result<std::vector<Rgb>> from_lamps(const scene::Scene& scene, const trace::RayT
     points.reflectance.push_back({});
   }
   LUXEL_TRY(light::DirectLight direct,
-            light::direct_light(scene, points, lamps, tracer, {256, 1, true}, progress));
+            light::direct_light(scene, points, lamps, tracer, {.samples = 256, .same_points = true},
+                                progress));
   return std::move(direct.irradiance);
 }
 
@@ -54,13 +55,14 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
   const bool count_all =
       lamps.has_sky && scene.environment.empty() && s.faces.size() <= kMostFacesBeforeSky;
   const double whole_sky = kPiDouble * double(max_component(scene.background));
-  const GatheringParams gathered{limit_of(s, params), count_all ? whole_sky : 0};
+  const GatheringParams gathered{.limit = limit_of(s, params), .sky = count_all ? whole_sky : 0};
   const RaySources sources = ray_sources(s);
   const auto sky_rays =
       uint32_t(std::clamp(kSkyRays / params.tolerance, kLeastSkyRays, kMostSkyRays));
+  const SkyScene sky{scene, lamps.lights.around, tracer, s.diagonal_m};
   const auto sky_at = [&](const Receiver& r) {
-    return soft_sky_at(scene, lamps.lights.around, tracer, to_float(r.position), to_float(r.normal),
-                       to_float(r.geometric_normal), s.diagonal_m, sky_rays);
+    return soft_sky_at(
+        sky, {to_float(r.position), to_float(r.normal), to_float(r.geometric_normal)}, sky_rays);
   };
   progress.begin("irradiance", receivers.size());
   parallel_for(receivers.size(), 32, [&](size_t begin, size_t end) {
@@ -90,7 +92,7 @@ Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
 std::vector<Seen> sources_at(const Solution& s, const trace::RayTracer& tracer,
                              const Receiver& receiver, const PointParams& params) {
   std::vector<Seen> parts, out;
-  Gathering(s, tracer, ray_sources(s), {limit_of(s, params), 0}).from_faces(receiver, &parts);
+  Gathering(s, tracer, ray_sources(s), {.limit = limit_of(s, params)}).from_faces(receiver, &parts);
   std::stable_sort(parts.begin(), parts.end(),
                    [](const Seen& a, const Seen& b) { return a.face < b.face; });
   for (const Seen& part : parts) {

@@ -94,33 +94,31 @@ std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x, const L
                            const transport::Elements& points) {
   std::vector<Rgb> out(points.size());
   if (!lamps.has_sky) return out;
+  const SkyScene sky{scene, lamps.lights.around, x.tracer, x.diagonal_m};
   parallel_for(points.size(), 64, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      out[i] = soft_sky_at(scene, lamps.lights.around, x.tracer, points.position[i],
-                           points.normal[i], points.normal[i], x.diagonal_m, kSkyRays);
+      out[i] = soft_sky_at(sky, {points.position[i], points.normal[i], points.normal[i]}, kSkyRays);
   });
   return out;
 }
 
 }  // namespace
 
-Rgb soft_sky_at(const scene::Scene& scene, const light::Surroundings& around,
-                const trace::RayTracer& tracer, const Vec3& position, Vec3 normal,
-                Vec3 geometric_normal, float diagonal_m, uint32_t count) {
-  const auto frame = frame_around(normal);
-  const Vec3 from = trace::offset_origin(position, geometric_normal, diagonal_m);
+Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t count) {
+  const auto frame = frame_around(point.normal);
+  const Vec3 from = trace::offset_origin(point.position, point.geometric_normal, sky.diagonal_m);
   std::vector<trace::Ray> rays;
   for (uint32_t k = 0; k < count; ++k) {
     const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 5)));
-    if (dot(d, geometric_normal) > 0) rays.push_back({from, 0, d, INFINITY});
+    if (dot(d, point.geometric_normal) > 0) rays.push_back({from, 0, d, INFINITY});
   }
   std::vector<uint8_t> blocked(rays.size());
-  tracer.occluded(rays, blocked);
+  sky.tracer.occluded(rays, blocked);
   // Summed in double: a sky of one radiance gives its share of the rays, whatever their order.
   double r = 0, g = 0, b = 0;
   for (size_t k = 0; k < rays.size(); ++k) {
     if (blocked[k]) continue;
-    const Rgb l = light::soft_radiance(scene, around, rays[k].direction);
+    const Rgb l = light::soft_radiance(sky.scene, sky.around, rays[k].direction);
     r += double(l.x), g += double(l.y), b += double(l.z);
   }
   const double share = kPiDouble / double(count);
@@ -165,8 +163,9 @@ Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
       add_points(state.tree.elements[e], x.faces, probes.back(), points);
     }
     if (leaves.empty()) return {};
-    LUXEL_TRY(light::DirectLight direct, light::direct_light(state.scene, points, lamps.lights,
-                                                             x.tracer, {64, 1, true}, progress));
+    LUXEL_TRY(light::DirectLight direct,
+              light::direct_light(state.scene, points, lamps.lights, x.tracer,
+                                  {.samples = 64, .same_points = true}, progress));
     const std::vector<Rgb> sky = sky_light(state.scene, x, lamps, points);
     for (size_t i = 0; i < sky.size(); ++i) direct.irradiance[i] += sky[i];
     std::span<const Rgb> light = direct.irradiance;

@@ -3,6 +3,7 @@
 
 #include "luxel/light/lights.h"
 #include "luxel/solve/hierarchical/refine.h"
+#include "luxel/transport/elements.h"
 
 namespace luxel::hierarchical {
 
@@ -14,11 +15,17 @@ struct Lamps {
 };
 Lamps lamps_of(const scene::Scene& scene);
 
-/// E of the soft light of the surroundings at a point: by so many rays, the same directions
-/// everywhere.
-Rgb soft_sky_at(const scene::Scene& scene, const light::Surroundings& around,
-                const trace::RayTracer& tracer, const Vec3& position, Vec3 normal,
-                Vec3 geometric_normal, float diagonal_m, uint32_t count);
+/// What rays towards the sky need.
+struct SkyScene {
+  const scene::Scene& scene;
+  const light::Surroundings& around;
+  const trace::RayTracer& tracer;
+  float diagonal_m = 0;  ///< of the scene's box
+};
+/// E of the soft light of the surroundings at a point [W/m^2], by `rays` cosine-distributed rays:
+/// pi / rays times the sum of the radiance of those that leave the scene. All points send theirs in
+/// the same directions of their frames, so that E has steps but no noise.
+Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t rays);
 /// No more than this comes from the whole of it.
 float brightest_sky(const scene::Scene& scene, const light::Surroundings& around);
 

@@ -43,7 +43,7 @@ inline DVec3 middle_of(const LightMesh& mesh, const LightTriangle& t) {
 struct MeshParams {
   bool discontinuities = true;
   DiscontinuityParams discontinuity;
-  PointParams point = {5e-4};
+  PointParams point = {.tolerance = 5e-4};
 };
 
 /// Triangulates all leaves and builds their interpolants. Errors: cancelled.

@@ -77,7 +77,10 @@ void count_bounces(Work& w, int bounces) {
 }
 
 Status run(Work& w, const SolveParams& params, Progress& progress) {
-  RefineParams refine_params{0, w.s.min_area_m2, params.max_elements, params.max_links};
+  RefineParams refine_params{.eps = 0,
+                             .min_area_m2 = w.s.min_area_m2,
+                             .max_elements = params.max_elements,
+                             .max_links = params.max_links};
   for (const Element& e : w.s.tree.elements)
     w.s.light.elements.push_back(bare_light(w.state.scene, w.x, e));
   w.s.light.clusters.resize(w.s.tree.clusters.size());
@@ -86,10 +89,9 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
   // A first guess, from the power there is; it is made better when light has arrived.
   const double power = double(max_component(totals_of(w.s).emission));
   refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * power) : 0.1 * power;
-  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps,
-                                {refine_params.eps > 0 ? refine_params.eps : INFINITY,
-                                 w.s.min_area_m2, params.max_elements, params.max_links},
-                                w.lit, progress));
+  RefineParams first_params = refine_params;
+  if (!(first_params.eps > 0)) first_params.eps = INFINITY;  // no surface shines
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, first_params, w.lit, progress));
   LUXEL_TRY_STATUS(link_all(w.state, w.x, refine_params, progress));
   for (w.s.iterations = 0; w.s.iterations < kMostIterations; ++w.s.iterations) {
     LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));

@@ -76,17 +76,13 @@ TEST(Allocations, ThereAreNonePerFrame) {
   const Multiply product = [&](std::span<const Rgb> b, std::span<Rgb> out) {
     multiply(*matrix, b, out, work);
   };
+  const Sent sent{p.emission, p.elements.reflectance, p.area_m2, 3};
   EXPECT_EQ(allocations_of([&] { multiply(*matrix, p.emission, e, work); }), 0u);
-  EXPECT_EQ(allocations_of(
-                [&] { count_bounces(product, p.elements.reflectance, p.emission, 3, e, bounces); }),
-            0u);
-  EXPECT_EQ(allocations_of([&] {
-              all_bounces(product, coarse, p.elements.reflectance, p.area_m2, p.emission, 3, e,
-                          bounces);
-            }),
-            0u);
+  EXPECT_EQ(allocations_of([&] { count_bounces(product, sent, e, bounces); }), 0u);
+  EXPECT_EQ(allocations_of([&] { all_bounces(product, coarse, sent, 3, e, bounces); }), 0u);
   EXPECT_EQ(allocations_of([&] { transfer(*map, e, of_place); }), 0u);
-  const auto spectrum = spectrum_of(factors, p.area_m2, {40, 0, 1}, progress);
+  const auto spectrum =
+      spectrum_of(factors, p.area_m2, {.count = 40, .iterations = 0, .seed = 1}, progress);
   ASSERT_TRUE(spectrum);
   const auto low = make_low_rank(*spectrum, 40, p.area_m2, p.elements.reflectance, progress);
   ASSERT_TRUE(low);

@@ -160,13 +160,12 @@ BounceWork make_bounce_work(size_t patches, size_t clusters) {
   return work;
 }
 
-void count_bounces(const Multiply& multiply, std::span<const Rgb> reflectance,
-                   std::span<const Rgb> sent, int bounces, std::span<Rgb> irradiance,
+void count_bounces(const Multiply& multiply, const Sent& sent, std::span<Rgb> irradiance,
                    BounceWork& work) {
   std::fill(irradiance.begin(), irradiance.end(), Rgb{});
-  for (int k = 0; k < bounces; ++k) {
-    for (size_t i = 0; i < sent.size(); ++i)
-      work.radiosity[i] = sent[i] + reflectance[i] * irradiance[i];
+  for (int k = 0; k < sent.bounces; ++k) {
+    for (size_t i = 0; i < sent.radiosity.size(); ++i)
+      work.radiosity[i] = sent.radiosity[i] + sent.reflectance[i] * irradiance[i];
     multiply(work.radiosity, irradiance);
   }
 }
@@ -188,11 +187,11 @@ void respond(const std::vector<float>& response, size_t count, std::span<const R
 }
 
 /// Late light per cluster, from the power that clusters reflect of `arriving`.
-void late_bounces(const CoarseScene& coarse, std::span<const Rgb> reflectance,
-                  std::span<const float> area_m2, std::span<const Rgb> arriving, BounceWork& work) {
+void late_bounces(const CoarseScene& coarse, const Sent& sent, std::span<const Rgb> arriving,
+                  BounceWork& work) {
   std::fill(work.power.begin(), work.power.end(), Rgb{});
   for (size_t i = 0; i < arriving.size(); ++i)
-    work.power[coarse.cluster_of[i]] += reflectance[i] * arriving[i] * area_m2[i];
+    work.power[coarse.cluster_of[i]] += sent.reflectance[i] * arriving[i] * sent.area_m2[i];
   const auto rows = [&](size_t begin, size_t end) {
     float sum[3][kRows] = {};
     for (int channel = 0; channel < 3; ++channel)
@@ -206,20 +205,18 @@ void late_bounces(const CoarseScene& coarse, std::span<const Rgb> reflectance,
 
 }  // namespace
 
-void all_bounces(const Multiply& multiply, const CoarseScene& coarse,
-                 std::span<const Rgb> reflectance, std::span<const float> area_m2,
-                 std::span<const Rgb> sent, int sweeps, std::span<Rgb> irradiance,
-                 BounceWork& work) {
+void all_bounces(const Multiply& multiply, const CoarseScene& coarse, const Sent& sent, int sweeps,
+                 std::span<Rgb> irradiance, BounceWork& work) {
   LUXEL_CHECK(sweeps >= 1);
-  multiply(sent, work.first);
+  multiply(sent.radiosity, work.first);
   std::copy(work.first.begin(), work.first.end(), irradiance.begin());
   // `gathered` is what came in anew: first all, then what the sweep before did not foresee.
   std::copy(work.first.begin(), work.first.end(), work.gathered.begin());
   for (int k = 1; k < sweeps; ++k) {
-    late_bounces(coarse, reflectance, area_m2, work.gathered, work);
+    late_bounces(coarse, sent, work.gathered, work);
     for (size_t i = 0; i < irradiance.size(); ++i) {
       irradiance[i] += work.late[coarse.cluster_of[i]];
-      work.radiosity[i] = reflectance[i] * irradiance[i];
+      work.radiosity[i] = sent.reflectance[i] * irradiance[i];
     }
     multiply(work.radiosity, work.gathered);
     for (size_t i = 0; i < irradiance.size(); ++i) {

@@ -24,14 +24,14 @@ struct Room {
   std::vector<Rgb> counted(int bounces) const {
     std::vector<Rgb> out(sent.size());
     BounceWork work = make_bounce_work(sent.size(), 0);
-    count_bounces(plain(factors), reflectance, sent, bounces, out, work);
+    count_bounces(plain(factors), {sent, reflectance, area_m2, bounces}, out, work);
     return out;
   }
   std::vector<Rgb> all(int sweeps, size_t clusters) const {
     const CoarseScene coarse = make_coarse_scene(factors, tree, area_m2, reflectance, clusters);
     std::vector<Rgb> out(sent.size());
     BounceWork work = make_bounce_work(sent.size(), coarse.count());
-    all_bounces(plain(factors), coarse, reflectance, area_m2, sent, sweeps, out, work);
+    all_bounces(plain(factors), coarse, {sent, reflectance, area_m2}, sweeps, out, work);
     return out;
   }
   /// sum A_i x_i / A, per channel.

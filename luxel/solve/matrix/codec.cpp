@@ -15,10 +15,9 @@ template <class Iterated>
 void iterate(const Iterated& codec, const Multiply& product, const Sent& sent,
              std::span<Rgb> irradiance, BounceWork& work) {
   if (sent.bounces >= 0)
-    count_bounces(product, sent.reflectance, sent.radiosity, sent.bounces, irradiance, work);
+    count_bounces(product, sent, irradiance, work);
   else
-    all_bounces(product, codec.coarse, sent.reflectance, sent.area_m2, sent.radiosity, codec.sweeps,
-                irradiance, work);
+    all_bounces(product, codec.coarse, sent, codec.sweeps, irradiance, work);
 }
 
 /// Calls the function for the codec that there is.

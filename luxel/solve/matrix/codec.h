@@ -15,14 +15,6 @@ struct CodecWork {
 };
 CodecWork make_work(const Codec& codec, size_t patches);
 
-/// What a codec is asked with.
-struct Sent {
-  std::span<const Rgb> radiosity;    ///< what patches send on their own: B_e + rho D [W/m^2]
-  std::span<const Rgb> reflectance;  ///< per patch
-  std::span<const float> area_m2;    ///< per patch
-  int bounces = -1;                  ///< products; < 0: all
-};
-
 /// E of all patches from each other. Allocates nothing.
 void irradiance_of(const Codec& codec, const Sent& sent, std::span<Rgb> irradiance,
                    CodecWork& work);

@@ -24,7 +24,7 @@ struct Room {
     const Multiply plain = [this](std::span<const Rgb> b, std::span<Rgb> e) {
       testing::plain_product(factors, b, e);
     };
-    count_bounces(plain, reflectance, sent, bounces, out, work);
+    count_bounces(plain, {sent, reflectance, area_m2, bounces}, out, work);
     return out;
   }
   ColourMatrix matrix(int bounces) const {

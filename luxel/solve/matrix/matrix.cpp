@@ -120,7 +120,7 @@ Result<std::vector<Rgb>> sky_light(const scene::Scene& scene, const light::Light
   if (scene.environment.empty()) return sky;
   light::Lights map;
   map.around.limit = lights.around.limit;
-  light::DirectParams params{1, seed, false, kSkySamples};
+  const light::DirectParams params{.samples = 1, .seed = seed, .sky_samples = kSkySamples};
   LUXEL_TRY(const light::DirectLight soft,
             light::direct_light(scene, probes.elements, map, tracer, params, progress));
   for (size_t i = 0; i < n; ++i)

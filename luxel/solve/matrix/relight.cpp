@@ -43,8 +43,9 @@ Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::Ra
       return fail(ErrorCode::bad_setting,
                   "lamp '{}' has a light profile, which .lxr files do not keep; leave it out",
                   lamp.name);
-  LUXEL_TRY(const Prepared prepared,
-            prepare(scene, tracer, {params.patches, params.factors}, progress));
+  LUXEL_TRY(
+      const Prepared prepared,
+      prepare(scene, tracer, {.patches = params.patches, .factors = params.factors}, progress));
   const Patches& patches = prepared.work.patches;
   RelightData out;
   take_patches(patches, out);

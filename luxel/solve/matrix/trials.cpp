@@ -76,18 +76,20 @@ class Exact {
 
   std::vector<Rgb> counted(std::span<const Rgb> sent, int bounces) {
     std::vector<Rgb> out(sent.size());
-    count_bounces(product_, patches().elements.reflectance, sent, bounces, out, work_);
+    count_bounces(product_, sent_by(sent, bounces), out, work_);
     return out;
   }
   std::vector<Rgb> all(const CoarseScene& coarse, std::span<const Rgb> sent, int sweeps) {
     std::vector<Rgb> out(sent.size());
-    all_bounces(product_, coarse, patches().elements.reflectance, patches().area_m2, sent, sweeps,
-                out, work_);
+    all_bounces(product_, coarse, sent_by(sent, -1), sweeps, out, work_);
     return out;
   }
 
  private:
-  const Patches& patches() const { return prepared_.work.patches; }
+  Sent sent_by(std::span<const Rgb> radiosity, int bounces) const {
+    const Patches& patches = prepared_.work.patches;
+    return {radiosity, patches.elements.reflectance, patches.area_m2, bounces};
+  }
 
   const Prepared& prepared_;
   const Multiply product_ = [this](auto b, auto e) { multiply(prepared_.factors, b, e); };

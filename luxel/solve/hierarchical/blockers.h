@@ -18,7 +18,7 @@ Blockers make_blockers(const Faces& faces);
 /// into the shaft between them. [Haines94]
 void find_between(const Blockers& blockers, PolygonView a, PolygonView b,
                   std::vector<uint32_t>& found);
-/// The same when they are known to be among `known`: between parts is only what is between wholes.
+/// Faces between two convex polygons, of those that are between the wholes that they are parts of.
 void filter_between(const Blockers& blockers, PolygonView a, PolygonView b,
                     std::span<const uint32_t> known, std::vector<uint32_t>& found);
 

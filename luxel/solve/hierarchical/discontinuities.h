@@ -42,7 +42,8 @@ struct DiscontinuityParams {
   uint32_t max_per_leaf = 10;  ///< lines through a leaf, at most [Hardt96, maxLeafDSets]
 };
 
-/// What the parameters mean for a solution: computed once, for all its faces.
+/// What the parameters mean for a solution: computed once, for all its faces. Weights are in
+/// W/m^2 per m (slope) or W/m^2 (nearness).
 struct DiscontinuityLimits {
   double weight = 0;  ///< the least
   double light = 0;   ///< the least that a source brings [W/m^2]
@@ -55,6 +56,8 @@ std::vector<Discontinuity> find_discontinuities(const Solution& solution, const 
                                                 const trace::RayTracer& tracer, uint32_t receiver,
                                                 Ranking ranking, const DiscontinuityLimits& limits);
 
+/// geometric * what the source sends now: its mean radiosity, or a lamp's irradiance at the line's
+/// beginning; infinite for contacts. Units as Ranking says.
 double weight_of(const Discontinuity& d, const Solution& solution, const scene::Scene& scene);
 
 }  // namespace luxel::hierarchical

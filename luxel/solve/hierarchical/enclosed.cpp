@@ -6,8 +6,10 @@
 namespace luxel::hierarchical {
 namespace {
 
+/// Rays per point. A share of one half is known to within 1 / (2 sqrt 64) = 6 %.
 constexpr int kRays = 64;
-/// Of the mean: a place that sees as much light is in the open.
+/// A point with more light than this part of the mean is in the open: no rays are needed to tell.
+/// Solids that others pass through, or that are not quite closed, let a little in, so it is not 0.
 constexpr float kDark = 0.02f;
 
 }  // namespace

@@ -6,8 +6,8 @@
 namespace luxel::hierarchical {
 
 struct GatheringParams {
-  /// What a source may be wrong by [W/m^2]. The dimmer sources are, and clusters of them, the fewer
-  /// rays look at them instead of closed forms.
+  /// How far the light of one source may be off [W/m^2]. The dimmer sources are, and clusters of
+  /// them, the fewer rays look at them instead of closed forms.
   double limit = 0;
   /// E of the background over the whole hemisphere; above 0 every face counts, for what it hides of
   /// that.

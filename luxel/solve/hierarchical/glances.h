@@ -13,15 +13,15 @@ struct RaySources {
 };
 RaySources ray_sources(const Solution& solution);
 
-/// The same places are looked at from everywhere, so that what is seen changes only where a shadow
+/// All points look at the same places of a source, so that what is seen changes only where a shadow
 /// passes over one of them. One object per thread: it keeps its memory.
 class Glances {
  public:
   Glances(const Solution& solution, const trace::RayTracer& tracer, const RaySources& sources)
       : s_(solution), tracer_(tracer), sources_(sources) {}
 
-  /// Of the exchange between the point and the source, were nothing in between: the share that is
-  /// seen, and the sum of radiosity over it [W/m^2].
+  /// The share of the exchange between the point and the source, were nothing in between, that is
+  /// seen; and the sum of radiosity over it [W/m^2].
   struct Glance {
     double share = 1;
     Rgb radiosity{};

@@ -12,8 +12,9 @@ namespace {
 
 /// Beyond so many faces the background is looked for by rays instead of as what no face hides.
 constexpr size_t kMostFacesBeforeSky = 256;
-/// The rays are so many over the tolerance, but no fewer than keep their steps below what
-/// interpolants may be off by.
+/// Rays towards the sky are so many over the tolerance: E comes in steps of about 1 / rays of the
+/// sky's, half of which is the error. No fewer than keep the steps below what interpolants may be
+/// off by (1e-3 of the light), and no more than a point may cost.
 constexpr double kSkyRays = 0.5;
 constexpr double kLeastSkyRays = 1024, kMostSkyRays = 8192;
 
@@ -48,6 +49,7 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
                                        const trace::RayTracer& tracer,
                                        std::span<const Receiver> receivers,
                                        const PointParams& params, Progress& progress) {
+  // Lamps.
   Lamps lamps = s.lamps;
   if (!params.sharp_lamps) std::erase_if(lamps.lights.punctual, is_sharp);
   LUXEL_TRY(std::vector<Rgb> out, from_lamps(scene, tracer, lamps.lights, receivers, progress));
@@ -55,6 +57,7 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
   const bool count_all =
       lamps.has_sky && scene.environment.empty() && s.faces.size() <= kMostFacesBeforeSky;
   const double whole_sky = kPiDouble * double(max_component(scene.background));
+  // Faces, and the sky past them.
   const GatheringParams gathered{.limit = limit_of(s, params), .sky = count_all ? whole_sky : 0};
   const RaySources sources = ray_sources(s);
   const auto sky_rays =

@@ -16,7 +16,7 @@ struct Receiver {
 };
 
 struct PointParams {
-  /// How exact: sources are taken apart, or from afar, so that each is wrong by less than this part
+  /// Sources are taken apart, or from afar, so that the light of each is off by less than this part
   /// of the scene's mean irradiance.
   double tolerance = 1e-4;
   /// With the light of sharp lamps: points and directions, whose shadows have no penumbra. Without,
@@ -47,8 +47,8 @@ Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
                                              std::span<const Receiver> receivers,
                                              Progress& progress);
 
-/// The same at one receiver, without lamps and background, face by face: those that it sees at
-/// all, the brightest first.
+/// What a receiver sees of each face, without lamps and background: faces that it sees at all, the
+/// brightest first.
 std::vector<Seen> sources_at(const Solution& solution, const trace::RayTracer& tracer,
                              const Receiver& receiver, const PointParams& params);
 

@@ -87,7 +87,7 @@ double mean_light(const Solved& s, const Polygon& a, int cells, int half) {
   return sum;
 }
 
-/// The same over a face, triangle by triangle of a mesh along all discontinuities.
+/// E of a face, triangle by triangle of a mesh along all discontinuities.
 double mean_light_along_lines(const Solved& s, uint32_t face) {
   MeshParams params;
   params.discontinuity.least_weight = 0, params.discontinuity.least_light = 0;

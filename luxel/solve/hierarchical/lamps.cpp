@@ -10,11 +10,15 @@
 namespace luxel::hierarchical {
 namespace {
 
+/// Rays per point towards the sky. A border crosses about sqrt(256) cells of their grid, so E comes
+/// in steps of some 1/256 of the sky's.
 constexpr uint32_t kSkyRays = 256;
-/// Light is not known better than what so many rays bring: differences below that are none.
+/// Light is not known better than what so many rays bring: differences below that are none. A
+/// border of 16 cells errs by about sqrt(16) = 4 rays. With fewer, leaves would be divided for
+/// these steps.
 constexpr float kUnsureRays = 4;
 /// Points of a leaf of the unit's area at which lamps are looked for, at least, so that no patch of
-/// sun is missed.
+/// sun of an eighth of its length is missed. Smaller leaves have fewer, by their area.
 constexpr double kPoints = 64;
 
 /// Where lamps are looked for on a leaf: at Gauss's points, which are corners of a smaller copy of
@@ -29,12 +33,14 @@ struct Probe {
 
 Probe probe_of(const Element& e, double unit_area_m2) {
   Probe out{e.corners, {}};
+  // Gauss's points.
   const double h = out.inside() / (e.corners == 4 ? 2 : 3);
   if (e.corners == 4)
     out.at = {{0.5 - h, 0.5 - h}, {0.5 + h, 0.5 - h}, {0.5 + h, 0.5 + h}, {0.5 - h, 0.5 + h}};
   else
     out.at = {
         {1 / 3.0 - h, 1 / 3.0 - h}, {1 / 3.0 + 2 * h, 1 / 3.0 - h}, {1 / 3.0 - h, 1 / 3.0 + 2 * h}};
+  // A grid, as fine as the leaf is large.
   const double points = std::min(1.0, e.area_m2 / unit_area_m2) * kPoints;
   // An odd number of points a side, so that the middle is one of them.
   const int n = 1 + 2 * int(std::sqrt(points) / 2);
@@ -58,11 +64,13 @@ struct Fit {
   float error = 0;
 };
 Fit fit_of(const Probe& probe, std::span<const Rgb> light) {
+  // Mean, and twist of a bilinear function.
   Fit out;
   const uint32_t n = probe.corners;
   Rgb mean{}, twist{};
   for (uint32_t k = 0; k < n; ++k) mean += light[k] / float(n);
   if (n == 4) twist = (light[0] - light[1] + light[2] - light[3]) * 0.25f;
+  // From Gauss's points out to the corners, no further down than to 0.
   const auto inside = float(probe.inside());
   float shrink = 1;  // of what differs from the mean
   for (uint32_t k = 0; k < n; ++k) {
@@ -72,6 +80,7 @@ Fit fit_of(const Probe& probe, std::span<const Rgb> light) {
       if (mean.*c + out.corner[k].*c < 0) shrink = std::min(shrink, -mean.*c / out.corner[k].*c);
   }
   for (uint32_t k = 0; k < n; ++k) out.corner[k] = mean + out.corner[k] * shrink;
+  // How far that is from the light at all points.
   for (size_t i = 0; i < probe.at.size(); ++i) {
     const Rgb d = linear_at(out.corner, n, float(probe.at[i][0]), float(probe.at[i][1])) - light[i];
     out.error = std::max({out.error, max_component(d), max_component(-d)});
@@ -151,6 +160,7 @@ Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
                                            (kUnsureRays / kSkyRays)
                                      : 0.0f;
   for (;;) {
+    // Points of all leaves that have no light yet.
     lit.resize(state.tree.elements.size());
     std::vector<size_t> leaves;
     std::vector<Probe> probes;
@@ -163,11 +173,13 @@ Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
       add_points(state.tree.elements[e], x.faces, probes.back(), points);
     }
     if (leaves.empty()) return {};
+    // Light there, of lamps and of the sky.
     LUXEL_TRY(light::DirectLight direct,
               light::direct_light(state.scene, points, lamps.lights, x.tracer,
                                   {.samples = 64, .same_points = true}, progress));
     const std::vector<Rgb> sky = sky_light(state.scene, x, lamps, points);
     for (size_t i = 0; i < sky.size(); ++i) direct.irradiance[i] += sky[i];
+    // A linear function per leaf. Where it is off, the leaf is divided, and its parts come next.
     std::span<const Rgb> light = direct.irradiance;
     for (size_t k = 0; k < leaves.size(); ++k) {
       const Fit fit = fit_of(probes[k], light.first(probes[k].at.size()));

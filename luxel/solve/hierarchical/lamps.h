@@ -26,7 +26,7 @@ struct SkyScene {
 /// pi / rays times the sum of the radiance of those that leave the scene. All points send theirs in
 /// the same directions of their frames, so that E has steps but no noise.
 Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t rays);
-/// No more than this comes from the whole of it.
+/// The largest radiance of the soft surroundings [W/(sr m^2)]: E of the sky is at most pi times it.
 float brightest_sky(const scene::Scene& scene, const light::Surroundings& around);
 
 /// Sets ElementLight::unlinked of all leaves that have none yet (`lit` counts elements, in order),

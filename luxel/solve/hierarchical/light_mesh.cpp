@@ -17,7 +17,8 @@ constexpr double kNearCorners = 1e-4;
 /// middle: irradiance there is the limit from inside [Hardt96, section 6.3].
 constexpr double kNudge = 1e-3;
 
-/// Discontinuities are kept down to this part of the least weight: light may get brighter.
+/// Discontinuities are kept down to this part of the least weight: refinement and feedback may make
+/// their sources brighter by the time of the last mesh, but hardly twice as bright.
 constexpr double kWeaker = 0.5;
 
 /// A face while it is meshed.
@@ -49,6 +50,7 @@ struct Maker {
 /// `found`: of the face, or nothing yet.
 FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& limits,
                       std::optional<std::vector<Discontinuity>>& found) {
+  // Its leaves, in its plane.
   FaceWork w;
   w.plane = plane_coordinates(m.s.faces.faces[face]);
   for (uint32_t r = m.s.tree.first_root[face]; r < m.s.tree.first_root[face + 1]; ++r)
@@ -58,6 +60,7 @@ FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& 
     for (const DVec3& p : m.s.tree.elements[leaf].polygon())
       w.outline.back().push_back(w.plane.to_plane(p));
   }
+  // Lines by the light there is now.
   if (m.params.discontinuities) {
     if (!found)
       found = find_discontinuities(m.s, m.scene, m.tracer, face, m.params.discontinuity.ranking,
@@ -67,6 +70,7 @@ FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& 
     w.lines = choose_active(*found, weight, limits.weight, w.plane, w.outline,
                             m.params.discontinuity.max_per_leaf, m.slack_m);
   }
+  // What of them crosses each leaf.
   for (const auto& outline : w.outline) {
     w.pieces.emplace_back();
     for (const ActiveLine& line : w.lines)
@@ -124,6 +128,7 @@ bool lies_on(const Segment2& s, DVec2 a, DVec2 b, double slack_m) {
 void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints& of_outlines,
               Welder& welder, std::vector<std::vector<LightTriangle>>& of_element,
               LightMesh& mesh) {
+  // Corners that leaves may share with their neighbours of the same face.
   EdgePoints of_face(m.slack_m);
   for_points(m, w, [&](DVec3 p) { of_face.add(p); });
   of_face.sort();
@@ -132,6 +137,7 @@ void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints
         std::max(2 * m.slack_m, kNearCorners * std::sqrt(m.s.tree.elements[w.leaves[k]].area_m2));
     const Triangulation t = triangulate(full_outline(m, w, face, w.leaves[k], of_face, of_outlines),
                                         w.pieces[k], least_m);
+    // The triangles, with numbers for their corners; none that welding has closed.
     std::vector<uint32_t> vertex;
     for (const DVec2 p : t.points)
       vertex.push_back(welder.index_of(w.plane.from_plane(p), mesh.vertices));
@@ -153,6 +159,7 @@ void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints
 }
 
 Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& progress) {
+  // Leaves and lines of all faces.
   const size_t faces = m.s.faces.size();
   std::vector<FaceWork> work(faces);
   const DiscontinuityLimits limits = limits_of(m.s, m.params.discontinuity);
@@ -164,6 +171,7 @@ Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& 
     progress.advance(end - begin);
   });
   LUXEL_TRY_STATUS(stopped(progress));
+  // Points on the outlines of faces, which neighbouring faces must have, too.
   progress.begin("triangulate", faces);
   EdgePoints of_outlines(m.slack_m);
   for (uint32_t f = 0; f < faces; ++f) {
@@ -173,6 +181,7 @@ Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& 
     });
   }
   of_outlines.sort();
+  // Triangles face by face, then in the order of elements.
   std::vector<std::vector<LightTriangle>> of_element(m.s.tree.elements.size());
   std::map<uint32_t, Welder> of_instance;
   for (uint32_t f = 0; f < faces; ++f) {
@@ -267,6 +276,7 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
                                   Known& known, Progress& progress) {
   const Maker m{s, scene, tracer, params,
                 std::max(4 * s.faces.slack_m, 1e-7 * double(s.diagonal_m))};
+  // Triangles, and the points at which their light is asked for.
   LightMesh mesh;
   LUXEL_TRY_STATUS(triangulate_all(m, known, mesh, progress));
   const Samples samples = collect_samples(m, mesh);
@@ -275,6 +285,7 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
                                      progress));
   LUXEL_TRY(const std::vector<Rgb> sharp,
             sharp_irradiance_at(scene, tracer, samples.inside, progress));
+  // The quadratic function through six of them.
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     std::array<Rgb, 6> value;
     for (size_t k = 0; k < 6; ++k) {

@@ -20,7 +20,7 @@ struct LightTriangle {
   std::array<uint32_t, 3> vertex{};  ///< counter-clockwise from the front
   uint32_t face = 0;
   uint32_t leaf = 0;  ///< of the tree's elements
-  /// Which edges (from corner k on) lie on an active discontinuity.
+  /// Per edge, from corner k on: whether it lies on an active discontinuity.
   std::array<bool, 3> edge_is_line{};
 };
 
@@ -57,7 +57,7 @@ struct Known {
   KnownLight light;
   std::vector<std::optional<std::vector<Discontinuity>>> of_face;  ///< what was looked for
 };
-/// The same with what earlier meshes found.
+/// Triangulates and interpolates as above, with what earlier meshes found.
 Result<LightMesh> make_light_mesh(const Solution& solution, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
                                   Known& known, Progress& progress);

@@ -11,13 +11,15 @@ namespace {
 /// A triangle whose samples are off a plane by less than this part of what its interpolant may be
 /// off by is not looked at.
 constexpr double kFlat = 0.25;
-/// Of what links may be off by.
+/// The usual eps of interpolants over that of links. Feedback corrects what links err by, while the
+/// error of an interpolant stays in the picture. Smaller divides more elements for it.
 constexpr double kUsualPart = 0.25;
 /// Light at points only says what to divide and to correct before the last mesh: it may be so much
 /// less exact.
 constexpr double kRougher = 4;
 /// Sources may be wrong at points by this part of what interpolants may be off by; but no less than
 /// that of the mean light.
+/// Sources differ, so that the errors of several add up to less than eps.
 constexpr double kExacter = 0.2, kExactest = 1e-5;
 /// When light has changed by no more than so many eps, the next change would be half of eps: each
 /// is a fifth of the one before, or less.

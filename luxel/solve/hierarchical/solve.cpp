@@ -10,14 +10,23 @@
 namespace luxel::hierarchical {
 namespace {
 
+/// Bounds against endless work. Refinement ends by itself when the light of the last links asks for
+/// no more; sweeps converge as reflectance^k, and 0.99^2000 = 2e-9.
 constexpr int kMostIterations = 24, kMostSweeps = 2000;
-/// Of the mean irradiance, when nobody says more.
+/// The usual eps, as a part of the mean irradiance.
 constexpr double kUsualEps = 0.01;
-/// Nobody gets less: exact light at points is not known better, and links without end would be.
+/// The least eps, as a part of the mean irradiance: exact light at points is not known better
+/// (PointParams::tolerance), and links would be without end.
 constexpr double kLeastEps = 1e-4;
+/// The eps of the first links, as a part of the mean emission, which in a closed room is less than
+/// the mean irradiance. It is ten times the usual eps, because links are only ever divided: what a
+/// smaller one would divide in vain, before bounces are known, stays divided. Larger ones cost more
+/// iterations.
+constexpr double kFirstEps = 0.1;
 /// Errors count in full on receivers of a face's mean size, but of no more faces than so many: what
 /// is asked for must not depend on how finely a surface is cut into triangles.
 constexpr size_t kMostUnits = 1024;
+/// Elements are not divided below this part of the scene's area: a room of 100 m^2, below 4 cm^2.
 constexpr double kLeastPart = 1.0 / (1 << 18);
 
 double area_of(const Tree& tree) {
@@ -55,8 +64,8 @@ struct Work {
   Refined state;
 };
 
-/// From emission alone: so many reflections and no more. Points gather what has been reflected one
-/// time less than the last gather brings.
+/// Light from emission alone, by so many reflections and no more. Points gather what has been
+/// reflected one time less than the last gather brings.
 void count_bounces(Work& w, int bounces) {
   std::vector<ElementLight>& light = w.s.light.elements;
   for (ElementLight& l : light) l.received = {}, l.irradiance = {}, l.radiosity = l.emission;
@@ -77,6 +86,7 @@ void count_bounces(Work& w, int bounces) {
 }
 
 Status run(Work& w, const SolveParams& params, Progress& progress) {
+  // Elements shine by what they emit.
   RefineParams refine_params{.eps = 0,
                              .min_area_m2 = w.s.min_area_m2,
                              .max_elements = params.max_elements,
@@ -88,10 +98,11 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
   w.s.links.of.resize(w.s.tree.size());
   // A first guess, from the power there is; it is made better when light has arrived.
   const double power = double(max_component(totals_of(w.s).emission));
-  refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * power) : 0.1 * power;
+  refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * power) : kFirstEps * power;
   RefineParams first_params = refine_params;
   if (!(first_params.eps > 0)) first_params.eps = INFINITY;  // no surface shines
   LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, first_params, w.lit, progress));
+  // All is linked to all, and refined by the light that the links bring, until none errs too much.
   LUXEL_TRY_STATUS(link_all(w.state, w.x, refine_params, progress));
   for (w.s.iterations = 0; w.s.iterations < kMostIterations; ++w.s.iterations) {
     LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
@@ -104,6 +115,7 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
     LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, refine_params, w.lit, progress));
     if (refined == 0 && leaves == w.s.tree.elements.size()) break;
   }
+  // The light of the last links; or that of so many bounces.
   LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
   w.s.all_bounces = params.bounces < 0;
   if (!w.s.all_bounces) count_bounces(w, params.bounces);
@@ -156,16 +168,19 @@ double absorbed_over_emitted(const Solution& s) {
 
 Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,
                        const SolveParams& params, Progress& progress) {
+  // Faces, cut where others stand on them, under clusters.
   Solution s;
   LUXEL_TRY(s.faces, make_faces(scene, progress));
   s.blockers = make_blockers(s.faces);
   s.tree = make_tree(cut_at_contacts(s.faces, s.blockers));
   s.warnings = overlap_warnings(scene, s.faces, s.blockers);
+  // What errors are measured by.
   s.basis = params.basis;
   s.diagonal_m = scene::world_bounds(scene).diagonal();
   s.unit_area_m2 = area_of(s.tree) / double(std::clamp<size_t>(s.faces.size(), 1, kMostUnits));
   s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;
   s.lamps = lamps_of(scene);
+  // Links and light; then what a user should know.
   Work work{s, s.exchange(tracer), {}, {scene, s.tree, s.light, s.links}};
   LUXEL_TRY_STATUS(run(work, params, progress));
   if (params.eps && *params.eps < s.eps)

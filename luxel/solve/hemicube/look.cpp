@@ -186,6 +186,7 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
                          const std::function<Status(size_t, const View&)>& done,
                          Progress& progress) {
   LUXEL_CHECK(params.resolution >= 2 && params.resolution % 2 == 0);
+  // The same pixels for all viewpoints.
   LUXEL_TRY(std::vector<Pixel> pixels, pixels_in_tiles(params.resolution, progress));
   const Looker looker(senders, std::move(pixels));
   progress.begin("hemicubes", from.size());
@@ -193,6 +194,7 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
   Status status;
   LookSeconds sum;
   parallel_for(from.size(), kTileElements, [&](size_t begin, size_t end) {
+    // One thread looks from neighbours, in order. The first failure stops all.
     Work work(senders.receivers.size());
     for (size_t i = begin; i < end; ++i) {
       if (!looker.look_from(from[i], work, progress)) return;

@@ -14,7 +14,11 @@ namespace {
 /// Elements are added in rounds of at most this part of what there are, so that each round sees
 /// where the one before was not enough.
 constexpr double kGrowth = 0.25;
+/// 1.25^24 = 200: more than any first mesh may grow.
 constexpr int kMaxRounds = 24;
+/// Errors in the dark are held against this part of the scene's mean light: a relative error of
+/// hardly any light does not show, and would take the elements of what does.
+constexpr float kDark = 0.1f;
 /// No edge becomes shorter than this part of the first mesh's mean one: the border of a hard shadow
 /// would take all elements there are.
 constexpr double kSmallestPart = 1.0 / 32;
@@ -43,6 +47,9 @@ Slope slope_from_edge(const Field& field, uint32_t leaf, size_t k) {
   return {leaf, height > 0 ? rise / height : 0.0f, height};
 }
 
+/// Per triangle how far linear interpolation may be off [unit of E]. Light bends at an edge by the
+/// sum of the slopes away from it, g_1 + g_2. Were the bend in the middle of a triangle of height
+/// h, where no vertex sees it, the line from end to end would miss it by (g_1 + g_2) (h / 2) / 2.
 std::vector<float> errors_per_vertex(const Field& field) {
   const Receivers& r = field.receivers;
   std::vector<float> error(r.leaves.size());
@@ -100,7 +107,7 @@ double mean_luminance(const Field& field) {
 std::vector<uint32_t> worst_first(const Field& field, float max_error, double shortest_m,
                                   const Bisector& bisector) {
   const std::vector<float> errors = interpolation_errors(field);
-  const float dark = 0.1f * float(mean_luminance(field));
+  const float dark = kDark * float(mean_luminance(field));
   std::vector<std::pair<float, uint32_t>> order;
   for (size_t i = 0; i < errors.size(); ++i) {
     const uint32_t node = field.receivers.leaves[i];

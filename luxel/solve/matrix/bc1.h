@@ -45,7 +45,7 @@ Bc1Params paper_params();
 /// K = rest + kept. "Place" r of the rest is row `row[r]` of K, place c its column `column[c]`.
 struct Bc1 {
   uint32_t n = 0;
-  float log_range = 25.0f;
+  float log_range = 25.0f;  ///< as in Bc1Params; 25 is the paper's [Shcherbakov17, section 3.5]
   std::vector<uint32_t> row, column;  ///< permutations of 0..n-1
   /// Per place of a row: by how much the rest is scaled, the channel's maximum included.
   std::vector<Rgb> row_scale;

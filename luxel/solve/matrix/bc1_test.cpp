@@ -230,7 +230,8 @@ TEST(Bc1, CornellBoxWithinAPercent) {
 TEST(Bc1, EachChangeToThePaperHelps) {
   Bc1Params params = paper_params();
   double before = error_of(params);
-  // Of 600 patches, of which reordering has little to gain, the paper's own way loses some percent.
+  // With 600 patches, of which reordering has little to gain, the paper's own way loses some
+  // percent.
   EXPECT_LT(before, 0.06);
   const auto expect_less = [&](const char* what) {
     const double now = error_of(params);

@@ -71,7 +71,7 @@ TEST(CountBounces, IsTheSumOverReflections) {
     for (size_t i = 0; i < total.size(); ++i)
       total[i] += incident[i], excident[i] = incident[i] * room.reflectance[i];
     const std::vector<Rgb> got = room.counted(bounces);
-    // The same sums in another order.
+    // Equal sums in another order.
     for (size_t i = 0; i < total.size(); ++i)
       EXPECT_LE(length(got[i] - total[i]), 1e-5f * length(total[i])) << bounces << ", " << i;
   }

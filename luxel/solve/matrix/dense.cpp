@@ -47,7 +47,7 @@ void add_two_rows(const float* row0, const float* row1, size_t n, const float* p
 }
 
 #if LUXEL_X86_VECTORS
-/// The same for rows of halves.
+/// Adds the products of rows of halves as above.
 __attribute__((target("avx2,f16c"))) void add_two_rows_f16c(const uint16_t* row0,
                                                             const uint16_t* row1, size_t n,
                                                             const float* plane, size_t stride,
@@ -73,7 +73,7 @@ __attribute__((target("avx2,f16c"))) void add_two_rows_f16c(const uint16_t* row0
 }
 #endif
 
-/// The same for rows of halves, a chunk at a time.
+/// Adds the products of rows of halves, a chunk at a time.
 void add_two_rows(const uint16_t* row0, const uint16_t* row1, size_t n, const float* plane,
                   size_t stride, Instructions instructions, float (*sums)[3]) {
   for (size_t j = 0; j < n; j += kChunk) {

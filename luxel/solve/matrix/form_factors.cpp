@@ -12,6 +12,7 @@
 namespace luxel::matrix {
 namespace {
 
+/// Directions are sorted into 8 x 8 cells, so that rays of a packet go the same way.
 constexpr int kCellsPerAxis = 8;
 
 /// What a thread needs to look from one patch.
@@ -77,6 +78,7 @@ FormFactors joined(std::vector<Row>& rows) {
 
 /// S = (A F + (A F)^T) / 2. Both have ascending columns, so rows merge.
 FormFactors symmetric(const FormFactors& traced, std::span<const float> area_m2) {
+  // (A F)^T: rows are counted, then filled in the order of their columns.
   const size_t n = traced.size();
   FormFactors transposed;
   transposed.first.assign(n + 1, 0);
@@ -90,6 +92,7 @@ FormFactors symmetric(const FormFactors& traced, std::span<const float> area_m2)
       transposed.column[at] = i;
       transposed.factor[at] = traced.factor[k] * area_m2[i];
     }
+  // Rows of both, merged by column.
   FormFactors out;
   out.first.push_back(0);
   out.column.reserve(2 * traced.column.size()), out.factor.reserve(2 * traced.column.size());
@@ -111,6 +114,12 @@ FormFactors symmetric(const FormFactors& traced, std::span<const float> area_m2)
 /// Root mean square of what rows may miss, over what they should be. The noise of rays is 1e-2.
 constexpr double kBalanced = 1e-5;
 constexpr int kNewtonSteps = 2, kInnerSteps = 60, kPasses = 20;
+/// The inner iteration solves to a tenth of what Newton's step is to reach: what it leaves then
+/// does not count beside what is not linear.
+constexpr double kInnerPart = 0.1;
+/// A step of Newton's method changes no factor by more than e^0.5 = 1.65. log d is linear nearby
+/// only, and rows that hardly any ray found would ask for far more.
+constexpr double kLargestStep = 0.5;
 /// Two sides that only see each other must add up to the same, which rays do not quite find: the
 /// system is singular then. This much of the diagonal on top of it leaves that mode alone.
 constexpr double kRidge = 1e-3;
@@ -172,10 +181,10 @@ std::vector<double> scaling(const FormFactors& s, std::span<const double> wanted
     scaled_product(s, d, one, row);
     for (size_t i = 0; i < n; ++i) missing[i] = row[i] > 0 ? wanted[i] - row[i] : 0;
     if (std::sqrt(dot_product(missing, missing)) <= enough) break;
-    const std::vector<double> change = newton_step(s, d, row, missing, 0.1 * enough);
+    const std::vector<double> change = newton_step(s, d, row, missing, kInnerPart * enough);
     for (size_t i = 0; i < n; ++i)
-      d[i] = std::clamp(d[i] * std::exp(std::clamp(change[i], -0.5, 0.5)), 1 / kLargestFactor,
-                        kLargestFactor);
+      d[i] = std::clamp(d[i] * std::exp(std::clamp(change[i], -kLargestStep, kLargestStep)),
+                        1 / kLargestFactor, kLargestFactor);
   }
   for (int pass = 0; pass < kPasses; ++pass) {
     scaled_product(s, d, one, row);
@@ -209,6 +218,7 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
   parallel_for(patches.size(), 16, [&](size_t begin, size_t end) {
     Work w(rays);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
+      // Rays from the points of the patch, and the patches that they meet.
       fill_rays(patches.points_of(i), hash64(params.seed, i), diagonal_m, w);
       tracer.closest_hits(w.ray, w.hit);
       w.met.clear();
@@ -226,6 +236,7 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
                                                hit.back_face ? -front : front, material, tracer);
         if (j != kNone) w.met.push_back(j);
       }
+      // Shares of the rays.
       rows[i] = row_of(w.met, rays);
       out.sky[i] = float(escaped) / float(rays);
       progress.advance(1);
@@ -238,10 +249,12 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
 }
 
 FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2) {
+  // Exchange areas S, and what their rows should sum to.
   FormFactors s = symmetric(traced, area_m2);
   std::vector<double> wanted(traced.size());
   for (size_t i = 0; i < wanted.size(); ++i)
     wanted[i] = std::min(1.0, row_sum(traced, i)) * double(area_m2[i]);
+  // S scaled to that, and how far rows still exceed 1.
   const std::vector<double> d = scaling(s, wanted);
   std::vector<float> limit(s.size());
   parallel_for(s.size(), 256, [&](size_t begin, size_t end) {
@@ -255,6 +268,7 @@ FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2
       limit[i] = share > 1 ? float(1 / share) : 1.0f;
     }
   });
+  // Back to F = S / A, with no row beyond 1 and still reciprocal.
   parallel_for(s.size(), 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       for (uint64_t k = s.first[i]; k < s.first[i + 1]; ++k)

@@ -13,7 +13,8 @@ namespace {
 
 /// Places whose shadow rays go together: packets of neighbours, on the stack.
 constexpr size_t kBatch = 64;
-/// Of the way to a lamp: it may touch a surface, which does not hide it.
+/// The part of the way to a lamp that is looked along: it may touch a surface, which does not hide
+/// it.
 constexpr float kMostOfTheWay = 0.9999f;
 
 /// Light that arrives if nothing is in the way of `ray`; zero when none would.

@@ -11,11 +11,14 @@
 namespace luxel::matrix {
 namespace {
 
-/// Of some places the one with most room around: what a lamp close to a surface lights is little
-/// but a spot, and the noise of the few rays that went there. So many that one of them is outside
-/// of closed solids, where in furnished rooms half of all patches are.
+/// A trial's lamp stands where, of so many places, there is most room around: what a lamp close to
+/// a surface lights is little but a spot, and the noise of the few rays that went there. With so
+/// many, one is outside of closed solids, where in furnished rooms half of all patches are: 2^-16
+/// fail.
 constexpr int kPlacesPerTrial = 16;
 constexpr uint32_t kLooks = 64;
+/// A place is on the way between two surfaces, from 0.3 to 0.7 of it: near neither.
+constexpr float kNearest = 0.3f, kSpan = 0.4f;
 
 /// So many of the rays from a place inside of a room meet something. From outside little light
 /// comes back, and what is lost of it says nothing.
@@ -46,7 +49,7 @@ scene::PunctualLight trial_lamp(const trace::RayTracer& tracer, const Patches& p
     const Vec3 towards = frame_around(normal).to_world(cosine_hemisphere_sample(random.next2()));
     const float hit_m = tracer.closest_hit({from, 0, towards, INFINITY}).t;
     const Vec3 place =
-        from + towards * (std::min(hit_m, diagonal_m) * (0.3f + 0.4f * random.next()));
+        from + towards * (std::min(hit_m, diagonal_m) * (kNearest + kSpan * random.next()));
     if (const float room = room_around(tracer, place); room > most && room < INFINITY)
       most = room, lamp.position = place;
   }
@@ -118,11 +121,13 @@ Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tr
   Trials out;
   progress.begin("trial lights", uint64_t(params.count));
   for (int trial = 0; trial < params.count; ++trial) {
+    // What patches reflect of a lamp at first.
     const scene::PunctualLight lamp =
         trial_lamp(tracer, patches, diagonal_m, hash64(params.seed, uint64_t(trial)));
     std::vector<Rgb> sent(patches.size());
     live_light({at.position, at.normal, at.normal}, {&lamp, 1}, tracer, diagonal_m, sent);
     for (size_t i = 0; i < sent.size(); ++i) sent[i] = at.reflectance[i] * sent[i];
+    // What all of them get of that.
     out.irradiance.push_back(params.bounces < 0 ? exact.all(coarse, sent, kManySweeps)
                                                 : exact.counted(sent, params.bounces));
     out.sent.push_back(std::move(sent));

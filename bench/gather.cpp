@@ -18,7 +18,7 @@
 namespace luxel::bench {
 namespace {
 
-/// The same triangles, in the world, in one Embree scene of this file's own: the yardstick.
+/// The triangles of a scene, in the world, in one Embree scene of this file's own: the yardstick.
 class BareEmbree {
  public:
   explicit BareEmbree(const scene::Scene& scene)
@@ -211,6 +211,7 @@ Result<Table> measure_threads(const std::filesystem::path& shared, int) {
     LUXEL_TRY(scene::Scene scene, load(named));
     Progress layout;
     LUXEL_TRY(const auto p, validate::prepare(std::move(scene), 512, layout));
+    // Seconds of a bake with so many threads.
     const auto run = [&](int threads) {
       const ThreadLimit limit(threads);
       gather::GatherParams params;
@@ -221,6 +222,7 @@ Result<Table> measure_threads(const std::filesystem::path& shared, int) {
                                          *p->tracer, params, progress);
       return result ? seconds_since(start) : 0.0;
     };
+    // Both in turn, so that what else the machine does falls on both.
     std::vector<double> one, two, ratio;
     for (int round = 0; round < 5; ++round) {
       one.push_back(run(1)), two.push_back(run(2));

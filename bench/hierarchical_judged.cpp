@@ -133,6 +133,7 @@ Result<Table> rays_table(Progress& progress) {
   h::SolveParams params;
   params.eps = 0.1;
   LUXEL_TRY(const h::Solution s, h::solve(scene, tracer, params, progress));
+  // Exact light at random points, and how many standard errors of many rays it is off.
   std::vector<h::Receiver> receivers;
   for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kPoints, 17)) {
     const h::Place place = h::place_of(scene, s.faces, p);
@@ -145,6 +146,7 @@ Result<Table> rays_table(Progress& progress) {
     for (size_t k = begin; k < end; ++k)
       off[k] = standard_errors_off(s, scene, tracer, receivers[k], exact[k], hash64(k, 3));
   });
+  // A normal law has a root mean square of 1.
   double squares = 0, within_one = 0, within_two = 0, worst = 0;
   for (const double z : off) {
     squares += z * z / double(off.size());
@@ -176,6 +178,7 @@ Result<Table> energy_table(Progress& progress) {
                                          std::tuple{"office", scene::office(), 0.1}}) {
     LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
     std::vector<std::string> row{name, fmt::format("{}", eps), ""};
+    // All three function spaces; the last with exact light fed back, too.
     for (const auto basis : {h::Basis::constant, h::Basis::linear_receivers, h::Basis::linear}) {
       h::SolveParams params;
       params.eps = eps, params.basis = basis;

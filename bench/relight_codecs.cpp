@@ -13,11 +13,11 @@ namespace luxel::bench {
 namespace {
 
 constexpr size_t kPatches = 8192;
-/// Of bc1, whose K of all bounces takes minutes to make at kPatches.
+/// Patches of bc1, whose K of all bounces takes minutes to make at kPatches.
 constexpr size_t kBc1Patches = 4096;
 constexpr int kRays = 8192, kRounds = 9;
 constexpr std::array<uint32_t, 4> kRanks{48, 96, 192, 384};
-/// Of F^c, plainly iterated: they err by less than any codec.
+/// Products of F^c, plainly iterated: they err by less than any codec.
 constexpr int kProducts = 24;
 
 struct Room {
@@ -110,7 +110,7 @@ void count_products(const Room& room, std::vector<Made>& all) {
   }
 }
 
-/// Of all codecs and the yardstick, in turn.
+/// Times all codecs and the yardstick, in turn.
 void time_all(const Room& room, std::vector<Made>& all, CodecRuns& out) {
   const matrix::Patches& patches = room.patches();
   const std::vector<Rgb>&rho = patches.elements.reflectance, &sent = room.trials.sent[0];

@@ -149,7 +149,7 @@ Result<EntryError> error_by(const matrix::ColourMatrix& k, const matrix::Bc1Para
   return error_of(k, bc1);
 }
 
-/// The same patches in no order.
+/// The matrix with its patches in no order.
 matrix::ColourMatrix shuffled(const matrix::ColourMatrix& k) {
   std::vector<uint32_t> order(k.n);
   std::iota(order.begin(), order.end(), 0u);
@@ -199,6 +199,7 @@ void measure_speed(const Room& room, const matrix::Bc1& bc1, PaperRuns& runs) {
     };
     count_bounces(std::ref(product), {room.sent[0], room.reflectance(), {}, products}, e, bounces);
   };
+  // F in floats with 1 to kBounces products; F in halves and F^c with kBounces; K; K in bc1.
   std::vector<std::function<void()>> tasks;
   for (int products = 1; products <= kBounces; ++products)
     tasks.push_back([&, products] { counted(single, products); });

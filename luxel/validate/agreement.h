@@ -33,7 +33,7 @@ struct Judged {
   Rgb mean(size_t i) const { return 0.5f * (first[i] + second[i]); }
 };
 Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed, Progress& progress);
-/// The same at any places.
+/// The judge's answer at any points of surfaces.
 Result<Judged> judge(const scene::Scene& scene, const trace::RayTracer& tracer,
                      const reference::Receivers& receivers, int samples_each, uint64_t seed,
                      Progress& progress);
@@ -54,7 +54,7 @@ struct Agreement {
 Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver_hidden,
                     const Judged& judged);
 
-/// Of luminance against a reference b, d being the difference.
+/// Errors of luminance against a reference b, d being the difference.
 struct Errors {
   double relative = 0;   ///< root mean square of d / (b + 0.01 mean b), as `luxel compare` has it
   double over_mean = 0;  ///< root mean square of d over the mean

@@ -186,7 +186,7 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
                          const std::function<Status(size_t, const View&)>& done,
                          Progress& progress) {
   LUXEL_CHECK(params.resolution >= 2 && params.resolution % 2 == 0);
-  // The same pixels for all viewpoints.
+  // One set of pixels serves all viewpoints.
   LUXEL_TRY(std::vector<Pixel> pixels, pixels_in_tiles(params.resolution, progress));
   const Looker looker(senders, std::move(pixels));
   progress.begin("hemicubes", from.size());

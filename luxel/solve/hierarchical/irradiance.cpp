@@ -67,6 +67,7 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
     return soft_sky_at(
         sky, {to_float(r.position), to_float(r.normal), to_float(r.geometric_normal)}, sky_rays);
   };
+  // Each receiver gathers from all faces.
   progress.begin("irradiance", receivers.size());
   parallel_for(receivers.size(), 32, [&](size_t begin, size_t end) {
     Gathering gathering(s, tracer, sources, gathered);

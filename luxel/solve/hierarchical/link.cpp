@@ -344,12 +344,14 @@ void gather(const Exchange& x, std::span<const std::vector<Link>> links, Light& 
   parallel_for(links.size(), 256, [&](size_t begin, size_t end) {
     for (size_t id = begin; id < end; ++id) {
       if (id < clusters) {
+        // A cluster keeps where its light comes from.
         Cosines& received = light.clusters[id].received;
         received = {};
         for (const Link& link : links[id])
           received.add(link.direction, irradiance_of(link, x, light));
         continue;
       }
+      // An element gets a linear function from elements, and a constant from clusters.
       std::array<Rgb, 4> sum{};
       for (const Link& link : links[id]) {
         if (link.direction == Vec3{}) {

@@ -82,7 +82,7 @@ Result<Table> exact_table(const Run& r, Progress& progress) {
   std::vector<h::Receiver> receivers;
   std::vector<scene::SurfacePoint> points;
   for (const scene::SurfacePoint& p : scene::points_uniform_in_area(r.scene, kPoints, 5)) {
-    const h::Place place = h::place_of(r.scene, r.solution.faces, p);
+    const h::FacePoint place = h::face_point_of(r.scene, r.solution.faces, p);
     if (place.face == h::kNone) continue;
     points.push_back(p);
     receivers.push_back(h::receiver_at(r.solution, r.scene, *r.tracer, place.face, place.position));

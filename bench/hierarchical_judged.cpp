@@ -113,7 +113,7 @@ double standard_errors_off(const h::Solution& s, const scene::Scene& scene,
     const Vec3 d = frame.to_world(cosine_hemisphere_sample(random.next2()));
     const trace::Hit hit = tracer.closest_hit({from, 0, d, INFINITY});
     if (!hit.found() || hit.back_face) continue;
-    const h::Place place = h::place_of(scene, s.faces, hit.point());
+    const h::FacePoint place = h::face_point_of(scene, s.faces, hit.point());
     if (place.face == h::kNone) continue;
     const size_t leaf = h::leaf_at(s.tree, s.faces, place.face, place.position);
     const h::Element& e = s.tree.elements[leaf];
@@ -136,7 +136,7 @@ Result<Table> rays_table(Progress& progress) {
   // Exact light at random points, and how many standard errors of many rays it is off.
   std::vector<h::Receiver> receivers;
   for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kPoints, 17)) {
-    const h::Place place = h::place_of(scene, s.faces, p);
+    const h::FacePoint place = h::face_point_of(scene, s.faces, p);
     receivers.push_back(h::receiver_at(s, scene, tracer, place.face, place.position));
   }
   LUXEL_TRY(const std::vector<Rgb> exact,

@@ -203,17 +203,17 @@ TEST(Cuts, LocateFindsTheTriangleThatHoldsAPoint) {
       if (i % 10 == 0) at.x = 0;                 // on an edge
       if (i % 50 == 0) at.y = float(i % 3) / 2;  // at a corner, or the middle of an edge
       const scene::SurfacePoint p{0, uint32_t(random.next() * count), {at.x, at.y}};
-      const Place place = locate(s.mesh, p);
-      const Node& n = s.mesh.nodes[place.node];
+      const MeshPoint point = locate(s.mesh, p);
+      const Node& n = s.mesh.nodes[point.node];
       ASSERT_EQ(n.child, 0u);
       ASSERT_EQ(n.instance, p.instance);
       ASSERT_EQ(n.triangle, p.triangle);
-      ASSERT_GE(std::min({place.at.u, place.at.v, 1 - place.at.u - place.at.v}), -1e-6f);
-      const scene::SurfacePoint found = scene_point(n, place.at);
+      ASSERT_GE(std::min({point.at.u, point.at.v, 1 - point.at.u - point.at.v}), -1e-6f);
+      const scene::SurfacePoint found = scene_point(n, point.at);
       ASSERT_NEAR(found.at.u, p.at.u, 1e-6);
       ASSERT_NEAR(found.at.v, p.at.v, 1e-6);
       const Vec3 there = interpolate(s.mesh.points[n.point[0]], s.mesh.points[n.point[1]],
-                                     s.mesh.points[n.point[2]], place.at);
+                                     s.mesh.points[n.point[2]], point.at);
       ASSERT_LT(length(there - scene::world_position(s.scene, p)), near);
     }
   }

@@ -259,7 +259,8 @@ void add_faces(const View& v, double least_weight, double least_light) {
   }
 }
 
-void add_lamps(const View& v, const scene::Scene& scene, double least_weight, double least_light) {
+void add_punctual_lights(const View& v, const scene::Scene& scene, double least_weight,
+                         double least_light) {
   for (uint32_t k = 0; k < scene.lights.size(); ++k) {
     const scene::PunctualLight& lamp = scene.lights[k];
     const DVec3 middle = viewfactor::mean_corner(v.face.corners);
@@ -270,7 +271,7 @@ void add_lamps(const View& v, const scene::Scene& scene, double least_weight, do
       place = middle - to_double(lamp.direction) * (kSunDistance * double(v.s.diagonal_m));
     if (v.height(place) <= 0 || double(e) < least_light) continue;
     const std::array<DVec3, 1> corner{place};
-    const Source source{.number = kLampSource + k,
+    const Source source{.number = kPunctualSource + k,
                         .corners = corner,
                         .normal = {},
                         .size_m = 0,
@@ -303,9 +304,9 @@ DiscontinuityLimits limits_of(const Solution& s, const DiscontinuityParams& para
 
 double weight_of(const Discontinuity& d, const Solution& s, const scene::Scene& scene) {
   if (d.kind == DiscontinuityKind::contact) return INFINITY;
-  if (d.source >= kLampSource)
+  if (d.source >= kPunctualSource)
     return d.geometric *
-           double(max_component(light::incidence_at(scene.lights[d.source - kLampSource],
+           double(max_component(light::incidence_at(scene.lights[d.source - kPunctualSource],
                                                     scene.profiles, to_float(d.a))
                                     .irradiance));
   return d.geometric * double(radiosity_of(s, d.source));
@@ -321,7 +322,7 @@ std::vector<Discontinuity> find_discontinuities(const Solution& s, const scene::
   const View v{s,  tracer, ranking, receiver, face, std::sqrt(viewfactor::area_m2(face.corners)),
                out};
   add_faces(v, limits.weight, limits.light);
-  add_lamps(v, scene, limits.weight, limits.light);
+  add_punctual_lights(v, scene, limits.weight, limits.light);
   std::vector<uint32_t> near;
   find_near(s.blockers, face.corners, near);
   std::erase(near, receiver);

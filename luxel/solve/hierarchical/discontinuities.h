@@ -15,15 +15,16 @@ enum class DiscontinuityKind : uint8_t {
 struct Discontinuity {
   DVec3 a, b;  ///< on the receiver
   DiscontinuityKind kind = DiscontinuityKind::ve;
-  uint32_t source = kNone;   ///< a face; kLampSource + a lamp's number; kNone for contacts
+  uint32_t source =
+      kNone;  ///< a face; kPunctualSource + the number of a punctual light; kNone for contacts
   uint32_t blocker = kNone;  ///< a face; kNone for horizons
   /// max(d_sb / d_br), how fast a source appears behind a blocker [Hardt96, section 5.3]; where
   /// slopes are ranked [Hardt96, section 8.2], the most that the form factor of the source can
   /// change per metre. Infinite for contacts.
   double geometric = 0;
 };
-/// Sources from here on are lamps without area.
-inline constexpr uint32_t kLampSource = 1u << 31;
+/// Sources from here on are punctual lights.
+inline constexpr uint32_t kPunctualSource = 1u << 31;
 
 /// How discontinuities are ranked: weight = geometric factor * radiosity of the source.
 enum class Ranking : uint8_t {

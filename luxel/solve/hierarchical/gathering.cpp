@@ -86,12 +86,12 @@ bool Gathering::take_cluster(uint32_t id) {
   const DVec3 d = c.centre - at_.position;
   const double distance = length(d), part = c.radius_m / distance;
   if (part > kMostRadius) return false;
-  const double power = glances_.power_of(id);
+  const double power = sampler_.power_of(id);
   if (power == 0) return true;
   const double most = power / (kPiDouble * distance * distance);
   const double rays = kRaysForSides * rays_for(most);
   if (rays > kMostClusterRays) return false;
-  sum_ += glances_.from_cluster(at_, id, uint32_t(rays));
+  sum_ += sampler_.irradiance_from_cluster(at_, id, uint32_t(rays));
   return true;
 }
 
@@ -153,10 +153,10 @@ void Gathering::look_by_rays(size_t index, double whole, bool shines) {
     return;
   }
   const double rays = rays_for(at_stake(index, whole, shines));
-  const Glances::Glance glance =
-      glances_.at_element(at_, index, uint32_t(std::min(rays, kMostRays)));
-  covered_ += whole * glance.share;
-  if (shines) sum_ += glance.radiosity * float(whole);
+  const SourceSampler::Sample sample =
+      sampler_.sample_element(at_, index, uint32_t(std::min(rays, kMostRays)));
+  covered_ += whole * sample.share;
+  if (shines) sum_ += sample.radiosity * float(whole);
 }
 
 Polygon Gathering::above_horizon(PolygonView polygon) const {

@@ -22,13 +22,15 @@ double limit_of(const Solution& s, const PointParams& params) {
   return params.tolerance * double(max_component(totals_of(s).irradiance));
 }
 
-bool is_sharp(const scene::PunctualLight& lamp) { return lamp.angular_radius_rad == 0; }
+bool is_sharp(const scene::PunctualLight& light) { return light.angular_radius_rad == 0; }
 
-/// E of lamps without area.
-Result<std::vector<Rgb>> from_lamps(const scene::Scene& scene, const trace::RayTracer& tracer,
-                                    const light::Lights& lamps, std::span<const Receiver> receivers,
-                                    Progress& progress) {
-  if (lamps.punctual.empty() && lamps.around.peak.empty())
+/// E of punctual lights.
+Result<std::vector<Rgb>> from_punctual_lights(const scene::Scene& scene,
+                                              const trace::RayTracer& tracer,
+                                              const light::Lights& lights,
+                                              std::span<const Receiver> receivers,
+                                              Progress& progress) {
+  if (lights.punctual.empty() && lights.around.peak.empty())
     return std::vector<Rgb>(receivers.size());
   transport::Elements points;
   for (const Receiver& r : receivers) {
@@ -38,8 +40,8 @@ Result<std::vector<Rgb>> from_lamps(const scene::Scene& scene, const trace::RayT
     points.reflectance.push_back({});
   }
   LUXEL_TRY(light::DirectLight direct,
-            light::direct_light(scene, points, lamps, tracer, {.samples = 256, .same_points = true},
-                                progress));
+            light::direct_light(scene, points, lights, tracer,
+                                {.samples = 256, .same_points = true}, progress));
   return std::move(direct.irradiance);
 }
 
@@ -49,20 +51,21 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
                                        const trace::RayTracer& tracer,
                                        std::span<const Receiver> receivers,
                                        const PointParams& params, Progress& progress) {
-  // Lamps.
-  Lamps lamps = s.lamps;
-  if (!params.sharp_lamps) std::erase_if(lamps.lights.punctual, is_sharp);
-  LUXEL_TRY(std::vector<Rgb> out, from_lamps(scene, tracer, lamps.lights, receivers, progress));
+  // Punctual lights.
+  UnlinkedLights unlinked = s.unlinked;
+  if (!params.sharp_lights) std::erase_if(unlinked.lights.punctual, is_sharp);
+  LUXEL_TRY(std::vector<Rgb> out,
+            from_punctual_lights(scene, tracer, unlinked.lights, receivers, progress));
   // A sky of one radiance is what no face hides; one that varies is looked at.
   const bool count_all =
-      lamps.has_sky && scene.environment.empty() && s.faces.size() <= kMostFacesBeforeSky;
+      unlinked.has_sky && scene.environment.empty() && s.faces.size() <= kMostFacesBeforeSky;
   const double whole_sky = kPiDouble * double(max_component(scene.background));
   // Faces, and the sky past them.
   const GatheringParams gathered{.limit = limit_of(s, params), .sky = count_all ? whole_sky : 0};
   const RaySources sources = ray_sources(s);
   const auto sky_rays =
       uint32_t(std::clamp(kSkyRays / params.tolerance, kLeastSkyRays, kMostSkyRays));
-  const SkyScene sky{scene, lamps.lights.around, tracer, s.diagonal_m};
+  const SkyScene sky{scene, unlinked.lights.around, tracer, s.diagonal_m};
   const auto sky_at = [&](const Receiver& r) {
     return soft_sky_at(
         sky, {to_float(r.position), to_float(r.normal), to_float(r.geometric_normal)}, sky_rays);
@@ -73,7 +76,7 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
     Gathering gathering(s, tracer, sources, gathered);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       out[i] += gathering.from_faces(receivers[i], nullptr);
-      if (!lamps.has_sky) continue;
+      if (!unlinked.has_sky) continue;
       out[i] += count_all ? scene.background * (kPi * float(std::max(0.0, 1 - gathering.covered())))
                           : sky_at(receivers[i]);
     }
@@ -87,10 +90,10 @@ Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
                                              const trace::RayTracer& tracer,
                                              std::span<const Receiver> receivers,
                                              Progress& progress) {
-  light::Lights lamps;
-  lamps.punctual = scene.lights;
-  std::erase_if(lamps.punctual, [](const auto& lamp) { return !is_sharp(lamp); });
-  return from_lamps(scene, tracer, lamps, receivers, progress);
+  light::Lights lights;
+  lights.punctual = scene.lights;
+  std::erase_if(lights.punctual, [](const auto& light) { return !is_sharp(light); });
+  return from_punctual_lights(scene, tracer, lights, receivers, progress);
 }
 
 std::vector<Seen> sources_at(const Solution& s, const trace::RayTracer& tracer,

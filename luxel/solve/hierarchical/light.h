@@ -48,7 +48,7 @@ struct ElementLight {
   Rgb reflectance;
   Rgb emission;                 ///< B_e [W/m^2]
   std::array<Rgb, 4> received;  ///< E over the links of this element at its corners
-  /// E at the corners of a leaf that no link brings: from lamps without area and the sky, and what
+  /// E at the corners of a leaf that no link brings: from punctual lights and the sky, and what
   /// exact light differs by from what links bring (feedback.h).
   std::array<Rgb, 4> unlinked;
   std::array<Rgb, 4> arriving;  ///< E at the corners, over the links of this and all above it

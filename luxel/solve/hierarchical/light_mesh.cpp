@@ -22,7 +22,7 @@ constexpr double kNudge = 1e-3;
 constexpr double kWeaker = 0.5;
 
 /// A face while it is meshed.
-struct FaceWork {
+struct FaceMeshing {
   FacePlane plane;
   std::vector<size_t> leaves;               ///< elements
   std::vector<std::vector<DVec2>> outline;  ///< per leaf
@@ -48,10 +48,10 @@ struct Maker {
 };
 
 /// `found`: of the face, or nothing yet.
-FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& limits,
-                      std::optional<std::vector<Discontinuity>>& found) {
+FaceMeshing prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& limits,
+                         std::optional<std::vector<Discontinuity>>& found) {
   // Its leaves, in its plane.
-  FaceWork w;
+  FaceMeshing w;
   w.plane = plane_coordinates(m.s.faces.faces[face]);
   for (uint32_t r = m.s.tree.first_root[face]; r < m.s.tree.first_root[face + 1]; ++r)
     add_leaves(m.s.tree, r, w.leaves);
@@ -82,7 +82,7 @@ FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& 
 
 /// Calls visit(point) for corners of leaves and ends of lines.
 template <class Visit>
-void for_points(const Maker& m, const FaceWork& w, const Visit& visit) {
+void for_points(const Maker& m, const FaceMeshing& w, const Visit& visit) {
   for (size_t k = 0; k < w.leaves.size(); ++k) {
     for (const DVec3& p : m.s.tree.elements[w.leaves[k]].polygon()) visit(p);
     for (const Segment2& piece : w.pieces[k])
@@ -91,7 +91,7 @@ void for_points(const Maker& m, const FaceWork& w, const Visit& visit) {
 }
 
 /// A leaf's corners with all that its neighbours have on its edges.
-std::vector<DVec2> full_outline(const Maker& m, const FaceWork& w, uint32_t face, size_t leaf,
+std::vector<DVec2> full_outline(const Maker& m, const FaceMeshing& w, uint32_t face, size_t leaf,
                                 const EdgePoints& of_face, const EdgePoints& of_outlines) {
   const Face& f = m.s.faces.faces[face];
   const PolygonView polygon = m.s.tree.elements[leaf].polygon();
@@ -125,7 +125,7 @@ bool lies_on(const Segment2& s, DVec2 a, DVec2 b, double slack_m) {
 }
 
 /// Triangulates the leaves of a face into `mesh`.
-void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints& of_outlines,
+void add_face(const Maker& m, const FaceMeshing& w, uint32_t face, const EdgePoints& of_outlines,
               Welder& welder, std::vector<std::vector<LightTriangle>>& of_element,
               LightMesh& mesh) {
   // Corners that leaves may share with their neighbours of the same face.
@@ -161,7 +161,7 @@ void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints
 Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& progress) {
   // Leaves and lines of all faces.
   const size_t faces = m.s.faces.size();
-  std::vector<FaceWork> work(faces);
+  std::vector<FaceMeshing> work(faces);
   const DiscontinuityLimits limits = limits_of(m.s, m.params.discontinuity);
   known.of_face.resize(faces);
   progress.begin("discontinuities", faces);
@@ -203,11 +203,11 @@ Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& 
 }
 
 /// Where irradiance is asked for: each place once for the light that is the same on both sides of
-/// its edge, and for each triangle's side of it for that of sharp lamps, whose shadows end there.
+/// its edge, and for each triangle's side of it for that of sharp lights, whose shadows end there.
 struct Samples {
   std::vector<Receiver> receivers;
   std::vector<std::array<uint32_t, 6>> of_triangle;
-  std::vector<Receiver> inside;  ///< six per triangle; none in scenes without lamps
+  std::vector<Receiver> inside;  ///< six per triangle; none in scenes without punctual lights
 };
 
 /// Whether another face meets this one there at an angle; neighbours on a curved surface do not.
@@ -298,9 +298,9 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
   return mesh;
 }
 
-MeshPlace locate(const Solution& s, const LightMesh& mesh, uint32_t face, DVec3 place) {
+MeshPoint locate(const Solution& s, const LightMesh& mesh, uint32_t face, DVec3 place) {
   const size_t leaf = leaf_at(s.tree, s.faces, face, place);
-  MeshPlace best;
+  MeshPoint best;
   double deepest = -INFINITY;
   for (uint32_t t = mesh.first_of_element[leaf]; t < mesh.first_of_element[leaf + 1]; ++t) {
     const auto& v = mesh.triangles[t].vertex;
@@ -319,9 +319,9 @@ MeshPlace locate(const Solution& s, const LightMesh& mesh, uint32_t face, DVec3 
 
 Rgb irradiance_at(const Solution& s, const LightMesh& mesh, const scene::Scene& scene,
                   const scene::SurfacePoint& p) {
-  const Place place = place_of(scene, s.faces, p);
+  const FacePoint place = face_point_of(scene, s.faces, p);
   if (place.face == kNone || mesh.triangles.empty()) return {};
-  const MeshPlace at = locate(s, mesh, place.face, place.position);
+  const MeshPoint at = locate(s, mesh, place.face, place.position);
   return max(Rgb{}, value_of(mesh.interpolant[at.triangle], at.s, at.t));
 }
 

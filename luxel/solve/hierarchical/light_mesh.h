@@ -63,11 +63,11 @@ Result<LightMesh> make_light_mesh(const Solution& solution, const scene::Scene& 
                                   Known& known, Progress& progress);
 
 /// The triangle that holds a place of a face, or the nearest one of its leaf.
-struct MeshPlace {
+struct MeshPoint {
   uint32_t triangle = 0;
   float s = 0, t = 0;
 };
-MeshPlace locate(const Solution& solution, const LightMesh& mesh, uint32_t face, DVec3 place);
+MeshPoint locate(const Solution& solution, const LightMesh& mesh, uint32_t face, DVec3 place);
 
 /// E at a surface point of the scene [W/m^2], never negative.
 Rgb irradiance_at(const Solution& solution, const LightMesh& mesh, const scene::Scene& scene,

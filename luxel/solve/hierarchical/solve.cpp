@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "luxel/solve/hierarchical/contacts.h"
-#include "luxel/solve/hierarchical/lamps.h"
 #include "luxel/solve/hierarchical/overlaps.h"
+#include "luxel/solve/hierarchical/unlinked_lights.h"
 
 namespace luxel::hierarchical {
 namespace {
@@ -57,7 +57,7 @@ double change_of(const Tree& tree, const Light& light, std::span<const Rgb> befo
   return all > 0 ? std::sqrt(sum / all) : 0;
 }
 
-struct Work {
+struct Solving {
   Solution& s;
   const Exchange x;
   std::vector<uint8_t> lit;
@@ -66,7 +66,7 @@ struct Work {
 
 /// Light from emission alone, by so many reflections and no more. Points gather what has been
 /// reflected one time less than the last gather brings.
-void count_bounces(Work& w, int bounces) {
+void count_bounces(Solving& w, int bounces) {
   std::vector<ElementLight>& light = w.s.light.elements;
   for (ElementLight& l : light) l.received = {}, l.irradiance = {}, l.radiosity = l.emission;
   for (ClusterLight& l : w.s.light.clusters) l.received = {};
@@ -85,7 +85,7 @@ void count_bounces(Work& w, int bounces) {
     light[e].rough = before[e].rough;
 }
 
-Status run(Work& w, const SolveParams& params, Progress& progress) {
+Status run(Solving& w, const SolveParams& params, Progress& progress) {
   // Elements shine by what they emit.
   RefineParams refine_params{.eps = 0,
                              .min_area_m2 = w.s.min_area_m2,
@@ -101,7 +101,7 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
   refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * power) : kFirstEps * power;
   RefineParams first_params = refine_params;
   if (!(first_params.eps > 0)) first_params.eps = INFINITY;  // no surface shines
-  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, first_params, w.lit, progress));
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, first_params, w.lit, progress));
   // All is linked to all, and refined by the light that the links bring, until none errs too much.
   LUXEL_TRY_STATUS(link_all(w.state, w.x, refine_params, progress));
   for (w.s.iterations = 0; w.s.iterations < kMostIterations; ++w.s.iterations) {
@@ -110,9 +110,9 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
     refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * mean) : kUsualEps * mean;
     w.s.eps = refine_params.eps;
     const size_t leaves = w.s.tree.elements.size();
-    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, refine_params, w.lit, progress));
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.lit, progress));
     LUXEL_TRY(const size_t refined, refine(w.state, w.x, refine_params, progress));
-    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, refine_params, w.lit, progress));
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.lit, progress));
     if (refined == 0 && leaves == w.s.tree.elements.size()) break;
   }
   // The light of the last links; or that of so many bounces.
@@ -179,10 +179,10 @@ Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer
   s.diagonal_m = scene::world_bounds(scene).diagonal();
   s.unit_area_m2 = area_of(s.tree) / double(std::clamp<size_t>(s.faces.size(), 1, kMostUnits));
   s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;
-  s.lamps = lamps_of(scene);
+  s.unlinked = unlinked_lights_of(scene);
   // Links and light; then what a user should know.
-  Work work{s, s.exchange(tracer), {}, {scene, s.tree, s.light, s.links}};
-  LUXEL_TRY_STATUS(run(work, params, progress));
+  Solving solving{s, s.exchange(tracer), {}, {scene, s.tree, s.light, s.links}};
+  LUXEL_TRY_STATUS(run(solving, params, progress));
   if (params.eps && *params.eps < s.eps)
     s.warnings.push_back(
         fmt::format("--eps {} is below a ten-thousandth of the mean light; {:.3g} W/m^2 was used",

@@ -85,20 +85,20 @@ void decode_row(const Bc1& matrix, size_t place, std::span<Rgb> out);
 float value_of_byte(uint32_t byte, float log_range);
 
 /// Room for one product, and what blocks' colours mean.
-struct Bc1Work {
+struct Bc1Scratch {
   using Levels = std::array<float, 4>;  ///< the values of indices 0..3
   std::vector<Levels> five, six;        ///< of two ends of 5 (6) bits: end 0 + 32 (64) * end 1
-  DenseWork light;                      ///< by place
+  DenseScratch light;                   ///< by place
   std::vector<Levels> color;            ///< the same light, pixel by pixel
 };
-Bc1Work make_bc1_work(const Bc1& matrix);
+Bc1Scratch make_bc1_scratch(const Bc1& matrix);
 
 /// E = K B. Allocates nothing. On AVX-512, AVX2 and any other processor the same bits.
 void multiply(const Bc1& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              Bc1Work& work);
+              Bc1Scratch& scratch);
 /// By instructions that this processor has, for tests.
 void multiply(const Bc1& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              Bc1Work& work, Instructions instructions);
+              Bc1Scratch& scratch, Instructions instructions);
 
 uint64_t bytes_of(const Bc1& matrix);
 

@@ -40,16 +40,16 @@ struct Sent {
 };
 
 /// Room for a solution.
-struct BounceWork {
+struct BounceScratch {
   std::vector<Rgb> first, radiosity, gathered;  ///< per patch
   std::vector<Rgb> power, late;                 ///< per cluster
 };
-BounceWork make_bounce_work(size_t patches, size_t clusters);
+BounceScratch make_bounce_scratch(size_t patches, size_t clusters);
 
 /// Irradiance of the patches [W/m^2] after `sent.bounces` products, at least 0 of them:
 /// E_1 = F B_0,  E_k = F (B_0 + rho E_(k-1)). Looks at no area. Allocates nothing.
 void count_bounces(const Multiply& multiply, const Sent& sent, std::span<Rgb> irradiance,
-                   BounceWork& work);
+                   BounceScratch& scratch);
 
 /// Irradiance of the patches [W/m^2] after all bounces, by `sweeps` products, at least 1. What is
 /// still missing after a sweep is reflected between the clusters without end, and one more sweep
@@ -58,6 +58,6 @@ void count_bounces(const Multiply& multiply, const Sent& sent, std::span<Rgb> ir
 /// room; more where neighbouring patches see different rooms. `sent.bounces` does not count.
 /// Allocates nothing.
 void all_bounces(const Multiply& multiply, const CoarseScene& coarse, const Sent& sent, int sweeps,
-                 std::span<Rgb> irradiance, BounceWork& work);
+                 std::span<Rgb> irradiance, BounceScratch& scratch);
 
 }  // namespace luxel::matrix

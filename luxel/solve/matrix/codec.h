@@ -6,18 +6,18 @@
 namespace luxel::matrix {
 
 /// Room for one answer of a codec; what it does not use is empty.
-struct CodecWork {
-  HierarchicalWork hierarchical;
-  DenseWork dense;
-  Bc1Work bc1;
-  LowRankWork low_rank;
-  BounceWork bounces;
+struct CodecScratch {
+  HierarchicalScratch hierarchical;
+  DenseScratch dense;
+  Bc1Scratch bc1;
+  LowRankScratch low_rank;
+  BounceScratch bounces;
 };
-CodecWork make_work(const Codec& codec, size_t patches);
+CodecScratch make_scratch(const Codec& codec, size_t patches);
 
 /// E of all patches from each other. Allocates nothing.
 void irradiance_of(const Codec& codec, const Sent& sent, std::span<Rgb> irradiance,
-                   CodecWork& work);
+                   CodecScratch& scratch);
 
 /// What the codec keeps.
 uint64_t bytes_of(const Codec& codec);

@@ -224,13 +224,14 @@ Result<ColourMatrix> make_reflections(const FormFactors& factors, std::span<cons
 }
 
 void multiply(const ColourMatrix& m, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              DenseWork& work) {
+              DenseScratch& scratch) {
   const size_t n = m.n;
-  LUXEL_CHECK(radiosity.size() == n && irradiance.size() == n && work.stride >= n);
-  split_channels(radiosity, work);
+  LUXEL_CHECK(radiosity.size() == n && irradiance.size() == n && scratch.stride >= n);
+  split_channels(radiosity, scratch);
   const auto rows = [&](size_t begin, size_t end) {
     const auto received = [&](size_t i, size_t c) {
-      return inner_product(m.channel[c].data() + i * n, work.plane.data() + c * work.stride, n);
+      return inner_product(m.channel[c].data() + i * n, scratch.plane.data() + c * scratch.stride,
+                           n);
     };
     for (size_t i = begin; i < end; ++i)
       irradiance[i] = {received(i, 0), received(i, 1), received(i, 2)};

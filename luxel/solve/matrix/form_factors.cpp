@@ -16,8 +16,8 @@ namespace {
 constexpr int kCellsPerAxis = 8;
 
 /// What a thread needs to look from one patch.
-struct Work {
-  explicit Work(size_t rays) : u(rays), v(rays), ray(rays), hit(rays) {}
+struct RayBuffers {
+  explicit RayBuffers(size_t rays) : u(rays), v(rays), ray(rays), hit(rays) {}
   std::vector<float> u, v;
   std::vector<trace::Ray> ray;
   std::vector<trace::Hit> hit;
@@ -26,11 +26,12 @@ struct Work {
 
 /// Rays from a patch's points in turn, in the order of their directions, so that neighbours are
 /// alike: each of the points takes its share of every direction.
-void fill_rays(std::span<const PatchPoint> points, uint64_t seed, float diagonal_m, Work& work) {
-  const size_t count = work.ray.size();
-  sobol_owen_2d_points(seed, work.u, work.v);
+void fill_rays(std::span<const PatchPoint> points, uint64_t seed, float diagonal_m,
+               RayBuffers& buffers) {
+  const size_t count = buffers.ray.size();
+  sobol_owen_2d_points(seed, buffers.u, buffers.v);
   const auto cell = [&](size_t i) {
-    const int a = int(work.u[i] * kCellsPerAxis), b = int(work.v[i] * kCellsPerAxis);
+    const int a = int(buffers.u[i] * kCellsPerAxis), b = int(buffers.v[i] * kCellsPerAxis);
     return size_t(b * kCellsPerAxis + (b % 2 ? kCellsPerAxis - 1 - a : a));
   };
   std::array<uint32_t, kCellsPerAxis * kCellsPerAxis + 1> place{};
@@ -39,9 +40,9 @@ void fill_rays(std::span<const PatchPoint> points, uint64_t seed, float diagonal
   for (size_t i = 0; i < count; ++i) {
     const PatchPoint& p = points[i % points.size()];
     const Vec3 d =
-        frame_around(p.normal).to_world(cosine_hemisphere_sample({work.u[i], work.v[i]}));
-    work.ray[place[cell(i)]++] = {trace::offset_origin(p.position, p.normal, diagonal_m), 0, d,
-                                  INFINITY};
+        frame_around(p.normal).to_world(cosine_hemisphere_sample({buffers.u[i], buffers.v[i]}));
+    buffers.ray[place[cell(i)]++] = {trace::offset_origin(p.position, p.normal, diagonal_m), 0, d,
+                                     INFINITY};
   }
 }
 
@@ -204,10 +205,10 @@ double row_sum(const FormFactors& factors, size_t row) {
 }
 
 Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayTracer& tracer,
-                                    const PatchWork& work, const FactorParams& params,
+                                    const PatchedScene& patched, const FactorParams& params,
                                     Progress& progress) {
   LUXEL_CHECK(params.rays_per_patch >= 1);
-  const Patches& patches = work.patches;
+  const Patches& patches = patched.patches;
   const size_t rays = size_t(params.rays_per_patch);
   const Box3 bounds = scene::world_bounds(scene);
   const float diagonal_m = length(bounds.upper - bounds.lower);
@@ -216,14 +217,14 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
   std::vector<Row> rows(patches.size());
   progress.begin("form factors", patches.size());
   parallel_for(patches.size(), 16, [&](size_t begin, size_t end) {
-    Work w(rays);
+    RayBuffers buffers(rays);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       // Rays from the points of the patch, and the patches that they meet.
-      fill_rays(patches.points_of(i), hash64(params.seed, i), diagonal_m, w);
-      tracer.closest_hits(w.ray, w.hit);
-      w.met.clear();
+      fill_rays(patches.points_of(i), hash64(params.seed, i), diagonal_m, buffers);
+      tracer.closest_hits(buffers.ray, buffers.hit);
+      buffers.met.clear();
       size_t escaped = 0;
-      for (const trace::Hit& hit : w.hit) {
+      for (const trace::Hit& hit : buffers.hit) {
         if (!hit.found()) {
           ++escaped;
           continue;
@@ -232,12 +233,12 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
         const uint32_t material = mesh.triangle_material[hit.triangle];
         if (hit.back_face && !scene::reflects_from_behind(scene.materials[material])) continue;
         const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
-        const uint32_t j = work.locator.locate(scene::world_position(scene, hit.point()),
-                                               hit.back_face ? -front : front, material, tracer);
-        if (j != kNone) w.met.push_back(j);
+        const uint32_t j = patched.locator.locate(scene::world_position(scene, hit.point()),
+                                                  hit.back_face ? -front : front, material, tracer);
+        if (j != kNone) buffers.met.push_back(j);
       }
       // Shares of the rays.
-      rows[i] = row_of(w.met, rays);
+      rows[i] = row_of(buffers.met, rays);
       out.sky[i] = float(escaped) / float(rays);
       progress.advance(1);
     }

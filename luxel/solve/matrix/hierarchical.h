@@ -77,15 +77,15 @@ static_assert(sizeof(Hierarchical::Far) == 2 * kWords);
 using SpreadMoments = std::array<float, 3 * kWords>;
 
 /// Room for one product.
-struct HierarchicalWork {
+struct HierarchicalScratch {
   std::vector<Moments> sent, received;  ///< per cluster
   std::vector<SpreadMoments> spread;    ///< per cluster
 };
-HierarchicalWork make_work(const Hierarchical& matrix);
+HierarchicalScratch make_scratch(const Hierarchical& matrix);
 
 /// E = F B. Allocates nothing.
 void multiply(const Hierarchical& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              HierarchicalWork& work);
+              HierarchicalScratch& scratch);
 
 uint64_t bytes_of(const Hierarchical& matrix);
 

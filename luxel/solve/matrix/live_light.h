@@ -10,7 +10,7 @@
 namespace luxel::matrix {
 
 /// Places of surfaces that lamps shine on.
-struct LitPlaces {
+struct LitPoints {
   std::span<const Vec3> position;          ///< [m]
   std::span<const Vec3> normal;            ///< unit, for the cosine
   std::span<const Vec3> geometric_normal;  ///< unit, the side that is lit
@@ -19,12 +19,12 @@ struct LitPlaces {
 
 /// E [W/m^2] at a place from point, spot and directional lights; a sun's disc counts as its centre.
 /// Lamps have no profiles.
-Rgb live_light_at(const LitPlaces& places, size_t place,
+Rgb live_light_at(const LitPoints& points, size_t place,
                   std::span<const scene::PunctualLight> lights, const trace::RayTracer& tracer,
                   float scene_diagonal_m);
 
 /// At every place, in parallel. Allocates nothing.
-void live_light(const LitPlaces& places, std::span<const scene::PunctualLight> lights,
+void live_light(const LitPoints& points, std::span<const scene::PunctualLight> lights,
                 const trace::RayTracer& tracer, float scene_diagonal_m, std::span<Rgb> irradiance);
 
 }  // namespace luxel::matrix

@@ -33,7 +33,7 @@ struct Ground {
   void add(Vec3 p, Vec3 n) {
     position.push_back(p), normal.push_back(n), geometric_normal.push_back(n);
   }
-  LitPlaces places() const { return {position, normal, geometric_normal}; }
+  LitPoints places() const { return {position, normal, geometric_normal}; }
 };
 
 /// 16 x 16 places of the square [0, 1]^2 at y = 0.

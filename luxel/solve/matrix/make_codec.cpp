@@ -31,13 +31,13 @@ int sweeps_of(const CodecInput& t, const RelightParams& params) {
 /// The coarsest hierarchy that keeps to params.max_error, as far as can be.
 Result<Codec> hierarchical_codec(const CodecInput& t, const RelightParams& params,
                                  Progress& progress) {
-  const Patches& patches = t.prepared.work.patches;
+  const Patches& patches = t.prepared.patched.patches;
   const int sweeps = sweeps_of(t, params);
   HierarchicalParams tried;
   tried.rays_per_patch = params.factors.rays_per_patch;
   tried.block_error = kFirstBlockError * params.max_error;
   for (int step = 0;; ++step) {
-    LUXEL_TRY(Hierarchical matrix, compress(t.prepared.factors, t.prepared.work.tree,
+    LUXEL_TRY(Hierarchical matrix, compress(t.prepared.factors, t.prepared.patched.tree,
                                             patches.centroid, patches.area_m2, tried, progress));
     Codec codec = HierarchicalCodec{std::move(matrix), t.coarse, sweeps};
     const double error = error_of(codec, t.trials, patches, params.bounces);
@@ -48,7 +48,7 @@ Result<Codec> hierarchical_codec(const CodecInput& t, const RelightParams& param
 }
 
 Result<Codec> bc1_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
-  const Patches& patches = t.prepared.work.patches;
+  const Patches& patches = t.prepared.patched.patches;
   const int bounces = params.bounces == 0 ? 1 : params.bounces;
   LUXEL_TRY(const ColourMatrix all,
             make_reflections(t.prepared.factors, patches.elements.reflectance, patches.area_m2,
@@ -64,7 +64,7 @@ constexpr size_t kFirstRank = 48;
 
 /// The fewest eigenvectors, up to a factor of two, that keep to params.max_error, as far as can be.
 Result<Codec> low_rank_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
-  const Patches& patches = t.prepared.work.patches;
+  const Patches& patches = t.prepared.patched.patches;
   SpectrumParams wanted;
   wanted.count = uint32_t(std::min<size_t>(kMostRank, patches.size()));
   wanted.seed = params.patches.seed;
@@ -83,7 +83,7 @@ Result<Codec> low_rank_codec(const CodecInput& t, const RelightParams& params, P
 }  // namespace
 
 Result<Codec> make_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
-  const size_t patches = t.prepared.work.patches.size();
+  const size_t patches = t.prepared.patched.patches.size();
   const CodecKind kind = params.codec;
   if (looks_at_all_pairs(kind) && patches > kMaxDensePatches)
     return fail(ErrorCode::bad_setting,

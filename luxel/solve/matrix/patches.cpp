@@ -325,8 +325,8 @@ size_t count_of(std::span<const uint32_t> patch_of_part) {
   return count;
 }
 
-PatchWork assemble(std::span<const Sample> samples, std::span<const Part> parts,
-                   std::span<const uint32_t> patch_of_part, const VoxelGrid& grid) {
+PatchedScene assemble(std::span<const Sample> samples, std::span<const Part> parts,
+                      std::span<const uint32_t> patch_of_part, const VoxelGrid& grid) {
   // The samples of each patch.
   std::vector<Part> whole(count_of(patch_of_part));
   for (size_t p = 0; p < parts.size(); ++p) {
@@ -336,7 +336,7 @@ PatchWork assemble(std::span<const Sample> samples, std::span<const Part> parts,
   }
   for (Part& part : whole) find_middle(samples, part);
   // Patches in the order of their tree.
-  PatchWork out;
+  PatchedScene out;
   out.tree = order_by_tree(whole);
   std::vector<uint32_t> number(whole.size());
   out.patches.voxel_m = grid.voxel_m;
@@ -359,8 +359,8 @@ PatchWork assemble(std::span<const Sample> samples, std::span<const Part> parts,
 
 }  // namespace
 
-Result<PatchWork> make_patches(const scene::Scene& scene, const trace::RayTracer& tracer,
-                               const PatchParams& params, Progress& progress) {
+Result<PatchedScene> make_patches(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                  const PatchParams& params, Progress& progress) {
   LUXEL_CHECK(params.points_per_patch >= 1);
   if (params.count < 1 || params.count > kMaxPatches)
     return fail(ErrorCode::bad_setting, "{} patches are asked for; ask for 1 to {}", params.count,

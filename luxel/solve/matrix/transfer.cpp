@@ -58,17 +58,17 @@ void fit_plane(std::span<const Vec3> centroid, Vec3 position, Vec3 normal, float
 }
 
 /// What a thread needs.
-struct Work {
+struct Scratch {
   std::vector<uint32_t> near;
   std::vector<Share> shares;
 };
 
-void find_shares(const PatchWork& work, const trace::RayTracer& tracer, Vec3 position, Vec3 normal,
-                 Work& w) {
-  const Patches& patches = work.patches;
+void find_shares(const PatchedScene& patched, const trace::RayTracer& tracer, Vec3 position,
+                 Vec3 normal, Scratch& w) {
+  const Patches& patches = patched.patches;
   const float reach_m = kReach * patches.voxel_m;
   w.shares.clear();
-  work.locator.near(position, kVoxels, w.near);
+  patched.locator.near(position, kVoxels, w.near);
   uint32_t nearest = kNone;
   float least = INFINITY;
   for (const uint32_t p : w.near) {
@@ -91,15 +91,15 @@ void find_shares(const PatchWork& work, const trace::RayTracer& tracer, Vec3 pos
 
 }  // namespace
 
-Result<Transfer> make_transfer(const PatchWork& work, const trace::RayTracer& tracer,
-                               const Places& places, Progress& progress) {
-  LUXEL_CHECK(places.position.size() == places.normal.size());
-  std::vector<std::vector<Share>> found(places.position.size());
+Result<Transfer> make_transfer(const PatchedScene& patched, const trace::RayTracer& tracer,
+                               const SurfacePoints& points, Progress& progress) {
+  LUXEL_CHECK(points.position.size() == points.normal.size());
+  std::vector<std::vector<Share>> found(points.position.size());
   progress.begin("transfer", found.size());
   parallel_for(found.size(), 256, [&](size_t begin, size_t end) {
-    Work w;
+    Scratch w;
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
-      find_shares(work, tracer, places.position[i], places.normal[i], w);
+      find_shares(patched, tracer, points.position[i], points.normal[i], w);
       found[i] = w.shares;
     }
     progress.advance(end - begin);
@@ -115,14 +115,14 @@ Result<Transfer> make_transfer(const PatchWork& work, const trace::RayTracer& tr
   return out;
 }
 
-void transfer(const Transfer& map, std::span<const Rgb> of_patch, std::span<Rgb> of_place) {
-  LUXEL_CHECK(of_place.size() == map.size());
+void transfer(const Transfer& map, std::span<const Rgb> of_patch, std::span<Rgb> of_point) {
+  LUXEL_CHECK(of_point.size() == map.size());
   const auto places = [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       Rgb sum{};
       for (uint32_t k = map.first[i]; k < map.first[i + 1]; ++k)
         sum += of_patch[map.patch[k]] * map.weight[k];
-      of_place[i] = max(sum, Rgb{});
+      of_point[i] = max(sum, Rgb{});
     }
   };
   parallel_for(map.size(), 2048, std::ref(places));

@@ -8,7 +8,7 @@
 namespace luxel::matrix {
 
 /// Where light is wanted: texels, vertices, any points of surfaces.
-struct Places {
+struct SurfacePoints {
   std::span<const Vec3> position, normal;
 };
 
@@ -26,10 +26,10 @@ struct Transfer {
 /// voxel shows. Only patches that face the same way and that the place sees take part, so that
 /// nothing leaks through a wall or round an edge. A place without any takes the nearest. Errors:
 /// cancelled.
-Result<Transfer> make_transfer(const PatchWork& work, const trace::RayTracer& tracer,
-                               const Places& places, Progress& progress);
+Result<Transfer> make_transfer(const PatchedScene& patched, const trace::RayTracer& tracer,
+                               const SurfacePoints& points, Progress& progress);
 
 /// Light per place, never below zero. Allocates nothing.
-void transfer(const Transfer& map, std::span<const Rgb> of_patch, std::span<Rgb> of_place);
+void transfer(const Transfer& map, std::span<const Rgb> of_patch, std::span<Rgb> of_point);
 
 }  // namespace luxel::matrix

@@ -1,4 +1,4 @@
-// Light that comes from no surface: lamps without area, the background.
+// Light that comes from no surface: punctual lights, the background.
 #pragma once
 
 #include "luxel/light/lights.h"
@@ -8,12 +8,12 @@
 namespace luxel::hierarchical {
 
 /// What shines besides surfaces.
-struct Lamps {
+struct UnlinkedLights {
   light::Lights lights;  ///< no triangles
   bool has_sky = false;  ///< background or a map
   bool any() const { return has_sky || !lights.punctual.empty(); }
 };
-Lamps lamps_of(const scene::Scene& scene);
+UnlinkedLights unlinked_lights_of(const scene::Scene& scene);
 
 /// What rays towards the sky need.
 struct SkyScene {
@@ -32,7 +32,7 @@ float brightest_sky(const scene::Scene& scene, const light::Surroundings& around
 /// Sets ElementLight::unlinked of all leaves that have none yet (`lit` counts elements, in order),
 /// dividing leaves over which it is farther than eps from linear. As with links, large leaves count
 /// for more: see error_of.
-Status light_leaves(Refined& state, const Exchange& exchange, const Lamps& lamps,
+Status light_leaves(Refined& state, const Exchange& exchange, const UnlinkedLights& unlinked,
                     const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress);
 
 }  // namespace luxel::hierarchical

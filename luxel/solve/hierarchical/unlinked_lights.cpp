@@ -1,4 +1,4 @@
-#include "luxel/solve/hierarchical/lamps.h"
+#include "luxel/solve/hierarchical/unlinked_lights.h"
 
 #include <algorithm>
 
@@ -17,11 +17,11 @@ constexpr uint32_t kSkyRays = 256;
 /// border of 16 cells errs by about sqrt(16) = 4 rays. With fewer, leaves would be divided for
 /// these steps.
 constexpr float kUnsureRays = 4;
-/// Points of a leaf of the unit's area at which lamps are looked for, at least, so that no patch of
-/// sun of an eighth of its length is missed. Smaller leaves have fewer, by their area.
+/// Points of a leaf of the unit's area at which lights are looked for, at least, so that no patch
+/// of sun of an eighth of its length is missed. Smaller leaves have fewer, by their area.
 constexpr double kPoints = 64;
 
-/// Where lamps are looked for on a leaf: at Gauss's points, which are corners of a smaller copy of
+/// Where lights are looked for on a leaf: at Gauss's points, which are corners of a smaller copy of
 /// it, and on a grid, as fine as the leaf is large.
 struct Probe {
   uint32_t corners = 4;
@@ -99,11 +99,11 @@ void add_points(const Element& e, const Faces& faces, const Probe& probe,
 }
 
 /// E of the soft sky at each point.
-std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x, const Lamps& lamps,
-                           const transport::Elements& points) {
+std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x,
+                           const UnlinkedLights& unlinked, const transport::Elements& points) {
   std::vector<Rgb> out(points.size());
-  if (!lamps.has_sky) return out;
-  const SkyScene sky{scene, lamps.lights.around, x.tracer, x.diagonal_m};
+  if (!unlinked.has_sky) return out;
+  const SkyScene sky{scene, unlinked.lights.around, x.tracer, x.diagonal_m};
   parallel_for(points.size(), 64, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       out[i] = soft_sky_at(sky, {points.position[i], points.normal[i], points.normal[i]}, kSkyRays);
@@ -145,20 +145,20 @@ float brightest_sky(const scene::Scene& scene, const light::Surroundings& around
   return most + brightest;
 }
 
-Lamps lamps_of(const scene::Scene& scene) {
-  Lamps out;
+UnlinkedLights unlinked_lights_of(const scene::Scene& scene) {
+  UnlinkedLights out;
   out.lights.punctual = scene.lights, out.lights.profiles = scene.profiles;
   out.lights.around = light::surroundings_of(scene);
   out.has_sky = max_component(scene.background) > 0 || !scene.environment.empty();
   return out;
 }
 
-Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
+Status light_leaves(Refined& state, const Exchange& x, const UnlinkedLights& unlinked,
                     const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress) {
-  if (!lamps.any()) return {};
-  const float unsure = lamps.has_sky ? brightest_sky(state.scene, lamps.lights.around) * kPi *
-                                           (kUnsureRays / kSkyRays)
-                                     : 0.0f;
+  if (!unlinked.any()) return {};
+  const float unsure = unlinked.has_sky ? brightest_sky(state.scene, unlinked.lights.around) * kPi *
+                                              (kUnsureRays / kSkyRays)
+                                        : 0.0f;
   for (;;) {
     // Points of all leaves that have no light yet.
     lit.resize(state.tree.elements.size());
@@ -173,11 +173,11 @@ Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
       add_points(state.tree.elements[e], x.faces, probes.back(), points);
     }
     if (leaves.empty()) return {};
-    // Light there, of lamps and of the sky.
+    // Light there, of punctual lights and of the sky.
     LUXEL_TRY(light::DirectLight direct,
-              light::direct_light(state.scene, points, lamps.lights, x.tracer,
+              light::direct_light(state.scene, points, unlinked.lights, x.tracer,
                                   {.samples = 64, .same_points = true}, progress));
-    const std::vector<Rgb> sky = sky_light(state.scene, x, lamps, points);
+    const std::vector<Rgb> sky = sky_light(state.scene, x, unlinked, points);
     for (size_t i = 0; i < sky.size(); ++i) direct.irradiance[i] += sky[i];
     // A linear function per leaf. Where it is off, the leaf is divided, and its parts come next.
     std::span<const Rgb> light = direct.irradiance;

@@ -32,8 +32,9 @@ struct Judged {
 
   Rgb mean(size_t i) const { return 0.5f * (first[i] + second[i]); }
 };
+/// The judge's answer at all elements. Errors: cancelled.
 Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed, Progress& progress);
-/// The judge's answer at any points of surfaces.
+/// The judge's answer at any points of surfaces. Errors: cancelled.
 Result<Judged> judge(const scene::Scene& scene, const trace::RayTracer& tracer,
                      const reference::Receivers& receivers, int samples_each, uint64_t seed,
                      Progress& progress);
@@ -51,6 +52,7 @@ struct Agreement {
   double bias_over_mean = 0;  ///< signed
   double judge_noise = 0;  ///< what the judge's noise would add to relative_rmse, were it left in
 };
+/// Compares a solver with the judge at elements that neither takes for the inside of a solid.
 Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver_hidden,
                     const Judged& judged);
 

@@ -14,6 +14,7 @@ struct Emission {
   bool by_pixels = false;
   light::Lights exact;  ///< lights that the pixels do not take
 };
+/// Light by pixels where more than 32 triangles shine; punctual lights are exact in any case.
 Emission choose_emission(const light::Lights& lights);
 
 struct ExchangeParams {
@@ -35,6 +36,7 @@ Result<Exchanged> exchange(const Receivers& receivers, const Rows& rows,
                            std::span<const Rgb> start, const ExchangeParams& params,
                            Progress& progress);
 
+/// B = rho E of each element [W/m^2], without emission.
 std::vector<Rgb> radiosity(const transport::Elements& elements, std::span<const Rgb> irradiance);
 
 }  // namespace luxel::hemicube

@@ -70,6 +70,7 @@ struct MeshPoint {
   uint32_t node = 0;
   Barycentric at;
 };
+/// Descends the tree of cuts from the triangle of the scene that holds the point.
 MeshPoint locate(const Mesh& mesh, const scene::SurfacePoint& p);
 
 /// A point of a triangle, in the scene's terms.

@@ -12,6 +12,7 @@ struct Blockers {
   viewfactor::PolygonTree tree;
   double slack_m = 0;
 };
+/// Blockers from all faces, and the tree of their boxes.
 Blockers make_blockers(const Faces& faces);
 
 /// Faces that may hide parts of two convex polygons from each other, ascending: those that reach

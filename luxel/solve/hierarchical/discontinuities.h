@@ -49,6 +49,7 @@ struct DiscontinuityLimits {
   double weight = 0;  ///< the least
   double light = 0;   ///< the least that a source brings [W/m^2]
 };
+/// Limits from the parameters or, where those say nothing, from the light there is.
 DiscontinuityLimits limits_of(const Solution& solution, const DiscontinuityParams& params);
 
 /// All that fall on a face, each with its geometric factor, of those whose weight can be above the

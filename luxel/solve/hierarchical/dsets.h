@@ -13,6 +13,7 @@ struct FacePlane {
   DVec2 to_plane(DVec3 p) const { return {dot(p - origin, u), dot(p - origin, v)}; }
   DVec3 from_plane(DVec2 p) const { return origin + u * p.x + v * p.y; }
 };
+/// Origin in the mean corner, u along the longest edge, u x v the normal.
 FacePlane plane_coordinates(const Face& face);
 
 struct Segment2 {
@@ -24,6 +25,8 @@ struct DSet {
   Segment2 line;                  ///< from the first end of any to the last
   std::vector<uint32_t> members;  ///< of the discontinuities it was made from
 };
+/// Sets by falling length of their longest member; every discontinuity is in one. Points nearer
+/// than `slack_m` to a line lie on it. [Hardt96, section 5.5]
 std::vector<DSet> make_dsets(std::span<const Discontinuity> discontinuities, const FacePlane& plane,
                              double slack_m);
 

@@ -58,6 +58,7 @@ struct Backprojection {
   Polygon source;
   std::vector<Polygon> visible;
 };
+/// What the receiver sees of one face, past all others. [Hardt96, section 6.2]
 Backprojection backproject(const Solution& solution, const Receiver& receiver, uint32_t face);
 
 /// The receiver at a place of a face, where vertex normals say so on the smooth surface.

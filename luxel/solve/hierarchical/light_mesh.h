@@ -12,6 +12,7 @@ namespace luxel::hierarchical {
 using Interpolant = std::array<Rgb, 6>;
 /// From values at (0, 0), (1/2, 0), (1, 0), (1/2, 1/2), (0, 1), (0, 1/2). [Hardt96, section 3.3]
 Interpolant interpolant_of(const std::array<Rgb, 6>& value);
+/// R(s, t) as above [W/m^2].
 inline Rgb value_of(const Interpolant& r, float s, float t) {
   return (r[0] * s + r[1] * t + r[2]) * s + (r[3] * t + r[4]) * t + r[5];
 }
@@ -35,6 +36,7 @@ struct LightMesh {
   size_t lines = 0;                        ///< active pieces
 };
 
+/// The centroid of a triangle [m].
 inline DVec3 middle_of(const LightMesh& mesh, const LightTriangle& t) {
   return (mesh.vertices[t.vertex[0]] + mesh.vertices[t.vertex[1]] + mesh.vertices[t.vertex[2]]) *
          (1.0 / 3);
@@ -57,7 +59,7 @@ struct Known {
   KnownLight light;
   std::vector<std::optional<std::vector<Discontinuity>>> of_face;  ///< what was looked for
 };
-/// Triangulates and interpolates as above, with what earlier meshes found.
+/// Triangulates and interpolates as above, with what earlier meshes found. Errors: cancelled.
 Result<LightMesh> make_light_mesh(const Solution& solution, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
                                   Known& known, Progress& progress);
@@ -67,6 +69,7 @@ struct MeshPoint {
   uint32_t triangle = 0;
   float s = 0, t = 0;
 };
+/// Where a place of a face lies in the mesh; clamped into the triangle.
 MeshPoint locate(const Solution& solution, const LightMesh& mesh, uint32_t face, DVec3 place);
 
 /// E at a surface point of the scene [W/m^2], never negative.

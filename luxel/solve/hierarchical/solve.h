@@ -59,6 +59,7 @@ struct Totals {
   double area_m2 = 0;
   Rgb irradiance, radiosity, emission;
 };
+/// Sums over the roots, which cover all faces.
 Totals totals_of(const Solution& solution);
 /// Luminance that all leaves absorb over what they emit: 1 where nothing gets out.
 double absorbed_over_emitted(const Solution& solution);

@@ -1,4 +1,4 @@
-// What a point sees of sources too dim to be looked at exactly: rays to a few places of each tell.
+// Shadow rays to a few points of each source that is too dim for closed forms.
 #pragma once
 
 #include "luxel/solve/hierarchical/irradiance.h"
@@ -11,6 +11,7 @@ struct RaySources {
   std::vector<uint32_t> root_of_rank;
   std::vector<double> power_before;  ///< B A of all before a rank [W]; one extra entry
 };
+/// Ranks and powers by the light there is.
 RaySources ray_sources(const Solution& solution);
 
 /// All points look at the same places of a source, so that what is seen changes only where a shadow

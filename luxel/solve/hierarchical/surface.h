@@ -22,6 +22,7 @@ struct FacePoint {
   uint32_t face = kNone;
   DVec3 position;
 };
+/// Finds the face of the point's triangle.
 FacePoint face_point_of(const scene::Scene& scene, const Faces& faces,
                         const scene::SurfacePoint& p);
 

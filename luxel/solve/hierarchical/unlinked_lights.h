@@ -13,6 +13,7 @@ struct UnlinkedLights {
   bool has_sky = false;  ///< background or a map
   bool any() const { return has_sky || !lights.punctual.empty(); }
 };
+/// Punctual lights, and whatever background or map the scene has.
 UnlinkedLights unlinked_lights_of(const scene::Scene& scene);
 
 /// What rays towards the sky need.

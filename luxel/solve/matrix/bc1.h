@@ -91,6 +91,7 @@ struct Bc1Scratch {
   DenseScratch light;                   ///< by place
   std::vector<Levels> color;            ///< the same light, pixel by pixel
 };
+/// Allocates for one product at a time.
 Bc1Scratch make_bc1_scratch(const Bc1& matrix);
 
 /// E = K B. Allocates nothing. On AVX-512, AVX2 and any other processor the same bits.
@@ -100,6 +101,7 @@ void multiply(const Bc1& matrix, std::span<const Rgb> radiosity, std::span<Rgb> 
 void multiply(const Bc1& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
               Bc1Scratch& scratch, Instructions instructions);
 
+/// Bytes that the codec keeps.
 uint64_t bytes_of(const Bc1& matrix);
 
 }  // namespace luxel::matrix

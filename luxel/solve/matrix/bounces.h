@@ -44,6 +44,7 @@ struct BounceScratch {
   std::vector<Rgb> first, radiosity, gathered;  ///< per patch
   std::vector<Rgb> power, late;                 ///< per cluster
 };
+/// Allocates for one solution at a time.
 BounceScratch make_bounce_scratch(size_t patches, size_t clusters);
 
 /// Irradiance of the patches [W/m^2] after `sent.bounces` products, at least 0 of them:

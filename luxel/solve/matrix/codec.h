@@ -13,6 +13,7 @@ struct CodecScratch {
   LowRankScratch low_rank;
   BounceScratch bounces;
 };
+/// Allocates what the codec uses, for one answer at a time.
 CodecScratch make_scratch(const Codec& codec, size_t patches);
 
 /// E of all patches from each other. Allocates nothing.

@@ -45,6 +45,7 @@ Result<ColourMatrix> make_reflections(const FormFactors& factors, std::span<cons
 void multiply(const ColourMatrix& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
               DenseScratch& scratch);
 
+/// Bytes of all three channels.
 uint64_t bytes_of(const ColourMatrix& matrix);
 
 }  // namespace luxel::matrix

@@ -21,6 +21,7 @@ struct Dense {
   size_t size() const { return n; }
 };
 
+/// F with a number for every pair: 4 n^2 bytes, or 2 n^2.
 Dense make_dense(const FormFactors& factors, Precision precision);
 
 /// Room for one product of a dense matrix: light channel by channel.
@@ -28,6 +29,7 @@ struct DenseScratch {
   std::vector<float> plane;  ///< three of them, each `stride` long
   size_t stride = 0;
 };
+/// Allocates for one product at a time.
 DenseScratch make_dense_scratch(size_t patches);
 
 /// E = F B. Allocates nothing. The same bits on all processors.
@@ -37,6 +39,7 @@ void multiply(const Dense& matrix, std::span<const Rgb> radiosity, std::span<Rgb
 void multiply(const Dense& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
               DenseScratch& scratch, Instructions instructions);
 
+/// Bytes of the matrix.
 uint64_t bytes_of(const Dense& matrix);
 
 /// Light into planes, one per channel.

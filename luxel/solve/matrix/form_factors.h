@@ -47,6 +47,7 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
 /// have; rows never sum to more than 1.
 FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2);
 
+/// The share of what patch `row` radiates that reaches any other: 1 in a closed room.
 double row_sum(const FormFactors& factors, size_t row);
 
 /// E = F B, row by row.

@@ -81,12 +81,14 @@ struct HierarchicalScratch {
   std::vector<Moments> sent, received;  ///< per cluster
   std::vector<SpreadMoments> spread;    ///< per cluster
 };
+/// Allocates for one product at a time.
 HierarchicalScratch make_scratch(const Hierarchical& matrix);
 
 /// E = F B. Allocates nothing.
 void multiply(const Hierarchical& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
               HierarchicalScratch& scratch);
 
+/// Bytes of clusters, functions and blocks.
 uint64_t bytes_of(const Hierarchical& matrix);
 
 }  // namespace luxel::matrix

@@ -71,6 +71,7 @@ struct LowRankScratch {
   std::vector<float> partial;           ///< per block of patches: 3 x rank
   std::vector<float> sent, sum, after;  ///< 3 x rank, channel by channel
 };
+/// Allocates for one answer at a time.
 LowRankScratch make_scratch(const LowRank& matrix);
 
 /// Irradiance after `bounces` products (< 0: all) of what patches send on their own; never below
@@ -78,6 +79,7 @@ LowRankScratch make_scratch(const LowRank& matrix);
 void irradiance_of(const LowRank& matrix, std::span<const Rgb> sent, int bounces,
                    std::span<Rgb> irradiance, LowRankScratch& scratch);
 
+/// Bytes of eigenvectors and small matrices.
 uint64_t bytes_of(const LowRank& matrix);
 
 }  // namespace luxel::matrix

@@ -1,4 +1,4 @@
-// Light that moves: an .lxr file's scene, relit as often as its lamps change.
+// Light that moves: an .lxr file's scene, relit as often as its lights change.
 #pragma once
 
 #include <memory>

@@ -24,7 +24,7 @@ struct Table {
 
 /// Without rows, for as many threads as loops use now.
 Table new_table(std::string name, std::vector<std::string> columns);
-/// The processor's name, memory and so on as tables show them.
+/// The processor's model name, or "unknown processor".
 std::string machine_name();
 /// The table and its notes as Markdown.
 std::string markdown(const Table& table);

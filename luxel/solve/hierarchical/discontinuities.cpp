@@ -14,7 +14,7 @@ constexpr double kShort = 1e-5;
 /// Points of a line from which its source is looked for. Their number is the resolution at which a
 /// line that is hidden in part is found at all; each costs two shadow rays.
 constexpr int kLooks = 4;
-/// A lamp without area makes light jump. Its form factor counts as if all of it appeared within
+/// A punctual light makes light jump. Its form factor counts as if all of it appeared within
 /// this part of the receiver's size, so that such lines rank first and their weights stay finite.
 constexpr double kJump = 1e-4;
 /// Light of a source is looked for at the receiver's middle and this far of the way to its corners:
@@ -262,13 +262,13 @@ void add_faces(const View& v, double least_weight, double least_light) {
 void add_punctual_lights(const View& v, const scene::Scene& scene, double least_weight,
                          double least_light) {
   for (uint32_t k = 0; k < scene.lights.size(); ++k) {
-    const scene::PunctualLight& lamp = scene.lights[k];
+    const scene::PunctualLight& light = scene.lights[k];
     const DVec3 middle = viewfactor::mean_corner(v.face.corners);
     const float e =
-        max_component(light::incidence_at(lamp, scene.profiles, to_float(middle)).irradiance);
-    DVec3 place = to_double(lamp.position);
-    if (lamp.kind == scene::PunctualLight::Kind::directional)
-      place = middle - to_double(lamp.direction) * (kSunDistance * double(v.s.diagonal_m));
+        max_component(light::incidence_at(light, scene.profiles, to_float(middle)).irradiance);
+    DVec3 place = to_double(light.position);
+    if (light.kind == scene::PunctualLight::Kind::directional)
+      place = middle - to_double(light.direction) * (kSunDistance * double(v.s.diagonal_m));
     if (v.height(place) <= 0 || double(e) < least_light) continue;
     const std::array<DVec3, 1> corner{place};
     const Source source{.number = kPunctualSource + k,

@@ -58,8 +58,8 @@ std::vector<Discontinuity> find_discontinuities(const Solution& solution, const 
                                                 const trace::RayTracer& tracer, uint32_t receiver,
                                                 Ranking ranking, const DiscontinuityLimits& limits);
 
-/// geometric * what the source sends now: its mean radiosity, or a lamp's irradiance at the line's
-/// beginning; infinite for contacts. Units as Ranking says.
+/// geometric * what the source sends now: its mean radiosity, or a punctual light's irradiance at
+/// the line's beginning; infinite for contacts. Units as Ranking says.
 double weight_of(const Discontinuity& d, const Solution& solution, const scene::Scene& scene);
 
 }  // namespace luxel::hierarchical

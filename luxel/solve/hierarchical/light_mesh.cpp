@@ -161,13 +161,13 @@ void add_face(const Maker& m, const FaceMeshing& w, uint32_t face, const EdgePoi
 Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& progress) {
   // Leaves and lines of all faces.
   const size_t faces = m.s.faces.size();
-  std::vector<FaceMeshing> work(faces);
+  std::vector<FaceMeshing> meshing(faces);
   const DiscontinuityLimits limits = limits_of(m.s, m.params.discontinuity);
   known.of_face.resize(faces);
   progress.begin("discontinuities", faces);
   parallel_for(faces, 1, [&](size_t begin, size_t end) {
     for (size_t f = begin; f < end && !progress.cancelled(); ++f)
-      work[f] = prepare_face(m, uint32_t(f), limits, known.of_face[f]);
+      meshing[f] = prepare_face(m, uint32_t(f), limits, known.of_face[f]);
     progress.advance(end - begin);
   });
   LUXEL_TRY_STATUS(stopped(progress));
@@ -176,7 +176,7 @@ Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& 
   EdgePoints of_outlines(m.slack_m);
   for (uint32_t f = 0; f < faces; ++f) {
     const Face& face = m.s.faces.faces[f];
-    for_points(m, work[f], [&](DVec3 p) {
+    for_points(m, meshing[f], [&](DVec3 p) {
       if (depth_inside(face.corners, face.plane.normal, p) <= m.slack_m) of_outlines.add(p);
     });
   }
@@ -191,7 +191,7 @@ Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& 
     Welder own(m.slack_m);
     Welder& welder =
         face.curved ? of_instance.try_emplace(face.instance, m.slack_m).first->second : own;
-    add_face(m, work[f], f, of_outlines, welder, of_element, mesh);
+    add_face(m, meshing[f], f, of_outlines, welder, of_element, mesh);
     progress.advance(1);
   }
   for (const auto& triangles : of_element) {

@@ -13,7 +13,7 @@ namespace {
 
 /// Places whose shadow rays go together: packets of neighbours, on the stack.
 constexpr size_t kBatch = 64;
-/// The part of the way to a lamp that is looked along: it may touch a surface, which does not hide
+/// The part of the way to a light that is looked along: it may touch a surface, which does not hide
 /// it.
 constexpr float kMostOfTheWay = 0.9999f;
 
@@ -33,7 +33,7 @@ Arriving arriving_at(const LitPoints& points, size_t i, const scene::PunctualLig
   return {in.irradiance * cosine, {origin, 0, in.towards, in.distance_m * kMostOfTheWay}};
 }
 
-/// Adds one lamp's light to the places [begin, end), at most kBatch.
+/// Adds one light's irradiance to the points [begin, end), at most kBatch.
 void add_light(const LitPoints& points, const scene::PunctualLight& light,
                const trace::RayTracer& tracer, float diagonal_m, size_t begin, size_t end,
                std::span<Rgb> irradiance) {

@@ -160,7 +160,7 @@ void scatter(const LowRank& m, std::span<const float> x, size_t begin, size_t en
   }
 }
 
-/// work.sent = V^T A^1/2 B, by blocks in their order.
+/// scratch.sent = V^T A^1/2 B, by blocks in their order.
 void send(const LowRank& m, std::span<const Rgb> sent, LowRankScratch& scratch) {
   const size_t numbers = 3 * m.rank(),
                blocks = scratch.partial.size() / std::max<size_t>(numbers, 1);
@@ -175,7 +175,7 @@ void send(const LowRank& m, std::span<const Rgb> sent, LowRankScratch& scratch) 
     for (size_t k = 0; k < numbers; ++k) scratch.sent[k] += scratch.partial[block * numbers + k];
 }
 
-/// work.sum = x_bounces.
+/// scratch.sum = x_bounces.
 void count_products(const LowRank& m, int bounces, LowRankScratch& scratch) {
   const size_t rank = m.rank();
   std::fill(scratch.sum.begin(), scratch.sum.end(), 0.0f);

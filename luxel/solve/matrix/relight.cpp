@@ -38,11 +38,11 @@ Occluders occluders_of(const scene::Scene& scene) {
 Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::RayTracer& tracer,
                                       Target target, const RelightParams& params,
                                       Progress& progress) {
-  for (const scene::PunctualLight& lamp : scene.lights)
-    if (lamp.profile != scene::kNone)
+  for (const scene::PunctualLight& light : scene.lights)
+    if (light.profile != scene::kNone)
       return fail(ErrorCode::bad_setting,
                   "lamp '{}' has a light profile, which .lxr files do not keep; leave it out",
-                  lamp.name);
+                  light.name);
   LUXEL_TRY(
       const Prepared prepared,
       prepare(scene, tracer, {.patches = params.patches, .factors = params.factors}, progress));

@@ -11,8 +11,8 @@
 namespace luxel::matrix {
 namespace {
 
-/// A trial's lamp stands where, of so many places, there is most room around: what a lamp close to
-/// a surface lights is little but a spot, and the noise of the few rays that went there. With so
+/// A trial's light stands where, of so many places, there is most room around: what a light close
+/// to a surface lights is little but a spot, and the noise of the few rays that went there. With so
 /// many, one is outside of closed solids, where in furnished rooms half of all patches are: 2^-16
 /// fail.
 constexpr int kPlacesPerTrial = 16;
@@ -40,7 +40,7 @@ float room_around(const trace::RayTracer& tracer, Vec3 place) {
 scene::PunctualLight trial_light(const trace::RayTracer& tracer, const Patches& patches,
                                  float diagonal_m, uint64_t seed) {
   RandomStream random{seed};
-  scene::PunctualLight lamp;
+  scene::PunctualLight light;
   float most = 0;
   for (int k = 0; k < kPlacesPerTrial; ++k) {
     const auto i = std::min(size_t(random.next() * float(patches.size())), patches.size() - 1);
@@ -51,9 +51,9 @@ scene::PunctualLight trial_light(const trace::RayTracer& tracer, const Patches& 
     const Vec3 place =
         from + towards * (std::min(hit_m, diagonal_m) * (kNearest + kSpan * random.next()));
     if (const float room = room_around(tracer, place); room > most && room < INFINITY)
-      most = room, lamp.position = place;
+      most = room, light.position = place;
   }
-  return lamp;
+  return light;
 }
 
 /// Relative square of an error, by area.
@@ -122,11 +122,11 @@ Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tr
   Trials out;
   progress.begin("trial lights", uint64_t(params.count));
   for (int trial = 0; trial < params.count; ++trial) {
-    // What patches reflect of a lamp at first.
-    const scene::PunctualLight lamp =
+    // What patches reflect of a light at first.
+    const scene::PunctualLight light =
         trial_light(tracer, patches, diagonal_m, hash64(params.seed, uint64_t(trial)));
     std::vector<Rgb> sent(patches.size());
-    live_light({at.position, at.normal, at.normal}, {&lamp, 1}, tracer, diagonal_m, sent);
+    live_light({at.position, at.normal, at.normal}, {&light, 1}, tracer, diagonal_m, sent);
     for (size_t i = 0; i < sent.size(); ++i) sent[i] = at.reflectance[i] * sent[i];
     // What all of them get of that.
     out.irradiance.push_back(params.bounces < 0 ? exact.all(coarse, sent, kManySweeps)

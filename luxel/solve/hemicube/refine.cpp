@@ -47,9 +47,7 @@ Slope slope_from_edge(const Field& field, uint32_t leaf, size_t k) {
   return {leaf, height > 0 ? rise / height : 0.0f, height};
 }
 
-/// Per triangle how far linear interpolation may be off [unit of E]. Light bends at an edge by the
-/// sum of the slopes away from it, g_1 + g_2. Were the bend in the middle of a triangle of height
-/// h, where no vertex sees it, the line from end to end would miss it by (g_1 + g_2) (h / 2) / 2.
+/// (g_1 + g_2) h / 4 over each edge, h the height of the triangle: interpolation_errors derives it.
 std::vector<float> errors_per_vertex(const Field& field) {
   const Receivers& r = field.receivers;
   std::vector<float> error(r.leaves.size());

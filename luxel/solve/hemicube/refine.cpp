@@ -14,7 +14,7 @@ namespace {
 /// Elements are added in rounds of at most this part of what there are, so that each round sees
 /// where the one before was not enough.
 constexpr double kGrowth = 0.25;
-/// 1.25^24 = 200: more than any first mesh may grow.
+/// A mesh grows 1.25^24 = 200 times at most: a bound for first meshes of far too few elements.
 constexpr int kMaxRounds = 24;
 /// Errors in the dark are held against this part of the scene's mean light: a relative error of
 /// hardly any light does not show, and would take the elements of what does.

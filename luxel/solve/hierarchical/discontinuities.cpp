@@ -25,12 +25,12 @@ constexpr double kAlmostCorner = 0.95;
 constexpr double kSunDistance = 1e4;
 /// Lines over which light changes by less than this part of its mean, over the length of the
 /// scene's mean face, are left out (Ranking::slope). It is twice the usual eps of links
-/// (solve.cpp), so that lines that show are kept. Larger, borders of shadows are blurred over
+/// (solve.cpp). Larger, borders of shadows are blurred over
 /// elements; smaller, triangles follow lines that refinement would not have looked at.
 constexpr double kLeastSlope = 0.02;
 /// Lines of less than this part of the brightest face's radiosity are left out (Ranking::nearness):
 /// those of a source of that face's radiosity whose blocker is 20 times nearer to it than to the
-/// receiver. [Hardt96, chapter 7] gives 100 W/m^2 for its scene, a limit that follows no light.
+/// receiver. [Hardt96, chapter 7] gives 100 for its scene, a limit that follows no light.
 constexpr double kLeastNearness = 0.05;
 
 /// What one face is looked at with.

@@ -9,7 +9,8 @@ namespace {
 /// Rays per point. A share of one half is known to within 1 / (2 sqrt 64) = 6 %.
 constexpr int kRays = 64;
 /// A point with more light than this part of the mean is in the open: no rays are needed to tell.
-/// Solids that others pass through, or that are not quite closed, let a little in, so it is not 0.
+/// Larger asks rays of more points; with 0 a solid into which a little light leaks would not be
+/// found.
 constexpr float kDark = 0.02f;
 
 }  // namespace

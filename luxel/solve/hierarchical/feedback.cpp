@@ -138,9 +138,8 @@ std::array<Rgb, 3> linear_of(const Interpolant& r) {
   // L_k (2 L_k - 1), and of those at the edges' middles times 4 L_i L_j. Over a triangle of area 1
   // the integral of L_1^a L_2^b L_3^c is 2 a! b! c! / (a + b + c + 2)!. So the moments with L_k are
   // 1/30 for the value at the corner k, -1/60 at the others, 2/15 at the middles of the edges
-  // beside it and 1/15 opposite. They are multiplied by the inverse of the linear functions' mass
-  // matrix 1/12 {{2, 1, 1}, {1, 2, 1}, {1, 1, 2}}, which is {{9, -3, -3}, {-3, 9, -3}, {-3, -3,
-  // 9}}.
+  // beside it and 1/15 opposite. The linear functions' mass matrix is 1/12 {{2, 1, 1}, ...}; its
+  // inverse, by which moments are multiplied, has 9 on the diagonal and -3 beside it.
   const std::array<Rgb, 3> corner{value_of(r, 0, 0), value_of(r, 1, 0), value_of(r, 0, 1)};
   const std::array<Rgb, 3> opposite{value_of(r, 0.5f, 0.5f), value_of(r, 0, 0.5f),
                                     value_of(r, 0.5f, 0)};

@@ -19,8 +19,8 @@ struct PointParams {
   /// Sources are taken apart, or from afar, so that the light of each is off by less than this part
   /// of the scene's mean irradiance.
   double tolerance = 1e-4;
-  /// With the light of sharp lights: points and directions, whose shadows have no penumbra.
-  /// Without, light is continuous but where faces touch.
+  /// Whether sharp lights count: points and directions, whose shadows have no penumbra. Without
+  /// them light is continuous but where faces touch.
   bool sharp_lights = true;
 };
 

@@ -44,7 +44,7 @@ struct Solution {
 };
 
 /// Links, gathers until the light settles, and refines the links by the light there is, again and
-/// again until none errs by more than eps. Light of punctual lights, and of the background,
+/// again until none errs by more than eps. What punctual lights and the background send
 /// arrives at leaves straight away. Errors: cancelled.
 Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,
                        const SolveParams& params, Progress& progress);

@@ -55,6 +55,8 @@ struct Patches {
 /// Leaves of the tree over the patches.
 inline constexpr uint32_t kLeafSize = 8;
 
+/// A scene cut into patches, and what finds them: clusters by place and direction, rays by what
+/// they meet.
 struct PatchedScene {
   Patches patches;  ///< in the order of the tree
   ClusterTree tree;

@@ -65,6 +65,7 @@ Result<Table> measure_atlas(const std::filesystem::path& shared, int threads) {
       table.notes.push_back(file.string() + " is not on this machine: left out");
       continue;
     }
+    // Unwraps the scene.
     LUXEL_TRY(import::Imported imported, import::import_scene(file));
     if (c.twice) double_up(imported.scene);
     atlas::AtlasParams params;
@@ -74,6 +75,7 @@ Result<Table> measure_atlas(const std::filesystem::path& shared, int threads) {
     const auto start = Clock::now();
     LUXEL_TRY(const atlas::Atlas atlas, atlas::make_atlas(imported.scene, params, progress));
     const double seconds = seconds_since(start);
+    // How good the atlas is.
     const atlas::TexelMap map = atlas::rasterise(imported.scene, atlas);
     const atlas::AtlasStats s = atlas::atlas_stats(imported.scene, atlas, map);
     table.rows.push_back({c.name, fmt::format("{}", atlas.corners.size()),
@@ -106,6 +108,7 @@ Result<Table> measure_memory(const std::filesystem::path& shared, int threads) {
   }
   const auto folder =
       std::filesystem::temp_directory_path() / fmt::format("luxel-bench-{}", ::getpid());
+  // Bakes in a process of their own, whose peak is theirs alone.
   for (const char* cap : {"", "1G"}) {
     pipeline::BakeSettings settings;
     settings.scene = file;

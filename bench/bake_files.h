@@ -43,7 +43,7 @@ inline Result<TimedFiles> timed_files(const pipeline::BakeSettings& settings) {
   return TimedFiles{std::move(report), seconds_since(start)};
 }
 
-/// The same; `best` is the fastest of all so far.
+/// Bakes as above; `best` is the fastest of all so far.
 inline Status time_again(const pipeline::BakeSettings& settings, TimedFiles& best) {
   LUXEL_TRY(TimedFiles bake, timed_files(settings));
   if (bake.seconds < best.seconds) best = std::move(bake);

@@ -24,10 +24,13 @@ struct Table {
 
 /// Without rows, for as many threads as loops use now.
 Table new_table(std::string name, std::vector<std::string> columns);
+/// The processor's model name, or "unknown processor".
 std::string machine_name();
+/// The table and its notes as Markdown.
 std::string markdown(const Table& table);
 
-/// `shared` is the folder with scenes/; `threads` as everywhere, 0 = all.
+/// A benchmark. `shared` is the folder with scenes/; `threads` as everywhere, 0 = all. Errors:
+/// those of what is measured.
 using BenchFunction = Result<Table> (*)(const std::filesystem::path& shared, int threads);
 
 /// Gather's rays per second against a bare loop of rtcIntersect1 over the same rays.

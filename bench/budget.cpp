@@ -59,6 +59,7 @@ Status measure_to_one_percent(const std::filesystem::path& scene, Table& table) 
   settings.resolution = 256, settings.uv = atlas::UvMode::keep;
   settings.solver = "reference", settings.samples = kPaths;
   LUXEL_TRY(const TimedBake truth, timed(settings));
+  // Samples are doubled until the error is small enough.
   settings.solver = "gather";
   for (settings.samples = 64; settings.samples <= kPaths; settings.samples *= 2) {
     settings.direct_samples =

@@ -47,6 +47,7 @@ Status measure(const std::string& name, scene::Scene scene, Table& table) {
               validate::solve(*p, "gather", settings_of(samples, 1), progress));
     const validate::Errors before =
         validate::errors_of(bake.light.irradiance, reference, bake.light.hidden);
+    // The filter, in place.
     const auto start = Clock::now();
     LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), bake.light, progress));
     const double seconds = seconds_since(start);

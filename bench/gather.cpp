@@ -19,7 +19,7 @@
 namespace luxel::bench {
 namespace {
 
-/// The same triangles, in the world, in one Embree scene of this file's own: the yardstick.
+/// The triangles of a scene, in the world, in one Embree scene of this file's own: the yardstick.
 class BareEmbree {
  public:
   explicit BareEmbree(const scene::Scene& scene)
@@ -216,6 +216,7 @@ Result<Table> measure_threads(const std::filesystem::path& shared, int) {
     LUXEL_TRY(scene::Scene scene, load(named));
     Progress layout;
     LUXEL_TRY(const auto p, validate::prepare(std::move(scene), 512, layout));
+    // Seconds of a bake with so many threads.
     const auto run = [&](int threads) {
       const ThreadLimit limit(threads);
       gather::GatherParams params;
@@ -225,6 +226,7 @@ Result<Table> measure_threads(const std::filesystem::path& shared, int) {
       const auto result = gather::gather(scene_of(*p), nullptr, params, {}, {}, progress);
       return result ? seconds_since(start) : 0.0;
     };
+    // Both in turn, so that what else the machine does falls on both.
     std::vector<double> one, two, ratio;
     for (int round = 0; round < 5; ++round) {
       one.push_back(run(1)), two.push_back(run(2));

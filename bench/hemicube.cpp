@@ -111,6 +111,7 @@ Table factors_table(const std::vector<FactorErrors>& factors) {
           {},
           {},
           nlohmann::json::array()};
+  // Parallel squares come first, then perpendicular ones.
   const size_t half = factors.size() / 2;
   for (size_t i = 0; i < half; ++i) {
     const FactorErrors &a = factors[i], &b = factors[half + i];

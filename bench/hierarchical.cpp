@@ -78,10 +78,11 @@ Result<Table> office_table(const Run& r) {
 
 /// Interpolated against exact light.
 Result<Table> exact_table(const Run& r, Progress& progress) {
+  // Exact light at random points.
   std::vector<h::Receiver> receivers;
   std::vector<scene::SurfacePoint> points;
   for (const scene::SurfacePoint& p : scene::points_uniform_in_area(r.scene, kPoints, 5)) {
-    const h::Place place = h::place_of(r.scene, r.solution.faces, p);
+    const h::FacePoint place = h::face_point_of(r.scene, r.solution.faces, p);
     if (place.face == h::kNone) continue;
     points.push_back(p);
     receivers.push_back(h::receiver_at(r.solution, r.scene, *r.tracer, place.face, place.position));
@@ -90,6 +91,7 @@ Result<Table> exact_table(const Run& r, Progress& progress) {
             h::irradiance_at(r.solution, r.scene, *r.tracer, receivers, {}, progress));
   double mean = 0;
   for (const Rgb& e : exact) mean += double(luminance(e)) / double(exact.size());
+  // Relative errors of the interpolants there, by rank.
   std::vector<double> error;
   for (size_t k = 0; k < exact.size(); ++k) {
     const double e = double(luminance(exact[k]));
@@ -123,6 +125,7 @@ Result<Table> growth_table(Progress& progress) {
     LUXEL_TRY(const h::Solution s, h::solve(scene, tracer, params, progress));
     const double seconds = seconds_since(start);
     const double triangles = double(scene::first_triangles(scene).back());
+    // What the links take, with their lists of blockers.
     uint64_t bytes = 0;
     for (const auto& links : s.links.of)
       for (const h::Link& link : links) bytes += sizeof(link) + 4 * link.blockers.capacity();
@@ -166,6 +169,7 @@ scene::Scene open_plan_office(int n) {
   scene::add_box(hall, {0, 0, 0}, {side, height, side}, gray);
   for (auto& t : hall.triangles) std::swap(t[1], t[2]);  // seen from inside
   scene::place(scene, std::move(hall));
+  // Cells with a light under the ceiling, a desk, a chair and a screen.
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       const Vec3 at{cell * float(i), 0, cell * float(j)};

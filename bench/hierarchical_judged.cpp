@@ -113,7 +113,7 @@ double standard_errors_off(const h::Solution& s, const scene::Scene& scene,
     const Vec3 d = frame.to_world(cosine_hemisphere_sample(random.next2()));
     const trace::Hit hit = tracer.closest_hit({from, 0, d, INFINITY});
     if (!hit.found() || hit.back_face) continue;
-    const h::Place place = h::place_of(scene, s.faces, hit.point());
+    const h::FacePoint place = h::face_point_of(scene, s.faces, hit.point());
     if (place.face == h::kNone) continue;
     const size_t leaf = h::leaf_at(s.tree, s.faces, place.face, place.position);
     const h::Element& e = s.tree.elements[leaf];
@@ -133,18 +133,20 @@ Result<Table> rays_table(Progress& progress) {
   h::SolveParams params;
   params.eps = 0.1;
   LUXEL_TRY(const h::Solution s, h::solve(scene, tracer, params, progress));
+  // Exact light at random points, and how many standard errors of many rays it is off.
   std::vector<h::Receiver> receivers;
   for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kPoints, 17)) {
-    const h::Place place = h::place_of(scene, s.faces, p);
+    const h::FacePoint place = h::face_point_of(scene, s.faces, p);
     receivers.push_back(h::receiver_at(s, scene, tracer, place.face, place.position));
   }
   LUXEL_TRY(const std::vector<Rgb> exact,
-            h::irradiance_at(s, scene, tracer, receivers, {1e-6}, progress));
+            h::irradiance_at(s, scene, tracer, receivers, {.tolerance = 1e-6}, progress));
   std::vector<double> off(receivers.size());
   parallel_for(receivers.size(), 1, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k)
       off[k] = standard_errors_off(s, scene, tracer, receivers[k], exact[k], hash64(k, 3));
   });
+  // A normal law has a root mean square of 1.
   double squares = 0, within_one = 0, within_two = 0, worst = 0;
   for (const double z : off) {
     squares += z * z / double(off.size());
@@ -176,6 +178,7 @@ Result<Table> energy_table(Progress& progress) {
                                          std::tuple{"office", scene::office(), 0.1}}) {
     LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
     std::vector<std::string> row{name, fmt::format("{}", eps), ""};
+    // All three function spaces; the last with exact light fed back, too.
     for (const auto basis : {h::Basis::constant, h::Basis::linear_receivers, h::Basis::linear}) {
       h::SolveParams params;
       params.eps = eps, params.basis = basis;

@@ -88,6 +88,7 @@ Result<Table> measure_layers(const std::filesystem::path&, int threads) {
     settings.scene = folder.path / "room.glb";
     settings.resolution = resolution;
     settings.threads = threads;
+    // Both bakes in turn.
     TimedFiles alone, layered;
     for (int round = 0; round < kRounds; ++round) {
       settings.output = folder.path / "one", settings.layers = light::LayerMode::none;
@@ -95,6 +96,7 @@ Result<Table> measure_layers(const std::filesystem::path&, int threads) {
       settings.output = folder.path / "all", settings.layers = light::LayerMode::per_light;
       LUXEL_TRY_STATUS(time_again(settings, layered));
     }
+    // How far the sum of the layers is from the lightmap.
     const nlohmann::json& layers = layered.report["layers"];
     LUXEL_TRY(const double error, sum_error(settings.output, layers));
     const double ratio = layered.seconds / alone.seconds;

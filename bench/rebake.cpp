@@ -78,6 +78,7 @@ Status measure(const std::filesystem::path& shared, const EditedScene& s, int re
     table.notes.push_back(file.string() + " is not on this machine: left out");
     return {};
   }
+  // A bake of the scene as it was, which is kept.
   const TemporaryFolder folder("luxel-bench-rebake");
   const std::vector<Edit> edits = edits_of(s);
   pipeline::BakeSettings settings;
@@ -87,6 +88,7 @@ Status measure(const std::filesystem::path& shared, const EditedScene& s, int re
   settings.output = folder.path / "kept", settings.keep = true;
   LUXEL_TRY_STATUS(write_scene(file, s, edits[0], settings.scene));
   LUXEL_TRY(const TimedFiles kept, timed_files(settings));
+  // After each edit: from scratch and from what is kept, in turn.
   for (const Edit& edit : edits) {
     LUXEL_TRY_STATUS(write_scene(file, s, edit, settings.scene));
     TimedFiles scratch, again;

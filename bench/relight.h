@@ -104,9 +104,11 @@ struct RelightPage {
   std::string csv;                 ///< codecs and sizes, a row each
   nlohmann::json json;
 };
+/// Tables, plots and numbers of finished runs.
 RelightPage page_of(RelightRuns runs);
 
-/// All of it, some seven minutes on two cores. `shared` is the folder with scenes/.
+/// All of it, some seven minutes on two cores. `shared` is the folder with scenes/. Errors: those
+/// of what is measured.
 Result<RelightPage> measure_relight(const std::filesystem::path& shared, Progress& progress);
 
 }  // namespace luxel::bench

@@ -13,11 +13,11 @@ namespace luxel::bench {
 namespace {
 
 constexpr size_t kPatches = 8192;
-/// Of bc1, whose K of all bounces takes minutes to make at kPatches.
+/// Patches of bc1, whose K of all bounces takes minutes to make at kPatches.
 constexpr size_t kBc1Patches = 4096;
 constexpr int kRays = 8192, kRounds = 9;
 constexpr std::array<uint32_t, 4> kRanks{48, 96, 192, 384};
-/// Of F^c, plainly iterated: they err by less than any codec.
+/// Products of F^c, plainly iterated: they err by less than any codec.
 constexpr int kProducts = 24;
 
 struct Room {
@@ -28,7 +28,7 @@ struct Room {
   matrix::Trials trials;
 
   matrix::CodecInput input() const { return {prepared, coarse, trials}; }
-  const matrix::Patches& patches() const { return prepared.work.patches; }
+  const matrix::Patches& patches() const { return prepared.patched.patches; }
 };
 
 Result<Room> make_room(size_t patches, Progress& progress) {
@@ -39,7 +39,7 @@ Result<Room> make_room(size_t patches, Progress& progress) {
   LUXEL_TRY(room.prepared, matrix::prepare(room.scene, tracer,
                                            {room.params.patches, room.params.factors}, progress));
   room.coarse = matrix::make_coarse_scene(
-      room.prepared.factors, room.prepared.work.tree, room.patches().area_m2,
+      room.prepared.factors, room.prepared.patched.tree, room.patches().area_m2,
       room.patches().elements.reflectance, matrix::kCoarseClusters);
   LUXEL_TRY(room.trials,
             matrix::make_trials(room.scene, tracer, room.prepared, room.coarse, {}, progress));
@@ -110,21 +110,21 @@ void count_products(const Room& room, std::vector<Made>& all) {
   }
 }
 
-/// Of all codecs and the yardstick, in turn.
+/// Times all codecs and the yardstick, in turn.
 void time_all(const Room& room, std::vector<Made>& all, CodecRuns& out) {
   const matrix::Patches& patches = room.patches();
   const std::vector<Rgb>&rho = patches.elements.reflectance, &sent = room.trials.sent[0];
   const matrix::ColourMatrix colour = make_colour_factors(room.prepared.factors, rho);
-  matrix::DenseWork dense_work = matrix::make_dense_work(patches.size());
+  matrix::DenseScratch dense_scratch = matrix::make_dense_scratch(patches.size());
   std::vector<Rgb> e(patches.size());
-  std::vector<matrix::CodecWork> work;
-  for (const Made& made : all) work.push_back(matrix::make_work(made.codec, patches.size()));
+  std::vector<matrix::CodecScratch> scratch;
+  for (const Made& made : all) scratch.push_back(matrix::make_scratch(made.codec, patches.size()));
   std::vector<std::function<void()>> tasks;
   for (size_t k = 0; k < all.size(); ++k)
     tasks.push_back([&, k] {
-      irradiance_of(all[k].codec, {sent, rho, patches.area_m2, -1}, e, work[k]);
+      irradiance_of(all[k].codec, {sent, rho, patches.area_m2, -1}, e, scratch[k]);
     });
-  tasks.push_back([&] { multiply(colour, sent, e, dense_work); });
+  tasks.push_back([&] { multiply(colour, sent, e, dense_scratch); });
   const std::vector<double> ms = time_in_turn(tasks, kRounds);
   for (size_t k = 0; k < all.size(); ++k) all[k].run.ms = ms[k];
   out.colour_ms = ms.back(), out.colour_bytes = matrix::bytes_of(colour);
@@ -141,13 +141,13 @@ Result<CodecRun> run_bc1(size_t patches, Progress& progress) {
   const size_t n = room.patches().size();
   Made made = made_of(room, "bc1", fmt::format("of {} patches, scaled by the pairs", n),
                       std::move(codec), make_s);
-  matrix::CodecWork work = matrix::make_work(made.codec, n);
+  matrix::CodecScratch scratch = matrix::make_scratch(made.codec, n);
   std::vector<Rgb> e(n);
   const std::vector<std::function<void()>> tasks{[&] {
     irradiance_of(
         made.codec,
         {room.trials.sent[0], room.patches().elements.reflectance, room.patches().area_m2, -1}, e,
-        work);
+        scratch);
   }};
   const double pairs = double(patches) * double(patches) / (double(n) * double(n));
   made.run.ms = pairs * time_in_turn(tasks, kRounds).front();

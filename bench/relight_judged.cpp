@@ -109,11 +109,13 @@ Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
                                     const JudgeSettings& settings, Progress& progress) {
   for (scene::Material& material : scene.materials) material.emission = {};
   scene.background = {}, scene.lights = {scene::PunctualLight{}};
+  // One lamp alone lights the scene; some texels are compared.
   LUXEL_TRY(const auto p, validate::prepare(std::move(scene), settings.resolution, progress));
   matrix::Target target = take_texels(*p, settings.texels);
   JudgedRelight out;
   out.scene = std::move(name), out.texels = target.position.size(), out.paths = settings.paths;
   const size_t first_stage = progress.stages().size();
+  // Preparation, timed.
   matrix::RelightParams params;
   params.patches.count = settings.patches;
   params.factors.rays_per_patch = 8192;
@@ -122,6 +124,7 @@ Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
   progress.finish();
   out.stages = stages_from(progress, first_stage);
   out.patches = data.size(), out.codec_error = data.codec_error;
+  // The lamp at several places: relit, and by paths.
   LUXEL_TRY(matrix::Relighter relighter, matrix::Relighter::make(std::move(data), {}));
   LUXEL_TRY(const std::vector<Vec3> positions, positions_in(*p, settings.lights));
   for (const Vec3 position : positions) {

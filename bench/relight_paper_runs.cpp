@@ -36,8 +36,8 @@ struct Room {
   std::vector<std::vector<Rgb>> sent;  ///< per light
 
   const matrix::FormFactors& factors() const { return prepared.factors; }
-  std::span<const Rgb> reflectance() const { return prepared.work.patches.elements.reflectance; }
-  std::span<const float> area_m2() const { return prepared.work.patches.area_m2; }
+  std::span<const Rgb> reflectance() const { return prepared.patched.patches.elements.reflectance; }
+  std::span<const float> area_m2() const { return prepared.patched.patches.area_m2; }
 };
 
 /// What patches send first of each light.
@@ -149,7 +149,7 @@ Result<EntryError> error_by(const matrix::ColourMatrix& k, const matrix::Bc1Para
   return error_of(k, bc1);
 }
 
-/// The same patches in no order.
+/// The matrix with its patches in no order.
 matrix::ColourMatrix shuffled(const matrix::ColourMatrix& k) {
   std::vector<uint32_t> order(k.n);
   std::iota(order.begin(), order.end(), 0u);
@@ -189,26 +189,27 @@ void measure_speed(const Room& room, const matrix::Bc1& bc1, PaperRuns& runs) {
   const matrix::Dense single = make_dense(room.factors(), matrix::Precision::single);
   const matrix::Dense half = make_dense(room.factors(), matrix::Precision::half);
   const matrix::ColourMatrix colour = make_colour_factors(room.factors(), room.reflectance());
-  matrix::DenseWork work = matrix::make_dense_work(runs.patches);
-  matrix::Bc1Work bc1_work = matrix::make_bc1_work(bc1);
-  matrix::BounceWork bounces = matrix::make_bounce_work(runs.patches, 0);
+  matrix::DenseScratch scratch = matrix::make_dense_scratch(runs.patches);
+  matrix::Bc1Scratch bc1_scratch = matrix::make_bc1_scratch(bc1);
+  matrix::BounceScratch bounces = matrix::make_bounce_scratch(runs.patches, 0);
   std::vector<Rgb> e(runs.patches), incident = room.sent[0];
   const auto counted = [&](const matrix::Dense& dense, int products) {
     const auto product = [&](std::span<const Rgb> b, std::span<Rgb> out) {
-      multiply(dense, b, out, work);
+      multiply(dense, b, out, scratch);
     };
-    count_bounces(std::ref(product), room.reflectance(), room.sent[0], products, e, bounces);
+    count_bounces(std::ref(product), {room.sent[0], room.reflectance(), {}, products}, e, bounces);
   };
+  // F in floats with 1 to kBounces products; F in halves and F^c with kBounces; K; K in bc1.
   std::vector<std::function<void()>> tasks;
   for (int products = 1; products <= kBounces; ++products)
     tasks.push_back([&, products] { counted(single, products); });
   tasks.push_back([&] { counted(half, kBounces); });
   tasks.push_back([&] {
     for (int product = 0; product < kBounces; ++product)
-      multiply(colour, incident, e, work), std::swap(incident, e);
+      multiply(colour, incident, e, scratch), std::swap(incident, e);
   });
-  tasks.push_back([&] { multiply(room.k, room.sent[0], e, work); });
-  tasks.push_back([&] { multiply(bc1, room.sent[0], e, bc1_work); });
+  tasks.push_back([&] { multiply(room.k, room.sent[0], e, scratch); });
+  tasks.push_back([&] { multiply(bc1, room.sent[0], e, bc1_scratch); });
   const std::vector<double> ms = time_in_turn(tasks, kRounds);
   std::copy_n(ms.begin(), kBounces, runs.ms.single.begin());
   runs.ms.half = ms[5], runs.ms.colour = ms[6], runs.ms.reflections = ms[7], runs.ms.bc1 = ms[8];
@@ -218,13 +219,13 @@ void measure_speed(const Room& room, const matrix::Bc1& bc1, PaperRuns& runs) {
 
 /// Relative root mean square error of E per light, weighted by area, against K in floats.
 std::vector<double> relit_errors(const Room& room, const matrix::Bc1& bc1) {
-  matrix::DenseWork work = matrix::make_dense_work(bc1.n);
-  matrix::Bc1Work bc1_work = matrix::make_bc1_work(bc1);
+  matrix::DenseScratch scratch = matrix::make_dense_scratch(bc1.n);
+  matrix::Bc1Scratch bc1_scratch = matrix::make_bc1_scratch(bc1);
   std::vector<Rgb> want(bc1.n), got(bc1.n);
   std::vector<double> out;
   for (const std::vector<Rgb>& sent : room.sent) {
-    multiply(room.k, sent, want, work);
-    multiply(bc1, sent, got, bc1_work);
+    multiply(room.k, sent, want, scratch);
+    multiply(bc1, sent, got, bc1_scratch);
     double error = 0, size = 0;
     for (size_t i = 0; i < want.size(); ++i) {
       const Rgb d = got[i] - want[i];

@@ -22,33 +22,38 @@ constexpr int kTrials = 2;
 
 Result<SizeRun> run_size(const scene::Scene& scene, const trace::RayTracer& tracer, size_t count,
                          Progress& progress) {
+  // Preparation, timed: factors, compression, coarse scene.
   const size_t first_stage = progress.stages().size();
-  LUXEL_TRY(
-      const matrix::Prepared prepared,
-      matrix::prepare(scene, tracer, {{.count = count}, {.rays_per_patch = kRays}}, progress));
-  const matrix::Patches& patches = prepared.work.patches;
+  LUXEL_TRY(const matrix::Prepared prepared,
+            matrix::prepare(scene, tracer,
+                            {.patches = {.count = count}, .factors = {.rays_per_patch = kRays}},
+                            progress));
+  const matrix::Patches& patches = prepared.patched.patches;
   const std::vector<Rgb>& rho = patches.elements.reflectance;
-  LUXEL_TRY(matrix::Hierarchical hierarchy,
-            matrix::compress(prepared.factors, prepared.work.tree, patches.centroid,
-                             patches.area_m2, {kSizesBlockError, kRays}, progress));
+  LUXEL_TRY(
+      matrix::Hierarchical hierarchy,
+      matrix::compress(prepared.factors, prepared.patched.tree, patches.centroid, patches.area_m2,
+                       {.block_error = kSizesBlockError, .rays_per_patch = kRays}, progress));
   progress.begin("coarse scene", 0);
-  matrix::CoarseScene coarse = make_coarse_scene(prepared.factors, prepared.work.tree,
+  matrix::CoarseScene coarse = make_coarse_scene(prepared.factors, prepared.patched.tree,
                                                  patches.area_m2, rho, matrix::kCoarseClusters);
   progress.finish();
   SizeRun run{
       .patches = patches.size(), .rays = kRays, .stages = stages_from(progress, first_stage)};
+  // Error and time of the codec with as many sweeps as it needs.
   LUXEL_TRY(const matrix::Trials trials,
             make_trials(scene, tracer, prepared, coarse, {.count = kTrials}, progress));
   run.sweeps = enough_sweeps(prepared, coarse, trials, kErrorOfSweeps);
   const matrix::Codec codec =
       matrix::HierarchicalCodec{std::move(hierarchy), std::move(coarse), run.sweeps};
   run.bytes = bytes_of(codec), run.error = error_of(codec, trials, patches, -1);
-  matrix::CodecWork work = make_work(codec, patches.size());
+  matrix::CodecScratch scratch = make_scratch(codec, patches.size());
   std::vector<Rgb> e(patches.size());
-  run.ms = time_in_turn({[&] {
-                          irradiance_of(codec, {trials.sent[0], rho, patches.area_m2, -1}, e, work);
-                        }},
-                        kRounds)[0];
+  run.ms =
+      time_in_turn({[&] {
+                     irradiance_of(codec, {trials.sent[0], rho, patches.area_m2, -1}, e, scratch);
+                   }},
+                   kRounds)[0];
   return run;
 }
 

@@ -36,6 +36,7 @@ Status bake_outdoors(const std::filesystem::path& file, Table& table) {
   const auto start = Clock::now();
   LUXEL_TRY(const pipeline::Bake bake, pipeline::bake_scene(settings, progress));
   const double seconds = seconds_since(start);
+  // Size, speed, noise, texels that look wrong, and seams.
   const std::string name = file.stem().string();
   table.rows.push_back({name, fmt::format("{}", bake.atlas.corners.size()),
                         fmt::format("{}", bake.map.texels.size()), fmt::format("{:.1f}", seconds),

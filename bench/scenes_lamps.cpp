@@ -22,6 +22,7 @@ scene::Scene hall(int n, bool squares) {
   scene::add_box(room, {0, 0, 0}, {20, 4, 20}, walls);
   for (auto& t : room.triangles) std::swap(t[1], t[2]);  // seen from inside
   scene::place(s, std::move(room));
+  // Nine pillars.
   scene::Mesh pillars;
   pillars.name = "pillars";
   for (int k = 0; k < 9; ++k) {
@@ -29,6 +30,7 @@ scene::Scene hall(int n, bool squares) {
     scene::add_box(pillars, {x, 0, z}, {x + 0.5f, 3, z + 0.5f}, walls);
   }
   scene::place(s, std::move(pillars));
+  // n x n lamps of one flux in all.
   const float share = 1 / float(n * n), side = 0.2f;
   const uint32_t lamp = scene::add_material(
       s, "lamp", {}, Rgb{1, 0.95f, 0.9f} * (squares ? 1000 * share / (kPi * side * side) : 0.0f));

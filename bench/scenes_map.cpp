@@ -36,12 +36,14 @@ std::vector<T> chosen(std::span<const T> values, std::span<const size_t> texels)
 Status measure_at(const scene::Scene& scene, int resolution, Table& table) {
   Progress progress;
   LUXEL_TRY(const auto p, validate::prepare(scene, resolution, progress));
+  // Paths at some texels.
   const std::vector<size_t> texels = some_texels(p->elements.size());
   const auto position = chosen<Vec3>(p->elements.position, texels);
   const auto normal = chosen<Vec3>(p->elements.normal, texels);
   const auto flat = chosen<Vec3>(p->elements.geometric_normal, texels);
   LUXEL_TRY(const validate::Judged judged,
             validate::judge(p->scene, *p->tracer, {position, normal, flat}, kPaths, 1, progress));
+  // gather at all of them.
   pipeline::BakeSettings settings;
   settings.samples = kSamples, settings.direct_samples = kSamples / 4;
   LUXEL_TRY(const validate::Timed solved, validate::solve(*p, "gather", settings, progress));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kRounds = 3;
 constexpr std::array kPoints{1, 4, 16, 64};
-/// Of the judge: points and paths per texel.
+/// The judge's points and paths per texel.
 constexpr int kJudgePoints = 256, kJudgePaths = 1024;
 
 /// The lamp of the Cornell box as a point: its shadows have no penumbra.
@@ -83,10 +83,12 @@ Status measure(const std::string& name, scene::Scene scene, int resolution, bool
   if (judged) {
     LUXEL_TRY(reference, mean_over_texels(*p, progress));
   }
+  // Texels that were averaged.
   std::vector<uint32_t> texels;
   for (uint32_t i = 0; i < p->elements.size(); ++i)
     if (!runs[0].light.enclosed[i] && !(runs[2].light.direct[i] == runs[0].light.direct[i]))
       texels.push_back(i);
+  // A row per number of points.
   for (size_t k = 0; k < kPoints.size(); ++k) {
     const Run& run = runs[k];
     const double error = judged ? rmse_over_mean(run.light.direct, reference, texels) : 0;

@@ -75,6 +75,7 @@ Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
     for (PageFile& file : section->files) page.files.push_back(std::move(file));
     return {};
   };
+  // The four sections, then what stands above them.
   LUXEL_TRY_STATUS(add("view_factors", validate_view_factors(shared, progress)));
   LUXEL_TRY_STATUS(add("exact_solutions", validate_exact_solutions(shared, progress)));
   LUXEL_TRY_STATUS(add("agreement", validate_agreement(progress)));

@@ -37,13 +37,15 @@ struct Page {
   std::vector<PageFile> files;
   nlohmann::json json;
 };
-/// All sections, a quarter of an hour on two cores.
+/// All sections, a quarter of an hour on two cores. Errors: those of the sections.
 Result<Page> validate(const std::filesystem::path& shared, Progress& progress);
 
 /// "| a | b |" lines of a table.
 std::string markdown_table(const std::vector<std::string>& columns,
                            const std::vector<std::vector<std::string>>& rows);
+/// A plot as a file of the page.
 PageFile svg_file(std::string name, const std::string& svg);
+/// A picture as a file of the page.
 PageFile png_file(std::string name, const image::Image8& picture);
 /// The line that shows a file of the page.
 std::string show(const PageFile& file, std::string_view words);

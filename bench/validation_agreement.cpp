@@ -13,6 +13,7 @@ Result<Section> validate_agreement(Progress& progress) {
   std::vector<std::vector<std::string>> rows;
   constexpr int kPaths = 384, kSamples = 1024, kDirect = 256, kElements = 10000;
   for (validate::AgreementScene& s : validate::agreement_scenes()) {
+    // One judge per scene, one row per solver.
     LUXEL_TRY(const auto p, validate::prepare(std::move(s.scene), s.resolution, progress));
     LUXEL_TRY(const validate::Judged judged, validate::judge(*p, kPaths, 1, progress));
     for (const pipeline::Solver& solver : pipeline::solvers()) {

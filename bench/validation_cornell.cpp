@@ -184,11 +184,13 @@ Result<std::vector<Round>> judge_again(const validate::Prepared& p, std::span<co
     else
       waiting[{paths_for(noise, k.paths), k.paths}].push_back(i);
   };
+  // All texels by the judge's first answer.
   for (uint32_t i = 0; i < solved.size(); ++i) {
     if (first.hidden[i]) continue;
     known[i] = {first.mean(i), first.standard_error[i], first_paths};
     sort_out(i);
   }
+  // More paths for those that wait, the fewest first.
   while (!waiting.empty()) {
     const auto [paths, chosen] = *waiting.begin();
     waiting.erase(waiting.begin());
@@ -222,6 +224,7 @@ Status every_texel(const validate::Prepared& p, const validate::Timed& solved, S
             judge_again(p, solved.light.irradiance, screen, judged, 2 * kPaths, left, progress));
   const validate::Agreement a =
       validate::agreement(solved.light.irradiance, solved.light.hidden, judged);
+  // Texels that do not pass: those that count, and slivers.
   const auto is_covered = [&](uint32_t i) { return p.map.texels[i].centre_covered; };
   const auto off = std::count_if(left.begin(), left.end(), is_covered);
   size_t covered = 0;
@@ -279,6 +282,7 @@ export_::Series histogram_series(const std::string& name, const image::Histogram
 
 void show_pictures(const Shown& ours, const Shown& judge, const image::Mask& all, int width,
                    Section& section) {
+  // The pictures, and their contours.
   std::vector<PageFile> files{png_file("gather.png", ours.picture),
                               png_file("paths.png", judge.picture)};
   for (const auto& [name, s] :
@@ -287,6 +291,7 @@ void show_pictures(const Shown& ours, const Shown& judge, const image::Mask& all
     files.push_back(png_file(name, image::draw_contours(lines, s->brightness, width, all,
                                                         image::kContourLevels.size())));
   }
+  // Pixels that differ by more than each level.
   const auto differences = image::pixel_differences(ours.picture, judge.picture);
   const image::Histogram counts = image::histogram(differences, all);
   std::string shares;
@@ -297,6 +302,7 @@ void show_pictures(const Shown& ours, const Shown& judge, const image::Mask& all
     shares += fmt::format("{}{:.3f} % above {}", shares.empty() ? "" : ", ", 100 * share, level);
     section.json[fmt::format("pixels_above_{}", level)] = share;
   }
+  // Histograms of both.
   export_::Plot plot;
   plot.title = "Brightness of the two pictures";
   plot.x_label = "brightness";

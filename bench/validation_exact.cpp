@@ -48,6 +48,7 @@ Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Pr
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::vector<std::vector<std::string>> rows;
   section.json = nlohmann::json::array();
+  // Every case by every solver that can do it.
   LUXEL_TRY(const std::vector<validate::ExactCase> cases, validate::exact_cases(text));
   for (const validate::ExactCase& c : cases)
     for (const pipeline::Solver& solver : pipeline::solvers())

@@ -161,10 +161,12 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
   section.markdown = "## View factors against closed forms\n\n";
   const std::filesystem::path file = shared / "reference" / "view-factors.csv";
   LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
+  // All rows of the exact table by all methods.
   LUXEL_TRY(const std::vector<Row> rows,
             read_rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file));
   progress.begin("view factors", 0);
   LUXEL_TRY(const Table table, measure_rows(rows, progress));
+  // How errors fall with rays.
   std::vector<viewfactor::SampledParams> hemicubes, rays;
   for (const int n : {8, 16, 32, 64, 128, 256, 512})
     hemicubes.push_back({.samples = 1, .hemicube = n});

@@ -32,8 +32,9 @@ struct Judged {
 
   Rgb mean(size_t i) const { return 0.5f * (first[i] + second[i]); }
 };
+/// The judge's answer at all elements. Errors: cancelled.
 Result<Judged> judge(const Prepared& p, int samples_each, uint64_t seed, Progress& progress);
-/// The same at any places.
+/// The judge's answer at any points of surfaces. Errors: cancelled.
 Result<Judged> judge(const scene::Scene& scene, const trace::RayTracer& tracer,
                      const reference::Receivers& receivers, int samples_each, uint64_t seed,
                      Progress& progress);
@@ -51,10 +52,11 @@ struct Agreement {
   double bias_over_mean = 0;  ///< signed
   double judge_noise = 0;  ///< what the judge's noise would add to relative_rmse, were it left in
 };
+/// Compares a solver with the judge at elements that neither takes for the inside of a solid.
 Agreement agreement(std::span<const Rgb> solved, std::span<const uint8_t> solver_hidden,
                     const Judged& judged);
 
-/// Of luminance against a reference b, d being the difference.
+/// Errors of luminance against a reference b, d being the difference.
 struct Errors {
   double relative = 0;   ///< root mean square of d / (b + 0.01 mean b), as `luxel compare` has it
   double over_mean = 0;  ///< root mean square of d over the mean

@@ -148,8 +148,8 @@ scene::Scene sun_through_glass() {
   return s;
 }
 
-/// The same under window()'s sky, with a screen of green glass across the room: what is behind it
-/// has most of its light from surfaces and sky, through glass.
+/// sun_through_glass() under window()'s sky, with a screen of green glass across the room: what is
+/// behind it has most of its light from surfaces and sky, through glass.
 scene::Scene coloured_glass() {
   scene::Scene s = sun_through_glass();
   s.background = window().background;

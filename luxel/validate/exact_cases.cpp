@@ -207,6 +207,7 @@ double limit_of(double a, double b, double c) { return c - (c - b) * (c - b) / (
 Result<ExactCase> cube(const std::vector<TextRow>& rows) {
   ExactCase c{"cube, one wall shines", "6", scene::furnace_box(gray(0.5), {}), 128, {}, 1e-4};
   scene::add_material(c.scene, "lamp", gray(0.5), exitance(1));
+  // The floor shines.
   const Box3 box = scene::world_bounds(c.scene);
   const Contains floor = on_height(box.lower.y), ceiling = on_height(box.upper.y);
   for (uint32_t t = 0; t < c.scene.meshes[0].triangles.size(); ++t)
@@ -214,6 +215,7 @@ Result<ExactCase> cube(const std::vector<TextRow>& rows) {
   const Contains side = [=](const scene::Scene& s, const scene::SurfacePoint& p) {
     return !floor(s, p) && !ceiling(s, p);
   };
+  // The limit of the table's three sizes, for the floor, the ceiling and the sides.
   std::array<double, 3> limit{};
   for (size_t k = 0; k < 3; ++k) {
     std::array<double, 3> of_size{};
@@ -226,6 +228,7 @@ Result<ExactCase> cube(const std::vector<TextRow>& rows) {
     }
     limit[k] = limit_of(of_size[0], of_size[1], of_size[2]);
   }
+  // The table holds B = e + rho E.
   c.parts = {part("the wall that shines", floor, (limit[0] - 1) / 0.5, false),
              part("opposite", ceiling, limit[1] / 0.5, false),
              part("sides", side, limit[2] / 0.5, false)};

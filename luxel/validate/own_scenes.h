@@ -15,6 +15,7 @@ struct HouseLight {
   int lookups = 0;
   double lawn = 0;  ///< mean over the lawn outside
 };
+/// Reads a bake of closed_corner.
 HouseLight house_light(const pipeline::Bake& bake);
 
 /// Gather against the path tracer on foliage's floor.
@@ -25,7 +26,8 @@ struct FoliageLight {
   double mean = 0, shadow_mean = 0;
   bool is_two_sided = false;  ///< twigs, and nothing else, have two sides
 };
-/// 160 x 160 texels, 1024 rays, 256 shadow rays against twice `paths`.
+/// 160 x 160 texels, 1024 rays, 256 shadow rays against twice `paths`. Errors: those of
+/// solver and judge, cancelled.
 Result<FoliageLight> foliage_light(int paths, Progress& progress);
 
 }  // namespace luxel::validate

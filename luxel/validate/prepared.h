@@ -23,7 +23,7 @@ struct Prepared {
 };
 
 /// Lays the scene out on a lightmap of `resolution` squared. A scene without any light gets a white
-/// background.
+/// background. Errors: those of atlas and ray tracer, cancelled.
 Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution, Progress& progress);
 
 struct Timed {
@@ -31,7 +31,7 @@ struct Timed {
   double seconds = 0;
 };
 /// Runs a solver of the pipeline's table by name; settings' scene, output and resolution are not
-/// looked at.
+/// looked at. Errors: those of the solver, cancelled.
 Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSettings settings,
                     Progress& progress);
 

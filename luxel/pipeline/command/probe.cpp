@@ -146,7 +146,7 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
             hierarchical::represent(solution, scene, tracer, s.hierarchical.mesh, {}, progress));
   LUXEL_TRY(const std::vector<Rgb> exact,
             hierarchical::irradiance_at(solution, scene, tracer, {&at, 1}, {1e-6}, progress));
-  const hierarchical::MeshPlace place =
+  const hierarchical::MeshPoint place =
       hierarchical::locate(solution, mesh, nearest.face, nearest.place);
   out.interpolated = hierarchical::value_of(mesh.interpolant[place.triangle], place.s, place.t);
   out.exact = out.lamps = exact[0];

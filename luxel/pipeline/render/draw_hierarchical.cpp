@@ -110,9 +110,10 @@ Result<image::Image> draw_linear(const Subject& subject, const RenderSettings& s
                                  const Solution& solution, const LightMesh& mesh,
                                  Progress& progress) {
   const auto irradiance = [&](const scene::SurfacePoint& p) -> Rgb {
-    const hierarchical::Place place = hierarchical::place_of(subject.scene, solution.faces, p);
+    const hierarchical::FacePoint place =
+        hierarchical::face_point_of(subject.scene, solution.faces, p);
     if (place.face == hierarchical::kNone) return {};
-    const hierarchical::MeshPlace at =
+    const hierarchical::MeshPoint at =
         hierarchical::locate(solution, mesh, place.face, place.position);
     const hierarchical::Interpolant& r = mesh.interpolant[at.triangle];
     return hierarchical::value_of(r, 0, 0) * (1 - at.s - at.t) +
@@ -145,7 +146,8 @@ Result<image::Image> draw_flat(const Subject& subject, const RenderSettings& s, 
   LUXEL_TRY(const Lit lit, light_up(subject, s, false, out, progress));
   const Solution& solution = lit.solution;
   const auto irradiance = [&](const scene::SurfacePoint& p) -> Rgb {
-    const hierarchical::Place place = hierarchical::place_of(subject.scene, solution.faces, p);
+    const hierarchical::FacePoint place =
+        hierarchical::face_point_of(subject.scene, solution.faces, p);
     if (place.face == hierarchical::kNone) return {};
     const size_t leaf =
         hierarchical::leaf_at(solution.tree, solution.faces, place.face, place.position);
@@ -199,8 +201,8 @@ Result<image::Image> draw_rayshade(const Subject& subject, const RenderSettings&
   std::vector<size_t> hit_of;
   for (size_t k = 0; k < hits.size(); ++k) {
     if (!hits[k].found()) continue;
-    const hierarchical::Place place =
-        hierarchical::place_of(subject.scene, solution.faces, hits[k].point());
+    const hierarchical::FacePoint place =
+        hierarchical::face_point_of(subject.scene, solution.faces, hits[k].point());
     if (place.face == hierarchical::kNone) continue;
     receivers.push_back(hierarchical::receiver_at(solution, subject.scene, subject.tracer,
                                                   place.face, place.position));

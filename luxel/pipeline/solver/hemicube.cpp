@@ -25,7 +25,7 @@ constexpr int kShadowRaysPerSample = 4, kMostShadowRays = 65535;
 
 /// Whether the field has no light of its own at a texel.
 bool is_hidden_at(const hemicube::Solution& s, const scene::SurfacePoint& p) {
-  const hemicube::Place place = hemicube::locate(s.field.mesh, p);
+  const hemicube::MeshPoint place = hemicube::locate(s.field.mesh, p);
   if (s.field.receivers.kind == hemicube::ElementKind::triangle)
     return s.enclosed[s.field.receivers.leaf_of_node[place.node]];
   const auto& v = s.field.mesh.nodes[place.node].vertex;

@@ -26,8 +26,8 @@ Result<double> interpolation_error(const light::TexelScene& in,
   std::vector<size_t> texels;
   const size_t step = std::max<size_t>(1, in.map.texels.size() / kCheckedTexels);
   for (size_t i = step / 2; i < in.map.texels.size(); i += step) {
-    const hierarchical::Place place =
-        hierarchical::place_of(in.scene, solution.faces, in.map.texels[i].sample);
+    const hierarchical::FacePoint place =
+        hierarchical::face_point_of(in.scene, solution.faces, in.map.texels[i].sample);
     if (place.face == hierarchical::kNone) continue;
     receivers.push_back(
         hierarchical::receiver_at(solution, in.scene, in.tracer, place.face, place.position));

@@ -29,7 +29,7 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   LUXEL_TRY(const matrix::Solution solution,
             matrix::solve(in.scene, in.lights, in.tracer, prepared, params, progress));
   LUXEL_TRY(const matrix::Transfer map,
-            matrix::make_transfer(prepared.work, in.tracer,
+            matrix::make_transfer(prepared.patched, in.tracer,
                                   {in.elements.position, in.elements.geometric_normal}, progress));
   const light::DirectParams direct_params{settings.direct_samples, settings.seed};
   LUXEL_TRY(light::DirectLight direct, light::direct_light(in.scene, in.elements, in.lights,
@@ -44,7 +44,7 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
     for (size_t i = begin; i < end; ++i) {
       out.irradiance[i] += direct.irradiance[i];
       out.hidden[i] =
-          matrix::is_hidden(in.scene, in.tracer, prepared.work, in.map.texels[i].sample);
+          matrix::is_hidden(in.scene, in.tracer, prepared.patched, in.map.texels[i].sample);
     }
   });
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
@@ -54,7 +54,7 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   out.direct_variance = std::move(direct.variance);
   out.supersampled_texels = averaged.texels.size();
   out.rays = solution.rays + direct.rays + averaged.rays, out.sweeps = solution.sweeps;
-  out.elements = prepared.work.patches.size();
+  out.elements = prepared.patched.patches.size();
   out.relative_error = solution.relative_error;
   return out;
 }

@@ -8,12 +8,13 @@
 namespace luxel::hemicube {
 
 /// How the light of emissive surfaces is computed. Few triangles: exactly, the visible part of each
-/// by shadow rays at the same points for all elements, without grain [Heitz18]. Many: by the pixels
+/// by shadow rays at the same points for all elements, without noise [Heitz18]. Many: by the pixels
 /// that see them, as the paper does.
 struct Emission {
   bool by_pixels = false;
   light::Lights exact;  ///< lights that the pixels do not take
 };
+/// Light by pixels where more than 32 triangles shine; punctual lights are exact in any case.
 Emission choose_emission(const light::Lights& lights);
 
 struct ExchangeParams {
@@ -35,6 +36,7 @@ Result<Exchanged> exchange(const Receivers& receivers, const Rows& rows,
                            std::span<const Rgb> start, const ExchangeParams& params,
                            Progress& progress);
 
+/// B = rho E of each element [W/m^2], without emission.
 std::vector<Rgb> radiosity(const transport::Elements& elements, std::span<const Rgb> irradiance);
 
 }  // namespace luxel::hemicube

@@ -5,12 +5,12 @@
 namespace luxel::hemicube {
 
 Rgb irradiance_at(const Field& field, const scene::SurfacePoint& p) {
-  const Place place = locate(field.mesh, p);
+  const MeshPoint point = locate(field.mesh, p);
   if (field.receivers.kind == ElementKind::triangle)
-    return field.irradiance[field.receivers.leaf_of_node[place.node]];
-  const auto& v = field.mesh.nodes[place.node].vertex;
+    return field.irradiance[field.receivers.leaf_of_node[point.node]];
+  const auto& v = field.mesh.nodes[point.node].vertex;
   return interpolate(field.irradiance[v[0]], field.irradiance[v[1]], field.irradiance[v[2]],
-                     place.at);
+                     point.at);
 }
 
 Field smoothed(const scene::Scene& scene, const Field& per_triangle,

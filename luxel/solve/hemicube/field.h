@@ -12,6 +12,7 @@ struct Field {
   std::vector<Rgb> irradiance;  ///< E per element [W/m^2]
 };
 
+/// E at a surface point of the scene that the mesh was made from [W/m^2].
 Rgb irradiance_at(const Field& field, const scene::SurfacePoint& p);
 
 /// Light per vertex from light per triangle: the mean of the triangles around each, by their areas.

@@ -12,7 +12,10 @@ namespace {
 
 constexpr size_t kDefaultElements = 20000;
 /// How many of the elements the first mesh may have when more are to be cut where they are needed.
+/// More leaves too few for the borders of shadows; with fewer, shadows that fall between the first
+/// vertices are not found.
 constexpr double kFirstShare = 0.35;
+
 size_t element_count(const Mesh& mesh, ElementKind kind) {
   return kind == ElementKind::vertex ? mesh.vertices.size() : mesh.triangle_count;
 }
@@ -31,15 +34,24 @@ struct FirstMesh {
   size_t max_elements = 0;
 };
 
+/// Legs grow by 12 % from one attempt to the next, and elements become fewer by 1 - 1.12^-2 = 20 %:
+/// the mesh that fits has at least about four fifths of the goal. Larger steps waste more of it,
+/// smaller ones build more meshes in vain.
+constexpr double kLargerLegs = 1.12;
+/// After 24 attempts legs are 1.12^24 = 15 times as long: the scene's own triangles are what
+/// counts.
+constexpr int kMaxAttempts = 24;
+
 /// The finest mesh of about `goal` elements: legs h give area / h^2 vertices, and twice as many
 /// triangles. Rims and small triangles add to that, so larger legs are tried until it fits.
 Result<Mesh> mesh_of_about(const scene::Scene& scene, const HemicubeParams& params, size_t goal,
                            Mesh own, Progress& progress) {
   const double per_area = params.elements == ElementKind::vertex ? 1 : 2;
   double size_m = std::sqrt(per_area * area_m2(scene) / double(goal));
-  for (int attempt = 0; attempt < 24 && size_m > 0; ++attempt, size_m *= 1.12) {
+  for (int attempt = 0; attempt < kMaxAttempts && size_m > 0; ++attempt, size_m *= kLargerLegs) {
     // Triangles are twice the vertices, but for rims.
-    const Result<Mesh> mesh = make_mesh(scene, {float(size_m), 2 * goal}, progress);
+    const Result<Mesh> mesh =
+        make_mesh(scene, {.element_size_m = float(size_m), .max_vertices = 2 * goal}, progress);
     if (mesh && element_count(*mesh, params.elements) <= goal) return mesh;
     if (!mesh && mesh.error().code == ErrorCode::cancelled) return mesh;
   }
@@ -48,6 +60,7 @@ Result<Mesh> mesh_of_about(const scene::Scene& scene, const HemicubeParams& para
 
 Result<FirstMesh> first_mesh(const scene::Scene& scene, const HemicubeParams& params,
                              Progress& progress) {
+  // The scene's own triangles must fit.
   LUXEL_TRY(Mesh own, make_mesh(scene, {}, progress));
   const size_t own_count = element_count(own, params.elements);
   if (own_count == 0)
@@ -61,8 +74,12 @@ Result<FirstMesh> first_mesh(const scene::Scene& scene, const HemicubeParams& pa
   out.max_elements = params.max_elements != 0
                          ? params.max_elements
                          : std::max(kDefaultElements, own_count + own_count / 2);
+  // Elements of a given size, if they fit.
   if (params.element_size_m > 0) {
-    LUXEL_TRY(out.mesh, make_mesh(scene, {params.element_size_m, out.max_elements}, progress));
+    LUXEL_TRY(out.mesh,
+              make_mesh(scene,
+                        {.element_size_m = params.element_size_m, .max_vertices = out.max_elements},
+                        progress));
     if (element_count(out.mesh, params.elements) > out.max_elements)
       return fail(ErrorCode::bad_setting,
                   "elements of {} m are {}, more than --max-elements {}; make them larger",
@@ -70,6 +87,7 @@ Result<FirstMesh> first_mesh(const scene::Scene& scene, const HemicubeParams& pa
                   out.max_elements);
     return out;
   }
+  // Else as small as their number allows, less those that are to be cut later.
   const double share = params.max_error > 0 ? kFirstShare : 1;
   const size_t goal = size_t(share * double(out.max_elements));
   if (own_count >= goal) {
@@ -91,10 +109,10 @@ Status exchange_light(const scene::Scene& scene, const trace::RayTracer& tracer,
   s.hidden = sight.rows.hidden, s.enclosed = sight.rows.enclosed;
   s.row_bytes_in_file = sight.rows.store.bytes_in_file();
   s.row_bytes = sight.rows.store.bytes_in_memory() + s.row_bytes_in_file;
-  LUXEL_TRY(
-      Exchanged exchanged,
-      exchange(receivers, sight.rows, sight.source, plan_refill(receivers.neighbours, s.enclosed),
-               s.field.irradiance, {params.bounces, params.tolerance}, progress));
+  LUXEL_TRY(Exchanged exchanged,
+            exchange(receivers, sight.rows, sight.source,
+                     plan_refill(receivers.neighbours, s.enclosed), s.field.irradiance,
+                     {.bounces = params.bounces, .tolerance = params.tolerance}, progress));
   s.field.irradiance = std::move(exchanged.irradiance);
   s.sweeps = exchanged.sweeps;
   return {};

@@ -77,12 +77,12 @@ class Shares {
 };
 
 /// What a hit on a surface means, known per triangle of the scene.
-struct Sort {
+struct SurfaceKind {
   bool two_sided = false, emissive = false;
 };
 
 /// Buffers of one worker.
-struct Work {
+struct Buffers {
   std::vector<trace::Ray> rays;
   std::vector<float> factor;
   std::vector<trace::Hit> hits;
@@ -90,7 +90,7 @@ struct Work {
   View view;
   LookSeconds seconds;
 
-  explicit Work(size_t senders) : shares(senders) {}
+  explicit Buffers(size_t senders) : shares(senders) {}
 };
 
 class Looker {
@@ -100,34 +100,34 @@ class Looker {
         pixels_(std::move(pixels)),
         diagonal_m_(scene::world_bounds(senders.scene).diagonal()) {
     for (const scene::Material& m : s_.scene.materials)
-      sorts_.push_back(
+      kinds_.push_back(
           {scene::reflects_from_behind(m), max_component(m.emission) > 0 && s_.emission_by_pixels});
   }
 
   size_t pixel_count() const { return pixels_.size(); }
 
-  /// Fills work.view. False when cancelled.
-  bool look_from(const Viewpoint& from, Work& work, Progress& progress) const {
-    work.view.emitted = {};
-    work.view.back = work.view.two_sided_back = 0;
+  /// Fills buffers.view. False when cancelled.
+  bool look_from(const Viewpoint& from, Buffers& buffers, Progress& progress) const {
+    buffers.view.emitted = {};
+    buffers.view.back = buffers.view.two_sided_back = 0;
     const Frame frame = frame_of_cube(from.normal);
     const Vec3 origin = trace::offset_origin(from.position, from.geometric_normal, diagonal_m_);
     for (size_t first = 0; first < pixels_.size(); first += kBatch) {
       if (progress.cancelled()) return false;
       const auto start = Clock::now();
       aim(std::span(pixels_).subspan(first, std::min(kBatch, pixels_.size() - first)), frame,
-          origin, from.geometric_normal, work);
+          origin, from.geometric_normal, buffers);
       const auto aimed = Clock::now();
-      s_.tracer.closest_hits(work.rays, work.hits, trace::Packets::bundles);
+      s_.tracer.closest_hits(buffers.rays, buffers.hits, trace::Packets::bundles);
       const auto traced = Clock::now();
-      for (size_t k = 0; k < work.hits.size(); ++k)
-        count(work.hits[k], work.rays[k].direction, work.factor[k], work);
-      work.seconds.visibility += seconds(traced - aimed);
-      work.seconds.summation += seconds(Clock::now() - traced) + seconds(aimed - start);
+      for (size_t k = 0; k < buffers.hits.size(); ++k)
+        count(buffers.hits[k], buffers.rays[k].direction, buffers.factor[k], buffers);
+      buffers.seconds.visibility += seconds(traced - aimed);
+      buffers.seconds.summation += seconds(Clock::now() - traced) + seconds(aimed - start);
     }
     const auto start = Clock::now();
-    work.shares.take(work.view.element, work.view.share);
-    work.seconds.summation += seconds(Clock::now() - start);
+    buffers.shares.take(buffers.view.element, buffers.view.share);
+    buffers.seconds.summation += seconds(Clock::now() - start);
     return true;
   }
 
@@ -137,45 +137,45 @@ class Looker {
 
   /// Rays through pixels. Those below the element's own triangle see its back: black.
   static void aim(std::span<const Pixel> pixels, const Frame& frame, Vec3 origin,
-                  Vec3 geometric_normal, Work& work) {
-    work.rays.clear(), work.factor.clear();
+                  Vec3 geometric_normal, Buffers& buffers) {
+    buffers.rays.clear(), buffers.factor.clear();
     for (const Pixel& pixel : pixels) {
       const Vec3 d = frame.to_world(pixel.direction);
       if (dot(d, geometric_normal) <= 0) continue;
-      work.rays.push_back({origin, 0, d, INFINITY});
-      work.factor.push_back(pixel.factor);
+      buffers.rays.push_back({origin, 0, d, INFINITY});
+      buffers.factor.push_back(pixel.factor);
     }
-    work.hits.resize(work.rays.size());
+    buffers.hits.resize(buffers.rays.size());
   }
 
-  void count(const trace::Hit& hit, Vec3 direction, float factor, Work& work) const {
+  void count(const trace::Hit& hit, Vec3 direction, float factor, Buffers& buffers) const {
     if (!hit.found()) {
-      work.view.emitted += light::soft_radiance(s_.scene, s_.around, direction) * (kPi * factor);
+      buffers.view.emitted += light::soft_radiance(s_.scene, s_.around, direction) * (kPi * factor);
       return;
     }
     const scene::Instance& instance = s_.scene.instances[hit.instance];
-    const Sort sort = sorts_[s_.scene.meshes[instance.mesh].triangle_material[hit.triangle]];
-    if (hit.back_face && !sort.two_sided) {
-      work.view.back += factor;
+    const SurfaceKind kind = kinds_[s_.scene.meshes[instance.mesh].triangle_material[hit.triangle]];
+    if (hit.back_face && !kind.two_sided) {
+      buffers.view.back += factor;
       return;
     }
-    if (hit.back_face) work.view.two_sided_back += factor;
-    if (sort.emissive)
-      work.view.emitted += scene::emission_at(s_.scene, hit.point()) * (kPi * factor);
-    const Place place = locate(s_.mesh, hit.point());
+    if (hit.back_face) buffers.view.two_sided_back += factor;
+    if (kind.emissive)
+      buffers.view.emitted += scene::emission_at(s_.scene, hit.point()) * (kPi * factor);
+    const MeshPoint point = locate(s_.mesh, hit.point());
     if (s_.receivers.kind == ElementKind::triangle) {
-      work.shares.add(s_.receivers.leaf_of_node[place.node], factor);
+      buffers.shares.add(s_.receivers.leaf_of_node[point.node], factor);
       return;
     }
-    const auto& vertex = s_.mesh.nodes[place.node].vertex;
-    work.shares.add(vertex[0], factor * (1 - place.at.u - place.at.v));
-    work.shares.add(vertex[1], factor * place.at.u);
-    work.shares.add(vertex[2], factor * place.at.v);
+    const auto& vertex = s_.mesh.nodes[point.node].vertex;
+    buffers.shares.add(vertex[0], factor * (1 - point.at.u - point.at.v));
+    buffers.shares.add(vertex[1], factor * point.at.u);
+    buffers.shares.add(vertex[2], factor * point.at.v);
   }
 
   const Senders& s_;
   std::vector<Pixel> pixels_;
-  std::vector<Sort> sorts_;
+  std::vector<SurfaceKind> kinds_;
   float diagonal_m_;
 };
 
@@ -186,6 +186,7 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
                          const std::function<Status(size_t, const View&)>& done,
                          Progress& progress) {
   LUXEL_CHECK(params.resolution >= 2 && params.resolution % 2 == 0);
+  // One set of pixels serves all viewpoints.
   LUXEL_TRY(std::vector<Pixel> pixels, pixels_in_tiles(params.resolution, progress));
   const Looker looker(senders, std::move(pixels));
   progress.begin("hemicubes", from.size());
@@ -193,10 +194,11 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
   Status status;
   LookSeconds sum;
   parallel_for(from.size(), kTileElements, [&](size_t begin, size_t end) {
-    Work work(senders.receivers.size());
+    // One thread looks from neighbours, in order. The first failure stops all.
+    Buffers buffers(senders.receivers.size());
     for (size_t i = begin; i < end; ++i) {
-      if (!looker.look_from(from[i], work, progress)) return;
-      const Status kept = done(i, work.view);
+      if (!looker.look_from(from[i], buffers, progress)) return;
+      const Status kept = done(i, buffers.view);
       if (!kept) {
         const std::lock_guard lock(mutex);
         if (status) status = kept;
@@ -206,7 +208,7 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
       progress.advance(1);
     }
     const std::lock_guard lock(mutex);
-    sum.visibility += work.seconds.visibility, sum.summation += work.seconds.summation;
+    sum.visibility += buffers.seconds.visibility, sum.summation += buffers.seconds.summation;
   });
   if (!status) return tl::unexpected(status.error());
   LUXEL_TRY_STATUS(stopped(progress));

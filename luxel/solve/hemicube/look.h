@@ -73,6 +73,7 @@ Result<LookSeconds> look(const Senders& senders, std::span<const Viewpoint> from
                          const std::function<Status(size_t, const View&)>& done,
                          Progress& progress);
 
+/// One viewpoint per element, in their order.
 std::vector<Viewpoint> viewpoints(const transport::Elements& elements);
 
 }  // namespace luxel::hemicube

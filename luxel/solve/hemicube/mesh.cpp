@@ -55,13 +55,13 @@ struct GridMaker {
 
   std::vector<std::vector<uint32_t>> rows;  ///< vertices of the triangle at work: rows[j][i]
 
-  using GridPlace = std::array<uint32_t, 2>;
+  using GridPoint = std::array<uint32_t, 2>;
 
-  Barycentric barycentric(GridPlace p) const {
+  Barycentric barycentric(GridPoint p) const {
     return {float(p[0]) / float(n), float(p[1]) / float(n)};
   }
 
-  void add_node(uint32_t instance, uint32_t triangle, const std::array<GridPlace, 3>& corners) {
+  void add_node(uint32_t instance, uint32_t triangle, const std::array<GridPoint, 3>& corners) {
     Node node;
     node.instance = instance, node.triangle = triangle;
     for (size_t k = 0; k < 3; ++k) {
@@ -198,7 +198,7 @@ uint32_t root_at(const Mesh& mesh, const scene::SurfacePoint& p) {
 
 }  // namespace
 
-Place locate(const Mesh& mesh, const scene::SurfacePoint& p) {
+MeshPoint locate(const Mesh& mesh, const scene::SurfacePoint& p) {
   uint32_t index = root_at(mesh, p);
   const Vec2 x = uv(p.at);
   while (mesh.nodes[index].child != 0) {

@@ -66,11 +66,12 @@ bool is_flat(const Mesh& mesh, const Node& node);
 std::vector<uint32_t> leaves(const Mesh& mesh);
 
 /// The triangle that holds a point of the scene, and where in it.
-struct Place {
+struct MeshPoint {
   uint32_t node = 0;
   Barycentric at;
 };
-Place locate(const Mesh& mesh, const scene::SurfacePoint& p);
+/// Descends the tree of cuts from the triangle of the scene that holds the point.
+MeshPoint locate(const Mesh& mesh, const scene::SurfacePoint& p);
 
 /// A point of a triangle, in the scene's terms.
 scene::SurfacePoint scene_point(const Node& node, Barycentric at);

@@ -203,17 +203,17 @@ TEST(Cuts, LocateFindsTheTriangleThatHoldsAPoint) {
       if (i % 10 == 0) at.x = 0;                 // on an edge
       if (i % 50 == 0) at.y = float(i % 3) / 2;  // at a corner, or the middle of an edge
       const scene::SurfacePoint p{0, uint32_t(random.next() * count), {at.x, at.y}};
-      const Place place = locate(s.mesh, p);
-      const Node& n = s.mesh.nodes[place.node];
+      const MeshPoint point = locate(s.mesh, p);
+      const Node& n = s.mesh.nodes[point.node];
       ASSERT_EQ(n.child, 0u);
       ASSERT_EQ(n.instance, p.instance);
       ASSERT_EQ(n.triangle, p.triangle);
-      ASSERT_GE(std::min({place.at.u, place.at.v, 1 - place.at.u - place.at.v}), -1e-6f);
-      const scene::SurfacePoint found = scene_point(n, place.at);
+      ASSERT_GE(std::min({point.at.u, point.at.v, 1 - point.at.u - point.at.v}), -1e-6f);
+      const scene::SurfacePoint found = scene_point(n, point.at);
       ASSERT_NEAR(found.at.u, p.at.u, 1e-6);
       ASSERT_NEAR(found.at.v, p.at.v, 1e-6);
       const Vec3 there = interpolate(s.mesh.points[n.point[0]], s.mesh.points[n.point[1]],
-                                     s.mesh.points[n.point[2]], place.at);
+                                     s.mesh.points[n.point[2]], point.at);
       ASSERT_LT(length(there - scene::world_position(s.scene, p)), near);
     }
   }
@@ -330,9 +330,10 @@ TEST(Cuts, ToSizeReachTheGoalAndNotMuchMore) {
 TEST(MakeMesh, RefusesMoreVerticesThanAllowed) {
   Progress progress;
   const scene::Scene scene = scene_of(unit_square());
-  EXPECT_TRUE(make_mesh(scene, {0.1f, 121}, progress));
-  for (const MeshParams& params :
-       {MeshParams{0.1f, 120}, MeshParams{1e-6f, 1000}, MeshParams{0, 3}}) {
+  EXPECT_TRUE(make_mesh(scene, {.element_size_m = 0.1f, .max_vertices = 121}, progress));
+  for (const MeshParams& params : {MeshParams{.element_size_m = 0.1f, .max_vertices = 120},
+                                   MeshParams{.element_size_m = 1e-6f, .max_vertices = 1000},
+                                   MeshParams{.element_size_m = 0, .max_vertices = 3}}) {
     const auto mesh = make_mesh(scene, params, progress);
     ASSERT_FALSE(mesh);
     EXPECT_EQ(mesh.error().code, ErrorCode::bad_setting);

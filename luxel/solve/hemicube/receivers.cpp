@@ -7,7 +7,8 @@
 namespace luxel::hemicube {
 namespace {
 
-/// How far into its triangles a vertex at the rim is looked at, in parts of its shortest edge.
+/// How far into its triangles a vertex at the rim is looked at, in parts of its shortest edge: see
+/// make_receivers.
 constexpr float kInset = 0.1f;
 
 /// An edge of a leaf, by its vertices.
@@ -143,6 +144,10 @@ float area_m2(const Mesh& mesh, const Node& node) {
       {mesh.points[node.point[0]], mesh.points[node.point[1]], mesh.points[node.point[2]]});
 }
 
+/// Reflectances of surfaces are at most this (scene::reflectance_at); rounding in a mean must not
+/// lift them over it, or light in a white furnace would grow from pass to pass.
+constexpr float kMaxReflectance = 0.99f;
+
 /// Areas and reflectances: a vertex has the mean of its triangles', by their areas.
 void average_reflectances(const scene::Scene& scene, const Mesh& mesh, Receivers& r) {
   std::vector<Rgb> reflectance(r.leaves.size());
@@ -165,7 +170,8 @@ void average_reflectances(const scene::Scene& scene, const Mesh& mesh, Receivers
   }
   if (r.kind == ElementKind::vertex)
     for (size_t v = 0; v < out.size(); ++v)
-      if (r.area_m2[v] > 0) out[v] = min(out[v] / r.area_m2[v], Rgb{0.99f, 0.99f, 0.99f});
+      if (r.area_m2[v] > 0)
+        out[v] = min(out[v] / r.area_m2[v], Rgb{kMaxReflectance, kMaxReflectance, kMaxReflectance});
 }
 
 }  // namespace

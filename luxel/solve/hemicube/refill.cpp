@@ -3,6 +3,7 @@
 namespace luxel::hemicube {
 
 RefillPlan plan_refill(const Neighbours& neighbours, std::span<const uint8_t> hidden) {
+  // Visible elements have light; the others wait.
   RefillPlan plan;
   std::vector<uint8_t> has_light(hidden.size());
   std::vector<uint32_t> waiting;
@@ -10,6 +11,7 @@ RefillPlan plan_refill(const Neighbours& neighbours, std::span<const uint8_t> hi
     has_light[i] = !hidden[i];
     if (hidden[i]) waiting.push_back(i);
   }
+  // Ring by ring: elements with a neighbour that has light by now.
   while (!waiting.empty()) {
     std::vector<uint32_t> ring, rest;
     for (const uint32_t i : waiting) {
@@ -23,6 +25,7 @@ RefillPlan plan_refill(const Neighbours& neighbours, std::span<const uint8_t> hi
       plan.element.push_back(i), plan.first.push_back(uint32_t(before));
       ring.push_back(i);
     }
+    // The ring has light only when it is complete, so that its order does not count.
     if (ring.empty()) break;
     for (const uint32_t i : ring) has_light[i] = 1;
     waiting = std::move(rest);

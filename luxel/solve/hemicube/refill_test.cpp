@@ -37,7 +37,7 @@ TEST(Refill, TakesTheMeanOfNeighboursRingByRing) {
   // 6 and 12 reach their next ones first; the middle one is their mean.
   EXPECT_EQ(refilled(chain(5), {0, 1, 1, 1, 0}, {6, 99, 99, 99, 12}),
             (std::vector<float>{6, 6, 9, 12, 12}));
-  // Of two in the middle each belongs to its side's ring: neither has the other's light.
+  // Each of the two in the middle belongs to its side's ring: neither has the other's light.
   EXPECT_EQ(refilled(chain(4), {0, 1, 1, 0}, {6, 99, 99, 12}), (std::vector<float>{6, 6, 12, 12}));
   EXPECT_EQ(refilled(chain(3), {0, 1, 0}, {6, 99, 12}), (std::vector<float>{6, 9, 12}));
   EXPECT_EQ(refilled(chain(3), {0, 0, 0}, {6, 7, 12}), (std::vector<float>{6, 7, 12}));

@@ -14,7 +14,11 @@ namespace {
 /// Elements are added in rounds of at most this part of what there are, so that each round sees
 /// where the one before was not enough.
 constexpr double kGrowth = 0.25;
+/// A mesh grows 1.25^24 = 200 times at most: a bound for first meshes of far too few elements.
 constexpr int kMaxRounds = 24;
+/// Errors in the dark are held against this part of the scene's mean light: a relative error of
+/// hardly any light does not show, and would take the elements of what does.
+constexpr float kDark = 0.1f;
 /// No edge becomes shorter than this part of the first mesh's mean one: the border of a hard shadow
 /// would take all elements there are.
 constexpr double kSmallestPart = 1.0 / 32;
@@ -43,6 +47,7 @@ Slope slope_from_edge(const Field& field, uint32_t leaf, size_t k) {
   return {leaf, height > 0 ? rise / height : 0.0f, height};
 }
 
+/// (g_1 + g_2) h / 4 over each edge, h the height of the triangle: interpolation_errors derives it.
 std::vector<float> errors_per_vertex(const Field& field) {
   const Receivers& r = field.receivers;
   std::vector<float> error(r.leaves.size());
@@ -100,7 +105,7 @@ double mean_luminance(const Field& field) {
 std::vector<uint32_t> worst_first(const Field& field, float max_error, double shortest_m,
                                   const Bisector& bisector) {
   const std::vector<float> errors = interpolation_errors(field);
-  const float dark = 0.1f * float(mean_luminance(field));
+  const float dark = kDark * float(mean_luminance(field));
   std::vector<std::pair<float, uint32_t>> order;
   for (size_t i = 0; i < errors.size(); ++i) {
     const uint32_t node = field.receivers.leaves[i];
@@ -164,19 +169,22 @@ double relative_interpolation_error(const Field& field) {
 
 Result<Sight> look_from(const Surroundings& around, const transport::Elements& elements,
                         const HemicubeParams& params, Solution& solution, Progress& progress) {
-  LUXEL_TRY(light::DirectLight direct,
-            light::direct_light(around.scene, elements, around.emission.exact, around.tracer,
-                                {params.direct_samples, params.seed, true}, progress));
+  LUXEL_TRY(
+      light::DirectLight direct,
+      light::direct_light(
+          around.scene, elements, around.emission.exact, around.tracer,
+          {.samples = params.direct_samples, .seed = params.seed, .same_points = true}, progress));
   const Senders senders{around.scene,
                         around.tracer,
                         around.mesh,
                         around.senders,
                         around.emission.exact.around,
                         around.emission.by_pixels};
-  LUXEL_TRY(
-      Rows rows,
-      make_rows(senders, viewpoints(elements),
-                {{params.resolution}, params.row_memory_bytes, params.scratch_folder}, progress));
+  LUXEL_TRY(Rows rows, make_rows(senders, viewpoints(elements),
+                                 {.look = {.resolution = params.resolution},
+                                  .memory_limit_bytes = params.row_memory_bytes,
+                                  .scratch_folder = params.scratch_folder},
+                                 progress));
   for (size_t k = 0; k < elements.size(); ++k) direct.irradiance[k] += rows.emitted[k];
   solution.rays += direct.rays + pixels_of(params.resolution) * elements.size();
   solution.seconds.visibility += rows.seconds.visibility;

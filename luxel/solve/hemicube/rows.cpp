@@ -73,6 +73,7 @@ Result<Rows> make_rows(const Senders& senders, std::span<const Viewpoint> from,
 Status sweep(const Rows& rows, std::span<const Rgb> source, std::span<const Rgb> radiosity,
              std::span<Rgb> next, Progress& progress) {
   LUXEL_CHECK(source.size() == rows.scale.size() && next.size() == source.size());
+  // Radiosities as registers hold them.
   std::vector<Float4> b(radiosity.size());
   for (size_t i = 0; i < b.size(); ++i)
     b[i] = Float4{radiosity[i].x, radiosity[i].y, radiosity[i].z, 0};
@@ -88,6 +89,7 @@ Status sweep(const Rows& rows, std::span<const Rgb> source, std::span<const Rgb>
         status = tl::unexpected(tile.error());
         return;
       }
+      // Each row's columns follow from their steps.
       const RowEntry* entry = (*tile)->entries.data();
       const RowEntry* const first = entry;
       for (size_t k = 0; k < (*tile)->end.size(); ++k) {

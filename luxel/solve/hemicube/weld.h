@@ -1,4 +1,4 @@
-// Which corners of a scene's triangles are one place, and which are one vertex.
+// Corners of a scene's triangles that are one point, and those that are one vertex.
 #pragma once
 
 #include <array>

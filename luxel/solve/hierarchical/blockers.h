@@ -12,13 +12,14 @@ struct Blockers {
   viewfactor::PolygonTree tree;
   double slack_m = 0;
 };
+/// Blockers from all faces, and the tree of their boxes.
 Blockers make_blockers(const Faces& faces);
 
 /// Faces that may hide parts of two convex polygons from each other, ascending: those that reach
 /// into the shaft between them. [Haines94]
 void find_between(const Blockers& blockers, PolygonView a, PolygonView b,
                   std::vector<uint32_t>& found);
-/// The same when they are known to be among `known`: between parts is only what is between wholes.
+/// Faces between two convex polygons, of those that are between the wholes that they are parts of.
 void filter_between(const Blockers& blockers, PolygonView a, PolygonView b,
                     std::span<const uint32_t> known, std::vector<uint32_t>& found);
 

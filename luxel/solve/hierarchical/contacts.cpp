@@ -8,6 +8,7 @@
 namespace luxel::hierarchical {
 namespace {
 
+/// Lines per face. Every pair of lines may cross, so that 32 make some 500 pieces at most.
 constexpr size_t kMostCuts = 32;
 constexpr double kShort = 0.02;       ///< of a face's size: shorter contacts alone are none
 constexpr double kShortCut = 2e-3;    ///< of a face's size

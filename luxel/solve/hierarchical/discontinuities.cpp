@@ -12,8 +12,27 @@ namespace {
 
 /// Shorter pieces than this part of the receiver's size are no lines.
 constexpr double kShort = 1e-5;
-/// Points of a line from which its source is looked for.
+/// Points of a line from which its source is looked for. Their number is the resolution at which a
+/// line that is hidden in part is found at all; each costs two shadow rays.
 constexpr int kLooks = 4;
+/// A punctual light makes light jump. Its form factor counts as if all of it appeared within
+/// this part of the receiver's size, so that such lines rank first and their weights stay finite.
+constexpr double kJump = 1e-4;
+/// Light of a source is looked for at the receiver's middle and this far of the way to its corners:
+/// near a corner, where a source beside it is strongest, and not at it, where the closed form of a
+/// source that touches the point has no limit.
+constexpr double kAlmostCorner = 0.95;
+/// Suns stand this many diameters of the scene away: their rays differ by 1e-4 rad across it.
+constexpr double kSunDistance = 1e4;
+/// Lines over which light changes by less than this part of its mean, over the length of the
+/// scene's mean face, are left out (Ranking::slope). It is twice the usual eps of links
+/// (solve.cpp). Larger, borders of shadows are blurred over
+/// elements; smaller, triangles follow lines that refinement would not have looked at.
+constexpr double kLeastSlope = 0.02;
+/// Lines of less than this part of the brightest face's radiosity are left out (Ranking::nearness):
+/// those of a source of that face's radiosity whose blocker is 20 times nearer to it than to the
+/// receiver. [Hardt96, chapter 7] gives 100 for its scene, a limit that follows no light.
+constexpr double kLeastNearness = 0.05;
 
 /// What one face is looked at with.
 struct View {
@@ -35,7 +54,7 @@ float most_of(const Solution& s, uint32_t face) {
     most = std::max(most, s.light.elements[r].most);
   return most;
 }
-/// Its mean.
+/// The mean radiosity of a face, its largest component [W/m^2].
 float radiosity_of(const Solution& s, uint32_t face) {
   double sum = 0, area = 0;
   for (uint32_t r = s.tree.first_root[face]; r < s.tree.first_root[face + 1]; ++r) {
@@ -63,8 +82,7 @@ double geometric_factor(const View& v, const Ray3& ray, DVec3 source_normal, dou
   const double sb = length(ray.source - ray.blocker);
   const double br = std::max(length(ray.blocker - ray.receiver), 1e-6 * v.size_m);
   if (v.ranking == Ranking::nearness) return sb / br;
-  // No faster than all of it within a ten-thousandth of the receiver: lamps without area jump.
-  const double fastest = 1 / (1e-4 * v.size_m);
+  const double fastest = 1 / (kJump * v.size_m);
   if (source_normal == DVec3{}) return fastest;
   const DVec3 d = ray.source - ray.receiver;
   const double distance = std::max(length(d), 1e-9);
@@ -110,6 +128,7 @@ void add_line(const View& v, const Source& source, DiscontinuityKind kind, uint3
               Segment line, const RayAt& ray_at) {
   if (!clip_to(v.face.corners, v.face.plane.normal, line)) return;
   if (length(line.b - line.a) < kShort * v.size_m) return;
+  // How fast the source appears, at most, along the line.
   double geometric = 0;
   int free = 0;
   for (int k = 0; k < kLooks; ++k) {
@@ -117,6 +136,7 @@ void add_line(const View& v, const Source& source, DiscontinuityKind kind, uint3
     geometric = std::max(geometric, geometric_factor(v, ray, source.normal, source.size_m));
   }
   if (geometric * double(source.radiosity) < source.least_weight) return;
+  // Whether it is seen over the blocker from anywhere on the line.
   for (int k = 0; k < kLooks; ++k)
     free += runs_free(v, ray_at(line.a + (line.b - line.a) * ((k + 0.5) / kLooks)));
   if (free == 0) return;
@@ -211,7 +231,7 @@ double light_of(const View& v, PolygonView source, float radiosity) {
     most = std::max(most, viewfactor::point_to_polygon(p, v.face.plane.normal, source));
   };
   look(middle);
-  for (const DVec3& corner : v.face.corners) look(middle + (corner - middle) * 0.95);
+  for (const DVec3& corner : v.face.corners) look(middle + (corner - middle) * kAlmostCorner);
   return most * double(radiosity);
 }
 
@@ -219,15 +239,20 @@ void add_faces(const View& v, double least_weight, double least_light) {
   std::vector<uint32_t> blockers;
   for (uint32_t f = 0; f < v.s.faces.size(); ++f) {
     if (f == v.receiver) continue;
+    // What of the face is above the receiver, if it brings light enough.
     const Face& face = v.s.faces.faces[f];
     const float radiosity = radiosity_of(v.s, f);
     if (double(most_of(v.s, f)) < least_light) continue;
     const Polygon above = viewfactor::clip_above(face.corners, v.face.plane, v.s.blockers.slack_m);
     if (above.empty()) continue;
-    const Source source{
-        f,         above,       face.plane.normal, std::sqrt(viewfactor::area_m2(face.corners)),
-        radiosity, least_weight};
+    const Source source{.number = f,
+                        .corners = above,
+                        .normal = face.plane.normal,
+                        .size_m = std::sqrt(viewfactor::area_m2(face.corners)),
+                        .radiosity = radiosity,
+                        .least_weight = least_weight};
     if (light_of(v, above, radiosity) < least_light) continue;
+    // Its horizon, and the borders of what other faces hide of it.
     add_horizon(v, source, face);
     find_between(v.s.blockers, v.face.corners, above, blockers);
     std::erase(blockers, f), std::erase(blockers, v.receiver);
@@ -235,18 +260,24 @@ void add_faces(const View& v, double least_weight, double least_light) {
   }
 }
 
-void add_lamps(const View& v, const scene::Scene& scene, double least_weight, double least_light) {
+void add_punctual_lights(const View& v, const scene::Scene& scene, double least_weight,
+                         double least_light) {
   for (uint32_t k = 0; k < scene.lights.size(); ++k) {
-    const scene::PunctualLight& lamp = scene.lights[k];
+    const scene::PunctualLight& light = scene.lights[k];
     const DVec3 middle = viewfactor::mean_corner(v.face.corners);
     const float e =
-        max_component(light::incidence_at(lamp, scene.profiles, to_float(middle)).irradiance);
-    DVec3 place = to_double(lamp.position);
-    if (!scene::has_position(lamp.kind))
-      place = middle - to_double(lamp.direction) * (1e4 * double(v.s.diagonal_m));
+        max_component(light::incidence_at(light, scene.profiles, to_float(middle)).irradiance);
+    DVec3 place = to_double(light.position);
+    if (!scene::has_position(light.kind))
+      place = middle - to_double(light.direction) * (kSunDistance * double(v.s.diagonal_m));
     if (v.height(place) <= 0 || double(e) < least_light) continue;
     const std::array<DVec3, 1> corner{place};
-    const Source source{kLampSource + k, corner, {}, 0, e, least_weight};
+    const Source source{.number = kPunctualSource + k,
+                        .corners = corner,
+                        .normal = {},
+                        .size_m = 0,
+                        .radiosity = e,
+                        .least_weight = least_weight};
     std::vector<uint32_t> blockers;
     Polygon cone = v.face.corners;
     find_before(v.s.blockers, place, cone, blockers);
@@ -263,20 +294,20 @@ DiscontinuityLimits limits_of(const Solution& s, const DiscontinuityParams& para
   if (params.least_weight) {
     out.weight = *params.least_weight;
   } else if (params.ranking == Ranking::slope) {
-    out.weight = 0.02 * mean / std::sqrt(s.unit_area_m2);
+    out.weight = kLeastSlope * mean / std::sqrt(s.unit_area_m2);
   } else {
     float most = 0;
     for (uint32_t f = 0; f < s.faces.size(); ++f) most = std::max(most, most_of(s, f));
-    out.weight = 0.05 * double(most);
+    out.weight = kLeastNearness * double(most);
   }
   return out;
 }
 
 double weight_of(const Discontinuity& d, const Solution& s, const scene::Scene& scene) {
   if (d.kind == DiscontinuityKind::contact) return INFINITY;
-  if (d.source >= kLampSource)
+  if (d.source >= kPunctualSource)
     return d.geometric *
-           double(max_component(light::incidence_at(scene.lights[d.source - kLampSource],
+           double(max_component(light::incidence_at(scene.lights[d.source - kPunctualSource],
                                                     scene.profiles, to_float(d.a))
                                     .irradiance));
   return d.geometric * double(radiosity_of(s, d.source));
@@ -292,7 +323,7 @@ std::vector<Discontinuity> find_discontinuities(const Solution& s, const scene::
   const View v{s,  tracer, ranking, receiver, face, std::sqrt(viewfactor::area_m2(face.corners)),
                out};
   add_faces(v, limits.weight, limits.light);
-  add_lamps(v, scene, limits.weight, limits.light);
+  add_punctual_lights(v, scene, limits.weight, limits.light);
   std::vector<uint32_t> near;
   find_near(s.blockers, face.corners, near);
   std::erase(near, receiver);

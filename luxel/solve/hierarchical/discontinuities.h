@@ -15,15 +15,16 @@ enum class DiscontinuityKind : uint8_t {
 struct Discontinuity {
   DVec3 a, b;  ///< on the receiver
   DiscontinuityKind kind = DiscontinuityKind::ve;
-  uint32_t source = kNone;   ///< a face; kLampSource + a lamp's number; kNone for contacts
+  uint32_t source =
+      kNone;  ///< a face; kPunctualSource + the number of a punctual light; kNone for contacts
   uint32_t blocker = kNone;  ///< a face; kNone for horizons
   /// max(d_sb / d_br), how fast a source appears behind a blocker [Hardt96, section 5.3]; where
   /// slopes are ranked [Hardt96, section 8.2], the most that the form factor of the source can
   /// change per metre. Infinite for contacts.
   double geometric = 0;
 };
-/// Sources from here on are lamps without area.
-inline constexpr uint32_t kLampSource = 1u << 31;
+/// Sources from here on are punctual lights.
+inline constexpr uint32_t kPunctualSource = 1u << 31;
 
 /// How discontinuities are ranked: weight = geometric factor * radiosity of the source.
 enum class Ranking : uint8_t {
@@ -42,11 +43,13 @@ struct DiscontinuityParams {
   uint32_t max_per_leaf = 10;  ///< lines through a leaf, at most [Hardt96, maxLeafDSets]
 };
 
-/// What the parameters mean for a solution: computed once, for all its faces.
+/// What the parameters mean for a solution: computed once, for all its faces. Weights are in
+/// W/m^2 per m (slope) or W/m^2 (nearness).
 struct DiscontinuityLimits {
   double weight = 0;  ///< the least
   double light = 0;   ///< the least that a source brings [W/m^2]
 };
+/// Limits from the parameters or, where those say nothing, from the light there is.
 DiscontinuityLimits limits_of(const Solution& solution, const DiscontinuityParams& params);
 
 /// All that fall on a face, each with its geometric factor, of those whose weight can be above the
@@ -55,6 +58,8 @@ std::vector<Discontinuity> find_discontinuities(const Solution& solution, const 
                                                 const trace::RayTracer& tracer, uint32_t receiver,
                                                 Ranking ranking, const DiscontinuityLimits& limits);
 
+/// geometric * what the source sends now: its mean radiosity, or a punctual light's irradiance at
+/// the line's beginning; infinite for contacts. Units as Ranking says.
 double weight_of(const Discontinuity& d, const Solution& solution, const scene::Scene& scene);
 
 }  // namespace luxel::hierarchical

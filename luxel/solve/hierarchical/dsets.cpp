@@ -66,6 +66,7 @@ FacePlane plane_coordinates(const Face& face) {
 }
 
 bool clip_to(std::span<const DVec2> polygon, double least_m, Segment2& segment) {
+  // The part of the segment above all edges, by its parameters where it crosses them.
   double t0 = 0, t1 = 1;
   const DVec2 d = segment.b - segment.a;
   for (size_t k = 0; k < polygon.size(); ++k) {
@@ -108,6 +109,7 @@ std::vector<DSet> make_dsets(std::span<const Discontinuity> discontinuities, con
   // The direction of long ones is known best.
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.length_m > b.length_m; });
+  // Each joins the first line that it lies on, or begins one.
   std::vector<DSet> out;
   std::vector<Line> lines;
   for (const Item& item : items) {
@@ -118,6 +120,7 @@ std::vector<DSet> make_dsets(std::span<const Discontinuity> discontinuities, con
       lines.push_back(line_of(item.segment));
       out.push_back({item.segment, {}});
     }
+    // The line reaches from the first end of its members to the last.
     DSet& set = out[found];
     set.members.push_back(item.index);
     const DVec2 d = lines[found].direction;
@@ -135,6 +138,7 @@ std::vector<ActiveLine> choose_active(std::span<const Discontinuity> discontinui
                                       const FacePlane& plane,
                                       std::span<const std::vector<DVec2>> leaves,
                                       uint32_t max_per_leaf, double slack_m) {
+  // Lines, and the discontinuities by falling weight.
   const std::vector<DSet> sets = make_dsets(discontinuities, plane, slack_m);
   std::vector<uint32_t> set_of(discontinuities.size());
   for (uint32_t s = 0; s < sets.size(); ++s)
@@ -148,6 +152,7 @@ std::vector<ActiveLine> choose_active(std::span<const Discontinuity> discontinui
   for (const uint32_t d : order) {
     if (weight[d] < least_weight) break;
     const Segment2 s{plane.to_plane(discontinuities[d].a), plane.to_plane(discontinuities[d].b)};
+    // The leaves that it crosses, if all of them have room for its line.
     std::vector<size_t> crossed;
     bool room = true;
     for (size_t leaf = 0; leaf < leaves.size() && room; ++leaf) {
@@ -163,6 +168,7 @@ std::vector<ActiveLine> choose_active(std::span<const Discontinuity> discontinui
     pieces[set_of[d]].push_back(
         {s, discontinuities[d].kind == DiscontinuityKind::contact, weight[d]});
   }
+  // Pieces of a line that meet become one.
   std::vector<ActiveLine> out;
   for (size_t s = 0; s < sets.size(); ++s) {
     if (pieces[s].empty()) continue;

@@ -6,8 +6,11 @@
 namespace luxel::hierarchical {
 namespace {
 
+/// Rays per point. A share of one half is known to within 1 / (2 sqrt 64) = 6 %.
 constexpr int kRays = 64;
-/// Of the mean: a place that sees as much light is in the open.
+/// A point with more light than this part of the mean is in the open: no rays are needed to tell.
+/// Larger asks rays of more points; with 0 a solid into which a little light leaks would not be
+/// found.
 constexpr float kDark = 0.02f;
 
 }  // namespace

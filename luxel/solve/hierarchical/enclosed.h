@@ -1,4 +1,4 @@
-// Places inside of solids, where light means nothing.
+// Points inside of solids, where light means nothing.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace luxel::hierarchical {
 
-/// 1 per place that sees backs of one-sided surfaces with more than half of its rays. Only places
-/// that are dark are looked at: a back sends nothing.
+/// Per point 1 where it sees backs of one-sided surfaces with more than half of its rays. Only
+/// points that are dark are looked at: a back sends nothing.
 std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                                    std::span<const Vec3> position, std::span<const Vec3> normal,
                                    std::span<const Rgb> irradiance);

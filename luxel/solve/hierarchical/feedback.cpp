@@ -10,7 +10,9 @@
 namespace luxel::hierarchical {
 namespace {
 
-constexpr double kTolerance = 1e-4;  ///< of the iteration
+/// The iteration ends when a sweep changes light by less than this part of its mean. It is the
+/// default of SolveParams::tolerance, so that what is fed back is known as well as what was solved.
+constexpr double kTolerance = 1e-4;
 
 /// Sums of weighted squares: the linear function over an element nearest to what is added.
 struct Fit {
@@ -132,9 +134,12 @@ double change_of(const Solution& s, std::span<const Rgb> before) {
 }  // namespace
 
 std::array<Rgb, 3> linear_of(const Interpolant& r) {
-  // Moments of the quadratic with the linear functions that are 1 at one corner: from its values at
-  // corners (1/30 at the own, -1/60 at others) and middles (2/15 beside, 1/15 opposite), times the
-  // inverse of the linear functions' mass matrix, 1/12 {{2, 1, 1}, ...}.
+  // With the weights L_k of the corners, the quadratic is the sum of its values at corners times
+  // L_k (2 L_k - 1), and of those at the edges' middles times 4 L_i L_j. Over a triangle of area 1
+  // the integral of L_1^a L_2^b L_3^c is 2 a! b! c! / (a + b + c + 2)!. So the moments with L_k are
+  // 1/30 for the value at the corner k, -1/60 at the others, 2/15 at the middles of the edges
+  // beside it and 1/15 opposite. The linear functions' mass matrix is 1/12 {{2, 1, 1}, ...}; its
+  // inverse, by which moments are multiplied, has 9 on the diagonal and -3 beside it.
   const std::array<Rgb, 3> corner{value_of(r, 0, 0), value_of(r, 1, 0), value_of(r, 0, 1)};
   const std::array<Rgb, 3> opposite{value_of(r, 0.5f, 0.5f), value_of(r, 0, 0.5f),
                                     value_of(r, 0.5f, 0)};
@@ -153,8 +158,10 @@ Result<double> feed_back(Solution& s, const trace::RayTracer& tracer, const Ligh
   if (!s.all_bounces) return 0.0;
   std::vector<Rgb> before;
   for (const ElementLight& l : s.light.elements) before.push_back(l.irradiance);
+  // The defect becomes part of what no link brings; the links carry it on.
   const std::vector<std::array<Rgb, 4>> exact = correct(s, mesh);
   LUXEL_TRY_STATUS(iterate(s, tracer, kTolerance, progress));
+  // Leaves get their triangles, for points near them.
   drop_pieces(s.light);
   add_pieces(s, mesh, exact);
   push_pull(s.faces, s.tree, s.light);

@@ -7,16 +7,30 @@
 namespace luxel::hierarchical {
 namespace {
 
-/// Rays to a cluster find surfaces that turn their backs, too.
+/// Rays to a cluster find surfaces that turn their backs, too: of a closed solid, half of them.
 constexpr double kRaysForSides = 2;
+/// More rays than this go to the parts of a cluster, where each knows more about what it hits.
 constexpr double kMostClusterRays = 16;
-/// A cluster must not be larger than this at its distance.
+/// A cluster's radius over its distance, at most. Distances to its surfaces then differ by up to a
+/// quarter, 1 / r^2 by up to (4/3)^2. Larger saves rays in the open, and errs close by.
 constexpr double kMostRadius = 0.25;
-/// Elements are taken apart for their light no further than this often.
+/// Elements are taken apart for their light no further than this often: into parts of 1/64 of their
+/// length. A limit for points that touch a source, where quarters never become small.
 constexpr int kMostCuts = 6;
 /// So few rays cost less than to find out what stands in between.
 constexpr double kFewRays = 8;
+/// Sources behind masks are looked at by rays whatever is at stake; this bounds their number.
 constexpr double kMostRays = 4096;
+/// A ray is a single look that sees all of a source or nothing: its standard deviation is at most
+/// one half of the source's light.
+constexpr double kOneRay = 0.5;
+/// The error of Gauss's points over a part, per (size / distance)^2 and difference of radiosity:
+/// see add_part. Larger cuts parts into quarters that add nothing; smaller leaves the light of
+/// sources close by too even.
+constexpr double kQuadrature = 0.2;
+/// How far what is seen of a part in half shadow may be from the mean of all of it: at most half of
+/// what its corners differ by.
+constexpr double kHalfSeen = 0.5;
 /// What cutting the shadows of k blockers out of a source costs, in rays: about kCutCost k^2.
 constexpr double kCutCost = 0.5;
 
@@ -53,9 +67,12 @@ void Gathering::visit(uint32_t id) {
   for (const uint32_t child : c.child) visit(child);
 }
 
-/// The error of n places spread evenly falls like n^-3/4.
+/// Rays until the error of a source that brings `light` is at most the limit. Of n places spread
+/// evenly over a source, each in a cell of its own, a straight border of a shadow crosses about
+/// sqrt(n) cells. Each of these errs by 1/n of the light, independently, so that all err by
+/// sqrt(sqrt n) / n = n^-3/4 of the error of one place. Solved for n.
 double Gathering::rays_for(double light) const {
-  return std::max(1.0, std::ceil(std::pow(0.5 * light / params_.limit, 4.0 / 3)));
+  return std::max(1.0, std::ceil(std::pow(kOneRay * light / params_.limit, 4.0 / 3)));
 }
 
 /// What an element brings at most, and what it hides of the sky [W/m^2].
@@ -69,12 +86,12 @@ bool Gathering::take_cluster(uint32_t id) {
   const DVec3 d = c.centre - at_.position;
   const double distance = length(d), part = c.radius_m / distance;
   if (part > kMostRadius) return false;
-  const double power = glances_.power_of(id);
+  const double power = sampler_.power_of(id);
   if (power == 0) return true;
   const double most = power / (kPiDouble * distance * distance);
   const double rays = kRaysForSides * rays_for(most);
   if (rays > kMostClusterRays) return false;
-  sum_ += glances_.from_cluster(at_, id, uint32_t(rays));
+  sum_ += sampler_.irradiance_from_cluster(at_, id, uint32_t(rays));
   return true;
 }
 
@@ -88,6 +105,7 @@ void Gathering::visit_root(uint32_t id) {
   const size_t index = id - s_.tree.clusters.size();
   const float most = s_.light.elements[index].most;
   if (params_.sky == 0 && (!shines || (most == 0 && !list_))) return;
+  // What is at stake: the form factor, were nothing in between, and the rays that it is worth.
   turned_ = height < 0;
   const Polygon polygon = above_horizon(e.polygon());
   if (polygon.empty()) return;
@@ -98,6 +116,7 @@ void Gathering::visit_root(uint32_t id) {
     look_by_rays(index, whole, shines);
     return;
   }
+  // What stands in between decides which is cheaper: rays, or cutting shadows out.
   find_before(s_.blockers, at_.position, polygon, first_);
   std::erase(first_, e.face), std::erase(first_, at_.face);
   const auto count = double(first_.size());
@@ -134,10 +153,10 @@ void Gathering::look_by_rays(size_t index, double whole, bool shines) {
     return;
   }
   const double rays = rays_for(at_stake(index, whole, shines));
-  const Glances::Glance glance =
-      glances_.at_element(at_, index, uint32_t(std::min(rays, kMostRays)));
-  covered_ += whole * glance.share;
-  if (shines) sum_ += glance.radiosity * float(whole);
+  const SourceSampler::Sample sample =
+      sampler_.sample_element(at_, index, uint32_t(std::min(rays, kMostRays)));
+  covered_ += whole * sample.share;
+  if (shines) sum_ += sample.radiosity * float(whole);
 }
 
 Polygon Gathering::above_horizon(PolygonView polygon) const {
@@ -157,8 +176,8 @@ viewfactor::SeenFactor Gathering::look(PolygonView polygon, std::span<const uint
                                           casts_, scratch_);
 }
 
-/// Of the blockers of the last look those whose shadows fell on what was looked at: no others'
-/// fall on a part of it.
+/// The blockers of the last look whose shadows fell on what was looked at: no others' fall on a
+/// part of it.
 std::vector<uint32_t> Gathering::casters(std::span<const uint32_t> blockers) const {
   std::vector<uint32_t> out;
   for (const uint32_t b : blockers)
@@ -201,9 +220,12 @@ void Gathering::add_element(size_t index, const viewfactor::SeenFactor& seen,
                [&](const auto& there, const auto& casters) { add_element(c, there, casters); });
 }
 
-/// Radiosity is linear over a part. As the point sees it, its mean is that of Gauss's points,
-/// each with the weight of the kernel there, where the part is far or differs little; else its
-/// quarters are looked at.
+/// Radiosity is linear over a part. As the point sees it, its mean is that of Gauss's points, each
+/// with the weight of the kernel there, where the part is far or differs little; else its quarters
+/// are looked at. Two things make that mean wrong. The kernel cos cos / r^2 varies over the part:
+/// Gauss's points leave terms of the order of (size / distance)^2, of which kQuadrature is the
+/// factor; a part that is nearer than it is large errs no more than that. And where a part is half
+/// hidden, what is seen of it may be its bright or its dark half.
 void Gathering::add_part(const Part& part, const viewfactor::SeenFactor& seen,
                          std::span<const uint32_t> blockers, int cuts) {
   Rgb least{INFINITY, INFINITY, INFINITY}, most{};
@@ -214,8 +236,8 @@ void Gathering::add_part(const Part& part, const viewfactor::SeenFactor& seen,
   }
   const double size = length(part.corner[0] - middle);
   const double nearness = size / std::max(length(middle - at_.position), 1e-9);
-  const double unsure = 0.2 * seen.whole * std::min(1.0, nearness * nearness) +
-                        0.5 * std::min(seen.visible, seen.whole - seen.visible);
+  const double unsure = kQuadrature * seen.whole * std::min(1.0, nearness * nearness) +
+                        kHalfSeen * std::min(seen.visible, seen.whole - seen.visible);
   if (double(max_component(most - least)) * unsure <= params_.limit || cuts == kMostCuts) {
     sum_ += max(radiosity_seen(part, middle), Rgb{}) * float(seen.visible);
     return;

@@ -1,13 +1,13 @@
 // What one point gathers from all faces.
 #pragma once
 
-#include "luxel/solve/hierarchical/glances.h"
+#include "luxel/solve/hierarchical/source_sampler.h"
 
 namespace luxel::hierarchical {
 
 struct GatheringParams {
-  /// What a source may be wrong by [W/m^2]. The dimmer sources are, and clusters of them, the fewer
-  /// rays look at them instead of closed forms.
+  /// How far the light of one source may be off [W/m^2]. The dimmer sources are, and clusters of
+  /// them, the fewer rays look at them instead of closed forms.
   double limit = 0;
   /// E of the background over the whole hemisphere; above 0 every face counts, for what it hides of
   /// that.
@@ -19,7 +19,7 @@ class Gathering {
  public:
   Gathering(const Solution& solution, const trace::RayTracer& tracer, const RaySources& sources,
             const GatheringParams& params)
-      : s_(solution), params_(params), glances_(solution, tracer, sources) {
+      : s_(solution), params_(params), sampler_(solution, tracer, sources) {
     casts_.resize(solution.blockers.all.size());
   }
 
@@ -51,7 +51,7 @@ class Gathering {
 
   const Solution& s_;
   GatheringParams params_;
-  Glances glances_;
+  SourceSampler sampler_;
   Receiver at_;
   Plane horizon_;
   bool turned_ = false;  ///< the source shows its back

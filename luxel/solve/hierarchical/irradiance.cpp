@@ -12,8 +12,9 @@ namespace {
 
 /// Beyond so many faces the background is looked for by rays instead of as what no face hides.
 constexpr size_t kMostFacesBeforeSky = 256;
-/// The rays are so many over the tolerance, but no fewer than keep their steps below what
-/// interpolants may be off by.
+/// Rays towards the sky are so many over the tolerance: E comes in steps of about 1 / rays of the
+/// sky's, half of which is the error. No fewer than keep the steps below what interpolants may be
+/// off by (1e-3 of the light), and no more than a point may cost.
 constexpr double kSkyRays = 0.5;
 constexpr double kLeastSkyRays = 1024, kMostSkyRays = 8192;
 
@@ -21,13 +22,15 @@ double limit_of(const Solution& s, const PointParams& params) {
   return params.tolerance * double(max_component(totals_of(s).irradiance));
 }
 
-bool is_sharp(const scene::PunctualLight& lamp) { return lamp.angular_radius_rad == 0; }
+bool is_sharp(const scene::PunctualLight& light) { return light.angular_radius_rad == 0; }
 
-/// E of lamps without area.
-Result<std::vector<Rgb>> from_lamps(const scene::Scene& scene, const trace::RayTracer& tracer,
-                                    const light::Lights& lamps, std::span<const Receiver> receivers,
-                                    Progress& progress) {
-  if (lamps.punctual.empty() && lamps.around.bright_texels.empty())
+/// E of punctual lights.
+Result<std::vector<Rgb>> from_punctual_lights(const scene::Scene& scene,
+                                              const trace::RayTracer& tracer,
+                                              const light::Lights& lights,
+                                              std::span<const Receiver> receivers,
+                                              Progress& progress) {
+  if (lights.punctual.empty() && lights.around.bright_texels.empty())
     return std::vector<Rgb>(receivers.size());
   transport::Elements points;
   for (const Receiver& r : receivers) {
@@ -37,7 +40,8 @@ Result<std::vector<Rgb>> from_lamps(const scene::Scene& scene, const trace::RayT
     points.reflectance.push_back({});
   }
   LUXEL_TRY(light::DirectLight direct,
-            light::direct_light(scene, points, lamps, tracer, {256, 1, true}, progress));
+            light::direct_light(scene, points, lights, tracer,
+                                {.samples = 256, .same_points = true}, progress));
   return std::move(direct.irradiance);
 }
 
@@ -47,27 +51,32 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
                                        const trace::RayTracer& tracer,
                                        std::span<const Receiver> receivers,
                                        const PointParams& params, Progress& progress) {
-  Lamps lamps = s.lamps;
-  if (!params.sharp_lamps) std::erase_if(lamps.lights.punctual, is_sharp);
-  LUXEL_TRY(std::vector<Rgb> out, from_lamps(scene, tracer, lamps.lights, receivers, progress));
+  // Punctual lights.
+  UnlinkedLights unlinked = s.unlinked;
+  if (!params.sharp_lights) std::erase_if(unlinked.lights.punctual, is_sharp);
+  LUXEL_TRY(std::vector<Rgb> out,
+            from_punctual_lights(scene, tracer, unlinked.lights, receivers, progress));
   // A sky of one radiance is what no face hides; one that varies is looked at.
   const bool count_all =
-      lamps.has_sky && scene.environment.empty() && s.faces.size() <= kMostFacesBeforeSky;
+      unlinked.has_sky && scene.environment.empty() && s.faces.size() <= kMostFacesBeforeSky;
   const double whole_sky = kPiDouble * double(max_component(scene.background));
-  const GatheringParams gathered{limit_of(s, params), count_all ? whole_sky : 0};
+  // Faces, and the sky past them.
+  const GatheringParams gathered{.limit = limit_of(s, params), .sky = count_all ? whole_sky : 0};
   const RaySources sources = ray_sources(s);
   const auto sky_rays =
       uint32_t(std::clamp(kSkyRays / params.tolerance, kLeastSkyRays, kMostSkyRays));
+  const SkyScene sky{scene, unlinked.lights.around, tracer, s.diagonal_m};
   const auto sky_at = [&](const Receiver& r) {
-    return soft_sky_at(scene, lamps.lights.around, tracer, to_float(r.position), to_float(r.normal),
-                       to_float(r.geometric_normal), s.diagonal_m, sky_rays);
+    return soft_sky_at(
+        sky, {to_float(r.position), to_float(r.normal), to_float(r.geometric_normal)}, sky_rays);
   };
+  // Each receiver gathers from all faces.
   progress.begin("irradiance", receivers.size());
   parallel_for(receivers.size(), 32, [&](size_t begin, size_t end) {
     Gathering gathering(s, tracer, sources, gathered);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       out[i] += gathering.from_faces(receivers[i], nullptr);
-      if (!lamps.has_sky) continue;
+      if (!unlinked.has_sky) continue;
       out[i] += count_all ? scene.background * (kPi * float(std::max(0.0, 1 - gathering.covered())))
                           : sky_at(receivers[i]);
     }
@@ -81,16 +90,16 @@ Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
                                              const trace::RayTracer& tracer,
                                              std::span<const Receiver> receivers,
                                              Progress& progress) {
-  light::Lights lamps;
-  lamps.punctual = scene.lights;
-  std::erase_if(lamps.punctual, [](const auto& lamp) { return !is_sharp(lamp); });
-  return from_lamps(scene, tracer, lamps, receivers, progress);
+  light::Lights lights;
+  lights.punctual = scene.lights;
+  std::erase_if(lights.punctual, [](const auto& light) { return !is_sharp(light); });
+  return from_punctual_lights(scene, tracer, lights, receivers, progress);
 }
 
 std::vector<Seen> sources_at(const Solution& s, const trace::RayTracer& tracer,
                              const Receiver& receiver, const PointParams& params) {
   std::vector<Seen> parts, out;
-  Gathering(s, tracer, ray_sources(s), {limit_of(s, params), 0}).from_faces(receiver, &parts);
+  Gathering(s, tracer, ray_sources(s), {.limit = limit_of(s, params)}).from_faces(receiver, &parts);
   std::stable_sort(parts.begin(), parts.end(),
                    [](const Seen& a, const Seen& b) { return a.face < b.face; });
   for (const Seen& part : parts) {

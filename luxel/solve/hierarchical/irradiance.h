@@ -2,8 +2,8 @@
 // [Hardt96, chapter 6]
 #pragma once
 
-#include "luxel/solve/hierarchical/lamps.h"
 #include "luxel/solve/hierarchical/solve.h"
+#include "luxel/solve/hierarchical/unlinked_lights.h"
 
 namespace luxel::hierarchical {
 
@@ -16,12 +16,12 @@ struct Receiver {
 };
 
 struct PointParams {
-  /// How exact: sources are taken apart, or from afar, so that each is wrong by less than this part
+  /// Sources are taken apart, or from afar, so that the light of each is off by less than this part
   /// of the scene's mean irradiance.
   double tolerance = 1e-4;
-  /// With the light of sharp lamps: points and directions, whose shadows have no penumbra. Without,
-  /// light is continuous but where faces touch.
-  bool sharp_lamps = true;
+  /// Whether sharp lights count: points and directions, whose shadows have no penumbra. Without
+  /// them light is continuous but where faces touch.
+  bool sharp_lights = true;
 };
 
 /// What a point sees of a face.
@@ -32,7 +32,7 @@ struct Seen {
 };
 
 /// E at each receiver [W/m^2]: light of all faces by their radiosity, which is linear over the
-/// solution's elements; of lamps without area; and of the background. Past blockers it is the sum
+/// solution's elements; of punctual lights; and of the background. Past blockers it is the sum
 /// over what the point sees of each source, cut out of it by the shadows that blockers throw from
 /// the point: the backprojection of [Hardt96, section 6.2], by clipping where the thesis
 /// triangulates, so that nothing has to be classified by rays. Errors: cancelled.
@@ -41,13 +41,13 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& solution, const scene::Sc
                                        std::span<const Receiver> receivers,
                                        const PointParams& params, Progress& progress);
 
-/// E of sharp lamps alone. Errors: cancelled.
+/// E of sharp lights alone. Errors: cancelled.
 Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
                                              const trace::RayTracer& tracer,
                                              std::span<const Receiver> receivers,
                                              Progress& progress);
 
-/// The same at one receiver, without lamps and background, face by face: those that it sees at
+/// What a receiver sees of each face, without punctual lights and background: faces that it sees at
 /// all, the brightest first.
 std::vector<Seen> sources_at(const Solution& solution, const trace::RayTracer& tracer,
                              const Receiver& receiver, const PointParams& params);
@@ -58,6 +58,7 @@ struct Backprojection {
   Polygon source;
   std::vector<Polygon> visible;
 };
+/// What the receiver sees of one face, past all others. [Hardt96, section 6.2]
 Backprojection backproject(const Solution& solution, const Receiver& receiver, uint32_t face);
 
 /// The receiver at a place of a face, where vertex normals say so on the smooth surface.

@@ -87,7 +87,7 @@ double mean_light(const Solved& s, const Polygon& a, int cells, int half) {
   return sum;
 }
 
-/// The same over a face, triangle by triangle of a mesh along all discontinuities.
+/// E of a face, triangle by triangle of a mesh along all discontinuities.
 double mean_light_along_lines(const Solved& s, uint32_t face) {
   MeshParams params;
   params.discontinuity.least_weight = 0, params.discontinuity.least_light = 0;
@@ -144,7 +144,7 @@ Estimate estimate(const Solved& s, const Receiver& at, uint32_t samples) {
     const trace::Hit hit = s.tracer->closest_hit(
         {from, 0, frame.to_world(cosine_hemisphere_sample(random.next2())), INFINITY});
     if (!hit.found() || hit.back_face) continue;
-    const Place place = place_of(s.scene, solution.faces, hit.point());
+    const FacePoint place = face_point_of(s.scene, solution.faces, hit.point());
     const size_t leaf = leaf_at(solution.tree, solution.faces, place.face, place.position);
     const Element& e = solution.tree.elements[leaf];
     const auto& b = solution.light.elements[leaf].shining;
@@ -163,7 +163,7 @@ TEST(ExactIrradiance, IsWhatRaysFind) {
   const auto s = solved(scene::cornell_box(), {.eps = 0.05});
   std::vector<Receiver> receivers;
   for (const scene::SurfacePoint& p : scene::points_uniform_in_area(s->scene, 20, 11)) {
-    const Place place = place_of(s->scene, s->solution.faces, p);
+    const FacePoint place = face_point_of(s->scene, s->solution.faces, p);
     receivers.push_back(receiver_at(s->solution, s->scene, *s->tracer, place.face, place.position));
   }
   const std::vector<Rgb> exact = light_at(*s, receivers, 1e-5);

@@ -18,7 +18,7 @@ Result<std::vector<Rgb>> continuous_irradiance_at(const Solution& s, const scene
                                                   std::span<const Receiver> receivers,
                                                   PointParams params, KnownLight& known,
                                                   Progress& progress) {
-  params.sharp_lamps = false;
+  params.sharp_lights = false;
   const auto key_of = [](const Receiver& r) { return KnownLight::Key{r.face, r.position}; };
   std::vector<Receiver> asked;
   for (const Receiver& r : receivers)

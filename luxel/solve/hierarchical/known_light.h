@@ -19,7 +19,8 @@ struct KnownLight {
   };
   std::unordered_map<Key, Rgb, Hash> at;
 };
-/// All light but that of sharp lamps; what is not known yet is from then on.
+/// All light but that of sharp lights; what is not known yet is from then on. One E per
+/// receiver [W/m^2]. Errors: cancelled.
 Result<std::vector<Rgb>> continuous_irradiance_at(
     const Solution& solution, const scene::Scene& scene, const trace::RayTracer& tracer,
     std::span<const Receiver> receivers, PointParams params, KnownLight& known, Progress& progress);

@@ -84,6 +84,7 @@ void pull_leaf(const Element& element, ElementLight& l) {
   l.most = max_component(l.radiosity);
 }
 
+/// Elements from their parts, the parts first: they come after the wholes.
 void pull_elements(const Tree& tree, Light& light) {
   for (size_t e = tree.elements.size(); e-- > 0;) {
     const Element& element = tree.elements[e];
@@ -92,6 +93,7 @@ void pull_elements(const Tree& tree, Light& light) {
       pull_leaf(element, l);
       continue;
     }
+    // The linear function nearest to the parts, means by area, and how far parts are from linear.
     l.irradiance = l.radiosity = {};
     l.most = l.rough = 0;
     l.shining = whole_of(light, element);

@@ -28,6 +28,7 @@ struct Cosines {
     for (size_t k = 0; k < 3; ++k) first[k] += other.first[k];
     for (size_t k = 0; k < 6; ++k) second[k] += other.second[k];
   }
+  /// v max(0, d . n), summed: with x = d . n the polynomials add up to 3/32 + x/2 + 15/32 x^2.
   Rgb at(Vec3 n) const {
     const Rgb one = first[0] * n.x + first[1] * n.y + first[2] * n.z;
     const Rgb two =
@@ -47,7 +48,7 @@ struct ElementLight {
   Rgb reflectance;
   Rgb emission;                 ///< B_e [W/m^2]
   std::array<Rgb, 4> received;  ///< E over the links of this element at its corners
-  /// Of leaves: E at the corners that no link brings, from lamps without area and the sky; and what
+  /// E at the corners of a leaf that no link brings: from punctual lights and the sky, and what
   /// exact light differs by from what links bring (feedback.h).
   std::array<Rgb, 4> unlinked;
   std::array<Rgb, 4> arriving;  ///< E at the corners, over the links of this and all above it
@@ -56,7 +57,7 @@ struct ElementLight {
   Rgb radiosity;                ///< B, a mean [W/m^2]
   float most = 0;               ///< the largest component of B over the leaves below
   float rough = 0;              ///< how far that is from linear, at most, over the leaves below
-  float bend = 0;               ///< of leaves: how far their pieces are from linear
+  float bend = 0;               ///< how far the pieces of a leaf are from linear
 };
 
 /// A triangle of a leaf, with B at its corners: finer than linear over the leaf.

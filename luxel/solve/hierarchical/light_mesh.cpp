@@ -17,11 +17,12 @@ constexpr double kNearCorners = 1e-4;
 /// middle: irradiance there is the limit from inside [Hardt96, section 6.3].
 constexpr double kNudge = 1e-3;
 
-/// Discontinuities are kept down to this part of the least weight: light may get brighter.
+/// Discontinuities are kept down to this part of the least weight: refinement and feedback may make
+/// their sources brighter by the time of the last mesh, but hardly twice as bright.
 constexpr double kWeaker = 0.5;
 
 /// A face while it is meshed.
-struct FaceWork {
+struct FaceMeshing {
   FacePlane plane;
   std::vector<size_t> leaves;               ///< elements
   std::vector<std::vector<DVec2>> outline;  ///< per leaf
@@ -47,9 +48,10 @@ struct Maker {
 };
 
 /// `found`: of the face, or nothing yet.
-FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& limits,
-                      std::optional<std::vector<Discontinuity>>& found) {
-  FaceWork w;
+FaceMeshing prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& limits,
+                         std::optional<std::vector<Discontinuity>>& found) {
+  // Its leaves, in its plane.
+  FaceMeshing w;
   w.plane = plane_coordinates(m.s.faces.faces[face]);
   for (uint32_t r = m.s.tree.first_root[face]; r < m.s.tree.first_root[face + 1]; ++r)
     add_leaves(m.s.tree, r, w.leaves);
@@ -58,6 +60,7 @@ FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& 
     for (const DVec3& p : m.s.tree.elements[leaf].polygon())
       w.outline.back().push_back(w.plane.to_plane(p));
   }
+  // Lines by the light there is now.
   if (m.params.discontinuities) {
     if (!found)
       found = find_discontinuities(m.s, m.scene, m.tracer, face, m.params.discontinuity.ranking,
@@ -67,6 +70,7 @@ FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& 
     w.lines = choose_active(*found, weight, limits.weight, w.plane, w.outline,
                             m.params.discontinuity.max_per_leaf, m.slack_m);
   }
+  // What of them crosses each leaf.
   for (const auto& outline : w.outline) {
     w.pieces.emplace_back();
     for (const ActiveLine& line : w.lines)
@@ -78,7 +82,7 @@ FaceWork prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& 
 
 /// Calls visit(point) for corners of leaves and ends of lines.
 template <class Visit>
-void for_points(const Maker& m, const FaceWork& w, const Visit& visit) {
+void for_points(const Maker& m, const FaceMeshing& w, const Visit& visit) {
   for (size_t k = 0; k < w.leaves.size(); ++k) {
     for (const DVec3& p : m.s.tree.elements[w.leaves[k]].polygon()) visit(p);
     for (const Segment2& piece : w.pieces[k])
@@ -87,7 +91,7 @@ void for_points(const Maker& m, const FaceWork& w, const Visit& visit) {
 }
 
 /// A leaf's corners with all that its neighbours have on its edges.
-std::vector<DVec2> full_outline(const Maker& m, const FaceWork& w, uint32_t face, size_t leaf,
+std::vector<DVec2> full_outline(const Maker& m, const FaceMeshing& w, uint32_t face, size_t leaf,
                                 const EdgePoints& of_face, const EdgePoints& of_outlines) {
   const Face& f = m.s.faces.faces[face];
   const PolygonView polygon = m.s.tree.elements[leaf].polygon();
@@ -121,9 +125,10 @@ bool lies_on(const Segment2& s, DVec2 a, DVec2 b, double slack_m) {
 }
 
 /// Triangulates the leaves of a face into `mesh`.
-void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints& of_outlines,
+void add_face(const Maker& m, const FaceMeshing& w, uint32_t face, const EdgePoints& of_outlines,
               Welder& welder, std::vector<std::vector<LightTriangle>>& of_element,
               LightMesh& mesh) {
+  // Corners that leaves may share with their neighbours of the same face.
   EdgePoints of_face(m.slack_m);
   for_points(m, w, [&](DVec3 p) { of_face.add(p); });
   of_face.sort();
@@ -132,6 +137,7 @@ void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints
         std::max(2 * m.slack_m, kNearCorners * std::sqrt(m.s.tree.elements[w.leaves[k]].area_m2));
     const Triangulation t = triangulate(full_outline(m, w, face, w.leaves[k], of_face, of_outlines),
                                         w.pieces[k], least_m);
+    // The triangles, with numbers for their corners; none that welding has closed.
     std::vector<uint32_t> vertex;
     for (const DVec2 p : t.points)
       vertex.push_back(welder.index_of(w.plane.from_plane(p), mesh.vertices));
@@ -153,26 +159,29 @@ void add_face(const Maker& m, const FaceWork& w, uint32_t face, const EdgePoints
 }
 
 Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& progress) {
+  // Leaves and lines of all faces.
   const size_t faces = m.s.faces.size();
-  std::vector<FaceWork> work(faces);
+  std::vector<FaceMeshing> meshing(faces);
   const DiscontinuityLimits limits = limits_of(m.s, m.params.discontinuity);
   known.of_face.resize(faces);
   progress.begin("discontinuities", faces);
   parallel_for(faces, 1, [&](size_t begin, size_t end) {
     for (size_t f = begin; f < end && !progress.cancelled(); ++f)
-      work[f] = prepare_face(m, uint32_t(f), limits, known.of_face[f]);
+      meshing[f] = prepare_face(m, uint32_t(f), limits, known.of_face[f]);
     progress.advance(end - begin);
   });
   LUXEL_TRY_STATUS(stopped(progress));
+  // Points on the outlines of faces, which neighbouring faces must have, too.
   progress.begin("triangulate", faces);
   EdgePoints of_outlines(m.slack_m);
   for (uint32_t f = 0; f < faces; ++f) {
     const Face& face = m.s.faces.faces[f];
-    for_points(m, work[f], [&](DVec3 p) {
+    for_points(m, meshing[f], [&](DVec3 p) {
       if (depth_inside(face.corners, face.plane.normal, p) <= m.slack_m) of_outlines.add(p);
     });
   }
   of_outlines.sort();
+  // Triangles face by face, then in the order of elements.
   std::vector<std::vector<LightTriangle>> of_element(m.s.tree.elements.size());
   std::map<uint32_t, Welder> of_instance;
   for (uint32_t f = 0; f < faces; ++f) {
@@ -182,7 +191,7 @@ Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& 
     Welder own(m.slack_m);
     Welder& welder =
         face.curved ? of_instance.try_emplace(face.instance, m.slack_m).first->second : own;
-    add_face(m, work[f], f, of_outlines, welder, of_element, mesh);
+    add_face(m, meshing[f], f, of_outlines, welder, of_element, mesh);
     progress.advance(1);
   }
   for (const auto& triangles : of_element) {
@@ -194,11 +203,11 @@ Status triangulate_all(const Maker& m, Known& known, LightMesh& mesh, Progress& 
 }
 
 /// Where irradiance is asked for: each place once for the light that is the same on both sides of
-/// its edge, and for each triangle's side of it for that of sharp lamps, whose shadows end there.
+/// its edge, and for each triangle's side of it for that of sharp lights, whose shadows end there.
 struct Samples {
   std::vector<Receiver> receivers;
   std::vector<std::array<uint32_t, 6>> of_triangle;
-  std::vector<Receiver> inside;  ///< six per triangle; none in scenes without lamps
+  std::vector<Receiver> inside;  ///< six per triangle; none in scenes without punctual lights
 };
 
 /// Whether another face meets this one there at an angle; neighbours on a curved surface do not.
@@ -267,6 +276,7 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
                                   Known& known, Progress& progress) {
   const Maker m{s, scene, tracer, params,
                 std::max(4 * s.faces.slack_m, 1e-7 * double(s.diagonal_m))};
+  // Triangles, and the points at which their light is asked for.
   LightMesh mesh;
   LUXEL_TRY_STATUS(triangulate_all(m, known, mesh, progress));
   const Samples samples = collect_samples(m, mesh);
@@ -275,6 +285,7 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
                                      progress));
   LUXEL_TRY(const std::vector<Rgb> sharp,
             sharp_irradiance_at(scene, tracer, samples.inside, progress));
+  // The quadratic function through six of them.
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     std::array<Rgb, 6> value;
     for (size_t k = 0; k < 6; ++k) {
@@ -287,9 +298,9 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
   return mesh;
 }
 
-MeshPlace locate(const Solution& s, const LightMesh& mesh, uint32_t face, DVec3 place) {
+MeshPoint locate(const Solution& s, const LightMesh& mesh, uint32_t face, DVec3 place) {
   const size_t leaf = leaf_at(s.tree, s.faces, face, place);
-  MeshPlace best;
+  MeshPoint best;
   double deepest = -INFINITY;
   for (uint32_t t = mesh.first_of_element[leaf]; t < mesh.first_of_element[leaf + 1]; ++t) {
     const auto& v = mesh.triangles[t].vertex;
@@ -308,9 +319,9 @@ MeshPlace locate(const Solution& s, const LightMesh& mesh, uint32_t face, DVec3 
 
 Rgb irradiance_at(const Solution& s, const LightMesh& mesh, const scene::Scene& scene,
                   const scene::SurfacePoint& p) {
-  const Place place = place_of(scene, s.faces, p);
+  const FacePoint place = face_point_of(scene, s.faces, p);
   if (place.face == kNone || mesh.triangles.empty()) return {};
-  const MeshPlace at = locate(s, mesh, place.face, place.position);
+  const MeshPoint at = locate(s, mesh, place.face, place.position);
   return max(Rgb{}, value_of(mesh.interpolant[at.triangle], at.s, at.t));
 }
 

@@ -12,6 +12,7 @@ namespace luxel::hierarchical {
 using Interpolant = std::array<Rgb, 6>;
 /// From values at (0, 0), (1/2, 0), (1, 0), (1/2, 1/2), (0, 1), (0, 1/2). [Hardt96, section 3.3]
 Interpolant interpolant_of(const std::array<Rgb, 6>& value);
+/// R(s, t) as above [W/m^2].
 inline Rgb value_of(const Interpolant& r, float s, float t) {
   return (r[0] * s + r[1] * t + r[2]) * s + (r[3] * t + r[4]) * t + r[5];
 }
@@ -20,7 +21,7 @@ struct LightTriangle {
   std::array<uint32_t, 3> vertex{};  ///< counter-clockwise from the front
   uint32_t face = 0;
   uint32_t leaf = 0;  ///< of the tree's elements
-  /// Which edges (from corner k on) lie on an active discontinuity.
+  /// Per edge, from corner k on: whether it lies on an active discontinuity.
   std::array<bool, 3> edge_is_line{};
 };
 
@@ -35,6 +36,7 @@ struct LightMesh {
   size_t lines = 0;                        ///< active pieces
 };
 
+/// The centroid of a triangle [m].
 inline DVec3 middle_of(const LightMesh& mesh, const LightTriangle& t) {
   return (mesh.vertices[t.vertex[0]] + mesh.vertices[t.vertex[1]] + mesh.vertices[t.vertex[2]]) *
          (1.0 / 3);
@@ -43,7 +45,7 @@ inline DVec3 middle_of(const LightMesh& mesh, const LightTriangle& t) {
 struct MeshParams {
   bool discontinuities = true;
   DiscontinuityParams discontinuity;
-  PointParams point = {5e-4};
+  PointParams point = {.tolerance = 5e-4};
 };
 
 /// Triangulates all leaves and builds their interpolants. Errors: cancelled.
@@ -57,17 +59,18 @@ struct Known {
   KnownLight light;
   std::vector<std::optional<std::vector<Discontinuity>>> of_face;  ///< what was looked for
 };
-/// The same with what earlier meshes found.
+/// Triangulates and interpolates as above, with what earlier meshes found. Errors: cancelled.
 Result<LightMesh> make_light_mesh(const Solution& solution, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
                                   Known& known, Progress& progress);
 
 /// The triangle that holds a place of a face, or the nearest one of its leaf.
-struct MeshPlace {
+struct MeshPoint {
   uint32_t triangle = 0;
   float s = 0, t = 0;
 };
-MeshPlace locate(const Solution& solution, const LightMesh& mesh, uint32_t face, DVec3 place);
+/// Where a place of a face lies in the mesh; clamped into the triangle.
+MeshPoint locate(const Solution& solution, const LightMesh& mesh, uint32_t face, DVec3 place);
 
 /// E at a surface point of the scene [W/m^2], never negative.
 Rgb irradiance_at(const Solution& solution, const LightMesh& mesh, const scene::Scene& scene,

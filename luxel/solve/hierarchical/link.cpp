@@ -13,13 +13,27 @@ namespace {
 
 /// Elements whose middles are nearer than this many times their radii exchange light that a few
 /// points do not find the mean of: they get the closed form.
+/// Larger computes closed forms where points would do; smaller errs for elements in a corner.
 constexpr double kNear = 2.5;
+/// The closed form's relative error, far below the error of the shadows that it is multiplied by.
 constexpr double kClosedFormTolerance = 1e-4;
-/// Shadow rays of a link that involves a cluster, or more blockers than are looked at.
+/// The error at which the closed form only tells whether two elements see each other at all.
+constexpr double kAnyExchange = 1e-2;
+/// Shadow rays of a link that involves a cluster, or more blockers than are looked at. The visible
+/// share comes in steps of an eighth; links that carry enough light to show it are divided.
 constexpr uint32_t kRays = 8;
-/// Gauss's points of a quadrilateral span a smaller copy of it, in 1 / sqrt 3; those of a triangle
-/// in 1 / 2.
+/// Gauss's two points of a side [0, 1] lie at (1 -+ 1 / sqrt 3) / 2.
+constexpr double kGaussLow = 0.21132487, kGaussHigh = 0.78867513;
+/// Gauss's points of a quadrilateral span a copy of it, smaller by 1 / sqrt 3; those of a triangle,
+/// with the weights 2/3, 1/6, 1/6 of its corners, one smaller by 1 / 2. To the corners it is so
+/// much further from the middle.
 constexpr double kOutwards[2] = {1.7320508, 2};
+/// How far a form factor is from linear over an element: see spread_of.
+constexpr double kCornerOverMiddle = 2, kOddPart = 0.1;
+/// Two balls exchange light as points do when the distance between their centres is at least so
+/// many times the sum of their radii. The first-order error (see link_far) is half of the light
+/// then, and beyond it terms of higher order would count as much.
+constexpr double kFar = 2;
 
 /// Where an element is looked from: Gauss's points.
 struct Points {
@@ -36,7 +50,7 @@ Points points_of(const Element& e) {
     out.at[3] = e.centre;
     return out;
   }
-  constexpr double low = 0.21132487, high = 1 - low;
+  constexpr double low = kGaussLow, high = 1 - kGaussLow;
   out.count = 4;
   constexpr double s[4] = {low, high, high, low}, t[4] = {low, low, high, high};
   for (uint32_t k = 0; k < 4; ++k) out.at[k] = linear_at(c, 4, s[k], t[k]);
@@ -44,10 +58,11 @@ Points points_of(const Element& e) {
   return out;
 }
 
-/// What the function that is 1 at corner a and 0 at the others, linear between, is at point k.
+/// What the function that is 1 at corner a and 0 at the others, linear between, is at Gauss's point
+/// k: of a quadrilateral the product of the weights along its two sides.
 double corner_weight(uint32_t corners, uint32_t a, uint32_t k) {
   if (corners == 3) return a == k ? 2.0 / 3 : 1.0 / 6;
-  constexpr double near = 0.78867513, far = 0.21132487;
+  constexpr double near = kGaussHigh, far = kGaussLow;
   const uint32_t apart = (a + 4 - k) % 4;
   return apart == 0 ? near * near : apart == 2 ? far * far : near * far;
 }
@@ -56,7 +71,7 @@ Vec3 lifted(const Exchange& x, DVec3 p, DVec3 normal) {
   return trace::offset_origin(to_float(p), to_float(normal), x.diagonal_m);
 }
 
-/// Of pairs of points on two elements, the share that see each other.
+/// The share of pairs of points on two elements that see each other.
 float seen_by_rays(const Exchange& x, const Element& r, const Element& s, uint64_t seed) {
   const DVec3 from_normal = x.faces.faces[r.face].plane.normal;
   const Plane& to_plane = x.faces.faces[s.face].plane;
@@ -121,11 +136,18 @@ Views look(const Exchange& x, const Element& from, const Element& at, const Link
   return out;
 }
 
-/// How far the middle is from the mean of the points, and a part of their differences.
+/// How far a form factor is from linear over an element, at most. What linear functions miss first
+/// is a quadratic. Let it be q x^2 across a quadrilateral, x from -1 to 1: it is q/3 at all of
+/// Gauss's points, and so is the function fitted to them. The quadratic is 0 in the middle and q at
+/// the edge, which is off by q/3 and 2q/3: twice as far as in the middle, where it is measured.
+/// (For a triangle's corners it is three times as far.) What is odd about the middle cannot show
+/// there: a border of a shadow through it, or a cubic. A tenth of the points' differences stands
+/// for that. More would divide elements over which light is linear, and for which the link is
+/// exact; with none a shadow's border that halves an element would go unseen.
 double spread_of(const Views& v) {
   const auto [least, most] = std::minmax_element(v.visible.begin(), v.visible.begin() + v.count);
-  return std::max(2 * std::abs(v.visible[v.count] - v.visible_sum / v.count),
-                  0.1 * (*most - *least));
+  return std::max(kCornerOverMiddle * std::abs(v.visible[v.count] - v.visible_sum / v.count),
+                  kOddPart * (*most - *least));
 }
 
 /// The linear function through the points, moved so that it has the link's mean.
@@ -139,7 +161,6 @@ void set_receiver(const Views& v, Link& link) {
 
 /// The weights of the corners' radiosities when what the points see weighs those.
 void set_source(const Views& v, Link& link) {
-  // Of a corner's function at a point: that of its own corner, and the others'.
   for (uint32_t a = 0; a < v.count; ++a) {
     double sum = 0;
     for (uint32_t k = 0; k < v.count; ++k) sum += v.visible[k] * corner_weight(v.count, a, k);
@@ -152,6 +173,7 @@ Link link_elements(const Exchange& x, uint32_t receiver, uint32_t source, const 
                    viewfactor::VisibilityScratch& scratch) {
   Link link{.source = source};
   const Element &r = x.tree.element(receiver), &s = x.tree.element(source);
+  // Whether they face each other at all.
   if (r.face == s.face) return link;
   const Plane& r_plane = x.faces.faces[r.face].plane;
   const Face& s_face = x.faces.faces[s.face];
@@ -164,8 +186,9 @@ Link link_elements(const Exchange& x, uint32_t receiver, uint32_t source, const 
   const bool near = length(r.centre - s.centre) < kNear * (r.radius_m + s.radius_m);
   if (!s_face.two_sided) {
     if (viewfactor::clip_above(r.polygon(), s_face.plane, x.blockers.slack_m).empty()) return link;
-    if (near && !(closed_form(1e-2) > 0)) return link;
+    if (near && !(closed_form(kAnyExchange) > 0)) return link;
   }
+  // What the receiver's points see of the source: the visible share, and the mean form factor.
   find_blockers(x, r, s, parent, link);
   const Views there = look(x, r, s, link, scratch);
   if (!near && !(there.whole_sum > 0)) return link;
@@ -174,6 +197,7 @@ Link link_elements(const Exchange& x, uint32_t receiver, uint32_t source, const 
   const double mean = near && !s_face.two_sided ? closed_form(kClosedFormTolerance) / r.area_m2
                                                 : there.whole_sum / there.count;
   link.factor = float(mean) * link.visible;
+  // The weights of the receiver's corners, then of the source's.
   if (x.basis == Basis::constant)
     link.to.fill(link.factor);
   else
@@ -183,6 +207,7 @@ Link link_elements(const Exchange& x, uint32_t receiver, uint32_t source, const 
   if (!s_face.two_sided) back = look(x, s, r, link, scratch);
   if (x.basis != Basis::linear) back.visible_sum = 0;  // corners count alike
   set_source(back, link);
+  // How far both are from linear; by reciprocity as seen from the receiver.
   link.spread = float(spread_of(there));
   if (back.visible_sum > 0)
     link.spread = std::max(link.spread, float(spread_of(back) * s.area_m2 / r.area_m2));
@@ -216,7 +241,7 @@ std::optional<Vec3> place_facing(const Exchange& x, uint32_t id, DVec3 other,
   return std::nullopt;
 }
 
-/// Of pairs of places that face each other, the share that see each other.
+/// The share of pairs of points, which face each other, that see each other.
 float seen_between(const Exchange& x, uint32_t receiver, uint32_t source) {
   const DVec3 r = ball_of(x.tree, receiver).centre, s = ball_of(x.tree, source).centre;
   RandomStream random{hash64(receiver, source)};
@@ -251,13 +276,15 @@ Link link_far(const Exchange& x, uint32_t receiver, uint32_t source) {
     if (dot(d, normal) + s.radius_m <= 0) return link;
     cosine = std::max(0.0, dot(d, normal) / distance);
   }
-  if (distance < 2 * (r.radius_m + s.radius_m)) {  // too near for that: to be divided
+  if (distance < kFar * (r.radius_m + s.radius_m)) {  // too near for that: to be divided
     link.factor = link.spread = INFINITY;
     return link;
   }
   link.visible = seen_between(x, receiver, source);
   link.factor = float(cosine / (kPiDouble * distance * distance)) * link.visible;
-  // Wrong by what distances and angles differ by over both, and by shadows that fall on a part.
+  // Wrong by what distances and angles differ by over both, (r + s) / d of the exchange to first
+  // order; and by shadows that fall on a part. If a share v is seen, some points may see all of it
+  // and others nothing: with 2 min(v, 1 - v) a half that is seen counts as off by all of the light.
   const double part = (r.radius_m + s.radius_m) / distance;
   const double unseen = double(std::min(link.visible, 1 - link.visible));
   link.spread = float((part + 2 * unseen) / (kPiDouble * distance * distance));
@@ -317,12 +344,14 @@ void gather(const Exchange& x, std::span<const std::vector<Link>> links, Light& 
   parallel_for(links.size(), 256, [&](size_t begin, size_t end) {
     for (size_t id = begin; id < end; ++id) {
       if (id < clusters) {
+        // A cluster keeps where its light comes from.
         Cosines& received = light.clusters[id].received;
         received = {};
         for (const Link& link : links[id])
           received.add(link.direction, irradiance_of(link, x, light));
         continue;
       }
+      // An element gets a linear function from elements, and a constant from clusters.
       std::array<Rgb, 4> sum{};
       for (const Link& link : links[id]) {
         if (link.direction == Vec3{}) {

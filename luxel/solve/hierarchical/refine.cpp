@@ -11,7 +11,9 @@ namespace luxel::hierarchical {
 namespace {
 
 /// Points of an element of the unit's area, and of small ones, at which textures are looked at.
-/// They are scattered: a grid would see no more than some squares of a checkerboard.
+/// They are scattered: a grid would see no more than some squares of a checkerboard. Too few, and
+/// elements of one textured wall differ by chance; the standard deviation of the mean of 1,024
+/// points is 3 % of that of the texture, and less because they are spread evenly.
 constexpr double kTexturePoints = 1024, kLeastTexturePoints = 32;
 
 /// A link to be divided.
@@ -138,6 +140,7 @@ Status settle(Refined& state, const Exchange& x, const RefineParams& params, std
               Progress& progress) {
   while (!open.empty()) {
     LUXEL_TRY_STATUS(stopped(progress));
+    // The larger end of each open link is divided, or the link stays as it is.
     Rules rules{state.tree, params};
     std::vector<Pair> pairs;
     std::vector<Open> divided;
@@ -156,6 +159,7 @@ Status settle(Refined& state, const Exchange& x, const RefineParams& params, std
       add_pairs(state, x, o, division, uint32_t(divided.size()), pairs);
       divided.push_back(std::move(o));
     }
+    // Links between the parts: kept where they err by less than eps, else open.
     std::vector<Link> made = make_links(x, pairs, divided, progress);
     open.clear();
     for (size_t k = 0; k < pairs.size(); ++k) {
@@ -231,6 +235,7 @@ Result<size_t> refine(Refined& state, const Exchange& x, const RefineParams& par
                       Progress& progress) {
   std::vector<Open> open;
   state.links.at_least_area = 0;
+  // Links that err too much by the light there is now are taken out.
   const Rules rules{state.tree, params, state.tree.elements.size() + 4 > params.max_elements};
   for (uint32_t id = 0; id < state.links.of.size(); ++id) {
     auto& links = state.links.of[id];
@@ -248,6 +253,7 @@ Result<size_t> refine(Refined& state, const Exchange& x, const RefineParams& par
     }
     links.resize(kept);
   }
+  // They are divided until their parts do not.
   const size_t count = open.size();
   state.links.count -= count;
   progress.begin("refine", 0);

@@ -1,4 +1,4 @@
-// Which pairs of elements and clusters are linked: each as coarsely as its error allows.
+// The pairs of elements and clusters that are linked, each as coarsely as its error allows.
 #pragma once
 
 #include "luxel/base/progress.h"

@@ -11,24 +11,39 @@ namespace {
 /// A triangle whose samples are off a plane by less than this part of what its interpolant may be
 /// off by is not looked at.
 constexpr double kFlat = 0.25;
-/// Of what links may be off by.
+/// The usual eps of interpolants over that of links. Feedback corrects what links err by, while the
+/// error of an interpolant stays in the picture. Smaller divides more elements for it.
 constexpr double kUsualPart = 0.25;
 /// Light at points only says what to divide and to correct before the last mesh: it may be so much
 /// less exact.
 constexpr double kRougher = 4;
 /// Sources may be wrong at points by this part of what interpolants may be off by; but no less than
 /// that of the mean light.
+/// Sources differ, so that the errors of several add up to less than eps.
 constexpr double kExacter = 0.2, kExactest = 1e-5;
 /// When light has changed by no more than so many eps, the next change would be half of eps: each
 /// is a fifth of the one before, or less.
 constexpr double kSettled = 2.5;
 constexpr int kMostFeedbacks = 4;
 
-struct Looked {
+/// A solution, and how light at its points is computed.
+struct PointScene {
   const Solution& s;
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
   const PointParams& params;
+};
+
+/// A solution that is refined, and what earlier meshes of it found.
+struct Refining {
+  Solution& s;
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  const MeshParams& params;  ///< of all meshes but the last
+  double eps = 0;            ///< how far interpolants may be off [W/m^2]
+  Known known = {};
+
+  PointScene points() const { return {s, scene, tracer, params.point}; }
 };
 
 double area_of(const LightMesh& mesh, const LightTriangle& t) {
@@ -48,7 +63,7 @@ float bend_of(const Interpolant& r) {
 }
 
 /// Per triangle; 0 for those that are not asked for.
-Result<std::vector<float>> measure(const Looked& at, std::span<const size_t> triangles,
+Result<std::vector<float>> measure(const PointScene& at, std::span<const size_t> triangles,
                                    KnownLight& known, const LightMesh& mesh, Progress& progress) {
   std::vector<Receiver> receivers;
   for (const size_t k : triangles) {
@@ -68,7 +83,7 @@ Result<std::vector<float>> measure(const Looked& at, std::span<const size_t> tri
 }
 
 /// Leaves whose interpolants are off by more than eps, looked for where triangles are bent.
-Result<std::vector<size_t>> leaves_off(const Looked& at, double eps, KnownLight& known,
+Result<std::vector<size_t>> leaves_off(const PointScene& at, double eps, KnownLight& known,
                                        const LightMesh& mesh, Progress& progress) {
   const double unit_m2 = at.s.unit_area_m2;
   std::vector<size_t> bent;
@@ -89,10 +104,10 @@ Result<std::vector<size_t>> leaves_off(const Looked& at, double eps, KnownLight&
   return out;
 }
 
-void divide_all(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
-                std::span<const size_t> leaves, size_t max_elements) {
-  const Exchange x = s.exchange(tracer);
-  Refined state{scene, s.tree, s.light, s.links};
+void divide_all(Refining& r, std::span<const size_t> leaves, size_t max_elements) {
+  Solution& s = r.s;
+  const Exchange x = s.exchange(r.tracer);
+  Refined state{r.scene, s.tree, s.light, s.links};
   drop_pieces(s.light);  // theirs are the elements there were
   for (const size_t leaf : leaves) {
     if (s.tree.elements.size() + 4 > max_elements) break;
@@ -101,14 +116,12 @@ void divide_all(Solution& s, const scene::Scene& scene, const trace::RayTracer& 
 }
 
 /// Feeds back, and gathers anew, until that changes light no more.
-Status settle(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
-              const MeshParams& params, double eps, Known& known, LightMesh mesh,
-              Progress& progress) {
+Status settle(Refining& r, LightMesh mesh, Progress& progress) {
   for (int k = 0; k < kMostFeedbacks; ++k) {
-    LUXEL_TRY(const double change, feed_back(s, tracer, mesh, progress));
-    if (change <= kSettled * eps) break;
-    known.light.at.clear();
-    LUXEL_TRY(mesh, make_light_mesh(s, scene, tracer, params, known, progress));
+    LUXEL_TRY(const double change, feed_back(r.s, r.tracer, mesh, progress));
+    if (change <= kSettled * r.eps) break;
+    r.known.light.at.clear();
+    LUXEL_TRY(mesh, make_light_mesh(r.s, r.scene, r.tracer, r.params, r.known, progress));
   }
   return {};
 }
@@ -127,6 +140,7 @@ Result<std::vector<float>> measure_error(const Solution& s, const scene::Scene& 
 Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
                             const MeshParams& mesh_params, const RepresentParams& params,
                             Progress& progress) {
+  // How exact light at points must be, from how far interpolants may be off.
   const double mean = double(max_component(totals_of(s).irradiance));
   MeshParams fine = mesh_params;
   double eps = params.eps.value_or(s.eps * kUsualPart);
@@ -136,18 +150,20 @@ Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace:
   MeshParams rough = fine;
   rough.point.tolerance *= kRougher;
   eps = std::max(eps, rough.point.tolerance * mean);
-  Known known;
+  Refining r{s, scene, tracer, rough, eps};
   for (int round = 0;; ++round) {
-    LUXEL_TRY(LightMesh mesh, make_light_mesh(s, scene, tracer, rough, known, progress));
+    // A mesh of the leaves there are, and those whose interpolants are off.
+    LUXEL_TRY(LightMesh mesh, make_light_mesh(s, scene, tracer, rough, r.known, progress));
     LUXEL_TRY(const std::vector<size_t> leaves,
-              leaves_off({s, scene, tracer, rough.point}, eps, known.light, mesh, progress));
+              leaves_off(r.points(), eps, r.known.light, mesh, progress));
     if (leaves.empty() || round == params.max_rounds ||
         s.tree.elements.size() + 4 > params.max_elements) {
-      LUXEL_TRY_STATUS(settle(s, scene, tracer, rough, eps, known, std::move(mesh), progress));
-      known.light.at.clear();
-      return make_light_mesh(s, scene, tracer, fine, known, progress);
+      // The solution learns from the mesh, and the last mesh shows what it has learned.
+      LUXEL_TRY_STATUS(settle(r, std::move(mesh), progress));
+      r.known.light.at.clear();
+      return make_light_mesh(s, scene, tracer, fine, r.known, progress);
     }
-    divide_all(s, scene, tracer, leaves, params.max_elements);
+    divide_all(r, leaves, params.max_elements);
   }
 }
 

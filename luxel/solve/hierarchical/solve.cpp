@@ -4,20 +4,29 @@
 #include <cmath>
 
 #include "luxel/solve/hierarchical/contacts.h"
-#include "luxel/solve/hierarchical/lamps.h"
 #include "luxel/solve/hierarchical/overlaps.h"
+#include "luxel/solve/hierarchical/unlinked_lights.h"
 
 namespace luxel::hierarchical {
 namespace {
 
+/// Bounds against endless work. Refinement ends by itself when the light of the last links asks for
+/// no more; sweeps converge as reflectance^k, and 0.99^2000 = 2e-9.
 constexpr int kMostIterations = 24, kMostSweeps = 2000;
-/// Of the mean irradiance, when nobody says more.
+/// The usual eps, as a part of the mean irradiance.
 constexpr double kUsualEps = 0.01;
-/// Nobody gets less: exact light at points is not known better, and links without end would be.
+/// The least eps, as a part of the mean irradiance: exact light at points is not known better
+/// (PointParams::tolerance), and links would be without end.
 constexpr double kLeastEps = 1e-4;
+/// The eps of the first links, as a part of the mean emission, which in a closed room is less than
+/// the mean irradiance. It is ten times the usual eps, because links are only ever divided: what a
+/// smaller one would divide in vain, before bounces are known, stays divided. Larger ones cost more
+/// iterations.
+constexpr double kFirstEps = 0.1;
 /// Errors count in full on receivers of a face's mean size, but of no more faces than so many: what
 /// is asked for must not depend on how finely a surface is cut into triangles.
 constexpr size_t kMostUnits = 1024;
+/// Elements are not divided below this part of the scene's area: a room of 100 m^2, below 4 cm^2.
 constexpr double kLeastPart = 1.0 / (1 << 18);
 
 double area_of(const Tree& tree) {
@@ -48,16 +57,16 @@ double change_of(const Tree& tree, const Light& light, std::span<const Rgb> befo
   return all > 0 ? std::sqrt(sum / all) : 0;
 }
 
-struct Work {
+struct Solving {
   Solution& s;
   const Exchange x;
   std::vector<uint8_t> lit;
   Refined state;
 };
 
-/// From emission alone: so many reflections and no more. Points gather what has been reflected one
-/// time less than the last gather brings.
-void count_bounces(Work& w, int bounces) {
+/// Light from emission alone, by so many reflections and no more. Points gather what has been
+/// reflected one time less than the last gather brings.
+void count_bounces(Solving& w, int bounces) {
   std::vector<ElementLight>& light = w.s.light.elements;
   for (ElementLight& l : light) l.received = {}, l.irradiance = {}, l.radiosity = l.emission;
   for (ClusterLight& l : w.s.light.clusters) l.received = {};
@@ -76,8 +85,12 @@ void count_bounces(Work& w, int bounces) {
     light[e].rough = before[e].rough;
 }
 
-Status run(Work& w, const SolveParams& params, Progress& progress) {
-  RefineParams refine_params{0, w.s.min_area_m2, params.max_elements, params.max_links};
+Status run(Solving& w, const SolveParams& params, Progress& progress) {
+  // Elements shine by what they emit.
+  RefineParams refine_params{.eps = 0,
+                             .min_area_m2 = w.s.min_area_m2,
+                             .max_elements = params.max_elements,
+                             .max_links = params.max_links};
   for (const Element& e : w.s.tree.elements)
     w.s.light.elements.push_back(bare_light(w.state.scene, w.x, e));
   w.s.light.clusters.resize(w.s.tree.clusters.size());
@@ -85,11 +98,11 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
   w.s.links.of.resize(w.s.tree.size());
   // A first guess, from the power there is; it is made better when light has arrived.
   const double power = double(max_component(totals_of(w.s).emission));
-  refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * power) : 0.1 * power;
-  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps,
-                                {refine_params.eps > 0 ? refine_params.eps : INFINITY,
-                                 w.s.min_area_m2, params.max_elements, params.max_links},
-                                w.lit, progress));
+  refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * power) : kFirstEps * power;
+  RefineParams first_params = refine_params;
+  if (!(first_params.eps > 0)) first_params.eps = INFINITY;  // no surface shines
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, first_params, w.lit, progress));
+  // All is linked to all, and refined by the light that the links bring, until none errs too much.
   LUXEL_TRY_STATUS(link_all(w.state, w.x, refine_params, progress));
   for (w.s.iterations = 0; w.s.iterations < kMostIterations; ++w.s.iterations) {
     LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
@@ -97,11 +110,12 @@ Status run(Work& w, const SolveParams& params, Progress& progress) {
     refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * mean) : kUsualEps * mean;
     w.s.eps = refine_params.eps;
     const size_t leaves = w.s.tree.elements.size();
-    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, refine_params, w.lit, progress));
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.lit, progress));
     LUXEL_TRY(const size_t refined, refine(w.state, w.x, refine_params, progress));
-    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.lamps, refine_params, w.lit, progress));
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.lit, progress));
     if (refined == 0 && leaves == w.s.tree.elements.size()) break;
   }
+  // The light of the last links; or that of so many bounces.
   LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
   w.s.all_bounces = params.bounces < 0;
   if (!w.s.all_bounces) count_bounces(w, params.bounces);
@@ -154,18 +168,21 @@ double absorbed_over_emitted(const Solution& s) {
 
 Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,
                        const SolveParams& params, Progress& progress) {
+  // Faces, cut where others stand on them, under clusters.
   Solution s;
   LUXEL_TRY(s.faces, make_faces(scene, progress));
   s.blockers = make_blockers(s.faces);
   s.tree = make_tree(cut_at_contacts(s.faces, s.blockers));
   s.warnings = overlap_warnings(scene, s.faces, s.blockers);
+  // What errors are measured by.
   s.basis = params.basis;
   s.diagonal_m = scene::world_bounds(scene).diagonal();
   s.unit_area_m2 = area_of(s.tree) / double(std::clamp<size_t>(s.faces.size(), 1, kMostUnits));
   s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;
-  s.lamps = lamps_of(scene);
-  Work work{s, s.exchange(tracer), {}, {scene, s.tree, s.light, s.links}};
-  LUXEL_TRY_STATUS(run(work, params, progress));
+  s.unlinked = unlinked_lights_of(scene);
+  // Links and light; then what a user should know.
+  Solving solving{s, s.exchange(tracer), {}, {scene, s.tree, s.light, s.links}};
+  LUXEL_TRY_STATUS(run(solving, params, progress));
   if (params.eps && *params.eps < s.eps)
     s.warnings.push_back(
         fmt::format("--eps {} is below a ten-thousandth of the mean light; {:.3g} W/m^2 was used",

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "luxel/solve/hierarchical/lamps.h"
 #include "luxel/solve/hierarchical/refine.h"
+#include "luxel/solve/hierarchical/unlinked_lights.h"
 
 namespace luxel::hierarchical {
 
@@ -28,7 +28,7 @@ struct Solution {
   Light light;
   Links links;
   Blockers blockers;
-  Lamps lamps;
+  UnlinkedLights unlinked;
   double eps = 0, min_area_m2 = 0;
   std::vector<std::string> warnings;  ///< overlaps.h; a bound that ended the refinement
   int iterations = 0;                 ///< refinements
@@ -44,7 +44,7 @@ struct Solution {
 };
 
 /// Links, gathers until the light settles, and refines the links by the light there is, again and
-/// again until none errs by more than eps. Light of lamps without area, and of the background,
+/// again until none errs by more than eps. What punctual lights and the background send
 /// arrives at leaves straight away. Errors: cancelled.
 Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,
                        const SolveParams& params, Progress& progress);
@@ -59,6 +59,7 @@ struct Totals {
   double area_m2 = 0;
   Rgb irradiance, radiosity, emission;
 };
+/// Sums over the roots, which cover all faces.
 Totals totals_of(const Solution& solution);
 /// Luminance that all leaves absorb over what they emit: 1 where nothing gets out.
 double absorbed_over_emitted(const Solution& solution);

@@ -51,7 +51,7 @@ TEST(HierarchicalSolve, ClosedRoomsAbsorbWhatTheyEmit) {
   }
 }
 
-// The same with a sphere and a torus of 3,872 facets, which are lit as clusters: a hundredth, as
+// The box with a sphere and a torus of 3,872 facets, which are lit as clusters: a hundredth, as
 // issue and page promise.
 TEST(HierarchicalSolve, ClustersKeepEnergyWithinAHundredth) {
   const auto s = solved(scene::radiosity_box_with_shapes(), {.eps = 0.01});

@@ -38,7 +38,8 @@ scene::SurfacePoint surface_point(const scene::Scene& scene, const Faces& faces,
   return {f.instance, f.triangle, barycentric_in(t, to_float(place))};
 }
 
-Place place_of(const scene::Scene& scene, const Faces& faces, const scene::SurfacePoint& p) {
+FacePoint face_point_of(const scene::Scene& scene, const Faces& faces,
+                        const scene::SurfacePoint& p) {
   const uint32_t face = faces.face_of_triangle[faces.first_triangle[p.instance] + p.triangle];
   return {face, to_double(scene::world_position(scene, p))};
 }

@@ -18,10 +18,12 @@ scene::SurfacePoint surface_point(const scene::Scene& scene, const Faces& faces,
                                   const trace::RayTracer& tracer, uint32_t face, DVec3 place);
 
 /// The face and the place of a surface point; face is kNone on a triangle without area.
-struct Place {
+struct FacePoint {
   uint32_t face = kNone;
   DVec3 position;
 };
-Place place_of(const scene::Scene& scene, const Faces& faces, const scene::SurfacePoint& p);
+/// Finds the face of the point's triangle.
+FacePoint face_point_of(const scene::Scene& scene, const Faces& faces,
+                        const scene::SurfacePoint& p);
 
 }  // namespace luxel::hierarchical

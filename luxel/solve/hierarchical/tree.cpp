@@ -66,12 +66,14 @@ uint32_t add_clusters(Tree& tree, std::span<uint32_t> roots, uint32_t first, siz
     centres.add(tree.elements[r].centre);
     area += tree.elements[r].area_m2;
   }
+  // Halves along the longest side of the centres' box.
   const DVec3 size = centres.upper - centres.lower;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const auto key = [&](uint32_t r) { return std::pair(along(tree.elements[r].centre, axis), r); };
   const size_t half = roots.size() / 2;
   std::nth_element(roots.begin(), roots.begin() + std::ptrdiff_t(half), roots.end(),
                    [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+  // The cluster comes before those below it.
   const auto id = uint32_t(tree.clusters.size());
   Cluster cluster;
   cluster.lower = bounds.lower, cluster.upper = bounds.upper;

@@ -44,12 +44,14 @@ bool is_flat(const Triangulation& t, const std::array<uint32_t, 3>& corners, dou
 
 Triangulation triangulate(std::span<const DVec2> outline, std::span<const Segment2> lines,
                           double least_m) {
+  // Corners that are near each other become one.
   std::vector<DVec2> points;
   std::vector<DVec2> border;
   for (const DVec2 p : outline) {
     const DVec2 q = snapped(p, least_m, points);
     if (border.empty() || q.x != border.back().x || q.y != border.back().y) border.push_back(q);
   }
+  // Outline and lines are constraints.
   Delaunay mesh;
   const auto insert = [&](DVec2 a, DVec2 b) {
     if (a.x != b.x || a.y != b.y)
@@ -58,6 +60,7 @@ Triangulation triangulate(std::span<const DVec2> outline, std::span<const Segmen
   for (size_t k = 0; k < border.size(); ++k) insert(border[k], border[(k + 1) % border.size()]);
   for (const Segment2& s : lines)
     insert(snapped(s.a, least_m, points), snapped(s.b, least_m, points));
+  // Numbered corners, and the triangles that are not flat.
   Triangulation out;
   for (auto v = mesh.finite_vertices_begin(); v != mesh.finite_vertices_end(); ++v) {
     v->info() = uint32_t(out.points.size());

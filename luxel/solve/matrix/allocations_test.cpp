@@ -64,35 +64,31 @@ TEST(Allocations, ThereAreNonePerFrame) {
   const Patches& p = cut.patches();
   const FormFactors factors = cut.reciprocal_factors(256);
   Progress progress;
-  const auto matrix = compress(factors, cut.work.tree, p.centroid, p.area_m2, {}, progress);
+  const auto matrix = compress(factors, cut.patched.tree, p.centroid, p.area_m2, {}, progress);
   const auto map =
-      make_transfer(cut.work, cut.tracer, {p.elements.position, p.elements.normal}, progress);
+      make_transfer(cut.patched, cut.tracer, {p.elements.position, p.elements.normal}, progress);
   ASSERT_TRUE(matrix && map);
   const CoarseScene coarse =
-      make_coarse_scene(factors, cut.work.tree, p.area_m2, p.elements.reflectance, 128);
-  HierarchicalWork work = make_work(*matrix);
-  BounceWork bounces = make_bounce_work(cut.size(), coarse.count());
+      make_coarse_scene(factors, cut.patched.tree, p.area_m2, p.elements.reflectance, 128);
+  HierarchicalScratch scratch = make_scratch(*matrix);
+  BounceScratch bounces = make_bounce_scratch(cut.size(), coarse.count());
   std::vector<Rgb> e(cut.size()), of_place(cut.size());
   const Multiply product = [&](std::span<const Rgb> b, std::span<Rgb> out) {
-    multiply(*matrix, b, out, work);
+    multiply(*matrix, b, out, scratch);
   };
-  EXPECT_EQ(allocations_of([&] { multiply(*matrix, p.emission, e, work); }), 0u);
-  EXPECT_EQ(allocations_of(
-                [&] { count_bounces(product, p.elements.reflectance, p.emission, 3, e, bounces); }),
-            0u);
-  EXPECT_EQ(allocations_of([&] {
-              all_bounces(product, coarse, p.elements.reflectance, p.area_m2, p.emission, 3, e,
-                          bounces);
-            }),
-            0u);
+  const Sent sent{p.emission, p.elements.reflectance, p.area_m2, 3};
+  EXPECT_EQ(allocations_of([&] { multiply(*matrix, p.emission, e, scratch); }), 0u);
+  EXPECT_EQ(allocations_of([&] { count_bounces(product, sent, e, bounces); }), 0u);
+  EXPECT_EQ(allocations_of([&] { all_bounces(product, coarse, sent, 3, e, bounces); }), 0u);
   EXPECT_EQ(allocations_of([&] { transfer(*map, e, of_place); }), 0u);
-  const auto spectrum = spectrum_of(factors, p.area_m2, {40, 0, 1}, progress);
+  const auto spectrum =
+      spectrum_of(factors, p.area_m2, {.count = 40, .iterations = 0, .seed = 1}, progress);
   ASSERT_TRUE(spectrum);
   const auto low = make_low_rank(*spectrum, 40, p.area_m2, p.elements.reflectance, progress);
   ASSERT_TRUE(low);
-  LowRankWork low_work = make_work(*low);
+  LowRankScratch low_scratch = make_scratch(*low);
   for (const int count : {-1, 3})
-    EXPECT_EQ(allocations_of([&] { irradiance_of(*low, p.emission, count, e, low_work); }), 0u);
+    EXPECT_EQ(allocations_of([&] { irradiance_of(*low, p.emission, count, e, low_scratch); }), 0u);
 }
 
 TEST(Allocations, ThereAreNonePerUpdate) {
@@ -150,15 +146,15 @@ TEST(Allocations, ThereAreNonePerProductOfEntries) {
   ASSERT_TRUE(colour);
   const auto bc1 = make_bc1(*colour, {}, progress);
   ASSERT_TRUE(bc1);
-  DenseWork work = make_dense_work(cut.size());
-  Bc1Work bc1_work = make_bc1_work(*bc1);
+  DenseScratch scratch = make_dense_scratch(cut.size());
+  Bc1Scratch bc1_scratch = make_bc1_scratch(*bc1);
   std::vector<Rgb> e(cut.size());
   for (const Precision precision : {Precision::single, Precision::half}) {
     const Dense dense = make_dense(factors, precision);
-    EXPECT_EQ(allocations_of([&] { multiply(dense, p.emission, e, work); }), 0u);
+    EXPECT_EQ(allocations_of([&] { multiply(dense, p.emission, e, scratch); }), 0u);
   }
-  EXPECT_EQ(allocations_of([&] { multiply(*colour, p.emission, e, work); }), 0u);
-  EXPECT_EQ(allocations_of([&] { multiply(*bc1, p.emission, e, bc1_work); }), 0u);
+  EXPECT_EQ(allocations_of([&] { multiply(*colour, p.emission, e, scratch); }), 0u);
+  EXPECT_EQ(allocations_of([&] { multiply(*bc1, p.emission, e, bc1_scratch); }), 0u);
 }
 
 }  // namespace

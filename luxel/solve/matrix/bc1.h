@@ -45,7 +45,7 @@ Bc1Params paper_params();
 /// K = rest + kept. "Place" r of the rest is row `row[r]` of K, place c its column `column[c]`.
 struct Bc1 {
   uint32_t n = 0;
-  float log_range = 25.0f;
+  float log_range = 25.0f;  ///< as in Bc1Params; 25 is the paper's [Shcherbakov17, section 3.5]
   std::vector<uint32_t> row, column;  ///< permutations of 0..n-1
   /// Per place of a row: by how much the rest is scaled, the channel's maximum included.
   std::vector<Rgb> row_scale;
@@ -85,21 +85,23 @@ void decode_row(const Bc1& matrix, size_t place, std::span<Rgb> out);
 float value_of_byte(uint32_t byte, float log_range);
 
 /// Room for one product, and what blocks' colours mean.
-struct Bc1Work {
+struct Bc1Scratch {
   using Levels = std::array<float, 4>;  ///< the values of indices 0..3
   std::vector<Levels> five, six;        ///< of two ends of 5 (6) bits: end 0 + 32 (64) * end 1
-  DenseWork light;                      ///< by place
+  DenseScratch light;                   ///< by place
   std::vector<Levels> color;            ///< the same light, pixel by pixel
 };
-Bc1Work make_bc1_work(const Bc1& matrix);
+/// Allocates for one product at a time.
+Bc1Scratch make_bc1_scratch(const Bc1& matrix);
 
 /// E = K B. Allocates nothing. On AVX-512, AVX2 and any other processor the same bits.
 void multiply(const Bc1& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              Bc1Work& work);
+              Bc1Scratch& scratch);
 /// By instructions that this processor has, for tests.
 void multiply(const Bc1& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              Bc1Work& work, Instructions instructions);
+              Bc1Scratch& scratch, Instructions instructions);
 
+/// Bytes that the codec keeps.
 uint64_t bytes_of(const Bc1& matrix);
 
 }  // namespace luxel::matrix

@@ -78,7 +78,8 @@ struct Carry {
   float log_range = 0;
   std::array<float, 3> lacking{};
 
-  /// Raises or lowers what is to be encoded, at most thrice.
+  /// Raises or lowers what is to be encoded, at most thrice: a block that owes more than it holds
+  /// must not turn white, and what is left is owed on.
   void lift(Pixels& pixels) const {
     for (size_t c = 0; c < 3; ++c) {
       float sum = 0;
@@ -162,7 +163,7 @@ void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns&
   for (size_t c = 0; c < 3; ++c)
     for (const float entry : matrix.channel[c])
       out.kept_unit[c] = std::max(out.kept_unit[c], entry);
-  // Halves reach from 6e-8 to 65,504; the rest is at most 4 times the largest.
+  // Halves reach from 6e-8 to 65,504; the rest is at most 4 times the largest, 32,768 in this unit.
   for (float& unit : out.kept_unit) unit = unit > 0 ? unit / 8192 : 1.0f;
   // Nothing is kept yet, so that rows are decoded without it.
   out.first_kept.assign(n + 1, 0);
@@ -216,14 +217,17 @@ Result<Bc1> make_bc1(ColourMatrix matrix, Bc1Params params, Progress& progress) 
   Bc1 out;
   out.n = uint32_t(n);
   progress.begin("bc1", out.blocks_per_row());
+  // Columns of even size; the largest entries, and a picture of the rest.
   const std::vector<Rgb> mean =
       params.even_columns ? even_columns(matrix) : std::vector<Rgb>(n, Rgb{1, 1, 1});
   const KeptColumns kept = choose_kept(matrix, params.kept, progress);
   const Picture picture = picture_of(matrix, kept, params, progress);
   LUXEL_TRY_STATUS(stopped(progress));
+  // Rows and columns in order, then blocks.
   out.log_range = params.log_range;
   choose_order(picture, params.order, progress, out);
   LUXEL_TRY_STATUS(encode_blocks(picture, params, out, progress));
+  // Scales that keep sums, and what is kept of the largest entries.
   for (const uint32_t j : out.column) out.column_scale.push_back(mean[j]);
   keep(matrix, picture, kept, params, mean, progress, out);
   LUXEL_TRY_STATUS(stopped(progress));

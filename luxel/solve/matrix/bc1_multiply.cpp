@@ -23,7 +23,7 @@ namespace {
 /// the nearest cache to itself.
 constexpr size_t kBlockRows = 8;
 constexpr size_t kLanes = 16;
-using Levels = Bc1Work::Levels;
+using Levels = Bc1Scratch::Levels;
 
 /// Sums of a block row: entry k of a block in lane k.
 struct Sums {
@@ -211,25 +211,25 @@ std::vector<Levels> levels_of(uint32_t bits, float log_range) {
 
 }  // namespace
 
-Bc1Work make_bc1_work(const Bc1& m) {
-  return {levels_of(5, m.log_range), levels_of(6, m.log_range), make_dense_work(m.n),
+Bc1Scratch make_bc1_scratch(const Bc1& m) {
+  return {levels_of(5, m.log_range), levels_of(6, m.log_range), make_dense_scratch(m.n),
           std::vector<Levels>(m.n)};
 }
 
 void multiply(const Bc1& m, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              Bc1Work& work) {
-  multiply(m, radiosity, irradiance, work, instructions());
+              Bc1Scratch& scratch) {
+  multiply(m, radiosity, irradiance, scratch, instructions());
 }
 
 void multiply(const Bc1& m, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              Bc1Work& work, Instructions instructions) {
-  LUXEL_CHECK(radiosity.size() == m.n && irradiance.size() == m.n && work.color.size() == m.n);
-  const Input in{work.five.data(), work.six.data(), work.light.plane.data(), work.light.stride,
-                 work.color.data()};
+              Bc1Scratch& scratch, Instructions instructions) {
+  LUXEL_CHECK(radiosity.size() == m.n && irradiance.size() == m.n && scratch.color.size() == m.n);
+  const Input in{scratch.five.data(), scratch.six.data(), scratch.light.plane.data(),
+                 scratch.light.stride, scratch.color.data()};
   for (size_t place = 0; place < m.n; ++place) {
     const Rgb b = m.column_scale[place] * radiosity[m.column[place]];
-    work.color[place] = {b.x, b.y, b.z, 0};
-    for (size_t c = 0; c < 3; ++c) work.light.plane[c * in.stride + place] = b[int(c)];
+    scratch.color[place] = {b.x, b.y, b.z, 0};
+    for (size_t c = 0; c < 3; ++c) scratch.light.plane[c * in.stride + place] = b[int(c)];
   }
   const Kernels kernels = kernels_for(instructions);
   const auto rows = [&](size_t begin, size_t end) {

@@ -24,8 +24,8 @@ Bc1 compressed(const ColourMatrix& matrix, const Bc1Params& params) {
 
 std::vector<Rgb> product(const Bc1& matrix, std::span<const Rgb> b) {
   std::vector<Rgb> out(b.size());
-  Bc1Work work = make_bc1_work(matrix);
-  multiply(matrix, b, out, work);
+  Bc1Scratch scratch = make_bc1_scratch(matrix);
+  multiply(matrix, b, out, scratch);
   return out;
 }
 
@@ -67,8 +67,8 @@ const Box& box() {
 
 std::vector<Rgb> exact_light() {
   std::vector<Rgb> out(box().light.size());
-  DenseWork work = make_dense_work(out.size());
-  multiply(box().matrix, box().light, out, work);
+  DenseScratch scratch = make_dense_scratch(out.size());
+  multiply(box().matrix, box().light, out, scratch);
   return out;
 }
 
@@ -118,12 +118,12 @@ TEST(Bc1, MultipliesAsItDecodes) {
 
 TEST(Bc1, SameBitsByAllInstructions) {
   const Bc1 matrix = compressed(box().matrix, {});
-  Bc1Work work = make_bc1_work(matrix);
+  Bc1Scratch scratch = make_bc1_scratch(matrix);
   std::vector<Rgb> any(matrix.n), got(matrix.n);
-  multiply(matrix, box().light, any, work, Instructions::any);
+  multiply(matrix, box().light, any, scratch, Instructions::any);
   for (const Instructions i : {Instructions::avx2, Instructions::avx512})
     if (i <= instructions()) {
-      multiply(matrix, box().light, got, work, i);
+      multiply(matrix, box().light, got, scratch, i);
       EXPECT_EQ(got, any) << int(i);
     }
 }
@@ -215,8 +215,8 @@ TEST(Bc1, EvenLightArrivesAsItDid) {
   // Rows keep their sums but for the halves of what is kept.
   const std::vector<Rgb> one(box().light.size(), Rgb{1, 1, 1});
   std::vector<Rgb> want(one.size());
-  DenseWork work = make_dense_work(one.size());
-  multiply(box().matrix, one, want, work);
+  DenseScratch scratch = make_dense_scratch(one.size());
+  multiply(box().matrix, one, want, scratch);
   const std::vector<Rgb> got = product(compressed(box().matrix, {}), one);
   for (size_t i = 0; i < got.size(); ++i)
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[i][c], want[i][c], 0x1p-11f * want[i][c]) << i;
@@ -230,7 +230,8 @@ TEST(Bc1, CornellBoxWithinAPercent) {
 TEST(Bc1, EachChangeToThePaperHelps) {
   Bc1Params params = paper_params();
   double before = error_of(params);
-  // Of 600 patches, of which reordering has little to gain, the paper's own way loses some percent.
+  // With 600 patches, of which reordering has little to gain, the paper's own way loses some
+  // percent.
   EXPECT_LT(before, 0.06);
   const auto expect_less = [&](const char* what) {
     const double now = error_of(params);

@@ -153,21 +153,21 @@ CoarseScene make_coarse_scene(const FormFactors& factors, const ClusterTree& tre
   return out;
 }
 
-BounceWork make_bounce_work(size_t patches, size_t clusters) {
-  BounceWork work;
-  for (std::vector<Rgb>* v : {&work.first, &work.radiosity, &work.gathered}) v->resize(patches);
-  for (std::vector<Rgb>* v : {&work.power, &work.late}) v->resize(clusters);
-  return work;
+BounceScratch make_bounce_scratch(size_t patches, size_t clusters) {
+  BounceScratch scratch;
+  for (std::vector<Rgb>* v : {&scratch.first, &scratch.radiosity, &scratch.gathered})
+    v->resize(patches);
+  for (std::vector<Rgb>* v : {&scratch.power, &scratch.late}) v->resize(clusters);
+  return scratch;
 }
 
-void count_bounces(const Multiply& multiply, std::span<const Rgb> reflectance,
-                   std::span<const Rgb> sent, int bounces, std::span<Rgb> irradiance,
-                   BounceWork& work) {
+void count_bounces(const Multiply& multiply, const Sent& sent, std::span<Rgb> irradiance,
+                   BounceScratch& scratch) {
   std::fill(irradiance.begin(), irradiance.end(), Rgb{});
-  for (int k = 0; k < bounces; ++k) {
-    for (size_t i = 0; i < sent.size(); ++i)
-      work.radiosity[i] = sent[i] + reflectance[i] * irradiance[i];
-    multiply(work.radiosity, irradiance);
+  for (int k = 0; k < sent.bounces; ++k) {
+    for (size_t i = 0; i < sent.radiosity.size(); ++i)
+      scratch.radiosity[i] = sent.radiosity[i] + sent.reflectance[i] * irradiance[i];
+    multiply(scratch.radiosity, irradiance);
   }
 }
 
@@ -188,43 +188,41 @@ void respond(const std::vector<float>& response, size_t count, std::span<const R
 }
 
 /// Late light per cluster, from the power that clusters reflect of `arriving`.
-void late_bounces(const CoarseScene& coarse, std::span<const Rgb> reflectance,
-                  std::span<const float> area_m2, std::span<const Rgb> arriving, BounceWork& work) {
-  std::fill(work.power.begin(), work.power.end(), Rgb{});
+void late_bounces(const CoarseScene& coarse, const Sent& sent, std::span<const Rgb> arriving,
+                  BounceScratch& scratch) {
+  std::fill(scratch.power.begin(), scratch.power.end(), Rgb{});
   for (size_t i = 0; i < arriving.size(); ++i)
-    work.power[coarse.cluster_of[i]] += reflectance[i] * arriving[i] * area_m2[i];
+    scratch.power[coarse.cluster_of[i]] += sent.reflectance[i] * arriving[i] * sent.area_m2[i];
   const auto rows = [&](size_t begin, size_t end) {
     float sum[3][kRows] = {};
     for (int channel = 0; channel < 3; ++channel)
-      respond(coarse.response[size_t(channel)], coarse.count(), work.power, channel, begin, end,
+      respond(coarse.response[size_t(channel)], coarse.count(), scratch.power, channel, begin, end,
               sum[channel]);
     for (size_t s = begin; s < end; ++s)
-      work.late[s] = {sum[0][s - begin], sum[1][s - begin], sum[2][s - begin]};
+      scratch.late[s] = {sum[0][s - begin], sum[1][s - begin], sum[2][s - begin]};
   };
   parallel_for(coarse.count(), kRows, std::ref(rows));
 }
 
 }  // namespace
 
-void all_bounces(const Multiply& multiply, const CoarseScene& coarse,
-                 std::span<const Rgb> reflectance, std::span<const float> area_m2,
-                 std::span<const Rgb> sent, int sweeps, std::span<Rgb> irradiance,
-                 BounceWork& work) {
+void all_bounces(const Multiply& multiply, const CoarseScene& coarse, const Sent& sent, int sweeps,
+                 std::span<Rgb> irradiance, BounceScratch& scratch) {
   LUXEL_CHECK(sweeps >= 1);
-  multiply(sent, work.first);
-  std::copy(work.first.begin(), work.first.end(), irradiance.begin());
+  multiply(sent.radiosity, scratch.first);
+  std::copy(scratch.first.begin(), scratch.first.end(), irradiance.begin());
   // `gathered` is what came in anew: first all, then what the sweep before did not foresee.
-  std::copy(work.first.begin(), work.first.end(), work.gathered.begin());
+  std::copy(scratch.first.begin(), scratch.first.end(), scratch.gathered.begin());
   for (int k = 1; k < sweeps; ++k) {
-    late_bounces(coarse, reflectance, area_m2, work.gathered, work);
+    late_bounces(coarse, sent, scratch.gathered, scratch);
     for (size_t i = 0; i < irradiance.size(); ++i) {
-      irradiance[i] += work.late[coarse.cluster_of[i]];
-      work.radiosity[i] = reflectance[i] * irradiance[i];
+      irradiance[i] += scratch.late[coarse.cluster_of[i]];
+      scratch.radiosity[i] = sent.reflectance[i] * irradiance[i];
     }
-    multiply(work.radiosity, work.gathered);
+    multiply(scratch.radiosity, scratch.gathered);
     for (size_t i = 0; i < irradiance.size(); ++i) {
-      const Rgb now = work.first[i] + work.gathered[i];
-      work.gathered[i] = now - irradiance[i];
+      const Rgb now = scratch.first[i] + scratch.gathered[i];
+      scratch.gathered[i] = now - irradiance[i];
       irradiance[i] = now;
     }
   }

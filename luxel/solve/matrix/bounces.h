@@ -31,27 +31,34 @@ CoarseScene make_coarse_scene(const FormFactors& factors, const ClusterTree& tre
 /// E = F B for the patches; must not allocate.
 using Multiply = std::function<void(std::span<const Rgb> radiosity, std::span<Rgb> irradiance)>;
 
+/// What patches send and reflect.
+struct Sent {
+  std::span<const Rgb> radiosity;    ///< what patches send on their own: B_e + rho D [W/m^2]
+  std::span<const Rgb> reflectance;  ///< per patch
+  std::span<const float> area_m2;    ///< per patch
+  int bounces = -1;                  ///< products; < 0: all
+};
+
 /// Room for a solution.
-struct BounceWork {
+struct BounceScratch {
   std::vector<Rgb> first, radiosity, gathered;  ///< per patch
   std::vector<Rgb> power, late;                 ///< per cluster
 };
-BounceWork make_bounce_work(size_t patches, size_t clusters);
+/// Allocates for one solution at a time.
+BounceScratch make_bounce_scratch(size_t patches, size_t clusters);
 
-/// Irradiance after `bounces` products:  E_1 = F B_0,  E_k = F (B_0 + rho E_(k-1)). Allocates
-/// nothing.
-void count_bounces(const Multiply& multiply, std::span<const Rgb> reflectance,
-                   std::span<const Rgb> sent, int bounces, std::span<Rgb> irradiance,
-                   BounceWork& work);
+/// Irradiance of the patches [W/m^2] after `sent.bounces` products, at least 0 of them:
+/// E_1 = F B_0,  E_k = F (B_0 + rho E_(k-1)). Looks at no area. Allocates nothing.
+void count_bounces(const Multiply& multiply, const Sent& sent, std::span<Rgb> irradiance,
+                   BounceScratch& scratch);
 
-/// The limit, by `sweeps` products. What is still missing after a sweep is reflected between the
-/// clusters without end, and one more sweep makes it smooth: a two-grid iteration for equations of
-/// the second kind [Atkinson76; Hackbusch81], which loses far less per sweep than a bounce brings.
-/// Two sweeps are enough for a room; more where neighbouring patches see different rooms. Allocates
-/// nothing.
-void all_bounces(const Multiply& multiply, const CoarseScene& coarse,
-                 std::span<const Rgb> reflectance, std::span<const float> area_m2,
-                 std::span<const Rgb> sent, int sweeps, std::span<Rgb> irradiance,
-                 BounceWork& work);
+/// Irradiance of the patches [W/m^2] after all bounces, by `sweeps` products, at least 1. What is
+/// still missing after a sweep is reflected between the clusters without end, and one more sweep
+/// makes it smooth: a two-grid iteration for equations of the second kind [Atkinson76;
+/// Hackbusch81], which loses far less per sweep than a bounce brings. Two sweeps are enough for a
+/// room; more where neighbouring patches see different rooms. `sent.bounces` does not count.
+/// Allocates nothing.
+void all_bounces(const Multiply& multiply, const CoarseScene& coarse, const Sent& sent, int sweeps,
+                 std::span<Rgb> irradiance, BounceScratch& scratch);
 
 }  // namespace luxel::matrix

@@ -23,15 +23,15 @@ struct Room {
 
   std::vector<Rgb> counted(int bounces) const {
     std::vector<Rgb> out(sent.size());
-    BounceWork work = make_bounce_work(sent.size(), 0);
-    count_bounces(plain(factors), reflectance, sent, bounces, out, work);
+    BounceScratch scratch = make_bounce_scratch(sent.size(), 0);
+    count_bounces(plain(factors), {sent, reflectance, area_m2, bounces}, out, scratch);
     return out;
   }
   std::vector<Rgb> all(int sweeps, size_t clusters) const {
     const CoarseScene coarse = make_coarse_scene(factors, tree, area_m2, reflectance, clusters);
     std::vector<Rgb> out(sent.size());
-    BounceWork work = make_bounce_work(sent.size(), coarse.count());
-    all_bounces(plain(factors), coarse, reflectance, area_m2, sent, sweeps, out, work);
+    BounceScratch scratch = make_bounce_scratch(sent.size(), coarse.count());
+    all_bounces(plain(factors), coarse, {sent, reflectance, area_m2}, sweeps, out, scratch);
     return out;
   }
   /// sum A_i x_i / A, per channel.
@@ -57,7 +57,7 @@ Room sphere(size_t count) {
 
 Room cornell(size_t count) {
   const Cut cut(scene::cornell_box(), count);
-  return {cut.reciprocal_factors(1024), cut.work.tree, cut.patches().area_m2,
+  return {cut.reciprocal_factors(1024), cut.patched.tree, cut.patches().area_m2,
           cut.patches().elements.reflectance, cut.patches().emission};
 }
 
@@ -71,7 +71,7 @@ TEST(CountBounces, IsTheSumOverReflections) {
     for (size_t i = 0; i < total.size(); ++i)
       total[i] += incident[i], excident[i] = incident[i] * room.reflectance[i];
     const std::vector<Rgb> got = room.counted(bounces);
-    // The same sums in another order.
+    // Equal sums in another order.
     for (size_t i = 0; i < total.size(); ++i)
       EXPECT_LE(length(got[i] - total[i]), 1e-5f * length(total[i])) << bounces << ", " << i;
   }
@@ -117,7 +117,7 @@ TEST(AllBounces, FurnaceIsExact) {
 
 TEST(AllBounces, FurnaceBoxByItsRays) {
   const Cut cut(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1}), 300);
-  const Room room{cut.reciprocal_factors(512), cut.work.tree, cut.patches().area_m2,
+  const Room room{cut.reciprocal_factors(512), cut.patched.tree, cut.patches().area_m2,
                   cut.patches().elements.reflectance, cut.patches().emission};
   // Row sums are 1 within 1e-3 (see Reciprocal.KeepsRowSums), and 1 / (1 - rho) doubles that.
   for (const Rgb& e : room.all(3, 64)) EXPECT_NEAR(e.x, 2 * kPi, 2e-3 * double(2 * kPi));
@@ -181,7 +181,7 @@ Room box_in_a_room(size_t count) {
   scene::add_box(box, {0.4f, 0.2f, 0.4f}, {0.8f, 0.6f, 0.8f}, card);
   scene::place(scene, std::move(box));
   const Cut cut(std::move(scene), count);
-  return {cut.reciprocal_factors(512), cut.work.tree, cut.patches().area_m2,
+  return {cut.reciprocal_factors(512), cut.patched.tree, cut.patches().area_m2,
           cut.patches().elements.reflectance, cut.patches().emission};
 }
 

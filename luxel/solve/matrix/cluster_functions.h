@@ -22,6 +22,7 @@ struct ClusterFunctions {
   /// none.
   std::vector<std::vector<Values>> phi;
 };
+/// Functions of all clusters; positions and areas per patch, in the order of the tree.
 ClusterFunctions make_functions(std::span<const Cluster> clusters, std::span<const Vec3> position,
                                 std::span<const float> area_m2);
 

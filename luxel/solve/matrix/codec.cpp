@@ -13,12 +13,11 @@ uint64_t bytes_of(const CoarseScene& coarse) {
 
 template <class Iterated>
 void iterate(const Iterated& codec, const Multiply& product, const Sent& sent,
-             std::span<Rgb> irradiance, BounceWork& work) {
+             std::span<Rgb> irradiance, BounceScratch& scratch) {
   if (sent.bounces >= 0)
-    count_bounces(product, sent.reflectance, sent.radiosity, sent.bounces, irradiance, work);
+    count_bounces(product, sent, irradiance, scratch);
   else
-    all_bounces(product, codec.coarse, sent.reflectance, sent.area_m2, sent.radiosity, codec.sweeps,
-                irradiance, work);
+    all_bounces(product, codec.coarse, sent, codec.sweeps, irradiance, scratch);
 }
 
 /// Calls the function for the codec that there is.
@@ -31,24 +30,24 @@ Overloaded(Functions...) -> Overloaded<Functions...>;
 
 }  // namespace
 
-CodecWork make_work(const Codec& codec, size_t patches) {
-  CodecWork work;
+CodecScratch make_scratch(const Codec& codec, size_t patches) {
+  CodecScratch scratch;
   std::visit(Overloaded{[&](const HierarchicalCodec& c) {
-                          work.hierarchical = make_work(c.matrix);
-                          work.bounces = make_bounce_work(patches, c.coarse.count());
+                          scratch.hierarchical = make_scratch(c.matrix);
+                          scratch.bounces = make_bounce_scratch(patches, c.coarse.count());
                         },
                         [&](const DenseCodec& c) {
-                          work.dense = make_dense_work(patches);
-                          work.bounces = make_bounce_work(patches, c.coarse.count());
+                          scratch.dense = make_dense_scratch(patches);
+                          scratch.bounces = make_bounce_scratch(patches, c.coarse.count());
                         },
-                        [&](const Bc1Codec& c) { work.bc1 = make_bc1_work(c.matrix); },
-                        [&](const LowRankCodec& c) { work.low_rank = make_work(c.matrix); }},
+                        [&](const Bc1Codec& c) { scratch.bc1 = make_bc1_scratch(c.matrix); },
+                        [&](const LowRankCodec& c) { scratch.low_rank = make_scratch(c.matrix); }},
              codec);
-  return work;
+  return scratch;
 }
 
 void irradiance_of(const Codec& codec, const Sent& sent, std::span<Rgb> irradiance,
-                   CodecWork& work) {
+                   CodecScratch& scratch) {
   if (sent.bounces == 0) {
     std::fill(irradiance.begin(), irradiance.end(), Rgb{});
     return;
@@ -56,20 +55,20 @@ void irradiance_of(const Codec& codec, const Sent& sent, std::span<Rgb> irradian
   std::visit(
       Overloaded{
           [&](const HierarchicalCodec& c) {
-            const auto product = [&c, &work](std::span<const Rgb> b, std::span<Rgb> e) {
-              multiply(c.matrix, b, e, work.hierarchical);
+            const auto product = [&c, &scratch](std::span<const Rgb> b, std::span<Rgb> e) {
+              multiply(c.matrix, b, e, scratch.hierarchical);
             };
-            iterate(c, product, sent, irradiance, work.bounces);
+            iterate(c, product, sent, irradiance, scratch.bounces);
           },
           [&](const DenseCodec& c) {
-            const auto product = [&c, &work](std::span<const Rgb> b, std::span<Rgb> e) {
-              multiply(c.matrix, b, e, work.dense);
+            const auto product = [&c, &scratch](std::span<const Rgb> b, std::span<Rgb> e) {
+              multiply(c.matrix, b, e, scratch.dense);
             };
-            iterate(c, product, sent, irradiance, work.bounces);
+            iterate(c, product, sent, irradiance, scratch.bounces);
           },
-          [&](const Bc1Codec& c) { multiply(c.matrix, sent.radiosity, irradiance, work.bc1); },
+          [&](const Bc1Codec& c) { multiply(c.matrix, sent.radiosity, irradiance, scratch.bc1); },
           [&](const LowRankCodec& c) {
-            irradiance_of(c.matrix, sent.radiosity, sent.bounces, irradiance, work.low_rank);
+            irradiance_of(c.matrix, sent.radiosity, sent.bounces, irradiance, scratch.low_rank);
           }},
       codec);
 }

@@ -6,26 +6,19 @@
 namespace luxel::matrix {
 
 /// Room for one answer of a codec; what it does not use is empty.
-struct CodecWork {
-  HierarchicalWork hierarchical;
-  DenseWork dense;
-  Bc1Work bc1;
-  LowRankWork low_rank;
-  BounceWork bounces;
+struct CodecScratch {
+  HierarchicalScratch hierarchical;
+  DenseScratch dense;
+  Bc1Scratch bc1;
+  LowRankScratch low_rank;
+  BounceScratch bounces;
 };
-CodecWork make_work(const Codec& codec, size_t patches);
-
-/// What a codec is asked with.
-struct Sent {
-  std::span<const Rgb> radiosity;    ///< what patches send on their own: B_e + rho D [W/m^2]
-  std::span<const Rgb> reflectance;  ///< per patch
-  std::span<const float> area_m2;    ///< per patch
-  int bounces = -1;                  ///< products; < 0: all
-};
+/// Allocates what the codec uses, for one answer at a time.
+CodecScratch make_scratch(const Codec& codec, size_t patches);
 
 /// E of all patches from each other. Allocates nothing.
 void irradiance_of(const Codec& codec, const Sent& sent, std::span<Rgb> irradiance,
-                   CodecWork& work);
+                   CodecScratch& scratch);
 
 /// What the codec keeps.
 uint64_t bytes_of(const Codec& codec);

@@ -159,10 +159,12 @@ Status reflect_for_ever(const Matrix& s, std::span<const Rgb> reflectance,
   const Eigen::Index n = s.rows();
   Eigen::VectorXf root(n);
   for (Eigen::Index i = 0; i < n; ++i) root[i] = std::sqrt(reflectance[size_t(i)][channel]);
+  // L of 1 - M.
   Matrix y = root.asDiagonal() * s;
   Matrix l = -(y * root.asDiagonal());
   l.diagonal().array() += 1.0f;
   LUXEL_TRY_STATUS(factorise(l, progress));
+  // Y, by columns.
   const auto solve = [&](Eigen::Index first, Eigen::Index count) {
     for (Eigen::Index k = 0; k < n && !progress.cancelled(); k += kBlock) {
       const Eigen::Index rows = std::min(kBlock, n - k);
@@ -171,6 +173,7 @@ Status reflect_for_ever(const Matrix& s, std::span<const Rgb> reflectance,
       l.block(k, k, rows, rows).triangularView<Eigen::Lower>().solveInPlace(block);
     }
   };
+  // S' + Y^T Y, tile by tile: the lower half, which stands for both.
   const auto sum = [&](Eigen::Index first, Eigen::Index count) {
     for (Eigen::Index row = first; row < n && !progress.cancelled(); row += kBlock) {
       const Eigen::Index rows = std::min(kBlock, n - row);
@@ -221,13 +224,14 @@ Result<ColourMatrix> make_reflections(const FormFactors& factors, std::span<cons
 }
 
 void multiply(const ColourMatrix& m, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              DenseWork& work) {
+              DenseScratch& scratch) {
   const size_t n = m.n;
-  LUXEL_CHECK(radiosity.size() == n && irradiance.size() == n && work.stride >= n);
-  split_channels(radiosity, work);
+  LUXEL_CHECK(radiosity.size() == n && irradiance.size() == n && scratch.stride >= n);
+  split_channels(radiosity, scratch);
   const auto rows = [&](size_t begin, size_t end) {
     const auto received = [&](size_t i, size_t c) {
-      return inner_product(m.channel[c].data() + i * n, work.plane.data() + c * work.stride, n);
+      return inner_product(m.channel[c].data() + i * n, scratch.plane.data() + c * scratch.stride,
+                           n);
     };
     for (size_t i = begin; i < end; ++i)
       irradiance[i] = {received(i, 0), received(i, 1), received(i, 2)};

@@ -43,8 +43,9 @@ Result<ColourMatrix> make_reflections(const FormFactors& factors, std::span<cons
 
 /// E = K B. Allocates nothing.
 void multiply(const ColourMatrix& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              DenseWork& work);
+              DenseScratch& scratch);
 
+/// Bytes of all three channels.
 uint64_t bytes_of(const ColourMatrix& matrix);
 
 }  // namespace luxel::matrix

@@ -20,11 +20,11 @@ struct Room {
   /// By one product after another.
   std::vector<Rgb> counted(int bounces) const {
     std::vector<Rgb> out(sent.size());
-    BounceWork work = make_bounce_work(sent.size(), 0);
+    BounceScratch scratch = make_bounce_scratch(sent.size(), 0);
     const Multiply plain = [this](std::span<const Rgb> b, std::span<Rgb> e) {
       testing::plain_product(factors, b, e);
     };
-    count_bounces(plain, reflectance, sent, bounces, out, work);
+    count_bounces(plain, {sent, reflectance, area_m2, bounces}, out, scratch);
     return out;
   }
   ColourMatrix matrix(int bounces) const {
@@ -37,8 +37,8 @@ struct Room {
 
 std::vector<Rgb> product(const ColourMatrix& matrix, std::span<const Rgb> b) {
   std::vector<Rgb> out(b.size());
-  DenseWork work = make_dense_work(b.size());
-  multiply(matrix, b, out, work);
+  DenseScratch scratch = make_dense_scratch(b.size());
+  multiply(matrix, b, out, scratch);
   return out;
 }
 

@@ -47,7 +47,7 @@ void add_two_rows(const float* row0, const float* row1, size_t n, const float* p
 }
 
 #if LUXEL_X86_VECTORS
-/// The same for rows of halves.
+/// Adds the products of rows of halves as above.
 __attribute__((target("avx2,f16c"))) void add_two_rows_f16c(const uint16_t* row0,
                                                             const uint16_t* row1, size_t n,
                                                             const float* plane, size_t stride,
@@ -73,7 +73,7 @@ __attribute__((target("avx2,f16c"))) void add_two_rows_f16c(const uint16_t* row0
 }
 #endif
 
-/// The same for rows of halves, a chunk at a time.
+/// Adds the products of rows of halves, a chunk at a time.
 void add_two_rows(const uint16_t* row0, const uint16_t* row1, size_t n, const float* plane,
                   size_t stride, Instructions instructions, float (*sums)[3]) {
   for (size_t j = 0; j < n; j += kChunk) {
@@ -109,18 +109,18 @@ Dense make_dense(const FormFactors& factors, Precision precision) {
   return out;
 }
 
-DenseWork make_dense_work(size_t patches) {
+DenseScratch make_dense_scratch(size_t patches) {
   const size_t stride = (patches + 15) / 16 * 16;
   return {std::vector<float>(3 * stride), stride};
 }
 
-void split_channels(std::span<const Rgb> light, DenseWork& work) {
-  LUXEL_CHECK(work.stride >= light.size());
-  float* plane = work.plane.data();
+void split_channels(std::span<const Rgb> light, DenseScratch& scratch) {
+  LUXEL_CHECK(scratch.stride >= light.size());
+  float* plane = scratch.plane.data();
   for (size_t j = 0; j < light.size(); ++j) {
     plane[j] = light[j].x;
-    plane[work.stride + j] = light[j].y;
-    plane[2 * work.stride + j] = light[j].z;
+    plane[scratch.stride + j] = light[j].y;
+    plane[2 * scratch.stride + j] = light[j].z;
   }
 }
 
@@ -143,24 +143,25 @@ float inner_product(const float* row, const float* plane, size_t n) {
 }
 
 void multiply(const Dense& m, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              DenseWork& work) {
-  multiply(m, radiosity, irradiance, work, instructions());
+              DenseScratch& scratch) {
+  multiply(m, radiosity, irradiance, scratch, instructions());
 }
 
 void multiply(const Dense& m, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              DenseWork& work, Instructions instructions) {
+              DenseScratch& scratch, Instructions instructions) {
   const size_t n = m.n;
-  LUXEL_CHECK(radiosity.size() == n && irradiance.size() == n && work.stride >= n);
-  split_channels(radiosity, work);
+  LUXEL_CHECK(radiosity.size() == n && irradiance.size() == n && scratch.stride >= n);
+  split_channels(radiosity, scratch);
   const auto rows = [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; i += 2) {
       const size_t next = std::min(i + 1, end - 1);
       float sums[2][3] = {};
-      const float* b = work.plane.data();
+      const float* b = scratch.plane.data();
       if (m.half.empty())
-        add_two_rows(m.single.data() + i * n, m.single.data() + next * n, n, b, work.stride, sums);
+        add_two_rows(m.single.data() + i * n, m.single.data() + next * n, n, b, scratch.stride,
+                     sums);
       else
-        add_two_rows(m.half.data() + i * n, m.half.data() + next * n, n, b, work.stride,
+        add_two_rows(m.half.data() + i * n, m.half.data() + next * n, n, b, scratch.stride,
                      instructions, sums);
       irradiance[i] = {sums[0][0], sums[0][1], sums[0][2]};
       irradiance[next] = {sums[1][0], sums[1][1], sums[1][2]};

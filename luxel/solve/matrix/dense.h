@@ -21,26 +21,29 @@ struct Dense {
   size_t size() const { return n; }
 };
 
+/// F with a number for every pair: 4 n^2 bytes, or 2 n^2.
 Dense make_dense(const FormFactors& factors, Precision precision);
 
 /// Room for one product of a dense matrix: light channel by channel.
-struct DenseWork {
+struct DenseScratch {
   std::vector<float> plane;  ///< three of them, each `stride` long
   size_t stride = 0;
 };
-DenseWork make_dense_work(size_t patches);
+/// Allocates for one product at a time.
+DenseScratch make_dense_scratch(size_t patches);
 
 /// E = F B. Allocates nothing. The same bits on all processors.
 void multiply(const Dense& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              DenseWork& work);
+              DenseScratch& scratch);
 /// By instructions that this processor has, for tests.
 void multiply(const Dense& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              DenseWork& work, Instructions instructions);
+              DenseScratch& scratch, Instructions instructions);
 
+/// Bytes of the matrix.
 uint64_t bytes_of(const Dense& matrix);
 
 /// Light into planes, one per channel.
-void split_channels(std::span<const Rgb> light, DenseWork& work);
+void split_channels(std::span<const Rgb> light, DenseScratch& scratch);
 
 /// sum_j row_j plane_j of `n` numbers.
 float inner_product(const float* row, const float* plane, size_t n);

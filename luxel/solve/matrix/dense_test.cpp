@@ -13,8 +13,8 @@ namespace {
 
 std::vector<Rgb> product(const Dense& matrix, std::span<const Rgb> b) {
   std::vector<Rgb> out(b.size());
-  DenseWork work = make_dense_work(b.size());
-  multiply(matrix, b, out, work);
+  DenseScratch scratch = make_dense_scratch(b.size());
+  multiply(matrix, b, out, scratch);
   return out;
 }
 
@@ -62,9 +62,9 @@ TEST(Dense, SameBitsByAllInstructions) {
   for (size_t k = 0; k < matrix.half.size(); k += 3) matrix.half[k] = uint16_t(k % 0x7c00);
   const std::vector<Rgb> b = testing::random_light(n, 3);
   std::vector<Rgb> any(n), got(n);
-  DenseWork work = make_dense_work(n);
-  multiply(matrix, b, any, work, Instructions::any);
-  multiply(matrix, b, got, work, instructions());
+  DenseScratch scratch = make_dense_scratch(n);
+  multiply(matrix, b, any, scratch, Instructions::any);
+  multiply(matrix, b, got, scratch, instructions());
   EXPECT_EQ(got, any);
 }
 

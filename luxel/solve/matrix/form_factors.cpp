@@ -12,11 +12,12 @@
 namespace luxel::matrix {
 namespace {
 
+/// Directions are sorted into 8 x 8 cells, so that rays of a packet go the same way.
 constexpr int kCellsPerAxis = 8;
 
 /// What a thread needs to look from one patch.
-struct Work {
-  explicit Work(size_t rays) : u(rays), v(rays), ray(rays), hit(rays) {}
+struct RayBuffers {
+  explicit RayBuffers(size_t rays) : u(rays), v(rays), ray(rays), hit(rays) {}
   std::vector<float> u, v;
   std::vector<trace::Ray> ray;
   std::vector<trace::Hit> hit;
@@ -25,11 +26,12 @@ struct Work {
 
 /// Rays from a patch's points in turn, in the order of their directions, so that neighbours are
 /// alike: each of the points takes its share of every direction.
-void fill_rays(std::span<const PatchPoint> points, uint64_t seed, float diagonal_m, Work& work) {
-  const size_t count = work.ray.size();
-  sobol_owen_2d_points(seed, work.u, work.v);
+void fill_rays(std::span<const PatchPoint> points, uint64_t seed, float diagonal_m,
+               RayBuffers& buffers) {
+  const size_t count = buffers.ray.size();
+  sobol_owen_2d_points(seed, buffers.u, buffers.v);
   const auto cell = [&](size_t i) {
-    const int a = int(work.u[i] * kCellsPerAxis), b = int(work.v[i] * kCellsPerAxis);
+    const int a = int(buffers.u[i] * kCellsPerAxis), b = int(buffers.v[i] * kCellsPerAxis);
     return size_t(b * kCellsPerAxis + (b % 2 ? kCellsPerAxis - 1 - a : a));
   };
   std::array<uint32_t, kCellsPerAxis * kCellsPerAxis + 1> place{};
@@ -38,9 +40,9 @@ void fill_rays(std::span<const PatchPoint> points, uint64_t seed, float diagonal
   for (size_t i = 0; i < count; ++i) {
     const PatchPoint& p = points[i % points.size()];
     const Vec3 d =
-        frame_around(p.normal).to_world(cosine_hemisphere_sample({work.u[i], work.v[i]}));
-    work.ray[place[cell(i)]++] = {trace::offset_origin(p.position, p.normal, diagonal_m), 0, d,
-                                  INFINITY};
+        frame_around(p.normal).to_world(cosine_hemisphere_sample({buffers.u[i], buffers.v[i]}));
+    buffers.ray[place[cell(i)]++] = {trace::offset_origin(p.position, p.normal, diagonal_m), 0, d,
+                                     INFINITY};
   }
 }
 
@@ -77,6 +79,7 @@ FormFactors joined(std::vector<Row>& rows) {
 
 /// S = (A F + (A F)^T) / 2. Both have ascending columns, so rows merge.
 FormFactors symmetric(const FormFactors& traced, std::span<const float> area_m2) {
+  // (A F)^T: rows are counted, then filled in the order of their columns.
   const size_t n = traced.size();
   FormFactors transposed;
   transposed.first.assign(n + 1, 0);
@@ -90,6 +93,7 @@ FormFactors symmetric(const FormFactors& traced, std::span<const float> area_m2)
       transposed.column[at] = i;
       transposed.factor[at] = traced.factor[k] * area_m2[i];
     }
+  // Rows of both, merged by column.
   FormFactors out;
   out.first.push_back(0);
   out.column.reserve(2 * traced.column.size()), out.factor.reserve(2 * traced.column.size());
@@ -111,6 +115,12 @@ FormFactors symmetric(const FormFactors& traced, std::span<const float> area_m2)
 /// Root mean square of what rows may miss, over what they should be. The noise of rays is 1e-2.
 constexpr double kBalanced = 1e-5;
 constexpr int kNewtonSteps = 2, kInnerSteps = 60, kPasses = 20;
+/// The inner iteration solves to a tenth of what Newton's step is to reach: what it leaves then
+/// does not count beside what is not linear.
+constexpr double kInnerPart = 0.1;
+/// A step of Newton's method changes no factor by more than e^0.5 = 1.65. log d is linear nearby
+/// only, and rows that hardly any ray found would ask for far more.
+constexpr double kLargestStep = 0.5;
 /// Two sides that only see each other must add up to the same, which rays do not quite find: the
 /// system is singular then. This much of the diagonal on top of it leaves that mode alone.
 constexpr double kRidge = 1e-3;
@@ -172,10 +182,10 @@ std::vector<double> scaling(const FormFactors& s, std::span<const double> wanted
     scaled_product(s, d, one, row);
     for (size_t i = 0; i < n; ++i) missing[i] = row[i] > 0 ? wanted[i] - row[i] : 0;
     if (std::sqrt(dot_product(missing, missing)) <= enough) break;
-    const std::vector<double> change = newton_step(s, d, row, missing, 0.1 * enough);
+    const std::vector<double> change = newton_step(s, d, row, missing, kInnerPart * enough);
     for (size_t i = 0; i < n; ++i)
-      d[i] = std::clamp(d[i] * std::exp(std::clamp(change[i], -0.5, 0.5)), 1 / kLargestFactor,
-                        kLargestFactor);
+      d[i] = std::clamp(d[i] * std::exp(std::clamp(change[i], -kLargestStep, kLargestStep)),
+                        1 / kLargestFactor, kLargestFactor);
   }
   for (int pass = 0; pass < kPasses; ++pass) {
     scaled_product(s, d, one, row);
@@ -195,10 +205,10 @@ double row_sum(const FormFactors& factors, size_t row) {
 }
 
 Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayTracer& tracer,
-                                    const PatchWork& work, const FactorParams& params,
+                                    const PatchedScene& patched, const FactorParams& params,
                                     Progress& progress) {
   LUXEL_CHECK(params.rays_per_patch >= 1);
-  const Patches& patches = work.patches;
+  const Patches& patches = patched.patches;
   const size_t rays = size_t(params.rays_per_patch);
   const Box3 bounds = scene::world_bounds(scene);
   const float diagonal_m = length(bounds.upper - bounds.lower);
@@ -207,13 +217,14 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
   std::vector<Row> rows(patches.size());
   progress.begin("form factors", patches.size());
   parallel_for(patches.size(), 16, [&](size_t begin, size_t end) {
-    Work w(rays);
+    RayBuffers buffers(rays);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
-      fill_rays(patches.points_of(i), hash64(params.seed, i), diagonal_m, w);
-      tracer.closest_hits(w.ray, w.hit);
-      w.met.clear();
+      // Rays from the points of the patch, and the patches that they meet.
+      fill_rays(patches.points_of(i), hash64(params.seed, i), diagonal_m, buffers);
+      tracer.closest_hits(buffers.ray, buffers.hit);
+      buffers.met.clear();
       size_t escaped = 0;
-      for (const trace::Hit& hit : w.hit) {
+      for (const trace::Hit& hit : buffers.hit) {
         if (!hit.found()) {
           ++escaped;
           continue;
@@ -222,11 +233,12 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
         const uint32_t material = mesh.triangle_material[hit.triangle];
         if (hit.back_face && !scene::reflects_from_behind(scene.materials[material])) continue;
         const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
-        const uint32_t j = work.locator.locate(scene::world_position(scene, hit.point()),
-                                               hit.back_face ? -front : front, material, tracer);
-        if (j != kNone) w.met.push_back(j);
+        const uint32_t j = patched.locator.locate(scene::world_position(scene, hit.point()),
+                                                  hit.back_face ? -front : front, material, tracer);
+        if (j != kNone) buffers.met.push_back(j);
       }
-      rows[i] = row_of(w.met, rays);
+      // Shares of the rays.
+      rows[i] = row_of(buffers.met, rays);
       out.sky[i] = float(escaped) / float(rays);
       progress.advance(1);
     }
@@ -238,10 +250,12 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
 }
 
 FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2) {
+  // Exchange areas S, and what their rows should sum to.
   FormFactors s = symmetric(traced, area_m2);
   std::vector<double> wanted(traced.size());
   for (size_t i = 0; i < wanted.size(); ++i)
     wanted[i] = std::min(1.0, row_sum(traced, i)) * double(area_m2[i]);
+  // S scaled to that, and how far rows still exceed 1.
   const std::vector<double> d = scaling(s, wanted);
   std::vector<float> limit(s.size());
   parallel_for(s.size(), 256, [&](size_t begin, size_t end) {
@@ -255,6 +269,7 @@ FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2
       limit[i] = share > 1 ? float(1 / share) : 1.0f;
     }
   });
+  // Back to F = S / A, with no row beyond 1 and still reciprocal.
   parallel_for(s.size(), 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       for (uint64_t k = s.first[i]; k < s.first[i + 1]; ++k)

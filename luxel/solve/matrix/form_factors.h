@@ -38,7 +38,7 @@ struct TracedFactors {
 /// at most sqrt(F / rays), and that of the light gathered over many patches far less. Backs of
 /// one-sided surfaces send nothing. Errors: cancelled.
 Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayTracer& tracer,
-                                    const PatchWork& work, const FactorParams& params,
+                                    const PatchedScene& patched, const FactorParams& params,
                                     Progress& progress);
 
 /// Makes A_i F_ij = A_j F_ji: both are estimates of the same exchange, so their mean has less
@@ -47,6 +47,7 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
 /// have; rows never sum to more than 1.
 FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2);
 
+/// The share of what patch `row` radiates that reaches any other: 1 in a closed room.
 double row_sum(const FormFactors& factors, size_t row);
 
 /// E = F B, row by row.

@@ -174,7 +174,7 @@ TEST(TraceFactors, CanBeCancelled) {
   const Cut cut(testing::plate(), 50);
   Progress progress;
   progress.request_cancel();
-  const auto traced = trace_factors(cut.scene, cut.tracer, cut.work, {}, progress);
+  const auto traced = trace_factors(cut.scene, cut.tracer, cut.patched, {}, progress);
   ASSERT_FALSE(traced);
   EXPECT_EQ(traced.error().code, ErrorCode::cancelled);
 }

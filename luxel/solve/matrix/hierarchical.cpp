@@ -141,7 +141,8 @@ double limit_of(const Source& s, const Block& block) {
   return double(s.params.block_error) * double(s.params.block_error) * s.leaf_m2 / area;
 }
 
-/// Of a leaf pair: how much of the entries no functions see, against their noise.
+/// Whether the functions of two leaves see all but little of the entries between them, or all but
+/// their noise.
 bool leaves_are_smooth(const Source& s, const Block& block, const Coupling& coupling) {
   double energy = 0, noise = 0;
   for_entries(s, block, [&](uint32_t i, uint32_t j, float exchange) {
@@ -152,6 +153,11 @@ bool leaves_are_smooth(const Source& s, const Block& block, const Coupling& coup
   return energy - square_sum(coupling) <= limit_of(s, block) + double(s.params.noise) * noise;
 }
 
+/// Two clusters whose radii are in a ratio above this are about as large. Halves of a surface have
+/// 1 / sqrt 2 = 0.71 of its radius: clusters one level apart still are, those two levels apart
+/// (0.5) are not.
+constexpr float kAboutAsLarge = 0.6f;
+
 /// The larger of two clusters is halved, both when they are about as large.
 struct Halving {
   bool rows = false, columns = false;
@@ -161,8 +167,8 @@ Halving halving_of(const Source& s, const Block& block) {
   const Cluster& c = s.clusters[block.sender];
   const float row_m = s.functions.ball[block.receiver].radius_m,
               column_m = s.functions.ball[block.sender].radius_m;
-  const bool rows = !r.is_leaf() && (c.is_leaf() || row_m > 0.6f * column_m);
-  const bool columns = !c.is_leaf() && (r.is_leaf() || column_m > 0.6f * row_m);
+  const bool rows = !r.is_leaf() && (c.is_leaf() || row_m > kAboutAsLarge * column_m);
+  const bool columns = !c.is_leaf() && (r.is_leaf() || column_m > kAboutAsLarge * row_m);
   return {rows, columns};
 }
 

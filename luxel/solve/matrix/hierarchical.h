@@ -77,16 +77,18 @@ static_assert(sizeof(Hierarchical::Far) == 2 * kWords);
 using SpreadMoments = std::array<float, 3 * kWords>;
 
 /// Room for one product.
-struct HierarchicalWork {
+struct HierarchicalScratch {
   std::vector<Moments> sent, received;  ///< per cluster
   std::vector<SpreadMoments> spread;    ///< per cluster
 };
-HierarchicalWork make_work(const Hierarchical& matrix);
+/// Allocates for one product at a time.
+HierarchicalScratch make_scratch(const Hierarchical& matrix);
 
 /// E = F B. Allocates nothing.
 void multiply(const Hierarchical& matrix, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              HierarchicalWork& work);
+              HierarchicalScratch& scratch);
 
+/// Bytes of clusters, functions and blocks.
 uint64_t bytes_of(const Hierarchical& matrix);
 
 }  // namespace luxel::matrix

@@ -15,16 +15,16 @@ constexpr int kNoNoise = 2'000'000'000;
 
 Hierarchical compressed(const Cut& cut, const FormFactors& f, const HierarchicalParams& params) {
   Progress progress;
-  auto out =
-      compress(f, cut.work.tree, cut.patches().centroid, cut.patches().area_m2, params, progress);
+  auto out = compress(f, cut.patched.tree, cut.patches().centroid, cut.patches().area_m2, params,
+                      progress);
   EXPECT_TRUE(out);
   return out ? std::move(*out) : Hierarchical{};
 }
 
 std::vector<Rgb> product(const Hierarchical& matrix, std::span<const Rgb> radiosity) {
   std::vector<Rgb> out(matrix.size());
-  HierarchicalWork work = make_work(matrix);
-  multiply(matrix, radiosity, out, work);
+  HierarchicalScratch scratch = make_scratch(matrix);
+  multiply(matrix, radiosity, out, scratch);
   return out;
 }
 
@@ -47,8 +47,8 @@ TEST(Hierarchical, IsExactToEightBitsWhereNothingMayBeLost) {
   // An entry is off by its own rounding and what it carries on, half a step of 1/255 of the largest
   // entry of its pair of leaves each.
   std::vector<double> bound(cut.size(), 1e-6);
-  for (const Cluster& r : cut.work.tree.clusters)
-    for (const Cluster& s : cut.work.tree.clusters) {
+  for (const Cluster& r : cut.patched.tree.clusters)
+    for (const Cluster& s : cut.patched.tree.clusters) {
       if (!r.is_leaf() || !s.is_leaf()) continue;
       float largest = 0;
       for (uint32_t i = r.first; i < r.end; ++i)
@@ -249,7 +249,7 @@ TEST(Hierarchical, SameBitsForAnyNumberOfThreads) {
 TEST(Hierarchical, CanBeCancelled) {
   Progress progress;
   progress.request_cancel();
-  const auto h = compress(box().factors, box().cut.work.tree, box().cut.patches().centroid,
+  const auto h = compress(box().factors, box().cut.patched.tree, box().cut.patches().centroid,
                           box().area_m2(), {}, progress);
   ASSERT_FALSE(h);
   EXPECT_EQ(h.error().code, ErrorCode::cancelled);

@@ -1,4 +1,4 @@
-// Which vector instructions the hand-written kernels of this room may use. All kernels of one
+// The vector instructions that the hand-written kernels of this room may use. All kernels of one
 // function add the same numbers in the same order, so that each gives the same bits; what one fuses
 // (multiply and add) all fuse.
 #pragma once

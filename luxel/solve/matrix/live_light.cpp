@@ -13,7 +13,8 @@ namespace {
 
 /// Places whose shadow rays go together: packets of neighbours, on the stack.
 constexpr size_t kBatch = 64;
-/// Of the way to a lamp: it may touch a surface, which does not hide it.
+/// The part of the way to a light that is looked along: it may touch a surface, which does not hide
+/// it.
 constexpr float kMostOfTheWay = 0.9999f;
 
 /// Light that arrives if nothing is in the way of `ray`; zero when none would.
@@ -22,27 +23,27 @@ struct Arriving {
   trace::Ray ray;
 };
 
-Arriving arriving_at(const LitPlaces& places, size_t i, const scene::PunctualLight& light,
+Arriving arriving_at(const LitPoints& points, size_t i, const scene::PunctualLight& light,
                      float diagonal_m) {
-  const light::PunctualIncidence in = light::incidence_at(light, {}, places.position[i]);
-  const float cosine = dot(places.normal[i], in.towards);
-  if (!(cosine > 0) || !(dot(places.geometric_normal[i], in.towards) > 0)) return {};
+  const light::PunctualIncidence in = light::incidence_at(light, {}, points.position[i]);
+  const float cosine = dot(points.normal[i], in.towards);
+  if (!(cosine > 0) || !(dot(points.geometric_normal[i], in.towards) > 0)) return {};
   const Vec3 origin =
-      trace::offset_origin(places.position[i], places.geometric_normal[i], diagonal_m);
+      trace::offset_origin(points.position[i], points.geometric_normal[i], diagonal_m);
   return {in.irradiance * cosine, {origin, 0, in.towards, in.distance_m * kMostOfTheWay}};
 }
 
-/// Adds one lamp's light to the places [begin, end), at most kBatch.
-void add_lamp(const LitPlaces& places, const scene::PunctualLight& light,
-              const trace::RayTracer& tracer, float diagonal_m, size_t begin, size_t end,
-              std::span<Rgb> irradiance) {
+/// Adds one light's irradiance to the points [begin, end), at most kBatch.
+void add_light(const LitPoints& points, const scene::PunctualLight& light,
+               const trace::RayTracer& tracer, float diagonal_m, size_t begin, size_t end,
+               std::span<Rgb> irradiance) {
   std::array<trace::Ray, kBatch> ray;
   std::array<uint32_t, kBatch> place;
   std::array<Rgb, kBatch> light_of_ray;
   std::array<uint8_t, kBatch> blocked;
   size_t count = 0;
   for (size_t i = begin; i < end; ++i) {
-    const Arriving a = arriving_at(places, i, light, diagonal_m);
+    const Arriving a = arriving_at(points, i, light, diagonal_m);
     if (!(max_component(a.irradiance) > 0)) continue;
     ray[count] = a.ray, place[count] = uint32_t(i), light_of_ray[count] = a.irradiance;
     ++count;
@@ -54,12 +55,12 @@ void add_lamp(const LitPlaces& places, const scene::PunctualLight& light,
 
 }  // namespace
 
-Rgb live_light_at(const LitPlaces& places, size_t place,
+Rgb live_light_at(const LitPoints& points, size_t place,
                   std::span<const scene::PunctualLight> lights, const trace::RayTracer& tracer,
                   float scene_diagonal_m) {
   Rgb sum{};
   for (const scene::PunctualLight& light : lights) {
-    const Arriving a = arriving_at(places, place, light, scene_diagonal_m);
+    const Arriving a = arriving_at(points, place, light, scene_diagonal_m);
     uint8_t blocked = 0;
     if (!(max_component(a.irradiance) > 0)) continue;
     tracer.occluded({&a.ray, 1}, {&blocked, 1});
@@ -68,16 +69,16 @@ Rgb live_light_at(const LitPlaces& places, size_t place,
   return sum;
 }
 
-void live_light(const LitPlaces& places, std::span<const scene::PunctualLight> lights,
+void live_light(const LitPoints& points, std::span<const scene::PunctualLight> lights,
                 const trace::RayTracer& tracer, float scene_diagonal_m, std::span<Rgb> irradiance) {
-  LUXEL_CHECK(irradiance.size() == places.size() && places.normal.size() == places.size());
+  LUXEL_CHECK(irradiance.size() == points.size() && points.normal.size() == points.size());
   const auto batch = [&](size_t begin, size_t end) {
     std::fill(irradiance.begin() + std::ptrdiff_t(begin), irradiance.begin() + std::ptrdiff_t(end),
               Rgb{});
     for (const scene::PunctualLight& light : lights)
-      add_lamp(places, light, tracer, scene_diagonal_m, begin, end, irradiance);
+      add_light(points, light, tracer, scene_diagonal_m, begin, end, irradiance);
   };
-  parallel_for(places.size(), kBatch, std::ref(batch));
+  parallel_for(points.size(), kBatch, std::ref(batch));
 }
 
 }  // namespace luxel::matrix

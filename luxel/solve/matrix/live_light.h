@@ -1,4 +1,4 @@
-// Light straight from lamps that move: one shadow ray per place and lamp.
+// Direct light of punctual lights that move: one shadow ray per point and light.
 #pragma once
 
 #include <span>
@@ -9,22 +9,22 @@
 
 namespace luxel::matrix {
 
-/// Places of surfaces that lamps shine on.
-struct LitPlaces {
+/// Surface points that lights shine on.
+struct LitPoints {
   std::span<const Vec3> position;          ///< [m]
   std::span<const Vec3> normal;            ///< unit, for the cosine
   std::span<const Vec3> geometric_normal;  ///< unit, the side that is lit
   size_t size() const { return position.size(); }
 };
 
-/// E [W/m^2] at a place from point, spot and directional lights; a sun's disc counts as its centre.
-/// Lamps have no profiles.
-Rgb live_light_at(const LitPlaces& places, size_t place,
+/// E [W/m^2] at a surface point from point, spot and directional lights; a sun's disc counts as its
+/// centre. Light profiles are not looked at.
+Rgb live_light_at(const LitPoints& points, size_t place,
                   std::span<const scene::PunctualLight> lights, const trace::RayTracer& tracer,
                   float scene_diagonal_m);
 
-/// At every place, in parallel. Allocates nothing.
-void live_light(const LitPlaces& places, std::span<const scene::PunctualLight> lights,
+/// E [W/m^2] at every point, in parallel. Allocates nothing.
+void live_light(const LitPoints& points, std::span<const scene::PunctualLight> lights,
                 const trace::RayTracer& tracer, float scene_diagonal_m, std::span<Rgb> irradiance);
 
 }  // namespace luxel::matrix

@@ -33,7 +33,7 @@ struct Ground {
   void add(Vec3 p, Vec3 n) {
     position.push_back(p), normal.push_back(n), geometric_normal.push_back(n);
   }
-  LitPlaces places() const { return {position, normal, geometric_normal}; }
+  LitPoints places() const { return {position, normal, geometric_normal}; }
 };
 
 /// 16 x 16 places of the square [0, 1]^2 at y = 0.
@@ -142,7 +142,7 @@ TEST(LiveLight, NothingArrivesFromBehind) {
   for (const auto& lamp :
        {point_at({0.5f, -1, 0.5f}), point_at({2, 0, 0.5f}), sun_along({0, 1, 0})})
     for (const Rgb& e : light(stage, ground, {lamp})) EXPECT_EQ(e, Rgb{});
-  // Of a bent normal: what is behind the surface itself, and what is behind the normal.
+  // Beneath a bent normal: what is behind the surface itself, and what is behind the normal.
   Ground bent = ground;
   std::fill(bent.normal.begin(), bent.normal.end(), Vec3{0.8f, 0.6f, 0});
   for (const auto& sun : {sun_along({-4, 1, 0}), sun_along({4, -1, 0})})

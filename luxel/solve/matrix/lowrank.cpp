@@ -92,12 +92,12 @@ Result<LowRank> make_low_rank(const Spectrum& spectrum, size_t rank, std::span<c
   return out;
 }
 
-LowRankWork make_work(const LowRank& matrix) {
-  LowRankWork work;
+LowRankScratch make_scratch(const LowRank& matrix) {
+  LowRankScratch scratch;
   const size_t numbers = 3 * matrix.rank();
-  work.partial.resize((matrix.size() + kPatches - 1) / kPatches * numbers);
-  for (std::vector<float>* v : {&work.sent, &work.sum, &work.after}) v->resize(numbers);
-  return work;
+  scratch.partial.resize((matrix.size() + kPatches - 1) / kPatches * numbers);
+  for (std::vector<float>* v : {&scratch.sent, &scratch.sum, &scratch.after}) v->resize(numbers);
+  return scratch;
 }
 
 namespace {
@@ -160,43 +160,46 @@ void scatter(const LowRank& m, std::span<const float> x, size_t begin, size_t en
   }
 }
 
-/// work.sent = V^T A^1/2 B, by blocks in their order.
-void send(const LowRank& m, std::span<const Rgb> sent, LowRankWork& work) {
-  const size_t numbers = 3 * m.rank(), blocks = work.partial.size() / std::max<size_t>(numbers, 1);
+/// scratch.sent = V^T A^1/2 B, by blocks in their order.
+void send(const LowRank& m, std::span<const Rgb> sent, LowRankScratch& scratch) {
+  const size_t numbers = 3 * m.rank(),
+               blocks = scratch.partial.size() / std::max<size_t>(numbers, 1);
   const auto gather_blocks = [&](size_t begin, size_t end) {
     for (size_t block = begin; block < end; ++block)
       gather(m, sent, block * kPatches, std::min(m.size(), (block + 1) * kPatches),
-             work.partial.data() + block * numbers);
+             scratch.partial.data() + block * numbers);
   };
   parallel_for(blocks, 1, std::ref(gather_blocks));
-  std::fill(work.sent.begin(), work.sent.end(), 0.0f);
+  std::fill(scratch.sent.begin(), scratch.sent.end(), 0.0f);
   for (size_t block = 0; block < blocks; ++block)
-    for (size_t k = 0; k < numbers; ++k) work.sent[k] += work.partial[block * numbers + k];
+    for (size_t k = 0; k < numbers; ++k) scratch.sent[k] += scratch.partial[block * numbers + k];
 }
 
-/// work.sum = x_bounces.
-void count_products(const LowRank& m, int bounces, LowRankWork& work) {
+/// scratch.sum = x_bounces.
+void count_products(const LowRank& m, int bounces, LowRankScratch& scratch) {
   const size_t rank = m.rank();
-  std::fill(work.sum.begin(), work.sum.end(), 0.0f);
+  std::fill(scratch.sum.begin(), scratch.sum.end(), 0.0f);
   for (int b = 0; b < bounces; ++b) {
-    multiply_small(m.reflected, work.sum, work.after);
-    for (size_t k = 0; k < work.sum.size(); ++k)
-      work.sum[k] = m.eigenvalue[k % rank] * (work.sent[k] + work.after[k]);
+    multiply_small(m.reflected, scratch.sum, scratch.after);
+    for (size_t k = 0; k < scratch.sum.size(); ++k)
+      scratch.sum[k] = m.eigenvalue[k % rank] * (scratch.sent[k] + scratch.after[k]);
   }
 }
 
 }  // namespace
 
 void irradiance_of(const LowRank& m, std::span<const Rgb> sent, int bounces,
-                   std::span<Rgb> irradiance, LowRankWork& work) {
+                   std::span<Rgb> irradiance, LowRankScratch& scratch) {
   LUXEL_CHECK(sent.size() == m.size() && irradiance.size() == m.size());
-  LUXEL_CHECK(work.sent.size() == 3 * m.rank());
-  send(m, sent, work);
+  LUXEL_CHECK(scratch.sent.size() == 3 * m.rank());
+  send(m, sent, scratch);
   if (bounces < 0)
-    multiply_small(m.all_bounces, work.sent, work.sum);
+    multiply_small(m.all_bounces, scratch.sent, scratch.sum);
   else
-    count_products(m, bounces, work);
-  const auto back = [&](size_t begin, size_t end) { scatter(m, work.sum, begin, end, irradiance); };
+    count_products(m, bounces, scratch);
+  const auto back = [&](size_t begin, size_t end) {
+    scatter(m, scratch.sum, begin, end, irradiance);
+  };
   parallel_for(m.size(), kRows, std::ref(back));
 }
 

@@ -67,17 +67,19 @@ Result<LowRank> make_low_rank(const Spectrum& spectrum, size_t rank, std::span<c
                               std::span<const Rgb> reflectance, Progress& progress);
 
 /// Room for one answer.
-struct LowRankWork {
+struct LowRankScratch {
   std::vector<float> partial;           ///< per block of patches: 3 x rank
   std::vector<float> sent, sum, after;  ///< 3 x rank, channel by channel
 };
-LowRankWork make_work(const LowRank& matrix);
+/// Allocates for one answer at a time.
+LowRankScratch make_scratch(const LowRank& matrix);
 
 /// Irradiance after `bounces` products (< 0: all) of what patches send on their own; never below
 /// zero. Allocates nothing.
 void irradiance_of(const LowRank& matrix, std::span<const Rgb> sent, int bounces,
-                   std::span<Rgb> irradiance, LowRankWork& work);
+                   std::span<Rgb> irradiance, LowRankScratch& scratch);
 
+/// Bytes of eigenvectors and small matrices.
 uint64_t bytes_of(const LowRank& matrix);
 
 }  // namespace luxel::matrix

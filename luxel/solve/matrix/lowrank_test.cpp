@@ -36,8 +36,8 @@ struct Room {
   }
   std::vector<Rgb> light(const LowRank& m, int bounces) const {
     std::vector<Rgb> out(size());
-    LowRankWork work = make_work(m);
-    irradiance_of(m, sent, bounces, out, work);
+    LowRankScratch scratch = make_scratch(m);
+    irradiance_of(m, sent, bounces, out, scratch);
     return out;
   }
   /// sum A_i x_i / A, per channel.
@@ -247,10 +247,10 @@ TEST(LowRank, BouncesAreThoseOfItsOwnMatrix) {
       e[i] = {float(light[0]), float(light[1]), float(light[2])};
     }
   };
-  BounceWork work = make_bounce_work(room.size(), 0);
+  BounceScratch scratch = make_bounce_scratch(room.size(), 0);
   for (const int bounces : {0, 1, 2, 5, 200}) {
     std::vector<Rgb> want(room.size());
-    count_bounces(product, room.reflectance, room.sent, bounces, want, work);
+    count_bounces(product, {room.sent, room.reflectance, room.area_m2, bounces}, want, scratch);
     float largest = 0, smallest = 0;
     for (Rgb& e : want) {
       largest = std::max(largest, max_component(e)),
@@ -309,7 +309,8 @@ TEST(LowRank, CanBeCancelled) {
 
 TEST(Spectrum, OfNoneWantedIsAnError) {
   Progress progress;
-  const auto none = spectrum_of(cornell().factors, cornell().area_m2, {0, 2, 1}, progress);
+  const auto none = spectrum_of(cornell().factors, cornell().area_m2,
+                                {.count = 0, .iterations = 2, .seed = 1}, progress);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, ErrorCode::bad_setting);
 }

@@ -12,7 +12,7 @@ namespace luxel::matrix {
 /// Another major version cannot be read; a newer minor one has chunks that are skipped.
 inline constexpr uint16_t kLxrMajor = 1, kLxrMinor = 0;
 
-/// The same data gives the same bytes. `data` satisfies check(); writing what does not is a broken
+/// Equal data gives equal bytes. `data` satisfies check(); writing what does not is a broken
 /// contract.
 std::vector<std::byte> encode_lxr(const RelightData& data);
 

@@ -101,7 +101,7 @@ void fields(Archive& a, Is<Occluders> auto& x) {
 }
 template <class Archive>
 void fields(Archive& a, Is<scene::PunctualLight> auto& x) {
-  // make_relight_data refuses lamps with profiles: `side` means nothing here.
+  // make_relight_data refuses lights with profiles: `side` means nothing here.
   [[maybe_unused]] auto& [name, kind, intensity, position, direction, range_m, inner_cone_rad,
                           outer_cone_rad, angular_radius_rad, profile, side] = x;
   a(name, intensity, position, direction, range_m, inner_cone_rad, outer_cone_rad,

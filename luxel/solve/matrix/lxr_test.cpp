@@ -134,7 +134,7 @@ TEST(Lxr, ComesBackFromARealScene) {
   const Patches& p = cut.patches();
   const FormFactors factors = cut.reciprocal_factors(256);
   Progress progress;
-  auto matrix = compress(factors, cut.work.tree, p.centroid, p.area_m2, {}, progress);
+  auto matrix = compress(factors, cut.patched.tree, p.centroid, p.area_m2, {}, progress);
   ASSERT_TRUE(matrix);
   RelightData data = small_data();
   data.position = p.elements.position, data.normal = p.elements.normal, data.area_m2 = p.area_m2;
@@ -143,7 +143,7 @@ TEST(Lxr, ComesBackFromARealScene) {
   data.first_probe = p.first_point, data.probe = p.points;
   data.codec = HierarchicalCodec{
       std::move(*matrix),
-      make_coarse_scene(factors, cut.work.tree, p.area_m2, p.elements.reflectance, 64)};
+      make_coarse_scene(factors, cut.patched.tree, p.area_m2, p.elements.reflectance, 64)};
   const auto back = decode_lxr(encode_lxr(data), "a.lxr");
   ASSERT_TRUE(back) << back.error().message;
   expect_same(*back, data);
@@ -263,10 +263,10 @@ TEST(Lxr, SaysWhereAListIsTooLong) {
 
 /// What a player does with it; the sanitizers watch.
 void play(const RelightData& data) {
-  CodecWork work = make_work(data.codec, data.size());
+  CodecScratch scratch = make_scratch(data.codec, data.size());
   std::vector<Rgb> e(data.size()), of_place(data.target.transfer.size());
   const int bounces = std::min(data.bounces, 3);
-  irradiance_of(data.codec, {data.emission, data.reflectance, data.area_m2, bounces}, e, work);
+  irradiance_of(data.codec, {data.emission, data.reflectance, data.area_m2, bounces}, e, scratch);
   transfer(data.target.transfer, e, of_place);
 }
 

@@ -5,10 +5,24 @@
 namespace luxel::matrix {
 namespace {
 
-/// The part of params.max_error that unfinished bounces may have.
+/// The part of params.max_error that unfinished bounces may have. Errors of bounces and of blocks
+/// do not depend on each other, so that their squares add up: 0.6^2 + 0.8^2 = 1 leaves 0.8 of it to
+/// the blocks. A smaller part costs sweeps, and time; a larger one costs blocks, and memory.
 constexpr double kPartOfSweeps = 0.6;
+/// The first block_error that is tried, as a part of params.max_error. A row passes through many
+/// blocks, whose errors add up.
+constexpr float kFirstBlockError = 0.1f;
+/// Errors are about in proportion to block_error. The next one aims at this part of max_error, so
+/// that the step does not end just above it, ...
+constexpr float kAim = 0.9f;
+/// ... and is smaller by these factors: no less, because steps would get nowhere, and no more,
+/// because proportion holds nearby only, and a block_error that is too small costs memory.
+constexpr float kMostShrunk = 0.3f, kLeastShrunk = 0.8f;
+/// Steps from the first block_error; 0.8^5 = 0.33 and 0.3^5 = 0.002 of it.
+constexpr int kMaxSteps = 5;
 
-/// Of all_bounces.
+/// The sweeps of all_bounces: as many as keep to their part of the error. Counted bounces take
+/// none, and 2 stands in the file.
 int sweeps_of(const CodecInput& t, const RelightParams& params) {
   if (params.bounces >= 0) return 2;
   return enough_sweeps(t.prepared, t.coarse, t.trials, kPartOfSweeps * double(params.max_error));
@@ -17,25 +31,24 @@ int sweeps_of(const CodecInput& t, const RelightParams& params) {
 /// The coarsest hierarchy that keeps to params.max_error, as far as can be.
 Result<Codec> hierarchical_codec(const CodecInput& t, const RelightParams& params,
                                  Progress& progress) {
-  const Patches& patches = t.prepared.work.patches;
+  const Patches& patches = t.prepared.patched.patches;
   const int sweeps = sweeps_of(t, params);
   HierarchicalParams tried;
   tried.rays_per_patch = params.factors.rays_per_patch;
-  // What is lost is about in proportion to what blocks may lose: five steps from the first guess
-  // span more than a factor of ten.
-  tried.block_error = 0.1f * params.max_error;
+  tried.block_error = kFirstBlockError * params.max_error;
   for (int step = 0;; ++step) {
-    LUXEL_TRY(Hierarchical matrix, compress(t.prepared.factors, t.prepared.work.tree,
+    LUXEL_TRY(Hierarchical matrix, compress(t.prepared.factors, t.prepared.patched.tree,
                                             patches.centroid, patches.area_m2, tried, progress));
     Codec codec = HierarchicalCodec{std::move(matrix), t.coarse, sweeps};
     const double error = error_of(codec, t.trials, patches, params.bounces);
-    if (error <= double(params.max_error) || step == 5) return codec;
-    tried.block_error *= std::clamp(0.9f * params.max_error / float(error), 0.3f, 0.8f);
+    if (error <= double(params.max_error) || step == kMaxSteps) return codec;
+    tried.block_error *=
+        std::clamp(kAim * params.max_error / float(error), kMostShrunk, kLeastShrunk);
   }
 }
 
 Result<Codec> bc1_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
-  const Patches& patches = t.prepared.work.patches;
+  const Patches& patches = t.prepared.patched.patches;
   const int bounces = params.bounces == 0 ? 1 : params.bounces;
   LUXEL_TRY(const ColourMatrix all,
             make_reflections(t.prepared.factors, patches.elements.reflectance, patches.area_m2,
@@ -46,16 +59,18 @@ Result<Codec> bc1_codec(const CodecInput& t, const RelightParams& params, Progre
 
 /// The most eigenvectors: the small matrices of so many take as long as the large ones.
 constexpr uint32_t kMostRank = 768;
+/// The fewest that are tried: with 48 the Cornell box errs by 20 % (docs/method/relight.md).
+constexpr size_t kFirstRank = 48;
 
 /// The fewest eigenvectors, up to a factor of two, that keep to params.max_error, as far as can be.
 Result<Codec> low_rank_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
-  const Patches& patches = t.prepared.work.patches;
+  const Patches& patches = t.prepared.patched.patches;
   SpectrumParams wanted;
   wanted.count = uint32_t(std::min<size_t>(kMostRank, patches.size()));
   wanted.seed = params.patches.seed;
   LUXEL_TRY(const Spectrum spectrum,
             spectrum_of(t.prepared.factors, patches.area_m2, wanted, progress));
-  for (size_t rank = 48;; rank *= 2) {
+  for (size_t rank = kFirstRank;; rank *= 2) {
     rank = std::min(rank, spectrum.count());
     LUXEL_TRY(LowRank matrix, make_low_rank(spectrum, rank, patches.area_m2,
                                             patches.elements.reflectance, progress));
@@ -68,7 +83,7 @@ Result<Codec> low_rank_codec(const CodecInput& t, const RelightParams& params, P
 }  // namespace
 
 Result<Codec> make_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
-  const size_t patches = t.prepared.work.patches.size();
+  const size_t patches = t.prepared.patched.patches.size();
   const CodecKind kind = params.codec;
   if (looks_at_all_pairs(kind) && patches > kMaxDensePatches)
     return fail(ErrorCode::bad_setting,

@@ -14,8 +14,9 @@ struct CodecInput {
   const Trials& trials;  ///< of RelightParams::bounces
 };
 
-/// Of params.codec, as small as keeps to params.max_error of the trials, as far as can be. Errors:
-/// cancelled; a codec that cannot hold so many patches.
+/// The transport in the codec params.codec, as small as keeps to params.max_error (relative root
+/// mean square over the trials), as far as can be. Errors: cancelled; a codec that cannot hold so
+/// many patches.
 Result<Codec> make_codec(const CodecInput& t, const RelightParams& params, Progress& progress);
 
 }  // namespace luxel::matrix

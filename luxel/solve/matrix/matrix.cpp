@@ -58,7 +58,7 @@ double light_to_come(double change, double before, double largest_reflectance) {
 /// Root mean square of the standard errors that independent rays would have, over the mean light:
 /// of each ray the variance of what it sees. The rays are stratified, so it is less.
 double ray_error(const Prepared& prepared, const Solution& solution, int rays) {
-  const Patches& patches = prepared.work.patches;
+  const Patches& patches = prepared.patched.patches;
   const FormFactors& f = prepared.factors;
   std::vector<double> sent(patches.size());
   for (size_t j = 0; j < sent.size(); ++j)
@@ -88,20 +88,21 @@ uint64_t bytes_of_preparation(size_t patches, int rays_per_patch) {
   return entries * 4 * 8 + uint64_t(patches) * 4096;
 }
 
-bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer, const PatchWork& work,
-               const scene::SurfacePoint& p) {
+bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer,
+               const PatchedScene& patched, const scene::SurfacePoint& p) {
   const scene::Mesh& mesh = scene.meshes[scene.instances[p.instance].mesh];
-  return work.locator.is_hidden(scene::world_position(scene, p),
-                                scene::front_normal(scene, p.instance, p.triangle),
-                                mesh.triangle_material[p.triangle], tracer);
+  return patched.locator.is_hidden(scene::world_position(scene, p),
+                                   scene::front_normal(scene, p.instance, p.triangle),
+                                   mesh.triangle_material[p.triangle], tracer);
 }
 
 Result<Prepared> prepare(const scene::Scene& scene, const trace::RayTracer& tracer,
                          const MatrixParams& params, Progress& progress) {
   Prepared out;
-  LUXEL_TRY(out.work, make_patches(scene, tracer, params.patches, progress));
-  LUXEL_TRY(TracedFactors traced, trace_factors(scene, tracer, out.work, params.factors, progress));
-  out.factors = reciprocal(traced.factors, out.work.patches.area_m2);
+  LUXEL_TRY(out.patched, make_patches(scene, tracer, params.patches, progress));
+  LUXEL_TRY(TracedFactors traced,
+            trace_factors(scene, tracer, out.patched, params.factors, progress));
+  out.factors = reciprocal(traced.factors, out.patched.patches.area_m2);
   out.sky = std::move(traced.sky);
   out.rays = traced.rays;
   return out;
@@ -114,13 +115,13 @@ namespace {
 Result<std::vector<Rgb>> sky_light(const scene::Scene& scene, const light::Lights& lights,
                                    const trace::RayTracer& tracer, const Prepared& prepared,
                                    const Probes& probes, uint64_t seed, Progress& progress) {
-  const size_t n = prepared.work.patches.size();
+  const size_t n = prepared.patched.patches.size();
   std::vector<Rgb> sky(n);
   for (size_t i = 0; i < n; ++i) sky[i] = lights.around.background * (kPi * prepared.sky[i]);
   if (scene.environment.empty()) return sky;
   light::Lights map;
   map.around.limit = lights.around.limit;
-  light::DirectParams params{1, seed, false, kSkySamples};
+  const light::DirectParams params{.samples = 1, .seed = seed, .sky_samples = kSkySamples};
   LUXEL_TRY(const light::DirectLight soft,
             light::direct_light(scene, probes.elements, map, tracer, params, progress));
   for (size_t i = 0; i < n; ++i)
@@ -134,7 +135,7 @@ Result<std::vector<Rgb>> sky_light(const scene::Scene& scene, const light::Light
 Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
                        const trace::RayTracer& tracer, const Prepared& prepared,
                        const MatrixParams& params, Progress& progress) {
-  const Patches& patches = prepared.work.patches;
+  const Patches& patches = prepared.patched.patches;
   const size_t n = patches.size();
   const Probes probes = probes_of(patches);
   const int samples = std::max(kLeastSamples, params.direct_samples / int(Patches::kProbes));

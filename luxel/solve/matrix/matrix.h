@@ -20,7 +20,7 @@ struct MatrixParams {
 
 /// A scene prepared: everything that does not depend on its lights.
 struct Prepared {
-  PatchWork work;
+  PatchedScene patched;
   FormFactors factors;     ///< reciprocal
   std::vector<float> sky;  ///< per patch: the share of its hemisphere that is background
   uint64_t rays = 0;
@@ -34,8 +34,8 @@ Result<Prepared> prepare(const scene::Scene& scene, const trace::RayTracer& trac
                          const MatrixParams& params, Progress& progress);
 
 /// Whether a point lies inside a solid.
-bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer, const PatchWork& work,
-               const scene::SurfacePoint& p);
+bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer,
+               const PatchedScene& patched, const scene::SurfacePoint& p);
 
 struct Solution {
   std::vector<Rgb> direct;    ///< per patch: E straight from lights, without the background

@@ -56,26 +56,26 @@ inline double sum_of(std::span<const float> v) {
 struct Cut {
   scene::Scene scene;
   trace::RayTracer tracer;
-  PatchWork work;
+  PatchedScene patched;
 
   Cut(scene::Scene s, size_t count, int points = 48, uint64_t seed = 1)
       : scene(std::move(s)), tracer(*trace::RayTracer::build(scene)) {
     Progress progress;
     auto made = make_patches(scene, tracer, {count, points, seed}, progress);
     EXPECT_TRUE(made) << made.error().message;
-    if (made) work = std::move(*made);
+    if (made) patched = std::move(*made);
   }
-  const Patches& patches() const { return work.patches; }
-  size_t size() const { return work.patches.size(); }
+  const Patches& patches() const { return patched.patches; }
+  size_t size() const { return patched.patches.size(); }
 
   TracedFactors traced(int rays) const {
     Progress progress;
-    auto out = trace_factors(scene, tracer, work, {rays, 1}, progress);
+    auto out = trace_factors(scene, tracer, patched, {rays, 1}, progress);
     EXPECT_TRUE(out);
     return out ? std::move(*out) : TracedFactors{};
   }
   FormFactors reciprocal_factors(int rays) const {
-    return reciprocal(traced(rays).factors, work.patches.area_m2);
+    return reciprocal(traced(rays).factors, patched.patches.area_m2);
   }
 };
 

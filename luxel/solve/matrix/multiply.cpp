@@ -132,31 +132,33 @@ void receive_leaves(const Hierarchical& m, std::span<const Rgb> radiosity,
 
 }  // namespace
 
-HierarchicalWork make_work(const Hierarchical& matrix) {
-  HierarchicalWork work;
-  work.sent.resize(matrix.clusters.size()), work.received.resize(matrix.clusters.size());
-  work.spread.resize(matrix.clusters.size());
-  return work;
+HierarchicalScratch make_scratch(const Hierarchical& matrix) {
+  HierarchicalScratch scratch;
+  scratch.sent.resize(matrix.clusters.size()), scratch.received.resize(matrix.clusters.size());
+  scratch.spread.resize(matrix.clusters.size());
+  return scratch;
 }
 
 void multiply(const Hierarchical& m, std::span<const Rgb> radiosity, std::span<Rgb> irradiance,
-              HierarchicalWork& work) {
+              HierarchicalScratch& scratch) {
   LUXEL_CHECK(radiosity.size() == m.size() && irradiance.size() == m.size());
   const size_t clusters = m.clusters.size();
   const auto send = [&](size_t begin, size_t end) {
-    send_leaves(m, radiosity, begin, end, work.sent);
+    send_leaves(m, radiosity, begin, end, scratch.sent);
   };
   parallel_for(clusters, 512, std::ref(send));
-  send_up(m, work.sent);
-  const auto widen = [&](size_t begin, size_t end) { spread(work.sent, begin, end, work.spread); };
+  send_up(m, scratch.sent);
+  const auto widen = [&](size_t begin, size_t end) {
+    spread(scratch.sent, begin, end, scratch.spread);
+  };
   parallel_for(clusters, 512, std::ref(widen));
   const auto far = [&](size_t begin, size_t end) {
-    receive_far(m, work.spread, begin, end, work.received);
+    receive_far(m, scratch.spread, begin, end, scratch.received);
   };
   parallel_for(clusters, 64, std::ref(far));
-  hand_down(m, work.received);
+  hand_down(m, scratch.received);
   const auto leaves = [&](size_t begin, size_t end) {
-    receive_leaves(m, radiosity, work.received, begin, end, irradiance);
+    receive_leaves(m, radiosity, scratch.received, begin, end, irradiance);
   };
   parallel_for(clusters, 128, std::ref(leaves));
 }

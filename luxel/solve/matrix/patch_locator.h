@@ -1,4 +1,4 @@
-// Which patch does a ray meet?
+// The patch that a ray meets, found by place, direction and material.
 #pragma once
 
 #include <cstdint>

@@ -31,6 +31,7 @@ std::vector<Sample> spread(const scene::Scene& scene, size_t count, uint64_t see
     const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     return uint64_t(instance) << 32 | mesh.triangle_material[triangle];
   };
+  // The area of each surface (instance and material), and its points.
   struct Surface {
     double area_m2 = 0;
     size_t points = 0;
@@ -49,9 +50,11 @@ std::vector<Sample> spread(const scene::Scene& scene, size_t count, uint64_t see
       if (area > s.largest_m2) s.largest_m2 = area, s.middle = {i, t, {1.0f / 3, 1.0f / 3}};
     }
   for (const scene::SurfacePoint& p : points) ++surfaces[key(p.instance, p.triangle)].points;
+  // A surface that no point fell on gets one.
   for (const uint64_t k : order)
     if (Surface& s = surfaces[k]; s.points == 0 && s.largest_m2 > 0)
       points.push_back(s.middle), ++s.points;
+  // Samples on the front, and on the back of double-sided surfaces.
   std::vector<Sample> out;
   for (const scene::SurfacePoint& p : points) {
     const Vec3 normal = scene::front_normal(scene, p.instance, p.triangle);
@@ -71,10 +74,26 @@ std::vector<Sample> spread(const scene::Scene& scene, size_t count, uint64_t see
   return out;
 }
 
-/// Walls at the scene's bounds, and others at round distances from them, lie inside voxels, not
-/// between two.
+/// The grid begins this far outside of the scene's bounds, in voxels. Walls at the bounds, and
+/// others at a whole number of voxels from them, then lie inside of voxels: between two, rounding
+/// would scatter their points over both. Three numbers, so that no two axes are cut alike in a
+/// cube.
+constexpr Vec3 kGridInset{0.37f, 0.43f, 0.31f};
+/// Groups of less than this part of a patch's area are slivers when voxels are chosen:
+/// merge_slivers joins most of them to others, so they are not counted.
+constexpr double kSliver = 0.25;
+/// Patches of less than this part of the mean area join a neighbour: they cost as much as others
+/// and carry little, and rays seldom find them. More would join patches of different light.
+constexpr double kSmall = 0.35;
+/// No patch becomes larger by that than this many times the mean.
+constexpr double kLarge = 1.6;
+/// The count of patches may be off by so much, a few percent that no error shows; every attempt
+/// cuts the whole scene anew.
+constexpr double kFewest = 0.93, kMost = 1.07;
+constexpr int kMaxRetries = 3;
+
 VoxelGrid grid_of(const scene::Scene& scene, float voxel_m) {
-  const Vec3 inset = Vec3{0.37f, 0.43f, 0.31f} * voxel_m;
+  const Vec3 inset = kGridInset * voxel_m;
   return {voxel_m, scene::world_bounds(scene).lower - inset};
 }
 
@@ -88,7 +107,7 @@ uint32_t main_direction(Vec3 n) {
 float voxel_for(const scene::Scene& scene, std::span<const Sample> samples, size_t count) {
   double area = 0;
   for (const Sample& s : samples) area += double(s.area_m2);
-  const double sliver = 0.25 * area / double(count);
+  const double sliver = kSliver * area / double(count);
   const auto groups = [&](float voxel_m) {
     const VoxelGrid grid = grid_of(scene, voxel_m);
     std::unordered_map<uint64_t, float> areas;
@@ -98,6 +117,8 @@ float voxel_for(const scene::Scene& scene, std::span<const Sample> samples, size
     return size_t(std::count_if(areas.begin(), areas.end(),
                                 [&](const auto& a) { return double(a.second) > sliver; }));
   };
+  // From a side whose square is a patch down to where there are enough groups. Then halving, by
+  // ratios: 12 steps find the size to within 2^-12 of the logarithm of the range.
   const Box3 bounds = scene::world_bounds(scene);
   float large = length(bounds.upper - bounds.lower), small = float(std::sqrt(area / double(count)));
   while (groups(small) < count && small > 1e-4f * large) small *= 0.7f;
@@ -180,6 +201,7 @@ bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer,
 Result<std::vector<Part>> make_parts(const scene::Scene& scene, std::span<const Sample> samples,
                                      const VoxelGrid& grid, const trace::RayTracer& tracer,
                                      Progress& progress) {
+  // Samples by voxel.
   std::vector<uint64_t> voxel(samples.size());
   for (size_t s = 0; s < samples.size(); ++s) voxel[s] = voxel_of(grid, samples[s].at.position);
   std::vector<uint32_t> order(samples.size());
@@ -190,6 +212,7 @@ Result<std::vector<Part>> make_parts(const scene::Scene& scene, std::span<const 
   for (size_t k = 0; k < order.size(); ++k)
     if (k == 0 || voxel[order[k]] != voxel[order[k - 1]]) first.push_back(k);
   first.push_back(order.size());
+  // Each voxel's, divided.
   std::vector<std::vector<Part>> found(first.size() - 1);
   progress.begin("patches", found.size());
   parallel_for(found.size(), 64, [&](size_t begin, size_t end) {
@@ -219,6 +242,7 @@ std::vector<uint32_t> merge_slivers(std::span<const Part> parts, const VoxelGrid
   for (uint32_t p = 0; p < parts.size(); ++p)
     known.push_back({parts[p].middle, parts[p].material, p}), voxel.push_back(parts[p].voxel);
   const PatchLocator locator(grid, voxel, known);
+  // A forest of parts that are joined; the smallest are asked first.
   std::vector<uint32_t> root(parts.size()), order(parts.size());
   std::iota(root.begin(), root.end(), 0u), std::iota(order.begin(), order.end(), 0u);
   std::vector<double> area(parts.size());
@@ -233,7 +257,8 @@ std::vector<uint32_t> merge_slivers(std::span<const Part> parts, const VoxelGrid
   for (const uint32_t p : order) {
     const uint32_t mine = root_of(p);
     if (parts[p].hidden) continue;
-    if (area[mine] > 0.35 * mean_area_m2) continue;
+    if (area[mine] > kSmall * mean_area_m2) continue;
+    // The nearest part that is alike, seen, and leaves the two together small enough.
     const PatchPoint& middle = parts[p].middle;
     locator.near(middle.position, 1, near);
     uint32_t best = kNone;
@@ -241,7 +266,7 @@ std::vector<uint32_t> merge_slivers(std::span<const Part> parts, const VoxelGrid
     for (const uint32_t q : near) {
       const Vec3 d = parts[q].middle.position - middle.position;
       if (root_of(q) == mine || parts[q].hidden || parts[q].material != parts[p].material ||
-          dot(d, d) >= least || area[root_of(q)] + area[mine] > 1.6 * mean_area_m2 ||
+          dot(d, d) >= least || area[root_of(q)] + area[mine] > kLarge * mean_area_m2 ||
           dot(parts[q].middle.normal, middle.normal) < kSameDirection ||
           !see_each_other(tracer, middle, parts[q].middle, grid.voxel_m))
         continue;
@@ -250,6 +275,7 @@ std::vector<uint32_t> merge_slivers(std::span<const Part> parts, const VoxelGrid
     if (best == kNone) continue;
     root[mine] = best, area[best] += area[mine];
   }
+  // Roots become patches.
   std::vector<uint32_t> number(parts.size(), kNone), patch(parts.size());
   uint32_t count = 0;
   for (uint32_t p = 0; p < parts.size(); ++p) {
@@ -299,8 +325,9 @@ size_t count_of(std::span<const uint32_t> patch_of_part) {
   return count;
 }
 
-PatchWork assemble(std::span<const Sample> samples, std::span<const Part> parts,
-                   std::span<const uint32_t> patch_of_part, const VoxelGrid& grid) {
+PatchedScene assemble(std::span<const Sample> samples, std::span<const Part> parts,
+                      std::span<const uint32_t> patch_of_part, const VoxelGrid& grid) {
+  // The samples of each patch.
   std::vector<Part> whole(count_of(patch_of_part));
   for (size_t p = 0; p < parts.size(); ++p) {
     if (patch_of_part[p] == kNone) continue;
@@ -308,7 +335,8 @@ PatchWork assemble(std::span<const Sample> samples, std::span<const Part> parts,
     all.insert(all.end(), parts[p].samples.begin(), parts[p].samples.end());
   }
   for (Part& part : whole) find_middle(samples, part);
-  PatchWork out;
+  // Patches in the order of their tree.
+  PatchedScene out;
   out.tree = order_by_tree(whole);
   std::vector<uint32_t> number(whole.size());
   out.patches.voxel_m = grid.voxel_m;
@@ -317,6 +345,7 @@ PatchWork assemble(std::span<const Sample> samples, std::span<const Part> parts,
     number[out.tree.order[k]] = k, out.tree.order[k] = k;
   }
   out.patches.first_point.push_back(uint32_t(out.patches.points.size()));
+  // What rays find them by.
   std::vector<PatchLocator::Part> known;
   std::vector<uint64_t> voxel;
   for (size_t p = 0; p < parts.size(); ++p) {
@@ -330,8 +359,8 @@ PatchWork assemble(std::span<const Sample> samples, std::span<const Part> parts,
 
 }  // namespace
 
-Result<PatchWork> make_patches(const scene::Scene& scene, const trace::RayTracer& tracer,
-                               const PatchParams& params, Progress& progress) {
+Result<PatchedScene> make_patches(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                  const PatchParams& params, Progress& progress) {
   LUXEL_CHECK(params.points_per_patch >= 1);
   if (params.count < 1 || params.count > kMaxPatches)
     return fail(ErrorCode::bad_setting, "{} patches are asked for; ask for 1 to {}", params.count,
@@ -358,8 +387,9 @@ Result<PatchWork> make_patches(const scene::Scene& scene, const trace::RayTracer
           ErrorCode::bad_input,
           "every surface of the scene lies inside a solid; do its triangles show their backs?");
     const double ratio = double(count) / double(params.count);
-    if (attempt == 3 || (ratio > 0.93 && ratio < 1.07))
+    if (attempt == kMaxRetries || (ratio > kFewest && ratio < kMost))
       return assemble(samples, parts, patch, grid);
+    // Surfaces have as many patches as squares of the voxels' size.
     voxel_m *= float(std::sqrt(std::clamp(ratio, 0.5, 2.0)));
   }
 }

@@ -55,7 +55,9 @@ struct Patches {
 /// Leaves of the tree over the patches.
 inline constexpr uint32_t kLeafSize = 8;
 
-struct PatchWork {
+/// A scene cut into patches, and what finds them: clusters by place and direction, rays by what
+/// they meet.
+struct PatchedScene {
   Patches patches;  ///< in the order of the tree
   ClusterTree tree;
   PatchLocator locator;
@@ -64,7 +66,7 @@ struct PatchWork {
 /// Spreads points over the scene's surfaces, groups them by voxel, material and direction, splits
 /// groups whose points do not see each other, and merges slivers into neighbours. The voxels are as
 /// large as gives about params.count patches. Errors: no surface, bad count, cancelled.
-Result<PatchWork> make_patches(const scene::Scene& scene, const trace::RayTracer& tracer,
-                               const PatchParams& params, Progress& progress);
+Result<PatchedScene> make_patches(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                  const PatchParams& params, Progress& progress);
 
 }  // namespace luxel::matrix

@@ -42,9 +42,9 @@ TEST(Patches, FillTheirArraysAndTree) {
   ASSERT_EQ(p.emission.size(), p.size());
   ASSERT_EQ(p.first_point.size(), p.size() + 1);
   EXPECT_EQ(p.first_point.back(), p.points.size());
-  ASSERT_EQ(cut.work.tree.order.size(), p.size());
+  ASSERT_EQ(cut.patched.tree.order.size(), p.size());
   for (uint32_t k = 0; k < p.size(); ++k) {
-    EXPECT_EQ(cut.work.tree.order[k], k);
+    EXPECT_EQ(cut.patched.tree.order[k], k);
     EXPECT_GT(p.area_m2[k], 0);
     EXPECT_GE(p.points_of(k).size(), 1u);
     EXPECT_NEAR(length(p.elements.normal[k]), 1, 1e-5);
@@ -154,7 +154,7 @@ TEST(Patches, ReflectWhatTheirTextureDoes) {
 }
 
 bool is_hidden_on_floor(const Cut& cut, float x, float z) {
-  return cut.work.locator.is_hidden({x, 0, z}, {0, 1, 0}, 0, cut.tracer);
+  return cut.patched.locator.is_hidden({x, 0, z}, {0, 1, 0}, 0, cut.tracer);
 }
 
 TEST(Patches, FloorInsideASolidIsInNone) {
@@ -183,7 +183,7 @@ TEST(PatchLocator, FindsEachPatchFromItsPoints) {
     for (uint32_t k = 0; k < cut.size(); ++k)
       for (const PatchPoint& p : cut.patches().points_of(k))
         for (uint32_t m = 0; m < scene.materials.size(); ++m, ++points)
-          found += cut.work.locator.locate(p.position, p.normal, m, cut.tracer) == k;
+          found += cut.patched.locator.locate(p.position, p.normal, m, cut.tracer) == k;
     // Each point is of one material. Where parts of a voxel look alike and both are in sight, the
     // first one is taken: 2 % of points at the most.
     points /= scene.materials.size();
@@ -196,13 +196,13 @@ TEST(PatchLocator, TellsTheFloorsBesideAWallApart) {
   for (int k = 0; k < 200; ++k)
     for (const float x : {-0.02f, 0.02f}) {
       const Vec3 at{x, 0, (float(k) + 0.5f) / 200};
-      const uint32_t patch = cut.work.locator.locate(at, {0, 1, 0}, 0, cut.tracer);
+      const uint32_t patch = cut.patched.locator.locate(at, {0, 1, 0}, 0, cut.tracer);
       ASSERT_NE(patch, kNone);
       EXPECT_GT(x * cut.patches().centroid[patch].x, 0) << at.x << ", " << at.z;
     }
 }
 
-Result<PatchWork> try_to_cut(const scene::Scene& scene, size_t count, bool cancelled = false) {
+Result<PatchedScene> try_to_cut(const scene::Scene& scene, size_t count, bool cancelled = false) {
   const auto tracer = trace::RayTracer::build(scene);
   Progress progress;
   if (cancelled) progress.request_cancel();
@@ -225,9 +225,9 @@ TEST(Patches, PassTrianglesWithoutArea) {
   scene::Mesh mesh;
   scene::add_triangle(mesh, {0, 1, 0}, {1, 1, 0}, {0.5f, 1, 0}, 0);
   scene::place(scene, std::move(mesh));
-  const auto work = try_to_cut(scene, 100);
-  ASSERT_TRUE(work);
-  EXPECT_NEAR(testing::sum_of(work->patches.area_m2), 1, kFloatSum);
+  const auto patched = try_to_cut(scene, 100);
+  ASSERT_TRUE(patched);
+  EXPECT_NEAR(testing::sum_of(patched->patches.area_m2), 1, kFloatSum);
 }
 
 TEST(Patches, LeaveOutWhatLiesInASolid) {
@@ -245,22 +245,22 @@ TEST(Patches, LeaveOutWhatLiesInASolid) {
 
 TEST(Patches, RefuseABadCount) {
   for (const size_t count : {size_t(0), kMaxPatches + 1}) {
-    const auto work = try_to_cut(testing::plate(), count);
-    ASSERT_FALSE(work);
-    EXPECT_EQ(work.error().code, ErrorCode::bad_setting);
+    const auto patched = try_to_cut(testing::plate(), count);
+    ASSERT_FALSE(patched);
+    EXPECT_EQ(patched.error().code, ErrorCode::bad_setting);
   }
 }
 
 TEST(Patches, CanBeCancelled) {
-  const auto work = try_to_cut(testing::plate(), 100, true);
-  ASSERT_FALSE(work);
-  EXPECT_EQ(work.error().code, ErrorCode::cancelled);
+  const auto patched = try_to_cut(testing::plate(), 100, true);
+  ASSERT_FALSE(patched);
+  EXPECT_EQ(patched.error().code, ErrorCode::cancelled);
 }
 
 TEST(Patches, SameBitsForAnyNumberOfThreads) {
   const auto cut = [](int threads) {
     const ThreadLimit limit(threads);
-    return Cut(scene::cornell_box(), 400, 24).work.patches;
+    return Cut(scene::cornell_box(), 400, 24).patched.patches;
   };
   const Patches one = cut(1);
   for (const int threads : {2, 7}) {
@@ -274,8 +274,8 @@ TEST(Patches, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Patches, AnotherSeedIsAnotherCut) {
-  EXPECT_NE(Cut(testing::plate(), 50, 24, 1).work.patches.elements.position,
-            Cut(testing::plate(), 50, 24, 2).work.patches.elements.position);
+  EXPECT_NE(Cut(testing::plate(), 50, 24, 1).patched.patches.elements.position,
+            Cut(testing::plate(), 50, 24, 2).patched.patches.elements.position);
 }
 
 }  // namespace

@@ -38,14 +38,15 @@ Occluders occluders_of(const scene::Scene& scene) {
 Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::RayTracer& tracer,
                                       Target target, const RelightParams& params,
                                       Progress& progress) {
-  for (const scene::PunctualLight& lamp : scene.lights)
-    if (lamp.profile != scene::kNone)
+  for (const scene::PunctualLight& light : scene.lights)
+    if (light.profile != scene::kNone)
       return fail(ErrorCode::bad_setting,
                   "light '{}' has a light profile, which .lxr files do not keep; leave it out",
-                  lamp.name);
-  LUXEL_TRY(const Prepared prepared,
-            prepare(scene, tracer, {params.patches, params.factors}, progress));
-  const Patches& patches = prepared.work.patches;
+                  light.name);
+  LUXEL_TRY(
+      const Prepared prepared,
+      prepare(scene, tracer, {.patches = params.patches, .factors = params.factors}, progress));
+  const Patches& patches = prepared.patched.patches;
   RelightData out;
   take_patches(patches, out);
   out.sky = prepared.sky, out.bounces = params.bounces;
@@ -53,14 +54,14 @@ Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::Ra
   for (const scene::Material& m : scene.materials) out.material_name.push_back(m.name);
   progress.begin("coarse scene", 0);
   const CoarseScene coarse =
-      make_coarse_scene(prepared.factors, prepared.work.tree, patches.area_m2,
+      make_coarse_scene(prepared.factors, prepared.patched.tree, patches.area_m2,
                         patches.elements.reflectance, kCoarseClusters);
   LUXEL_TRY(const Trials trials,
             make_trials(scene, tracer, prepared, coarse,
                         {.bounces = params.bounces, .seed = params.patches.seed}, progress));
   LUXEL_TRY(out.codec, make_codec({prepared, coarse, trials}, params, progress));
   out.codec_error = error_of(out.codec, trials, patches, params.bounces);
-  LUXEL_TRY(target.transfer, make_transfer(prepared.work, tracer,
+  LUXEL_TRY(target.transfer, make_transfer(prepared.patched, tracer,
                                            {target.position, target.geometric_normal}, progress));
   out.target = std::move(target);
   out.occluders = occluders_of(scene);

@@ -31,7 +31,7 @@ struct RelightParams {
 };
 
 /// Everything but RelightData::scene_glb. `target` is where light is wanted, its transfer still
-/// empty. Errors: no surface, a lamp with a profile, cancelled, a codec that cannot hold so many
+/// empty. Errors: no surface, a light with a profile, cancelled, a codec that cannot hold so many
 /// patches.
 Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::RayTracer& tracer,
                                       Target target, const RelightParams& params,

@@ -10,7 +10,7 @@ namespace luxel::matrix {
 /// clusters make a tree, numbers are finite and in their ranges. Errors: the first that is wrong.
 Status check(const RelightData& data);
 
-// Of its parts. `patches` is their number.
+/// Checks of its parts, one function each. `patches` is their number. Errors as above.
 Status check(const HierarchicalCodec& codec, size_t patches);
 Status check(const DenseCodec& codec, size_t patches);
 Status check(const Bc1Codec& codec, size_t patches);

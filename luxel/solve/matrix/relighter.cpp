@@ -47,7 +47,7 @@ struct Relighter::Impl {
   std::vector<Rgb> mean_emission;  ///< B_e per material, as baked
   std::vector<Vec3> probe_position, probe_normal;
 
-  CodecWork work;
+  CodecScratch scratch;
   std::vector<Rgb> at_probe, sent;
 
   // Three results: one is written, one is read, and the third is the latest complete one, which
@@ -70,7 +70,7 @@ void Relighter::Impl::make_room() {
   mean_emission = mean_emission_of(data);
   for (const PatchPoint& p : data.probe)
     probe_position.push_back(p.position), probe_normal.push_back(p.normal);
-  work = make_work(data.codec, data.size());
+  scratch = make_scratch(data.codec, data.size());
   at_probe.resize(data.probe.size()), sent.resize(data.size());
   const size_t places = data.target.position.size();
   for (Relit& r : result) {
@@ -100,7 +100,7 @@ void Relighter::Impl::bounces(const RelightLights& lights, Relit& out) {
     sent[i] = own + data.reflectance[i] * (out.direct[i] + sky);
   }
   irradiance_of(data.codec, {sent, data.reflectance, data.area_m2, data.bounces}, out.indirect,
-                work);
+                scratch);
   for (size_t i = 0; i < data.size(); ++i)
     out.indirect[i] += lights.background * (kPi * data.sky[i]);
 }

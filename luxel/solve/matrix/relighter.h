@@ -1,4 +1,4 @@
-// Light that moves: an .lxr file's scene, relit as often as its lamps change.
+// Light that moves: an .lxr file's scene, relit as often as its lights change.
 #pragma once
 
 #include <memory>
@@ -30,8 +30,8 @@ struct Relit {
 };
 
 struct RelighterParams {
-  /// Direct light at places, too, by a shadow ray per place and lamp; for programs that do not draw
-  /// direct light themselves.
+  /// Direct light at places, too, by a shadow ray per place and light; for programs that do not
+  /// draw direct light themselves.
   bool direct_at_places = false;
 };
 
@@ -39,7 +39,7 @@ struct RelighterParams {
 ///
 ///     LUXEL_TRY(RelightData data, read_lxr("scene.lxr"));
 ///     LUXEL_TRY(Relighter relighter, Relighter::make(std::move(data), {}));
-///     relighter.update({lamps});                   // thread A, per frame
+///     relighter.update({lights});                  // thread A, per frame
 ///     show(relighter.latest().indirect_at_place);  // thread B
 class Relighter {
  public:

@@ -30,7 +30,7 @@ Rgb plain_light_at(const Stage& stage, const PatchPoint& at, const scene::Punctu
   return lamp.intensity * (along / (d2 * std::sqrt(d2)));
 }
 
-/// The same light without codecs: plain products until nothing is left to come.
+/// Light without codecs: plain products until nothing is left to come.
 struct Answer {
   std::vector<Rgb> direct, indirect;
 };

@@ -15,7 +15,9 @@ namespace {
 constexpr Eigen::Index kBlocks = 16;
 /// Rows between two looks at whether to stop.
 constexpr Eigen::Index kRows = 256;
-/// Of the largest pivot, a square: columns of 32-bit floats that differ by less do not differ.
+/// The least pivot that counts, as a part of the largest one. Pivots are squares of lengths:
+/// columns of 32-bit floats, which are rounded by 6e-8, differ by no more than noise below
+/// sqrt(1e-11) = 3e-6.
 constexpr double kSmallestPivot = 1e-11;
 
 /// m such that a m is orthonormal, a^T a being `gram`. Eigen's own pivots look at the diagonal as

@@ -7,29 +7,29 @@
 
 namespace luxel::matrix {
 
-/// Where light is wanted: texels, vertices, any points of surfaces.
-struct Places {
+/// Surface points where light is wanted: of texels, of vertices, any [m; unit normals].
+struct SurfacePoints {
   std::span<const Vec3> position, normal;
 };
 
-/// A linear map from light per patch to light per place.
+/// A linear map from light per patch to light per point.
 struct Transfer {
-  std::vector<uint32_t> first;  ///< per place, one extra entry
+  std::vector<uint32_t> first;  ///< per point, one extra entry
   std::vector<uint32_t> patch;
-  std::vector<float> weight;  ///< those of a place sum to 1
+  std::vector<float> weight;  ///< those of a point sum to 1
 
   size_t size() const { return first.empty() ? 0 : first.size() - 1; }
 };
 
-/// At each place the value of a plane fitted to the patches around it, the nearer ones weighing
+/// At each point the value of a plane fitted to the patches around it, the nearer ones weighing
 /// more [Lancaster81, moving least squares]: constant and linear light is kept, and no border of a
-/// voxel shows. Only patches that face the same way and that the place sees take part, so that
-/// nothing leaks through a wall or round an edge. A place without any takes the nearest. Errors:
+/// voxel shows. Only patches that face the same way and that the point sees take part, so that
+/// nothing leaks through a wall or round an edge. A point without any takes the nearest. Errors:
 /// cancelled.
-Result<Transfer> make_transfer(const PatchWork& work, const trace::RayTracer& tracer,
-                               const Places& places, Progress& progress);
+Result<Transfer> make_transfer(const PatchedScene& patched, const trace::RayTracer& tracer,
+                               const SurfacePoints& points, Progress& progress);
 
-/// Light per place, never below zero. Allocates nothing.
-void transfer(const Transfer& map, std::span<const Rgb> of_patch, std::span<Rgb> of_place);
+/// Light per point, never below zero. Allocates nothing.
+void transfer(const Transfer& map, std::span<const Rgb> of_patch, std::span<Rgb> of_point);
 
 }  // namespace luxel::matrix

@@ -18,7 +18,7 @@ struct Points {
 
 Transfer made(const Cut& cut, const Points& at) {
   Progress progress;
-  auto out = make_transfer(cut.work, cut.tracer, {at.position, at.normal}, progress);
+  auto out = make_transfer(cut.patched, cut.tracer, {at.position, at.normal}, progress);
   EXPECT_TRUE(out);
   return out ? std::move(*out) : Transfer{};
 }
@@ -171,7 +171,7 @@ TEST(Transfer, CanBeCancelled) {
   const Points at = floor_grid(4, {0, 1, 0, 1});
   Progress progress;
   progress.request_cancel();
-  const auto map = make_transfer(cut.work, cut.tracer, {at.position, at.normal}, progress);
+  const auto map = make_transfer(cut.patched, cut.tracer, {at.position, at.normal}, progress);
   ASSERT_FALSE(map);
   EXPECT_EQ(map.error().code, ErrorCode::cancelled);
 }

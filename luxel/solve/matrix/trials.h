@@ -17,9 +17,9 @@ struct Trials {
   std::vector<std::vector<Rgb>> sent, irradiance;  ///< per trial, per patch
 };
 
-/// Lamps in the open, each between a patch and what a ray from there meets: what patches reflect of
-/// each at first, and the irradiance that all of them get from each other of that, converged.
-/// Errors: cancelled.
+/// Punctual lights in the open, each between a patch and what a ray from there meets: what patches
+/// reflect of each at first, and the irradiance that all of them get from each other of that,
+/// converged. Errors: cancelled.
 Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tracer,
                            const Prepared& prepared, const CoarseScene& coarse,
                            const TrialParams& params, Progress& progress);

@@ -20,10 +20,10 @@ struct Sphere {
 
   Sphere() {
     Progress progress;
-    prepared.work = std::move(cut.work);
-    const Patches& patches = prepared.work.patches;
+    prepared.patched = std::move(cut.patched);
+    const Patches& patches = prepared.patched.patches;
     prepared.factors = sphere_factors(patches.area_m2);
-    coarse = make_coarse_scene(prepared.factors, prepared.work.tree, patches.area_m2,
+    coarse = make_coarse_scene(prepared.factors, prepared.patched.tree, patches.area_m2,
                                patches.elements.reflectance, 16);
     auto made = make_trials(cut.scene, cut.tracer, prepared, coarse, {.count = 3}, progress);
     EXPECT_TRUE(made);
@@ -34,7 +34,7 @@ struct Sphere {
 // Irradiance is the same everywhere: E = (sum A B / A) / (1 - rho) for all bounces.
 TEST(MatrixTrials, LightOfASphereIsItsMeanOverWhatIsLost) {
   const Sphere sphere;
-  const Patches& patches = sphere.prepared.work.patches;
+  const Patches& patches = sphere.prepared.patched.patches;
   ASSERT_EQ(sphere.trials.sent.size(), 3u);
   for (size_t t = 0; t < 3; ++t) {
     double sent = 0;
@@ -66,7 +66,7 @@ TEST(MatrixTrials, TwoSweepsAreEnoughForASphere) {
 // Half the factors, and one bounce: half the light.
 TEST(MatrixTrials, CodecThatHalvesLightErrsByHalf) {
   const Sphere sphere;
-  const Patches& patches = sphere.prepared.work.patches;
+  const Patches& patches = sphere.prepared.patched.patches;
   Progress progress;
   const auto trials = make_trials(sphere.cut.scene, sphere.cut.tracer, sphere.prepared,
                                   sphere.coarse, {.count = 3, .bounces = 1}, progress);

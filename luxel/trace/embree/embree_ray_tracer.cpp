@@ -175,7 +175,7 @@ RTCGeometry RayTracer::Impl::new_triangles(const scene::Scene& scene, const scen
                  [&](Vec3 p) { return transform_point(map, p); });
   auto* corners = static_cast<std::array<uint32_t, 3>*>(indices);
   std::copy(mesh.triangles.begin(), mesh.triangles.end(), corners);
-  // Of two sides of one sheet rays meet the first, which stands for both: Embree leaves out
+  // Rays meet the first of two sides of one sheet, which stands for both: Embree leaves out
   // triangles of vertices that there are not.
   for (uint32_t t = 0; t < mesh.other_side.size(); ++t)
     if (mesh.other_side[t] < t) corners[t] = {UINT32_MAX, UINT32_MAX, UINT32_MAX};
@@ -236,7 +236,7 @@ bool RayTracer::Impl::add_instance(const scene::Scene& scene, uint32_t index) {
 
 namespace {
 
-/// Which meshes are stored once for all their instances.
+/// Per mesh: whether it is stored once for all its instances.
 std::vector<bool> shared_meshes(const scene::Scene& scene, size_t max_flat_triangles) {
   std::vector<uint32_t> uses(scene.meshes.size());
   for (const scene::Instance& instance : scene.instances) ++uses[instance.mesh];
@@ -300,12 +300,14 @@ void RayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
   LUXEL_CHECK(rays.size() == hits.size());
   Query query{packet_context(packets == Packets::bundles && !impl_->has_shared_meshes)};
   for (size_t first = 0; first < rays.size(); first += kPacket) {
+    // 16 rays at a time.
     alignas(64) int valid[kPacket];
     RTCRayHit16 packet;
     const unsigned count = load_packet(rays.subspan(first), valid, packet.ray);
     for (unsigned i = 0; i < kPacket; ++i)
       packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect16(valid, impl_->top, &query.context, &packet);
+    // What they hit, and whether it shows its front.
     for (unsigned i = 0; i < count; ++i) {
       Hit& hit = hits[first + i];
       if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {

@@ -1,4 +1,4 @@
-#include "luxel/solve/hierarchical/lamps.h"
+#include "luxel/solve/hierarchical/unlinked_lights.h"
 
 #include <algorithm>
 
@@ -10,14 +10,18 @@
 namespace luxel::hierarchical {
 namespace {
 
+/// Rays per point towards the sky. A border crosses about sqrt(256) cells of their grid, so E comes
+/// in steps of some 1/256 of the sky's.
 constexpr uint32_t kSkyRays = 256;
-/// Light is not known better than what so many rays bring: differences below that are none.
+/// Light is not known better than what so many rays bring: differences below that are none. A
+/// border of 16 cells errs by about sqrt(16) = 4 rays. With fewer, leaves would be divided for
+/// these steps.
 constexpr float kUnsureRays = 4;
-/// Points of a leaf of the unit's area at which lamps are looked for, at least, so that no patch of
-/// sun is missed.
+/// Points of a leaf of the unit's area at which lights are looked for, at least, so that no patch
+/// of sun of an eighth of its length is missed. Smaller leaves have fewer, by their area.
 constexpr double kPoints = 64;
 
-/// Where lamps are looked for on a leaf: at Gauss's points, which are corners of a smaller copy of
+/// Where lights are looked for on a leaf: at Gauss's points, which are corners of a smaller copy of
 /// it, and on a grid, as fine as the leaf is large.
 struct Probe {
   uint32_t corners = 4;
@@ -29,12 +33,14 @@ struct Probe {
 
 Probe probe_of(const Element& e, double unit_area_m2) {
   Probe out{e.corners, {}};
+  // Gauss's points.
   const double h = out.inside() / (e.corners == 4 ? 2 : 3);
   if (e.corners == 4)
     out.at = {{0.5 - h, 0.5 - h}, {0.5 + h, 0.5 - h}, {0.5 + h, 0.5 + h}, {0.5 - h, 0.5 + h}};
   else
     out.at = {
         {1 / 3.0 - h, 1 / 3.0 - h}, {1 / 3.0 + 2 * h, 1 / 3.0 - h}, {1 / 3.0 - h, 1 / 3.0 + 2 * h}};
+  // A grid, as fine as the leaf is large.
   const double points = std::min(1.0, e.area_m2 / unit_area_m2) * kPoints;
   // An odd number of points a side, so that the middle is one of them.
   const int n = 1 + 2 * int(std::sqrt(points) / 2);
@@ -58,11 +64,13 @@ struct Fit {
   float error = 0;
 };
 Fit fit_of(const Probe& probe, std::span<const Rgb> light) {
+  // Mean, and twist of a bilinear function.
   Fit out;
   const uint32_t n = probe.corners;
   Rgb mean{}, twist{};
   for (uint32_t k = 0; k < n; ++k) mean += light[k] / float(n);
   if (n == 4) twist = (light[0] - light[1] + light[2] - light[3]) * 0.25f;
+  // From Gauss's points out to the corners, no further down than to 0.
   const auto inside = float(probe.inside());
   float shrink = 1;  // of what differs from the mean
   for (uint32_t k = 0; k < n; ++k) {
@@ -72,6 +80,7 @@ Fit fit_of(const Probe& probe, std::span<const Rgb> light) {
       if (mean.*c + out.corner[k].*c < 0) shrink = std::min(shrink, -mean.*c / out.corner[k].*c);
   }
   for (uint32_t k = 0; k < n; ++k) out.corner[k] = mean + out.corner[k] * shrink;
+  // How far that is from the light at all points.
   for (size_t i = 0; i < probe.at.size(); ++i) {
     const Rgb d = linear_at(out.corner, n, float(probe.at[i][0]), float(probe.at[i][1])) - light[i];
     out.error = std::max({out.error, max_component(d), max_component(-d)});
@@ -90,37 +99,35 @@ void add_points(const Element& e, const Faces& faces, const Probe& probe,
 }
 
 /// E of the soft sky at each point.
-std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x, const Lamps& lamps,
-                           const transport::Elements& points) {
+std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x,
+                           const UnlinkedLights& unlinked, const transport::Elements& points) {
   std::vector<Rgb> out(points.size());
-  if (!lamps.has_sky) return out;
+  if (!unlinked.has_sky) return out;
+  const SkyScene sky{scene, unlinked.lights.around, x.tracer, x.diagonal_m};
   parallel_for(points.size(), 64, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      out[i] = soft_sky_at(scene, lamps.lights.around, x.tracer, points.position[i],
-                           points.normal[i], points.normal[i], x.diagonal_m, kSkyRays);
+      out[i] = soft_sky_at(sky, {points.position[i], points.normal[i], points.normal[i]}, kSkyRays);
   });
   return out;
 }
 
 }  // namespace
 
-Rgb soft_sky_at(const scene::Scene& scene, const light::Surroundings& around,
-                const trace::RayTracer& tracer, const Vec3& position, Vec3 normal,
-                Vec3 geometric_normal, float diagonal_m, uint32_t count) {
-  const auto frame = frame_around(normal);
-  const Vec3 from = trace::offset_origin(position, geometric_normal, diagonal_m);
+Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t count) {
+  const auto frame = frame_around(point.normal);
+  const Vec3 from = trace::offset_origin(point.position, point.geometric_normal, sky.diagonal_m);
   std::vector<trace::Ray> rays;
   for (uint32_t k = 0; k < count; ++k) {
     const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 5)));
-    if (dot(d, geometric_normal) > 0) rays.push_back({from, 0, d, INFINITY});
+    if (dot(d, point.geometric_normal) > 0) rays.push_back({from, 0, d, INFINITY});
   }
   std::vector<uint8_t> blocked(rays.size());
-  tracer.occluded(rays, blocked);
+  sky.tracer.occluded(rays, blocked);
   // Summed in double: a sky of one radiance gives its share of the rays, whatever their order.
   double r = 0, g = 0, b = 0;
   for (size_t k = 0; k < rays.size(); ++k) {
     if (blocked[k]) continue;
-    const Rgb l = light::soft_radiance(scene, around, rays[k].direction);
+    const Rgb l = light::soft_radiance(sky.scene, sky.around, rays[k].direction);
     r += double(l.x), g += double(l.y), b += double(l.z);
   }
   const double share = kPiDouble / double(count);
@@ -138,21 +145,22 @@ float brightest_sky(const scene::Scene& scene, const light::Surroundings& around
   return most + brightest;
 }
 
-Lamps lamps_of(const scene::Scene& scene) {
-  Lamps out;
+UnlinkedLights unlinked_lights_of(const scene::Scene& scene) {
+  UnlinkedLights out;
   out.lights.punctual = scene.lights, out.lights.profiles = scene.profiles;
   out.lights.around = light::surroundings_of(scene);
   out.has_sky = max_component(scene.background) > 0 || !scene.environment.empty();
   return out;
 }
 
-Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
+Status light_leaves(Refined& state, const Exchange& x, const UnlinkedLights& unlinked,
                     const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress) {
-  if (!lamps.any()) return {};
-  const float unsure = lamps.has_sky ? brightest_sky(state.scene, lamps.lights.around) * kPi *
-                                           (kUnsureRays / kSkyRays)
-                                     : 0.0f;
+  if (!unlinked.any()) return {};
+  const float unsure = unlinked.has_sky ? brightest_sky(state.scene, unlinked.lights.around) * kPi *
+                                              (kUnsureRays / kSkyRays)
+                                        : 0.0f;
   for (;;) {
+    // Points of all leaves that have no light yet.
     lit.resize(state.tree.elements.size());
     std::vector<size_t> leaves;
     std::vector<Probe> probes;
@@ -165,10 +173,13 @@ Status light_leaves(Refined& state, const Exchange& x, const Lamps& lamps,
       add_points(state.tree.elements[e], x.faces, probes.back(), points);
     }
     if (leaves.empty()) return {};
-    LUXEL_TRY(light::DirectLight direct, light::direct_light(state.scene, points, lamps.lights,
-                                                             x.tracer, {64, 1, true}, progress));
-    const std::vector<Rgb> sky = sky_light(state.scene, x, lamps, points);
+    // Light there, of punctual lights and of the sky.
+    LUXEL_TRY(light::DirectLight direct,
+              light::direct_light(state.scene, points, unlinked.lights, x.tracer,
+                                  {.samples = 64, .same_points = true}, progress));
+    const std::vector<Rgb> sky = sky_light(state.scene, x, unlinked, points);
     for (size_t i = 0; i < sky.size(); ++i) direct.irradiance[i] += sky[i];
+    // A linear function per leaf. Where it is off, the leaf is divided, and its parts come next.
     std::span<const Rgb> light = direct.irradiance;
     for (size_t k = 0; k < leaves.size(); ++k) {
       const Fit fit = fit_of(probes[k], light.first(probes[k].at.size()));

@@ -1,4 +1,4 @@
-// What a point sees of sources too dim to be looked at exactly: rays to a few places of each tell.
+// Shadow rays to a few points of each source that is too dim for closed forms.
 #pragma once
 
 #include "luxel/solve/hierarchical/irradiance.h"
@@ -11,24 +11,25 @@ struct RaySources {
   std::vector<uint32_t> root_of_rank;
   std::vector<double> power_before;  ///< B A of all before a rank [W]; one extra entry
 };
+/// Ranks and powers by the light there is.
 RaySources ray_sources(const Solution& solution);
 
-/// The same places are looked at from everywhere, so that what is seen changes only where a shadow
+/// All points look at the same places of a source, so that what is seen changes only where a shadow
 /// passes over one of them. One object per thread: it keeps its memory.
-class Glances {
+class SourceSampler {
  public:
-  Glances(const Solution& solution, const trace::RayTracer& tracer, const RaySources& sources)
+  SourceSampler(const Solution& solution, const trace::RayTracer& tracer, const RaySources& sources)
       : s_(solution), tracer_(tracer), sources_(sources) {}
 
-  /// Of the exchange between the point and the source, were nothing in between: the share that is
-  /// seen, and the sum of radiosity over it [W/m^2].
-  struct Glance {
+  /// The share of the exchange between the point and the source, were nothing in between, that is
+  /// seen; and the sum of radiosity over it [W/m^2].
+  struct Sample {
     double share = 1;
     Rgb radiosity{};
   };
-  Glance at_element(const Receiver& from, size_t element, uint32_t rays);
+  Sample sample_element(const Receiver& from, size_t element, uint32_t rays);
   /// E from a cluster [W/m^2], small as it looks from the point: each ray stands for as much power.
-  Rgb from_cluster(const Receiver& from, uint32_t cluster, uint32_t rays);
+  Rgb irradiance_from_cluster(const Receiver& from, uint32_t cluster, uint32_t rays);
   /// B A of the surfaces of a cluster [W].
   double power_of(uint32_t cluster) const {
     const Cluster& c = s_.tree.clusters[cluster];
@@ -36,15 +37,15 @@ class Glances {
   }
 
  private:
-  struct Place {
+  struct SourcePoint {
     DVec3 position;
     uint32_t face = 0;
     Rgb radiosity;
     double area = 1;  ///< that it stands for, up to a factor
   };
-  Place place_on(size_t element, uint32_t k) const;
-  double aim(const Receiver& from, const Place& place);
-  void look();
+  SourcePoint source_point(size_t element, uint32_t k) const;
+  double add_shadow_ray(const Receiver& from, const SourcePoint& place);
+  void trace_rays();
 
   const Solution& s_;
   const trace::RayTracer& tracer_;

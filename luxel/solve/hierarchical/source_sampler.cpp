@@ -1,4 +1,4 @@
-#include "luxel/solve/hierarchical/glances.h"
+#include "luxel/solve/hierarchical/source_sampler.h"
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ RaySources ray_sources(const Solution& s) {
   return out;
 }
 
-Glances::Place Glances::place_on(size_t element, uint32_t k) const {
+SourceSampler::SourcePoint SourceSampler::source_point(size_t element, uint32_t k) const {
   const Element& e = s_.tree.elements[element];
   const auto& c = e.corner;
   const auto& b = s_.light.elements[element].shining;
@@ -36,7 +36,7 @@ Glances::Place Glances::place_on(size_t element, uint32_t k) const {
 
 /// Adds a ray, and returns cos cos / r^2 of its ends; 0, and no ray, where the place is below the
 /// horizon or turns its back.
-double Glances::aim(const Receiver& from, const Place& place) {
+double SourceSampler::add_shadow_ray(const Receiver& from, const SourcePoint& place) {
   const DVec3 d = place.position - from.position;
   const double r2 = dot(d, d);
   const Face& face = s_.faces.faces[place.face];
@@ -52,20 +52,21 @@ double Glances::aim(const Receiver& from, const Place& place) {
   return kernel;
 }
 
-void Glances::look() {
+void SourceSampler::trace_rays() {
   blocked_.resize(rays_.size());
   tracer_.occluded(rays_, blocked_);
 }
 
-Glances::Glance Glances::at_element(const Receiver& from, size_t element, uint32_t rays) {
+SourceSampler::Sample SourceSampler::sample_element(const Receiver& from, size_t element,
+                                                    uint32_t rays) {
   rays_.clear(), weight_.clear(), radiosity_.clear();
   for (uint32_t k = 0; k < rays; ++k) {
-    const Place place = place_on(element, k);
-    const double kernel = aim(from, place);
+    const SourcePoint place = source_point(element, k);
+    const double kernel = add_shadow_ray(from, place);
     if (kernel > 0)
       weight_.push_back(float(kernel * place.area)), radiosity_.push_back(place.radiosity);
   }
-  look();
+  trace_rays();
   float all = 0, seen = 0;
   Rgb light{};
   for (size_t k = 0; k < rays_.size(); ++k) {
@@ -73,10 +74,10 @@ Glances::Glance Glances::at_element(const Receiver& from, size_t element, uint32
     if (blocked_[k]) continue;
     seen += weight_[k], light += radiosity_[k] * weight_[k];
   }
-  return all > 0 ? Glance{double(seen / all), max(light / all, Rgb{})} : Glance{};
+  return all > 0 ? Sample{double(seen / all), max(light / all, Rgb{})} : Sample{};
 }
 
-Rgb Glances::from_cluster(const Receiver& from, uint32_t cluster, uint32_t rays) {
+Rgb SourceSampler::irradiance_from_cluster(const Receiver& from, uint32_t cluster, uint32_t rays) {
   rays_.clear(), radiosity_.clear();
   const Cluster& c = s_.tree.clusters[cluster];
   const auto begin = sources_.power_before.begin() + c.first;
@@ -86,15 +87,15 @@ Rgb Glances::from_cluster(const Receiver& from, uint32_t cluster, uint32_t rays)
     const auto rank =
         size_t(std::upper_bound(begin + 1, end, *begin + each * (k + 0.5)) - begin) - 1 + c.first;
     const uint32_t root = sources_.root_of_rank[std::min<size_t>(rank, c.end - 1)];
-    const Place place = place_on(root, k);
-    const double kernel = aim(from, place);
+    const SourcePoint place = source_point(root, k);
+    const double kernel = add_shadow_ray(from, place);
     if (kernel > 0)
       radiosity_.push_back(
           place.radiosity *
           float(kernel * each /
                 (kPiDouble * double(max_component(s_.light.elements[root].radiosity)))));
   }
-  look();
+  trace_rays();
   Rgb light{};
   for (size_t k = 0; k < rays_.size(); ++k)
     if (!blocked_[k]) light += max(radiosity_[k], Rgb{});

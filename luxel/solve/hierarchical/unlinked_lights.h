@@ -1,0 +1,39 @@
+// Light that comes from no surface: punctual lights, the background.
+#pragma once
+
+#include "luxel/light/lights.h"
+#include "luxel/solve/hierarchical/refine.h"
+#include "luxel/transport/elements.h"
+
+namespace luxel::hierarchical {
+
+/// What shines besides surfaces.
+struct UnlinkedLights {
+  light::Lights lights;  ///< no triangles
+  bool has_sky = false;  ///< background or a map
+  bool any() const { return has_sky || !lights.punctual.empty(); }
+};
+/// Punctual lights, and whatever background or map the scene has.
+UnlinkedLights unlinked_lights_of(const scene::Scene& scene);
+
+/// What rays towards the sky need.
+struct SkyScene {
+  const scene::Scene& scene;
+  const light::Surroundings& around;
+  const trace::RayTracer& tracer;
+  float diagonal_m = 0;  ///< of the scene's box
+};
+/// E of the soft light of the surroundings at a point [W/m^2], by `rays` cosine-distributed rays:
+/// pi / rays times the sum of the radiance of those that leave the scene. All points send theirs in
+/// the same directions of their frames, so that E has steps but no noise.
+Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t rays);
+/// The largest radiance of the soft surroundings [W/(sr m^2)]: E of the sky is at most pi times it.
+float brightest_sky(const scene::Scene& scene, const light::Surroundings& around);
+
+/// Sets ElementLight::unlinked of all leaves that have none yet (`lit` counts elements, in order),
+/// dividing leaves over which it is farther than eps from linear. As with links, large leaves count
+/// for more: see error_of.
+Status light_leaves(Refined& state, const Exchange& exchange, const UnlinkedLights& unlinked,
+                    const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress);
+
+}  // namespace luxel::hierarchical

@@ -12,6 +12,7 @@ using Pairs = std::vector<PartedPoints>;
 
 /// A vertex this close to a plane, in distances of the pairs, lies on it.
 constexpr double kOnPlane = 0.02;
+/// Pieces that fewer pairs connect are apart: a few lie at the ends of a barrier.
 constexpr size_t kFewestJoined = 4;
 /// More planes than these are not looked at in one piece.
 constexpr size_t kMostCandidates = 256, kMostScored = 32;

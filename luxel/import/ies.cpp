@@ -17,7 +17,7 @@ using Angles = scene::LightProfile::Angles;
 
 constexpr double kMany = 1e9;       // lumens, candela, metres, watts: nothing real has more
 constexpr int kMostAngles = 36001;  // a hundredth of a degree apart
-constexpr size_t kMostCandela = size_t(1) << 26;
+constexpr size_t kMostCandela = size_t(1) << 26;  // 256 MiB of floats
 /// Files write angles with two decimals or so.
 constexpr double kAngleRounding = 0.01;
 

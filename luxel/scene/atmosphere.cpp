@@ -181,7 +181,7 @@ void fill(std::vector<DVec3>& table, int width, int height, const auto& row_at) 
 
 Atmosphere atmosphere_of(double turbidity) {
   Atmosphere air;
-  constexpr double kAngstrom = 1.3;
+  constexpr double kAngstrom = 1.3;  // [Preetham99, appendix 1]
   const double green =
       (turbidity - 1) * air.rayleigh_per_km.y * air.rayleigh_height_km / air.aerosol_height_km;
   air.aerosol_per_km =

@@ -12,7 +12,7 @@
 namespace luxel::scene {
 namespace {
 
-constexpr double kEyeKm = 0.002;
+constexpr double kEyeKm = 0.002;  // above the ground
 constexpr int kSteps = 96;
 
 /// The mean over the sun's disc of what the air lets through, in horizontal strips: none of those

@@ -29,7 +29,7 @@ scene::Scene hall(Rgb lamp) {
   return scene;
 }
 
-/// Of places of the ceiling, how many of those within the pillar, and without, are enclosed.
+/// How many places of the ceiling are enclosed, of those within the pillar and of those without.
 struct Counts {
   int inside = 0, outside = 0, each = 0;
 };

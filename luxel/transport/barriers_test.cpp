@@ -106,7 +106,7 @@ TEST(OpenSamples, MoveIntoASlit) {
   EXPECT_EQ(samples_moved_into_gap(1.05f, 1.08f), Floor::kSide + kRowsOffDiagonal);
 }
 
-/// Of its three columns of texels one has its samples under a wall, one beside the other wall, and
+/// Three columns of texels: one has its samples under a wall, one beside the other wall, and
 /// the middle one lies wholly in the alley: those stay. The half of the diagonal's texel in the
 /// third does not reach the wall.
 TEST(OpenSamples, MoveIntoAnAlley) {

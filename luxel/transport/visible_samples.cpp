@@ -51,7 +51,7 @@ struct Probe {
     }
   }
 
-  /// Of the texel's places on a grid the one nearest to the middle of those in the open; nothing:
+  /// The place of the texel's grid that is nearest to the middle of those in the open; nothing:
   /// none is, or all are and the sample, too.
   std::optional<scene::SurfacePoint> open_place(const atlas::Texel& texel, bool is_open) const;
 };
@@ -129,6 +129,7 @@ uint32_t texel_at(const atlas::TexelMap& map, int x, int y) {
 /// shell without a bottom: between texels of a lattice of which one is enclosed and another is not
 /// all are looked at.
 void look_for_regions(const Probe& probe, const atlas::TexelMap& map, std::span<Found> found) {
+  // Whether the texels of a lattice are enclosed.
   constexpr int kStep = 4;
   const int across = (map.resolution + kStep - 1) / kStep;
   const auto on_lattice = [&](int u, int v) { return texel_at(map, u * kStep, v * kStep); };
@@ -148,6 +149,7 @@ void look_for_regions(const Probe& probe, const atlas::TexelMap& map, std::span<
         if (!is_enclosed_at(u + du, v + dv)) return false;
     return true;
   };
+  // All texels around those that lie at a border of an enclosed region.
   std::vector<uint8_t> look(found.size());
   for (int v = 0; v < across; ++v)
     for (int u = 0; u < across; ++u) {

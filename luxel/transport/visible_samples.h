@@ -27,8 +27,8 @@ struct MovedSamples {
 MovedSamples move_samples_out_of_solids(const scene::Scene& scene, const atlas::Atlas& atlas,
                                         const trace::RayTracer& tracer, atlas::TexelMap& map);
 
-/// The same where rays meet something else than then within `boxes` alone [m], in a map whose
-/// samples all are where they were before they were opened: of texels away from the boxes only
+/// Moves samples where rays meet something else than then within `boxes` alone [m], in a map whose
+/// samples all are where they were before they were moved: of texels away from the boxes only
 /// those that had backs near them then are looked at. Returns what move_samples_out_of_solids()
 /// does.
 MovedSamples move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,

@@ -25,7 +25,7 @@ struct FactorMatrix {
 };
 FactorMatrix empty_factor_matrix(const Surfaces& surfaces);
 
-/// Which entries are asked for; kNone: all rows or all columns. Others stay 0.
+/// The entries that are asked for; kNone: all rows or all columns. Others stay 0.
 struct FactorSelection {
   uint32_t from = scene::kNone, to = scene::kNone;
 };

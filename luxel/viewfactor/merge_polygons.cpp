@@ -186,14 +186,17 @@ std::optional<std::array<uint32_t, 4>> join(uint32_t edge, Merging& m) {
   const uint32_t f_in = m.edges[edge].previous, f_out = m.edges[edge].next;
   const uint32_t g_in = m.edges[twin].previous, g_out = m.edges[twin].next;
   const DVec3 normal = m.faces[f].plane.normal;
+  // The two corners at which the faces meet must not turn inwards.
   const auto stays_convex = [&](uint32_t in, uint32_t out) {
     return turn_at(m.at(in), m.at(out), m.at(m.edges[out].next), normal, m.slack) != Turn::right;
   };
   if (!stays_convex(f_in, g_out) || !stays_convex(g_in, f_out) || !m.same_plane(f, g))
     return std::nullopt;
+  // One outline: past the shared edge each face goes on in the other.
   m.edges[edge].gone = m.edges[twin].gone = true;
   m.edges[f_in].next = g_out, m.edges[g_out].previous = f_in;
   m.edges[g_in].next = f_out, m.edges[f_out].previous = g_in;
+  // One face, with the plane of the larger one.
   Face &face = m.faces[f], &other = m.faces[g];
   if (other.plane_area > face.plane_area)
     face.plane = other.plane, face.plane_area = other.plane_area;

@@ -16,7 +16,7 @@ namespace luxel::viewfactor {
 /// with gamma_k the angle between the directions r_k and r_k+1 to neighbouring corners.
 /// Relative error about 1e-9 (double inside) unless the polygon is smaller than 1e-6 rad.
 double point_to_polygon(Vec3 point, Vec3 normal, std::span<const Vec3> polygon);
-/// The same in double precision, for any number of corners.
+/// Lambert's factor in double precision, for any number of corners.
 double point_to_polygon(DVec3 point, DVec3 normal, PolygonView polygon);
 
 }  // namespace luxel::viewfactor

@@ -1,4 +1,4 @@
-// Which polygons stand between two others, among thousands.
+// A tree that finds the polygons between two others, among thousands.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ uint32_t surface_met(const Surfaces& surfaces, const trace::Hit& hit) {
   return hit.found() && !hit.back_face ? surfaces.of_instance[hit.instance] : scene::kNone;
 }
 
-/// Which surface each of `count` rays meets; `ray_at(k)` makes them.
+/// The surface that each of `count` rays meets; `ray_at(k)` makes them.
 template <class RayAt>
 std::vector<uint32_t> surfaces_met(const Surfaces& surfaces, const trace::RayTracer& tracer,
                                    size_t count, const RayAt& ray_at, Progress& progress) {

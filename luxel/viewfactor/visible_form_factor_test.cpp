@@ -65,7 +65,7 @@ TEST(VisibleFormFactor, BlockersBesideTheShaftChangeNoBit) {
   EXPECT_EQ(form_factor(kFloor, kCeiling, beside).value, alone);
 }
 
-// The same hole in the light, cut into more pieces or turned over, is the same hole.
+// A hole in the light, cut into more pieces or turned over, is the same hole.
 TEST(VisibleFormFactor, DoesNotDependOnHowBlockersAreCut) {
   const Polygon whole = horizontal(0.3, 0.2, 0.9, 0.7, 0.4);
   Polygon turned = whole;

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Of the cache's files; goes up when what they hold changes.
+/// The version of the cache's files; goes up when what they hold changes.
 constexpr int kFormat = 4;
 RecordKey key_of(size_t part) { return {0, part}; }
 

@@ -14,7 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Of the records' content; goes up when what a part holds, or how it is computed, changes.
+/// The version of the records' content; goes up when what a part holds, or how it is computed,
+/// changes.
 constexpr int kFormat = 3;
 
 json digests_json(std::span<const scene::ItemDigest> items) {

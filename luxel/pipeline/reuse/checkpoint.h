@@ -23,7 +23,7 @@ std::filesystem::path checkpoint_file(const BakeSettings& settings);
 nlohmann::json bake_identity(const nlohmann::json& settings);
 /// That, and the scene's digests.
 nlohmann::json checkpoint_header(const nlohmann::json& settings, const scene::Scene& scene);
-/// Which of either differs, in words; empty: nothing.
+/// What differs between the two, in words; empty: nothing.
 std::string difference(const nlohmann::json& there, const nlohmann::json& here);
 
 /// The checkpoint of one bake: docs/method/checkpoints.md. Solvers that keep no parts have none.

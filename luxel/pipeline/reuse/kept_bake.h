@@ -13,7 +13,7 @@
 
 namespace luxel::pipeline {
 
-/// Which layer the lights of the scene's file belong to.
+/// The layer that each light of the scene's file belongs to.
 struct LayersOfLights {
   static constexpr uint8_t kNoLayer = 255;
   std::vector<uint8_t> of_punctual;               ///< per punctual light

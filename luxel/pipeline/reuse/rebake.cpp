@@ -11,13 +11,13 @@ namespace {
 constexpr uint8_t kNoLayer = LayersOfLights::kNoLayer;
 const Rgb kAsBefore{1, 1, 1};
 
-/// But for the rounding of what lights dimmed alike were and are.
+/// Equal up to the rounding of what lights dimmed alike were and are.
 bool nearly_equal(Rgb a, Rgb b) {
   const float difference = max_component(max(a - b, b - a));
   return difference <= 1e-5f * max_component(max(a, b));
 }
 
-/// A lamp that was weaker than this beside what it is now was looked at too roughly: few shadow
+/// A light that was weaker than this beside what it is now was sampled too roughly: few shadow
 /// rays, and no points across texels where nobody saw its shadows.
 constexpr float kMostBrighter = 4;
 
@@ -177,7 +177,7 @@ std::optional<gather::Earlier> earlier_of(KeptBake& kept, const RecordFile& rays
   if (!rounds || kept.places.size() != n) return std::nullopt;
   gather::Earlier out;
   out.rounds = std::move(*rounds);
-  // Of float positions in a scene of this size.
+  // The rounding of float positions in a scene of this size.
   const float margin_m = 1e-4f * scene::world_bounds(in.scene).diagonal();
   // What rays escape through may have had another colour.
   const bool seen_otherwise = change.surroundings || !change.reshaped.empty();

@@ -475,7 +475,7 @@ TEST_F(EarlierOf, BoxesAreGrown) {
   ASSERT_EQ(found->rays.boxes.size(), 1u);
   const float margin = 1e-4f * scene::world_bounds(room_->scene).diagonal();
   const Box3 box = found->rays.boxes[0];
-  // Of numbers near 1.
+  // The rounding of numbers near 1.
   EXPECT_NEAR(box.lower.x, -1 - margin, 2e-7f);
   EXPECT_NEAR(box.lower.y, -margin, 2e-7f);
   EXPECT_NEAR(box.upper.y, margin, 2e-7f);

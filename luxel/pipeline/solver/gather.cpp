@@ -21,7 +21,7 @@
 namespace luxel::pipeline {
 namespace {
 
-/// Of the first round, when an error is asked for.
+/// Samples of the first round, when an error is asked for.
 constexpr int kFirstSamples = 32;
 /// A trial lights one texel in so many, which costs as much of the bake.
 constexpr int kTrialPart = 100;
@@ -114,7 +114,7 @@ gather::GatherStores gather_stores(const BakeSettings& settings) {
 
 namespace {
 
-/// Of gather's result; without warnings.
+/// Light from gather's result; without warnings.
 TexelLight light_of(gather::Gather& result, light::LightLayers& layers) {
   TexelLight out = texel_light(std::move(result));
   out.errors = std::move(result.errors), out.error_p95 = result.relative_error_p95;
@@ -128,7 +128,7 @@ TexelLight light_of(gather::Gather& result, light::LightLayers& layers) {
   return out;
 }
 
-/// Which layers light is told apart into; none where nobody asks, or, for a bake that is kept,
+/// The layers that light is told apart into; none where nobody asks, or, for a bake that is kept,
 /// where there are too many. Errors: too many.
 Result<light::LightLayers> layers_of(const light::TexelScene& in, const BakeSettings& settings,
                                      bool keeps) {
@@ -151,7 +151,7 @@ KeptBake kept_bake(const light::TexelScene& in, const light::LightLayers& layers
   return kept;
 }
 
-/// Nobody has asked for them.
+/// Drops layers that nobody has asked for.
 void drop_layers(TexelLight& light) { light.layers.clear(), free_memory(light.layer_irradiance); }
 
 }  // namespace

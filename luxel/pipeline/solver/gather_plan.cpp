@@ -12,10 +12,11 @@
 namespace luxel::pipeline {
 namespace {
 
-/// Of the texels, in a trial for a plan: a percent of the bake, but some thousand of them.
+/// A trial for a plan lights one texel in so many: a percent of the bake, but some thousand of
+/// them.
 constexpr int kPlanPart = 100;
-/// The same of the rounds to an error: of more texels, because some get many times the rays of
-/// others.
+/// A trial of the rounds to an error lights one texel in so many: more of them, because some get
+/// many times the rays of others.
 constexpr int kRoundsPart = 16;
 
 }  // namespace

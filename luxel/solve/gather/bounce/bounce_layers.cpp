@@ -114,8 +114,8 @@ struct Lanes {
   return m.texels[hit.base() + right + down * m.stride];
 }
 
-/// The same of the nearest texel alone, where that has an element: a quarter of the memory is read,
-/// which is what sparse sweeps, whose hits lie far apart, take their time for.
+/// Adds the lookup at the nearest texel alone, where that has an element: a quarter of the memory
+/// is read, which is what sparse sweeps, whose hits lie far apart, take their time for.
 [[gnu::always_inline]] inline void add_nearest(const BlockMap& m, const StoredHit& hit,
                                                float weight, Lanes& sum) {
   const BlockTexel& texel = nearest(m, hit);
@@ -196,7 +196,7 @@ void sweep_sparse(const LayerSweep& sweep, const TracedHits& hits, const TileHit
   }
 }
 
-/// The same bits from the copy.
+/// Sweeps a tile of the copy, which gives the bits of sweep_sparse().
 LUXEL_VECTOR_CLONES
 void sweep_subsampled(const LayerSweep& sweep, const TracedHits& hits,
                       const SubsampledHits::Tile& tile, size_t first_element) {
@@ -241,8 +241,8 @@ double share_out(std::span<const Rgb> whole, const LightOfLayers& light) {
   return std::accumulate(missing2.begin(), missing2.end(), 0.0);
 }
 
-/// Of all bounces. Each takes a layer's share closer to what it ends at by the reflectance, at
-/// least: how large the whole is is known from the start.
+/// Sparse sweeps when all bounces are asked for. Each takes a layer's share closer to what it ends
+/// at by the reflectance, at least: how large the whole is is known from the start.
 constexpr size_t kSparseSweeps = 10;
 
 /// The strides of all sweeps but the last. A given number of bounces has as many sweeps.
@@ -307,7 +307,7 @@ Result<LayersBounced> bounce_layers(const atlas::TexelMap& map, const transport:
     progress.advance(1);
     return {};
   };
-  // Of a guess's errors, and a sparse solution's noise, only those of the share are left.
+  // Sharing out leaves, of a guess's errors and a sparse solution's noise, only those of the share.
   size_t before = SIZE_MAX;
   for (const size_t stride : sparse) {
     if (bounces < 0 && before > stride) share_out(whole, light);

@@ -11,14 +11,21 @@
 namespace luxel::gather {
 namespace {
 
-/// With rho = 0.99 the light to come falls below 1e-4 after 1,400 sweeps; more means that something
-/// is wrong.
+/// With rho = 0.99, the most there is, light to come is rho^n / (1 - rho) of the first change after
+/// n sweeps: 1e-4 after 1,380. Three times as many mean that something is wrong.
 constexpr int kMaxSweeps = 4000;
 
-/// A guess whose light to come is more times the tolerance is brought closer by sparse sweeps:
-/// until they change less than a part of their first change, or what is left is below a part of the
-/// tolerance, or so many; what is left is taken for a geometric series.
-constexpr double kFarFrom = 4, kSmallPart = 0.03, kSmallRest = 0.25;
+/// A guess is brought closer by sparse sweeps if its light to come is more than so many times the
+/// tolerance: two sweeps over all rays do as much where the mean reflectance is a half.
+constexpr double kFarFrom = 4;
+/// Sparse sweeps end when they change less than this part of their first change: five sweeps at a
+/// reflectance of a half.
+constexpr double kSmallPart = 0.03;
+/// They also end when what is left is below this part of the tolerance: the other three parts are
+/// for the sparse sweeps' own noise.
+constexpr double kSmallRest = 0.25;
+/// So many of them over every 16th ray take about as long as half a sweep over all. What is left is
+/// taken for a geometric series.
 constexpr int kMaxSparse = 8;
 /// Sparse sweeps may bring a guess so much less closer than the last time (1.46 was seen).
 constexpr double kUnsure = 1.5;
@@ -135,7 +142,8 @@ Status Bouncing::settle(size_t stride, float tolerance) {
   return {};
 }
 
-/// The same from a guess: what a sweep over all rays changes is carried on by sparse ones. How much
+/// Sweeps as settle() does, but from a guess: what a sweep over all rays changes is carried on by
+/// sparse ones. How much
 /// closer that has come is seen by the next, and is what can be expected of another time.
 Status Bouncing::settle_guess(size_t sparse, const BounceParams& params) {
   const float tolerance = params.tolerance;

@@ -22,7 +22,7 @@ inline size_t sparsest_stride(size_t samples) {
   return *std::ranges::find_if(kStrides, [&](size_t s) { return has_sweeps_of(s, samples); });
 }
 
-/// Of what surfaces send back of the light on both their sides.
+/// The part of the light on both their sides that surfaces send back: its mean and maximum.
 struct ReflectanceRange {
   double mean = 0, max = 0;
 };

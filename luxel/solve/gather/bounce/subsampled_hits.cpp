@@ -15,7 +15,7 @@ uint64_t stored_hits(const TracedHits& hits) {
 
 Result<std::optional<SubsampledHits>> subsample(const TracedHits& hits, size_t stride,
                                                 uint64_t bytes, Progress& progress) {
-  // Of each element in each round it is one hit more than the part at most.
+  // At most one hit more than the part, per element and round.
   const uint64_t most = stored_hits(hits) / stride + hits.size() * hits.rounds.size();
   const uint64_t bytes_of_ends = hits.size() * sizeof(uint32_t);
   if (most * (sizeof(StoredHit) + sizeof(float)) + bytes_of_ends > bytes) return std::nullopt;

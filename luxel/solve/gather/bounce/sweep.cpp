@@ -103,7 +103,7 @@ double sweep_sparse(const RadiosityMap& m, const TracedHits& hits, const TileHit
   return change2;
 }
 
-/// The same bits from the copy.
+/// Sweeps a tile of the copy, which gives the bits of sweep_sparse().
 double sweep_subsampled(const RadiosityMap& m, const TracedHits& hits,
                         const SubsampledHits::Tile& tile, size_t first_element, Sweep& sweep) {
   double change2 = 0;

@@ -11,7 +11,8 @@
 namespace luxel::gather {
 namespace {
 
-/// Neighbours up to so many texels away.
+/// Neighbours up to so many texels away: 5 x 5, which bring 25 squared differences of halves
+/// together.
 constexpr int kReach = 2;
 /// So many elements' worth of the chart's ratio is added to that of the neighbours, who may be few.
 constexpr double kPriorElements = 8;
@@ -163,7 +164,8 @@ void keep_affordable(std::span<const float> errors, uint64_t affordable,
 
 float affordable_error(std::span<const float> errors, float at_least, double rays,
                        const light::SupersampleParams& params, const light::DirectLevels& levels) {
-  // Of texels that are one level finer, each light of which there may be several counted once.
+  // The shadow rays of a texel that becomes one level finer. Each of several lights is counted
+  // once.
   const auto cost = [&](size_t i) {
     const int factor = 1 << (2 * (int(levels.level[i]) + 1)), samples = params.direct.samples;
     if (!levels.averaged[i]) return levels.level[i] < kFinestLevel ? factor * samples : 0;

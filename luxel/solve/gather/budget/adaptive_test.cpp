@@ -125,7 +125,7 @@ TEST(Seconds, AreUsedAndNotWaitedFor) {
   GatherParams params;
   params.samples = 4, params.max_samples = 64, params.seconds = 3600;
   const Gather light = solve(*room, params);
-  // But for texels that see nothing, whose error is none.
+  // Texels that see nothing have no error.
   EXPECT_GT(std::ranges::count(light.samples, 64),
             std::ptrdiff_t(0.9 * double(light.samples.size())));
   params.seconds = 1e-9;

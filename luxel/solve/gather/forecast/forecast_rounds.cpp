@@ -18,7 +18,7 @@ namespace {
 constexpr int kCoarseSamples = 8;
 constexpr int kReach = 2;
 constexpr float kRoughTolerance = 1e-2f;
-/// Of the bounces after each round: from the solution of the one before.
+/// Sweeps of the bounces after each round, which start from the solution of the one before.
 constexpr double kSweepsOfRound = 2;
 
 struct Trial {
@@ -165,8 +165,8 @@ double samples_of(const Trial& trial) {
   return sum;
 }
 
-/// Of those, the samples that every sweep looks at, from round to round. Errors: cancelled, disk
-/// full.
+/// Makes all rounds. Returns the samples that every sweep looks at, from round to round. Errors:
+/// cancelled, disk full.
 Result<std::vector<double>> make_rounds(Trial& trial, RoundsForecast& out, Progress& progress) {
   const GatherParams& params = trial.params;
   const float each = error_of_part(params.max_error);

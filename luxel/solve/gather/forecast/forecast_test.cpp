@@ -40,7 +40,7 @@ struct Sweeps {
   double expected = 0, made = 0;
 };
 
-/// The same rays in so many rounds of tracing, each as many as all before.
+/// Traces in so many rounds, each of as many rays as all before.
 Result<TracedHits> trace(const Room& room, const transport::Elements& elements, int samples,
                          int rounds) {
   Progress progress;

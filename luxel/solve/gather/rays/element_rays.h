@@ -11,7 +11,7 @@
 
 namespace luxel::gather {
 
-/// Which samples of an element.
+/// A range of an element's samples.
 struct Samples {
   uint32_t first = 0, end = 0;
 
@@ -46,11 +46,11 @@ struct RayBatch {
   std::vector<uint32_t> few;                    ///< buffer: samples of some rays
   std::vector<float> u, v, x, y, z;  ///< buffers: points of the square, directions about +z
 
-  /// Of the k-th ray.
+  /// The cell of the k-th ray.
   size_t cell_of(uint32_t k) const;
 };
 
-/// Of an element's rays.
+/// The seed of an element's rays.
 inline uint64_t seed_of_rays(uint64_t seed, size_t element) {
   return hash64(seed ^ 0x6a7e, element);
 }
@@ -74,9 +74,10 @@ CellCones cell_cones();
 /// The cells that may have directions of the cone, one bit each.
 uint64_t cells_that_meet(const CellCones& cells, const Cone& cone);
 
-/// The same rays in the same order, but without directions: fill_directions() gives them to some.
+/// The rays of fill_rays() in its order, but without directions: fill_directions() gives them to
+/// some.
 void fill_samples(uint64_t seed, Samples samples, RayBatch& batch);
-/// The same in two steps, for the rays of some cells only, one bit each: the first finds
+/// fill_samples() in two steps, for the rays of some cells only, one bit each: the first finds
 /// batch.first_of_cell.
 void find_ray_cells(uint64_t seed, Samples samples, RayBatch& batch);
 void fill_samples_of(uint64_t cells, RayBatch& batch);
@@ -84,7 +85,7 @@ void fill_samples_of(uint64_t cells, RayBatch& batch);
 void fill_directions(Vec3 origin, Vec3 normal, Vec3 geometric_normal,
                      std::span<const uint32_t> which, RayBatch& batch);
 
-/// The same for the first rays.size() samples. Shared with `luxel bench rays`.
+/// The rays of fill_rays() for the first rays.size() samples. Shared with `luxel bench rays`.
 void element_rays(Vec3 origin, Vec3 normal, Vec3 geometric_normal, uint64_t seed,
                   std::span<trace::Ray> rays);
 

@@ -24,7 +24,7 @@ struct TileHits {
     }
     return {};
   }
-  /// Of the tile's k-th element.
+  /// Hits of the tile's k-th element in round r.
   std::span<const StoredHit> of(size_t r, size_t k) const {
     const HitTile& tile = *round[r];
     const uint32_t first = k == 0 ? 0 : tile.end[k - 1];

@@ -331,7 +331,7 @@ TEST_F(KeptRays, WithImpossibleNumbersAreRefused) {
     std::memcpy(damaged.data() + rays_at, &rays, sizeof(rays));
     EXPECT_FALSE(found_in(damaged)) << hits;
   }
-  // Of a power of two bytes each, 2^60 are none and 2^60 + 1 are one.
+  // The number of bytes wraps around: of 2^4 bytes each, 2^60 are none and 2^60 + 1 are one.
   for (const uint64_t followed : {uint64_t(1) << 60, (uint64_t(1) << 60) + 1, UINT64_MAX}) {
     Bytes damaged = bytes;
     std::memcpy(damaged.data() + followed_at, &followed, sizeof(followed));

@@ -175,8 +175,7 @@ TEST_F(EarlierGather, TilesThatAreMissingAreTraced) {
   for (size_t tile = 2; tile < expected.size(); ++tile)
     known += uint64_t(std::ranges::count_if(expected[tile].ends,
                                             [](RayEnd end) { return end != RayEnd::followed; }));
-  // Of the element whose hits are missing all rays are traced, and those of the next, which has too
-  // many.
+  // All rays are traced of the element whose hits are missing, and of the next, which has too many.
   for (size_t k = 0; k < 64; ++k) known -= expected[2].ends[k] != RayEnd::followed;
   EXPECT_EQ(again.rays_kept, known);
   EXPECT_GT(expected[2].hits.end[0], 0u);

@@ -1,4 +1,4 @@
-// Which rays of an earlier bake are traced again, all those of a tile together.
+// The rays of an earlier bake that are traced again, all those of a tile together.
 // docs/method/rebake.md
 #pragma once
 
@@ -68,11 +68,12 @@ struct RetracedRays {
 };
 
 void clear(RetracedRays& rays);
-/// Of the next element, of which something is known (null: nothing), buffers.retraced.
+/// Adds buffers.retraced as those of the next element. `before` is what is known of it; null:
+/// nothing.
 void add_retraced(const EarlierElement* before, const RetraceBuffers& buffers, RetracedRays& out);
 void retrace(const trace::RayTracer& tracer, RetracedRays& rays);
-/// Puts those of the k-th element, which is known, back into `buffers`, as if they had been traced
-/// there.
+/// Puts the rays of the k-th element, which is known, back into `buffers`, as if they had been
+/// traced there.
 void take_retraced(const RetracedRays& rays, size_t k, RetraceBuffers& buffers);
 
 }  // namespace luxel::gather

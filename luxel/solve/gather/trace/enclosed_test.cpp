@@ -1,4 +1,4 @@
-// Which texels lie inside of solids.
+// Texels inside of solids.
 #include <gtest/gtest.h>
 
 #include <array>

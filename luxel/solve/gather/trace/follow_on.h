@@ -16,11 +16,11 @@ inline constexpr size_t kPathsAtATime = 1024;
 /// rays.
 uint64_t follow_paths(const RayScene& in, RayBuffers& buffers, TracedHits& out);
 
-/// The same for those of a tile that are left; and adds what all of buffers.followed bring to the
-/// elements' light and to `tile`, whose ends and other hits are known: the first element is
-/// `first`, and ends_of[k] is one past the last of the k-th one's ends. Those of `retraced` that
-/// were followed on and not traced again bring what they brought in the earlier bake (null: nothing
-/// is known). Returns the number of rays.
+/// Follows those paths of a tile on that are left, as follow_paths(); and adds what all of
+/// buffers.followed bring to the elements' light and to `tile`, whose ends and other hits are
+/// known: the first element is `first`, and ends_of[k] is one past the last of the k-th one's ends.
+/// Those of `retraced` that were followed on and not traced again bring what they brought in the
+/// earlier bake (null: nothing is known). Returns the number of rays.
 uint64_t follow_on(const RayScene& in, size_t first, std::span<const uint32_t> ends_of,
                    const RetracedRays* retraced, RayBuffers& buffers, TracedHits& out,
                    RayTile& tile);

@@ -84,12 +84,14 @@ bool goes_on(const NearScene& in, const NearPath& path) {
 
 uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers) {
   buffers.receivers.clear(), buffers.rays.clear(), buffers.going_on.clear();
+  // Paths on black surfaces end.
   std::erase_if(buffers.paths, [&](NearPath& path) {
     path.throughput = path.throughput * scene::reflectance_at(in.scene, path.hit.point());
     const bool black = max_component(path.throughput) <= 0;
     if (black) end(path, buffers);
     return black;
   });
+  // Light straight from the lights, at the points that the others have met.
   for (NearPath& path : buffers.paths) {
     const transport::SmoothPoint p = place_of(in.scene, path.hit);
     buffers.receivers.push_back(
@@ -101,6 +103,7 @@ uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers) {
     path.first_m = path.hit.t + length(buffers.receivers.back().origin - met);
   }
   const uint64_t shadow_rays = add_direct_light(in, buffers);
+  // Each path goes on with one ray, or ends by chance.
   size_t alive = 0;
   for (size_t i = 0; i < buffers.paths.size(); ++i) {
     NearPath& path = buffers.paths[i];
@@ -114,6 +117,7 @@ uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers) {
   buffers.paths.resize(alive);
   buffers.hits.resize(alive);
   in.tracer.closest_hits(buffers.rays, buffers.hits);
+  // Glass on the way colours what the path carries.
   buffers.tint.assign(alive, {1, 1, 1});
   if (in.tracer.has_tints()) in.tracer.tint(buffers.rays, buffers.hits, buffers.tint);
   for (size_t i = 0; i < alive; ++i) {

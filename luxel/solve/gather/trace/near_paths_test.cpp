@@ -167,7 +167,7 @@ double light_from_wall(const WallCase& c, double x) {
   return sum;
 }
 
-// The same with a black wall has the same rays, and what the floor sees beside the wall with it:
+// A scene with a black wall has the same rays, and what the floor sees beside the wall with it:
 // the difference is the wall's light.
 TEST(NearPaths, BringTheLightOfWhereTheyEnd) {
   const Rgb half{0.5f, 0.5f, 0.5f}, dark{0.05f, 0.05f, 0.05f};

@@ -43,7 +43,8 @@ EscapedLight escaped_light(const RayScene& in, RayBuffers& buffers, Samples samp
   return out;
 }
 
-/// The same from what was known: what was traced again no longer brings what it brought.
+/// Light of the escaped rays from what was known: what was traced again no longer brings what it
+/// brought.
 EscapedLight escaped_light(const RayScene& in, RayBuffers& buffers, Samples samples,
                            const EarlierElement& before, std::span<const RayEnd> ends) {
   if (!before.escaped) return escaped_light(in, buffers, samples, ends);

@@ -61,7 +61,8 @@ void note_change(const RayScene& in, StoredHit hit, float sign, size_t element, 
 /// Those that are to be followed on are added to buffers.near.paths.
 void sort_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,
                TracedHits& out, RayTile& tile);
-/// The same where only buffers.retraced have been traced, and the others met what they met before.
+/// Counts what the rays of the batch met where only buffers.retraced have been traced, and the
+/// others met what they met before; else as sort_rays().
 void merge_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,
                 const EarlierElement& before, TracedHits& out, RayTile& tile);
 

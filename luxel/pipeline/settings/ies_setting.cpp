@@ -56,8 +56,8 @@ Result<std::vector<std::string>> add_profiles(std::span<const IesSetting> settin
   std::vector<std::string> seen;
   for (const IesSetting& s : settings) {
     if (std::find(seen.begin(), seen.end(), s.lamp) != seen.end())
-      return fail(ErrorCode::bad_setting, "--ies {}={}: this light has another file already", s.lamp,
-                  s.file.string());
+      return fail(ErrorCode::bad_setting, "--ies {}={}: this light has another file already",
+                  s.lamp, s.file.string());
     seen.push_back(s.lamp);
     LUXEL_TRY(const import::Ies ies, import::read_ies(s.file));
     warnings.insert(warnings.end(), ies.warnings.begin(), ies.warnings.end());

@@ -50,6 +50,7 @@ inline Status time_again(const pipeline::BakeSettings& settings, TimedFiles& bes
   return {};
 }
 
+/// Reads a picture. Errors: no such file, no EXR.
 inline Result<image::Image> exr_at(const std::filesystem::path& file) {
   LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
   return image::decode_exr(bytes, file.string());

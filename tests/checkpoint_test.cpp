@@ -151,7 +151,8 @@ TEST_F(Checkpoint, AStoppedBakeSaysHowItGoesOnAndLeavesNothingElse) {
   std::error_code none;
   {
     Running command(bake(folder_, kKeep + " --resolution 1024 --quiet"));
-    while (!fs::exists(file_, none)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    while (!command.ended() && !fs::exists(file_, none))
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
     command.end_with(SIGINT);
     err = command.err();
   }
@@ -162,6 +163,7 @@ TEST_F(Checkpoint, AStoppedBakeSaysHowItGoesOnAndLeavesNothingElse) {
 TEST_F(Checkpoint, IsLeftAloneUntilTheBakeThatStartsOverKeepsItsOwn) {
   leave_checkpoint(folder_);
   const std::string before = slurp(file_);
+  // Any moment will do that comes before its first checkpoint, half a minute after its start.
   ASSERT_TRUE(kill_when(bake(folder_), [](double s) { return s > 0.3; }));
   EXPECT_EQ(slurp(file_), before);
   const CommandResult done = luxel(bake(folder_));
@@ -252,9 +254,10 @@ TEST_F(Checkpoint, WithoutRoomOnTheDiskIsGivenUp) {
 
 TEST_F(Checkpoint, TwoBakesInOneFolderAreRefused) {
   {
-    Running first(bake(folder_, " --resolution 1024"));
-    while (!fs::exists(folder_)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    Running first(bake(folder_, kKeep + " --resolution 1024"));
+    // It holds the folder before it keeps anything.
+    while (!first.ended() && !fs::exists(file_))
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
     const CommandResult second = luxel(bake(folder_));
     EXPECT_EQ(second.code, 1);
     EXPECT_THAT(second.err, HasSubstr("another bake is at work in " + folder_.string()));

@@ -1,4 +1,4 @@
-// Reading the exact answers in shared/reference, so that no test copies a number by hand.
+// Reading the exact answers in tests/data/reference, so that no test copies a number by hand.
 #pragma once
 
 #include <fstream>
@@ -12,15 +12,18 @@
 
 namespace luxel::testing_support {
 
-inline std::string shared_text(const std::string& file) {
-  std::ifstream in(shared_folder() / file);
+/// The text of a file below tests/data. One that is not there fails the test.
+inline std::string reference_text(const std::string& file) {
+  const auto path = std::filesystem::path(LUXEL_SOURCE_DIR) / "tests" / "data" / file;
+  std::ifstream in(path);
+  EXPECT_TRUE(in) << path << " cannot be read";
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// As base's markdown_rows, of a file in the shared folder.
+/// As base's markdown_rows, of a file below tests/data.
 inline std::vector<TextRow> markdown_rows(const std::string& file, const std::string& section,
                                           const std::string& first_header) {
-  return base::markdown_rows(shared_text(file), section, first_header);
+  return base::markdown_rows(reference_text(file), section, first_header);
 }
 
 /// "x y z"
@@ -51,9 +54,9 @@ inline std::vector<std::vector<DVec3>> parse_polygons(const std::string& text) {
   return polygons.value_or(std::vector<std::vector<DVec3>>{});
 }
 
-/// As base's csv_rows, of a file in the shared folder.
+/// As base's csv_rows, of a file below tests/data.
 inline std::vector<TextRow> csv_rows(const std::string& file) {
-  return base::csv_rows(shared_text(file));
+  return base::csv_rows(reference_text(file));
 }
 
 }  // namespace luxel::testing_support

@@ -29,7 +29,6 @@ Rgb direct_at(const scene::Scene& scene, Vec3 position, Vec3 normal, int samples
 
 // The exact factors at nine points of the Cornell box, past both blocks and in the empty box.
 TEST(DirectLight, MatchesTheExactCornellProbes) {
-  LUXEL_NEEDS_SHARED("reference/cornell-box.md");
   const auto rows =
       shared::markdown_rows("reference/cornell-box.md", "Exact direct light", "surface");
   ASSERT_EQ(rows.size(), 9u);

@@ -49,7 +49,6 @@ std::vector<double> rectangle_light(const Points& points, double x0, double x1, 
 
 /// The exact factors at nine points of the Cornell box, past both blocks and in the empty box.
 TEST(Lights, TheExactCornellProbes) {
-  LUXEL_NEEDS_SHARED("reference/cornell-box.md");
   const auto rows =
       shared::markdown_rows("reference/cornell-box.md", "Exact direct light", "surface");
   ASSERT_EQ(rows.size(), 9u);

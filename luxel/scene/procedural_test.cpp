@@ -63,7 +63,6 @@ DVec wide(Vec3 v) { return {v.x, v.y, v.z}; }
 // Every quad of the published list is there with all four corners, in the right material and facing
 // the lit side: the vector area of each surface's rows equals that of its triangles.
 TEST(CornellBox, EverySurfaceOfThePublishedListIsThere) {
-  LUXEL_NEEDS_SHARED(kFacts);
   const auto quads = fact_quads();
   ASSERT_EQ(quads.size(), 16u);
   const Scene scene = cornell_box();
@@ -155,7 +154,6 @@ TEST(CornellBox, TheLampFillsTheHoleOfTheCeiling) {
 }
 
 TEST(CornellBox, ColoursAreThoseOfTheTable) {
-  LUXEL_NEEDS_SHARED(kFacts);
   const auto rows = testing_support::markdown_rows(kFacts, "Linear sRGB", "set");
   ASSERT_EQ(rows.size(), 3u);
   const std::map<char, CornellColors> sets{

@@ -22,8 +22,7 @@ const ExactCase& case_named(const std::vector<ExactCase>& cases, const std::stri
 
 // Rows of two tables: "x", then places; "E", then values.
 TEST(ExactCases, ThePenumbraIsThatOfTheReference) {
-  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
-  const std::string text = shared::shared_text("reference/exact-solutions.md");
+  const std::string text = shared::reference_text("reference/exact-solutions.md");
   const auto cases = *exact_cases(text);
   const ExactPart& receiver = case_named(cases, "penumbra").parts.front();
   int checked = 0;
@@ -46,8 +45,7 @@ TEST(ExactCases, ThePenumbraIsThatOfTheReference) {
 }
 
 TEST(ExactCases, TheCubeKeepsTheMeanLaw) {
-  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
-  const auto cases = *exact_cases(shared::shared_text("reference/exact-solutions.md"));
+  const auto cases = *exact_cases(shared::reference_text("reference/exact-solutions.md"));
   const ExactCase& cube = case_named(cases, "cube");
   // Mean of E over six walls is mean(e) / (1 - rho); extrapolation leaves 1e-5.
   const double sum = cube.parts[0].irradiance({}) + cube.parts[1].irradiance({}) +
@@ -57,7 +55,6 @@ TEST(ExactCases, TheCubeKeepsTheMeanLaw) {
 
 // Section 1: e, rho and B of the table.
 TEST(ExactCases, TheFurnacesAreThoseOfTheReference) {
-  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
   const auto cases = *exact_cases("");
   const auto rows = shared::markdown_rows("reference/exact-solutions.md", "Furnace", "rho");
   ASSERT_EQ(rows.size(), 2u);
@@ -69,7 +66,6 @@ TEST(ExactCases, TheFurnacesAreThoseOfTheReference) {
 
 // Section 2: "lx" holds the indirect part; 10 000 lm over 96 m^2 come directly.
 TEST(ExactCases, TheRoomsWithALampAreThoseOfTheReference) {
-  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
   const auto cases = *exact_cases("");
   const auto rows = shared::markdown_rows("reference/exact-solutions.md", "Mean law", "rho");
   ASSERT_EQ(rows.size(), 1u);
@@ -81,8 +77,7 @@ TEST(ExactCases, TheRoomsWithALampAreThoseOfTheReference) {
 
 // Sections 4 and 5 print B = e + rho E with as many digits as here.
 TEST(ExactCases, ThePlatesAndConcentricSpheresAreThoseOfTheReference) {
-  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
-  const std::string text = shared::shared_text("reference/exact-solutions.md");
+  const std::string text = shared::reference_text("reference/exact-solutions.md");
   const auto cases = *exact_cases("");
   const auto e = [&](const char* name, size_t part) {
     return case_named(cases, name).parts[part].irradiance({});
@@ -100,8 +95,7 @@ TEST(ExactCases, ThePlatesAndConcentricSpheresAreThoseOfTheReference) {
 
 // Section 3: B of the zones; whole facets make up the areas to 1e-4.
 TEST(ExactCases, TheZonesOfTheSphereAreThoseOfTheReference) {
-  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
-  const std::string text = shared::shared_text("reference/exact-solutions.md");
+  const std::string text = shared::reference_text("reference/exact-solutions.md");
   const auto cases = *exact_cases("");
   const ExactCase& c = case_named(cases, "sphere in three zones");
   const size_t at = text.find("e 1, 0, 0: B = ");

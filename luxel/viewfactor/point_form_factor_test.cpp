@@ -12,7 +12,6 @@ namespace {
 namespace shared = luxel::testing_support;
 
 TEST(PointToPolygon, MatchesTheExactTable) {
-  LUXEL_NEEDS_SHARED("reference/view-factors.csv");
   int checked = 0;
   for (const auto& row : shared::csv_rows("reference/view-factors.csv")) {
     if (row[1] != "point" || !row[4].empty()) continue;

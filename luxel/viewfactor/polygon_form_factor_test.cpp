@@ -15,7 +15,6 @@ namespace {
 namespace shared = luxel::testing_support;
 
 TEST(PolygonFormFactor, MatchesTheExactTable) {
-  LUXEL_NEEDS_SHARED("reference/view-factors.csv");
   int polygons = 0, points = 0;
   for (const auto& row : shared::csv_rows("reference/view-factors.csv")) {
     if (!row[4].empty()) continue;

@@ -155,7 +155,6 @@ TEST(SampledFactorsSlow, RaysErrorFallsWithSamples) {
 }
 
 TEST(SampledFactorsSlow, MatchTheExactTableWithinTheirError) {
-  LUXEL_NEEDS_SHARED("reference/view-factors.csv");
   for (const auto& row : shared::csv_rows("reference/view-factors.csv")) {
     const Polygon a = shared::parse_polygon(row[2]), b = shared::parse_polygon(row[3]);
     const std::vector<Polygon> blockers = shared::parse_polygons(row[4]);

@@ -64,8 +64,7 @@ const Tolerance* tolerance_of(std::string_view solver, std::string_view scene) {
 }
 
 TEST(SlowExact, EverySolverReachesEveryExactSolution) {
-  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
-  const auto cases = *exact_cases(shared::shared_text("reference/exact-solutions.md"));
+  const auto cases = *exact_cases(shared::reference_text("reference/exact-solutions.md"));
   ASSERT_EQ(cases.size(), 14u);
   double z_squares = 0, judged = 0;
   for (const ExactCase& c : cases) {

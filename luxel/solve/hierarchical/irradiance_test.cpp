@@ -35,7 +35,6 @@ scene::Scene unit_source(const TextRow& row) {
 }
 
 TEST(ExactIrradiance, OfAUnitSourceIsThePointsFormFactor) {
-  LUXEL_NEEDS_SHARED("reference/view-factors.csv");
   int rows = 0;
   for (const auto& row : testing_support::csv_rows("reference/view-factors.csv")) {
     if (row[1] != "point") continue;
@@ -110,7 +109,6 @@ double mean_light_along_lines(const Solved& s, uint32_t face) {
 // discontinuities: between them light is smooth. Without EV lines, say, means are off by more
 // than 1e-5.
 TEST(ExactIrradiance, OfAUnitSourceMeansTheViewFactor) {
-  LUXEL_NEEDS_SHARED("reference/view-factors.csv");
   int rows = 0;
   for (const auto& row : testing_support::csv_rows("reference/view-factors.csv")) {
     if (row[1] != "poly") continue;

@@ -20,7 +20,6 @@ Rgb gray(double v) { return Rgb{1, 1, 1} * float(v); }
 // [exact-solutions.md, section 1] Form factors in closed form: their tolerance is 1e-4, and far
 // pairs, seen from Gauss's points, err by less. After k reflections of many errs as little.
 TEST(HierarchicalSolve, FurnaceIsExactAtEveryLeaf) {
-  LUXEL_NEEDS_SHARED("reference/exact-solutions.md");
   for (const TextRow& row :
        testing_support::markdown_rows("reference/exact-solutions.md", "## 1 ", "rho")) {
     const double rho = std::stod(row[0]), e = std::stod(row[1]);

@@ -232,14 +232,15 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const 
   return bake;
 }
 
-Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& settings, Progress& progress) {
+Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& asked, Progress& progress) {
+  BakeSettings settings = asked;
+  if (settings.output.empty()) settings.output = ".";
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
   bake.scene = std::move(scene);
   LUXEL_TRY(bake.warnings, scene::validate(bake.scene, "scene '" + bake.scene.name + "'"));
-  LUXEL_TRY(const std::vector<std::string> light,
-            add_outside_light(settings.outside, bake.scene));
+  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(settings.outside, bake.scene));
   bake.warnings.insert(bake.warnings.end(), light.begin(), light.end());
   LUXEL_TRY_STATUS(bake_loaded(settings, {}, {}, bake, progress));
   return bake;

@@ -8,7 +8,8 @@
     tools/check_api.py --pages FOLDER       runs Doxygen; fails when a function or type has no comment
     tools/check_api.py --self-test          proves on made-up trees that each kind of fault is found
 
-A member variable needs no comment where its name and type say all. Exit 1 and one line per fault.
+A member variable needs none where its name and type say all; operators mean what they do in mathematics, and
+moving is what it always is. Exit 1 and one line per fault.
 """
 import pathlib
 import re
@@ -21,7 +22,7 @@ PAGE = "docs/guide/library.md"
 HEADER = re.compile(r"`(luxel/[\w/.]+\.h)`")
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 WARNING = re.compile(r"(\S+?):(\d+): (?:warning|error): (.*)")
-NEEDS_NONE = re.compile(r"\((variable|enumvalue)\)|LUXEL_CONCAT")
+NEEDS_NONE = re.compile(r"\((variable|enumvalue)\)|LUXEL_CONCAT|operator\W|Member (\w+)\(\2 &&\)")
 
 
 def headers_of(root):
@@ -105,6 +106,8 @@ BAD = [
 WARNINGS = """R/luxel/a/a.h:3: warning: Member f() (function) of namespace luxel is not documented.
 R/luxel/a/a.h:3: warning: Member f() (function) of namespace luxel::base is not documented.
 R/luxel/a/a.h:4: warning: Member x (variable) of struct luxel::A is not documented.
+R/luxel/a/a.h:5: warning: Member operator+(A a, A b) (function) of namespace luxel is not documented.
+R/luxel/a/a.h:6: warning: Member A(A &&) noexcept (function) of class luxel::A is not documented.
 R/luxel/a/a.h:1: warning: Compound luxel::A is not documented.
 """
 

@@ -13,6 +13,7 @@
 
 namespace luxel::gather {
 
+/// What gather found, one value per element.
 struct Gather {
   std::vector<Rgb> irradiance;  ///< E per element [W/m^2], after all bounces
   std::vector<Rgb> direct;      ///< the part of it that comes straight from lamps

@@ -14,20 +14,25 @@ struct FormFactors {
   std::vector<uint32_t> column;
   std::vector<float> factor;
 
+  /// The number of patches, that is rows.
   size_t size() const { return first.size() - 1; }
+  /// The patches that a row's patch sees, ascending.
   std::span<const uint32_t> columns_of(size_t row) const {
     return {column.data() + first[row], size_t(first[row + 1] - first[row])};
   }
+  /// F for each of columns_of(row).
   std::span<const float> factors_of(size_t row) const {
     return {factor.data() + first[row], size_t(first[row + 1] - first[row])};
   }
 };
 
+/// How many rays look for form factors.
 struct FactorParams {
   int rays_per_patch = 2048;  ///< cosine-distributed, from the patch's points
   uint64_t seed = 1;
 };
 
+/// Form factors as rays found them, not yet reciprocal.
 struct TracedFactors {
   FormFactors factors;
   std::vector<float> sky;  ///< per patch: the share of rays that leave the scene
@@ -47,6 +52,7 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
 /// have; rows never sum to more than 1.
 FormFactors reciprocal(const FormFactors& traced, std::span<const float> area_m2);
 
+/// The sum of a row's factors: at most 1, and 1 in a closed room.
 double row_sum(const FormFactors& factors, size_t row);
 
 /// E = F B, row by row.

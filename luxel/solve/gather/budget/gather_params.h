@@ -13,6 +13,7 @@
 
 namespace luxel::gather {
 
+/// What gather is asked for: rays, bounces, and where its parts are kept.
 struct GatherParams {
   int samples = 256;  ///< indirect rays per element; with max_error or seconds, of the first round
   /// > 0: rounds of more samples until 95 % of elements have a smaller relative error (adaptive.h).

@@ -2,7 +2,8 @@
 #
 #   make demo    installs what is missing, builds, bakes the Cornell box
 #   make test    installs what is missing, builds, runs every test
-#   make docs    checks the pages: links, widths, sentences, commands, options, generated pages
+#   make docs    checks the pages: links, widths, sentences, commands, options, generated pages; makes
+#                the API pages, build/api/html/index.html
 
 SHELL := /bin/bash
 LUXEL := build/release/bin/luxel
@@ -18,7 +19,7 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-.PHONY: setup setup-tests build test demo docs bench asan format format-check clean
+.PHONY: setup setup-tests setup-docs build test demo docs bench asan format format-check clean
 
 setup:
 	@tools/setup.sh
@@ -26,6 +27,10 @@ setup:
 # What only tests use, too.
 setup-tests:
 	@tools/setup.sh tests
+
+# What only the API pages need.
+setup-docs:
+	@tools/setup.sh docs
 
 build: setup
 	cmake --preset release
@@ -43,11 +48,12 @@ demo: build
 
 # docs/options.md is made by tools/make_options_page.py, docs/bench/benchmarks.md by
 # tools/make_bench_page.py from the .csv files beside it.
-docs: build
+docs: build setup-docs
 	tools/make_options_page.py $(LUXEL) --check
 	tools/make_options_page.py $(LUXEL) --names > build/option_names.txt
 	tools/check_pages.py --options build/option_names.txt
 	tools/make_bench_page.py --check
+	tools/check_api.py --pages build/api
 
 bench: build
 	$(LUXEL) bench all

@@ -4,6 +4,7 @@
 #
 #   tools/setup.sh          what luxel is built from
 #   tools/setup.sh tests    and what only tests use
+#   tools/setup.sh docs     and what only the API pages need
 #
 # luxel builds without node, npm and chromium, with less (docs/format/bake.md, view.html): where they
 # cannot be installed, that is said and no error.
@@ -37,6 +38,9 @@ for tool in node:nodejs npm:npm; do
 done
 if [[ ${1:-} == tests ]]; then
   command -v chromium >/dev/null || wanted+=(chromium)
+fi
+if [[ ${1:-} == docs ]]; then
+  command -v doxygen >/dev/null || wanted+=(doxygen)
 fi
 if [[ ${#missing[@]} -eq 0 && ${#wanted[@]} -eq 0 ]]; then
   exit 0

@@ -31,6 +31,7 @@ struct Atlas {
   std::vector<Page> pages;     ///< empty: the whole square is the only one; see pages_of()
   std::vector<uint32_t> page;  ///< per drawn triangle; empty: all on the first
 
+  /// The number of a drawn triangle: of an instance's mesh triangle among all instances.
   uint32_t triangle_number(uint32_t instance, uint32_t triangle) const {
     return first_triangle[instance] + triangle;
   }
@@ -54,10 +55,12 @@ struct TexelMap {
   std::vector<uint32_t> texel_at;  ///< resolution^2 entries: index into texels, or kNone
 };
 
+/// Whether TEXCOORD_1 is the lightmap's: where it is valid, always, never.
 enum class UvMode : uint8_t { automatic, keep, unwrap };
 /// How many pages: so many; as many as it takes; one for each instance.
 enum class PageMode : uint8_t { fixed, automatic, per_instance };
 
+/// How a scene is laid out.
 struct AtlasParams {
   UvMode uv = UvMode::automatic;  ///< automatic: keep when TEXCOORD_1 is valid, else unwrap
   /// Side of a page in texels, 1 .. 16384; per instance: of the largest. With a density only
@@ -103,6 +106,7 @@ inline Barycentric barycentric_in(const std::array<Vec2, 3>& corners, Vec2 p) {
   return {cross(d, e2) / area, cross(e1, d) / area};
 }
 
+/// Measures a layout; `map` is the atlas's.
 AtlasStats atlas_stats(const scene::Scene& scene, const Atlas& atlas, const TexelMap& map);
 
 /// The texels that triangles of more than one chart touch: only a kept TEXCOORD_1 has any.

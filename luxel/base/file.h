@@ -29,6 +29,7 @@ OutputFile text_file(std::filesystem::path path, std::string_view text);
 /// rename fails, what the ones before it replaced is brought back.
 /// Errors: unwritable folder (io), full disk (out_of_disk); the temporaries are removed.
 Status write_files_atomically(std::span<const OutputFile> files);
+/// write_files_atomically() of one file.
 Status write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 }  // namespace base

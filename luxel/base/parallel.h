@@ -14,6 +14,7 @@ inline namespace base {
 /// Limits all parallel loops of the process while it lives. 0 means all cores.
 class ThreadLimit {
  public:
+  /// `threads` at most; 0: all cores.
   explicit ThreadLimit(int threads);
   ~ThreadLimit();
   ThreadLimit(const ThreadLimit&) = delete;

@@ -42,6 +42,7 @@ class Progress {
   void begin(std::string_view stage, uint64_t total);
   /// Ends the last stage.
   void finish();
+  /// Units of the running stage that are done. Thread-safe.
   void advance(uint64_t units) { done_.fetch_add(units, std::memory_order_relaxed); }
   /// Units that were there already, which says nothing about how long the others take.
   void skip(uint64_t units) {
@@ -53,13 +54,17 @@ class Progress {
   /// that come after all of them, which alone say nothing about what comes before them. A stage
   /// that comes unexpected takes no place in either.
   void expect(std::vector<Stage> stages);
+  /// Stages that come after all others, with what they are expected to take.
   void expect_at_end(std::vector<Stage> stages);
   /// All before the end takes so many seconds from now, whatever stages come.
   void expect_within(double seconds);
 
+  /// Asks the work to stop. Thread-safe, also in a signal handler.
   void request_cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+  /// Whether the work was asked to stop. Thread-safe.
   bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
 
+  /// What a watcher sees: the running stage, its units and the time [s].
   struct Snapshot {
     std::string stage;
     uint64_t done = 0, total = 0;
@@ -68,6 +73,7 @@ class Progress {
     int stage_index = -1;
     double seconds_left = -1;  ///< of all that is expected; < 0: not known
   };
+  /// The state now. Thread-safe.
   Snapshot snapshot() const;
   /// The stages so far with their wall-clock seconds.
   std::vector<Stage> stages() const;
@@ -78,10 +84,12 @@ class Progress {
   std::vector<std::string> notes(size_t first) const;
   /// What can be said to someone who stops the work; empty: that it is lost. Thread-safe.
   void set_way_on(std::string text);
+  /// What set_way_on() was given last. Thread-safe.
   std::string way_on() const;
   /// What must be done by whoever ends the process while the work still runs; empty: nothing.
   /// Thread-safe.
   void set_clean_up(std::function<void()> clean_up);
+  /// Calls what set_clean_up() was given last, if anything. Thread-safe.
   void clean_up() const;
 
  private:

@@ -10,6 +10,7 @@
 namespace luxel {
 inline namespace base {
 
+/// What kind of failure it was.
 enum class ErrorCode {
   bad_input,      ///< a file's content is wrong
   unsupported,    ///< a file asks for something luxel does not know
@@ -30,8 +31,10 @@ struct Error {
 /// tl::expected has the names of C++23's std::expected, which g++ 12 lacks in C++20 mode.
 template <class T>
 using Result = tl::expected<T, Error>;
+/// Success without a value, or an Error.
 using Status = Result<void>;
 
+/// An Error to be returned, its message put together as by fmt::format.
 template <class... Args>
 tl::unexpected<Error> fail(ErrorCode code, fmt::format_string<Args...> text, Args&&... args) {
   return tl::unexpected<Error>(Error{code, fmt::format(text, std::forward<Args>(args)...)});

@@ -12,6 +12,7 @@
 
 namespace luxel::display {
 
+/// The size of a picture [pixels], and its rays.
 struct DrawParams {
   int width = 960, height = 720;
   int samples_per_axis = 3;           ///< n x n rays per pixel

@@ -39,8 +39,10 @@ Rgb reinhard_curve(Rgb exposed, float white = 4);
 /// filmic curve of ACES. [Narkowicz16]
 Rgb filmic_curve(Rgb exposed);
 
+/// Clips every channel to [0, 1].
 Rgb clamp_curve(Rgb exposed);
 
+/// The curves above, in the order of kToneMaps.
 enum class ToneMap : uint8_t { shoulder, ratio, reinhard, filmic, clamp };
 
 /// Names, as in `luxel render --tone-map`.
@@ -53,6 +55,7 @@ inline constexpr std::array<NamedToneMap, 5> kToneMaps{{{"shoulder", ToneMap::sh
                                                         {"reinhard", ToneMap::reinhard},
                                                         {"filmic", ToneMap::filmic},
                                                         {"clamp", ToneMap::clamp}}};
+/// The curve of a name of kToneMaps; none for another name.
 std::optional<ToneMap> find_tone_map(std::string_view name);
 
 /// The curve with its default parameter.

@@ -36,6 +36,7 @@ struct LightmapLayer {
 Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
                                          std::span<const image::Image> lightmaps,
                                          std::span<const LightmapLayer> layers = {});
+/// baked_glb() of an atlas of one page, without layers.
 inline Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene,
                                                 const atlas::Atlas& atlas,
                                                 const image::Image& lightmap) {

@@ -25,6 +25,7 @@ Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view nam
 /// Display values in [0, 1], four channels, of a file as for decode_ldr, with all 16 bits that a
 /// PNG may have.
 Result<Image> decode_display(std::span<const std::byte> bytes, std::string_view name);
+/// Any number of channels from 1 to 4, without loss.
 std::vector<std::byte> encode_png(const Image8& image);
 
 /// OpenEXR scan lines, 32-bit float, ZIP; channels named R, G, B, A in this order (1 to 4).

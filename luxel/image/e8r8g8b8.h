@@ -11,6 +11,7 @@
 
 namespace luxel::image {
 
+/// A colour whose three 8-bit components share an 8-bit exponent. [Rodriguez06, section 5.7]
 struct E8R8G8B8 {
   uint8_t e = 0, r = 0, g = 0, b = 0;
   friend bool operator==(const E8R8G8B8&, const E8R8G8B8&) = default;
@@ -30,10 +31,12 @@ Rgb from_e8r8g8b8(E8R8G8B8 code);
 /// As Direct3D lays out A8R8G8B8, the exponent in the place of alpha: e << 24 | r << 16 | g << 8 |
 /// b.
 uint32_t pack(E8R8G8B8 code);
+/// The inverse of pack().
 E8R8G8B8 unpack_e8r8g8b8(uint32_t bits);
 
 /// The first three channels of an image, row by row, and back to three channels.
 std::vector<uint32_t> encode_e8r8g8b8(const Image& image);
+/// The inverse of encode_e8r8g8b8(): three channels; `codes` has width * height entries.
 Image decode_e8r8g8b8(const std::vector<uint32_t>& codes, int width, int height);
 
 }  // namespace luxel::image

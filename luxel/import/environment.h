@@ -11,6 +11,7 @@
 
 namespace luxel::import {
 
+/// An environment map, and one sentence for each repair.
 struct ImportedEnvironment {
   scene::Environment map;
   std::vector<std::string> warnings;

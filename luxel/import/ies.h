@@ -11,6 +11,7 @@
 
 namespace luxel::import {
 
+/// What an IES file says of a luminaire.
 struct Ies {
   scene::LightProfile profile;        ///< all factors in, symmetries unfolded
   double lumens = 0;                  ///< lamps * lumens per lamp; 0: absolute photometry

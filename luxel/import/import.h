@@ -10,6 +10,7 @@
 
 namespace luxel::import {
 
+/// What a file holds.
 struct Imported {
   scene::Scene scene;                 ///< validated (luxel/scene/validate.h)
   std::vector<std::string> warnings;  ///< one sentence each

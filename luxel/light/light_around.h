@@ -25,6 +25,7 @@ struct LitScene {
   std::function<Rgb(const scene::SurfacePoint&)> irradiance_at;  ///< called by many threads
 };
 
+/// How many rays look around a point.
 struct AroundParams {
   int samples = 512;        ///< rays per point towards surfaces and sky
   int direct_samples = 16;  ///< shadow rays per point and direction towards area lights
@@ -39,6 +40,7 @@ struct Probe {
   float backs = 0;  ///< share of the surfaces around that are seen from behind
 };
 
+/// One probe per position, in their order.
 struct Probes {
   std::vector<Probe> probes;
   uint64_t rays = 0;
@@ -56,6 +58,7 @@ inline constexpr uint32_t kProbeNormals = 48;
 struct Bent {
   std::array<Rgb, 3> v;  ///< its x, y and z, in the world
 };
+/// One Bent per position, in their order.
 struct BentLight {
   std::vector<Bent> bent;
   uint64_t rays = 0;

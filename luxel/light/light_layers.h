@@ -25,17 +25,20 @@ enum class LayerMode : uint8_t { none, per_light, groups };
 
 inline constexpr size_t kMaxLayers = 64;
 
+/// Lights that are told apart from the others together.
 struct LightLayer {
   std::string name;  ///< letters, digits, '.', '_' and '-'; no two alike, in any case
   std::vector<std::string> lights;  ///< as the scene names them
 };
 
+/// All layers, and which of them each light belongs to.
 struct LightLayers {
   std::vector<LightLayer> layers;
   std::vector<uint8_t> of_triangle;  ///< layer per Lights::triangles
   std::vector<uint8_t> of_punctual;  ///< layer per Lights::punctual
   std::optional<uint8_t> of_surroundings;
 
+  /// The number of layers.
   size_t size() const { return layers.size(); }
 };
 

@@ -32,6 +32,7 @@ struct TriangleLight {
   uint32_t piece = 0;
 };
 
+/// Everything that shines in a scene, arranged for picking lights at random.
 struct Lights {
   std::vector<TriangleLight> triangles;  ///< in the order of the hierarchy's leaves
   size_t emissive_triangles = 0;         ///< of the scene: those in pieces count once

@@ -23,6 +23,7 @@ struct TexelGeometry {
   std::span<const uint8_t> hidden;  ///< 1: its light means nothing; neither read nor changed
 };
 
+/// How far the filter looks, and what it holds to be the same light.
 struct DenoiseParams {
   float radius = 9;                    ///< largest distance of a neighbour, in texels
   float max_normal_angle_rad = 0.35f;  ///< neighbours that face farther apart share no light

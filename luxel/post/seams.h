@@ -25,6 +25,7 @@ struct Seam {
 std::vector<Seam> find_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
                              float max_normal_angle_rad = 0.1f);
 
+/// How stitch_seams() weighs and iterates.
 struct SeamParams {
   float keep_weight = 0.1f;  ///< how strongly a texel holds on to its own value
   int max_iterations = 200;  ///< of the conjugate gradient
@@ -69,6 +70,7 @@ struct SeamResidual {
   /// 95th percentile and the largest.
   double relative_p95 = 0, relative_max = 0;
 };
+/// Measures `values`, one per texel of the map; nothing is changed.
 SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
                            std::span<const Rgb> values);
 

@@ -18,6 +18,7 @@
 
 namespace luxel::reference {
 
+/// How many paths there are, and how long.
 struct PathParams {
   int samples = 256;  ///< paths per receiver or pixel; at least 1
   int bounces = -1;   ///< reflections to count; < 0: all
@@ -32,8 +33,10 @@ struct Receivers {
   std::span<const Vec3> normal;            ///< unit; the cosine is about it
   std::span<const Vec3> geometric_normal;  ///< unit; no light comes from below the plane it spans
   std::span<const uint32_t> first{};       ///< empty, or one entry per receiver and one more
+  /// The number of receivers.
   size_t size() const { return first.empty() ? position.size() : first.size() - 1; }
 };
+/// One receiver per element. It refers to them.
 inline Receivers receivers(const transport::Elements& e) {
   return {e.position, e.normal, e.geometric_normal, {}};
 }

@@ -19,6 +19,7 @@ struct Environment {
   std::vector<Rgb> radiance;  ///< width * height, row by row, finite and >= 0; empty: no map
   float rotation_rad = 0;     ///< about +Y, as a compass turns: pi/2 moves what stood at -Z to +X
 
+  /// True when there is no map: nothing shines.
   bool empty() const { return radiance.empty(); }
 };
 
@@ -32,6 +33,7 @@ size_t pixel_towards(const Environment& map, Vec3 direction);
 /// The pixels of many directions. The spans have one length.
 void pixels_towards(const Environment& map, std::span<const Vec3> directions,
                     std::span<uint32_t> pixels);
+/// Radiance in the pixel of a unit direction [W/(sr m^2)]; the map is not empty.
 inline Rgb radiance_towards(const Environment& map, Vec3 direction) {
   return map.radiance[pixel_towards(map, direction)];
 }

@@ -31,7 +31,9 @@ struct Texture {
   std::string mime_type;           ///< of `encoded`
 };
 
+/// What a texture shows beyond its edges, as in glTF.
 enum class Wrap : uint8_t { repeat, clamp, mirror };
+/// How a texture is read between its pixels.
 enum class Filter : uint8_t { linear, nearest };
 
 /// How a material looks a texture up: uv' = offset + rotate(scale * uv)  [KHR_texture_transform].
@@ -44,8 +46,10 @@ struct TextureRef {
   float rotation = 0;  ///< radians, counter-clockwise in glTF's UV space as the extension defines
 };
 
+/// What alpha means, as in glTF: nothing, holes below a limit, a share that is let through.
 enum class AlphaMode : uint8_t { opaque, mask, blend };
 
+/// A surface: what it reflects, emits and lets through. Factors are those of glTF 2.0.
 struct Material {
   std::string name;
   Rgb base_color{1, 1, 1};
@@ -110,6 +114,7 @@ struct Instance {
 
 /// A light without area.
 struct PunctualLight {
+  /// How it spreads its light, as in KHR_lights_punctual.
   enum class Kind : uint8_t { point, spot, directional };
   std::string name;
   Kind kind = Kind::point;
@@ -127,6 +132,7 @@ struct PunctualLight {
                              ///< to `direction`
 };
 
+/// A view of the scene.
 struct Camera {
   std::string name;
   Mat34 world_from_camera;  ///< looks along its -z, its y is up
@@ -135,6 +141,7 @@ struct Camera {
   float orthographic_height_m = 0;
 };
 
+/// Everything that is lit and that shines. What solvers may rely on: luxel/scene/validate.h.
 struct Scene {
   std::string name;
   std::vector<Mesh> meshes;
@@ -154,10 +161,13 @@ struct SurfacePoint {
   Barycentric at;
 };
 
+/// The corners of a triangle [m].
 struct Triangle3 {
   Vec3 a, b, c;
 };
+/// The normal of a triangle, counter-clockwise, with twice its area as length [m^2].
 inline Vec3 geometric_normal_area2(const Triangle3& t) { return cross(t.b - t.a, t.c - t.a); }
+/// The area of a triangle [m^2].
 inline float area_m2(const Triangle3& t) { return 0.5f * length(geometric_normal_area2(t)); }
 
 /// World corners in the order of the mesh's indices (barycentrics stay valid). For a mirroring
@@ -168,8 +178,10 @@ Vec3 front_normal(const Scene& scene, uint32_t instance, uint32_t triangle);
 /// The interpolated unit shading normal in the world, on the side of front_normal; equals it when
 /// the mesh has no normals.
 Vec3 shading_normal(const Scene& scene, const SurfacePoint& p);
+/// The place of a surface point in the world [m].
 Vec3 world_position(const Scene& scene, const SurfacePoint& p);
 
+/// The material of a surface point's triangle.
 const Material& material_at(const Scene& scene, const SurfacePoint& p);
 /// rho = base colour * (1 - metallic) * (1 - t), each channel in [0, 0.99]; t is the share that is
 /// scattered through.
@@ -191,10 +203,12 @@ struct Passage {
   float coverage = 1;
   Rgb tint{1, 1, 1};
 };
+/// What goes straight through the surface at a point, textures included.
 Passage passage_at(const Scene& scene, const SurfacePoint& p);
 /// Whether light can go straight through some of a material, holes of masks included; and whether
 /// it may come out coloured.
 bool lets_light_through(const Material& material);
+/// Whether light that goes through a material may come out coloured.
 bool tints_light(const Material& material);
 /// Whether the back reflects light, too: double-sided materials, and those that light goes through,
 /// for rays leave a pane of glass through the back of its far side, and a leaf glows on both.
@@ -216,6 +230,7 @@ std::array<float, 4> base_color_at(const Scene& scene, const SurfacePoint& p);
 /// Number of triangles drawn, that is over all instances, and the offset of each instance in a
 /// numbering of them: triangle t of instance i is number first[i] + t; first has one extra entry.
 std::vector<uint32_t> first_triangles(const Scene& scene);
+/// The smallest box around the vertices of all instances [m]; empty without any.
 Box3 world_bounds(const Scene& scene);
 
 }  // namespace luxel::scene

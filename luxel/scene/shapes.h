@@ -15,6 +15,7 @@ using Quad = std::array<Vec3, 4>;
 /// The index of the vertex of `mesh` at exactly this position, added when there is none yet. Linear
 /// search: for shapes of a few hundred vertices.
 uint32_t vertex_at(Mesh& mesh, Vec3 position);
+/// Corners counter-clockwise seen from the front; vertices are shared (vertex_at).
 void add_triangle(Mesh& mesh, Vec3 a, Vec3 b, Vec3 c, uint32_t material);
 /// Two triangles that meet in the diagonal from corner 0 to corner 2; a quad whose corners do not
 /// lie in one plane is bent there.
@@ -34,6 +35,7 @@ void place(Scene& scene, Mesh mesh, const Mat34& world_from_object = {});
 /// A mesh of one horizontal rectangle, {x0, x1, z0, z1}, with its front up or down.
 void add_rectangle(Scene& scene, const std::array<float, 4>& sides, float y, bool up,
                    uint32_t material);
+/// Adds a diffuse material: reflectance 0..1, emitted radiance [W/(sr m^2)]. Returns its index.
 uint32_t add_material(Scene& scene, std::string name, Rgb reflectance, Rgb emission = {});
 
 /// A camera's pose: at `eye`, `target` in the middle of its picture, `up` upwards in it.

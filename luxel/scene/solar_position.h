@@ -12,6 +12,7 @@ struct UtcTime {
 /// Days and their parts since noon of the first of January 4713 BC [Meeus98, eq. 7.1].
 double julian_day(const UtcTime& time);
 
+/// Where the sun stands in the sky.
 struct SolarPosition {
   double azimuth_rad = 0;    ///< compass bearing: 0 north, pi/2 east
   double elevation_rad = 0;  ///< geometric: refraction, half a degree at the horizon, left out

@@ -11,6 +11,7 @@
 
 namespace luxel::trace {
 
+/// A ray from origin + t_min direction to origin + t_max direction.
 struct Ray {
   Vec3 origin;
   float t_min = 0;
@@ -26,7 +27,9 @@ struct Hit {
   Barycentric at;
   bool back_face = false;  ///< the ray came from behind the front side
 
+  /// Whether the ray meets anything.
   bool found() const { return instance != scene::kNone; }
+  /// Where it meets it; only when found().
   scene::SurfacePoint point() const { return {instance, triangle, at}; }
 };
 
@@ -55,6 +58,7 @@ class RayTracer {
   /// nearby origins and directions next to each other run faster. Sizes are equal.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
                     Packets packets = Packets::any) const;
+  /// What one ray meets first. Many rays are faster in closest_hits().
   Hit closest_hit(const Ray& ray) const;
   /// blocked[i] is 1 when anything solid lies on rays[i] within (t_min, t_max).
   void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const;

@@ -24,6 +24,7 @@ struct Elements {
   /// light through.
   std::vector<Rgb> transmittance;
 
+  /// The number of elements, also after drop_places().
   size_t size() const { return std::max(position.size(), reflectance.size()); }
 };
 
@@ -43,6 +44,7 @@ Elements subset(const Elements& elements, std::span<const uint32_t> chosen);
 struct SmoothPoint {
   Vec3 position, normal, geometric_normal;  ///< as in Elements
 };
+/// The smooth point of a surface point; on the triangle where the mesh has no normals.
 SmoothPoint smooth_point(const scene::Scene& scene, const scene::SurfacePoint& p);
 
 /// One element per texel of the map, in its order. Where vertex normals say that the surface bulges

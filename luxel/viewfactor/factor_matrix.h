@@ -19,10 +19,14 @@ struct FactorMatrix {
   std::vector<double> error;   ///< estimated absolute error (analytic) or standard error (sampled)
   std::vector<std::string> warnings;  ///< pairs whose error is larger than asked for
 
+  /// The number of surfaces.
   size_t size() const { return area_m2.size(); }
+  /// F(i -> j).
   double& at(size_t i, size_t j) { return factor[i * size() + j]; }
+  /// F(i -> j).
   double at(size_t i, size_t j) const { return factor[i * size() + j]; }
 };
+/// The surfaces' names and areas, all factors and errors 0.
 FactorMatrix empty_factor_matrix(const Surfaces& surfaces);
 
 /// The entries that are asked for; kNone: all rows or all columns. Others stay 0.
@@ -36,8 +40,10 @@ struct FactorChecks {
   double largest_row_error = 0;  ///< |1 - row sum|: 0 when the surfaces close a room
   double reciprocity_error = 0;  ///< largest |A_i F_ij - A_j F_ji| / min(A_i, A_j)
 };
+/// Measures a whole matrix.
 FactorChecks check_factors(const FactorMatrix& matrix);
 
+/// How exact factors past blockers are to be, and what bounds the work.
 struct AnalyticParams {
   /// Relative error of pairs of polygons with something between them; of factors below 1e-3 of the
   /// smaller polygon, the error of one of that size.

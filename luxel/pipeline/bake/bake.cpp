@@ -27,6 +27,7 @@
 #include "luxel/post/refill.h"
 #include "luxel/post/seams.h"
 #include "luxel/scene/sides.h"
+#include "luxel/scene/validate.h"
 #include "luxel/transport/irradiance_field.h"
 
 namespace luxel::pipeline {
@@ -181,10 +182,9 @@ Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, B
   return layout;
 }
 
-/// Reads and lays out. The tracer looks at bake.scene.
+/// Lays out bake.scene, which the tracer looks at.
 Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers& keepers,
                          Progress& progress) {
-  LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
   if (keepers.checkpoint && find_solver(settings.solver)->can.parts)
     LUXEL_TRY_STATUS(keepers.checkpoint->open(bake.scene, progress));
   if (keepers.cache) keepers.cache->open(bake.scene, progress);
@@ -199,13 +199,9 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
                light::collect_lights(bake.scene)};
 }
 
-}  // namespace
-
-Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const Keepers& keepers,
-                        const OnBakeEstimate& on_estimate) {
-  LUXEL_TRY_STATUS(check(settings));
-  const ThreadLimit threads(settings.threads);
-  Bake bake;
+/// The rest of bake_scene() for a bake that has its scene.
+Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
+                   const OnBakeEstimate& on_estimate, Bake& bake, Progress& progress) {
   LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
   const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
                                 ready.elements, ready.lights, ready.tracer};
@@ -221,7 +217,32 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const 
   LUXEL_TRY_STATUS(repair(settings, ready.tracer, bake, progress));
   LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
-  LUXEL_TRY_STATUS(draw_preview(ready.tracer, bake, progress));
+  return draw_preview(ready.tracer, bake, progress);
+}
+
+}  // namespace
+
+Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const Keepers& keepers,
+                        const OnBakeEstimate& on_estimate) {
+  LUXEL_TRY_STATUS(check(settings));
+  const ThreadLimit threads(settings.threads);
+  Bake bake;
+  LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
+  LUXEL_TRY_STATUS(bake_loaded(settings, keepers, on_estimate, bake, progress));
+  return bake;
+}
+
+Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& asked, Progress& progress) {
+  BakeSettings settings = asked;
+  if (settings.output.empty()) settings.output = ".";
+  LUXEL_TRY_STATUS(check(settings));
+  const ThreadLimit threads(settings.threads);
+  Bake bake;
+  bake.scene = std::move(scene);
+  LUXEL_TRY(bake.warnings, scene::validate(bake.scene, "scene '" + bake.scene.name + "'"));
+  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(settings.outside, bake.scene));
+  bake.warnings.insert(bake.warnings.end(), light.begin(), light.end());
+  LUXEL_TRY_STATUS(bake_loaded(settings, {}, {}, bake, progress));
   return bake;
 }
 
@@ -233,6 +254,7 @@ Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress) {
     return fail(ErrorCode::bad_setting, "--plan: --solver {} cannot say what it will take",
                 settings.solver);
   Bake bake;
+  LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
   LUXEL_TRY(const Ready ready, make_ready(settings, bake, {}, progress));
   return solver.plan({bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
                      settings, progress);

@@ -67,6 +67,13 @@ using OnBakeEstimate = std::function<void(const light::TexelScene&, const light:
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
                         const Keepers& keepers = {}, const OnBakeEstimate& on_estimate = {});
 
+/// Bakes a scene that a program has built: settings.scene is not looked at. The scene is validated
+/// first (luxel/scene/validate.h). Nothing is written but temporary files in or above
+/// settings.output, the folder of the process if that is empty. The result stands by itself:
+/// Bake::lightmaps has E [W/m^2], Bake::atlas where it lies. Errors: settings out of range
+/// (bad_setting), a scene that cannot be repaired (bad_input), too little memory, cancelled.
+Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& settings, Progress& progress);
+
 /// `luxel bake --plan`: reads and lays out, and tries a few texels. Nothing is written.
 Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);
 

@@ -16,12 +16,14 @@
 
 namespace luxel::pipeline {
 
+/// What `luxel compare` is asked for.
 struct CompareSettings {
   std::filesystem::path a, b;                   ///< files, or folders of bakes; b is the reference
   std::optional<std::filesystem::path> report;  ///< folder for report.html
   std::optional<double> exposure;               ///< for the display values; unset: chosen from b
 };
 
+/// How far `a` is from `b`.
 struct Compared {
   image::Difference difference;         ///< of linear light
   double psnr_db = 0;                   ///< 8-bit pictures: of display values, peak 255

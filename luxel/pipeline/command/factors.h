@@ -13,6 +13,7 @@
 
 namespace luxel::pipeline {
 
+/// What `luxel factors` is asked for; unset values have the defaults named here.
 struct FactorSettings {
   std::filesystem::path scene;
   std::filesystem::path output;     ///< a .csv; empty: nothing is written
@@ -27,6 +28,7 @@ struct FactorSettings {
   uint64_t max_memory_bytes = 0;  ///< of the process; 0: what is free
 };
 
+/// The table of view factors, and how good it is.
 struct FactorReport {
   viewfactor::FactorMatrix matrix;
   viewfactor::FactorSelection selection;

@@ -16,23 +16,29 @@ namespace luxel::pipeline {
 
 /// A value that changes with time: linear between its keys, constant outside them.
 struct Track {
+  /// A value at a time [s].
   struct Key {
     double at_s = 0;
     Vec3 value;
   };
   std::vector<Key> keys;  ///< ascending; never empty once read
 };
+/// The value of a track at a time of the script [s]; `track` has a key.
 Vec3 value_at(const Track& track, double time_s);
 
+/// Lamps, glowing materials and a camera over time: what a light script file says.
 struct LightScript {
+  /// A lamp whose intensity, position and direction have tracks.
   struct Lamp {
     scene::PunctualLight light;  ///< what does not move
     Track intensity, position, direction;
   };
+  /// A material whose emitted radiance [W/(sr m^2)] has a track.
   struct Glow {
     std::string material;
     Track radiance;
   };
+  /// A camera that stands still: eye and target [m], vertical field of view.
   struct View {
     Vec3 eye, look_at;
     double fov_deg = 45;

@@ -10,6 +10,7 @@
 
 namespace luxel::pipeline {
 
+/// What `luxel relight --play` is asked for.
 struct PlaySettings {
   std::filesystem::path lxr;
   std::filesystem::path script;  ///< a light script (luxel/pipeline/command/light_script.h)
@@ -21,9 +22,11 @@ struct PlaySettings {
 struct FrameTimes {
   double time_s = 0;  ///< in the script
   double direct_ms = 0, bounces_ms = 0, places_ms = 0, draw_ms = 0;
+  /// What the relighter took, without drawing [ms].
   double update_ms() const { return direct_ms + bounces_ms + places_ms; }
 };
 
+/// The size of the frames [pixels], and what each took.
 struct Played {
   int width = 0, height = 0;
   std::vector<FrameTimes> frames;

@@ -14,6 +14,7 @@
 
 namespace luxel::pipeline {
 
+/// What `luxel probe` is asked for.
 struct ProbeSettings {
   std::filesystem::path scene;
   Vec3 at{};                     ///< the nearest surface is looked at
@@ -33,6 +34,7 @@ struct ProbedSource {
   Rgb irradiance;          ///< what it brings [W/m^2]
 };
 
+/// What is known of the light at a point of a surface.
 struct Probed {
   std::string name, material;  ///< of the surface
   Vec3 position{}, normal{};

@@ -18,6 +18,7 @@ inline matrix::MatrixParams relight_matrix() {
   return params;
 }
 
+/// What `luxel relight` is asked for.
 struct RelightSettings {
   std::filesystem::path scene;
   std::filesystem::path output;   ///< .lxr

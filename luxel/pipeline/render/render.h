@@ -47,6 +47,7 @@ struct RenderSettings {
   std::vector<std::string> overlays;  ///< the same; names of luxel/pipeline/render/overlays.h
 };
 
+/// What was drawn, and how.
 struct Rendered {
   int width = 0, height = 0;
   float exposure = 1;  ///< the factor that light was shown with

@@ -25,6 +25,7 @@ Result<LightmapFormats> parse_formats(std::string_view text);
 /// ["exr", ...].
 nlohmann::json to_json(const LightmapFormats& formats);
 
+/// Lightmaps as files, not yet written.
 struct LightmapFiles {
   std::vector<OutputFile> files;
   float rgbm_range = 0;  ///< E = range a rgb in every NAME.rgbm.png; 0 where there is none

@@ -74,10 +74,13 @@ struct BakeSettings {
 /// values, and what works. The values themselves are checked by the table of options.
 Status check_contradictions(const BakeSettings& settings);
 
+/// The value of --directional that stands for it.
 std::string_view name_of(Directional directional);
+/// The value of --layers that stands for it.
 std::string_view name_of(light::LayerMode mode);
 /// "auto", "mesh" or a number, and back.
 Result<PagesSetting> parse_pages(std::string_view text);
+/// The value of --pages that stands for it: parse_pages() gives it back.
 std::string text_of(const PagesSetting& pages);
 /// "1500000", "900M", "1.5G": bytes; K, M, G, T are powers of 1024.
 Result<uint64_t> parse_size(std::string_view text);

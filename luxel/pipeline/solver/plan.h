@@ -20,6 +20,7 @@ struct Plan {
   double scratch_bytes = 0;  ///< of temporary files
 };
 
+/// The object of `luxel bake --plan --json`.
 nlohmann::json to_json(const Plan& plan);
 
 /// Seams, preview and files, with what they are expected to take.

@@ -25,6 +25,7 @@ struct LeakRepair {
   std::vector<uint32_t> refilled;     ///< inside solids, with the light of their neighbours
 };
 
+/// A scene laid out in texels, and what was repaired on the way.
 struct TexelLayout {
   atlas::Atlas atlas;
   atlas::TexelMap map;

@@ -54,6 +54,7 @@ struct GatherObserver {
   std::function<void()> on_traced{};
 };
 
+/// What gather found, one value per element.
 struct Gather {
   std::vector<Rgb> irradiance;  ///< E per element [W/m^2], after all bounces
   std::vector<Rgb> direct;      ///< the part of it that comes straight from the lights

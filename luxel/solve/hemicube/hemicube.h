@@ -7,6 +7,7 @@
 
 namespace luxel::hemicube {
 
+/// What the hemicube solver is asked for.
 struct HemicubeParams {
   ElementKind elements = ElementKind::vertex;
   int resolution = 64;  ///< pixels along an edge of the hemicube's top, even, 2 to kMaxResolution
@@ -32,6 +33,7 @@ inline constexpr int kMaxResolution = 2048;
 /// What the pixels of a hemicube take on each thread and once, before anything is seen.
 uint64_t bytes_of_hemicube(int resolution, int threads);
 
+/// The light of a scene on a mesh of its own.
 struct Solution {
   Field field;
   std::vector<uint8_t> hidden;    ///< per element of the field: 1 inside a solid

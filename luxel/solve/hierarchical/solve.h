@@ -9,6 +9,7 @@
 
 namespace luxel::hierarchical {
 
+/// How exact the solution is to be, and what bounds it.
 struct SolveParams {
   /// How much a link may err [W/m^2]; nothing: a hundredth of the mean irradiance. No less than a
   /// ten-thousandth of it, whatever is asked for.
@@ -38,6 +39,7 @@ struct Solution {
   bool all_bounces = true;
   Basis basis = Basis::linear;
 
+  /// What form factors between elements are computed from. It refers to this solution.
   Exchange exchange(const trace::RayTracer& tracer) const {
     return {faces, tree, blockers, tracer, diagonal_m, unit_area_m2, basis};
   }
@@ -59,7 +61,7 @@ struct Totals {
   double area_m2 = 0;
   Rgb irradiance, radiosity, emission;
 };
-/// Sums over the roots, which cover all faces.
+/// The means over all faces of a solution.
 Totals totals_of(const Solution& solution);
 /// Luminance that all leaves absorb over what they emit: 1 where nothing gets out.
 double absorbed_over_emitted(const Solution& solution);

@@ -14,20 +14,25 @@ struct FormFactors {
   std::vector<uint32_t> column;
   std::vector<float> factor;
 
+  /// The number of patches, that is rows.
   size_t size() const { return first.size() - 1; }
+  /// The patches that a row's patch sees, ascending.
   std::span<const uint32_t> columns_of(size_t row) const {
     return {column.data() + first[row], size_t(first[row + 1] - first[row])};
   }
+  /// F for each of columns_of(row).
   std::span<const float> factors_of(size_t row) const {
     return {factor.data() + first[row], size_t(first[row + 1] - first[row])};
   }
 };
 
+/// How many rays look for form factors.
 struct FactorParams {
   int rays_per_patch = 2048;  ///< cosine-distributed, from the patch's points
   uint64_t seed = 1;
 };
 
+/// Form factors as rays found them, not yet reciprocal.
 struct TracedFactors {
   FormFactors factors;
   std::vector<float> sky;  ///< per patch: the share of rays that leave the scene

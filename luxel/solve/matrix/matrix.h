@@ -9,6 +9,7 @@
 
 namespace luxel::matrix {
 
+/// What the matrix solver is asked for.
 struct MatrixParams {
   PatchParams patches;
   FactorParams factors;
@@ -37,6 +38,7 @@ Result<Prepared> prepare(const scene::Scene& scene, const trace::RayTracer& trac
 bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer,
                const PatchedScene& patched, const scene::SurfacePoint& p);
 
+/// The light of each patch [W/m^2].
 struct Solution {
   std::vector<Rgb> direct;    ///< per patch: E straight from lights, without the background
   std::vector<Rgb> indirect;  ///< per patch: E from the background and from all other patches

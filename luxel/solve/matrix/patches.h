@@ -18,6 +18,7 @@ namespace luxel::matrix {
 
 inline constexpr size_t kMaxPatches = 1u << 20;
 
+/// How finely surfaces are divided.
 struct PatchParams {
   size_t count = 8192;        ///< about so many
   int points_per_patch = 48;  ///< on average: they are what a patch is made of
@@ -39,12 +40,15 @@ struct Patches {
   std::vector<PatchPoint> points;     ///< spread evenly over the patches
   float voxel_m = 0;                  ///< edge of the voxels that surfaces were cut by
 
+  /// The number of patches.
   size_t size() const { return area_m2.size(); }
+  /// The points that a patch is made of.
   std::span<const PatchPoint> points_of(size_t patch) const {
     return {points.data() + first_point[patch], first_point[patch + 1] - first_point[patch]};
   }
   /// Where its direct light is taken: of at most kProbes points, spread over the patch, the k-th.
   size_t probes_of(size_t patch) const { return std::min(points_of(patch).size(), kProbes); }
+  /// The k-th of probes_of(patch) points at which direct light is taken.
   const PatchPoint& probe(size_t patch, size_t k) const {
     const auto all = points_of(patch);
     return all[k * all.size() / probes_of(patch)];

@@ -8,10 +8,12 @@
 
 namespace luxel::matrix {
 
+/// How an .lxr file holds its matrix; docs/method/relight.md compares them.
 enum class CodecKind : uint8_t { hierarchical, lowrank, bc1, dense32, dense16 };
 
 /// A matrix of all pairs takes 4 to 12 bytes each, and several of them while it is made.
 inline constexpr size_t kMaxDensePatches = 20000;
+/// Whether making the codec holds a number for every pair of patches.
 constexpr bool looks_at_all_pairs(CodecKind kind) {
   return kind != CodecKind::hierarchical && kind != CodecKind::lowrank;
 }
@@ -20,6 +22,7 @@ constexpr bool looks_at_all_pairs(CodecKind kind) {
 /// functions over fewer clusters were tried: they do no better for as many numbers.
 inline constexpr size_t kCoarseClusters = 300;
 
+/// What an .lxr file is made with.
 struct RelightParams {
   PatchParams patches;
   FactorParams factors;

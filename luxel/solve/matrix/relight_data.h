@@ -49,6 +49,7 @@ using Codec = std::variant<HierarchicalCodec, DenseCodec, Bc1Codec, LowRankCodec
 
 /// Places whose light is wanted.
 struct Target {
+  /// Patches only, texels of a lightmap, or vertices of the scene's meshes.
   enum class Kind : uint32_t { none, texels, vertices };
   Kind kind = Kind::none;
   uint32_t width = 0, height = 0;              ///< of the map, for texels
@@ -64,6 +65,7 @@ struct Occluders {
   std::vector<std::array<uint32_t, 3>> triangle;
 };
 
+/// All that an .lxr file holds: docs/format/lxr.md.
 struct RelightData {
   // Per patch, in the order of the codec's cluster tree.
   std::vector<Vec3> position, normal;  ///< the middle on the surface; unit, front side
@@ -86,6 +88,7 @@ struct RelightData {
   /// The scene with its lightmap coordinates as binary glTF, for players; may be empty.
   std::vector<std::byte> scene_glb;
 
+  /// The number of patches.
   size_t size() const { return area_m2.size(); }
 };
 

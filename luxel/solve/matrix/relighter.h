@@ -29,6 +29,7 @@ struct Relit {
   std::vector<Rgb> indirect_at_place;
 };
 
+/// What a relighter computes besides.
 struct RelighterParams {
   /// Direct light at places, too, by a shadow ray per place and light; for programs that do not
   /// draw direct light themselves.
@@ -50,6 +51,7 @@ class Relighter {
   Relighter& operator=(Relighter&&) noexcept;
   ~Relighter();
 
+  /// What make() was given. It does not change.
   const RelightData& data() const;
 
   /// E after all bounces of the lights, shadows by rays. One thread at a time.
@@ -62,8 +64,10 @@ class Relighter {
   /// What the last update() took [s]; asked on its thread.
   struct Seconds {
     double direct = 0, bounces = 0, places = 0;
+    /// All parts together [s].
     double total() const { return direct + bounces + places; }
   };
+  /// What the last update() took; asked on its thread.
   Seconds seconds() const;
 
  private:

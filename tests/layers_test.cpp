@@ -172,7 +172,7 @@ TEST(Layers, AreRefusedInASentence) {
   const std::string start =
       "bake " + scene_file("cornell-box.glb") + " -o " + (s.path / "x").string() + " --layers ";
   for (const auto& [options, sentence] :
-       {std::pair{"every", "--layers 'every' is not known; there is: per-light, groups"},
+       {std::pair{"every", "--layers every is not known; there is: per-light, groups"},
         {"groups --solver matrix", "--solver matrix does not use --layers"},
         {"groups --denoise", "--layers groups does not go together with --denoise"},
         {"groups --directional sh1", "does not go together with --directional"},

@@ -25,11 +25,11 @@ class Option:
         names, *rest = head.split(" ", 1)
         self.names = names.split(",")
         rest = rest[0] if rest else ""
-        # "TEXT:{auto,keep}=auto": a type, what may be given, the default. Names of our own, as in
-        # "LAMP=FILE", have no default.
-        typed = re.match(r"(TEXT|INT|UINT|FLOAT)(:\{.*?\})?=(.*)$", rest)
-        self.default = typed.group(3) if typed else ""
-        value = rest[:typed.start(3) - 1] if typed else rest
+        # "TEXELS=512" or "TEXT:{auto,keep}=auto": what may be given, and the default. What names
+        # an argument of two parts, as in "LAMP=FILE", is in capitals.
+        typed = re.match(r"(.*?)=([^A-Z].*)$", rest)
+        self.default = typed.group(2) if typed else ""
+        value = typed.group(1) if typed else rest
         choices = re.search(r":\{(.*)\}", value)
         kind = value.split(":")[0] if choices else value
         kind = kind.replace("REQUIRED", "").replace("...", "").strip()
@@ -94,7 +94,7 @@ def self_test():
     text = ("Bake\nUsage: x\n\nOptions:\n  -o,--output TEXT REQUIRED   Folder\n  --uv TEXT:{auto,keep}=auto\n"
             "                              keep = the file's\n  --no-stitch{false}          Do not\n"
             "  --sky A|B Excludes: --sun   A sky\n"
-            "  --ies LAMP=FILE ... A file\n\nOPTIONS:\n  --max-error FLOAT=0.01      Error\n")
+            "  --ies LAMP=FILE ... A file\n  --samples RAYS=256          Rays\n\nOPTIONS:\n  --max-error FLOAT=0.01      Error\n")
     groups = read_help(text)
     rows = [o.row() for _, options in groups for o in options]
     wanted = ["| `--output`, `-o` | text | required | Folder |",
@@ -102,6 +102,7 @@ def self_test():
               "| `--no-stitch` |  |  | Do not |",
               "| `--sky` | A\\|B |  | A sky |",
               "| `--ies` | LAMP=FILE |  | A file |",
+              "| `--samples` | RAYS | `256` | Rays |",
               "| `--max-error` | number | `0.01` | Error |"]
     for got, want in zip(rows, wanted):
         if got != want:

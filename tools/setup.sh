@@ -38,6 +38,7 @@ for tool in node:nodejs npm:npm; do
 done
 if [[ ${1:-} == tests ]]; then
   command -v chromium >/dev/null || wanted+=(chromium)
+  command -v patch >/dev/null || wanted+=(patch)
 fi
 if [[ ${1:-} == docs ]]; then
   command -v doxygen >/dev/null || wanted+=(doxygen)

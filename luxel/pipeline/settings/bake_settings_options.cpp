@@ -40,11 +40,13 @@ Options<S> sampling_options() {
       R::text("--bounces", &S::bounces, parse_bounces, json_of_bounces,
               "Reflections to count, or inf")
           .unit("COUNT"),
-      R::number("--max-error", &S::max_error,
-                {kSmallestError, 1, "",
-                 "give the part of their light to which texels must be known, as 0.02"},
-                "Add rays until the 95th percentile of the relative standard error is below this, "
-                "e.g. 0.02")
+      R::number(
+          "--max-error", &S::max_error,
+          {kSmallestError, 1, "",
+           "an error of 0 would never end; give the part of their light to which texels must be "
+           "known, as 0.02"},
+          "Add rays until the 95th percentile of the relative standard error is below this, "
+          "e.g. 0.02")
           .unit("ERROR")
           .only(&Can::errors),
       R::number(

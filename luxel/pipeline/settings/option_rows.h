@@ -154,7 +154,7 @@ struct Rows {
     row.check = [](const S&) { return Status{}; };
     row.default_text = [json = row.to_json](const S& s) {
       const nlohmann::json value = json(s);
-      return value.is_null() ? std::string() : option_text(value);
+      return value.is_null() || value == 0 ? std::string() : option_text(value);
     };
     return row;
   }
@@ -177,7 +177,8 @@ struct Rows {
       return std::invoke(access, s) = value, Status{};
     };
     Row row = plain(flag, std::move(help));
-    row.value = "NUMBER", row.range = text_of(range);
+    row.value = "NUMBER";
+    if (range.wrong.empty()) row.range = text_of(range);
     // Numbers that T cannot hold, as -1, 2.5, 1e-60 or nan may be, are out of range.
     row.is_of_kind = [](std::string_view text) { return is_number(text); };
     row.read_text = [set, range, flag = row.flag](S& s, std::string_view text) -> Status {
@@ -206,7 +207,8 @@ struct Rows {
     };
     row.default_text = [access](const S& s) {
       const nlohmann::json json = json_of(std::invoke(access, s));
-      return json == "auto" || json == 0 ? std::string() : json.dump();
+      if (json == "auto" || json == 0) return std::string();
+      return json.is_number_float() ? fmt::format("{}", json.get<double>()) : json.dump();
     };
     return row;
   }

@@ -14,8 +14,11 @@ Solver reference_solver();
 
 std::span<const Solver> solvers() {
   static const std::array table{
-      gather_solver(),       hemicube_solver(),  matrix_solver(),
-      hierarchical_solver(), reference_solver(),
+      gather_solver(),        // rays from each texel, and radiosity bounced between texels
+      hemicube_solver(),      // radiosity of vertices or triangles by hemicubes
+      matrix_solver(),        // radiosity of patches by a matrix of form factors
+      hierarchical_solver(),  // radiosity of elements that links divide
+      reference_solver(),     // the path tracer
   };
   return table;
 }

@@ -124,7 +124,7 @@ struct Rows {
     };
     row.read_json = [access, flag = row.flag](S& s, const nlohmann::json& json) -> Status {
       if (!json.is_boolean())
-        return fail(ErrorCode::bad_setting, "{} is neither true nor false", json.dump());
+        return fail(ErrorCode::bad_setting, "{}: {} is neither true nor false", flag, json.dump());
       return std::invoke(access, s) = json.get<bool>(), Status{};
     };
     row.to_json = [access](const S& s) { return nlohmann::json(bool(std::invoke(access, s))); };

@@ -118,7 +118,7 @@ Options<hemicube::HemicubeParams> hemicube_options() {
                  "is not an error; give a part of the light, as 0.01, or 0 for no "
                  "refinement"},
                 "Cut triangles over which interpolation errs by more than this part of the light; "
-                "0 cuts none")
+                "0 cuts none; 0.01 by default")
           .unit("ERROR"),
       R::toggle("--smooth", &P::smooth, "Interpolate light that is per triangle"),
   };

@@ -47,7 +47,7 @@ TEST(MaxError, WinsOverSamplesAndSaysSo) {
   EXPECT_GE(json_of(s)["error"]["samples"]["fewest"], 32);
 }
 
-// Nobody gets more than 16,384 rays: a hundredth of a percent is not for sale.
+// No texel gets more than 16,384 rays: a hundredth of a percent is not for sale.
 TEST(SlowMaxErrorCommand, SaysWhenItIsNotReached) {
   const ScratchFolder s;
   const CommandResult r = luxel("bake " + scene_file("cornell-box.glb") +

@@ -82,7 +82,7 @@ TEST(Compare, DisplayValuesHaveThePsnrThatIsUsualForThem) {
   EXPECT_EQ(json["hdr"], false);
 }
 
-// The same light in two formats; 0.5 is exact in both.
+// One picture in two formats; 0.5 is exact in both.
 TEST(Compare, FormatsAreKnownByTheirContent) {
   const ScratchFolder s;
   const auto a = s.write("a.hdr", exr(grey(0.5f))), b = s.write("b.bin", hdr(grey(0.5f)));
@@ -265,7 +265,7 @@ TEST(CompareReport, IsOnePageWithEverythingInside) {
   const std::string rest = without(html, "xmlns=\"http://www.w3.org/2000/svg\"");
   for (const char* outside : {"http", "<script", "<link", "url(", "@import", "<a>", "<iframe"})
     EXPECT_THAT(rest, Not(HasSubstr(outside)));
-  // The same pictures give the same page, bit for bit; others another, in place of the old one.
+  // Equal pictures give equal pages, bit for bit. Other pictures' page replaces the old one.
   const std::string report = " --report " + (s.path / "out/deep").string();
   const auto again = [&](const std::string& pictures) {
     EXPECT_EQ(luxel("compare " + pictures + report).code, 0);

@@ -64,7 +64,7 @@ TEST(SlowDenoise, HalvesTheErrorAndSparesConvergedLight) {
     EXPECT_LT(quiet.relative, raw.relative / 2) << samples;
     EXPECT_LT(std::abs(quiet.mean - raw.mean), change) << samples;
   }
-  // The same texels: what denoising changes of light that needs none, half a percent of it.
+  // Denoising changes light without noise by half a percent at most.
   const image::Image still =
       bake(s.path / "still", box, base + "--samples 4096 --direct-samples 1024 --seed 7 --denoise");
   EXPECT_LT(difference(still, exact).relative, 0.005);

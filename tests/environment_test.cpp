@@ -22,7 +22,7 @@ std::string hdr_text(int width, int height, Rgb color) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// The same radiance from everywhere is what --background says.
+// A map of one radiance gives what --background gives.
 TEST(EnvironmentMap, OfOneColourIsABackground) {
   const ScratchFolder s;
   const auto map = s.write("sky.hdr", hdr_text(16, 8, {0.5f, 0.25f, 1}));
@@ -39,7 +39,7 @@ TEST(EnvironmentMap, OfOneColourIsABackground) {
   const CommandResult r = luxel("compare " + (s.path / "map/lightmap.exr").string() + " " +
                                 (s.path / "plain/lightmap.exr").string() + " --json");
   ASSERT_EQ(r.code, 0) << r.err;
-  // The same rays see the same radiance; sums differ by rounding, seams are stitched to 1e-5.
+  // Equal rays see equal radiance; sums differ by rounding, seams are stitched to 1e-5.
   EXPECT_LE(nlohmann::json::parse(r.out)["relative_rmse"].get<double>(), 1e-4);
 }
 

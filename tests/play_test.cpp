@@ -100,7 +100,8 @@ TEST_F(Playing, TheScenesLampsStayWhenAskedTo) {
   EXPECT_EQ(light(R"("keep_lights": false)"), 0);
   const double of_sun = light(R"("keep_lights": true)");
   EXPECT_GT(of_sun, 40);
-  // The same sun from the script, and a sky whose E = pi L is the same, but for a step of 255.
+  // The sun of the scene from the script, and a sky whose E = pi L is the same, but for a step of
+  // 255.
   EXPECT_EQ(light(R"("lights": [{"kind": "directional", "direction": [0, -1, 0]}])"), of_sun);
   EXPECT_NEAR(light(R"("background": [0.318309886, 0.318309886, 0.318309886])"), of_sun, 1);
 }

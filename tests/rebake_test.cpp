@@ -129,12 +129,13 @@ struct Case {
 };
 /// For the names of tests.
 void PrintTo(const Case& p, std::ostream* out) { *out << p.name; }
-/// Of sums of layers, and of a lamp that brings most of the light and is supersampled alone.
+/// The rms of sums of layers, and of a light that brings most of the light and is supersampled
+/// alone.
 constexpr double kRough = 0.005;
 
 class RebakeEdits : public Rebake, public ::testing::WithParamInterface<Case> {};
 
-// The same atlas and the same rays, but for what has changed: light differs by the tolerance of the
+// Atlas and rays are equal, but for what has changed: light differs by the tolerance of the
 // bounces, 1e-4 of the mean for each of the two bakes, and at some texels by what supersampling
 // does beside what has not changed, or for one lamp alone: it may average over other texels. Sums
 // of layers are as good as these (docs/method/layers.md): at 64 samples some tenths of a percent. A

@@ -44,7 +44,7 @@ TEST(RelightCommand, EveryCodecCanBePlayed) {
     const CommandResult r = make(lxr, std::string("--codec ") + codec);
     ASSERT_EQ(r.code, 0) << codec << r.err;
     ASSERT_EQ(play(lxr, moves, s.path / codec).code, 0) << codec;
-    // The same light, but for a few percent.
+    // Codecs differ by a few percent of the light.
     EXPECT_NEAR(mean_of(picture(s.path / codec / "frame-0000.png"), 0, 32),
                 mean_of(picture(s.path / "hierarchical" / "frame-0000.png"), 0, 32), 5)
         << codec;

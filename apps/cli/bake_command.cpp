@@ -42,9 +42,7 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   }
   s.samples_given = options.given.has("--samples");
   if (options.plan && !solver->plan)
-    return fail(ErrorCode::bad_setting,
-                "--solver {} does not use --plan; leave --plan out (it is for {})", s.solver,
-                pipeline::solvers_with("--plan"));
+    return pipeline::not_used("--solver " + s.solver, "--plan", pipeline::solvers_with("--plan"));
   LUXEL_TRY_STATUS(check_resolution(options.given, s));
   return s;
 }

@@ -1,9 +1,10 @@
 #include "luxel/display/local_light.h"
-#include "luxel/scene/light_kinds.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::display {
 namespace {

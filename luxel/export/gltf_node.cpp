@@ -1,8 +1,9 @@
 #include "luxel/export/gltf_node.h"
-#include "luxel/scene/light_kinds.h"
 
 #include <Eigen/Dense>
 #include <cmath>
+
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::export_ {
 namespace {

@@ -1,11 +1,12 @@
 #include "luxel/pipeline/command/light_script.h"
-#include "luxel/scene/light_kinds.h"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
+
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::pipeline {
 namespace {

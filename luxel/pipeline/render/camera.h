@@ -1,4 +1,4 @@
-// Which camera a picture is taken with.
+// The camera that a picture is taken with.
 #pragma once
 
 #include <optional>

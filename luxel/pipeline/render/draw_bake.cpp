@@ -20,7 +20,7 @@
 namespace luxel::pipeline {
 namespace {
 
-/// Of the bake that is made for a tile: seconds, not minutes.
+/// Settings of the small bake that is made where none is given. It takes seconds, not minutes.
 constexpr int kQuickResolution = 256, kQuickSamples = 64, kQuickDirectSamples = 16;
 
 display::DrawParams size_of(const RenderSettings& settings) {

@@ -9,10 +9,10 @@ namespace luxel::pipeline {
 Result<image::Image> draw_lightmap(const Subject& subject, const RenderSettings& settings,
                                    Rendered& out, Progress& progress);
 
-/// The same bake's texels.png on its surfaces; luxel/pipeline/texels/texel_picture.h.
+/// texels.png of that bake (luxel/pipeline/texels/texel_picture.h) on the surfaces.
 Result<image::Image> draw_texels_of_bake(const Subject& subject, const RenderSettings& settings,
                                          Rendered& out, Progress& progress);
-/// And its error.png.
+/// error.png of that bake on the surfaces.
 Result<image::Image> draw_errors_of_bake(const Subject& subject, const RenderSettings& settings,
                                          Rendered&, Progress& progress);
 

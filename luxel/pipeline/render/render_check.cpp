@@ -1,6 +1,7 @@
 #include "luxel/pipeline/render/render_check.h"
 
 #include "luxel/pipeline/render/techniques.h"
+#include "luxel/pipeline/settings/option.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -58,10 +59,9 @@ Status check_used(const RenderSettings& s, const Technique& technique) {
       {"--sun", s.outside.sun.has_value(), &Technique::has_lamps}};
   for (const Option& option : options)
     if (option.given && !(technique.*option.used))
-      return fail(ErrorCode::bad_setting,
-                  "--technique {} does not use {}; leave {} out (it is for {}){}", technique.name,
-                  option.name, option.name, users_of(option.used),
-                  technique.needs_bake ? "; a bake has its light from `luxel bake`" : "");
+      return not_used(fmt::format("--technique {}", technique.name), option.name,
+                      users_of(option.used),
+                      technique.needs_bake ? "a bake has its light from `luxel bake`" : "");
   if (technique.needs_bake && !technique.bakes_itself && s.from.empty())
     return fail(ErrorCode::bad_setting,
                 "--technique {} draws a bake; name its folder with --from, or use --technique path",

@@ -72,7 +72,7 @@ struct Option : OptionText {
 template <class S>
 using Options = std::vector<Option<S>>;
 
-/// The same options of settings that have a `Part` in them.
+/// `options` of a part of the settings as options of the whole; `part` finds the part in it.
 template <class S, class Part>
 Options<S> options_of_part(const Options<Part>& options, std::function<Part&(S&)> part) {
   Options<S> out;
@@ -98,6 +98,11 @@ Status check_all(const Options<S>& options, const S& settings) {
   for (const Option<S>& option : options) LUXEL_TRY_STATUS(option.check(settings));
   return {};
 }
+
+/// The error (bad_setting) of an option that would have no effect: `user` ("--solver matrix") does
+/// not look at `flag`, and `users` do. `advice`: what else to do about it.
+tl::unexpected<Error> not_used(std::string_view user, std::string_view flag, std::string_view users,
+                               std::string_view advice = "");
 
 /// "--a, --b and --c".
 template <class S>

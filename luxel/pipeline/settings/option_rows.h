@@ -15,7 +15,7 @@ namespace luxel::pipeline {
 
 inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-/// Which values of a number are allowed. The default always is, whatever it means.
+/// The values that a number may have, `low` and `high` among them. Its default is always allowed.
 struct Range {
   double low = -kNoLimit, high = kNoLimit;
   /// What a value outside is told, after the option and the value: "is not an area; give m^2 >= 0".

@@ -115,8 +115,7 @@ std::string solvers_with(std::string_view flag) {
 Result<const Row*> option_of(const Solver& solver, std::string_view flag) {
   for (const Row& row : bake_options())
     if (row.flag == flag && looks_at(solver, row)) return &row;
-  return fail(ErrorCode::bad_setting, "--solver {} does not use {}; leave {} out (it is for {})",
-              solver.name, flag, flag, solvers_with(flag));
+  return not_used(fmt::format("--solver {}", solver.name), flag, solvers_with(flag));
 }
 
 Status check(const BakeSettings& s) {

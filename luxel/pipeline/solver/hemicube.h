@@ -6,7 +6,7 @@
 
 namespace luxel::pipeline {
 
-/// Of the solver's parameters those that a user chooses.
+/// The rows of the solver's parameters that a user chooses.
 Options<hemicube::HemicubeParams> hemicube_options();
 /// Contradictions between them. Errors (bad_setting).
 Status check_contradictions(const hemicube::HemicubeParams& params);

@@ -11,7 +11,7 @@ struct HierarchicalSettings {
   hierarchical::MeshParams mesh;
 };
 
-/// Of these parameters those that a user chooses.
+/// The rows of those parameters that a user chooses.
 Options<HierarchicalSettings> hierarchical_options();
 
 inline constexpr std::string_view kHierarchicalHeading = "Hierarchical radiosity";

@@ -6,7 +6,7 @@
 
 namespace luxel::pipeline {
 
-/// Of the solver's parameters those that a user chooses: --patches, --rays.
+/// The rows of the solver's parameters that a user chooses: --patches, --rays.
 Options<matrix::MatrixParams> matrix_options();
 
 }  // namespace luxel::pipeline

@@ -40,7 +40,7 @@ TEST(VertexLit, ColorsTimesIntensityAreTheLight) {
   EXPECT_EQ(mesh.positions.size(), lit.field.mesh.vertices.size());  // all shared
   for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const hemicube::Node& node = lit.field.mesh.nodes[lit.field.receivers.leaves[t]];
-    // The same three corners, turned so that the front stays in front.
+    // A triangle keeps its three corners, turned so that the front stays in front.
     EXPECT_GT(dot(scene::front_normal(out.scene, 0, t),
                   scene::front_normal(lit.scene, node.instance, node.triangle)),
               0.999f);

@@ -26,8 +26,9 @@ struct TexelFacts {
 std::vector<image::Image8> draw_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                        const TexelFacts& facts);
 
-/// The same with the relative standard error of each texel (gather::relative_errors) in false
-/// colours, by its logarithm: near black up to kLowestError, pale yellow from kHighestError on.
+/// The pages of the atlas with the relative standard error of each texel (gather::relative_errors)
+/// in false colours, by its logarithm: near black up to kLowestError, pale yellow from
+/// kHighestError on.
 std::vector<image::Image8> draw_errors(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                        std::span<const float> errors);
 inline constexpr float kLowestError = 0.001f, kHighestError = 0.1f;

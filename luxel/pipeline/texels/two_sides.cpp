@@ -23,7 +23,7 @@ constexpr uint32_t kWalks = 64, kSteps = 4;
 constexpr double kOpenShare = 0.1;
 /// How far a shell's surroundings reach beyond its box, relative to the box's diagonal.
 constexpr float kMargin = 0.1f;
-/// Of a mesh that stands in many places, so many are looked at.
+/// At most so many of a mesh's instances are looked at.
 constexpr size_t kMostPlaces = 4;
 
 /// The parts of a mesh that hang together by their corners.

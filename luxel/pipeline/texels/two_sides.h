@@ -1,4 +1,4 @@
-// Which double-sided surfaces get light of their own on each side.
+// The double-sided surfaces that get light of their own on each side.
 #pragma once
 
 #include <span>

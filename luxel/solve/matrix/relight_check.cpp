@@ -1,10 +1,11 @@
 #include "luxel/solve/matrix/relight_check.h"
-#include "luxel/scene/light_kinds.h"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <string_view>
+
+#include "luxel/scene/light_kinds.h"
 
 namespace luxel::matrix {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "bench/bench.h"
 #include "luxel/base/parallel.h"
-#include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/validate/prepared.h"
 
 namespace luxel::bench {

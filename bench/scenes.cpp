@@ -5,7 +5,7 @@
 #include "bench/bench.h"
 #include "bench/scenes.h"
 #include "luxel/base/parallel.h"
-#include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/validate/prepared.h"
 

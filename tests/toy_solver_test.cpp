@@ -39,7 +39,7 @@ TEST(ToySolver, AgreesWithGather) {
   Progress progress;
   std::vector<AgreementScene> scenes = agreement_scenes();
   const auto lamp = std::find_if(scenes.begin(), scenes.end(), [](const AgreementScene& s) {
-    return s.name == "lamp in a room";
+    return s.name == "point light in a room";
   });
   ASSERT_NE(lamp, scenes.end());
   const auto p = prepare(std::move(lamp->scene), 32, progress);

@@ -26,7 +26,7 @@ class Option:
         self.names = names.split(",")
         rest = rest[0] if rest else ""
         # "TEXELS=512" or "TEXT:{auto,keep}=auto": what may be given, and the default. What names
-        # an argument of two parts, as in "LAMP=FILE", is in capitals.
+        # an argument of two parts, as in "LIGHT=FILE", is in capitals.
         typed = re.match(r"(.*?)=([^A-Z].*)$", rest)
         self.default = typed.group(2) if typed else ""
         value = typed.group(1) if typed else rest
@@ -94,14 +94,14 @@ def self_test():
     text = ("Bake\nUsage: x\n\nOptions:\n  -o,--output TEXT REQUIRED   Folder\n  --uv TEXT:{auto,keep}=auto\n"
             "                              keep = the file's\n  --no-stitch{false}          Do not\n"
             "  --sky A|B Excludes: --sun   A sky\n"
-            "  --ies LAMP=FILE ... A file\n  --samples RAYS=256          Rays\n\nOPTIONS:\n  --max-error FLOAT=0.01      Error\n")
+            "  --ies LIGHT=FILE ... A file\n  --samples RAYS=256          Rays\n\nOPTIONS:\n  --max-error FLOAT=0.01      Error\n")
     groups = read_help(text)
     rows = [o.row() for _, options in groups for o in options]
     wanted = ["| `--output`, `-o` | text | required | Folder |",
               "| `--uv` | auto\\|keep | `auto` | keep = the file's |",
               "| `--no-stitch` |  |  | Do not |",
               "| `--sky` | A\\|B |  | A sky |",
-              "| `--ies` | LAMP=FILE |  | A file |",
+              "| `--ies` | LIGHT=FILE |  | A file |",
               "| `--samples` | RAYS | `256` | Rays |",
               "| `--max-error` | number | `0.01` | Error |"]
     for got, want in zip(rows, wanted):

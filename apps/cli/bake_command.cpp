@@ -2,6 +2,7 @@
 
 #include "apps/cli/cli.h"
 #include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
 

@@ -12,7 +12,6 @@
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
-#include "luxel/pipeline/bake/bake.h"
 
 namespace luxel::cli {
 namespace {
@@ -60,7 +59,7 @@ std::filesystem::path validation_page(const std::filesystem::path& folder) {
 /// validation.md and its pictures.
 Status write_page(const bench::Page& page, const std::filesystem::path& folder,
                   Progress& progress) {
-  progress.begin(pipeline::kWriteStage, 0);
+  progress.begin(kWriteStage, 0);
   return write_with_pictures(text_file(validation_page(folder), page.markdown), kValidation,
                              page.files, folder);
 }

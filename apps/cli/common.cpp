@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "apps/cli/cli.h"
-#include "luxel/pipeline/bake/bake.h"
+#include "luxel/base/output_folder.h"
 #include "luxel/pipeline/settings/bake_settings_options.h"
 
 namespace luxel::cli {
@@ -126,7 +126,7 @@ void watch(Progress& progress, const std::atomic<Work>& work, bool quiet) {
     // Reading a file cannot be asked to stop; writing may finish, so that all files are there.
     const bool late =
         asked != Clock::time_point{} && Clock::now() - asked > std::chrono::milliseconds(700);
-    if (late && progress.snapshot().stage != pipeline::kWriteStage) {
+    if (late && progress.snapshot().stage != kWriteStage) {
       line.end(progress, false);
       progress.clean_up();
       std::fprintf(stderr, "luxel: %s\n", stopped_text(progress).c_str());

@@ -30,16 +30,19 @@ Result<pipeline::ProbeSettings> settings_from(const ProbeOptions& options) {
 nlohmann::json rgb_json(Rgb c) { return {c.x, c.y, c.z}; }
 
 nlohmann::json json_of(const pipeline::Probed& p) {
-  nlohmann::json json{{"surface", p.name},
-                      {"material", p.material},
-                      {"position", rgb_json(p.position)},
-                      {"normal", rgb_json(p.normal)},
-                      {"distance_m", p.distance_m},
-                      {"irradiance", rgb_json(p.exact)},
-                      {"irradiance_interpolated", rgb_json(p.interpolated)},
-                      {"irradiance_of_lamps_and_background", rgb_json(p.lamps)},
-                      {"sources", nlohmann::json::array()},
-                      {"warnings", p.warnings}};
+  nlohmann::json json{
+      {"surface", p.name},
+      {"material", p.material},
+      {"position", rgb_json(p.position)},
+      {"normal", rgb_json(p.normal)},
+      {"distance_m", p.distance_m},
+      {"irradiance", rgb_json(p.exact)},
+      {"irradiance_interpolated", rgb_json(p.interpolated)},
+      {"irradiance_of_punctual_lights_and_background", rgb_json(p.punctual_and_background)},
+      // The key before; it goes with version 0.2.
+      {"irradiance_of_lamps_and_background", rgb_json(p.punctual_and_background)},
+      {"sources", nlohmann::json::array()},
+      {"warnings", p.warnings}};
   for (const pipeline::ProbedSource& source : p.sources)
     json["sources"].push_back({{"surface", source.name},
                                {"material", source.material},
@@ -58,7 +61,7 @@ void print(const pipeline::Probed& p) {
                   .c_str());
   std::printf("E exact         %s W/m^2\n", rgb_text(p.exact).c_str());
   std::printf("E interpolated  %s\n", rgb_text(p.interpolated).c_str());
-  std::printf("lamps, sky      %s\n\n", rgb_text(p.lamps).c_str());
+  std::printf("lights, sky     %s\n\n", rgb_text(p.punctual_and_background).c_str());
   std::printf("%-28s %9s %9s   %s\n", "source", "factor", "visible", "E");
   for (const pipeline::ProbedSource& source : p.sources)
     std::printf("%s\n",

@@ -83,7 +83,7 @@ int run_playing(const RelightOptions& options) {
                                       option->get_name())});
   if (options.script.empty())
     return report(Error{ErrorCode::bad_setting,
-                        "--play needs --script FILE.json, which says how the lamps move"});
+                        "--play needs --script FILE.json, which says how the lights move"});
   const pipeline::PlaySettings settings{options.lxr, options.script, options.output,
                                         options.common.threads};
   pipeline::Played played;
@@ -161,7 +161,7 @@ void register_relight(CLI::App& app, Action& action) {
   relight->add_option("--play", options->lxr, "Draw this .lxr file, frame by frame")
       ->type_name("FILE.lxr")
       ->excludes(scene);
-  relight->add_option("--script", options->script, "How lamps move (docs/method/relight.md)")
+  relight->add_option("--script", options->script, "How lights move (docs/method/relight.md)")
       ->type_name("FILE.json");
   for (CLI::Option* option : add_outside_light(*relight, options->outside))
     options->of_making.push_back(option);

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 
 namespace luxel {
+
+/// The stage of Progress in which files appear. It is short and better not cut off.
+inline constexpr std::string_view kWriteStage = "write files";
 
 /// `folder`, or the nearest folder above it that exists. Temporary files without a name go there.
 std::filesystem::path nearest_folder(const std::filesystem::path& folder);

@@ -17,9 +17,9 @@ struct AgreementScene {
   int resolution = 64;
   std::string shows;  ///< what kind of light it is there for
 };
-/// Area light, lamp in a closed room, curved surfaces under a sky, every kind of lamp with textures
-/// and masks, sun through a window, the same from a map, sun through coloured panes, sky and
-/// indirect light through coloured glass.
+/// Area light, point light in a closed room, curved surfaces under a sky, every kind of light with
+/// textures and masks, sun through a window, the same from a map, sun through coloured panes, sky
+/// and indirect light through coloured glass.
 std::vector<AgreementScene> agreement_scenes();
 
 /// The judge's answer, twice, from independent paths.

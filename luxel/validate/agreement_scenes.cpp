@@ -24,7 +24,7 @@ scene::Mesh room_walls(uint32_t floor, uint32_t walls, bool open_front) {
   return mesh;
 }
 
-scene::Scene lamp_in_a_room() {
+scene::Scene point_light_in_a_room() {
   scene::Scene s;
   const uint32_t red = scene::add_material(s, "floor", {0.7f, 0.3f, 0.2f});
   const uint32_t white = scene::add_material(s, "walls", gray(0.8f));
@@ -60,7 +60,7 @@ void add_uv_from_xz(scene::Mesh& mesh, float scale) {
 }
 
 /// Point, spot and sun, a textured lamp, a textured floor and a grille with holes.
-scene::Scene every_lamp() {
+scene::Scene every_kind_of_light() {
   scene::Scene s;
   s.textures = {checkerboard(4, false), checkerboard(8, true)};
   const uint32_t tiles = scene::add_material(s, "tiles", {0.9f, 0.8f, 0.7f});
@@ -194,9 +194,9 @@ scene::Scene window_to_a_sky_map() {
 
 std::vector<AgreementScene> agreement_scenes() {
   return {{"Cornell box", scene::cornell_box(), 96, "an area light, colour bleeding"},
-          {"lamp in a room", lamp_in_a_room(), 96, "a point light, a closed room"},
+          {"point light in a room", point_light_in_a_room(), 96, "a point light, a closed room"},
           {"spheres and cube", scene::spheres_and_cube(), 128, "smooth surfaces, a background"},
-          {"every lamp", every_lamp(), 128,
+          {"every kind of light", every_kind_of_light(), 128,
            "point, spot and sun, an emissive texture, a textured floor, a mask with holes"},
           {"window", window(), 96, "sky and a broad sun through an opening"},
           {"sky map", window_to_a_sky_map(), 96, "the same under an environment with a sun"},

@@ -51,8 +51,8 @@ ExactCase furnace(double rho, double e) {
 }
 
 // Section 2: flux Phi of a lamp in a closed room: mean E is Phi / (A (1 - rho)).
-ExactCase room_with_lamp(double rho) {
-  ExactCase c{fmt::format("room with a lamp, rho {}", rho),
+ExactCase room_with_point_light(double rho) {
+  ExactCase c{fmt::format("room with a point light, rho {}", rho),
               "2",
               scene::furnace_box(gray(rho), {}),
               192,
@@ -304,8 +304,8 @@ Result<std::vector<ExactCase>> exact_cases(std::string_view exact_solutions_md) 
   std::vector<ExactCase> cases;
   cases.push_back(furnace(0.5, 1));
   cases.push_back(furnace(0.9, 0.3));
-  cases.push_back(room_with_lamp(0.3));
-  cases.push_back(room_with_lamp(0.9));
+  cases.push_back(room_with_point_light(0.3));
+  cases.push_back(room_with_point_light(0.9));
   cases.push_back(room_with_block());
   cases.push_back(sphere_zones());
   cases.push_back(integrating_sphere());

@@ -2,7 +2,7 @@
 // bakes to it, `luxel bench scenes` prints it.
 #pragma once
 
-#include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/validate/agreement.h"
 
 namespace luxel::validate {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "luxel/base/file.h"
-#include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/scene/shapes.h"
 
 using namespace luxel;

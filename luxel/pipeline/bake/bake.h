@@ -1,83 +1,15 @@
-// A scene in, lightmaps out.
+// The whole of `luxel bake`: a scene in, files out.
 #pragma once
 
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "luxel/atlas/atlas.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
-#include "luxel/export/view_page.h"
-#include "luxel/image/codec.h"
-#include "luxel/pipeline/bake/layers.h"
-#include "luxel/pipeline/bake/light_directions.h"
 #include "luxel/pipeline/settings/settings.h"
-#include "luxel/pipeline/solver/plan.h"
-#include "luxel/pipeline/solver/solvers.h"
-#include "luxel/pipeline/texels/texel_layout.h"
-#include "luxel/post/seams.h"
-#include "luxel/scene/scene.h"
 
 namespace luxel::pipeline {
 
-class BakeCache;
-class Checkpoint;
-
-/// What outlives a bake, or outlived the one before; null where there is nothing of the kind.
-struct Keepers {
-  Checkpoint* checkpoint = nullptr;
-  BakeCache* cache = nullptr;
-};
-
-/// The stage in which files appear. It is short and better not cut off.
-inline constexpr std::string_view kWriteStage = "write files";
-
-/// A finished bake in memory, before anything is written.
-struct Bake {
-  scene::Scene scene;  ///< as baked: outside light added, charts cut
-  atlas::Atlas atlas;
-  atlas::TexelMap map;
-  atlas::AtlasStats atlas_stats;
-  TexelLight light;
-  std::vector<image::Image> lightmaps;  ///< E, 4 channels, per page as lightmap.exr holds it
-  std::vector<image::Image> shown;      ///< for viewers (shown_light.h); empty: the same
-  std::vector<BakedLayer> layers;       ///< with --layers
-  image::Image8 preview;
-  DirectionMaps directions;         ///< with --directional
-  std::optional<ProbeGrid> probes;  ///< with --probes
-  export_::View view;               ///< what the preview was taken with
-  size_t seams = 0;
-  LeakRepair repair;
-  std::vector<image::Image8> texel_pictures;  ///< per page, with --texels
-  std::vector<image::Image8> error_pictures;  ///< per page, with --error-map
-  post::SeamResidual seam_residual_before, seam_residual_after;
-  std::vector<std::string> warnings;
-};
-
-/// Gets the light of gather as it grows, one value per texel of the map, neither refilled nor
-/// stitched. The bake goes on when it returns.
-using OnBakeEstimate = std::function<void(const light::TexelScene&, const light::LightEstimate&)>;
-
-/// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
-/// name in or above settings.output, and the checkpoint and the cache, if there are any. Errors:
-/// whatever the stages say; settings out of range.
-Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
-                        const Keepers& keepers = {}, const OnBakeEstimate& on_estimate = {});
-
-/// Bakes a scene that a program has built: settings.scene is not looked at. The scene is validated
-/// first (luxel/scene/validate.h). Nothing is written but temporary files in or above
-/// settings.output, the folder of the process if that is empty. The result stands by itself:
-/// Bake::lightmaps has E [W/m^2], Bake::atlas where it lies. Errors: settings out of range
-/// (bad_setting), a scene that cannot be repaired (bad_input), too little memory, cancelled.
-Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& settings, Progress& progress);
-
-/// `luxel bake --plan`: reads and lays out, and tries a few texels. Nothing is written.
-Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);
-
-/// The whole of `luxel bake`: bake_scene, then lightmap.exr (and its other formats), baked.glb,
+/// bake_scene(), then lightmap.exr (and its other formats), baked.glb,
 /// preview.png, texels.png, error.png, view.html when asked for, and bake.json in settings.output,
 /// all of them or none. Of several pages they are lightmap-0.exr and so on; with --layers there is
 /// a lightmap-LAYER.exr of each besides. Returns what bake.json holds. A bake that does not come to

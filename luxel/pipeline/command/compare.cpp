@@ -7,7 +7,6 @@
 #include "luxel/base/output_folder.h"
 #include "luxel/display/tone_map.h"
 #include "luxel/image/flip.h"
-#include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/command/compare_report.h"
 #include "luxel/pipeline/render/picture.h"
 #include "luxel/pipeline/settings/lightmap_files.h"

@@ -5,9 +5,9 @@
 #include <span>
 
 #include "luxel/base/file.h"
+#include "luxel/base/output_folder.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/import/import.h"
-#include "luxel/pipeline/bake/bake.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/viewfactor/sampled_factors.h"
 #include "luxel/viewfactor/smooth_factors.h"

@@ -125,18 +125,18 @@ Status read_cone(const Node& node, scene::PunctualLight& light) {
   return {};
 }
 
-Result<LightScript::Lamp> lamp_of(const Node& node) {
+Result<LightScript::MovingLight> light_of(const Node& node) {
   constexpr std::array<std::string_view, 7> known{
       "kind", "intensity", "position", "direction", "range_m", "inner_cone_deg", "outer_cone_deg"};
   LUXEL_TRY_STATUS(only_fields(node, known, "a light, as {\"kind\": \"point\", ...}"));
-  LightScript::Lamp lamp;
-  lamp.position.keys = {{0, {}}}, lamp.direction.keys = {{0, {0, -1, 0}}};
-  lamp.intensity.keys = {{0, {1, 1, 1}}};
+  LightScript::MovingLight moving;
+  moving.position.keys = {{0, {}}}, moving.direction.keys = {{0, {0, -1, 0}}};
+  moving.intensity.keys = {{0, {1, 1, 1}}};
   if (node.has("kind")) {
-    LUXEL_TRY(lamp.light.kind, kind_of(node.at("kind")));
+    LUXEL_TRY(moving.light.kind, kind_of(node.at("kind")));
   }
-  const bool has_place = scene::has_position(lamp.light.kind);
-  const bool has_direction = scene::has_direction(lamp.light.kind);
+  const bool has_place = scene::has_position(moving.light.kind);
+  const bool has_direction = scene::has_direction(moving.light.kind);
   if (has_place != node.has("position"))
     return fail(ErrorCode::bad_input, "{}: {}", node.where,
                 has_place ? "a point or spot light needs a position"
@@ -146,20 +146,20 @@ Result<LightScript::Lamp> lamp_of(const Node& node) {
                 has_direction ? "a spot or directional light needs a direction"
                               : "a point light has no direction; leave it out");
   if (has_place) {
-    LUXEL_TRY(lamp.position, track(node.at("position")));
+    LUXEL_TRY(moving.position, track(node.at("position")));
   }
   if (has_direction) {
-    LUXEL_TRY(lamp.direction, direction_track(node.at("direction")));
+    LUXEL_TRY(moving.direction, direction_track(node.at("direction")));
   }
   if (node.has("intensity")) {
-    LUXEL_TRY(lamp.intensity, light_track(node.at("intensity")));
+    LUXEL_TRY(moving.intensity, light_track(node.at("intensity")));
   }
   if (node.has("range_m")) {
     LUXEL_TRY(const double range, number(node.at("range_m"), 0, 1e9));
-    lamp.light.range_m = float(range);
+    moving.light.range_m = float(range);
   }
-  LUXEL_TRY_STATUS(read_cone(node, lamp.light));
-  return lamp;
+  LUXEL_TRY_STATUS(read_cone(node, moving.light));
+  return moving;
 }
 
 Result<LightScript::Glow> glow_of(const Node& node) {
@@ -231,8 +231,8 @@ Status read_lights(const Node& root, LightScript& out) {
     if (root.has(list) && !root.value[list].is_array())
       return wrong(root.at(list), "a list, [...]");
   for (size_t k = 0; root.has("lights") && k < root.value["lights"].size(); ++k) {
-    LUXEL_TRY(LightScript::Lamp lamp, lamp_of(root.at("lights").at(k)));
-    out.lamps.push_back(std::move(lamp));
+    LUXEL_TRY(LightScript::MovingLight moving, light_of(root.at("lights").at(k)));
+    out.lights.push_back(std::move(moving));
   }
   for (size_t k = 0; root.has("emission") && k < root.value["emission"].size(); ++k) {
     LUXEL_TRY(LightScript::Glow glow, glow_of(root.at("emission").at(k)));
@@ -285,16 +285,16 @@ Result<LightScript> parse_light_script(const std::string& text, const std::strin
   return out;
 }
 
-std::vector<scene::PunctualLight> lamps_at(const LightScript& script, double time_s) {
+std::vector<scene::PunctualLight> lights_at(const LightScript& script, double time_s) {
   std::vector<scene::PunctualLight> out;
-  for (const LightScript::Lamp& lamp : script.lamps) {
-    scene::PunctualLight light = lamp.light;
-    light.intensity = value_at(lamp.intensity, time_s);
-    light.position = value_at(lamp.position, time_s);
+  for (const LightScript::MovingLight& moving : script.lights) {
+    scene::PunctualLight light = moving.light;
+    light.intensity = value_at(moving.intensity, time_s);
+    light.position = value_at(moving.position, time_s);
     // Between two directions the mean may vanish; then the first one holds.
-    const Vec3 direction = value_at(lamp.direction, time_s);
+    const Vec3 direction = value_at(moving.direction, time_s);
     light.direction = dot(direction, direction) > 1e-12f ? normalize(direction)
-                                                         : lamp.direction.keys.front().value;
+                                                         : moving.direction.keys.front().value;
     out.push_back(light);
   }
   return out;

@@ -1,4 +1,4 @@
-// How lamps move: the file that `luxel relight --play` follows (docs/method/relight.md describes
+// How lights move: the file that `luxel relight --play` follows (docs/method/relight.md describes
 // it).
 #pragma once
 
@@ -26,10 +26,10 @@ struct Track {
 /// The value of a track at a time of the script [s]; `track` has a key.
 Vec3 value_at(const Track& track, double time_s);
 
-/// Lamps, glowing materials and a camera over time: what a light script file says.
+/// Punctual lights, glowing materials and a camera over time: what a light script file says.
 struct LightScript {
-  /// A lamp whose intensity, position and direction have tracks.
-  struct Lamp {
+  /// A punctual light whose intensity, position and direction have tracks.
+  struct MovingLight {
     scene::PunctualLight light;  ///< what does not move
     Track intensity, position, direction;
   };
@@ -48,8 +48,8 @@ struct LightScript {
   int width = 640, height = 480;
   std::variant<std::monostate, std::string, View> camera;  ///< none: as luxel render chooses
   Exposure exposure;
-  bool keep_lights = false;  ///< the scene's own lamps stay on
-  std::vector<Lamp> lamps;
+  bool keep_lights = false;  ///< the scene's own punctual lights stay on
+  std::vector<MovingLight> lights;
   std::vector<Glow> glows;
   std::optional<Track> background;  ///< none: as baked
 };
@@ -57,7 +57,7 @@ struct LightScript {
 /// Errors name the file, the field, its value and what it should be; unknown fields are errors.
 Result<LightScript> parse_light_script(const std::string& text, const std::string& name);
 
-/// The lamps of a frame.
-std::vector<scene::PunctualLight> lamps_at(const LightScript& script, double time_s);
+/// The punctual lights of a frame.
+std::vector<scene::PunctualLight> lights_at(const LightScript& script, double time_s);
 
 }  // namespace luxel::pipeline

@@ -36,8 +36,8 @@ TEST(LightScript, MayBeEmpty) {
   EXPECT_TRUE(script.exposure.automatic);
   EXPECT_FALSE(script.keep_lights);
   EXPECT_FALSE(script.background);
-  EXPECT_TRUE(script.lamps.empty() && script.glows.empty());
-  EXPECT_TRUE(lamps_at(script, 0).empty());
+  EXPECT_TRUE(script.lights.empty() && script.glows.empty());
+  EXPECT_TRUE(lights_at(script, 0).empty());
 }
 
 TEST(LightScript, ReadsEveryFieldOfAPicture) {
@@ -63,28 +63,28 @@ TEST(LightScript, ReadsEveryFieldOfAPicture) {
   EXPECT_EQ(other.exposure.percentile, 95);
 }
 
-TEST(LightScript, ReadsLampsOfEveryKind) {
+TEST(LightScript, ReadsLightsOfEveryKind) {
   const LightScript script = script_of(R"({"lights": [
     {"position": [1, 2, 3]},
     {"kind": "spot", "position": [0, 9, 0], "direction": [0, 0, -5], "intensity": [4, 5, 6],
      "range_m": 7, "inner_cone_deg": 30, "outer_cone_deg": 60},
     {"kind": "directional", "direction": [3, -4, 0]}]})");
-  const auto lamps = lamps_at(script, 1);
-  ASSERT_EQ(lamps.size(), 3u);
-  EXPECT_EQ(lamps[0].kind, Kind::point);
-  EXPECT_EQ(lamps[0].position, (Vec3{1, 2, 3}));
-  EXPECT_EQ(lamps[0].intensity, (Rgb{1, 1, 1}));
-  EXPECT_EQ(lamps[0].range_m, 0);
-  EXPECT_EQ(lamps[1].kind, Kind::spot);
-  EXPECT_EQ(lamps[1].position, (Vec3{0, 9, 0}));
-  EXPECT_EQ(lamps[1].direction, (Vec3{0, 0, -1}));
-  EXPECT_EQ(lamps[1].intensity, (Rgb{4, 5, 6}));
-  EXPECT_EQ(lamps[1].range_m, 7);
-  EXPECT_FLOAT_EQ(lamps[1].inner_cone_rad, kPi / 6);
-  EXPECT_FLOAT_EQ(lamps[1].outer_cone_rad, kPi / 3);
-  EXPECT_EQ(lamps[2].kind, Kind::directional);
-  EXPECT_FLOAT_EQ(lamps[2].direction.x, 0.6f);
-  EXPECT_FLOAT_EQ(lamps[2].direction.y, -0.8f);
+  const auto lights = lights_at(script, 1);
+  ASSERT_EQ(lights.size(), 3u);
+  EXPECT_EQ(lights[0].kind, Kind::point);
+  EXPECT_EQ(lights[0].position, (Vec3{1, 2, 3}));
+  EXPECT_EQ(lights[0].intensity, (Rgb{1, 1, 1}));
+  EXPECT_EQ(lights[0].range_m, 0);
+  EXPECT_EQ(lights[1].kind, Kind::spot);
+  EXPECT_EQ(lights[1].position, (Vec3{0, 9, 0}));
+  EXPECT_EQ(lights[1].direction, (Vec3{0, 0, -1}));
+  EXPECT_EQ(lights[1].intensity, (Rgb{4, 5, 6}));
+  EXPECT_EQ(lights[1].range_m, 7);
+  EXPECT_FLOAT_EQ(lights[1].inner_cone_rad, kPi / 6);
+  EXPECT_FLOAT_EQ(lights[1].outer_cone_rad, kPi / 3);
+  EXPECT_EQ(lights[2].kind, Kind::directional);
+  EXPECT_FLOAT_EQ(lights[2].direction.x, 0.6f);
+  EXPECT_FLOAT_EQ(lights[2].direction.y, -0.8f);
 }
 
 TEST(LightScript, ReadsWhatGlows) {
@@ -114,13 +114,13 @@ TEST(Tracks, AreLinearBetweenKeysAndConstantOutside) {
     EXPECT_EQ(value_at(track_of({{0, {1, 2, 3}}}), time_s), (Vec3{1, 2, 3}));
 }
 
-TEST(Tracks, MoveLampsAndTurnThem) {
+TEST(Tracks, MoveLightsAndTurnThem) {
   const LightScript script = script_of(R"({"lights": [{"kind": "spot",
     "position": [{"at": 0, "value": [0, 0, 0]}, {"at": 1, "value": [8, 0, -4]}],
     "direction": [{"at": 0, "value": [1, 0, 0]}, {"at": 1, "value": [0, -1, 0]},
                   {"at": 2, "value": [0, 1, 0]}],
     "intensity": [{"at": -1, "value": [0, 0, 0]}, {"at": 1, "value": [2, 2, 2]}]}]})");
-  const auto early = lamps_at(script, 0.5), late = lamps_at(script, 1.5);
+  const auto early = lights_at(script, 0.5), late = lights_at(script, 1.5);
   EXPECT_EQ(early[0].position, (Vec3{4, 0, -2}));
   EXPECT_EQ(early[0].intensity, (Rgb{1.5f, 1.5f, 1.5f}));
   // Half way between two directions, and of unit length.
@@ -181,30 +181,30 @@ TEST(LightScript, RefusesWrongCameras) {
         "'roll' is not known; there is: eye, look_at, fov_deg"}});
 }
 
-TEST(LightScript, RefusesWrongLamps) {
-  const auto lamp = [](const std::string& fields) { return "{\"lights\": [" + fields + "]}"; };
+TEST(LightScript, RefusesWrongLights) {
+  const auto lights = [](const std::string& fields) { return "{\"lights\": [" + fields + "]}"; };
   expect_refused(
       {{R"({"lights": {}})", ".lights is {}", "a list"},
-       {lamp("3"), ".lights[0] is 3", "a light, as {"},
-       {lamp(R"({"kind": "area"})"), ".lights[0].kind is \"area\"", "\"point\", \"spot\" or"},
-       {lamp("{}"), ".lights[0]", "needs a position"},
-       {lamp(R"({"position": [0, 0, 0]}, {"kind": "spot"})"), ".lights[1]", "needs a position"},
-       {lamp(R"({"kind": "spot", "position": [0, 0, 0]})"), ".lights[0]", "needs a direction"},
-       {lamp(R"({"kind": "directional"})"), ".lights[0]", "needs a direction"},
-       {lamp(R"({"kind": "directional", "direction": [0, 1, 0], "position": [0, 0, 0]})"),
+       {lights("3"), ".lights[0] is 3", "a light, as {"},
+       {lights(R"({"kind": "area"})"), ".lights[0].kind is \"area\"", "\"point\", \"spot\" or"},
+       {lights("{}"), ".lights[0]", "needs a position"},
+       {lights(R"({"position": [0, 0, 0]}, {"kind": "spot"})"), ".lights[1]", "needs a position"},
+       {lights(R"({"kind": "spot", "position": [0, 0, 0]})"), ".lights[0]", "needs a direction"},
+       {lights(R"({"kind": "directional"})"), ".lights[0]", "needs a direction"},
+       {lights(R"({"kind": "directional", "direction": [0, 1, 0], "position": [0, 0, 0]})"),
         ".lights[0]", "has no position"},
-       {lamp(R"({"position": [0, 0, 0], "direction": [0, 1, 0]})"), ".lights[0]",
+       {lights(R"({"position": [0, 0, 0], "direction": [0, 1, 0]})"), ".lights[0]",
         "has no direction"},
-       {lamp(R"({"kind": "directional", "direction": [0, 0, 0]})"), ".lights[0].direction",
+       {lights(R"({"kind": "directional", "direction": [0, 0, 0]})"), ".lights[0].direction",
         "not 0, 0, 0"},
-       {lamp(R"({"position": [0, 0, 0], "intensity": [1, 1, -0.5]})"), ".lights[0].intensity",
+       {lights(R"({"position": [0, 0, 0], "intensity": [1, 1, -0.5]})"), ".lights[0].intensity",
         "never negative"},
-       {lamp(R"({"position": [0, 0, 0], "range_m": -1})"), ".lights[0].range_m is -1", "from 0"},
-       {lamp(R"({"position": [0, 0, 0], "outer_cone_deg": 91})"), ".lights[0].outer_cone_deg",
+       {lights(R"({"position": [0, 0, 0], "range_m": -1})"), ".lights[0].range_m is -1", "from 0"},
+       {lights(R"({"position": [0, 0, 0], "outer_cone_deg": 91})"), ".lights[0].outer_cone_deg",
         "to 90"},
-       {lamp(R"({"position": [0, 0, 0], "inner_cone_deg": 46})"), ".lights[0].inner_cone_deg",
+       {lights(R"({"position": [0, 0, 0], "inner_cone_deg": 46})"), ".lights[0].inner_cone_deg",
         "to 45"},
-       {lamp(R"({"position": [0, 0, 0], "colour": [1, 1, 1]})"), ".lights[0]",
+       {lights(R"({"position": [0, 0, 0], "colour": [1, 1, 1]})"), ".lights[0]",
         "'colour' is not known; there is: kind, intensity, "}});
 }
 

@@ -12,7 +12,6 @@
 #include "luxel/display/tone_map.h"
 #include "luxel/image/codec.h"
 #include "luxel/import/import.h"
-#include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/command/light_script.h"
 #include "luxel/pipeline/render/camera.h"
 #include "luxel/post/dilate.h"
@@ -109,7 +108,7 @@ Result<std::unique_ptr<View>> set_up(const PlaySettings& s, const matrix::Religh
 
 /// Everything that shines in a frame.
 struct FrameLights {
-  std::vector<scene::PunctualLight> lamps;
+  std::vector<scene::PunctualLight> punctual;
   std::vector<Rgb> emission;  ///< per material of the .lxr file
   Rgb background{};
 };
@@ -117,8 +116,9 @@ struct FrameLights {
 FrameLights lights_at(const LightScript& script, const matrix::RelightData& data,
                       const std::vector<Rgb>& baked_radiance, double time_s) {
   FrameLights out;
-  out.lamps = lamps_at(script, time_s);
-  if (script.keep_lights) out.lamps.insert(out.lamps.end(), data.lights.begin(), data.lights.end());
+  out.punctual = lights_at(script, time_s);
+  if (script.keep_lights)
+    out.punctual.insert(out.punctual.end(), data.lights.begin(), data.lights.end());
   out.emission = baked_radiance;
   for (const LightScript::Glow& glow : script.glows)
     for (size_t m = 0; m < out.emission.size(); ++m)
@@ -158,7 +158,8 @@ Result<image::Image> draw_frame(const View& view, const PlaceLight& indirect,
     const Vec3 normal = scene::shading_normal(view.scene, p);
     const Vec3 geometric = scene::front_normal(view.scene, p.instance, p.triangle);
     return indirect.at(p) + matrix::live_light_at({{&position, 1}, {&normal, 1}, {&geometric, 1}},
-                                                  0, lights.lamps, *view.tracer, view.diagonal_m);
+                                                  0, lights.punctual, *view.tracer,
+                                                  view.diagonal_m);
   };
   display::DrawParams params;
   params.width = script.width, params.height = script.height;
@@ -192,7 +193,7 @@ Result<std::vector<OutputFile>> draw_frames(const PlaySettings& s, const LightSc
   for (int k = 0; k < script.frames; ++k) {
     const double time_s = k / script.frames_per_second;
     const FrameLights lights = lights_at(script, data, baked_radiance, time_s);
-    relighter.update({lights.lamps, lights.emission, lights.background});
+    relighter.update({lights.punctual, lights.emission, lights.background});
     indirect.set(relighter.latest().indirect_at_place);
     show_lights(script, lights, time_s, view);
     const Clock::time_point start = Clock::now();

@@ -1,4 +1,4 @@
-// A sequence of pictures of a scene whose lamps move: `luxel relight --play`.
+// A sequence of pictures of a scene whose lights move: `luxel relight --play`.
 #pragma once
 
 #include <filesystem>
@@ -32,9 +32,9 @@ struct Played {
   std::vector<FrameTimes> frames;
 };
 
-/// Direct light is drawn per pixel, with a shadow ray for each lamp; indirect light comes from the
-/// relighter. All frames have the exposure that suits the first. Errors: what the files say; a
-/// script that names what the scene does not have.
+/// Direct light is drawn per pixel, with a shadow ray for each punctual light; indirect light comes
+/// from the relighter. All frames have the exposure that suits the first. Errors: what the files
+/// say; a script that names what the scene does not have.
 Result<Played> play(const PlaySettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "luxel/base/file.h"
+#include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
 #include "luxel/display/contact_sheet.h"
 #include "luxel/import/import.h"
-#include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/solver/hierarchical.h"
 #include "luxel/solve/hierarchical/represent.h"
 #include "luxel/solve/hierarchical/surface.h"
@@ -149,7 +149,7 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   const hierarchical::MeshPoint place =
       hierarchical::locate(solution, mesh, nearest.face, nearest.place);
   out.interpolated = hierarchical::value_of(mesh.interpolant[place.triangle], place.s, place.t);
-  out.exact = out.lamps = exact[0];
+  out.exact = out.punctual_and_background = exact[0];
   out.name = name_of(scene, face.instance), out.material = scene.materials[face.material].name;
   out.position = to_float(nearest.place), out.normal = to_float(at.normal);
   out.distance_m = float(nearest.distance_m);
@@ -159,7 +159,7 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
     const hierarchical::Face& source = solution.faces.faces[f.face];
     out.sources.push_back({name_of(scene, source.instance), scene.materials[source.material].name,
                            f.visible, f.visible / f.whole, f.irradiance});
-    out.lamps = max(Rgb{}, out.lamps - f.irradiance);
+    out.punctual_and_background = max(Rgb{}, out.punctual_and_background - f.irradiance);
   }
   progress.begin(kWriteStage, 0);
   if (!s.output.empty()) LUXEL_TRY_STATUS(write_picture(s, solution, scene, at, seen));

@@ -40,7 +40,7 @@ struct Probed {
   Vec3 position{}, normal{};
   float distance_m = 0;               ///< from `at`
   Rgb exact, interpolated;            ///< E [W/m^2]
-  Rgb lamps;                          ///< the part of E that comes from no surface
+  Rgb punctual_and_background;        ///< the part of E that comes from no surface
   std::vector<ProbedSource> sources;  ///< the brightest first
   std::vector<std::string> warnings;
 };

@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "luxel/base/file.h"
+#include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/export/baked_glb.h"
 #include "luxel/import/import.h"
-#include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
@@ -61,7 +61,7 @@ Status check(const RelightSettings& s) {
   if (!s.outside.ies.empty())
     return fail(ErrorCode::bad_setting,
                 "--ies {}={}: .lxr files do not keep light profiles; leave it out",
-                s.outside.ies[0].lamp, s.outside.ies[0].file.string());
+                s.outside.ies[0].light, s.outside.ies[0].file.string());
   if (s.output.extension() != ".lxr")
     return fail(ErrorCode::bad_setting, "-o {}: the file is to end in .lxr", s.output.string());
   if (!(s.max_error >= 1e-5 && s.max_error <= 1))
@@ -183,7 +183,7 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
   scene::Scene& scene = imported.scene;
   std::vector<std::string> warnings = std::move(imported.warnings);
-  // A scene without light is no mistake here: its lamps come later.
+  // A scene without light is no mistake here: its lights come later.
   if (s.outside.background || s.outside.environment || s.outside.sun || s.outside.sky)
     LUXEL_TRY_STATUS(add_outside_light(s.outside, scene));
   if (flatten_sky(scene))

@@ -13,7 +13,7 @@
 #include "luxel/image/codec.h"
 #include "luxel/image/color.h"
 #include "luxel/import/import.h"
-#include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/scene/normal_map.h"
 #include "luxel/transport/irradiance_field.h"
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "luxel/base/file.h"
+#include "luxel/base/output_folder.h"
 #include "luxel/display/contact_sheet.h"
 #include "luxel/display/draw.h"
 #include "luxel/image/codec.h"
 #include "luxel/import/import.h"
-#include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/render/camera.h"
 #include "luxel/pipeline/render/render_check.h"
 #include "luxel/pipeline/render/techniques.h"

@@ -56,7 +56,7 @@ Status check_used(const RenderSettings& s, const Technique& technique) {
       {flags_of(hemicube_options()), s.hemicube.has_value(), &Technique::has_elements},
       {flags_of(hierarchical_options()), s.hierarchical.has_value(), &Technique::has_links},
       {"--overlay", !s.overlays.empty(), &Technique::has_links},
-      {"--sun", s.outside.sun.has_value(), &Technique::has_lamps}};
+      {"--sun", s.outside.sun.has_value(), &Technique::has_lights}};
   for (const Option& option : options)
     if (option.given && !(technique.*option.used))
       return not_used(fmt::format("--technique {}", technique.name), option.name,

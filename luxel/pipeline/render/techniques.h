@@ -36,7 +36,7 @@ struct Technique {
   bool counts_bounces = false;  ///< --bounces
   bool has_elements = false;    ///< --elements, --hemicube, ...
   bool has_links = false;       ///< --eps, --min-area, ...
-  bool has_lamps = false;       ///< --sun
+  bool has_lights = false;      ///< --sun
   bool on_sheet = true;         ///< one of a contact sheet's pictures
 };
 

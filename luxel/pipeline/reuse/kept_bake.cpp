@@ -102,8 +102,8 @@ void walk(Visit& visit, Like<scene::SceneState::Light> auto& l) {
 
 template <class Visit>
 void walk(Visit& visit, Like<scene::SceneState> auto& s) {
-  auto& [meshes, mesh_names, instances, materials, lamps, surroundings, mesh_materials] = s;
-  visit(meshes), visit(mesh_names), visit(instances), visit(materials), visit(lamps);
+  auto& [meshes, mesh_names, instances, materials, lights, surroundings, mesh_materials] = s;
+  visit(meshes), visit(mesh_names), visit(instances), visit(materials), visit(lights);
   visit(surroundings), visit(mesh_materials);
 }
 
@@ -191,10 +191,10 @@ void walk_part(Visit& visit, size_t part, Like<KeptBake> auto& k) {
   }
 }
 
-/// Whether everything per element, lamp and instance has as many entries as there are.
+/// Whether everything per element, light and instance has as many entries as there are.
 bool is_sound(const KeptBake& k) {
   const size_t n = k.layout.texels.size(), layers = k.layer_names.size();
-  const size_t instances = k.scene.instances.size(), lamps = k.scene.lights.size();
+  const size_t instances = k.scene.instances.size(), lights = k.scene.lights.size();
   const TexelLight& l = k.light;
   for (const size_t size : {k.places.size(), k.direct.irradiance.size(), k.direct.variance.size(),
                             k.direct.split_variance.size(), k.levels.level.size(),
@@ -206,7 +206,7 @@ bool is_sound(const KeptBake& k) {
   const bool told_apart = layers > 0;
   return k.layout.mesh_of_instance.size() == instances && l.layers.size() == layers &&
          l.layer_irradiance.size() == layers && k.direct.by_layer.size() == n * layers &&
-         k.layers.of_punctual.size() == (told_apart ? lamps : 0) &&
+         k.layers.of_punctual.size() == (told_apart ? lights : 0) &&
          k.layers.of_instance.size() == (told_apart ? instances : 0);
 }
 

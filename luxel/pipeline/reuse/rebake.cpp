@@ -90,10 +90,10 @@ std::vector<uint8_t> moved_elements(std::span<const uint64_t> before,
   return out;
 }
 
-light::Lights only(const light::Lights& lights, std::span<const uint32_t> lamps) {
+light::Lights only(const light::Lights& lights, std::span<const uint32_t> punctual) {
   scene::Scene scene;
   scene.profiles = lights.profiles;
-  for (const uint32_t k : lamps) scene.lights.push_back(lights.punctual[k]);
+  for (const uint32_t k : punctual) scene.lights.push_back(lights.punctual[k]);
   return light::collect_lights(scene);
 }
 

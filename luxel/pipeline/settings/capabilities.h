@@ -12,7 +12,7 @@ struct Capabilities {
   bool errors = false;          ///< estimates each texel's standard error: --max-error,
                                 ///< --time-budget, --error-map, --plan
   bool noise = false;           ///< estimates the variance of its light: --denoise
-  bool layers = false;          ///< can tell the light of each lamp apart: --layers
+  bool layers = false;          ///< can tell each light apart: --layers
   bool scatters = false;        ///< follows light that surfaces scatter through
   bool parts = false;           ///< keeps its finished parts: --checkpoint, --resume
   bool keeps = false;           ///< leaves what later bakes can build on: --keep

@@ -12,7 +12,7 @@ namespace {
 bool can_have(const scene::PunctualLight& light) { return scene::can_have_profile(light.kind); }
 
 /// "'a', 'b' and 7 more"
-std::string names_of_lamps(const scene::Scene& scene) {
+std::string names_of_lights(const scene::Scene& scene) {
   constexpr size_t kShown = 20;
   std::vector<std::string> names;
   for (const scene::PunctualLight& light : scene.lights)
@@ -31,7 +31,7 @@ Result<IesSetting> parse_ies_setting(std::string_view text) {
   const size_t equals = text.find('=');
   IesSetting out;
   if (equals != std::string_view::npos) {
-    out.lamp = text.substr(0, equals);
+    out.light = text.substr(0, equals);
     std::string_view file = text.substr(equals + 1);
     const size_t comma = file.rfind(',');
     if (comma != std::string_view::npos) {
@@ -44,9 +44,10 @@ Result<IesSetting> parse_ies_setting(std::string_view text) {
     }
     out.file = file;
   }
-  if (out.lamp.empty() || out.file.empty())
+  if (out.light.empty() || out.file.empty())
     return fail(ErrorCode::bad_setting,
-                "--ies '{}' is not LAMP=FILE or LAMP=FILE,SCALE, as in --ies desk=spot.ies", text);
+                "--ies '{}' is not LIGHT=FILE or LIGHT=FILE,SCALE, as in --ies desk=spot.ies",
+                text);
   return out;
 }
 
@@ -55,22 +56,22 @@ Result<std::vector<std::string>> add_profiles(std::span<const IesSetting> settin
   std::vector<std::string> warnings;
   std::vector<std::string> seen;
   for (const IesSetting& s : settings) {
-    if (std::find(seen.begin(), seen.end(), s.lamp) != seen.end())
+    if (std::find(seen.begin(), seen.end(), s.light) != seen.end())
       return fail(ErrorCode::bad_setting, "--ies {}={}: this light has another file already",
-                  s.lamp, s.file.string());
-    seen.push_back(s.lamp);
+                  s.light, s.file.string());
+    seen.push_back(s.light);
     LUXEL_TRY(const import::Ies ies, import::read_ies(s.file));
     warnings.insert(warnings.end(), ies.warnings.begin(), ies.warnings.end());
     size_t found = 0;
     for (size_t i = 0; i < scene.lights.size(); ++i) {
-      if (scene.lights[i].name != s.lamp || !can_have(scene.lights[i])) continue;
+      if (scene.lights[i].name != s.light || !can_have(scene.lights[i])) continue;
       scene::attach_profile(scene, i, ies.profile, s.scale);
       ++found;
     }
     if (found > 0) continue;
-    const std::string names = names_of_lamps(scene);
+    const std::string names = names_of_lights(scene);
     return fail(ErrorCode::bad_setting, "--ies {}={}: no point or spot light has this name; {}{}",
-                s.lamp, s.file.string(),
+                s.light, s.file.string(),
                 names.empty() ? "the scene has no such lights" : "there is: ", names);
   }
   return warnings;

@@ -1,4 +1,4 @@
-// Light profiles from IES files for lamps of a scene.
+// Light profiles from IES files for punctual lights of a scene.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 namespace luxel::pipeline {
 
 struct IesSetting {
-  std::string lamp;  ///< its name in the scene
+  std::string light;  ///< its name in the scene
   std::filesystem::path file;
   float scale = 1;  ///< on the file's candela
 };

@@ -35,7 +35,7 @@ struct FileOnDisk {
 TEST(IesSetting, NameFileAndScale) {
   const auto plain = parse_ies_setting("desk lamp=a/b.ies");
   ASSERT_TRUE(plain);
-  EXPECT_EQ(plain->lamp, "desk lamp");
+  EXPECT_EQ(plain->light, "desk lamp");
   EXPECT_EQ(plain->file, "a/b.ies");
   EXPECT_EQ(plain->scale, 1);
   EXPECT_EQ(parse_ies_setting("x=a=b,c.ies")->file, "a=b,c.ies");

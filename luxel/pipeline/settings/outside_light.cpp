@@ -144,14 +144,15 @@ Option<L> ies_option() {
                       [](const std::vector<IesSetting>& all) {
                         json out;
                         for (const IesSetting& ies : all)
-                          out.push_back({{"lamp", ies.lamp},
+                          out.push_back({{"light", ies.light},
+                                         {"lamp", ies.light},  // the key before version 0.2
                                          {"file", ies.file.string()},
                                          {"scale", json_of_number(ies.scale)}});
                         return out;
                       },
                       "The distribution of a point or spot light from an IES file; may be given "
                       "for several")
-                      .unit("LAMP=FILE[,SCALE]");
+                      .unit("LIGHT=FILE[,SCALE]");
   row.repeats = true;
   row.read_text = [](L& s, std::string_view text) -> Status {
     LUXEL_TRY(IesSetting one, parse_ies_setting(text));
@@ -161,8 +162,8 @@ Option<L> ies_option() {
   row.read_json = [read = row.read_text](L& s, const json& list) -> Status {
     s.ies.clear();
     for (const json& one : list)
-      LUXEL_TRY_STATUS(read(s, fmt::format("{}={},{}", one.value("lamp", ""), one.value("file", ""),
-                                           one.value("scale", 1.0))));
+      LUXEL_TRY_STATUS(read(s, fmt::format("{}={},{}", one.value("light", one.value("lamp", "")),
+                                           one.value("file", ""), one.value("scale", 1.0))));
     return {};
   };
   return row;
@@ -190,9 +191,9 @@ Options<OutsideLight> outside_light_options() {
 
 scene::PunctualLight sun_light(const Sun& sun) {
   const float azimuth = sun.azimuth_deg * kPi / 180, elevation = sun.elevation_deg * kPi / 180;
-  return sun_lamp(Rgb{1, 1, 1} * sun.lux,
-                  {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
-                   -std::cos(azimuth) * std::cos(elevation)});
+  return sun_light(Rgb{1, 1, 1} * sun.lux,
+                   {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                    -std::cos(azimuth) * std::cos(elevation)});
 }
 
 Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,

@@ -52,10 +52,10 @@ Result<Sun> parse_sun(std::string_view text);
 /// The sun's disc is half a degree wide: its shadows have penumbrae.
 scene::PunctualLight sun_light(const Sun& sun);
 
-/// Adds profiles of lamps, environment or sky, background and sun to a scene; an environment or a
-/// sky without a background beside it replaces the file's background. A scene that then has no
-/// light at all gets a white background of radiance 1. Returns warnings; that one comes last.
-/// Errors: those of import::read_environment and add_profiles.
+/// Adds profiles of punctual lights, environment or sky, background and sun to a scene; an
+/// environment or a sky without a background beside it replaces the file's background. A scene that
+/// then has no light at all gets a white background of radiance 1. Returns warnings; that one comes
+/// last. Errors: those of import::read_environment and add_profiles.
 Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,
                                                    scene::Scene& scene);
 

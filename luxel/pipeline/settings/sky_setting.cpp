@@ -136,7 +136,7 @@ scene::SkyParams sky_params(const SkySetting& s) {
   return out;
 }
 
-scene::PunctualLight sun_lamp(Rgb illuminance, Vec3 towards) {
+scene::PunctualLight sun_light(Rgb illuminance, Vec3 towards) {
   scene::PunctualLight sun;
   sun.name = "sun", sun.kind = scene::PunctualLight::Kind::directional;
   sun.intensity = illuminance, sun.direction = -towards;
@@ -149,7 +149,7 @@ void add_sky(const SkySetting& setting, scene::Scene& scene) {
   scene.background = {};
   scene.environment = std::move(sky.radiance);
   if (max_component(sky.sun_illuminance) > 0)
-    scene.lights.push_back(sun_lamp(sky.sun_illuminance, sky.towards_sun));
+    scene.lights.push_back(sun_light(sky.sun_illuminance, sky.towards_sun));
 }
 
 }  // namespace luxel::pipeline

@@ -24,7 +24,7 @@ Result<SkySetting> parse_sky(std::string_view text);
 scene::SkyParams sky_params(const SkySetting& setting);
 
 /// A directional light with the sun's disc; `illuminance` is that of a surface that faces it.
-scene::PunctualLight sun_lamp(Rgb illuminance, Vec3 towards);
+scene::PunctualLight sun_light(Rgb illuminance, Vec3 towards);
 
 /// Adds the sky and a directional light for its sun.
 void add_sky(const SkySetting& setting, scene::Scene& scene);

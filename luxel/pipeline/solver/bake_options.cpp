@@ -61,6 +61,10 @@ void drop_file_names(json& value) {
     for (json& part : value) drop_file_names(part);
 }
 
+/// A key of bake.json's settings that stood in its solver's object. It is written and read there as
+/// well until version 0.2.
+constexpr std::string_view kMovedKey = "vertex_colors", kMovedFrom = "hemicube";
+
 /// Reads one value, where an option has that key. Errors: none has, or the value is wrong.
 Status read_value(const std::string& key, const json& value, std::string_view solver,
                   BakeSettings& settings) {
@@ -74,8 +78,10 @@ Status read_object(const json& object, BakeSettings& settings) {
   for (const auto& [key, value] : object.items()) {
     if (key == "scene" || key == "solver") continue;  // read before
     if (find_solver(key) && value.is_object()) {
-      for (const auto& [inner, of_solver] : value.items())
-        LUXEL_TRY_STATUS(read_value(inner, of_solver, key, settings));
+      for (const auto& [inner, of_solver] : value.items()) {
+        const bool moved = key == kMovedFrom && inner == kMovedKey;
+        LUXEL_TRY_STATUS(read_value(inner, of_solver, moved ? "" : key, settings));
+      }
     } else {
       LUXEL_TRY_STATUS(read_value(key, value, "", settings));
     }
@@ -133,6 +139,7 @@ Status check(const BakeSettings& s) {
 json to_json(const BakeSettings& settings) {
   json out = json_of(settings, [](const Row&) { return true; });
   out["scene"] = settings.scene.string(), out["solver"] = settings.solver;
+  if (out.contains(kMovedFrom)) out[kMovedFrom][kMovedKey] = out[kMovedKey];
   return out;
 }
 

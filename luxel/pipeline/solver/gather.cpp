@@ -170,7 +170,8 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
   if (KeptBake* found = stores.cache ? stores.cache->found() : nullptr) {
     const scene::SceneChange& change = stores.cache->change();
     const LightUpdate update = light_update(*found, change, in.scene);
-    // Layers that are asked for are those of now: a lamp that is out has none, another name counts.
+    // Layers that are asked for are those of now: a light that is out has none, another name
+    // counts.
     const bool same_layers = settings.layers == light::LayerMode::none ||
                              layers_of_lights(in.scene, in.lights, layers) == found->layers;
     if (is_sum_of_layers(update, change) && same_layers) {

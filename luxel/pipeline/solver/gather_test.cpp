@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/bake/bake_scene.h"
 
 namespace luxel::pipeline {
 namespace {

@@ -43,7 +43,8 @@ struct TexelLight {
   /// Estimated variance of its luminance per texel, the direct part aside; empty: light without
   /// noise, or noise that nobody knows.
   std::vector<float> variance;
-  /// The part of the irradiance that comes straight from lamps, and its variance; empty: not apart.
+  /// The part of the irradiance that comes straight from lights, and its variance; empty: not
+  /// apart.
   std::vector<Rgb> direct;
   std::vector<float> direct_variance;
   /// Where the solver knows how sure each texel's luminance is, relative to itself or, where it is

@@ -119,7 +119,7 @@ struct World {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
   const std::vector<Shells>& shells;  ///< per mesh
-  std::vector<Vec3> lamps;            ///< where point and spot lights stand
+  std::vector<Vec3> light_positions;  ///< of point and spot lights
   bool sky_shines = false;            ///< light comes from where there is no surface
   float diagonal_m = 0;
 
@@ -141,7 +141,7 @@ World world_of(const scene::Scene& scene, const trace::RayTracer& tracer,
   world.sky_shines = max_component(scene.background) > 0 || !scene.environment.empty();
   for (const scene::PunctualLight& light : scene.lights)
     if (scene::has_position(light.kind))
-      world.lamps.push_back(light.position);
+      world.light_positions.push_back(light.position);
     else
       world.sky_shines = true;
   return world;
@@ -170,21 +170,21 @@ trace::Ray ray_from(const World& world, const scene::SurfacePoint& p, Vec3 side,
   return {origin, 0, d, INFINITY};
 }
 
-/// Whether one of the lamps, by chance, shines on a place.
-bool sees_lamp(const World& world, Vec3 origin, Vec3 side, RandomStream& random) {
-  if (world.lamps.empty()) return false;
-  const size_t k =
-      std::min(size_t(random.next() * float(world.lamps.size())), world.lamps.size() - 1);
-  const Vec3 towards = world.lamps[k] - origin;
+/// Whether a randomly chosen point or spot light shines on a position.
+bool sees_light(const World& world, Vec3 origin, Vec3 side, RandomStream& random) {
+  if (world.light_positions.empty()) return false;
+  const size_t k = std::min(size_t(random.next() * float(world.light_positions.size())),
+                            world.light_positions.size() - 1);
+  const Vec3 towards = world.light_positions[k] - origin;
   return dot(towards, side) > 0 && !world.tracer.closest_hit({origin, 0, towards, 1}).found();
 }
 
-/// Whether a walk from the back of a triangle gets out, or has a lamp before it.
+/// Whether a walk from the back of a triangle gets out, or a light shines on it.
 bool gets_out(const World& world, const Placed& own, const scene::SurfacePoint& from,
               RandomStream& random) {
   const Vec3 behind = -scene::front_normal(world.scene, from.instance, from.triangle);
   trace::Ray ray = ray_from(world, from, behind, random);
-  if (sees_lamp(world, ray.origin, behind, random)) return true;
+  if (sees_light(world, ray.origin, behind, random)) return true;
   for (uint32_t step = 0; step < kSteps; ++step) {
     const trace::Hit hit = world.tracer.closest_hit(ray);
     const Step what = judge(world, own, ray, hit);

@@ -16,7 +16,7 @@ namespace luxel::pipeline {
 /// for meshes without any. Many exporters call every material double-sided: what matters is
 /// whether light can get behind. Decided for each shell, the triangles of a mesh that hang together
 /// by their corners: random walks start on its backs, and those get out that leave the scene for a
-/// sky that shines, see a lamp, meet something beyond the shell's surroundings, or the front of
+/// sky that shines, see a light, meet something beyond the shell's surroundings, or the front of
 /// something that stands inside the shell. Closed solids, boxes that stand on a floor without a
 /// bottom and rugs that lie on it stay as they are. What scatters light through itself has two
 /// sides in any case. Errors: cancelled, no memory for the ray tracer.

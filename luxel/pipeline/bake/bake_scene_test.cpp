@@ -1,4 +1,4 @@
-#include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/bake/bake_scene.h"
 
 #include <gmock/gmock.h>
 

@@ -1,0 +1,122 @@
+#include "luxel/pipeline/bake/bake_files.h"
+
+#include <array>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "luxel/base/parallel.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/image/codec.h"
+#include "luxel/pipeline/bake/layers.h"
+#include "luxel/pipeline/bake/light_directions.h"
+#include "luxel/pipeline/settings/lightmap_files.h"
+
+namespace luxel::pipeline {
+namespace {
+
+const std::vector<image::Image>& shown_lightmaps(const Bake& bake) {
+  return bake.shown.empty() ? bake.lightmaps : bake.shown;
+}
+
+/// As viewers want them; without pictures only what is said of them.
+std::vector<export_::LightmapLayer> shown_layers(const Bake& bake, bool with_pictures) {
+  std::vector<export_::LightmapLayer> out;
+  for (const BakedLayer& layer : bake.layers) {
+    out.push_back({layer.about.name, layer.about.lights, layer.instances, layer.surroundings, {}});
+    if (with_pictures) out.back().lightmaps = layer.shown.empty() ? layer.lightmaps : layer.shown;
+  }
+  return out;
+}
+
+Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& bake) {
+  if (!settings.vertex_colors)
+    return export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake),
+                              shown_layers(bake, true));
+  const VertexLit& lit = *bake.light.vertex_lit;
+  return export_::vertex_lit_glb(lit.scene, lit.intensity);
+}
+
+/// `glb` is baked.glb. Where that holds light per vertex, or pictures of layers, which the page has
+/// already, the page has one of its own.
+Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
+                             std::span<const std::byte> glb) {
+  std::vector<std::byte> own;
+  const std::vector<export_::LightmapLayer> layers = shown_layers(bake, true);
+  if (settings.vertex_colors || !layers.empty()) {
+    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake),
+                                      shown_layers(bake, false)));
+    glb = own;
+  }
+  LUXEL_TRY(const std::string html,
+            export_::view_html({settings.scene.stem().string(), bake.view, bake.scene.background,
+                                bake.atlas.corners.size(), glb, shown_lightmaps(bake),
+                                &bake.scene.environment, layers}));
+  return text_file(settings.output / "view.html", html);
+}
+
+/// kind.png, or kind-0.png and so on of several pages.
+std::vector<OutputFile> picture_files(std::span<const image::Image8> pages, std::string_view kind,
+                                      const std::filesystem::path& folder) {
+  std::vector<OutputFile> files;
+  for (size_t p = 0; p < pages.size(); ++p) {
+    const std::string number = pages.size() == 1 ? "" : fmt::format("-{}", p);
+    files.push_back({folder / fmt::format("{}{}.png", kind, number), image::encode_png(pages[p])});
+  }
+  return files;
+}
+
+/// What takes longest to encode.
+struct Encoded {
+  Result<LightmapFiles> lightmap;
+  Result<std::vector<std::byte>> glb;
+  std::vector<std::byte> preview;
+};
+
+/// At the same time: each is work for one thread, more or less.
+Encoded encode(const BakeSettings& settings, const Bake& bake) {
+  Encoded out;
+  const std::array<std::function<void()>, 3> tasks{
+      [&] { out.lightmap = lightmap_files(bake.lightmaps, settings.formats, settings.output); },
+      [&] { out.glb = glb_of(settings, bake); },
+      [&] { out.preview = image::encode_png(bake.preview); }};
+  parallel_for(tasks.size(), 1, [&](size_t task, size_t) { tasks[task](); });
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bake& bake,
+                                         nlohmann::json& json) {
+  Encoded encoded = encode(settings, bake);
+  LUXEL_TRY(LightmapFiles lightmap, std::move(encoded.lightmap));
+  LUXEL_TRY(std::vector<std::byte> glb, std::move(encoded.glb));
+  std::vector<OutputFile> files = std::move(lightmap.files);
+  if (lightmap.rgbm_range > 0) json["lightmap"]["rgbm_range"] = lightmap.rgbm_range;
+  const auto append = [&](std::vector<OutputFile> more) {
+    std::move(more.begin(), more.end(), std::back_inserter(files));
+  };
+  if (!bake.layers.empty()) {
+    LUXEL_TRY(std::vector<OutputFile> layers,
+              layer_files(bake.layers, settings.formats, settings.output, json["layers"]));
+    append(std::move(layers));
+  }
+  LUXEL_TRY(std::vector<OutputFile> directions, direction_files(bake.directions, settings.output));
+  append(std::move(directions));
+  if (bake.probes) {
+    LUXEL_TRY(std::vector<OutputFile> probes, probe_files(*bake.probes, settings.output));
+    append(std::move(probes));
+    json["probes"] = {{"placed", bake.probes->probes.size()},
+                      {"inside_solids", bake.probes->row.size() - bake.probes->probes.size()}};
+  }
+  if (settings.html) {
+    LUXEL_TRY(OutputFile page, view_page(settings, bake, glb));
+    files.push_back(std::move(page));
+  }
+  files.push_back({settings.output / "baked.glb", std::move(glb)});
+  append(picture_files(bake.texel_pictures, "texels", settings.output));
+  append(picture_files(bake.error_pictures, "error", settings.output));
+  files.push_back({settings.output / "preview.png", std::move(encoded.preview)});
+  return files;
+}
+
+}  // namespace luxel::pipeline

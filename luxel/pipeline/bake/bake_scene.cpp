@@ -1,0 +1,158 @@
+#include "luxel/pipeline/bake/bake_scene.h"
+
+#include "luxel/base/parallel.h"
+#include "luxel/base/process_memory.h"
+#include "luxel/import/import.h"
+#include "luxel/pipeline/bake/denoise_light.h"
+#include "luxel/pipeline/bake/finish_bake.h"
+#include "luxel/pipeline/reuse/bake_cache.h"
+#include "luxel/pipeline/reuse/checkpoint.h"
+#include "luxel/pipeline/solver/bake_options.h"
+#include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/texels/two_sides.h"
+#include "luxel/scene/sides.h"
+#include "luxel/scene/validate.h"
+
+namespace luxel::pipeline {
+namespace {
+
+Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>& warnings,
+                          Progress& progress) {
+  progress.begin("import", 0);
+  LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
+  warnings = std::move(imported.warnings);
+  LUXEL_TRY(const std::vector<std::string> light,
+            add_outside_light(settings.outside, imported.scene));
+  warnings.insert(warnings.end(), light.begin(), light.end());
+  LUXEL_TRY_STATUS(stopped(progress));
+  return std::move(imported.scene);
+}
+
+Status solve(const BakeSettings& settings, const light::TexelScene& input,
+             const SolveStores& stores, const SolveObserver& observer, Bake& bake,
+             Progress& progress) {
+  const Solver& solver = *find_solver(settings.solver);
+  if (!solver.can.scatters && scene::scatters_light(input.scene))
+    bake.warnings.push_back(fmt::format(
+        "light that is scattered through surfaces (KHR_materials_diffuse_transmission) is left out "
+        "by --solver {}: they are too dark; gather and reference have it",
+        settings.solver));
+  LUXEL_TRY(bake.light, solver.solve(input, settings, stores, observer, progress));
+  if (settings.denoise) LUXEL_TRY_STATUS(denoise_light(input, bake.light, progress));
+  bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
+  return {};
+}
+
+/// What light needs besides a bake's scene and texels.
+struct Ready {
+  trace::RayTracer tracer;
+  transport::Elements elements;
+  light::Lights lights;
+};
+
+/// The layout of what was read; warnings of it are added to `warnings`.
+Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, BakeCache* cache,
+                            std::vector<std::string>& warnings, Progress& progress) {
+  std::vector<std::string> sides;
+  const auto warn = [&] { warnings.insert(warnings.end(), sides.begin(), sides.end()); };
+  if (KeptBake* found = cache ? cache->found() : nullptr) {
+    sides = found->layout.warnings, warn();
+    return lay_out_again(settings, std::move(found->layout), cache->change().boxes, scene,
+                         progress);
+  }
+  const bool keeps = cache && cache->rays();
+  std::vector<std::vector<uint32_t>> numbers;
+  const size_t materials = scene.materials.size();
+  if (keeps)
+    for (const scene::Mesh& mesh : scene.meshes) numbers.push_back(mesh.triangle_material);
+  LUXEL_TRY(sides, split_sides(scene, settings.uv, settings.resolution, progress));
+  warn();
+  const std::vector<uint32_t> copies =
+      keeps ? one_sided_copies(numbers, materials, scene) : std::vector<uint32_t>{};
+  LUXEL_TRY(TexelLayout layout, lay_out_texels(settings, scene, progress));
+  if (!keeps) return layout;
+  KeptLayout kept = keep_layout(scene, layout);
+  kept.one_sided_of = copies, kept.warnings = std::move(sides);
+  cache->keep(std::move(kept));
+  return layout;
+}
+
+/// Lays out bake.scene, which the tracer looks at.
+Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers& keepers,
+                         Progress& progress) {
+  if (keepers.checkpoint && find_solver(settings.solver)->can.parts)
+    LUXEL_TRY_STATUS(keepers.checkpoint->open(bake.scene, progress));
+  if (keepers.cache) keepers.cache->open(bake.scene, progress);
+  LUXEL_TRY(TexelLayout layout,
+            lay_out(settings, bake.scene, keepers.cache, bake.warnings, progress));
+  LUXEL_TRY_STATUS(stopped(progress));
+  bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
+  bake.atlas_stats = layout.stats, bake.repair = std::move(layout.repair);
+  return_free_memory();  // of charts, bitmaps and bins: many small ones
+  return Ready{std::move(layout.tracer),
+               transport::elements_from_texels(bake.scene, bake.atlas, bake.map),
+               light::collect_lights(bake.scene)};
+}
+
+/// The rest of bake_scene() for a bake that has its scene.
+Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
+                   const OnBakeEstimate& on_estimate, Bake& bake, Progress& progress) {
+  LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
+  const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
+                                ready.elements, ready.lights, ready.tracer};
+  const SolveStores stores{keepers.checkpoint ? keepers.checkpoint->parts() : nullptr,
+                           keepers.cache};
+  SolveObserver observer;
+  if (on_estimate)
+    observer.on_estimate = [&](const light::LightEstimate& e) { on_estimate(input, e); };
+  else if (!looks_at_places(settings))
+    observer.on_traced = [&] { transport::drop_places(ready.elements); };
+  LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
+  if (keepers.cache) keepers.cache->solved();
+  LUXEL_TRY_STATUS(repair_light(settings, ready.tracer, bake, progress));
+  LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
+  LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
+  return draw_preview(ready.tracer, bake, progress);
+}
+
+}  // namespace
+
+Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const Keepers& keepers,
+                        const OnBakeEstimate& on_estimate) {
+  LUXEL_TRY_STATUS(check(settings));
+  const ThreadLimit threads(settings.threads);
+  Bake bake;
+  LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
+  LUXEL_TRY_STATUS(bake_loaded(settings, keepers, on_estimate, bake, progress));
+  return bake;
+}
+
+Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& asked, Progress& progress) {
+  BakeSettings settings = asked;
+  if (settings.output.empty()) settings.output = ".";
+  LUXEL_TRY_STATUS(check(settings));
+  const ThreadLimit threads(settings.threads);
+  Bake bake;
+  bake.scene = std::move(scene);
+  LUXEL_TRY(bake.warnings, scene::validate(bake.scene, "scene '" + bake.scene.name + "'"));
+  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(settings.outside, bake.scene));
+  bake.warnings.insert(bake.warnings.end(), light.begin(), light.end());
+  LUXEL_TRY_STATUS(bake_loaded(settings, {}, {}, bake, progress));
+  return bake;
+}
+
+Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress) {
+  LUXEL_TRY_STATUS(check(settings));
+  const ThreadLimit threads(settings.threads);
+  const Solver& solver = *find_solver(settings.solver);
+  if (!solver.plan)
+    return fail(ErrorCode::bad_setting, "--plan: --solver {} cannot say what it will take",
+                settings.solver);
+  Bake bake;
+  LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
+  LUXEL_TRY(const Ready ready, make_ready(settings, bake, {}, progress));
+  return solver.plan({bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
+                     settings, progress);
+}
+
+}  // namespace luxel::pipeline

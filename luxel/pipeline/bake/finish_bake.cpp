@@ -1,0 +1,107 @@
+#include "luxel/pipeline/bake/finish_bake.h"
+
+#include <algorithm>
+
+#include "luxel/display/draw.h"
+#include "luxel/display/tone_map.h"
+#include "luxel/pipeline/texels/shown_light.h"
+#include "luxel/pipeline/texels/texel_picture.h"
+#include "luxel/post/dilate.h"
+#include "luxel/post/refill.h"
+#include "luxel/post/seams.h"
+#include "luxel/scene/sides.h"
+#include "luxel/transport/irradiance_field.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Rings of dilation: enough for bilinear lookups in four mipmap levels.
+constexpr int kDilationRings = 8;
+/// Hidden texels are refilled as far as a bilinear lookup from outside can reach.
+constexpr int kRefillRings = 2;
+constexpr int kPreviewWidth = 960, kPreviewHeight = 720;
+
+Status stitch(std::span<const post::Seam> seams, Bake& bake, Progress& progress) {
+  std::vector<Rgb> before;
+  if (!bake.light.layers.empty()) before = bake.light.irradiance;
+  LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
+  if (before.empty()) return {};
+  return stitch_layers(bake.map, seams, before, bake.light.irradiance, bake.light.layer_irradiance,
+                       progress);
+}
+
+}  // namespace
+
+Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
+                    Progress& progress) {
+  progress.begin("seams", 0);
+  const std::span<const uint8_t> hidden = bake.light.hidden;
+  const post::Parted parted = settings.repair_leaks
+                                  ? parted_texels(bake.scene, bake.atlas, bake.map, tracer)
+                                  : post::Parted{};
+  std::vector<std::span<Rgb>> arrays{bake.light.irradiance};
+  for (std::vector<Rgb>& layer : bake.light.layer_irradiance) arrays.push_back(layer);
+  bake.repair.refilled =
+      post::refill_hidden(bake.atlas, bake.map, hidden, kRefillRings, parted, arrays);
+  std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
+  if (settings.repair_leaks) seams = open_seams(bake.scene, bake.atlas, tracer, std::move(seams));
+  bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance);
+  bake.seams = seams.size();
+  if (settings.stitch) LUXEL_TRY_STATUS(stitch(seams, bake, progress));
+  bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance);
+  if (settings.texels)
+    bake.texel_pictures =
+        draw_texels(bake.atlas, bake.map,
+                    {hidden, bake.repair.overlapping, bake.repair.moved, bake.repair.refilled,
+                     post::seam_errors(bake.map, seams, bake.light.irradiance)});
+  if (settings.error_map)
+    bake.error_pictures = draw_errors(bake.atlas, bake.map, bake.light.errors);
+  bake.lightmaps = post::lightmap_pages(bake.atlas, bake.map, bake.light.irradiance);
+  for (image::Image& lightmap : bake.lightmaps) post::dilate(lightmap, kDilationRings);
+  if (scene::scatters_light(bake.scene)) {
+    bake.shown = post::lightmap_pages(
+        bake.atlas, bake.map,
+        shown_irradiance(bake.scene, bake.atlas, bake.map, bake.light.irradiance));
+    for (image::Image& lightmap : bake.shown) post::dilate(lightmap, kDilationRings);
+  }
+  bake.layers = bake_layers(bake.scene, bake.atlas, bake.map, kDilationRings, bake.light);
+  return stopped(progress);
+}
+
+Status add_directions(const BakeSettings& settings, const light::TexelScene& input, Bake& bake,
+                      Progress& progress) {
+  const std::span<const Rgb> light = bake.light.irradiance;
+  if (settings.directional != Directional::none) {
+    LUXEL_TRY(bake.directions, direction_maps(input, light, bake.light.hidden, settings.directional,
+                                              settings.seed, progress));
+    bake.light.rays += bake.directions.rays;
+  }
+  if (settings.probe_spacing_m > 0) {
+    LUXEL_TRY(bake.probes,
+              probe_grid(input, light, float(settings.probe_spacing_m), settings.seed, progress));
+    bake.light.rays += bake.probes->rays;
+  }
+  return {};
+}
+
+Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progress) {
+  const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
+  display::DrawParams params;
+  params.width = kPreviewWidth, params.height = kPreviewHeight;
+  const float aspect = float(params.width) / float(params.height);
+  const scene::Camera camera = bake.scene.cameras.empty()
+                                   ? display::fit_camera(bake.scene, tracer, aspect)
+                                   : bake.scene.cameras.front();
+  if (camera.aspect > 0) params.width = int(float(params.height) * camera.aspect + 0.5f);
+  params.width = std::clamp(params.width, params.height / 4, params.height * 4);
+  LUXEL_TRY(const image::Image picture,
+            display::draw(
+                bake.scene, tracer, camera,
+                [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); },
+                params, progress));
+  bake.view = {camera, params.width, params.height, display::auto_exposure(picture)};
+  bake.preview = display::tone_map(picture, bake.view.exposure);
+  return {};
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,22 @@
+// What follows the solver: leaks repaired, seams stitched, lightmaps and the preview made.
+#pragma once
+
+#include "luxel/pipeline/bake/bake_scene.h"
+
+namespace luxel::pipeline {
+
+/// Repairs the light of hidden texels and at seams (settings.repair_leaks, settings.stitch), then
+/// makes the lightmaps, those of layers, and the pictures of texels and errors that are asked for.
+/// Errors: cancelled.
+Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
+                    Progress& progress);
+
+/// Directional maps and probes where they are asked for, of the light that repair_light() left.
+/// Errors: too little memory, cancelled.
+Status add_directions(const BakeSettings& settings, const light::TexelScene& input, Bake& bake,
+                      Progress& progress);
+
+/// bake.preview: the scene's first camera, or one that sees all of it. Errors: cancelled.
+Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progress);
+
+}  // namespace luxel::pipeline

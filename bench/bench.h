@@ -24,6 +24,10 @@ struct Table {
 
 /// Without rows, for as many threads as loops use now.
 Table new_table(std::string name, std::vector<std::string> columns);
+/// A share as a cell: 0.1 is "10.00 %".
+std::string percent(double share);
+/// Bytes as a cell, in MiB.
+std::string mib(uint64_t bytes);
 /// The processor's model name, or "unknown processor".
 std::string machine_name();
 /// The table and its notes as Markdown.

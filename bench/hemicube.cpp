@@ -29,8 +29,6 @@ Result<uint64_t> peak_bytes_of_finest() {
   return child.peak_resident_bytes;
 }
 
-std::string mib(uint64_t bytes) { return fmt::format("{:.1f}", double(bytes) / double(1u << 20)); }
-
 Table table_of(std::string name, std::string first, const std::vector<BoxRun>& runs,
                const std::vector<std::string>& labels) {
   Table t{std::move(name),

@@ -21,10 +21,10 @@ namespace {
 
 namespace h = luxel::hierarchical;
 
-constexpr int kPaths = 1024;
+constexpr int kJudgePaths = 1024;
 constexpr int kLightmap = 96;  ///< texels a side
 constexpr int kPictureWidth = 160, kPictureHeight = 120;
-constexpr size_t kPoints = 200;
+constexpr size_t kJudgedPoints = 200;
 constexpr uint32_t kRays = 1'000'000;
 
 std::vector<std::string> agreement_row(std::string scene, std::string what,
@@ -41,7 +41,7 @@ std::vector<std::string> agreement_row(std::string scene, std::string what,
 Result<std::vector<std::string>> lightmap_row(std::string name, scene::Scene scene,
                                               std::optional<double> eps, Progress& progress) {
   LUXEL_TRY(const auto p, validate::prepare(std::move(scene), kLightmap, progress));
-  LUXEL_TRY(const validate::Judged judged, validate::judge(*p, kPaths, 1, progress));
+  LUXEL_TRY(const validate::Judged judged, validate::judge(*p, kJudgePaths, 1, progress));
   pipeline::BakeSettings settings;
   settings.own.of<pipeline::HierarchicalSettings>().solve.eps = eps;
   LUXEL_TRY(const validate::Timed solved, validate::solve(*p, "hierarchical", settings, progress));
@@ -74,7 +74,7 @@ Result<std::vector<std::string>> picture_row(std::string name, const scene::Scen
     solved.push_back(h::irradiance_at(solution, mesh, scene, hit.point()));
   }
   LUXEL_TRY(const validate::Judged judged,
-            validate::judge(scene, tracer, {position, normal, normal}, kPaths, 1, progress));
+            validate::judge(scene, tracer, {position, normal, normal}, kJudgePaths, 1, progress));
   return agreement_row(std::move(name), "picture", validate::agreement(solved, {}, judged),
                        seconds);
 }
@@ -95,7 +95,7 @@ Result<Table> path_table(Progress& progress) {
                   "light at the middles of pixels; twice {3} paths at each place, whose noise is "
                   "taken out. The "
                   "goal: below 2 %. s: the solver.",
-                  kLightmap, kPictureWidth, kPictureHeight, kPaths));
+                  kLightmap, kPictureWidth, kPictureHeight, kJudgePaths));
   return t;
 }
 
@@ -135,7 +135,7 @@ Result<Table> rays_table(Progress& progress) {
   LUXEL_TRY(const h::Solution s, h::solve(scene, tracer, params, progress));
   // Exact light at random points, and how many standard errors of many rays it is off.
   std::vector<h::Receiver> receivers;
-  for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kPoints, 17)) {
+  for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kJudgedPoints, 17)) {
     const h::FacePoint place = h::face_point_of(scene, s.faces, p);
     receivers.push_back(h::receiver_at(s, scene, tracer, place.face, place.position));
   }
@@ -163,7 +163,7 @@ Result<Table> rays_table(Progress& progress) {
   t.notes.push_back(
       fmt::format("Differences at {} random points of the office in standard errors of {} rays, "
                   "each of which brings the solution's radiosity where it ends.",
-                  kPoints, kRays));
+                  kJudgedPoints, kRays));
   return t;
 }
 

@@ -11,7 +11,7 @@
 namespace luxel::bench {
 namespace {
 
-constexpr int kRounds = 2, kResolution = 1024;
+constexpr int kRebakeRounds = 2, kRebakeResolution = 1024;
 
 struct Edit {
   const char* name;
@@ -92,7 +92,7 @@ Status measure(const std::filesystem::path& shared, const EditedScene& s, int re
   for (const Edit& edit : edits) {
     LUXEL_TRY_STATUS(write_scene(file, s, edit, settings.scene));
     TimedFiles scratch, again;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kRebakeRounds; ++round) {
       settings.output = folder.path / "scratch", settings.keep = false;
       LUXEL_TRY_STATUS(time_again(settings, scratch));
       settings.output = folder.path / "kept", settings.keep = true;
@@ -127,12 +127,12 @@ Result<Table> measure_rebake(const std::filesystem::path& shared, int threads) {
   Table table = new_table("rebake", {"scene", "edit", "bake that is kept, s", "from scratch, s",
                                      "with --keep, s", "ratio", "rays traced", "difference"});
   for (const EditedScene& s : kScenes)
-    LUXEL_TRY_STATUS(measure(shared, s, kResolution, threads, table));
+    LUXEL_TRY_STATUS(measure(shared, s, kRebakeResolution, threads, table));
   table.notes.push_back(fmt::format(
       "Sun, sky and a lamp; 256 samples, all bounces, files included. Seconds are the best of {} "
       "rounds in turn, but for the bake that is kept. The difference is that of the lightmaps' "
       "luminance, root mean square over the mean; with another layout it would be larger.",
-      kRounds));
+      kRebakeRounds));
   return table;
 }
 

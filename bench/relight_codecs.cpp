@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kPatches = 8192;
 /// Patches of bc1, whose K of all bounces takes minutes to make at kPatches.
 constexpr size_t kBc1Patches = 4096;
-constexpr int kRays = 8192, kRounds = 9;
+constexpr int kRelightCodecsRays = 8192, kRelightCodecsRounds = 9;
 constexpr std::array<uint32_t, 4> kRanks{48, 96, 192, 384};
 /// Products of F^c, plainly iterated: they err by less than any codec.
 constexpr int kProducts = 24;
@@ -34,7 +34,7 @@ struct Room {
 Result<Room> make_room(size_t patches, Progress& progress) {
   Room room;
   room.scene = scene::cornell_box();
-  room.params.patches.count = patches, room.params.factors.rays_per_patch = kRays;
+  room.params.patches.count = patches, room.params.factors.rays_per_patch = kRelightCodecsRays;
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(room.scene));
   LUXEL_TRY(room.prepared, matrix::prepare(room.scene, tracer,
                                            {room.params.patches, room.params.factors}, progress));
@@ -125,7 +125,7 @@ void time_all(const Room& room, std::vector<Made>& all, CodecRuns& out) {
       irradiance_of(all[k].codec, {sent, rho, patches.area_m2, -1}, e, scratch[k]);
     });
   tasks.push_back([&] { multiply(colour, sent, e, dense_scratch); });
-  const std::vector<double> ms = time_in_turn(tasks, kRounds);
+  const std::vector<double> ms = time_in_turn(tasks, kRelightCodecsRounds);
   for (size_t k = 0; k < all.size(); ++k) all[k].run.ms = ms[k];
   out.colour_ms = ms.back(), out.colour_bytes = matrix::bytes_of(colour);
 }
@@ -150,7 +150,7 @@ Result<CodecRun> run_bc1(size_t patches, Progress& progress) {
         scratch);
   }};
   const double pairs = double(patches) * double(patches) / (double(n) * double(n));
-  made.run.ms = pairs * time_in_turn(tasks, kRounds).front();
+  made.run.ms = pairs * time_in_turn(tasks, kRelightCodecsRounds).front();
   made.run.bytes = uint64_t(pairs * double(made.run.bytes));
   std::vector<Made> all;
   all.push_back(std::move(made));
@@ -166,7 +166,7 @@ Result<CodecRuns> run_codecs(Progress& progress) {
   LUXEL_TRY_STATUS(make_by_error(room, all, progress));
   LUXEL_TRY_STATUS(make_by_rank(room, all, progress));
   CodecRuns out;
-  out.patches = room.patches().size(), out.rays = kRays;
+  out.patches = room.patches().size(), out.rays = kRelightCodecsRays;
   count_products(room, all);
   progress.begin("timing", 0);
   time_all(room, all, out);

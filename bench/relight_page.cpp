@@ -12,17 +12,12 @@
 namespace luxel::bench {
 namespace {
 
-Table table(std::string name, std::vector<std::string> columns) {
-  return {std::move(name), thread_count(), std::move(columns), {}, {}, nlohmann::json::array()};
-}
-
-std::string percent(double share) { return fmt::format("{:.2f} %", 100 * share); }
 std::string megabytes(uint64_t bytes) { return fmt::format("{:.2f}", 1e-6 * double(bytes)); }
 
 Table codecs_table(const CodecRuns& runs) {
-  Table t = table("relight: codecs",
-                  {"codec", "setting", "MB", "ms per update", "error", "smaller than K",
-                   "faster than K", "products of F^c", "faster than those", "made in, s"});
+  Table t = new_table("relight: codecs",
+                      {"codec", "setting", "MB", "ms per update", "error", "smaller than K",
+                       "faster than K", "products of F^c", "faster than those", "made in, s"});
   for (const CodecRun& r : runs.runs)
     t.rows.push_back({r.codec, r.setting, megabytes(r.bytes), fmt::format("{:.2f}", r.ms),
                       percent(r.error), fmt::format("{:.1f}", runs.smaller(r)),
@@ -47,8 +42,8 @@ Table codecs_table(const CodecRuns& runs) {
 }
 
 Table sizes_table(const std::vector<SizeRun>& runs) {
-  Table t = table("relight: sizes", {"patches", "rays per patch", "MB", "bytes per patch", "sweeps",
-                                     "ms per update", "us per patch", "error"});
+  Table t = new_table("relight: sizes", {"patches", "rays per patch", "MB", "bytes per patch",
+                                         "sweeps", "ms per update", "us per patch", "error"});
   for (const Stage& stage : runs.front().stages) t.columns.push_back(stage.name + ", s");
   for (const SizeRun& r : runs) {
     const double n = double(r.patches);
@@ -74,7 +69,7 @@ double seconds_of(const std::vector<Stage>& stages) {
 }
 
 Table preparation_table(const std::vector<JudgedRelight>& judged) {
-  Table t = table("relight: preparation", {"scene", "patches"});
+  Table t = new_table("relight: preparation", {"scene", "patches"});
   for (const Stage& stage : judged.front().stages) t.columns.push_back(stage.name + ", s");
   t.columns.push_back("all, s");
   for (const JudgedRelight& j : judged) {
@@ -91,8 +86,8 @@ Table preparation_table(const std::vector<JudgedRelight>& judged) {
 
 Table judged_table(const JudgedRelight& j) {
   Table t =
-      table(fmt::format("relight against the path tracer: {}, {} patches", j.scene, j.patches),
-            {"point light at", "relative RMSE", "texel by texel", "bias", "judge's noise"});
+      new_table(fmt::format("relight against the path tracer: {}, {} patches", j.scene, j.patches),
+                {"point light at", "relative RMSE", "texel by texel", "bias", "judge's noise"});
   double relative = 0, per_texel = 0, squares = 0, texel_squares = 0;
   for (const JudgedLight& l : j.lights) {
     t.rows.push_back(

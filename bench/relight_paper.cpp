@@ -17,15 +17,8 @@ constexpr double kPaperErrors[3][3] = {
     {1.28e-6, 0.4622, 47.12}, {8.13e-7, 0.4684, 18.86}, {5.88e-7, 0.1524, 9.40}};
 constexpr std::array kOrders{"without reordering", "rows", "rows and columns"};
 
-Table table(std::string name, std::vector<std::string> columns) {
-  return {std::move(name), thread_count(), std::move(columns), {}, {}, nlohmann::json::array()};
-}
-
-std::string percent(double share) { return fmt::format("{:.2f} %", 100 * share); }
-std::string mib(uint64_t bytes) { return fmt::format("{:.1f}", double(bytes) / double(1u << 20)); }
-
 Table kept_table(const PaperRuns& runs) {
-  Table t = table(
+  Table t = new_table(
       "relight, figure 2: error against what is kept",
       {"kept", "total error, as in the paper", "of all", "total error, by default", "of all"});
   for (size_t k = 0; k < runs.kept.size(); ++k)
@@ -44,9 +37,9 @@ Table kept_table(const PaperRuns& runs) {
 }
 
 Table order_table(const PaperRuns& runs) {
-  Table t = table("relight, figure 7: error against the order",
-                  {"reordered", "average, paper", "largest, paper", "total, paper", "average",
-                   "largest", "total", "of all", "total, patches shuffled first", "of all"});
+  Table t = new_table("relight, figure 7: error against the order",
+                      {"reordered", "average, paper", "largest, paper", "total, paper", "average",
+                       "largest", "total", "of all", "total, patches shuffled first", "of all"});
   for (size_t k = 0; k < 3; ++k) {
     const EntryError &e = runs.of_order[k], &s = runs.of_order_shuffled[k];
     t.rows.push_back({kOrders[k], fmt::format("{:.2e}", kPaperErrors[k][0]),
@@ -64,8 +57,8 @@ Table order_table(const PaperRuns& runs) {
 }
 
 Table speed_table(const PaperRuns& runs) {
-  Table t = table("relight, figure 11: milliseconds per update",
-                  {"reflections", "F, float", "K, float", "K, bc1", "F / bc1"});
+  Table t = new_table("relight, figure 11: milliseconds per update",
+                      {"reflections", "F, float", "K, float", "K, bc1", "F / bc1"});
   const UpdateTimes& ms = runs.ms;
   for (size_t k = 0; k < ms.single.size(); ++k)
     t.rows.push_back({fmt::format("{}", k + 1), fmt::format("{:.2f}", ms.single[k]),
@@ -83,7 +76,7 @@ Table speed_table(const PaperRuns& runs) {
 }
 
 Table memory_table(const PaperRuns& runs) {
-  Table t = table("relight, figure 12: memory", {"matrix", "MiB", "F in floats / this"});
+  Table t = new_table("relight, figure 12: memory", {"matrix", "MiB", "F in floats / this"});
   const auto row = [&](const char* name, uint64_t bytes) {
     t.rows.push_back(
         {name, mib(bytes), fmt::format("{:.2f}", double(runs.single_bytes) / double(bytes))});
@@ -97,7 +90,8 @@ Table memory_table(const PaperRuns& runs) {
 }
 
 Table light_table(const PaperRuns& runs) {
-  Table t = table("relight: bc1's error of E", {"point light at", "as in the paper", "by default"});
+  Table t =
+      new_table("relight: bc1's error of E", {"point light at", "as in the paper", "by default"});
   for (size_t k = 0; k < runs.light.size(); ++k)
     t.rows.push_back(
         {fmt::format("({:.2f}, {:.2f}, {:.2f})", runs.light[k].x, runs.light[k].y, runs.light[k].z),
@@ -209,8 +203,8 @@ double between(const Histogram& h, double low, double high) {
 }
 
 Table distribution_table(const PaperRuns& runs) {
-  Table t =
-      table("relight, figures 1, 3, 4: how entries are distributed", {"entries", "range", "share"});
+  Table t = new_table("relight, figures 1, 3, 4: how entries are distributed",
+                      {"entries", "range", "share"});
   t.rows.push_back({"F", "below 0.005", percent(runs.below)});
   for (const double low : {-25.0, -12.0, -9.0, -6.0, -3.0}) {
     const double high = low == -25 ? -12 : low + 3;

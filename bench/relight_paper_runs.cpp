@@ -19,7 +19,7 @@ namespace luxel::bench {
 namespace {
 
 constexpr int kBounces = 5;
-constexpr int kRounds = 15;
+constexpr int kRelightPaperRunsRounds = 15;
 
 /// In the air of the Cornell box, near walls, near the blocks' tops, in corners.
 const std::vector<Vec3> kLights{
@@ -28,7 +28,7 @@ const std::vector<Vec3> kLights{
     {0.18f, 0.40f, 0.40f},  {0.36f, 0.45f, 0.35f}};
 
 /// The box without its lamp, its patches and K.
-struct Room {
+struct PaperRoom {
   scene::Scene scene;
   matrix::MatrixParams params;
   matrix::Prepared prepared;
@@ -41,7 +41,7 @@ struct Room {
 };
 
 /// What patches send first of each light.
-Status light_up(Room& room, const trace::RayTracer& tracer, Progress& progress) {
+Status light_up(PaperRoom& room, const trace::RayTracer& tracer, Progress& progress) {
   for (const Vec3 position : kLights) {
     scene::PunctualLight lamp;
     lamp.position = position;
@@ -56,8 +56,8 @@ Status light_up(Room& room, const trace::RayTracer& tracer, Progress& progress) 
   return {};
 }
 
-Result<Room> make_room(size_t patches, PaperRuns& runs, Progress& progress) {
-  Room room;
+Result<PaperRoom> make_room(size_t patches, PaperRuns& runs, Progress& progress) {
+  PaperRoom room;
   room.scene = scene::cornell_box();
   for (scene::Material& material : room.scene.materials) material.emission = {};
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(room.scene));
@@ -185,7 +185,7 @@ Status measure_errors(const matrix::ColourMatrix& k, PaperRuns& runs, Progress& 
 }
 
 /// Figures 11 and 12.
-void measure_speed(const Room& room, const matrix::Bc1& bc1, PaperRuns& runs) {
+void measure_speed(const PaperRoom& room, const matrix::Bc1& bc1, PaperRuns& runs) {
   const matrix::Dense single = make_dense(room.factors(), matrix::Precision::single);
   const matrix::Dense half = make_dense(room.factors(), matrix::Precision::half);
   const matrix::ColourMatrix colour = make_colour_factors(room.factors(), room.reflectance());
@@ -210,7 +210,7 @@ void measure_speed(const Room& room, const matrix::Bc1& bc1, PaperRuns& runs) {
   });
   tasks.push_back([&] { multiply(room.k, room.sent[0], e, scratch); });
   tasks.push_back([&] { multiply(bc1, room.sent[0], e, bc1_scratch); });
-  const std::vector<double> ms = time_in_turn(tasks, kRounds);
+  const std::vector<double> ms = time_in_turn(tasks, kRelightPaperRunsRounds);
   std::copy_n(ms.begin(), kBounces, runs.ms.single.begin());
   runs.ms.half = ms[5], runs.ms.colour = ms[6], runs.ms.reflections = ms[7], runs.ms.bc1 = ms[8];
   runs.single_bytes = bytes_of(single), runs.half_bytes = bytes_of(half);
@@ -218,7 +218,7 @@ void measure_speed(const Room& room, const matrix::Bc1& bc1, PaperRuns& runs) {
 }
 
 /// Relative root mean square error of E per light, weighted by area, against K in floats.
-std::vector<double> relit_errors(const Room& room, const matrix::Bc1& bc1) {
+std::vector<double> relit_errors(const PaperRoom& room, const matrix::Bc1& bc1) {
   matrix::DenseScratch scratch = matrix::make_dense_scratch(bc1.n);
   matrix::Bc1Scratch bc1_scratch = matrix::make_bc1_scratch(bc1);
   std::vector<Rgb> want(bc1.n), got(bc1.n);
@@ -241,7 +241,7 @@ std::vector<double> relit_errors(const Room& room, const matrix::Bc1& bc1) {
 
 Result<PaperRuns> run_paper(size_t patches, Progress& progress) {
   PaperRuns runs;
-  LUXEL_TRY(const Room room, make_room(patches, runs, progress));
+  LUXEL_TRY(const PaperRoom room, make_room(patches, runs, progress));
   distribute_factors(room.factors(), runs);
   distribute_rest(room.k, progress, runs);
   LUXEL_TRY(const matrix::Bc1 paper, matrix::make_bc1(room.k, matrix::paper_params(), progress));

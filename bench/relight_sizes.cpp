@@ -14,7 +14,7 @@ const float kSizesBlockError = 0.001f;
 namespace {
 
 /// 65,536 patches of so many rays take 4 GB while they are prepared.
-constexpr int kRays = 2048, kRounds = 9;
+constexpr int kRelightSizesRays = 2048, kRelightSizesRounds = 9;
 /// What unfinished bounces may err by: half of the goal.
 constexpr double kErrorOfSweeps = 0.005;
 /// A converged answer by the factors of 65,536 patches takes seconds.
@@ -25,21 +25,23 @@ Result<SizeRun> run_size(const scene::Scene& scene, const trace::RayTracer& trac
   // Preparation, timed: factors, compression, coarse scene.
   const size_t first_stage = progress.stages().size();
   LUXEL_TRY(const matrix::Prepared prepared,
-            matrix::prepare(scene, tracer,
-                            {.patches = {.count = count}, .factors = {.rays_per_patch = kRays}},
-                            progress));
+            matrix::prepare(
+                scene, tracer,
+                {.patches = {.count = count}, .factors = {.rays_per_patch = kRelightSizesRays}},
+                progress));
   const matrix::Patches& patches = prepared.patched.patches;
   const std::vector<Rgb>& rho = patches.elements.reflectance;
-  LUXEL_TRY(
-      matrix::Hierarchical hierarchy,
-      matrix::compress(prepared.factors, prepared.patched.tree, patches.centroid, patches.area_m2,
-                       {.block_error = kSizesBlockError, .rays_per_patch = kRays}, progress));
+  LUXEL_TRY(matrix::Hierarchical hierarchy,
+            matrix::compress(
+                prepared.factors, prepared.patched.tree, patches.centroid, patches.area_m2,
+                {.block_error = kSizesBlockError, .rays_per_patch = kRelightSizesRays}, progress));
   progress.begin("coarse scene", 0);
   matrix::CoarseScene coarse = make_coarse_scene(prepared.factors, prepared.patched.tree,
                                                  patches.area_m2, rho, matrix::kCoarseClusters);
   progress.finish();
-  SizeRun run{
-      .patches = patches.size(), .rays = kRays, .stages = stages_from(progress, first_stage)};
+  SizeRun run{.patches = patches.size(),
+              .rays = kRelightSizesRays,
+              .stages = stages_from(progress, first_stage)};
   // Error and time of the codec with as many sweeps as it needs.
   LUXEL_TRY(const matrix::Trials trials,
             make_trials(scene, tracer, prepared, coarse, {.count = kTrials}, progress));
@@ -53,7 +55,7 @@ Result<SizeRun> run_size(const scene::Scene& scene, const trace::RayTracer& trac
       time_in_turn({[&] {
                      irradiance_of(codec, {trials.sent[0], rho, patches.area_m2, -1}, e, scratch);
                    }},
-                   kRounds)[0];
+                   kRelightSizesRounds)[0];
   return run;
 }
 

@@ -12,18 +12,18 @@
 namespace luxel::bench {
 namespace {
 
-constexpr std::array kScenes{"cornell_box/cornell_box.glb",
-                             "tile_game_room/tile_game_room6.glb",
-                             "living_room/living_room.glb",
-                             "suzanne_room/room.glb",
-                             "zdm2/zdm2.glb",
-                             "pandora/pandora.obj",
-                             "kaykit_city/kaykit_city.glb",
-                             "japanese_bridge_garden/japanese_bridge_garden.glb",
-                             "japanese_bridge_garden/japanese_bridge_garden_meshopt.glb",
-                             "spot_teapot_bunny/spot.obj",
-                             "spot_teapot_bunny/teapot.obj",
-                             "spot_teapot_bunny/stanford-bunny.obj"};
+constexpr std::array kBenchScenes{"cornell_box/cornell_box.glb",
+                                  "tile_game_room/tile_game_room6.glb",
+                                  "living_room/living_room.glb",
+                                  "suzanne_room/room.glb",
+                                  "zdm2/zdm2.glb",
+                                  "pandora/pandora.obj",
+                                  "kaykit_city/kaykit_city.glb",
+                                  "japanese_bridge_garden/japanese_bridge_garden.glb",
+                                  "japanese_bridge_garden/japanese_bridge_garden_meshopt.glb",
+                                  "spot_teapot_bunny/spot.obj",
+                                  "spot_teapot_bunny/teapot.obj",
+                                  "spot_teapot_bunny/stanford-bunny.obj"};
 
 /// One scene under a morning's sun and sky, 1024 x 1024, as `luxel bake` would.
 Status bake_outdoors(const std::filesystem::path& file, Table& table) {
@@ -91,7 +91,7 @@ Result<Table> measure_scenes(const std::filesystem::path& shared, int threads) {
                                      "Mrays/s", "estimated error", "in solids", "seams, 95 %"});
   LUXEL_TRY_STATUS(measure_real_light(table));
   LUXEL_TRY_STATUS(measure_lamps(table));
-  for (const char* file : kScenes) {
+  for (const char* file : kBenchScenes) {
     const auto path = shared / "scenes" / file;
     if (std::filesystem::exists(path))
       LUXEL_TRY_STATUS(bake_outdoors(path, table));

@@ -11,7 +11,7 @@
 namespace luxel::bench {
 namespace {
 
-constexpr int kPaths = 4096, kSamples = 1024;
+constexpr int kScenesMapPaths = 4096, kScenesMapSamples = 1024;
 constexpr size_t kJudged = 2500;
 
 /// Texels by chance, in order: paths are dear, and the more of them a texel gets the finer a
@@ -42,10 +42,11 @@ Status measure_at(const scene::Scene& scene, int resolution, Table& table) {
   const auto normal = chosen<Vec3>(p->elements.normal, texels);
   const auto flat = chosen<Vec3>(p->elements.geometric_normal, texels);
   LUXEL_TRY(const validate::Judged judged,
-            validate::judge(p->scene, *p->tracer, {position, normal, flat}, kPaths, 1, progress));
+            validate::judge(p->scene, *p->tracer, {position, normal, flat}, kScenesMapPaths, 1,
+                            progress));
   // gather at all of them.
   pipeline::BakeSettings settings;
-  settings.samples = kSamples, settings.direct_samples = kSamples / 4;
+  settings.samples = kScenesMapSamples, settings.direct_samples = kScenesMapSamples / 4;
   LUXEL_TRY(const validate::Timed solved, validate::solve(*p, "gather", settings, progress));
   const validate::Agreement a =
       validate::agreement(chosen<Rgb>(solved.light.irradiance, texels),
@@ -54,8 +55,8 @@ Status measure_at(const scene::Scene& scene, int resolution, Table& table) {
       "kloppenheim_05_1k on living_room, {0} x {0}, {1} samples: relative RMSE {2} against twice "
       "{3} paths at {4} of {5} texels (resolution {6:.2f} %), bias {7:+.3f} % of the mean, {8:.1f} "
       "s; the paths took {9:.0f} s.",
-      resolution, kSamples, validate::relative_rmse_text(a), kPaths, texels.size(),
-      p->elements.size(), 100 * a.resolution, 100 * a.bias_over_mean, solved.seconds,
+      resolution, kScenesMapSamples, validate::relative_rmse_text(a), kScenesMapPaths,
+      texels.size(), p->elements.size(), 100 * a.resolution, 100 * a.bias_over_mean, solved.seconds,
       judged.seconds));
   table.json.push_back({{"scene", "living_room under kloppenheim_05_1k"},
                         {"resolution_texels", resolution},

@@ -12,10 +12,10 @@
 namespace luxel::bench {
 namespace {
 
-constexpr int kRounds = 3;
-constexpr std::array kPoints{1, 4, 16, 64};
+constexpr int kSupersampleRounds = 3;
+constexpr std::array kSupersamplePoints{1, 4, 16, 64};
 /// The judge's points and paths per texel.
-constexpr int kJudgePoints = 256, kJudgePaths = 1024;
+constexpr int kSupersampleJudged = 256, kSupersamplePaths = 1024;
 
 /// The lamp of the Cornell box as a point: its shadows have no penumbra.
 scene::Scene box_with_point_lamp() {
@@ -32,12 +32,12 @@ scene::Scene box_with_point_lamp() {
 
 Result<std::vector<Rgb>> mean_over_texels(const validate::Prepared& p, Progress& progress) {
   LUXEL_TRY(const light::Footprints footprints,
-            light::footprints(p.input(), kJudgePoints, 1234, progress));
+            light::footprints(p.input(), kSupersampleJudged, 1234, progress));
   reference::Receivers receivers = reference::receivers(footprints.points);
   receivers.first = footprints.first;
   LUXEL_TRY(const reference::TexelPaths judged,
-            reference::irradiance_by_paths(p.scene, receivers, *p.tracer, {kJudgePaths, 0, 99},
-                                           progress));
+            reference::irradiance_by_paths(p.scene, receivers, *p.tracer,
+                                           {kSupersamplePaths, 0, 99}, progress));
   return judged.irradiance;
 }
 
@@ -53,17 +53,18 @@ double rmse_over_mean(std::span<const Rgb> light, std::span<const Rgb> reference
   return std::sqrt(sum / double(texels.size())) / mean;
 }
 
-struct Run {
+struct SupersampleRun {
   gather::Gather light;
   double seconds = INFINITY;  ///< the best of all rounds
 };
 
-Result<std::array<Run, kPoints.size()>> run_all(const validate::Prepared& p, Progress& progress) {
-  std::array<Run, kPoints.size()> runs;
-  for (int round = 0; round < kRounds; ++round)
-    for (size_t k = 0; k < kPoints.size(); ++k) {
+Result<std::array<SupersampleRun, kSupersamplePoints.size()>> run_all(const validate::Prepared& p,
+                                                                      Progress& progress) {
+  std::array<SupersampleRun, kSupersamplePoints.size()> runs;
+  for (int round = 0; round < kSupersampleRounds; ++round)
+    for (size_t k = 0; k < kSupersamplePoints.size(); ++k) {
       gather::GatherParams params;
-      params.supersample = kPoints[k];
+      params.supersample = kSupersamplePoints[k];
       const auto start = Clock::now();
       LUXEL_TRY(runs[k].light,
                 gather::gather({p.scene, p.atlas, p.map, p.elements, p.lights, *p.tracer}, nullptr,
@@ -89,17 +90,17 @@ Status measure(const std::string& name, scene::Scene scene, int resolution, bool
     if (!runs[0].light.enclosed[i] && !(runs[2].light.direct[i] == runs[0].light.direct[i]))
       texels.push_back(i);
   // A row per number of points.
-  for (size_t k = 0; k < kPoints.size(); ++k) {
-    const Run& run = runs[k];
+  for (size_t k = 0; k < kSupersamplePoints.size(); ++k) {
+    const SupersampleRun& run = runs[k];
     const double error = judged ? rmse_over_mean(run.light.direct, reference, texels) : 0;
     table.rows.push_back(
-        {name, fmt::format("{0} x {0}", resolution), fmt::format("{}", kPoints[k]),
+        {name, fmt::format("{0} x {0}", resolution), fmt::format("{}", kSupersamplePoints[k]),
          fmt::format("{:.1f} %", 100 * double(run.light.supersampled) / double(p->elements.size())),
          fmt::format("{:.2f}", run.seconds), fmt::format("{:.2f}", run.seconds / runs[0].seconds),
          judged ? fmt::format("{:.2f} %", 100 * error) : "-"});
     table.json.push_back({{"scene", name},
                           {"resolution", resolution},
-                          {"points", kPoints[k]},
+                          {"points", kSupersamplePoints[k]},
                           {"averaged_texels", run.light.supersampled},
                           {"texels", p->elements.size()},
                           {"seconds", run.seconds},
@@ -123,7 +124,7 @@ Result<Table> measure_supersample(const std::filesystem::path&, int threads) {
       "error is that of direct light at the texels which 16 points change, against {} paths from "
       "{} "
       "points of each.",
-      kRounds, kJudgePaths, kJudgePoints));
+      kSupersampleRounds, kSupersamplePaths, kSupersampleJudged));
   return table;
 }
 

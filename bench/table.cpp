@@ -11,6 +11,10 @@ Table new_table(std::string name, std::vector<std::string> columns) {
   return {std::move(name), thread_count(), std::move(columns), {}, {}, nlohmann::json::array()};
 }
 
+std::string percent(double share) { return fmt::format("{:.2f} %", 100 * share); }
+
+std::string mib(uint64_t bytes) { return fmt::format("{:.1f}", double(bytes) / double(1u << 20)); }
+
 std::string machine_name() {
   std::string model = "unknown processor";
   if (FILE* file = std::fopen("/proc/cpuinfo", "r")) {

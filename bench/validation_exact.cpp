@@ -8,7 +8,7 @@
 namespace luxel::bench {
 namespace {
 
-std::string percent(double v) { return fmt::format("{:+.3f} %", 100 * v); }
+std::string signed_percent(double v) { return fmt::format("{:+.3f} %", 100 * v); }
 
 constexpr validate::MeasureEffort kEffort;
 
@@ -24,7 +24,7 @@ Status add_case(const validate::ExactCase& c, std::string_view solver,
     const double error = m.mean / m.exact - 1;
     rows.push_back(
         {c.section, c.name, part.name, std::string(solver), fmt::format("{:.6g}", m.exact),
-         fmt::format("{:.6g}", m.mean), percent(error),
+         fmt::format("{:.6g}", m.mean), signed_percent(error),
          m.standard_error > 0 ? fmt::format("{:.3f} %", 100 * m.standard_error / m.exact) : "",
          part.pointwise ? fmt::format("{:.2f} %", 100 * m.texel_rms) : "",
          c.slack > 0 ? fmt::format("{:.1e}", c.slack) : ""});

@@ -73,7 +73,7 @@ double error_of(double value, const Row& row) {
   return row.exact > 0 ? std::abs(value - row.exact) / row.exact : std::abs(value);
 }
 
-std::string error_text(double error) {
+std::string scientific_error(double error) {
   return error == 0 ? "0" : error < 1e-15 ? "< 1e-15" : fmt::format("{:.1e}", error);
 }
 
@@ -124,27 +124,27 @@ double pairs_per_second(const std::vector<Row>& rows) {
   return sum > 0 ? pairs / seconds_since(start) : 0;
 }
 
-constexpr viewfactor::SampledParams kHemicube{.samples = 64, .hemicube = 128};
-constexpr viewfactor::SampledParams kRays{.samples = 1u << 18};
+constexpr viewfactor::SampledParams kHemicubeCheck{.samples = 64, .hemicube = 128};
+constexpr viewfactor::SampledParams kRaysCheck{.samples = 1u << 18};
 
-struct Table {
+struct RowErrors {
   std::vector<std::vector<std::string>> rows;
   double open = 0, blocked = 0;  ///< largest errors of the analytic method
   nlohmann::json json = nlohmann::json::array();
 };
 
-Result<Table> measure_rows(const std::vector<Row>& rows, const Progress& progress) {
-  Table table;
+Result<RowErrors> measure_rows(const std::vector<Row>& rows, const Progress& progress) {
+  RowErrors table;
   for (const Row& row : rows) {
     LUXEL_TRY_STATUS(stopped(progress));
     const double a = error_of(analytic(row), row);
-    LUXEL_TRY(const double hemicube, sampled(row, kHemicube));
-    LUXEL_TRY(const double rays, sampled(row, kRays));
+    LUXEL_TRY(const double hemicube, sampled(row, kHemicubeCheck));
+    LUXEL_TRY(const double rays, sampled(row, kRaysCheck));
     double& largest = row.blockers.empty() ? table.open : table.blocked;
     largest = std::max(largest, a);
     const double h = error_of(hemicube, row), r = error_of(rays, row);
-    table.rows.push_back({row.name, row.note, fmt::format("{:.12g}", row.exact), error_text(a),
-                          error_text(h), error_text(r)});
+    table.rows.push_back({row.name, row.note, fmt::format("{:.12g}", row.exact),
+                          scientific_error(a), scientific_error(h), scientific_error(r)});
     table.json.push_back({{"case", row.name},
                           {"exact", row.exact},
                           {"analytic_error", a},
@@ -165,7 +165,7 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
   LUXEL_TRY(const std::vector<Row> rows,
             read_rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file));
   progress.begin("view factors", 0);
-  LUXEL_TRY(const Table table, measure_rows(rows, progress));
+  LUXEL_TRY(const RowErrors table, measure_rows(rows, progress));
   // How errors fall with rays.
   std::vector<viewfactor::SampledParams> hemicubes, rays;
   for (const int n : {8, 16, 32, 64, 128, 256, 512})
@@ -202,8 +202,9 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
       "outlines are wrong, so n^-1.5, the power -0.75 of the rays, is\nexpected. Over the points "
       "of a "
       "surface hemicubes fall like rays.\n",
-      rows.size(), kHemicube.hemicube, kHemicube.samples, kRays.samples, table.open, table.blocked,
-      speed, markdown_table({"case", "", "exact F", "analytic", "hemicube", "rays"}, table.rows),
+      rows.size(), kHemicubeCheck.hemicube, kHemicubeCheck.samples, kRaysCheck.samples, table.open,
+      table.blocked, speed,
+      markdown_table({"case", "", "exact F", "analytic", "hemicube", "rays"}, table.rows),
       show(section.files.back(), "Error of sampled view factors against the number of rays"),
       std::count_if(rows.begin(), rows.end(),
                     [](const Row& r) { return r.exact >= 0.02 && !r.is_point; }),

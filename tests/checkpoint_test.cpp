@@ -20,13 +20,13 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-const std::string kBox = scene_file("cornell-box.glb");
+const std::string kCornellBox = scene_file("cornell-box.glb");
 /// Parts are kept nearly from the start on.
 const std::string kKeep = " --checkpoint 0.01";
 
 /// A bake of a second or two, unless other options say otherwise.
 std::string bake(const fs::path& folder, const std::string& more = "",
-                 const std::string& scene = kBox) {
+                 const std::string& scene = kCornellBox) {
   std::string command = "bake " + scene + " -o " + folder.string();
   for (const std::string option : {" --resolution 128", " --samples 768", " --direct-samples 256"})
     if (more.find(option.substr(0, option.rfind(' ') + 1)) == std::string::npos) command += option;
@@ -192,7 +192,7 @@ TEST_F(Checkpoint, OfOtherSettingsIsRefusedByName) {
   leave_checkpoint(folder_);
   const std::string is = file_.string() + " is of another bake: ";
   const auto refused = [&](const std::string& more, const std::string& difference,
-                           const std::string& scene = kBox) {
+                           const std::string& scene = kCornellBox) {
     expect_refused(folder_, luxel(bake(folder_, " --resume" + more, scene)), is + difference);
   };
   refused(" --samples 513", "samples 768 there, 513 here; leave --resume out");
@@ -273,8 +273,8 @@ TEST_F(Checkpoint, TwoBakesInOneFolderAreRefused) {
 TEST_F(Checkpoint, IsForSolversThatKeepParts) {
   for (const std::string solver : {"hemicube", "matrix", "hierarchical", "reference"})
     for (const std::string option : {"--resume", "--checkpoint 10"}) {
-      const CommandResult refused =
-          luxel("bake " + kBox + " -o " + folder_.string() + " --solver " + solver + " " + option);
+      const CommandResult refused = luxel("bake " + kCornellBox + " -o " + folder_.string() +
+                                          " --solver " + solver + " " + option);
       EXPECT_EQ(refused.code, 1);
       EXPECT_THAT(refused.err, HasSubstr("--solver " + solver + " does not use --"));
       EXPECT_THAT(refused.err, HasSubstr("(it is for gather)"));

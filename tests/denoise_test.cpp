@@ -12,8 +12,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-image::Image bake(const std::filesystem::path& folder, const std::string& scene,
-                  const std::string& options) {
+image::Image bake_for_denoise(const std::filesystem::path& folder, const std::string& scene,
+                              const std::string& options) {
   const CommandResult r =
       luxel("bake " + scene_file(scene) + " -o " + folder.string() + " --quiet " + options);
   EXPECT_EQ(r.code, 0) << r.err;
@@ -25,10 +25,10 @@ nlohmann::json json_of(const std::filesystem::path& folder) {
 }
 
 /// Root mean square of the relative difference over covered texels, and the difference of means.
-struct Difference {
+struct DenoiseDifference {
   double relative = 0, mean = 0;
 };
-Difference difference(const image::Image& a, const image::Image& b) {
+DenoiseDifference difference_denoise(const image::Image& a, const image::Image& b) {
   double mean = 0, count = 0;
   const auto each = [&](const auto& visit) {
     for (int y = 0; y < b.height; ++y)
@@ -38,7 +38,7 @@ Difference difference(const image::Image& a, const image::Image& b) {
   };
   each([&](double, double v) { mean += v, count += 1; });
   mean /= count;
-  Difference d;
+  DenoiseDifference d;
   each([&](double u, double v) {
     const double r = (u - v) / (v + 0.01 * mean);
     d.relative += r * r / count, d.mean += (u - v) / (count * mean);
@@ -52,30 +52,31 @@ Difference difference(const image::Image& a, const image::Image& b) {
 TEST(SlowDenoise, HalvesTheErrorAndSparesConvergedLight) {
   const ScratchFolder s;
   const std::string box = "cornell-box.glb", base = "--resolution 128 --no-stitch ";
-  const image::Image exact =
-      bake(s.path / "exact", box, base + "--samples 4096 --direct-samples 1024 --seed 7");
+  const image::Image exact = bake_for_denoise(
+      s.path / "exact", box, base + "--samples 4096 --direct-samples 1024 --seed 7");
   // The noise of few samples is skewed, and the filter leans towards its median:
   // docs/method/denoise.md states by how much the mean may fall, and these are those numbers.
   for (const auto& [samples, change] :
        {std::pair("--samples 16 --direct-samples 16 ", 0.004), std::pair("--samples 64 ", 0.002)}) {
-    const Difference raw = difference(bake(s.path / "raw", box, base + samples), exact);
-    const Difference quiet =
-        difference(bake(s.path / "quiet", box, base + samples + "--denoise"), exact);
+    const DenoiseDifference raw =
+        difference_denoise(bake_for_denoise(s.path / "raw", box, base + samples), exact);
+    const DenoiseDifference quiet = difference_denoise(
+        bake_for_denoise(s.path / "quiet", box, base + samples + "--denoise"), exact);
     EXPECT_LT(quiet.relative, raw.relative / 2) << samples;
     EXPECT_LT(std::abs(quiet.mean - raw.mean), change) << samples;
   }
   // Denoising changes light without noise by half a percent at most.
-  const image::Image still =
-      bake(s.path / "still", box, base + "--samples 4096 --direct-samples 1024 --seed 7 --denoise");
-  EXPECT_LT(difference(still, exact).relative, 0.005);
-  EXPECT_LT(std::abs(difference(still, exact).mean), 0.0005);
+  const image::Image still = bake_for_denoise(
+      s.path / "still", box, base + "--samples 4096 --direct-samples 1024 --seed 7 --denoise");
+  EXPECT_LT(difference_denoise(still, exact).relative, 0.005);
+  EXPECT_LT(std::abs(difference_denoise(still, exact).mean), 0.0005);
 }
 
 TEST(Denoise, GivesTheSameBitsWithAnyNumberOfThreadsAndSaysSo) {
   const ScratchFolder s;
   const std::string options = "--resolution 64 --samples 16 --denoise --threads ";
-  bake(s.path / "1", "cornell-box.glb", options + "1");
-  bake(s.path / "3", "cornell-box.glb", options + "3");
+  bake_for_denoise(s.path / "1", "cornell-box.glb", options + "1");
+  bake_for_denoise(s.path / "3", "cornell-box.glb", options + "3");
   EXPECT_EQ(slurp(s.path / "1" / "lightmap.exr"), slurp(s.path / "3" / "lightmap.exr"));
   const nlohmann::json json = json_of(s.path / "1");
   EXPECT_EQ(json["settings"]["denoise"], true);
@@ -85,8 +86,8 @@ TEST(Denoise, GivesTheSameBitsWithAnyNumberOfThreadsAndSaysSo) {
 TEST(Denoise, WorksWithEverySolverWhoseNoiseIsKnownAndNoOther) {
   const ScratchFolder s;
   for (const char* solver : {"reference --samples 16", "matrix --patches 300 --rays 128"})
-    bake(s.path / "b", "cornell-box.glb",
-         std::string("--resolution 32 --denoise --solver ") + solver);
+    bake_for_denoise(s.path / "b", "cornell-box.glb",
+                     std::string("--resolution 32 --denoise --solver ") + solver);
   for (const char* solver : {"hemicube", "hierarchical"}) {
     const CommandResult r = luxel("bake " + scene_file("cornell-box.glb") + " -o " +
                                   (s.path / "c").string() + " --denoise --solver " + solver);
@@ -99,14 +100,14 @@ TEST(Denoise, WorksWithEverySolverWhoseNoiseIsKnownAndNoOther) {
 // percent of the light at the place itself is below what an eye sees at an edge (about 1 %).
 TEST(Seams, OfTilesThatTouchAreClosed) {
   const ScratchFolder s;
-  bake(s.path / "b", "tiled-kit.glb", "--resolution 256 --samples 64");
+  bake_for_denoise(s.path / "b", "tiled-kit.glb", "--resolution 256 --samples 64");
   const nlohmann::json json = json_of(s.path / "b");
   EXPECT_EQ(json["counts"]["seams"], 93);
   EXPECT_GT(json["seam_residual_max"][0], 0.5);
   EXPECT_GT(json["seam_residual_p95"][0], 0.02);
   EXPECT_LT(json["seam_residual_max"][1], 0.005);
   EXPECT_LT(json["seam_residual_p95"][1], 0.001);
-  bake(s.path / "c", "tiled-kit.glb", "--resolution 256 --samples 64 --no-stitch");
+  bake_for_denoise(s.path / "c", "tiled-kit.glb", "--resolution 256 --samples 64 --no-stitch");
   EXPECT_EQ(json_of(s.path / "c")["seam_residual_max"][1], json["seam_residual_max"][0]);
 }
 

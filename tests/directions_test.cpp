@@ -135,7 +135,7 @@ TEST(Probes, WrongSpacingsAreRefused) {
 }
 
 /// Mean absolute difference of two pictures of one size.
-double difference(const image::Image& a, const image::Image& b) {
+double difference_directions(const image::Image& a, const image::Image& b) {
   EXPECT_EQ(a.width, b.width);
   double sum = 0;
   for (int y = 0; y < a.height; ++y)
@@ -165,11 +165,11 @@ TEST(Directional, NormalMapsLookLikeTheRelief) {
     return exr_at(drawn);
   };
   const image::Image relief = picture("bumps-in-relief.glb", "relief", "--samples 128");
-  const double flat = difference(picture("bumps.glb", "flat", "--samples 128"), relief);
+  const double flat = difference_directions(picture("bumps.glb", "flat", "--samples 128"), relief);
   const double sh1 =
-      difference(picture("bumps.glb", "sh1", "--samples 128 --directional sh1"), relief);
-  const double dominant =
-      difference(picture("bumps.glb", "dominant", "--samples 128 --directional dominant"), relief);
+      difference_directions(picture("bumps.glb", "sh1", "--samples 128 --directional sh1"), relief);
+  const double dominant = difference_directions(
+      picture("bumps.glb", "dominant", "--samples 128 --directional dominant"), relief);
   EXPECT_LT(sh1, 0.5 * flat);
   EXPECT_LT(dominant, 0.75 * flat);
   EXPECT_LT(sh1, dominant);

@@ -13,15 +13,16 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kSmall = " --solver hemicube --resolution 64 --hemicube 16 --max-elements 1500 ";
+const std::string kSmallHemicube =
+    " --solver hemicube --resolution 64 --hemicube 16 --max-elements 1500 ";
 
-CommandResult bake(const std::string& scene, const std::filesystem::path& output,
-                   const std::string& options) {
-  return luxel("bake " + scene + " -o " + output.string() + kSmall + options);
+CommandResult bake_for_hemicube(const std::string& scene, const std::filesystem::path& output,
+                                const std::string& options) {
+  return luxel("bake " + scene + " -o " + output.string() + kSmallHemicube + options);
 }
 
 /// Mean of the green channel over covered texels.
-double mean_of(const image::Image& map) {
+double mean_irradiance(const image::Image& map) {
   double sum = 0, n = 0;
   for (int y = 0; y < map.height; ++y)
     for (int x = 0; x < map.width; ++x)
@@ -36,7 +37,7 @@ TEST(SlowHemicubeBake, LeavesTheSameFilesForEveryKindOfElement) {
   for (const char* options :
        {"--elements vertex", "--elements triangle", "--elements triangle --smooth", "--max-error 0",
         "--element-size 0.1", "--vertex-colors"}) {
-    const CommandResult r = bake(box, s.path / "b", std::string(options) + " --json");
+    const CommandResult r = bake_for_hemicube(box, s.path / "b", std::string(options) + " --json");
     ASSERT_EQ(r.code, 0) << options << r.err;
     EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
     const auto json = nlohmann::json::parse(r.out);
@@ -46,7 +47,7 @@ TEST(SlowHemicubeBake, LeavesTheSameFilesForEveryKindOfElement) {
     EXPECT_GE(json["counts"]["sweeps"], 4);  // of the last exchange, which starts near its end
     // All solve the same equation: 1,500 elements miss gather's mean by -0.8 % (vertex) to +1.3 %
     // (constant triangles, that cross the shadow's border).
-    const double now = mean_of(lightmap_of(s.path / "b"));
+    const double now = mean_irradiance(lightmap_of(s.path / "b"));
     if (mean == 0) mean = now;
     EXPECT_NEAR(now, mean, 0.025 * mean) << options;
   }
@@ -56,15 +57,15 @@ TEST(SlowHemicubeBake, LeavesTheSameFilesForEveryKindOfElement) {
 TEST(SlowHemicubeBake, GivesTheSameBitsWithAnyNumberOfThreads) {
   const ScratchFolder s;
   const std::string scene = scene_file("spheres-and-cube.glb");
-  ASSERT_EQ(bake(scene, s.path / "1", "--vertex-colors --threads 1").code, 0);
-  ASSERT_EQ(bake(scene, s.path / "2", "--vertex-colors --threads 2").code, 0);
+  ASSERT_EQ(bake_for_hemicube(scene, s.path / "1", "--vertex-colors --threads 1").code, 0);
+  ASSERT_EQ(bake_for_hemicube(scene, s.path / "2", "--vertex-colors --threads 2").code, 0);
   EXPECT_EQ(slurp(s.path / "1" / "lightmap.exr"), slurp(s.path / "2" / "lightmap.exr"));
   EXPECT_EQ(slurp(s.path / "1" / "baked.glb"), slurp(s.path / "2" / "baked.glb"));
 }
 
 TEST(HemicubeBake, StagesAreShownAndTimed) {
   const ScratchFolder s;
-  const CommandResult r = bake(scene_file("cornell-box.glb"), s.path / "b", "");
+  const CommandResult r = bake_for_hemicube(scene_file("cornell-box.glb"), s.path / "b", "");
   ASSERT_EQ(r.code, 0) << r.err;
   for (const char* stage : {"mesh", "direct light", "hemicube", "hemicubes", "bounces"})
     EXPECT_THAT(r.err, ::testing::ContainsRegex(std::string(stage) + " +[0-9.]+ s")) << stage;
@@ -78,8 +79,8 @@ TEST(HemicubeBake, StagesAreShownAndTimed) {
 TEST(HemicubeBake, ALonePlateUnderAWhiteSkyReceivesPi) {
   const ScratchFolder s;
   const auto file = s.write("plate.obj", "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n");
-  ASSERT_EQ(bake(file.string(), s.path / "b", "--background 1,1,1").code, 0);
-  EXPECT_NEAR(mean_of(lightmap_of(s.path / "b")), M_PI, 1e-4);
+  ASSERT_EQ(bake_for_hemicube(file.string(), s.path / "b", "--background 1,1,1").code, 0);
+  EXPECT_NEAR(mean_irradiance(lightmap_of(s.path / "b")), M_PI, 1e-4);
 }
 
 // COLOR_0 * intensity is E at the vertices: the constant of a furnace, and in the Cornell box what
@@ -87,7 +88,7 @@ TEST(HemicubeBake, ALonePlateUnderAWhiteSkyReceivesPi) {
 TEST(SlowVertexColors, AreTheLight) {
   const ScratchFolder s;
   const auto vertex_light = [&](const std::string& name) {
-    EXPECT_EQ(bake(scene_file(name), s.path / name, "--vertex-colors").code, 0);
+    EXPECT_EQ(bake_for_hemicube(scene_file(name), s.path / name, "--vertex-colors").code, 0);
     const auto path = s.path / name / "baked.glb";
     const auto imported = import::import_scene(path);
     EXPECT_TRUE(imported) << imported.error().message;
@@ -115,7 +116,7 @@ TEST(SlowVertexColors, AreTheLight) {
   EXPECT_NEAR(furnace[1], 2 * M_PI, 0.01);
   EXPECT_NEAR(furnace[2], 2 * M_PI, 0.01);
   const auto cornell = vertex_light("cornell-box.glb");
-  EXPECT_NEAR(cornell[0] / mean_of(lightmap_of(s.path / "cornell-box.glb")), 1, 0.02);
+  EXPECT_NEAR(cornell[0] / mean_irradiance(lightmap_of(s.path / "cornell-box.glb")), 1, 0.02);
 }
 
 /// tools/validate_gltf.mjs puts these before the Khronos validator.
@@ -124,8 +125,8 @@ TEST(SlowVertexColors, LeaveSamplesForTheValidator) {
   const std::filesystem::path folder = std::filesystem::path(LUXEL_BINARY_DIR) / "glb_samples";
   std::filesystem::create_directories(folder);
   for (const char* elements : {"vertex", "triangle"}) {
-    ASSERT_EQ(bake(scene_file("spheres-and-cube.glb"), s.path / "b",
-                   "--vertex-colors --elements " + std::string(elements))
+    ASSERT_EQ(bake_for_hemicube(scene_file("spheres-and-cube.glb"), s.path / "b",
+                                "--vertex-colors --elements " + std::string(elements))
                   .code,
               0);
     std::filesystem::copy_file(s.path / "b" / "baked.glb",
@@ -135,7 +136,7 @@ TEST(SlowVertexColors, LeaveSamplesForTheValidator) {
 }
 
 /// Expects failure: code, a sentence with `words`, and no output folder.
-void expect_refused(const std::string& options, int code, const std::string& words) {
+void expect_hemicube_refused(const std::string& options, int code, const std::string& words) {
   const ScratchFolder scratch;
   const auto output = scratch.path / "baked";
   const CommandResult r =
@@ -164,33 +165,33 @@ TEST(HemicubeSettings, OutOfRangeAreRefused) {
                                       {"--max-error nan", "--max-error nan"},
                                       {"--smooth", "--elements triangle"},
                                       {"--samples 7", "--samples"}})
-    expect_refused(std::string("--solver hemicube ") + option, 1, words);
-  expect_refused("--solver hemicube --hemicube x", 2, "--hemicube");
+    expect_hemicube_refused(std::string("--solver hemicube ") + option, 1, words);
+  expect_hemicube_refused("--solver hemicube --hemicube x", 2, "--hemicube");
 }
 
 TEST(HemicubeSettings, OfAnotherSolverAreRefused) {
   for (const char* option : {"--elements vertex", "--hemicube 64", "--element-size 0.1",
                              "--max-elements 10000", "--smooth"}) {
     const std::string name = std::string(option).substr(0, std::string(option).find(' '));
-    expect_refused(option, 1, "--solver gather does not use " + name);
-    expect_refused(std::string("--solver reference ") + option, 1, "(it is for hemicube)");
+    expect_hemicube_refused(option, 1, "--solver gather does not use " + name);
+    expect_hemicube_refused(std::string("--solver reference ") + option, 1, "(it is for hemicube)");
   }
-  expect_refused("--solver reference --max-error 0.1", 1, "(it is for gather, hemicube)");
-  expect_refused("--vertex-colors", 1, "(it is for hemicube)");
-  expect_refused("--solver reference --direct-samples 8", 1, "--direct-samples");
+  expect_hemicube_refused("--solver reference --max-error 0.1", 1, "(it is for gather, hemicube)");
+  expect_hemicube_refused("--vertex-colors", 1, "(it is for hemicube)");
+  expect_hemicube_refused("--solver reference --direct-samples 8", 1, "--direct-samples");
 }
 
 // Exit code 3, and the size that is said to work does.
 TEST(SlowHemicubeSettings, AMemoryLimitThatIsTooSmallIsSaid) {
   const std::string small = "--solver hemicube --hemicube 16 --max-elements 1500 --resolution 64 ";
-  expect_refused(small + "--max-memory 1M", 3, "--max-memory 1M is too small");
+  expect_hemicube_refused(small + "--max-memory 1M", 3, "--max-memory 1M is too small");
   const ScratchFolder s;
   const std::string scene = scene_file("cornell-box.glb");
-  const CommandResult r = bake(scene, s.path / "b", "--max-memory 1M");
+  const CommandResult r = bake_for_hemicube(scene, s.path / "b", "--max-memory 1M");
   const size_t at = r.err.find("that works is ");
   ASSERT_NE(at, std::string::npos) << r.err;
   const std::string least = r.err.substr(at + 14, r.err.find('\n', at) - at - 14);
-  EXPECT_EQ(bake(scene, s.path / "b", "--max-memory " + least).code, 0) << least;
+  EXPECT_EQ(bake_for_hemicube(scene, s.path / "b", "--max-memory " + least).code, 0) << least;
 }
 
 TEST(HemicubeScenes, WhereNothingReflectsAreBaked) {
@@ -200,9 +201,9 @@ TEST(HemicubeScenes, WhereNothingReflectsAreBaked) {
                             "mtllib black.mtl\nusemtl black\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\n"
                             "v 0 1 0\nv 0 1 1\nf 1 2 3 4\nf 1 5 6 2\n");
   for (const char* options : {"", "--elements triangle --vertex-colors"}) {
-    const CommandResult r = bake(file.string(), s.path / "b", options);
+    const CommandResult r = bake_for_hemicube(file.string(), s.path / "b", options);
     EXPECT_EQ(r.code, 0) << options << r.err;
-    const double mean = mean_of(lightmap_of(s.path / "b"));
+    const double mean = mean_irradiance(lightmap_of(s.path / "b"));
     EXPECT_TRUE(mean > 1 && mean < M_PI) << mean;
   }
 }
@@ -218,9 +219,9 @@ TEST(HemicubeScenes, WithBadNormalsAreBaked) {
               "f 1//1 2//1 3//1\nf 1//2 3//2 4//2\nf 1//3 6//3 7//1\nf 1//3 7//2 2//3\n"
               "f 1//1 2//1 2//1\n");
   for (const char* options : {"", "--elements triangle"}) {
-    const CommandResult r = bake(file.string(), s.path / "b", options);
+    const CommandResult r = bake_for_hemicube(file.string(), s.path / "b", options);
     EXPECT_EQ(r.code, 0) << options << r.err;
-    const double mean = mean_of(lightmap_of(s.path / "b"));
+    const double mean = mean_irradiance(lightmap_of(s.path / "b"));
     EXPECT_TRUE(mean > 1 && mean < 4) << mean;
   }
 }

@@ -14,14 +14,16 @@ namespace {
 
 using ::testing::HasSubstr;
 
-CommandResult bake(const std::filesystem::path& output, const std::string& options) {
+CommandResult bake_for_hierarchical(const std::filesystem::path& output,
+                                    const std::string& options) {
   return luxel("bake " + scene_file("cornell-box.glb") +
                " --solver hierarchical --resolution 64 -o " + output.string() + " " + options);
 }
 
 TEST(HierarchicalBake, SaysWhatItUsed) {
   const ScratchFolder s;
-  const CommandResult r = bake(s.path / "b", "--eps 0.1 --max-leaf-lines 4 --json");
+  const CommandResult r =
+      bake_for_hierarchical(s.path / "b", "--eps 0.1 --max-leaf-lines 4 --json");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
   const auto json = nlohmann::json::parse(r.out);
@@ -36,8 +38,8 @@ TEST(HierarchicalBake, SaysWhatItUsed) {
 
 TEST(HierarchicalBake, GivesTheSameBitsWithAnyNumberOfThreads) {
   const ScratchFolder s;
-  ASSERT_EQ(bake(s.path / "1", "--eps 0.2 --threads 1").code, 0);
-  ASSERT_EQ(bake(s.path / "2", "--eps 0.2 --threads 2").code, 0);
+  ASSERT_EQ(bake_for_hierarchical(s.path / "1", "--eps 0.2 --threads 1").code, 0);
+  ASSERT_EQ(bake_for_hierarchical(s.path / "2", "--eps 0.2 --threads 2").code, 0);
   EXPECT_EQ(slurp(s.path / "1" / "lightmap.exr"), slurp(s.path / "2" / "lightmap.exr"));
 }
 
@@ -51,7 +53,7 @@ TEST(HierarchicalBake, RefusesWhatCannotWork) {
         std::pair{"--max-leaf-lines 2000", "--max-leaf-lines 2000 is outside 0 to 1000"},
         std::pair{"--samples 16", "does not use --samples"},
         std::pair{"--patches 16", "does not use --patches"}}) {
-    const CommandResult r = bake(s.path / "b", options);
+    const CommandResult r = bake_for_hierarchical(s.path / "b", options);
     EXPECT_EQ(r.code, 1) << options << r.err;
     EXPECT_THAT(r.err, HasSubstr(sentence)) << options;
     EXPECT_FALSE(std::filesystem::exists(s.path / "b")) << options;

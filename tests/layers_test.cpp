@@ -45,7 +45,7 @@ nlohmann::json bake(const fs::path& scene, const fs::path& output, const std::st
   return r.code == 0 ? nlohmann::json::parse(r.out) : nlohmann::json();
 }
 
-double mean_of(const image::Image& light) {
+double mean_of_layer(const image::Image& light) {
   double sum = 0;
   int covered = 0;
   for (int y = 0; y < light.height; ++y)
@@ -71,7 +71,7 @@ double sum_error(const fs::path& folder, const nlohmann::json& json, size_t page
         sum.set_rgb(x, y, sum.rgb(x, y) + own.rgb(x, y));
       }
   }
-  const double mean = mean_of(whole);
+  const double mean = mean_of_layer(whole);
   double largest = 0;
   for (int y = 0; y < sum.height; ++y)
     for (int x = 0; x < sum.width; ++x)
@@ -129,8 +129,8 @@ TEST(Layers, AreWhatEachLampAloneGives) {
   bake(write_box(s, "left.glb", true, false), s.path / "left", options);
   const image::Image layer = exr_at(s.path / "both" / "lightmap-lamp.001.exr");
   const image::Image alone = exr_at(s.path / "left" / "lightmap.exr");
-  const double mean = mean_of(alone);
-  EXPECT_NEAR(mean_of(layer), mean, 2e-3 * mean);
+  const double mean = mean_of_layer(alone);
+  EXPECT_NEAR(mean_of_layer(layer), mean, 2e-3 * mean);
   double sum2 = 0;
   for (int y = 0; y < layer.height; ++y)
     for (int x = 0; x < layer.width; ++x) {

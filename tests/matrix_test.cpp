@@ -11,14 +11,14 @@ namespace {
 
 using ::testing::HasSubstr;
 
-CommandResult bake(const std::filesystem::path& output, const std::string& options) {
+CommandResult bake_for_matrix(const std::filesystem::path& output, const std::string& options) {
   return luxel("bake " + scene_file("spheres-and-cube.glb") +
                " --solver matrix --resolution 64 -o " + output.string() + " " + options);
 }
 
 TEST(MatrixBake, SaysWhatItUsed) {
   const ScratchFolder s;
-  const CommandResult r = bake(s.path / "b", "--patches 500 --rays 256 --json");
+  const CommandResult r = bake_for_matrix(s.path / "b", "--patches 500 --rays 256 --json");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
   const auto json = nlohmann::json::parse(r.out);
@@ -32,8 +32,8 @@ TEST(MatrixBake, SaysWhatItUsed) {
 
 TEST(MatrixBake, GivesTheSameBitsWithAnyNumberOfThreads) {
   const ScratchFolder s;
-  ASSERT_EQ(bake(s.path / "1", "--patches 500 --rays 256 --threads 1").code, 0);
-  ASSERT_EQ(bake(s.path / "2", "--patches 500 --rays 256 --threads 2").code, 0);
+  ASSERT_EQ(bake_for_matrix(s.path / "1", "--patches 500 --rays 256 --threads 1").code, 0);
+  ASSERT_EQ(bake_for_matrix(s.path / "2", "--patches 500 --rays 256 --threads 2").code, 0);
   EXPECT_EQ(slurp(s.path / "1" / "lightmap.exr"), slurp(s.path / "2" / "lightmap.exr"));
 }
 
@@ -47,7 +47,7 @@ TEST(MatrixBake, RefusesWhatCannotWork) {
         std::pair{"--elements vertex", "does not use --elements"},
         std::pair{"--vertex-colors", "(it is for hemicube)"},
         std::pair{"--patches 1000000 --max-memory 1G", "too small for this scene"}}) {
-    const CommandResult r = bake(s.path / "b", options);
+    const CommandResult r = bake_for_matrix(s.path / "b", options);
     EXPECT_EQ(r.code, std::string(options).find("memory") != std::string::npos ? 3 : 1)
         << options << r.err;
     EXPECT_THAT(r.err, HasSubstr(sentence)) << options;

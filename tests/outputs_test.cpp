@@ -17,15 +17,15 @@ namespace {
 
 using ::testing::HasSubstr;
 
-CommandResult bake(const std::string& scene, const std::filesystem::path& output,
-                   const std::string& options) {
+CommandResult bake_for_outputs(const std::string& scene, const std::filesystem::path& output,
+                               const std::string& options) {
   return luxel("bake " + scene + " -o " + output.string() + " " + options);
 }
 
 TEST(BakeOutputs, AreAllThereAndWhatTheContractSays) {
   const ScratchFolder s;
-  const CommandResult r =
-      bake(scene_file("cornell-box.glb"), s.path / "b", "--resolution 64 --samples 16 --json");
+  const CommandResult r = bake_for_outputs(scene_file("cornell-box.glb"), s.path / "b",
+                                           "--resolution 64 --samples 16 --json");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
   const auto json = nlohmann::json::parse(r.out);
@@ -48,8 +48,8 @@ TEST(BakeOutputs, AreAllThereAndWhatTheContractSays) {
 TEST(BakeOutputs, EveryFormatHoldsTheSameLight) {
   const ScratchFolder s;
   const auto folder = s.path / "b";
-  ASSERT_EQ(bake(scene_file("cornell-box.glb"), folder,
-                 "--resolution 64 --samples 16 --formats rgbe,hdr,rgbm")
+  ASSERT_EQ(bake_for_outputs(scene_file("cornell-box.glb"), folder,
+                             "--resolution 64 --samples 16 --formats rgbe,hdr,rgbm")
                 .code,
             0);
   std::set<std::string> expected = kBakeFiles;
@@ -79,8 +79,8 @@ TEST(BakeOutputs, EveryFormatHoldsTheSameLight) {
 TEST(BakeOutputs, AFormatThatIsNoneIsSaid) {
   const ScratchFolder s;
   for (const char* formats : {"png", "hdr,", "''", "hdr,exr,Hdr"}) {
-    const CommandResult r = bake(scene_file("cornell-box.glb"), s.path / "b",
-                                 std::string("--resolution 32 --formats ") + formats);
+    const CommandResult r = bake_for_outputs(scene_file("cornell-box.glb"), s.path / "b",
+                                             std::string("--resolution 32 --formats ") + formats);
     EXPECT_EQ(r.code, 1) << formats;
     EXPECT_THAT(r.err, HasSubstr("exr, hdr, rgbm, rgbe")) << formats;
   }
@@ -90,7 +90,7 @@ TEST(BakeOutputs, AFormatThatIsNoneIsSaid) {
 TEST(BakeOutputs, AStageIsALineWhenNobodyWatches) {
   const ScratchFolder s;
   const CommandResult r =
-      bake(scene_file("cornell-box.glb"), s.path / "b", "--resolution 32 --samples 4");
+      bake_for_outputs(scene_file("cornell-box.glb"), s.path / "b", "--resolution 32 --samples 4");
   ASSERT_EQ(r.code, 0);
   EXPECT_EQ(r.out, "");
   for (const char* stage : {"import", "packing", "direct light", "trace rays", "bounces", "draw"})
@@ -104,16 +104,16 @@ TEST(BakeOutputs, AStageIsALineWhenNobodyWatches) {
 TEST(BakeOutputs, AreReplacedByTheNextBake) {
   const ScratchFolder s;
   const std::string box = scene_file("cornell-box.glb");
-  ASSERT_EQ(bake(box, s.path / "b", "--resolution 32 --samples 4").code, 0);
-  ASSERT_EQ(bake(box, s.path / "b", "--resolution 64 --samples 4").code, 0);
+  ASSERT_EQ(bake_for_outputs(box, s.path / "b", "--resolution 32 --samples 4").code, 0);
+  ASSERT_EQ(bake_for_outputs(box, s.path / "b", "--resolution 64 --samples 4").code, 0);
   EXPECT_EQ(lightmap_of(s.path / "b").width, 64);
   EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
 }
 
 TEST(BakeOutputs, QuietSaysNothing) {
   const ScratchFolder s;
-  const CommandResult r =
-      bake(scene_file("furnace-box.glb"), s.path / "b", "--resolution 32 --samples 4 --quiet");
+  const CommandResult r = bake_for_outputs(scene_file("furnace-box.glb"), s.path / "b",
+                                           "--resolution 32 --samples 4 --quiet");
   EXPECT_EQ(r.code, 0);
   EXPECT_EQ(r.out + r.err, "");
 }
@@ -122,8 +122,10 @@ TEST(BakeOutputs, QuietSaysNothing) {
 TEST(BakeOutputs, ALonePlateUnderAWhiteSkyReceivesPi) {
   const ScratchFolder s;
   const auto file = s.write("plate.obj", "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n");
-  ASSERT_EQ(
-      bake(file.string(), s.path / "b", "--resolution 16 --samples 8 --background 1,1,1").code, 0);
+  ASSERT_EQ(bake_for_outputs(file.string(), s.path / "b",
+                             "--resolution 16 --samples 8 --background 1,1,1")
+                .code,
+            0);
   const image::Image map = lightmap_of(s.path / "b");
   int covered = 0;
   for (int y = 0; y < map.height; ++y)
@@ -151,7 +153,8 @@ std::multiset<std::array<long, 9>> triangles_of(const scene::Scene& scene) {
 TEST(BakedGlb, ReadsBackWithTheSameTrianglesAndBakesAgain) {
   for (const char* name : {"cornell-box.glb", "spheres-and-cube.glb"}) {
     const ScratchFolder s;
-    ASSERT_EQ(bake(scene_file(name), s.path / "b", "--resolution 128 --samples 8").code, 0);
+    ASSERT_EQ(bake_for_outputs(scene_file(name), s.path / "b", "--resolution 128 --samples 8").code,
+              0);
     const auto original = import::import_scene(scene_file(name));
     const auto baked = import::import_scene(s.path / "b" / "baked.glb");
     ASSERT_TRUE(baked) << baked.error().message;
@@ -160,8 +163,9 @@ TEST(BakedGlb, ReadsBackWithTheSameTrianglesAndBakesAgain) {
       ASSERT_EQ(mesh.uv1.size(), mesh.positions.size());
       for (const Vec2& uv : mesh.uv1) EXPECT_TRUE(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1);
     }
-    const CommandResult again = bake((s.path / "b" / "baked.glb").string(), s.path / "again",
-                                     "--uv keep --resolution 128 --samples 8");
+    const CommandResult again =
+        bake_for_outputs((s.path / "b" / "baked.glb").string(), s.path / "again",
+                         "--uv keep --resolution 128 --samples 8");
     EXPECT_EQ(again.code, 0) << again.err;
   }
 }
@@ -170,9 +174,10 @@ TEST(BakedGlb, ReadsBackWithTheSameTrianglesAndBakesAgain) {
 TEST(BakedGlb, HasNoHighlights) {
   const ScratchFolder s;
   ASSERT_THAT(slurp(scene_file("spheres-and-cube.glb")), HasSubstr("KHR_materials_specular"));
-  ASSERT_EQ(
-      bake(scene_file("spheres-and-cube.glb"), s.path / "b", "--resolution 64 --samples 1").code,
-      0);
+  ASSERT_EQ(bake_for_outputs(scene_file("spheres-and-cube.glb"), s.path / "b",
+                             "--resolution 64 --samples 1")
+                .code,
+            0);
   EXPECT_THAT(slurp(s.path / "b" / "baked.glb"),
               ::testing::Not(HasSubstr("KHR_materials_specular")));
 }
@@ -180,7 +185,7 @@ TEST(BakedGlb, HasNoHighlights) {
 TEST(Render, DrawsABake) {
   const ScratchFolder s;
   const std::string box = scene_file("cornell-box.glb");
-  ASSERT_EQ(bake(box, s.path / "b", "--resolution 64 --samples 8").code, 0);
+  ASSERT_EQ(bake_for_outputs(box, s.path / "b", "--resolution 64 --samples 8").code, 0);
   for (const char* name : {"x.png", "x.exr"}) {
     const CommandResult r = luxel("render " + box + " --from " + (s.path / "b").string() + " -o " +
                                   (s.path / name).string() + " --size 64x48");
@@ -242,9 +247,9 @@ TEST(Render, SaysWhatATechniqueNeeds) {
 TEST(BakeWithTheReference, AgreesWithGather) {
   const ScratchFolder s;
   const std::string scene = scene_file("spheres-and-cube.glb");
-  ASSERT_EQ(bake(scene, s.path / "g", "--resolution 64 --samples 256").code, 0);
+  ASSERT_EQ(bake_for_outputs(scene, s.path / "g", "--resolution 64 --samples 256").code, 0);
   const CommandResult r =
-      bake(scene, s.path / "r", "--resolution 64 --samples 256 --solver reference");
+      bake_for_outputs(scene, s.path / "r", "--resolution 64 --samples 256 --solver reference");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_THAT(r.err, HasSubstr("estimated error"));
   const auto json = nlohmann::json::parse(slurp(s.path / "r" / "bake.json"));
@@ -267,8 +272,8 @@ TEST(SameBits, WithAnyNumberOfThreads) {
   const ScratchFolder s;
   const std::string options = "--resolution 128 --samples 64 --uv unwrap ";
   const std::string scene = scene_file("spheres-and-cube.glb");
-  ASSERT_EQ(bake(scene, s.path / "1", options + "--threads 1").code, 0);
-  ASSERT_EQ(bake(scene, s.path / "2", options + "--threads 2").code, 0);
+  ASSERT_EQ(bake_for_outputs(scene, s.path / "1", options + "--threads 1").code, 0);
+  ASSERT_EQ(bake_for_outputs(scene, s.path / "2", options + "--threads 2").code, 0);
   EXPECT_EQ(slurp(s.path / "1" / "lightmap.exr"), slurp(s.path / "2" / "lightmap.exr"));
   EXPECT_EQ(slurp(s.path / "1" / "baked.glb"), slurp(s.path / "2" / "baked.glb"));
 }
@@ -276,7 +281,8 @@ TEST(SameBits, WithAnyNumberOfThreads) {
 /// The smallest --max-memory that is said to work.
 std::string least_memory(const std::string& scene, const std::filesystem::path& folder,
                          const std::string& options) {
-  const CommandResult refused = bake(scene, folder / "none", options + "--max-memory 1M");
+  const CommandResult refused =
+      bake_for_outputs(scene, folder / "none", options + "--max-memory 1M");
   const size_t at = refused.err.find("that works is ");
   if (at == std::string::npos) return refused.err;
   return refused.err.substr(at + 14, refused.err.find('\n', at) - at - 14);
@@ -288,8 +294,9 @@ TEST(SameBitsSlow, WithHitsOnTheDisk) {
   const std::string options = "--resolution 256 --samples 256 ";
   const std::string scene = scene_file("cornell-box.glb");
   const std::string least = least_memory(scene, s.path, options);
-  ASSERT_EQ(bake(scene, s.path / "memory", options).code, 0);
-  ASSERT_EQ(bake(scene, s.path / "disk", options + "--max-memory " + least).code, 0) << least;
+  ASSERT_EQ(bake_for_outputs(scene, s.path / "memory", options).code, 0);
+  ASSERT_EQ(bake_for_outputs(scene, s.path / "disk", options + "--max-memory " + least).code, 0)
+      << least;
   const auto json = nlohmann::json::parse(slurp(s.path / "disk" / "bake.json"));
   EXPECT_GT(json["scratch_bytes"], 1 << 20) << least;
   EXPECT_EQ(slurp(s.path / "memory" / "lightmap.exr"), slurp(s.path / "disk" / "lightmap.exr"));
@@ -303,7 +310,8 @@ TEST(MaxMemorySlow, TheLeastThatWorksIsKept) {
     const ScratchFolder s;
     const std::string options = std::string("--resolution 1024 --samples 4 ") + more;
     const std::string least = least_memory(scene, s.path, options);
-    ASSERT_EQ(bake(scene, s.path / "baked", options + "--max-memory " + least).code, 0) << least;
+    ASSERT_EQ(bake_for_outputs(scene, s.path / "baked", options + "--max-memory " + least).code, 0)
+        << least;
     const auto json = nlohmann::json::parse(slurp(s.path / "baked" / "bake.json"));
     // A tenth: what allocators keep, and buffers of threads.
     EXPECT_LT(double(json["peak_memory_bytes"]), 1.1 * double(json["settings"]["max_memory_bytes"]))

@@ -7,6 +7,7 @@
 #include "luxel/base/file.h"
 #include "luxel/image/codec.h"
 #include "tests/command.h"
+#include "tests/pictures.h"
 
 namespace luxel::testing_support {
 namespace {
@@ -14,18 +15,13 @@ namespace {
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-CommandResult bake(const std::string& scene, const fs::path& output, const std::string& options) {
+CommandResult bake_for_pages(const std::string& scene, const fs::path& output,
+                             const std::string& options) {
   return luxel("bake " + scene_file(scene) + " -o " + output.string() + " --quiet " + options);
 }
 
 nlohmann::json about(const fs::path& folder) {
   return nlohmann::json::parse(slurp(folder / "bake.json"));
-}
-
-image::Image exr_at(const fs::path& file) {
-  const auto bytes = read_file(file);
-  EXPECT_TRUE(bytes) << file;
-  return *image::decode_exr(*bytes, file.string());
 }
 
 // A furnace whose walls have emission 1 and reflectance 1/2 : B = pi + E / 2 and E = B, so E = 2 pi
@@ -35,10 +31,11 @@ TEST(Pages, HoldTheLightOfAFurnace) {
   const ScratchFolder s;
   for (const char* pages : {"2", "mesh"}) {
     const fs::path folder = s.path / pages;
-    ASSERT_EQ(bake("furnace-box.glb", folder,
-                   std::string("--resolution 48 --samples 64 --uv unwrap --pages ") + pages)
-                  .code,
-              0);
+    ASSERT_EQ(
+        bake_for_pages("furnace-box.glb", folder,
+                       std::string("--resolution 48 --samples 64 --uv unwrap --pages ") + pages)
+            .code,
+        0);
     const nlohmann::json atlas = about(folder)["atlas"];
     for (const nlohmann::json& page : atlas["pages"]) {
       const image::Image light = exr_at(folder / page["file"].get<std::string>());
@@ -62,9 +59,10 @@ TEST(Pages, ShowWhatOnePageShows) {
   const ScratchFolder s;
   const std::string scene = "cornell-box.glb";
   const std::string options = "--samples 128 --uv unwrap --texels-per-metre 100 ";
-  ASSERT_EQ(bake(scene, s.path / "one", options).code, 0);
-  ASSERT_EQ(bake(scene, s.path / "seed", options + "--seed 7").code, 0);
-  ASSERT_EQ(bake(scene, s.path / "pages", options + "--pages auto --resolution 64").code, 0);
+  ASSERT_EQ(bake_for_pages(scene, s.path / "one", options).code, 0);
+  ASSERT_EQ(bake_for_pages(scene, s.path / "seed", options + "--seed 7").code, 0);
+  ASSERT_EQ(bake_for_pages(scene, s.path / "pages", options + "--pages auto --resolution 64").code,
+            0);
   const nlohmann::json one = about(s.path / "one")["atlas"],
                        pages = about(s.path / "pages")["atlas"];
   EXPECT_EQ(one["pages"].size(), 1u);
@@ -95,11 +93,12 @@ TEST(Pages, ShowWhatOnePageShows) {
 TEST(Pages, LeaveEveryFormatOfEveryPage) {
   const ScratchFolder s;
   const fs::path folder = s.path / "b";
-  ASSERT_EQ(bake("cornell-box.glb", folder,
-                 "--resolution 48 --samples 8 --pages 2 --uv unwrap --formats hdr,rgbm,rgbe "
-                 "--directional sh1")
-                .code,
-            0);
+  ASSERT_EQ(
+      bake_for_pages("cornell-box.glb", folder,
+                     "--resolution 48 --samples 8 --pages 2 --uv unwrap --formats hdr,rgbm,rgbe "
+                     "--directional sh1")
+          .code,
+      0);
   std::set<std::string> expected = kBakeFiles;
   expected.erase("lightmap.exr");
   for (const std::string page : {"lightmap-0", "lightmap-1"})
@@ -122,10 +121,10 @@ TEST(Pages, LeaveEveryFormatOfEveryPage) {
 TEST(Pages, OfOneKeepTheNames) {
   const ScratchFolder s;
   for (const char* options : {"--pages 1", "--pages auto --uv unwrap"}) {
-    ASSERT_EQ(
-        bake("cornell-box.glb", s.path / "b", std::string("--resolution 64 --samples 4 ") + options)
-            .code,
-        0);
+    ASSERT_EQ(bake_for_pages("cornell-box.glb", s.path / "b",
+                             std::string("--resolution 64 --samples 4 ") + options)
+                  .code,
+              0);
     EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
     EXPECT_EQ(about(s.path / "b")["atlas"]["pages"].size(), 1u);
   }
@@ -135,8 +134,8 @@ TEST(Pages, OfOneKeepTheNames) {
 TEST(Pages, FoldersAreCompared) {
   const ScratchFolder s;
   const std::string options = "--resolution 48 --samples 16 --pages 2 --uv unwrap ";
-  ASSERT_EQ(bake("cornell-box.glb", s.path / "a", options).code, 0);
-  ASSERT_EQ(bake("cornell-box.glb", s.path / "b", options + "--seed 5").code, 0);
+  ASSERT_EQ(bake_for_pages("cornell-box.glb", s.path / "a", options).code, 0);
+  ASSERT_EQ(bake_for_pages("cornell-box.glb", s.path / "b", options + "--seed 5").code, 0);
   const auto compare = [&](const char* a, const char* b) {
     const CommandResult r =
         luxel("compare " + (s.path / a).string() + " " + (s.path / b).string() + " --json --quiet");
@@ -158,9 +157,10 @@ TEST(Pages, FoldersAreCompared) {
 TEST(Pages, PreviewIsWhatTheFilesShow) {
   const ScratchFolder s;
   const fs::path folder = s.path / "b", file = s.path / "p.png";
-  ASSERT_EQ(
-      bake("cornell-box.glb", folder, "--resolution 96 --samples 32 --pages 3 --uv unwrap").code,
-      0);
+  ASSERT_EQ(bake_for_pages("cornell-box.glb", folder,
+                           "--resolution 96 --samples 32 --pages 3 --uv unwrap")
+                .code,
+            0);
   const nlohmann::json view = about(folder)["preview"];
   ASSERT_EQ(luxel("render " + scene_file("cornell-box.glb") +
                   " --technique lightmap --quiet --size " + view["width"].dump() + "x" +
@@ -178,7 +178,7 @@ TEST(Pages, PreviewIsWhatTheFilesShow) {
 TEST(Pages, ContradictionsAreASentence) {
   const ScratchFolder s;
   const auto refused = [&](const std::string& options, const std::string& words) {
-    const CommandResult r = bake("cornell-box.glb", s.path / "b", options);
+    const CommandResult r = bake_for_pages("cornell-box.glb", s.path / "b", options);
     EXPECT_EQ(r.code, 1) << options;
     EXPECT_THAT(r.err, HasSubstr(words)) << options;
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
@@ -199,8 +199,8 @@ TEST(Pages, ContradictionsAreASentence) {
 // The limit counts all pages: what one page of as many texels needs, four smaller ones need too.
 TEST(Pages, StayUnderTheMemoryThatIsAsked) {
   const ScratchFolder s;
-  const CommandResult r = bake("cornell-box.glb", s.path / "b",
-                               "--resolution 1024 --pages 4 --uv unwrap --max-memory 60M");
+  const CommandResult r = bake_for_pages(
+      "cornell-box.glb", s.path / "b", "--resolution 1024 --pages 4 --uv unwrap --max-memory 60M");
   EXPECT_EQ(r.code, 3);
   EXPECT_THAT(r.err, HasSubstr("the smallest that works is"));
 }

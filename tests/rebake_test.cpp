@@ -100,10 +100,10 @@ class Rebake : public ::testing::Test {
   std::string err_;
 };
 
-struct Difference {
+struct RebakeDifference {
   double rms = 0, largest = 0;  ///< relative to the mean
 };
-Difference difference(const fs::path& folder, const fs::path& truth) {
+RebakeDifference difference_rebake(const fs::path& folder, const fs::path& truth) {
   const image::Image a = lightmap_of(folder), b = lightmap_of(truth);
   EXPECT_EQ(a.width, b.width);
   double sum2 = 0, mean = 0, count = 0, largest = 0;
@@ -150,7 +150,7 @@ TEST_P(RebakeEdits, GivesTheLightOfABakeFromScratch) {
   EXPECT_EQ(again["cache"]["changed"], c.changed);
   const double rays = scratch["counts"]["rays"].get<double>();
   EXPECT_LE(again["cache"]["rays_traced"].get<double>(), c.rays * rays) << again["cache"];
-  const Difference d = difference(kept_, scratch_.path / "scratch");
+  const RebakeDifference d = difference_rebake(kept_, scratch_.path / "scratch");
   EXPECT_LT(d.rms, c.rms);
   EXPECT_LT(d.largest, 60 * c.rms);
 }
@@ -262,7 +262,7 @@ TEST_F(Rebake, SkyChangesWithoutIt) {
   const nlohmann::json again = bake(kNothing, kept_, "--keep");
   bake(kNothing, scratch_.path / "scratch", "");
   EXPECT_EQ(again["cache"]["changed"], "the surroundings have changed");
-  EXPECT_LT(difference(kept_, scratch_.path / "scratch").rms, 5e-4);
+  EXPECT_LT(difference_rebake(kept_, scratch_.path / "scratch").rms, 5e-4);
 }
 
 TEST_F(Rebake, GoesOnToTheErrorThatIsAskedFor) {
@@ -275,7 +275,7 @@ TEST_F(Rebake, GoesOnToTheErrorThatIsAskedFor) {
   EXPECT_THAT(again["warnings"], IsEmpty());
   const nlohmann::json scratch = bake(edit, scratch_.path / "scratch", "");
   // Each is known to 10 % at 95 of 100 texels, most of them better; which got more rays differs.
-  EXPECT_LT(difference(kept_, scratch_.path / "scratch").rms, 0.05);
+  EXPECT_LT(difference_rebake(kept_, scratch_.path / "scratch").rms, 0.05);
 }
 
 TEST_F(Rebake, LayersOfAKeptBake) {
@@ -346,12 +346,12 @@ TEST_F(Rebake, DamageIsSeen) {
   json = bake(edit, kept_, "--keep");
   // Most of the twelve tiles cannot be read, and are traced; they lie in the file in any order.
   EXPECT_GT(json["cache"]["rays_traced"].get<double>(), intact + 10000);
-  EXPECT_LT(difference(kept_, scratch_.path / "scratch").rms, 5e-4);
+  EXPECT_LT(difference_rebake(kept_, scratch_.path / "scratch").rms, 5e-4);
   fs::resize_file(kept_ / "cache/rays.luxel", 20);
   json = bake(edit, kept_, "--keep");
   EXPECT_THAT(json["cache"]["note"], HasSubstr("rays.luxel is damaged"));
   EXPECT_EQ(json["cache"]["rays_kept"], 0);
-  EXPECT_LT(difference(kept_, scratch_.path / "scratch").rms, 1e-3);
+  EXPECT_LT(difference_rebake(kept_, scratch_.path / "scratch").rms, 1e-3);
   damage(kept_ / "cache/light.luxel", 1);
   json = bake(edit, kept_, "--keep");
   EXPECT_THAT(json["cache"]["note"], HasSubstr("light.luxel is damaged"));

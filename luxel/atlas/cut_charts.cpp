@@ -17,7 +17,7 @@ constexpr size_t kFewestJoined = 4;
 /// More planes than these are not looked at in one piece.
 constexpr size_t kMostCandidates = 256, kMostScored = 32;
 
-struct Candidate {
+struct CutCandidate {
   Plane plane;
   size_t count = 0;
 };
@@ -32,13 +32,13 @@ bool parts(const Plane& plane, const PartedPoints& pair) {
 }
 
 /// The planes between the pairs, those of most pairs first.
-std::vector<Candidate> candidates_of(const Pairs& pairs) {
-  std::vector<Candidate> found;
+std::vector<CutCandidate> candidates_of(const Pairs& pairs) {
+  std::vector<CutCandidate> found;
   for (const PartedPoints& pair : pairs) {
     const DVec3 a = to_double(pair.a), b = to_double(pair.b);
     if (!parts(pair.between, pair)) continue;
     const double reach = length(b - a);
-    const auto same = std::find_if(found.begin(), found.end(), [&](const Candidate& c) {
+    const auto same = std::find_if(found.begin(), found.end(), [&](const CutCandidate& c) {
       const double s = pair.between.height(a) / (pair.between.height(a) - pair.between.height(b));
       return same_plane(c.plane, pair.between, a + (b - a) * s, reach);
     });
@@ -48,15 +48,15 @@ std::vector<Candidate> candidates_of(const Pairs& pairs) {
       found.push_back({pair.between, 1});
   }
   std::stable_sort(found.begin(), found.end(),
-                   [](const Candidate& p, const Candidate& q) { return p.count > q.count; });
+                   [](const CutCandidate& p, const CutCandidate& q) { return p.count > q.count; });
   if (found.size() > kMostScored) found.resize(kMostScored);
   return found;
 }
 
 /// The plane that parts most pairs, and how many.
-Candidate best_plane(const Pairs& pairs) {
-  Candidate best;
-  for (const Candidate& c : candidates_of(pairs)) {
+CutCandidate best_plane(const Pairs& pairs) {
+  CutCandidate best;
+  for (const CutCandidate& c : candidates_of(pairs)) {
     const auto parted = size_t(std::count_if(
         pairs.begin(), pairs.end(), [&](const PartedPoints& p) { return parts(c.plane, p); }));
     if (parted > best.count) best = {c.plane, parted};
@@ -93,7 +93,7 @@ class Cutter {
  private:
   void divide(uint32_t node, const Pairs& pairs) {
     if (pairs.size() < kFewestParted) return;
-    const Candidate best = best_plane(pairs);
+    const CutCandidate best = best_plane(pairs);
     if (best.count < kFewestParted) return;
     const uint32_t piece = nodes_[node].piece;
     const uint32_t other = apply(piece, best.plane, length(pairs.front().b - pairs.front().a));

@@ -12,18 +12,18 @@ namespace {
 
 constexpr int kTile = 16;  ///< pixels along a tile's side: its rays fit in a core's cache
 
-struct Tile {
+struct PixelTile {
   int x0, y0, x1, y1;
 };
 
-Tile tile_of(size_t number, const DrawParams& params) {
+PixelTile tile_of(size_t number, const DrawParams& params) {
   const int across = (params.width + kTile - 1) / kTile;
   const int x0 = int(number) % across * kTile, y0 = int(number) / across * kTile;
   return {x0, y0, std::min(x0 + kTile, params.width), std::min(y0 + kTile, params.height)};
 }
 
 /// The rays of a tile, pixel after pixel, n x n to each at the centres of a regular grid.
-std::vector<trace::Ray> tile_rays(const trace::CameraRays& camera, const Tile& tile, int n) {
+std::vector<trace::Ray> tile_rays(const trace::CameraRays& camera, const PixelTile& tile, int n) {
   std::vector<trace::Ray> rays;
   rays.reserve(size_t((tile.x1 - tile.x0) * (tile.y1 - tile.y0) * n * n));
   for (int y = tile.y0; y < tile.y1; ++y)
@@ -82,7 +82,7 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
   progress.begin("draw", tiles);
   parallel_for(tiles, 1, [&](size_t begin, size_t end) {
     for (size_t number = begin; number < end && !progress.cancelled(); ++number) {
-      const Tile tile = tile_of(number, params);
+      const PixelTile tile = tile_of(number, params);
       std::vector<trace::Ray> rays = tile_rays(rays_of, tile, params.samples_per_axis);
       const std::vector<trace::Hit> hits = trace::visible_hits(scene, tracer, rays);
       const size_t per_pixel = size_t(params.samples_per_axis * params.samples_per_axis);

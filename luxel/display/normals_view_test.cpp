@@ -7,10 +7,10 @@ namespace {
 
 /// The square of side 2 around the origin, facing +z, seen orthographically from the side: its
 /// normals are seen at their full length, the square on edge.
-struct Stage {
+struct NormalsStage {
   scene::Scene scene;
   scene::Camera camera;
-  Stage() {
+  NormalsStage() {
     scene::Mesh mesh;
     mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -37,7 +37,7 @@ bool is_red(const image::Image& picture, int x, int y) {
 }
 
 TEST(NormalsView, LinesStandOnTheCornersAndAreAsLongAsTheyShould) {
-  const image::Image picture = Stage().draw();
+  const image::Image picture = NormalsStage().draw();
   // 50 pixels a metre; +z is left. Corners at y = 50 and 150, 4 % of the diagonal are 5.66 pixels.
   int red = 0;
   for (int y = 0; y < 200; ++y)
@@ -54,7 +54,7 @@ TEST(NormalsView, LinesStandOnTheCornersAndAreAsLongAsTheyShould) {
 // A fan around the middle, whose normal is seen from one side and hidden by the square from the
 // other.
 TEST(NormalsView, LinesBehindASurfaceAreHiddenAndThoseOfUnseenSidesAreNotDrawn) {
-  Stage stage;
+  NormalsStage stage;
   scene::Mesh& mesh = stage.scene.meshes[0];
   mesh.positions.push_back({0, 0, 0});
   mesh.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
@@ -76,7 +76,7 @@ TEST(NormalsView, LinesBehindASurfaceAreHiddenAndThoseOfUnseenSidesAreNotDrawn) 
 }
 
 TEST(NormalsView, LinesOfSmallTrianglesAreNoLongerThanTheirEdges) {
-  Stage stage;
+  NormalsStage stage;
   scene::Mesh& mesh = stage.scene.meshes[0];
   // A tiny triangle of edge 0.05 in a scene of the same diagonal: 2.5 pixels instead of 5.7.
   mesh.positions.insert(mesh.positions.end(), {{0, 0, 0.5f}, {0.05f, 0, 0.5f}, {0, 0.03f, 0.5f}});
@@ -92,7 +92,7 @@ TEST(NormalsView, LinesOfSmallTrianglesAreNoLongerThanTheirEdges) {
 }
 
 TEST(NormalsView, ACameraAmongTheCornersIsNoTrouble) {
-  Stage stage;
+  NormalsStage stage;
   stage.camera.orthographic_height_m = 0;
   for (const float x : {1.0f, 0.999f, -1.0f}) {
     stage.camera.world_from_camera = translation({x, -1, 0.05f});
@@ -101,7 +101,7 @@ TEST(NormalsView, ACameraAmongTheCornersIsNoTrouble) {
 }
 
 TEST(NormalsView, StopsWhenCancelled) {
-  const Stage stage;
+  const NormalsStage stage;
   const auto tracer = trace::RayTracer::build(stage.scene);
   Progress progress;
   progress.request_cancel();

@@ -9,7 +9,7 @@
 namespace luxel::display {
 namespace {
 
-constexpr int kTile = 16;  ///< pixels along a tile's side: its rays fit in a core's cache
+constexpr int kViewTile = 16;  ///< pixels along a tile's side: its rays fit in a core's cache
 
 /// The triangles as a scene of one mesh, so that a hit's triangle is ours.
 scene::Scene scene_of(const QuadraticMesh& mesh) {
@@ -64,12 +64,13 @@ image::Image QuadraticView::draw(const scene::Camera& camera, int width, int hei
   LUXEL_CHECK(width > 0 && height > 0);
   const trace::CameraRays rays_of(camera, width, height);
   image::Image picture(width, height, 4);
-  const int across = (width + kTile - 1) / kTile, down = (height + kTile - 1) / kTile;
+  const int across = (width + kViewTile - 1) / kViewTile,
+            down = (height + kViewTile - 1) / kViewTile;
   parallel_for(size_t(across) * size_t(down), 4, [&](size_t begin, size_t end) {
     std::vector<trace::Ray> rays;
     for (size_t tile = begin; tile < end; ++tile) {
-      const int x0 = int(tile) % across * kTile, y0 = int(tile) / across * kTile;
-      const int x1 = std::min(x0 + kTile, width), y1 = std::min(y0 + kTile, height);
+      const int x0 = int(tile) % across * kViewTile, y0 = int(tile) / across * kViewTile;
+      const int x1 = std::min(x0 + kViewTile, width), y1 = std::min(y0 + kViewTile, height);
       rays.clear();
       for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x)

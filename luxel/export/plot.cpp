@@ -12,7 +12,7 @@ namespace luxel::export_ {
 namespace {
 
 /// Colours that most colour-blind readers tell apart; the first is lighter on a dark page.
-constexpr const char* kStyle =
+constexpr const char* kPlotStyle =
     ".lp{font:12px system-ui,sans-serif;fill:#222}.lp .t{font-size:14px;font-weight:600}"
     ".lp .g{stroke:#8888;stroke-width:.5}.lp .m{stroke:#8884;stroke-width:.5}"
     ".lp .f{stroke:#888;fill:none}.lp .s{fill:none;stroke-width:1.8;stroke-linejoin:round}"
@@ -187,7 +187,7 @@ std::string svg(const Plot& plot) {
   fmt::format_to(out,
                  "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"lp\" width=\"{0}\" "
                  "height=\"{1}\" viewBox=\"0 0 {0} {1}\" role=\"img\"><style>{2}</style>",
-                 plot.width, plot.height, kStyle);
+                 plot.width, plot.height, kPlotStyle);
   draw_axes(plot, f, out);
   // An svg inside has its own edges: what lies outside the frame is not seen.
   fmt::format_to(out,

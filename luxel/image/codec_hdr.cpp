@@ -16,7 +16,7 @@ namespace {
 using Bytes = std::span<const uint8_t>;
 
 /// A broken header may claim any size: this many pixels (16384 squared) are the most we believe.
-constexpr uint64_t kMaxPixels = uint64_t(1) << 28;
+constexpr uint64_t kCodecHdrMaxPixels = uint64_t(1) << 28;
 constexpr size_t kMaxSide = 65536;
 /// Widths for which the newer run-length code exists.
 constexpr size_t kMinRunWidth = 8, kMaxRunWidth = 32767;
@@ -113,10 +113,10 @@ Result<Header> read_header(Reader& in) {
                 "{}: the HDR file has '{}' where its size should stand, as in '-Y 480 +X 640'",
                 in.name, line);
   const auto [lines, width] = header.count;
-  if (lines > kMaxSide || width > kMaxSide || lines * width > kMaxPixels)
+  if (lines > kMaxSide || width > kMaxSide || lines * width > kCodecHdrMaxPixels)
     return fail(ErrorCode::bad_input,
                 "{}: the HDR file claims {} x {} pixels; the most is {}, and {} a side", in.name,
-                width, lines, kMaxPixels, kMaxSide);
+                width, lines, kCodecHdrMaxPixels, kMaxSide);
   return header;
 }
 
@@ -160,7 +160,7 @@ Status read_old_runs(Reader& in, std::span<Rgbe> line) {
                   "{}: the HDR file is damaged: {} repeated pixels where {} are left in the line",
                   in.name, count, line.size() - x);
     for (size_t i = 0; i < count; ++i, ++x) line[x] = line[x - 1];
-    if (unit > kMaxPixels) unit = kMaxPixels;  // only empty runs get here
+    if (unit > kCodecHdrMaxPixels) unit = kCodecHdrMaxPixels;  // only empty runs get here
     unit *= 256;
   }
   return {};

@@ -27,12 +27,12 @@ std::string jpeg() {
   stbi_write_jpg_to_func(append, &file, 16, 16, 3, gray.data(), 95);
   return file;
 }
-Result<Image8> decode(const std::string& file) {
+Result<Image8> decoded_ldr(const std::string& file) {
   return decode_ldr(std::as_bytes(std::span(file.data(), file.size())), "pic");
 }
 
 TEST(DecodeLdr, PngComesBackExactly) {
-  const auto image = decode(png());
+  const auto image = decoded_ldr(png());
   ASSERT_TRUE(image) << image.error().message;
   EXPECT_EQ(image->width, 3);
   EXPECT_EQ(image->height, 1);
@@ -40,7 +40,7 @@ TEST(DecodeLdr, PngComesBackExactly) {
 }
 
 TEST(DecodeLdr, JpegComesBackNearly) {
-  const auto image = decode(jpeg());
+  const auto image = decoded_ldr(jpeg());
   ASSERT_TRUE(image) << image.error().message;
   ASSERT_EQ(image->data.size(), 16u * 16 * 4);
   EXPECT_NEAR(image->data[0], 100, 2);
@@ -79,7 +79,7 @@ TEST(DecodeDisplay, SixteenBitsAreKept) {
 TEST(DecodeLdr, EveryTruncationIsRefused) {
   for (const std::string& file : {png(), jpeg()})
     for (size_t length = 0; length < file.size(); ++length)
-      EXPECT_FALSE(decode(file.substr(0, length))) << length << " of " << file.size();
+      EXPECT_FALSE(decoded_ldr(file.substr(0, length))) << length << " of " << file.size();
 }
 
 // A PNG's chunks carry checksums: no flipped bit inside one goes unseen. The pixels of a JPEG may
@@ -89,24 +89,24 @@ TEST(DecodeLdr, FlippedBitsAreSeen) {
   for (size_t i = 0; i < good.size(); ++i) {
     std::string bad = good;
     bad[i] = char(bad[i] ^ 4);
-    EXPECT_FALSE(decode(bad)) << i;
+    EXPECT_FALSE(decoded_ldr(bad)) << i;
   }
   const std::string photo = jpeg();
   for (size_t i = 0; i < photo.size(); ++i) {
     std::string bad = photo;
     bad[i] = char(bad[i] ^ 4);
-    (void)decode(bad);
+    (void)decoded_ldr(bad);
   }
 }
 
 TEST(DecodeLdr, TooLargeOtherFormatsAndNothing) {
-  EXPECT_THAT(decode("GIF89a").error().message,
+  EXPECT_THAT(decoded_ldr("GIF89a").error().message,
               HasSubstr("pic: the picture is neither PNG, JPEG nor WebP"));
-  EXPECT_THAT(decode("").error().message, HasSubstr("empty"));
+  EXPECT_THAT(decoded_ldr("").error().message, HasSubstr("empty"));
   const std::vector<uint8_t> row(16385);
   std::string wide;
   stbi_write_png_to_func(append, &wide, 16385, 1, 1, row.data(), 16385);
-  EXPECT_THAT(decode(wide).error().message, HasSubstr("16385 x 1"));
+  EXPECT_THAT(decoded_ldr(wide).error().message, HasSubstr("16385 x 1"));
 }
 
 }  // namespace

@@ -29,12 +29,12 @@ std::string webp(bool lossless) {
   return file;
 }
 
-Result<Image8> decode(const std::string& file) {
+Result<Image8> decoded_webp(const std::string& file) {
   return decode_ldr(std::as_bytes(std::span(file.data(), file.size())), "pic");
 }
 
 TEST(DecodeWebp, LosslessComesBackExactly) {
-  const auto image = decode(webp(true));
+  const auto image = decoded_webp(webp(true));
   ASSERT_TRUE(image) << image.error().message;
   EXPECT_EQ(image->width, 5);
   EXPECT_EQ(image->height, 3);
@@ -48,9 +48,9 @@ TEST(DecodeWebp, LosslessComesBackExactly) {
 
 TEST(DecodeWebp, EveryTruncationIsRefused) {
   for (const std::string& file : {webp(true), webp(false)}) {
-    EXPECT_TRUE(decode(file));
+    EXPECT_TRUE(decoded_webp(file));
     for (size_t length = 0; length < file.size(); ++length)
-      EXPECT_FALSE(decode(file.substr(0, length))) << length << " of " << file.size();
+      EXPECT_FALSE(decoded_webp(file.substr(0, length))) << length << " of " << file.size();
   }
 }
 
@@ -63,7 +63,7 @@ TEST(DecodeWebp, FlippedBitsGiveAResult) {
       for (const uint8_t bits : {0x01, 0x80, 0xff}) {
         std::string bad = good;
         bad[i] = char(uint8_t(bad[i]) ^ bits);
-        const auto image = decode(bad);
+        const auto image = decoded_webp(bad);
         if (image) {
           EXPECT_EQ(image->data.size(), size_t(image->width) * size_t(image->height) * 4) << i;
           EXPECT_FALSE(i < 4 || (i >= 8 && i < 12)) << "byte " << i << " is of the signature";
@@ -111,19 +111,20 @@ std::string webp_that_says(uint32_t width, uint32_t height) {
 
 // 100,000 x 100,000 pixels would take 40 GB: the header is enough to refuse them.
 TEST(PicturesTooLarge, AreRefusedByTheirHeader) {
-  EXPECT_THAT(decode(png_that_says(100000, 100000)).error().message,
+  EXPECT_THAT(decoded_webp(png_that_says(100000, 100000)).error().message,
               HasSubstr("pic: the picture has 100000 x 100000 pixels, must be 1 to 16384 a side"));
-  EXPECT_THAT(decode(png_that_says(4, 16385)).error().message, HasSubstr("4 x 16385 pixels"));
-  EXPECT_THAT(decode(jpeg_that_says(65535, 40000)).error().message,
+  EXPECT_THAT(decoded_webp(png_that_says(4, 16385)).error().message, HasSubstr("4 x 16385 pixels"));
+  EXPECT_THAT(decoded_webp(jpeg_that_says(65535, 40000)).error().message,
               HasSubstr("pic: the picture has 65535 x 40000 pixels, must be 1 to 16384"));
-  EXPECT_THAT(decode(webp_that_says(60000, 60000)).error().message,
+  EXPECT_THAT(decoded_webp(webp_that_says(60000, 60000)).error().message,
               HasSubstr("pic: the picture has 60000 x 60000 pixels, must be 1 to 16384"));
 }
 
 TEST(PicturesTooLarge, PicturesOfNothingAreRefused) {
   for (const auto& [width, height] : {std::pair{0u, 4u}, {4u, 0u}, {0u, 0u}}) {
-    EXPECT_THAT(decode(png_that_says(width, height)).error().message, HasSubstr("pixels, must be"));
-    EXPECT_THAT(decode(jpeg_that_says(width, height)).error().message,
+    EXPECT_THAT(decoded_webp(png_that_says(width, height)).error().message,
+                HasSubstr("pixels, must be"));
+    EXPECT_THAT(decoded_webp(jpeg_that_says(width, height)).error().message,
                 HasSubstr("pixels, must be"));
   }
 }

@@ -10,7 +10,7 @@
 namespace luxel::image {
 namespace {
 
-Status check_finite(const Image& image, std::string_view name) {
+Status check_comparable(const Image& image, std::string_view name) {
   for (size_t i = 0; i < image.data.size(); ++i) {
     if (std::isfinite(image.data[i])) continue;
     const size_t pixel = i / size_t(image.channels);
@@ -86,8 +86,8 @@ Result<Mask> covered_pixels(const Image& a, std::string_view name_a, const Image
     return fail(ErrorCode::bad_input,
                 "{} has {} channels and {} has {}; both need R, G and B, and both or none A",
                 name_a, a.channels, name_b, b.channels);
-  LUXEL_TRY_STATUS(check_finite(a, name_a));
-  LUXEL_TRY_STATUS(check_finite(b, name_b));
+  LUXEL_TRY_STATUS(check_comparable(a, name_a));
+  LUXEL_TRY_STATUS(check_comparable(b, name_b));
   const size_t pixels = size_t(a.width) * size_t(a.height);
   Mask covered(pixels, 1);
   if (a.channels == 4)

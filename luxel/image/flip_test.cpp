@@ -39,14 +39,14 @@ struct Expected {
   double mean;
   std::array<double, 6> at;
 };
-constexpr std::array<std::array<int, 2>, 6> kPixels{
+constexpr std::array<std::array<int, 2>, 6> kFlipPixels{
     {{0, 0}, {32, 24}, {31, 19}, {24, 20}, {63, 47}, {40, 12}}};
 
 /// luxel works in floats: the exponent 0.7 lifts a rounding of 1e-7 of a small difference to 1e-5.
 void expect_map(const Image& map, const Expected& expected) {
   EXPECT_NEAR(mean(map), expected.mean, 2e-5);
-  for (size_t i = 0; i < kPixels.size(); ++i)
-    EXPECT_NEAR(*map.at(kPixels[i][0], kPixels[i][1]), expected.at[i], 1e-4) << i;
+  for (size_t i = 0; i < kFlipPixels.size(); ++i)
+    EXPECT_NEAR(*map.at(kFlipPixels[i][0], kFlipPixels[i][1]), expected.at[i], 1e-4) << i;
 }
 
 TEST(Flip, AGreySquareOnRampsIsAsByDenseConvolution) {

@@ -90,8 +90,8 @@ ColladaLens lens_of(std::string_view camera) {
 
 /// A whole number in an attribute; `otherwise` when the attribute is missing, none when it is
 /// wrong.
-std::optional<uint64_t> whole_number(std::string_view element, std::string_view name,
-                                     uint64_t otherwise) {
+std::optional<uint64_t> attribute_number(std::string_view element, std::string_view name,
+                                         uint64_t otherwise) {
   const std::string_view word = attribute(element, name);
   if (word.empty()) return otherwise;
   uint64_t value = 0;
@@ -116,16 +116,16 @@ Status check_collada(const SourceFile& source) {
   std::map<std::string_view, uint64_t> sizes;
   std::string_view rest = text;
   while (const auto array = next_element(rest, "float_array"))
-    sizes[attribute(*array, "id")] = whole_number(*array, "count", 0).value_or(0);
+    sizes[attribute(*array, "id")] = attribute_number(*array, "count", 0).value_or(0);
   rest = text;
   while (const auto accessor = next_element(rest, "accessor")) {
     std::string_view id = attribute(*accessor, "source");
     if (id.starts_with('#')) id.remove_prefix(1);
     const auto size = sizes.find(id);
     if (size == sizes.end()) continue;  // of names, in skins
-    const auto count = whole_number(*accessor, "count", 0),
-               stride = whole_number(*accessor, "stride", 1),
-               offset = whole_number(*accessor, "offset", 0);
+    const auto count = attribute_number(*accessor, "count", 0),
+               stride = attribute_number(*accessor, "stride", 1),
+               offset = attribute_number(*accessor, "offset", 0);
     // Each of `count` entries begins a stride after the one before and has one number per param.
     const uint64_t entry = std::max(params_of(*accessor), stride.value_or(0));
     if (!count || !stride || !offset || *offset > size->second ||

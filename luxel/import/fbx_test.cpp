@@ -114,7 +114,7 @@ constexpr const char* kLightsAndCamera = R"(
   }
 )";
 
-constexpr const char* kMaterials = R"(
+constexpr const char* kFbxMaterials = R"(
   Material: 400, "Material::paint", "" {
     ShadingModel: "phong"
     Properties70: {
@@ -154,7 +154,7 @@ std::string room(const std::string& global_settings) {
          node(202, "twin", "Mesh", "0,0,50") + node(203, "lamp", "Mesh", "0,0,300", "180,0,0") +
          node(204, "bulb", "Light", "10,20,200") +
          node(205, "beam", "Light", "10,20,200", "90,0,0") +
-         node(206, "eye", "Camera", "0,-500,100", "90,0,90") + kLightsAndCamera + kMaterials +
+         node(206, "eye", "Camera", "0,-500,100", "90,0,90") + kLightsAndCamera + kFbxMaterials +
          "}\n" +
          connections({{200, 0},
                       {201, 200},
@@ -182,17 +182,17 @@ std::string lone_square(const std::string& global_settings, const char* node_pro
          connections({{201, 0}, {100, 201}});
 }
 
-scene::Scene import_room() {
+scene::Scene import_fbx_room() {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "pics");
   folder.write("pics/paint.png", png_of(3, 1, {255, 255, 255, 255}));
   return scene_of(import_scene(folder.write("a.fbx", room(centimetres_z_up()))));
 }
 
-TEST(Fbx, CentimetresAndZUpBecomeMetresAndYUp) { expect_room_in_metres(import_room()); }
+TEST(Fbx, CentimetresAndZUpBecomeMetresAndYUp) { expect_room_in_metres(import_fbx_room()); }
 
 TEST(Fbx, AMeshUsedTwiceIsStoredOnce) {
-  const scene::Scene scene = import_room();
+  const scene::Scene scene = import_fbx_room();
   ASSERT_EQ(scene.instances.size(), 3u);
   EXPECT_EQ(scene.meshes.size(), 2u);
   EXPECT_EQ(scene.instances[0].mesh, scene.instances[1].mesh);
@@ -200,7 +200,7 @@ TEST(Fbx, AMeshUsedTwiceIsStoredOnce) {
 }
 
 TEST(Fbx, MaterialsTexturesAndCoordinates) {
-  const scene::Scene scene = import_room();
+  const scene::Scene scene = import_fbx_room();
   ASSERT_EQ(scene.instances.size(), 3u);
   const scene::SurfacePoint floor{0, 0, {0.3f, 0.3f}}, lamp{2, 0, {0.3f, 0.3f}};
   EXPECT_EQ(scene::material_at(scene, floor).name, "paint");
@@ -224,7 +224,7 @@ TEST(Fbx, MaterialsTexturesAndCoordinates) {
 }
 
 TEST(Fbx, LightsAndCameraAreInMetresToo) {
-  const scene::Scene scene = import_room();
+  const scene::Scene scene = import_fbx_room();
   ASSERT_EQ(scene.lights.size(), 2u);
   EXPECT_EQ(scene.lights[0].kind, scene::PunctualLight::Kind::point);
   expect_near(scene.lights[0].position, {0.1f, 2, -0.2f}, 1e-5f);

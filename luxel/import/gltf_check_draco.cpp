@@ -6,7 +6,8 @@ namespace {
 
 constexpr char kName[] = "KHR_draco_mesh_compression";
 
-Status check_primitive(const Json& document, const Json& primitive, const std::string& place) {
+Status check_draco_primitive(const Json& document, const Json& primitive,
+                             const std::string& place) {
   LUXEL_TRY(const Json* extension, extension_of(primitive, kName, place));
   if (extension == nullptr) return {};
   const std::string where = place + ", " + kName;
@@ -40,7 +41,7 @@ bool is_draco(const Json& primitive) {
 
 Status check_draco(const Json& document, const std::string& file) {
   return check_primitives(document, file, [&](const Json& primitive, const std::string& where) {
-    return check_primitive(document, primitive, where);
+    return check_draco_primitive(document, primitive, where);
   });
 }
 

@@ -29,7 +29,7 @@ constexpr Reference kReferences[] = {
     {"nodes", "node", "skin", "skins"},
 };
 
-Status check_primitive(const Json& document, const Json& primitive, const std::string& where) {
+Status check_indices_of(const Json& document, const Json& primitive, const std::string& where) {
   LUXEL_TRY_STATUS(check_index(document, primitive, "indices", "accessors", where));
   LUXEL_TRY_STATUS(check_index(document, primitive, "material", "materials", where));
   const auto attributes = primitive.find("attributes");
@@ -164,7 +164,7 @@ Status check_indices(const Json& document, const std::string& file) {
   }
   LUXEL_TRY_STATUS(
       check_primitives(document, file, [&](const Json& primitive, const std::string& where) {
-        return check_primitive(document, primitive, where);
+        return check_indices_of(document, primitive, where);
       }));
   const Json& textures = list_of(document, "textures");
   for (size_t i = 0; i < textures.size(); ++i)

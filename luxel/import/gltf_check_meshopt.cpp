@@ -6,7 +6,7 @@
 namespace luxel::import {
 namespace {
 
-constexpr char kName[] = "EXT_meshopt_compression";
+constexpr char kMeshopt[] = "EXT_meshopt_compression";
 
 /// The position of a word in a list of words.
 template <size_t n>
@@ -80,7 +80,7 @@ Status check_sizes(const Json& document, const MeshoptView& v, const Json& view,
 }
 
 bool is_marked_fallback(const Json& buffer) {
-  static const Json::json_pointer kFallback(fmt::format("/extensions/{}/fallback", kName));
+  static const Json::json_pointer kFallback(fmt::format("/extensions/{}/fallback", kMeshopt));
   const Json value = buffer.contains(kFallback) ? buffer[kFallback] : Json(false);
   return value.is_boolean() && value.get<bool>();
 }
@@ -117,8 +117,8 @@ std::vector<Use> uses_of_buffers(const Json& document) {
 
 Result<std::optional<MeshoptView>> meshopt_view_of(const Json& document, const Json& view,
                                                    const std::string& view_name) {
-  const std::string where = view_name + ", " + kName;
-  LUXEL_TRY(const Json* extension, extension_of(view, kName, view_name));
+  const std::string where = view_name + ", " + kMeshopt;
+  LUXEL_TRY(const Json* extension, extension_of(view, kMeshopt, view_name));
   if (extension == nullptr) return std::nullopt;
   MeshoptView v;
   LUXEL_TRY_STATUS(check_index(document, *extension, "buffer", "buffers", where));
@@ -156,7 +156,7 @@ Status check_meshopt(const Json& document, const std::string& file) {
       return fail(ErrorCode::unsupported,
                   "{}: {} lies in buffer view {}, which {} compresses; "
                   "export pictures as they are",
-                  file, name_of("image", i, images[i]), view, kName);
+                  file, name_of("image", i, images[i]), view, kMeshopt);
   }
   const std::vector<Use> uses = uses_of_buffers(document);
   for (size_t i = 0; i < uses.size(); ++i) {

@@ -49,7 +49,7 @@ Status check_buffers(const tinygltf::Model& model, const Json& document,
   return {};
 }
 
-Result<std::string> text_of(const SourceFile& source) {
+Result<std::string> json_text_of(const SourceFile& source) {
   if (source.extension == ".glb") return json_of_glb(source.bytes, source.name);
   return std::string(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
 }
@@ -72,7 +72,7 @@ Json for_tinygltf(Json document, const std::vector<bool>& is_placeholder) {
 }  // namespace
 
 Result<LoadedGltf> load_gltf(const SourceFile& source) {
-  LUXEL_TRY(std::string text, text_of(source));
+  LUXEL_TRY(std::string text, json_text_of(source));
   LUXEL_TRY(Json document, parse_json(text, source.name));
   LUXEL_TRY_STATUS(check_document(document, source.name));
 

@@ -14,7 +14,7 @@ namespace {
 
 /// How many of each the file has so far; faces may only refer back or, in the files of some
 /// exporters, ahead: indices are judged at the end.
-struct Counts {
+struct ObjCounts {
   int64_t v = 0, vt = 0, vn = 0;
 };
 
@@ -31,7 +31,7 @@ struct BentFaces {
 };
 
 struct ObjScan {
-  Counts counts;
+  ObjCounts counts;
   Index largest[3];
   bool has_faces = false;
   std::set<std::string> with_color;

@@ -41,7 +41,7 @@ struct Element {
   std::vector<Property> properties;
 };
 
-struct Header {
+struct PlyHeader {
   enum class Format { ascii, little, big } format = Format::ascii;
   std::vector<Element> elements;
   std::string_view body;
@@ -92,12 +92,12 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 /// One line of the header; false when it makes no sense.
-bool read_header_line(const std::vector<std::string_view>& words, Header& header) {
+bool read_header_line(const std::vector<std::string_view>& words, PlyHeader& header) {
   if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return true;
   if (words[0] == "format" && words.size() >= 2) {
-    header.format = words[1] == "ascii"                  ? Header::Format::ascii
-                    : words[1] == "binary_little_endian" ? Header::Format::little
-                                                         : Header::Format::big;
+    header.format = words[1] == "ascii"                  ? PlyHeader::Format::ascii
+                    : words[1] == "binary_little_endian" ? PlyHeader::Format::little
+                                                         : PlyHeader::Format::big;
     return words[1] == "ascii" || words[1].starts_with("binary_");
   }
   if (words[0] == "element" && words.size() == 3) {
@@ -117,9 +117,9 @@ bool read_header_line(const std::vector<std::string_view>& words, Header& header
   return property.kind != Kind::none && (words.size() == 3 || property.list_count != Kind::none);
 }
 
-Result<Header> read_header(const SourceFile& source) {
+Result<PlyHeader> read_header(const SourceFile& source) {
   std::string_view text(reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size());
-  Header header;
+  PlyHeader header;
   for (size_t number = 1;; ++number) {
     const size_t end = text.find('\n');
     if (end == text.npos)
@@ -142,14 +142,14 @@ Result<Header> read_header(const SourceFile& source) {
 
 /// Hands out the numbers of the body one by one.
 struct Reader {
-  Header::Format format;
+  PlyHeader::Format format;
   std::string_view rest;
 
   /// False at the end of the file, or at a word that is no number.
   bool next(Kind kind, double& value) {
-    if (format != Header::Format::ascii) {
+    if (format != PlyHeader::Format::ascii) {
       if (rest.size() < size_of(kind)) return false;
-      value = number_at(rest.data(), kind, format == Header::Format::big);
+      value = number_at(rest.data(), kind, format == PlyHeader::Format::big);
       rest.remove_prefix(size_of(kind));
       return true;
     }
@@ -189,7 +189,7 @@ Status check_property(const Property& property, Reader& reader, uint64_t vertice
 }  // namespace
 
 Status check_ply(const SourceFile& source) {
-  LUXEL_TRY(const Header header, read_header(source));
+  LUXEL_TRY(const PlyHeader header, read_header(source));
   uint64_t vertices = 0;
   for (const Element& element : header.elements)
     if (element.name == "vertex") vertices = element.count;

@@ -154,12 +154,12 @@ TEST(DirectX, WithoutFramesAndMaterials) {
   }
 }
 
-struct Damage {
+struct XDamage {
   const char *from, *to, *says;
 };
 /// For the names of tests.
-void PrintTo(const Damage& p, std::ostream* out) { *out << p.says; }
-class DamagedDirectX : public ::testing::TestWithParam<Damage> {};
+void PrintTo(const XDamage& p, std::ostream* out) { *out << p.says; }
+class DamagedDirectX : public ::testing::TestWithParam<XDamage> {};
 
 TEST_P(DamagedDirectX, IsAnError) {
   std::string text = kRoom;
@@ -175,21 +175,22 @@ TEST_P(DamagedDirectX, IsAnError) {
 INSTANTIATE_TEST_SUITE_P(
     Places, DamagedDirectX,
     ::testing::Values(
-        Damage{"4;0,3,2,1;;", "4;0,3,2,4;;", "vertex index 4 is out of range, there are 4"},
-        Damage{"4;0,3,2,1;;", "4;0,3,2,-1;;", "vertex index -1 is out of range"},
-        Damage{"4;0,3,2,1;;", "4;0,3,two,1;;", "'two' is not a whole number"},
-        Damage{"4;0,3,2,1;;", "4000000000;0,3,2,1;;", "the count 4000000000 is more than"},
-        Damage{"square {\n   4;", "square {\n   999999999;", "the count 999999999 is more than"},
-        Damage{"4;0,0,0,0;;", "4;0,0,1,0;;", "normal index 1 is out of range, there are 1"},
-        Damage{"-0.8;;\n    1;", "-0.8;;\n    2;", "2 faces with normals, but the mesh has 1"},
-        Damage{"Coords {\n    4;", "Coords {\n    3;", "3 texture coordinates, but the mesh has 4"},
-        Damage{"Colors {\n    4;", "Colors {\n    5;", "5 vertex colours, but the mesh has 4"},
-        Damage{"3;1.0;0.5", "4;1.0;0.5", "the vertex of a colour 4 is out of range"},
-        Damage{"    { paint }\n", "", "material index 0 is out of range, the mesh lists 0"},
-        Damage{"Material glow", "Materiel glow", "material index 0 is out of range"},
-        Damage{"0,1;\n    0.5", "0,9;\n    0.5", "the vertex of a weight 9 is out of range"},
-        Damage{"2.0;1.0;0.0;,", "2.0;nan;0.0;,", "'nan' is not a finite number"},
-        Damage{"square {", "square", "stands where '{' should"}));
+        XDamage{"4;0,3,2,1;;", "4;0,3,2,4;;", "vertex index 4 is out of range, there are 4"},
+        XDamage{"4;0,3,2,1;;", "4;0,3,2,-1;;", "vertex index -1 is out of range"},
+        XDamage{"4;0,3,2,1;;", "4;0,3,two,1;;", "'two' is not a whole number"},
+        XDamage{"4;0,3,2,1;;", "4000000000;0,3,2,1;;", "the count 4000000000 is more than"},
+        XDamage{"square {\n   4;", "square {\n   999999999;", "the count 999999999 is more than"},
+        XDamage{"4;0,0,0,0;;", "4;0,0,1,0;;", "normal index 1 is out of range, there are 1"},
+        XDamage{"-0.8;;\n    1;", "-0.8;;\n    2;", "2 faces with normals, but the mesh has 1"},
+        XDamage{"Coords {\n    4;", "Coords {\n    3;",
+                "3 texture coordinates, but the mesh has 4"},
+        XDamage{"Colors {\n    4;", "Colors {\n    5;", "5 vertex colours, but the mesh has 4"},
+        XDamage{"3;1.0;0.5", "4;1.0;0.5", "the vertex of a colour 4 is out of range"},
+        XDamage{"    { paint }\n", "", "material index 0 is out of range, the mesh lists 0"},
+        XDamage{"Material glow", "Materiel glow", "material index 0 is out of range"},
+        XDamage{"0,1;\n    0.5", "0,9;\n    0.5", "the vertex of a weight 9 is out of range"},
+        XDamage{"2.0;1.0;0.0;,", "2.0;nan;0.0;,", "'nan' is not a finite number"},
+        XDamage{"square {", "square", "stands where '{' should"}));
 
 TEST(DirectX, AFileThatEndsEarlyIsAnErrorWhereverItEnds) {
   const std::string text = kRoom;

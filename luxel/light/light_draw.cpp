@@ -8,7 +8,7 @@
 namespace luxel::light {
 namespace {
 
-struct Receiver {
+struct DrawReceiver {
   std::span<const LightNode> nodes;
   Vec3 position, normal;
   const LeafImportance& leaf;
@@ -19,7 +19,7 @@ struct Receiver {
   }
 };
 
-CutEntry entry_for(const Receiver& at, uint32_t index) {
+CutEntry entry_for(const DrawReceiver& at, uint32_t index) {
   const LightNode& node = at.nodes[index];
   CutEntry entry{index, at.importance(index), 0};
   if (node.right_child == 0) return entry;
@@ -31,7 +31,7 @@ CutEntry entry_for(const Receiver& at, uint32_t index) {
 
 /// Splits the group whose members differ most, by importance times (radius / distance)^2, until
 /// there are max_cut entries. They come in the order of the tree.
-void find_cut(const Receiver& at, size_t max_cut, std::vector<CutEntry>& cut) {
+void find_cut(const DrawReceiver& at, size_t max_cut, std::vector<CutEntry>& cut) {
   const auto less = [](const CutEntry& p, const CutEntry& q) { return p.spread < q.spread; };
   cut.assign(1, entry_for(at, 0));
   while (!cut.empty() && cut.size() < max_cut && cut.front().spread > 0) {
@@ -57,7 +57,7 @@ double sum_importance(std::span<const CutEntry> cut) {
 
 /// Draws from the node that lies on the line from `begin` on, `expected` long. In double: there may
 /// be many lights of little importance on it.
-void draw_below(const Receiver& at, uint32_t index, double begin, double expected,
+void draw_below(const DrawReceiver& at, uint32_t index, double begin, double expected,
                 std::vector<LightDraw>& draws) {
   const double count = std::floor(begin + expected) - std::floor(begin);
   if (count < 1) return;
@@ -79,7 +79,7 @@ void draw_below(const Receiver& at, uint32_t index, double begin, double expecte
 void draw_lights(std::span<const LightNode> nodes, Vec3 position, Vec3 normal,
                  const LeafImportance& leaf, const DrawParams& params, LightDraws& out) {
   LUXEL_CHECK(!nodes.empty() && params.samples >= 1 && params.max_cut >= 1);
-  const Receiver at{nodes, position, normal, leaf};
+  const DrawReceiver at{nodes, position, normal, leaf};
   out.draws.clear();
   find_cut(at, params.max_cut, out.cut);
   const double per_ray = sum_importance(out.cut) / double(params.samples);

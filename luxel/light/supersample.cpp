@@ -18,7 +18,7 @@ namespace luxel::light {
 namespace {
 
 /// Texels of a part: each needs hundreds of rays, and a part is what a checkpoint keeps.
-constexpr size_t kGrain = 16;
+constexpr size_t kSupersampleGrain = 16;
 /// For one of many points, and for the sample of a texel, as gather asks.
 constexpr int kEnclosureRays = 16, kEnclosureRaysOfTexel = 64;
 /// Any number: it sets the random numbers of points apart from others of the same seed.
@@ -159,7 +159,7 @@ Result<Footprints> footprints(const TexelScene& in, int points, uint64_t seed, P
   const PointScene place = point_scene(in);
   std::vector<std::vector<Receiver>> found(all.size());
   progress.begin("footprints", all.size());
-  parallel_for(all.size(), kGrain, [&](size_t begin, size_t end) {
+  parallel_for(all.size(), kSupersampleGrain, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     std::vector<scene::SurfacePoint> spread;
     // Points of each texel that lie in the open; its own sample where there are none.
@@ -231,7 +231,7 @@ Result<uint64_t> keep_uneven(const TexelScene& in, const SupersampleParams& para
   std::atomic<uint64_t> rays{0};
   std::vector<uint8_t> uneven(which.size());
   progress.begin("supersample", which.size());
-  parallel_for(which.size(), kGrain, [&](size_t begin, size_t end) {
+  parallel_for(which.size(), kSupersampleGrain, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     PointBuffers work;
     uint64_t traced = 0;
@@ -333,11 +333,11 @@ Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32
   std::vector<uint8_t> is_averaged(which.size());
   const KeptStage kept = kept_stage(params, which, direct);
   progress.begin("supersample", which.size());
-  parallel_for(which.size(), kGrain, [&](size_t begin, size_t end) {
+  parallel_for(which.size(), kSupersampleGrain, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     const std::span<const uint32_t> these = which.subspan(begin, end - begin);
     const std::span<uint8_t> averaged = std::span(is_averaged).subspan(begin, end - begin);
-    if (const auto found = find_part(kept, begin / kGrain, these, averaged, direct)) {
+    if (const auto found = find_part(kept, begin / kSupersampleGrain, these, averaged, direct)) {
       rays += *found;
       return progress.skip(end - begin);
     }
@@ -383,7 +383,7 @@ Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32
       is_averaged[k] = 1;
     }
     rays += traced;
-    keep_part(kept, begin / kGrain, these, averaged, direct, traced);
+    keep_part(kept, begin / kSupersampleGrain, these, averaged, direct, traced);
     progress.advance(end - begin);
   });
   LUXEL_TRY_STATUS(stopped(progress));

@@ -14,7 +14,7 @@ namespace {
 /// right and z downwards in the map; its outermost texels are covered in part. A sun of E = 1
 /// stands in the zenith and has no disc.
 constexpr float kRim = 0.3f;
-constexpr int kSide = 16;
+constexpr int kSupersampleSide = 16;
 
 void add_quad(scene::Scene& scene, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   scene::Mesh mesh;
@@ -28,7 +28,7 @@ void add_quad(scene::Scene& scene, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
 scene::Scene sunlit_floor() {
   scene::Scene scene;
   scene.materials.emplace_back();
-  const float low = kRim, high = kSide - kRim;
+  const float low = kRim, high = kSupersampleSide - kRim;
   add_quad(scene, {low, 0, low}, {low, 0, high}, {high, 0, high}, {high, 0, low});
   scene::PunctualLight sun;
   sun.kind = scene::PunctualLight::Kind::directional;
@@ -41,7 +41,7 @@ scene::Scene sunlit_floor() {
 /// The floor's two triangles in the map; whatever else the scene has lies outside of it.
 atlas::Atlas atlas_of(const scene::Scene& scene) {
   atlas::Atlas atlas;
-  atlas.resolution = kSide;
+  atlas.resolution = kSupersampleSide;
   atlas.first_triangle = scene::first_triangles(scene);
   atlas.corners.resize(atlas.first_triangle.back(), {{{-9, -9}, {-8, -9}, {-9, -8}}});
   atlas.chart.resize(atlas.corners.size(), 1), atlas.chart_count = 2;
@@ -106,7 +106,7 @@ double area_of(const Polygon& polygon) {
 }
 
 Polygon floor_in(const atlas::Texel& texel) {
-  const double low = double(kRim), high = kSide - double(kRim);
+  const double low = double(kRim), high = kSupersampleSide - double(kRim);
   const double x0 = std::max(low, double(texel.x)), x1 = std::min(high, double(texel.x) + 1);
   const double y0 = std::max(low, double(texel.y)), y1 = std::min(high, double(texel.y) + 1);
   return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
@@ -172,11 +172,11 @@ TEST(Supersample, AShadowAlongAChartsBorderIsSeenToo) {
   size_t at_border = 0;
   for (size_t i = 0; i < lit.map.texels.size(); ++i) {
     EXPECT_EQ(lit.before.irradiance[i].x, 1.0f);
-    const bool border = lit.map.texels[i].x == kSide - 1;
+    const bool border = lit.map.texels[i].x == kSupersampleSide - 1;
     EXPECT_NEAR(lit.after.irradiance[i].x, border ? 5.0 / 7 : 1.0, border ? tolerance : 0) << i;
     at_border += border;
   }
-  EXPECT_EQ(at_border, size_t(kSide));
+  EXPECT_EQ(at_border, size_t(kSupersampleSide));
 }
 
 // What the estimate is for: on average over texels it is the squared error, here within a factor of

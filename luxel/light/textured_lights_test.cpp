@@ -55,10 +55,10 @@ transport::Elements floor_points() {
 }
 
 /// Root mean square of relative errors over floor_points(), and that of their mean.
-struct Errors {
+struct DrawErrors {
   double rms = 0, bias = 0;
 };
-Errors errors_of(const Spot& spot, int samples) {
+DrawErrors errors_of(const Spot& spot, int samples) {
   const scene::Scene scene = lamp_with(spot);
   const transport::Elements points = floor_points();
   const auto tracer = trace::RayTracer::build(scene);
@@ -66,7 +66,7 @@ Errors errors_of(const Spot& spot, int samples) {
   const auto light =
       direct_light(scene, points, collect_lights(scene), *tracer, {samples, 1}, progress);
   EXPECT_TRUE(light);
-  Errors e;
+  DrawErrors e;
   for (size_t i = 0; i < points.size(); ++i) {
     const double d = double(light->irradiance[i].x) / exact_at(spot, points.position[i]) - 1;
     e.rms += d * d / double(points.size()), e.bias += d / double(points.size());
@@ -80,7 +80,7 @@ Errors errors_of(const Spot& spot, int samples) {
 // pieces: with 64 rays that is an error of half (of twice) the light.
 TEST(TexturedLights, ABrightRowBringsWhatItsGeometryWould) {
   for (const Spot& row : {Spot{16, 0, 16, 5, 6}, Spot{64, 0, 64, 41, 42}}) {
-    const Errors e = errors_of(row, 64);
+    const DrawErrors e = errors_of(row, 64);
     EXPECT_LT(e.rms, 0.02) << row.side;
     EXPECT_LT(std::abs(e.bias), 0.01) << row.side;
   }
@@ -88,13 +88,13 @@ TEST(TexturedLights, ABrightRowBringsWhatItsGeometryWould) {
 
 // Rows thinner than the pieces: a quarter of the rays meets it.
 TEST(TexturedLights, ARowThinnerThanThePiecesIsNotBiased) {
-  const Errors e = errors_of({256, 0, 256, 77, 78}, 4096);
+  const DrawErrors e = errors_of({256, 0, 256, 77, 78}, 4096);
   EXPECT_LT(e.rms, 0.05);
   EXPECT_LT(std::abs(e.bias), 0.02);
 }
 
 TEST(TexturedLights, OneBrightTexelIsFound) {
-  const Errors e = errors_of({128, 90, 91, 33, 34}, 64);
+  const DrawErrors e = errors_of({128, 90, 91, 33, 34}, 64);
   EXPECT_LT(e.rms, 0.02);
 }
 

@@ -22,5 +22,7 @@ std::vector<image::Image> lightmap_pages(const atlas::Atlas& atlas, const atlas:
 /// its covered 8-neighbours (of earlier rings) and A = 0.5. Covered texels never change. rings < 0
 /// fills the whole image.
 void dilate(image::Image& lightmap, int rings);
+/// Rings of a bake's lightmaps: enough for bilinear look-ups in four mipmap levels.
+inline constexpr int kDilationRings = 8;
 
 }  // namespace luxel::post

@@ -9,12 +9,12 @@
 namespace luxel::post {
 namespace {
 
-constexpr int kSide = 24;
+constexpr int kSheetSide = 24;
 
 TEST(FindSeams, TheCutIsFoundWeldedOrNot) {
   for (const bool welded : {true, false}) {
     const scene::Scene scene = two_squares(0, welded);
-    const std::vector<Seam> seams = find_seams(scene, two_charts(kSide));
+    const std::vector<Seam> seams = find_seams(scene, two_charts(kSheetSide));
     ASSERT_EQ(seams.size(), 1u) << welded;
     // The shared edge is x = 0, from y = 0 to 1: in the left chart it is the right border, in the
     // right chart, turned, the upper border. The same end of the edge comes first on both sides.
@@ -22,37 +22,37 @@ TEST(FindSeams, TheCutIsFoundWeldedOrNot) {
     const bool upwards = s.a0.y < s.a1.y;
     const Vec2 a0 = upwards ? s.a0 : s.a1, a1 = upwards ? s.a1 : s.a0;
     const Vec2 b0 = upwards ? s.b0 : s.b1, b1 = upwards ? s.b1 : s.b0;
-    EXPECT_EQ(a0, (Vec2{2 + kSide, 2}));
-    EXPECT_EQ(a1, (Vec2{2 + kSide, 2 + kSide}));
-    EXPECT_EQ(b0, (Vec2{kSide + 6.25f, 2.5f}));
-    EXPECT_EQ(b1, (Vec2{2 * kSide + 6.25f, 2.5f}));
+    EXPECT_EQ(a0, (Vec2{2 + kSheetSide, 2}));
+    EXPECT_EQ(a1, (Vec2{2 + kSheetSide, 2 + kSheetSide}));
+    EXPECT_EQ(b0, (Vec2{kSheetSide + 6.25f, 2.5f}));
+    EXPECT_EQ(b1, (Vec2{2 * kSheetSide + 6.25f, 2.5f}));
   }
 }
 
 TEST(FindSeams, CreasesAreLeftAlone) {
-  EXPECT_EQ(find_seams(two_squares(0.2f, true), two_charts(kSide)).size(), 0u);
-  EXPECT_EQ(find_seams(two_squares(0.05f, true), two_charts(kSide)).size(), 1u);
-  EXPECT_EQ(find_seams(two_squares(0.2f, true), two_charts(kSide), 0.3f).size(), 1u);
-  EXPECT_EQ(find_seams(two_squares(kPi, true), two_charts(kSide)).size(), 0u);
+  EXPECT_EQ(find_seams(two_squares(0.2f, true), two_charts(kSheetSide)).size(), 0u);
+  EXPECT_EQ(find_seams(two_squares(0.05f, true), two_charts(kSheetSide)).size(), 1u);
+  EXPECT_EQ(find_seams(two_squares(0.2f, true), two_charts(kSheetSide), 0.3f).size(), 1u);
+  EXPECT_EQ(find_seams(two_squares(kPi, true), two_charts(kSheetSide)).size(), 0u);
 }
 
 TEST(FindSeams, SmoothNormalsMakeASeamOfACrease) {
   scene::Scene scene = two_squares(0.4f, true);
   const Vec3 middle = normalize({-std::sin(0.2f), 0, std::cos(0.2f)});
   scene.meshes[0].normals.assign(8, middle);
-  EXPECT_EQ(find_seams(scene, two_charts(kSide)).size(), 1u);
+  EXPECT_EQ(find_seams(scene, two_charts(kSheetSide)).size(), 1u);
 }
 
 TEST(FindSeams, MirroredInstancesToo) {
   scene::Scene scene = two_squares(0, false);
   scene.instances[0].world_from_object = scaling({-2, 1, 1});
-  EXPECT_EQ(find_seams(scene, two_charts(kSide)).size(), 1u);
+  EXPECT_EQ(find_seams(scene, two_charts(kSheetSide)).size(), 1u);
 }
 
 TEST(FindSeams, TwoInstancesHaveTheirOwnSeamsAndNoneBetweenThem) {
   scene::Scene scene = two_squares(0, true);
   scene.instances.push_back(scene.instances[0]);
-  atlas::Atlas atlas = two_charts(kSide);
+  atlas::Atlas atlas = two_charts(kSheetSide);
   atlas.first_triangle = {0, 4, 8};
   for (int i = 0; i < 4; ++i) {
     auto moved = atlas.corners[size_t(i)];
@@ -64,22 +64,22 @@ TEST(FindSeams, TwoInstancesHaveTheirOwnSeamsAndNoneBetweenThem) {
 
 TEST(FindSeams, ChartsThatHangTogetherHaveNone) {
   const scene::Scene scene = two_squares(0, true);
-  atlas::Atlas atlas = two_charts(kSide);
+  atlas::Atlas atlas = two_charts(kSheetSide);
   for (size_t t = 2; t < 4; ++t)
     for (size_t c = 0; c < 3; ++c) {
       const Vec3 p = scene.meshes[0].positions[scene.meshes[0].triangles[t][c]];
-      atlas.corners[t][c] = {2 + kSide * (p.x + 1), 2 + kSide * p.y};
+      atlas.corners[t][c] = {2 + kSheetSide * (p.x + 1), 2 + kSheetSide * p.y};
     }
   EXPECT_EQ(find_seams(scene, atlas).size(), 0u);
 }
 
 /// The sheet with the left chart at `left` and the right one at `right`, plus relative noise.
-struct Sheet {
-  atlas::TexelMap map = two_chart_map(kSide);
-  std::vector<Seam> seams = find_seams(two_squares(0, true), two_charts(kSide));
+struct SeamSheet {
+  atlas::TexelMap map = two_chart_map(kSheetSide);
+  std::vector<Seam> seams = find_seams(two_squares(0, true), two_charts(kSheetSide));
   std::vector<Rgb> values;
 
-  Sheet(Rgb left, Rgb right, float noise) {
+  SeamSheet(Rgb left, Rgb right, float noise) {
     RandomStream random{9};
     for (const atlas::Texel& t : map.texels)
       values.push_back((t.triangle_number == 0 ? left : right) *
@@ -95,14 +95,14 @@ struct Sheet {
 
 TEST(SeamResidual, IsTheJumpOverTheMean) {
   // Left 1, right 3: the difference is 2 everywhere, the mean 2.
-  const Sheet sheet({1, 1, 1}, {3, 3, 3}, 0);
+  const SeamSheet sheet({1, 1, 1}, {3, 3, 3}, 0);
   EXPECT_NEAR(sheet.residual(), 1.0, 1e-6);
-  EXPECT_EQ(Sheet({2, 2, 2}, {2, 2, 2}, 0).residual(), 0.0);
+  EXPECT_EQ(SeamSheet({2, 2, 2}, {2, 2, 2}, 0).residual(), 0.0);
 }
 
 TEST(StitchSeams, AJumpAcrossTheCutCloses) {
   for (const float noise : {0.0f, 0.2f}) {
-    Sheet sheet({1, 2, 0.5f}, {3, 1, 0.6f}, noise);
+    SeamSheet sheet({1, 2, 0.5f}, {3, 1, 0.6f}, noise);
     const double before = sheet.residual();
     sheet.stitch();
     EXPECT_LT(sheet.residual(), before / 50) << noise;
@@ -110,28 +110,30 @@ TEST(StitchSeams, AJumpAcrossTheCutCloses) {
 }
 
 TEST(StitchSeams, OnlyTexelsUnderTheSeamMove) {
-  Sheet sheet({1, 2, 0.5f}, {3, 1, 0.6f}, 0.2f);
+  SeamSheet sheet({1, 2, 0.5f}, {3, 1, 0.6f}, 0.2f);
   const std::vector<Rgb> before = sheet.values;
   sheet.stitch();
   int moved = 0;
   for (size_t i = 0; i < before.size(); ++i) {
     const atlas::Texel& t = sheet.map.texels[i];
-    // The seam: x = kSide + 2 on the left (a texel border), y = 2.5 on the right (a texel centre).
-    const bool may_move = t.triangle_number == 0 ? t.x == kSide + 1 : t.y == 2;
+    // The seam: x = kSheetSide + 2 on the left (a texel border), y = 2.5 on the right (a texel
+    // centre).
+    const bool may_move = t.triangle_number == 0 ? t.x == kSheetSide + 1 : t.y == 2;
     if (!may_move) {
       EXPECT_EQ(sheet.values[i], before[i]) << t.x << " " << t.y;
     } else if (sheet.values[i] != before[i]) {
       ++moved;
     }
   }
-  EXPECT_GT(moved, 2 * kSide - 2);
+  EXPECT_GT(moved, 2 * kSheetSide - 2);
 }
 
 TEST(StitchSeams, WhatOneSideGainsTheOtherLoses) {
-  Sheet sheet({1, 1, 1}, {3, 3, 3}, 0);
+  SeamSheet sheet({1, 1, 1}, {3, 3, 3}, 0);
   sheet.stitch();
   const uint32_t middle =
-      sheet.map.texel_at[size_t((2 + kSide / 2) * sheet.map.resolution) + size_t(kSide + 1)];
+      sheet.map
+          .texel_at[size_t((2 + kSheetSide / 2) * sheet.map.resolution) + size_t(kSheetSide + 1)];
   EXPECT_NEAR(sheet.values[middle].x, 2.0f, 0.02f);
 }
 
@@ -141,7 +143,7 @@ TEST(StitchSeams, WhatOneSideGainsTheOtherLoses) {
 // to some tens of that: values that move together keep but a small weight, so that the system is
 // ill conditioned.
 TEST(StitchLayers, PartsChangeAsTheirSumDoes) {
-  Sheet sheet({1, 2, 0.5f}, {3, 1, 0.6f}, 0.2f);
+  SeamSheet sheet({1, 2, 0.5f}, {3, 1, 0.6f}, 0.2f);
   const std::vector<Rgb> before = sheet.values;
   std::vector<std::vector<Rgb>> parts(2, std::vector<Rgb>(before.size()));
   for (size_t i = 0; i < before.size(); ++i) {
@@ -160,14 +162,14 @@ TEST(StitchLayers, PartsChangeAsTheirSumDoes) {
 }
 
 TEST(StitchSeams, AConstantFieldStaysBitForBit) {
-  Sheet sheet({0.3f, 0.7f, 1.1f}, {0.3f, 0.7f, 1.1f}, 0);
+  SeamSheet sheet({0.3f, 0.7f, 1.1f}, {0.3f, 0.7f, 1.1f}, 0);
   const std::vector<Rgb> before = sheet.values;
   sheet.stitch();
   EXPECT_EQ(sheet.values, before);
 }
 
 TEST(StitchSeams, DoesNotDependOnTheUnitOfLight) {
-  Sheet sheet({1, 2, 0.5f}, {3, 1, 0.6f}, 0.2f), brighter = sheet;
+  SeamSheet sheet({1, 2, 0.5f}, {3, 1, 0.6f}, 0.2f), brighter = sheet;
   for (Rgb& v : brighter.values) v *= 1024;
   sheet.stitch(), brighter.stitch();
   for (size_t i = 0; i < sheet.values.size(); ++i)
@@ -175,20 +177,20 @@ TEST(StitchSeams, DoesNotDependOnTheUnitOfLight) {
 }
 
 TEST(StitchSeams, ABrightTexelDoesNotBleedAlongTheSeam) {
-  Sheet sheet({1, 1, 1}, {1, 1, 1}, 0);
+  SeamSheet sheet({1, 1, 1}, {1, 1, 1}, 0);
   const auto at = [&](int x, int y) {
     return sheet.map.texel_at[size_t(y * sheet.map.resolution + x)];
   };
-  const int y = 2 + kSide / 2;
-  sheet.values[at(kSide + 1, y)] = {1000, 1000, 1000};
+  const int y = 2 + kSheetSide / 2;
+  sheet.values[at(kSheetSide + 1, y)] = {1000, 1000, 1000};
   sheet.stitch();
-  EXPECT_LT(sheet.values[at(kSide + 1, y + 4)].x, 1.5f);
-  EXPECT_LT(sheet.values[at(kSide + 1, y - 4)].x, 1.5f);
-  EXPECT_GT(sheet.values[at(kSide + 1, y - 4)].x, 0.5f);
+  EXPECT_LT(sheet.values[at(kSheetSide + 1, y + 4)].x, 1.5f);
+  EXPECT_LT(sheet.values[at(kSheetSide + 1, y - 4)].x, 1.5f);
+  EXPECT_GT(sheet.values[at(kSheetSide + 1, y - 4)].x, 0.5f);
 }
 
 TEST(StitchSeams, StaysNonNegativeAndFiniteOverAHugeRange) {
-  Sheet sheet({1, 1, 1}, {1, 1, 1}, 0);
+  SeamSheet sheet({1, 1, 1}, {1, 1, 1}, 0);
   RandomStream random{11};
   for (Rgb& v : sheet.values) {
     const float e = std::pow(10.0f, 12 * random.next() - 6);
@@ -203,13 +205,13 @@ TEST(StitchSeams, StaysNonNegativeAndFiniteOverAHugeRange) {
 }
 
 TEST(StitchSeams, BlackStaysBlack) {
-  Sheet sheet({}, {}, 0);
+  SeamSheet sheet({}, {}, 0);
   sheet.stitch();
   for (const Rgb& v : sheet.values) EXPECT_EQ(v, Rgb{});
 }
 
 TEST(StitchSeams, SameBitsForAnyThreadCount) {
-  Sheet one({1, 2, 0.5f}, {3, 1, 0.6f}, 0.5f), seven = one;
+  SeamSheet one({1, 2, 0.5f}, {3, 1, 0.6f}, 0.5f), seven = one;
   {
     const ThreadLimit limit(1);
     one.stitch();
@@ -222,7 +224,7 @@ TEST(StitchSeams, SameBitsForAnyThreadCount) {
 }
 
 TEST(StitchSeams, StopsWhenCancelled) {
-  Sheet sheet({1, 1, 1}, {3, 3, 3}, 0);
+  SeamSheet sheet({1, 1, 1}, {3, 3, 3}, 0);
   Progress progress;
   progress.request_cancel();
   const Status status = stitch_seams(sheet.map, sheet.seams, {}, sheet.values, progress);

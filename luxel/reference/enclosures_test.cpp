@@ -12,7 +12,6 @@ namespace {
 
 using namespace testing;
 
-constexpr Rgb gray(float v) { return {v, v, v}; }
 /// Emission that makes self-emitted radiosity e.
 constexpr Rgb exitance(float e) { return gray(e / kPi); }
 

@@ -12,7 +12,6 @@ namespace shared = luxel::testing_support;
 using namespace testing;
 using Kind = scene::PunctualLight::Kind;
 
-constexpr Rgb gray(float v) { return {v, v, v}; }
 const PathParams kDirect{.samples = 2000, .bounces = 0};
 
 Points one_point(Vec3 p, Vec3 n = {0, 1, 0}) {

@@ -15,6 +15,8 @@
 
 namespace luxel::reference::testing {
 
+constexpr Rgb gray(float v) { return {v, v, v}; }
+
 struct Points {
   std::vector<Vec3> position, normal;
   void add(Vec3 p, Vec3 n) { position.push_back(p), normal.push_back(n); }

@@ -14,8 +14,6 @@ namespace {
 
 using namespace testing;
 
-constexpr Rgb gray(float v) { return {v, v, v}; }
-
 double rms_error(const TexelPaths& result, double exact) {
   double sum2 = 0;
   for (const Rgb& e : result.irradiance) sum2 += (double(e.x) - exact) * (double(e.x) - exact);

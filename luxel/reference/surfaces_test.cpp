@@ -13,8 +13,6 @@ namespace {
 
 using namespace testing;
 
-constexpr Rgb gray(float v) { return {v, v, v}; }
-
 scene::PunctualLight sun(Vec3 direction) {
   scene::PunctualLight light;
   light.kind = scene::PunctualLight::Kind::directional;

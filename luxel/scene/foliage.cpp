@@ -7,17 +7,17 @@
 namespace luxel::scene {
 namespace {
 
-constexpr int kTexels = 64, kTwigs = 14, kLeavesPerTwig = 7;
+constexpr int kLeafTexels = 64, kTwigs = 14, kLeavesPerTwig = 7;
 
 /// A pointed leaf with a paler vein, its stalk at v = 1; the rest is a hole.
 Texture leaf_texture() {
   Texture t;
   t.name = "leaf";
-  t.width = t.height = kTexels;
-  for (int j = 0; j < kTexels; ++j)
-    for (int i = 0; i < kTexels; ++i) {
-      const float across = std::abs((float(i) + 0.5f) / kTexels - 0.5f);
-      const float along = (float(j) + 0.5f) / kTexels;
+  t.width = t.height = kLeafTexels;
+  for (int j = 0; j < kLeafTexels; ++j)
+    for (int i = 0; i < kLeafTexels; ++i) {
+      const float across = std::abs((float(i) + 0.5f) / kLeafTexels - 0.5f);
+      const float along = (float(j) + 0.5f) / kLeafTexels;
       const float half_width = 1.7f * along * (1 - along) * (1.15f - 0.35f * along);
       const bool solid = across < half_width;
       const uint8_t shade = across < 0.02f ? 235 : 200;

@@ -8,7 +8,7 @@ namespace {
 
 /// Quads along a wall; the lamp takes the one in the middle of 5 x 5, a fifth of the width.
 constexpr int kQuads = 5;
-constexpr float kWidth_m = 2;
+constexpr float kBoxWidth_m = 2;
 
 /// A flat rectangle of the box: corner, and the sides along which it is cut into quads. Seen from
 /// the front, `v` is 90 degrees counter-clockwise from `u`.
@@ -20,8 +20,8 @@ struct Wall {
 Vec3 grid_point(const Wall& wall, int i, int j) {
   std::array<float, 3> p{};
   for (size_t k = 0; k < 3; ++k)
-    p[k] = float(wall.corner[k] + i * wall.u[k] + j * wall.v[k]) * kWidth_m / float(kQuads);
-  return {p[0] - kWidth_m / 2, p[1], p[2] - kWidth_m / 2};
+    p[k] = float(wall.corner[k] + i * wall.u[k] + j * wall.v[k]) * kBoxWidth_m / float(kQuads);
+  return {p[0] - kBoxWidth_m / 2, p[1], p[2] - kBoxWidth_m / 2};
 }
 
 /// The quads [i0, i1) x [j0, j1) of a wall as a mesh of their own.

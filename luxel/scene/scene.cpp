@@ -7,9 +7,6 @@
 namespace luxel::scene {
 namespace {
 
-/// A surface that reflected all light would keep it for ever: sums over bounces would not end.
-constexpr float kMaxReflectance = 0.99f;
-
 const Mesh& mesh_of(const Scene& scene, uint32_t instance) {
   return scene.meshes[scene.instances[instance].mesh];
 }

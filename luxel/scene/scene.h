@@ -181,6 +181,10 @@ Vec3 shading_normal(const Scene& scene, const SurfacePoint& p);
 /// The place of a surface point in the world [m].
 Vec3 world_position(const Scene& scene, const SurfacePoint& p);
 
+/// The most that a surface reflects. One that reflected all light would keep it for ever: sums over
+/// bounces would not end.
+inline constexpr float kMaxReflectance = 0.99f;
+
 /// The material of a surface point's triangle.
 const Material& material_at(const Scene& scene, const SurfacePoint& p);
 /// rho = base colour * (1 - metallic) * (1 - t), each channel in [0, 0.99]; t is the share that is

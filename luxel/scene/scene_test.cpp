@@ -7,7 +7,7 @@
 namespace luxel::scene {
 namespace {
 
-void expect_near(Vec3 a, Vec3 b, float tolerance = 1e-6f) {
+void expect_vec_near(Vec3 a, Vec3 b, float tolerance = 1e-6f) {
   EXPECT_LT(length(a - b), tolerance)
       << a.x << ' ' << a.y << ' ' << a.z << " against " << b.x << ' ' << b.y << ' ' << b.z;
 }
@@ -33,22 +33,22 @@ TEST(WorldTriangle, KeepsTheOrderOfTheCorners) {
   const Mat34 m = translation({1, 2, 3}) * scaling({2, -3, 4});
   const Scene scene = one_triangle(m);
   const Triangle3 t = world_triangle(scene, 0, 0);
-  expect_near(t.a, {1, 2, 3});
-  expect_near(t.b, {3, 2, 3});
-  expect_near(t.c, {1, -1, 3});
-  expect_near(world_position(scene, at_uv(0.25f, 0.5f)), {1.5f, 0.5f, 3});
+  expect_vec_near(t.a, {1, 2, 3});
+  expect_vec_near(t.b, {3, 2, 3});
+  expect_vec_near(t.c, {1, -1, 3});
+  expect_vec_near(world_position(scene, at_uv(0.25f, 0.5f)), {1.5f, 0.5f, 3});
 }
 
 // glTF: the front side of a mirrored instance is the image of its front side. Scaling x or y by -1
 // leaves the triangle's plane and its front towards +z; scaling z turns the front towards -z.
 TEST(FrontNormal, IsTheImageOfTheFrontSideUnderMirroring) {
   const auto normal = [](Vec3 s) { return front_normal(one_triangle(scaling(s)), 0, 0); };
-  expect_near(normal({1, 1, 1}), {0, 0, 1});
-  expect_near(normal({-1, 1, 1}), {0, 0, 1});
-  expect_near(normal({1, -2, 1}), {0, 0, 1});
-  expect_near(normal({1, 1, -3}), {0, 0, -1});
-  expect_near(normal({-1, -1, -1}), {0, 0, -1});
-  expect_near(normal({1, 0, 1}), {0, 0, 0});
+  expect_vec_near(normal({1, 1, 1}), {0, 0, 1});
+  expect_vec_near(normal({-1, 1, 1}), {0, 0, 1});
+  expect_vec_near(normal({1, -2, 1}), {0, 0, 1});
+  expect_vec_near(normal({1, 1, -3}), {0, 0, -1});
+  expect_vec_near(normal({-1, -1, -1}), {0, 0, -1});
+  expect_vec_near(normal({1, 0, 1}), {0, 0, 0});
 }
 
 // A plane z = x with its true normal (-1, 0, 1), stretched by 2 along x: z = x / 2, (-1, 0, 2).
@@ -57,26 +57,26 @@ TEST(ShadingNormal, FollowsTheSurfaceUnderNonUniformScaleAndMirroring) {
     Scene scene = one_triangle(scaling({2 * side, 1, 1}));
     scene.meshes[0].positions = {{0, 0, 0}, {1, 0, 1}, {0, 1, 0}};
     scene.meshes[0].normals.assign(3, normalize(Vec3{-1, 0, 1}));
-    expect_near(shading_normal(scene, at_uv(.3f, .3f)), normalize(Vec3{-side, 0, 2}));
-    expect_near(front_normal(scene, 0, 0), normalize(Vec3{-side, 0, 2}));
+    expect_vec_near(shading_normal(scene, at_uv(.3f, .3f)), normalize(Vec3{-side, 0, 2}));
+    expect_vec_near(front_normal(scene, 0, 0), normalize(Vec3{-side, 0, 2}));
   }
 }
 
 TEST(ShadingNormal, InterpolatesAndStaysOnTheFrontSide) {
   Scene scene = one_triangle();
   scene.meshes[0].normals = {normalize(Vec3{0.3f, 0, 1}), {0, 0, 1}, {0, 0, 1}};
-  expect_near(shading_normal(scene, at_uv(0, 0)), normalize(Vec3{0.3f, 0, 1}));
+  expect_vec_near(shading_normal(scene, at_uv(0, 0)), normalize(Vec3{0.3f, 0, 1}));
   const Vec3 half = normalize(scene.meshes[0].normals[0] + Vec3{0, 0, 1});
-  expect_near(shading_normal(scene, at_uv(0.5f, 0)), half);
+  expect_vec_near(shading_normal(scene, at_uv(0.5f, 0)), half);
   // Files with normals turned inwards.
   for (Vec3& n : scene.meshes[0].normals) n = -n;
-  expect_near(shading_normal(scene, at_uv(0.5f, 0)), half);
+  expect_vec_near(shading_normal(scene, at_uv(0.5f, 0)), half);
   // Normals that cancel out, or lie in the surface.
   scene.meshes[0].normals = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}};
-  expect_near(shading_normal(scene, at_uv(0.5f, 0)), {0, 0, 1});
-  expect_near(shading_normal(scene, at_uv(0, 1)), {0, 0, 1});
+  expect_vec_near(shading_normal(scene, at_uv(0.5f, 0)), {0, 0, 1});
+  expect_vec_near(shading_normal(scene, at_uv(0, 1)), {0, 0, 1});
   scene.meshes[0].normals.clear();
-  expect_near(shading_normal(scene, at_uv(0.1f, 0.2f)), {0, 0, 1});
+  expect_vec_near(shading_normal(scene, at_uv(0.1f, 0.2f)), {0, 0, 1});
 }
 
 /// 4 x 2 texels whose red is the texel's number times 20, green 255 - red, blue 0, alpha 128 + x.
@@ -200,24 +200,24 @@ TEST(Reflectance, IsTheDiffusePartClampedTo099) {
   Scene scene = one_triangle();
   Material& m = scene.materials[0];
   m.base_color = {0.8f, 1, -1};
-  expect_near(reflectance_at(scene, {}), {0.8f, 0.99f, 0});
+  expect_vec_near(reflectance_at(scene, {}), {0.8f, 0.99f, 0});
   m.metallic = 0.25f;
-  expect_near(reflectance_at(scene, {}), {0.6f, 0.75f, 0});
+  expect_vec_near(reflectance_at(scene, {}), {0.6f, 0.75f, 0});
   m.metallic = 1;
-  expect_near(reflectance_at(scene, {}), {0, 0, 0});
+  expect_vec_near(reflectance_at(scene, {}), {0, 0, 0});
   // The metallic texture counts in its blue channel, which is linear; here it is 0.
   scene.textures.push_back(numbered_texture());
   m.metallic_texture.texture = 0;
-  expect_near(reflectance_at(scene, {}), {0.8f, 0.99f, 0});
+  expect_vec_near(reflectance_at(scene, {}), {0.8f, 0.99f, 0});
 }
 
 TEST(Emission, IsTintedByItsTexture) {
   Scene scene = one_triangle();
   scene.textures.push_back(numbered_texture());
   scene.materials[0].emission = {10, 0, 0};
-  expect_near(emission_at(scene, at_uv(0.625f, 0.25f)), {10, 0, 0});
+  expect_vec_near(emission_at(scene, at_uv(0.625f, 0.25f)), {10, 0, 0});
   scene.materials[0].emission_texture.texture = 0;
-  expect_near(emission_at(scene, at_uv(0.625f, 0.25f)), {10 * linear_red(2, 0), 0, 0});
+  expect_vec_near(emission_at(scene, at_uv(0.625f, 0.25f)), {10 * linear_red(2, 0), 0, 0});
 }
 
 TEST(AlphaMask, CutsHolesOnlyInMaskMode) {
@@ -247,8 +247,8 @@ TEST(WorldBounds, HoldsAllInstances) {
   EXPECT_TRUE(world_bounds({}).empty());
   scene.instances.push_back({"", 0, translation({5, 5, 5}) * scaling({-1, 2, 1})});
   const Box3 box = world_bounds(scene);
-  expect_near(box.lower, {0, 0, 0});
-  expect_near(box.upper, {5, 7, 5});
+  expect_vec_near(box.lower, {0, 0, 0});
+  expect_vec_near(box.upper, {5, 7, 5});
 }
 
 }  // namespace

@@ -54,8 +54,8 @@ Mesh sphere(std::string name, float radius_m, int slices, int stacks, uint32_t m
     for (int slice = 0; slice < slices; ++slice) {
       const float theta = kPi * float(ring) / float(stacks);
       const float phi = 2 * kPi * float(slice) / float(slices);
-      mesh.normals.push_back(normalize(
-          {std::sin(theta) * std::cos(phi), std::cos(theta), -std::sin(theta) * std::sin(phi)}));
+      mesh.normals.push_back(normalize(Vec3{std::sin(theta) * std::cos(phi), std::cos(theta),
+                                            -std::sin(theta) * std::sin(phi)}));
     }
   mesh.normals.push_back({0, -1, 0});
   for (const Vec3& n : mesh.normals) mesh.positions.push_back(n * radius_m);

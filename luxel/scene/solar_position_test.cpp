@@ -7,10 +7,11 @@
 namespace luxel::scene {
 namespace {
 
-constexpr double kDegree = kPiDouble / 180;
+constexpr double kSolarDegree = kPiDouble / 180;
 
 SolarPosition at(const UtcTime& time, double latitude_deg, double longitude_deg) {
-  return solar_position(julian_day(time), latitude_deg * kDegree, longitude_deg * kDegree);
+  return solar_position(julian_day(time), latitude_deg * kSolarDegree,
+                        longitude_deg * kSolarDegree);
 }
 
 // [Meeus98, chapter 7]: the examples there.
@@ -26,15 +27,15 @@ TEST(JulianDay, OfKnownMoments) {
 // without refraction 39.872046, azimuth 194.340241 degrees. The claim of 0.01 degrees, twice.
 TEST(SolarPosition, TheExampleOfTheSolarPositionAlgorithm) {
   const SolarPosition sun = at({2003, 10, 17, 19 + 30.5 / 60}, 39.742476, -105.1786);
-  EXPECT_NEAR(sun.elevation_rad / kDegree, 39.872046, 0.02);
-  EXPECT_NEAR(sun.azimuth_rad / kDegree, 194.340241, 0.02);
+  EXPECT_NEAR(sun.elevation_rad / kSolarDegree, 39.872046, 0.02);
+  EXPECT_NEAR(sun.azimuth_rad / kSolarDegree, 194.340241, 0.02);
 }
 
 // From the pole the sun's elevation is its declination. [Meeus98, example 25.a]: 13 October 1992,
 // 0 h: -7.78507 degrees, 0.99766 au.
 TEST(SolarPosition, TheExampleOfMeeus) {
   const SolarPosition sun = at({1992, 10, 13, 0}, 90, 0);
-  EXPECT_NEAR(sun.elevation_rad / kDegree, -7.78507, 0.01);
+  EXPECT_NEAR(sun.elevation_rad / kSolarDegree, -7.78507, 0.01);
   EXPECT_NEAR(sun.distance_au, 0.99766, 1e-5);
 }
 
@@ -44,7 +45,7 @@ TEST(SolarPosition, TheExampleOfMeeus) {
 // Moon and planets, which are left out, move the earth by up to 1e-4 au.
 TEST(SolarPosition, TheSeasonsOf2026) {
   const auto declination = [](const UtcTime& time) {
-    return at(time, 90, 0).elevation_rad / kDegree;
+    return at(time, 90, 0).elevation_rad / kSolarDegree;
   };
   EXPECT_NEAR(declination({2026, 3, 20, 14 + 46 / 60.0}), 0, 0.01);
   EXPECT_NEAR(declination({2026, 9, 23, 5 / 60.0}), 0, 0.01);
@@ -57,8 +58,8 @@ TEST(SolarPosition, TheSeasonsOf2026) {
 // The equation of time by the almanac: the sun is in the south at 12:14:12 UTC on 11 February 2026
 // and at 11:43:34 on 3 November at Greenwich, within a few seconds (0.1 degrees are 24 s).
 TEST(SolarPosition, NoonFollowsTheEquationOfTime) {
-  EXPECT_NEAR(at({2026, 2, 11, 12 + 14.2 / 60}, 51.48, 0).azimuth_rad / kDegree, 180, 0.1);
-  EXPECT_NEAR(at({2026, 11, 3, 11 + 43.57 / 60}, 51.48, 0).azimuth_rad / kDegree, 180, 0.1);
+  EXPECT_NEAR(at({2026, 2, 11, 12 + 14.2 / 60}, 51.48, 0).azimuth_rad / kSolarDegree, 180, 0.1);
+  EXPECT_NEAR(at({2026, 11, 3, 11 + 43.57 / 60}, 51.48, 0).azimuth_rad / kSolarDegree, 180, 0.1);
 }
 
 // In the morning it stands in the east, everywhere between the tropics and the poles.

@@ -8,8 +8,6 @@
 namespace luxel::scene {
 namespace {
 
-constexpr float kMaxReflectance = 0.99f;
-
 struct DVec3 {
   double x, y, z;
 };

@@ -54,8 +54,8 @@ TEST(Elements, StayOnFlatAndOnHollowTriangles) {
   const Vec3 up{0, 0, 1};
   for (const auto& normals :
        {std::vector<Vec3>{}, std::vector<Vec3>{up, up, up},
-        std::vector<Vec3>{normalize({0.2f, 0.2f, 1}), normalize({-0.2f, 0, 1}),
-                          normalize({0, -0.2f, 1})}}) {
+        std::vector<Vec3>{normalize(Vec3{0.2f, 0.2f, 1}), normalize(Vec3{-0.2f, 0, 1}),
+                          normalize(Vec3{0, -0.2f, 1})}}) {
     const Elements e = element_of(triangle_scene(corners, normals), {0.25f, 0.25f});
     EXPECT_NEAR(length(e.position[0] - Vec3{0.25f, 0.25f, 0}), 0, 1e-6f);
     EXPECT_EQ(e.geometric_normal[0], up);

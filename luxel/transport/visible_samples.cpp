@@ -18,7 +18,7 @@ namespace {
 constexpr int kGrid = 4;        ///< places looked at along a texel's side
 constexpr int kFeelers = 6;     ///< short rays around a sample
 constexpr float kReach = 1.5f;  ///< their length in texels
-constexpr int kFirstRays = 8, kRaysForOpen = 32;
+constexpr int kFirstRays = 8, kRaysForVisible = 32;
 
 struct Probe {
   const scene::Scene& scene;
@@ -35,7 +35,7 @@ struct Probe {
     const BackFaces few = count_back_faces(scene, tracer, just_above(at), at.normal, kFirstRays);
     if (all_backs(few) == 0) return true;
     return !is_enclosed(few) &&
-           !is_enclosed(scene, tracer, just_above(at), at.normal, kRaysForOpen, diagonal_m);
+           !is_enclosed(scene, tracer, just_above(at), at.normal, kRaysForVisible, diagonal_m);
   }
   /// Short rays around the sample, twenty degrees above the surface.
   void add_feelers(const atlas::Texel& texel, std::vector<trace::Ray>& rays) const {

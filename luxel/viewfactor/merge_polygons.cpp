@@ -36,7 +36,7 @@ struct Corners {
 };
 
 /// A convex polygon that grows: triangle k at first, with the half-edges 3 k to 3 k + 2.
-struct Face {
+struct MergedFace {
   uint32_t merged_into = kNone;
   uint32_t any_edge = 0;  ///< of its outline
   DVec3 area;             ///< vector, the sum over its triangles
@@ -46,15 +46,15 @@ struct Face {
 
 /// The half-edges of all faces. An edge runs from its corner to that of the next one around its
 /// face; its twin runs back along a face of the same plane.
-struct Edge {
+struct HalfEdge {
   uint32_t corner = 0, next = 0, previous = 0, twin = kNone;
   bool gone = false;
 };
 
 struct Merging {
   Corners corners;
-  std::vector<Edge> edges;
-  std::vector<Face> faces;
+  std::vector<HalfEdge> edges;
+  std::vector<MergedFace> faces;
   double slack = 0;
 
   DVec3 at(uint32_t edge) const { return corners.position[edges[edge].corner]; }
@@ -150,7 +150,7 @@ void straighten_shared(uint32_t in, Merging& m) {
   if (turn_at(before, at, after, m.faces[m.face_of(in)].plane.normal, m.slack) != Turn::straight)
     return;
   for (const uint32_t e : {in, forth}) {
-    Edge& edge = m.edges[e];
+    HalfEdge& edge = m.edges[e];
     m.edges[edge.next].gone = true;
     edge.next = m.edges[edge.next].next;
     m.edges[edge.next].previous = e;
@@ -161,7 +161,7 @@ void straighten_shared(uint32_t in, Merging& m) {
 
 /// The plane becomes better known as the face grows: from twice the area it is made anew.
 void renew_plane(uint32_t f, Merging& m) {
-  Face& face = m.faces[f];
+  MergedFace& face = m.faces[f];
   const double area = length(face.area);
   if (area < 2 * face.plane_area) return;
   face.plane_area = area;
@@ -197,7 +197,7 @@ std::optional<std::array<uint32_t, 4>> join(uint32_t edge, Merging& m) {
   m.edges[f_in].next = g_out, m.edges[g_out].previous = f_in;
   m.edges[g_in].next = f_out, m.edges[f_out].previous = g_in;
   // One face, with the plane of the larger one.
-  Face &face = m.faces[f], &other = m.faces[g];
+  MergedFace &face = m.faces[f], &other = m.faces[g];
   if (other.plane_area > face.plane_area)
     face.plane = other.plane, face.plane_area = other.plane_area;
   face.area += other.area;

@@ -28,8 +28,8 @@ TEST(VisibleFormFactor, MatchesTheExactTable) {
   EXPECT_GE(checked, 5);
 }
 
-const Polygon kFloor{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-const Polygon kCeiling{{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}};
+const Polygon kLowerSquare{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+const Polygon kUpperSquare{{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}};
 
 Polygon horizontal(double x0, double y0, double x1, double y1, double z) {
   return {{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}};
@@ -40,7 +40,7 @@ TEST(VisibleFormFactor, ManyBlockersThatHideAllLeaveExactlyNothing) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       tiles.push_back(horizontal(i / 3.0, j / 3.0, (i + 1) / 3.0, (j + 1) / 3.0, 0.5));
-  const FormFactor factor = form_factor(kFloor, kCeiling, tiles, 1e-4);
+  const FormFactor factor = form_factor(kLowerSquare, kUpperSquare, tiles, 1e-4);
   EXPECT_EQ(factor.value, 0.0);
   Dice dice;
   for (int k = 0; k < 5; ++k) {  // and in any position
@@ -48,20 +48,21 @@ TEST(VisibleFormFactor, ManyBlockersThatHideAllLeaveExactlyNothing) {
     std::vector<Polygon> moved_tiles;
     for (const Polygon& tile : tiles) moved_tiles.push_back(moved(tile, motion));
     EXPECT_NEAR(
-        form_factor(moved(kFloor, motion), moved(kCeiling, motion), moved_tiles, 1e-4).value, 0.0,
-        1e-12);
+        form_factor(moved(kLowerSquare, motion), moved(kUpperSquare, motion), moved_tiles, 1e-4)
+            .value,
+        0.0, 1e-12);
   }
 }
 
 TEST(VisibleFormFactor, BlockersBesideTheShaftChangeNoBit) {
-  const double alone = form_factor(kFloor, kCeiling).value;
+  const double alone = form_factor(kLowerSquare, kUpperSquare).value;
   const std::vector<Polygon> beside{
       {{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {0, 1, 0}},  // a wall of the same room
       horizontal(0, 0, 1, 1, 0),                     // in the plane of the floor
       horizontal(0, 0, 1, 1, 1.5),                   // above the ceiling
       {{2, 0, 0}, {2, 1, 0}, {2, 1, 1}},
       {{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {0.6, 0.6, 0.6}}};  // without area
-  EXPECT_EQ(form_factor(kFloor, kCeiling, beside).value, alone);
+  EXPECT_EQ(form_factor(kLowerSquare, kUpperSquare, beside).value, alone);
 }
 
 // A hole in the light, cut into more pieces or turned over, is the same hole.
@@ -75,19 +76,19 @@ TEST(VisibleFormFactor, DoesNotDependOnHowBlockersAreCut) {
       {whole, whole},
       {horizontal(0.3, 0.2, 0.5, 0.7, 0.4), horizontal(0.5, 0.2, 0.9, 0.7, 0.4)},
       {{whole[0], whole[1], whole[2]}, {whole[0], whole[2], whole[3]}}};
-  const double first = form_factor(kFloor, kCeiling, cuts[0], 1e-6).value;
+  const double first = form_factor(kLowerSquare, kUpperSquare, cuts[0], 1e-6).value;
   for (const std::vector<Polygon>& cut : cuts)
-    EXPECT_NEAR(form_factor(kFloor, kCeiling, cut, 1e-5).value, first, 1e-5 * first);
+    EXPECT_NEAR(form_factor(kLowerSquare, kUpperSquare, cut, 1e-5).value, first, 1e-5 * first);
 }
 
 // A small thing close to the floor shades a spot that few samples would see.
 TEST(VisibleFormFactor, SmallBlockersAreNotOverlooked) {
-  const double open = form_factor(kFloor, kCeiling).value;
+  const double open = form_factor(kLowerSquare, kUpperSquare).value;
   for (const double x : {0.13, 0.41, 0.77}) {
     const std::vector<Polygon> coin{horizontal(x, 0.31, x + 0.02, 0.33, 0.01)};
-    const double blocked = form_factor(kFloor, kCeiling, coin, 1e-6).value;
+    const double blocked = form_factor(kLowerSquare, kUpperSquare, coin, 1e-6).value;
     // What the coin hides of the ceiling is what it sees of it, less what its back side sees.
-    const double hidden = area_m2(coin[0]) * form_factor(coin[0], kCeiling).value;
+    const double hidden = area_m2(coin[0]) * form_factor(coin[0], kUpperSquare).value;
     EXPECT_NEAR(open - blocked, hidden, 1e-5 * open) << x;
   }
 }
@@ -99,7 +100,7 @@ TEST(VisibleFormFactor, ThinWallOnTheFloorHidesByTheSumRule) {
   const Polygon half_ceiling{{0, 1, 1}, {0.5, 1, 1}, {0.5, 0, 1}, {0, 0, 1}};
   const std::vector<Polygon> wall{{{0.5, 0, 0}, {0.5, 1, 0}, {0.5, 1, 1}, {0.5, 0, 1}}};
   const double half = form_factor(half_floor, half_ceiling).value;
-  EXPECT_NEAR(form_factor(kFloor, kCeiling, wall, 1e-5).value, half, 1e-5 * half);
+  EXPECT_NEAR(form_factor(kLowerSquare, kUpperSquare, wall, 1e-5).value, half, 1e-5 * half);
 }
 
 // Rays know nothing of clipping and cells.

@@ -28,14 +28,14 @@ constexpr double kStandardErrors = 4;
 
 /// What a solver without a standard error of its own may differ by, and why: relative to E, beyond
 /// the slack of the case.
-struct Tolerance {
+struct ExactTolerance {
   std::string_view solver, scene;  ///< beginning of the case's name; the first row that fits counts
   double mean, texel_rms;
   std::string_view reason;
 };
 
 /// A solver without a row here fails. About twice what was measured.
-constexpr Tolerance kTolerances[] = {
+constexpr ExactTolerance kExactTolerances[] = {
     {"gather", "integrating sphere", 0.015, 0.07,
      "the beam's spot is 0.7 % of the wall: two of 256 rays meet it, and 20 texels carry it"},
     {"gather", "manufactured", 0.002, 0.12, "64 shadow rays over 576 emitters of a few grays"},
@@ -57,8 +57,8 @@ constexpr Tolerance kTolerances[] = {
     {"gather", "", 0.0025, 0.01, "noise of 256 rays; texels blur where two walls meet"},
 };
 
-const Tolerance* tolerance_of(std::string_view solver, std::string_view scene) {
-  for (const Tolerance& t : kTolerances)
+const ExactTolerance* tolerance_of(std::string_view solver, std::string_view scene) {
+  for (const ExactTolerance& t : kExactTolerances)
     if (t.solver == solver && scene.starts_with(t.scene)) return &t;
   return nullptr;
 }
@@ -90,7 +90,7 @@ TEST(SlowExact, EverySolverReachesEveryExactSolution) {
           z_squares += z * z, ++judged;
           continue;
         }
-        const Tolerance* tolerance = tolerance_of(solver.name, c.name);
+        const ExactTolerance* tolerance = tolerance_of(solver.name, c.name);
         ASSERT_NE(tolerance, nullptr) << "say above how exact it is, and why";
         EXPECT_LE(beyond_slack, tolerance->mean * m.exact) << tolerance->reason;
         EXPECT_LE(m.texel_rms, tolerance->texel_rms + c.slack) << tolerance->reason;

@@ -15,8 +15,6 @@
 namespace luxel::pipeline {
 namespace {
 
-/// Rings of dilation: enough for bilinear lookups in four mipmap levels.
-constexpr int kDilationRings = 8;
 /// Hidden texels are refilled as far as a bilinear lookup from outside can reach.
 constexpr int kRefillRings = 2;
 constexpr int kPreviewWidth = 960, kPreviewHeight = 720;
@@ -57,14 +55,14 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
   if (settings.error_map)
     bake.error_pictures = draw_errors(bake.atlas, bake.map, bake.light.errors);
   bake.lightmaps = post::lightmap_pages(bake.atlas, bake.map, bake.light.irradiance);
-  for (image::Image& lightmap : bake.lightmaps) post::dilate(lightmap, kDilationRings);
+  for (image::Image& lightmap : bake.lightmaps) post::dilate(lightmap, post::kDilationRings);
   if (scene::scatters_light(bake.scene)) {
     bake.shown = post::lightmap_pages(
         bake.atlas, bake.map,
         shown_irradiance(bake.scene, bake.atlas, bake.map, bake.light.irradiance));
-    for (image::Image& lightmap : bake.shown) post::dilate(lightmap, kDilationRings);
+    for (image::Image& lightmap : bake.shown) post::dilate(lightmap, post::kDilationRings);
   }
-  bake.layers = bake_layers(bake.scene, bake.atlas, bake.map, kDilationRings, bake.light);
+  bake.layers = bake_layers(bake.scene, bake.atlas, bake.map, post::kDilationRings, bake.light);
   return stopped(progress);
 }
 

@@ -11,8 +11,6 @@
 namespace luxel::pipeline {
 namespace {
 
-/// As the lightmap itself is.
-constexpr int kDilationRings = 8;
 /// A probe around which more than this share of the surfaces is seen from behind stands in a solid.
 constexpr float kInsideSolid = 0.5f;
 
@@ -51,7 +49,7 @@ Result<DirectionMaps> direction_maps(const light::TexelScene& in, std::span<cons
       values[i] =
           kind == Directional::sh1 ? light.bent[i].v[k] : dominant_of(light.bent[i], irradiance[i]);
     out.pictures.push_back(post::lightmap_pages(in.atlas, in.map, values));
-    for (image::Image& page : out.pictures.back()) post::dilate(page, kDilationRings);
+    for (image::Image& page : out.pictures.back()) post::dilate(page, post::kDilationRings);
   }
   return out;
 }

@@ -16,7 +16,7 @@ using hierarchical::LightMesh;
 using hierarchical::Solution;
 
 /// Rays along a pixel's side: exact irradiance costs a good part of a millisecond each.
-constexpr int kRaysPerAxis = 2;
+constexpr int kLerpRaysPerAxis = 2;
 
 HierarchicalSettings settings_of(const RenderSettings& s) {
   return s.hierarchical.value_or(HierarchicalSettings{});
@@ -55,21 +55,21 @@ Result<Lit> light_up(const Subject& subject, const RenderSettings& s, bool needs
 display::DrawParams draw_params(const RenderSettings& s) {
   display::DrawParams params;
   params.width = s.width, params.height = s.height;
-  params.samples_per_axis = kRaysPerAxis;
+  params.samples_per_axis = kLerpRaysPerAxis;
   return params;
 }
 
 /// The k-th of a pixel's rays.
 trace::Ray sample_ray(const trace::CameraRays& camera, int width, size_t pixel, int k) {
   const size_t x = pixel % size_t(width), y = pixel / size_t(width);
-  return camera.through(float(x) + (float(k % kRaysPerAxis) + 0.5f) / kRaysPerAxis,
-                        float(y) + (float(k / kRaysPerAxis) + 0.5f) / kRaysPerAxis);
+  return camera.through(float(x) + (float(k % kLerpRaysPerAxis) + 0.5f) / kLerpRaysPerAxis,
+                        float(y) + (float(k / kLerpRaysPerAxis) + 0.5f) / kLerpRaysPerAxis);
 }
 
 /// What the rays of all pixels meet, pixel after pixel.
 std::vector<trace::Hit> hits_of(const Subject& subject, const RenderSettings& s) {
   const trace::CameraRays camera(subject.camera, s.width, s.height);
-  constexpr int n = kRaysPerAxis;
+  constexpr int n = kLerpRaysPerAxis;
   std::vector<trace::Hit> hits(size_t(s.width) * size_t(s.height) * n * n);
   parallel_for(size_t(s.height), 1, [&](size_t begin, size_t end) {
     for (size_t y = begin; y < end; ++y) {
@@ -89,7 +89,7 @@ image::Image picture_of(const Subject& subject, const RenderSettings& s,
                         std::span<const trace::Hit> hits, std::span<const Rgb> irradiance) {
   const trace::CameraRays camera(subject.camera, s.width, s.height);
   image::Image picture(s.width, s.height, 4);
-  constexpr size_t n2 = size_t(kRaysPerAxis * kRaysPerAxis);
+  constexpr size_t n2 = size_t(kLerpRaysPerAxis * kLerpRaysPerAxis);
   for (size_t pixel = 0; pixel * n2 < hits.size(); ++pixel)
     for (size_t k = pixel * n2; k < (pixel + 1) * n2; ++k) {
       const Vec3 direction = sample_ray(camera, s.width, pixel, int(k % n2)).direction;

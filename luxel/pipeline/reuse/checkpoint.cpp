@@ -16,7 +16,7 @@ using nlohmann::json;
 
 /// The version of the records' content; goes up when what a part holds, or how it is computed,
 /// changes.
-constexpr int kFormat = 3;
+constexpr int kCheckpointFormat = 3;
 
 json digests_json(std::span<const scene::ItemDigest> items) {
   json out = json::array();
@@ -64,7 +64,7 @@ fs::path checkpoint_file(const BakeSettings& settings) {
 }
 
 json bake_identity(const json& settings) {
-  return {{"luxel", kVersion}, {"format", kFormat}, {"settings", settings}};
+  return {{"luxel", kVersion}, {"format", kCheckpointFormat}, {"settings", settings}};
 }
 
 json checkpoint_header(const json& settings, const scene::Scene& scene) {

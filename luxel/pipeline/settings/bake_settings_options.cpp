@@ -6,7 +6,7 @@ namespace luxel::pipeline {
 namespace {
 
 using S = BakeSettings;
-using R = Rows<BakeSettings>;
+using BakeRows = Rows<BakeSettings>;
 using Can = Capabilities;
 using nlohmann::json;
 
@@ -26,21 +26,21 @@ json json_of_bounces(int bounces) { return bounces < 0 ? json("inf") : json(boun
 /// How light is sampled, and how well.
 Options<S> sampling_options() {
   return {
-      R::number("--samples", &S::samples, {1, kMaxSamples}, "Indirect rays per texel")
+      BakeRows::number("--samples", &S::samples, {1, kMaxSamples}, "Indirect rays per texel")
           .unit("RAYS")
           .only(&Can::samples),
-      R::number("--direct-samples", &S::direct_samples, {1, kMaxSamples},
-                "Shadow rays per texel towards area lights")
+      BakeRows::number("--direct-samples", &S::direct_samples, {1, kMaxSamples},
+                       "Shadow rays per texel towards area lights")
           .unit("RAYS")
           .only(&Can::direct_samples),
-      R::number("--supersample", &S::supersample, {1, 1024},
-                "Points per texel across which direct light varies; 1: none")
+      BakeRows::number("--supersample", &S::supersample, {1, 1024},
+                       "Points per texel across which direct light varies; 1: none")
           .unit("POINTS")
           .only(&Can::supersample),
-      R::text("--bounces", &S::bounces, parse_bounces, json_of_bounces,
-              "Reflections to count, or inf")
+      BakeRows::text("--bounces", &S::bounces, parse_bounces, json_of_bounces,
+                     "Reflections to count, or inf")
           .unit("COUNT"),
-      R::number(
+      BakeRows::number(
           "--max-error", &S::max_error,
           {kSmallestError, 1, "",
            "an error of 0 would never end; give the part of their light to which texels must be "
@@ -49,7 +49,7 @@ Options<S> sampling_options() {
           "e.g. 0.02")
           .unit("ERROR")
           .only(&Can::errors),
-      R::number(
+      BakeRows::number(
           "--time-budget", &S::time_budget_s,
           {kShortestBudget_s, kLongestBudget_s, "is not a time to bake in; give seconds, as 60"},
           "The lowest error within about this many seconds in total; with --max-error until "
@@ -57,30 +57,31 @@ Options<S> sampling_options() {
           .key_is("time_budget_s")
           .unit("SECONDS")
           .only(&Can::errors),
-      R::number("--seed", &S::seed, {0}, "Seed of all random numbers"),
+      BakeRows::number("--seed", &S::seed, {0}, "Seed of all random numbers"),
   };
 }
 
 /// Where texels lie.
 Options<S> layout_options() {
   return {
-      R::number("--resolution", &S::resolution, {1, kMaxResolution}, "Side of a lightmap in texels")
+      BakeRows::number("--resolution", &S::resolution, {1, kMaxResolution},
+                       "Side of a lightmap in texels")
           .unit("TEXELS"),
-      R::number("--texels-per-metre", &S::texels_per_metre,
-                {0, kNoLimit, "is not a density; give a number > 0"},
-                "Density; the side becomes the smallest power of two that holds the scene")
+      BakeRows::number("--texels-per-metre", &S::texels_per_metre,
+                       {0, kNoLimit, "is not a density; give a number > 0"},
+                       "Density; the side becomes the smallest power of two that holds the scene")
           .unit("DENSITY"),
-      R::text(
+      BakeRows::text(
           "--pages", &S::pages, parse_pages, [](auto& p) { return json(text_of(p)); },
           "Number of lightmaps; auto: as many as the density needs; mesh: one per mesh")
           .unit("COUNT|auto|mesh"),
-      R::choice("--uv", &S::uv,
-                {{"auto", atlas::UvMode::automatic},
-                 {"keep", atlas::UvMode::keep},
-                 {"unwrap", atlas::UvMode::unwrap}},
-                std::string(kUvHelp)),
-      R::toggle("--no-leak-repair", &S::repair_leaks,
-                "Do not cut charts under thin walls, nor move samples out of solids")
+      BakeRows::choice("--uv", &S::uv,
+                       {{"auto", atlas::UvMode::automatic},
+                        {"keep", atlas::UvMode::keep},
+                        {"unwrap", atlas::UvMode::unwrap}},
+                       std::string(kUvHelp)),
+      BakeRows::toggle("--no-leak-repair", &S::repair_leaks,
+                       "Do not cut charts under thin walls, nor move samples out of solids")
           .key_is("repair_leaks"),
   };
 }
@@ -88,46 +89,51 @@ Options<S> layout_options() {
 /// What is made of the light.
 Options<S> result_options() {
   return {
-      R::choice("--directional", &S::directional,
-                {{"dominant", Directional::dominant}, {"sh1", Directional::sh1}},
-                "Also store how irradiance changes with the normal: dominant or sh1")
+      BakeRows::choice("--directional", &S::directional,
+                       {{"dominant", Directional::dominant}, {"sh1", Directional::sh1}},
+                       "Also store how irradiance changes with the normal: dominant or sh1")
           .leaves(Changes::results),
-      R::number("--probes", &S::probe_spacing_m, {0, kNoLimit, "is not a spacing; give metres > 0"},
-                "Also write light probes on a grid of this spacing in metres")
+      BakeRows::number("--probes", &S::probe_spacing_m,
+                       {0, kNoLimit, "is not a spacing; give metres > 0"},
+                       "Also write light probes on a grid of this spacing in metres")
           .key_is("probe_spacing_m")
           .unit("METRES")
           .leaves(Changes::results),
-      R::choice("--layers", &S::layers,
-                {{"per-light", light::LayerMode::per_light}, {"groups", light::LayerMode::groups}},
-                "Also write a lightmap of each light (per-light), or of each group of lights whose "
-                "names differ only by a number at the end (groups)")
+      BakeRows::choice(
+          "--layers", &S::layers,
+          {{"per-light", light::LayerMode::per_light}, {"groups", light::LayerMode::groups}},
+          "Also write a lightmap of each light (per-light), or of each group of lights whose "
+          "names differ only by a number at the end (groups)")
           .never_without(&Can::layers)
           .leaves(Changes::results),
-      R::toggle("--denoise", &S::denoise, "Remove the noise of few samples; edges of shadows stay")
+      BakeRows::toggle("--denoise", &S::denoise,
+                       "Remove the noise of few samples; edges of shadows stay")
           .never_without(&Can::noise)
           .leaves(Changes::results),
-      R::toggle("--no-stitch", &S::stitch, "Do not blend charts along seams")
+      BakeRows::toggle("--no-stitch", &S::stitch, "Do not blend charts along seams")
           .leaves(Changes::results),
-      R::toggle("--vertex-colors", &S::vertex_colors,
-                "baked.glb gets light per vertex in COLOR_0 instead of the lightmap")
+      BakeRows::toggle("--vertex-colors", &S::vertex_colors,
+                       "baked.glb gets light per vertex in COLOR_0 instead of the lightmap")
           .never_without(&Can::vertex_light)
           .leaves(Changes::nothing),
-      R::toggle("--texels", &S::texels,
-                "Also write texels.png: how each texel was treated (luxel render --technique "
-                "texels)")
+      BakeRows::toggle(
+          "--texels", &S::texels,
+          "Also write texels.png: how each texel was treated (luxel render --technique "
+          "texels)")
           .leaves(Changes::nothing),
-      R::toggle("--error-map", &S::error_map,
-                "Also write error.png: the relative standard error of each texel (luxel render "
-                "--technique error)")
+      BakeRows::toggle(
+          "--error-map", &S::error_map,
+          "Also write error.png: the relative standard error of each texel (luxel render "
+          "--technique error)")
           .only(&Can::errors)
           .leaves(Changes::nothing),
-      R::text(
+      BakeRows::text(
           "--formats", &S::formats, parse_formats, [](auto& f) { return to_json(f); },
           "The lightmap as exr (always), hdr, rgbm and rgbe, with commas between them")
           .unit("LIST")
           .leaves(Changes::nothing),
-      R::toggle("--html", &S::html,
-                "Also write view.html: the baked scene as one page to walk around in")
+      BakeRows::toggle("--html", &S::html,
+                       "Also write view.html: the baked scene as one page to walk around in")
           .leaves(Changes::nothing),
   };
 }
@@ -135,29 +141,30 @@ Options<S> result_options() {
 /// How the bake runs.
 Options<S> running_options() {
   return {
-      R::text(
+      BakeRows::text(
           "--max-memory", &S::max_memory_bytes, parse_size,
           [](uint64_t bytes) { return json(bytes); }, std::string(kMaxMemoryHelp))
           .key_is("max_memory_bytes")
           .unit("SIZE")
           .leaves(Changes::nothing),
-      R::number("--threads", &S::threads, {0, 1024}, "Threads to use; 0 = all cores")
+      BakeRows::number("--threads", &S::threads, {0, 1024}, "Threads to use; 0 = all cores")
           .leaves(Changes::nothing),
-      R::number("--checkpoint", &S::checkpoint_s,
-                {0, kLongestCheckpoint_s, "", "give seconds; 0 keeps nothing"},
-                "From this many seconds after the start on, keep finished parts in "
-                "FOLDER/checkpoint.luxel until the bake is done; 0: never")
+      BakeRows::number("--checkpoint", &S::checkpoint_s,
+                       {0, kLongestCheckpoint_s, "", "give seconds; 0 keeps nothing"},
+                       "From this many seconds after the start on, keep finished parts in "
+                       "FOLDER/checkpoint.luxel until the bake is done; 0: never")
           .key_is("checkpoint_s")
           .unit("SECONDS")
           .only(&Can::parts)
           .leaves(Changes::nothing),
-      R::toggle("--resume", &S::resume, "Continue from the checkpoint in the folder")
+      BakeRows::toggle("--resume", &S::resume, "Continue from the checkpoint in the folder")
           .key_is("")
           .only(&Can::parts)
           .leaves(Changes::nothing),
-      R::toggle("--keep", &S::keep,
-                "Build on the bake kept in FOLDER/cache and retrace only what has changed in the "
-                "scene since; without one, bake and keep it there")
+      BakeRows::toggle(
+          "--keep", &S::keep,
+          "Build on the bake kept in FOLDER/cache and retrace only what has changed in the "
+          "scene since; without one, bake and keep it there")
           .never_without(&Can::keeps)
           .leaves(Changes::nothing),
   };

@@ -40,7 +40,7 @@ Status check_layers(const BakeSettings& s) {
     return fail(ErrorCode::bad_setting,
                 "--layers {} does not go together with {}, which looks at all light at once; leave "
                 "one of them out",
-                name_of(s.layers), other);
+                pipeline::name_of(s.layers), other);
   return {};
 }
 

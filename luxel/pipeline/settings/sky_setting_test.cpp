@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string error_of(const std::string& text) {
+std::string sky_error(const std::string& text) {
   const auto sky = parse_sky(text);
   if (sky) return "no error";
   EXPECT_THAT(sky.error().message, HasSubstr("--sky '" + text + "'"));
@@ -45,17 +45,17 @@ TEST(SkySetting, ByTimeAndPlace) {
 
 TEST(SkySetting, WhatIsNoneIsSaid) {
   for (const char* text : {"", "1", "1,2,3,4", "a,b", "135,91", "400,10", "135,45,", "nan,3"})
-    EXPECT_THAT(error_of(text), HasSubstr("AZIMUTH_DEG,ELEVATION_DEG")) << text;
+    EXPECT_THAT(sky_error(text), HasSubstr("AZIMUTH_DEG,ELEVATION_DEG")) << text;
   for (const char* text : {"135,45,0.5", "135,45,11"})
-    EXPECT_THAT(error_of(text), HasSubstr("outside 1 to 10")) << text;
+    EXPECT_THAT(sky_error(text), HasSubstr("outside 1 to 10")) << text;
   for (const char* text :
        {"2026-06-21T15:30,48,2", "2026-6-21T15:30Z,48,2", "2026-02-29T15:30Z,48,2",
         "2026-13-01T15:30Z,48,2", "2026-06-21T25:30Z,48,2", "1826-06-21T15:30Z,48,2",
         "2026-06-21T15:30+0200,48,2", "T,48,2", "2026-06-21T15:30:7Z,48,2"})
-    EXPECT_THAT(error_of(text), HasSubstr("is not a time with its offset")) << text;
+    EXPECT_THAT(sky_error(text), HasSubstr("is not a time with its offset")) << text;
   for (const char* text : {"2026-06-21T15:30Z", "2026-06-21T15:30Z,48", "2026-06-21T15:30Z,98,2",
                            "2026-06-21T15:30Z,48,200", "2026-06-21T15:30Z,48,2,3,4"})
-    EXPECT_THAT(error_of(text), HasSubstr("LATITUDE,LONGITUDE")) << text;
+    EXPECT_THAT(sky_error(text), HasSubstr("LATITUDE,LONGITUDE")) << text;
 }
 
 // The compass as --sun has it.

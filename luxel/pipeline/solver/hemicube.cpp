@@ -14,7 +14,7 @@ namespace luxel::pipeline {
 namespace {
 
 using P = hemicube::HemicubeParams;
-using R = Rows<P>;
+using HemicubeRows = Rows<P>;
 
 /// 2^26: their numbers, and those of four times as many nodes, fit into 32 bits.
 constexpr double kMaxElements = 1 << 26;
@@ -74,10 +74,11 @@ std::string hemicube_memory(int resolution) {
 
 /// An even number of pixels that memory can hold.
 Option<P> resolution_option() {
-  Option<P> row = R::number("--hemicube", &P::resolution, {2, double(hemicube::kMaxResolution)},
-                            "Pixels along an edge of the hemicube's top, even")
-                      .key_is("resolution")
-                      .unit("PIXELS");
+  Option<P> row =
+      HemicubeRows::number("--hemicube", &P::resolution, {2, double(hemicube::kMaxResolution)},
+                           "Pixels along an edge of the hemicube's top, even")
+          .key_is("resolution")
+          .unit("PIXELS");
   row.check = [](const P& p) -> Status {
     if (p.resolution < 2 || p.resolution > hemicube::kMaxResolution)
       return fail(ErrorCode::bad_setting, "--hemicube {} is outside 2 to {} pixels{}", p.resolution,
@@ -100,27 +101,28 @@ Option<P> resolution_option() {
 
 Options<hemicube::HemicubeParams> hemicube_options() {
   return {
-      R::choice("--elements", &P::elements,
-                {{"vertex", hemicube::ElementKind::vertex},
-                 {"triangle", hemicube::ElementKind::triangle}},
-                "Light per vertex or per triangle"),
+      HemicubeRows::choice("--elements", &P::elements,
+                           {{"vertex", hemicube::ElementKind::vertex},
+                            {"triangle", hemicube::ElementKind::triangle}},
+                           "Light per vertex or per triangle"),
       resolution_option(),
-      R::number("--element-size", &P::element_size_m,
-                {0, kNoLimit, "is not a length; give metres > 0"},
-                "Size of the first triangles in metres (default: by --max-elements)")
+      HemicubeRows::number("--element-size", &P::element_size_m,
+                           {0, kNoLimit, "is not a length; give metres > 0"},
+                           "Size of the first triangles in metres (default: by --max-elements)")
           .key_is("element_size_m")
           .unit("METRES"),
-      R::number("--max-elements", &P::max_elements, {1, kMaxElements},
-                "Vertices or triangles at most (default: 20000, more for large scenes)")
+      HemicubeRows::number("--max-elements", &P::max_elements, {1, kMaxElements},
+                           "Vertices or triangles at most (default: 20000, more for large scenes)")
           .unit("COUNT"),
-      R::number("--max-error", &P::max_error,
-                {0, 1e6,
-                 "is not an error; give a part of the light, as 0.01, or 0 for no "
-                 "refinement"},
-                "Cut triangles over which interpolation errs by more than this part of the light; "
-                "0 cuts none; 0.01 by default")
+      HemicubeRows::number(
+          "--max-error", &P::max_error,
+          {0, 1e6,
+           "is not an error; give a part of the light, as 0.01, or 0 for no "
+           "refinement"},
+          "Cut triangles over which interpolation errs by more than this part of the light; "
+          "0 cuts none; 0.01 by default")
           .unit("ERROR"),
-      R::toggle("--smooth", &P::smooth, "Interpolate light that is per triangle"),
+      HemicubeRows::toggle("--smooth", &P::smooth, "Interpolate light that is per triangle"),
   };
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr uint32_t kSmall = 2;
 
 /// A floor, a large box on it that stays, and a small one; texels across their feet.
-scene::Scene room() {
+scene::Scene layout_room() {
   scene::Scene scene;
   scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
   scene::add_rectangle(scene, {0, 4, 0, 4}, 0, true, 0);
@@ -38,7 +38,7 @@ Box3 bounds_of(const scene::Scene& scene, uint32_t instance) {
 struct Kept {
   BakeSettings settings;
   Progress progress;
-  scene::Scene scene = room();
+  scene::Scene scene = layout_room();
   KeptLayout layout;
 
   Kept() {
@@ -52,7 +52,7 @@ struct Kept {
 // The layout of then, with the samples that opening all anew would give.
 TEST(LayOutAgain, OpensTheSamplesThatOpeningAllWould) {
   Kept kept;
-  scene::Scene now = room();
+  scene::Scene now = layout_room();
   ASSERT_FALSE(kept.layout.repair.moved.empty());
   now.instances[kSmall].world_from_object.row[0][3] += 0.4f;
   const std::array boxes{bounds_of(kept.scene, kSmall), bounds_of(now, kSmall)};
@@ -72,7 +72,7 @@ TEST(LayOutAgain, OpensTheSamplesThatOpeningAllWould) {
 
 TEST(LayOutAgain, LeavesSamplesWhereNothingMoved) {
   Kept kept;
-  scene::Scene now = room();
+  scene::Scene now = layout_room();
   const auto again = lay_out_again(kept.settings, kept.layout, {}, now, kept.progress);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->repair.moved, kept.layout.repair.moved);

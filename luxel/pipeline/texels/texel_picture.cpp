@@ -13,8 +13,8 @@ namespace {
 
 using Color = image::Color8;
 
-constexpr Color kBlack{0, 0, 0}, kMagenta{220, 30, 200}, kGreen{40, 190, 70}, kYellow{240, 200, 40},
-    kRed{230, 30, 30};
+constexpr Color kBlack{0, 0, 0}, kMagenta{220, 30, 200}, kMovedColor{40, 190, 70},
+    kRefilledColor{240, 200, 40}, kSeamColor{230, 30, 30};
 constexpr Color kLight{205, 205, 205}, kDark{160, 160, 160}, kBorder{95, 105, 140};
 constexpr uint32_t kSquare = 8;
 constexpr float kFullRed = 0.05f;
@@ -68,12 +68,12 @@ std::vector<image::Image8> draw_texels(const atlas::Atlas& atlas, const atlas::T
     color[i] = ((t.x / kSquare + t.y / kSquare) & 1u) ? kDark : kLight;
     if (on_border(atlas, map, t)) color[i] = kBorder;
     if (!facts.seam_error.empty())
-      color[i] = mix(color[i], kRed, std::min(1.0f, facts.seam_error[i] / kFullRed));
+      color[i] = mix(color[i], kSeamColor, std::min(1.0f, facts.seam_error[i] / kFullRed));
   }
-  for (const uint32_t i : facts.moved) color[i] = kGreen;
+  for (const uint32_t i : facts.moved) color[i] = kMovedColor;
   for (size_t i = 0; i < facts.hidden.size(); ++i)
     if (facts.hidden[i]) color[i] = kBlack;
-  for (const uint32_t i : facts.refilled) color[i] = kYellow;
+  for (const uint32_t i : facts.refilled) color[i] = kRefilledColor;
   for (const uint32_t i : facts.overlapping) color[i] = kMagenta;
   return pages_in(color, atlas, map);
 }

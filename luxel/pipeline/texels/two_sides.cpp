@@ -22,7 +22,7 @@ constexpr uint32_t kWalks = 64, kSteps = 4;
 /// joints of a closed one far less.
 constexpr double kOpenShare = 0.1;
 /// How far a shell's surroundings reach beyond its box, relative to the box's diagonal.
-constexpr float kMargin = 0.1f;
+constexpr float kSurroundings = 0.1f;
 /// At most so many of a mesh's instances are looked at.
 constexpr size_t kMostPlaces = 4;
 
@@ -225,7 +225,8 @@ std::vector<Placed> placed_shells(const scene::Scene& scene, const std::vector<S
       for (uint32_t s = 0; s < shells[m].bounds.size(); ++s) {
         if (shells[m].candidates[s].empty()) continue;
         const Box3 box = moved(scene.instances[i].world_from_object, shells[m].bounds[s]);
-        out.push_back({i, s, box, grown(box, kMargin * box.diagonal()), shells[m].closed[s] != 0});
+        out.push_back(
+            {i, s, box, grown(box, kSurroundings * box.diagonal()), shells[m].closed[s] != 0});
       }
     }
   return out;

@@ -23,9 +23,6 @@ double relative_error(std::span<const Rgb> irradiance, std::span<const float> va
   return mean > 0 ? std::sqrt(sum * double(irradiance.size())) / mean : 0;
 }
 
-/// While samples are still to come the bounces need not be exact: a hundredth is far below the
-/// noise of the rays that are to be added.
-constexpr float kRoughTolerance = 1e-2f;
 /// From an earlier bake's light they end at this part of its error: what is left does not show
 /// beside that, nor above this.
 constexpr double kPartOfError = 1.0 / 20, kRoughestFromEarlier = 3e-4;

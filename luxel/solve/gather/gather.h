@@ -82,6 +82,10 @@ struct Gather {
   double relative_error = 0;
 };
 
+/// While samples are still to come the bounces need not be exact: a hundredth is far below the
+/// noise of the rays that are to be added.
+inline constexpr float kRoughTolerance = 1e-2f;
+
 inline constexpr uint64_t kEnclosedBytesPerElement = bytes_per_entry(&Gather::enclosed);
 /// While rays are traced: how many samples each element is to have.
 inline constexpr uint64_t kTargetBytesPerElement = bytes_per_entry(&Gather::samples);

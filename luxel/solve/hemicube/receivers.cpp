@@ -144,10 +144,6 @@ float area_m2(const Mesh& mesh, const Node& node) {
       {mesh.points[node.point[0]], mesh.points[node.point[1]], mesh.points[node.point[2]]});
 }
 
-/// Reflectances of surfaces are at most this (scene::reflectance_at); rounding in a mean must not
-/// lift them over it, or light in a white furnace would grow from pass to pass.
-constexpr float kMaxReflectance = 0.99f;
-
 /// Areas and reflectances: a vertex has the mean of its triangles', by their areas.
 void average_reflectances(const scene::Scene& scene, const Mesh& mesh, Receivers& r) {
   std::vector<Rgb> reflectance(r.leaves.size());
@@ -171,7 +167,10 @@ void average_reflectances(const scene::Scene& scene, const Mesh& mesh, Receivers
   if (r.kind == ElementKind::vertex)
     for (size_t v = 0; v < out.size(); ++v)
       if (r.area_m2[v] > 0)
-        out[v] = min(out[v] / r.area_m2[v], Rgb{kMaxReflectance, kMaxReflectance, kMaxReflectance});
+        // Rounding in a mean must not lift it over the reflectance of surfaces, or light in a white
+        // furnace would grow from pass to pass.
+        out[v] = min(out[v] / r.area_m2[v],
+                     Rgb{scene::kMaxReflectance, scene::kMaxReflectance, scene::kMaxReflectance});
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 using testing::scene_of;
 using testing::solved;
 
-constexpr ElementKind kKinds[] = {ElementKind::vertex, ElementKind::triangle};
+constexpr ElementKind kRefinedKinds[] = {ElementKind::vertex, ElementKind::triangle};
 
 /// A floor of 4 x 4 m, a plate of 1 x 1 m 1 m above its middle, a lamp without size 2 m above it:
 /// the shadow is a square of 2 x 2 m with a sharp border.
@@ -37,7 +37,7 @@ bool on_floor(const Solution& s, size_t i) {
 // Within 5 cm of the border lie 5 % of the floor.
 TEST(Refine, PutsElementsAtTheShadowsBorder) {
   const scene::Scene scene = sharp_shadow();
-  for (const ElementKind kind : kKinds) {
+  for (const ElementKind kind : kRefinedKinds) {
     HemicubeParams params;
     params.elements = kind, params.resolution = 8, params.max_elements = 4000;
     const Solution s = solved(scene, params);
@@ -56,7 +56,7 @@ TEST(Refine, PutsElementsAtTheShadowsBorder) {
 // falls on the floor as a whole, though the border runs through triangles.
 TEST(Refine, LightBesideTheBorderIsExact) {
   const scene::Scene scene = sharp_shadow();
-  for (const ElementKind kind : kKinds) {
+  for (const ElementKind kind : kRefinedKinds) {
     HemicubeParams params;
     params.elements = kind, params.resolution = 8, params.max_elements = 4000;
     params.bounces = 0;
@@ -107,7 +107,7 @@ TEST(Refine, NeverMakesMoreElementsThanAllowed) {
   scene::Scene scene = sharp_shadow();
   scene.meshes[0] = ringed_floor();
   scene.instances[1].world_from_object = translation({0.5f, 0, 0.2f});
-  for (const ElementKind kind : kKinds)
+  for (const ElementKind kind : kRefinedKinds)
     for (size_t most = 160; most < 400; most += 7) {
       HemicubeParams params;
       params.elements = kind, params.resolution = 2, params.max_elements = most;
@@ -124,7 +124,7 @@ bool was_cut_on(const Solution& s) {
 
 TEST(Refine, AnErrorOfZeroCutsNothing) {
   const scene::Scene scene = sharp_shadow();
-  for (const ElementKind kind : kKinds) {
+  for (const ElementKind kind : kRefinedKinds) {
     HemicubeParams params;
     params.elements = kind, params.resolution = 4, params.max_elements = 2000;
     params.max_error = 0;
@@ -137,7 +137,7 @@ TEST(Refine, AnErrorOfZeroCutsNothing) {
 
 TEST(Refine, ConstantLightIsNotCut) {
   const scene::Scene box = scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1});
-  for (const ElementKind kind : kKinds) {
+  for (const ElementKind kind : kRefinedKinds) {
     HemicubeParams params;
     params.elements = kind, params.resolution = 8, params.max_elements = 1000;
     const Solution s = solved(box, params);

@@ -11,7 +11,7 @@ namespace luxel::hierarchical {
 namespace {
 
 /// Shorter pieces than this part of the receiver's size are no lines.
-constexpr double kShort = 1e-5;
+constexpr double kDiscontinuitiesShort = 1e-5;
 /// Points of a line from which its source is looked for. Their number is the resolution at which a
 /// line that is hidden in part is found at all; each costs two shadow rays.
 constexpr int kLooks = 4;
@@ -127,7 +127,7 @@ template <class RayAt>
 void add_line(const View& v, const Source& source, DiscontinuityKind kind, uint32_t blocker,
               Segment line, const RayAt& ray_at) {
   if (!clip_to(v.face.corners, v.face.plane.normal, line)) return;
-  if (length(line.b - line.a) < kShort * v.size_m) return;
+  if (length(line.b - line.a) < kDiscontinuitiesShort * v.size_m) return;
   // How fast the source appears, at most, along the line.
   double geometric = 0;
   int free = 0;
@@ -205,7 +205,7 @@ void add_horizon(const View& v, const Source& source, const Face& face) {
   const DVec3 middle = viewfactor::mean_corner(v.face.corners);
   if (!meet(v.face.plane, face.plane, middle, 4 * v.size_m, line)) return;
   if (!clip_to(v.face.corners, v.face.plane.normal, line)) return;
-  if (length(line.b - line.a) < kShort * v.size_m) return;
+  if (length(line.b - line.a) < kDiscontinuitiesShort * v.size_m) return;
   const DVec3 to = viewfactor::mean_corner(face.corners);
   const double distance = std::max(length(to - (line.a + line.b) * 0.5), 1e-9);
   const double geometric =
@@ -218,7 +218,7 @@ void add_horizon(const View& v, const Source& source, const Face& face) {
 void add_contacts(const View& v, std::span<const uint32_t> others) {
   for (const uint32_t other : others) {
     const auto line = contact_of(v.s.faces, v.receiver, other, v.s.blockers.slack_m);
-    if (!line || length(line->b - line->a) < kShort * v.size_m) continue;
+    if (!line || length(line->b - line->a) < kDiscontinuitiesShort * v.size_m) continue;
     v.out.push_back({line->a, line->b, DiscontinuityKind::contact, kNone, other, INFINITY});
   }
 }

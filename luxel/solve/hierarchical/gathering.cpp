@@ -16,7 +16,7 @@ constexpr double kMostClusterRays = 16;
 constexpr double kMostRadius = 0.25;
 /// Elements are taken apart for their light no further than this often: into parts of 1/64 of their
 /// length. A limit for points that touch a source, where quarters never become small.
-constexpr int kMostCuts = 6;
+constexpr int kGatheringMostCuts = 6;
 /// So few rays cost less than to find out what stands in between.
 constexpr double kFewRays = 8;
 /// Sources behind masks are looked at by rays whatever is at stake; this bounds their number.
@@ -238,7 +238,7 @@ void Gathering::add_part(const Part& part, const viewfactor::SeenFactor& seen,
   const double nearness = size / std::max(length(middle - at_.position), 1e-9);
   const double unsure = kQuadrature * seen.whole * std::min(1.0, nearness * nearness) +
                         kHalfSeen * std::min(seen.visible, seen.whole - seen.visible);
-  if (double(max_component(most - least)) * unsure <= params_.limit || cuts == kMostCuts) {
+  if (double(max_component(most - least)) * unsure <= params_.limit || cuts == kGatheringMostCuts) {
     sum_ += max(radiosity_seen(part, middle), Rgb{}) * float(seen.visible);
     return;
   }

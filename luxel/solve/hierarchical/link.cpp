@@ -21,7 +21,7 @@ constexpr double kClosedFormTolerance = 1e-4;
 constexpr double kAnyExchange = 1e-2;
 /// Shadow rays of a link that involves a cluster, or more blockers than are looked at. The visible
 /// share comes in steps of an eighth; links that carry enough light to show it are divided.
-constexpr uint32_t kRays = 8;
+constexpr uint32_t kLinkRays = 8;
 /// Gauss's two points of a side [0, 1] lie at (1 -+ 1 / sqrt 3) / 2.
 constexpr double kGaussLow = 0.21132487, kGaussHigh = 0.78867513;
 /// Gauss's points of a quadrilateral span a copy of it, smaller by 1 / sqrt 3; those of a triangle,
@@ -75,17 +75,17 @@ Vec3 lifted(const Exchange& x, DVec3 p, DVec3 normal) {
 float seen_by_rays(const Exchange& x, const Element& r, const Element& s, uint64_t seed) {
   const DVec3 from_normal = x.faces.faces[r.face].plane.normal;
   const Plane& to_plane = x.faces.faces[s.face].plane;
-  std::array<trace::Ray, kRays> rays;
-  for (uint32_t k = 0; k < kRays; ++k) {
+  std::array<trace::Ray, kLinkRays> rays;
+  for (uint32_t k = 0; k < kLinkRays; ++k) {
     const DVec3 a = point_in(r, sobol_owen_2d(k, hash64(seed, 1)));
     const DVec3 b = point_in(s, sobol_owen_2d(k, hash64(seed, 2)));
     const DVec3 side = to_plane.height(a) >= 0 ? to_plane.normal : -to_plane.normal;
     const Vec3 from = lifted(x, a, from_normal), to = lifted(x, b, side);
     rays[k] = {from, 0, to - from, 1};
   }
-  std::array<uint8_t, kRays> blocked{};
+  std::array<uint8_t, kLinkRays> blocked{};
   x.tracer.occluded(rays, blocked);
-  return 1 - float(std::count(blocked.begin(), blocked.end(), 1)) / kRays;
+  return 1 - float(std::count(blocked.begin(), blocked.end(), 1)) / kLinkRays;
 }
 
 void find_blockers(const Exchange& x, const Element& r, const Element& s, const Link* parent,
@@ -245,15 +245,15 @@ std::optional<Vec3> place_facing(const Exchange& x, uint32_t id, DVec3 other,
 float seen_between(const Exchange& x, uint32_t receiver, uint32_t source) {
   const DVec3 r = ball_of(x.tree, receiver).centre, s = ball_of(x.tree, source).centre;
   RandomStream random{hash64(receiver, source)};
-  std::array<trace::Ray, kRays> rays;
+  std::array<trace::Ray, kLinkRays> rays;
   size_t count = 0;
-  for (uint32_t k = 0; k < kRays; ++k) {
+  for (uint32_t k = 0; k < kLinkRays; ++k) {
     const auto from = place_facing(x, receiver, s, random);
     const auto to = place_facing(x, source, r, random);
     if (from && to) rays[count++] = {*from, 0, *to - *from, 1};
   }
   if (count == 0) return 0;
-  std::array<uint8_t, kRays> blocked{};
+  std::array<uint8_t, kLinkRays> blocked{};
   x.tracer.occluded({rays.data(), count}, {blocked.data(), count});
   return 1 - float(std::count(blocked.begin(), blocked.end(), 1)) / float(count);
 }

@@ -81,11 +81,11 @@ Division division_of(const Rules& rules, const Light& light, uint32_t receiver, 
 }
 
 /// The parts of a cluster or an element, which is divided when it was not.
-struct Parts {
+struct DividedParts {
   std::array<uint32_t, 4> id{};
   uint32_t count = 0;
 };
-Parts parts_of(Refined& state, const Exchange& x, uint32_t id) {
+DividedParts divided_parts(Refined& state, const Exchange& x, uint32_t id) {
   if (state.tree.is_cluster(id)) {
     const auto& child = state.tree.clusters[id].child;
     return {{child[0], child[1]}, 2};
@@ -100,14 +100,14 @@ void add_pairs(Refined& state, const Exchange& x, const Open& open, Division div
                uint32_t parent, std::vector<Pair>& out) {
   const uint32_t r = open.receiver, s = open.link.source;
   if (division == Division::both) {
-    const Parts parts = parts_of(state, x, r);
+    const DividedParts parts = divided_parts(state, x, r);
     for (uint32_t i = 0; i < parts.count; ++i)
       for (uint32_t j = 0; j < parts.count; ++j)
         if (i != j || state.tree.is_cluster(parts.id[i]))
           out.push_back({parts.id[i], parts.id[j], parent});
     return;
   }
-  const Parts parts = parts_of(state, x, division == Division::receiver ? r : s);
+  const DividedParts parts = divided_parts(state, x, division == Division::receiver ? r : s);
   for (uint32_t i = 0; i < parts.count; ++i)
     out.push_back(division == Division::receiver ? Pair{parts.id[i], s, parent}
                                                  : Pair{r, parts.id[i], parent});

@@ -10,7 +10,7 @@ namespace {
 
 /// A triangle whose samples are off a plane by less than this part of what its interpolant may be
 /// off by is not looked at.
-constexpr double kFlat = 0.25;
+constexpr double kRepresentFlat = 0.25;
 /// The usual eps of interpolants over that of links. Feedback corrects what links err by, while the
 /// error of an interpolant stays in the picture. Smaller divides more elements for it.
 constexpr double kUsualPart = 0.25;
@@ -90,7 +90,7 @@ Result<std::vector<size_t>> leaves_off(const PointScene& at, double eps, KnownLi
   for (size_t t = 0; t < mesh.triangles.size(); ++t)
     if (double(bend_of(mesh.interpolant[t])) *
             std::sqrt(area_of(mesh, mesh.triangles[t]) / unit_m2) >
-        kFlat * eps)
+        kRepresentFlat * eps)
       bent.push_back(t);
   LUXEL_TRY(const std::vector<float> error, measure(at, bent, known, mesh, progress));
   std::vector<size_t> out;

@@ -27,7 +27,7 @@ constexpr double kFirstEps = 0.1;
 /// is asked for must not depend on how finely a surface is cut into triangles.
 constexpr size_t kMostUnits = 1024;
 /// Elements are not divided below this part of the scene's area: a room of 100 m^2, below 4 cm^2.
-constexpr double kLeastPart = 1.0 / (1 << 18);
+constexpr double kSolveLeastPart = 1.0 / (1 << 18);
 
 double area_of(const Tree& tree) {
   double area = 0;
@@ -178,7 +178,7 @@ Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer
   s.basis = params.basis;
   s.diagonal_m = scene::world_bounds(scene).diagonal();
   s.unit_area_m2 = area_of(s.tree) / double(std::clamp<size_t>(s.faces.size(), 1, kMostUnits));
-  s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kLeastPart;
+  s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kSolveLeastPart;
   s.unlinked = unlinked_lights_of(scene);
   // Links and light; then what a user should know.
   Solving solving{s, s.exchange(tracer), {}, {scene, s.tree, s.light, s.links}};

@@ -12,7 +12,7 @@ namespace {
 
 /// Rays per point towards the sky. A border crosses about sqrt(256) cells of their grid, so E comes
 /// in steps of some 1/256 of the sky's.
-constexpr uint32_t kSkyRays = 256;
+constexpr uint32_t kUnlinkedLightsSkyRays = 256;
 /// Light is not known better than what so many rays bring: differences below that are none. A
 /// border of 16 cells errs by about sqrt(16) = 4 rays. With fewer, leaves would be divided for
 /// these steps.
@@ -59,13 +59,13 @@ Probe probe_of(const Element& e, double unit_area_m2) {
 
 /// The function through Gauss's points, given by its corners, bent as far up as it would be
 /// negative; and how far it is off elsewhere.
-struct Fit {
+struct SkyFit {
   std::array<Rgb, 4> corner{};
   float error = 0;
 };
-Fit fit_of(const Probe& probe, std::span<const Rgb> light) {
+SkyFit fit_of(const Probe& probe, std::span<const Rgb> light) {
   // Mean, and twist of a bilinear function.
-  Fit out;
+  SkyFit out;
   const uint32_t n = probe.corners;
   Rgb mean{}, twist{};
   for (uint32_t k = 0; k < n; ++k) mean += light[k] / float(n);
@@ -106,7 +106,8 @@ std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x,
   const SkyScene sky{scene, unlinked.lights.around, x.tracer, x.diagonal_m};
   parallel_for(points.size(), 64, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
-      out[i] = soft_sky_at(sky, {points.position[i], points.normal[i], points.normal[i]}, kSkyRays);
+      out[i] = soft_sky_at(sky, {points.position[i], points.normal[i], points.normal[i]},
+                           kUnlinkedLightsSkyRays);
   });
   return out;
 }
@@ -157,7 +158,7 @@ Status light_leaves(Refined& state, const Exchange& x, const UnlinkedLights& unl
                     const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress) {
   if (!unlinked.any()) return {};
   const float unsure = unlinked.has_sky ? brightest_sky(state.scene, unlinked.lights.around) * kPi *
-                                              (kUnsureRays / kSkyRays)
+                                              (kUnsureRays / kUnlinkedLightsSkyRays)
                                         : 0.0f;
   for (;;) {
     // Points of all leaves that have no light yet.
@@ -182,7 +183,7 @@ Status light_leaves(Refined& state, const Exchange& x, const UnlinkedLights& unl
     // A linear function per leaf. Where it is off, the leaf is divided, and its parts come next.
     std::span<const Rgb> light = direct.irradiance;
     for (size_t k = 0; k < leaves.size(); ++k) {
-      const Fit fit = fit_of(probes[k], light.first(probes[k].at.size()));
+      const SkyFit fit = fit_of(probes[k], light.first(probes[k].at.size()));
       light = light.subspan(probes[k].at.size());
       state.light.elements[leaves[k]].unlinked = fit.corner;
       const double area = state.tree.elements[leaves[k]].area_m2;

@@ -18,7 +18,7 @@ namespace luxel::matrix {
 namespace {
 
 /// Rows that a task takes.
-constexpr size_t kRows = 16;
+constexpr size_t kMakeRows = 16;
 
 /// Distances between columns are the same whatever the order of the rows, so the second order does
 /// not wait for the first.
@@ -172,7 +172,7 @@ void keep(const ColourMatrix& matrix, const Picture& picture, const KeptColumns&
     first[place + 1] = first[place] + uint32_t(kept[out.row[place]].size());
   std::vector<Bc1::Kept> entries(first.back());
   const std::vector<uint32_t> place_of = inverse(out.column);
-  parallel_for(n, kRows, [&](size_t begin, size_t end) {
+  parallel_for(n, kMakeRows, [&](size_t begin, size_t end) {
     std::vector<Rgb> rest(n);
     for (size_t place = begin; place < end && !progress.cancelled(); ++place) {
       scale_row(matrix, picture, params, mean, place, out);

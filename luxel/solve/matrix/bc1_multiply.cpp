@@ -22,12 +22,12 @@ namespace {
 /// Block rows that a task takes; their blocks first, then what is kept of them, so that each has
 /// the nearest cache to itself.
 constexpr size_t kBlockRows = 8;
-constexpr size_t kLanes = 16;
+constexpr size_t kBlockLanes = 16;
 using Levels = Bc1Scratch::Levels;
 
 /// Sums of a block row: entry k of a block in lane k.
 struct Sums {
-  alignas(64) float lane[3][kLanes] = {};
+  alignas(64) float lane[3][kBlockLanes] = {};
 };
 
 /// What a product reads.
@@ -58,7 +58,7 @@ void add_blocks_any(const std::array<const uint64_t*, 2>& row, size_t count, con
       const Levels* levels[3] = {in.five + red_of(block), in.six + green_of(block),
                                  in.five + blue_of(block)};
       for (size_t c = 0; c < 3; ++c)
-        for (size_t k = 0; k < kLanes; ++k)
+        for (size_t k = 0; k < kBlockLanes; ++k)
           sums[r].lane[c][k] =
               std::fma((*levels[c])[block >> (32 + 2 * k) & 3],
                        in.light[c * in.stride + 4 * b + k % 4], sums[r].lane[c][k]);

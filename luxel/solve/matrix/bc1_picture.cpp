@@ -10,7 +10,7 @@ namespace luxel::matrix {
 namespace {
 
 /// Rows that a task takes.
-constexpr size_t kRows = 16;
+constexpr size_t kPictureRows = 16;
 /// Steps of a fitted range, and what no row may lose more than.
 constexpr size_t kLongestRange = 25;
 constexpr float kLostShare = 0.002f;
@@ -25,7 +25,7 @@ uint8_t byte_of(float value, float largest, float log_range) {
 std::array<float, 3> largest_of_rest(const ColourMatrix& matrix, const Picture& picture) {
   const size_t n = matrix.n;
   std::vector<Rgb> of_row(n);
-  parallel_for(n, kRows, [&](size_t begin, size_t end) {
+  parallel_for(n, kPictureRows, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       std::array<float, 3> largest{};
       for (size_t c = 0; c < 3; ++c)
@@ -44,7 +44,7 @@ std::array<float, 3> largest_of_rest(const ColourMatrix& matrix, const Picture& 
 float fitted_range(const ColourMatrix& matrix, const Picture& picture, const Progress& progress) {
   const size_t n = matrix.n;
   std::vector<size_t> of_row(n, 1);
-  parallel_for(n, kRows, [&](size_t begin, size_t end) {
+  parallel_for(n, kPictureRows, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end && !progress.cancelled(); ++i)
       for (size_t c = 0; c < 3; ++c) {
         // The sums of entries between e^-(k + 1) and e^-k of the maximum.
@@ -89,7 +89,7 @@ KeptColumns choose_kept(const ColourMatrix& matrix, float share, const Progress&
   const size_t n = matrix.n;
   const auto count = std::ptrdiff_t(std::ceil(double(share) * double(n)));
   KeptColumns out(n);
-  parallel_for(n, kRows, [&](size_t begin, size_t end) {
+  parallel_for(n, kPictureRows, [&](size_t begin, size_t end) {
     std::vector<uint32_t> order(n);
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       for (size_t c = 0; c < 3; ++c) {
@@ -116,7 +116,7 @@ Picture picture_of(const ColourMatrix& matrix, const KeptColumns& kept, Bc1Param
     for (const uint32_t j : kept[i]) out.at(i, j)[3] = 0;
   out.largest = largest_of_rest(matrix, out);
   if (params.log_range == 0) params.log_range = fitted_range(matrix, out, progress);
-  parallel_for(n, kRows, [&](size_t begin, size_t end) {
+  parallel_for(n, kPictureRows, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end && !progress.cancelled(); ++i)
       for (size_t j = 0; j < n; ++j)
         for (size_t c = 0; c < 3; ++c)

@@ -72,7 +72,7 @@ std::vector<Rgb> exact_light() {
   return out;
 }
 
-double error_of(const Bc1Params& params) {
+double error_of_bc1(const Bc1Params& params) {
   return testing::relative_error(product(compressed(box().matrix, params), box().light),
                                  exact_light(), box().area_m2);
 }
@@ -224,17 +224,17 @@ TEST(Bc1, EvenLightArrivesAsItDid) {
 
 TEST(Bc1, CornellBoxWithinAPercent) {
   // The bound for relit light is 2 %; light of each patch's own is less even than any.
-  EXPECT_LT(error_of({}), 0.01);
+  EXPECT_LT(error_of_bc1({}), 0.01);
 }
 
 TEST(Bc1, EachChangeToThePaperHelps) {
   Bc1Params params = paper_params();
-  double before = error_of(params);
+  double before = error_of_bc1(params);
   // With 600 patches, of which reordering has little to gain, the paper's own way loses some
   // percent.
   EXPECT_LT(before, 0.06);
   const auto expect_less = [&](const char* what) {
-    const double now = error_of(params);
+    const double now = error_of_bc1(params);
     EXPECT_LT(now, before) << what;
     before = now;
   };
@@ -318,7 +318,7 @@ TEST(Bc1, RowsOfNextToNothingStayBounded) {
 TEST(Bc1, ErrorFallsWithWhatIsKept) {
   double before = 1;
   for (const float share : {0.0f, 0.01f, 0.04f, 0.16f, 0.64f}) {
-    const double now = error_of({.kept = share});
+    const double now = error_of_bc1({.kept = share});
     EXPECT_LT(now, before) << share;
     before = now;
   }

@@ -174,7 +174,7 @@ void count_bounces(const Multiply& multiply, const Sent& sent, std::span<Rgb> ir
 namespace {
 
 /// Clusters that a task takes.
-constexpr size_t kRows = 64;
+constexpr size_t kClustersPerTask = 64;
 
 /// sum_S = sum_T response_ST q_T for the clusters [begin, end).
 LUXEL_VECTOR_CLONES
@@ -194,14 +194,14 @@ void late_bounces(const CoarseScene& coarse, const Sent& sent, std::span<const R
   for (size_t i = 0; i < arriving.size(); ++i)
     scratch.power[coarse.cluster_of[i]] += sent.reflectance[i] * arriving[i] * sent.area_m2[i];
   const auto rows = [&](size_t begin, size_t end) {
-    float sum[3][kRows] = {};
+    float sum[3][kClustersPerTask] = {};
     for (int channel = 0; channel < 3; ++channel)
       respond(coarse.response[size_t(channel)], coarse.count(), scratch.power, channel, begin, end,
               sum[channel]);
     for (size_t s = begin; s < end; ++s)
       scratch.late[s] = {sum[0][s - begin], sum[1][s - begin], sum[2][s - begin]};
   };
-  parallel_for(coarse.count(), kRows, std::ref(rows));
+  parallel_for(coarse.count(), kClustersPerTask, std::ref(rows));
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ std::array<Powers, kFunctions> orthonormal(const Gram& gram) {
   return out;
 }
 
-struct Input {
+struct MomentInput {
   std::span<const Cluster> clusters;
   std::span<const Vec3> position;
   std::span<const float> area_m2;
@@ -61,7 +61,7 @@ struct Input {
 
 /// The powers of a cluster's patches as its halves' functions see them (a leaf's: themselves), so
 /// that its own functions are combinations of those.
-std::vector<Powers> powers_of(const Input& in, const Cluster& cluster, const Ball& ball,
+std::vector<Powers> powers_of(const MomentInput& in, const Cluster& cluster, const Ball& ball,
                               const std::vector<std::vector<Values>>& all) {
   std::vector<Powers> power(cluster.size());
   for (uint32_t i = cluster.first; i < cluster.end; ++i) {
@@ -87,7 +87,7 @@ std::vector<Powers> powers_of(const Input& in, const Cluster& cluster, const Bal
 }
 
 /// Orthonormal combinations of a cluster's powers, to the functions at its depth.
-void add_functions(const Input& in, const Cluster& cluster, std::span<const Powers> power,
+void add_functions(const MomentInput& in, const Cluster& cluster, std::span<const Powers> power,
                    std::span<Values> phi) {
   Gram gram{};
   for (uint32_t i = 0; i < cluster.size(); ++i)
@@ -107,7 +107,7 @@ void add_functions(const Input& in, const Cluster& cluster, std::span<const Powe
 
 ClusterFunctions make_functions(std::span<const Cluster> clusters, std::span<const Vec3> position,
                                 std::span<const float> area_m2) {
-  const Input in{clusters, position, area_m2};
+  const MomentInput in{clusters, position, area_m2};
   ClusterFunctions out;
   uint32_t depth = 0;
   for (const Cluster& c : clusters) {

@@ -13,10 +13,10 @@ namespace luxel::matrix {
 namespace {
 
 /// Rows of a product that a task takes.
-constexpr size_t kRows = 16;
+constexpr size_t kProductRows = 16;
 /// Columns of K that are reflected together: as many sums as a processor has registers for.
 constexpr size_t kPanel = 64;
-constexpr size_t kLanes = 8;
+constexpr size_t kColourLanes = 8;
 /// Columns and rows of the blocks that the direct solution works on.
 constexpr Eigen::Index kBlock = 256;
 
@@ -30,18 +30,18 @@ using Panel = std::vector<PanelRow>;
 LUXEL_VECTOR_CLONES
 void add_row(std::span<const uint32_t> column, std::span<const float> factor, const PanelRow* panel,
              float* out) {
-  Float8 sum[kPanel / kLanes] = {};
+  Float8 sum[kPanel / kColourLanes] = {};
   for (size_t k = 0; k < column.size(); ++k) {
     const float f = factor[k];
     const float* x = panel[column[k]].value;
-    for (size_t v = 0; v < kPanel / kLanes; ++v) {
+    for (size_t v = 0; v < kPanel / kColourLanes; ++v) {
       Float8 lanes;
-      load8(x + v * kLanes, lanes);
+      load8(x + v * kColourLanes, lanes);
       sum[v] += f * lanes;
     }
   }
-  for (size_t v = 0; v < kPanel / kLanes; ++v)
-    for (size_t l = 0; l < kLanes; ++l) out[v * kLanes + l] += sum[v][l];
+  for (size_t v = 0; v < kPanel / kColourLanes; ++v)
+    for (size_t l = 0; l < kColourLanes; ++l) out[v * kColourLanes + l] += sum[v][l];
 }
 
 /// Columns [begin, end) of F.
@@ -89,7 +89,7 @@ Status reflect(const FormFactors& factors, std::span<const Rgb> reflectance, int
 using Matrix = Eigen::MatrixXf;
 
 /// S' = sqrt(A) F / sqrt(A), which is symmetric.
-Matrix symmetric(const FormFactors& factors, std::span<const float> area_m2) {
+Matrix symmetric_matrix(const FormFactors& factors, std::span<const float> area_m2) {
   const auto n = Eigen::Index(factors.size());
   Matrix out = Matrix::Zero(n, n);
   for (size_t i = 0; i < factors.size(); ++i)
@@ -212,7 +212,7 @@ Result<ColourMatrix> make_reflections(const FormFactors& factors, std::span<cons
   ColourMatrix out;
   out.n = uint32_t(n);
   progress.begin("reflections", 3 * n);
-  const Matrix s = bounces < 0 ? symmetric(factors, area_m2) : Matrix();
+  const Matrix s = bounces < 0 ? symmetric_matrix(factors, area_m2) : Matrix();
   for (size_t c = 0; c < 3; ++c) {
     out.channel[c].resize(n * n);
     if (bounces < 0)
@@ -236,7 +236,7 @@ void multiply(const ColourMatrix& m, std::span<const Rgb> radiosity, std::span<R
     for (size_t i = begin; i < end; ++i)
       irradiance[i] = {received(i, 0), received(i, 1), received(i, 2)};
   };
-  parallel_for(n, kRows, std::ref(rows));
+  parallel_for(n, kProductRows, std::ref(rows));
 }
 
 uint64_t bytes_of(const ColourMatrix& m) {

@@ -12,7 +12,7 @@ namespace {
 using testing::Cut;
 
 /// What a matrix is made of.
-struct Room {
+struct ColourRoom {
   FormFactors factors;
   std::vector<float> area_m2;
   std::vector<Rgb> reflectance, sent;
@@ -44,18 +44,18 @@ std::vector<Rgb> product(const ColourMatrix& matrix, std::span<const Rgb> b) {
 
 /// The Cornell box with light of every patch's own, not a multiple of any width of vectors or
 /// panels.
-const Room& cornell() {
-  static const Room room = [] {
+const ColourRoom& cornell() {
+  static const ColourRoom room = [] {
     const Cut cut(scene::cornell_box(), 300);
-    return Room{cut.reciprocal_factors(1024), cut.patches().area_m2,
-                cut.patches().elements.reflectance, testing::random_light(cut.size(), 1)};
+    return ColourRoom{cut.reciprocal_factors(1024), cut.patches().area_m2,
+                      cut.patches().elements.reflectance, testing::random_light(cut.size(), 1)};
   }();
   return room;
 }
 
 /// The inside of a sphere of patches of all sizes: F_ij = A_j / A.
-Room sphere(Rgb reflectance) {
-  Room room;
+ColourRoom sphere(Rgb reflectance) {
+  ColourRoom room;
   for (const Rgb& c : testing::random_light(150, 2)) room.area_m2.push_back(0.1f + c.x);
   room.factors = testing::sphere_factors(room.area_m2);
   room.reflectance.assign(150, reflectance);
@@ -85,7 +85,7 @@ TEST(Reflections, WithoutEndAreTheLimit) {
 TEST(Reflections, SeriesInAFurnace) {
   // All send e and reflect rho: E_k = e (1 - rho^k) / (1 - rho), without end e / (1 - rho).
   const Rgb rho{0.2f, 0.5f, 0.9f};
-  const Room room = sphere(rho);
+  const ColourRoom room = sphere(rho);
   for (const int bounces : {1, 2, 3, 6, -1})
     for (const Rgb& e : product(room.matrix(bounces), room.sent))
       for (int c = 0; c < 3; ++c) {
@@ -97,7 +97,7 @@ TEST(Reflections, SeriesInAFurnace) {
 
 TEST(Reflections, WithoutEndNeedNoColour) {
   // Nothing is divided by reflectances: black patches receive all the same.
-  Room room = cornell();
+  ColourRoom room = cornell();
   for (size_t i = 0; i < room.sent.size(); i += 3) room.reflectance[i] = {0, 0, 0.5f};
   const std::vector<Rgb> want = room.counted(300), got = product(room.matrix(-1), room.sent);
   for (size_t i = 0; i < want.size(); ++i)

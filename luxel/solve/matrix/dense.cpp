@@ -16,10 +16,10 @@ namespace luxel::matrix {
 namespace {
 
 /// Rows that a task takes.
-constexpr size_t kRows = 16;
+constexpr size_t kDenseRows = 16;
 /// Halves that are made floats at a time: they stay in the nearest cache.
 constexpr size_t kChunk = 1024;
-constexpr size_t kLanes = 8;
+constexpr size_t kDenseLanes = 8;
 
 /// Adds what two rows of `n` numbers receive from three planes of light, `stride` apart, to
 /// sums[row][channel]. Two rows share what is read of the light.
@@ -28,7 +28,7 @@ void add_two_rows(const float* row0, const float* row1, size_t n, const float* p
                   float (*sums)[3]) {
   Float8 sum[2][3] = {};
   size_t j = 0;
-  for (; j + kLanes <= n; j += kLanes) {
+  for (; j + kDenseLanes <= n; j += kDenseLanes) {
     Float8 f0, f1;
     load8(row0 + j, f0), load8(row1 + j, f1);
     for (size_t c = 0; c < 3; ++c) {
@@ -38,7 +38,7 @@ void add_two_rows(const float* row0, const float* row1, size_t n, const float* p
     }
   }
   for (size_t c = 0; c < 3; ++c) {
-    for (size_t l = 0; l < kLanes; ++l) sums[0][c] += sum[0][c][l], sums[1][c] += sum[1][c][l];
+    for (size_t l = 0; l < kDenseLanes; ++l) sums[0][c] += sum[0][c][l], sums[1][c] += sum[1][c][l];
     for (size_t k = j; k < n; ++k) {
       const float b = plane[c * stride + k];
       sums[0][c] += row0[k] * b, sums[1][c] += row1[k] * b;
@@ -54,7 +54,7 @@ __attribute__((target("avx2,f16c"))) void add_two_rows_f16c(const uint16_t* row0
                                                             float (*sums)[3]) {
   __m256 sum[2][3] = {};
   size_t j = 0;
-  for (; j + kLanes <= n; j += kLanes) {
+  for (; j + kDenseLanes <= n; j += kDenseLanes) {
     const __m256 f0 = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i*)(row0 + j)));
     const __m256 f1 = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i*)(row1 + j)));
     for (size_t c = 0; c < 3; ++c) {
@@ -64,7 +64,7 @@ __attribute__((target("avx2,f16c"))) void add_two_rows_f16c(const uint16_t* row0
     }
   }
   for (size_t c = 0; c < 3; ++c) {
-    for (size_t l = 0; l < kLanes; ++l) sums[0][c] += sum[0][c][l], sums[1][c] += sum[1][c][l];
+    for (size_t l = 0; l < kDenseLanes; ++l) sums[0][c] += sum[0][c][l], sums[1][c] += sum[1][c][l];
     for (size_t k = j; k < n; ++k) {
       const float b = plane[c * stride + k];
       sums[0][c] += float_from_half(row0[k]) * b, sums[1][c] += float_from_half(row1[k]) * b;
@@ -128,16 +128,16 @@ LUXEL_VECTOR_CLONES
 float inner_product(const float* row, const float* plane, size_t n) {
   Float8 sum[4] = {};
   size_t j = 0;
-  for (; j + 4 * kLanes <= n; j += 4 * kLanes)
+  for (; j + 4 * kDenseLanes <= n; j += 4 * kDenseLanes)
     for (size_t v = 0; v < 4; ++v) {
       Float8 f, b;
-      load8(row + j + v * kLanes, f);
-      load8(plane + j + v * kLanes, b);
+      load8(row + j + v * kDenseLanes, f);
+      load8(plane + j + v * kDenseLanes, b);
       sum[v] += f * b;
     }
   const Float8 all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
   float out = 0;
-  for (size_t l = 0; l < kLanes; ++l) out += all[l];
+  for (size_t l = 0; l < kDenseLanes; ++l) out += all[l];
   for (; j < n; ++j) out += row[j] * plane[j];
   return out;
 }
@@ -167,7 +167,7 @@ void multiply(const Dense& m, std::span<const Rgb> radiosity, std::span<Rgb> irr
       irradiance[next] = {sums[1][0], sums[1][1], sums[1][2]};
     }
   };
-  parallel_for(n, kRows, std::ref(rows));
+  parallel_for(n, kDenseRows, std::ref(rows));
 }
 
 uint64_t bytes_of(const Dense& m) { return 4 * m.single.size() + 2 * m.half.size(); }

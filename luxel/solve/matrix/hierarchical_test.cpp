@@ -29,18 +29,18 @@ std::vector<Rgb> product(const Hierarchical& matrix, std::span<const Rgb> radios
 }
 
 /// A scene with its factors, shared by tests.
-struct Box {
+struct ClusterBox {
   Cut cut{scene::cornell_box(), 1000};
   FormFactors factors = cut.reciprocal_factors(1024);
   std::span<const float> area_m2() const { return cut.patches().area_m2; }
 };
-const Box& box() {
-  static const Box box;
-  return box;
+const ClusterBox& cluster_box() {
+  static const ClusterBox cluster_box;
+  return cluster_box;
 }
 
 TEST(Hierarchical, IsExactToEightBitsWhereNothingMayBeLost) {
-  const auto& [cut, f] = box();
+  const auto& [cut, f] = cluster_box();
   const Hierarchical h = compressed(cut, f, {0, kNoNoise});
   const std::vector<Rgb> b = testing::random_light(cut.size(), 1), got = product(h, b),
                          want = testing::plain_product(f, b);
@@ -62,16 +62,16 @@ TEST(Hierarchical, IsExactToEightBitsWhereNothingMayBeLost) {
   for (size_t i = 0; i < cut.size(); ++i)
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[i][c], want[i][c], bound[i]) << i;
   // Errors of one row have either sign and mostly cancel.
-  EXPECT_LT(testing::relative_error(got, want, box().area_m2()), 2e-3);
+  EXPECT_LT(testing::relative_error(got, want, cluster_box().area_m2()), 2e-3);
 }
 
 TEST(Hierarchical, IsNearlyThePlainProduct) {
-  const std::vector<Rgb> b = testing::random_light(box().cut.size(), 2),
-                         want = testing::plain_product(box().factors, b);
-  const Hierarchical h = compressed(box().cut, box().factors, {0.003f, 1024});
+  const std::vector<Rgb> b = testing::random_light(cluster_box().cut.size(), 2),
+                         want = testing::plain_product(cluster_box().factors, b);
+  const Hierarchical h = compressed(cluster_box().cut, cluster_box().factors, {0.003f, 1024});
   EXPECT_FALSE(h.far.empty());
   // Independent light per patch is the hardest there is: real light varies slowly.
-  EXPECT_LT(testing::relative_error(product(h, b), want, box().area_m2()), 0.02);
+  EXPECT_LT(testing::relative_error(product(h, b), want, cluster_box().area_m2()), 0.02);
 }
 
 TEST(Hierarchical, LosesNoMoreThanRaysAreOff) {
@@ -89,13 +89,14 @@ TEST(Hierarchical, LosesNoMoreThanRaysAreOff) {
 }
 
 TEST(Hierarchical, ErrorAndSizeFallAndRiseWithBlockError) {
-  const std::vector<Rgb> b = testing::random_light(box().cut.size(), 3),
-                         want = testing::plain_product(box().factors, b);
+  const std::vector<Rgb> b = testing::random_light(cluster_box().cut.size(), 3),
+                         want = testing::plain_product(cluster_box().factors, b);
   double error = 1;
   uint64_t bytes = 0;
   for (const float block_error : {0.1f, 0.03f, 0.01f, 0.003f}) {
-    const Hierarchical h = compressed(box().cut, box().factors, {block_error, kNoNoise});
-    const double now = testing::relative_error(product(h, b), want, box().area_m2());
+    const Hierarchical h =
+        compressed(cluster_box().cut, cluster_box().factors, {block_error, kNoNoise});
+    const double now = testing::relative_error(product(h, b), want, cluster_box().area_m2());
     EXPECT_LT(now, error) << block_error;
     EXPECT_GT(bytes_of(h), bytes) << block_error;
     error = now, bytes = bytes_of(h);
@@ -104,14 +105,15 @@ TEST(Hierarchical, ErrorAndSizeFallAndRiseWithBlockError) {
 
 TEST(Hierarchical, KeepsThePowerOfConstants) {
   // 1 is a function of every cluster, so that far blocks keep sum A_i E_i; near ones keep rows.
-  const std::vector<Rgb> one(box().cut.size(), Rgb{1, 0.5f, 2});
+  const std::vector<Rgb> one(cluster_box().cut.size(), Rgb{1, 0.5f, 2});
   for (const float block_error : {0.0f, 0.003f, 0.03f}) {
-    const Hierarchical h = compressed(box().cut, box().factors, {block_error, 1024});
+    const Hierarchical h =
+        compressed(cluster_box().cut, cluster_box().factors, {block_error, 1024});
     const std::vector<Rgb> e = product(h, one);
     double got = 0, want = 0;
     for (size_t i = 0; i < e.size(); ++i) {
-      const double a = double(box().area_m2()[i]);
-      got += a * double(e[i].x), want += a * row_sum(box().factors, i);
+      const double a = double(cluster_box().area_m2()[i]);
+      got += a * double(e[i].x), want += a * row_sum(cluster_box().factors, i);
       // Floats scaled by powers of two: channels do not mix.
       EXPECT_FLOAT_EQ(e[i].y * 2, e[i].x);
       EXPECT_FLOAT_EQ(e[i].z / 2, e[i].x);
@@ -122,11 +124,13 @@ TEST(Hierarchical, KeepsThePowerOfConstants) {
 }
 
 TEST(Hierarchical, RowsOfConstantsAreRowSums) {
-  const std::vector<Rgb> one(box().cut.size(), Rgb{1, 1, 1});
-  const std::vector<Rgb> e = product(compressed(box().cut, box().factors, {0, kNoNoise}), one);
+  const std::vector<Rgb> one(cluster_box().cut.size(), Rgb{1, 1, 1});
+  const std::vector<Rgb> e =
+      product(compressed(cluster_box().cut, cluster_box().factors, {0, kNoNoise}), one);
   // A row is carried to its end: half a step of the largest entry per pair of leaves is left, of
   // which there are some 150, of either sign.
-  for (size_t i = 0; i < e.size(); ++i) EXPECT_NEAR(e[i].x, row_sum(box().factors, i), 5e-3) << i;
+  for (size_t i = 0; i < e.size(); ++i)
+    EXPECT_NEAR(e[i].x, row_sum(cluster_box().factors, i), 5e-3) << i;
 }
 
 /// sum A_i (F b)_i c_i, per channel x.
@@ -140,26 +144,27 @@ double paired(const Hierarchical& h, std::span<const Rgb> b, std::span<const Rgb
 TEST(Hierarchical, IsItsOwnAdjoint) {
   // A_i F_ij = A_j F_ji: light from b that c weighs is light from c that b weighs. Light here and
   // weight there, so that it is not the whole's mean that agrees.
-  std::vector<Rgb> b(box().cut.size()), c(b.size());
+  std::vector<Rgb> b(cluster_box().cut.size()), c(b.size());
   RandomStream random{4};
   for (size_t i = 0; i < b.size(); ++i) {
-    const Vec3 p = box().cut.patches().centroid[i];
+    const Vec3 p = cluster_box().cut.patches().centroid[i];
     if (p.x < 0.2f) b[i].x = random.next();
     if (p.z > 0.3f) c[i].x = random.next();
   }
   for (const float block_error : {0.0f, 0.003f, 0.03f}) {
-    const Hierarchical h = compressed(box().cut, box().factors, {block_error, 1024});
+    const Hierarchical h =
+        compressed(cluster_box().cut, cluster_box().factors, {block_error, 1024});
     // Far blocks are symmetric but for 16 bits; near ones are rounded to 8 bits on either side.
     EXPECT_NEAR(paired(h, b, c), paired(h, c, b), 1e-3 * paired(h, b, c)) << block_error;
   }
 }
 
 TEST(Hierarchical, IsLinear) {
-  const std::vector<Rgb> b = testing::random_light(box().cut.size(), 5),
-                         c = testing::random_light(box().cut.size(), 6);
+  const std::vector<Rgb> b = testing::random_light(cluster_box().cut.size(), 5),
+                         c = testing::random_light(cluster_box().cut.size(), 6);
   std::vector<Rgb> both(b.size());
   for (size_t i = 0; i < b.size(); ++i) both[i] = b[i] * 2 + c[i];
-  const Hierarchical h = compressed(box().cut, box().factors, {});
+  const Hierarchical h = compressed(cluster_box().cut, cluster_box().factors, {});
   const std::vector<Rgb> eb = product(h, b), ec = product(h, c), e = product(h, both);
   for (size_t i = 0; i < e.size(); ++i)
     // Sums of a thousand floats, some of which cancel.
@@ -168,7 +173,7 @@ TEST(Hierarchical, IsLinear) {
 
 TEST(Hierarchical, LightIsNeverNegative) {
   // One bright patch: what smooth functions overshoot around it is cut off.
-  const Hierarchical h = compressed(box().cut, box().factors, {0.1f, 64});
+  const Hierarchical h = compressed(cluster_box().cut, cluster_box().factors, {0.1f, 64});
   for (size_t i = 0; i < h.size(); i += 37) {
     std::vector<Rgb> b(h.size());
     b[i] = {1000, 1000, 1000};
@@ -236,10 +241,10 @@ TEST(Hierarchical, AnEmptyMatrixSendsNothing) {
 }
 
 TEST(Hierarchical, SameBitsForAnyNumberOfThreads) {
-  const std::vector<Rgb> b = testing::random_light(box().cut.size(), 8);
+  const std::vector<Rgb> b = testing::random_light(cluster_box().cut.size(), 8);
   const auto light = [&](int threads) {
     const ThreadLimit limit(threads);
-    return product(compressed(box().cut, box().factors, {}), b);
+    return product(compressed(cluster_box().cut, cluster_box().factors, {}), b);
   };
   const std::vector<Rgb> one = light(1);
   EXPECT_EQ(one, light(2));
@@ -249,8 +254,9 @@ TEST(Hierarchical, SameBitsForAnyNumberOfThreads) {
 TEST(Hierarchical, CanBeCancelled) {
   Progress progress;
   progress.request_cancel();
-  const auto h = compress(box().factors, box().cut.patched.tree, box().cut.patches().centroid,
-                          box().area_m2(), {}, progress);
+  const auto h =
+      compress(cluster_box().factors, cluster_box().cut.patched.tree,
+               cluster_box().cut.patches().centroid, cluster_box().area_m2(), {}, progress);
   ASSERT_FALSE(h);
   EXPECT_EQ(h.error().code, ErrorCode::cancelled);
 }

@@ -15,12 +15,12 @@ using Kind = scene::PunctualLight::Kind;
 /// Light takes a dozen operations on floats.
 constexpr double kRounding = 2e-6;
 
-struct Stage {
+struct LiveStage {
   scene::Scene scene;
   trace::RayTracer tracer;
   float diagonal_m;
 
-  explicit Stage(scene::Scene s)
+  explicit LiveStage(scene::Scene s)
       : scene(std::move(s)),
         tracer(*trace::RayTracer::build(scene)),
         diagonal_m(scene::world_bounds(scene).diagonal()) {}
@@ -45,14 +45,14 @@ Ground plate_places() {
   return out;
 }
 
-std::vector<Rgb> light(const Stage& stage, const Ground& ground,
+std::vector<Rgb> light(const LiveStage& stage, const Ground& ground,
                        const std::vector<scene::PunctualLight>& lamps) {
   std::vector<Rgb> out(ground.position.size(), {7, 7, 7});  // what was there is forgotten
   live_light(ground.places(), lamps, stage.tracer, stage.diagonal_m, out);
   return out;
 }
 
-scene::PunctualLight point_at(Vec3 position, Rgb intensity = {3, 2, 1}) {
+scene::PunctualLight live_point_at(Vec3 position, Rgb intensity = {3, 2, 1}) {
   scene::PunctualLight lamp;
   lamp.position = position, lamp.intensity = intensity;
   return lamp;
@@ -77,8 +77,8 @@ double squared(Vec3 v) {
 
 TEST(LiveLight, OfAPointIsTheInverseSquareTimesTheCosine) {
   const Ground ground = plate_places();
-  const auto lamp = point_at({0.3f, 0.8f, 0.6f});
-  const std::vector<Rgb> e = light(Stage(plate()), ground, {lamp});
+  const auto lamp = live_point_at({0.3f, 0.8f, 0.6f});
+  const std::vector<Rgb> e = light(LiveStage(plate()), ground, {lamp});
   for (size_t i = 0; i < e.size(); ++i) {
     const double d2 = squared(lamp.position - ground.position[i]);
     expect_share(e[i], double(lamp.position.y) / std::sqrt(d2) / d2, lamp, i);
@@ -88,9 +88,9 @@ TEST(LiveLight, OfAPointIsTheInverseSquareTimesTheCosine) {
 TEST(LiveLight, EndsAtItsRange) {
   // glTF's window, 1 - (d / range)^4 [KHR_lights_punctual]. The range ends within the plate.
   const Ground ground = plate_places();
-  auto lamp = point_at({0.5f, 0.25f, 0.5f});
+  auto lamp = live_point_at({0.5f, 0.25f, 0.5f});
   lamp.range_m = 0.5f;
-  const std::vector<Rgb> e = light(Stage(plate()), ground, {lamp});
+  const std::vector<Rgb> e = light(LiveStage(plate()), ground, {lamp});
   size_t dark = 0;
   for (size_t i = 0; i < e.size(); ++i) {
     const double d2 = squared(lamp.position - ground.position[i]);
@@ -107,9 +107,9 @@ TEST(LiveLight, EndsAtItsRange) {
 TEST(LiveLight, OfASpotStaysInItsCone) {
   // ((cos a - cos outer) / (cos inner - cos outer))^2 between the cones [KHR_lights_punctual].
   const Ground ground = plate_places();
-  auto lamp = point_at({0.5f, 1, 0.5f});
+  auto lamp = live_point_at({0.5f, 1, 0.5f});
   lamp.kind = Kind::spot, lamp.inner_cone_rad = 0.2f, lamp.outer_cone_rad = 0.4f;
-  const std::vector<Rgb> e = light(Stage(plate()), ground, {lamp});
+  const std::vector<Rgb> e = light(LiveStage(plate()), ground, {lamp});
   std::array<int, 3> met{};
   for (size_t i = 0; i < e.size(); ++i) {
     const double d2 = squared(lamp.position - ground.position[i]), cosine = 1 / std::sqrt(d2);
@@ -130,17 +130,17 @@ TEST(LiveLight, OfASunIsItsCosine) {
   const Ground ground = plate_places();
   for (const Vec3 direction : {Vec3{0, -1, 0}, Vec3{3, -4, 0}, Vec3{2, -1, -2}}) {
     const auto sun = sun_along(direction);
-    const std::vector<Rgb> e = light(Stage(plate()), ground, {sun});
+    const std::vector<Rgb> e = light(LiveStage(plate()), ground, {sun});
     const double cosine = double(-direction.y) / std::sqrt(squared(direction));
     for (size_t i = 0; i < e.size(); ++i) expect_share(e[i], cosine, sun, i);
   }
 }
 
 TEST(LiveLight, NothingArrivesFromBehind) {
-  const Stage stage(plate());
+  const LiveStage stage(plate());
   const Ground ground = plate_places();
   for (const auto& lamp :
-       {point_at({0.5f, -1, 0.5f}), point_at({2, 0, 0.5f}), sun_along({0, 1, 0})})
+       {live_point_at({0.5f, -1, 0.5f}), live_point_at({2, 0, 0.5f}), sun_along({0, 1, 0})})
     for (const Rgb& e : light(stage, ground, {lamp})) EXPECT_EQ(e, Rgb{});
   // Beneath a bent normal: what is behind the surface itself, and what is behind the normal.
   Ground bent = ground;
@@ -156,11 +156,11 @@ TEST(LiveLight, NothingArrivesFromBehind) {
 TEST(LiveLight, CastsTheShadowThatLinesSay) {
   scene::Scene scene = plate();
   scene::add_rectangle(scene, {0.375f, 0.5f, -1, 2}, 0.5f, true, 0);
-  const Stage stage(std::move(scene));
+  const LiveStage stage(std::move(scene));
   const Ground ground = plate_places();
   // From x = 0.25, twice as high as the blocker, its shadow is [0.5, 0.75]; the sun's is as wide as
   // itself. No place lies on their edges.
-  const auto lamp = point_at({0.25f, 1, 0.5f});
+  const auto lamp = live_point_at({0.25f, 1, 0.5f});
   const std::vector<Rgb> of_lamp = light(stage, ground, {lamp});
   const std::vector<Rgb> of_sun = light(stage, ground, {sun_along({0, -1, 0})});
   for (size_t i = 0; i < ground.position.size(); ++i) {
@@ -172,13 +172,13 @@ TEST(LiveLight, CastsTheShadowThatLinesSay) {
 
 TEST(LiveLight, ALampThatTouchesAWallIsNotHiddenByIt) {
   // Nothing is in the way inside a convex solid, wherever on its 320 faces lamp and place are.
-  const Stage stage(scene::inward_sphere(1, 2, {0.5f, 0.5f, 0.5f}, {}));
+  const LiveStage stage(scene::inward_sphere(1, 2, {0.5f, 0.5f, 0.5f}, {}));
   Ground ground;
   for (uint32_t t = 0; t < stage.scene.meshes[0].triangles.size(); ++t)
     ground.add(scene::world_position(stage.scene, {0, t, {1.0f / 3, 1.0f / 3}}),
                scene::front_normal(stage.scene, 0, t));
   for (size_t from = 0; from < ground.position.size(); from += 7) {
-    const auto lamp = point_at(ground.position[from]);
+    const auto lamp = live_point_at(ground.position[from]);
     const std::vector<Rgb> e = light(stage, ground, {lamp});
     for (size_t i = 0; i < e.size(); ++i) {
       if (i == from) continue;
@@ -195,24 +195,25 @@ TEST(LiveLight, ALampThatTouchesAWallIsNotHiddenByIt) {
 TEST(LiveLight, ALampBehindAWallIsHidden) {
   scene::Scene scene = plate();
   scene::add_rectangle(scene, {-9, 9, -9, 9}, 1, false, 0);
-  const Stage stage(std::move(scene));
-  for (const Rgb& e : light(stage, plate_places(), {point_at({0.5f, 1.001f, 0.5f})}))
+  const LiveStage stage(std::move(scene));
+  for (const Rgb& e : light(stage, plate_places(), {live_point_at({0.5f, 1.001f, 0.5f})}))
     EXPECT_EQ(e, Rgb{});
-  for (const Rgb& e : light(stage, plate_places(), {point_at({0.5f, 0.999f, 0.5f})}))
+  for (const Rgb& e : light(stage, plate_places(), {live_point_at({0.5f, 0.999f, 0.5f})}))
     EXPECT_GT(e.x, 0);
 }
 
 TEST(LiveLight, WithoutLampsIsDark) {
-  for (const Rgb& e : light(Stage(plate()), plate_places(), {})) EXPECT_EQ(e, Rgb{});
+  for (const Rgb& e : light(LiveStage(plate()), plate_places(), {})) EXPECT_EQ(e, Rgb{});
 }
 
 /// The Cornell box, all over, and lamps of every kind.
-struct Room {
+struct LitRoom {
   Cut cut{scene::cornell_box(), 300};
   Ground ground;
-  std::vector<scene::PunctualLight> lamps{
-      point_at({0.2f, 0.4f, 0.1f}), point_at({0.5f, 0.5f, 0.5f}), sun_along({0.3f, -0.2f, 1})};
-  Room() {
+  std::vector<scene::PunctualLight> lamps{live_point_at({0.2f, 0.4f, 0.1f}),
+                                          live_point_at({0.5f, 0.5f, 0.5f}),
+                                          sun_along({0.3f, -0.2f, 1})};
+  LitRoom() {
     for (const PatchPoint& p : cut.patches().points) ground.add(p.position, p.normal);
     lamps[1].kind = Kind::spot, lamps[1].direction = normalize(Vec3{-1, -1, -1});
   }
@@ -224,7 +225,7 @@ struct Room {
 };
 
 TEST(LiveLight, OfOnePlaceIsThatOfAll) {
-  const Room room;
+  const LitRoom room;
   const std::vector<Rgb> e = room.light();
   size_t lit = 0;
   for (size_t i = 0; i < e.size(); ++i) {
@@ -236,7 +237,7 @@ TEST(LiveLight, OfOnePlaceIsThatOfAll) {
 }
 
 TEST(LiveLight, SameBitsForAnyNumberOfThreads) {
-  const Room room;
+  const LitRoom room;
   const auto with = [&](int threads) {
     const ThreadLimit limit(threads);
     return room.light();

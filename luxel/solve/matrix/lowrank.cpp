@@ -15,7 +15,7 @@ namespace {
 /// Patches whose sums are kept apart.
 constexpr size_t kPatches = 512;
 /// Rows of small matrices, and patches, that a task takes.
-constexpr size_t kRows = 64;
+constexpr size_t kLowrankRows = 64;
 
 constexpr float kLargest = 32767;
 
@@ -144,7 +144,7 @@ void multiply_rows(const std::array<std::vector<float>, 3>& matrix, std::span<co
 void multiply_small(const std::array<std::vector<float>, 3>& matrix, std::span<const float> x,
                     std::span<float> out) {
   const auto rows = [&](size_t begin, size_t end) { multiply_rows(matrix, x, begin, end, out); };
-  parallel_for(x.size() / 3, kRows, std::ref(rows));
+  parallel_for(x.size() / 3, kLowrankRows, std::ref(rows));
 }
 
 /// A^-1/2 V x at the patches [begin, end).
@@ -200,7 +200,7 @@ void irradiance_of(const LowRank& m, std::span<const Rgb> sent, int bounces,
   const auto back = [&](size_t begin, size_t end) {
     scatter(m, scratch.sum, begin, end, irradiance);
   };
-  parallel_for(m.size(), kRows, std::ref(back));
+  parallel_for(m.size(), kLowrankRows, std::ref(back));
 }
 
 uint64_t bytes_of(const LowRank& m) {

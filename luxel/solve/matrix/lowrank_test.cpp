@@ -16,7 +16,7 @@ namespace {
 using Dense64 = Eigen::MatrixXd;
 
 /// What the codec is made from.
-struct Room {
+struct LowrankRoom {
   FormFactors factors;
   std::vector<float> area_m2;
   std::vector<Rgb> reflectance, sent;
@@ -67,8 +67,8 @@ struct Room {
 };
 
 /// The inside of a sphere whose patches differ in size, colour and light: F_ij = A_j / A, rank 1.
-Room sphere(size_t count) {
-  Room room;
+LowrankRoom lowrank_sphere(size_t count) {
+  LowrankRoom room;
   for (const Rgb& c : testing::random_light(count, 2)) room.area_m2.push_back(0.1f + c.x);
   room.factors = testing::sphere_factors(room.area_m2);
   room.reflectance = testing::random_light(count, 3);
@@ -76,17 +76,17 @@ Room sphere(size_t count) {
   return room;
 }
 
-const Room& cornell() {
-  static const Room room = [] {
+const LowrankRoom& lowrank_cornell() {
+  static const LowrankRoom room = [] {
     const testing::Cut cut(scene::cornell_box(), 400);
-    return Room{cut.reciprocal_factors(1024), cut.patches().area_m2,
-                cut.patches().elements.reflectance, testing::random_light(cut.size(), 5)};
+    return LowrankRoom{cut.reciprocal_factors(1024), cut.patches().area_m2,
+                       cut.patches().elements.reflectance, testing::random_light(cut.size(), 5)};
   }();
   return room;
 }
 /// All of it.
 const Spectrum& cornell_spectrum() {
-  static const Spectrum spectrum = cornell().spectrum(uint32_t(cornell().size()));
+  static const Spectrum spectrum = lowrank_cornell().spectrum(uint32_t(lowrank_cornell().size()));
   return spectrum;
 }
 
@@ -106,7 +106,7 @@ TEST(Orthonormal, KeepsTheSpanAndDropsWhatDepends) {
 }
 
 TEST(Spectrum, OfASphereIsOneNumber) {
-  const Room room = sphere(200);
+  const LowrankRoom room = lowrank_sphere(200);
   const Spectrum s = room.spectrum(8);
   ASSERT_EQ(rank_above(s, 1e-5f), 1u);
   EXPECT_NEAR(s.value[0], 1, 2e-6);  // sums of 200 floats
@@ -119,7 +119,7 @@ TEST(Spectrum, OfASphereIsOneNumber) {
 
 TEST(Spectrum, OfNothingIsEmpty) {
   // A plate that sees only the sky.
-  Room room;
+  LowrankRoom room;
   room.area_m2 = {1, 2, 3}, room.factors.first = {0, 0, 0, 0};
   room.reflectance.assign(3, {0.5f, 0.5f, 0.5f}), room.sent.assign(3, {1, 1, 1});
   const Spectrum s = room.spectrum(8);
@@ -130,21 +130,21 @@ TEST(Spectrum, OfNothingIsEmpty) {
 }
 
 TEST(Spectrum, IsThatOfTheDenseMatrix) {
-  const Eigen::SelfAdjointEigenSolver<Dense64> solver(cornell().symmetric());
+  const Eigen::SelfAdjointEigenSolver<Dense64> solver(lowrank_cornell().symmetric());
   std::vector<double> want(solver.eigenvalues().begin(), solver.eigenvalues().end());
   std::sort(want.begin(), want.end(), [](double a, double b) { return std::abs(a) > std::abs(b); });
   double square = 0;
   for (const double v : want) square += v * v;
   EXPECT_NEAR(cornell_spectrum().energy, square, 1e-6 * square);
   // In the whole space nothing is left to chance; S is symmetric to the rounding of its floats.
-  ASSERT_EQ(cornell_spectrum().count(), cornell().size());
+  ASSERT_EQ(cornell_spectrum().count(), lowrank_cornell().size());
   for (size_t k = 0; k < want.size(); ++k)
     EXPECT_NEAR(std::abs(cornell_spectrum().value[k]), std::abs(want[k]), 2e-6) << k;
   // In a subspace of 24 + 16 they are found too small, by the square of what is missing of the
   // vector: each product takes the part of eigenvalue 41 to that of k, squared, of what there was
   // at first, the random start's some 100.
   for (const int iterations : {0, 2, 15}) {
-    const Spectrum part = cornell().spectrum(24, iterations);
+    const Spectrum part = lowrank_cornell().spectrum(24, iterations);
     for (size_t k = 0; k < 24; ++k) {
       const double missing = 100 * std::pow(std::abs(want[40] / want[k]), 2.0 * (iterations + 1));
       EXPECT_LT(std::abs(part.value[k]), std::abs(want[k]) + 2e-6) << k;
@@ -154,9 +154,9 @@ TEST(Spectrum, IsThatOfTheDenseMatrix) {
 }
 
 TEST(Spectrum, KnowsWhatItLoses) {
-  const Dense64 s = cornell().symmetric();
+  const Dense64 s = lowrank_cornell().symmetric();
   const Spectrum& spectrum = cornell_spectrum();
-  const auto n = Eigen::Index(cornell().size());
+  const auto n = Eigen::Index(lowrank_cornell().size());
   const Eigen::Map<const Tall> v(spectrum.vector.data(), n, n);
   const Eigen::Map<const Eigen::VectorXf> value(spectrum.value.data(), n);
   for (const Eigen::Index rank : {1, 7, 40, 200}) {
@@ -169,7 +169,7 @@ TEST(Spectrum, KnowsWhatItLoses) {
 
 TEST(LowRank, CountsBouncesInASphere) {
   // E = <sent> (1 + <rho> + ... + <rho>^(k-1)), see bounces_test.cpp.
-  const Room room = sphere(700);
+  const LowrankRoom room = lowrank_sphere(700);
   const LowRank m = room.codec(room.spectrum(4), 1);
   EXPECT_EQ(m.rank(), kRankLanes);
   const Rgb sent = room.mean(room.sent), rho = room.mean(room.reflectance);
@@ -185,7 +185,7 @@ TEST(LowRank, CountsBouncesInASphere) {
 
 TEST(LowRank, FurnaceIsExact) {
   // All emit e and reflect rho: E = B = e / (1 - rho).
-  Room room = sphere(300);
+  LowrankRoom room = lowrank_sphere(300);
   const Rgb rho{0.2f, 0.5f, 0.95f};
   std::fill(room.reflectance.begin(), room.reflectance.end(), rho);
   std::fill(room.sent.begin(), room.sent.end(), Rgb{1, 2, 3});
@@ -197,7 +197,7 @@ TEST(LowRank, FurnaceIsExact) {
 }
 
 /// (I - F R) E = F B, channel by channel.
-std::vector<Rgb> solved(const Room& room, const Dense64& f) {
+std::vector<Rgb> solved(const LowrankRoom& room, const Dense64& f) {
   const auto n = Eigen::Index(room.size());
   std::array<Eigen::VectorXd, 3> light;
   for (int c = 0; c < 3; ++c) {
@@ -214,7 +214,7 @@ std::vector<Rgb> solved(const Room& room, const Dense64& f) {
 }
 
 TEST(LowRank, OfFullRankIsTheDenseSolution) {
-  const Room& room = cornell();
+  const LowrankRoom& room = lowrank_cornell();
   const Eigen::Map<const Eigen::VectorXf> area(room.area_m2.data(), Eigen::Index(room.size()));
   const Eigen::VectorXd root = area.cast<double>().cwiseSqrt();
   const Dense64 f = root.cwiseInverse().asDiagonal() * room.symmetric() * root.asDiagonal();
@@ -227,7 +227,7 @@ TEST(LowRank, OfFullRankIsTheDenseSolution) {
 TEST(LowRank, BouncesAreThoseOfItsOwnMatrix) {
   // Whatever the vectors are: F = A^-1/2 V L V^T A^1/2 written out, its bounces one by one.
   // Light of one patch: so few vectors make it ring below zero.
-  Room room = cornell();
+  LowrankRoom room = lowrank_cornell();
   std::fill(room.sent.begin(), room.sent.end(), Rgb{});
   room.sent[room.size() / 2] = {1, 2, 3};
   const LowRank m = room.codec(cornell_spectrum(), 20);
@@ -268,7 +268,7 @@ TEST(LowRank, BouncesAreThoseOfItsOwnMatrix) {
 }
 
 TEST(LowRank, ErrsLessThanTheFirstEigenvalueLeftOut) {
-  const Room& room = cornell();
+  const LowrankRoom& room = lowrank_cornell();
   const std::vector<Rgb> exact = testing::plain_product(room.factors, room.sent);
   double before = 1;
   for (const size_t rank : {1u, 4u, 16u, 64u, 128u, 256u}) {
@@ -286,9 +286,9 @@ TEST(LowRank, ErrsLessThanTheFirstEigenvalueLeftOut) {
 TEST(LowRank, SameBitsForAnyNumberOfThreads) {
   const auto made = [](int threads) {
     const ThreadLimit limit(threads);
-    const LowRank m = cornell().codec(cornell().spectrum(32), 32);
-    return std::tuple(m.vector, m.eigenvalue, m.all_bounces, cornell().light(m, -1),
-                      cornell().light(m, 3));
+    const LowRank m = lowrank_cornell().codec(lowrank_cornell().spectrum(32), 32);
+    return std::tuple(m.vector, m.eigenvalue, m.all_bounces, lowrank_cornell().light(m, -1),
+                      lowrank_cornell().light(m, 3));
   };
   const auto one = made(1);
   EXPECT_EQ(one, made(2));
@@ -298,7 +298,7 @@ TEST(LowRank, SameBitsForAnyNumberOfThreads) {
 TEST(LowRank, CanBeCancelled) {
   Progress progress;
   progress.request_cancel();
-  const Room& room = cornell();
+  const LowrankRoom& room = lowrank_cornell();
   const auto spectrum = spectrum_of(room.factors, room.area_m2, {}, progress);
   ASSERT_FALSE(spectrum);
   EXPECT_EQ(spectrum.error().code, ErrorCode::cancelled);
@@ -309,7 +309,7 @@ TEST(LowRank, CanBeCancelled) {
 
 TEST(Spectrum, OfNoneWantedIsAnError) {
   Progress progress;
-  const auto none = spectrum_of(cornell().factors, cornell().area_m2,
+  const auto none = spectrum_of(lowrank_cornell().factors, lowrank_cornell().area_m2,
                                 {.count = 0, .iterations = 2, .seed = 1}, progress);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, ErrorCode::bad_setting);

@@ -31,18 +31,18 @@ float distance2(const float* a, const float* b, size_t dimensions) {
 }
 
 /// Rows and dimensions that are projected together: as many sums as there are registers for.
-constexpr size_t kRows = 4, kDimensions = 16, kLanes = 8;
+constexpr size_t kProjectedRows = 4, kDimensions = 16, kProjectedLanes = 8;
 
 /// sum_t pixel_t sign_t of four rows. `signs`: kDimensions per pixel and channel.
 LUXEL_VECTOR_CLONES
-void project_rows(const std::array<const uint8_t*, kRows>& row, size_t length, size_t step,
+void project_rows(const std::array<const uint8_t*, kProjectedRows>& row, size_t length, size_t step,
                   const float* signs, float (*out)[kDimensions]) {
-  Float8 sum[kRows][2] = {};
+  Float8 sum[kProjectedRows][2] = {};
   for (size_t t = 0; t < length; ++t)
     for (size_t c = 0; c < 3; ++c, signs += kDimensions) {
       Float8 sign[2];
-      load8(signs, sign[0]), load8(signs + kLanes, sign[1]);
-      for (size_t r = 0; r < kRows; ++r) {
+      load8(signs, sign[0]), load8(signs + kProjectedLanes, sign[1]);
+      for (size_t r = 0; r < kProjectedRows; ++r) {
         const auto value = float(row[r][4 * t * step + c]);
         sum[r][0] += value * sign[0], sum[r][1] += value * sign[1];
       }
@@ -78,12 +78,12 @@ std::vector<float> project(const ByteRows& rows, const Progress& progress) {
   for (size_t first = 0; first < kProjected; first += kDimensions) {
     for (size_t k = 0; k < signs.size(); ++k)
       signs[k] = hash64(kSeed + first, k / 64) >> (k % 64) & 1 ? 1.0f : -1.0f;
-    parallel_for(rows.count, kRows, [&](size_t begin, size_t end) {
+    parallel_for(rows.count, kProjectedRows, [&](size_t begin, size_t end) {
       if (progress.cancelled()) return;
-      std::array<const uint8_t*, kRows> row;
-      for (size_t r = 0; r < kRows; ++r)
+      std::array<const uint8_t*, kProjectedRows> row;
+      for (size_t r = 0; r < kProjectedRows; ++r)
         row[r] = rows.data + 4 * std::min(begin + r, end - 1) * rows.row_step;
-      float sums[kRows][kDimensions];
+      float sums[kProjectedRows][kDimensions];
       project_rows(row, rows.length, rows.step, signs.data(), sums);
       for (size_t i = begin; i < end; ++i)
         std::copy_n(sums[i - begin], kDimensions, out.data() + i * kProjected + first);

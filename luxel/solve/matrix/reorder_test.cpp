@@ -29,11 +29,11 @@ TEST(GreedyOrder, GoesAlongALine) {
 TEST(GreedyOrder, GoesToTheNearestOfWhatIsLeft) {
   // By hand: from 0 to 1 (distance 1), then -2 (3) rather than 5 (4), then 5.
   EXPECT_THAT(greedy_order(std::vector<float>{0, 5, 1, -2}, 1, kProgress),
-              testing::ElementsAre(0, 2, 3, 1));
+              ::testing::ElementsAre(0, 2, 3, 1));
   // Among equally near ones the first wins.
   EXPECT_THAT(greedy_order(std::vector<float>{0, 1, -1, 1}, 1, kProgress),
-              testing::ElementsAre(0, 1, 3, 2));
-  EXPECT_THAT(greedy_order(std::vector<float>{}, 1, kProgress), testing::IsEmpty());
+              ::testing::ElementsAre(0, 1, 3, 2));
+  EXPECT_THAT(greedy_order(std::vector<float>{}, 1, kProgress), ::testing::IsEmpty());
 }
 
 std::vector<uint8_t> random_picture(size_t pixels) {

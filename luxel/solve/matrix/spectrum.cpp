@@ -18,7 +18,7 @@ namespace {
 /// spare [Halko11, section 4.2].
 constexpr uint32_t kSpare = 16;
 /// Rows that a task takes.
-constexpr size_t kRows = 32;
+constexpr size_t kSpectrumRows = 32;
 
 /// to += s * from
 LUXEL_VECTOR_CLONES
@@ -30,7 +30,7 @@ void add_row(float s, const float* from, size_t count, float* to) {
 Tall product(const FormFactors& factors, std::span<const float> root_area_m, const Tall& q,
              Progress& progress) {
   Tall out = Tall::Zero(q.rows(), q.cols());
-  parallel_for(factors.size(), kRows, [&](size_t begin, size_t end) {
+  parallel_for(factors.size(), kSpectrumRows, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       const auto columns = factors.columns_of(i);
       const auto values = factors.factors_of(i);

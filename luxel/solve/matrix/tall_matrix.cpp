@@ -14,7 +14,7 @@ namespace {
 /// Blocks whose sums are kept apart; few, because each is a matrix.
 constexpr Eigen::Index kBlocks = 16;
 /// Rows between two looks at whether to stop.
-constexpr Eigen::Index kRows = 256;
+constexpr Eigen::Index kTallRows = 256;
 /// The least pivot that counts, as a part of the largest one. Pivots are squares of lengths:
 /// columns of 32-bit floats, which are rounded by 6e-8, differ by no more than noise below
 /// sqrt(1e-11) = 3e-6.
@@ -61,8 +61,9 @@ Eigen::MatrixXd inner_products(const Tall& a, const Tall& b, const Progress& pro
   parallel_for(size_t(kBlocks), 1, [&](size_t begin, size_t end) {
     for (auto block = Eigen::Index(begin); block < Eigen::Index(end); ++block) {
       const Eigen::Index stop = std::min(a.rows(), (block + 1) * rows_per_block);
-      for (Eigen::Index i = block * rows_per_block; i < stop && !progress.cancelled(); i += kRows) {
-        const Eigen::Index rows = std::min(kRows, stop - i);
+      for (Eigen::Index i = block * rows_per_block; i < stop && !progress.cancelled();
+           i += kTallRows) {
+        const Eigen::Index rows = std::min(kTallRows, stop - i);
         sums[size_t(block)].noalias() +=
             a.middleRows(i, rows).cast<double>().transpose() * b.middleRows(i, rows).cast<double>();
       }
@@ -75,7 +76,7 @@ Eigen::MatrixXd inner_products(const Tall& a, const Tall& b, const Progress& pro
 Tall combine(const Tall& a, const Eigen::MatrixXd& m, const Progress& progress) {
   LUXEL_CHECK(a.cols() == m.rows());
   Tall out(a.rows(), m.cols());
-  parallel_for(size_t(a.rows()), size_t(kRows), [&](size_t begin, size_t end) {
+  parallel_for(size_t(a.rows()), size_t(kTallRows), [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     const auto first = Eigen::Index(begin), rows = Eigen::Index(end - begin);
     out.middleRows(first, rows) = (a.middleRows(first, rows).cast<double>() * m).cast<float>();

@@ -170,8 +170,8 @@ struct LayerSweep {
 }
 
 LUXEL_VECTOR_CLONES
-void sweep_tile(const LayerSweep& sweep, const TracedHits& hits, const TileHits& tile,
-                size_t first_element) {
+void sweep_layers_of_tile(const LayerSweep& sweep, const TracedHits& hits, const TileHits& tile,
+                          size_t first_element) {
   const size_t end = std::min(first_element + kTileElements, hits.size());
   for (size_t i = first_element; i < end; ++i) {
     Lanes sum;
@@ -184,8 +184,8 @@ void sweep_tile(const LayerSweep& sweep, const TracedHits& hits, const TileHits&
 }
 
 LUXEL_VECTOR_CLONES
-void sweep_sparse(const LayerSweep& sweep, const TracedHits& hits, const TileHits& tile,
-                  size_t first_element) {
+void sweep_layers_sparsely(const LayerSweep& sweep, const TracedHits& hits, const TileHits& tile,
+                           size_t first_element) {
   const size_t end = std::min(first_element + kTileElements, hits.size());
   for (size_t i = first_element; i < end; ++i) {
     Lanes sum;
@@ -196,7 +196,7 @@ void sweep_sparse(const LayerSweep& sweep, const TracedHits& hits, const TileHit
   }
 }
 
-/// Sweeps a tile of the copy, which gives the bits of sweep_sparse().
+/// Sweeps a tile of the copy, which gives the bits of sweep_layers_sparsely().
 LUXEL_VECTOR_CLONES
 void sweep_subsampled(const LayerSweep& sweep, const TracedHits& hits,
                       const SubsampledHits::Tile& tile, size_t first_element) {
@@ -216,7 +216,7 @@ void sweep_subsampled(const LayerSweep& sweep, const TracedHits& hits,
 Status run_layer_sweep(const LayerSweep& sweep, const TracedHits& hits, Progress& progress) {
   if (!sweep.subsampled)
     return for_each_tile(hits, progress, [&](size_t t, const TileHits& tile) {
-      const auto sweep_one = sweep.stride > 1 ? sweep_sparse : sweep_tile;
+      const auto sweep_one = sweep.stride > 1 ? sweep_layers_sparsely : sweep_layers_of_tile;
       sweep_one(sweep, hits, tile, t * kTileElements);
     });
   LUXEL_CHECK(sweep.subsampled->stride == sweep.stride);

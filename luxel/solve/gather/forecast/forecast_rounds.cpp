@@ -16,12 +16,11 @@ namespace {
 /// Rays, and shadow rays, of each texel that the trial's rays meet. Their noise, averaged over
 /// neighbours, is small beside how light varies over what a texel sees.
 constexpr int kCoarseSamples = 8;
-constexpr int kReach = 2;
-constexpr float kRoughTolerance = 1e-2f;
+constexpr int kForecastReach = 2;
 /// Sweeps of the bounces after each round, which start from the solution of the one before.
 constexpr double kSweepsOfRound = 2;
 
-struct Trial {
+struct RoundsTrial {
   const light::TexelScene& in;
   const GatherParams& params;
   const GatherStores& stores;
@@ -51,7 +50,7 @@ std::vector<Rgb> smooth(const light::TexelScene& in, const Gather& light) {
     for (uint32_t i = uint32_t(begin); i < end; ++i) {
       Rgb sum{};
       float count = 0;
-      for_neighbours(in.map, i, kReach, [&](uint32_t j) {
+      for_neighbours(in.map, i, kForecastReach, [&](uint32_t j) {
         if (!hidden(j) && chart(j) == chart(i)) sum += light.irradiance[j], count += 1;
       });
       if (count > 0) out[i] = sum * (1 / count);
@@ -71,7 +70,7 @@ std::vector<uint32_t> with_neighbours(const atlas::TexelMap& map,
   return out;
 }
 
-Status light_coarsely(Trial& trial, Progress& progress) {
+Status light_coarsely(RoundsTrial& trial, Progress& progress) {
   const GatherParams& all = trial.params;
   GatherParams params;
   params.samples = std::min(all.samples, kCoarseSamples);
@@ -91,7 +90,7 @@ Status light_coarsely(Trial& trial, Progress& progress) {
   return {};
 }
 
-Status light_directly(Trial& trial, Progress& progress) {
+Status light_directly(RoundsTrial& trial, Progress& progress) {
   const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
   const light::SupersampleParams params = trial.supersample();
   LUXEL_TRY_STATUS(direct_light_again({scene, elements, lights, tracer},
@@ -105,7 +104,7 @@ Status light_directly(Trial& trial, Progress& progress) {
   return {};
 }
 
-Status trace(Trial& trial, std::span<const uint16_t> target, Progress& progress) {
+Status trace(RoundsTrial& trial, std::span<const uint16_t> target, Progress& progress) {
   const TraceParams trace{.seed = trial.params.seed,
                           .memory_limit_bytes = trial.stores.hit_memory_bytes,
                           .scratch_folder = trial.stores.scratch_folder,
@@ -114,13 +113,13 @@ Status trace(Trial& trial, std::span<const uint16_t> target, Progress& progress)
 }
 
 /// Relative, of the trial's texels; of all others 0.
-struct Errors {
+struct ForecastErrors {
   std::vector<float> direct, gathered, all;
   float p95 = 0;  ///< of all that are tried
 };
 
 /// As gather() knows them, but in the coarse light: one bounce of it.
-Result<Errors> errors_of(const Trial& trial, Progress& progress) {
+Result<ForecastErrors> errors_of(const RoundsTrial& trial, Progress& progress) {
   const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
   // bounce() starts from what it is given and the soft sky: together the coarse light.
   std::vector<Rgb> given = trial.coarse;
@@ -144,7 +143,7 @@ Result<Errors> errors_of(const Trial& trial, Progress& progress) {
     for (const uint32_t i : trial.texels) out[i] = errors[i];
     return out;
   };
-  Errors out{relative(direct), relative(gathered), relative(all)};
+  ForecastErrors out{relative(direct), relative(gathered), relative(all)};
   std::vector<float> tried;
   for (const uint32_t i : trial.texels) tried.push_back(out.all[i]);
   out.p95 = percentile_95(tried);
@@ -152,14 +151,14 @@ Result<Errors> errors_of(const Trial& trial, Progress& progress) {
 }
 
 /// Leaves what was traced for the trial.
-void forget_coarse_light(Trial& trial) {
+void forget_coarse_light(RoundsTrial& trial) {
   std::vector<uint16_t> samples(trial.hits.size());
   for (const uint32_t i : trial.texels) samples[i] = trial.hits.samples[i];
   trial.hits.samples = std::move(samples);
 }
 
 /// The trial's rays.
-double samples_of(const Trial& trial) {
+double samples_of(const RoundsTrial& trial) {
   double sum = 0;
   for (const uint32_t i : trial.texels) sum += trial.hits.samples[i];
   return sum;
@@ -167,13 +166,14 @@ double samples_of(const Trial& trial) {
 
 /// Makes all rounds. Returns the samples that every sweep looks at, from round to round. Errors:
 /// cancelled, disk full.
-Result<std::vector<double>> make_rounds(Trial& trial, RoundsForecast& out, Progress& progress) {
+Result<std::vector<double>> make_rounds(RoundsTrial& trial, RoundsForecast& out,
+                                        Progress& progress) {
   const GatherParams& params = trial.params;
   const float each = error_of_part(params.max_error);
   std::vector<double> samples;
   for (;;) {
     samples.push_back(samples_of(trial));
-    LUXEL_TRY(const Errors errors, errors_of(trial, progress));
+    LUXEL_TRY(const ForecastErrors errors, errors_of(trial, progress));
     if (errors.p95 <= params.max_error) return samples;
     const std::vector<uint16_t> target =
         next_samples(errors.gathered, each, params.max_samples, trial.hits.samples);
@@ -194,7 +194,8 @@ Result<RoundsForecast> forecast_rounds(const light::TexelScene& in, const Gather
                                        const GatherStores& stores, int part, Progress& progress) {
   const size_t n = in.elements.size();
   const size_t count = std::max<size_t>(1, std::min(n, std::max(kFewestTried, n / size_t(part))));
-  Trial trial{.in = in, .params = params, .stores = stores, .texels = texels_to_try(in.map, count)};
+  RoundsTrial trial{
+      .in = in, .params = params, .stores = stores, .texels = texels_to_try(in.map, count)};
   trial.scale = double(n) / double(trial.texels.size());
   trial.behind = places_behind(in.scene, in.atlas, in.map, in.elements);
   LUXEL_TRY_STATUS(light_coarsely(trial, progress));

@@ -1,7 +1,8 @@
 # Short names for the few commands that everybody needs. CMakePresets.json has the details.
 #
 #   make demo    installs what is missing, builds, bakes the Cornell box
-#   make test    installs what is missing, builds, runs every test
+#   make test    installs what is missing, builds, runs the tests
+#   make test-all   the tests, and those of tests/only_in_test_all.txt
 #   make docs    checks the pages: links, widths, sentences, commands, options, generated pages; makes
 #                the API pages, build/api/html/index.html
 
@@ -19,7 +20,7 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-.PHONY: setup setup-tests setup-docs build test demo docs bench asan format format-check clean
+.PHONY: setup setup-tests setup-docs build test test-all demo docs bench asan format format-check clean
 
 setup:
 	@tools/setup.sh
@@ -37,6 +38,11 @@ build: setup
 	cmake --build --preset release --parallel $(JOBS) --target luxel
 
 test: setup-tests
+	cmake --preset release
+	cmake --build --preset release --parallel $(JOBS)
+	ctest --preset release --parallel $$(nproc) --label-exclude thorough
+
+test-all: setup-tests
 	cmake --preset release
 	cmake --build --preset release --parallel $(JOBS)
 	ctest --preset release --parallel $$(nproc)

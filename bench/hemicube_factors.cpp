@@ -83,17 +83,20 @@ Result<std::vector<double>> seen_factors(const hemicube::Senders& senders,
 }
 
 Status measure_squares(const Squares& s, std::vector<FactorErrors>& out, Progress& progress) {
+  // The two squares as a scene.
   const scene::Scene scene = scene_of(s);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(const hemicube::Mesh mesh, hemicube::make_mesh(scene, {}, progress));
   const auto receivers = hemicube::make_receivers(scene, mesh, hemicube::ElementKind::triangle);
   const light::Surroundings around;
   const hemicube::Senders senders{scene, tracer, mesh, receivers, around};
+  // Viewpoints are Gauss points of the first square.
   const DVec3 normal = normalize(viewfactor::area_vector(s.a));
   const std::vector<Point> points = gauss_points(s, normal);
   std::vector<hemicube::Viewpoint> from;
   for (const Point& p : points)
     from.push_back({to_float(p.position), to_float(normal), to_float(normal)});
+  // Finer and finer hemicubes against the exact factors of the points and of the whole.
   for (const int n : {8, 16, 32, 64, 128, 256, 512}) {
     progress.begin("view factors", from.size());
     LUXEL_TRY(const std::vector<double> factor, seen_factors(senders, from, n, progress));

@@ -132,6 +132,7 @@ void time_all(const Room& room, std::vector<Made>& all, CodecRuns& out) {
 
 /// In a smaller room; bytes and time as of `patches`, in proportion to the pairs there are.
 Result<CodecRun> run_bc1(size_t patches, Progress& progress) {
+  // The matrix of fewer patches, because preparing it takes so long.
   LUXEL_TRY(const Room room, make_room(kBc1Patches, progress));
   matrix::RelightParams params = room.params;
   params.codec = matrix::CodecKind::bc1;
@@ -149,6 +150,7 @@ Result<CodecRun> run_bc1(size_t patches, Progress& progress) {
         {room.trials.sent[0], room.patches().elements.reflectance, room.patches().area_m2, -1}, e,
         scratch);
   }};
+  // Time and bytes grow with the pairs.
   const double pairs = double(patches) * double(patches) / (double(n) * double(n));
   made.run.ms = pairs * time_in_turn(tasks, kRelightCodecsRounds).front();
   made.run.bytes = uint64_t(pairs * double(made.run.bytes));

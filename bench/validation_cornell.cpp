@@ -69,6 +69,7 @@ Status convergence(Section& section, Progress& progress) {
   constexpr int kResolution = 128, kPaths = 1024;
   LUXEL_TRY(const auto p, validate::prepare(scene::cornell_box(), kResolution, progress));
   LUXEL_TRY(const validate::Judged judged, validate::judge(*p, kPaths, 1, progress));
+  // Each solver with more and more samples.
   std::vector<std::vector<std::string>> rows;
   export_::Plot samples = error_plot("Cornell box: error against samples", "samples per texel");
   export_::Plot seconds = error_plot("Cornell box: error against time", "seconds");
@@ -78,6 +79,7 @@ Status convergence(Section& section, Progress& progress) {
     samples.series.push_back({solver, curve.by_samples});
     seconds.series.push_back({solver, curve.by_seconds});
   }
+  // Two plots and their table.
   section.files.push_back(svg_file("error-samples.svg", export_::svg(samples)));
   section.files.push_back(svg_file("error-seconds.svg", export_::svg(seconds)));
   section.markdown += fmt::format(

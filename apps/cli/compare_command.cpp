@@ -42,6 +42,7 @@ int run_compare(const CompareOptions& options) {
                  *options.max_relative_rmse);
     return kUsage;
   }
+  // Compare.
   pipeline::Compared compared;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     const ThreadLimit threads(options.common.threads);
@@ -49,6 +50,7 @@ int run_compare(const CompareOptions& options) {
     return {};
   });
   if (!done) return report(done.error());
+  // Say what came out.
   print_warnings(compared.warnings, options.common);
   if (options.common.json)
     std::printf("%s\n", pipeline::to_json(compared).dump(2).c_str());
@@ -56,6 +58,7 @@ int run_compare(const CompareOptions& options) {
     print_table(compared);
   if (!compared.report.empty() && !options.common.quiet)
     std::fprintf(stderr, "wrote %s\n", compared.report.c_str());
+  // The exit code says whether the limit held.
   const double measured = compared.difference.relative_rmse;
   if (options.max_relative_rmse && !(measured <= *options.max_relative_rmse)) {
     std::fprintf(stderr, "luxel: the relative RMSE is %g, above --max-relative-rmse %g\n", measured,

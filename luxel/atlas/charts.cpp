@@ -264,6 +264,7 @@ std::vector<ChartFaces> grow_charts(const Faces& faces, double max_angle,
 std::vector<ChartFaces> connected_parts(const Faces& faces, const ChartFaces& set) {
   std::unordered_map<uint32_t, uint32_t> part;
   for (const uint32_t f : set) part.emplace(f, kNone);
+  // Flood fill from each face that has no part yet.
   std::vector<ChartFaces> parts;
   std::vector<uint32_t> front;
   for (const uint32_t seed : set) {

@@ -26,6 +26,8 @@ class FirstRows {
   }
 
  private:
+  /// Larger sizes count as this one, and may so start lower than they have to. Charts of that size
+  /// are few, and the table stays small enough to be raised after each chart.
   static constexpr int kMost = 48;
   static size_t index(int w, int h) {
     return size_t(std::min(w, kMost)) * (kMost + 1) + size_t(std::min(h, kMost));

@@ -7,6 +7,7 @@ namespace luxel::atlas {
 namespace {
 
 constexpr uint64_t kFull = ~uint64_t(0);
+/// Rows that a band stands for. They change how fast a free place is found, not which.
 constexpr int kBand = 8;
 /// Lower shapes are found as fast without bands, which cost time to keep.
 constexpr int kBandShape = 32;
@@ -15,6 +16,7 @@ int log2_floor(int n) { return int(std::bit_width(unsigned(n))) - 1; }
 
 /// The leftmost free column for a shape with its top at row y, or -1.
 int free_column(const BitRows& rows, const Shape& shape, int y, std::vector<uint64_t>& blocked) {
+  // The longest runs come first: one that is too full refuses the row before columns are looked at.
   constexpr size_t kQuick = 24;
   for (size_t r = 0; r < std::min(kQuick, shape.runs.size()); ++r)
     if (rows.too_full(y + shape.runs[r].row, shape.runs[r].columns)) return -1;

@@ -64,6 +64,7 @@ image::Image QuadraticView::draw(const scene::Camera& camera, int width, int hei
   LUXEL_CHECK(width > 0 && height > 0);
   const trace::CameraRays rays_of(camera, width, height);
   image::Image picture(width, height, 4);
+  // By tiles, so that neighbouring rays are traced together.
   const int across = (width + kViewTile - 1) / kViewTile,
             down = (height + kViewTile - 1) / kViewTile;
   parallel_for(size_t(across) * size_t(down), 4, [&](size_t begin, size_t end) {
@@ -71,11 +72,13 @@ image::Image QuadraticView::draw(const scene::Camera& camera, int width, int hei
     for (size_t tile = begin; tile < end; ++tile) {
       const int x0 = int(tile) % across * kViewTile, y0 = int(tile) / across * kViewTile;
       const int x1 = std::min(x0 + kViewTile, width), y1 = std::min(y0 + kViewTile, height);
+      // A ray through the middle of each pixel.
       rays.clear();
       for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x)
           rays.push_back(rays_of.through(float(x) + 0.5f, float(y) + 0.5f));
       const std::vector<trace::Hit> hits = trace::visible_hits(impl_->scene, *impl_->tracer, rays);
+      // What they meet is the colour.
       size_t k = 0;
       for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x, ++k) {

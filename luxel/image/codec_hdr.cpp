@@ -96,6 +96,7 @@ bool parse_resolution(std::string_view line, Header& header) {
 
 Result<Header> read_header(Reader& in) {
   Header header;
+  // Lines of text up to an empty one: format, exposure, colour correction.
   LUXEL_TRY(const std::string_view magic, take_line(in));
   if (!magic.starts_with("#?"))
     return fail(ErrorCode::bad_input, "{}: this is not a Radiance HDR file", in.name);
@@ -107,6 +108,7 @@ Result<Header> read_header(Reader& in) {
                   in.name, line);
     LUXEL_TRY_STATUS(read_scale(line, in.name, header));
   }
+  // The line of the size, and whether it can be.
   LUXEL_TRY(const std::string_view line, take_line(in));
   if (!parse_resolution(line, header))
     return fail(ErrorCode::bad_input,

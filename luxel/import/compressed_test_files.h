@@ -206,6 +206,7 @@ inline void expect_surface(const scene::Mesh& mesh, const Surface& surface, cons
   const auto vec3 = [](const std::vector<float>& v, uint32_t i) {
     return Vec3{v[3 * i], v[3 * i + 1], v[3 * i + 2]};
   };
+  // Encoders change the order of triangles: each is known by its middle.
   std::vector<Vec3> middles;
   for (size_t t = 0; t < surface.indices.size(); t += 3)
     middles.push_back((vec3(surface.positions, surface.indices[t]) +
@@ -222,12 +223,14 @@ inline void expect_surface(const scene::Mesh& mesh, const Surface& surface, cons
     });
     const size_t t = size_t(nearest - middles.begin());
     ++met[t];
+    // They turn triangles, too: the first corner is the nearest.
     const uint32_t* corners = &surface.indices[3 * t];
     size_t turn = 0;
     for (size_t k = 1; k < 3; ++k)
       if (length(vec3(surface.positions, corners[k]) - mesh.positions[triangle[0]]) <
           length(vec3(surface.positions, corners[turn]) - mesh.positions[triangle[0]]))
         turn = k;
+    // Every attribute of every corner.
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t from = corners[(k + turn) % 3], to = triangle[k];
       expect_near(mesh.positions[to], vec3(surface.positions, from), bounds.position);

@@ -156,12 +156,14 @@ Status check_lists(const Json& document, const std::string& file) {
 }
 
 Status check_indices(const Json& document, const std::string& file) {
+  // Single indices of lists at the top.
   for (const Reference& r : kReferences) {
     const Json& list = list_of(document, r.list);
     for (size_t i = 0; i < list.size(); ++i)
       LUXEL_TRY_STATUS(check_index(document, list[i], r.key, r.target,
                                    file + ": " + name_of(r.kind, i, list[i])));
   }
+  // Indices deeper in objects.
   LUXEL_TRY_STATUS(
       check_primitives(document, file, [&](const Json& primitive, const std::string& where) {
         return check_indices_of(document, primitive, where);
@@ -174,6 +176,7 @@ Status check_indices(const Json& document, const std::string& file) {
   for (size_t i = 0; i < materials.size(); ++i)
     LUXEL_TRY_STATUS(check_texture_indices(document, materials[i],
                                            file + ": " + name_of("material", i, materials[i])));
+  // Lists of indices.
   const Json& nodes = list_of(document, "nodes");
   for (size_t i = 0; i < nodes.size(); ++i) {
     const std::string where = file + ": " + name_of("node", i, nodes[i]);

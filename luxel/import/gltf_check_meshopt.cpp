@@ -141,12 +141,14 @@ Result<std::optional<MeshoptView>> meshopt_view_of(const Json& document, const J
 }
 
 Status check_meshopt(const Json& document, const std::string& file) {
+  // Each view states what its bytes can hold.
   const Json& views = list_of(document, "bufferViews");
   const auto view_name = [&](size_t i) {
     return file + ": " + name_of("buffer view", i, views[i]);
   };
   for (size_t i = 0; i < views.size(); ++i)
     LUXEL_TRY_STATUS(meshopt_view_of(document, views[i], view_name(i)));
+  // Pictures are never compressed so.
   const Json& images = list_of(document, "images");
   for (size_t i = 0; i < images.size(); ++i) {
     if (!images[i].contains("bufferView")) continue;
@@ -158,6 +160,7 @@ Status check_meshopt(const Json& document, const std::string& file) {
                   "export pictures as they are",
                   file, name_of("image", i, images[i]), view, kMeshopt);
   }
+  // Nobody needs the bytes of a fallback.
   const std::vector<Use> uses = uses_of_buffers(document);
   for (size_t i = 0; i < uses.size(); ++i) {
     const size_t user = uses[i].plain != Use::kNobody ? uses[i].plain : uses[i].compressed;

@@ -112,6 +112,7 @@ bool is_nested_too_deep(const std::string& text) {
 
 Result<std::string> json_of_glb(std::span<const std::byte> bytes, const std::string& file) {
   constexpr uint32_t kMagic = 0x46546c67, kJson = 0x4e4f534a;
+  // The header: magic, version, length.
   if (bytes.size() < 20 || little_endian32(bytes, 0) != kMagic)
     return fail(ErrorCode::bad_input, "{}: it is not a .glb file: its first bytes are not 'glTF'",
                 file);
@@ -123,6 +124,7 @@ Result<std::string> json_of_glb(std::span<const std::byte> bytes, const std::str
     return fail(ErrorCode::bad_input,
                 "{}: it is truncated: {} of {} bytes are there; copy or export it again", file,
                 bytes.size(), length);
+  // The chunks. The first is the JSON; the others only have to lie within the file.
   std::string text;
   for (size_t at = 12; at < length;) {
     if (length - at < 8 || little_endian32(bytes, at) > length - at - 8)

@@ -31,6 +31,7 @@ struct Counts {
 
 /// [Draco bitstream 2.2, sections 3 and 4.1]; glTF asks for this version.
 Result<Counts> stated_counts(Bytes bytes, const std::string& where) {
+  // A mesh of the one version that is known.
   draco::DecoderBuffer buffer = buffer_over(bytes);
   draco::DracoHeader header{};
   if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok())
@@ -42,6 +43,7 @@ Result<Counts> stated_counts(Bytes bytes, const std::string& where) {
                 header.version_major, header.version_minor);
   if (header.encoder_type != draco::TRIANGULAR_MESH)
     return fail(ErrorCode::bad_input, "{}: its Draco data hold points, must be a mesh", where);
+  // The counts stand behind the metadata, in an order that the method decides.
   const bool edgebreaker = header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING;
   buffer.set_bitstream_version(draco::kDracoMeshBitstreamVersion);
   bool whole = true;

@@ -203,11 +203,13 @@ Status check_materials(Walk& walk, const MeshSize& mesh) {
 
 Status check_mesh(Walk& walk) {
   MeshSize mesh;
+  // Vertices and faces.
   LUXEL_TRY_STATUS(enter(walk));
   LUXEL_TRY(mesh.vertices, next_count(walk));
   LUXEL_TRY_STATUS(skip_numbers(walk, 3 * mesh.vertices));
   LUXEL_TRY(mesh.faces, next_count(walk));
   LUXEL_TRY_STATUS(check_faces(walk, mesh.faces, mesh.vertices, "vertex index"));
+  // The objects inside, in any order; those that are not read are skipped.
   for (;;) {
     LUXEL_TRY(const std::string_view word, next_word(walk));
     if (word == "}") return {};

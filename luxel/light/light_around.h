@@ -33,7 +33,9 @@ struct AroundParams {
 };
 
 /// E(n) [W/m^2] at a point in the air as spherical harmonics of the direction n that a surface
-/// there would face: E(n) = sum c_k Y_k(n), to 1 % of a light's irradiance [Ramamoorthi01].
+/// there would face: E(n) = sum c_k Y_k(n). For natural surroundings that is right to 1 % on
+/// average [Ramamoorthi01]; for a single distant light it is off by up to 9 % of the light's
+/// irradiance.
 struct Probe {
   Vec3 position;
   std::array<Rgb, kSh2> irradiance{};
@@ -52,6 +54,9 @@ struct Probes {
 /// cancelled.
 Result<Probes> light_probes(const LitScene& lit, std::span<const Vec3> positions,
                             const AroundParams& params, Progress& progress);
+/// The least squares are then off by 0.4 % of a light's irradiance (root mean square; 1.8 % at
+/// most), far less than what nine functions leave out; with 24 directions it would be 1.2 % and 5.4
+/// %.
 inline constexpr uint32_t kProbeNormals = 48;
 
 /// How E changes when a surface's normal is bent: E(m) = E + (m - n) . V, V a vector per channel.
@@ -71,6 +76,8 @@ Result<BentLight> bent_irradiance(const LitScene& lit, std::span<const Vec3> pos
                                   std::span<const Vec3> normals,
                                   std::span<const Vec3> geometric_normals,
                                   const AroundParams& params, Progress& progress);
+/// In radians: 40 degrees, as steep as normal maps lean. V is a difference over the range in which
+/// it is used, not a slope at a point.
 inline constexpr float kTilt = 0.7f;
 
 }  // namespace luxel::light

@@ -54,17 +54,20 @@ constexpr uint64_t kDoubleSided = 1, kScatters = 2;
 /// diffuse_transmittance_at, emission_at. All members are named, so that a new one does not compile
 /// until somebody has thought of it.
 SceneState::Material state_of(const Material& material, const Textures& textures) {
+  // By names, so that a new member of Material stops the compiler here.
   const auto& [name, base_color, alpha, metallic, roughness, base_color_texture, metallic_texture,
                emission, emission_texture, normal_texture, normal_scale, alpha_mode, alpha_cutoff,
                transmission, transmission_texture, diffuse_transmission, diffuse_transmission_color,
                diffuse_transmission_texture, diffuse_transmission_color_texture, double_sided,
                unlit, specular, sharpness] = material;
   const bool scatters = diffuse_transmission > 0;
+  // What several of the parts below share.
   Digest metal, base;
   metal.add(metallic);
   if (metallic > 0) add_texture(metal, textures, metallic_texture, kBlue);
   add(base, base_color), add_texture(base, textures, base_color_texture, kRgb);
 
+  // What decides which rays get through.
   Digest shape;
   shape.add(alpha_mode), shape.add(transmission > 0);
   if (alpha_mode != AlphaMode::opaque) {
@@ -77,6 +80,7 @@ SceneState::Material state_of(const Material& material, const Textures& textures
   }
   if (tints_light(material)) shape.add(base.value());
 
+  // What reflects, and what shines.
   Digest colour, emitted;
   colour.add(scatters), colour.add(base.value()), colour.add(metal.value());
   if (scatters) {

@@ -50,6 +50,7 @@ Scene foliage() {
   Scene scene;
   scene.name = "foliage";
   scene.background = {0.35f, 0.42f, 0.55f};
+  // Materials: leaves are cut out of a texture and let light through.
   const uint32_t ground = add_material(scene, "ground", {0.5f, 0.45f, 0.38f});
   const uint32_t leaf = add_material(scene, "leaf", {0.2f, 0.42f, 0.1f});
   scene.textures.push_back(leaf_texture());
@@ -59,6 +60,7 @@ Scene foliage() {
   m.double_sided = true;
   m.diffuse_transmission = 0.4f;
   m.diffuse_transmission_color = {0.45f, 0.7f, 0.15f};
+  // A floor, and one twig many times above it, turned and moved at random.
   add_rectangle(scene, {-1.5f, 1.5f, -1.5f, 1.5f}, 0, true, ground);
   scene.meshes.back().name = scene.instances.back().name = "floor";
   scene.meshes.push_back(twig(leaf));
@@ -69,6 +71,7 @@ Scene foliage() {
     scene.instances.push_back(
         {"twig " + std::to_string(k), 1, from_columns({c, 0, -s}, {0, 1, 0}, {s, 0, c}, at)});
   }
+  // Light and camera.
   PunctualLight sun;
   sun.name = "sun";
   sun.kind = PunctualLight::Kind::directional;

@@ -140,6 +140,7 @@ Status check_profiles(const Scene& scene, const Report& report) {
 
 Status check_lights(Scene& scene, Report& report) {
   LUXEL_TRY_STATUS(check_profiles(scene, report));
+  // The background, then each light: numbers, sign, direction.
   if (!luxel::is_finite(scene.background))
     return fail(ErrorCode::bad_input, "{}: the background is not finite", report.file);
   scene.background = max(scene.background, Rgb{});

@@ -53,6 +53,7 @@ Status check_texture_ref(const Scene& scene, const TextureRef& ref, const std::s
 }  // namespace
 
 Status check_references(const Scene& scene, const Report& report) {
+  // Meshes, instances and materials by index.
   for (size_t i = 0; i < scene.meshes.size(); ++i) LUXEL_TRY_STATUS(check_mesh(scene, i, report));
   for (size_t i = 0; i < scene.instances.size(); ++i)
     if (scene.instances[i].mesh >= scene.meshes.size())
@@ -72,6 +73,7 @@ Status check_references(const Scene& scene, const Report& report) {
                   "{}: {}: profile index {} is out of range, there are {} profiles", report.file,
                   label("light", i, scene.lights[i].name), scene.lights[i].profile,
                   scene.profiles.size());
+  // Textures have the bytes that their size needs.
   for (size_t i = 0; i < scene.textures.size(); ++i) {
     const Texture& t = scene.textures[i];
     if (t.width < 1 || t.height < 1 ||

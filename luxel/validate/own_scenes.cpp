@@ -58,6 +58,7 @@ void compare_means(std::span<const Rgb> light, const Judged& judged, FoliageLigh
 HouseLight house_light(const pipeline::Bake& bake) {
   HouseLight out;
   int lawn = 0;
+  // Texels: the brightest inside, the mean of the lawn.
   for (size_t i = 0; i < bake.map.texels.size(); ++i) {
     const atlas::Texel& t = bake.map.texels[i];
     const float e = luminance(bake.light.irradiance[i]);
@@ -67,6 +68,7 @@ HouseLight house_light(const pipeline::Bake& bake) {
       out.lawn += double(e), ++lawn;
   }
   out.lawn /= lawn;
+  // Look-ups, as a viewer makes them: the brightest inside.
   const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
   for (uint32_t i = 0; i < bake.scene.instances.size(); ++i)
     for (uint32_t t = 0; t < bake.scene.meshes[bake.scene.instances[i].mesh].triangles.size(); ++t)

@@ -241,6 +241,7 @@ std::string factors_csv(const viewfactor::FactorMatrix& matrix,
 
 Result<FactorReport> view_factors(const FactorSettings& settings, Progress& progress) {
   LUXEL_TRY_STATUS(check(settings));
+  // The surfaces, and those that are asked for.
   progress.begin("read scene", 1);
   LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
   FactorReport report;
@@ -249,6 +250,7 @@ Result<FactorReport> view_factors(const FactorSettings& settings, Progress& prog
             read_surfaces(settings, imported.scene, report, progress));
   LUXEL_TRY(report.selection.from, surface_named(surfaces, "--from", settings.from));
   LUXEL_TRY(report.selection.to, surface_named(surfaces, "--to", settings.to));
+  // Their view factors, and how well they are known.
   LUXEL_TRY(report.matrix, compute(settings, imported.scene, surfaces, report.selection, progress));
   report.warnings.insert(report.warnings.end(), report.matrix.warnings.begin(),
                          report.matrix.warnings.end());
@@ -256,6 +258,7 @@ Result<FactorReport> view_factors(const FactorSettings& settings, Progress& prog
     LUXEL_TRY(report.smoothing, viewfactor::smooth_factors(report.matrix, progress));
   }
   LUXEL_TRY_STATUS(judge(settings, report));
+  // The table.
   if (!settings.output.empty()) {
     progress.begin(kWriteStage, 1);
     const std::string csv = factors_csv(report.matrix, report.selection);

@@ -129,12 +129,14 @@ Result<LightScript::MovingLight> light_of(const Node& node) {
   constexpr std::array<std::string_view, 7> known{
       "kind", "intensity", "position", "direction", "range_m", "inner_cone_deg", "outer_cone_deg"};
   LUXEL_TRY_STATUS(only_fields(node, known, "a light, as {\"kind\": \"point\", ...}"));
+  // What may be left out.
   LightScript::MovingLight moving;
   moving.position.keys = {{0, {}}}, moving.direction.keys = {{0, {0, -1, 0}}};
   moving.intensity.keys = {{0, {1, 1, 1}}};
   if (node.has("kind")) {
     LUXEL_TRY(moving.light.kind, kind_of(node.at("kind")));
   }
+  // The kind decides what must be there.
   const bool has_place = scene::has_position(moving.light.kind);
   const bool has_direction = scene::has_direction(moving.light.kind);
   if (has_place != node.has("position"))
@@ -145,6 +147,7 @@ Result<LightScript::MovingLight> light_of(const Node& node) {
     return fail(ErrorCode::bad_input, "{}: {}", node.where,
                 has_direction ? "a spot or directional light needs a direction"
                               : "a point light has no direction; leave it out");
+  // The values.
   if (has_place) {
     LUXEL_TRY(moving.position, track(node.at("position")));
   }

@@ -122,6 +122,7 @@ Status check(const ProbeSettings& s) {
 Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check(s));
   const ThreadLimit threads(s.threads);
+  // Scene and solution.
   progress.begin("import", 0);
   LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
   scene::Scene& scene = imported.scene;
@@ -133,6 +134,7 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   LUXEL_TRY(hierarchical::Solution solution,
             hierarchical::solve(scene, tracer, s.hierarchical.solve, progress));
   out.warnings.insert(out.warnings.end(), solution.warnings.begin(), solution.warnings.end());
+  // The surface that is meant.
   const Nearest nearest = nearest_face(solution.faces, s);
   if (!(nearest.distance_m <= kFar * double(solution.diagonal_m)))
     return fail(ErrorCode::bad_setting,
@@ -142,6 +144,7 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   const hierarchical::Face& face = solution.faces.faces[nearest.face];
   const hierarchical::Receiver at = hierarchical::receiver_at(solution, scene, tracer, nearest.face,
                                                               inwards(face, nearest.place));
+  // Its E: exact, and as the mesh of light interpolates it.
   LUXEL_TRY(const hierarchical::LightMesh mesh,
             hierarchical::represent(solution, scene, tracer, s.hierarchical.mesh, {}, progress));
   LUXEL_TRY(const std::vector<Rgb> exact,
@@ -153,6 +156,7 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   out.name = name_of(scene, face.instance), out.material = scene.materials[face.material].name;
   out.position = to_float(nearest.place), out.normal = to_float(at.normal);
   out.distance_m = float(nearest.distance_m);
+  // The sources, and what is left of E without them.
   const std::vector<hierarchical::Seen> seen =
       hierarchical::sources_at(solution, tracer, at, {1e-6});
   for (const hierarchical::Seen& f : seen) {

@@ -167,6 +167,7 @@ void walk(Visit& visit, Like<TexelLight> auto& l) {
 template <class Visit>
 void walk_part(Visit& visit, size_t part, Like<KeptBake> auto& k) {
   auto& [scene, seconds, layout, places, layer_names, layers, direct, levels, light] = k;
+  // Parts of about the same size, which are read and written one at a time.
   switch (part) {
     case 0:
       visit(scene), visit(seconds), visit(layer_names), visit(layers), visit(levels);

@@ -55,17 +55,20 @@ Status add_instance(const scene::Scene& scene, uint32_t instance, Faces& out, Pr
   const auto triangles = viewfactor::world_triangles(scene, instance);
   const Groups groups = groups_of(scene, instance);
   const uint32_t first = out.first_triangle[instance];
+  // Each triangle of a curved surface is a face of its own.
   for (const uint32_t t : groups.curved) {
     if (viewfactor::plane_of(triangles[t]).normal == DVec3{}) continue;
     out.face_of_triangle[first + t] = uint32_t(out.faces.size());
     out.faces.push_back(make_face(scene, triangles[t], instance, t, true));
   }
+  // Triangles of a flat surface are merged to as few polygons as possible, material by material.
   for (const auto& [material, members] : groups.flat) {
     std::vector<std::array<DVec3, 3>> flat;
     for (const uint32_t t : members) flat.push_back(triangles[t]);
     LUXEL_TRY(const viewfactor::MergedPolygons merged,
               viewfactor::merge_polygons(flat, out.slack_m, progress));
     const auto base = uint32_t(out.faces.size());
+    // A triangle knows its polygon, and a polygon one of its triangles.
     std::vector<uint32_t> one_of(merged.polygons.size(), kNone);
     for (size_t k = 0; k < members.size(); ++k) {
       if (merged.of_triangle[k] == viewfactor::kNoPolygon) continue;

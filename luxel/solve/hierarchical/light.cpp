@@ -7,6 +7,8 @@ namespace {
 
 /// Children come after their parents, clusters and elements alike.
 void push(const Faces& faces, const Tree& tree, std::span<Cosines> from_above, Light& light) {
+  // A child cluster gets the light as a function of direction, an element its value for its own
+  // normal.
   const auto hand_down = [&](const Cosines& light_here, uint32_t id) {
     if (tree.is_cluster(id)) {
       from_above[id].add(light_here);
@@ -16,12 +18,14 @@ void push(const Faces& faces, const Tree& tree, std::span<Cosines> from_above, L
       light.elements[id - tree.clusters.size()].arriving.fill(light_here.at(normal));
     }
   };
+  // Down the clusters, which stand before their children.
   for (size_t e = 0; e < tree.first_root.back(); ++e) light.elements[e].arriving.fill({});
   for (size_t c = 0; c < tree.clusters.size(); ++c) {
     Cosines all = from_above[c];
     all.add(light.clusters[c].received);
     for (const uint32_t child : tree.clusters[c].child) hand_down(all, child);
   }
+  // Down the elements: each corner takes over its part of the parent, and adds its own.
   for (size_t e = 0; e < tree.elements.size(); ++e) {
     ElementLight& l = light.elements[e];
     const uint32_t parent = tree.elements[e].parent;

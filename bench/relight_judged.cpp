@@ -131,7 +131,7 @@ Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
     p->scene.lights[0].position = position;
     relighter.update({p->scene.lights, {}, {}});
     LUXEL_TRY(const validate::Judged judged, judge_indirect(*p, settings.paths / 2, progress));
-    out.lights.push_back(compare(relighter.latest().indirect_at_place, judged));
+    out.lights.push_back(compare(relighter.latest().indirect_at_points, judged));
     out.lights.back().position = position;
   }
   return out;

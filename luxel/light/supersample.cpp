@@ -353,7 +353,7 @@ Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32
         traced += uint64_t(kEnclosureRaysOfTexel);
         if (is_enclosed(place, own, kEnclosureRaysOfTexel)) continue;
       }
-      const bool near_backs = sees_backs(place, own);
+      const bool near_back_faces = sees_backs(place, own);
       traced += uint64_t(kEnclosureRays);
       // The light of points all over its footprint, without those inside of solids.
       points.clear();
@@ -366,7 +366,7 @@ Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32
         // Where a wall stands on the surface, its inside is dark, and nobody sees it; under the
         // edge of a shell without a bottom, whose backs the texel sees, it need not be dark.
         const LightAt& light = work.light[j];
-        const bool doubtful = near_backs || is_dark(light.irradiance);
+        const bool doubtful = near_back_faces || is_dark(light.irradiance);
         traced += doubtful ? uint64_t(kEnclosureRays) : 0;
         if (doubtful && is_enclosed(place, work.receivers[j])) continue;
         points.push_back({work.receivers[j].position, light.irradiance, light.variance});

@@ -133,9 +133,9 @@ TEST(OpenSamples, AgainAreThoseFromScratch) {
   EXPECT_NE(kept.moved, full.moved);
   const std::array boxes{there, here};
   const MovedSamples opened = move_samples_near_changes(again.scene, again.atlas, rays_again, boxes,
-                                                        kept.near_backs, again.map);
+                                                        kept.near_back_faces, again.map);
   EXPECT_EQ(opened.moved, full.moved);
-  EXPECT_EQ(opened.near_backs, full.near_backs);
+  EXPECT_EQ(opened.near_back_faces, full.near_back_faces);
   for (size_t i = 0; i < now.map.texels.size(); ++i) {
     const Barycentric a = now.map.texels[i].sample.at, b = again.map.texels[i].sample.at;
     EXPECT_EQ(a.u, b.u);
@@ -146,7 +146,7 @@ TEST(OpenSamples, AgainAreThoseFromScratch) {
   const trace::RayTracer rays_unsaid = unsaid.tracer();
   for (const uint32_t i :
        move_samples_near_changes(unsaid.scene, unsaid.atlas, rays_unsaid, boxes, {}, unsaid.map)
-           .near_backs)
+           .near_back_faces)
     EXPECT_LT(unsaid.map.texels[i].x, 16);
 }
 
@@ -163,7 +163,7 @@ TEST(OpenSamples, MoveOutFromUnderAShell) {
   Floor floor = floor_under_a_shell();
   const trace::RayTracer rays = floor.tracer();
   const MovedSamples opened = move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
-  EXPECT_TRUE(opened.near_backs.size() < floor.map.texels.size());
+  EXPECT_TRUE(opened.near_back_faces.size() < floor.map.texels.size());
   EXPECT_GT(opened.moved.size(), 20u);
   size_t enclosed = 0, edges = 0;
   for (const atlas::Texel& texel : floor.map.texels) {

@@ -187,7 +187,7 @@ MovedSamples move_some(const Probe& probe, std::span<const uint32_t> texels, atl
   look_around(probe, texels, map, found);
   MovedSamples out;
   for (uint32_t i = 0; i < found.size(); ++i)
-    if (found[i] != Found::nothing) out.near_backs.push_back(i);
+    if (found[i] != Found::nothing) out.near_back_faces.push_back(i);
   look_for_regions(probe, map, found);
   const std::vector<uint32_t> edge = at_the_edge(map, found);
   parallel_for(edge.size(), 64, [&](size_t begin, size_t end) {
@@ -241,11 +241,12 @@ MovedSamples move_samples_out_of_solids(const scene::Scene& scene, const atlas::
 
 MovedSamples move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,
                                        const trace::RayTracer& tracer, std::span<const Box3> boxes,
-                                       std::span<const uint32_t> near_backs, atlas::TexelMap& map) {
+                                       std::span<const uint32_t> near_back_faces,
+                                       atlas::TexelMap& map) {
   const Probe probe{scene, atlas, tracer, scene::world_bounds(scene).diagonal()};
   const std::vector<float> reaches = reaches_to(probe, boxes);
   std::vector<uint8_t> look(map.texels.size());
-  for (const uint32_t i : near_backs) look[i] = 1;
+  for (const uint32_t i : near_back_faces) look[i] = 1;
   parallel_for(look.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const float reach = reaches[map.texels[i].triangle_number];

@@ -14,7 +14,7 @@ namespace luxel::transport {
 struct MovedSamples {
   std::vector<uint32_t> moved;  ///< those whose samples were moved
   /// Those with the back of a surface near their own sample.
-  std::vector<uint32_t> near_backs;
+  std::vector<uint32_t> near_back_faces;
 };
 
 /// A texel across the foot of a wall has one sample, which may lie under the wall while half of the
@@ -33,6 +33,7 @@ MovedSamples move_samples_out_of_solids(const scene::Scene& scene, const atlas::
 /// does.
 MovedSamples move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,
                                        const trace::RayTracer& tracer, std::span<const Box3> boxes,
-                                       std::span<const uint32_t> near_backs, atlas::TexelMap& map);
+                                       std::span<const uint32_t> near_back_faces,
+                                       atlas::TexelMap& map);
 
 }  // namespace luxel::transport

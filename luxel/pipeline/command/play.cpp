@@ -194,7 +194,7 @@ Result<std::vector<OutputFile>> draw_frames(const PlaySettings& s, const LightSc
     const double time_s = k / script.frames_per_second;
     const FrameLights lights = lights_at(script, data, baked_radiance, time_s);
     relighter.update({lights.punctual, lights.emission, lights.background});
-    indirect.set(relighter.latest().indirect_at_place);
+    indirect.set(relighter.latest().indirect_at_points);
     show_lights(script, lights, time_s, view);
     const Clock::time_point start = Clock::now();
     LUXEL_TRY(const image::Image picture, draw_frame(view, indirect, lights, script, progress));

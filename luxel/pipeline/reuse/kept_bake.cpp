@@ -130,10 +130,10 @@ void walk(Visit& visit, Like<LeakRepair> auto& r) {
 
 template <class Visit>
 void walk(Visit& visit, Like<KeptLayout> auto& l) {
-  auto& [meshes, one_sided_of, mesh_of_instance, atlas, texels, stats, repair, near_backs,
+  auto& [meshes, one_sided_of, mesh_of_instance, atlas, texels, stats, repair, near_back_faces,
          warnings] = l;
   visit(meshes), visit(one_sided_of), visit(mesh_of_instance), visit(atlas), visit(texels);
-  walk(visit, stats), visit(repair), visit(near_backs), visit(warnings);
+  walk(visit, stats), visit(repair), visit(near_back_faces), visit(warnings);
 }
 
 template <class Visit>
@@ -230,7 +230,7 @@ bool refers_to_itself(const KeptBake& k) {
              [&](const std::vector<uint8_t>& of) { return std::ranges::all_of(of, is_layer); }) &&
          std::ranges::all_of(k.layout.mesh_of_instance,
                              [&](uint32_t mesh) { return mesh < k.layout.meshes.size(); }) &&
-         std::ranges::all_of(k.layout.near_backs,
+         std::ranges::all_of(k.layout.near_back_faces,
                              [&](uint32_t texel) { return texel < k.layout.texels.size(); }) &&
          std::ranges::all_of(k.layout.texels, is_texel);
 }

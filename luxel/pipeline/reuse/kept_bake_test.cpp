@@ -45,7 +45,7 @@ KeptBake some_bake() {
   k.layout.texels = {{1, 2, {0, 0, {0.25f, 0.5f}}, 0, true},
                      {9, 10, {1, 0, {0.1f, 0.2f}}, 1, false}};
   k.layout.stats = {1, 0.25, 1.5, 100, 2, 0.75};
-  k.layout.repair = {1, 2, {0}, {1}, {0, 1}}, k.layout.near_backs = {1},
+  k.layout.repair = {1, 2, {0}, {1}, {0, 1}}, k.layout.near_back_faces = {1},
   k.layout.warnings = {"careful", "very"};
   k.places = {51, 52}, k.layer_names = {"l", "b"};
   k.layers = {{0, LayersOfLights::kNoLayer}, {{}, {0, 1}}, 1};
@@ -149,7 +149,7 @@ void expect_same(const KeptLayout& a, const KeptLayout& b) {
   EXPECT_EQ(a.repair.overlapping, b.repair.overlapping);
   EXPECT_EQ(a.repair.moved, b.repair.moved);
   EXPECT_EQ(a.repair.refilled, b.repair.refilled);
-  EXPECT_EQ(a.near_backs, b.near_backs);
+  EXPECT_EQ(a.near_back_faces, b.near_back_faces);
   EXPECT_EQ(a.warnings, b.warnings);
 }
 
@@ -338,7 +338,7 @@ TEST(KeptBake, ThatRefersToWhatIsNotThereIsRefused) {
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[1].sample.instance = 2; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.texels[1].triangle_number = 2; }));
   EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.atlas.resolution = -1; }));
-  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.near_backs = {2}; }));
+  EXPECT_TRUE(is_refused([](KeptBake& k) { k.layout.near_back_faces = {2}; }));
 }
 
 /// Made in memory full of a byte.

@@ -94,7 +94,7 @@ void add_open(const scene::Scene& scene, const atlas::Atlas& atlas, const trace:
 
 void take_moved(transport::MovedSamples opened, TexelLayout& layout) {
   layout.repair.moved = std::move(opened.moved);
-  layout.near_backs = std::move(opened.near_backs);
+  layout.near_back_faces = std::move(opened.near_back_faces);
 }
 
 }  // namespace
@@ -121,7 +121,8 @@ KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout) {
   for (const scene::Instance& instance : scene.instances)
     out.mesh_of_instance.push_back(instance.mesh);
   out.atlas = layout.atlas, out.texels = layout.map.texels;
-  out.stats = layout.stats, out.repair = layout.repair, out.near_backs = layout.near_backs;
+  out.stats = layout.stats, out.repair = layout.repair,
+  out.near_back_faces = layout.near_back_faces;
   return out;
 }
 
@@ -144,12 +145,13 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
                                     : atlas::rasterise(scene, kept.atlas);
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
-  TexelLayout layout{std::move(kept.atlas), std::move(map),         kept.stats,
-                     std::move(tracer),     std::move(kept.repair), std::move(kept.near_backs)};
+  TexelLayout layout{
+      std::move(kept.atlas), std::move(map),         kept.stats,
+      std::move(tracer),     std::move(kept.repair), std::move(kept.near_back_faces)};
   if (!same_places && settings.repair_leaks) {
     progress.begin("samples", 0);
     take_moved(transport::move_samples_near_changes(scene, layout.atlas, layout.tracer, boxes,
-                                                    layout.near_backs, layout.map),
+                                                    layout.near_back_faces, layout.map),
                layout);
   }
   return layout;

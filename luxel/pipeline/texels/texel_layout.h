@@ -32,7 +32,7 @@ struct TexelLayout {
   atlas::AtlasStats stats;
   trace::RayTracer tracer;  ///< of the scene as it is now
   LeakRepair repair;
-  std::vector<uint32_t> near_backs;  ///< MovedSamples::near_backs
+  std::vector<uint32_t> near_back_faces;  ///< MovedSamples::near_back_faces
 };
 
 /// Lays the scene out and rasterises it. With settings.repair_leaks, samples move out of solids,
@@ -52,7 +52,7 @@ struct KeptLayout {
   std::vector<atlas::Texel> texels;  ///< of the map
   atlas::AtlasStats stats;
   LeakRepair repair;
-  std::vector<uint32_t> near_backs;  ///< TexelLayout::near_backs
+  std::vector<uint32_t> near_back_faces;  ///< TexelLayout::near_back_faces
   std::vector<std::string> warnings;
 };
 /// `one_sided_of` and `warnings` are not filled in.

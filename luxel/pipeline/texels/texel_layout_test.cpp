@@ -62,7 +62,7 @@ TEST(LayOutAgain, OpensTheSamplesThatOpeningAllWould) {
   const auto all = transport::move_samples_out_of_solids(now, again->atlas, again->tracer, map);
   EXPECT_NE(all.moved, kept.layout.repair.moved);
   EXPECT_EQ(again->repair.moved, all.moved);
-  EXPECT_EQ(again->near_backs, all.near_backs);
+  EXPECT_EQ(again->near_back_faces, all.near_back_faces);
   ASSERT_EQ(again->map.texels.size(), map.texels.size());
   for (size_t i = 0; i < map.texels.size(); ++i) {
     EXPECT_EQ(again->map.texels[i].sample.at.u, map.texels[i].sample.at.u);
@@ -76,7 +76,7 @@ TEST(LayOutAgain, LeavesSamplesWhereNothingMoved) {
   const auto again = lay_out_again(kept.settings, kept.layout, {}, now, kept.progress);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->repair.moved, kept.layout.repair.moved);
-  EXPECT_EQ(again->near_backs, kept.layout.near_backs);
+  EXPECT_EQ(again->near_back_faces, kept.layout.near_back_faces);
   ASSERT_EQ(again->map.texels.size(), kept.layout.texels.size());
   for (size_t i = 0; i < kept.layout.texels.size(); ++i)
     EXPECT_EQ(again->map.texels[i].sample.at.u, kept.layout.texels[i].sample.at.u);

@@ -167,7 +167,7 @@ double relative_interpolation_error(const Field& field) {
   return mean > 0 && area > 0 ? std::sqrt(sum / area) / mean : 0;
 }
 
-Result<Sight> look_from(const Surroundings& around, const transport::Elements& elements,
+Result<Sight> look_from(const SendingScene& around, const transport::Elements& elements,
                         const HemicubeParams& params, Solution& solution, Progress& progress) {
   LUXEL_TRY(
       light::DirectLight direct,
@@ -210,7 +210,7 @@ bool cut_worst(Field& field, const HemicubeParams& params, size_t goal, double s
 }
 
 /// Light for new elements, from what the mesh around sends.
-Status light_new_elements(const Surroundings& around, const HemicubeParams& params,
+Status light_new_elements(const SendingScene& around, const HemicubeParams& params,
                           std::span<const uint32_t> elements, std::span<const Rgb> sent,
                           Solution& s, Progress& progress) {
   LUXEL_TRY(const Sight sight,
@@ -229,7 +229,7 @@ Status light_new_elements(const Surroundings& around, const HemicubeParams& para
 
 }  // namespace
 
-Status refine(const Surroundings& around, const HemicubeParams& params, size_t max_elements,
+Status refine(const SendingScene& around, const HemicubeParams& params, size_t max_elements,
               Solution& s, Progress& progress) {
   const std::vector<Rgb> sent = radiosity(around.senders.elements, s.field.irradiance);
   Bisector bisector(s.field.mesh);

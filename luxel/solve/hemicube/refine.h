@@ -17,7 +17,7 @@ std::vector<float> interpolation_errors(const Field& field);
 double relative_interpolation_error(const Field& field);
 
 /// What looking needs.
-struct Surroundings {
+struct SendingScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
   const Emission& emission;
@@ -33,13 +33,13 @@ struct Sight {
 
 /// Looks from elements of a mesh, their own or a finer one, and gathers their direct light. Counts
 /// rays and seconds in `solution`. Errors: cancelled, disk full.
-Result<Sight> look_from(const Surroundings& around, const transport::Elements& elements,
+Result<Sight> look_from(const SendingScene& around, const transport::Elements& elements,
                         const HemicubeParams& params, Solution& solution, Progress& progress);
 
 /// Cuts triangles of a solution until interpolation errs by no more than params.max_error or there
 /// are max_elements. In: a field over the mesh around, solved. New elements gather the light that
 /// its elements send. Errors: cancelled, disk full.
-Status refine(const Surroundings& around, const HemicubeParams& params, size_t max_elements,
+Status refine(const SendingScene& around, const HemicubeParams& params, size_t max_elements,
               Solution& solution, Progress& progress);
 
 }  // namespace luxel::hemicube

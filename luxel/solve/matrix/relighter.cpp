@@ -75,8 +75,8 @@ void Relighter::Impl::make_room() {
   const size_t places = data.target.position.size();
   for (Relit& r : result) {
     r.direct.resize(data.size()), r.indirect.resize(data.size());
-    r.indirect_at_place.resize(places);
-    r.direct_at_place.resize(params.direct_at_places ? places : 0);
+    r.indirect_at_points.resize(places);
+    r.direct_at_points.resize(params.direct_at_points ? places : 0);
   }
 }
 
@@ -107,10 +107,10 @@ void Relighter::Impl::bounces(const RelightLights& lights, Relit& out) {
 
 void Relighter::Impl::light_places(const RelightLights& lights, Relit& out) {
   const Target& to = data.target;
-  transfer(to.transfer, out.indirect, out.indirect_at_place);
-  if (params.direct_at_places)
+  transfer(to.transfer, out.indirect, out.indirect_at_points);
+  if (params.direct_at_points)
     live_light({to.position, to.normal, to.geometric_normal}, lights.punctual, *tracer, diagonal_m,
-               out.direct_at_place);
+               out.direct_at_points);
 }
 
 Relighter::Relighter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -20,20 +20,20 @@ struct RelightLights {
   Rgb background{};  ///< radiance of the surroundings
 };
 
-/// What they make of it. Per patch, and per place of RelightData::target.
+/// What they make of it. Per patch, and per point of RelightData::target, a texel or a vertex.
 struct Relit {
-  uint64_t update = 0;               ///< how many there were before, and this one; 0: none yet
-  std::vector<Rgb> direct;           ///< E straight from punctual lights [W/m^2]
-  std::vector<Rgb> indirect;         ///< E from surfaces (glowing ones, too) and the background
-  std::vector<Rgb> direct_at_place;  ///< empty unless asked for
-  std::vector<Rgb> indirect_at_place;
+  uint64_t update = 0;                ///< how many there were before, and this one; 0: none yet
+  std::vector<Rgb> direct;            ///< E straight from punctual lights [W/m^2]
+  std::vector<Rgb> indirect;          ///< E from surfaces (glowing ones, too) and the background
+  std::vector<Rgb> direct_at_points;  ///< empty unless asked for
+  std::vector<Rgb> indirect_at_points;
 };
 
 /// What a relighter computes besides.
 struct RelighterParams {
-  /// Direct light at places, too, by a shadow ray per place and light; for programs that do not
+  /// Direct light at points, too, by a shadow ray per point and light; for programs that do not
   /// draw direct light themselves.
-  bool direct_at_places = false;
+  bool direct_at_points = false;
 };
 
 /// One thread updates while another reads: neither waits for the other, and neither allocates.
@@ -41,7 +41,7 @@ struct RelighterParams {
 ///     LUXEL_TRY(RelightData data, read_lxr("scene.lxr"));
 ///     LUXEL_TRY(Relighter relighter, Relighter::make(std::move(data), {}));
 ///     relighter.update({lights});                  // thread A, per frame
-///     show(relighter.latest().indirect_at_place);  // thread B
+///     show(relighter.latest().indirect_at_points);  // thread B
 class Relighter {
  public:
   /// Builds what shadow rays need and all room that updates need. Errors: triangles that cannot be

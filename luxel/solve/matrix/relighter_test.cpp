@@ -116,8 +116,8 @@ TEST(Relighter, TheFurnaceGlowsEvenly) {
     const Stage stage(scene::furnace_box({0.5f, 0.25f, 0}, {1, 2, 3}), small(codec));
     Relighter relighter = relighter_of(stage.data(floor_places(1)));
     const Relit got = relit(relighter, {});
-    ASSERT_EQ(got.indirect_at_place.size(), 64u);
-    for (const auto* list : {&got.indirect, &got.indirect_at_place}) {
+    ASSERT_EQ(got.indirect_at_points.size(), 64u);
+    for (const auto* list : {&got.indirect, &got.indirect_at_points}) {
       const std::vector<Rgb> even(list->size(), want);
       const std::vector<float> one(list->size(), 1.0f);
       // What lamps may lose is 1 %, root mean square; light from everywhere loses less.
@@ -240,13 +240,13 @@ TEST(Relighter, DirectLightAtPlacesIsThatOfLamps) {
   size_t dark = 0;
   for (size_t k = 0; k < target.position.size(); ++k) {
     const Rgb want = plain_light_at(stage, {target.position[k], target.normal[k]}, kLeft);
-    EXPECT_LE(length(got.direct_at_place[k] - want), 1e-6f * length(want)) << k;  // floats
+    EXPECT_LE(length(got.direct_at_points[k] - want), 1e-6f * length(want)) << k;  // floats
     dark += want == Rgb{};
   }
   EXPECT_GT(dark, 4u);  // behind and under the blocks
   EXPECT_LT(dark, 40u);
   Relighter without = relighter_of(stage.data(floor_places(0.54f)));
-  EXPECT_TRUE(relit(without, {{&kLeft, 1}}).direct_at_place.empty());
+  EXPECT_TRUE(relit(without, {{&kLeft, 1}}).direct_at_points.empty());
 }
 
 TEST(MakeRelightData, RefusesWhatCannotBe) {

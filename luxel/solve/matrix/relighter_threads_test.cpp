@@ -35,8 +35,8 @@ TEST(Relighter, SameBitsForAnyNumberOfThreads) {
       const Relit other = with(threads);
       EXPECT_EQ(one.direct, other.direct) << int(codec);
       EXPECT_EQ(one.indirect, other.indirect) << int(codec);
-      EXPECT_EQ(one.direct_at_place, other.direct_at_place) << int(codec);
-      EXPECT_EQ(one.indirect_at_place, other.indirect_at_place) << int(codec);
+      EXPECT_EQ(one.direct_at_points, other.direct_at_points) << int(codec);
+      EXPECT_EQ(one.indirect_at_points, other.indirect_at_points) << int(codec);
     }
   }
 }
@@ -74,7 +74,7 @@ bool is_scaled(const Relit& now, const Relit& base) {
     return a.size() == b.size();
   };
   return same(now.direct, base.direct) && same(now.indirect, base.indirect) &&
-         same(now.indirect_at_place, base.indirect_at_place);
+         same(now.indirect_at_points, base.indirect_at_points);
 }
 
 TEST(Relighter, OneThreadReadsWhatAnotherUpdates) {
@@ -88,7 +88,7 @@ TEST(Relighter, OneThreadReadsWhatAnotherUpdates) {
   };
   update(1);
   Relit base = relighter.latest();
-  for (auto* list : {&base.direct, &base.indirect, &base.indirect_at_place})
+  for (auto* list : {&base.direct, &base.indirect, &base.indirect_at_points})
     for (Rgb& e : *list) e = e * (1 / scale_of(1));
   std::atomic<bool> reading{false};
   uint64_t last = 0, different = 0, torn = 0, back = 0;

@@ -115,7 +115,7 @@ Box3 grown(Box3 box, float by) {
 }
 
 /// What walks look at.
-struct World {
+struct ShellScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
   const std::vector<Shells>& shells;  ///< per mesh
@@ -135,80 +135,82 @@ struct Placed {
   bool closed = false;
 };
 
-World world_of(const scene::Scene& scene, const trace::RayTracer& tracer,
-               const std::vector<Shells>& shells) {
-  World world{scene, tracer, shells, {}, false, scene::world_bounds(scene).diagonal()};
-  world.sky_shines = max_component(scene.background) > 0 || !scene.environment.empty();
+ShellScene shell_scene_of(const scene::Scene& scene, const trace::RayTracer& tracer,
+                          const std::vector<Shells>& shells) {
+  ShellScene shell_scene{scene, tracer, shells, {}, false, scene::world_bounds(scene).diagonal()};
+  shell_scene.sky_shines = max_component(scene.background) > 0 || !scene.environment.empty();
   for (const scene::PunctualLight& light : scene.lights)
     if (scene::has_position(light.kind))
-      world.light_positions.push_back(light.position);
+      shell_scene.light_positions.push_back(light.position);
     else
-      world.sky_shines = true;
-  return world;
+      shell_scene.sky_shines = true;
+  return shell_scene;
 }
 
 enum class Step : uint8_t { on, out, stuck };
 
-Step judge(const World& world, const Placed& own, const trace::Ray& ray, const trace::Hit& hit) {
-  if (!hit.found()) return world.sky_shines ? Step::out : Step::stuck;
-  if (hit.back_face && !scene::reflects_from_behind(material_at(world.scene, hit.point())))
+Step judge(const ShellScene& shell_scene, const Placed& own, const trace::Ray& ray,
+           const trace::Hit& hit) {
+  if (!hit.found()) return shell_scene.sky_shines ? Step::out : Step::stuck;
+  if (hit.back_face && !scene::reflects_from_behind(material_at(shell_scene.scene, hit.point())))
     return Step::stuck;
   const Vec3 p = ray.origin + ray.direction * hit.t;
   if (!contains(own.surroundings, p)) return !own.closed || !hit.back_face ? Step::out : Step::on;
-  const Shells& shells = world.shells_at(hit.instance);
+  const Shells& shells = shell_scene.shells_at(hit.instance);
   const uint32_t shell = shells.of_triangle[hit.triangle];
   if (hit.back_face || (hit.instance == own.instance && shell == own.shell)) return Step::on;
-  const Mat34& m = world.scene.instances[hit.instance].world_from_object;
+  const Mat34& m = shell_scene.scene.instances[hit.instance].world_from_object;
   return contains(own.box, moved(m, shells.bounds[shell])) ? Step::out : Step::on;
 }
 
-trace::Ray ray_from(const World& world, const scene::SurfacePoint& p, Vec3 side,
+trace::Ray ray_from(const ShellScene& shell_scene, const scene::SurfacePoint& p, Vec3 side,
                     RandomStream& random) {
-  const Vec3 origin =
-      trace::offset_origin(scene::world_position(world.scene, p), side, world.diagonal_m);
+  const Vec3 origin = trace::offset_origin(scene::world_position(shell_scene.scene, p), side,
+                                           shell_scene.diagonal_m);
   const Vec3 d = frame_around(side).to_world(cosine_hemisphere_sample(random.next2()));
   return {origin, 0, d, INFINITY};
 }
 
 /// Whether a randomly chosen point or spot light shines on a position.
-bool sees_light(const World& world, Vec3 origin, Vec3 side, RandomStream& random) {
-  if (world.light_positions.empty()) return false;
-  const size_t k = std::min(size_t(random.next() * float(world.light_positions.size())),
-                            world.light_positions.size() - 1);
-  const Vec3 towards = world.light_positions[k] - origin;
-  return dot(towards, side) > 0 && !world.tracer.closest_hit({origin, 0, towards, 1}).found();
+bool sees_light(const ShellScene& shell_scene, Vec3 origin, Vec3 side, RandomStream& random) {
+  if (shell_scene.light_positions.empty()) return false;
+  const size_t k = std::min(size_t(random.next() * float(shell_scene.light_positions.size())),
+                            shell_scene.light_positions.size() - 1);
+  const Vec3 towards = shell_scene.light_positions[k] - origin;
+  return dot(towards, side) > 0 && !shell_scene.tracer.closest_hit({origin, 0, towards, 1}).found();
 }
 
 /// Whether a walk from the back of a triangle gets out, or a light shines on it.
-bool gets_out(const World& world, const Placed& own, const scene::SurfacePoint& from,
+bool gets_out(const ShellScene& shell_scene, const Placed& own, const scene::SurfacePoint& from,
               RandomStream& random) {
-  const Vec3 behind = -scene::front_normal(world.scene, from.instance, from.triangle);
-  trace::Ray ray = ray_from(world, from, behind, random);
-  if (sees_light(world, ray.origin, behind, random)) return true;
+  const Vec3 behind = -scene::front_normal(shell_scene.scene, from.instance, from.triangle);
+  trace::Ray ray = ray_from(shell_scene, from, behind, random);
+  if (sees_light(shell_scene, ray.origin, behind, random)) return true;
   for (uint32_t step = 0; step < kSteps; ++step) {
-    const trace::Hit hit = world.tracer.closest_hit(ray);
-    const Step what = judge(world, own, ray, hit);
+    const trace::Hit hit = shell_scene.tracer.closest_hit(ray);
+    const Step what = judge(shell_scene, own, ray, hit);
     if (what != Step::on) return what == Step::out;
-    const Vec3 front = scene::front_normal(world.scene, hit.instance, hit.triangle);
-    ray = ray_from(world, hit.point(), hit.back_face ? -front : front, random);
+    const Vec3 front = scene::front_normal(shell_scene.scene, hit.instance, hit.triangle);
+    ray = ray_from(shell_scene, hit.point(), hit.back_face ? -front : front, random);
   }
   return false;
 }
 
 /// The share of walks that get out, from points spread over the candidates in proportion to area.
-double share_out(const World& world, const Placed& own, uint64_t seed) {
-  const std::vector<uint32_t>& candidates = world.shells_at(own.instance).candidates[own.shell];
+double share_out(const ShellScene& shell_scene, const Placed& own, uint64_t seed) {
+  const std::vector<uint32_t>& candidates =
+      shell_scene.shells_at(own.instance).candidates[own.shell];
   std::vector<double> below{0};
   for (const uint32_t t : candidates)
     below.push_back(below.back() +
-                    double(area_m2(scene::world_triangle(world.scene, own.instance, t))));
+                    double(area_m2(scene::world_triangle(shell_scene.scene, own.instance, t))));
   uint32_t out = 0;
   for (uint32_t k = 0; k < kWalks; ++k) {
     RandomStream random{hash64(seed, k)};
     const double at = (double(k) + double(random.next())) / kWalks * below.back();
     const auto found = std::upper_bound(below.begin() + 1, below.end() - 1, at);
     const uint32_t t = candidates[size_t(found - below.begin()) - 1];
-    out += gets_out(world, own, {own.instance, t, triangle_sample(random.next2())}, random);
+    out += gets_out(shell_scene, own, {own.instance, t, triangle_sample(random.next2())}, random);
   }
   return double(out) / kWalks;
 }
@@ -248,13 +250,13 @@ Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene,
     for (size_t m = begin; m < end; ++m) shells[m] = shells_of(scene, scene.meshes[m]);
   });
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
-  const World world = world_of(scene, tracer, shells);
+  const ShellScene shell_scene = shell_scene_of(scene, tracer, shells);
   const std::vector<Placed> placed = placed_shells(scene, shells);
   progress.begin("sides", placed.size());
   std::vector<uint8_t> open(placed.size());
   parallel_for(placed.size(), 16, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end && !progress.cancelled(); ++k)
-      open[k] = share_out(world, placed[k], k) >= kOpenShare;
+      open[k] = share_out(shell_scene, placed[k], k) >= kOpenShare;
     progress.advance(end - begin);
   });
   LUXEL_TRY_STATUS(stopped(progress));

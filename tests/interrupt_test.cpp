@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <functional>
 #include <thread>
 #include <vector>
 
@@ -23,8 +24,21 @@ struct Stopped {
   std::string err;
 };
 
-/// Starts `luxel arguments...`, waits, sends the signal, and waits for the end.
-Stopped stop_after(double seconds, int signal, std::vector<std::string> arguments) {
+/// When to send the signal, looked at again and again: gets what the program has said so far. It
+/// names each stage when it is done.
+using Ready = std::function<bool(const std::string& err)>;
+
+Ready after_stage(std::string stage, size_t times = 1) {
+  return [=](const std::string& err) {
+    size_t found = 0;
+    for (size_t at = err.find(stage); at != std::string::npos; at = err.find(stage, at + 1))
+      ++found;
+    return found >= times;
+  };
+}
+
+/// Starts `luxel arguments...`, sends the signal when it is time, and waits for the end.
+Stopped stop_when(const Ready& ready, int signal, std::vector<std::string> arguments) {
   const ScratchFolder scratch;
   const std::string err = (scratch.path / "err").string();
   arguments.insert(arguments.begin(), LUXEL_BINARY);
@@ -37,48 +51,63 @@ Stopped stop_after(double seconds, int signal, std::vector<std::string> argument
     ::execv(argv[0], argv.data());
     ::_exit(127);
   }
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  Stopped stopped;
+  const auto said = [&] { return std::filesystem::exists(err) ? slurp(err) : std::string(); };
+  while (!ready(said())) {
+    // A program that ends by itself has not come to what the test waits for: its status says so.
+    if (::waitpid(child, &stopped.status, WNOHANG) == child) return stopped.err = said(), stopped;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
   const auto start = Clock::now();
   ::kill(child, signal);
-  Stopped stopped;
   ::waitpid(child, &stopped.status, 0);
   stopped.seconds_to_end = std::chrono::duration<double>(Clock::now() - start).count();
-  stopped.err = slurp(err);
+  stopped.err = said();
   return stopped;
 }
 
-void expect_stopped_cleanly(double seconds, int signal, const std::string& scene,
-                            const std::vector<std::string>& more = {}) {
-  const ScratchFolder scratch;
-  std::vector<std::string> arguments{
-      "bake",         scene,  "-o",        (scratch.path / "new" / "baked").string(),
-      "--resolution", "2048", "--samples", "4096"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  const Stopped stopped = stop_after(seconds, signal, arguments);
-  const std::string what = scene + " after " + std::to_string(seconds) + " s: " + stopped.err;
-  ASSERT_TRUE(WIFEXITED(stopped.status)) << what;
-  EXPECT_EQ(WEXITSTATUS(stopped.status), 130) << what;
+void expect_stopped(const Stopped& stopped, const std::string& what) {
+  ASSERT_TRUE(WIFEXITED(stopped.status)) << what << stopped.err;
+  EXPECT_EQ(WEXITSTATUS(stopped.status), 130) << what << stopped.err;
   // The program gives itself 0.8 s and ends then, whatever it does; the rest is for a machine whose
   // cores are busy with other tests, and for the sanitizers.
   EXPECT_LT(stopped.seconds_to_end, 2.5) << what;
-  EXPECT_THAT(stopped.err, HasSubstr("luxel: stopped by the user\n"));
-  EXPECT_TRUE(std::filesystem::is_empty(scratch.path)) << what;
+  EXPECT_THAT(stopped.err, HasSubstr("luxel: stopped by the user\n")) << what;
 }
 
+/// A bake that would take minutes and is stopped leaves nothing, not even the folder it made.
+void expect_bake_stopped(const Ready& ready, int signal, const std::string& scene,
+                         std::vector<std::string> options) {
+  const ScratchFolder scratch;
+  options.insert(options.begin(), {"bake", scene, "-o", (scratch.path / "new" / "baked").string()});
+  expect_stopped(stop_when(ready, signal, options), scene);
+  EXPECT_TRUE(std::filesystem::is_empty(scratch.path)) << scene;
+}
+
+/// Direct light is known soon, and the rays take a minute.
+const std::vector<std::string> kManyRays{"--resolution",     "256", "--samples", "16384",
+                                         "--direct-samples", "4"};
+
+// Supersampling, which shows twice, is the last stage before them.
 TEST(InterruptSlow, WhileRaysAreTraced) {
   for (const int signal : {SIGINT, SIGTERM})
-    expect_stopped_cleanly(1, signal, scene_file("cornell-box.glb"));
+    expect_bake_stopped(after_stage("supersample", 2), signal, scene_file("cornell-box.glb"),
+                        kManyRays);
 }
 
-// The hits go to a file then: it has to be gone too.
+// The hits, 8 GB, go to a file then: it has to be gone too.
 TEST(InterruptSlow, WhileHitsAreSpilled) {
-  expect_stopped_cleanly(1.5, SIGINT, scene_file("cornell-box.glb"), {"--max-memory", "600M"});
+  std::vector<std::string> options = kManyRays;
+  options.insert(options.end(), {"--max-memory", "600M"});
+  expect_bake_stopped(after_stage("supersample", 2), SIGINT, scene_file("cornell-box.glb"),
+                      options);
 }
 
 TEST(InterruptSlow, WhileALargeSceneIsImportedAndLaidOut) {
   LUXEL_NEEDS_SHARED("scenes/zdm2/zdm2.glb");
   const std::string scene = (shared_folder() / "scenes/zdm2/zdm2.glb").string();
-  for (const double seconds : {0.03, 0.3, 0.8, 1.6}) expect_stopped_cleanly(seconds, SIGINT, scene);
+  for (const char* stage : {"import", "charts", "packing", "build ray tracer"})
+    expect_bake_stopped(after_stage(stage), SIGINT, scene, {"--resolution", "2048"});
 }
 
 TEST(InterruptSlow, WhileViewFactorsAreComputed) {
@@ -90,10 +119,8 @@ TEST(InterruptSlow, WhileViewFactorsAreComputed) {
                                        "--method", method};
     if (method == "rays") arguments.insert(arguments.end(), {"--samples", "16777216"});
     if (method == "hemicube") arguments.insert(arguments.end(), {"--hemicube", "4096"});
-    const Stopped stopped = stop_after(2, SIGINT, arguments);
-    ASSERT_TRUE(WIFEXITED(stopped.status)) << method;
-    EXPECT_EQ(WEXITSTATUS(stopped.status), 130) << method << stopped.err;
-    EXPECT_LT(stopped.seconds_to_end, 2.5) << method;
+    const char* before = method == "analytic" ? "join polygons" : "build ray tracer";
+    expect_stopped(stop_when(after_stage(before), SIGINT, arguments), method);
     EXPECT_TRUE(std::filesystem::is_empty(scratch.path)) << method;
   }
 }
@@ -103,7 +130,9 @@ TEST(InterruptSlow, FilesOfAnEarlierBakeStay) {
   const std::string box = scene_file("cornell-box.glb"), output = (s.path / "b").string();
   ASSERT_EQ(luxel("bake " + box + " -o " + output + " --resolution 32 --samples 4").code, 0);
   const std::string before = slurp(s.path / "b/lightmap.exr");
-  stop_after(0.5, SIGINT, {"bake", box, "-o", output, "--resolution", "2048"});
+  expect_stopped(stop_when(after_stage("packing"), SIGINT,
+                           {"bake", box, "-o", output, "--resolution", "2048"}),
+                 box);
   EXPECT_EQ(slurp(s.path / "b/lightmap.exr"), before);
   EXPECT_EQ(files_in(s.path / "b"), kBakeFiles);
 }

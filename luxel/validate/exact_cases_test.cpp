@@ -65,12 +65,12 @@ TEST(ExactCases, TheFurnacesAreThoseOfTheReference) {
 }
 
 // Section 2: "lx" holds the indirect part; 10 000 lm over 96 m^2 come directly.
-TEST(ExactCases, TheRoomsWithALampAreThoseOfTheReference) {
+TEST(ExactCases, TheRoomsWithAPointLightAreThoseOfTheReference) {
   const auto cases = *exact_cases("");
   const auto rows = shared::markdown_rows("reference/exact-solutions.md", "Mean law", "rho");
   ASSERT_EQ(rows.size(), 1u);
   for (const auto& [rho, column] : {std::pair{"0.3", 3}, {"0.9", 6}}) {
-    const ExactCase& c = case_named(cases, std::string("lamp, rho ") + rho);
+    const ExactCase& c = case_named(cases, std::string("point light, rho ") + rho);
     EXPECT_NEAR(c.parts[0].irradiance({}) - 10000.0 / 96, std::stod(rows[0][size_t(column)]), 1e-6);
   }
 }

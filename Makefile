@@ -40,7 +40,7 @@ build: setup
 test: setup-tests
 	cmake --preset release
 	cmake --build --preset release --parallel $(JOBS)
-	ctest --preset release --parallel $$(nproc) --label-exclude thorough
+	ctest --preset release --parallel $$(nproc) --label-exclude thorough --output-junit tests.xml
 
 test-all: setup-tests
 	cmake --preset release

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes docs/bench/tests.csv: the seconds of the slowest tests.
 
-    ctest --preset release --output-junit tests.xml
+    make test
     tools/slow_tests.py build/release/tests.xml --machine NAME > docs/bench/tests.csv
 
 Columns: machine, test, seconds. The longest comes first. --self-test checks this program.

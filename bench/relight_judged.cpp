@@ -20,16 +20,16 @@ constexpr uint64_t kSeed = 7;
 constexpr float kClear = 0.04f, kMet = 0.6f;
 
 bool is_in_the_air(const trace::RayTracer& tracer, Vec3 position, float diagonal_m) {
-  constexpr int kRays = 256;
+  constexpr int kAround = 256;
   RandomStream random{kSeed};
   int met = 0;
-  for (int k = 0; k < kRays; ++k) {
+  for (int k = 0; k < kAround; ++k) {
     const trace::Hit hit =
         tracer.closest_hit({position, 0, uniform_sphere_sample(random.next2()), INFINITY});
     if (hit.found() && (hit.back_face || hit.t < kClear * diagonal_m)) return false;
     met += hit.found();
   }
-  return float(met) >= kMet * float(kRays);
+  return float(met) >= kMet * float(kAround);
 }
 
 Result<std::vector<Vec3>> positions_in(const validate::Prepared& p, size_t count) {

@@ -111,7 +111,9 @@ TEST_F(RecordFiles, CutAtAnyByteHoldWhatWasWholeAndGrowOn) {
     for (size_t i = 0; i < kKeys.size(); ++i) {
       const bool there = cut >= ends_[i + 1];
       EXPECT_EQ(record(*file, kKeys[i]).has_value(), there) << cut << ", record " << i;
-      if (there) EXPECT_EQ(record(*file, kKeys[i]), bytes_for(kKeys[i], kSizes[i]));
+      if (there) {
+        EXPECT_EQ(record(*file, kKeys[i]), bytes_for(kKeys[i], kSizes[i]));
+      }
     }
     // A shorter record than the one that was cut off: nothing may be left behind it.
     ASSERT_TRUE(file->append({5, 5}, bytes_for({5, 5}, 1)));

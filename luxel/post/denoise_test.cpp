@@ -51,7 +51,8 @@ struct Sheet {
         for (int x = 0; x < kSide; ++x) {
           const uint32_t ax = uint32_t(int(x0) + x), ay = uint32_t(2 + y);
           map.texel_at[ay * size_t(map.resolution) + ax] = uint32_t(map.texels.size());
-          map.texels.push_back({ax, ay, {0, uint32_t(2 * c), {}}, uint32_t(2 * c), true});
+          map.texels.push_back(
+              {uint16_t(ax), uint16_t(ay), {0, uint32_t(2 * c), {}}, uint32_t(2 * c), true});
           position.push_back(corner + along * (kTexel * (float(x) + 0.5f)) +
                              Vec3{0, kTexel * (float(y) + 0.5f), 0});
           normal.push_back(n);

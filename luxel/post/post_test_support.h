@@ -59,7 +59,7 @@ inline atlas::TexelMap two_chart_map(int side) {
       const bool left = inside(2, 2), right = inside(s + 6.25f, 2.5f);
       if (!left && !right) continue;
       map.texel_at[size_t(y * n + x)] = uint32_t(map.texels.size());
-      map.texels.push_back({uint32_t(x), uint32_t(y), {}, left ? 0u : 2u, true});
+      map.texels.push_back({uint16_t(x), uint16_t(y), {}, left ? 0u : 2u, true});
     }
   return map;
 }

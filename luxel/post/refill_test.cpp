@@ -18,7 +18,7 @@ Row row_of(const std::vector<uint32_t>& charts) {
   row.atlas.chart = charts;
   row.map.texel_at.assign(size_t(n) * size_t(n), atlas::kNone);
   for (uint32_t i = 0; i < charts.size(); ++i) {
-    row.map.texels.push_back({i, 0, {}, i, true});
+    row.map.texels.push_back({uint16_t(i), 0, {}, i, true});
     row.map.texel_at[i] = i;
   }
   return row;

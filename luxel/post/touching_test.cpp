@@ -174,7 +174,7 @@ TEST(SeamResidual, IsAlsoSaidRelativeToTheLightAround) {
   for (const uint32_t x : {0u, 8u})
     for (uint32_t y = 0; y < 10; ++y) {
       map.texel_at[y * 10 + x] = uint32_t(map.texels.size());
-      map.texels.push_back({x, y, {}, 0, true});
+      map.texels.push_back({uint16_t(x), uint16_t(y), {}, 0, true});
       const float light = y < 5 ? 1.0f : 1e-1f;
       values.push_back(Rgb{1, 1, 1} * (light * (x == 0 ? 1.0f : y < 5 ? 1.2f : 1.01f)));
     }

@@ -23,7 +23,9 @@ TEST(BakeOptions, RowsAreWhole) {
     EXPECT_FALSE(row.help.empty());
     EXPECT_NE(row.help.back(), '.');
     EXPECT_TRUE(row.read_text && row.read_json && row.to_json && row.check && row.default_text);
-    if (!row.solver.empty()) EXPECT_NE(find_solver(row.solver), nullptr);
+    if (!row.solver.empty()) {
+      EXPECT_NE(find_solver(row.solver), nullptr);
+    }
   }
 }
 
@@ -32,12 +34,15 @@ TEST(BakeOptions, AreOfOneMeaningForEachSolver) {
   for (const Solver& solver : solvers()) {
     std::set<std::string> flags;
     for (const auto& row : bake_options())
-      if (looks_at(solver, row))
+      if (looks_at(solver, row)) {
         EXPECT_TRUE(flags.insert(row.flag).second) << solver.name << " " << row.flag;
+      }
   }
   std::set<std::string> keys;
   for (const auto& row : bake_options())
-    if (!row.key.empty()) EXPECT_TRUE(keys.insert(row.solver + "." + row.key).second) << row.key;
+    if (!row.key.empty()) {
+      EXPECT_TRUE(keys.insert(row.solver + "." + row.key).second) << row.key;
+    }
 }
 
 TEST(BakeOptions, DefaultsAreAllowedAndReadBack) {

@@ -23,7 +23,7 @@ struct Sheet {
       for (uint32_t x = 0; x < kSide; ++x) {
         if (x >= 12 && x < 14) continue;
         map.texel_at[y * kSide + x] = uint32_t(map.texels.size());
-        map.texels.push_back({x, y, {}, x < 12 ? 0u : 1u, true});
+        map.texels.push_back({uint16_t(x), uint16_t(y), {}, x < 12 ? 0u : 1u, true});
       }
   }
   uint32_t at(int x, int y) const { return map.texel_at[size_t(y * 24 + x)]; }

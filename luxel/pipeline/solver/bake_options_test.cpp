@@ -53,6 +53,9 @@ TEST(BakeOptions, DefaultsAreAllowedAndReadBack) {
     BakeSettings back;
     ASSERT_TRUE(read_json(to_json(settings), back)) << solver.name;
     EXPECT_EQ(to_json(back), to_json(settings));
+    for (const Solver& other : solvers())
+      EXPECT_TRUE(other.name == solver.name || !to_json(settings).contains(other.name))
+          << "options of " << other.name << " in a bake by " << solver.name;
   }
 }
 

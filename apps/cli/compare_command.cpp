@@ -42,7 +42,6 @@ int run_compare(const CompareOptions& options) {
                  *options.max_relative_rmse);
     return kUsage;
   }
-  // Compare.
   pipeline::Compared compared;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     const ThreadLimit threads(options.common.threads);
@@ -50,7 +49,6 @@ int run_compare(const CompareOptions& options) {
     return {};
   });
   if (!done) return report(done.error());
-  // Say what came out.
   print_warnings(compared.warnings, options.common);
   if (options.common.json)
     std::printf("%s\n", pipeline::to_json(compared).dump(2).c_str());

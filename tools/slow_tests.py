@@ -16,7 +16,9 @@ import xml.etree.ElementTree as xml
 def slowest(junit, count):
     """(name, seconds) of the tests that ran, of a JUnit file's text, longest first."""
     cases = xml.fromstring(junit).iter("testcase")
-    ran = [(case.get("name"), float(case.get("time"))) for case in cases if case.get("status") == "run"]
+    # A test with a parameter is called "Suite.Test/name  # GetParam() = value".
+    ran = [(case.get("name").split("  # ")[0], float(case.get("time"))) for case in cases
+           if case.get("status") == "run"]
     return sorted(ran, key=lambda test: (-test[1], test[0]))[:count]
 
 
@@ -30,7 +32,7 @@ def write_csv(rows, machine, out):
 def self_test():
     junit = """<testsuite>
 <testcase name="A.Quick" time="0.04" status="run"/>
-<testcase name="B.Slow" time="12.34" status="run"/>
+<testcase name="B.Slow  # GetParam() = 3" time="12.34" status="run"/>
 <testcase name="C.Left" time="99" status="disabled"/>
 <testcase name="D.Slow" time="12.34" status="run"/></testsuite>"""
     assert slowest(junit, 2) == [("B.Slow", 12.34), ("D.Slow", 12.34)], slowest(junit, 2)

@@ -105,6 +105,8 @@ TEST(Plan, SaysWhatABakeTakesAndBakesNothing) {
   EXPECT_NEAR(double(plan["rays"]) / double(bake["counts"]["rays"]), 1, 0.25);
   EXPECT_GT(plan["seconds"]["total"], 0);
   EXPECT_GT(plan["memory_bytes"], 1e6);
+  for (const char* count : {"rays", "memory_bytes", "scratch_bytes"})
+    EXPECT_TRUE(plan[count].is_number_unsigned()) << count;
 }
 
 // Rays and memory of 180,000 texels with 256 samples: 25 %, as is promised. Seconds are judged by

@@ -96,13 +96,48 @@ TEST(Compare, BeyondTheLimitIsCodeOne) {
   EXPECT_EQ(compare(a, b, "--max-relative-rmse 0.0199").code, 0);
   const CommandResult r = compare(a, b, "--json --max-relative-rmse 0.0197");
   EXPECT_EQ(r.code, 1);
-  EXPECT_THAT(r.err, HasSubstr("luxel: the relative RMSE is 0.01980"));
-  EXPECT_THAT(r.err, HasSubstr("above --max-relative-rmse 0.0197"));
+  EXPECT_THAT(r.err, HasSubstr("luxel: fail: relative RMSE 0.0198"));
+  EXPECT_THAT(r.err, HasSubstr("(above 0.0197)"));
+  const auto limit = nlohmann::json::parse(r.out)["limits"][0];
+  EXPECT_EQ(limit["measure"], "relative_rmse");
+  EXPECT_EQ(limit["holds"], false);
   // 1.02 is a float.
   EXPECT_NEAR(nlohmann::json::parse(r.out)["relative_rmse"], (double(1.02f) - 1) / 1.01, 1e-12);
   const auto black = s.write("black.exr", exr(grey(0)));
   EXPECT_EQ(compare(a, black, "--max-relative-rmse 1000").code, 1);
-  EXPECT_EQ(compare(a, b, "--quiet").out, "");
+}
+
+// 128 pixels: 7 of them are more than 5 %, 6 are fewer. |d| / (|b| + 0.01 mean) = 0.5 / 1.01.
+TEST(Compare, PercentilesAreLimits) {
+  const ScratchFolder s;
+  const auto b = s.write("b.exr", exr(grey(1)));
+  const auto with_bright = [&](int pixels) {
+    image::Image image = grey(1);
+    std::fill_n(image.data.begin(), 3 * pixels, 1.5f);
+    return s.write("a.exr", exr(image));
+  };
+  EXPECT_EQ(compare(with_bright(6), b, "--max-relative-p95 0").code, 0);
+  EXPECT_EQ(compare(with_bright(6), b, "--max-relative-p95 0 --max-flip 0").code, 1);
+  EXPECT_EQ(compare(with_bright(7), b, "--max-relative-p95 0.4951").code, 0);
+  const CommandResult r = compare(with_bright(7), b, "--max-relative-p95 0.4950 --json");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_NEAR(nlohmann::json::parse(r.out)["relative_p95"], 0.5 / 1.01, 1e-7);
+}
+
+// Every measure of equal pictures is 0, and every limit of 0 holds.
+TEST(Compare, QuietSaysTheVerdict) {
+  const ScratchFolder s;
+  const auto a = s.write("a.exr", exr(grey(1))), b = s.write("b.exr", exr(grey(2)));
+  const std::string all =
+      "--quiet --max-relative-rmse 0 --max-relative-p95 0 --max-rmse-over-mean 0 --max-flip 0 "
+      "--max-flip-p95 0";
+  const CommandResult same = compare(a, a, all);
+  EXPECT_EQ(same.code, 0);
+  EXPECT_THAT(same.out, HasSubstr("pass: relative RMSE 0 (at most 0), "));
+  EXPECT_EQ(std::count(same.out.begin(), same.out.end(), '\n'), 1);
+  EXPECT_THAT(compare(b, a, "--quiet --max-rmse-over-mean 0.5").out,
+              HasSubstr("fail: RMSE over the mean 1 (above 0.5)\n"));
+  EXPECT_THAT(compare(b, a, "--quiet").out, HasSubstr("relative RMSE 0.990099, "));
 }
 
 /// Compares and expects a refusal with `words`, in one sentence, with no report.

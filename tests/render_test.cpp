@@ -168,6 +168,41 @@ TEST(Techniques, TexelsAreDrawnFromABakeOrWithoutOne) {
   EXPECT_TRUE(is_gray(from)) << from;
 }
 
+// Behind the eye there is nothing but the background that the bake had. An option of one's own
+// wins, and a picture of the sky that is gone is said to be.
+TEST(Techniques, ABakeIsDrawnUnderItsOwnSky) {
+  const ScratchFolder s;
+  const auto scene = s.write("plate.obj", "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nf 1 2 3 4\n");
+  const auto baked = [&](const std::string& light) {
+    ASSERT_EQ(luxel("bake " + scene.string() + " -o " + (s.path / "b").string() +
+                    " --resolution 16 --samples 4 --quiet " + light)
+                  .code,
+              0);
+  };
+  const auto away = [&](const std::string& options) {
+    return luxel("render " + scene.string() + " --from " + (s.path / "b").string() +
+                 " --eye 0,0,2 --look-at 0,0,4 --size 9x9 -o " + (s.path / "x.exr").string() + " " +
+                 options);
+  };
+  baked("--background 0.25,0.5,1");
+  ASSERT_EQ(away("").code, 0);
+  EXPECT_EQ(exr_at(s.path / "x.exr").rgb(4, 4), (Rgb{0.25f, 0.5f, 1}));
+  ASSERT_EQ(away("--background 2,1,1").code, 0);
+  EXPECT_EQ(exr_at(s.path / "x.exr").rgb(4, 4), (Rgb{2, 1, 1}));
+  image::Image sky(8, 4, 3);
+  std::fill(sky.data.begin(), sky.data.end(), 3.0f);
+  const auto map = s.path / "sky.exr";
+  const auto bytes = *image::encode_exr(sky);
+  s.write("sky.exr", std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  baked("--environment " + map.string());
+  ASSERT_EQ(away("").code, 0);
+  EXPECT_EQ(exr_at(s.path / "x.exr").rgb(4, 4), (Rgb{3, 3, 3}));
+  std::filesystem::remove(map);
+  const CommandResult gone = away("");
+  EXPECT_EQ(gone.code, 0);
+  EXPECT_THAT(gone.err, HasSubstr("sky.exr of the bake is not there any more"));
+}
+
 TEST(RenderRefuses, WhatATechniqueWouldNotLookAt) {
   const Plate plate;
   const auto refused = [&](const std::string& options, const std::string& option,

@@ -72,5 +72,35 @@ TEST(GivenSettings, ThatMeanNothingAreRefused) {
   }
 }
 
+// Scripts read stdout: one object there, whatever goes wrong, with the sentence of stderr.
+TEST(JsonErrors, AreOneObject) {
+  const ScratchFolder s;
+  const std::string missing = (s.path / "missing.glb").string(),
+                    box = scene_file("cornell-box.glb");
+  const std::string out = (s.path / "out").string();
+  for (const auto& [arguments, code] :
+       {std::pair{"bake " + missing + " -o " + out, "io"},
+        std::pair{"bake " + box + " -o " + out + " --samples 0", "bad_setting"},
+        std::pair{"bake " + box + " -o " + out + " --max-memory 1M", "out_of_memory"},
+        std::pair{"bake " + box + " -o " + out + " --no-such-option", "usage"},
+        std::pair{"render " + missing + " -o " + out + ".png", "io"},
+        std::pair{"compare " + missing + " " + missing, "io"},
+        std::pair{"compare " + missing + " " + missing + " --max-flip -1", "usage"},
+        std::pair{"info " + missing, "io"}, std::pair{"factors " + missing, "io"},
+        std::pair{"probe " + missing + " --at 0,0,0", "io"},
+        std::pair{"relight " + missing + " -o " + out + ".lxr", "io"},
+        std::pair{std::string("relight"), "bad_setting"},
+        std::pair{std::string("no-such-command"), "usage"}}) {
+    SCOPED_TRACE(arguments);
+    const CommandResult r = luxel(arguments + " --json --quiet");
+    const json error = json::parse(r.out, nullptr, false);
+    ASSERT_TRUE(error.is_object()) << r.out;
+    EXPECT_EQ(error["error"]["code"], code);
+    EXPECT_EQ(error["error"]["exit_code"], r.code);
+    EXPECT_NE(r.code, 0);
+    EXPECT_EQ("luxel: " + error["error"]["message"].get<std::string>() + "\n", r.err);
+  }
+}
+
 }  // namespace
 }  // namespace luxel::testing_support

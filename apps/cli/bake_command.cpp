@@ -92,7 +92,7 @@ int run_plan(const BakeOptions& options, const pipeline::BakeSettings& settings)
 
 int run_bake(const BakeOptions& options) {
   const auto settings = settings_from(options);
-  if (!settings) return report(settings.error());
+  if (!settings) return report(settings.error(), options.common);
   if (options.plan) return run_plan(options, *settings);
   return run_and_print(
       options.common, [&](Progress& progress) { return pipeline::bake(*settings, progress); },

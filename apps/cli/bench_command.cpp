@@ -73,7 +73,7 @@ int run_validation(const BenchOptions& options, const std::filesystem::path& sha
     LUXEL_TRY(page, bench::validate(shared, progress));
     return write_page(page, folder, progress);
   });
-  if (!done) return report(done.error());
+  if (!done) return report(done.error(), options.common);
   if (options.common.json)
     std::printf("%s\n", page.json.dump(2).c_str());
   else if (!options.common.quiet)
@@ -103,7 +103,7 @@ int run_page(const BenchOptions& options, const std::string& name,
     LUXEL_TRY(page, measure(shared, progress));
     return write ? write_plots(page, name, folder) : Status{};
   });
-  if (!done) return report(done.error());
+  if (!done) return report(done.error(), options.common);
   if (options.common.json) {
     std::printf("%s\n", page.json.dump(2).c_str());
     return kDone;
@@ -116,7 +116,7 @@ int run_tables(const BenchOptions& options, const std::filesystem::path& shared)
   for (const bench::Bench& table_of : bench::kBenches) {
     if (options.name != "all" && options.name != table_of.name) continue;
     const auto table = table_of.run(shared, options.common.threads);
-    if (!table) return report(table.error());
+    if (!table) return report(table.error(), options.common);
     if (options.common.json)
       std::printf("%s\n", table->json.dump(2).c_str());
     else

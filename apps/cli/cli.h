@@ -37,8 +37,14 @@ Result<Vec3> parse_point(const char* option, const std::string& text);
 CLI::Option* add_uv(CLI::App& command, std::string& text);
 atlas::UvMode uv_mode(const std::string& text);
 
-/// Prints the error's sentence to stderr and returns its exit code.
-int report(const Error& error);
+/// Prints the error's sentence to stderr and, with --json, an object with it to stdout. Returns its
+/// exit code.
+int report(const Error& error, const Common& common);
+/// Wrong usage, said in the same two places. Returns kUsage.
+int report_usage(const std::string& message, const Common& common);
+/// Prints {"error": {"code": "bad_setting", "exit_code": 1, "message": "..."}} to stdout.
+void print_error_json(std::string_view code, int exit_code, std::string_view message);
+inline constexpr std::string_view kUsageError = "usage";
 /// "42 s", "1:05 min", "2:10 h".
 std::string clock_text(double seconds);
 

@@ -32,6 +32,29 @@ int exit_code(ErrorCode code) {
   }
 }
 
+/// What "code" in an error's JSON says.
+std::string_view name_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::bad_input:
+      return "bad_input";
+    case ErrorCode::unsupported:
+      return "unsupported";
+    case ErrorCode::bad_setting:
+      return "bad_setting";
+    case ErrorCode::io:
+      return "io";
+    case ErrorCode::out_of_memory:
+      return "out_of_memory";
+    case ErrorCode::out_of_disk:
+      return "out_of_disk";
+    case ErrorCode::out_of_time:
+      return "out_of_time";
+    case ErrorCode::cancelled:
+      return "cancelled";
+  }
+  return "internal";
+}
+
 /// Shows stages on stderr: one line that is rewritten on a terminal, and a line that stays for each
 /// finished stage.
 class ProgressLine {
@@ -113,9 +136,9 @@ bool stop_requested() {
 /// How the work stands: the worker writes it, the watcher waits for it.
 enum class Work { running, succeeded, failed };
 
-void watch(Progress& progress, const std::atomic<Work>& work, bool quiet) {
+void watch(Progress& progress, const std::atomic<Work>& work, const Common& common) {
   using Clock = std::chrono::steady_clock;
-  ProgressLine line(quiet);
+  ProgressLine line(common.quiet);
   Clock::time_point asked{};
   while (work == Work::running) {
     if (stop_requested()) {
@@ -129,7 +152,8 @@ void watch(Progress& progress, const std::atomic<Work>& work, bool quiet) {
     if (late && progress.snapshot().stage != kWriteStage) {
       line.end(progress, false);
       progress.clean_up();
-      std::fprintf(stderr, "luxel: %s\n", stopped_text(progress).c_str());
+      report({ErrorCode::cancelled, stopped_text(progress)}, common);
+      std::fflush(stdout);
       ::_exit(kInterrupted);
     }
   }
@@ -169,9 +193,24 @@ std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given) {
   return options;
 }
 
-int report(const Error& error) {
+int report(const Error& error, const Common& common) {
   std::fprintf(stderr, "luxel: %s\n", error.message.c_str());
-  return exit_code(error.code);
+  const int code = exit_code(error.code);
+  if (common.json) print_error_json(name_of(error.code), code, error.message);
+  return code;
+}
+
+int report_usage(const std::string& message, const Common& common) {
+  std::fprintf(stderr, "luxel: %s\n", message.c_str());
+  if (common.json) print_error_json(kUsageError, kUsage, message);
+  return kUsage;
+}
+
+void print_error_json(std::string_view code, int exit_code, std::string_view message) {
+  const nlohmann::json json{
+      {"error", {{"code", code}, {"exit_code", exit_code}, {"message", message}}}};
+  // What is not UTF-8 may stand in a file's name.
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 void print_warnings(const std::vector<std::string>& warnings, const Common& common) {
@@ -186,7 +225,7 @@ Status run_with_progress(const Common& common, const std::function<Status(Progre
   pthread_sigmask(SIG_BLOCK, &stop, nullptr);
   Progress progress;
   std::atomic<Work> state{Work::running};
-  std::thread watcher([&] { watch(progress, state, common.quiet); });
+  std::thread watcher([&] { watch(progress, state, common); });
   const auto end = [&](Work how) {
     state = how;
     pthread_kill(watcher.native_handle(), SIGTERM);  // so that it looks at once
@@ -214,7 +253,7 @@ int run_and_print(const Common& common,
     LUXEL_TRY(json, work(progress));
     return {};
   });
-  if (!done) return report(done.error());
+  if (!done) return report(done.error(), common);
   print_warnings(json.value("warnings", std::vector<std::string>()), common);
   if (common.json)
     std::printf("%s\n", json.dump(2).c_str());

@@ -75,7 +75,7 @@ int run_factors(const FactorOptions& options) {
   pipeline::FactorSettings settings = options.settings;
   if (!options.max_memory.empty()) {
     const Result<uint64_t> size = pipeline::parse_size(options.max_memory);
-    if (!size) return report(size.error());
+    if (!size) return report(size.error(), options.common);
     settings.max_memory_bytes = *size;
   }
   pipeline::FactorReport report_of_factors;
@@ -84,7 +84,7 @@ int run_factors(const FactorOptions& options) {
     LUXEL_TRY(report_of_factors, pipeline::view_factors(settings, progress));
     return {};
   });
-  if (!done) return report(done.error());
+  if (!done) return report(done.error(), options.common);
   print_warnings(report_of_factors.warnings, options.common);
   if (options.common.json)
     std::printf("%s\n", report_json(options.settings, report_of_factors).dump(2).c_str());

@@ -48,7 +48,7 @@ nlohmann::json describe(const scene::Scene& scene, const std::vector<std::string
 
 int run_info(const InfoOptions& options) {
   const auto imported = import::import_scene(options.scene);
-  if (!imported) return report(imported.error());
+  if (!imported) return report(imported.error(), options.common);
   const nlohmann::json json = describe(imported->scene, imported->warnings);
   if (options.common.json) {
     std::printf("%s\n", json.dump(2).c_str());

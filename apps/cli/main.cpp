@@ -15,7 +15,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
   const std::string command = chosen.empty() ? "luxel" : "luxel " + chosen.front()->get_name();
   std::string text = error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
-  return fmt::format("luxel: {}; '{} --help' lists what there is\n", text, command);
+  return fmt::format("{}; '{} --help' lists what there is", text, command);
 }
 
 bool is_command(const CLI::App& app, const std::string& name) {
@@ -28,6 +28,12 @@ bool is_command(const CLI::App& app, const std::string& name) {
 std::string unknown_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-' || is_command(app, argv[1])) return {};
   return argv[1];
+}
+
+/// Whether --json was asked for, where the arguments make no sense as a whole.
+bool wants_json(int argc, char** argv) {
+  return std::any_of(argv, argv + argc,
+                     [](const char* argument) { return std::string_view(argument) == "--json"; });
 }
 
 int run(int argc, char** argv) {
@@ -52,16 +58,20 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   if (const std::string name = unknown_command(app, argc, argv); !name.empty()) {
-    std::fprintf(stderr, "luxel: there is no command '%s'; 'luxel --help' lists what there is\n",
-                 name.c_str());
-    return kUsage;
+    return report_usage(
+        fmt::format("there is no command '{}'; 'luxel --help' lists what there is", name),
+        {.json = wants_json(argc, argv)});
   }
-  app.failure_message(usage_message);
+  app.failure_message([](const CLI::App* failed, const CLI::Error& error) {
+    return "luxel: " + usage_message(failed, error) + "\n";
+  });
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // Help and version end with code 0; everything else is wrong usage.
-    return app.exit(error) == 0 ? kDone : kUsage;
+    if (app.exit(error) == 0) return kDone;
+    if (wants_json(argc, argv)) print_error_json(kUsageError, kUsage, usage_message(&app, error));
+    return kUsage;
   }
   return action();
 }
@@ -74,11 +84,15 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
-    std::fputs("luxel: out of memory; lower --resolution or --samples, or set --max-memory\n",
-               stderr);
-    return luxel::cli::kOutOfResource;
+    return luxel::cli::report(
+        {luxel::ErrorCode::out_of_memory,
+         "out of memory; lower --resolution or --samples, or set --max-memory"},
+        {.json = wants_json(argc, argv)});
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "luxel: internal error: %s; please report this\n", error.what());
+    const std::string message = fmt::format("internal error: {}; please report this", error.what());
+    std::fprintf(stderr, "luxel: %s\n", message.c_str());
+    if (wants_json(argc, argv))
+      luxel::cli::print_error_json("internal", luxel::cli::kBadInput, message);
     return luxel::cli::kBadInput;
   }
 }

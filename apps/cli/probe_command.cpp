@@ -72,13 +72,13 @@ void print(const pipeline::Probed& p) {
 
 int run_probe(const ProbeOptions& options) {
   const auto settings = settings_from(options);
-  if (!settings) return report(settings.error());
+  if (!settings) return report(settings.error(), options.common);
   pipeline::Probed probed;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     LUXEL_TRY(probed, pipeline::probe(*settings, progress));
     return {};
   });
-  if (!done) return report(done.error());
+  if (!done) return report(done.error(), options.common);
   print_warnings(probed.warnings, options.common);
   if (options.common.json)
     std::printf("%s\n", json_of(probed).dump(2).c_str());

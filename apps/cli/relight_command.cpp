@@ -46,7 +46,7 @@ void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& jso
 
 int run_making(const RelightOptions& options) {
   const auto settings = settings_from(options);
-  if (!settings) return report(settings.error());
+  if (!settings) return report(settings.error(), options.common);
   return run_and_print(
       options.common, [&](Progress& progress) { return pipeline::relight(*settings, progress); },
       [&](const nlohmann::json& json) { print_summary(*settings, json); });
@@ -80,10 +80,12 @@ int run_playing(const RelightOptions& options) {
     if (option->count() > 0)
       return report(Error{ErrorCode::bad_setting,
                           fmt::format("{} is for making a file, not for --play; leave it out",
-                                      option->get_name())});
+                                      option->get_name())},
+                    options.common);
   if (options.script.empty())
     return report(Error{ErrorCode::bad_setting,
-                        "--play needs --script FILE.json, which says how the lights move"});
+                        "--play needs --script FILE.json, which says how the lights move"},
+                  options.common);
   const pipeline::PlaySettings settings{options.lxr, options.script, options.output,
                                         options.common.threads};
   pipeline::Played played;
@@ -91,7 +93,7 @@ int run_playing(const RelightOptions& options) {
     LUXEL_TRY(played, pipeline::play(settings, progress));
     return {};
   });
-  if (!done) return report(done.error());
+  if (!done) return report(done.error(), options.common);
   if (options.common.json)
     std::printf("%s\n", json_of(played).dump(2).c_str());
   else if (!options.common.quiet)
@@ -103,10 +105,12 @@ int run_relight(const RelightOptions& options) {
   if (!options.lxr.empty()) return run_playing(options);
   if (options.settings.scene.empty())
     return report(Error{ErrorCode::bad_setting,
-                        "give a SCENE to make a file of, or --play FILE.lxr to show one"});
+                        "give a SCENE to make a file of, or --play FILE.lxr to show one"},
+                  options.common);
   if (!options.script.empty())
     return report(
-        Error{ErrorCode::bad_setting, "--script is for --play FILE.lxr; leave it out here"});
+        Error{ErrorCode::bad_setting, "--script is for --play FILE.lxr; leave it out here"},
+        options.common);
   return run_making(options);
 }
 

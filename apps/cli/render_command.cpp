@@ -88,14 +88,14 @@ void print_report(const pipeline::RenderSettings& s, const pipeline::Rendered& r
 
 int run_render(const RenderOptions& options) {
   const auto settings = settings_from(options);
-  if (!settings) return report(settings.error());
+  if (!settings) return report(settings.error(), options.common);
   pipeline::Rendered rendered;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     const ThreadLimit threads(options.common.threads);
     LUXEL_TRY(rendered, pipeline::render(*settings, progress));
     return {};
   });
-  if (!done) return report(done.error());
+  if (!done) return report(done.error(), options.common);
   print_warnings(rendered.warnings, options.common);
   options.common.json ? print_json(*settings, rendered)
                       : print_report(*settings, rendered, options.common);
@@ -126,7 +126,7 @@ void register_render(CLI::App& app, Action& action) {
   render->add_option("SCENE", s.scene, "The scene; with --from, the one that was baked")
       ->required();
   render->add_option("-o,--output", s.output, "Picture to write: .png, .exr or .hdr")->required();
-  render->add_option("--from", s.from, "Folder that `luxel bake` left (lightmap)");
+  render->add_option("--from", s.from, "Folder that `luxel bake` left, drawn under the sky that it had (lightmap)");
   render->add_option("--technique", s.technique, technique_help())
       ->check(CLI::IsMember(technique_names()))
       ->capture_default_str();

@@ -203,6 +203,10 @@ Result<Measured> measure(const Picture& a, const Picture& b, std::optional<doubl
 
   LUXEL_TRY(out.flip, flip_map(a, b, out.covered, progress));
   n.flip = image::mean_over(out.flip, out.covered);
+  n.flip_p95 = image::quantile_over(out.flip, out.covered, 0.95);
+  n.relative_p95 = image::quantile_over(
+      image::relative_error_map(a.linear, b.linear, out.covered, n.difference.mean), out.covered,
+      0.95);
   return out;
 }
 
@@ -221,6 +225,43 @@ Result<Compared> compare(const CompareSettings& s, Progress& progress) {
   return std::move(measured.numbers);
 }
 
+std::span<const Limited> limited_measures() {
+  static constexpr std::array kMeasures{
+      Limited{"--max-relative-rmse", "relative_rmse", "relative RMSE",
+              [](const Compared& c) { return c.difference.relative_rmse; }},
+      Limited{"--max-relative-p95", "relative_p95", "95th percentile of the relative error",
+              [](const Compared& c) { return c.relative_p95; }},
+      Limited{"--max-rmse-over-mean", "rmse_over_mean", "RMSE over the mean",
+              [](const Compared& c) { return c.difference.rmse_over_mean; }},
+      Limited{"--max-flip", "flip", "FLIP", [](const Compared& c) { return c.flip; }},
+      Limited{"--max-flip-p95", "flip_p95", "95th percentile of FLIP",
+              [](const Compared& c) { return c.flip_p95; }}};
+  return kMeasures;
+}
+
+bool holds(const Limit& limit, const Compared& compared) {
+  return limited_measures()[limit.measure].of(compared) <= limit.most;
+}
+
+std::string verdict(const Compared& compared, std::span<const Limit> limits) {
+  std::string text;
+  const auto add = [&](const Limited& m) {
+    text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", m.name, m.of(compared));
+  };
+  if (limits.empty()) {
+    for (const Limited& m : limited_measures()) add(m);
+    return text;
+  }
+  bool all_hold = true;
+  for (const Limit& limit : limits) {
+    const bool held = holds(limit, compared);
+    add(limited_measures()[limit.measure]);
+    text += fmt::format(" ({} {})", held ? "at most" : "above", limit.most);
+    all_hold = all_hold && held;
+  }
+  return (all_hold ? "pass: " : "fail: ") + text;
+}
+
 nlohmann::json to_json(const Compared& c) {
   const image::Difference& d = c.difference;
   return {{"rmse", d.rmse},
@@ -233,7 +274,9 @@ nlohmann::json to_json(const Compared& c) {
           {"max_abs_at", d.max_at},
           {"mean_of_b", d.mean},
           {"psnr_db", number_or_null(c.psnr_db)},
+          {"relative_p95", c.relative_p95},
           {"flip", c.flip},
+          {"flip_p95", c.flip_p95},
           {"texels", d.texels},
           {"share_above_10", c.share_above[0]},
           {"share_above_25", c.share_above[1]},

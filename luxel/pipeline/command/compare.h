@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "luxel/base/progress.h"
@@ -27,7 +29,9 @@ struct CompareSettings {
 struct Compared {
   image::Difference difference;         ///< of linear light
   double psnr_db = 0;                   ///< 8-bit pictures: of display values, peak 255
+  double relative_p95 = 0;              ///< 95th percentile of the pixels' relative RMS error
   double flip = 0;                      ///< mean over covered pixels, LDR- or HDR-FLIP
+  double flip_p95 = 0;                  ///< 95th percentile over covered pixels
   std::array<double, 3> share_above{};  ///< of pixels, per image::kDifferenceLevels
   double exposure = 1;                  ///< both were tone mapped with; 1 for 8-bit pictures
   bool hdr = false;
@@ -52,6 +56,28 @@ Result<Measured> measure(const Picture& a, const Picture& b, std::optional<doubl
 /// Reads, measures and writes the report. Errors: those of measure(), unreadable files, settings
 /// out of range, an unwritable folder.
 Result<Compared> compare(const CompareSettings& settings, Progress& progress);
+
+/// A measure that `luxel compare` can hold against a limit. All are 0 for equal pictures.
+struct Limited {
+  std::string_view flag;  ///< "--max-flip"
+  std::string_view key;   ///< in JSON: "flip"
+  std::string_view name;  ///< in sentences: "FLIP"
+  double (*of)(const Compared&);
+};
+/// All of them, the one that matters most first.
+std::span<const Limited> limited_measures();
+
+/// A limit that was given: `measure` counts limited_measures(). A measure without a number (of a
+/// black reference) is above every limit.
+struct Limit {
+  size_t measure = 0;
+  double most = 0;
+};
+bool holds(const Limit& limit, const Compared& compared);
+
+/// One line: "pass: FLIP 0.01 (at most 0.05)", or the most important measures where nothing was
+/// asked for. "fail" when a limit does not hold.
+std::string verdict(const Compared& compared, std::span<const Limit> limits);
 
 /// The object of `luxel compare --json`. What is infinite or undefined is null.
 nlohmann::json to_json(const Compared& compared);

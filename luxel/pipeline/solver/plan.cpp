@@ -29,10 +29,10 @@ nlohmann::json to_json(const Plan& plan) {
   seconds["total"] = plan.seconds;  // with a time budget it ends before all stages are over
   return {{"resolution", plan.resolution},
           {"texels", plan.texels},
-          {"rays", std::round(plan.rays)},
+          {"rays", uint64_t(std::round(plan.rays))},
           {"seconds", seconds},
-          {"memory_bytes", std::round(plan.memory_bytes)},
-          {"scratch_bytes", std::round(plan.scratch_bytes)}};
+          {"memory_bytes", uint64_t(std::round(plan.memory_bytes))},
+          {"scratch_bytes", uint64_t(std::round(plan.scratch_bytes))}};
 }
 
 }  // namespace luxel::pipeline

@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdio>
 
 #include "apps/cli/cli.h"
@@ -48,20 +49,37 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   return s;
 }
 
+/// How noisy the light is, as far as the solver knows, and where most.
+std::string noise_text(const nlohmann::json& json) {
+  const double rms = json["relative_error"].get<double>();
+  if (rms <= 0) return {};
+  std::string text = fmt::format("noise: RMS {:.3g} % of the mean light", 100 * rms);
+  if (!json.contains("error")) return text;
+  const auto& error = json["error"];
+  const auto& worst = error["worst"];
+  const auto at = worst["position"].get<std::array<double, 3>>();
+  return text + fmt::format(
+                    "; 95th percentile of the relative standard error {:.3g} %; largest {:.3g} % "
+                    "on '{}' at {:.4g}, {:.4g}, {:.4g}",
+                    100 * error["relative_p95"].get<double>(),
+                    100 * worst["relative"].get<double>(), worst["node"].get<std::string>(), at[0],
+                    at[1], at[2]);
+}
+
 void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
   const auto& counts = json["counts"];
   const size_t pages = json["atlas"]["pages"].size();
   std::fprintf(
       stderr, "%s\n",
-      fmt::format("{} triangles, {} charts, {}{} x {} texels ({} used), {} rays in {:.1f} s, "
-                  "estimated error {:.2f} %",
+      fmt::format("{} triangles, {} charts, {}{} x {} texels ({} used), {} rays in {:.1f} s",
                   counts["triangles"].get<uint64_t>(), counts["charts"].get<uint64_t>(),
                   pages == 1 ? "" : fmt::format("{} pages of up to ", pages),
                   json["atlas"]["resolution"].get<int>(), json["atlas"]["resolution"].get<int>(),
                   counts["texels"].get<uint64_t>(), counts["rays"].get<uint64_t>(),
-                  json["seconds"]["total"].get<double>(),
-                  100 * json["relative_error"].get<double>())
+                  json["seconds"]["total"].get<double>())
           .c_str());
+  if (const std::string noise = noise_text(json); !noise.empty())
+    std::fprintf(stderr, "%s\n", noise.c_str());
   for (const nlohmann::json& name : json["files"])
     std::fprintf(stderr, "wrote %s\n", (settings.output / name.get<std::string>()).c_str());
 }

@@ -150,7 +150,8 @@ void expect_refused(const std::filesystem::path& a, const std::filesystem::path&
   EXPECT_THAT(r.err, testing::StartsWith("luxel: "));
   EXPECT_THAT(r.err, HasSubstr(words));
   EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-  EXPECT_EQ(r.out, "");
+  EXPECT_EQ("luxel: " + nlohmann::json::parse(r.out)["error"]["message"].get<std::string>() + "\n",
+            r.err);
   EXPECT_FALSE(std::filesystem::exists(folder)) << words;
 }
 

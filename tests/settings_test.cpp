@@ -83,13 +83,14 @@ TEST(JsonErrors, AreOneObject) {
         std::pair{"bake " + box + " -o " + out + " --samples 0", "bad_setting"},
         std::pair{"bake " + box + " -o " + out + " --max-memory 1M", "out_of_memory"},
         std::pair{"bake " + box + " -o " + out + " --no-such-option", "usage"},
-        std::pair{"render " + missing + " -o " + out + ".png", "io"},
+        std::pair{"render " + missing + " --technique path -o " + out + ".png", "io"},
         std::pair{"compare " + missing + " " + missing, "io"},
         std::pair{"compare " + missing + " " + missing + " --max-flip -1", "usage"},
-        std::pair{"info " + missing, "io"}, std::pair{"factors " + missing, "io"},
+        std::pair{"info " + missing, "io"},
+        std::pair{"factors " + missing + " -o " + out + ".csv", "io"},
         std::pair{"probe " + missing + " --at 0,0,0", "io"},
         std::pair{"relight " + missing + " -o " + out + ".lxr", "io"},
-        std::pair{std::string("relight"), "bad_setting"},
+        std::pair{"relight --play " + missing + " -o " + out, "bad_setting"},
         std::pair{std::string("no-such-command"), "usage"}}) {
     SCOPED_TRACE(arguments);
     const CommandResult r = luxel(arguments + " --json --quiet");

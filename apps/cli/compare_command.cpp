@@ -12,7 +12,8 @@ namespace {
 struct CompareOptions {
   Common common;
   pipeline::CompareSettings settings;
-  std::vector<std::optional<double>> most{pipeline::limited_measures().size()};  ///< per measure
+  std::vector<std::optional<double>> most =
+      std::vector<std::optional<double>>(pipeline::limited_measures().size());  ///< per measure
 };
 
 /// Numbers for people, on stdout.

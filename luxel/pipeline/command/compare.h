@@ -73,6 +73,7 @@ struct Limit {
   size_t measure = 0;
   double most = 0;
 };
+/// Whether the measure is at most as large as its limit.
 bool holds(const Limit& limit, const Compared& compared);
 
 /// One line: "pass: FLIP 0.01 (at most 0.05)", or the most important measures where nothing was

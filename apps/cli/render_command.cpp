@@ -126,7 +126,8 @@ void register_render(CLI::App& app, Action& action) {
   render->add_option("SCENE", s.scene, "The scene; with --from, the one that was baked")
       ->required();
   render->add_option("-o,--output", s.output, "Picture to write: .png, .exr or .hdr")->required();
-  render->add_option("--from", s.from, "Folder that `luxel bake` left, drawn under the sky that it had (lightmap)");
+  render->add_option("--from", s.from,
+                     "Folder that `luxel bake` left, drawn under the sky that it had (lightmap)");
   render->add_option("--technique", s.technique, technique_help())
       ->check(CLI::IsMember(technique_names()))
       ->capture_default_str();

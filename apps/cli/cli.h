@@ -42,9 +42,9 @@ atlas::UvMode uv_mode(const std::string& text);
 int report(const Error& error, const Common& common);
 /// Wrong usage, said in the same two places. Returns kUsage.
 int report_usage(const std::string& message, const Common& common);
-/// Prints {"error": {"code": "bad_setting", "exit_code": 1, "message": "..."}} to stdout.
-void print_error_json(std::string_view code, int exit_code, std::string_view message);
-inline constexpr std::string_view kUsageError = "usage";
+/// What no ErrorCode stands for. `code` is its name in {"error": {"code": "internal", "exit_code":
+/// 1, "message": "..."}}. Returns `exit_code`.
+int report(std::string_view code, int exit_code, const std::string& message, const Common& common);
 /// "42 s", "1:05 min", "2:10 h".
 std::string clock_text(double seconds);
 

@@ -193,24 +193,22 @@ std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given) {
   return options;
 }
 
-int report(const Error& error, const Common& common) {
-  std::fprintf(stderr, "luxel: %s\n", error.message.c_str());
-  const int code = exit_code(error.code);
-  if (common.json) print_error_json(name_of(error.code), code, error.message);
-  return code;
-}
-
-int report_usage(const std::string& message, const Common& common) {
+int report(std::string_view code, int exit_code, const std::string& message, const Common& common) {
   std::fprintf(stderr, "luxel: %s\n", message.c_str());
-  if (common.json) print_error_json(kUsageError, kUsage, message);
-  return kUsage;
-}
-
-void print_error_json(std::string_view code, int exit_code, std::string_view message) {
+  if (!common.json) return exit_code;
   const nlohmann::json json{
       {"error", {{"code", code}, {"exit_code", exit_code}, {"message", message}}}};
   // What is not UTF-8 may stand in a file's name.
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  return exit_code;
+}
+
+int report(const Error& error, const Common& common) {
+  return report(name_of(error.code), exit_code(error.code), error.message, common);
+}
+
+int report_usage(const std::string& message, const Common& common) {
+  return report("usage", kUsage, message, common);
 }
 
 void print_warnings(const std::vector<std::string>& warnings, const Common& common) {

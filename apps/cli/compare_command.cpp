@@ -12,8 +12,7 @@ namespace {
 struct CompareOptions {
   Common common;
   pipeline::CompareSettings settings;
-  std::vector<std::optional<double>> most =
-      std::vector<std::optional<double>>(pipeline::limited_measures().size());  ///< per measure
+  std::vector<std::optional<double>> most;  ///< per limited_measures()
 };
 
 /// Numbers for people, on stdout.
@@ -105,6 +104,7 @@ void register_compare(CLI::App& app, Action& action) {
   compare->add_option("IMAGE_B", s.b, "The reference, of the same kind")->required();
   compare->add_option("--report", s.report, "Folder in which to write report.html")
       ->type_name("DIR");
+  options->most.resize(pipeline::limited_measures().size());
   for (size_t k = 0; k < options->most.size(); ++k) {
     const pipeline::Limited& m = pipeline::limited_measures()[k];
     compare->add_option(std::string(m.flag), options->most[k],

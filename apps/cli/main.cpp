@@ -10,8 +10,8 @@
 namespace {
 
 /// One sentence, and where the options are listed.
-std::string usage_message(const CLI::App* app, const CLI::Error& error) {
-  const std::vector<CLI::App*> chosen = app->get_subcommands();
+std::string usage_message(const CLI::App& app, const CLI::Error& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
   const std::string command = chosen.empty() ? "luxel" : "luxel " + chosen.front()->get_name();
   std::string text = error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -62,16 +62,12 @@ int run(int argc, char** argv) {
         fmt::format("there is no command '{}'; 'luxel --help' lists what there is", name),
         {.json = wants_json(argc, argv)});
   }
-  app.failure_message([](const CLI::App* failed, const CLI::Error& error) {
-    return "luxel: " + usage_message(failed, error) + "\n";
-  });
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // Help and version end with code 0; everything else is wrong usage.
-    if (app.exit(error) == 0) return kDone;
-    if (wants_json(argc, argv)) print_error_json(kUsageError, kUsage, usage_message(&app, error));
-    return kUsage;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return report_usage(usage_message(app, error), {.json = wants_json(argc, argv)});
   }
   return action();
 }
@@ -89,10 +85,8 @@ int main(int argc, char** argv) {
          "out of memory; lower --resolution or --samples, or set --max-memory"},
         {.json = wants_json(argc, argv)});
   } catch (const std::exception& error) {
-    const std::string message = fmt::format("internal error: {}; please report this", error.what());
-    std::fprintf(stderr, "luxel: %s\n", message.c_str());
-    if (wants_json(argc, argv))
-      luxel::cli::print_error_json("internal", luxel::cli::kBadInput, message);
-    return luxel::cli::kBadInput;
+    return luxel::cli::report("internal", luxel::cli::kBadInput,
+                              fmt::format("internal error: {}; please report this", error.what()),
+                              {.json = wants_json(argc, argv)});
   }
 }

@@ -160,7 +160,7 @@ Status check_meshopt(const Json& document, const std::string& file) {
                   "export pictures as they are",
                   file, name_of("image", i, images[i]), view, kMeshopt);
   }
-  // Nobody needs the bytes of a fallback.
+  // Buffers that are marked as fallback have bytes that no view needs.
   const std::vector<Use> uses = uses_of_buffers(document);
   for (size_t i = 0; i < uses.size(); ++i) {
     const size_t user = uses[i].plain != Use::kNobody ? uses[i].plain : uses[i].compressed;

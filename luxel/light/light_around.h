@@ -55,8 +55,7 @@ struct Probes {
 Result<Probes> light_probes(const LitScene& lit, std::span<const Vec3> positions,
                             const AroundParams& params, Progress& progress);
 /// The least squares are then off by 0.4 % of a light's irradiance (root mean square; 1.8 % at
-/// most), far less than what nine functions leave out; with 24 directions it would be 1.2 % and 5.4
-/// %.
+/// most), far less than what nine functions leave out. 24 directions: 1.2 % and 5.4 %.
 inline constexpr uint32_t kProbeNormals = 48;
 
 /// How E changes when a surface's normal is bent: E(m) = E + (m - n) . V, V a vector per channel.

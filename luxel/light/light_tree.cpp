@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "luxel/base/warp.h"
+#include "luxel/light/spherical_triangle.h"
 
 namespace luxel::light {
 namespace {
-
-float angle_between(Vec3 a, Vec3 b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
 
 /// The narrowest cone about both nodes' cones.
 void join_cones(const LightNode& p, const LightNode& q, LightNode& out) {

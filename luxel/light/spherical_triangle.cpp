@@ -10,15 +10,13 @@ float clamped_sqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
 Vec3 orthogonal_part(Vec3 v, Vec3 w) { return normalize(v - w * dot(v, w)); }
 
 /// Angle between two planes through the origin with normals p and q.
-float angle_of(Vec3 p, Vec3 q) { return std::atan2(length(cross(p, q)), dot(p, q)); }
-
 }  // namespace
 
 SphericalTriangle spherical_triangle(Vec3 from, Vec3 a, Vec3 b, Vec3 c) {
   SphericalTriangle t{normalize(a - from), normalize(b - from), normalize(c - from)};
   const Vec3 n_ab = cross(t.a, t.b), n_bc = cross(t.b, t.c), n_ca = cross(t.c, t.a);
   t.cos_c = dot(t.a, t.b);
-  t.alpha = angle_of(n_ab, -n_ca);
+  t.alpha = angle_between(n_ab, -n_ca);
   // The tangent form stays accurate for small triangles, where alpha + beta + gamma - pi cancels.
   const float numerator = std::abs(dot(t.a, cross(t.b, t.c)));
   const float denominator = 1 + dot(t.a, t.b) + dot(t.b, t.c) + dot(t.c, t.a);

@@ -1,9 +1,14 @@
 // Sampling a triangle by the solid angle it covers, uniformly. [Arvo95]
 #pragma once
 
+#include <cmath>
+
 #include "luxel/base/vec.h"
 
 namespace luxel::light {
+
+/// The angle between two directions of any length [rad], precise for small ones, too.
+inline float angle_between(Vec3 a, Vec3 b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
 
 /// A triangle seen from a point: unit directions to its corners and the measures of the spherical
 /// triangle they span.

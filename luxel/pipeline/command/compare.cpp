@@ -204,9 +204,8 @@ Result<Measured> measure(const Picture& a, const Picture& b, std::optional<doubl
   LUXEL_TRY(out.flip, flip_map(a, b, out.covered, progress));
   n.flip = image::mean_over(out.flip, out.covered);
   n.flip_p95 = image::quantile_over(out.flip, out.covered, 0.95);
-  n.relative_p95 = image::quantile_over(
-      image::relative_error_map(a.linear, b.linear, out.covered, n.difference.mean), out.covered,
-      0.95);
+  out.relative = image::relative_error_map(a.linear, b.linear, out.covered, n.difference.mean);
+  n.relative_p95 = image::quantile_over(out.relative, out.covered, 0.95);
   return out;
 }
 

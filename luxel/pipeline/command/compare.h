@@ -45,6 +45,7 @@ struct Measured {
   image::Mask covered;
   image::Image8 shown_a, shown_b;  ///< display values
   image::Image flip;               ///< per pixel
+  image::Image relative;           ///< relative RMS error per pixel
 };
 
 /// Measures two pictures in memory. Errors: sizes or channels that differ, values that are not

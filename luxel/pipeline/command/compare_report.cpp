@@ -106,12 +106,9 @@ Section histogram_section(const Measured& in, std::span<const uint8_t> bright_a,
            plot_panel(difference, "Pixel differences (logarithmic)")}};
 }
 
-Section maps_section(const Picture& a, const Picture& b, const Measured& in,
-                     std::vector<image::Image8>& out) {
-  const image::Image relative =
-      image::relative_error_map(a.linear, b.linear, in.covered, in.numbers.difference.mean);
-  const double top = round_up(image::quantile_over(relative, in.covered, 0.99));
-  out.push_back(image::draw_map(relative, in.covered, 0, top));
+Section maps_section(const Measured& in, std::vector<image::Image8>& out) {
+  const double top = round_up(image::quantile_over(in.relative, in.covered, 0.99));
+  out.push_back(image::draw_map(in.relative, in.covered, 0, top));
   out.push_back(image::draw_map(in.flip, in.covered, 0, 1));
   const LegendEntry empty = empty_legend(in.covered);
   return {"Where they differ",
@@ -201,7 +198,7 @@ std::string compare_report(const Picture& a, const Picture& b, const Measured& i
     page.sections.push_back(
         {"The scenes", "preview.png of both bakes.", {{"A", {}, "", 0, {}}, {"B", {}, "", 0, {}}}});
   }
-  page.sections.push_back(maps_section(a, b, in, pictures));
+  page.sections.push_back(maps_section(in, pictures));
   page.sections.push_back(histogram_section(in, bright_a, bright_b));
   page.sections.push_back(contour_section(in, bright_a, bright_b, pictures));
   page.sections.push_back(threshold_section(in, pictures));

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "luxel/base/file.h"
+#include "luxel/display/tone_map.h"
 #include "luxel/image/codec.h"
 #include "luxel/import/import.h"
 #include "tests/command.h"
@@ -168,6 +169,57 @@ TEST(BakedGlb, ReadsBackWithTheSameTrianglesAndBakesAgain) {
                          "--uv keep --resolution 128 --samples 8");
     EXPECT_EQ(again.code, 0) << again.err;
   }
+}
+
+// Read back and drawn without a lightmap, both ways of attaching light show what preview.png shows:
+// the first is the picture itself, the second linear light for the tone curve. Steps of 8 bits, and
+// interpolation after the tone curve instead of before, and look-ups at rims, with gutter in them.
+TEST(BakedGlb, ShowsItsLightToThoseWhoKnowNoLightmap) {
+  const ScratchFolder s;
+  for (const char* attach : {"combined", "emissive"}) {
+    SCOPED_TRACE(attach);
+    const auto folder = s.path / attach;
+    ASSERT_EQ(bake_for_outputs(scene_file("cornell-box.glb"), folder,
+                               std::string("--resolution 128 --samples 16 --attach ") + attach)
+                  .code,
+              0);
+    const bool combined = std::string_view(attach) == "combined";
+    const auto drawn = folder / "drawn.exr";
+    const CommandResult r =
+        luxel("render " + (folder / "baked.glb").string() + " --size 720x720 -o " + drawn.string() +
+              (combined ? " --technique c" : " --technique path --bounces 0 --samples 4"));
+    ASSERT_EQ(r.code, 0) << r.err;
+    image::Image picture = exr_at(drawn);
+    const image::Image8 shown = display::tone_map(
+        picture, 1, combined ? display::ToneMap::clamp : display::ToneMap::shoulder);
+    const image::Image8 preview =
+        *image::decode_ldr(*read_file(folder / "preview.png"), "preview.png");
+    ASSERT_EQ(preview.width, picture.width);
+    double sum = 0, pixels = 0;
+    for (size_t i = 0; i < size_t(picture.width) * size_t(picture.height); ++i) {
+      if (picture.data[4 * i + 3] < 1) continue;  // the box's own rim, and what is behind
+      for (size_t c = 0; c < 3; ++c)
+        sum += std::abs(int(shown.data[3 * i + c]) - int(preview.data[4 * i + c]));
+      pixels += 3;
+    }
+    EXPECT_GT(pixels, 720 * 720);
+    std::printf("%s: mean difference %.3f of 255\n", attach, sum / pixels);
+    EXPECT_LT(sum / pixels, combined ? 1 : 2);
+    const CommandResult from = luxel("render " + scene_file("cornell-box.glb") + " --from " +
+                                     folder.string() + " -o " + (s.path / "x.png").string());
+    EXPECT_EQ(from.code, 1);
+    EXPECT_THAT(from.err, HasSubstr(std::string("--attach ") + attach));
+  }
+}
+
+TEST(BakeOutputs, LightIsAttachedInOneWay) {
+  const ScratchFolder s;
+  const CommandResult r =
+      bake_for_outputs(scene_file("cornell-box.glb"), s.path / "b",
+                       "--solver hemicube --vertex-colors --attach combined --resolution 32");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("--vertex-colors"));
+  EXPECT_EQ(files_in(s.path), std::set<std::string>{});
 }
 
 // What is baked is diffuse: highlights of the local techniques stay out of it.

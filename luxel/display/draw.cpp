@@ -36,17 +36,6 @@ std::vector<trace::Ray> tile_rays(const trace::CameraRays& camera, const PixelTi
   return rays;
 }
 
-/// What a surface sends to the eye: emitted radiance and that of what it reflects or scatters
-/// through, L + B / pi. An unlit surface sends the radiance of its colour, whatever falls on it.
-Rgb seen_radiance(const scene::Scene& scene, const scene::SurfacePoint& p,
-                  const IrradianceAt& irradiance_at) {
-  if (material_at(scene, p).unlit) {
-    const auto color = base_color_at(scene, p);
-    return {color[0], color[1], color[2]};
-  }
-  return emission_at(scene, p) + transport::radiosity_at(scene, p, irradiance_at) * (1.0f / kPi);
-}
-
 /// What is seen in a direction in which there is no surface.
 using Behind = std::function<Rgb(Vec3)>;
 
@@ -66,6 +55,15 @@ void write_pixel(std::span<const trace::Hit> hits, std::span<const trace::Ray> r
 }
 
 }  // namespace
+
+Rgb seen_radiance(const scene::Scene& scene, const scene::SurfacePoint& p,
+                  const IrradianceAt& irradiance_at) {
+  if (material_at(scene, p).unlit) {
+    const auto color = base_color_at(scene, p);
+    return {color[0], color[1], color[2]};
+  }
+  return emission_at(scene, p) + transport::radiosity_at(scene, p, irradiance_at) * (1.0f / kPi);
+}
 
 Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer& tracer,
                                const scene::Camera& camera, const SeenAt& seen_at,

@@ -32,7 +32,12 @@ Result<image::Image> draw_seen(const scene::Scene& scene, const trace::RayTracer
 /// E [W/m^2] of the front side at a surface point.
 using IrradianceAt = std::function<Rgb(const scene::SurfacePoint&)>;
 
-/// draw_seen of radiance: emitted plus rho E / pi.
+/// What a surface sends to the eye: emitted radiance and that of what it reflects or scatters
+/// through, L + B / pi. An unlit surface sends the radiance of its colour, whatever falls on it.
+Rgb seen_radiance(const scene::Scene& scene, const scene::SurfacePoint& p,
+                  const IrradianceAt& irradiance_at);
+
+/// draw_seen of seen_radiance.
 Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tracer,
                           const scene::Camera& camera, const IrradianceAt& irradiance_at,
                           const DrawParams& params, Progress& progress);

@@ -20,6 +20,9 @@ namespace {
 
 using nlohmann::json;
 
+/// What asset.extras.luxel.attached says.
+constexpr const char *kCombined = "combined", *kEmissive = "emissive";
+
 /// linear(picture) * intensity = E, up to 8 bits and clipping.
 std::vector<std::byte> lightmap_png(const image::Image& lightmap, float intensity) {
   image::Image scaled(lightmap.width, lightmap.height, 3);
@@ -133,12 +136,24 @@ void append_layers(Glb& glb, MaterialBook& book, std::span<const LightmapLayer> 
   }
 }
 
-Result<std::vector<std::byte>> write_baked(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                           std::span<const image::Image> lightmaps,
+void append_pictures(Glb& glb, MaterialBook& book, const LitPictures& pictures) {
+  std::vector<std::vector<std::byte>> png(pictures.pages.size());
+  parallel_for(png.size(), 1,
+               [&](size_t p, size_t) { png[p] = image::encode_png(pictures.pages[p]); });
+  for (size_t p = 0; p < png.size(); ++p) {
+    const std::string name = lightmap_name(p, png.size());
+    const size_t texture = append_lightmap_texture(glb, book, png[p], name, pictures.scale > 1);
+    book.lightmap.push_back({{{"index", texture}, {"texCoord", 1}}, name});
+  }
+  json& about = glb.json["asset"]["extras"]["luxel"];
+  about["attached"] = book.attach == Attach::combined ? kCombined : kEmissive;
+  about["exposure"] = pictures.exposure;
+}
+
+/// The scene with the light that the book has by now.
+Result<std::vector<std::byte>> write_baked(Glb& glb, MaterialBook& book, const scene::Scene& scene,
+                                           const atlas::Atlas& atlas,
                                            std::span<const LightmapLayer> layers) {
-  Glb glb;
-  MaterialBook book;
-  append_lightmaps(glb, book, lightmaps);
   append_layers(glb, book, layers);
   const std::vector<atlas::Page> pages = atlas::pages_of(atlas);
   json roots = json::array();
@@ -173,6 +188,21 @@ Result<std::vector<std::byte>> write_scene(const scene::Scene& scene, json luxel
   return finish_scene(glb, scene, std::move(roots));
 }
 
+/// The JSON of a file that export has written.
+Result<json> document_of(std::span<const std::byte> glb, const std::string& name) {
+  // Header, then the JSON chunk's length and type.
+  constexpr size_t kBefore = 20;
+  uint32_t length = 0;
+  if (glb.size() >= kBefore) std::memcpy(&length, glb.data() + 12, sizeof length);
+  const bool whole = glb.size() >= kBefore && length <= glb.size() - kBefore;
+  const char* text = reinterpret_cast<const char*>(glb.data()) + kBefore;
+  json document =
+      whole ? json::parse(text, text + length, nullptr, false) : json(json::value_t::discarded);
+  if (!document.is_object())
+    return fail(ErrorCode::bad_input, "{} is no binary glTF file; bake the scene again", name);
+  return document;
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
@@ -182,7 +212,27 @@ Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene, const atlas:
   for (const image::Image& lightmap : lightmaps) LUXEL_CHECK(lightmap.channels == 4);
   LUXEL_CHECK(atlas.first_triangle.size() == scene.instances.size() + 1);
   try {
-    return write_baked(scene, atlas, lightmaps, layers);
+    Glb glb;
+    MaterialBook book;
+    append_lightmaps(glb, book, lightmaps);
+    return write_baked(glb, book, scene, atlas, layers);
+  } catch (const std::exception& e) {  // nlohmann-json and memory
+    return fail(ErrorCode::io, "the baked scene cannot be written as .glb: {}", e.what());
+  }
+}
+
+Result<std::vector<std::byte>> lit_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                       const LitPictures& pictures) {
+  LUXEL_CHECK(pictures.attach != Attach::lightmap && pictures.strength > 0);
+  LUXEL_CHECK(pictures.pages.size() == atlas::pages_of(atlas).size());
+  LUXEL_CHECK(atlas.first_triangle.size() == scene.instances.size() + 1);
+  try {
+    Glb glb;
+    MaterialBook book;
+    book.attach = pictures.attach, book.strength = pictures.strength;
+    book.shown = materials_without_light(scene, pictures.attach);
+    append_pictures(glb, book, pictures);
+    return write_baked(glb, book, scene, atlas, {});
   } catch (const std::exception& e) {  // nlohmann-json and memory
     return fail(ErrorCode::io, "the baked scene cannot be written as .glb: {}", e.what());
   }
@@ -195,16 +245,7 @@ std::string lightmap_name(size_t page, size_t pages, std::string_view layer) {
 
 Result<std::vector<std::string>> lightmap_files_of(std::span<const std::byte> glb,
                                                    const std::string& name) {
-  // Header, then the JSON chunk's length and type.
-  constexpr size_t kBefore = 20;
-  uint32_t length = 0;
-  if (glb.size() >= kBefore) std::memcpy(&length, glb.data() + 12, sizeof length);
-  const bool whole = glb.size() >= kBefore && length <= glb.size() - kBefore;
-  const char* text = reinterpret_cast<const char*>(glb.data()) + kBefore;
-  const json document =
-      whole ? json::parse(text, text + length, nullptr, false) : json(json::value_t::discarded);
-  if (!document.is_object())
-    return fail(ErrorCode::bad_input, "{} is no binary glTF file; bake the scene again", name);
+  LUXEL_TRY(const json document, document_of(glb, name));
   std::vector<std::string> out;
   const json::json_pointer where("/extras/luxel/lightmap");
   for (const json& material : document.value("materials", json::array()))
@@ -212,6 +253,15 @@ Result<std::vector<std::string>> lightmap_files_of(std::span<const std::byte> gl
                       ? material[where].get<std::string>()
                       : std::string());
   return out;
+}
+
+Result<Attach> attach_of(std::span<const std::byte> glb, const std::string& name) {
+  LUXEL_TRY(const json document, document_of(glb, name));
+  const json::json_pointer where("/asset/extras/luxel/attached");
+  const json attached = document.contains(where) ? document[where] : json();
+  return attached == kCombined   ? Attach::combined
+         : attached == kEmissive ? Attach::emissive
+                                 : Attach::lightmap;
 }
 
 Result<std::vector<std::byte>> vertex_lit_glb(const scene::Scene& scene, float intensity) {

@@ -9,6 +9,8 @@
 
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/result.h"
+#include "luxel/export/attach.h"
+#include "luxel/image/codec.h"
 #include "luxel/image/image.h"
 #include "luxel/scene/scene.h"
 
@@ -43,6 +45,22 @@ inline Result<std::vector<std::byte>> baked_glb(const scene::Scene& scene,
   return baked_glb(scene, atlas, std::span(&lightmap, 1));
 }
 
+/// What surfaces send to the eye, as pictures for viewers that know no lightmap.
+struct LitPictures {
+  Attach attach = Attach::combined;  ///< or emissive
+  std::vector<image::Image8> pages;  ///< sRGB, per page; combined: the fourth channel is alpha
+  int scale = 1;                     ///< pixels per texel of the lightmap, along a side
+  float exposure = 1;                ///< the factor on radiance [1 / (W/(sr m^2))] in the pictures
+  float strength = 1;                ///< emissive: exposed radiance = strength * linear(picture)
+};
+
+/// As baked_glb(), with materials that show `pictures` by their TEXCOORD_1, however they are lit:
+/// combined as the base colour of KHR_materials_unlit, emissive as emission of black surfaces.
+/// Vertex colours, normal maps and base colour textures are left out, since the pictures hold them.
+/// What stays in both are alpha modes, sides, and materials that the scene has unlit.
+Result<std::vector<std::byte>> lit_glb(const scene::Scene& scene, const atlas::Atlas& atlas,
+                                       const LitPictures& pictures);
+
 /// What the files of a page are called, up to their extension: "lightmap", or of several pages
 /// "lightmap-0", "lightmap-1", ... Those of a layer: "lightmap-LAYER", "lightmap-LAYER-0", ...
 std::string lightmap_name(size_t page, size_t pages, std::string_view layer = {});
@@ -51,6 +69,8 @@ std::string lightmap_name(size_t page, size_t pages, std::string_view layer = {}
 /// "lightmap.exr"; "" where it names none. Error (bad_input): no .glb.
 Result<std::vector<std::string>> lightmap_files_of(std::span<const std::byte> glb,
                                                    const std::string& name);
+/// How such a file shows its light. Error (bad_input): no .glb.
+Result<Attach> attach_of(std::span<const std::byte> glb, const std::string& name);
 
 /// A scene whose meshes carry light per vertex: `colors` is E / `intensity`, times the vertex
 /// colours that the materials had. Materials become unlit (KHR_materials_unlit), so that every

@@ -9,6 +9,7 @@
 
 #include "luxel/base/file.h"
 #include "luxel/export/glb_test_support.h"
+#include "luxel/export/gltf_material.h"
 #include "luxel/export/scene_test_support.h"
 #include "luxel/image/codec.h"
 #include "tests/support.h"
@@ -315,12 +316,97 @@ TEST(SceneGlb, NamesThatAreNotUtf8DoNotStopIt) {
   EXPECT_EQ(parse(*glb).j["nodes"][0]["name"], "caf\xef\xbf\xbd");
 }
 
+/// Grey pictures of the rich scene.
+Document lit_document(Attach attach, std::vector<std::byte>* bytes = nullptr) {
+  const scene::Scene scene = rich_scene();
+  LitPictures pictures;
+  pictures.attach = attach, pictures.strength = attach == Attach::emissive ? 2 : 1;
+  pictures.exposure = 0.25f, pictures.scale = 2;
+  const int channels = attach == Attach::combined ? 4 : 3;
+  pictures.pages.push_back({8, 8, channels, std::vector<uint8_t>(size_t(64 * channels), 128)});
+  const auto glb = lit_glb(scene, made_up_atlas(scene), pictures);
+  EXPECT_TRUE(glb);
+  if (bytes) *bytes = *glb;
+  EXPECT_EQ(*attach_of(*glb, "baked.glb"), attach);
+  const Document d = parse(*glb);
+  EXPECT_EQ(d.j["asset"]["extras"]["luxel"]["exposure"], 0.25f);
+  return d;
+}
+
+std::map<std::string, json> materials_of(const Document& d) {
+  std::map<std::string, json> out;
+  for (const json& m : d.j["materials"]) out[m["name"]] = m;
+  return out;
+}
+
+// What a viewer needs that knows the core of glTF: colour by TEXCOORD_1, alpha, sides.
+TEST(LitGlb, CombinedIsUnlitColor) {
+  const Document d = lit_document(Attach::combined);
+  std::map<std::string, json> materials = materials_of(d);
+  ASSERT_EQ(materials.size(), 4u);
+  for (const char* name : {"painted", "lamp", "leaf"}) {
+    const json& m = materials[name];
+    EXPECT_EQ(
+        m["pbrMetallicRoughness"]["baseColorTexture"],
+        (json{{"index", m["pbrMetallicRoughness"]["baseColorTexture"]["index"]}, {"texCoord", 1}}));
+    EXPECT_EQ(m["pbrMetallicRoughness"]["baseColorFactor"], json({1.0, 1.0, 1.0, 1.0}));
+    EXPECT_TRUE(m["extensions"].contains("KHR_materials_unlit")) << name;
+    EXPECT_FALSE(m.contains("emissiveFactor")) << name;
+    EXPECT_EQ(m["extras"]["luxel"]["lightmap"], "lightmap.exr");
+  }
+  EXPECT_EQ(materials["lamp"]["doubleSided"], true);
+  EXPECT_EQ(materials["leaf"]["alphaMode"], "MASK");
+  EXPECT_EQ(materials["leaf"]["alphaCutoff"], 0.25f);
+  EXPECT_EQ(materials["sign"]["alphaMode"], "BLEND") << "unlit in the scene: as it was";
+  EXPECT_FALSE(materials["sign"].contains("extras"));
+  const std::set<std::string> used = d.j["extensionsUsed"];
+  EXPECT_THAT(used, ElementsAre("KHR_lights_punctual", "KHR_materials_unlit"));
+  // The pictures hold vertex colours; they are finer than the lightmap, so they have mipmaps.
+  for (const ReadTriangle& t : read_triangles(d)) EXPECT_EQ(t.corner[0].color, Vec3{});
+  EXPECT_EQ(d.j["samplers"][0]["minFilter"], 9987);
+}
+
+TEST(LitGlb, EmissiveIsEmissionOfBlackSurfaces) {
+  const Document d = lit_document(Attach::emissive);
+  std::map<std::string, json> materials = materials_of(d);
+  for (const char* name : {"painted", "lamp", "leaf"}) {
+    const json& m = materials[name];
+    EXPECT_EQ(m["emissiveTexture"]["texCoord"], 1);
+    EXPECT_EQ(m["emissiveFactor"], json({1, 1, 1}));
+    EXPECT_EQ(m["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"], 2);
+    EXPECT_EQ(m["extensions"]["KHR_materials_specular"]["specularFactor"], 0);
+    EXPECT_EQ(m["pbrMetallicRoughness"]["baseColorFactor"], json({0.0, 0.0, 0.0, 1.0}));
+    EXPECT_EQ(m["pbrMetallicRoughness"]["metallicFactor"], 0.0);
+    EXPECT_FALSE(m["pbrMetallicRoughness"].contains("baseColorTexture")) << name;
+  }
+  EXPECT_FALSE(materials["sign"]["extensions"].contains("KHR_materials_specular"));
+}
+
+// Glass that only KHR_materials_transmission knew: of a black base colour nothing would come
+// through.
+TEST(LitGlb, GlassIsBlended) {
+  scene::Scene scene = rich_scene();
+  scene.materials[0].transmission = 0.75f;
+  for (const Attach attach : {Attach::combined, Attach::emissive}) {
+    const scene::Material glass = materials_without_light(scene, attach)[0];
+    EXPECT_EQ(glass.alpha_mode, scene::AlphaMode::blend);
+    EXPECT_EQ(glass.transmission, 0);
+    EXPECT_EQ(glass.alpha, attach == Attach::emissive ? 0.25f : 1);
+  }
+}
+
 /// tools/validate_gltf.mjs puts these before the Khronos validator.
 TEST(SceneGlb, LeavesSamplesForTheValidator) {
   const std::filesystem::path folder = std::filesystem::path(LUXEL_BINARY_DIR) / "glb_samples";
   std::filesystem::create_directories(folder);
   EXPECT_TRUE(write_file_atomically(folder / "baked.glb", Baked().bytes));
   EXPECT_TRUE(write_file_atomically(folder / "scene.glb", *scene_glb(rich_scene())));
+  for (const Attach attach : {Attach::combined, Attach::emissive}) {
+    std::vector<std::byte> bytes;
+    lit_document(attach, &bytes);
+    const char* name = attach == Attach::combined ? "combined.glb" : "emissive.glb";
+    EXPECT_TRUE(write_file_atomically(folder / name, bytes));
+  }
 }
 
 }  // namespace

@@ -112,6 +112,12 @@ json surface(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scen
   return pbr;
 }
 
+void set_strength(Glb& glb, float strength, json& out) {
+  if (strength == 1) return;
+  out["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
+  glb.extensions_used.insert("KHR_materials_emissive_strength");
+}
+
 void set_emission(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scene::Material& m,
                   TexcoordSlots slots, json& out) {
   const float largest = max_component(m.emission);
@@ -121,9 +127,7 @@ void set_emission(Glb& glb, MaterialBook& book, const scene::Scene& scene, const
   const float strength = largest > 1 ? std::exp2(std::ceil(std::log2(largest))) : 1.0f;
   out["emissiveFactor"] = rgb(m.emission / strength);
   set_if(out, "emissiveTexture", texture_info(glb, book, scene, m.emission_texture, slots));
-  if (strength == 1) return;
-  out["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
-  glb.extensions_used.insert("KHR_materials_emissive_strength");
+  set_strength(glb, strength, out);
 }
 
 void set_normal_map(Glb& glb, MaterialBook& book, const scene::Scene& scene,
@@ -168,6 +172,33 @@ void set_highlight(Glb& glb, const scene::Material& m, json& out) {
   glb.extensions_used.insert("KHR_materials_specular");
 }
 
+void set_alpha(const scene::Material& m, json& out) {
+  if (m.alpha_mode == scene::AlphaMode::blend) out["alphaMode"] = "BLEND";
+  if (m.alpha_mode != scene::AlphaMode::mask) return;
+  out["alphaMode"] = "MASK";
+  out["alphaCutoff"] = std::max(m.alpha_cutoff, 0.0f);
+}
+
+void set_unlit(Glb& glb, json& out) {
+  out["extensions"]["KHR_materials_unlit"] = json::object();
+  glb.extensions_used.insert("KHR_materials_unlit");
+}
+
+/// The picture of a page as the material's colour, or as what it emits.
+void set_picture(Glb& glb, const MaterialBook& book, const json& picture, json& out) {
+  if (book.attach == Attach::combined) {
+    out["pbrMetallicRoughness"]["baseColorTexture"] = picture;
+    set_unlit(glb, out);
+    return;
+  }
+  out["emissiveFactor"] = {1, 1, 1};
+  out["emissiveTexture"] = picture;
+  set_strength(glb, book.strength, out);
+  // A black surface would still shine like plastic in the lights of the file or of a viewer.
+  out["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+  glb.extensions_used.insert("KHR_materials_specular");
+}
+
 json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
                    const scene::Material& m, TexcoordSlots slots, uint32_t page) {
   json out = {{"pbrMetallicRoughness", surface(glb, book, scene, m, slots)}};
@@ -176,23 +207,19 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
   set_normal_map(glb, book, scene, m, slots, out);
   set_transmission(glb, book, scene, m, slots, out);
   set_diffuse_transmission(glb, book, scene, m, slots, out);
-  if (m.alpha_mode == scene::AlphaMode::blend) out["alphaMode"] = "BLEND";
-  if (m.alpha_mode == scene::AlphaMode::mask) {
-    out["alphaMode"] = "MASK";
-    out["alphaCutoff"] = std::max(m.alpha_cutoff, 0.0f);
-  }
+  set_alpha(m, out);
   if (m.double_sided) out["doubleSided"] = true;
-  if (m.unlit) {
-    out["extensions"]["KHR_materials_unlit"] = json::object();
-    glb.extensions_used.insert("KHR_materials_unlit");
-  }
+  if (m.unlit) set_unlit(glb, out);
   // What is baked is diffuse.
   if (book.lightmap.empty()) set_highlight(glb, m, out);
-  if (!book.lightmap.empty() && !m.unlit) {
-    out["extensions"]["MOZ_lightmap"] = book.lightmap[page].extension;
-    out["extras"]["luxel"]["lightmap"] = book.lightmap[page].name + ".exr";
-    glb.extensions_used.insert("MOZ_lightmap");
+  if (book.lightmap.empty() || m.unlit) return out;
+  out["extras"]["luxel"]["lightmap"] = book.lightmap[page].name + ".exr";
+  if (book.attach != Attach::lightmap) {
+    set_picture(glb, book, book.lightmap[page].picture, out);
+    return out;
   }
+  out["extensions"]["MOZ_lightmap"] = book.lightmap[page].picture;
+  glb.extensions_used.insert("MOZ_lightmap");
   return out;
 }
 
@@ -200,7 +227,7 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
 
 size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, uint32_t material,
                       TexcoordSlots slots, uint32_t page) {
-  const scene::Material& m = scene.materials[material];
+  const scene::Material& m = shown_material(book, scene, material);
   // Slots that no texture asks for make no difference, and no second copy of the material.
   std::array<bool, 2> used{};
   for (const scene::TextureRef* ref : scene::textures_of(m))
@@ -216,10 +243,32 @@ size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, u
 }
 
 size_t append_lightmap_texture(Glb& glb, MaterialBook& book, std::span<const std::byte> png,
-                               const std::string& name) {
+                               const std::string& name, bool mipmaps) {
   const int clamp = wrap_code(scene::Wrap::clamp);
   return texture_index(glb, book, append_image(glb, png, "image/png", name),
-                       {clamp, clamp, kLinear, kLinear});
+                       {clamp, clamp, kLinear, mipmaps ? kLinearMipmapLinear : kLinear});
+}
+
+std::vector<scene::Material> materials_without_light(const scene::Scene& scene, Attach attach) {
+  std::vector<scene::Material> out;
+  for (const scene::Material& m : scene.materials) {
+    if (m.unlit) {
+      out.push_back(m);
+      continue;
+    }
+    scene::Material plain;
+    plain.name = m.name, plain.double_sided = m.double_sided;
+    plain.alpha_mode = m.alpha_mode, plain.alpha_cutoff = m.alpha_cutoff;
+    if (m.transmission > 0 && m.alpha_mode == scene::AlphaMode::opaque)
+      plain.alpha_mode = scene::AlphaMode::blend;
+    if (attach == Attach::emissive) {
+      plain.base_color = {};
+      plain.alpha = m.alpha * (1 - m.transmission);
+      if (m.alpha_mode != scene::AlphaMode::opaque) plain.base_color_texture = m.base_color_texture;
+    }
+    out.push_back(std::move(plain));
+  }
+  return out;
 }
 
 }  // namespace luxel::export_

@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "luxel/export/attach.h"
 #include "luxel/export/glb.h"
 #include "luxel/scene/scene.h"
 
@@ -21,20 +22,44 @@ struct MaterialBook {
   std::map<uint32_t, size_t> images;
   std::map<std::array<int, 4>, size_t> samplers;     ///< wrap u, wrap v, magnify, minify
   std::map<std::array<size_t, 2>, size_t> textures;  ///< image, sampler
-  /// What every material says of the lightmap, for each of its pages; empty: there is none.
+  /// What every material says of the light, for each page of the lightmap; empty: there is none.
   struct LightmapPage {
-    nlohmann::json extension;  ///< MOZ_lightmap
-    std::string name;          ///< of the files, without what follows the first dot
+    nlohmann::json picture;  ///< MOZ_lightmap itself, else the textureInfo of what is attached
+    std::string name;        ///< of the files, without what follows the first dot
   };
   std::vector<LightmapPage> lightmap;
+  Attach attach = Attach::lightmap;
+  float strength = 1;  ///< emissive: the radiance of white
+  /// Combined and emissive: the scene's materials without what the pictures hold already. Empty:
+  /// they are as in the scene.
+  std::vector<scene::Material> shown;
 };
+
+/// The material as the document has it.
+inline const scene::Material& shown_material(const MaterialBook& book, const scene::Scene& scene,
+                                             uint32_t material) {
+  return book.shown.empty() ? scene.materials[material] : book.shown[material];
+}
+
+/// Whether the book's pictures hold the colour of a material's surfaces: vertex colours are in
+/// them.
+inline bool is_in_pictures(const MaterialBook& book, const scene::Material& material) {
+  return !book.lightmap.empty() && book.attach != Attach::lightmap && !material.unlit;
+}
+
+/// MaterialBook::shown. Unlit materials stay as they are; of others there remain names, sides and
+/// alpha, which is in the pictures, too, where they are `combined`. Glass of
+/// KHR_materials_transmission becomes a blended surface: what has no colour of its own tints
+/// nothing.
+std::vector<scene::Material> materials_without_light(const scene::Scene& scene, Attach attach);
 
 /// The index of the material in the document, as it is on a page of the lightmap (0 without one).
 size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, uint32_t material,
                       TexcoordSlots slots, uint32_t page);
 
-/// A lightmap picture as glTF texture: clamped, bilinear, without mipmaps (charts would bleed).
+/// A picture on the lightmap's charts as glTF texture: clamped and bilinear. Without mipmaps charts
+/// do not bleed; a picture that is finer than the lightmap would flicker without.
 size_t append_lightmap_texture(Glb& glb, MaterialBook& book, std::span<const std::byte> png,
-                               const std::string& name);
+                               const std::string& name, bool mipmaps = false);
 
 }  // namespace luxel::export_

@@ -101,11 +101,12 @@ json primitive(Glb& glb, MaterialBook& book, const scene::Scene& scene, const sc
         n = l > 0 ? n / l : Vec3{0, 1, 0};
     attributes["NORMAL"] = append_accessor(glb, std::span<const Vec3>(normals));
   }
-  if (!mesh.colors.empty())
+  const scene::Material& material = shown_material(book, scene, part.material);
+  if (!mesh.colors.empty() && !is_in_pictures(book, material))
     attributes["COLOR_0"] =
         append_accessor(glb, std::span<const Vec3>(picked(mesh.colors, vertices.source)));
-  const TexcoordSlots slots = append_texcoords(glb, mesh, scene.materials[part.material], vertices,
-                                               lightmapped, attributes);
+  const TexcoordSlots slots =
+      append_texcoords(glb, mesh, material, vertices, lightmapped, attributes);
   return {{"attributes", std::move(attributes)},
           {"indices", append_indices(glb, vertices.indices)},
           {"material", material_index(glb, book, scene, part.material, slots, part.page)}};

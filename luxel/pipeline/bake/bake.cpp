@@ -40,7 +40,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   if (!cache.failure().empty()) result.warnings.push_back(cache.failure());
   progress.begin(kWriteStage, 0);
   nlohmann::json about_files = nlohmann::json::object();
-  LUXEL_TRY(std::vector<OutputFile> files, files_of(settings, result, about_files));
+  LUXEL_TRY(std::vector<OutputFile> files, files_of(settings, result, about_files, progress));
   LUXEL_TRY_STATUS(stopped(progress));
   progress.finish();
   nlohmann::json json = bake_report(settings, result, progress);

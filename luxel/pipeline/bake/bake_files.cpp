@@ -9,6 +9,7 @@
 #include "luxel/image/codec.h"
 #include "luxel/pipeline/bake/layers.h"
 #include "luxel/pipeline/bake/light_directions.h"
+#include "luxel/pipeline/bake/lit_pictures.h"
 #include "luxel/pipeline/settings/lightmap_files.h"
 
 namespace luxel::pipeline {
@@ -28,7 +29,20 @@ std::vector<export_::LightmapLayer> shown_layers(const Bake& bake, bool with_pic
   return out;
 }
 
-Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& bake) {
+/// With the light in pictures; says how they were made.
+Result<std::vector<std::byte>> lit_glb_of(const BakeSettings& settings, const Bake& bake,
+                                          nlohmann::json& about, Progress& progress) {
+  LUXEL_TRY(const export_::LitPictures pictures, lit_pictures(settings, bake, progress));
+  about = {{"pixels_per_texel", pictures.scale}, {"exposure", pictures.exposure}};
+  if (settings.attach == export_::Attach::emissive) about["strength"] = pictures.strength;
+  return export_::lit_glb(bake.scene, bake.atlas, pictures);
+}
+
+/// baked.glb, and what bake.json says of pictures in it; null without.
+Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& bake,
+                                      nlohmann::json& about, Progress& progress) {
+  if (settings.attach != export_::Attach::lightmap)
+    return lit_glb_of(settings, bake, about, progress);
   if (!settings.vertex_colors)
     return export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake),
                               shown_layers(bake, true));
@@ -36,13 +50,13 @@ Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& 
   return export_::vertex_lit_glb(lit.scene, lit.intensity);
 }
 
-/// `glb` is baked.glb. Where that holds light per vertex, or pictures of layers, which the page has
-/// already, the page has one of its own.
+/// `glb` is baked.glb. Where that holds its light in another way, or pictures of layers, which the
+/// page has already, the page has one of its own.
 Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
                              std::span<const std::byte> glb) {
   std::vector<std::byte> own;
   const std::vector<export_::LightmapLayer> layers = shown_layers(bake, true);
-  if (settings.vertex_colors || !layers.empty()) {
+  if (settings.vertex_colors || settings.attach != export_::Attach::lightmap || !layers.empty()) {
     LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake),
                                       shown_layers(bake, false)));
     glb = own;
@@ -69,15 +83,16 @@ std::vector<OutputFile> picture_files(std::span<const image::Image8> pages, std:
 struct Encoded {
   Result<LightmapFiles> lightmap;
   Result<std::vector<std::byte>> glb;
+  nlohmann::json attached;  ///< what bake.json says of it
   std::vector<std::byte> preview;
 };
 
 /// At the same time: each is work for one thread, more or less.
-Encoded encode(const BakeSettings& settings, const Bake& bake) {
+Encoded encode(const BakeSettings& settings, const Bake& bake, Progress& progress) {
   Encoded out;
   const std::array<std::function<void()>, 3> tasks{
       [&] { out.lightmap = lightmap_files(bake.lightmaps, settings.formats, settings.output); },
-      [&] { out.glb = glb_of(settings, bake); },
+      [&] { out.glb = glb_of(settings, bake, out.attached, progress); },
       [&] { out.preview = image::encode_png(bake.preview); }};
   parallel_for(tasks.size(), 1, [&](size_t task, size_t) { tasks[task](); });
   return out;
@@ -86,11 +101,12 @@ Encoded encode(const BakeSettings& settings, const Bake& bake) {
 }  // namespace
 
 Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bake& bake,
-                                         nlohmann::json& json) {
-  Encoded encoded = encode(settings, bake);
+                                         nlohmann::json& json, Progress& progress) {
+  Encoded encoded = encode(settings, bake, progress);
   LUXEL_TRY(LightmapFiles lightmap, std::move(encoded.lightmap));
   LUXEL_TRY(std::vector<std::byte> glb, std::move(encoded.glb));
   std::vector<OutputFile> files = std::move(lightmap.files);
+  if (!encoded.attached.is_null()) json["attached"] = encoded.attached;
   if (lightmap.rgbm_range > 0) json["lightmap"]["rgbm_range"] = lightmap.rgbm_range;
   const auto append = [&](std::vector<OutputFile> more) {
     std::move(more.begin(), more.end(), std::back_inserter(files));

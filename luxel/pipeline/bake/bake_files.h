@@ -10,8 +10,8 @@
 namespace luxel::pipeline {
 
 /// Everything but bake.json, under settings.output. Adds what bake.json says of them to `json`, an
-/// object. Errors: a picture or page that does not fit its format.
+/// object. Errors: a picture or page that does not fit its format; cancelled.
 Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bake& bake,
-                                         nlohmann::json& json);
+                                         nlohmann::json& json, Progress& progress);
 
 }  // namespace luxel::pipeline

@@ -29,6 +29,20 @@ display::DrawParams size_of(const RenderSettings& settings) {
   return params;
 }
 
+/// Errors (bad_input): baked.glb has no colours of its own for the lightmap to light.
+Status check_colors(const std::filesystem::path& folder) {
+  const std::filesystem::path glb = folder / "baked.glb";
+  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(glb));
+  LUXEL_TRY(const export_::Attach attach, export_::attach_of(bytes, glb.string()));
+  if (attach == export_::Attach::lightmap) return {};
+  const bool combined = attach == export_::Attach::combined;
+  return fail(ErrorCode::bad_input,
+              "{} was baked with --attach {}: it has pictures of light instead of colours that a "
+              "lightmap could light; bake with --attach lightmap, or draw the file itself with "
+              "--technique {}",
+              glb.string(), combined ? "combined" : "emissive", combined ? "c" : "path");
+}
+
 /// baked.glb with the surroundings of what is drawn.
 Result<scene::Scene> baked_scene(const Subject& subject, const RenderSettings& s) {
   LUXEL_TRY(import::Imported baked, import::import_scene(s.from / "baked.glb"));
@@ -131,6 +145,7 @@ Result<image::Image> read_texel_picture(const std::filesystem::path& lightmap, T
 
 Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettings& s,
                                       Progress& progress) {
+  LUXEL_TRY_STATUS(check_colors(s.from));
   LUXEL_TRY(const scene::Scene scene, baked_scene(subject, s));
   LUXEL_TRY(const Pages lightmaps, read_pages(s.from, scene.materials.size(), read_lightmap));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));

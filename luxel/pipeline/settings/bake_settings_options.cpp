@@ -112,6 +112,14 @@ Options<S> result_options() {
           .leaves(Changes::results),
       BakeRows::toggle("--no-stitch", &S::stitch, "Do not blend charts along seams")
           .leaves(Changes::results),
+      BakeRows::choice("--attach", &S::attach,
+                       {{"lightmap", export_::Attach::lightmap},
+                        {"combined", export_::Attach::combined},
+                        {"emissive", export_::Attach::emissive}},
+                       "How baked.glb shows the light: lightmap needs a viewer that knows "
+                       "MOZ_lightmap; combined (unlit colour times light) and emissive (emission) "
+                       "show in any")
+          .leaves(Changes::nothing),
       BakeRows::toggle("--vertex-colors", &S::vertex_colors,
                        "baked.glb gets light per vertex in COLOR_0 instead of the lightmap")
           .never_without(&Can::vertex_light)

@@ -59,9 +59,19 @@ Status check_keep(const BakeSettings& s) {
   return {};
 }
 
+/// baked.glb shows its light in one way.
+Status check_attach(const BakeSettings& s) {
+  if (s.attach == export_::Attach::lightmap || !s.vertex_colors) return {};
+  return fail(ErrorCode::bad_setting,
+              "--vertex-colors puts the light of baked.glb into its vertices, and --attach {} into "
+              "pictures; leave one of them out",
+              s.attach == export_::Attach::combined ? "combined" : "emissive");
+}
+
 }  // namespace
 
 Status check_contradictions(const BakeSettings& s) {
+  LUXEL_TRY_STATUS(check_attach(s));
   LUXEL_TRY_STATUS(check_pages(s));
   LUXEL_TRY_STATUS(check_layers(s));
   LUXEL_TRY_STATUS(check_keep(s));

@@ -8,6 +8,7 @@
 
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/result.h"
+#include "luxel/export/attach.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/pipeline/settings/lightmap_files.h"
 #include "luxel/pipeline/settings/outside_light.h"
@@ -55,9 +56,10 @@ struct BakeSettings {
   Directional directional = Directional::none;
   double probe_spacing_m = 0;                        ///< 0: no probes
   light::LayerMode layers = light::LayerMode::none;  ///< lightmaps per light, too
-  bool denoise = false;        ///< take the grain out of texels, docs/method/denoise.md
-  bool stitch = true;          ///< make charts agree along seams
-  bool repair_leaks = true;    ///< cut charts at thin walls, move samples out of solids
+  bool denoise = false;      ///< take the grain out of texels, docs/method/denoise.md
+  bool stitch = true;        ///< make charts agree along seams
+  bool repair_leaks = true;  ///< cut charts at thin walls, move samples out of solids
+  export_::Attach attach = export_::Attach::lightmap;  ///< how baked.glb shows the light
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
   bool texels = false;         ///< texels.png too
   bool error_map = false;      ///< error.png too

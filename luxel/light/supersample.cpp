@@ -11,51 +11,16 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/light/kept_light.h"
+#include "luxel/light/points_of_texels.h"
 #include "luxel/light/shadow_rays.h"
-#include "luxel/transport/back_faces.h"
 
 namespace luxel::light {
 namespace {
 
 /// Texels of a part: each needs hundreds of rays, and a part is what a checkpoint keeps.
 constexpr size_t kSupersampleGrain = 16;
-/// For one of many points, and for the sample of a texel, as gather asks.
-constexpr int kEnclosureRays = 16, kEnclosureRaysOfTexel = 64;
 /// Any number: it sets the random numbers of points apart from others of the same seed.
 constexpr uint64_t kPointSeed = 0x70e1;
-
-/// What all points share.
-struct PointScene {
-  const scene::Scene& scene;
-  const trace::RayTracer& tracer;
-  float diagonal_m;
-};
-
-PointScene point_scene(const TexelScene& in) {
-  return {in.scene, in.tracer, scene::world_bounds(in.scene).diagonal()};
-}
-
-/// Whether a point lies inside a solid; of each place the same answer in every bake.
-bool is_enclosed(const PointScene& at, const Receiver& r, int rays = kEnclosureRays) {
-  return transport::is_enclosed(at.scene, at.tracer, r.origin, r.normal, rays, at.diagonal_m);
-}
-
-Receiver receiver_at(const PointScene& at, const transport::SmoothPoint& s, uint64_t seed) {
-  return {s.position, s.normal, s.geometric_normal,
-          trace::offset_origin(s.position, s.geometric_normal, at.diagonal_m), seed};
-}
-
-/// Only to be asked whether it is enclosed: it has no seed.
-Receiver own_receiver(const PointScene& at, const transport::Elements& elements, size_t i) {
-  return receiver_at(at, {elements.position[i], elements.normal[i], elements.geometric_normal[i]},
-                     0);
-}
-
-/// Whether the sample of a texel has the backs of some surfaces before it.
-bool sees_backs(const PointScene& at, const Receiver& own) {
-  return transport::all_backs(transport::count_back_faces(at.scene, at.tracer, own.origin,
-                                                          own.normal, kEnclosureRays)) > 0;
-}
 
 /// Light at the points of one texel.
 struct PointLight {

@@ -116,6 +116,9 @@ Result<std::vector<OutputFile>> files_of(const BakeSettings& settings, const Bak
               layer_files(bake.layers, settings.formats, settings.output, json["layers"]));
     append(std::move(layers));
   }
+  LUXEL_TRY(std::vector<OutputFile> maps,
+            surface_map_files(bake.surface_maps, settings, bake.scene, json));
+  append(std::move(maps));
   LUXEL_TRY(std::vector<OutputFile> directions, direction_files(bake.directions, settings.output));
   append(std::move(directions));
   if (bake.probes) {

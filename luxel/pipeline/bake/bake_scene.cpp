@@ -97,6 +97,7 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
 /// The rest of bake_scene() for a bake that has its scene.
 Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
                    const OnBakeEstimate& on_estimate, Bake& bake, Progress& progress) {
+  LUXEL_TRY(const std::vector<uint32_t> masked, masked_lights(settings, bake.scene));
   LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
   const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
                                 ready.elements, ready.lights, ready.tracer};
@@ -109,6 +110,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
     observer.on_traced = [&] { transport::drop_places(ready.elements); };
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
   if (keepers.cache) keepers.cache->solved();
+  LUXEL_TRY(bake.surface_maps, surface_maps(settings, input, masked, bake.light.hidden, progress));
   LUXEL_TRY_STATUS(repair_light(settings, ready.tracer, bake, progress));
   LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));

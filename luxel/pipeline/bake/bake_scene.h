@@ -12,6 +12,7 @@
 #include "luxel/image/codec.h"
 #include "luxel/pipeline/bake/layers.h"
 #include "luxel/pipeline/bake/light_directions.h"
+#include "luxel/pipeline/bake/surface_maps.h"
 #include "luxel/pipeline/settings/settings.h"
 #include "luxel/pipeline/solver/plan.h"
 #include "luxel/pipeline/solver/solvers.h"
@@ -37,9 +38,10 @@ struct Bake {
   atlas::TexelMap map;
   atlas::AtlasStats atlas_stats;
   TexelLight light;
-  std::vector<image::Image> lightmaps;  ///< E, 4 channels, per page as lightmap.exr holds it
-  std::vector<image::Image> shown;      ///< for viewers (shown_light.h); empty: the same
-  std::vector<BakedLayer> layers;       ///< with --layers
+  std::vector<image::Image> lightmaps;   ///< E, 4 channels, per page as lightmap.exr holds it
+  std::vector<image::Image> shown;       ///< for viewers (shown_light.h); empty: the same
+  std::vector<BakedLayer> layers;        ///< with --layers
+  std::vector<SurfaceMap> surface_maps;  ///< with --shadow-mask, --ambient-occlusion
   image::Image8 preview;
   DirectionMaps directions;         ///< with --directional
   std::optional<ProbeGrid> probes;  ///< with --probes

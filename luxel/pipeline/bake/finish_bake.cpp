@@ -39,6 +39,8 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
                                   : post::Parted{};
   std::vector<std::span<Rgb>> arrays{bake.light.irradiance};
   for (std::vector<Rgb>& layer : bake.light.layer_irradiance) arrays.push_back(layer);
+  for (SurfaceMap& map : bake.surface_maps)
+    arrays.insert(arrays.end(), map.values.begin(), map.values.end());
   bake.repair.refilled =
       post::refill_hidden(bake.atlas, bake.map, hidden, kRefillRings, parted, arrays);
   std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
@@ -61,6 +63,12 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
         bake.atlas, bake.map,
         shown_irradiance(bake.scene, bake.atlas, bake.map, bake.light.irradiance));
     for (image::Image& lightmap : bake.shown) post::dilate(lightmap, post::kDilationRings);
+  }
+  for (SurfaceMap& map : bake.surface_maps) {
+    for (std::vector<Rgb>& values : map.values)
+      if (settings.stitch)
+        LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, values, progress));
+    make_pages(bake.atlas, bake.map, post::kDilationRings, map);
   }
   bake.layers = bake_layers(bake.scene, bake.atlas, bake.map, post::kDilationRings, bake.light);
   return stopped(progress);

@@ -106,6 +106,30 @@ Options<S> result_options() {
           "names differ only by a number at the end (groups)")
           .never_without(&Can::layers)
           .leaves(Changes::results),
+      BakeRows::choice("--light", &S::light,
+                       {{"all", LightPart::all},
+                        {"direct", LightPart::direct},
+                        {"indirect", LightPart::indirect},
+                        {"no-punctual", LightPart::no_punctual}},
+                       "The light of the lightmap: all; direct; indirect, reflected at least once; "
+                       "or no-punctual, all but what comes straight from point, spot and "
+                       "directional lights, for engines that add those themselves")
+          .never_without(&Can::direct),
+      BakeRows::text(
+          "--shadow-mask", &S::shadow_mask, parse_shadow_mask,
+          [](auto& names) { return names.empty() ? json() : json(names); },
+          "Also write shadow-mask.png and .exr: how much of up to four point, spot or directional "
+          "lights each texel sees; auto: the first four")
+          .unit("LIGHT,...|auto")
+          .leaves(Changes::results),
+      BakeRows::text(
+          "--ambient-occlusion", &S::occlusion_distance_m, parse_distance,
+          [](double d) { return std::isinf(d) ? json("inf") : json(d); },
+          "Also write ambient-occlusion.png and .exr: the share of directions in which nothing is "
+          "nearer than this many metres, or inf")
+          .key_is("occlusion_distance_m")
+          .unit("METRES")
+          .leaves(Changes::results),
       BakeRows::toggle("--denoise", &S::denoise,
                        "Remove the noise of few samples; edges of shadows stay")
           .never_without(&Can::noise)

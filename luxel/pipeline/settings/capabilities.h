@@ -13,6 +13,7 @@ struct Capabilities {
                                 ///< --time-budget, --error-map, --plan
   bool noise = false;           ///< estimates the variance of its light: --denoise
   bool layers = false;          ///< can tell each light apart: --layers
+  bool direct = false;          ///< can tell direct light apart: --light
   bool scatters = false;        ///< follows light that surfaces scatter through
   bool parts = false;           ///< keeps its finished parts: --checkpoint, --resume
   bool keeps = false;           ///< leaves what later bakes can build on: --keep

@@ -1,9 +1,11 @@
 #include "luxel/pipeline/settings/settings.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "luxel/atlas/pages.h"
 #include "luxel/export/view_page.h"
+#include "luxel/pipeline/settings/comma_list.h"
 #include "luxel/pipeline/settings/option_rows.h"
 
 namespace luxel::pipeline {
@@ -59,6 +61,22 @@ Status check_keep(const BakeSettings& s) {
   return {};
 }
 
+/// What looks at all light at once, or keeps it.
+Status check_light(const BakeSettings& s) {
+  if (s.light == LightPart::all) return {};
+  const char* other = s.layers != light::LayerMode::none   ? "--layers"
+                      : s.directional != Directional::none ? "--directional"
+                      : s.probe_spacing_m > 0              ? "--probes"
+                      : s.keep                             ? "--keep"
+                      : s.resume                           ? "--resume"
+                                                           : nullptr;
+  if (!other) return {};
+  return fail(ErrorCode::bad_setting,
+              "--light {} does not go together with {}, which needs all light; leave one of them "
+              "out",
+              pipeline::name_of(s.light), other);
+}
+
 /// baked.glb shows its light in one way.
 Status check_attach(const BakeSettings& s) {
   if (s.attach == export_::Attach::lightmap || !s.vertex_colors) return {};
@@ -72,6 +90,7 @@ Status check_attach(const BakeSettings& s) {
 
 Status check_contradictions(const BakeSettings& s) {
   LUXEL_TRY_STATUS(check_attach(s));
+  LUXEL_TRY_STATUS(check_light(s));
   LUXEL_TRY_STATUS(check_pages(s));
   LUXEL_TRY_STATUS(check_layers(s));
   LUXEL_TRY_STATUS(check_keep(s));
@@ -88,6 +107,13 @@ std::string_view name_of(light::LayerMode mode) {
   return mode == light::LayerMode::per_light ? "per-light"
          : mode == light::LayerMode::groups  ? "groups"
                                              : "none";
+}
+
+std::string_view name_of(LightPart part) {
+  return part == LightPart::direct        ? "direct"
+         : part == LightPart::indirect    ? "indirect"
+         : part == LightPart::no_punctual ? "no-punctual"
+                                          : "all";
 }
 
 std::string text_of(const PagesSetting& pages) {
@@ -131,6 +157,26 @@ Result<int> parse_bounces(std::string_view text) {
     return fail(ErrorCode::bad_setting,
                 "--bounces '{}' is not a number of bounces; give 0, 1, 2, ... or inf", text);
   return int(*value);
+}
+
+Result<double> parse_distance(std::string_view text) {
+  if (text == "inf") return INFINITY;
+  const auto value = number_from<double>(text);
+  if (!value || *value <= 0)
+    return fail(ErrorCode::bad_setting,
+                "--ambient-occlusion '{}' is not a distance; give metres > 0, or inf", text);
+  return *value;
+}
+
+Result<std::string> parse_shadow_mask(std::string_view text) {
+  const std::vector<std::string_view> names = split_at_commas(text);
+  const bool empty = std::ranges::any_of(names, &std::string_view::empty);
+  if (text.empty() || empty || names.size() > kMaxMaskedLights)
+    return fail(ErrorCode::bad_setting,
+                "--shadow-mask '{}': give auto, or the names of one to four lights with commas "
+                "between them",
+                text);
+  return std::string(text);
 }
 
 }  // namespace luxel::pipeline

@@ -20,6 +20,17 @@ namespace luxel::pipeline {
 /// How a lightmap says where its light comes from; luxel/pipeline/bake/light_directions.h.
 enum class Directional : uint8_t { none, dominant, sh1 };
 
+/// Which light a lightmap holds. Direct light has met no surface since it left its source.
+enum class LightPart : uint8_t {
+  all,
+  direct,       ///< straight from lights, surfaces that shine, background and environment
+  indirect,     ///< reflected or scattered at least once
+  no_punctual,  ///< all but what comes straight from point, spot and directional lights
+};
+
+/// A picture has four channels.
+inline constexpr size_t kMaxMaskedLights = 4;
+
 /// How many lightmaps a bake leaves. More than one, or not yet known how many: the scene is laid
 /// out anew.
 struct PagesSetting {
@@ -56,9 +67,12 @@ struct BakeSettings {
   Directional directional = Directional::none;
   double probe_spacing_m = 0;                        ///< 0: no probes
   light::LayerMode layers = light::LayerMode::none;  ///< lightmaps per light, too
-  bool denoise = false;      ///< take the grain out of texels, docs/method/denoise.md
-  bool stitch = true;        ///< make charts agree along seams
-  bool repair_leaks = true;  ///< cut charts at thin walls, move samples out of solids
+  LightPart light = LightPart::all;
+  std::string shadow_mask;          ///< names of lights with commas between, or "auto"; empty: none
+  double occlusion_distance_m = 0;  ///< of ambient occlusion, may be infinite; 0: none
+  bool denoise = false;             ///< take the grain out of texels, docs/method/denoise.md
+  bool stitch = true;               ///< make charts agree along seams
+  bool repair_leaks = true;         ///< cut charts at thin walls, move samples out of solids
   export_::Attach attach = export_::Attach::lightmap;  ///< how baked.glb shows the light
   bool vertex_colors = false;  ///< baked.glb: light per vertex of the solver's mesh in COLOR_0
   bool texels = false;         ///< texels.png too
@@ -88,5 +102,11 @@ std::string text_of(const PagesSetting& pages);
 Result<uint64_t> parse_size(std::string_view text);
 /// "inf" or a number >= 0; inf is -1.
 Result<int> parse_bounces(std::string_view text);
+/// "inf" or a number > 0.
+Result<double> parse_distance(std::string_view text);
+/// The value of --shadow-mask, of four names at most.
+Result<std::string> parse_shadow_mask(std::string_view text);
+/// The value of --light that stands for it.
+std::string_view name_of(LightPart part);
 
 }  // namespace luxel::pipeline

@@ -11,6 +11,7 @@
 #include "luxel/pipeline/reuse/rebake.h"
 #include "luxel/pipeline/solver/gather_memory.h"
 #include "luxel/pipeline/solver/gather_plan.h"
+#include "luxel/pipeline/solver/light_part.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
@@ -104,6 +105,7 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   params.direct_samples = settings.direct_samples;
   params.supersample = settings.supersample;
   params.bounces = settings.bounces;
+  params.tells_direct = settings.light != LightPart::all;
   params.seed = settings.seed;
   return params;
 }
@@ -192,19 +194,21 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
   else
     LUXEL_TRY_STATUS(look_ahead(in, settings, own, params, warnings, progress));
   // Not for the trial; and the light of layers is not kept yet.
-  if (!told_apart) own.parts = stores.parts;
+  if (!told_apart && !params.tells_direct) own.parts = stores.parts;
   if (keeps) own.keep = stores.cache->rays();
   LUXEL_TRY(gather::Gather result,
             gather::gather(in, told_apart, params, own,
                            {.on_estimate = observer.on_estimate, .on_traced = observer.on_traced},
                            progress));
   const light::LightLayers all_layers = layers;
+  const gather::SourceLight sources = std::move(result.sources);
   TexelLight out = light_of(result, layers);
   if (keeps) stores.cache->keep(kept_bake(in, all_layers, result, out));
   if (settings.layers == light::LayerMode::none) drop_layers(out);
   if (settings.max_error > 0 || settings.time_budget_s > 0)
     warn_about_rounds(settings, params, result, warnings);
   out.warnings = std::move(warnings);
+  take_part(settings.light, sources, out);
   return out;
 }
 
@@ -218,6 +222,7 @@ Solver gather_solver() {
                   .errors = true,
                   .noise = true,
                   .layers = true,
+                  .direct = true,
                   .scatters = true,
                   .parts = true,
                   .keeps = true},

@@ -76,6 +76,7 @@ uint64_t bytes_of_all_light(const light::TexelScene& in, const BakeSettings& set
 uint64_t bytes_of_gather(const light::TexelScene& in, const BakeSettings& settings,
                          const SolveStores& stores, bool shows, size_t layers) {
   const uint64_t n = in.elements.size(), side = uint64_t(in.map.resolution), square = side * side;
+  if (settings.light != LightPart::all) layers = gather::kSourceLayers;
   const uint64_t maps = layers == 0 ? 0 : in.elements.transmittance.empty() ? 1 : 2;
   return bytes_of_all_light(in, settings, stores, shows, layers) +
          layers * gather::kLayerBytesPerElement * n +

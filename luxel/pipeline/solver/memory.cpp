@@ -20,7 +20,8 @@ std::string size_text(uint64_t bytes) {
 }  // namespace
 
 bool looks_at_places(const BakeSettings& settings) {
-  return settings.denoise || settings.directional != Directional::none || settings.keep;
+  return settings.denoise || settings.directional != Directional::none || settings.keep ||
+         !settings.shadow_mask.empty() || settings.occlusion_distance_m > 0;
 }
 
 // Nearly all of what comes after solvers is counted as if it were there at once.

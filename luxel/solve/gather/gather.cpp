@@ -40,6 +40,25 @@ struct Errors {
   std::vector<float> direct, gathered, all;  ///< relative
 };
 
+constexpr uint8_t kPunctualLayer = 0, kOtherLayer = 1, kReflectedLayer = 2;
+
+/// Layers that tell light straight from its sources apart. That which rays bring that are followed
+/// on was reflected, whatever it is from.
+struct SourceLayers {
+  light::LightLayers straight, followed;
+};
+SourceLayers source_layers(const light::Lights& lights) {
+  const auto all_in = [&](uint8_t punctual, uint8_t others) {
+    light::LightLayers out;
+    out.layers.resize(kSourceLayers);
+    out.of_punctual.assign(lights.punctual.size(), punctual);
+    out.of_triangle.assign(lights.triangles.size(), others);
+    out.of_surroundings = others;
+    return out;
+  };
+  return {all_in(kPunctualLayer, kOtherLayer), all_in(kReflectedLayer, kReflectedLayer)};
+}
+
 /// What gather() was asked for.
 struct Request {
   const light::TexelScene& scene;
@@ -47,7 +66,8 @@ struct Request {
   const GatherParams& params;
   const GatherStores& stores;
   const GatherObserver& observer;
-  std::vector<StoredHit> behind{};  ///< places_behind()
+  std::vector<StoredHit> behind{};                      ///< places_behind()
+  const light::LightLayers* followed_layers = nullptr;  ///< of followed rays; null: `layers`
 
   size_t layer_count() const { return layers ? layers->size() : 0; }
   /// Whether rays are added where light is not known well enough.
@@ -134,6 +154,7 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
       .keep = in.stores.keep,
       .earlier = in.stores.earlier ? &in.stores.earlier->rays : nullptr,
       .layers = in.layers,
+      .followed_layers = in.followed_layers,
   };
   const auto start = Clock::now();
   const uint64_t before = light.hits.rays, samples = sum_of(light.hits.samples);
@@ -320,11 +341,24 @@ void drop_light(TracedHits& hits) {
   free_memory(hits.sky_luminance2), free_memory(hits.sky_first_less_second);
 }
 
+/// The light of source_layers().
+SourceLight source_light(Progressive& light) {
+  const std::vector<Rgb> sources = layer_sources(light.hits, std::move(light.direct.by_layer));
+  SourceLight out;
+  for (size_t i = 0; i < sources.size(); i += kSourceLayers) {
+    out.punctual.push_back(sources[i + kPunctualLayer]);
+    out.others.push_back(sources[i + kOtherLayer]);
+  }
+  return out;
+}
+
 /// All bounces, those of layers too, and how well their light is known. Positions and normals of
 /// elements may be gone.
 Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress& progress) {
   LUXEL_TRY_STATUS(bounce_round(in, last_tolerance(in), light, progress));
-  if (in.layers) {
+  if (in.params.tells_direct) {
+    out.sources = source_light(light);
+  } else if (in.layers) {
     LayeredLight layered{.source = layer_sources(light.hits, std::move(light.direct.by_layer)),
                          .whole = light.bounced.irradiance};
     LUXEL_TRY(
@@ -363,8 +397,11 @@ void take_result(Progressive&& light, Gather& out) {
 Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* layers,
                       const GatherParams& params, const GatherStores& stores,
                       const GatherObserver& observer, Progress& progress) {
+  LUXEL_CHECK(!params.tells_direct || layers == nullptr);
   const auto start = Clock::now();
   Request in{scene, layers, params, stores, observer};
+  const SourceLayers sources = params.tells_direct ? source_layers(scene.lights) : SourceLayers{};
+  if (params.tells_direct) in.layers = &sources.straight, in.followed_layers = &sources.followed;
   Progressive light;
   // 1. Light straight from the lights, with shadow rays.
   LUXEL_TRY_STATUS(begin_direct(in, light, progress));

@@ -27,11 +27,12 @@ struct GatherParams {
   /// > 0: rounds of more samples while they, and the bounces, end within so many seconds from the
   /// call. The first round and the first direct light are not cut short. Depends on the machine.
   double seconds = 0;
-  int max_samples = 16384;  ///< with max_error or seconds, per element
-  int direct_samples = 64;  ///< shadow rays per element towards emissive surfaces
-  int supersample = 1;      ///< points per element where direct light varies; 1: none
-  int bounces = -1;         ///< < 0: all
-  float tolerance = 1e-4f;  ///< see BounceParams
+  int max_samples = 16384;    ///< with max_error or seconds, per element
+  int direct_samples = 64;    ///< shadow rays per element towards emissive surfaces
+  int supersample = 1;        ///< points per element where direct light varies; 1: none
+  int bounces = -1;           ///< < 0: all
+  float tolerance = 1e-4f;    ///< see BounceParams
+  bool tells_direct = false;  ///< Gather::sources; not with layers
   uint64_t seed = 1;
 };
 
@@ -54,6 +55,14 @@ struct GatherObserver {
   std::function<void()> on_traced{};
 };
 
+/// Light straight from what shines, without any reflection: E per element [W/m^2].
+struct SourceLight {
+  std::vector<Rgb> punctual;  ///< of point, spot and directional lights
+  std::vector<Rgb> others;    ///< of surfaces that shine, of background and environment
+};
+/// What it takes per element while rays are traced, counted in layers.
+inline constexpr size_t kSourceLayers = 3;
+
 /// What gather found, one value per element.
 struct Gather {
   std::vector<Rgb> irradiance;  ///< E per element [W/m^2], after all bounces
@@ -70,6 +79,7 @@ struct Gather {
   /// With layers, of each: E per element after all bounces. They add up to `irradiance`.
   std::vector<std::vector<Rgb>> layers;
   double layers_shared_out = 0;  ///< LayersBounced::shared_out
+  SourceLight sources;  ///< with tells_direct; made of the rays that `irradiance` is made of
   /// With `keep`: direct light as it is in the end, and how finely it was sampled.
   light::DirectLight kept_direct;
   light::DirectLevels kept_levels;

@@ -14,7 +14,7 @@ FollowedPath end_of(const RayScene& in, const NearPath& path, TracedHits& out) {
   Rgb light = path.light;
   if (alive && !found) {
     const Rgb l = path.throughput * light::soft_radiance(in.scene, in.around, path.direction);
-    add_sky(in, l, path.element, out);
+    add_sky(in.near->layers, l, path.element, out);
     light += l;
   }
   const bool has_hit =

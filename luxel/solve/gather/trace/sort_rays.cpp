@@ -70,7 +70,7 @@ void add_escaped(const RayScene& in, const EscapedLight& light, size_t element, 
   tile.escaped.push_back(light);
   out.sky[element] += light.sum, out.sky_luminance2[element] += light.luminance2;
   out.sky_first_less_second[element] += luminance(light.sum) - 2 * light.second_luminance;
-  add_sky(in, light.sum, element, out);
+  add_sky(in.layers, light.sum, element, out);
 }
 
 /// How the batch's k-th ray has ended; one to be followed on is added to buffers.near.paths.
@@ -128,9 +128,9 @@ void take_traced(const RayScene& in, const RayBuffers& buffers, size_t k, RayEnd
 
 }  // namespace
 
-void add_sky(const RayScene& in, Rgb l, size_t element, TracedHits& out) {
-  if (in.layers && in.layers->of_surroundings)
-    out.sky_by_layer[element * in.layers->size() + *in.layers->of_surroundings] += l;
+void add_sky(const light::LightLayers* layers, Rgb l, size_t element, TracedHits& out) {
+  if (layers && layers->of_surroundings)
+    out.sky_by_layer[element * layers->size() + *layers->of_surroundings] += l;
 }
 
 void note_change(const RayScene& in, StoredHit hit, float sign, size_t element, TracedHits& out) {

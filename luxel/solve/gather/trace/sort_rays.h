@@ -52,7 +52,7 @@ struct RayBuffers : RetraceBuffers {
 StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray);
 
 /// Notes radiance of a ray that has left the scene, of which the light of all layers knows already.
-void add_sky(const RayScene& in, Rgb radiance, size_t element, TracedHits& out);
+void add_sky(const light::LightLayers* layers, Rgb radiance, size_t element, TracedHits& out);
 /// A hit that an element's rays have won (1) or lost (-1), if that is wanted; not where something
 /// is unknown, as all is looked up there.
 void note_change(const RayScene& in, StoredHit hit, float sign, size_t element, TracedHits& out);

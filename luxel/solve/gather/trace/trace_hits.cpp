@@ -285,8 +285,8 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
   std::vector<float> widths;
   if (params.follows_near) {
     widths = texel_widths_m(in.scene, in.atlas);
-    near.emplace(
-        NearScene{in.scene, in.atlas, in.lights, in.tracer, widths, diagonal_m, params.layers});
+    near.emplace(NearScene{in.scene, in.atlas, in.lights, in.tracer, widths, diagonal_m,
+                           params.followed_layers ? params.followed_layers : params.layers});
   }
   const RadiosityMap* sent = params.earlier ? params.earlier->sent : nullptr;
   if (sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());

@@ -1,0 +1,60 @@
+// Points of texels' footprints, and whether they lie in the open.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "luxel/light/shadow_rays.h"
+#include "luxel/light/texel_scene.h"
+#include "luxel/transport/back_faces.h"
+#include "luxel/transport/elements.h"
+
+namespace luxel::light {
+
+/// For one of many points, and for the sample of a texel, as gather asks.
+inline constexpr int kEnclosureRays = 16, kEnclosureRaysOfTexel = 64;
+
+/// What all points share.
+struct PointScene {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  float diagonal_m;
+};
+
+inline PointScene point_scene(const TexelScene& in) {
+  return {in.scene, in.tracer, scene::world_bounds(in.scene).diagonal()};
+}
+
+/// Whether a point lies inside a solid; of each place the same answer in every bake.
+inline bool is_enclosed(const PointScene& at, const Receiver& r, int rays = kEnclosureRays) {
+  return transport::is_enclosed(at.scene, at.tracer, r.origin, r.normal, rays, at.diagonal_m);
+}
+
+inline Receiver receiver_at(const PointScene& at, const transport::SmoothPoint& s, uint64_t seed) {
+  return {s.position, s.normal, s.geometric_normal,
+          trace::offset_origin(s.position, s.geometric_normal, at.diagonal_m), seed};
+}
+
+/// Only to be asked whether it is enclosed: it has no seed.
+inline Receiver own_receiver(const PointScene& at, const transport::Elements& elements, size_t i) {
+  return receiver_at(at, {elements.position[i], elements.normal[i], elements.geometric_normal[i]},
+                     0);
+}
+
+/// Whether the sample of a texel has the backs of some surfaces before it.
+inline bool sees_backs(const PointScene& at, const Receiver& own) {
+  return transport::all_backs(transport::count_back_faces(at.scene, at.tracer, own.origin,
+                                                          own.normal, kEnclosureRays)) > 0;
+}
+
+/// Gets the open points of texel number `texel` of the map, one at least.
+using AtPoints = std::function<void(size_t texel, std::span<const Receiver> points)>;
+
+/// Calls `visit` for each texel that is not `hidden` with up to `count` points of its footprint,
+/// spread evenly, without those inside of solids; its own sample where no other is left. Each
+/// point has a seed of its own. Many threads call at a time. Errors: cancelled.
+Status visit_points(const TexelScene& in, std::span<const uint8_t> hidden, int count, uint64_t seed,
+                    std::string_view stage, const AtPoints& visit, Progress& progress);
+
+}  // namespace luxel::light

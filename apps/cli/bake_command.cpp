@@ -25,7 +25,7 @@ Status check_resolution(const Given& given, const pipeline::BakeSettings& s) {
   return fail(ErrorCode::bad_setting,
               "--resolution {} and --texels-per-metre {} contradict each other; leave one out, or "
               "add --pages auto, which takes as many lightmaps of that resolution as it needs",
-              s.resolution, s.texels_per_metre);
+              s.resolution.value_or(0), s.texels_per_metre);
 }
 
 /// From the file of --settings, if there is one, and then from the command line. What a solver

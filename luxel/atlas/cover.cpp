@@ -106,25 +106,30 @@ bool holds_texel(const UvTriangle& t, int i, int j) {
   return true;
 }
 
-Clip clip_to_texel(const UvTriangle& t, int column, int row) {
+ClippedCorners clipped_corners(const UvTriangle& t, int column, int row) {
   // Relative to the texel's corner, where the digits are. [Sutherland74]
-  std::array<DVec2, 9> polygon, next;
-  size_t count = 3;
-  for (size_t k = 0; k < 3; ++k) polygon[k] = t.corner[k] - DVec2{double(column), double(row)};
+  ClippedCorners out, next;
+  out.count = 3;
+  for (size_t k = 0; k < 3; ++k) out.corner[k] = t.corner[k] - DVec2{double(column), double(row)};
   for (int side = 0; side < 4; ++side) {
     const auto inside = [&](DVec2 p) {
       return side == 0 ? p.x : side == 1 ? 1 - p.x : side == 2 ? p.y : 1 - p.y;
     };
-    size_t kept = 0;
-    for (size_t k = 0; k < count; ++k) {
-      const DVec2 a = polygon[k], b = polygon[(k + 1) % count];
+    next.count = 0;
+    for (size_t k = 0; k < out.count; ++k) {
+      const DVec2 a = out.corner[k], b = out.corner[(k + 1) % out.count];
       const double da = inside(a), db = inside(b);
-      if (da >= 0) next[kept++] = a;
-      if ((da > 0 && db < 0) || (da < 0 && db > 0)) next[kept++] = a + (b - a) * (da / (da - db));
+      if (da >= 0) next.corner[next.count++] = a;
+      if ((da > 0 && db < 0) || (da < 0 && db > 0))
+        next.corner[next.count++] = a + (b - a) * (da / (da - db));
     }
-    polygon = next;
-    count = kept;
+    out = next;
   }
+  return out;
+}
+
+Clip clip_to_texel(const UvTriangle& t, int column, int row) {
+  const auto [polygon, count] = clipped_corners(t, column, row);
   Clip clip;
   DVec2 sum;
   for (size_t k = 2; k < count; ++k) {

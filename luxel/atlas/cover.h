@@ -41,5 +41,11 @@ struct Clip {
   DVec2 centroid;
 };
 Clip clip_to_texel(const UvTriangle& t, int column, int row);
+/// Its corners, relative to the texel's upper left one.
+struct ClippedCorners {
+  std::array<DVec2, 9> corner;
+  size_t count = 0;
+};
+ClippedCorners clipped_corners(const UvTriangle& t, int column, int row);
 
 }  // namespace luxel::atlas

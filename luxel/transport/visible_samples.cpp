@@ -5,6 +5,7 @@
 #include <numeric>
 #include <optional>
 
+#include "luxel/atlas/cover.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/warp.h"
 #include "luxel/scene/drawn_triangle.h"
@@ -19,6 +20,67 @@ constexpr int kGrid = 4;        ///< places looked at along a texel's side
 constexpr int kFeelers = 6;     ///< short rays around a sample
 constexpr float kReach = 1.5f;  ///< their length in texels
 constexpr int kFirstRays = 8, kRaysForVisible = 32;
+/// Charts of no more texels are looked at texel by texel: they fall between those of a lattice.
+constexpr uint32_t kSmallChart = 32;
+/// Places looked at in the part of a texel that a chart covers, at most.
+constexpr size_t kMostPlaces = 48;
+
+/// The drawn triangles of each chart: those of chart c are all[first[c]] up to all[first[c + 1]].
+struct ChartTriangles {
+  std::vector<uint32_t> first, all;
+};
+
+ChartTriangles triangles_of_charts(const atlas::Atlas& atlas) {
+  ChartTriangles out{std::vector<uint32_t>(atlas.chart_count + 1), {}};
+  for (const uint32_t chart : atlas.chart) ++out.first[chart + 1];
+  std::partial_sum(out.first.begin(), out.first.end(), out.first.begin());
+  out.all.resize(atlas.chart.size());
+  std::vector<uint32_t> next = out.first;
+  for (uint32_t t = 0; t < atlas.chart.size(); ++t) out.all[next[atlas.chart[t]]++] = t;
+  return out;
+}
+
+/// A place of a triangle in a texel.
+struct Place {
+  Vec2 texels;
+  uint32_t triangle = 0;  ///< among all that are drawn
+  Barycentric at;
+};
+
+/// The middles of the four quarters of a triangle, as weights of its corners.
+constexpr std::array<std::array<double, 3>, 4> kQuarters{{{1 / 3.0, 1 / 3.0, 1 / 3.0},
+                                                          {2 / 3.0, 1 / 6.0, 1 / 6.0},
+                                                          {1 / 6.0, 2 / 3.0, 1 / 6.0},
+                                                          {1 / 6.0, 1 / 6.0, 2 / 3.0}}};
+
+/// Places all over the part of a triangle that lies in a texel.
+void add_places(const atlas::Atlas& atlas, uint32_t triangle, const atlas::Texel& texel,
+                std::vector<Place>& places) {
+  const auto& c = atlas.corners[triangle];
+  const DVec2 a = to_double(c[0]), b = to_double(c[1]), d = to_double(c[2]);
+  const int x = int(texel.x), y = int(texel.y);
+  if (std::max({a.x, b.x, d.x}) < x || std::min({a.x, b.x, d.x}) > x + 1 ||
+      std::max({a.y, b.y, d.y}) < y || std::min({a.y, b.y, d.y}) > y + 1)
+    return;
+  const double area2 = cross(b - a, d - a);
+  const auto add = [&](double u, double v) {
+    const Barycentric at{float(u), float(v)};
+    if (at.u > 0 && at.v > 0 && at.u + at.v < 1)
+      places.push_back({interpolate(c[0], c[1], c[2], at), triangle, at});
+  };
+  if (area2 == 0) {  // squeezed to a line: its texels belong to all of it
+    for (const auto& q : kQuarters)
+      for (const auto& r : kQuarters) add((q[1] + r[1]) / 2, (q[2] + r[2]) / 2);
+    return;
+  }
+  const auto [corner, count] = atlas::clipped_corners(atlas::uv_triangle({a, b, d}), x, y);
+  for (size_t k = 2; k < count; ++k)
+    for (const auto& q : kQuarters) {
+      const DVec2 p = corner[0] * q[0] + corner[k - 1] * q[1] + corner[k] * q[2] +
+                      DVec2{double(x), double(y)} - a;
+      add(cross(p, d - a) / area2, cross(b - a, p) / area2);
+    }
+}
 
 struct Probe {
   const scene::Scene& scene;
@@ -54,6 +116,9 @@ struct Probe {
   /// The place of the texel's grid that is nearest to the middle of those in the open; nothing:
   /// none is, or all are and the sample, too.
   std::optional<scene::SurfacePoint> open_place(const atlas::Texel& texel, bool is_open) const;
+  /// The same of all that the texel's chart covers of it, by whichever triangle: of charts thinner
+  /// than a texel the grid may meet nothing.
+  std::optional<Place> open_place(const atlas::Texel& texel, const ChartTriangles& charts) const;
 };
 
 /// The places of the grid, its corners first.
@@ -95,6 +160,26 @@ std::optional<scene::SurfacePoint> Probe::open_place(const atlas::Texel& texel,
   const auto nearest = std::ranges::min_element(
       open, {}, [&](const Candidate& c) { return length(c.place - middle); });
   return scene::SurfacePoint{texel.sample.instance, texel.sample.triangle, nearest->at};
+}
+
+std::optional<Place> Probe::open_place(const atlas::Texel& texel,
+                                       const ChartTriangles& charts) const {
+  const uint32_t chart = atlas.chart[texel.triangle_number];
+  std::vector<Place> places, open;
+  for (uint32_t k = charts.first[chart]; k < charts.first[chart + 1]; ++k)
+    add_places(atlas, charts.all[k], texel, places);
+  const size_t step = (places.size() + kMostPlaces - 1) / kMostPlaces;
+  Vec2 middle{0, 0};
+  for (size_t k = 0; k < places.size(); k += step) {
+    const auto [instance, triangle] =
+        scene::drawn_triangle(atlas.first_triangle, places[k].triangle);
+    if (!in_the_open({instance, triangle, places[k].at})) continue;
+    open.push_back(places[k]), middle = middle + places[k].texels;
+  }
+  if (open.empty()) return {};
+  middle = middle * (1 / float(open.size()));
+  return *std::ranges::min_element(open, {},
+                                   [&](const Place& p) { return length(p.texels - middle); });
 }
 
 /// What is known of a texel.
@@ -165,6 +250,19 @@ void look_for_regions(const Probe& probe, const atlas::TexelMap& map, std::span<
   });
 }
 
+/// Looks at the samples of small charts.
+void look_at_small_charts(const Probe& probe, const atlas::TexelMap& map, std::span<Found> found) {
+  std::vector<uint32_t> texels(probe.atlas.chart_count);
+  const auto chart_of = [&](size_t i) { return probe.atlas.chart[map.texels[i].triangle_number]; };
+  for (size_t i = 0; i < found.size(); ++i) ++texels[chart_of(i)];
+  parallel_for(found.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      if (found[i] == Found::nothing && texels[chart_of(i)] <= kSmallChart &&
+          !probe.in_the_open(map.texels[i].sample))
+        found[i] = Found::enclosed;
+  });
+}
+
 /// Those that are enclosed and their neighbours in the map.
 std::vector<uint32_t> at_the_edge(const atlas::TexelMap& map, std::span<const Found> found) {
   std::vector<uint8_t> is_at_edge(found.size());
@@ -181,6 +279,12 @@ std::vector<uint32_t> at_the_edge(const atlas::TexelMap& map, std::span<const Fo
   return out;
 }
 
+void move_to(const atlas::Atlas& atlas, const Place& place, atlas::Texel& texel) {
+  const auto [instance, triangle] = scene::drawn_triangle(atlas.first_triangle, place.triangle);
+  texel.sample = {instance, triangle, place.at};
+  texel.triangle_number = place.triangle & 0x7fffffffu;
+}
+
 /// Opens the samples of the map's texels, of which only some can have backs near them.
 MovedSamples move_some(const Probe& probe, std::span<const uint32_t> texels, atlas::TexelMap& map) {
   std::vector<Found> found(map.texels.size());
@@ -189,12 +293,19 @@ MovedSamples move_some(const Probe& probe, std::span<const uint32_t> texels, atl
   for (uint32_t i = 0; i < found.size(); ++i)
     if (found[i] != Found::nothing) out.near_back_faces.push_back(i);
   look_for_regions(probe, map, found);
+  look_at_small_charts(probe, map, found);
   const std::vector<uint32_t> edge = at_the_edge(map, found);
+  const ChartTriangles charts = triangles_of_charts(probe.atlas);
   parallel_for(edge.size(), 64, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
+      const Found before = found[edge[k]];
       atlas::Texel& texel = map.texels[edge[k]];
-      const auto place = probe.open_place(texel, found[edge[k]] != Found::enclosed);
-      if (place) texel.sample = *place, found[edge[k]] = Found::moved;
+      if (const auto place = probe.open_place(texel, before != Found::enclosed)) {
+        texel.sample = *place, found[edge[k]] = Found::moved;
+      } else if (before == Found::enclosed) {
+        if (const auto other = probe.open_place(texel, charts))
+          move_to(probe.atlas, *other, texel), found[edge[k]] = Found::moved;
+      }
     }
   });
   for (uint32_t i = 0; i < found.size(); ++i)

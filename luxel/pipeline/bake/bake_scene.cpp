@@ -9,6 +9,7 @@
 #include "luxel/pipeline/reuse/checkpoint.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/texels/resolution.h"
 #include "luxel/pipeline/texels/two_sides.h"
 #include "luxel/scene/sides.h"
 #include "luxel/scene/validate.h"
@@ -65,11 +66,14 @@ Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, B
   const size_t materials = scene.materials.size();
   if (keeps)
     for (const scene::Mesh& mesh : scene.meshes) numbers.push_back(mesh.triangle_material);
-  LUXEL_TRY(sides, split_sides(scene, settings.uv, settings.resolution, progress));
-  warn();
+  LUXEL_TRY(const SettledResolution settled, settle_resolution(settings, scene, progress));
+  LUXEL_TRY(sides, split_sides(scene, settings.uv, *settled.settings.resolution, progress));
   const std::vector<uint32_t> copies =
       keeps ? one_sided_copies(numbers, materials, scene) : std::vector<uint32_t>{};
-  LUXEL_TRY(TexelLayout layout, lay_out_texels(settings, scene, progress));
+  LUXEL_TRY(TexelLayout layout, lay_out_texels(settled.settings, scene, progress));
+  if (std::string text = about_resolution(settled, layout.atlas, layout.stats); !text.empty())
+    sides.push_back(std::move(text));
+  warn();
   if (!keeps) return layout;
   KeptLayout kept = keep_layout(scene, layout);
   kept.one_sided_of = copies, kept.warnings = std::move(sides);

@@ -64,8 +64,10 @@ Options<S> sampling_options() {
 /// Where texels lie.
 Options<S> layout_options() {
   return {
-      BakeRows::number("--resolution", &S::resolution, {1, kMaxResolution},
-                       "Side of a lightmap in texels")
+      BakeRows::number(
+          "--resolution", &S::resolution, {1, kMaxResolution},
+          "Side of a lightmap in texels; without it, as fine as the scene deserves, up to "
+          "some 2 million texels")
           .unit("TEXELS"),
       BakeRows::number("--texels-per-metre", &S::texels_per_metre,
                        {0, kNoLimit, "is not a density; give a number > 0"},

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -44,8 +45,9 @@ struct BakeSettings {
   std::filesystem::path scene;
   std::filesystem::path output;  ///< a folder; made when missing
   std::string solver = "gather";
-  SolverSettings own;          ///< what only one solver has, by its type
-  int resolution = 512;        ///< side of a lightmap in texels
+  SolverSettings own;  ///< what only one solver has, by its type
+  /// Side of a lightmap in texels; nothing: by the scene (luxel/pipeline/texels/resolution.h).
+  std::optional<int> resolution;
   float texels_per_metre = 0;  ///< > 0: chooses the resolution; with automatic pages their number
   PagesSetting pages;
   atlas::UvMode uv = atlas::UvMode::automatic;

@@ -16,7 +16,7 @@ namespace {
 atlas::AtlasParams params_of(const BakeSettings& settings) {
   atlas::AtlasParams params;
   params.uv = settings.uv;
-  params.resolution = settings.resolution;
+  params.resolution = settings.resolution.value_or(params.resolution);
   params.texels_per_metre = settings.texels_per_metre;
   params.page_mode = settings.pages.mode, params.pages = settings.pages.count;
   return params;

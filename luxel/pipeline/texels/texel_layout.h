@@ -35,10 +35,11 @@ struct TexelLayout {
   std::vector<uint32_t> near_back_faces;  ///< MovedSamples::near_back_faces
 };
 
-/// Lays the scene out and rasterises it. With settings.repair_leaks, samples move out of solids,
-/// and where barriers stand on charts (luxel/transport/barriers.h) the scene's triangles are cut
-/// along them and laid out anew, unless TEXCOORD_1 is kept. `scene` changes by these cuts and must
-/// stay where it is while the tracer is used.
+/// Lays the scene out and rasterises it; settings.resolution is settled (resolution.h). With
+/// settings.repair_leaks, samples move out of solids, and where barriers stand on charts
+/// (luxel/transport/barriers.h) the scene's triangles are cut along them and laid out anew, unless
+/// TEXCOORD_1 is kept. `scene` changes by these cuts and must stay where it is while the tracer is
+/// used.
 Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& scene,
                                    Progress& progress);
 

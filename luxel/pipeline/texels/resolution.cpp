@@ -1,0 +1,103 @@
+#include "luxel/pipeline/texels/resolution.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/atlas/fit_charts.h"
+#include "luxel/atlas/pages.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Side of a page where the density says how many there are.
+constexpr int kPageSide = 1024, kLargestPageSide = 4096;
+constexpr int kGutter = atlas::AtlasParams{}.gutter;
+/// Advice gives the packer so much more than it is thought to need: it may fall short by as much.
+constexpr double kSpare = 1.2;
+/// Gutters that take more of a lightmap are worth a word.
+constexpr double kLowUtilisation = 0.4;
+
+/// The longest chart must fit a page: triangles cannot be cut.
+int page_side_for(const atlas::SceneDetail& detail, double texels_per_metre) {
+  double longest = 0;
+  for (const atlas::ChartSize& c : detail.charts) longest = std::max(longest, c.length);
+  return std::clamp(atlas::round_side_up(longest * texels_per_metre + 2), kPageSide,
+                    kLargestPageSide);
+}
+
+/// What would do: every chart but a fiftieth of the area kFewestTexelsAcross wide or wider.
+std::string advice_for(const SettledResolution& settled, double density) {
+  const double pages = double(settled.settings.pages.count);
+  const double side = atlas::side_at(settled.detail, kSpare * density, kGutter) / std::sqrt(pages);
+  if (settled.settings.texels_per_metre > 0 ||
+      settled.settings.pages.mode != atlas::PageMode::fixed)
+    return fmt::format("--texels-per-metre {:.3g} would do", density);
+  if (side <= atlas::kMaxResolution)
+    return fmt::format("--resolution {} would do", atlas::round_side_up(side));
+  return fmt::format("--pages auto --texels-per-metre {:.3g} would do", density);
+}
+
+/// The part of the surface that lies in charts narrower than kFewestTexelsAcross.
+double narrow_part(const atlas::SceneDetail& detail, double density) {
+  double narrow = 0;
+  for (const atlas::ChartSize& c : detail.charts)
+    if (c.width * density < kFewestTexelsAcross) narrow += c.length * c.width;
+  return detail.area_m2 > 0 ? narrow / detail.area_m2 : 0;
+}
+
+std::string about_gutters(const atlas::Atlas& atlas, const atlas::AtlasStats& stats) {
+  if (atlas.kept || stats.utilisation >= kLowUtilisation) return {};
+  return fmt::format(
+      "; {:.0f} % of the lightmap is in use, since {} charts have {} texels between "
+      "them",
+      100 * stats.utilisation, stats.charts, kGutter);
+}
+
+}  // namespace
+
+Result<SettledResolution> settle_resolution(const BakeSettings& settings, const scene::Scene& scene,
+                                            Progress& progress) {
+  progress.begin("charts", 0);
+  SettledResolution out{settings, {}, {}};
+  atlas::AtlasParams params;
+  params.uv = settings.uv;
+  params.page_mode = settings.pages.mode, params.pages = settings.pages.count;
+  LUXEL_TRY(out.detail, atlas::detail_of(scene, params, progress));
+  if (settings.resolution) return out;
+  const bool fixed = settings.pages.mode == atlas::PageMode::fixed;
+  if (settings.texels_per_metre > 0) {
+    out.settings.resolution =
+        fixed ? kPageSide : page_side_for(out.detail, double(settings.texels_per_metre));
+    return out;
+  }
+  const atlas::ChosenResolution chosen =
+      atlas::choose_resolution(scene, out.detail, params, kMostTexelsByDefault);
+  out.chosen = chosen;
+  out.settings.resolution = chosen.resolution;
+  if (fixed) return out;
+  out.settings.texels_per_metre = float(chosen.texels_per_metre);
+  out.settings.resolution = page_side_for(out.detail, chosen.texels_per_metre);
+  return out;
+}
+
+std::string about_resolution(const SettledResolution& settled, const atlas::Atlas& atlas,
+                             const atlas::AtlasStats& stats) {
+  const double narrow = narrow_part(settled.detail, stats.texels_per_metre);
+  const double width = atlas::narrow_width_m(settled.detail);
+  // A fiftieth lies in charts of that width or narrower ones, and as little is left out of account.
+  const bool fine = !(width > 0) || width * stats.texels_per_metre >= kFewestTexelsAcross;
+  if (settled.chosen && settled.chosen->capped)
+    return fmt::format(
+        "{:.3g} texels per metre are fewer than the {:.3g} that this scene deserves, "
+        "because a default bake stops at some {:.0f} million texels; {}{}",
+        stats.texels_per_metre, settled.chosen->wished, kMostTexelsByDefault * 1e-6,
+        advice_for(settled, settled.chosen->wished), about_gutters(atlas, stats));
+  if (fine) return {};
+  return fmt::format(
+      "{:.3g} texels per metre are few: {:.0f} % of the surface lies in parts less "
+      "than {} texels wide, across which light cannot vary; {}{}",
+      stats.texels_per_metre, 100 * narrow, kFewestTexelsAcross,
+      advice_for(settled, kFewestTexelsAcross / width), about_gutters(atlas, stats));
+}
+
+}  // namespace luxel::pipeline

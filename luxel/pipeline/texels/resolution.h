@@ -1,0 +1,38 @@
+// The resolution of a bake: as asked for, or by the scene.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "luxel/atlas/choose_resolution.h"
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/pipeline/settings/settings.h"
+
+namespace luxel::pipeline {
+
+/// A bake gets about so many texels where its user leaves the resolution open: they take a minute
+/// or a few and some 1 GB.
+inline constexpr double kMostTexelsByDefault = 2e6;
+
+/// Settings that say how large lightmaps are, and what there is to see in the scene.
+struct SettledResolution {
+  BakeSettings settings;  ///< with a resolution
+  atlas::SceneDetail detail;
+  std::optional<atlas::ChosenResolution> chosen;  ///< where the user has left it open
+};
+
+/// Settles what the user has left open: the resolution of pages whose number is given, the density
+/// of others. Errors: cancelled.
+Result<SettledResolution> settle_resolution(const BakeSettings& settings, const scene::Scene& scene,
+                                            Progress& progress);
+
+/// One sentence where light is coarser than the scene deserves, with what to do: more than a
+/// fiftieth of the surface lies in charts less than kFewestTexelsAcross wide, or the default
+/// stopped at kMostTexelsByDefault. Empty: all is well.
+std::string about_resolution(const SettledResolution& settled, const atlas::Atlas& atlas,
+                             const atlas::AtlasStats& stats);
+/// Light cannot vary across a narrower chart.
+inline constexpr double kFewestTexelsAcross = 2;
+
+}  // namespace luxel::pipeline

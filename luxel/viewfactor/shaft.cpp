@@ -37,6 +37,16 @@ double depth_below(const Plane& plane, PolygonView polygon) {
   return depth;
 }
 
+/// The share of the lines with depths below a facet of up to w_a and w_b that run no deeper than d
+/// where they are the share t of their way from a to b.
+double share_of_lines(double d, double t, double w_a, double w_b) {
+  const double at_a = (1 - t) * w_a, at_b = t * w_b;  // the depth there is the sum of two parts
+  if (d >= at_a + at_b) return 1;
+  const double large = std::max(at_a, at_b), small = std::min(at_a, at_b);
+  if (small <= 1e-12 * large) return std::min(1.0, d / large);
+  return std::min({1.0, d / large, d * d / (2 * small * large)});
+}
+
 }  // namespace
 
 Shaft shaft_between(PolygonView a, PolygonView b, double slack) {
@@ -75,11 +85,21 @@ Intrusion intrusion(const Shaft& shaft, PolygonView a, PolygonView b, PolygonVie
     inside = clip_above(inside, {-plane.normal, -plane.offset}, shaft.slack);
     if (inside.empty()) return {};
   }
+  const Plane plane_a = plane_of(a), plane_b = plane_of(b);
+  double first = 1, last = 0;  // of the way from a to b
+  for (const DVec3& p : inside) {
+    const double from_a = std::max(0.0, plane_a.height(p)),
+                 from_b = std::max(0.0, plane_b.height(p));
+    const double t = from_a + from_b > 0 ? from_a / (from_a + from_b) : 0.5;
+    first = std::min(first, t), last = std::max(last, t);
+  }
   Intrusion found{area_m2(inside), 1};
   for (const Plane& plane : shaft.planes) {
     const double d = depth_below(plane, inside);
-    const double widths = depth_below(plane, a) * depth_below(plane, b);
-    if (widths > 0) found.share = std::min(found.share, 8 * d * d / widths);
+    const double w_a = depth_below(plane, a), w_b = depth_below(plane, b);
+    const double share =
+        std::max(share_of_lines(d, first, w_a, w_b), share_of_lines(d, last, w_a, w_b));
+    if (w_a > 0 && w_b > 0) found.share = std::min(found.share, 4 * share);
   }
   return found;
 }

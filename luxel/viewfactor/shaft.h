@@ -27,8 +27,9 @@ struct Intrusion {
   double area_m2 = 0;  ///< of the part inside
   /// A guess at the share of lines from a to b that it can hide, from its depth d below the facet
   /// it reaches least beyond: a line that runs d below the facet at the share t of its way has
-  /// (1 - t) d_a + t d_b <= d, and of all lines, d_a < w_a and d_b < w_b below the facet, these are
-  /// d^2 / (2 t (1 - t) w_a w_b). Four times that with t = 1/2; at most 1.
+  /// (1 - t) d_a + t d_b <= d. The share of all lines, d_a < w_a and d_b < w_b below the facet, is
+  /// largest at an end of the range of t. Four times that, because lines are not spread evenly; at
+  /// most 1.
   double share = 0;
 };
 Intrusion intrusion(const Shaft& shaft, PolygonView a, PolygonView b, PolygonView polygon);

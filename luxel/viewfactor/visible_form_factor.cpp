@@ -2,25 +2,28 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <queue>
 
+#include "luxel/viewfactor/shadow_lines.h"
 #include "luxel/viewfactor/shaft.h"
 
 namespace luxel::viewfactor {
 namespace {
 
-using Triangle = std::array<DVec3, 3>;
-
 struct Cell {
   Triangle corners;
-  std::vector<uint32_t> blockers;  ///< that reach into its shaft; none: `value` is exact
-  double value = 0, error = 0;
-  double unseen = 0;      ///< what blockers that no sample has seen may hide
-  bool shadowed = false;  ///< a sample has seen one; else `value` is the whole
+  std::vector<uint32_t> blockers = {};  ///< that reach into its shaft; none: `value` is exact
+  double value = 0;
+  double rough = 0;   ///< the rule's error
+  double change = 0;  ///< its share of what the last split changed, as it may go on, with its sign
+  double unseen = 0;  ///< what blockers that no sample has seen may hide
+  bool shadowed = false;    ///< a sample has seen one; else `value` is the whole
+  bool is_crossed = false;  ///< by a shadow line that the rule may step over
+
+  double error() const { return rough + unseen; }
 };
 struct SmallerError {
-  bool operator()(const Cell& a, const Cell& b) const { return a.error < b.error; }
+  bool operator()(const Cell& a, const Cell& b) const { return a.error() < b.error(); }
 };
 
 /// Radon's rule of degree 5: barycentric coordinates and weights of 7 points. [Radon48]
@@ -38,12 +41,19 @@ constexpr std::array<RuleNode, 7> kRule{{{1.0 / 3, 1.0 / 3, 0.225},
                                          {kInnerRest, kInner, kInnerWeight},
                                          {kInnerRest, kInnerRest, kInnerWeight}}};
 
+/// The share of a change that is left in the children.
+constexpr double kLeftAtKinks = 0.25, kLeftAtJumps = 1;
+/// The share of the parent's error that stays in the children at least. Where shadows end sharply,
+/// samples may not show it for several steps.
+constexpr double kLeastAtKinks = 0.1, kLeastAtJumps = 0.3;
+
 /// One pair of polygons at work.
 struct PairIntegral {
   Polygon b;
   std::span<const Blocker> blockers;
   DVec3 normal;  ///< of a
   double tolerance = 0, slack = 0;
+  ShadowLines lines;
   std::vector<uint8_t> casts_shadow;
   VisibilityScratch scratch;
 };
@@ -89,112 +99,202 @@ bool keep_reaching(const PairIntegral& pair, PolygonView a, const Shaft& shaft,
   return true;
 }
 
+double longest_edge(const Triangle& t) {
+  return std::sqrt(std::max({dot(t[1] - t[0], t[1] - t[0]), dot(t[2] - t[1], t[2] - t[1]),
+                             dot(t[0] - t[2], t[0] - t[2])}));
+}
+
+/// Calls visit(line, chord) for the shadow lines that cross the cell and that its rule may
+/// step over.
+template <class Visit>
+void for_each_sharp_line(const PairIntegral& pair, const Cell& cell, const Visit& visit) {
+  const double size = longest_edge(cell.corners);
+  for (const uint32_t b : cell.blockers)
+    for (const ShadowLine& line : pair.lines.of(b)) {
+      if (!is_sharp(line, size)) continue;
+      const Chord chord = chord_of(line, cell.corners, pair.slack);
+      if (!chord.is_empty) visit(line, chord);
+    }
+}
+
+SeenFactor seen_from(PairIntegral& pair, const Cell& cell, DVec3 x) {
+  return visible_point_factor(x, pair.normal, pair.b, {pair.blockers, cell.blockers}, pair.slack,
+                              pair.casts_shadow, pair.scratch);
+}
+
+/// Sets the value by the rule, and casts_shadow. Returns what would arrive without blockers.
+double sample(PairIntegral& pair, Cell& cell) {
+  for (const uint32_t b : cell.blockers) pair.casts_shadow[b] = 0;
+  const auto& [p, q, r] = cell.corners;
+  const double area = area_m2(cell.corners);
+  double whole = 0;
+  for (const RuleNode& node : kRule) {
+    const SeenFactor seen =
+        seen_from(pair, cell, p * (1 - node.u - node.v) + q * node.u + r * node.v);
+    cell.value += node.weight * area * seen.visible;
+    whole += node.weight * area * seen.whole;
+  }
+  return whole;
+}
+
 /// A cell's value and, until splitting tells more, all of it as its error where there are shadows.
 Cell evaluate(PairIntegral& pair, const Triangle& corners, std::span<const uint32_t> candidates) {
-  Cell cell{corners, {}, 0, 0, 0, false};
+  Cell cell{.corners = corners};
   const Shaft shaft = shaft_between(corners, pair.b, pair.slack);
   if (!keep_reaching(pair, corners, shaft, candidates, cell.blockers)) {
     cell.blockers.clear();
     return cell;
   }
+  const auto closed_form = [&] {
+    return polygon_exchange_area(corners, pair.b, 1e-3 * pair.tolerance, pair.slack).value;
+  };
   if (cell.blockers.empty()) {
-    cell.value = polygon_exchange_area(corners, pair.b, 1e-3 * pair.tolerance, pair.slack).value;
+    cell.value = closed_form();
     return cell;
   }
-  for (const uint32_t b : cell.blockers) pair.casts_shadow[b] = 0;
-  const double area = area_m2(corners);
-  double whole = 0;
-  for (const RuleNode& node : kRule) {
-    const DVec3 x = corners[0] * (1 - node.u - node.v) + corners[1] * node.u + corners[2] * node.v;
-    const SeenFactor seen =
-        visible_point_factor(x, pair.normal, pair.b, {pair.blockers, cell.blockers}, pair.slack,
-                             pair.casts_shadow, pair.scratch);
-    cell.value += node.weight * area * seen.visible;
-    whole += node.weight * area * seen.whole;
-  }
-  bool shadowed = false;
+  const double whole = sample(pair, cell);
+  for_each_sharp_line(pair, cell, [&](const ShadowLine&, const Chord&) { cell.is_crossed = true; });
   for (const uint32_t b : cell.blockers) {
-    shadowed |= pair.casts_shadow[b] != 0;
+    cell.shadowed |= pair.casts_shadow[b] != 0;
     if (pair.casts_shadow[b]) continue;
     const Intrusion into = intrusion(shaft, corners, pair.b, pair.blockers[b].corners);
     cell.unseen += std::min(whole * into.share, into.area_m2);
   }
-  if (!shadowed)
-    cell.value = polygon_exchange_area(corners, pair.b, 1e-3 * pair.tolerance, pair.slack).value;
-  cell.shadowed = shadowed;
+  if (!cell.shadowed) cell.value = closed_form();
+  // Where all samples lie in the dark, light can only be near the corners, or in the strip between
+  // an edge and the samples next to it, an eighth of the cell, where a shadow ends sharply.
+  if (cell.shadowed) cell.rough = (cell.value > 0 ? 1 : cell.is_crossed ? 0.12 : 0.02) * whole;
   cell.unseen = std::min(cell.unseen, cell.value);  // no more than is left can be hidden
-  // Where all samples lie in the dark, light can only be near the corners.
-  const double guess = cell.value > 0 ? whole : 0.02 * whole;
-  cell.error = shadowed ? guess : cell.unseen;
   return cell;
 }
 
-std::array<Cell, 4> split(PairIntegral& pair, const Cell& cell) {
+/// How far the triangle reaches from a point in it.
+double room_towards(const Triangle& triangle, DVec3 from, DVec3 direction) {
+  const DVec3 up = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  double room = INFINITY;
+  for (size_t k = 0; k < 3; ++k) {
+    const DVec3 inwards = cross(up, triangle[(k + 1) % 3] - triangle[k]);
+    const double speed = -dot(inwards, direction);
+    if (speed > 0) room = std::min(room, std::max(0.0, dot(inwards, from - triangle[k])) / speed);
+  }
+  return room;
+}
+
+struct Cut {
+  ShadowLine line;
+  DVec3 middle;
+  double room = 0;   ///< to the nearer side of the cell
+  double score = 0;  ///< its length times `room`
+};
+
+/// How much of b comes into view or is lost across a line, within a twentieth of the cell. Thin
+/// walls hide as much to both sides of their foot and nothing a little farther.
+double jump_across(PairIntegral& pair, const Cell& cell, const Cut& cut) {
+  const double step = std::min(0.5 * cut.room, 0.05 * longest_edge(cell.corners));
+  std::array<double, 4> share{};
+  constexpr std::array<double, 4> kPlaces{-1, -0.1, 0.1, 1};
+  for (size_t k = 0; k < 4; ++k) {
+    const SeenFactor seen =
+        seen_from(pair, cell, cut.middle + cut.line.normal * (kPlaces[k] * step));
+    if (seen.whole > 0) share[k] = seen.visible / seen.whole;
+  }
+  return *std::max_element(share.begin(), share.end()) -
+         *std::min_element(share.begin(), share.end());
+}
+
+/// The shadow line across which the most changes within a short way. False where nothing does.
+bool find_cut(PairIntegral& pair, const Cell& cell, Cut& best) {
+  constexpr size_t kMostProbes = 12;
+  constexpr double kLeastJump = 0.1, kLeastLength = 0.1;
+  if (!cell.is_crossed) return false;
+  std::vector<Cut> cuts;
+  for_each_sharp_line(pair, cell, [&](const ShadowLine& line, const Chord& chord) {
+    const double length_m = length(chord.to - chord.from);
+    Cut cut{line, (chord.from + chord.to) * 0.5, 0, 0};
+    cut.room = std::min(room_towards(cell.corners, cut.middle, line.normal),
+                        room_towards(cell.corners, cut.middle, -line.normal));
+    cut.score = length_m * cut.room;
+    if (length_m > kLeastLength * chord.whole_m && cut.score > 0) cuts.push_back(cut);
+  });
+  const size_t probes = std::min(kMostProbes, cuts.size());
+  std::partial_sort(cuts.begin(), cuts.begin() + ptrdiff_t(probes), cuts.end(),
+                    [](const Cut& a, const Cut& b) { return a.score > b.score; });
+  double most = 0;
+  for (size_t k = 0; k < probes; ++k) {
+    if (cuts[k].score <= most) break;
+    const double jump = jump_across(pair, cell, cuts[k]);
+    if (jump > kLeastJump && jump * cuts[k].score > most)
+      most = jump * cuts[k].score, best = cuts[k];
+  }
+  return most > 0;
+}
+
+void add_parts(PairIntegral& pair, const Cell& cell, const Plane& side, std::vector<Cell>& parts) {
+  const Polygon part = clip_above(cell.corners, side, 0);
+  for (size_t i = 2; i < part.size(); ++i)
+    parts.push_back(evaluate(pair, {part[0], part[i - 1], part[i]}, cell.blockers));
+}
+
+/// Along a line where what is seen changes abruptly, or else into four.
+std::vector<Cell> split(PairIntegral& pair, const Cell& cell) {
+  std::vector<Cell> parts;
+  if (Cut cut; find_cut(pair, cell, cut)) {
+    add_parts(pair, cell, {cut.line.normal, cut.line.offset}, parts);
+    add_parts(pair, cell, {-cut.line.normal, -cut.line.offset}, parts);
+    return parts;
+  }
+  const auto add = [&](const DVec3& a, const DVec3& b, const DVec3& c) {
+    parts.push_back(evaluate(pair, {a, b, c}, cell.blockers));
+  };
   const auto& [p, q, r] = cell.corners;
   const DVec3 pq = (p + q) * 0.5, qr = (q + r) * 0.5, rp = (r + p) * 0.5;
-  return {evaluate(pair, {p, pq, rp}, cell.blockers), evaluate(pair, {pq, q, qr}, cell.blockers),
-          evaluate(pair, {rp, qr, r}, cell.blockers), evaluate(pair, {pq, qr, rp}, cell.blockers)};
+  add(p, pq, rp), add(pq, q, qr), add(rp, qr, r), add(pq, qr, rp);
+  return parts;
 }
 
 /// What splitting changed is the parent's error, and at kinks, where the rule is at its worst, the
-/// children together have a fourth of it left. Symmetry may hide a change: the guess never falls to
-/// less than a tenth in one step.
+/// children together have a fourth of it left; where a shadow still ends abruptly, all of it.
+/// Symmetry may hide a change: the guess falls to no less than a certain share in one step.
 void share_error(const Cell& parent, std::span<Cell> children) {
   double sum = 0, sampled = 0;
   for (const Cell& child : children) {
     sum += child.value;
     sampled += child.shadowed ? 1 : 0;
   }
-  const double error = std::max(0.25 * std::abs(sum - parent.value), 0.1 * parent.error);
-  for (Cell& child : children)
-    if (child.shadowed) child.error = std::max(error / sampled, child.unseen);
-}
-
-/// Along a blocker that stands on `a` the visible part of `b` jumps: `a` is cut there first.
-std::vector<Polygon> cut_at_standing_blockers(const Polygon& a, const PairIntegral& pair,
-                                              std::span<const uint32_t> blockers) {
-  constexpr size_t kMaxPieces = 64;
-  const Plane ground = plane_of(a);
-  std::vector<Polygon> pieces{a};
-  for (const uint32_t index : blockers) {
-    const Blocker& blocker = pair.blockers[index];
-    double lowest = INFINITY;
-    for (const DVec3& p : blocker.corners) lowest = std::min(lowest, ground.height(p));
-    if (lowest > pair.slack || pieces.size() >= kMaxPieces) continue;
-    std::vector<Polygon> cut;
-    for (const Polygon& piece : pieces)
-      for (const Plane& side : {blocker.plane, Plane{-blocker.plane.normal, -blocker.plane.offset}})
-        if (Polygon part = clip_above(piece, side, pair.slack); !part.empty())
-          cut.push_back(std::move(part));
-    pieces = std::move(cut);
+  const double change = sum - parent.value;
+  for (Cell& child : children) {
+    if (!child.shadowed) continue;
+    const double left = (child.is_crossed ? kLeftAtJumps : kLeftAtKinks) * change / sampled;
+    child.change = left;
+    const double least =
+        (child.is_crossed ? kLeastAtJumps : kLeastAtKinks) * parent.error() / sampled;
+    child.rough = std::max(std::abs(left), least);
   }
-  return pieces;
 }
 
-/// Errors of many cells at once. Those of sampled cells depend on where the edges of shadows happen
-/// to cross them: their signs are random, and they add up like the steps of a random walk, of which
-/// four standard deviations are taken. What may not have been seen has one sign.
+/// Errors of many cells at once. Those of sampled cells depend on how the edges of shadows cross
+/// them. Where the signs are random, they add up like the steps of a random walk, of which four
+/// standard deviations are taken. Along an edge of a shadow many cells are crossed in the same way:
+/// the signs that splitting showed tell how much the errors have in common. What may not have been
+/// seen has one sign.
 struct ErrorSum {
-  double unseen = 0, sampled = 0, squares = 0;
+  double unseen = 0, sampled = 0, common = 0, squares = 0;
 
   void add(const Cell& cell, double sign) {
-    if (!cell.shadowed) {
-      unseen += sign * cell.error;
-      return;
-    }
-    sampled += sign * cell.error;
-    squares += sign * cell.error * cell.error;
+    unseen += sign * cell.unseen;
+    sampled += sign * cell.rough;
+    common += sign * cell.change;
+    squares += sign * cell.rough * cell.rough;
   }
   double total() const {
-    return std::max(0.0, unseen) +
-           std::max(0.0, std::min(sampled, 4 * std::sqrt(std::max(0.0, squares))));
+    const double walk = 4 * std::sqrt(std::max(0.0, squares));
+    return std::max(0.0, unseen) + std::max(0.0, std::min(sampled, std::abs(common) + walk));
   }
 };
 
 /// Splits the worst cell until the sum of errors is small against the sum of values.
-VisibleExchange refine(PairIntegral& pair, std::span<const Polygon> pieces,
-                       std::span<const uint32_t> blockers, double unoccluded,
-                       const VisibleParams& params) {
+VisibleExchange refine(PairIntegral& pair, PolygonView a, std::span<const uint32_t> blockers,
+                       double unoccluded, const VisibleParams& params) {
   std::priority_queue<Cell, std::vector<Cell>, SmallerError> open;
   VisibleExchange sum;
   ErrorSum errors;
@@ -204,9 +304,7 @@ VisibleExchange refine(PairIntegral& pair, std::span<const Polygon> pieces,
     errors.add(cell, 1);
     if (!cell.blockers.empty()) open.push(std::move(cell));
   };
-  for (const Polygon& piece : pieces)
-    for (size_t i = 2; i < piece.size(); ++i)
-      take(evaluate(pair, {piece[0], piece[i - 1], piece[i]}, blockers));
+  for (size_t i = 2; i < a.size(); ++i) take(evaluate(pair, {a[0], a[i - 1], a[i]}, blockers));
   const double least = pair.tolerance * std::max(params.negligible_m2, 1e-3 * unoccluded);
   const auto is_rough = [&] {
     return !open.empty() && errors.total() > std::max(least, pair.tolerance * sum.value);
@@ -215,7 +313,7 @@ VisibleExchange refine(PairIntegral& pair, std::span<const Polygon> pieces,
          !(params.progress && params.progress->cancelled())) {
     const Cell parent = open.top();
     open.pop();
-    std::array<Cell, 4> children = split(pair, parent);
+    std::vector<Cell> children = split(pair, parent);
     share_error(parent, children);
     sum.value -= parent.value;
     errors.add(parent, -1);
@@ -227,6 +325,24 @@ VisibleExchange refine(PairIntegral& pair, std::span<const Polygon> pieces,
   return sum;
 }
 
+/// The exchange area serves both directions. Points are put on the polygon on which shadows end
+/// less sharply, which is the one that blockers are farther from, or the smaller one.
+void choose_side(Polygon& a, std::span<const uint32_t> blockers, PairIntegral& pair) {
+  const auto lines_on = [&](PolygonView on, PolygonView light) {
+    return shadow_lines(plane_of(on), light, pair.blockers, blockers, pair.slack);
+  };
+  ShadowLines swapped = lines_on(pair.b, a);
+  pair.lines = lines_on(a, pair.b);
+  const auto radius = [](PolygonView polygon) {
+    return radius_about(mean_corner(polygon), polygon);
+  };
+  if (narrowest_penumbra(swapped, radius(pair.b)) <= narrowest_penumbra(pair.lines, radius(a)))
+    return;
+  std::swap(a, pair.b);
+  pair.lines = std::move(swapped);
+  pair.normal = plane_of(a).normal;
+}
+
 }  // namespace
 
 VisibleExchange visible_exchange_area(PolygonView a, PolygonView b,
@@ -234,10 +350,10 @@ VisibleExchange visible_exchange_area(PolygonView a, PolygonView b,
                                       const VisibleParams& params) {
   const Plane plane_a = plane_of(a), plane_b = plane_of(b);
   if (plane_a.normal == DVec3{} || plane_b.normal == DVec3{}) return {};
-  PairIntegral pair{{}, blockers, plane_a.normal, params.tolerance, params.slack_m, {}, {}};
+  PairIntegral pair{{}, blockers, plane_a.normal, params.tolerance, params.slack_m, {}, {}, {}};
   pair.slack = std::max(params.slack_m, 1e-13 * std::max(magnitude(a), magnitude(b)));
   pair.b = clip_above(b, plane_a, pair.slack);
-  const Polygon front_a = clip_above(a, plane_b, pair.slack);
+  Polygon front_a = clip_above(a, plane_b, pair.slack);
   if (front_a.empty() || pair.b.empty()) return {};
   pair.casts_shadow.assign(blockers.size(), 0);
   std::vector<uint32_t> candidates, reaching;
@@ -252,8 +368,8 @@ VisibleExchange visible_exchange_area(PolygonView a, PolygonView b,
   std::stable_sort(reaching.begin(), reaching.end(), [&](uint32_t i, uint32_t j) {
     return blockers[i].area_m2 > blockers[j].area_m2;
   });
-  const std::vector<Polygon> pieces = cut_at_standing_blockers(front_a, pair, reaching);
-  return refine(pair, pieces, reaching, unoccluded.value, params);
+  choose_side(front_a, reaching, pair);
+  return refine(pair, front_a, reaching, unoccluded.value, params);
 }
 
 FormFactor form_factor(PolygonView a, PolygonView b, std::span<const Polygon> blockers,

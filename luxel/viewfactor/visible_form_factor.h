@@ -27,12 +27,14 @@ struct VisibleExchange {
   bool gave_up = false;  ///< at max_cells, with an error above the tolerance
 };
 
-/// Polygon a is cut into triangles until the estimated error is small enough. Triangles past which
-/// no blocker reaches have the closed form, those that one blocker hides give nothing, and the
-/// others are sampled with the exact visibility of `b` from points. Cells of `a` are refined where
-/// the estimate is worst: the difference that splitting made, and for blockers that no sample has
-/// seen how far they reach into the cell's shaft (and no more than their area there: what passes an
-/// area S carries no more than S).
+/// The polygon on which shadows end less sharply is cut into triangles until the estimated error is
+/// small enough. Triangles past which no blocker reaches have the closed form, those that one
+/// blocker hides give nothing, and the others are sampled with the exact visibility of the other
+/// polygon from points. The cell whose estimate is worst is cut along a shadow line
+/// (shadow_lines.h) where what is seen jumps across it, and into four elsewhere. The estimate is
+/// the difference that splitting made, and for blockers that no sample has seen how far they reach
+/// into the cell's shaft (and no more than their area there: what passes an area S carries no more
+/// than S).
 VisibleExchange visible_exchange_area(PolygonView a, PolygonView b,
                                       std::span<const Blocker> blockers,
                                       const VisibleParams& params);

@@ -275,5 +275,29 @@ TEST(Atlas, CanBeCancelled) {
   EXPECT_EQ(atlas.error().code, ErrorCode::cancelled);
 }
 
+// Four times the texels for twice the density, and a 64th for what is not lightmapped.
+TEST(Atlas, InstancesHaveTheirOwnDensity) {
+  scene::Scene scene;
+  scene.materials.emplace_back();
+  for (int i = 0; i < 3; ++i) {
+    scene::Mesh quad;
+    testing::add_quad(quad, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+    testing::add_mesh(scene, quad, translation({3 * float(i), 0, 7}));
+  }
+  scene.instances[1].texel_density = 2;
+  scene.instances[2].lightmapped = false;
+  const Made made = make(scene, 256);
+  double area[3] = {};
+  for (size_t t = 0; t < made.atlas.corners.size(); ++t) {
+    const auto& c = made.atlas.corners[t];
+    area[t / 2] += 0.5 * std::abs(double(cross(c[1] - c[0], c[2] - c[0])));
+  }
+  // Corners lie on a grid of a fraction of a texel, 10 texels apart at least.
+  EXPECT_NEAR(area[1] / area[0], 4, 0.02);
+  EXPECT_NEAR(area[2] / area[0], 1.0 / 64, 5e-4);
+  // Beside a square of side 1 one of side 2 has two thirds of the page's side at most.
+  EXPECT_NEAR(area[1], 4.0 / 9 * 256 * 256, 0.05 * 256 * 256);
+}
+
 }  // namespace
 }  // namespace luxel::atlas

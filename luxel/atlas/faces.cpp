@@ -84,9 +84,11 @@ Faces make_faces(const scene::Scene& scene) {
     for (size_t i = begin; i < end; ++i) {
       const scene::Instance& instance = scene.instances[i];
       const double side = determinant(instance.world_from_object) < 0 ? -1 : 1;
+      const double density = double(scene::layout_density(instance));
       for (uint32_t t = 0; t < scene.meshes[instance.mesh].triangles.size(); ++t) {
         const scene::Triangle3 w = scene::world_triangle(scene, uint32_t(i), t);
-        const std::array<DVec3, 3> c{to_double(w.a), to_double(w.b), to_double(w.c)};
+        const std::array<DVec3, 3> c{to_double(w.a) * density, to_double(w.b) * density,
+                                     to_double(w.c) * density};
         const DVec3 area2 = cross(c[1] - c[0], c[2] - c[0]) * side;
         faces.corners[first[i] + t] = c;
         faces.normal[first[i] + t] = normalize(area2);

@@ -13,9 +13,11 @@ namespace luxel::atlas {
 
 /// All drawn triangles, numbered as scene::first_triangles does.
 struct Faces {
-  std::vector<std::array<DVec3, 3>> corners;  ///< world, corner order of the mesh
-  std::vector<DVec3> normal;                  ///< unit, front side
-  std::vector<double> area;                   ///< m^2
+  /// World, corner order of the mesh, times scene::layout_density: a surface that is to have twice
+  /// the texels per metre is laid out as if it were twice as large.
+  std::vector<std::array<DVec3, 3>> corners;
+  std::vector<DVec3> normal;  ///< unit, front side
+  std::vector<double> area;   ///< of these corners [m^2]
   /// The face on the other side of edge (k, k + 1), or kNone at a border. Vertices are joined by
   /// exact position because files split them at creases and texture seams.
   std::vector<std::array<uint32_t, 3>> across;

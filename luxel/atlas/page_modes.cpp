@@ -103,7 +103,8 @@ Status check_lengths(const scene::Scene& scene, const std::vector<FlatChart>& ch
     return fail(ErrorCode::bad_setting,
                 "texels per metre {}: a surface of instance {} '{}' that triangles leave in one "
                 "piece is {:.3g} m long, {:.0f} texels, and a page has {}; {}",
-                params.texels_per_metre, i, scene.instances[i].name, length_m, std::ceil(texels),
+                params.texels_per_metre, i, scene.instances[i].name,
+                length_m / double(scene::layout_density(scene.instances[i])), std::ceil(texels),
                 params.resolution, advice);
   }
   return {};

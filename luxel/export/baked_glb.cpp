@@ -67,6 +67,8 @@ Result<std::vector<std::byte>> finish_scene(Glb& glb, const scene::Scene& scene,
 json instance_node(const scene::Instance& instance, size_t mesh) {
   json node = {{"mesh", mesh}};
   if (!instance.name.empty()) node["name"] = instance.name;
+  if (instance.texel_density != 1) node["extras"]["luxel"]["density"] = instance.texel_density;
+  if (!instance.lightmapped) node["extras"]["luxel"]["bake"] = false;
   return node;
 }
 
@@ -160,7 +162,9 @@ Result<std::vector<std::byte>> write_baked(Glb& glb, MaterialBook& book, const s
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
     if (mesh.triangles.empty()) continue;
-    const size_t index = append_mesh(glb, book, scene, mesh, lightmap_places(atlas, pages, i));
+    LightmapCoordinates places = lightmap_places(atlas, pages, i);
+    places.attached = scene.instances[i].lightmapped;
+    const size_t index = append_mesh(glb, book, scene, mesh, places);
     json node = instance_node(scene.instances[i], index);
     for (const LightmapLayer& layer : layers)
       if (std::ranges::find(layer.instances, i) != layer.instances.end())

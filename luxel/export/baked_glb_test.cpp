@@ -382,6 +382,32 @@ TEST(LitGlb, EmissiveIsEmissionOfBlackSurfaces) {
   EXPECT_FALSE(materials["sign"]["extensions"].contains("KHR_materials_specular"));
 }
 
+// The words of extras go out as they came in; what is not lightmapped has a place in the lightmap,
+// which its materials name and do not show.
+TEST(BakedGlb, InstancesThatAreLeftOutShowNoLightmap) {
+  scene::Scene scene = rich_scene();
+  scene.instances[0].lightmapped = false;
+  scene.instances[1].texel_density = 2;
+  LitPictures pictures;
+  pictures.pages.push_back({8, 8, 3, std::vector<uint8_t>(192, 128)});
+  const auto plain = baked_glb(scene, made_up_atlas(scene), ramp_lightmap());
+  const auto combined = lit_glb(scene, made_up_atlas(scene), pictures);
+  ASSERT_TRUE(plain && combined);
+  for (const bool lit : {false, true}) {
+    const Document d = parse(lit ? *combined : *plain);
+    EXPECT_EQ(d.j["nodes"][0]["extras"]["luxel"], (json{{"bake", false}}));
+    EXPECT_EQ(d.j["nodes"][1]["extras"]["luxel"], (json{{"density", 2.0}}));
+    EXPECT_FALSE(d.j["nodes"][2].contains("extras"));
+    for (const ReadTriangle& t : read_triangles(d)) {
+      if (t.material["name"] != "painted") continue;
+      const bool left_out = t.node == "here";
+      EXPECT_EQ(t.material["extras"]["luxel"]["lightmap"], "lightmap.exr");
+      EXPECT_NE(t.material.contains("extensions"), left_out) << t.node;
+      EXPECT_EQ(t.corner[0].color == Vec3{}, lit && !left_out) << "colours are in the picture";
+    }
+  }
+}
+
 // Glass that only KHR_materials_transmission knew: of a black base colour nothing would come
 // through.
 TEST(LitGlb, GlassIsBlended) {

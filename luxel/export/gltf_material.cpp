@@ -200,7 +200,7 @@ void set_picture(Glb& glb, const MaterialBook& book, const json& picture, json& 
 }
 
 json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
-                   const scene::Material& m, TexcoordSlots slots, uint32_t page) {
+                   const scene::Material& m, TexcoordSlots slots, MaterialPlace place) {
   json out = {{"pbrMetallicRoughness", surface(glb, book, scene, m, slots)}};
   if (!m.name.empty()) out["name"] = m.name;
   set_emission(glb, book, scene, m, slots, out);
@@ -213,12 +213,13 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
   // What is baked is diffuse.
   if (book.lightmap.empty()) set_highlight(glb, m, out);
   if (book.lightmap.empty() || m.unlit) return out;
-  out["extras"]["luxel"]["lightmap"] = book.lightmap[page].name + ".exr";
+  out["extras"]["luxel"]["lightmap"] = book.lightmap[place.page].name + ".exr";
+  if (!place.attached) return out;
   if (book.attach != Attach::lightmap) {
-    set_picture(glb, book, book.lightmap[page].picture, out);
+    set_picture(glb, book, book.lightmap[place.page].picture, out);
     return out;
   }
-  out["extensions"]["MOZ_lightmap"] = book.lightmap[page].picture;
+  out["extensions"]["MOZ_lightmap"] = book.lightmap[place.page].picture;
   glb.extensions_used.insert("MOZ_lightmap");
   return out;
 }
@@ -226,8 +227,8 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
 }  // namespace
 
 size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, uint32_t material,
-                      TexcoordSlots slots, uint32_t page) {
-  const scene::Material& m = shown_material(book, scene, material);
+                      TexcoordSlots slots, MaterialPlace place) {
+  const scene::Material& m = shown_material(book, scene, material, place);
   // Slots that no texture asks for make no difference, and no second copy of the material.
   std::array<bool, 2> used{};
   for (const scene::TextureRef* ref : scene::textures_of(m))
@@ -235,10 +236,10 @@ size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, u
   for (size_t set = 0; set < 2; ++set)
     if (!used[set]) slots[set] = -1;
 
-  const std::tuple key{material, slots, page};
+  const std::tuple key{material, slots, place.page, place.attached};
   if (const auto known = book.materials.find(key); known != book.materials.end())
     return known->second;
-  const size_t index = append(glb, "materials", material_json(glb, book, scene, m, slots, page));
+  const size_t index = append(glb, "materials", material_json(glb, book, scene, m, slots, place));
   return book.materials[key] = index;
 }
 

@@ -16,9 +16,15 @@ namespace luxel::export_ {
 /// white, and glTF wants no texture at all.
 using TexcoordSlots = std::array<int, 2>;
 
+/// Where a material is used.
+struct MaterialPlace {
+  uint32_t page = 0;     ///< of the lightmap; 0 without one
+  bool attached = true;  ///< false: on what shows no lightmap, though it has a place there
+};
+
 /// What is already in the document: materials, textures and samplers are written when first used.
 struct MaterialBook {
-  std::map<std::tuple<uint32_t, TexcoordSlots, uint32_t>, size_t> materials;
+  std::map<std::tuple<uint32_t, TexcoordSlots, uint32_t, bool>, size_t> materials;
   std::map<uint32_t, size_t> images;
   std::map<std::array<int, 4>, size_t> samplers;     ///< wrap u, wrap v, magnify, minify
   std::map<std::array<size_t, 2>, size_t> textures;  ///< image, sampler
@@ -37,14 +43,16 @@ struct MaterialBook {
 
 /// The material as the document has it.
 inline const scene::Material& shown_material(const MaterialBook& book, const scene::Scene& scene,
-                                             uint32_t material) {
-  return book.shown.empty() ? scene.materials[material] : book.shown[material];
+                                             uint32_t material, MaterialPlace place) {
+  return book.shown.empty() || !place.attached ? scene.materials[material] : book.shown[material];
 }
 
 /// Whether the book's pictures hold the colour of a material's surfaces: vertex colours are in
 /// them.
-inline bool is_in_pictures(const MaterialBook& book, const scene::Material& material) {
-  return !book.lightmap.empty() && book.attach != Attach::lightmap && !material.unlit;
+inline bool is_in_pictures(const MaterialBook& book, const scene::Material& material,
+                           MaterialPlace place) {
+  return place.attached && !book.lightmap.empty() && book.attach != Attach::lightmap &&
+         !material.unlit;
 }
 
 /// MaterialBook::shown. Unlit materials stay as they are; of others there remain names, sides and
@@ -53,9 +61,9 @@ inline bool is_in_pictures(const MaterialBook& book, const scene::Material& mate
 /// nothing.
 std::vector<scene::Material> materials_without_light(const scene::Scene& scene, Attach attach);
 
-/// The index of the material in the document, as it is on a page of the lightmap (0 without one).
+/// The index of the material in the document, as it is in that place.
 size_t material_index(Glb& glb, MaterialBook& book, const scene::Scene& scene, uint32_t material,
-                      TexcoordSlots slots, uint32_t page);
+                      TexcoordSlots slots, MaterialPlace place);
 
 /// A picture on the lightmap's charts as glTF texture: clamped and bilinear. Without mipmaps charts
 /// do not bleed; a picture that is finer than the lightmap would flicker without.

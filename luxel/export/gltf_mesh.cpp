@@ -86,6 +86,7 @@ TexcoordSlots append_texcoords(Glb& glb, const scene::Mesh& mesh, const scene::M
 /// What the triangles of a primitive have in common.
 struct Part {
   uint32_t material = 0, page = 0;
+  bool attached = true;
   friend auto operator<=>(const Part&, const Part&) = default;
 };
 
@@ -101,15 +102,16 @@ json primitive(Glb& glb, MaterialBook& book, const scene::Scene& scene, const sc
         n = l > 0 ? n / l : Vec3{0, 1, 0};
     attributes["NORMAL"] = append_accessor(glb, std::span<const Vec3>(normals));
   }
-  const scene::Material& material = shown_material(book, scene, part.material);
-  if (!mesh.colors.empty() && !is_in_pictures(book, material))
+  const MaterialPlace place{part.page, part.attached};
+  const scene::Material& material = shown_material(book, scene, part.material, place);
+  if (!mesh.colors.empty() && !is_in_pictures(book, material, place))
     attributes["COLOR_0"] =
         append_accessor(glb, std::span<const Vec3>(picked(mesh.colors, vertices.source)));
   const TexcoordSlots slots =
       append_texcoords(glb, mesh, material, vertices, lightmapped, attributes);
   return {{"attributes", std::move(attributes)},
           {"indices", append_indices(glb, vertices.indices)},
-          {"material", material_index(glb, book, scene, part.material, slots, part.page)}};
+          {"material", material_index(glb, book, scene, part.material, slots, place)}};
 }
 
 }  // namespace
@@ -124,7 +126,8 @@ size_t append_mesh(Glb& glb, MaterialBook& book, const scene::Scene& scene, cons
   std::map<Part, size_t> rank;
   std::vector<std::vector<uint32_t>> triangles_of;
   for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Part part{mesh.triangle_material[t], lightmap.page.empty() ? 0 : lightmap.page[t]};
+    const Part part{mesh.triangle_material[t], lightmap.page.empty() ? 0 : lightmap.page[t],
+                    lightmap.attached};
     const auto [known, fresh] = rank.emplace(part, parts.size());
     if (fresh) {
       parts.push_back(part);

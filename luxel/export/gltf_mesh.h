@@ -12,6 +12,7 @@ namespace luxel::export_ {
 struct LightmapCoordinates {
   std::vector<std::array<Vec2, 3>> uv;  ///< per triangle its corners, in [0, 1] of the page
   std::vector<uint32_t> page;           ///< per triangle
+  bool attached = true;  ///< false: materials do not show it, and say only where it is
 };
 
 /// Appends a mesh with one primitive per material and page of the lightmap (in the order of the

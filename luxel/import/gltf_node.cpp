@@ -114,7 +114,51 @@ Result<std::vector<Mat34>> copies_of(const GltfReader& reader, const tinygltf::N
   return copies;
 }
 
-Status add_instances(GltfReader& reader, size_t index, const Mat34& world) {
+/// What extras say of a lightmap: those of nodes and meshes, "luxel": {"density": 2, "bake": false}
+/// or, as Blender's custom properties, "luxel_density": 2, "luxel_bake": false.
+struct LightmapExtras {
+  std::optional<float> density;
+  std::optional<bool> bake;
+};
+
+const tinygltf::Value* luxel_extra(const tinygltf::Value& extras, const char* key,
+                                   const char* flat_key) {
+  if (!extras.IsObject()) return nullptr;
+  if (extras.Has(flat_key)) return &extras.Get(flat_key);
+  if (!extras.Has("luxel") || !extras.Get("luxel").IsObject()) return nullptr;
+  return extras.Get("luxel").Has(key) ? &extras.Get("luxel").Get(key) : nullptr;
+}
+
+/// Anything else than a number, or true and false, is left out with a warning.
+LightmapExtras lightmap_extras(GltfReader& reader, const tinygltf::Value& extras,
+                               const std::string& where) {
+  LightmapExtras out;
+  if (const tinygltf::Value* v = luxel_extra(extras, "density", "luxel_density")) {
+    const double density = v->IsNumber() ? v->GetNumberAsDouble() : 0;
+    if (density >= double(scene::kMinTexelDensity) && density <= double(scene::kMaxTexelDensity))
+      out.density = float(density);
+    else
+      reader.warn("{}: extras.luxel.density is no number from {} to {} and is ignored", where,
+                  scene::kMinTexelDensity, scene::kMaxTexelDensity);
+  }
+  if (const tinygltf::Value* v = luxel_extra(extras, "bake", "luxel_bake")) {
+    if (v->IsBool())
+      out.bake = v->Get<bool>();
+    else if (v->IsNumber())
+      out.bake = v->GetNumberAsDouble() != 0;
+    else
+      reader.warn("{}: extras.luxel.bake is neither true nor false and is ignored", where);
+  }
+  return out;
+}
+
+/// What the first says, else the second.
+LightmapExtras first_of(const LightmapExtras& a, const LightmapExtras& b) {
+  return {a.density ? a.density : b.density, a.bake ? a.bake : b.bake};
+}
+
+Status add_instances(GltfReader& reader, size_t index, const Mat34& world,
+                     const LightmapExtras& lightmap) {
   const tinygltf::Node& node = reader.model.nodes[index];
   if (node.mesh < 0 || reader.out.scene.meshes[size_t(node.mesh)].triangles.empty()) return {};
   LUXEL_TRY(const std::vector<Mat34> copies,
@@ -122,7 +166,8 @@ Status add_instances(GltfReader& reader, size_t index, const Mat34& world) {
   const std::string& mesh_name = reader.model.meshes[size_t(node.mesh)].name;
   for (const Mat34& copy : copies)
     reader.out.scene.instances.push_back(
-        {node.name.empty() ? mesh_name : node.name, uint32_t(node.mesh), world * copy});
+        {node.name.empty() ? mesh_name : node.name, uint32_t(node.mesh), world * copy,
+         lightmap.density.value_or(1.0f), lightmap.bake.value_or(true)});
   return {};
 }
 
@@ -146,25 +191,39 @@ Status read_nodes(GltfReader& reader) {
   struct Visit {
     int node;
     Mat34 parent;
+    LightmapExtras inherited{};
   };
   // A stack of our own: a chain of nodes may be longer than the program's. Children are pushed last
   // first, so that instances come in the order of the file.
   std::vector<Visit> stack;
-  const auto push = [&](const std::vector<int>& nodes, const Mat34& parent) {
-    for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) stack.push_back({*it, parent});
+  const auto push = [&](const std::vector<int>& nodes, const Mat34& parent,
+                        const LightmapExtras& inherited) {
+    for (auto it = nodes.rbegin(); it != nodes.rend(); ++it)
+      stack.push_back({*it, parent, inherited});
   };
-  push(root_nodes(reader), {});
+  // Of meshes once: nodes may share them.
+  std::vector<LightmapExtras> of_mesh;
+  for (size_t m = 0; m < reader.model.meshes.size(); ++m)
+    of_mesh.push_back(lightmap_extras(reader, reader.model.meshes[m].extras,
+                                      label("mesh", m, reader.model.meshes[m].name)));
+  push(root_nodes(reader), {}, {});
   bool skins = false;
   while (!stack.empty()) {
     const Visit visit = stack.back();
     stack.pop_back();
     const tinygltf::Node& node = reader.model.nodes[size_t(visit.node)];
     const Mat34 world = visit.parent * local_transform(node);
-    LUXEL_TRY_STATUS(add_instances(reader, size_t(visit.node), world));
+    const LightmapExtras own =
+        lightmap_extras(reader, node.extras, label("node", size_t(visit.node), node.name));
+    const LightmapExtras inherited = first_of(own, visit.inherited);
+    LUXEL_TRY_STATUS(add_instances(
+        reader, size_t(visit.node), world,
+        node.mesh < 0 ? inherited
+                      : first_of(first_of(own, of_mesh[size_t(node.mesh)]), visit.inherited)));
     add_light(reader, node, world);
     add_camera(reader, node, world);
     skins |= node.skin >= 0;
-    push(node.children, world);
+    push(node.children, world, inherited);
   }
   if (skins) reader.warn("it has skinned meshes; they stay in their rest pose");
   return {};

@@ -191,6 +191,33 @@ TEST(Gltf, TransformsChainFromTheRoot) {
   }
 }
 
+// A node's own word, else its mesh's, else that of the nearest node above it; in luxel's object or,
+// as Blender writes custom properties, flat. What is no such value is said and left out.
+TEST(Gltf, ExtrasSayHowNodesLieInALightmap) {
+  using nlohmann::json;
+  Gltf gltf = square_gltf();
+  gltf.json["meshes"].push_back(gltf.json["meshes"][0]);
+  gltf.json["meshes"][0]["extras"] = {{"luxel", {{"density", 2}}}};
+  gltf.json["nodes"] = {
+      {{"children", {1, 2, 3, 4}}, {"extras", {{"luxel", {{"density", 4}, {"bake", false}}}}}},
+      {{"mesh", 0}},
+      {{"mesh", 0}, {"extras", {{"luxel_density", 0.5}, {"luxel_bake", 1}}}},
+      {{"mesh", 1}},
+      {{"mesh", 1}, {"name", "odd"}, {"extras", {{"luxel", {{"density", -1}, {"bake", "no"}}}}}}};
+  const Result<Imported> imported = import_glb(gltf);
+  ASSERT_TRUE(imported) << imported.error().message;
+  const std::vector<scene::Instance>& in = imported->scene.instances;
+  ASSERT_EQ(in.size(), 4u);
+  const float densities[] = {2, 0.5f, 4, 4};
+  const bool lightmapped[] = {false, true, false, false};
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(in[i].texel_density, densities[i]) << i;
+    EXPECT_EQ(in[i].lightmapped, lightmapped[i]) << i;
+  }
+  EXPECT_THAT(imported->warnings, testing::Contains(AllOf(HasSubstr("odd"), HasSubstr("density"))));
+  EXPECT_THAT(imported->warnings, testing::Contains(AllOf(HasSubstr("odd"), HasSubstr("bake"))));
+}
+
 TEST(Gltf, MirroredInstanceKeepsItsFront) {
   Gltf gltf = square_gltf();
   gltf.json["nodes"][0]["scale"] = {-1, 1, 1};

@@ -104,12 +104,12 @@ SceneState::Light state_of(const Scene& scene, const PunctualLight& light) {
 }
 
 SceneState::Instance state_of(const Scene& scene, const Instance& instance) {
-  const auto& [name, mesh, world_from_object] = instance;
+  const auto& [name, mesh, world_from_object, density, lightmapped] = instance;
   Box3 bounds;
   for (const auto& corners : scene.meshes[mesh].triangles)
     for (const uint32_t v : corners)
       bounds.extend(transform_point(world_from_object, scene.meshes[mesh].positions[v]));
-  return {name, mesh, world_from_object, bounds};
+  return {name, mesh, world_from_object, bounds, layout_density(instance)};
 }
 
 std::vector<uint32_t> materials_of(const Mesh& mesh) {
@@ -147,6 +147,7 @@ std::string beyond_instance(const SceneState::Instance& before, const SceneState
                             size_t index) {
   const std::string name = called("instance", now.name, index);
   if (before.mesh != now.mesh) return name + " has another mesh";
+  if (before.density != now.density) return name + " has another density of texels";
   if (!same_size(before.world_from_object, now.world_from_object))
     return name + " has another size";
   if ((determinant(before.world_from_object) < 0) != (determinant(now.world_from_object) < 0))

@@ -34,7 +34,8 @@ struct SceneState {
     std::string name;
     uint32_t mesh = 0;
     Mat34 world_from_object;
-    Box3 bounds;  ///< world [m], of all its triangles; empty without any
+    Box3 bounds;        ///< world [m], of all its triangles; empty without any
+    float density = 1;  ///< layout_density()
   };
   std::vector<uint64_t> meshes;  ///< digests
   std::vector<std::string> mesh_names;

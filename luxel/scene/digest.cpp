@@ -59,9 +59,9 @@ std::string called(std::string_view kind, std::string_view name, size_t index) {
 namespace {
 
 uint64_t digest(const Instance& i) {
-  const auto& [name, mesh, world_from_object] = i;
+  const auto& [name, mesh, world_from_object, texel_density, lightmapped] = i;
   Digest d;
-  d.add(mesh), add(d, world_from_object);
+  d.add(mesh), add(d, world_from_object), d.add(texel_density), d.add(lightmapped);
   return d.value();
 }
 

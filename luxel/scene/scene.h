@@ -110,7 +110,18 @@ struct Instance {
   std::string name;
   uint32_t mesh = 0;
   Mat34 world_from_object;
+  float texel_density = 1;  ///< texels per metre in a lightmap, over those of other instances
+  /// False: viewers light it in another way. It keeps a few texels, for the light that it reflects.
+  bool lightmapped = true;
 };
+/// Density of instances that are not lightmapped: an eighth is a 64th of the texels.
+inline constexpr float kCoarseDensity = 0.125f;
+/// Limits of Instance::texel_density.
+inline constexpr float kMinTexelDensity = 1.0f / 64, kMaxTexelDensity = 64;
+/// The density that an instance is laid out with.
+inline float layout_density(const Instance& instance) {
+  return instance.lightmapped ? instance.texel_density : kCoarseDensity;
+}
 
 /// A light without area.
 struct PunctualLight {

@@ -34,6 +34,10 @@ Status check_instances(const Scene& scene, const Report& report) {
     const std::string where = report.file + ": " + label("instance", i, instance.name);
     if (!is_finite(instance.world_from_object))
       return fail(ErrorCode::bad_input, "{}: its transform is not finite", where);
+    const float density = instance.texel_density;
+    if (!(density >= kMinTexelDensity && density <= kMaxTexelDensity))
+      return fail(ErrorCode::bad_input, "{}: its density of texels, {}, is outside {} to {}", where,
+                  density, kMinTexelDensity, kMaxTexelDensity);
     for (const Vec3& p : scene.meshes[instance.mesh].positions)
       if (!luxel::is_finite(transform_point(instance.world_from_object, p)))
         return fail(ErrorCode::bad_input,

@@ -1,5 +1,6 @@
 #include "luxel/pipeline/bake/bake_files.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -51,13 +52,17 @@ Result<std::vector<std::byte>> glb_of(const BakeSettings& settings, const Bake& 
 }
 
 /// `glb` is baked.glb. Where that holds its light in another way, or pictures of layers, which the
-/// page has already, the page has one of its own.
+/// page has already, or leaves instances out, the page has one of its own.
 Result<OutputFile> view_page(const BakeSettings& settings, const Bake& bake,
                              std::span<const std::byte> glb) {
   std::vector<std::byte> own;
   const std::vector<export_::LightmapLayer> layers = shown_layers(bake, true);
-  if (settings.vertex_colors || settings.attach != export_::Attach::lightmap || !layers.empty()) {
-    LUXEL_TRY(own, export_::baked_glb(bake.scene, bake.atlas, shown_lightmaps(bake),
+  const bool whole = std::ranges::all_of(bake.scene.instances, &scene::Instance::lightmapped);
+  if (settings.vertex_colors || settings.attach != export_::Attach::lightmap || !layers.empty() ||
+      !whole) {
+    scene::Scene shown = bake.scene;
+    for (scene::Instance& instance : shown.instances) instance.lightmapped = true;
+    LUXEL_TRY(own, export_::baked_glb(shown, bake.atlas, shown_lightmaps(bake),
                                       shown_layers(bake, false)));
     glb = own;
   }

@@ -1,5 +1,8 @@
 #include "luxel/pipeline/bake/bake_scene.h"
 
+#include <algorithm>
+#include <optional>
+
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/import/import.h"
@@ -51,6 +54,17 @@ struct Ready {
   light::Lights lights;
 };
 
+/// A density that the file's own layout does not follow; empty: there is none.
+std::optional<std::string> ignored_density(const scene::Scene& scene, const atlas::Atlas& atlas) {
+  const auto asks = [](const scene::Instance& i) { return scene::layout_density(i) != 1; };
+  const auto first = std::ranges::find_if(scene.instances, asks);
+  if (!atlas.kept || first == scene.instances.end()) return std::nullopt;
+  return fmt::format(
+      "'{}' asks for another density of texels (extras.luxel), but the file's own TEXCOORD_1 is "
+      "kept; give --uv unwrap for a layout that follows it",
+      first->name);
+}
+
 /// The layout of what was read; warnings of it are added to `warnings`.
 Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, BakeCache* cache,
                             std::vector<std::string>& warnings, Progress& progress) {
@@ -93,6 +107,8 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
   bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
   bake.atlas_stats = layout.stats, bake.repair = std::move(layout.repair);
   return_free_memory();  // of charts, bitmaps and bins: many small ones
+  if (const auto ignored = ignored_density(bake.scene, bake.atlas))
+    bake.warnings.push_back(*ignored);
   return Ready{std::move(layout.tracer),
                transport::elements_from_texels(bake.scene, bake.atlas, bake.map),
                light::collect_lights(bake.scene)};

@@ -84,8 +84,8 @@ void walk(Visit& visit, Like<scene::Mesh> auto& m) {
 
 template <class Visit>
 void walk(Visit& visit, Like<scene::SceneState::Instance> auto& i) {
-  auto& [name, mesh, world_from_object, bounds] = i;
-  visit(name), visit(mesh), visit(world_from_object), visit(bounds);
+  auto& [name, mesh, world_from_object, bounds, density] = i;
+  visit(name), visit(mesh), visit(world_from_object), visit(bounds), visit(density);
 }
 
 template <class Visit>

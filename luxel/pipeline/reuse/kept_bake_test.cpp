@@ -76,6 +76,7 @@ void expect_same(const scene::SceneState& a, const scene::SceneState& b) {
     EXPECT_EQ(a.instances[i].world_from_object, b.instances[i].world_from_object);
     EXPECT_EQ(a.instances[i].bounds.lower, b.instances[i].bounds.lower);
     EXPECT_EQ(a.instances[i].bounds.upper, b.instances[i].bounds.upper);
+    EXPECT_EQ(a.instances[i].density, b.instances[i].density);
   }
   ASSERT_EQ(a.materials.size(), b.materials.size());
   for (size_t i = 0; i < a.materials.size(); ++i) {

@@ -14,6 +14,9 @@ namespace luxel::import {
 struct Imported {
   scene::Scene scene;                 ///< validated (luxel/scene/validate.h)
   std::vector<std::string> warnings;  ///< one sentence each
+  /// For scenes without light: why the file may have lost its lights, and what to tick to keep them.
+  /// Half a sentence; empty when that is not known.
+  std::string about_lost_lights;
 };
 
 /// Reads .gltf and .glb with tinygltf, everything else that Assimp knows (.obj, .x, .fbx, .dae,

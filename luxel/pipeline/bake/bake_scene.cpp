@@ -3,6 +3,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/import/import.h"
+#include "luxel/pipeline/bake/dark_surfaces.h"
 #include "luxel/pipeline/bake/denoise_light.h"
 #include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
@@ -23,7 +24,7 @@ Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>
   LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
   warnings = std::move(imported.warnings);
   LUXEL_TRY(const std::vector<std::string> light,
-            add_outside_light(settings.outside, imported.scene));
+            add_outside_light(settings.outside, imported.scene, imported.about_lost_lights));
   warnings.insert(warnings.end(), light.begin(), light.end());
   LUXEL_TRY_STATUS(stopped(progress));
   return std::move(imported.scene);
@@ -115,6 +116,8 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
   if (keepers.cache) keepers.cache->solved();
   LUXEL_TRY(bake.surface_maps, surface_maps(settings, input, masked, bake.light.hidden, progress));
+  if (const std::string dark = about_dark_surfaces(bake); !dark.empty())
+    bake.warnings.push_back(dark);
   LUXEL_TRY_STATUS(repair_light(settings, ready.tracer, bake, progress));
   LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));

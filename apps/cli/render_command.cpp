@@ -12,7 +12,7 @@ namespace {
 
 struct RenderOptions {
   Common common;
-  Given outside, hemicube, hierarchical;
+  Given reading, outside, hemicube, hierarchical;
   std::string size, eye, look_at, bounces, exposure, tone_map, overlay;
   pipeline::RenderSettings settings;
 };
@@ -58,6 +58,7 @@ Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
     LUXEL_TRY_STATUS(read_given(options.hierarchical, pipeline::hierarchical_options(),
                                 s.hierarchical.emplace()));
   LUXEL_TRY(s.overlays, pipeline::parse_overlays(options.overlay));
+  LUXEL_TRY_STATUS(read_given(options.reading, pipeline::import_options(), s.reading));
   LUXEL_TRY_STATUS(read_given(options.outside, pipeline::outside_light_options(), s.outside));
   return s;
 }
@@ -167,6 +168,7 @@ void register_render(CLI::App& app, Action& action) {
                    "Lines over pictures of hierarchical radiosity: " + pipeline::overlay_names())
       ->type_name("NAME,NAME,...")
       ->group(std::string(pipeline::kHierarchicalHeading));
+  add_import(*render, options->reading);
   add_outside_light(*render, options->outside);
   add_common(*render, options->common);
   render->callback([options, &action] { action = [options] { return run_render(*options); }; });

@@ -21,7 +21,7 @@ namespace {
 Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>& warnings,
                           Progress& progress) {
   progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
+  LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene, settings.reading));
   warnings = std::move(imported.warnings);
   LUXEL_TRY(const std::vector<std::string> light,
             add_outside_light(settings.outside, imported.scene, imported.about_lost_lights));

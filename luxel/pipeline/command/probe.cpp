@@ -124,7 +124,7 @@ Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   const ThreadLimit threads(s.threads);
   // Scene and solution.
   progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
+  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, s.reading));
   scene::Scene& scene = imported.scene;
   Probed out;
   out.warnings = std::move(imported.warnings);

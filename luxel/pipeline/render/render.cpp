@@ -138,7 +138,7 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check(s));
   const Technique* technique = find_technique(s.technique);  // none: all
   progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
+  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, s.reading));
   Rendered out;
   out.warnings = std::move(imported.warnings);
   LUXEL_TRY(const std::vector<std::string> light,

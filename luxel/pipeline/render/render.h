@@ -36,6 +36,7 @@ struct RenderSettings {
   Vec3 look_at{};
   double fov_deg = 45;
   int width = 960, height = 720;  ///< of a contact sheet: each tile's
+  import::ImportParams reading;
   OutsideLight outside;
   std::optional<Exposure> exposure;                  ///< automatic for light, 0 stops for colours
   std::optional<display::ToneMap> tone_map;          ///< shoulder for light, clamp for colours

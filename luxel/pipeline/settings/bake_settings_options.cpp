@@ -1,5 +1,6 @@
 #include "luxel/pipeline/settings/bake_settings_options.h"
 
+#include "luxel/pipeline/settings/import_options.h"
 #include "luxel/pipeline/settings/option_rows.h"
 
 namespace luxel::pipeline {
@@ -210,6 +211,8 @@ Options<BakeSettings> bake_settings_options() {
   Options<S> rows;
   for (Options<S>& part :
        std::array{layout_options(), sampling_options(), result_options(), running_options(),
+                  options_of_part<S, import::ImportParams>(
+                      import_options(), [](S& s) -> import::ImportParams& { return s.reading; }),
                   options_of_part<S, OutsideLight>(
                       outside_light_options(), [](S& s) -> OutsideLight& { return s.outside; })})
     rows.insert(rows.end(), part.begin(), part.end());

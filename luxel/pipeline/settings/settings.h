@@ -10,6 +10,7 @@
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/result.h"
 #include "luxel/export/attach.h"
+#include "luxel/import/import.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/pipeline/settings/lightmap_files.h"
 #include "luxel/pipeline/settings/outside_light.h"
@@ -65,6 +66,7 @@ struct BakeSettings {
   uint64_t max_memory_bytes = 0;  ///< 0: four fifths of what is free when the bake starts
   uint64_t seed = gather::GatherParams{}.seed;
   int threads = 0;  ///< 0: all cores
+  import::ImportParams reading;
   OutsideLight outside;
   Directional directional = Directional::none;
   double probe_spacing_m = 0;                        ///< 0: no probes

@@ -201,9 +201,9 @@ TEST(Repairs, AReflectanceOver99PercentIsClamped) {
 TEST(NoLight, NamesTheBoxToTickWhereTheExporterHasOne) {
   const ScratchFolder s;
   const auto said = [&](const char* generator) {
-    const auto file =
-        s.write("one.gltf", gltf_with("\"asset\":{", "\"asset\":{\"generator\":\"" +
-                                                        std::string(generator) + "\","));
+    const auto file = s.write(
+        "one.gltf",
+        gltf_with("\"asset\":{", "\"asset\":{\"generator\":\"" + std::string(generator) + "\","));
     return luxel("render " + file.string() + " --technique path --samples 1 --size 4x4 -o " +
                  (s.path / "one.png").string())
         .err;

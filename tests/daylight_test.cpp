@@ -18,8 +18,7 @@ constexpr const char* kPlate = "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n"
 std::string room(int faces) {
   const char* const walls[] = {"f 1 5 8 4\n", "f 2 3 7 6\n", "f 1 2 6 5\n",
                                "f 4 8 7 3\n", "f 1 4 3 2\n", "f 5 6 7 8\n"};
-  std::string text =
-      "v 0 0 0\nv 2 0 0\nv 2 0 2\nv 0 0 2\nv 0 2 0\nv 2 2 0\nv 2 2 2\nv 0 2 2\n";
+  std::string text = "v 0 0 0\nv 2 0 0\nv 2 0 2\nv 0 0 2\nv 0 2 0\nv 2 2 0\nv 2 2 2\nv 0 2 2\n";
   for (int f = 0; f < faces; ++f) text += walls[f];
   return text;
 }
@@ -39,9 +38,9 @@ TEST(NoLight, IsTheSameClearDayForEveryCommand) {
   const ScratchFolder s;
   const std::string plate = s.write("plate.obj", kPlate).string();
   const auto bake = [&](const std::string& light) {
-    return left_by("bake " + plate + light + " --resolution 8 --samples 4 -o " +
-                       (s.path / "b").string(),
-                   s.path / "b" / "lightmap.exr");
+    return left_by(
+        "bake " + plate + light + " --resolution 8 --samples 4 -o " + (s.path / "b").string(),
+        s.path / "b" / "lightmap.exr");
   };
   const auto render = [&](const std::string& light) {
     return left_by("render " + plate + light + " --technique path --samples 2 --size 8x8 -o " +

@@ -6,6 +6,7 @@
 #include "luxel/pipeline/render/overlays.h"
 #include "luxel/pipeline/render/render.h"
 #include "luxel/pipeline/render/techniques.h"
+#include "luxel/pipeline/settings/bake_settings_options.h"
 
 namespace luxel::cli {
 namespace {
@@ -141,9 +142,13 @@ void register_render(CLI::App& app, Action& action) {
                    "Light to the screen (shoulder for light, else clamp)")
       ->type_name("shoulder|ratio|reinhard|filmic|clamp");
   auto* camera = render->add_option("--camera", s.camera, "Name of a camera of the scene");
+  auto* view = render->add_option("--view", s.view, std::string(pipeline::kViewHelp))
+                   ->type_name("interior|exterior|front|top|CAMERA")
+                   ->excludes(camera);
   auto* eye = render->add_option("--eye", options->eye, "Where the camera stands")
                   ->type_name("X,Y,Z")
-                  ->excludes(camera);
+                  ->excludes(camera)
+                  ->excludes(view);
   auto* look_at = render->add_option("--look-at", options->look_at, "The point it looks at")
                       ->type_name("X,Y,Z")
                       ->needs(eye);

@@ -39,8 +39,7 @@ TEST(Obj, GroupsBecomeMeshesAndKeEmits) {
 }
 
 /// Two squares that meet at about 11 degrees along the z axis: below the usual crease angle.
-constexpr const char* kFold =
-    "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv -1 -0.2 0\nv -1 -0.2 1\n";
+constexpr const char* kFold = "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv -1 -0.2 0\nv -1 -0.2 1\n";
 constexpr const char* kFoldFaces = "f 1 2 3 4\nf 2 1 5 6\n";
 
 Result<Imported> import_fold(const std::string& before, std::optional<float> crease_deg = {}) {

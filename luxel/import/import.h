@@ -15,16 +15,16 @@ namespace luxel::import {
 struct Imported {
   scene::Scene scene;                 ///< validated (luxel/scene/validate.h)
   std::vector<std::string> warnings;  ///< one sentence each
-  /// For scenes without light: why the file may have lost its lights, and what to tick to keep them.
-  /// Half a sentence; empty when that is not known.
+  /// For scenes without light: why the file may have lost its lights, and what to tick to keep
+  /// them. Half a sentence; empty when that is not known.
   std::string about_lost_lights;
 };
 
 /// How a file is read.
 struct ImportParams {
-  /// Crease angle of smooth normals for meshes without normals [degrees], 0 to 180; 0: they are flat.
-  /// Not set: kUsualCreaseDeg for .ply, and for .obj unless its smoothing groups are all off; flat
-  /// for everything else, as glTF demands.
+  /// Crease angle of smooth normals for meshes without normals [degrees], 0 to 180; 0: they are
+  /// flat. Not set: kUsualCreaseDeg for .ply, and for .obj unless its smoothing groups are all off;
+  /// flat for everything else, as glTF demands.
   std::optional<float> smooth_normals_deg;
 };
 inline constexpr float kUsualCreaseDeg = 30;

@@ -18,9 +18,12 @@ Mesh shared_cube() {
   Mesh mesh;
   mesh.positions = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                     {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
-  for (const auto& [a, b, c, d] :
-       {std::array<uint32_t, 4>{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
-        {3, 7, 6, 2}, {0, 4, 7, 3}, {1, 2, 6, 5}}) {
+  for (const auto& [a, b, c, d] : {std::array<uint32_t, 4>{0, 3, 2, 1},
+                                   {4, 5, 6, 7},
+                                   {0, 1, 5, 4},
+                                   {3, 7, 6, 2},
+                                   {0, 4, 7, 3},
+                                   {1, 2, 6, 5}}) {
     mesh.triangles.push_back({a, b, c});
     mesh.triangles.push_back({a, c, d});
   }
@@ -60,8 +63,9 @@ float largest_angle_to_radius(const Mesh& mesh) {
   return largest;
 }
 
-// The normals of a finer and finer sphere tend to its radii. The error of angle weights is of second
-// order in the width of the triangles: a quarter with each halving, with room for the next order.
+// The normals of a finer and finer sphere tend to its radii. The error of angle weights is of
+// second order in the width of the triangles: a quarter with each halving, with room for the next
+// order.
 TEST(SmoothNormals, OfASphereTendToItsRadii) {
   float before = 0;
   for (const int slices : {16, 32, 64}) {

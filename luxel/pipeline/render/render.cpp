@@ -9,7 +9,7 @@
 #include "luxel/display/draw.h"
 #include "luxel/image/codec.h"
 #include "luxel/import/import.h"
-#include "luxel/pipeline/render/camera.h"
+#include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/render/render_check.h"
 #include "luxel/pipeline/render/techniques.h"
 #include "luxel/pipeline/solver/bake_options.h"
@@ -141,15 +141,19 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, s.reading));
   Rendered out;
   out.warnings = std::move(imported.warnings);
-  LUXEL_TRY(const std::vector<std::string> light,
-            add_outside_light(outside_of(s, out.warnings), imported.scene,
-                              imported.about_lost_lights));
+  LUXEL_TRY(
+      const std::vector<std::string> light,
+      add_outside_light(outside_of(s, out.warnings), imported.scene, imported.about_lost_lights));
   const bool computes_light = !technique || (technique->is_light && !technique->needs_bake);
   if (computes_light) out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(imported.scene));
-  LUXEL_TRY(const scene::Camera camera,
-            choose_camera({s.camera, s.eye, s.look_at, s.fov_deg, float(s.width) / float(s.height)},
-                          imported.scene, tracer, s.scene.string()));
+  LUXEL_TRY(const scene::Camera camera, choose_camera({.view = s.view,
+                                                       .name = s.camera,
+                                                       .eye = s.eye,
+                                                       .look_at = s.look_at,
+                                                       .fov_deg = s.fov_deg,
+                                                       .aspect = float(s.width) / float(s.height)},
+                                                      imported.scene, tracer, s.scene.string()));
   const Subject subject{imported.scene, tracer, camera};
   LUXEL_TRY(const std::vector<std::byte> bytes,
             technique ? one_picture(*technique, subject, s, out, progress)

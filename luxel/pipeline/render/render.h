@@ -32,6 +32,7 @@ struct RenderSettings {
   std::string technique =
       "lightmap";      ///< a name of luxel/pipeline/render/techniques.h, or kAllTechniques
   std::string camera;  ///< by name; empty: the first, else a fitted one
+  std::string view;    ///< instead: CameraChoice::view
   std::optional<Vec3> eye;
   Vec3 look_at{};
   double fov_deg = 45;

@@ -170,6 +170,13 @@ Options<S> result_options() {
       BakeRows::toggle("--html", &S::html,
                        "Also write view.html: the baked scene as one page to walk around in")
           .leaves(Changes::nothing),
+      BakeRows::text(
+          "--view", &S::view,
+          [](std::string_view text) -> Result<std::string> { return std::string(text); },
+          [](const std::string& view) { return view.empty() ? json() : json(view); },
+          std::string(kViewHelp))
+          .unit("interior|exterior|front|top|CAMERA")
+          .leaves(Changes::nothing),
   };
 }
 

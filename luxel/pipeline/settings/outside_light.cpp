@@ -221,7 +221,8 @@ Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, 
 
 std::string no_light_arrives(std::string_view what) {
   return fmt::format(
-      "{} is black: no light gets there; a closed room needs a light or an emissive surface inside, "
+      "{} is black: no light gets there; a closed room needs a light or an emissive surface "
+      "inside, "
       "or an opening: a hole in its walls, or a window of a blended or transmissive material",
       what);
 }

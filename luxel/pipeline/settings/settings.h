@@ -83,6 +83,8 @@ struct BakeSettings {
   bool error_map = false;      ///< error.png too
   LightmapFormats formats;     ///< files beside lightmap.exr
   bool html = false;           ///< view.html too
+  std::string view;  ///< of preview.png and view.html: CameraChoice::view (bake/camera.h); empty:
+                     ///< the scene's first camera, else a fitted one
   /// Finished parts are kept once the bake has taken so long [s], docs/method/checkpoints.md; 0:
   /// never.
   double checkpoint_s = 30;

@@ -61,7 +61,8 @@ std::optional<PlaceInside> look_around(const scene::Scene& scene, const trace::R
   const std::vector<trace::Hit> hits = trace::visible_hits(scene, tracer, rays);
   const std::vector<uint8_t> direct = lit_by_sources(scene, tracer, glimpse, rays, hits);
   const std::vector<uint8_t> sky = lit_by_surroundings(scene, tracer, glimpse, rays, hits);
-  PlaceInside place{.eye = eye};
+  PlaceInside place;
+  place.eye = eye;
   int found = 0, rising = 0, above = 0, lit = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
     const bool is_above = rays[i].direction.y > 0.5f;

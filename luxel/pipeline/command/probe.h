@@ -9,6 +9,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/import/import.h"
 #include "luxel/pipeline/settings/outside_light.h"
 #include "luxel/pipeline/solver/hierarchical.h"
 
@@ -20,6 +21,7 @@ struct ProbeSettings {
   Vec3 at{};                     ///< the nearest surface is looked at
   std::optional<Vec3> normal;    ///< only surfaces that face about there
   std::filesystem::path output;  ///< a .png with the backprojections; empty: none
+  import::ImportParams reading;
   OutsideLight outside;
   HierarchicalSettings hierarchical;
   int threads = 0;

@@ -93,10 +93,10 @@ SealedLight sealed_light(const testing_support::SealedHouse& house, const Bake& 
 }
 
 /// A room of five walls at odd angles, thinner than a texel and up to three texels thick, beside
-/// sunlit courts; a floor, a ceiling, a terrace and a kerb run through under the walls. No ray comes
-/// in: every texel inside is black, to the bit. Where a surface in the room is narrower than a texel,
-/// such as the foot of a wall that goes on into the ground, a look-up can still read a texel that has
-/// its sample outside.
+/// sunlit courts; a floor, a ceiling, a terrace and a kerb run through under the walls. No ray
+/// comes in: every texel inside is black, to the bit. Where a surface in the room is narrower than
+/// a texel, such as the foot of a wall that goes on into the ground, a look-up can still read a
+/// texel that has its sample outside.
 TEST(Leaks, ASealedRoomIsBlack) {
   struct Case {
     testing_support::SealedHouse house;
@@ -110,11 +110,12 @@ TEST(Leaks, ASealedRoomIsBlack) {
     const auto bake = bake_scene(sealed_house(house), settings, progress);
     ASSERT_TRUE(bake) << bake.error().message;
     const SealedLight light = sealed_light(house, *bake);
-    fmt::print("walls of {} cm, {:.1f} texels per metre: {} of {} texels lit, the brightest {:.4f} % "
-               "of the mean; {:.2f} % of {} look-ups\n",
-               100 * house.wall_m, bake->atlas_stats.texels_per_metre, light.lit_texels,
-               light.texels, 100 * light.brightest,
-               100 * double(light.lit_lookups) / double(light.lookups), light.lookups);
+    fmt::print(
+        "walls of {} cm, {:.1f} texels per metre: {} of {} texels lit, the brightest {:.4f} % "
+        "of the mean; {:.2f} % of {} look-ups\n",
+        100 * house.wall_m, bake->atlas_stats.texels_per_metre, light.lit_texels, light.texels,
+        100 * light.brightest, 100 * double(light.lit_lookups) / double(light.lookups),
+        light.lookups);
     ASSERT_GT(light.texels, 300u);
     EXPECT_EQ(light.lit_texels, 0u) << house.wall_m;
     EXPECT_LT(double(light.lit_lookups), 0.05 * double(light.lookups)) << house.wall_m;

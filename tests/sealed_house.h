@@ -114,8 +114,9 @@ inline scene::Scene sealed_house(const SealedHouse& house) {
       add("wall", {-house.wall_m, 1.5f, 0}, {width + house.wall_m, kTop, house.wall_m}, plaster,
           in_world(along, outwards, kSealedRoom[k]));
   }
-  add("roof", {-2.8f, kRoomHeight, -2.6f}, {2.9f, kRoomHeight + std::max(house.wall_m, 0.04f), 2.6f},
-      wood, in_world({1, 0}, {0, 1}, {0, 0}));
+  add("roof", {-2.8f, kRoomHeight, -2.6f},
+      {2.9f, kRoomHeight + std::max(house.wall_m, 0.04f), 2.6f}, wood,
+      in_world({1, 0}, {0, 1}, {0, 0}));
   add_solid("terrace", kTerrace, wood);
   add_solid("kerb", kKerb, wood);
   add_solid("shell", kShell, wood);

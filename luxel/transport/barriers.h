@@ -25,8 +25,8 @@ bool is_barrier(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t c
                 const trace::Hit& hit);
 
 /// What parts two neighbouring places: something opaque that cuts the line between them half a step
-/// above the surface, a step being `step_m`, and the ways up, across and down at one step and at two.
-/// A fence of less than two texels' height is no barrier, because light comes over it within a
+/// above the surface, a step being `step_m`, and the ways up, across and down at one step and at
+/// two. A fence of less than two texels' height is no barrier, because light comes over it within a
 /// texel. The surface itself, `chart`, bends without being one. Returns the plane of what the line
 /// meets first.
 std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atlas& atlas,

@@ -55,8 +55,7 @@ bool is_between(const scene::Scene& scene, const atlas::Atlas& atlas, const Spot
 
 bool sees(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,
           const Spot& a, const Spot& b) {
-  return !is_far(a, b) &&
-         !is_between(scene, atlas, a, b, tracer.closest_hit(line_between(a, b)));
+  return !is_far(a, b) && !is_between(scene, atlas, a, b, tracer.closest_hit(line_between(a, b)));
 }
 
 /// Neighbours on the map.
@@ -65,8 +64,8 @@ struct Neighbours {
   std::array<int, 2> offset;  ///< of b from a
 };
 
-/// Per texel, 1 where a wall parts it from a neighbour or parts the texel itself; and where anything
-/// hides it from a neighbour.
+/// Per texel, 1 where a wall parts it from a neighbour or parts the texel itself; and where
+/// anything hides it from a neighbour.
 struct Walls {
   std::vector<uint8_t> parted, beside;
 };
@@ -93,8 +92,7 @@ struct Texels {
   /// of what it sees would do.
   bool is_inside_solid(const Spot& s) const {
     const Vec3 from = trace::offset_origin(s.at.position, s.at.normal, diagonal_m);
-    const BackFaces seen =
-        count_back_faces(in.scene, in.tracer, from, s.at.normal, kRaysForInside);
+    const BackFaces seen = count_back_faces(in.scene, in.tracer, from, s.at.normal, kRaysForInside);
     return 4 * seen.one_sided > 3 * seen.rays || 100 * all_backs(seen) >= 98 * seen.rays;
   }
   bool are_open(const Spot& a, const Spot& b) const {
@@ -190,7 +188,8 @@ std::vector<Neighbours> Texels::blocked(uint32_t begin, uint32_t end) const {
   in.tracer.closest_hits(rays, hits);
   size_t kept = 0;
   for (size_t k = 0; k < pairs.size(); ++k)
-    if (is_far(spots[k][0], spots[k][1]) || is_between(in.scene, in.atlas, spots[k][0], spots[k][1], hits[k]))
+    if (is_far(spots[k][0], spots[k][1]) ||
+        is_between(in.scene, in.atlas, spots[k][0], spots[k][1], hits[k]))
       pairs[kept++] = pairs[k];
   pairs.resize(kept);
   return pairs;

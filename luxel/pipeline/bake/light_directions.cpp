@@ -39,9 +39,10 @@ Result<DirectionMaps> direction_maps(const light::TexelScene& in, std::span<cons
       transport::find_own_sides(in.scene, in.atlas, in.map, in.tracer);
   light::AroundParams params;
   params.samples = 256, params.seed = seed;
-  LUXEL_TRY(light::BentLight light,
-            light::bent_irradiance(lit_scene(in, sides, irradiance), in.elements.position, in.elements.normal,
-                                   in.elements.geometric_normal, params, progress));
+  LUXEL_TRY(
+      light::BentLight light,
+      light::bent_irradiance(lit_scene(in, sides, irradiance), in.elements.position,
+                             in.elements.normal, in.elements.geometric_normal, params, progress));
   for (size_t i = 0; i < light.bent.size(); ++i)
     if (hidden[i]) light.bent[i] = {};
   DirectionMaps out;

@@ -159,7 +159,8 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
   };
   const auto start = Clock::now();
   const uint64_t before = light.hits.rays, samples = sum_of(light.hits.samples);
-  LUXEL_TRY_STATUS(trace_more(trace_scene(in.scene, &in.sides), target, trace, light.hits, progress));
+  LUXEL_TRY_STATUS(
+      trace_more(trace_scene(in.scene, &in.sides), target, trace, light.hits, progress));
   // What was kept says nothing about how long rays take.
   const Progress::Snapshot stage = progress.snapshot();
   if (stage.total == stage.skipped) return {};

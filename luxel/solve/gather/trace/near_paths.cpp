@@ -78,8 +78,8 @@ bool goes_on(const NearScene& in, const NearPath& path) {
   // What scatters light through shines by the light behind it, which the map knows.
   if (scene::material_at(in.scene, hit.point()).diffuse_transmission > 0) return false;
   if (hit.back_face) return scene::reflects_from_behind(scene::material_at(in.scene, hit.point()));
-  return hit.t < kNearTexels *
-                     in.texel_width_m[in.atlas.triangle_number(hit.instance, hit.triangle)] ||
+  return hit.t <
+             kNearTexels * in.texel_width_m[in.atlas.triangle_number(hit.instance, hit.triangle)] ||
          (in.sides && !transport::has_own_texel(*in.sides, hit.point()));
 }
 

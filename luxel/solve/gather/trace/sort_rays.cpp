@@ -147,9 +147,9 @@ StoredHit store(const transport::LookupPlace& place, StoredHit::Ray ray) {
 
 StoredHit store(const RayScene& in, const scene::SurfacePoint& p, StoredHit::Ray ray,
                 transport::MayBeInside inside) {
-  return store(in.sides ? transport::own_lookup(*in.sides, p, inside)
-                        : transport::lookup_place(in.atlas, p),
-               ray);
+  return store(
+      in.sides ? transport::own_lookup(*in.sides, p, inside) : transport::lookup_place(in.atlas, p),
+      ray);
 }
 
 void sort_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,

@@ -184,8 +184,8 @@ void Round::trace_known(size_t begin, size_t end, const RayTile* known, const Tr
     buffers.retraced.clear();
     if (knows) {
       cursor.of.follows_again = !stay_followed(*this, i, cursor.of.near_m);
-      choose_retraced({elements, *earlier, cell_cones, tracer.has_tints(), doubtful}, i, origin_of(i),
-                      seed_of_rays(seed, i), samples, cursor.of, buffers);
+      choose_retraced({elements, *earlier, cell_cones, tracer.has_tints(), doubtful}, i,
+                      origin_of(i), seed_of_rays(seed, i), samples, cursor.of, buffers);
     }
     add_retraced(knows ? &cursor.of : nullptr, buffers, out);
   }
@@ -300,10 +300,9 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   const uint64_t number = hits.rounds.size();
-  LUXEL_TRY_STATUS(trace_tiles(
-      {ray_scene, elements, in.tracer, target, params.seed, diagonal_m, number, params.earlier,
-       doubtful},
-      kept, params.keep, hits, store, progress));
+  LUXEL_TRY_STATUS(trace_tiles({ray_scene, elements, in.tracer, target, params.seed, diagonal_m,
+                                number, params.earlier, doubtful},
+                               kept, params.keep, hits, store, progress));
   LUXEL_TRY_STATUS(stopped(progress));
   keep_samples(params.keep, number, hits.samples);
   hits.rounds.push_back(std::move(store));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "luxel/atlas/cover.h"
 #include "luxel/atlas/footprint.h"
 #include "luxel/base/parallel.h"
 #include "luxel/scene/drawn_triangle.h"
@@ -122,24 +123,16 @@ bool Texels::parts(const Neighbours& pair) const {
   return true;
 }
 
-/// The part of a triangle that lies in a texel, as a convex polygon; in texels.
-std::vector<Vec2> part_in_texel(const std::array<Vec2, 3>& triangle, Vec2 texel) {
-  std::vector<Vec2> polygon(triangle.begin(), triangle.end()), kept;
-  for (int side = 0; side < 4; ++side) {
-    const auto inside_by = [&](Vec2 p) {
-      const Vec2 q = p - texel;
-      return side == 0 ? q.x : side == 1 ? 1 - q.x : side == 2 ? q.y : 1 - q.y;
-    };
-    kept.clear();
-    for (size_t k = 0; k < polygon.size(); ++k) {
-      const Vec2 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
-      const float da = inside_by(a), db = inside_by(b);
-      if (da >= 0) kept.push_back(a);
-      if ((da < 0) != (db < 0)) kept.push_back(a + (b - a) * (da / (da - db)));
-    }
-    std::swap(polygon, kept);
-  }
-  return polygon;
+/// The corners of the part of a triangle that lies in a texel, in texels.
+std::vector<Vec2> part_in_texel(const std::array<Vec2, 3>& corners, const atlas::Texel& texel) {
+  const atlas::UvTriangle triangle =
+      atlas::uv_triangle({to_double(corners[0]), to_double(corners[1]), to_double(corners[2])});
+  if (triangle.area2 == 0) return {};
+  const auto [corner, count] = atlas::clipped_corners(triangle, int(texel.x), int(texel.y));
+  std::vector<Vec2> out;
+  for (size_t k = 0; k < count; ++k)
+    out.push_back({float(texel.x + corner[k].x), float(texel.y + corner[k].y)});
+  return out;
 }
 
 /// Whether a wall stands between a texel's sample and some of the outline of what `cover`, the
@@ -152,7 +145,7 @@ bool Texels::is_parted_within(uint32_t texel, std::span<const uint32_t> cover) c
   for (const uint32_t number : cover.first(std::min(cover.size(), kMostTriangles))) {
     const auto& corners = in.atlas.corners[number];
     const auto drawn = scene::drawn_triangle(in.atlas.first_triangle, number);
-    const std::vector<Vec2> part = part_in_texel(corners, {float(t.x), float(t.y)});
+    const std::vector<Vec2> part = part_in_texel(corners, t);
     Vec2 middle{0, 0};
     for (const Vec2& p : part) middle = middle + p * (1 / float(part.size()));
     const auto is_hidden = [&](Vec2 p) {

@@ -37,7 +37,7 @@ Result<TexelLayout> lay_out_once(const atlas::AtlasParams& params, const scene::
 /// again, and what is parted in the end is counted.
 Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, TexelLayout& layout,
                        Progress& progress) {
-  constexpr int kMostTimes = 3;
+  constexpr int kMostTimes = 2;
   atlas::AtlasParams grouped = params;
   uint32_t cuts = 0;
   for (int k = 0;; ++k) {

@@ -12,8 +12,8 @@ using Pairs = std::vector<PartedPoints>;
 
 /// A vertex this close to a plane, in distances of the pairs, lies on it.
 constexpr double kOnPlane = 0.02;
-/// Pieces that fewer pairs connect are apart: a few lie at the ends of a barrier.
-constexpr size_t kFewestJoined = 4;
+/// Pieces that fewer pairs connect are apart: one or two lie where barriers meet.
+constexpr size_t kFewestJoined = kFewestParted;
 /// More planes than these are not looked at in one piece.
 constexpr size_t kMostCandidates = 256, kMostScored = 32;
 
@@ -88,6 +88,11 @@ class Cutter {
   }
 
   const std::vector<uint32_t>& labels() const { return label_; }
+  /// The chart that a label's triangles are of.
+  uint32_t chart_of(uint32_t label) const {
+    const auto found = std::ranges::find(pieces_, label, &std::pair<uint32_t, uint32_t>::first);
+    return found == pieces_.end() ? label : found->second;
+  }
   uint32_t cuts() const { return cuts_; }
 
  private:
@@ -117,6 +122,7 @@ class Cutter {
     for (const uint32_t t : scene::cut_mesh(mesh_, chosen, plane, kOnPlane * double(reach)))
       label_.push_back(label_[t]);
     const uint32_t other = next_++;
+    pieces_.push_back({other, chart_of(piece)});
     for (size_t t = 0; t < label_.size(); ++t)
       if (label_[t] == piece && lies_above(plane, t)) label_[t] = other;
     ++cuts_;
@@ -172,6 +178,7 @@ class Cutter {
   Mat34 world_from_object_;
   std::vector<uint32_t> label_;  ///< per triangle: its chart, or its piece of one
   std::vector<Node> nodes_;      ///< of the chart that is being cut
+  std::vector<std::pair<uint32_t, uint32_t>> pieces_;  ///< new labels, and of which charts
   uint32_t next_ = 0;
   uint32_t cuts_ = 0;
 };
@@ -179,8 +186,9 @@ class Cutter {
 /// Instance by instance, so that the mesh of a heavy scene is copied only where it is cut.
 struct Cutting {
   CutScene& out;
-  std::vector<std::vector<uint32_t>> group;  ///< per instance and triangle
-  uint32_t groups = 1;                       ///< group 0 holds what was not cut
+  std::vector<uint32_t> group_of_chart;      ///< before: what is not cut stays in it
+  std::vector<std::vector<uint32_t>> group;  ///< per instance and triangle; empty: not cut
+  uint32_t groups = 1;
 };
 
 void cut_instance(Cutting& cutting, uint32_t instance, std::vector<uint32_t> chart,
@@ -205,12 +213,13 @@ void cut_instance(Cutting& cutting, uint32_t instance, std::vector<uint32_t> cha
   cutting.out.cuts += cutter.cuts();
   std::sort(group_of_piece.begin(), group_of_piece.end());
   std::vector<uint32_t>& group = cutting.group[instance];
-  group.assign(cutter.labels().size(), 0);
+  group.resize(cutter.labels().size());
   for (size_t t = 0; t < group.size(); ++t) {
-    const auto found = std::lower_bound(group_of_piece.begin(), group_of_piece.end(),
-                                        std::pair(cutter.labels()[t], 0u));
-    if (found != group_of_piece.end() && found->first == cutter.labels()[t])
-      group[t] = found->second;
+    const uint32_t label = cutter.labels()[t];
+    const auto found =
+        std::lower_bound(group_of_piece.begin(), group_of_piece.end(), std::pair(label, 0u));
+    const bool is_piece = found != group_of_piece.end() && found->first == label;
+    group[t] = is_piece ? found->second : cutting.group_of_chart[cutter.chart_of(label)];
   }
   const uint32_t old = scene.instances[instance].mesh;
   const auto users = std::count_if(scene.instances.begin(), scene.instances.end(),
@@ -225,13 +234,19 @@ void cut_instance(Cutting& cutting, uint32_t instance, std::vector<uint32_t> cha
 
 }  // namespace
 
-CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const PartedPoints> parted) {
+CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const PartedPoints> parted,
+                    std::span<const uint32_t> group) {
   CutScene out;
   out.scene = std::move(scene);
   LUXEL_CHECK(atlas.first_triangle.size() == out.scene.instances.size() + 1);
   std::vector<uint32_t> instance_of_chart(atlas.chart_count);
-  Cutting cutting{out, {}, 1};
+  LUXEL_CHECK(group.empty() || group.size() == atlas.chart.size());
+  Cutting cutting{out, std::vector<uint32_t>(atlas.chart_count), {}, 1};
   cutting.group.resize(out.scene.instances.size());
+  for (size_t t = 0; t < group.size(); ++t) {
+    cutting.group_of_chart[atlas.chart[t]] = group[t];
+    cutting.groups = std::max(cutting.groups, group[t] + 1);
+  }
   for (uint32_t i = 0; i < out.scene.instances.size(); ++i)
     for (uint32_t t = atlas.first_triangle[i]; t < atlas.first_triangle[i + 1]; ++t)
       instance_of_chart[atlas.chart[t]] = i;
@@ -250,11 +265,13 @@ CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const Part
                   atlas.chart.begin() + atlas.first_triangle[i + 1]},
                  {pairs.begin() + long(begin), pairs.begin() + long(end)});
   }
-  // One list of groups over all instances; triangles that were not cut are of group 0.
+  // One list of groups over all instances; what was not cut stays in its own.
   for (uint32_t i = 0; i < out.scene.instances.size(); ++i) {
-    std::vector<uint32_t>& group = cutting.group[i];
-    group.resize(out.scene.meshes[out.scene.instances[i].mesh].triangles.size());
-    out.group.insert(out.group.end(), group.begin(), group.end());
+    const std::vector<uint32_t>& cut = cutting.group[i];
+    out.group.insert(out.group.end(), cut.begin(), cut.end());
+    if (!cut.empty()) continue;
+    for (uint32_t t = atlas.first_triangle[i]; t < atlas.first_triangle[i + 1]; ++t)
+      out.group.push_back(cutting.group_of_chart[atlas.chart[t]]);
   }
   return out;
 }

@@ -31,10 +31,12 @@ struct CutScene {
 /// the part inside and the part outside. Planes cross a whole piece, not only where the barrier
 /// stands: that is what keeps the cut lines straight and the triangles few. An instance that shares
 /// its mesh gets one of its own. `atlas` is that of `scene`.
-CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const PartedPoints> parted);
+/// `group` is that of an earlier cut, AtlasParams::group of the atlas: its groups stay apart.
+CutScene cut_charts(scene::Scene scene, const Atlas& atlas, std::span<const PartedPoints> parted,
+                    std::span<const uint32_t> group = {});
 
-/// A barrier about four texels long: thinner than a texel, it parts three pairs per texel of its
-/// length (one of neighbours, two of next neighbours).
-inline constexpr size_t kFewestParted = 12;
+/// As many as a barrier parts that crosses a strip one texel wide: two neighbours, and two next
+/// neighbours on each side.
+inline constexpr size_t kFewestParted = 3;
 
 }  // namespace luxel::atlas

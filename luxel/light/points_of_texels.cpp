@@ -21,16 +21,20 @@ Status visit_points(const TexelScene& in, std::span<const uint8_t> hidden, int c
   progress.begin(stage, n);
   parallel_for(n, kTexelsAtATime, [&](size_t begin, size_t end) {
     std::vector<scene::SurfacePoint> spread;
+    std::vector<uint8_t> on_side;
     std::vector<Receiver> points;
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       if (hidden[i]) continue;
       const Receiver own = own_receiver(place, in.elements, i);
       const bool near_backs = sees_backs(place, own);
       atlas::spread_points(in.atlas, in.map.texels[i], cover.of(i), count, seed, spread);
+      find_on_side(in, i, spread, on_side);
       points.clear();
-      for (const scene::SurfacePoint& p : spread) {
+      for (size_t k = 0; k < spread.size(); ++k) {
+        if (!on_side[k]) continue;
         const uint64_t own_seed = hash64(hash64(seed, points.size()), i);
-        const Receiver r = receiver_at(place, transport::smooth_point(in.scene, p), own_seed);
+        const Receiver r =
+            receiver_at(place, transport::smooth_point(in.scene, spread[k]), own_seed);
         if (!near_backs || !is_enclosed(place, r)) points.push_back(r);
       }
       if (points.empty()) points.push_back(own);

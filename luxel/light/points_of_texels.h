@@ -4,11 +4,13 @@
 #include <functional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "luxel/light/shadow_rays.h"
 #include "luxel/light/texel_scene.h"
 #include "luxel/transport/back_faces.h"
 #include "luxel/transport/elements.h"
+#include "luxel/transport/own_side.h"
 
 namespace luxel::light {
 
@@ -42,6 +44,16 @@ inline Receiver own_receiver(const PointScene& at, const transport::Elements& el
                      0);
 }
 
+/// Which points of a texel's footprint lie on its sample's side of walls. Returns the number of
+/// rays.
+inline uint64_t find_on_side(const TexelScene& in, size_t texel,
+                             std::span<const scene::SurfacePoint> points,
+                             std::vector<uint8_t>& on_side) {
+  on_side.resize(points.size());
+  return transport::find_on_side(in.scene, in.atlas, in.tracer, in.map.texels[texel].sample, points,
+                                 on_side);
+}
+
 /// Whether the sample of a texel has the backs of some surfaces before it.
 inline bool sees_backs(const PointScene& at, const Receiver& own) {
   return transport::all_backs(transport::count_back_faces(at.scene, at.tracer, own.origin,
@@ -52,7 +64,8 @@ inline bool sees_backs(const PointScene& at, const Receiver& own) {
 using AtPoints = std::function<void(size_t texel, std::span<const Receiver> points)>;
 
 /// Calls `visit` for each texel that is not `hidden` with up to `count` points of its footprint,
-/// spread evenly, without those inside of solids; its own sample where no other is left. Each
+/// spread evenly, without those inside of solids or beyond walls; its own sample where no other is
+/// left. Each
 /// point has a seed of its own. Many threads call at a time. Errors: cancelled.
 Status visit_points(const TexelScene& in, std::span<const uint8_t> hidden, int count, uint64_t seed,
                     std::string_view stage, const AtPoints& visit, Progress& progress);

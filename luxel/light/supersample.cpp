@@ -73,6 +73,7 @@ constexpr int kBorderPoints = 8;
 /// Buffers of one thread.
 struct PointBuffers {
   std::vector<scene::SurfacePoint> spread;
+  std::vector<uint8_t> on_side;  ///< per point of spread
   std::vector<Receiver> receivers;
   std::vector<LightAt> light;
   ShadowRayBatch batch;
@@ -127,13 +128,17 @@ Result<Footprints> footprints(const TexelScene& in, int points, uint64_t seed, P
   parallel_for(all.size(), kSupersampleGrain, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
     std::vector<scene::SurfacePoint> spread;
-    // Points of each texel that lie in the open; its own sample where there are none.
+    std::vector<uint8_t> on_side;
+    // Points of each texel on its sample's side of walls that lie in the open; its own sample where
+    // there are none.
     for (size_t i = begin; i < end; ++i) {
       const Receiver own = own_receiver(place, in.elements, i);
       if (!is_enclosed(place, own, kEnclosureRaysOfTexel)) {
         atlas::spread_points(in.atlas, in.map.texels[i], cover.of(i), points, seed, spread);
-        for (const scene::SurfacePoint& p : spread) {
-          const Receiver r = receiver_at(place, transport::smooth_point(in.scene, p), 0);
+        find_on_side(in, i, spread, on_side);
+        for (size_t k = 0; k < spread.size(); ++k) {
+          if (!on_side[k]) continue;
+          const Receiver r = receiver_at(place, transport::smooth_point(in.scene, spread[k]), 0);
           if (!is_enclosed(place, r)) found[i].push_back(r);
         }
       }
@@ -320,14 +325,15 @@ Result<Supersampled> average_texels(const TexelScene& in, std::span<const uint32
       }
       const bool near_back_faces = sees_backs(place, own);
       traced += uint64_t(kEnclosureRays);
-      // The light of points all over its footprint, without those inside of solids.
+      // The light of points all over its footprint, without those inside of solids or beyond walls.
       points.clear();
       std::ranges::fill(by_layer, Rgb{});
       atlas::spread_points(in.atlas, in.map.texels[i], cover.of(k), params.points, each.seed,
                            work.spread);
       light_points(place, in.lights, each, i, work);
-      traced += work.batch.rays.size();
+      traced += work.batch.rays.size() + find_on_side(in, i, work.spread, work.on_side);
       for (size_t j = 0; j < work.light.size(); ++j) {
+        if (!work.on_side[j]) continue;
         // Where a wall stands on the surface, its inside is dark, and nobody sees it; under the
         // edge of a shell without a bottom, whose backs the texel sees, it need not be dark.
         const LightAt& light = work.light[j];

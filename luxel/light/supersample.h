@@ -40,7 +40,8 @@ inline constexpr uint64_t kLevelBytesPerElement =
 std::vector<uint32_t> uneven_texels(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                     const DirectLight& direct, float threshold);
 
-/// The points of texels at which light is averaged, without those inside of solids. A texel whose
+/// The points of texels at which light is averaged, without those inside of solids and those beyond
+/// walls that stand on the texel (luxel/transport/own_side.h). A texel whose
 /// own sample lies inside a solid has that alone: it is hidden, and refilled from its neighbours.
 struct Footprints {
   std::vector<uint32_t> first;  ///< per texel, one extra entry

@@ -89,6 +89,14 @@ bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3
          (sees_nearly_backs_alone(seen) && is_shut_in(scene, tracer, from, normal, diagonal_m));
 }
 
+bool is_in_the_open(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
+                    Vec3 normal, float diagonal_m) {
+  constexpr int kFirstRays = 8, kRays = 32;
+  const BackFaces few = count_back_faces(scene, tracer, from, normal, kFirstRays);
+  if (all_backs(few) == 0) return true;
+  return !is_enclosed(few) && !is_enclosed(scene, tracer, from, normal, kRays, diagonal_m);
+}
+
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                  const Elements& elements, size_t i, const BackFaces& own, float diagonal_m) {
   if (4 * own.one_sided < own.rays && !sees_nearly_backs_alone(own)) return false;

@@ -51,6 +51,11 @@ BackFaces count_back_faces(const scene::Scene& scene, const trace::RayTracer& tr
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
                  int rays, float diagonal_m);
 
+/// Whether a place lies outside of solids, by 32 of those rays at most: most places see no backs,
+/// and most under things nothing else, and a few rays tell.
+bool is_in_the_open(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
+                    Vec3 normal, float diagonal_m);
+
 /// Whether element i lies inside a solid. `own` is what its own rays met; where they are not sure,
 /// a fixed set decides, so that other samples or another seed do not turn a texel on and off, and
 /// solvers agree.

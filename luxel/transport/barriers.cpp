@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "luxel/base/parallel.h"
 #include "luxel/transport/back_faces.h"
@@ -9,35 +10,32 @@
 namespace luxel::transport {
 namespace {
 
-constexpr std::array kHeights{0.5f, 1.0f, 2.0f};  ///< of the lines, in steps
+/// Heights of lines, in steps: of the lowest, and of ways over a barrier.
+constexpr float kLow = 0.5f;
+constexpr std::array kOver{1.0f, 2.0f};
 constexpr int kRaysForOpen = 32;
+/// How far around a texel a way past a barrier is looked for, in texels.
+constexpr int kWindow = 3;
 
 /// The other texel of a pair.
 struct Offset {
-  uint32_t x, y;
-  float steps;
+  int x, y;
+  float steps() const { return std::hypot(float(x), float(y)); }
 };
-constexpr std::array<Offset, 4> kOffsets{{{1, 0, 1}, {2, 0, 2}, {0, 1, 1}, {0, 2, 2}}};
+/// Neighbours; offset k + 4 is the opposite of offset k.
+constexpr std::array<Offset, 8> kNeighbours{
+    {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+constexpr size_t kHalf = 4;
+/// Half of the next neighbours.
+constexpr std::array<Offset, 8> kNext{
+    {{2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {-1, 2}, {-2, 2}, {-2, 1}}};
 
 trace::Ray line_above(const FlatPoint& a, const FlatPoint& b, float height_m) {
   const Vec3 from = a.position + a.normal * height_m, to = b.position + b.normal * height_m;
   return {from, 0, to - from, 1};
 }
 
-bool is_barrier(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t chart,
-                const trace::Hit& hit) {
-  if (!hit.found()) return false;
-  if (atlas.chart[atlas.triangle_number(hit.instance, hit.triangle)] == chart) return false;
-  const scene::Material& material = scene::material_at(scene, hit.point());
-  return material.alpha_mode == scene::AlphaMode::mask || !scene::lets_light_through(material);
-}
-
-struct Pair {
-  uint32_t a, b;
-  float step_m;
-};
-
-/// Work that goes over the texels once.
+/// Work that goes over the texels.
 struct Search {
   const scene::Scene& scene;
   const atlas::Atlas& atlas;
@@ -49,10 +47,10 @@ struct Search {
   FlatPoint place(uint32_t texel) const { return flat_point(scene, map.texels[texel].sample); }
 
   uint32_t neighbour(uint32_t texel, const Offset& o) const {
-    const uint32_t x = map.texels[texel].x + o.x, y = map.texels[texel].y + o.y;
-    const auto side = uint32_t(map.resolution);
-    if (x >= side || y >= side) return atlas::kNone;
-    const uint32_t other = map.texel_at[size_t(y) * side + x];
+    const int x = int(map.texels[texel].x) + o.x, y = int(map.texels[texel].y) + o.y;
+    const int side = map.resolution;
+    if (x < 0 || y < 0 || x >= side || y >= side) return atlas::kNone;
+    const uint32_t other = map.texel_at[size_t(y) * size_t(side) + size_t(x)];
     return other != atlas::kNone && chart_of(other) == chart_of(texel) ? other : atlas::kNone;
   }
 
@@ -62,42 +60,98 @@ struct Search {
     return !is_enclosed(scene, tracer, from, p.normal, kRaysForOpen, diagonal_m);
   }
 
-  /// The pairs of texels [begin, end) whose lowest line is blocked by anything.
-  std::vector<Pair> blocked_pairs(uint32_t begin, uint32_t end) const {
-    std::vector<Pair> pairs;
-    std::vector<trace::Ray> rays;
-    for (uint32_t i = begin; i < end; ++i) {
-      const FlatPoint a = place(i);
-      for (const Offset& o : kOffsets) {
-        const uint32_t j = neighbour(i, o);
-        if (j == atlas::kNone) continue;
-        const FlatPoint b = place(j);
-        const float step_m = length(b.position - a.position) / o.steps;
-        pairs.push_back({i, j, step_m});
-        rays.push_back(line_above(a, b, kHeights[0] * step_m));
-      }
-    }
-    std::vector<uint8_t> blocked(rays.size());
-    tracer.occluded(rays, blocked);
-    size_t kept = 0;
-    for (size_t k = 0; k < pairs.size(); ++k)
-      if (blocked[k]) pairs[kept++] = pairs[k];
-    pairs.resize(kept);
-    return pairs;
+  std::optional<Plane> barrier(uint32_t a, uint32_t b, const Offset& o) const {
+    const FlatPoint p = place(a), q = place(b);
+    return barrier_between(scene, atlas, tracer, chart_of(a), p, q,
+                           length(q.position - p.position) / o.steps());
   }
 
-  std::vector<atlas::PartedPoints> parted(uint32_t begin, uint32_t end) const {
-    std::vector<atlas::PartedPoints> found;
-    for (const Pair& pair : blocked_pairs(begin, end)) {
-      const uint32_t chart = chart_of(pair.a);
-      const FlatPoint a = place(pair.a), b = place(pair.b);
-      const auto plane = barrier_between(scene, atlas, tracer, chart, a, b, pair.step_m);
-      if (!plane || !in_the_open(pair.a) || !in_the_open(pair.b)) continue;
-      found.push_back({chart, a.position, b.position, *plane});
-    }
-    return found;
-  }
+  std::vector<uint8_t> open_ways() const;
+  void find_forward_ways(uint32_t begin, uint32_t end, std::span<uint8_t> ways) const;
+  bool is_way_past(uint32_t a, const Offset& to, std::span<const uint8_t> ways) const;
+  std::vector<atlas::PartedPoints> parted(uint32_t begin, uint32_t end,
+                                          std::span<const uint8_t> ways) const;
 };
+
+/// Sets the bits k < kHalf of texels [begin, end): the neighbour is there, and no barrier between.
+void Search::find_forward_ways(uint32_t begin, uint32_t end, std::span<uint8_t> ways) const {
+  std::vector<trace::Ray> rays;
+  std::vector<std::array<uint32_t, 3>> pairs;  // texel, neighbour, offset
+  for (uint32_t i = begin; i < end; ++i) {
+    const FlatPoint a = place(i);
+    for (uint32_t k = 0; k < kHalf; ++k) {
+      const uint32_t j = neighbour(i, kNeighbours[k]);
+      if (j == atlas::kNone) continue;
+      const FlatPoint b = place(j);
+      const float step_m = length(b.position - a.position) / kNeighbours[k].steps();
+      pairs.push_back({i, j, k}), rays.push_back(line_above(a, b, kLow * step_m));
+    }
+  }
+  std::vector<uint8_t> blocked(rays.size());
+  tracer.occluded(rays, blocked);
+  for (size_t n = 0; n < pairs.size(); ++n) {
+    const auto [i, j, k] = pairs[n];
+    if (!blocked[n] || !barrier(i, j, kNeighbours[k])) ways[i] |= uint8_t(1u << k);
+  }
+}
+
+/// Per texel a bit for each of kNeighbours: there is one, and no barrier between.
+std::vector<uint8_t> Search::open_ways() const {
+  constexpr size_t kBlock = 2048;
+  std::vector<uint8_t> ways(map.texels.size());
+  parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
+    find_forward_ways(uint32_t(begin), uint32_t(end), ways);
+  });
+  for (uint32_t i = 0; i < ways.size(); ++i)
+    for (size_t k = 0; k < kHalf; ++k)
+      if (ways[i] >> k & 1) ways[neighbour(i, kNeighbours[k])] |= uint8_t(1u << (k + kHalf));
+  return ways;
+}
+
+/// Whether open ways lead from a texel to the one at `to` within the window: light that comes
+/// around the end of a barrier, or the corner of a box, as near as that.
+bool Search::is_way_past(uint32_t a, const Offset& to, std::span<const uint8_t> ways) const {
+  constexpr int kAcross = 2 * kWindow + 1;
+  std::array<uint8_t, size_t(kAcross) * kAcross> seen{};
+  std::array<std::pair<uint32_t, Offset>, size_t(kAcross) * kAcross> queue;
+  const auto seen_at = [&](const Offset& o) -> uint8_t& {
+    return seen[size_t(o.y + kWindow) * kAcross + size_t(o.x + kWindow)];
+  };
+  size_t first = 0, last = 0;
+  queue[last++] = {a, {0, 0}}, seen_at({0, 0}) = 1;
+  while (first < last) {
+    const auto [texel, at] = queue[first++];
+    if (at.x == to.x && at.y == to.y) return true;
+    for (size_t k = 0; k < kNeighbours.size(); ++k) {
+      const Offset next{at.x + kNeighbours[k].x, at.y + kNeighbours[k].y};
+      if (!(ways[texel] >> k & 1) || std::abs(next.x) > kWindow || std::abs(next.y) > kWindow ||
+          seen_at(next))
+        continue;
+      seen_at(next) = 1;
+      queue[last++] = {neighbour(texel, kNeighbours[k]), next};
+    }
+  }
+  return false;
+}
+
+std::vector<atlas::PartedPoints> Search::parted(uint32_t begin, uint32_t end,
+                                                std::span<const uint8_t> ways) const {
+  std::vector<atlas::PartedPoints> found;
+  const auto add = [&](uint32_t i, const Offset& o) {
+    const uint32_t j = neighbour(i, o);
+    if (j == atlas::kNone) return;
+    const auto plane = barrier(i, j, o);
+    if (!plane || is_way_past(i, o, ways) || !in_the_open(i) || !in_the_open(j)) return;
+    found.push_back({chart_of(i), place(i).position, place(j).position, *plane});
+  };
+  for (uint32_t i = begin; i < end; ++i) {
+    if (ways[i] == 0xff) continue;
+    for (size_t k = 0; k < kHalf; ++k)
+      if (!(ways[i] >> k & 1)) add(i, kNeighbours[k]);
+    for (const Offset& o : kNext) add(i, o);
+  }
+  return found;
+}
 
 }  // namespace
 
@@ -105,29 +159,44 @@ FlatPoint flat_point(const scene::Scene& scene, const scene::SurfacePoint& p) {
   return {scene::world_position(scene, p), scene::front_normal(scene, p.instance, p.triangle)};
 }
 
+bool is_barrier(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t chart,
+                const trace::Hit& hit) {
+  if (!hit.found()) return false;
+  if (atlas.chart[atlas.triangle_number(hit.instance, hit.triangle)] == chart) return false;
+  const scene::Material& material = scene::material_at(scene, hit.point());
+  return material.alpha_mode == scene::AlphaMode::mask || !scene::lets_light_through(material);
+}
+
 std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atlas& atlas,
                                      const trace::RayTracer& tracer, uint32_t chart,
                                      const FlatPoint& a, const FlatPoint& b, float step_m) {
-  std::optional<Plane> lowest;
-  for (const float height : kHeights) {
-    const trace::Hit hit = tracer.closest_hit(line_above(a, b, height * step_m));
-    if (!is_barrier(scene, atlas, chart, hit)) return {};
-    if (lowest) continue;
-    const DVec3 normal = to_double(scene::front_normal(scene, hit.instance, hit.triangle));
-    lowest = Plane{normal, dot(normal, to_double(scene::world_position(scene, hit.point())))};
+  const auto above = [&](const FlatPoint& p, float height) {
+    return p.position + p.normal * (height * step_m);
+  };
+  const auto met = [&](Vec3 from, Vec3 to) { return tracer.closest_hit({from, 0, to - from, 1}); };
+  const auto is_free = [&](Vec3 from, Vec3 to) {
+    return !is_barrier(scene, atlas, chart, met(from, to));
+  };
+  const Vec3 low_a = above(a, kLow), low_b = above(b, kLow);
+  const trace::Hit lowest = met(low_a, low_b);
+  if (!is_barrier(scene, atlas, chart, lowest)) return {};
+  for (const float height : kOver) {
+    const Vec3 high_a = above(a, height), high_b = above(b, height);
+    if (is_free(high_a, high_b) && is_free(low_a, high_a) && is_free(low_b, high_b)) return {};
   }
-  return lowest;
+  const DVec3 normal = to_double(scene::front_normal(scene, lowest.instance, lowest.triangle));
+  return Plane{normal, dot(normal, to_double(scene::world_position(scene, lowest.point())))};
 }
 
 std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
                                              const atlas::TexelMap& map,
                                              const trace::RayTracer& tracer) {
-  constexpr size_t kBlock = 2048;
+  constexpr size_t kBlock = 256;
   const Search search{scene, atlas, map, tracer, scene::world_bounds(scene).diagonal()};
-  const size_t count = map.texels.size();
-  std::vector<std::vector<atlas::PartedPoints>> found((count + kBlock - 1) / kBlock);
-  parallel_for(count, kBlock, [&](size_t begin, size_t end) {
-    found[begin / kBlock] = search.parted(uint32_t(begin), uint32_t(end));
+  const std::vector<uint8_t> ways = search.open_ways();
+  std::vector<std::vector<atlas::PartedPoints>> found((ways.size() + kBlock - 1) / kBlock);
+  parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
+    found[begin / kBlock] = search.parted(uint32_t(begin), uint32_t(end), ways);
   });
   std::vector<atlas::PartedPoints> all;
   for (const auto& block : found) all.insert(all.end(), block.begin(), block.end());

@@ -19,16 +19,25 @@ struct FlatPoint {
 };
 FlatPoint flat_point(const scene::Scene& scene, const scene::SurfacePoint& p);
 
-/// What parts two neighbouring places: something opaque that cuts the lines between them half a
-/// step, one step and two steps above the surface, a step being `step_m`. A fence of less than two
-/// texels' height is no barrier, because light comes over it within a texel. The surface itself,
-/// `chart`, bends without being one. Returns the plane of what stands nearest to `a`.
+/// Whether what a line between two places of `chart` meets parts them: something opaque that is not
+/// the surface itself, which bends without being a barrier.
+bool is_barrier(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t chart,
+                const trace::Hit& hit);
+
+/// What parts two neighbouring places: something opaque that cuts the line between them half a step
+/// above the surface, a step being `step_m`, and the ways up, across and down at one step and at
+/// two. A fence of less than two texels' height is no barrier, because light comes over it within a
+/// texel. The surface itself, `chart`, bends without being one. Returns the plane of what the line
+/// meets first.
 std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atlas& atlas,
                                      const trace::RayTracer& tracer, uint32_t chart,
                                      const FlatPoint& a, const FlatPoint& b, float step_m);
 
-/// The samples of all pairs of texels of one chart that lie side by side or next but one in a row
-/// or a column, both in the open, that a barrier parts. In the order of the texels.
+/// The samples of all pairs of texels of one chart, at most two texels apart in rows and in columns
+/// and both in the open, that a barrier parts, and around which no way leads from neighbour to
+/// neighbour within three texels; of those two texels apart the ones with a barrier, or no texel,
+/// right beside the first. A look-up mixes both, or one with a hidden texel between them that
+/// has the light of the other. In the order of the texels.
 std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
                                              const atlas::TexelMap& map,
                                              const trace::RayTracer& tracer);

@@ -19,7 +19,6 @@ namespace {
 constexpr int kGrid = 4;        ///< places looked at along a texel's side
 constexpr int kFeelers = 6;     ///< short rays around a sample
 constexpr float kReach = 1.5f;  ///< their length in texels
-constexpr int kFirstRays = 8, kRaysForVisible = 32;
 /// Charts of no more texels are looked at texel by texel: they fall between those of a lattice.
 constexpr uint32_t kSmallChart = 32;
 /// Places looked at in the part of a texel that a chart covers, at most.
@@ -93,11 +92,7 @@ struct Probe {
   }
   bool in_the_open(const scene::SurfacePoint& p) const {
     const FlatPoint at = flat_point(scene, p);
-    // Most places see no backs, and most under things nothing else: a few rays tell.
-    const BackFaces few = count_back_faces(scene, tracer, just_above(at), at.normal, kFirstRays);
-    if (all_backs(few) == 0) return true;
-    return !is_enclosed(few) &&
-           !is_enclosed(scene, tracer, just_above(at), at.normal, kRaysForVisible, diagonal_m);
+    return is_in_the_open(scene, tracer, just_above(at), at.normal, diagonal_m);
   }
   /// Short rays around the sample, twenty degrees above the surface.
   void add_feelers(const atlas::Texel& texel, std::vector<trace::Ray>& rays) const {

@@ -6,7 +6,7 @@
 #include "luxel/export/baked_glb.h"
 #include "luxel/image/codec.h"
 #include "luxel/post/dilate.h"
-#include "luxel/transport/irradiance_field.h"
+#include "luxel/transport/own_side.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -14,9 +14,12 @@ namespace {
 /// A probe around which more than this share of the surfaces is seen from behind stands in a solid.
 constexpr float kInsideSolid = 0.5f;
 
-light::LitScene lit_scene(const light::TexelScene& in, const transport::TexelField& field) {
-  return {in.scene, in.tracer, in.lights,
-          [&field](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }};
+/// Rays read the lightmap on their own side of every wall. Refers to its arguments.
+light::LitScene lit_scene(const light::TexelScene& in, const transport::OwnSides& sides,
+                          std::span<const Rgb> irradiance) {
+  return {in.scene, in.tracer, in.lights, [&sides, irradiance](const scene::SurfacePoint& p) {
+            return transport::own_irradiance_at(sides, irradiance, p);
+          }};
 }
 
 /// V's luminance over that of E: one vector for all channels.
@@ -32,12 +35,14 @@ Rgb dominant_of(const light::Bent& bent, Rgb irradiance) {
 Result<DirectionMaps> direction_maps(const light::TexelScene& in, std::span<const Rgb> irradiance,
                                      std::span<const uint8_t> hidden, Directional kind,
                                      uint64_t seed, Progress& progress) {
-  const transport::TexelField field{&in.atlas, &in.map, irradiance};
+  const transport::OwnSides sides =
+      transport::find_own_sides(in.scene, in.atlas, in.map, in.tracer);
   light::AroundParams params;
   params.samples = 256, params.seed = seed;
-  LUXEL_TRY(light::BentLight light,
-            light::bent_irradiance(lit_scene(in, field), in.elements.position, in.elements.normal,
-                                   in.elements.geometric_normal, params, progress));
+  LUXEL_TRY(
+      light::BentLight light,
+      light::bent_irradiance(lit_scene(in, sides, irradiance), in.elements.position,
+                             in.elements.normal, in.elements.geometric_normal, params, progress));
   for (size_t i = 0; i < light.bent.size(); ++i)
     if (hidden[i]) light.bent[i] = {};
   DirectionMaps out;
@@ -94,11 +99,12 @@ Result<ProbeGrid> probe_grid(const light::TexelScene& in, std::span<const Rgb> i
     for (int y = 0; y < grid.count[1]; ++y)
       for (int x = 0; x < grid.count[0]; ++x)
         positions.push_back(grid.origin + Vec3{float(x), float(y), float(z)} * spacing_m);
-  const transport::TexelField field{&in.atlas, &in.map, irradiance};
+  const transport::OwnSides sides =
+      transport::find_own_sides(in.scene, in.atlas, in.map, in.tracer);
   light::AroundParams params;
   params.samples = 1024, params.seed = seed;
   LUXEL_TRY(light::Probes probes,
-            light::light_probes(lit_scene(in, field), positions, params, progress));
+            light::light_probes(lit_scene(in, sides, irradiance), positions, params, progress));
   grid.rays = probes.rays;
   for (light::Probe& probe : probes.probes) {
     const bool inside = probe.backs > kInsideSolid;

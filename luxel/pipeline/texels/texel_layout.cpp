@@ -1,6 +1,7 @@
 #include "luxel/pipeline/texels/texel_layout.h"
 
 #include <algorithm>
+#include <array>
 
 #include "luxel/atlas/cut_charts.h"
 #include "luxel/base/check.h"
@@ -32,25 +33,26 @@ Result<TexelLayout> lay_out_once(const atlas::AtlasParams& params, const scene::
 }
 
 /// Cuts the scene where its charts run under barriers. Cut charts are smaller and pack another way,
-/// at another density, so that a few barriers can lie between other texels than before: what is
-/// parted then is counted.
+/// at another density, so that barriers lie between other texels than before: they are searched
+/// again, and what is parted in the end is counted.
 Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, TexelLayout& layout,
                        Progress& progress) {
-  progress.begin("walls", 0);
-  const auto parted = transport::find_parted(scene, layout.atlas, layout.map, layout.tracer);
-  layout.repair.parted = parted.size();
-  if (layout.atlas.kept || parted.size() < atlas::kFewestParted) return {};
-  atlas::CutScene cut = atlas::cut_charts(scene, layout.atlas, parted);
-  if (cut.cuts == 0) return {};
-  scene = std::move(cut.scene);
+  constexpr int kMostTimes = 2;
   atlas::AtlasParams grouped = params;
-  grouped.group = std::move(cut.group);
-  layout.atlas = {}, layout.map = {};  // a large one would not find place beside the next
-  LUXEL_TRY(layout, lay_out_once(grouped, scene, progress));
-  layout.repair.cuts = cut.cuts;
-  layout.repair.parted =
-      transport::find_parted(scene, layout.atlas, layout.map, layout.tracer).size();
-  return {};
+  uint32_t cuts = 0;
+  for (int k = 0;; ++k) {
+    progress.begin("walls", 0);
+    const auto parted = transport::find_parted(scene, layout.atlas, layout.map, layout.tracer);
+    layout.repair.parted = parted.size(), layout.repair.cuts = cuts;
+    if (layout.atlas.kept || k == kMostTimes || parted.size() < atlas::kFewestParted) return {};
+    atlas::CutScene cut = atlas::cut_charts(scene, layout.atlas, parted, grouped.group);
+    if (cut.cuts == 0) return {};
+    cuts += cut.cuts;
+    scene = std::move(cut.scene);
+    grouped.group = std::move(cut.group);
+    layout.atlas = {}, layout.map = {};  // a large one would not find place beside the next
+    LUXEL_TRY(layout, lay_out_once(grouped, scene, progress));
+  }
 }
 
 Vec2 between(Vec2 a, Vec2 b, float s) { return a * (1 - s) + b * s; }
@@ -72,12 +74,17 @@ void add_open(const scene::Scene& scene, const atlas::Atlas& atlas, const trace:
               const post::Seam& seam, std::vector<post::Seam>& out) {
   const Vec2 a = seam.a1 - seam.a0, b = seam.b1 - seam.b0;
   const int count = std::max(1, int(std::ceil(std::max(length(a), length(b)))));
-  const auto open = [&](int k) {
-    const float s = (float(k) + 0.5f) / float(count);
+  const auto open_at = [&](float s) {
     const auto p = beside_edge(scene, atlas, seam.triangle_a, between(seam.a0, seam.a1, s), a);
     const auto q = beside_edge(scene, atlas, seam.triangle_b, between(seam.b0, seam.b1, s), b);
     return !transport::barrier_between(scene, atlas, tracer, atlas::kNone, p, q,
                                        length(q.position - p.position));
+  };
+  // A barrier may cross the seam within a texel.
+  const auto open = [&](int k) {
+    return std::ranges::all_of(std::array{0.5f, 0.05f, 0.95f}, [&](float part) {
+      return open_at((float(k) + part) / float(count));
+    });
   };
   for (int begin = 0, end = 0; begin < count; begin = end + 1) {
     for (end = begin; end < count && open(end);) ++end;

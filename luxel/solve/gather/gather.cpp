@@ -66,6 +66,7 @@ struct Request {
   const GatherParams& params;
   const GatherStores& stores;
   const GatherObserver& observer;
+  const transport::OwnSides& sides;
   std::vector<StoredHit> behind{};                      ///< places_behind()
   const light::LightLayers* followed_layers = nullptr;  ///< of followed rays; null: `layers`
 
@@ -158,7 +159,8 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
   };
   const auto start = Clock::now();
   const uint64_t before = light.hits.rays, samples = sum_of(light.hits.samples);
-  LUXEL_TRY_STATUS(trace_more(trace_scene(in.scene), target, trace, light.hits, progress));
+  LUXEL_TRY_STATUS(
+      trace_more(trace_scene(in.scene, &in.sides), target, trace, light.hits, progress));
   // What was kept says nothing about how long rays take.
   const Progress::Snapshot stage = progress.snapshot();
   if (stage.total == stage.skipped) return {};
@@ -399,14 +401,16 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
                       const GatherObserver& observer, Progress& progress) {
   LUXEL_CHECK(!params.tells_direct || layers == nullptr);
   const auto start = Clock::now();
-  Request in{scene, layers, params, stores, observer};
+  const transport::OwnSides sides =
+      transport::find_own_sides(scene.scene, scene.atlas, scene.map, scene.tracer);
+  Request in{scene, layers, params, stores, observer, sides};
   const SourceLayers sources = params.tells_direct ? source_layers(scene.lights) : SourceLayers{};
   if (params.tells_direct) in.layers = &sources.straight, in.followed_layers = &sources.followed;
   Progressive light;
   // 1. Light straight from the lights, with shadow rays.
   LUXEL_TRY_STATUS(begin_direct(in, light, progress));
   // 2. The rays that every element gets, and what they hit.
-  in.behind = places_behind(scene.scene, scene.atlas, scene.map, scene.elements);
+  in.behind = places_behind(sides, scene.elements);
   light.hits = no_hits(scene.elements.size(), in.layer_count());
   if (stores.earlier) light.bounced.irradiance = std::move(stores.earlier->irradiance);
   LUXEL_TRY_STATUS(trace_first(in, light, progress));

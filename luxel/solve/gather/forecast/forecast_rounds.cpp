@@ -25,6 +25,7 @@ struct RoundsTrial {
   const GatherParams& params;
   const GatherStores& stores;
   std::vector<uint32_t> texels;
+  const transport::OwnSides& sides;
   double scale = 1;  ///< all texels over those tried
   std::vector<StoredHit> behind{};
   std::vector<Rgb> coarse{};  ///< E of all elements
@@ -109,7 +110,7 @@ Status trace(RoundsTrial& trial, std::span<const uint16_t> target, Progress& pro
                           .memory_limit_bytes = trial.stores.hit_memory_bytes,
                           .scratch_folder = trial.stores.scratch_folder,
                           .follows_near = trial.params.bounces < 0};
-  return trace_more(trace_scene(trial.in), target, trace, trial.hits, progress);
+  return trace_more(trace_scene(trial.in, &trial.sides), target, trace, trial.hits, progress);
 }
 
 /// Relative, of the trial's texels; of all others 0.
@@ -194,10 +195,15 @@ Result<RoundsForecast> forecast_rounds(const light::TexelScene& in, const Gather
                                        const GatherStores& stores, int part, Progress& progress) {
   const size_t n = in.elements.size();
   const size_t count = std::max<size_t>(1, std::min(n, std::max(kFewestTried, n / size_t(part))));
-  RoundsTrial trial{
-      .in = in, .params = params, .stores = stores, .texels = texels_to_try(in.map, count)};
+  const transport::OwnSides sides =
+      transport::find_own_sides(in.scene, in.atlas, in.map, in.tracer);
+  RoundsTrial trial{.in = in,
+                    .params = params,
+                    .stores = stores,
+                    .texels = texels_to_try(in.map, count),
+                    .sides = sides};
   trial.scale = double(n) / double(trial.texels.size());
-  trial.behind = places_behind(in.scene, in.atlas, in.map, in.elements);
+  trial.behind = places_behind(sides, in.elements);
   LUXEL_TRY_STATUS(light_coarsely(trial, progress));
   LUXEL_TRY_STATUS(light_directly(trial, progress));
   std::vector<uint16_t> target = trial.hits.samples;

@@ -27,6 +27,24 @@ size_t next_marked(std::span<const uint8_t> marked, size_t from) {
   return next_of(std::as_bytes(marked), 1, from);
 }
 
+/// Sets buffers.marked where a hit may be read elsewhere now: a wall near it has come or gone. Hits
+/// of rays that were followed on come after all others.
+void mark_doubtful(std::span<const uint64_t> doubtful, const EarlierElement& before,
+                   std::span<uint8_t> marked) {
+  if (doubtful.empty()) return;
+  const auto is_doubtful = [&](StoredHit hit) {
+    return doubtful[hit.base() / 64] >> (hit.base() % 64) & 1;
+  };
+  size_t hit = 0;
+  for (size_t k = 0; k < before.ends.size(); ++k)
+    if (before.ends[k] == RayEnd::hit || before.ends[k] == RayEnd::behind)
+      if (is_doubtful(before.hits[hit++])) marked[k] = 1;
+  auto next = before.followed.begin();
+  for (size_t k = next_followed(before.ends, 0); k < before.ends.size();
+       k = next_followed(before.ends, k + 1))
+    if ((next++)->has_hit() && is_doubtful(before.hits[hit++])) marked[k] = 1;
+}
+
 /// Sets buffers.marked where a ray's direction alone does not tell that it stays.
 void mark_at_once(const RetraceScene& in, Vec3 origin, const EarlierElement& before,
                   RetraceBuffers& buffers) {
@@ -60,6 +78,7 @@ void choose_retraced(const RetraceScene& in, size_t element, Vec3 origin, uint64
   buffers.maybe.clear(), buffers.retraced.clear();
   buffers.marked.assign(samples.count(), 0);
   mark_at_once(in, origin, before, buffers);
+  mark_doubtful(in.doubtful, before, buffers.marked);
   if (cells == 0 && next_marked(buffers.marked, 0) == buffers.marked.size()) return;
   find_ray_cells(seed, samples, buffers.batch);
   cells |= cells_of(buffers.marked, buffers.batch);

@@ -39,6 +39,8 @@ struct RetraceScene {
   const EarlierRays& earlier;
   const CellCones& cell_cones;
   bool tints = false;  ///< RayTracer::has_tints()
+  /// transport::lookups_near(): hits that may be read elsewhere now; empty: none.
+  std::span<const uint64_t> doubtful{};
 };
 
 /// Finds the rays of an element that may meet something else than in the earlier bake, and of those

@@ -24,7 +24,7 @@ FollowedPath end_of(const RayScene& in, const NearPath& path, TracedHits& out) {
   FollowedPath end{path.element, path.ray, path.first_m, FollowedRay::pack(light, way), {}};
   if (!has_hit) return end;
   const uint32_t tint = pack_tint(path.throughput, hash64(path.seed, path.sample ^ 0x4e37u));
-  end.hit = store(in.atlas, path.hit.point(), {tint, path.second_half});
+  end.hit = store(in, path.hit.point(), {tint, path.second_half}, transport::MayBeInside::yes);
   return end;
 }
 

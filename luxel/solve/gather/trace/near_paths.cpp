@@ -79,7 +79,8 @@ bool goes_on(const NearScene& in, const NearPath& path) {
   if (scene::material_at(in.scene, hit.point()).diffuse_transmission > 0) return false;
   if (hit.back_face) return scene::reflects_from_behind(scene::material_at(in.scene, hit.point()));
   return hit.t <
-         kNearTexels * in.texel_width_m[in.atlas.triangle_number(hit.instance, hit.triangle)];
+             kNearTexels * in.texel_width_m[in.atlas.triangle_number(hit.instance, hit.triangle)] ||
+         (in.sides && !transport::has_own_texel(*in.sides, hit.point()));
 }
 
 uint64_t step_near(const NearScene& in, uint64_t depth, NearBuffers& buffers) {

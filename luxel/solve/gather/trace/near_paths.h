@@ -5,7 +5,8 @@
 // most part in the sun, or for the bright edge of a sill. There the light of the place itself is
 // worked out: what comes straight from lights, and one more ray, which ends farther away and reads
 // the map there, or is followed on again. The map holds the light of fronts only: on the back of a
-// double-sided surface the same is done, however far it is. docs/method/gather.md
+// double-sided surface the same is done, however far it is; and where a wall leaves no texel on the
+// place's own side. docs/method/gather.md
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include "luxel/light/shadow_rays.h"
 #include "luxel/scene/scene.h"
 #include "luxel/trace/ray_tracer.h"
+#include "luxel/transport/own_side.h"
 
 namespace luxel::gather {
 
@@ -48,6 +50,7 @@ struct NearScene {
   std::span<const float> texel_width_m;
   float diagonal_m = 0;
   const light::LightLayers* layers = nullptr;  ///< null: light is not told apart
+  const transport::OwnSides* sides = nullptr;  ///< null: every place has a texel of its own side
 };
 
 /// Buffers of one thread.

@@ -123,7 +123,7 @@ void take_traced(const RayScene& in, const RayBuffers& buffers, size_t k, RayEnd
                             ? kNoTint
                             : pack_tint(buffers.tint[k], hash64(element, sample ^ 0x7147u));
   tile.hits.entries.push_back(
-      store(in.atlas, buffers.hits[k].point(), {tint, samples.in_second_half(sample)}));
+      store(in, buffers.hits[k].point(), {tint, samples.in_second_half(sample)}));
 }
 
 }  // namespace
@@ -139,16 +139,17 @@ void note_change(const RayScene& in, StoredHit hit, float sign, size_t element, 
   out.change[element] += Rgb{b[0], b[1], b[2]} * sign;
 }
 
-StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray) {
-  const auto& corners = atlas.corners[atlas.triangle_number(p.instance, p.triangle)];
-  const Vec2 at = interpolate(corners[0], corners[1], corners[2], p.at);
-  const float limit = float(atlas.resolution);
-  const float x = std::clamp(at.x, 0.0f, limit) + 0.5f, y = std::clamp(at.y, 0.0f, limit) + 0.5f;
-  const uint32_t x0 = uint32_t(x), y0 = uint32_t(y);  // with the border of one texel
+StoredHit store(const transport::LookupPlace& place, StoredHit::Ray ray) {
   constexpr float kSteps = float(StoredHit::kSteps);
-  return StoredHit::pack(y0 * uint32_t(atlas.resolution + 2) + x0,
-                         uint32_t((x - float(x0)) * kSteps + 0.5f),
-                         uint32_t((y - float(y0)) * kSteps + 0.5f), ray);
+  return StoredHit::pack(place.base, uint32_t(place.fx * kSteps + 0.5f),
+                         uint32_t(place.fy * kSteps + 0.5f), ray);
+}
+
+StoredHit store(const RayScene& in, const scene::SurfacePoint& p, StoredHit::Ray ray,
+                transport::MayBeInside inside) {
+  return store(
+      in.sides ? transport::own_lookup(*in.sides, p, inside) : transport::lookup_place(in.atlas, p),
+      ray);
 }
 
 void sort_rays(const RayScene& in, RayBuffers& buffers, size_t element, Samples samples,

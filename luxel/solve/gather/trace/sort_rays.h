@@ -9,6 +9,7 @@
 #include "luxel/solve/gather/reuse/retraced_rays.h"
 #include "luxel/solve/gather/trace/near_paths.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
+#include "luxel/transport/own_side.h"
 
 namespace luxel::gather {
 
@@ -21,6 +22,7 @@ struct RayScene {
   const light::LightLayers* layers = nullptr;
   const RadiosityMap* sent = nullptr;  ///< see EarlierRays
   uint64_t seed = 1;
+  const transport::OwnSides* sides = nullptr;  ///< null: all four texels around a hit are read
 };
 
 /// A path of a tile's elements that has been followed to its end.
@@ -48,8 +50,10 @@ struct RayBuffers : RetraceBuffers {
   OutsideLook outside;
 };
 
-/// The place of the map at a point of the scene.
-StoredHit store(const atlas::Atlas& atlas, const scene::SurfacePoint& p, StoredHit::Ray ray);
+/// Where light at a point of the scene is read from the map, on its own side of every wall.
+StoredHit store(const RayScene& in, const scene::SurfacePoint& p, StoredHit::Ray ray,
+                transport::MayBeInside inside = transport::MayBeInside::no);
+StoredHit store(const transport::LookupPlace& place, StoredHit::Ray ray);
 
 /// Notes radiance of a ray that has left the scene, of which the light of all layers knows already.
 void add_sky(const light::LightLayers* layers, Rgb radiance, size_t element, TracedHits& out);

@@ -19,14 +19,14 @@
 
 namespace luxel::gather {
 
-std::vector<StoredHit> places_behind(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                     const atlas::TexelMap& map,
+std::vector<StoredHit> places_behind(const transport::OwnSides& sides,
                                      const transport::Elements& elements) {
   std::vector<StoredHit> out(elements.transmittance.size());
   parallel_for(out.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const scene::SurfacePoint& p = map.texels[i].sample;
-      out[i] = store(atlas, scene::other_side_of(scene, p).value_or(p), {});
+      const scene::SurfacePoint& p = sides.map.texels[i].sample;
+      const auto behind = scene::other_side_of(sides.scene, p).value_or(p);
+      out[i] = store(transport::own_lookup(sides, behind), {});
     }
   });
   return out;
@@ -50,6 +50,7 @@ struct Round {
   float diagonal_m = 0;
   uint64_t number = 0;
   const EarlierRays* earlier = nullptr;  ///< null: nothing is known
+  std::span<const uint64_t> doubtful{};  ///< RetraceScene
   CellCones cell_cones = gather::cell_cones();
 
   Samples samples_of(size_t i, const TracedHits& hits) const {
@@ -183,8 +184,8 @@ void Round::trace_known(size_t begin, size_t end, const RayTile* known, const Tr
     buffers.retraced.clear();
     if (knows) {
       cursor.of.follows_again = !stay_followed(*this, i, cursor.of.near_m);
-      choose_retraced({elements, *earlier, cell_cones, tracer.has_tints()}, i, origin_of(i),
-                      seed_of_rays(seed, i), samples, cursor.of, buffers);
+      choose_retraced({elements, *earlier, cell_cones, tracer.has_tints(), doubtful}, i,
+                      origin_of(i), seed_of_rays(seed, i), samples, cursor.of, buffers);
     }
     add_retraced(knows ? &cursor.of : nullptr, buffers, out);
   }
@@ -286,18 +287,22 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
   if (params.follows_near) {
     widths = texel_widths_m(in.scene, in.atlas);
     near.emplace(NearScene{in.scene, in.atlas, in.lights, in.tracer, widths, diagonal_m,
-                           params.followed_layers ? params.followed_layers : params.layers});
+                           params.followed_layers ? params.followed_layers : params.layers,
+                           in.sides});
   }
   const RadiosityMap* sent = params.earlier ? params.earlier->sent : nullptr;
   if (sent) hits.change.resize(elements.size()), hits.unknown.resize(elements.size());
   const RayScene ray_scene{in.scene,      in.atlas, in.lights.around, near ? &*near : nullptr,
-                           params.layers, sent,     params.seed};
+                           params.layers, sent,     params.seed,      in.sides};
+  std::vector<uint64_t> doubtful;
+  if (in.sides && params.earlier && !params.earlier->boxes.empty())
+    doubtful = transport::lookups_near(*in.sides, params.earlier->boxes);
   const KeptStage kept = kept_round(hits, target, params);
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   const uint64_t number = hits.rounds.size();
-  LUXEL_TRY_STATUS(trace_tiles(
-      {ray_scene, elements, in.tracer, target, params.seed, diagonal_m, number, params.earlier},
-      kept, params.keep, hits, store, progress));
+  LUXEL_TRY_STATUS(trace_tiles({ray_scene, elements, in.tracer, target, params.seed, diagonal_m,
+                                number, params.earlier, doubtful},
+                               kept, params.keep, hits, store, progress));
   LUXEL_TRY_STATUS(stopped(progress));
   keep_samples(params.keep, number, hits.samples);
   hits.rounds.push_back(std::move(store));

@@ -18,6 +18,7 @@
 #include "luxel/solve/gather/reuse/earlier_rays.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/transport/elements.h"
+#include "luxel/transport/own_side.h"
 
 namespace luxel::gather {
 
@@ -28,9 +29,11 @@ struct TraceScene {
   const transport::Elements& elements;
   const light::Lights& lights;
   const trace::RayTracer& tracer;
+  const transport::OwnSides* sides = nullptr;  ///< of the map that rays will read; null: any side's
 };
-inline TraceScene trace_scene(const light::TexelScene& in) {
-  return {in.scene, in.atlas, in.elements, in.lights, in.tracer};
+inline TraceScene trace_scene(const light::TexelScene& in,
+                              const transport::OwnSides* sides = nullptr) {
+  return {in.scene, in.atlas, in.elements, in.lights, in.tracer, sides};
 }
 
 struct TraceParams {
@@ -61,8 +64,7 @@ Result<TracedHits> trace_hits(const TraceScene& in, int samples, const TracePara
 
 /// Per element, the place on the other side of the surface, as a hit: its own where the surface has
 /// but one side. Empty where nothing scatters light through.
-std::vector<StoredHit> places_behind(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                     const atlas::TexelMap& map,
+std::vector<StoredHit> places_behind(const transport::OwnSides& sides,
                                      const transport::Elements& elements);
 
 }  // namespace luxel::gather

@@ -8,6 +8,7 @@
 #include "luxel/pipeline/settings/option_rows.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -38,15 +39,12 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
             light::supersample(in, {.points = settings.supersample, .direct = direct_params},
                                direct, progress));
   TexelLight out;
-  out.irradiance.resize(in.elements.size()), out.hidden.resize(in.elements.size());
+  out.irradiance.resize(in.elements.size());
   matrix::transfer(map, solution.indirect, out.irradiance);
   parallel_for(in.elements.size(), 4096, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      out.irradiance[i] += direct.irradiance[i];
-      out.hidden[i] =
-          matrix::is_hidden(in.scene, in.tracer, prepared.patched, in.map.texels[i].sample);
-    }
+    for (size_t i = begin; i < end; ++i) out.irradiance[i] += direct.irradiance[i];
   });
+  out.hidden = transport::find_enclosed(in.scene, in.tracer, in.elements);
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
   // What patches exchange has no grain: every texel reads it through the same smooth functions.
   out.variance.assign(in.elements.size(), 0.0f);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/transport/covers.h"
+
 namespace luxel::matrix {
 namespace {
 
@@ -37,6 +39,11 @@ uint64_t voxel_of(const VoxelGrid& grid, Vec3 position) {
     voxel |= uint64_t(std::clamp(at, 0.0f, float(kAxisMask))) << (k * kAxisBits);
   }
   return voxel;
+}
+
+float open_share(const trace::RayTracer& tracer, const PatchPoint& p, const VoxelGrid& grid) {
+  const Vec3 from = trace::offset_origin(p.position, p.normal, grid.diagonal_m);
+  return transport::open_share(tracer, from, p.normal, grid.voxel_m);
 }
 
 bool see_each_other(const trace::RayTracer& tracer, const PatchPoint& a, const PatchPoint& b,
@@ -101,8 +108,20 @@ const PatchLocator::Part* PatchLocator::part_at(Vec3 position, Vec3 normal, uint
   return nullptr;
 }
 
+/// Rays ask only where the place's voxel has covered parts of its kind.
+bool PatchLocator::is_covered_at(Vec3 position, Vec3 normal, uint32_t material,
+                                 const trace::RayTracer& tracer) const {
+  const std::span<const Part> parts = parts_in(voxel_of(grid_, position));
+  const bool maybe = std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
+    return part.covered && part.material == material &&
+           dot(part.seed.normal, normal) > kSameDirection;
+  });
+  return maybe && is_covered(tracer, {position, normal}, grid_);
+}
+
 uint32_t PatchLocator::locate(Vec3 position, Vec3 normal, uint32_t material,
                               const trace::RayTracer& tracer) const {
+  if (is_covered_at(position, normal, material, tracer)) return kNone;
   const Part* part = part_at(position, normal, material, tracer, false);
   return part ? part->patch : kNone;
 }

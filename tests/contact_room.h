@@ -23,9 +23,9 @@ struct ContactRoom {
   bool is_near(Vec3 p, Vec3 normal, float reach_m) const;
 
   static constexpr float kGap_m = 0.005f, kThick_m = 0.01f;
-  static constexpr std::array<float, 4> kRug{-1.2f, 0.8f, -0.3f, 1.1f};       // x0, x1, z0, z1
-  static constexpr std::array<float, 4> kPicture{1.1f, 1.8f, -0.5f, 0.5f};    // y0, y1, z0, z1
-  static constexpr std::array<float, 4> kTable{-0.2f, 1.2f, -1.5f, -0.7f};    // x0, x1, z0, z1
+  static constexpr std::array<float, 4> kRug{-1.2f, 0.8f, -0.3f, 1.1f};     // x0, x1, z0, z1
+  static constexpr std::array<float, 4> kPicture{1.1f, 1.8f, -0.5f, 0.5f};  // y0, y1, z0, z1
+  static constexpr std::array<float, 4> kTable{-0.2f, 1.2f, -1.5f, -0.7f};  // x0, x1, z0, z1
   static constexpr float kTableTop_m = 0.74f, kTableThick_m = 0.02f, kLeg_m = 0.05f;
   static constexpr float kHalf_m = 2, kHeight_m = 2.8f;
 };
@@ -95,7 +95,8 @@ inline ContactRoom contact_room_with(Thin thin) {
 
 inline bool ContactRoom::is_covered(Vec3 p, Vec3 normal, float inside_m) const {
   const float gap = 1.01f * kGap_m;
-  const bool floor = p.y < gap && std::abs(normal.y) > 0.9f && (p.y < 0.5f * kGap_m || normal.y < 0);
+  const bool floor =
+      p.y < gap && std::abs(normal.y) > 0.9f && (p.y < 0.5f * kGap_m || normal.y < 0);
   const bool wall = p.x < -kHalf_m + gap && std::abs(normal.x) > 0.9f &&
                     (p.x < -kHalf_m + 0.5f * kGap_m || normal.x < 0);
   return (floor && contact_room::inside_by(kRug, p.x, p.z) >= inside_m) ||
@@ -105,7 +106,8 @@ inline bool ContactRoom::is_covered(Vec3 p, Vec3 normal, float inside_m) const {
 inline bool ContactRoom::is_near(Vec3 p, Vec3 normal, float reach_m) const {
   const float thin = kGap_m + 1.01f * kThick_m;
   const bool rug = p.y < thin && contact_room::inside_by(kRug, p.x, p.z) > -reach_m;
-  const bool picture = p.x < -kHalf_m + thin && contact_room::inside_by(kPicture, p.y, p.z) > -reach_m;
+  const bool picture =
+      p.x < -kHalf_m + thin && contact_room::inside_by(kPicture, p.y, p.z) > -reach_m;
   const bool table = std::abs(p.y - kTableTop_m) < 1.01f * kTableThick_m &&
                      contact_room::inside_by(kTable, p.x, p.z) > -1e-3f;
   return (rug || picture || table) && !is_covered(p, normal, -0.01f);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
@@ -10,9 +11,12 @@
 namespace luxel::transport {
 namespace {
 
-/// A cover is no higher than this part of the size. The rays that it shuts within the size itself
-/// are then 1 - 0.25^2 = 94 % of the hemisphere, and more than the share below asks for.
+/// A cover is no higher than this part of the size.
 constexpr float kHighest = 0.25f;
+/// Rays leave the gap at so many times its height: covers need not be quite even.
+constexpr float kAbove = 1.5f;
+/// Rays less steep than this stay in the gap, whatever its width: 1 / 16^2 = 0.4 % of them.
+constexpr float kSteep = 1.0f / 16;
 /// Covered places see less than this of what lies beyond.
 constexpr float kOpen = 0.1f;
 constexpr uint32_t kRays = 64;
@@ -20,15 +24,15 @@ constexpr uint32_t kRays = 64;
 }  // namespace
 
 float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float size_m) {
-  const trace::Ray up{from, 0, normal, kHighest * size_m};
-  uint8_t shut = 0;
-  tracer.occluded({&up, 1}, {&shut, 1});
-  if (!shut) return 1;
+  const float height_m = tracer.closest_hit({from, 0, normal, kHighest * size_m}).t;
+  if (!std::isfinite(height_m)) return 1;
   std::array<trace::Ray, kRays> rays;
   std::array<uint8_t, kRays> blocked{};
   const Frame frame = frame_around(normal);
-  for (uint32_t k = 0; k < kRays; ++k)
-    rays[k] = {from, 0, frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 5))), size_m};
+  for (uint32_t k = 0; k < kRays; ++k) {
+    const Vec3 d = cosine_hemisphere_sample(sobol_owen_2d(k, 5));
+    rays[k] = {from, 0, frame.to_world(d), kAbove * height_m / std::max(d.z, kSteep)};
+  }
   tracer.occluded(rays, blocked);
   const float open = float(std::count(blocked.begin(), blocked.end(), 0)) / float(kRays);
   return open < kOpen ? open : 1;

@@ -9,12 +9,12 @@
 
 namespace luxel::transport {
 
-/// The share of the cosine-weighted hemisphere that nothing within size_m shuts, for a place that
-/// is *covered*: something lies within a quarter of size_m along its normal, and less than a tenth
-/// is open. 1 for any other place. Under a cover at height h a place is covered from 1.3 h inwards
-/// of its border: there (1 - x / sqrt(x^2 + h^2)) / 2 = 0.1. Neither corners nor niches wider than
-/// a quarter of size_m are covers, because nothing lies before them. `from` lies just off the
-/// surface (trace::offset_origin); 64 fixed rays.
+/// The share of the cosine-weighted hemisphere that is open, for a place that is *covered*: a cover
+/// lies at a height of less than a quarter of size_m above it, and less than a tenth of the rays
+/// leave the gap below. 1 for any other place. A ray leaves the gap when it gets half as high again
+/// as the cover. So places under a cover of height h are covered from 1.3 h inwards of its border:
+/// there (1 - x / sqrt(x^2 + h^2)) / 2 = 0.1. Places beside a wall or under a table are not,
+/// however small the room. `from` lies just off the surface (trace::offset_origin); 64 fixed rays.
 float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float size_m);
 
 /// The open share of each element, by its geometric normal.

@@ -73,12 +73,11 @@ std::span<const PatchLocator::Part> PatchLocator::parts_in(uint64_t voxel) const
 }
 
 const PatchLocator::Part* PatchLocator::part_at(Vec3 position, Vec3 normal, uint32_t material,
-                                                const trace::RayTracer& tracer,
-                                                bool with_hidden) const {
+                                                const trace::RayTracer& tracer) const {
   const uint64_t voxel = voxel_of(grid_, position);
   const auto fits = [&](const Part& part) {
     return part.material == material && dot(part.seed.normal, normal) > kSameDirection &&
-           (with_hidden || part.patch != kNone);
+           part.patch != kNone;
   };
   const Part* only = nullptr;
   int count = 0;
@@ -98,8 +97,7 @@ const PatchLocator::Part* PatchLocator::part_at(Vec3 position, Vec3 normal, uint
       for (const Part& part : parts_in(at)) {
         const Vec3 d = part.seed.position - position;
         const bool alike =
-            strict ? fits(part)
-                   : dot(part.seed.normal, normal) > 0 && (with_hidden || part.patch != kNone);
+            strict ? fits(part) : dot(part.seed.normal, normal) > 0 && part.patch != kNone;
         if (alike && dot(d, d) < least) least = dot(d, d), nearest = &part;
       }
     });
@@ -122,14 +120,8 @@ bool PatchLocator::is_covered_at(Vec3 position, Vec3 normal, uint32_t material,
 uint32_t PatchLocator::locate(Vec3 position, Vec3 normal, uint32_t material,
                               const trace::RayTracer& tracer) const {
   if (is_covered_at(position, normal, material, tracer)) return kNone;
-  const Part* part = part_at(position, normal, material, tracer, false);
+  const Part* part = part_at(position, normal, material, tracer);
   return part ? part->patch : kNone;
-}
-
-bool PatchLocator::is_hidden(Vec3 position, Vec3 normal, uint32_t material,
-                             const trace::RayTracer& tracer) const {
-  const Part* part = part_at(position, normal, material, tracer, true);
-  return part && part->patch == kNone;
 }
 
 void PatchLocator::near(Vec3 position, int reach, std::vector<uint32_t>& patches) const {

@@ -56,12 +56,10 @@ class PatchLocator {
   PatchLocator(const VoxelGrid& grid, std::span<const uint64_t> voxel, std::vector<Part> parts);
 
   /// The patch at a place of the front side; kNone inside a solid, where it is covered, or when no
-  /// surface of the kind is near. Parts of one voxel that look alike are told apart by sight of their seeds.
+  /// surface of the kind is near. Parts of one voxel that look alike are told apart by sight of
+  /// their seeds.
   uint32_t locate(Vec3 position, Vec3 normal, uint32_t material,
                   const trace::RayTracer& tracer) const;
-  /// Whether a place lies inside a solid, where no light comes or goes.
-  bool is_hidden(Vec3 position, Vec3 normal, uint32_t material,
-                 const trace::RayTracer& tracer) const;
   /// The grid that surfaces were cut by.
   const VoxelGrid& grid() const { return grid_; }
   /// Patches in the voxels within `reach` steps of a place, each once, ascending.
@@ -74,8 +72,8 @@ class PatchLocator {
   bool is_covered_at(Vec3 position, Vec3 normal, uint32_t material,
                      const trace::RayTracer& tracer) const;
   std::span<const Part> parts_in(uint64_t voxel) const;
-  const Part* part_at(Vec3 position, Vec3 normal, uint32_t material, const trace::RayTracer& tracer,
-                      bool with_hidden) const;
+  const Part* part_at(Vec3 position, Vec3 normal, uint32_t material,
+                      const trace::RayTracer& tracer) const;
 
   VoxelGrid grid_;
   std::unordered_map<uint64_t, Range> range_of_voxel_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
@@ -24,14 +23,14 @@ constexpr uint32_t kRays = 64;
 }  // namespace
 
 float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float size_m) {
-  const float height_m = tracer.closest_hit({from, 0, normal, kHighest * size_m}).t;
-  if (!std::isfinite(height_m)) return 1;
+  const trace::Hit above = tracer.closest_hit({from, 0, normal, kHighest * size_m});
+  if (!above.found()) return 1;
   std::array<trace::Ray, kRays> rays;
   std::array<uint8_t, kRays> blocked{};
   const Frame frame = frame_around(normal);
   for (uint32_t k = 0; k < kRays; ++k) {
     const Vec3 d = cosine_hemisphere_sample(sobol_owen_2d(k, 5));
-    rays[k] = {from, 0, frame.to_world(d), kAbove * height_m / std::max(d.z, kSteep)};
+    rays[k] = {from, 0, frame.to_world(d), kAbove * above.t / std::max(d.z, kSteep)};
   }
   tracer.occluded(rays, blocked);
   const float open = float(std::count(blocked.begin(), blocked.end(), 0)) / float(kRays);

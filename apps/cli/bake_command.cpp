@@ -49,10 +49,12 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   return s;
 }
 
-/// How noisy the light is, as far as the solver knows, and where most.
+/// How noisy the light is, as far as the solver knows, and where most; or how far it is off.
 std::string noise_text(const nlohmann::json& json) {
   const double rms = json["relative_error"].get<double>();
   if (rms <= 0) return {};
+  if (json["counts"]["elements"].get<uint64_t>() > 0)  // light between them has no noise
+    return fmt::format("estimated error: RMS {:.3g} % of the mean light", 100 * rms);
   std::string text = fmt::format("noise: RMS {:.3g} % of the mean light", 100 * rms);
   if (!json.contains("error")) return text;
   const auto& error = json["error"];

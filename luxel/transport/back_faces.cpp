@@ -118,4 +118,22 @@ std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTr
   return out;
 }
 
+std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                   const Elements& elements) {
+  // Most places see no backs: a few rays tell.
+  constexpr int kFirst = 16;
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  std::vector<uint8_t> out(elements.size());
+  parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Vec3 from =
+          trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
+      const BackFaces few = count_back_faces(scene, tracer, from, elements.normal[i], kFirst);
+      out[i] = all_backs(few) > 0 &&
+               is_enclosed(scene, tracer, from, elements.normal[i], int(kMost), diagonal_m);
+    }
+  });
+  return out;
+}
+
 }  // namespace luxel::transport

@@ -65,5 +65,8 @@ bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
 std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
                                    const Elements& elements,
                                    const std::function<BackFaces(size_t)>& own);
+/// By the fixed set alone, for solvers whose elements have no rays of their own.
+std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                   const Elements& elements);
 
 }  // namespace luxel::transport

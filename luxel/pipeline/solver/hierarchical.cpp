@@ -8,9 +8,10 @@
 #include "luxel/pipeline/settings/option_rows.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
-#include "luxel/solve/hierarchical/enclosed.h"
 #include "luxel/solve/hierarchical/represent.h"
 #include "luxel/solve/hierarchical/surface.h"
+#include "luxel/transport/back_faces.h"
+#include "luxel/transport/covers.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -18,17 +19,27 @@ namespace {
 /// Texels at which the interpolants are held against exact irradiance.
 constexpr size_t kCheckedTexels = 400;
 
-/// Root mean square difference between interpolated and exact irradiance over the mean.
-Result<double> interpolation_error(const light::TexelScene& in,
-                                   const hierarchical::Solution& solution,
-                                   std::span<const Rgb> interpolated, Progress& progress) {
+/// The side of a square as large as the tree's leaves are on average [m].
+float mean_side_m(const hierarchical::Tree& tree) {
+  double area = 0, count = 0;
+  for (const hierarchical::Element& e : tree.elements)
+    if (e.is_leaf()) area += e.area_m2, count += 1;
+  return float(std::sqrt(area / std::max(count, 1.0)));
+}
+
+/// Root mean square difference between interpolated and exact irradiance over the mean, where
+/// neither a solid nor a cover hides the texel; and what links may err by, over the mean, for what
+/// is exact at points still has the light of the links.
+Result<double> stated_error(const light::TexelScene& in, const hierarchical::Solution& solution,
+                            const TexelLight& light, std::span<const float> open,
+                            Progress& progress) {
   std::vector<hierarchical::Receiver> receivers;
   std::vector<size_t> texels;
   const size_t step = std::max<size_t>(1, in.map.texels.size() / kCheckedTexels);
   for (size_t i = step / 2; i < in.map.texels.size(); i += step) {
     const hierarchical::FacePoint place =
         hierarchical::face_point_of(in.scene, solution.faces, in.map.texels[i].sample);
-    if (place.face == hierarchical::kNone) continue;
+    if (place.face == hierarchical::kNone || light.hidden[i] || open[i] < 1) continue;
     receivers.push_back(
         hierarchical::receiver_at(solution, in.scene, in.tracer, place.face, place.position));
     texels.push_back(i);
@@ -37,10 +48,12 @@ Result<double> interpolation_error(const light::TexelScene& in,
             hierarchical::irradiance_at(solution, in.scene, in.tracer, receivers, {}, progress));
   double squares = 0, sum = 0;
   for (size_t k = 0; k < texels.size(); ++k) {
-    const double d = double(luminance(interpolated[texels[k]] - exact[k]));
+    const double d = double(luminance(light.irradiance[texels[k]] - exact[k]));
     squares += d * d, sum += double(luminance(exact[k]));
   }
-  return sum > 0 ? std::sqrt(squares * double(texels.size())) / sum : 0;
+  if (!(sum > 0)) return 0.0;
+  const auto n = double(texels.size());
+  return std::sqrt(squares * n) / sum + solution.eps * n / sum;
 }
 
 Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSettings& settings,
@@ -54,18 +67,20 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
   LUXEL_TRY(const hierarchical::LightMesh mesh,
             hierarchical::represent(solution, in.scene, in.tracer, own.mesh, {}, progress));
   TexelLight out;
-  out.irradiance.resize(in.map.texels.size()), out.hidden.resize(in.map.texels.size());
+  out.irradiance.resize(in.map.texels.size());
+  // Where something much closer than elements covers a texel, they have no light to tell.
+  const std::vector<float> open = transport::open_shares(
+      in.tracer, in.elements, mean_side_m(solution.tree), scene::world_bounds(in.scene).diagonal());
   parallel_for(in.map.texels.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       out.irradiance[i] =
-          hierarchical::irradiance_at(solution, mesh, in.scene, in.map.texels[i].sample);
+          hierarchical::irradiance_at(solution, mesh, in.scene, in.map.texels[i].sample) * open[i];
   });
-  out.hidden = hierarchical::find_enclosed(in.scene, in.tracer, in.elements.position,
-                                           in.elements.geometric_normal, out.irradiance);
+  out.hidden = transport::find_enclosed(in.scene, in.tracer, in.elements);
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
   out.sweeps = solution.sweeps, out.elements = mesh.triangles.size();
   out.warnings = solution.warnings;
-  LUXEL_TRY(out.relative_error, interpolation_error(in, solution, out.irradiance, progress));
+  LUXEL_TRY(out.relative_error, stated_error(in, solution, out, open, progress));
   return out;
 }
 

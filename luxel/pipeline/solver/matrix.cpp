@@ -2,18 +2,29 @@
 #include "luxel/pipeline/solver/matrix.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "luxel/base/parallel.h"
 #include "luxel/light/supersample.h"
 #include "luxel/pipeline/settings/option_rows.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
+#include "luxel/solve/matrix/point_error.h"
+#include "luxel/transport/back_faces.h"
 
 namespace luxel::pipeline {
 namespace {
 
 /// Rays of a patch are counted in 16 bits.
 constexpr double kMaxRays = 65535;
+
+/// Mean luminance of texels that are not hidden.
+double mean_light(const TexelLight& light) {
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < light.irradiance.size(); ++i)
+    if (!light.hidden[i]) sum += double(luminance(light.irradiance[i])), count += 1;
+  return count > 0 ? sum / count : 0;
+}
 
 /// Direct light for each texel, indirect light for each patch.
 Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings& settings,
@@ -38,14 +49,14 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
             light::supersample(in, {.points = settings.supersample, .direct = direct_params},
                                direct, progress));
   TexelLight out;
-  out.irradiance.resize(in.elements.size()), out.hidden.resize(in.elements.size());
+  out.irradiance.resize(in.elements.size());
   matrix::transfer(map, solution.indirect, out.irradiance);
+  out.hidden = transport::find_enclosed(in.scene, in.tracer, in.elements);
+  LUXEL_TRY(const double error,
+            matrix::point_error({in.scene, in.tracer, in.lights.around, prepared, solution},
+                                in.elements, out.irradiance, out.hidden, settings.seed, progress));
   parallel_for(in.elements.size(), 4096, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      out.irradiance[i] += direct.irradiance[i];
-      out.hidden[i] =
-          matrix::is_hidden(in.scene, in.tracer, prepared.patched, in.map.texels[i].sample);
-    }
+    for (size_t i = begin; i < end; ++i) out.irradiance[i] += direct.irradiance[i];
   });
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
   // What patches exchange has no grain: every texel reads it through the same smooth functions.
@@ -55,7 +66,8 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   out.supersampled_texels = averaged.texels.size();
   out.rays = solution.rays + direct.rays + averaged.rays, out.sweeps = solution.sweeps;
   out.elements = prepared.patched.patches.size();
-  out.relative_error = solution.relative_error;
+  const double mean = mean_light(out);
+  out.relative_error = std::hypot(solution.relative_error, mean > 0 ? error / mean : 0);
   return out;
 }
 

@@ -14,7 +14,7 @@ Rgb irradiance_at(const Field& field, const scene::SurfacePoint& p) {
 }
 
 Field smoothed(const scene::Scene& scene, const Field& per_triangle,
-               std::span<const uint8_t> hidden) {
+               std::span<const uint8_t> enclosed, std::span<const uint8_t> covered) {
   LUXEL_CHECK(per_triangle.receivers.kind == ElementKind::triangle);
   Field out;
   out.mesh = per_triangle.mesh;
@@ -22,7 +22,7 @@ Field smoothed(const scene::Scene& scene, const Field& per_triangle,
   out.irradiance.resize(out.receivers.size());
   std::vector<float> weight(out.receivers.size());
   for (size_t i = 0; i < per_triangle.receivers.leaves.size(); ++i) {
-    if (hidden[i]) continue;
+    if (enclosed[i] || covered[i]) continue;
     const float area = per_triangle.receivers.area_m2[i];
     for (const uint32_t v : out.mesh.nodes[per_triangle.receivers.leaves[i]].vertex) {
       out.irradiance[v] += per_triangle.irradiance[i] * area;

@@ -16,8 +16,8 @@ struct Field {
 Rgb irradiance_at(const Field& field, const scene::SurfacePoint& p);
 
 /// Light per vertex from light per triangle: the mean of the triangles around each, by their areas.
-/// `hidden` (per triangle) are left out, and stay hidden where nothing else is around.
+/// Those inside solids and covered ones (flags per triangle) are left out; nothing else around: 0.
 Field smoothed(const scene::Scene& scene, const Field& per_triangle,
-               std::span<const uint8_t> hidden);
+               std::span<const uint8_t> enclosed, std::span<const uint8_t> covered);
 
 }  // namespace luxel::hemicube

@@ -106,12 +106,12 @@ Status exchange_light(const scene::Scene& scene, const trace::RayTracer& tracer,
   const Receivers& receivers = s.field.receivers;
   LUXEL_TRY(const Sight sight, look_from({scene, tracer, emission, s.field.mesh, receivers},
                                          receivers.elements, params, s, progress));
-  s.hidden = sight.rows.hidden, s.enclosed = sight.rows.enclosed;
+  s.hidden = sight.rows.hidden, s.enclosed = sight.rows.enclosed, s.covered = sight.rows.covered;
   s.row_bytes_in_file = sight.rows.store.bytes_in_file();
   s.row_bytes = sight.rows.store.bytes_in_memory() + s.row_bytes_in_file;
   LUXEL_TRY(Exchanged exchanged,
             exchange(receivers, sight.rows, sight.source,
-                     plan_refill(receivers.neighbours, s.enclosed), s.field.irradiance,
+                     plan_refill(receivers.neighbours, s.enclosed, s.covered), s.field.irradiance,
                      {.bounces = params.bounces, .tolerance = params.tolerance}, progress));
   s.field.irradiance = std::move(exchanged.irradiance);
   s.sweeps = exchanged.sweeps;
@@ -148,6 +148,9 @@ Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
   LUXEL_TRY(FirstMesh first, first_mesh(scene, params, progress));
   const Emission emission = choose_emission(lights);
   Solution s;
+  // The leg of a right isosceles triangle of mean area.
+  s.element_size_m =
+      float(std::sqrt(2 * area_m2(scene) / double(std::max<size_t>(first.mesh.triangle_count, 1))));
   s.field.receivers = make_receivers(scene, first.mesh, params.elements);
   s.field.mesh = std::move(first.mesh);
   if (params.max_error > 0)
@@ -156,8 +159,8 @@ Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
   LUXEL_TRY_STATUS(exchange_light(scene, tracer, emission, params, s, progress));
   s.relative_error = relative_interpolation_error(s.field);
   if (params.smooth && params.elements == ElementKind::triangle) {
-    s.field = smoothed(scene, s.field, s.enclosed);
-    s.hidden.assign(s.field.receivers.size(), 0), s.enclosed = s.hidden;
+    s.field = smoothed(scene, s.field, s.enclosed, s.covered);
+    s.hidden.assign(s.field.receivers.size(), 0), s.enclosed = s.covered = s.hidden;
   }
   return s;
 }

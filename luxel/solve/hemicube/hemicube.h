@@ -38,6 +38,8 @@ struct Solution {
   Field field;
   std::vector<uint8_t> hidden;    ///< per element of the field: 1 inside a solid
   std::vector<uint8_t> enclosed;  ///< per element: 1 where is_enclosed
+  std::vector<uint8_t> covered;   ///< per element: 1 where transport::open_share is below 1
+  float element_size_m = 0;       ///< mean leg of the first mesh's triangles
   uint64_t rays = 0;
   int sweeps = 0;  ///< of the last exchange
   uint64_t row_bytes = 0, row_bytes_in_file = 0;

@@ -2,14 +2,15 @@
 
 namespace luxel::hemicube {
 
-RefillPlan plan_refill(const Neighbours& neighbours, std::span<const uint8_t> hidden) {
+RefillPlan plan_refill(const Neighbours& neighbours, std::span<const uint8_t> enclosed,
+                       std::span<const uint8_t> covered) {
   // Visible elements have light; the others wait.
   RefillPlan plan;
-  std::vector<uint8_t> has_light(hidden.size());
+  std::vector<uint8_t> has_light(enclosed.size());
   std::vector<uint32_t> waiting;
-  for (uint32_t i = 0; i < hidden.size(); ++i) {
-    has_light[i] = !hidden[i];
-    if (hidden[i]) waiting.push_back(i);
+  for (uint32_t i = 0; i < enclosed.size(); ++i) {
+    has_light[i] = !enclosed[i] && !covered[i];
+    if (!has_light[i]) waiting.push_back(i);
   }
   // Ring by ring: elements with a neighbour that has light by now.
   while (!waiting.empty()) {
@@ -26,7 +27,11 @@ RefillPlan plan_refill(const Neighbours& neighbours, std::span<const uint8_t> hi
       ring.push_back(i);
     }
     // The ring has light only when it is complete, so that its order does not count.
-    if (ring.empty()) break;
+    if (ring.empty()) {
+      for (const uint32_t i : waiting)
+        if (covered[i]) plan.dark.push_back(i);
+      break;
+    }
     for (const uint32_t i : ring) has_light[i] = 1;
     waiting = std::move(rest);
   }
@@ -40,6 +45,7 @@ void refill(const RefillPlan& plan, std::span<Rgb> irradiance) {
     for (uint32_t j = plan.first[k]; j < plan.first[k + 1]; ++j) sum += irradiance[plan.from[j]];
     irradiance[plan.element[k]] = sum / float(plan.first[k + 1] - plan.first[k]);
   }
+  for (const uint32_t i : plan.dark) irradiance[i] = {};
 }
 
 }  // namespace luxel::hemicube

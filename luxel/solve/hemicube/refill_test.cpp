@@ -24,7 +24,7 @@ std::vector<float> refilled(const Neighbours& neighbours, const std::vector<uint
                             const std::vector<float>& light) {
   std::vector<Rgb> e;
   for (const float v : light) e.push_back({v, 2 * v, 0});
-  refill(plan_refill(neighbours, hidden), e);
+  refill(plan_refill(neighbours, hidden, std::vector<uint8_t>(hidden.size())), e);
   std::vector<float> out;
   for (const Rgb& v : e) {
     EXPECT_EQ(v.y, 2 * v.x);
@@ -46,10 +46,21 @@ TEST(Refill, TakesTheMeanOfNeighboursRingByRing) {
 TEST(Refill, LeavesOutWhatNoLightReaches) {
   Neighbours two = chain(4);  // cut between 1 and 2
   two.first = {0, 1, 2, 3, 4}, two.element = {1, 0, 3, 2};
-  const RefillPlan plan = plan_refill(two, std::vector<uint8_t>{0, 1, 1, 1});
+  const RefillPlan plan =
+      plan_refill(two, std::vector<uint8_t>{0, 1, 1, 1}, std::vector<uint8_t>(4));
   EXPECT_EQ(plan.element, (std::vector<uint32_t>{1}));
   EXPECT_EQ(refilled(two, {0, 1, 1, 1}, {6, 0, 0, 0}), (std::vector<float>{6, 6, 0, 0}));
   EXPECT_EQ(refilled(two, {1, 1, 1, 1}, {0, 0, 0, 0}), (std::vector<float>{0, 0, 0, 0}));
+}
+
+TEST(Refill, CoveredElementsAreRefilledAndBlackWhereNoLightReaches) {
+  Neighbours two = chain(4);  // cut between 1 and 2
+  two.first = {0, 1, 2, 3, 4}, two.element = {1, 0, 3, 2};
+  std::vector<Rgb> e{{6, 6, 6}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}};
+  refill(plan_refill(two, std::vector<uint8_t>{0, 0, 0, 1}, std::vector<uint8_t>{0, 1, 1, 0}), e);
+  EXPECT_EQ(e[1].x, 6);  // as its neighbour
+  EXPECT_EQ(e[2].x, 0);  // covered, and so is nothing that has light
+  EXPECT_EQ(e[3].x, 3);  // inside a solid: keeps what it has
 }
 
 }  // namespace

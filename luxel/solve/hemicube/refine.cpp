@@ -7,6 +7,7 @@
 
 #include "luxel/light/direct_light.h"
 #include "luxel/solve/hemicube/bisect.h"
+#include "luxel/transport/covers.h"
 
 namespace luxel::hemicube {
 namespace {
@@ -123,7 +124,7 @@ std::vector<uint32_t> worst_first(const Field& field, float max_error, double sh
 /// Moves what is known of elements to the numbers they have in a finer mesh; returns the new ones.
 std::vector<uint32_t> carry_over(const Receivers& before, const Receivers& now, Solution& s) {
   std::vector<Rgb> irradiance(now.size());
-  std::vector<uint8_t> hidden(now.size()), enclosed(now.size());
+  std::vector<uint8_t> hidden(now.size()), enclosed(now.size()), covered(now.size());
   std::vector<uint32_t> unknown;
   for (uint32_t i = 0; i < now.size(); ++i) {
     uint32_t old = kNone;
@@ -136,10 +137,10 @@ std::vector<uint32_t> carry_over(const Receivers& before, const Receivers& now, 
       continue;
     }
     irradiance[i] = s.field.irradiance[old];
-    hidden[i] = s.hidden[old], enclosed[i] = s.enclosed[old];
+    hidden[i] = s.hidden[old], enclosed[i] = s.enclosed[old], covered[i] = s.covered[old];
   }
   s.field.irradiance = std::move(irradiance);
-  s.hidden = std::move(hidden), s.enclosed = std::move(enclosed);
+  s.hidden = std::move(hidden), s.enclosed = std::move(enclosed), s.covered = std::move(covered);
   return unknown;
 }
 
@@ -186,6 +187,10 @@ Result<Sight> look_from(const SendingScene& around, const transport::Elements& e
                                   .scratch_folder = params.scratch_folder},
                                  progress));
   for (size_t k = 0; k < elements.size(); ++k) direct.irradiance[k] += rows.emitted[k];
+  const std::vector<float> open =
+      transport::open_shares(around.tracer, elements, solution.element_size_m,
+                             scene::world_bounds(around.scene).diagonal());
+  for (const float share : open) rows.covered.push_back(share < 1);
   solution.rays += direct.rays + pixels_of(params.resolution) * elements.size();
   solution.seconds.visibility += rows.seconds.visibility;
   solution.seconds.summation += rows.seconds.summation;
@@ -222,8 +227,9 @@ Status light_new_elements(const SendingScene& around, const HemicubeParams& para
   for (size_t k = 0; k < elements.size(); ++k) {
     s.field.irradiance[elements[k]] = gathered[k];
     s.hidden[elements[k]] = sight.rows.hidden[k], s.enclosed[elements[k]] = sight.rows.enclosed[k];
+    s.covered[elements[k]] = sight.rows.covered[k];
   }
-  refill(plan_refill(s.field.receivers.neighbours, s.enclosed), s.field.irradiance);
+  refill(plan_refill(s.field.receivers.neighbours, s.enclosed, s.covered), s.field.irradiance);
   return {};
 }
 

@@ -54,7 +54,7 @@ Result<Rows> make_rows(const Senders& senders, std::span<const Viewpoint> from,
   LUXEL_TRY(auto store, RowStore<RowEntry>::create(
                             count, kTileElements, max_row_entries(senders, params.look.resolution),
                             params.memory_limit_bytes, params.scratch_folder));
-  Rows rows{std::move(store), {}, {}, {}, {}, {}};
+  Rows rows{std::move(store), {}, {}, {}, {}, {}, {}};
   rows.scale.resize(count), rows.emitted.resize(count);
   rows.hidden.resize(count), rows.enclosed.resize(count);
   std::vector<RowTile<RowEntry>> open(rows.store.tile_count());

@@ -27,6 +27,7 @@ struct Rows {
   std::vector<Rgb> emitted;       ///< per row: irradiance from emission and background
   std::vector<uint8_t> hidden;    ///< per row: 1 inside a solid
   std::vector<uint8_t> enclosed;  ///< per row: 1 where is_enclosed
+  std::vector<uint8_t> covered;  ///< per row: 1 where something much closer than elements covers it
   LookSeconds seconds;
 };
 

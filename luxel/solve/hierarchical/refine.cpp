@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/solve/hierarchical/surface.h"
+#include "luxel/transport/covers.h"
 
 namespace luxel::hierarchical {
 namespace {
@@ -175,9 +177,24 @@ Status settle(Refined& state, const Exchange& x, const RefineParams& params, std
   return {};
 }
 
-}  // namespace
+/// Corners are looked at this far inwards: beside an edge something else may begin.
+constexpr double kInwards = 0.1;
 
-ElementLight bare_light(const scene::Scene& scene, const Exchange& x, const Element& e) {
+/// Whether something much closer than the element covers its centre and its corners.
+bool is_covered(const Exchange& x, const Element& e) {
+  const Vec3 normal = to_float(x.faces.faces[e.face].plane.normal);
+  const auto size_m = float(std::sqrt(e.area_m2));
+  const auto covered_at = [&](DVec3 place) {
+    const Vec3 from = trace::offset_origin(to_float(place), normal, x.diagonal_m);
+    return transport::open_share(x.tracer, from, normal, size_m) < 1;
+  };
+  if (!covered_at(e.centre)) return false;
+  for (uint32_t k = 0; k < e.corners; ++k)
+    if (!covered_at(e.corner[k] + (e.centre - e.corner[k]) * kInwards)) return false;
+  return true;
+}
+
+ElementLight uncovered_light(const scene::Scene& scene, const Exchange& x, const Element& e) {
   ElementLight out;
   const Face& face = x.faces.faces[e.face];
   if (!has_texture(scene, face)) {
@@ -201,6 +218,14 @@ ElementLight bare_light(const scene::Scene& scene, const Exchange& x, const Elem
     out.emission += scene::emission_at(scene, *p) * kPi;
   }
   out.reflectance = out.reflectance / float(count), out.emission = out.emission / float(count);
+  return out;
+}
+
+}  // namespace
+
+ElementLight bare_light(const scene::Scene& scene, const Exchange& x, const Element& e) {
+  ElementLight out = uncovered_light(scene, x, e);
+  if (is_covered(x, e)) out.reflectance = {};
   return out;
 }
 

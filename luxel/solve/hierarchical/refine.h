@@ -31,7 +31,9 @@ struct Refined {
   Links& links;
 };
 
-/// Reflectance and emission of an element: means over some of its points.
+/// Reflectance and emission of an element: means over some of its points. It reflects nothing where
+/// something much closer than itself covers all of it (transport::open_share): as a whole, it would
+/// see the other side of the gap by a form factor of more than it has room for.
 ElementLight bare_light(const scene::Scene& scene, const Exchange& exchange, const Element& e);
 
 /// Links everything to everything, as coarsely as error_of allows by the light there is.

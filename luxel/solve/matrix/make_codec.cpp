@@ -1,6 +1,7 @@
 #include "luxel/solve/matrix/make_codec.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace luxel::matrix {
 namespace {
@@ -18,8 +19,21 @@ constexpr float kAim = 0.9f;
 /// ... and is smaller by these factors: no less, because steps would get nowhere, and no more,
 /// because proportion holds nearby only, and a block_error that is too small costs memory.
 constexpr float kMostShrunk = 0.3f, kLeastShrunk = 0.8f;
-/// Steps from the first block_error; 0.8^5 = 0.33 and 0.3^5 = 0.002 of it.
-constexpr int kMaxSteps = 5;
+/// Steps from the first block_error; 0.8^8 = 0.17 and 0.3^8 = 7e-5 of it.
+constexpr int kMaxSteps = 8;
+
+/// Smaller blocks, towards max_error. What blocks may lose of the noise of rays is a floor under
+/// the error: where a step got less than half the way that it was to go (in logarithms), that
+/// shrinks, too. `error` and `before` are those of the last two steps, `factor` lies between them;
+/// returned is that to the next.
+float shrink(HierarchicalParams& tried, double max_error, double error, double before,
+             float factor) {
+  const bool stuck = error > before * double(std::sqrt(factor));
+  factor = std::clamp(kAim * float(max_error / error), kMostShrunk, kLeastShrunk);
+  tried.block_error *= factor;
+  if (stuck) tried.noise *= factor * factor;
+  return factor;
+}
 
 /// The sweeps of all_bounces: as many as keep to their part of the error. Counted bounces take
 /// none, and 2 stands in the file.
@@ -36,14 +50,16 @@ Result<Codec> hierarchical_codec(const CodecInput& t, const RelightParams& param
   HierarchicalParams tried;
   tried.rays_per_patch = params.factors.rays_per_patch;
   tried.block_error = kFirstBlockError * params.max_error;
+  double before = INFINITY;
+  float factor = 1;
   for (int step = 0;; ++step) {
     LUXEL_TRY(Hierarchical matrix, compress(t.prepared.factors, t.prepared.patched.tree,
                                             patches.centroid, patches.area_m2, tried, progress));
     Codec codec = HierarchicalCodec{std::move(matrix), t.coarse, sweeps};
     const double error = error_of(codec, t.trials, patches, params.bounces);
     if (error <= double(params.max_error) || step == kMaxSteps) return codec;
-    tried.block_error *=
-        std::clamp(kAim * params.max_error / float(error), kMostShrunk, kLeastShrunk);
+    factor = shrink(tried, double(params.max_error), error, before, factor);
+    before = error;
   }
 }
 

@@ -88,14 +88,6 @@ uint64_t bytes_of_preparation(size_t patches, int rays_per_patch) {
   return entries * 4 * 8 + uint64_t(patches) * 4096;
 }
 
-bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer,
-               const PatchedScene& patched, const scene::SurfacePoint& p) {
-  const scene::Mesh& mesh = scene.meshes[scene.instances[p.instance].mesh];
-  return patched.locator.is_hidden(scene::world_position(scene, p),
-                                   scene::front_normal(scene, p.instance, p.triangle),
-                                   mesh.triangle_material[p.triangle], tracer);
-}
-
 Result<Prepared> prepare(const scene::Scene& scene, const trace::RayTracer& tracer,
                          const MatrixParams& params, Progress& progress) {
   Prepared out;

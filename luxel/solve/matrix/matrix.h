@@ -34,10 +34,6 @@ uint64_t bytes_of_preparation(size_t patches, int rays_per_patch);
 Result<Prepared> prepare(const scene::Scene& scene, const trace::RayTracer& tracer,
                          const MatrixParams& params, Progress& progress);
 
-/// Whether a point lies inside a solid.
-bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer,
-               const PatchedScene& patched, const scene::SurfacePoint& p);
-
 /// The light of each patch [W/m^2].
 struct Solution {
   std::vector<Rgb> direct;    ///< per patch: E straight from lights, without the background

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/transport/covers.h"
+
 namespace luxel::matrix {
 namespace {
 
@@ -39,6 +41,11 @@ uint64_t voxel_of(const VoxelGrid& grid, Vec3 position) {
   return voxel;
 }
 
+float open_share(const trace::RayTracer& tracer, const PatchPoint& p, const VoxelGrid& grid) {
+  const Vec3 from = trace::offset_origin(p.position, p.normal, grid.diagonal_m);
+  return transport::open_share(tracer, from, p.normal, grid.voxel_m);
+}
+
 bool see_each_other(const trace::RayTracer& tracer, const PatchPoint& a, const PatchPoint& b,
                     float voxel_m) {
   const Vec3 from = a.position + a.normal * (kLift * voxel_m);
@@ -66,12 +73,11 @@ std::span<const PatchLocator::Part> PatchLocator::parts_in(uint64_t voxel) const
 }
 
 const PatchLocator::Part* PatchLocator::part_at(Vec3 position, Vec3 normal, uint32_t material,
-                                                const trace::RayTracer& tracer,
-                                                bool with_hidden) const {
+                                                const trace::RayTracer& tracer) const {
   const uint64_t voxel = voxel_of(grid_, position);
   const auto fits = [&](const Part& part) {
     return part.material == material && dot(part.seed.normal, normal) > kSameDirection &&
-           (with_hidden || part.patch != kNone);
+           part.patch != kNone;
   };
   const Part* only = nullptr;
   int count = 0;
@@ -91,8 +97,7 @@ const PatchLocator::Part* PatchLocator::part_at(Vec3 position, Vec3 normal, uint
       for (const Part& part : parts_in(at)) {
         const Vec3 d = part.seed.position - position;
         const bool alike =
-            strict ? fits(part)
-                   : dot(part.seed.normal, normal) > 0 && (with_hidden || part.patch != kNone);
+            strict ? fits(part) : dot(part.seed.normal, normal) > 0 && part.patch != kNone;
         if (alike && dot(d, d) < least) least = dot(d, d), nearest = &part;
       }
     });
@@ -101,16 +106,22 @@ const PatchLocator::Part* PatchLocator::part_at(Vec3 position, Vec3 normal, uint
   return nullptr;
 }
 
-uint32_t PatchLocator::locate(Vec3 position, Vec3 normal, uint32_t material,
-                              const trace::RayTracer& tracer) const {
-  const Part* part = part_at(position, normal, material, tracer, false);
-  return part ? part->patch : kNone;
+/// Rays ask only where the place's voxel has covered parts of its kind.
+bool PatchLocator::is_covered_at(Vec3 position, Vec3 normal, uint32_t material,
+                                 const trace::RayTracer& tracer) const {
+  const std::span<const Part> parts = parts_in(voxel_of(grid_, position));
+  const bool maybe = std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
+    return part.covered && part.material == material &&
+           dot(part.seed.normal, normal) > kSameDirection;
+  });
+  return maybe && is_covered(tracer, {position, normal}, grid_);
 }
 
-bool PatchLocator::is_hidden(Vec3 position, Vec3 normal, uint32_t material,
-                             const trace::RayTracer& tracer) const {
-  const Part* part = part_at(position, normal, material, tracer, true);
-  return part && part->patch == kNone;
+uint32_t PatchLocator::locate(Vec3 position, Vec3 normal, uint32_t material,
+                              const trace::RayTracer& tracer) const {
+  if (is_covered_at(position, normal, material, tracer)) return kNone;
+  const Part* part = part_at(position, normal, material, tracer);
+  return part ? part->patch : kNone;
 }
 
 void PatchLocator::near(Vec3 position, int reach, std::vector<uint32_t>& patches) const {

@@ -24,11 +24,19 @@ struct PatchPoint {
 /// The voxel grid that surfaces are cut by.
 struct VoxelGrid {
   float voxel_m = 1;
-  Vec3 origin;  ///< of voxel 0, 0, 0
+  Vec3 origin;           ///< of voxel 0, 0, 0
+  float diagonal_m = 1;  ///< of the scene
 };
 
 /// 21 bits per axis; places outside the grid fall into its border.
 uint64_t voxel_of(const VoxelGrid& grid, Vec3 position);
+
+/// transport::open_share by the size of voxels: below 1 where something much closer covers a place.
+/// No patch carries the light there.
+float open_share(const trace::RayTracer& tracer, const PatchPoint& p, const VoxelGrid& grid);
+inline bool is_covered(const trace::RayTracer& tracer, const PatchPoint& p, const VoxelGrid& grid) {
+  return open_share(tracer, p, grid) < 1;
+}
 
 /// Whether two places of surfaces see each other from a little above their surfaces.
 bool see_each_other(const trace::RayTracer& tracer, const PatchPoint& a, const PatchPoint& b,
@@ -40,19 +48,20 @@ class PatchLocator {
   /// A part of a voxel's surfaces, known by one of its points.
   struct Part {
     PatchPoint seed;
-    uint32_t material = 0, patch = 0;  ///< patch kNone: inside a solid
+    uint32_t material = 0, patch = 0;  ///< patch kNone: inside a solid, or covered
+    bool covered = false;
   };
   PatchLocator() = default;
   /// voxel[k] is where parts[k] lies; ascending.
   PatchLocator(const VoxelGrid& grid, std::span<const uint64_t> voxel, std::vector<Part> parts);
 
-  /// The patch at a place of the front side; kNone inside a solid, or when no surface of the kind
-  /// is near. Parts of one voxel that look alike are told apart by sight of their seeds.
+  /// The patch at a place of the front side; kNone inside a solid, where it is covered, or when no
+  /// surface of the kind is near. Parts of one voxel that look alike are told apart by sight of
+  /// their seeds.
   uint32_t locate(Vec3 position, Vec3 normal, uint32_t material,
                   const trace::RayTracer& tracer) const;
-  /// Whether a place lies inside a solid, where no light comes or goes.
-  bool is_hidden(Vec3 position, Vec3 normal, uint32_t material,
-                 const trace::RayTracer& tracer) const;
+  /// The grid that surfaces were cut by.
+  const VoxelGrid& grid() const { return grid_; }
   /// Patches in the voxels within `reach` steps of a place, each once, ascending.
   void near(Vec3 position, int reach, std::vector<uint32_t>& patches) const;
 
@@ -60,9 +69,11 @@ class PatchLocator {
   struct Range {
     uint32_t first = 0, count = 0;
   };
+  bool is_covered_at(Vec3 position, Vec3 normal, uint32_t material,
+                     const trace::RayTracer& tracer) const;
   std::span<const Part> parts_in(uint64_t voxel) const;
-  const Part* part_at(Vec3 position, Vec3 normal, uint32_t material, const trace::RayTracer& tracer,
-                      bool with_hidden) const;
+  const Part* part_at(Vec3 position, Vec3 normal, uint32_t material,
+                      const trace::RayTracer& tracer) const;
 
   VoxelGrid grid_;
   std::unordered_map<uint64_t, Range> range_of_voxel_;

@@ -94,7 +94,8 @@ constexpr int kMaxRetries = 3;
 
 VoxelGrid grid_of(const scene::Scene& scene, float voxel_m) {
   const Vec3 inset = kGridInset * voxel_m;
-  return {voxel_m, scene::world_bounds(scene).lower - inset};
+  const Box3 bounds = scene::world_bounds(scene);
+  return {voxel_m, bounds.lower - inset, bounds.diagonal()};
 }
 
 uint32_t main_direction(Vec3 n) {
@@ -137,7 +138,8 @@ struct Part {
   std::vector<uint32_t> samples;
   PatchPoint middle;  ///< the sample nearest to the centroid, its normal the mean
   float area_m2 = 0;
-  bool hidden = false;  ///< inside a solid: no light comes or goes
+  bool covered = false;  ///< by something much closer than a voxel
+  bool hidden = false;   ///< covered, or inside a solid: no light comes or goes
 };
 
 void find_middle(std::span<const Sample> samples, Part& part) {
@@ -158,21 +160,22 @@ void find_middle(std::span<const Sample> samples, Part& part) {
 }
 
 /// Splits the samples of a voxel [begin, end) of `order`: each joins the first part that it is like
-/// and whose first sample it sees.
+/// and whose first sample it sees. Covered ones keep to themselves.
 std::vector<Part> parts_of_voxel(std::span<const Sample> samples, std::span<const uint32_t> order,
                                  const VoxelGrid& grid, const trace::RayTracer& tracer) {
   std::vector<Part> parts;
   for (const uint32_t s : order) {
     const Sample& sample = samples[s];
+    const bool covered = is_covered(tracer, sample.at, grid);
     const auto fits = [&](const Part& part) {
       const Sample& seed = samples[part.samples.front()];
-      return part.material == sample.material &&
+      return part.material == sample.material && part.covered == covered &&
              dot(seed.at.normal, sample.at.normal) > kSameDirection &&
-             see_each_other(tracer, sample.at, seed.at, grid.voxel_m);
+             (covered || see_each_other(tracer, sample.at, seed.at, grid.voxel_m));
     };
     auto part = std::find_if(parts.begin(), parts.end(), fits);
     if (part == parts.end()) {
-      parts.push_back({voxel_of(grid, sample.at.position), sample.material, {}, {}, 0});
+      parts.push_back({voxel_of(grid, sample.at.position), sample.material, {}, {}, 0, covered});
       part = parts.end() - 1;
     }
     part->samples.push_back(s);
@@ -221,7 +224,7 @@ Result<std::vector<Part>> make_parts(const scene::Scene& scene, std::span<const 
           samples, std::span(order).subspan(first[v], first[v + 1] - first[v]), grid, tracer);
       for (Part& part : found[v]) {
         find_middle(samples, part);
-        part.hidden = is_hidden(scene, tracer, samples, part, grid.voxel_m);
+        part.hidden = part.covered || is_hidden(scene, tracer, samples, part, grid.voxel_m);
       }
       progress.advance(1);
     }
@@ -350,7 +353,8 @@ PatchedScene assemble(std::span<const Sample> samples, std::span<const Part> par
   std::vector<uint64_t> voxel;
   for (size_t p = 0; p < parts.size(); ++p) {
     known.push_back({samples[parts[p].samples.front()].at, parts[p].material,
-                     patch_of_part[p] == kNone ? kNone : number[patch_of_part[p]]});
+                     patch_of_part[p] == kNone ? kNone : number[patch_of_part[p]],
+                     parts[p].covered});
     voxel.push_back(parts[p].voxel);
   }
   out.locator = PatchLocator(grid, voxel, std::move(known));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "luxel/base/parallel.h"
 #include "luxel/solve/matrix/matrix_test_support.h"
 
@@ -153,17 +155,21 @@ TEST(Patches, ReflectWhatTheirTextureDoes) {
   EXPECT_NEAR(mean, 0.4, 0.008);
 }
 
-bool is_hidden_on_floor(const Cut& cut, float x, float z) {
-  return cut.patched.locator.is_hidden({x, 0, z}, {0, 1, 0}, 0, cut.tracer);
+/// How many points of patches lie on the floor within 2 cm of a place.
+size_t floor_points_at(const Cut& cut, float x, float z) {
+  const std::vector<PatchPoint>& points = cut.patches().points;
+  return size_t(std::count_if(points.begin(), points.end(), [&](const PatchPoint& p) {
+    return p.normal.y > 0.9f && length(p.position - Vec3{x, 0, z}) < 0.02f;
+  }));
 }
 
 TEST(Patches, FloorInsideASolidIsInNone) {
   const Cut cut(scene::cornell_box(), 1000);
   // The middles of the blocks' footprints (docs/bench/cornell-box.md), and places beside them.
-  EXPECT_TRUE(is_hidden_on_floor(cut, 0.1855f, 0.169f));
-  EXPECT_TRUE(is_hidden_on_floor(cut, 0.3685f, 0.35125f));
-  EXPECT_FALSE(is_hidden_on_floor(cut, 0.05f, 0.05f));
-  EXPECT_FALSE(is_hidden_on_floor(cut, 0.5f, 0.05f));
+  EXPECT_EQ(floor_points_at(cut, 0.1855f, 0.169f), 0u);
+  EXPECT_EQ(floor_points_at(cut, 0.3685f, 0.35125f), 0u);
+  EXPECT_GT(floor_points_at(cut, 0.05f, 0.05f), 10u);
+  EXPECT_GT(floor_points_at(cut, 0.5f, 0.05f), 10u);
   double floor = 0;
   for (size_t k = 0; k < cut.size(); ++k)
     if (cut.patches().centroid[k].y < 1e-4f && cut.patches().elements.normal[k].y > 0.9f)
@@ -172,6 +178,37 @@ TEST(Patches, FloorInsideASolidIsInNone) {
   // the area of their points: within 2 %.
   const double short_block = 0.027633, tall_block = 0.027627, whole = 0.308231;
   EXPECT_NEAR(floor, whole - short_block - tall_block, 0.02 * whole);
+}
+
+// A rug as wide as twenty gaps over a floor of patches as large as that: neither the floor below it
+// nor its underside is of any patch, and rays that end there meet none.
+TEST(Patches, WhatARugCoversIsInNone) {
+  constexpr float kGap_m = 0.01f, kBorder_m = 2 * kGap_m;
+  scene::Scene scene = testing::plate();
+  scene::add_rectangle(scene, {0.3f, 0.7f, 0.3f, 0.7f}, kGap_m, true, 0);
+  scene.materials[0].double_sided = true;
+  const Cut cut(scene, 60);
+  double top = 0, floor = 0;
+  for (uint32_t k = 0; k < cut.size(); ++k)
+    for (const PatchPoint& p : cut.patches().points_of(k)) {
+      const bool under = p.position.y < 0.5f * kGap_m;
+      const bool inside = std::abs(p.position.x - 0.5f) < 0.2f - kBorder_m &&
+                          std::abs(p.position.z - 0.5f) < 0.2f - kBorder_m;
+      EXPECT_FALSE(inside && (under ? p.normal.y > 0 : p.normal.y < 0));
+      const double area =
+          double(cut.patches().area_m2[k]) / double(cut.patches().points_of(k).size());
+      if (p.normal.y > 0) (under ? floor : top) += area;
+    }
+  // Areas, the floor's to within the border that is neither covered nor open; as that is 1.3 gaps
+  // wide on all sides of the rug, 0.02 m^2.
+  EXPECT_NEAR(top, 0.16, 0.01);
+  EXPECT_NEAR(floor, 1 - 0.16 + 0.02, 0.01);
+  for (const float x : {0.35f, 0.5f, 0.65f}) {
+    EXPECT_EQ(cut.patched.locator.locate({x, 0, 0.5f}, {0, 1, 0}, 0, cut.tracer), kNone);
+    EXPECT_EQ(cut.patched.locator.locate({x, kGap_m, 0.5f}, {0, -1, 0}, 0, cut.tracer), kNone);
+    EXPECT_NE(cut.patched.locator.locate({x, kGap_m, 0.5f}, {0, 1, 0}, 0, cut.tracer), kNone);
+    EXPECT_NE(cut.patched.locator.locate({x, 0, 0.25f}, {0, 1, 0}, 0, cut.tracer), kNone);
+  }
 }
 
 TEST(PatchLocator, FindsEachPatchFromItsPoints) {

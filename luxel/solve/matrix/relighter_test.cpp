@@ -268,8 +268,8 @@ TEST(MakeRelightData, KeepsToTheErrorThatWasAskedFor) {
     double before = 1;
     for (const float max_error : {0.03f, 0.003f}) {
       RelightParams params = small(codec, max_error);
-      // The hierarchy keeps no more than the noise of the rays lets it know.
-      params.patches.count = 150, params.factors.rays_per_patch = 8192;
+      // So few rays leave factors with noise of some ten percent, which the hierarchy must keep.
+      params.patches.count = 150, params.factors.rays_per_patch = 512;
       const RelightData data = Stage(scene::cornell_box(), params).data();
       EXPECT_LE(data.codec_error, double(max_error)) << int(codec);
       EXPECT_LE(data.codec_error, before) << int(codec);

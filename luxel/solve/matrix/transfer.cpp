@@ -6,6 +6,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
+#include "luxel/transport/covers.h"
 
 namespace luxel::matrix {
 namespace {
@@ -63,9 +64,12 @@ struct Scratch {
   std::vector<Share> shares;
 };
 
+/// A covered place sees nothing, and has no patches of its own: of those around, what is open of it
+/// lets their light in.
 void find_shares(const PatchedScene& patched, const trace::RayTracer& tracer, Vec3 position,
                  Vec3 normal, Scratch& w) {
   const Patches& patches = patched.patches;
+  const float open = open_share(tracer, {position, normal}, patched.locator.grid());
   const float reach_m = kReach * patches.voxel_m;
   w.shares.clear();
   patched.locator.near(position, kVoxels, w.near);
@@ -77,9 +81,9 @@ void find_shares(const PatchedScene& patched, const trace::RayTracer& tracer, Ve
     const float off = dot(d, normal) / (kOffPlane * patches.voxel_m);
     const float part = 1 - dot(d, d) / (reach_m * reach_m);
     if (dot(d, d) < least) least = dot(d, d), nearest = p;
-    if (part <= 0 || !see_each_other(tracer, {position, normal},
-                                     {patches.elements.position[p], patches.elements.normal[p]},
-                                     patches.voxel_m))
+    const PatchPoint middle{patches.elements.position[p], patches.elements.normal[p]};
+    if (part <= 0 ||
+        (open == 1 && !see_each_other(tracer, {position, normal}, middle, patches.voxel_m)))
       continue;
     w.shares.push_back({p, part * part / (1 + off * off * off * off)});
   }
@@ -87,6 +91,8 @@ void find_shares(const PatchedScene& patched, const trace::RayTracer& tracer, Ve
     fit_plane(patches.centroid, position, normal, reach_m, w.shares);
   else if (nearest != kNone)
     w.shares.push_back({nearest, 1});
+  if (open == 0) w.shares.clear();
+  for (Share& s : w.shares) s.weight *= open;
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ struct SurfacePoints {
 struct Transfer {
   std::vector<uint32_t> first;  ///< per point, one extra entry
   std::vector<uint32_t> patch;
-  std::vector<float> weight;  ///< those of a point sum to 1
+  std::vector<float> weight;  ///< those of a point sum to 1, or to its open share if it is covered
 
   size_t size() const { return first.empty() ? 0 : first.size() - 1; }
 };
@@ -24,8 +24,8 @@ struct Transfer {
 /// At each point the value of a plane fitted to the patches around it, the nearer ones weighing
 /// more [Lancaster81, moving least squares]: constant and linear light is kept, and no border of a
 /// voxel shows. Only patches that face the same way and that the point sees take part, so that
-/// nothing leaks through a wall or round an edge. A point without any takes the nearest. Errors:
-/// cancelled.
+/// nothing leaks through a wall or round an edge. A point without any takes the nearest. A covered
+/// point (transport::open_share) gets their light through what is open of it. Errors: cancelled.
 Result<Transfer> make_transfer(const PatchedScene& patched, const trace::RayTracer& tracer,
                                const SurfacePoints& points, Progress& progress);
 

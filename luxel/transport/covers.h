@@ -1,0 +1,24 @@
+// Places that something closer than an element of light shuts off: the floor under a rug, the wall
+// behind a picture. Elements larger than the gap cannot carry its light.
+#pragma once
+
+#include <vector>
+
+#include "luxel/trace/ray_tracer.h"
+#include "luxel/transport/elements.h"
+
+namespace luxel::transport {
+
+/// The share of the cosine-weighted hemisphere that is open, for a place that is *covered*: a cover
+/// lies at a height of less than a quarter of size_m above it, and less than a tenth of the rays
+/// leave the gap below. 1 for any other place. A ray leaves the gap when it gets half as high again
+/// as the cover. So places under a cover of height h are covered from 1.3 h inwards of its border:
+/// there (1 - x / sqrt(x^2 + h^2)) / 2 = 0.1. Places beside a wall or under a table are not,
+/// however small the room. `from` lies just off the surface (trace::offset_origin); 64 fixed rays.
+float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float size_m);
+
+/// The open share of each element, by its geometric normal.
+std::vector<float> open_shares(const trace::RayTracer& tracer, const Elements& elements,
+                               float size_m, float diagonal_m);
+
+}  // namespace luxel::transport

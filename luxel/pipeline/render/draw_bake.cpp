@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <span>
 
 #include "luxel/base/check.h"
 #include "luxel/base/file.h"
 #include "luxel/display/draw.h"
 #include "luxel/display/lightmap_lookup.h"
-#include "luxel/export/baked_glb.h"
 #include "luxel/image/codec.h"
 #include "luxel/image/color.h"
-#include "luxel/import/import.h"
 #include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/pipeline/bake/baked_folder.h"
 #include "luxel/scene/normal_map.h"
 #include "luxel/transport/irradiance_field.h"
 
@@ -45,53 +43,16 @@ Status check_colors(const std::filesystem::path& folder) {
 
 /// baked.glb with the surroundings of what is drawn.
 Result<scene::Scene> baked_scene(const Subject& subject, const RenderSettings& s) {
-  LUXEL_TRY(import::Imported baked, import::import_scene(s.from / "baked.glb"));
-  baked.scene.background = subject.scene.background;
-  baked.scene.environment = subject.scene.environment;
-  return std::move(baked.scene);
-}
-
-/// What a bake's folder has for each page of its atlas.
-struct Pages {
-  std::vector<image::Image> pictures;
-  std::vector<size_t> of_material;  ///< index into pictures
-
-  const image::Image& of(const scene::Scene& scene, const scene::SurfacePoint& p) const {
-    const scene::Mesh& mesh = scene.meshes[scene.instances[p.instance].mesh];
-    return pictures[of_material[mesh.triangle_material[p.triangle]]];
-  }
-};
-
-/// read(file) for every lightmap that the materials of baked.glb name; those that name none have
-/// lightmap.exr.
-Result<Pages> read_pages(
-    const std::filesystem::path& folder, size_t materials,
-    const std::function<Result<image::Image>(const std::filesystem::path& lightmap)>& read) {
-  const std::filesystem::path glb = folder / "baked.glb";
-  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(glb));
-  LUXEL_TRY(std::vector<std::string> names, export_::lightmap_files_of(bytes, glb.string()));
-  names.resize(materials);  // import adds one for triangles that have none
-  Pages out;
-  std::map<std::string, size_t> known;
-  for (const std::string& name : names) {
-    const std::string file = name.empty() ? "lightmap.exr" : name;
-    const auto [page, fresh] = known.emplace(file, out.pictures.size());
-    out.of_material.push_back(page->second);
-    if (!fresh) continue;
-    LUXEL_TRY(image::Image picture, read(folder / file));
-    out.pictures.push_back(std::move(picture));
-  }
-  return out;
-}
-
-Result<image::Image> read_lightmap(const std::filesystem::path& file) {
-  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(file));
-  return image::decode_exr(bytes, file.string());
+  LUXEL_TRY(scene::Scene baked, scene_of_bake(s.from));
+  baked.background = subject.scene.background;
+  baked.environment = subject.scene.environment;
+  return baked;
 }
 
 /// Beside each lightmap, what --directional left: one picture per page, `direction`, or three, `x`,
 /// `y` and `z`; none when there are none.
-Result<std::vector<Pages>> read_directions(const std::filesystem::path& folder, size_t materials) {
+Result<std::vector<LightmapPages>> read_directions(const std::filesystem::path& folder,
+                                                   size_t materials) {
   const auto is_there = [&](const char* kind) {
     return std::filesystem::exists(folder / fmt::format("lightmap.{}.exr", kind)) ||
            std::filesystem::exists(folder / fmt::format("lightmap-0.{}.exr", kind));
@@ -99,9 +60,9 @@ Result<std::vector<Pages>> read_directions(const std::filesystem::path& folder, 
   std::vector<std::string> kinds;
   if (is_there("direction")) kinds = {"direction"};
   if (is_there("x")) kinds = {"x", "y", "z"};
-  std::vector<Pages> out;
+  std::vector<LightmapPages> out;
   for (const std::string& kind : kinds) {
-    LUXEL_TRY(Pages pages,
+    LUXEL_TRY(LightmapPages pages,
               read_pages(folder, materials, [&](const std::filesystem::path& lightmap) {
                 return read_lightmap(lightmap.parent_path() /
                                      (lightmap.stem().string() + "." + kind + ".exr"));
@@ -112,7 +73,7 @@ Result<std::vector<Pages>> read_directions(const std::filesystem::path& folder, 
 }
 
 /// E of a bent normal, `bend` away from the surface's own: docs/method/directional.md.
-Rgb irradiance_of_bent(const scene::Scene& scene, std::span<const Pages> directions,
+Rgb irradiance_of_bent(const scene::Scene& scene, std::span<const LightmapPages> directions,
                        const scene::SurfacePoint& p, Vec3 bend, Rgb e) {
   const auto read = [&](size_t k) {
     return display::lightmap_at(scene, directions[k].of(scene, p), p);
@@ -147,9 +108,11 @@ Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettin
                                       Progress& progress) {
   LUXEL_TRY_STATUS(check_colors(s.from));
   LUXEL_TRY(const scene::Scene scene, baked_scene(subject, s));
-  LUXEL_TRY(const Pages lightmaps, read_pages(s.from, scene.materials.size(), read_lightmap));
+  LUXEL_TRY(const LightmapPages lightmaps,
+            read_pages(s.from, scene.materials.size(), read_lightmap));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
-  LUXEL_TRY(const std::vector<Pages> directions, read_directions(s.from, scene.materials.size()));
+  LUXEL_TRY(const std::vector<LightmapPages> directions,
+            read_directions(s.from, scene.materials.size()));
   const auto irradiance = [&](const scene::SurfacePoint& p) {
     const Rgb e = display::lightmap_at(scene, lightmaps.of(scene, p), p);
     const bool flat = scene::material_at(scene, p).normal_texture.texture == scene::kNone;
@@ -224,7 +187,7 @@ Result<image::Image> draw_texel_pictures(const Subject& subject, const RenderSet
                                          TexelKind kind, Progress& progress) {
   if (s.from.empty()) return draw_quick_texels(subject, s, kind, progress);
   LUXEL_TRY(const scene::Scene scene, baked_scene(subject, s));
-  LUXEL_TRY(const Pages pages,
+  LUXEL_TRY(const LightmapPages pages,
             read_pages(s.from, scene.materials.size(), [&](const std::filesystem::path& lightmap) {
               return read_texel_picture(lightmap, kind);
             }));

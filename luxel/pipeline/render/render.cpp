@@ -1,7 +1,6 @@
 #include "luxel/pipeline/render/render.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
@@ -9,10 +8,10 @@
 #include "luxel/display/draw.h"
 #include "luxel/image/codec.h"
 #include "luxel/import/import.h"
+#include "luxel/pipeline/bake/baked_folder.h"
 #include "luxel/pipeline/render/camera.h"
 #include "luxel/pipeline/render/render_check.h"
 #include "luxel/pipeline/render/techniques.h"
-#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/trace/ray_tracer.h"
 
 namespace luxel::pipeline {
@@ -93,31 +92,6 @@ Result<std::vector<std::byte>> contact_sheet(const Subject& subject, const Rende
   return image::encode_png(sheet);
 }
 
-/// Light from outside: what was asked for, or else that of the bake that is drawn, which its
-/// bake.json names. A file of it that is gone is left out with a warning.
-OutsideLight outside_of(const RenderSettings& s, std::vector<std::string>& warnings) {
-  const OutsideLight& own = s.outside;
-  const bool given = own.environment || own.background || own.sun || own.sky || !own.ies.empty();
-  const std::filesystem::path json = s.from / "bake.json";
-  std::error_code ignored;
-  if (given || s.from.empty() || !std::filesystem::exists(json, ignored)) return own;
-  BakeSettings baked;
-  if (const Status read = read_settings(json, baked); !read) {
-    warnings.push_back(read.error().message + "; the bake's sky and sun are left out");
-    return own;
-  }
-  OutsideLight out = std::move(baked.outside);
-  const auto is_gone = [&](const std::filesystem::path& file) {
-    if (std::filesystem::exists(file, ignored)) return false;
-    warnings.push_back(
-        fmt::format("{} of the bake is not there any more and is left out", file.string()));
-    return true;
-  };
-  if (out.environment && is_gone(out.environment->file)) out.environment.reset();
-  std::erase_if(out.ies, [&](const IesSetting& ies) { return is_gone(ies.file); });
-  return out;
-}
-
 }  // namespace
 
 Result<Rendered> render(const RenderSettings& s, Progress& progress) {
@@ -127,8 +101,9 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
   Rendered out;
   out.warnings = std::move(imported.warnings);
-  LUXEL_TRY(const std::vector<std::string> light,
-            add_outside_light(outside_of(s, out.warnings), imported.scene));
+  LUXEL_TRY(
+      const std::vector<std::string> light,
+      add_outside_light(outside_light_of_bake(s.from, s.outside, out.warnings), imported.scene));
   const bool computes_light = !technique || (technique->is_light && !technique->needs_bake);
   if (computes_light) out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(imported.scene));

@@ -103,7 +103,7 @@ TEST(HierarchicalPictures, SurviveBadPolygonsAndNameThem) {
   const auto scene = s.write("bad.obj", kBadPolygons);
   const CommandResult r = luxel("probe " + scene.string() +
                                 " --at 3.5,0,3.5 --normal 0,1,0 --eps 0 --min-area 0.05 "
-                                "--background 1,1,1 --json");
+                                "--background 1,1,1 --solver hierarchical --json");
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_THAT(r.err, HasSubstr("faces lie on each other"));
   EXPECT_THAT(r.err, HasSubstr("'floor' and 'again'"));
@@ -161,8 +161,9 @@ TEST(HierarchicalPictures, RefuseWhatTheyDoNotUse) {
 TEST(Probe, SaysWhereLightComesFrom) {
   const ScratchFolder s;
   const auto picture = s.path / "sources.png";
-  const CommandResult r = luxel("probe " + scene_file("cornell-box.glb") +
-                                " --at 0.1,0.01,0.4 --json -o " + picture.string());
+  const CommandResult r =
+      luxel("probe " + scene_file("cornell-box.glb") +
+            " --at 0.1,0.01,0.4 --solver hierarchical --json -o " + picture.string());
   ASSERT_EQ(r.code, 0) << r.err;
   const auto json = nlohmann::json::parse(r.out);
   double sum = 0, factors = 0;
@@ -181,10 +182,16 @@ TEST(Probe, SaysWhereLightComesFrom) {
 
 TEST(Probe, RefusesWhatCannotBe) {
   const ScratchFolder s;
-  for (const auto& [options, sentence] : {std::pair{"--at 1,2", "--at '1,2' is not a point"},
-                                          std::pair{"--at 50,0,0", "no surface within"},
-                                          std::pair{"--at 0,0,0 --normal 0,0,0", "is no direction"},
-                                          std::pair{"--at 0,0,0 -o x.jpg", "is to end in .png"}}) {
+  for (const auto& [options, sentence] :
+       {std::pair{"--at 1,2", "--at '1,2' is not a point"},
+        std::pair{"--at 50,0,0", "no surface within"},
+        std::pair{"--at 0,0,0 --normal 0,0,0", "is no direction"},
+        std::pair{"--at 0,0,0 -o x.jpg", "is to end in .png"},
+        std::pair{"--at 0,0,0 -o x.png", "--solver hierarchical"},
+        std::pair{"--at 0,0,0 --eps 1", "does not use --eps"},
+        std::pair{"--at 0,0,0 --max-error 0", "--max-error 0"},
+        std::pair{"--at 0,0,0 --solver hierarchical --in-air", "leave out --in-air"},
+        std::pair{"--at 0,0,0 --from x --solver paths", "leave one of them out"}}) {
     const CommandResult r = luxel("probe " + scene_file("cornell-box.glb") + " " + options);
     EXPECT_EQ(r.code, 1) << options;
     EXPECT_THAT(r.err, HasSubstr(sentence)) << options;

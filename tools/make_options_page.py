@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 PAGE = pathlib.Path(__file__).resolve().parent.parent / "docs" / "options.md"
-COMMANDS = ("info", "bake", "render", "compare", "factors", "relight", "probe", "bench")
+COMMANDS = ("info", "bake", "render", "compare", "factors", "relight", "probe", "lux", "bench")
 HEADING = re.compile(r"^(\S.*):$")
 ROW = re.compile(r"^  (-\S.*?)(?:(?:  +| \.\.\. )(\S.*))?$")
 TEXT = re.compile(r"^ {10,}(\S.*)$")

@@ -65,6 +65,7 @@ int run_and_print(const Common& common,
 using Action = std::function<int()>;
 void register_info(CLI::App& app, Action& action);
 void register_probe(CLI::App& app, Action& action);
+void register_lux(CLI::App& app, Action& action);
 void register_bake(CLI::App& app, Action& action);
 void register_render(CLI::App& app, Action& action);
 void register_compare(CLI::App& app, Action& action);

@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   register_info(app, action);
   register_factors(app, action);
   register_probe(app, action);
+  register_lux(app, action);
   register_relight(app, action);
   register_bench(app, action);
   if (argc == 1) {

@@ -10,7 +10,8 @@ namespace {
 struct ProbeOptions {
   Common common;
   Given outside, hierarchical;
-  std::string at, normal;
+  std::string at, normal, solver = "paths";
+  CLI::Option* solver_given = nullptr;
   pipeline::ProbeSettings settings;
 };
 
@@ -21,6 +22,18 @@ Result<pipeline::ProbeSettings> settings_from(const ProbeOptions& options) {
   if (!options.normal.empty()) {
     LUXEL_TRY(s.normal, parse_point("--normal", options.normal));
   }
+  const bool by_faces = options.solver == "hierarchical";
+  s.method = by_faces         ? pipeline::ProbeMethod::hierarchical
+             : s.from.empty() ? pipeline::ProbeMethod::paths
+                              : pipeline::ProbeMethod::bake;
+  if (!s.from.empty() && options.solver_given->count() > 0)
+    return fail(
+        ErrorCode::bad_setting,
+        "--from takes the light of a bake, --solver {} finds it anew; leave one of them out",
+        options.solver);
+  if (!by_faces && !options.hierarchical.empty())
+    return pipeline::not_used(s.from.empty() ? "--solver paths" : "--from",
+                              options.hierarchical.values.front().first, "hierarchical");
   LUXEL_TRY_STATUS(
       read_given(options.hierarchical, pipeline::hierarchical_options(), s.hierarchical));
   LUXEL_TRY_STATUS(read_given(options.outside, pipeline::outside_light_options(), s.outside));
@@ -36,38 +49,79 @@ nlohmann::json json_of(const pipeline::Probed& p) {
       {"position", rgb_json(p.position)},
       {"normal", rgb_json(p.normal)},
       {"distance_m", p.distance_m},
-      {"irradiance", rgb_json(p.exact)},
-      {"irradiance_interpolated", rgb_json(p.interpolated)},
+      {"irradiance", rgb_json(p.irradiance)},
+      {"standard_error", rgb_json(p.standard_error)},
+      {"illuminance", luminance(p.irradiance)},
+      {"illuminance_standard_error", p.luminance_error},
+      {"unit", p.unit.symbol},
+      {"unit_known_by", p.unit.reason},
       {"irradiance_of_punctual_lights_and_background", rgb_json(p.punctual_and_background)},
       // The key before; it goes with version 0.2.
       {"irradiance_of_lamps_and_background", rgb_json(p.punctual_and_background)},
       {"sources", nlohmann::json::array()},
       {"warnings", p.warnings}};
-  for (const pipeline::ProbedSource& source : p.sources)
+  if (p.interpolated) json["irradiance_interpolated"] = rgb_json(*p.interpolated);
+  for (const pipeline::ProbedSource& source : p.sources) {
     json["sources"].push_back({{"surface", source.name},
                                {"material", source.material},
                                {"form_factor", source.form_factor},
-                               {"visible", source.visible},
                                {"irradiance", rgb_json(source.irradiance)}});
+    if (source.visible) json["sources"].back()["visible"] = *source.visible;
+  }
   return json;
 }
 
 std::string rgb_text(Rgb c) { return fmt::format("{:10.5g} {:10.5g} {:10.5g}", c.x, c.y, c.z); }
 
-void print(const pipeline::Probed& p) {
-  std::printf("%s\n",
-              fmt::format("on {} ({}) at {:.4f}, {:.4f}, {:.4f}, {:.2g} m from the point", p.name,
-                          p.material, p.position.x, p.position.y, p.position.z, p.distance_m)
-                  .c_str());
-  std::printf("E exact         %s W/m^2\n", rgb_text(p.exact).c_str());
-  std::printf("E interpolated  %s\n", rgb_text(p.interpolated).c_str());
-  std::printf("lights, sky     %s\n\n", rgb_text(p.punctual_and_background).c_str());
-  std::printf("%-28s %9s %9s   %s\n", "source", "factor", "visible", "E");
+void print_line(const std::string& line) { std::printf("%s\n", line.c_str()); }
+
+void print_where(const pipeline::Probed& p) {
+  const std::string at =
+      fmt::format("{:.4f}, {:.4f}, {:.4f}", p.position.x, p.position.y, p.position.z);
+  if (p.name.empty())
+    print_line(fmt::format("in the air at {}, facing {:.3f}, {:.3f}, {:.3f}", at, p.normal.x,
+                           p.normal.y, p.normal.z));
+  else
+    print_line(fmt::format("on {} ({}) at {}, {:.2g} m from the point", p.name, p.material, at,
+                           p.distance_m));
+}
+
+void print_light(const pipeline::Probed& p, bool by_faces) {
+  const float e = luminance(p.irradiance);
+  const std::string error =
+      by_faces ? "" : fmt::format(" +- {:.2g} (one standard error)", p.luminance_error);
+  print_line(fmt::format("{:.5g} {}{}   [{}]", e, p.unit.symbol, error, p.unit.reason));
+  print_line(fmt::format("{:28}                         {:>10} {:>10} {:>10}", "", "red", "green",
+                         "blue"));
+  const auto row = [](const std::string& name, Rgb value) {
+    print_line(fmt::format("{:28}                         {}", name, rgb_text(value)));
+  };
+  row("E", p.irradiance);
+  if (!by_faces) row("standard error of E", p.standard_error);
+  if (p.interpolated) row(by_faces ? "E interpolated" : "E of the lightmap", *p.interpolated);
+  row("punctual lights, sky", p.punctual_and_background);
+}
+
+void print(const pipeline::Probed& p, bool by_faces) {
+  print_where(p);
+  print_light(p, by_faces);
+  print_line(fmt::format("\n{:28} {:>9} {:>11}    E from there", "source", "factor",
+                         by_faces ? "visible" : ""));
   for (const pipeline::ProbedSource& source : p.sources)
-    std::printf("%s\n",
-                fmt::format("{:28.28} {:9.6f} {:7.2f} %  {}", source.name, source.form_factor,
-                            100 * source.visible, rgb_text(source.irradiance))
-                    .c_str());
+    print_line(fmt::format("{:28.28} {:9.6f} {:>11}    {}", source.name, source.form_factor,
+                           source.visible ? fmt::format("{:.2f} %", 100 * *source.visible) : "",
+                           rgb_text(source.irradiance)));
+}
+
+void print_out_of_time(const pipeline::ProbeSettings& s, const pipeline::Probed& p,
+                       const Common& common) {
+  if (!p.out_of_time || common.quiet) return;
+  const float e = luminance(p.irradiance);
+  std::fprintf(stderr, "%s\n",
+               fmt::format("--time-budget {:g} was over at a standard error of {:.2g} %, before "
+                           "--max-error {:g}; give more time for less noise",
+                           s.time_budget_s, e > 0 ? 100 * p.luminance_error / e : 100, s.max_error)
+                   .c_str());
 }
 
 int run_probe(const ProbeOptions& options) {
@@ -80,10 +134,11 @@ int run_probe(const ProbeOptions& options) {
   });
   if (!done) return report(done.error(), options.common);
   print_warnings(probed.warnings, options.common);
+  print_out_of_time(*settings, probed, options.common);
   if (options.common.json)
     std::printf("%s\n", json_of(probed).dump(2).c_str());
   else
-    print(probed);
+    print(probed, settings->method == pipeline::ProbeMethod::hierarchical);
   return kDone;
 }
 
@@ -100,8 +155,32 @@ void register_probe(CLI::App& app, Action& action) {
       ->required();
   probe->add_option("--normal", options->normal, "Only surfaces that face about there")
       ->type_name("X,Y,Z");
+  probe->add_flag("--in-air", s.in_air, "The point itself, facing --normal or, without it, up");
+  probe->add_option(
+      "--from", s.from,
+      "Folder that `luxel bake` left: rays from the point end on its lightmaps, under "
+      "the sky that it had");
+  options->solver_given =
+      probe
+          ->add_option("--solver", options->solver,
+                       "paths: paths from the point; hierarchical: solve the scene first, then "
+                       "closed forms of what the point sees")
+          ->check(CLI::IsMember({"paths", "hierarchical"}))
+          ->capture_default_str();
+  probe
+      ->add_option("--max-error", s.max_error,
+                   "Relative standard error at which rays are enough (not for hierarchical)")
+      ->type_name("ERROR")
+      ->capture_default_str();
+  probe
+      ->add_option("--time-budget", s.time_budget_s,
+                   "About when to stop before that (not for hierarchical)")
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  probe->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();
   probe->add_option("-o,--output", s.output,
-                    "A .png with the brightest sources: what the point sees of them is white");
+                    "A .png with the brightest sources: what the point sees of them is white "
+                    "(hierarchical)");
   add_options(*probe, pipeline::hierarchical_options(), {}, options->hierarchical,
               pipeline::kHierarchicalHeading);
   add_outside_light(*probe, options->outside);

@@ -148,6 +148,40 @@ Result<Probes> light_probes(const LitScene& lit, std::span<const Vec3> positions
   return result;
 }
 
+Result<Arriving> arriving_light(const LitScene& lit, std::span<const Vec3> positions,
+                                std::span<const Vec3> normals, const AroundParams& params,
+                                Progress& progress) {
+  const size_t n = positions.size();
+  LUXEL_CHECK(normals.size() == n && params.samples >= 1);
+  Arriving out{std::vector<Rgb>(n), std::vector<Rgb>(n), std::vector<float>(n),
+               n * uint64_t(params.samples)};
+  progress.begin("final rays", n);
+  parallel_for(n, 16, [&](size_t begin, size_t end) {
+    Arrivals a;
+    for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
+      const Frame frame = frame_around(normals[i]);
+      a.rays.clear();
+      for (uint32_t k = 0; k < uint32_t(params.samples); ++k) {
+        const Vec3 d = cosine_hemisphere_sample(sobol_owen_2d(k, hash64(params.seed, i)));
+        a.rays.push_back({positions[i], 0, frame.to_world(d), INFINITY});
+      }
+      look_around(lit, a);
+      // The density is cos / pi: each ray stands for pi / samples of E.
+      const float share = 1 / float(params.samples);
+      for (size_t k = 0; k < a.rays.size(); ++k) {
+        const trace::Hit& hit = a.hits[k];
+        (hit.found() ? out.reflected : out.sky)[i] += a.radiance[k] * (kPi * share);
+        if (hit.found() && hit.back_face &&
+            !scene::reflects_from_behind(scene::material_at(lit.scene, hit.point())))
+          out.backs[i] += share;
+      }
+    }
+    progress.advance(end - begin);
+  });
+  LUXEL_TRY_STATUS(stopped(progress));
+  return out;
+}
+
 namespace {
 
 /// n tilted to the four sides of its frame.

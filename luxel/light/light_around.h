@@ -58,6 +58,21 @@ Result<Probes> light_probes(const LitScene& lit, std::span<const Vec3> positions
 /// most), far less than what nine functions leave out. 24 directions: 1.2 % and 5.4 %.
 inline constexpr uint32_t kProbeNormals = 48;
 
+/// What arrives at places from surfaces and from the soft light of the surroundings: all of E that
+/// direct_light() with no sky_samples leaves.
+struct Arriving {
+  std::vector<Rgb> reflected, sky;  ///< E per place [W/m^2]
+  std::vector<float> backs;         ///< share of the rays that meet the back of a one-sided surface
+  uint64_t rays = 0;
+};
+
+/// By rays with the density of the cosine about `normals`, samples of them per place; unbiased but
+/// for what lit.irradiance_at is off by. Spans are of one length; a place on a surface is moved off
+/// it first (trace::offset_origin). Errors: cancelled.
+Result<Arriving> arriving_light(const LitScene& lit, std::span<const Vec3> positions,
+                                std::span<const Vec3> normals, const AroundParams& params,
+                                Progress& progress);
+
 /// How E changes when a surface's normal is bent: E(m) = E + (m - n) . V, V a vector per channel.
 struct Bent {
   std::array<Rgb, 3> v;  ///< its x, y and z, in the world

@@ -41,6 +41,32 @@ Result<scene::Scene> scene_of_bake(const std::filesystem::path& folder) {
   return std::move(baked.scene);
 }
 
+Status check_has_colors(const std::filesystem::path& folder) {
+  const std::filesystem::path glb = folder / "baked.glb";
+  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(glb));
+  LUXEL_TRY(const export_::Attach attach, export_::attach_of(bytes, glb.string()));
+  if (attach == export_::Attach::lightmap) return {};
+  const bool combined = attach == export_::Attach::combined;
+  return fail(ErrorCode::bad_input,
+              "{} was baked with --attach {}: it has pictures of light instead of colours that a "
+              "lightmap could light; bake with --attach lightmap, or draw the file itself with "
+              "--technique {}",
+              glb.string(), combined ? "combined" : "emissive", combined ? "c" : "path");
+}
+
+Status check_has_all_light(const std::filesystem::path& folder) {
+  const std::filesystem::path json = folder / "bake.json";
+  std::error_code ignored;
+  BakeSettings baked;
+  // Without a bake.json that can be read nothing is known; outside_light_of_bake() says so.
+  if (!std::filesystem::exists(json, ignored) || !read_settings(json, baked)) return {};
+  if (baked.light == LightPart::all) return {};
+  return fail(ErrorCode::bad_input,
+              "{} was baked with --light {}: its lightmap lacks a part of the light that surfaces "
+              "send on; bake with --light all",
+              folder.string(), name_of(baked.light));
+}
+
 OutsideLight outside_light_of_bake(const std::filesystem::path& folder, const OutsideLight& given,
                                    std::vector<std::string>& warnings) {
   const bool is_given =

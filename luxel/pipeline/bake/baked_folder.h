@@ -37,6 +37,12 @@ Result<image::Image> read_lightmap(const std::filesystem::path& file);
 /// baked.glb, without light from outside. Errors: there is none, or it is broken.
 Result<scene::Scene> scene_of_bake(const std::filesystem::path& folder);
 
+/// Errors (bad_input): baked.glb has no colours of its own for the lightmap to light.
+Status check_has_colors(const std::filesystem::path& folder);
+
+/// Errors (bad_input): bake.json says that the lightmap holds a part of the light only (--light).
+Status check_has_all_light(const std::filesystem::path& folder);
+
 /// Light from outside: `given`, or, where that is empty, what bake.json of `folder` names. A file
 /// of it that is gone is left out with a warning. An empty folder has no bake.
 OutsideLight outside_light_of_bake(const std::filesystem::path& folder, const OutsideLight& given,

@@ -9,43 +9,75 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/pipeline/settings/light_unit.h"
 #include "luxel/pipeline/settings/outside_light.h"
 #include "luxel/pipeline/solver/hierarchical.h"
 
 namespace luxel::pipeline {
 
+/// How the light at the point is found.
+enum class ProbeMethod {
+  paths,         ///< paths from the point, until they tell it well enough
+  bake,          ///< rays from the point that end on the lightmaps of a bake
+  hierarchical,  ///< closed forms of all faces that the point sees, in a scene that is solved first
+};
+
 /// What `luxel probe` is asked for.
 struct ProbeSettings {
   std::filesystem::path scene;
+  std::filesystem::path from;  ///< folder of a bake, of ProbeMethod::bake
+  ProbeMethod method = ProbeMethod::paths;
   Vec3 at{};                     ///< the nearest surface is looked at
   std::optional<Vec3> normal;    ///< only surfaces that face about there
-  std::filesystem::path output;  ///< a .png with the backprojections; empty: none
+  bool in_air = false;           ///< `at` itself is looked at; facing `normal`, or up
+  std::filesystem::path output;  ///< hierarchical: a .png with the backprojections; empty: none
+  double max_error = 0.005;      ///< relative standard error at which rays are enough
+  double time_budget_s = 10;     ///< about when no more rays are begun
+  uint64_t seed = 1;
   OutsideLight outside;
   HierarchicalSettings hierarchical;
   int threads = 0;
 };
 
-/// A face that the point sees.
+/// A surface that the point sees: a face of ProbeMethod::hierarchical, else all of an instance's
+/// that have one material.
 struct ProbedSource {
   std::string name;  ///< of its instance
   std::string material;
-  double form_factor = 0;  ///< of the part that is seen
-  double visible = 0;      ///< that over the form factor of the whole
-  Rgb irradiance;          ///< what it brings [W/m^2]
+  double form_factor = 0;         ///< of the part that is seen
+  std::optional<double> visible;  ///< hierarchical: that over the form factor of the whole
+  Rgb irradiance;                 ///< what it brings [W/m^2]
 };
 
-/// What is known of the light at a point of a surface.
+/// What is known of the light at a point of a surface, or in the air.
 struct Probed {
-  std::string name, material;  ///< of the surface
+  std::string name, material;  ///< of the surface; empty in the air
   Vec3 position{}, normal{};
   float distance_m = 0;               ///< from `at`
-  Rgb exact, interpolated;            ///< E [W/m^2]
+  Rgb irradiance;                     ///< E [W/m^2]
+  Rgb standard_error;                 ///< of that; 0 for closed forms
+  float luminance_error = 0;          ///< standard error of the luminance of E
+  std::optional<Rgb> interpolated;    ///< hierarchical: E of its light mesh; bake: of the lightmap
   Rgb punctual_and_background;        ///< the part of E that comes from no surface
   std::vector<ProbedSource> sources;  ///< the brightest first
+  bool out_of_time = false;           ///< the time was over before max_error was reached
+  LightUnit unit;
   std::vector<std::string> warnings;
 };
 
 /// Errors: settings, no surface near the point, what the scene and the solver say.
 Result<Probed> probe(const ProbeSettings& settings, Progress& progress);
+
+/// The methods; probe() checks the settings first. Errors: as there.
+Result<Probed> probe_by_faces(const ProbeSettings& settings, Progress& progress);
+Result<Probed> probe_by_paths(const ProbeSettings& settings, Progress& progress);
+Result<Probed> probe_in_bake(const ProbeSettings& settings, Progress& progress);
+
+/// A point farther away from all surfaces than this part of the scene's diagonal is a mistake.
+inline constexpr double kFarFromSurfaces = 0.1;
+/// The error of such a point.
+Error far_from_surfaces(const ProbeSettings& settings, double diagonal_m, double distance_m);
+/// An instance's name, or its number where it has none.
+std::string name_of(const scene::Scene& scene, uint32_t instance);
 
 }  // namespace luxel::pipeline

@@ -1,7 +1,9 @@
 #include "luxel/pipeline/render/draw_bake.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <limits>
 #include <span>
 
 #include "luxel/base/check.h"
@@ -10,6 +12,7 @@
 #include "luxel/display/lightmap_lookup.h"
 #include "luxel/image/codec.h"
 #include "luxel/image/color.h"
+#include "luxel/image/value_scale.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/bake/baked_folder.h"
 #include "luxel/scene/normal_map.h"
@@ -25,20 +28,6 @@ display::DrawParams size_of(const RenderSettings& settings) {
   display::DrawParams params;
   params.width = settings.width, params.height = settings.height;
   return params;
-}
-
-/// Errors (bad_input): baked.glb has no colours of its own for the lightmap to light.
-Status check_colors(const std::filesystem::path& folder) {
-  const std::filesystem::path glb = folder / "baked.glb";
-  LUXEL_TRY(const std::vector<std::byte> bytes, read_file(glb));
-  LUXEL_TRY(const export_::Attach attach, export_::attach_of(bytes, glb.string()));
-  if (attach == export_::Attach::lightmap) return {};
-  const bool combined = attach == export_::Attach::combined;
-  return fail(ErrorCode::bad_input,
-              "{} was baked with --attach {}: it has pictures of light instead of colours that a "
-              "lightmap could light; bake with --attach lightmap, or draw the file itself with "
-              "--technique {}",
-              glb.string(), combined ? "combined" : "emissive", combined ? "c" : "path");
 }
 
 /// baked.glb with the surroundings of what is drawn.
@@ -104,23 +93,37 @@ Result<image::Image> read_texel_picture(const std::filesystem::path& lightmap, T
   return image::decode_display(*bytes, file.string());
 }
 
-Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettings& s,
-                                      Progress& progress) {
-  LUXEL_TRY_STATUS(check_colors(s.from));
-  LUXEL_TRY(const scene::Scene scene, baked_scene(subject, s));
-  LUXEL_TRY(const LightmapPages lightmaps,
-            read_pages(s.from, scene.materials.size(), read_lightmap));
-  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
-  LUXEL_TRY(const std::vector<LightmapPages> directions,
-            read_directions(s.from, scene.materials.size()));
-  const auto irradiance = [&](const scene::SurfacePoint& p) {
+/// A bake's scene and the light in its pictures.
+struct BakeToDraw {
+  scene::Scene scene;
+  LightmapPages lightmaps;
+  std::vector<LightmapPages> directions;
+
+  /// E of the front side, with the normal that the surface has there.
+  Rgb irradiance_at(const scene::SurfacePoint& p) const {
     const Rgb e = display::lightmap_at(scene, lightmaps.of(scene, p), p);
     const bool flat = scene::material_at(scene, p).normal_texture.texture == scene::kNone;
     if (directions.empty() || flat) return e;
     const Vec3 bend = scene::bent_normal(scene, p) - scene::shading_normal(scene, p);
     return irradiance_of_bent(scene, directions, p, bend, e);
-  };
-  return display::draw(scene, tracer, subject.camera, irradiance, size_of(s), progress);
+  }
+};
+
+Result<BakeToDraw> read_bake(const Subject& subject, const RenderSettings& s) {
+  LUXEL_TRY_STATUS(check_has_colors(s.from));
+  BakeToDraw out;
+  LUXEL_TRY(out.scene, baked_scene(subject, s));
+  LUXEL_TRY(out.lightmaps, read_pages(s.from, out.scene.materials.size(), read_lightmap));
+  LUXEL_TRY(out.directions, read_directions(s.from, out.scene.materials.size()));
+  return out;
+}
+
+Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettings& s,
+                                      Progress& progress) {
+  LUXEL_TRY(const BakeToDraw bake, read_bake(subject, s));
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
+  const auto irradiance = [&](const scene::SurfacePoint& p) { return bake.irradiance_at(p); };
+  return display::draw(bake.scene, tracer, subject.camera, irradiance, size_of(s), progress);
 }
 
 Result<Bake> quick_bake(const RenderSettings& s, const TexelKind* kind, Progress& progress) {
@@ -212,6 +215,36 @@ Result<image::Image> draw_texels_of_bake(const Subject& subject, const RenderSet
 Result<image::Image> draw_errors_of_bake(const Subject& subject, const RenderSettings& s, Rendered&,
                                          Progress& progress) {
   return draw_texel_pictures(subject, s, kErrors, progress);
+}
+
+Result<image::Image> draw_irradiance_of_bake(const Subject& subject, const RenderSettings& s,
+                                             Rendered&, Progress& progress) {
+  LUXEL_TRY(const BakeToDraw bake, read_bake(subject, s));
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
+  const auto seen_at = [&](const trace::Hit& hit) { return bake.irradiance_at(hit.point()); };
+  display::DrawParams params = size_of(s);
+  params.brightest_behind = 0;
+  LUXEL_TRY(image::Image picture,
+            display::draw_seen(bake.scene, tracer, subject.camera, seen_at, params, progress));
+  // The mean over what shows a surface, so that E at its border is that of the surface.
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      if (const float share = picture.at(x, y)[3]; share > 0)
+        picture.set_rgb(x, y, picture.rgb(x, y) / share);
+  return picture;
+}
+
+image::Image8 show_irradiance(const Subject& subject, const image::Image& picture) {
+  std::vector<float> values;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      values.push_back(picture.at(x, y)[3] >= 0.5f ? luminance(picture.rgb(x, y))
+                                                   : std::numeric_limits<float>::quiet_NaN());
+  const image::ValueScale scale = image::scale_for(values, subject.unit.symbol);
+  image::Image8 shown = image::draw_values(values, picture.width, scale, {232, 232, 232});
+  std::vector<std::array<int, 2>> taken;
+  image::label_isolines(shown, values, scale, taken);
+  return image::with_legend(shown, scale);
 }
 
 Result<image::Image> draw_lightmap(const Subject& subject, const RenderSettings& settings,

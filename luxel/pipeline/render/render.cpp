@@ -55,6 +55,11 @@ Result<std::vector<std::byte>> one_picture(const Technique& technique, const Sub
   const std::string extension = s.output.extension().string();
   if (extension == ".exr") return image::encode_exr(picture);
   if (extension == ".hdr") return image::encode_hdr(picture);
+  if (technique.show) {
+    const image::Image8 values = technique.show(subject, picture);
+    out.width = values.width, out.height = values.height;
+    return image::encode_png(values);
+  }
   out.exposure = exposure_for(technique, s, picture);
   image::Image8 on_screen = shown(technique, s, out.exposure, picture);
   if (!out.overlay.empty()) lay_over(subject, out.overlay, on_screen, progress);
@@ -101,16 +106,16 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
   Rendered out;
   out.warnings = std::move(imported.warnings);
-  LUXEL_TRY(
-      const std::vector<std::string> light,
-      add_outside_light(outside_light_of_bake(s.from, s.outside, out.warnings), imported.scene));
+  const OutsideLight outside = outside_light_of_bake(s.from, s.outside, out.warnings);
+  const LightUnit unit = unit_of_light(s.scene, imported.scene, outside);
+  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(outside, imported.scene));
   const bool computes_light = !technique || (technique->is_light && !technique->needs_bake);
   if (computes_light) out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(imported.scene));
   LUXEL_TRY(const scene::Camera camera,
             choose_camera({s.camera, s.eye, s.look_at, s.fov_deg, float(s.width) / float(s.height)},
                           imported.scene, tracer, s.scene.string()));
-  const Subject subject{imported.scene, tracer, camera};
+  const Subject subject{imported.scene, tracer, camera, unit};
   LUXEL_TRY(const std::vector<std::byte> bytes,
             technique ? one_picture(*technique, subject, s, out, progress)
                       : contact_sheet(subject, s, out, progress));

@@ -62,6 +62,11 @@ Status check_used(const RenderSettings& s, const Technique& technique) {
       return not_used(fmt::format("--technique {}", technique.name), option.name,
                       users_of(option.used),
                       technique.needs_bake ? "a bake has its light from `luxel bake`" : "");
+  if (technique.show && (s.exposure || s.tone_map))
+    return fail(ErrorCode::bad_setting,
+                "--technique {} shows values by a scale of its own: {} would change nothing; leave "
+                "it out",
+                technique.name, s.exposure ? "--exposure" : "--tone-map");
   if (technique.needs_bake && !technique.bakes_itself && s.from.empty())
     return fail(ErrorCode::bad_setting,
                 "--technique {} draws a bake; name its folder with --from, or use --technique path",

@@ -7,8 +7,10 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/image/codec.h"
 #include "luxel/image/image.h"
 #include "luxel/pipeline/render/render.h"
+#include "luxel/pipeline/settings/light_unit.h"
 #include "luxel/scene/scene.h"
 #include "luxel/trace/ray_tracer.h"
 
@@ -19,6 +21,7 @@ struct Subject {
   const scene::Scene& scene;  ///< with light from outside
   const trace::RayTracer& tracer;
   const scene::Camera& camera;
+  LightUnit unit{};  ///< of its irradiance
 };
 
 /// One picture, 4 channels: radiance, or colours of a screen (linear, [0, 1]); A = share of the
@@ -38,6 +41,8 @@ struct Technique {
   bool has_links = false;       ///< --eps, --min-area, ...
   bool has_lights = false;      ///< --sun
   bool on_sheet = true;         ///< one of a contact sheet's pictures
+  /// A screen's picture of what are values, not light nor colours; null: they are no values.
+  image::Image8 (*show)(const Subject&, const image::Image&) = nullptr;
 };
 
 /// All of them, in the order of a contact sheet: that of the paper's plates, then what luxel adds.

@@ -1,0 +1,156 @@
+// `luxel probe --solver hierarchical`: light of every face in closed form.
+#include "luxel/pipeline/command/probe.h"
+
+#include <algorithm>
+
+#include "luxel/base/file.h"
+#include "luxel/base/output_folder.h"
+#include "luxel/base/parallel.h"
+#include "luxel/display/contact_sheet.h"
+#include "luxel/import/import.h"
+#include "luxel/pipeline/solver/hierarchical.h"
+#include "luxel/solve/hierarchical/represent.h"
+#include "luxel/solve/hierarchical/surface.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Faces whose normals differ by more from the one asked for are not meant.
+constexpr double kAlike = 0.7;
+constexpr size_t kMostTiles = 12;
+constexpr int kTile = 240, kMargin = 12;
+
+struct Nearest {
+  uint32_t face = hierarchical::kNone;
+  DVec3 place;
+  double distance_m = INFINITY;
+};
+
+/// The nearest point of a convex polygon.
+DVec3 nearest_on(const hierarchical::Face& face, DVec3 p) {
+  const DVec3 n = face.plane.normal;
+  const DVec3 foot = p - n * face.plane.height(p);
+  if (hierarchical::depth_inside(face.corners, n, foot) >= 0) return foot;
+  DVec3 best = face.corners.front();
+  for (size_t k = 0; k < face.corners.size(); ++k) {
+    const DVec3 a = face.corners[k], d = face.corners[(k + 1) % face.corners.size()] - a;
+    const double t = std::clamp(dot(foot - a, d) / std::max(dot(d, d), 1e-30), 0.0, 1.0);
+    if (const DVec3 q = a + d * t; length(q - p) < length(best - p)) best = q;
+  }
+  return best;
+}
+
+Nearest nearest_face(const hierarchical::Faces& faces, const ProbeSettings& s) {
+  Nearest best;
+  const DVec3 at = to_double(s.at);
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    const hierarchical::Face& face = faces.faces[f];
+    if (s.normal && dot(face.plane.normal, normalize(to_double(*s.normal))) < kAlike) continue;
+    const DVec3 place = nearest_on(face, at);
+    if (const double d = length(place - at); d < best.distance_m) best = {f, place, d};
+  }
+  return best;
+}
+
+/// Just inside of its face: on an edge irradiance is the limit from there.
+DVec3 inwards(const hierarchical::Face& face, DVec3 place) {
+  return place + (viewfactor::mean_corner(face.corners) - place) * 1e-5;
+}
+
+bool contains(viewfactor::PolygonView polygon, DVec3 normal, DVec3 p) {
+  return hierarchical::depth_inside(polygon, normal, p) >= 0;
+}
+
+/// The source's plane from the point's side: what is seen white, what is hidden violet.
+image::Image8 draw_backprojection(const hierarchical::Solution& solution,
+                                  const hierarchical::Receiver& at, uint32_t face) {
+  image::Image8 tile{kTile, kTile, 3, std::vector<uint8_t>(size_t(kTile) * kTile * 3, 32)};
+  const hierarchical::Backprojection back = hierarchical::backproject(solution, at, face);
+  const hierarchical::FacePlane plane = hierarchical::plane_coordinates(solution.faces.faces[face]);
+  double size = 0;
+  for (const DVec3& p : solution.faces.faces[face].corners)
+    size = std::max({size, std::abs(plane.to_plane(p).x), std::abs(plane.to_plane(p).y)});
+  const DVec3 normal = solution.faces.faces[face].plane.normal;
+  const double side = solution.faces.faces[face].plane.height(at.position) < 0 ? -1 : 1;
+  const double scale = size / (kTile / 2 - kMargin);
+  for (int y = 0; y < kTile; ++y)
+    for (int x = 0; x < kTile; ++x) {
+      const DVec3 p =
+          plane.from_plane({(x - kTile / 2 + 0.5) * scale, (kTile / 2 - 0.5 - y) * scale});
+      std::array<uint8_t, 3> color{32, 32, 32};
+      if (contains(solution.faces.faces[face].corners, normal, p)) color = {70, 70, 70};
+      if (contains(back.source, normal * side, p)) color = {110, 60, 150};
+      for (const viewfactor::Polygon& part : back.visible)
+        if (contains(part, normal * side, p)) color = {255, 255, 255};
+      std::copy(color.begin(), color.end(), tile.data.begin() + (y * kTile + x) * 3);
+    }
+  return tile;
+}
+
+Status write_picture(const ProbeSettings& s, const hierarchical::Solution& solution,
+                     const scene::Scene& scene, const hierarchical::Receiver& at,
+                     std::span<const hierarchical::Seen> seen) {
+  std::vector<display::Tile> tiles;
+  for (size_t k = 0; k < std::min(seen.size(), kMostTiles); ++k) {
+    const hierarchical::Face& face = solution.faces.faces[seen[k].face];
+    tiles.push_back({fmt::format("{} {:.1f} %", name_of(scene, face.instance),
+                                 100 * seen[k].visible / seen[k].whole),
+                     draw_backprojection(solution, at, seen[k].face)});
+  }
+  if (tiles.empty())
+    return fail(ErrorCode::bad_input, "{}: no surface is seen from there, so there is no picture",
+                s.output.string());
+  return write_file_atomically(s.output, image::encode_png(display::contact_sheet(tiles)));
+}
+
+}  // namespace
+
+Result<Probed> probe_by_faces(const ProbeSettings& s, Progress& progress) {
+  // Scene and solution.
+  progress.begin("import", 0);
+  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
+  scene::Scene& scene = imported.scene;
+  Probed out;
+  out.warnings = std::move(imported.warnings);
+  out.unit = unit_of_light(s.scene, scene, s.outside);
+  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(s.outside, scene));
+  out.warnings.insert(out.warnings.end(), light.begin(), light.end());
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  LUXEL_TRY(hierarchical::Solution solution,
+            hierarchical::solve(scene, tracer, s.hierarchical.solve, progress));
+  out.warnings.insert(out.warnings.end(), solution.warnings.begin(), solution.warnings.end());
+  // The surface that is meant.
+  const Nearest nearest = nearest_face(solution.faces, s);
+  const double diagonal_m = double(solution.diagonal_m);
+  if (!(nearest.distance_m <= kFarFromSurfaces * diagonal_m))
+    return tl::unexpected(far_from_surfaces(s, diagonal_m, nearest.distance_m));
+  const hierarchical::Face& face = solution.faces.faces[nearest.face];
+  const hierarchical::Receiver at = hierarchical::receiver_at(solution, scene, tracer, nearest.face,
+                                                              inwards(face, nearest.place));
+  // Its E: exact, and as the mesh of light interpolates it.
+  LUXEL_TRY(const hierarchical::LightMesh mesh,
+            hierarchical::represent(solution, scene, tracer, s.hierarchical.mesh, {}, progress));
+  LUXEL_TRY(const std::vector<Rgb> exact,
+            hierarchical::irradiance_at(solution, scene, tracer, {&at, 1}, {1e-6}, progress));
+  const hierarchical::MeshPoint place =
+      hierarchical::locate(solution, mesh, nearest.face, nearest.place);
+  out.interpolated = hierarchical::value_of(mesh.interpolant[place.triangle], place.s, place.t);
+  out.irradiance = out.punctual_and_background = exact[0];
+  out.name = name_of(scene, face.instance), out.material = scene.materials[face.material].name;
+  out.position = to_float(nearest.place), out.normal = to_float(at.normal);
+  out.distance_m = float(nearest.distance_m);
+  // The sources, and what is left of E without them.
+  const std::vector<hierarchical::Seen> seen =
+      hierarchical::sources_at(solution, tracer, at, {1e-6});
+  for (const hierarchical::Seen& f : seen) {
+    const hierarchical::Face& source = solution.faces.faces[f.face];
+    out.sources.push_back({name_of(scene, source.instance), scene.materials[source.material].name,
+                           f.visible, f.visible / f.whole, f.irradiance});
+    out.punctual_and_background = max(Rgb{}, out.punctual_and_background - f.irradiance);
+  }
+  progress.begin(kWriteStage, 0);
+  if (!s.output.empty()) LUXEL_TRY_STATUS(write_picture(s, solution, scene, at, seen));
+  return out;
+}
+
+}  // namespace luxel::pipeline

@@ -1,0 +1,44 @@
+#include "luxel/pipeline/settings/light_unit.h"
+
+#include <vector>
+
+#include "luxel/scene/validate.h"
+
+namespace luxel::pipeline {
+namespace {
+
+bool is_gltf(const std::filesystem::path& file) {
+  return file.extension() == ".gltf" || file.extension() == ".glb";
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string out;
+  for (const std::string& part : parts) out += (out.empty() ? "" : "; ") + part;
+  return out;
+}
+
+}  // namespace
+
+LightUnit unit_of_light(const std::filesystem::path& file, const scene::Scene& own,
+                        const OutsideLight& outside) {
+  std::vector<std::string> lux, unknown;
+  if (outside.sky) lux.push_back("--sky is in lux");
+  if (outside.sun) lux.push_back("--sun is in lux");
+  if (!outside.ies.empty()) lux.push_back("IES files are in candela");
+  const bool all_by_ies = !outside.ies.empty() && outside.ies.size() >= own.lights.size();
+  if (scene::has_light(own) && is_gltf(file))
+    lux.push_back("lights of glTF files are in candela, lux and nits");
+  else if (scene::has_light(own) && !all_by_ies)
+    unknown.push_back(fmt::format("{} files state no unit of light", file.extension().string()));
+  if (outside.background) unknown.push_back("--background states no unit");
+  if (outside.environment) unknown.push_back("environment maps state no unit");
+  if (!lux.empty() && !unknown.empty())
+    return {"lux", joined(lux) + "; " + joined(unknown) + ", so it is taken for candela and nits"};
+  if (!lux.empty()) return {"lux", joined(lux)};
+  if (!unknown.empty())
+    return {"W/m^2", joined(unknown) + "; were its values candela and nits, these would be lux"};
+  // Nothing shines: add_outside_light() brings what it brings by default.
+  return {"W/m^2", "the light is the default one, of radiance 1"};
+}
+
+}  // namespace luxel::pipeline

@@ -79,7 +79,6 @@ TEST(MaxError, BadNumbersAreRefused) {
         {"--time-budget 0", "--time-budget 0"},
         {"--time-budget -3", "--time-budget -3"},
         {"--time-budget inf", "--time-budget inf"},
-        {"--solver hemicube --time-budget 3", "--solver hemicube does not use --time-budget"},
         {"--solver reference --error-map", "--solver reference does not use --error-map"},
         {"--solver matrix --plan", "--solver matrix does not use --plan"}}) {
     const CommandResult r = luxel(box(s, options));
@@ -149,6 +148,22 @@ TEST(TimeBudget, IsForSamplesToSuit) {
   EXPECT_THAT(r.err, HasSubstr("--time-budget 0.01 decides how many rays there are"));
   EXPECT_THAT(r.err, HasSubstr("--time-budget 0.01 leaves"));
   EXPECT_LT(json_of(s)["error"]["samples"]["most"], 4096);
+}
+
+// Solvers that have nothing before their end are stopped, and say what to change. An hour changes
+// nothing of what they do.
+TEST(TimeBudget, EndsSolversThatCannotEndEarlier) {
+  for (const std::string solver : {"hemicube", "matrix", "hierarchical", "reference"}) {
+    const ScratchFolder s;
+    const CommandResult r = luxel(box(s, "--time-budget 0.001 --solver " + solver));
+    EXPECT_EQ(r.code, 3) << solver << r.err;
+    EXPECT_THAT(r.err, HasSubstr("--time-budget 0.001 was over in the stage"));
+    EXPECT_THAT(r.err, HasSubstr("--solver " + solver + " has no result before its end"));
+    EXPECT_FALSE(std::filesystem::exists(s.path / "out"));
+  }
+  const ScratchFolder s;
+  const CommandResult r = luxel(box(s, "--time-budget 3600 --solver matrix"));
+  EXPECT_EQ(r.code, 0) << r.err;
 }
 
 }  // namespace

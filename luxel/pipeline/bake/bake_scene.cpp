@@ -1,5 +1,8 @@
 #include "luxel/pipeline/bake/bake_scene.h"
 
+#include <nlohmann/json.hpp>
+
+#include "luxel/base/deadline.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/import/import.h"
@@ -9,6 +12,7 @@
 #include "luxel/pipeline/reuse/checkpoint.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/memory.h"
+#include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/pipeline/texels/resolution.h"
 #include "luxel/pipeline/texels/two_sides.h"
 #include "luxel/scene/sides.h"
@@ -121,6 +125,31 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
   return draw_preview(ready.tracer, bake, progress);
 }
 
+/// The error of a bake whose solver cannot stop by itself at the end of --time-budget.
+tl::unexpected<Error> out_of_time(const BakeSettings& settings, const Progress& progress) {
+  const Solver& solver = *find_solver(settings.solver);
+  const std::string own =
+      solver.options.empty() ? "" : " or the values of " + flags_of(solver.options);
+  return fail(ErrorCode::out_of_time,
+              "--time-budget {:g} was over in the stage '{}', and --solver {} has no result before "
+              "its end; give more time, or change --resolution{}",
+              settings.time_budget_s, progress.snapshot().stage, settings.solver, own);
+}
+
+/// bake_loaded(), but no longer than --time-budget where the solver does not look at the clock.
+Status bake_in_time(const BakeSettings& settings, const Keepers& keepers,
+                    const OnBakeEstimate& on_estimate, Bake& bake, Progress& progress) {
+  if (settings.time_budget_s <= 0 || find_solver(settings.solver)->can.errors)
+    return bake_loaded(settings, keepers, on_estimate, bake, progress);
+  const double left =
+      settings.time_budget_s - stage_seconds(progress.stages())["total"].get<double>();
+  const Deadline deadline(progress, left);
+  const Status done = bake_loaded(settings, keepers, on_estimate, bake, progress);
+  if (!done && done.error().code == ErrorCode::cancelled && deadline.passed())
+    return out_of_time(settings, progress);
+  return done;
+}
+
 }  // namespace
 
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const Keepers& keepers,
@@ -129,7 +158,7 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const 
   const ThreadLimit threads(settings.threads);
   Bake bake;
   LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
-  LUXEL_TRY_STATUS(bake_loaded(settings, keepers, on_estimate, bake, progress));
+  LUXEL_TRY_STATUS(bake_in_time(settings, keepers, on_estimate, bake, progress));
   return bake;
 }
 
@@ -143,7 +172,7 @@ Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& asked, Progress&
   LUXEL_TRY(bake.warnings, scene::validate(bake.scene, "scene '" + bake.scene.name + "'"));
   LUXEL_TRY(const std::vector<std::string> light, add_outside_light(settings.outside, bake.scene));
   bake.warnings.insert(bake.warnings.end(), light.begin(), light.end());
-  LUXEL_TRY_STATUS(bake_loaded(settings, {}, {}, bake, progress));
+  LUXEL_TRY_STATUS(bake_in_time(settings, {}, {}, bake, progress));
   return bake;
 }
 

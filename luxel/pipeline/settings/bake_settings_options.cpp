@@ -52,11 +52,12 @@ Options<S> sampling_options() {
       BakeRows::number(
           "--time-budget", &S::time_budget_s,
           {kShortestBudget_s, kLongestBudget_s, "is not a time to bake in; give seconds, as 60"},
-          "The lowest error within about this many seconds in total; with --max-error until "
-          "either is reached")
+          "gather: the lowest error within about this many seconds in total; with --max-error "
+          "until "
+          "either is reached. hierarchical: less refinement where that helps. All but gather end "
+          "with code 3 when it is over")
           .key_is("time_budget_s")
-          .unit("SECONDS")
-          .only(&Can::errors),
+          .unit("SECONDS"),
       BakeRows::number("--seed", &S::seed, {0}, "Seed of all random numbers"),
   };
 }

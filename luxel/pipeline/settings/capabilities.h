@@ -10,7 +10,7 @@ struct Capabilities {
   bool direct_samples = false;  ///< traces shadow rays towards area lights: --direct-samples
   bool supersample = false;     ///< averages light over points of a texel: --supersample
   bool errors = false;          ///< estimates each texel's standard error: --max-error,
-                                ///< --time-budget, --error-map, --plan
+                                ///< --error-map, --plan; keeps --time-budget by itself
   bool noise = false;           ///< estimates the variance of its light: --denoise
   bool layers = false;          ///< can tell each light apart: --layers
   bool direct = false;          ///< can tell direct light apart: --light

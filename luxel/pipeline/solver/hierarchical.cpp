@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/settings/option_rows.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
+#include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/solve/hierarchical/enclosed.h"
 #include "luxel/solve/hierarchical/represent.h"
 #include "luxel/solve/hierarchical/surface.h"
@@ -51,8 +53,14 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
   own.solve.bounces = settings.bounces;
   LUXEL_TRY(hierarchical::Solution solution,
             hierarchical::solve(in.scene, in.tracer, own.solve, progress));
+  hierarchical::RepresentParams represent;
+  if (settings.time_budget_s > 0)
+    represent.seconds =
+        settings.time_budget_s - stage_seconds(progress.stages())["total"].get<double>();
+  hierarchical::LeftOut left_out;
   LUXEL_TRY(const hierarchical::LightMesh mesh,
-            hierarchical::represent(solution, in.scene, in.tracer, own.mesh, {}, progress));
+            hierarchical::represent(solution, in.scene, in.tracer, own.mesh, represent, progress,
+                                    &left_out));
   TexelLight out;
   out.irradiance.resize(in.map.texels.size()), out.hidden.resize(in.map.texels.size());
   parallel_for(in.map.texels.size(), 1024, [&](size_t begin, size_t end) {
@@ -65,6 +73,14 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
   out.sweeps = solution.sweeps, out.elements = mesh.triangles.size();
   out.warnings = solution.warnings;
+  if (left_out.refinement || left_out.feedback)
+    out.warnings.push_back(
+        fmt::format("--time-budget {:g} was short: {} left out; more time, or a larger --eps, "
+                    "gives better light",
+                    settings.time_budget_s,
+                    left_out.refinement && left_out.feedback ? "refinement and feedback were"
+                    : left_out.refinement                    ? "refinement was"
+                                                             : "some of the feedback was"));
   LUXEL_TRY(out.relative_error, interpolation_error(in, solution, out.irradiance, progress));
   return out;
 }

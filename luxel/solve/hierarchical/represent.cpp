@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/base/clock.h"
 #include "luxel/solve/hierarchical/feedback.h"
 
 namespace luxel::hierarchical {
@@ -25,6 +26,8 @@ constexpr double kExacter = 0.2, kExactest = 1e-5;
 /// is a fifth of the one before, or less.
 constexpr double kSettled = 2.5;
 constexpr int kMostFeedbacks = 4;
+/// The last mesh takes so many times as long as those before it, at most.
+constexpr double kLastMesh = 2;
 
 /// A solution, and how light at its points is computed.
 struct PointScene {
@@ -115,15 +118,36 @@ void divide_all(Refining& r, std::span<const size_t> leaves, size_t max_elements
   }
 }
 
-/// Feeds back, and gathers anew, until that changes light no more.
-Status settle(Refining& r, LightMesh mesh, Progress& progress) {
-  for (int k = 0; k < kMostFeedbacks; ++k) {
+/// The time there is, and what meshes take of it.
+struct Timing {
+  double seconds = INFINITY;
+  Clock::time_point start = Clock::now();
+  double mesh_s = 0;  ///< what the slowest mesh took
+
+  double left() const { return seconds - seconds_since(start); }
+  /// Whether there is time for another mesh, and the last one, which is more exact, after it.
+  bool has_time() const { return left() > (1 + kLastMesh) * mesh_s; }
+};
+
+/// A mesh of the leaves there are.
+Result<LightMesh> timed_mesh(Refining& r, Timing& timing, Progress& progress) {
+  const Clock::time_point begun = Clock::now();
+  LUXEL_TRY(LightMesh mesh, make_light_mesh(r.s, r.scene, r.tracer, r.params, r.known, progress));
+  timing.mesh_s = std::max(timing.mesh_s, seconds_since(begun));
+  return mesh;
+}
+
+/// Feeds back, and gathers anew, until that changes light no more, or the time is short. After the
+/// last feedback nothing looks at another mesh.
+Status settle(Refining& r, LightMesh mesh, Timing& timing, LeftOut& left_out, Progress& progress) {
+  for (int k = 0;; ++k) {
     LUXEL_TRY(const double change, feed_back(r.s, r.tracer, mesh, progress));
-    if (change <= kSettled * r.eps) break;
+    if (change <= kSettled * r.eps || k + 1 == kMostFeedbacks) return {};
+    left_out.feedback = !timing.has_time();
+    if (left_out.feedback) return {};
     r.known.light.at.clear();
-    LUXEL_TRY(mesh, make_light_mesh(r.s, r.scene, r.tracer, r.params, r.known, progress));
+    LUXEL_TRY(mesh, timed_mesh(r, timing, progress));
   }
-  return {};
 }
 
 }  // namespace
@@ -139,7 +163,7 @@ Result<std::vector<float>> measure_error(const Solution& s, const scene::Scene& 
 
 Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
                             const MeshParams& mesh_params, const RepresentParams& params,
-                            Progress& progress) {
+                            Progress& progress, LeftOut* left_out) {
   // How exact light at points must be, from how far interpolants may be off.
   const double mean = double(max_component(totals_of(s).irradiance));
   MeshParams fine = mesh_params;
@@ -151,15 +175,19 @@ Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace:
   rough.point.tolerance *= kRougher;
   eps = std::max(eps, rough.point.tolerance * mean);
   Refining r{s, scene, tracer, rough, eps};
+  Timing timing{params.seconds};
+  LeftOut out_of_time;
   for (int round = 0;; ++round) {
     // A mesh of the leaves there are, and those whose interpolants are off.
-    LUXEL_TRY(LightMesh mesh, make_light_mesh(s, scene, tracer, rough, r.known, progress));
+    LUXEL_TRY(LightMesh mesh, timed_mesh(r, timing, progress));
     LUXEL_TRY(const std::vector<size_t> leaves,
               leaves_off(r.points(), eps, r.known.light, mesh, progress));
-    if (leaves.empty() || round == params.max_rounds ||
+    out_of_time.refinement = !leaves.empty() && !timing.has_time();
+    if (leaves.empty() || round == params.max_rounds || out_of_time.refinement ||
         s.tree.elements.size() + 4 > params.max_elements) {
       // The solution learns from the mesh, and the last mesh shows what it has learned.
-      LUXEL_TRY_STATUS(settle(r, std::move(mesh), progress));
+      LUXEL_TRY_STATUS(settle(r, std::move(mesh), timing, out_of_time, progress));
+      if (left_out) *left_out = out_of_time;
       r.known.light.at.clear();
       return make_light_mesh(s, scene, tracer, fine, r.known, progress);
     }

@@ -11,6 +11,14 @@ struct RepresentParams {
   std::optional<double> eps;
   int max_rounds = 8;
   size_t max_elements = 1u << 20;
+  /// Within which everything should be done, from the call on: when it is short, refinement ends
+  /// early, and less is fed back. The first and the last mesh are made all the same.
+  double seconds = INFINITY;
+};
+
+/// What there was no time for.
+struct LeftOut {
+  bool refinement = false, feedback = false;
 };
 
 /// The light mesh, after dividing leaves as long as their interpolants are off: the root of the sum
@@ -20,10 +28,12 @@ struct RepresentParams {
 /// whose six samples lie on a plane are not looked at. Light of earlier rounds is kept, so each
 /// costs only what it divides. The smaller eps is, the more exact is light at points; it is no
 /// smaller than what that can tell. In the end the solution learns from the interpolants
-/// (feedback.h), and the last mesh is made from what it is then. Errors: cancelled.
+/// (feedback.h), and the last mesh is made from what it is then. `left_out`: what there was no time
+/// for; may be null. Errors: cancelled.
 Result<LightMesh> represent(Solution& solution, const scene::Scene& scene,
                             const trace::RayTracer& tracer, const MeshParams& mesh_params,
-                            const RepresentParams& params, Progress& progress);
+                            const RepresentParams& params, Progress& progress,
+                            LeftOut* left_out = nullptr);
 
 /// How far interpolants are off at the middles of their triangles [W/m^2]. Errors: cancelled.
 Result<std::vector<float>> measure_error(const Solution& solution, const scene::Scene& scene,

@@ -87,6 +87,20 @@ TEST(Represent, EndsAtItsBounds) {
   EXPECT_LE(s->solution.tree.elements.size(), elements + 8);
 }
 
+// Without time the first mesh is not refined, and that is said.
+TEST(Represent, SaysWhatItHadNoTimeFor) {
+  const auto s = solved(lamp_over_floor(), {.eps = 40});
+  Progress progress;
+  LeftOut left_out;
+  const auto coarse = represent(s->solution, s->scene, *s->tracer, {}, {.eps = 0.05, .seconds = 0},
+                                progress, &left_out);
+  ASSERT_TRUE(coarse);
+  EXPECT_TRUE(left_out.refinement);
+  EXPECT_GT(coarse->triangles.size(), 0u);
+  const LightMesh fine = represented(*s, {.eps = 0.05});
+  EXPECT_GT(fine.triangles.size(), coarse->triangles.size());
+}
+
 // The shadow of a screen's edge at x = 0.25 m, 1 m above the floor. A lamp 2.5 m up throws it to
 // 0.25 / (1 - 1 / 2.5) = 0.41667 m; a sun that shines along (1, -2, 0) to 0.75 m. Half a millimetre
 // beside it there is all of the light, or none.

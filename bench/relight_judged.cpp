@@ -6,6 +6,7 @@
 #include "bench/timing.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/pipeline/texels/two_sides.h"
 #include "luxel/solve/matrix/relight.h"
 #include "luxel/solve/matrix/relighter.h"
 #include "luxel/validate/agreement.h"
@@ -16,32 +17,52 @@ namespace {
 constexpr uint64_t kSeed = 7;
 
 /// A lamp stands this part of the scene's diagonal or more away from all surfaces, and so many of
-/// the rays around it meet surfaces, none their backs.
+/// the rays around it meet surfaces, none their backs. Sides that were added behind double-sided
+/// surfaces are backs: on the roof of a house, or inside of its walls, little of a lamp's light
+/// comes back, and what is lost of it says nothing.
 constexpr float kClear = 0.04f, kMet = 0.6f;
 
-bool is_in_the_air(const trace::RayTracer& tracer, Vec3 position, float diagonal_m) {
+/// The scene in the air of which lamps stand.
+struct Air {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  std::span<const size_t> own_triangles;  ///< per mesh: what follows are added sides
+
+  bool is_back(const trace::Hit& hit) const {
+    return hit.back_face || hit.triangle >= own_triangles[scene.instances[hit.instance].mesh];
+  }
+};
+
+std::vector<size_t> triangle_counts(const scene::Scene& scene) {
+  std::vector<size_t> out;
+  for (const scene::Mesh& mesh : scene.meshes) out.push_back(mesh.triangles.size());
+  return out;
+}
+
+bool is_in_the_air(const Air& air, Vec3 position, float diagonal_m) {
   constexpr int kAround = 256;
   RandomStream random{kSeed};
   int met = 0;
   for (int k = 0; k < kAround; ++k) {
     const trace::Hit hit =
-        tracer.closest_hit({position, 0, uniform_sphere_sample(random.next2()), INFINITY});
-    if (hit.found() && (hit.back_face || hit.t < kClear * diagonal_m)) return false;
+        air.tracer.closest_hit({position, 0, uniform_sphere_sample(random.next2()), INFINITY});
+    if (hit.found() && (air.is_back(hit) || hit.t < kClear * diagonal_m)) return false;
     met += hit.found();
   }
   return float(met) >= kMet * float(kAround);
 }
 
-Result<std::vector<Vec3>> positions_in(const validate::Prepared& p, size_t count) {
-  const Box3 box = scene::world_bounds(p.scene);
+Result<std::vector<Vec3>> positions_in(const Air& air, size_t count) {
+  const Box3 box = scene::world_bounds(air.scene);
   const Vec3 size = box.upper - box.lower;
   RandomStream random{kSeed};
   std::vector<Vec3> out;
   for (int tries = 0; out.size() < count; ++tries) {
-    if (tries == 100000) return fail(ErrorCode::bad_input, "{} has no air for lamps", p.scene.name);
+    if (tries == 100000)
+      return fail(ErrorCode::bad_input, "{} has no air for lamps", air.scene.name);
     const Vec3 u{random.next(), random.next(), random.next()};
     const Vec3 position = box.lower + u * size;
-    if (is_in_the_air(*p.tracer, position, length(size))) out.push_back(position);
+    if (is_in_the_air(air, position, length(size))) out.push_back(position);
   }
   return out;
 }
@@ -109,6 +130,7 @@ Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
                                     const JudgeSettings& settings, Progress& progress) {
   for (scene::Material& material : scene.materials) material.emission = {};
   scene.background = {}, scene.lights = {scene::PunctualLight{}};
+  const std::vector<size_t> own_triangles = triangle_counts(scene);
   // One lamp alone lights the scene; some texels are compared.
   LUXEL_TRY(const auto p, validate::prepare(std::move(scene), settings.resolution, progress));
   matrix::Target target = take_texels(*p, settings.texels);
@@ -118,6 +140,7 @@ Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
   // Preparation, timed.
   matrix::RelightParams params;
   params.patches.count = settings.patches;
+  LUXEL_TRY(params.patches.open_backs, pipeline::open_backs(p->scene, progress));
   params.factors.rays_per_patch = 8192;
   LUXEL_TRY(matrix::RelightData data,
             matrix::make_relight_data(p->scene, *p->tracer, std::move(target), params, progress));
@@ -126,7 +149,8 @@ Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
   out.patches = data.size(), out.codec_error = data.codec_error;
   // The lamp at several places: relit, and by paths.
   LUXEL_TRY(matrix::Relighter relighter, matrix::Relighter::make(std::move(data), {}));
-  LUXEL_TRY(const std::vector<Vec3> positions, positions_in(*p, settings.lights));
+  LUXEL_TRY(const std::vector<Vec3> positions,
+            positions_in({p->scene, *p->tracer, own_triangles}, settings.lights));
   for (const Vec3 position : positions) {
     p->scene.lights[0].position = position;
     relighter.update({p->scene.lights, {}, {}});

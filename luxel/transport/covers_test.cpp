@@ -17,8 +17,8 @@ const Vec3 kUp{0, 1, 0};
 scene::Scene floor_under_plate(bool up) {
   scene::Scene scene;
   const uint32_t gray = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
-  scene::add_rectangle(scene, {-50, 50, -50, 50}, 0, true, gray);
-  scene::add_rectangle(scene, {0, 50, -50, 50}, kHeight_m, up, gray);
+  scene::add_rectangle(scene, {-5, 5, -5, 5}, 0, true, gray);
+  scene::add_rectangle(scene, {0, 5, -5, 5}, kHeight_m, up, gray);
   return scene;
 }
 
@@ -51,8 +51,8 @@ TEST(Covers, PlacesBesideTheCoverAndAtItsBorderAreNotCovered) {
 
 TEST(Covers, AreLowerThanAQuarterOfTheSize) {
   const scene::Scene scene = floor_under_plate(true);
-  EXPECT_EQ(share_at(scene, {1, 0, 0}, kUp, 3.9f * kHeight_m), 1);
-  EXPECT_EQ(share_at(scene, {1, 0, 0}, kUp, 4.1f * kHeight_m), 0);
+  EXPECT_EQ(share_at(scene, {1, 0, 0}, kUp, 3.8f * kHeight_m), 1);
+  EXPECT_EQ(share_at(scene, {1, 0, 0}, kUp, 4.2f * kHeight_m), 0);
 }
 
 // A room of 4 m whose elements are as large as itself: a table is no cover, nor are walls.

@@ -205,6 +205,7 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   params.patches = s.matrix.patches, params.patches.seed = s.seed;
   params.factors = s.matrix.factors, params.factors.seed = s.seed;
   LUXEL_TRY(params.codec, codec_of(s.codec));
+  LUXEL_TRY(params.patches.open_backs, open_backs(scene, progress));
   params.max_error = float(s.max_error), params.bounces = s.bounces;
   LUXEL_TRY(matrix::RelightData data,
             matrix::make_relight_data(scene, tracer, std::move(wanted.target), params, progress));

@@ -9,6 +9,7 @@
 #include "luxel/pipeline/settings/option_rows.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
+#include "luxel/pipeline/texels/two_sides.h"
 #include "luxel/solve/matrix/point_error.h"
 #include "luxel/transport/back_faces.h"
 
@@ -32,6 +33,7 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   matrix::MatrixParams params = settings.own.of<matrix::MatrixParams>();
   params.direct_samples = settings.direct_samples, params.bounces = settings.bounces;
   params.seed = params.patches.seed = params.factors.seed = settings.seed;
+  LUXEL_TRY(params.patches.open_backs, open_backs(in.scene, progress));
   const uint64_t needed =
       matrix::bytes_of_preparation(params.patches.count, params.factors.rays_per_patch);
   LUXEL_TRY_STATUS(memory_to_spare(in, settings, bytes_of_light(in, settings), needed));

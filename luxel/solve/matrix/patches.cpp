@@ -23,10 +23,19 @@ struct Sample {
   Rgb reflectance, emission;
 };
 
+bool has_open_back(const scene::Scene& scene, const scene::SurfacePoint& p,
+                   const PatchParams& params) {
+  if (!params.open_backs) return true;
+  const std::vector<uint8_t>& flags = (*params.open_backs)[scene.instances[p.instance].mesh];
+  return !flags.empty() && flags[p.triangle];
+}
+
 /// Points spread evenly. Each stands for its part of the exact area of its instance's material, so
-/// that a small lamp has the power it has. Both sides of double-sided surfaces have points.
-std::vector<Sample> spread(const scene::Scene& scene, size_t count, uint64_t seed) {
-  std::vector<scene::SurfacePoint> points = scene::points_uniform_in_area(scene, count, seed);
+/// that a small lamp has the power it has. Both sides of double-sided surfaces have points, where
+/// params.open_backs does not say that one lies inside a solid.
+std::vector<Sample> spread(const scene::Scene& scene, const PatchParams& params) {
+  std::vector<scene::SurfacePoint> points = scene::points_uniform_in_area(
+      scene, params.count * size_t(params.points_per_patch), params.seed);
   const auto key = [&](uint32_t instance, uint32_t triangle) {
     const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
     return uint64_t(instance) << 32 | mesh.triangle_material[triangle];
@@ -67,7 +76,7 @@ std::vector<Sample> spread(const scene::Scene& scene, size_t count, uint64_t see
                   scene::reflectance_at(scene, p),
                   scene::emission_at(scene, p) * kPi};
     out.push_back(sample);
-    if (!scene::material_at(scene, p).double_sided) continue;
+    if (!scene::material_at(scene, p).double_sided || !has_open_back(scene, p, params)) continue;
     sample.at.normal = -normal;
     out.push_back(sample);
   }
@@ -371,8 +380,7 @@ Result<PatchedScene> make_patches(const scene::Scene& scene, const trace::RayTra
                 kMaxPatches);
   if (scene::first_triangles(scene).back() == 0)
     return fail(ErrorCode::bad_input, "the scene has no triangle to make patches of");
-  const std::vector<Sample> samples =
-      spread(scene, params.count * size_t(params.points_per_patch), params.seed);
+  const std::vector<Sample> samples = spread(scene, params);
   double area = 0;
   for (const Sample& s : samples) area += double(s.area_m2);
   if (samples.empty() || !(area > 0))

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct PatchParams {
   size_t count = 8192;        ///< about so many
   int points_per_patch = 48;  ///< on average: they are what a patch is made of
   uint64_t seed = 1;
+  /// Per mesh, one flag per triangle: 1 where light gets behind a double-sided one. Other backs lie
+  /// inside closed solids and are left out; a mesh without flags has none. Nothing: all backs have
+  /// points.
+  std::optional<std::vector<std::vector<uint8_t>>> open_backs = {};
 };
 
 /// Pieces of surface, each of one material, nearly flat, of about the same size, and such that its

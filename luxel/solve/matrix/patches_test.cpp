@@ -114,6 +114,34 @@ TEST(Patches, ASmallLampKeepsItsAreaAndPower) {
   EXPECT_NEAR(blue, double(kPi) * 3 * 1e-4, 2e-5 * double(kPi) * 3e-4);
 }
 
+// A double-sided box in a double-sided room: with flags for the room alone, which light is in, no
+// point lies inside of the box, and its outside keeps all of its area.
+TEST(Patches, BacksInsideClosedSolidsAreInNone) {
+  scene::Scene scene;
+  scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
+  scene.materials[0].double_sided = true;
+  scene::Mesh room, box;
+  scene::add_box(room, {0, 0, 0}, {1, 1, 1}, 0);
+  scene::add_box(box, {0.3f, 0.3f, 0.3f}, {0.7f, 0.7f, 0.7f}, 0);
+  scene::place(scene, std::move(room)), scene::place(scene, std::move(box));
+  const auto tracer = trace::RayTracer::build(scene);
+  ASSERT_TRUE(tracer);
+  PatchParams params{.count = 200};
+  params.open_backs = {std::vector<uint8_t>(12, 1), {}};
+  Progress progress;
+  const auto cut = make_patches(scene, *tracer, params, progress);
+  ASSERT_TRUE(cut) << cut.error().message;
+  double outside = 0;
+  for (uint32_t k = 0; k < cut->patches.size(); ++k)
+    for (const PatchPoint& p : cut->patches.points_of(k)) {
+      const Vec3 d = p.position - Vec3{0.5f, 0.5f, 0.5f};
+      if (std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) > 0.25f) continue;
+      EXPECT_GT(dot(d, p.normal), 0);
+      outside += double(cut->patches.area_m2[k]) / double(cut->patches.points_of(k).size());
+    }
+  EXPECT_NEAR(outside, 6 * 0.4 * 0.4, 0.01);
+}
+
 TEST(Patches, HoldOneMaterialEach) {
   scene::Scene scene;
   const Rgb left{0.2f, 0.4f, 0.6f}, right{0.8f, 0.1f, 0.3f};

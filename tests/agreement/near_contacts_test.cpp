@@ -136,7 +136,8 @@ TEST_P(SlowNearContacts, TheRelighterDoesAsWell) {
                         .height = kResolution,
                         .position = texels.position,
                         .normal = texels.normal,
-                        .geometric_normal = texels.geometric_normal};
+                        .geometric_normal = texels.geometric_normal,
+                        .transfer = {}};
   for (const atlas::Texel& t : room.p->map.texels)
     target.texel.push_back({uint16_t(t.x), uint16_t(t.y)});
   Progress progress;

@@ -65,6 +65,9 @@ Result<Table> measure_layers(const std::filesystem::path& shared, int threads);
 /// What a bake after an edit costs that builds on one that is kept (docs/method/rebake.md).
 Result<Table> measure_rebake(const std::filesystem::path& shared, int threads);
 
+/// FLIP of pictures of bakes of each quality against a long one, and processor seconds.
+Result<Table> measure_quality(const std::filesystem::path& shared, int threads);
+
 struct Bench {
   std::string_view name;
   BenchFunction run;
@@ -75,6 +78,6 @@ inline constexpr std::array kBenches{
     Bench{"threads", measure_threads}, Bench{"denoise", measure_denoise},
     Bench{"scenes", measure_scenes},   Bench{"supersample", measure_supersample},
     Bench{"budget", measure_budget},   Bench{"layers", measure_layers},
-    Bench{"rebake", measure_rebake}};
+    Bench{"rebake", measure_rebake},   Bench{"quality", measure_quality}};
 
 }  // namespace luxel::bench

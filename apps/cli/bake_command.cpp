@@ -4,6 +4,7 @@
 #include "apps/cli/cli.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/pipeline/settings/quality.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
 
@@ -43,6 +44,12 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
     LUXEL_TRY_STATUS(row->read_text(s, text));
   }
   s.samples_given = options.given.has("--samples");
+  // A file of settings has its numbers.
+  const bool by_quality = options.given.has("--quality") || options.settings.empty();
+  if (solver->can.quality && by_quality)
+    pipeline::set_quality(
+        s.quality == pipeline::Quality::none ? pipeline::Quality::good : s.quality,
+        [&](std::string_view flag) { return options.given.has(flag); }, s);
   if (options.plan && !solver->plan)
     return pipeline::not_used("--solver " + s.solver, "--plan", pipeline::solvers_with("--plan"));
   LUXEL_TRY_STATUS(check_resolution(options.given, s));
@@ -50,12 +57,13 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
 }
 
 /// How noisy the light is, as far as the solver knows, and where most; or how far it is off.
-std::string noise_text(const nlohmann::json& json) {
+std::string noise_text(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
   const double rms = json["relative_error"].get<double>();
   if (rms <= 0) return {};
   if (json["counts"]["elements"].get<uint64_t>() > 0)  // light between them has no noise
     return fmt::format("estimated error: RMS {:.3g} % of the mean light", 100 * rms);
-  std::string text = fmt::format("noise: RMS {:.3g} % of the mean light", 100 * rms);
+  std::string text = fmt::format("noise{}: RMS {:.3g} % of the mean light",
+                                 settings.denoise ? " before the denoiser" : "", 100 * rms);
   if (!json.contains("error")) return text;
   const auto& error = json["error"];
   const auto& worst = error["worst"];
@@ -80,7 +88,7 @@ void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json&
                   counts["texels"].get<uint64_t>(), counts["rays"].get<uint64_t>(),
                   json["seconds"]["total"].get<double>())
           .c_str());
-  if (const std::string noise = noise_text(json); !noise.empty())
+  if (const std::string noise = noise_text(settings, json); !noise.empty())
     std::fprintf(stderr, "%s\n", noise.c_str());
   for (const nlohmann::json& name : json["files"])
     std::fprintf(stderr, "wrote %s\n", (settings.output / name.get<std::string>()).c_str());

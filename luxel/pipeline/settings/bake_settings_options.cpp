@@ -27,6 +27,13 @@ json json_of_bounces(int bounces) { return bounces < 0 ? json("inf") : json(boun
 /// How light is sampled, and how well.
 Options<S> sampling_options() {
   return {
+      BakeRows::choice(
+          "--quality", &S::quality,
+          {{"draft", Quality::draft}, {"good", Quality::good}, {"best", Quality::best}},
+          "How good the light is: sets --samples, --direct-samples, --supersample and "
+          "--denoise where they are not given; good if nothing else is said")
+          .only(&Can::quality)
+          .leaves(Changes::nothing),
       BakeRows::number("--samples", &S::samples, {1, kMaxSamples}, "Indirect rays per texel")
           .unit("RAYS")
           .only(&Can::samples),
@@ -137,6 +144,11 @@ Options<S> result_options() {
       BakeRows::toggle("--denoise", &S::denoise,
                        "Remove the noise of few samples; edges of shadows stay")
           .never_without(&Can::noise)
+          .never_with({"--no-denoise"})
+          .leaves(Changes::results),
+      BakeRows::toggle("--no-denoise", &S::denoise, "Leave the light as it was sampled")
+          .key_is("")
+          .only(&Can::noise)
           .leaves(Changes::results),
       BakeRows::toggle("--no-stitch", &S::stitch, "Do not blend charts along seams")
           .leaves(Changes::results),

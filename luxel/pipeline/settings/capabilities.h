@@ -9,6 +9,7 @@ struct Capabilities {
   bool samples = false;         ///< traces rays or paths per texel: --samples
   bool direct_samples = false;  ///< traces shadow rays towards area lights: --direct-samples
   bool supersample = false;     ///< averages light over points of a texel: --supersample
+  bool quality = false;         ///< has numbers for words: --quality
   bool errors = false;          ///< estimates each texel's standard error: --max-error,
                                 ///< --error-map, --plan; keeps --time-budget by itself
   bool noise = false;           ///< estimates the variance of its light: --denoise

@@ -33,6 +33,10 @@ enum class LightPart : uint8_t {
 /// A picture has four channels.
 inline constexpr size_t kMaxMaskedLights = 4;
 
+/// How good light is to be, as a word; luxel/pipeline/settings/quality.h has the numbers. `none`:
+/// by numbers alone.
+enum class Quality : uint8_t { none, draft, good, best };
+
 /// How many lightmaps a bake leaves. More than one, or not yet known how many: the scene is laid
 /// out anew.
 struct PagesSetting {
@@ -52,6 +56,8 @@ struct BakeSettings {
   float texels_per_metre = 0;  ///< > 0: chooses the resolution; with automatic pages their number
   PagesSetting pages;
   atlas::UvMode uv = atlas::UvMode::automatic;
+  /// What set_quality() was asked for. The numbers below count, whatever it says.
+  Quality quality = Quality::none;
   int samples = gather::GatherParams{}.samples;  ///< rays or paths per texel
   int direct_samples = gather::GatherParams{}.direct_samples;
   /// Rays are added until the 95th percentile of the relative standard error over texels is below

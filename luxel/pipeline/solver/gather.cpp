@@ -219,6 +219,7 @@ Solver gather_solver() {
           .can = {.samples = true,
                   .direct_samples = true,
                   .supersample = true,
+                  .quality = true,
                   .errors = true,
                   .noise = true,
                   .layers = true,

@@ -11,6 +11,8 @@ namespace {
 
 /// Measured on one core of an AMD EPYC; short beside the light of all bakes that are worth a plan.
 constexpr double kDrawSeconds = 0.6, kSeamSecondsPerTexel = 4e-7, kWriteSecondsPerTexel = 4e-7;
+/// Measured on the same: docs/method/denoise.md.
+constexpr double kDenoiseSecondsPerTexel = 1.3e-5;
 
 }  // namespace
 
@@ -20,6 +22,9 @@ std::vector<Stage> stages_after_solving(const light::TexelScene& in, const BakeS
   std::vector<Stage> stages{{"seams", kSeamSecondsPerTexel * double(in.elements.size())},
                             {"draw", kDrawSeconds / threads},
                             {"write files", kWriteSecondsPerTexel * square}};
+  if (settings.denoise)
+    stages.insert(stages.begin(),
+                  {"denoise", kDenoiseSecondsPerTexel * double(in.elements.size()) / threads});
   if (settings.html) stages.back().seconds *= 2;
   return stages;
 }

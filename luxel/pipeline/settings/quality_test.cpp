@@ -1,0 +1,52 @@
+#include "luxel/pipeline/settings/quality.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+namespace luxel::pipeline {
+namespace {
+
+BakeSettings set(Quality quality, const std::set<std::string, std::less<>>& given,
+                 BakeSettings settings = {}) {
+  set_quality(
+      quality, [&](std::string_view flag) { return given.contains(flag); }, settings);
+  return settings;
+}
+
+TEST(Quality, BetterMeansMore) {
+  const QualityNumbers draft = numbers_of(Quality::draft), good = numbers_of(Quality::good),
+                       best = numbers_of(Quality::best);
+  EXPECT_LT(draft.samples, good.samples), EXPECT_LT(good.samples, best.samples);
+  EXPECT_LT(draft.direct_samples, good.direct_samples);
+  EXPECT_LT(good.direct_samples, best.direct_samples);
+  EXPECT_LE(draft.supersample, good.supersample), EXPECT_LE(good.supersample, best.supersample);
+  EXPECT_TRUE(draft.denoise && good.denoise);
+  EXPECT_FALSE(best.denoise);
+}
+
+TEST(Quality, GivenNumbersWin) {
+  BakeSettings mine;
+  mine.direct_samples = 7;
+  const BakeSettings s = set(Quality::good, {"--direct-samples"}, mine);
+  EXPECT_EQ(s.quality, Quality::good);
+  EXPECT_EQ(s.direct_samples, 7);
+  EXPECT_EQ(s.samples, numbers_of(Quality::good).samples);
+  EXPECT_TRUE(s.denoise);
+  EXPECT_FALSE(set(Quality::good, {"--no-denoise"}).denoise);
+}
+
+/// Whoever says how much light is sampled wants to see that.
+TEST(Quality, LightOfGivenSamplesStaysAsItIs) {
+  EXPECT_FALSE(set(Quality::good, {"--samples"}).denoise);
+  BakeSettings asked;
+  asked.max_error = 0.02;
+  EXPECT_FALSE(set(Quality::draft, {"--max-error"}, asked).denoise);
+  BakeSettings layers;
+  layers.layers = light::LayerMode::per_light;
+  EXPECT_FALSE(set(Quality::good, {}, layers).denoise);
+}
+
+}  // namespace
+}  // namespace luxel::pipeline

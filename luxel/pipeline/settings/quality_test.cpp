@@ -18,10 +18,12 @@ BakeSettings set(Quality quality, const std::set<std::string, std::less<>>& give
 TEST(Quality, BetterMeansMore) {
   const QualityNumbers draft = numbers_of(Quality::draft), good = numbers_of(Quality::good),
                        best = numbers_of(Quality::best);
-  EXPECT_LT(draft.samples, good.samples), EXPECT_LT(good.samples, best.samples);
+  EXPECT_LT(draft.samples, good.samples);
+  EXPECT_LT(good.samples, best.samples);
   EXPECT_LT(draft.direct_samples, good.direct_samples);
   EXPECT_LT(good.direct_samples, best.direct_samples);
-  EXPECT_LE(draft.supersample, good.supersample), EXPECT_LE(good.supersample, best.supersample);
+  EXPECT_LE(draft.supersample, good.supersample);
+  EXPECT_LE(good.supersample, best.supersample);
   EXPECT_TRUE(draft.denoise && good.denoise);
   EXPECT_FALSE(best.denoise);
 }

@@ -6,6 +6,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/post/noise_level.h"
 #include "luxel/post/oidn.h"
+#include "luxel/post/outliers.h"
 
 namespace luxel::post {
 namespace {
@@ -136,6 +137,7 @@ constexpr float kFirstDeviations = 2;
 /// Filters one part in place.
 Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLight& part,
               Progress& progress) {
+  if (part.may_have_fireflies) share_out_fireflies(n, part.variance, part.values);
   const NoiseLevel noise = noise_level(n, part.values, part.variance);
   Planes planes{std::vector<Plane>(part.values.size()), std::vector<Shown>(part.values.size())};
   std::vector<Plane>& now = planes.planes;

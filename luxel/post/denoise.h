@@ -37,6 +37,9 @@ struct DenoiseParams {
 struct NoisyLight {
   std::span<Rgb> values;
   std::span<const float> variance;
+  /// Rare paths can make single texels far too bright (luxel/post/outliers.h): never direct light,
+  /// of which a small bright spot is a spot.
+  bool may_have_fireflies = true;
 };
 
 /// The filter that this build has: "luxel", or "oidn" where Open Image Denoise was found.
@@ -46,8 +49,9 @@ std::string_view denoiser_name();
 /// texels around it on the same surface, on whichever charts they lie; windows grow in steps, and a
 /// neighbour counts for as long as its estimate agrees with that plane to within what their
 /// variances explain (propagation and separation [Polzehl00, Polzehl06]; docs/method/denoise.md).
-/// Texels without variance around them keep their values bit for bit. Values stay finite and
-/// non-negative. The same bits for any number of threads. Errors: cancelled.
+/// Fireflies are shared out among their neighbours first. Texels without variance around them keep
+/// their values bit for bit. Values stay finite and non-negative. The same bits for any number of
+/// threads. Errors: cancelled.
 Status denoise(const TexelGeometry& places, std::span<const NoisyLight> parts,
                const DenoiseParams& params, Progress& progress);
 

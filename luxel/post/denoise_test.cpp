@@ -178,6 +178,61 @@ TEST(Denoise, AnEdgeInConvergedLightMovesByLessThanItsNoise) {
   for (size_t i = 0; i < sheet.size(); ++i) EXPECT_NEAR(sheet.values[i].x, step(i).x, 6e-4f) << i;
 }
 
+/// Places of fireflies, farther apart than they are shared out.
+bool is_firefly(size_t i) { return Sheet::x_of(i) % 11 == 4 && Sheet::y_of(i) % 13 == 6; }
+
+// Each firefly is thirty times as bright as the field; together they have a sixth of the light. It
+// stays in the map: shared out among texels within 6, and the filter spreads it farther. The
+// brightest texel is a few deviations of what windows leave of the noise above the mean.
+TEST(Denoise, FirefliesAreSharedOut) {
+  Sheet sheet;
+  sheet.fill(flat, 0.1f);
+  double before = 0, after = 0;
+  for (size_t i = 0; i < sheet.size(); ++i) {
+    if (is_firefly(i)) sheet.values[i] = flat(i) * 30;
+    // Its own square counts in the mean of 37 that is stated around it.
+    const bool near =
+        std::abs(Sheet::x_of(i) % 11 - 4) <= 3 && std::abs(Sheet::y_of(i) % 13 - 6) <= 3;
+    if (near) sheet.variance[i] = 2 * 29 * 29 / 37.0f;
+    before += double(sheet.values[i].y);
+  }
+  sheet.filter();
+  float brightest = 0;
+  for (const Rgb& v : sheet.values) after += double(v.y), brightest = std::max(brightest, v.y);
+  // The filter leans towards medians (docs/method/denoise.md).
+  EXPECT_NEAR(after, before, 0.02 * before);
+  EXPECT_LT(brightest, 1.5 * before / double(sheet.size()));
+}
+
+// What is known for sure stays, however bright and small.
+TEST(Denoise, ABrightTexelWithoutVarianceStays) {
+  Sheet sheet;
+  sheet.fill(flat, 0.1f);
+  for (size_t i = 0; i < sheet.size(); ++i)
+    if (is_firefly(i)) sheet.values[i] = flat(i) * 30, sheet.variance[i] = 0;
+  sheet.filter();
+  for (size_t i = 0; i < sheet.size(); ++i)
+    if (is_firefly(i)) {
+      EXPECT_NEAR(sheet.values[i].y, 60, 0.01) << i;
+    } else {
+      EXPECT_NEAR(sheet.values[i].y, 2, 0.2) << i;
+    }
+}
+
+// A spot of 2 x 2 texels and a line of one that are bright on purpose, though noisy: at least three
+// texels of their kind are near. They are not shared out.
+TEST(Denoise, SmallBrightThingsOfSeveralTexelsStay) {
+  const auto light = [](size_t i) {
+    const int x = Sheet::x_of(i), y = Sheet::y_of(i);
+    const bool spot = (x == 20 || x == 21) && (y == 20 || y == 21);
+    return Rgb{1, 1, 1} * (spot || x == 40 ? 10.0f : 1.0f);
+  };
+  Sheet sheet;
+  sheet.fill(light, 0.1f);
+  sheet.filter();
+  for (size_t i = 0; i < sheet.size(); ++i) EXPECT_NEAR(sheet.values[i].x, light(i).x, 0.5) << i;
+}
+
 TEST(Denoise, ChartsThatFaceDifferentWaysDoNotMix) {
   for (const float angle : {0.4f, kPi / 2, kPi}) {
     Sheet sheet(2, angle);

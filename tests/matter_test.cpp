@@ -13,6 +13,7 @@
 #include "luxel/import/import.h"
 #include "luxel/scene/shapes.h"
 #include "luxel/scene/sides.h"
+#include "luxel/solve/matrix/lxr.h"
 #include "luxel/trace/ray_tracer.h"
 #include "tests/command.h"
 
@@ -20,6 +21,7 @@ namespace luxel::testing_support {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// What a bake left, read back.
 struct Baked {
@@ -104,18 +106,95 @@ TEST(Sides, TheUndersideHasTheLightOfTheFloor) {
   EXPECT_NEAR(b.light_seen(kAbove, kDown).x, 3, 0.01);
 }
 
-// With the file's own coordinates there is one place for both sides, and luxel says so.
-TEST(Sides, OnePlaceForBothIsSaid) {
+/// plate() over a floor, both with a TEXCOORD_1 that is valid.
+scene::Scene plate_with_uv1() {
   scene::Scene s = plate();
   for (const Vec3& p : s.meshes[0].positions)
-    s.meshes[0].uv1.push_back({0.45f * p.x + 0.5f, 0.45f * p.z + 0.5f});
-  for (const char* uv : {"auto", "keep"}) {
-    const Baked b = bake(s, std::string("--resolution 64 --samples 4 --uv ") + uv);
-    EXPECT_EQ(b.scene.meshes[0].triangles.size(), 2u);
-    EXPECT_THAT(b.report["warnings"].dump(), HasSubstr("see light on both sides"));
+    s.meshes[0].uv1.push_back({0.2f * p.x + 0.25f, 0.2f * p.z + 0.5f});
+  const uint32_t floor = scene::add_material(s, "floor", {0.5f, 0.5f, 0.5f});
+  scene::add_rectangle(s, {-3, 3, -3, 3}, -1, true, floor);
+  for (const Vec3& p : s.meshes[1].positions)
+    s.meshes[1].uv1.push_back({0.06f * p.x + 0.75f, 0.06f * p.z + 0.5f});
+  return s;
+}
+
+// With the file's own coordinates there is one place for both sides, and luxel says so.
+TEST(Sides, OnePlaceForBothIsSaid) {
+  const Baked b = bake(plate_with_uv1(), "--resolution 64 --samples 4 --uv keep");
+  EXPECT_EQ(b.scene.meshes[0].triangles.size(), 2u);
+  EXPECT_THAT(b.report["warnings"].dump(), HasSubstr("see light on both sides"));
+  EXPECT_EQ(b.report["atlas"]["kept_uv1"], true);
+  EXPECT_FALSE(b.report["atlas"].contains("wrong_sides_in_uv1"));
+}
+
+// One side of the plate is black and the other bright: by itself luxel does not keep them.
+TEST(Sides, OnePlaceForBothIsNotKeptWhereTheyDiffer) {
+  const Baked b = bake(plate_with_uv1(), "--resolution 64 --samples 4");
+  EXPECT_EQ(b.scene.meshes[0].triangles.size(), 4u);
+  EXPECT_THAT(b.report["warnings"].dump(), HasSubstr("TEXCOORD_1 is not kept"));
+  EXPECT_EQ(b.report["atlas"]["kept_uv1"], false);
+  // The plate has 4 of 40 m^2 and 0.16 of 0.2896 of TEXCOORD_1.
+  EXPECT_NEAR(b.report["atlas"]["wrong_sides_in_uv1"]["all"], 0.5 * (0.1 + 0.16 / 0.2896), 0.01);
+  EXPECT_NEAR(b.report["atlas"]["wrong_sides_in_uv1"]["shown"], 0.326, 0.02);
+  EXPECT_LT(b.light_seen(kBelow * 0.9f, kUp).x, 1);
+}
+
+// Nobody looks at the underside of a floor under which there is nothing.
+TEST(Sides, OnePlaceForBothIsKeptWhereNobodyLooks) {
+  scene::Scene s = plate_with_uv1();
+  s.meshes.pop_back(), s.instances.pop_back();
+  const Baked b = bake(s, "--resolution 64 --samples 4");
+  EXPECT_EQ(b.scene.meshes[0].triangles.size(), 2u);
+  EXPECT_THAT(b.report["warnings"].dump(), HasSubstr("seen from behind, 100 % of it"));
+  EXPECT_EQ(b.report["atlas"]["wrong_sides_in_uv1"]["shown"], 0);
+}
+
+// With several pages, or as many as it takes, luxel lays out anew: TEXCOORD_1 describes one.
+TEST(Sides, PagesHaveBothSides) {
+  const Baked b = bake(plate_with_uv1(), "--resolution 64 --samples 4 --pages auto");
+  EXPECT_EQ(b.scene.meshes[0].triangles.size(), 4u);
+  EXPECT_THAT(b.report["warnings"].dump(), Not(HasSubstr("TEXCOORD_1")));
+}
+
+// A bake that is kept keeps its layout, and what was said of it.
+TEST(Sides, AKeptBakeKnowsWhyItWasLaidOutAnew) {
+  const ScratchFolder s;
+  ASSERT_TRUE(write_file_atomically(s.path / "scene.glb", *export_::scene_glb(plate_with_uv1())));
+  nlohmann::json reports[2];
+  for (nlohmann::json& report : reports) {
+    const CommandResult r = luxel("bake " + (s.path / "scene.glb").string() + " -o " +
+                                  (s.path / "b").string() + " --json --keep --resolution 64");
+    ASSERT_EQ(r.code, 0) << r.err;
+    report = nlohmann::json::parse(r.out);
   }
-  EXPECT_EQ(bake(s, "--resolution 64 --samples 4 --uv unwrap").scene.meshes[0].triangles.size(),
-            4u);
+  EXPECT_NE(reports[0]["cache"], reports[1]["cache"]);  // the second builds on the first
+  EXPECT_EQ(reports[0]["atlas"], reports[1]["atlas"]);
+  EXPECT_GT(reports[1]["atlas"]["wrong_sides_in_uv1"]["shown"], 0.2);
+  EXPECT_EQ(reports[0]["warnings"], reports[1]["warnings"]);
+}
+
+// Lights of an .lxr file come later, from below as well.
+TEST(Sides, TheRelighterHasTexelsOnBoth) {
+  const ScratchFolder s;
+  ASSERT_TRUE(write_file_atomically(s.path / "scene.glb", *export_::scene_glb(plate_with_uv1())));
+  const auto places = [&](const std::string& uv) {
+    const CommandResult r =
+        luxel("relight " + (s.path / "scene.glb").string() + " -o " + (s.path / "a.lxr").string() +
+              " --json --patches 50 --rays 64 --resolution 32 --uv " + uv);
+    EXPECT_EQ(r.code, 0) << r.err;
+    const auto lxr = matrix::read_lxr(s.path / "a.lxr");
+    EXPECT_TRUE(lxr) << lxr.error().message;
+    std::pair<size_t, size_t> up_down;
+    for (const Vec3& n : lxr->target.geometric_normal) ++(n.y > 0 ? up_down.first : up_down.second);
+    const auto warnings = nlohmann::json::parse(r.out)["warnings"].dump();
+    EXPECT_THAT(warnings,
+                HasSubstr(uv == "auto" ? "TEXCOORD_1 is not kept" : "see light on both sides"));
+    return up_down;
+  };
+  const auto both = places("auto"), kept = places("keep");
+  EXPECT_GT(both.second, 25u);  // a twelfth of the surface, in a map of 1024
+  EXPECT_GT(kept.first, 25u);
+  EXPECT_EQ(kept.second, 0u);
 }
 
 // A sheet that lets half of the light through, in green: the lightmap of the side away from the sun

@@ -11,7 +11,9 @@ Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution, Pr
   LUXEL_TRY_STATUS(pipeline::add_outside_light({}, p->scene));
   atlas::AtlasParams params;
   params.resolution = resolution;
-  LUXEL_TRY_STATUS(pipeline::split_sides(p->scene, params.uv, resolution, progress));
+  LUXEL_TRY(const pipeline::Sides sides,
+            pipeline::split_sides(p->scene, {.resolution = resolution}, progress));
+  params.uv = sides.uv;
   LUXEL_TRY(p->atlas, atlas::make_atlas(p->scene, params, progress));
   p->map = atlas::rasterise(p->scene, p->atlas);
   p->elements = transport::elements_from_texels(p->scene, p->atlas, p->map);

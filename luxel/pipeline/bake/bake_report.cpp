@@ -17,6 +17,7 @@ namespace {
 nlohmann::json about_atlas(const BakeSettings& settings, const Bake& bake) {
   const std::vector<atlas::Page> pages = atlas::pages_of(bake.atlas);
   nlohmann::json out = {{"resolution", 0},
+                        {"kept_uv1", bake.atlas.kept},
                         {"utilisation", bake.atlas_stats.utilisation},
                         {"mean_stretch_l2", bake.atlas_stats.mean_stretch_l2},
                         {"texels_per_metre", bake.atlas_stats.texels_per_metre}};
@@ -25,6 +26,9 @@ nlohmann::json about_atlas(const BakeSettings& settings, const Bake& bake) {
     out["pages"].push_back({{"file", export_::lightmap_name(p, pages.size()) + ".exr"},
                             {"resolution", pages[p].side}});
   }
+  if (bake.wrong_in_uv1)
+    out["wrong_sides_in_uv1"] = {{"shown", bake.wrong_in_uv1->shown},
+                                 {"all", bake.wrong_in_uv1->all}};
   if (settings.pages.mode != atlas::PageMode::per_instance) return out;
   for (uint32_t i = 0; i < bake.scene.instances.size(); ++i) {
     const uint32_t first = bake.atlas.first_triangle[i];

@@ -51,32 +51,42 @@ struct Ready {
   light::Lights lights;
 };
 
-/// The layout of what was read; warnings of it are added to `warnings`.
+/// Splits sides and lays out what was read.
+Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& scene,
+                                 Progress& progress) {
+  LUXEL_TRY(SettledResolution settled, settle_resolution(settings, scene, progress));
+  const SidesParams params{
+      .uv = settings.uv,
+      .resolution = *settled.settings.resolution,
+      .one_page = settings.pages.mode == atlas::PageMode::fixed && settings.pages.count == 1};
+  LUXEL_TRY(Sides sides, split_sides(scene, params, progress));
+  BakeSettings of_layout = settings;
+  of_layout.uv = sides.uv;
+  // The resolution was that of TEXCOORD_1, which is not kept.
+  if (sides.wrong_in_uv1 && sides.uv == atlas::UvMode::unwrap) {
+    LUXEL_TRY(settled, settle_resolution(of_layout, scene, progress));
+  }
+  settled.settings.uv = sides.uv;
+  LUXEL_TRY(TexelLayout layout, lay_out_texels(settled.settings, scene, progress));
+  layout.wrong_in_uv1 = sides.wrong_in_uv1, layout.warnings = std::move(sides.warnings);
+  if (std::string text = about_resolution(settled, layout.atlas, layout.stats); !text.empty())
+    layout.warnings.push_back(std::move(text));
+  return layout;
+}
+
+/// The layout of what was read, anew or as it was kept.
 Result<TexelLayout> lay_out(const BakeSettings& settings, scene::Scene& scene, BakeCache* cache,
-                            std::vector<std::string>& warnings, Progress& progress) {
-  std::vector<std::string> sides;
-  const auto warn = [&] { warnings.insert(warnings.end(), sides.begin(), sides.end()); };
-  if (KeptBake* found = cache ? cache->found() : nullptr) {
-    sides = found->layout.warnings, warn();
+                            Progress& progress) {
+  if (KeptBake* found = cache ? cache->found() : nullptr)
     return lay_out_again(settings, std::move(found->layout), cache->change().boxes, scene,
                          progress);
-  }
-  const bool keeps = cache && cache->rays();
+  if (!cache || !cache->rays()) return lay_out_anew(settings, scene, progress);
   std::vector<std::vector<uint32_t>> numbers;
   const size_t materials = scene.materials.size();
-  if (keeps)
-    for (const scene::Mesh& mesh : scene.meshes) numbers.push_back(mesh.triangle_material);
-  LUXEL_TRY(const SettledResolution settled, settle_resolution(settings, scene, progress));
-  LUXEL_TRY(sides, split_sides(scene, settings.uv, *settled.settings.resolution, progress));
-  const std::vector<uint32_t> copies =
-      keeps ? one_sided_copies(numbers, materials, scene) : std::vector<uint32_t>{};
-  LUXEL_TRY(TexelLayout layout, lay_out_texels(settled.settings, scene, progress));
-  if (std::string text = about_resolution(settled, layout.atlas, layout.stats); !text.empty())
-    sides.push_back(std::move(text));
-  warn();
-  if (!keeps) return layout;
+  for (const scene::Mesh& mesh : scene.meshes) numbers.push_back(mesh.triangle_material);
+  LUXEL_TRY(TexelLayout layout, lay_out_anew(settings, scene, progress));
   KeptLayout kept = keep_layout(scene, layout);
-  kept.one_sided_of = copies, kept.warnings = std::move(sides);
+  kept.one_sided_of = one_sided_copies(numbers, materials, scene);
   cache->keep(std::move(kept));
   return layout;
 }
@@ -87,11 +97,12 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
   if (keepers.checkpoint && find_solver(settings.solver)->can.parts)
     LUXEL_TRY_STATUS(keepers.checkpoint->open(bake.scene, progress));
   if (keepers.cache) keepers.cache->open(bake.scene, progress);
-  LUXEL_TRY(TexelLayout layout,
-            lay_out(settings, bake.scene, keepers.cache, bake.warnings, progress));
+  LUXEL_TRY(TexelLayout layout, lay_out(settings, bake.scene, keepers.cache, progress));
+  bake.warnings.insert(bake.warnings.end(), layout.warnings.begin(), layout.warnings.end());
   LUXEL_TRY_STATUS(stopped(progress));
   bake.atlas = std::move(layout.atlas), bake.map = std::move(layout.map);
   bake.atlas_stats = layout.stats, bake.repair = std::move(layout.repair);
+  bake.wrong_in_uv1 = layout.wrong_in_uv1;
   return_free_memory();  // of charts, bitmaps and bins: many small ones
   return Ready{std::move(layout.tracer),
                transport::elements_from_texels(bake.scene, bake.atlas, bake.map),

@@ -37,6 +37,7 @@ struct Bake {
   atlas::Atlas atlas;
   atlas::TexelMap map;
   atlas::AtlasStats atlas_stats;
+  std::optional<WrongSides> wrong_in_uv1;  ///< Sides::wrong_in_uv1
   TexelLight light;
   std::vector<image::Image> lightmaps;   ///< E, 4 channels, per page as lightmap.exr holds it
   std::vector<image::Image> shown;       ///< for viewers (shown_light.h); empty: the same

@@ -13,6 +13,7 @@
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
+#include "luxel/pipeline/texels/two_sides.h"
 #include "luxel/post/dilate.h"
 #include "luxel/solve/matrix/codec.h"
 #include "luxel/solve/matrix/lxr.h"
@@ -81,9 +82,14 @@ struct Wanted {
   std::vector<std::byte> glb;
 };
 
-Result<Wanted> texels_of(const scene::Scene& scene, const RelightSettings& s, Progress& progress) {
+/// Splits the scene's sides. Any light may come: what sees the open is to have texels of its own.
+Result<Wanted> texels_of(scene::Scene& scene, const RelightSettings& s,
+                         std::vector<std::string>& warnings, Progress& progress) {
+  LUXEL_TRY(const Sides sides,
+            split_sides(scene, {s.uv, s.resolution, true, LightIs::to_come}, progress));
+  warnings.insert(warnings.end(), sides.warnings.begin(), sides.warnings.end());
   LUXEL_TRY(const atlas::Atlas atlas,
-            atlas::make_atlas(scene, {s.uv, s.resolution, s.texels_per_metre}, progress));
+            atlas::make_atlas(scene, {sides.uv, s.resolution, s.texels_per_metre}, progress));
   const atlas::TexelMap map = atlas::rasterise(scene, atlas);
   const transport::Elements elements = transport::elements_from_texels(scene, atlas, map);
   Wanted out;
@@ -122,8 +128,9 @@ matrix::Target vertices_of(const scene::Scene& scene) {
   return target;
 }
 
-Result<Wanted> wanted_of(const scene::Scene& scene, const RelightSettings& s, Progress& progress) {
-  if (s.target == "texels") return texels_of(scene, s, progress);
+Result<Wanted> wanted_of(scene::Scene& scene, const RelightSettings& s,
+                         std::vector<std::string>& warnings, Progress& progress) {
+  if (s.target == "texels") return texels_of(scene, s, warnings, progress);
   Wanted out;
   LUXEL_TRY(out.glb, export_::scene_glb(scene));
   if (s.target == "none") return out;
@@ -191,7 +198,7 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
         "the sky of an .lxr file has one colour: the map counts as an even sky that lights the "
         "ground as much");
   LUXEL_TRY_STATUS(fits(s));
-  LUXEL_TRY(Wanted wanted, wanted_of(scene, s, progress));
+  LUXEL_TRY(Wanted wanted, wanted_of(scene, s, warnings, progress));
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   matrix::RelightParams params;

@@ -131,9 +131,9 @@ void walk(Visit& visit, Like<LeakRepair> auto& r) {
 template <class Visit>
 void walk(Visit& visit, Like<KeptLayout> auto& l) {
   auto& [meshes, one_sided_of, mesh_of_instance, atlas, texels, stats, repair, near_back_faces,
-         warnings] = l;
+         wrong_in_uv1, warnings] = l;
   visit(meshes), visit(one_sided_of), visit(mesh_of_instance), visit(atlas), visit(texels);
-  walk(visit, stats), visit(repair), visit(near_back_faces), visit(warnings);
+  walk(visit, stats), visit(repair), visit(near_back_faces), visit(wrong_in_uv1), visit(warnings);
 }
 
 template <class Visit>

@@ -12,7 +12,7 @@ Options<BakeSettings> bake_settings_options();
 
 /// Options that other commands share with a bake.
 inline constexpr std::string_view kUvHelp =
-    "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if valid";
+    "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if it can hold the light";
 inline constexpr std::string_view kMaxMemoryHelp =
     "Memory to stay under, as 900M or 1.5G (default: most of what is free)";
 

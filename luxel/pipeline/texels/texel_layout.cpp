@@ -28,7 +28,7 @@ Result<TexelLayout> lay_out_once(const atlas::AtlasParams& params, const scene::
   atlas::TexelMap map = atlas::rasterise(scene, atlas);
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
-  return TexelLayout{std::move(atlas), std::move(map), {}, std::move(tracer), {}, {}};
+  return TexelLayout{std::move(atlas), std::move(map), {}, std::move(tracer), {}, {}, {}, {}};
 }
 
 /// Cuts the scene where its charts run under barriers. Cut charts are smaller and pack another way,
@@ -123,6 +123,8 @@ KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout) {
   out.atlas = layout.atlas, out.texels = layout.map.texels;
   out.stats = layout.stats, out.repair = layout.repair,
   out.near_back_faces = layout.near_back_faces;
+  if (layout.wrong_in_uv1) out.wrong_in_uv1.push_back(*layout.wrong_in_uv1);
+  out.warnings = layout.warnings;
   return out;
 }
 
@@ -145,9 +147,15 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
                                     : atlas::rasterise(scene, kept.atlas);
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(scene));
-  TexelLayout layout{
-      std::move(kept.atlas), std::move(map),         kept.stats,
-      std::move(tracer),     std::move(kept.repair), std::move(kept.near_back_faces)};
+  TexelLayout layout{std::move(kept.atlas),
+                     std::move(map),
+                     kept.stats,
+                     std::move(tracer),
+                     std::move(kept.repair),
+                     std::move(kept.near_back_faces),
+                     {},
+                     std::move(kept.warnings)};
+  if (!kept.wrong_in_uv1.empty()) layout.wrong_in_uv1 = kept.wrong_in_uv1.front();
   if (!same_places && settings.repair_leaks) {
     progress.begin("samples", 0);
     take_moved(transport::move_samples_near_changes(scene, layout.atlas, layout.tracer, boxes,

@@ -1,6 +1,7 @@
 // Where texels lie, such that none of them lets light through a wall.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
 #include "luxel/pipeline/settings/settings.h"
+#include "luxel/pipeline/texels/wrong_sides.h"
 #include "luxel/post/refill.h"
 #include "luxel/post/seams.h"
 #include "luxel/trace/ray_tracer.h"
@@ -33,6 +35,9 @@ struct TexelLayout {
   trace::RayTracer tracer;  ///< of the scene as it is now
   LeakRepair repair;
   std::vector<uint32_t> near_back_faces;  ///< MovedSamples::near_back_faces
+  // What split_sides() said of the scene before it was laid out:
+  std::optional<WrongSides> wrong_in_uv1;
+  std::vector<std::string> warnings;
 };
 
 /// Lays the scene out and rasterises it; settings.resolution is settled (resolution.h). With
@@ -54,9 +59,10 @@ struct KeptLayout {
   atlas::AtlasStats stats;
   LeakRepair repair;
   std::vector<uint32_t> near_back_faces;  ///< TexelLayout::near_back_faces
+  std::vector<WrongSides> wrong_in_uv1;   ///< TexelLayout::wrong_in_uv1: one or none
   std::vector<std::string> warnings;
 };
-/// `one_sided_of` and `warnings` are not filled in.
+/// `one_sided_of` is not filled in.
 KeptLayout keep_layout(const scene::Scene& scene, const TexelLayout& layout);
 
 /// The kept layout for `scene`, which has the same meshes, as they were read, in the same number of

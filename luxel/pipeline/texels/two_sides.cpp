@@ -234,6 +234,33 @@ std::vector<Placed> placed_shells(const scene::Scene& scene, const std::vector<S
   return out;
 }
 
+bool may_be_kept(const WrongSides& wrong) { return wrong.shown <= kMostShownWrong; }
+
+/// A share that was counted at a thousand points, to the digits that this knows.
+std::string percent(double share) {
+  return share < 0.1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
+}
+
+/// What there is to say of a valid TEXCOORD_1 and `count` triangles with open backs.
+std::vector<std::string> what_uv1_shows(size_t count, const std::optional<WrongSides>& wrong) {
+  if (!wrong)
+    return {fmt::format(
+        "{} double-sided triangles see light on both sides, but have one place in TEXCOORD_1: "
+        "their backs show the light of their fronts; --uv unwrap gives each side its own",
+        count)};
+  if (!may_be_kept(*wrong))
+    return {fmt::format(
+        "TEXCOORD_1 is not kept: it has one place for both sides of double-sided surfaces, and "
+        "{} of it would show the light of the wrong side; --uv keep keeps it",
+        percent(wrong->shown))};
+  if (wrong->all == 0) return {};
+  return {
+      fmt::format("TEXCOORD_1 has one place for both sides of double-sided surfaces: seen from "
+                  "behind, {} of it "
+                  "shows the light of the front; --uv unwrap gives each side its own",
+                  percent(wrong->all))};
+}
+
 }  // namespace
 
 Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene,
@@ -269,23 +296,27 @@ Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene,
   return chosen;
 }
 
-Result<std::vector<std::string>> split_sides(scene::Scene& scene, atlas::UvMode uv, int resolution,
-                                             Progress& progress) {
+Result<Sides> split_sides(scene::Scene& scene, const SidesParams& params, Progress& progress) {
+  Sides out{params.uv, {}, {}};
   LUXEL_TRY(const auto open, open_backs(scene, progress));
   size_t count = 0;
   for (const auto& flags : open) count += size_t(std::count(flags.begin(), flags.end(), 1));
-  if (count == 0) return std::vector<std::string>{};
-  const bool keeps_uv =
-      uv == atlas::UvMode::keep ||
-      (uv == atlas::UvMode::automatic && atlas::keep_uv1(scene, resolution, progress).has_value());
-  if (keeps_uv)
-    return std::vector{fmt::format(
-        "{} double-sided triangles see light on both sides, but have one place in TEXCOORD_1: "
-        "their backs show the light of their fronts; --uv unwrap gives each side its own",
-        count)};
+  if (count == 0) return out;
+  const bool may_keep = params.uv == atlas::UvMode::keep ||
+                        (params.uv == atlas::UvMode::automatic && params.one_page &&
+                         atlas::keep_uv1(scene, params.resolution, progress).has_value());
+  LUXEL_TRY_STATUS(stopped(progress));
+  if (may_keep) {
+    if (params.uv == atlas::UvMode::automatic) {
+      LUXEL_TRY(out.wrong_in_uv1, wrong_sides(scene, open, params.light_is, progress));
+    }
+    out.warnings = what_uv1_shows(count, out.wrong_in_uv1);
+    if (!out.wrong_in_uv1 || may_be_kept(*out.wrong_in_uv1)) return out;
+  }
+  out.uv = atlas::UvMode::unwrap;
   for (uint32_t m = 0; m < open.size(); ++m)
     if (!open[m].empty()) scene::add_backs(scene, m, open[m]);
-  return std::vector<std::string>{};
+  return out;
 }
 
 std::vector<uint32_t> one_sided_copies(std::span<const std::vector<uint32_t>> before, size_t known,

@@ -1,6 +1,7 @@
 // The double-sided surfaces that get light of their own on each side.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/pipeline/texels/wrong_sides.h"
 #include "luxel/scene/scene.h"
 
 namespace luxel::pipeline {
@@ -22,11 +24,27 @@ namespace luxel::pipeline {
 /// sides in any case. Errors: cancelled, no memory for the ray tracer.
 Result<std::vector<std::vector<uint8_t>>> open_backs(const scene::Scene& scene, Progress& progress);
 
+/// What sides are split for.
+struct SidesParams {
+  atlas::UvMode uv = atlas::UvMode::automatic;
+  int resolution = 512;
+  bool one_page = true;  ///< more of them are laid out anew in any case
+  LightIs light_is = LightIs::known;
+};
+
+/// What became of the sides.
+struct Sides {
+  atlas::UvMode uv;  ///< for the layout: unwrap where TEXCOORD_1 cannot hold the light
+  /// What a TEXCOORD_1 that is valid would show wrongly, where that was the question.
+  std::optional<WrongSides> wrong_in_uv1;
+  std::vector<std::string> warnings;
+};
+
 /// Gives them a side of their own behind (luxel/scene/sides.h), unless the file's own lightmap
-/// coordinates are kept: those have one place for both. Then they stay double-sided, and a warning
-/// is returned.
-Result<std::vector<std::string>> split_sides(scene::Scene& scene, atlas::UvMode uv, int resolution,
-                                             Progress& progress);
+/// coordinates are kept: those have one place for both. UvMode::automatic keeps them where no more
+/// than kMostShownWrong of them shows wrong light. A warning says what they hold wrongly, or that
+/// they are not kept. Errors: cancelled, no memory for the ray tracer.
+Result<Sides> split_sides(scene::Scene& scene, const SidesParams& params, Progress& progress);
 
 /// Materials that split_sides has added to a scene, at the end: of which each is a copy.
 /// `before`: the material numbers that each mesh had, of `known` materials.

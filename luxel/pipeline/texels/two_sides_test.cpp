@@ -223,7 +223,7 @@ TEST(TwoSides, SidesAreSplitOnce) {
   scene::add_rectangle(s, {-1, 1, -1, 1}, 0, true, kSheet);
   for (int k = 0; k < 2; ++k) {
     Progress progress;
-    EXPECT_TRUE(split_sides(s, atlas::UvMode::unwrap, 64, progress));
+    EXPECT_TRUE(split_sides(s, {.uv = atlas::UvMode::unwrap}, progress));
     EXPECT_EQ(s.meshes[0].triangles.size(), 4u);
   }
 }

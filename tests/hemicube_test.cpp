@@ -200,8 +200,9 @@ TEST(HemicubeScenes, WhereNothingReflectsAreBaked) {
   const auto file = s.write("black.obj",
                             "mtllib black.mtl\nusemtl black\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\n"
                             "v 0 1 0\nv 0 1 1\nf 1 2 3 4\nf 1 5 6 2\n");
-  for (const char* options : {"", "--elements triangle --vertex-colors"}) {
-    const CommandResult r = bake_for_hemicube(file.string(), s.path / "b", options);
+  for (const std::string options : {"", " --elements triangle --vertex-colors"}) {
+    const CommandResult r =
+        bake_for_hemicube(file.string(), s.path / "b", "--background 1,1,1" + options);
     EXPECT_EQ(r.code, 0) << options << r.err;
     const double mean = mean_irradiance(lightmap_of(s.path / "b"));
     EXPECT_TRUE(mean > 1 && mean < M_PI) << mean;
@@ -218,8 +219,9 @@ TEST(HemicubeScenes, WithBadNormalsAreBaked) {
               "vn 0 0 0\nvn 0 -1 0\nvn 0 1 0\n"
               "f 1//1 2//1 3//1\nf 1//2 3//2 4//2\nf 1//3 6//3 7//1\nf 1//3 7//2 2//3\n"
               "f 1//1 2//1 2//1\n");
-  for (const char* options : {"", "--elements triangle"}) {
-    const CommandResult r = bake_for_hemicube(file.string(), s.path / "b", options);
+  for (const std::string options : {"", " --elements triangle"}) {
+    const CommandResult r =
+        bake_for_hemicube(file.string(), s.path / "b", "--background 1,1,1" + options);
     EXPECT_EQ(r.code, 0) << options << r.err;
     const double mean = mean_irradiance(lightmap_of(s.path / "b"));
     EXPECT_TRUE(mean > 1 && mean < 4) << mean;

@@ -189,6 +189,16 @@ TEST(Techniques, ABakeIsDrawnUnderItsOwnSky) {
   EXPECT_EQ(exr_at(s.path / "x.exr").rgb(4, 4), (Rgb{0.25f, 0.5f, 1}));
   ASSERT_EQ(away("--background 2,1,1").code, 0);
   EXPECT_EQ(exr_at(s.path / "x.exr").rgb(4, 4), (Rgb{2, 1, 1}));
+  // A sky, and the one that a scene without light gets: both look the same as when asked for again.
+  for (const auto& [of_bake, the_same] :
+       {std::pair{"--sky 200,30", "--sky 200,30"}, {"", "--sky 135,40"}}) {
+    baked(of_bake);
+    ASSERT_EQ(away("").code, 0);
+    const image::Image kept = exr_at(s.path / "x.exr");
+    ASSERT_EQ(away(the_same).code, 0);
+    EXPECT_TRUE(kept.data == exr_at(s.path / "x.exr").data) << of_bake;
+    EXPECT_GT(kept.rgb(4, 4).z, 100) << "cd/m^2";
+  }
   image::Image sky(8, 4, 3);
   std::fill(sky.data.begin(), sky.data.end(), 3.0f);
   const auto map = s.path / "sky.exr";

@@ -13,6 +13,7 @@
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/pipeline/settings/import_options.h"
 #include "luxel/pipeline/settings/settings.h"
 
 namespace luxel::cli {
@@ -27,6 +28,8 @@ struct Common {
 };
 void add_common(CLI::App& command, Common& common);
 
+/// --smooth-normals.
+std::vector<CLI::Option*> add_import(CLI::App& command, Given& given);
 /// --background, --sun, --environment, --sky and --ies.
 std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given);
 

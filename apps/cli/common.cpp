@@ -8,6 +8,7 @@
 #include "apps/cli/cli.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/pipeline/settings/bake_settings_options.h"
+#include "luxel/pipeline/settings/import_options.h"
 
 namespace luxel::cli {
 namespace {
@@ -183,6 +184,10 @@ Result<Vec3> parse_point(const char* option, const std::string& text) {
   if (std::sscanf(text.c_str(), "%f,%f,%f%c", &p.x, &p.y, &p.z, &rest) == 3 && is_finite(p))
     return p;
   return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option, text);
+}
+
+std::vector<CLI::Option*> add_import(CLI::App& command, Given& given) {
+  return add_options(command, pipeline::import_options(), import::ImportParams{}, given);
 }
 
 std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given) {

@@ -9,7 +9,7 @@ namespace {
 
 struct ProbeOptions {
   Common common;
-  Given outside, hierarchical;
+  Given reading, outside, hierarchical;
   std::string at, normal, solver = "paths";
   CLI::Option* solver_given = nullptr;
   pipeline::ProbeSettings settings;
@@ -36,6 +36,7 @@ Result<pipeline::ProbeSettings> settings_from(const ProbeOptions& options) {
                               options.hierarchical.values.front().first, "hierarchical");
   LUXEL_TRY_STATUS(
       read_given(options.hierarchical, pipeline::hierarchical_options(), s.hierarchical));
+  LUXEL_TRY_STATUS(read_given(options.reading, pipeline::import_options(), s.reading));
   LUXEL_TRY_STATUS(read_given(options.outside, pipeline::outside_light_options(), s.outside));
   return s;
 }
@@ -183,6 +184,7 @@ void register_probe(CLI::App& app, Action& action) {
                     "(hierarchical)");
   add_options(*probe, pipeline::hierarchical_options(), {}, options->hierarchical,
               pipeline::kHierarchicalHeading);
+  add_import(*probe, options->reading);
   add_outside_light(*probe, options->outside);
   add_common(*probe, options->common);
   probe->callback([options, &action] { action = [options] { return run_probe(*options); }; });

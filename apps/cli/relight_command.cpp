@@ -11,7 +11,7 @@ namespace {
 
 struct RelightOptions {
   Common common;
-  Given outside, matrix;
+  Given reading, outside, matrix;
   std::string uv = "auto", bounces = "inf", max_memory;
   pipeline::RelightSettings settings;
   std::filesystem::path lxr, script, output;
@@ -27,6 +27,7 @@ Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
     LUXEL_TRY(s.max_memory_bytes, pipeline::parse_size(options.max_memory));
   }
   LUXEL_TRY_STATUS(read_given(options.matrix, pipeline::matrix_options(), s.matrix));
+  LUXEL_TRY_STATUS(read_given(options.reading, pipeline::import_options(), s.reading));
   LUXEL_TRY_STATUS(read_given(options.outside, pipeline::outside_light_options(), s.outside));
   return s;
 }
@@ -167,6 +168,8 @@ void register_relight(CLI::App& app, Action& action) {
       ->excludes(scene);
   relight->add_option("--script", options->script, "How lights move (docs/method/relight.md)")
       ->type_name("FILE.json");
+  for (CLI::Option* option : add_import(*relight, options->reading))
+    options->of_making.push_back(option);
   for (CLI::Option* option : add_outside_light(*relight, options->outside))
     options->of_making.push_back(option);
   add_common(*relight, options->common);

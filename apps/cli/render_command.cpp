@@ -6,13 +6,14 @@
 #include "luxel/pipeline/render/overlays.h"
 #include "luxel/pipeline/render/render.h"
 #include "luxel/pipeline/render/techniques.h"
+#include "luxel/pipeline/settings/bake_settings_options.h"
 
 namespace luxel::cli {
 namespace {
 
 struct RenderOptions {
   Common common;
-  Given outside, hemicube, hierarchical;
+  Given reading, outside, hemicube, hierarchical;
   std::string size, eye, look_at, bounces, exposure, tone_map, overlay;
   pipeline::RenderSettings settings;
 };
@@ -58,6 +59,7 @@ Result<pipeline::RenderSettings> settings_from(const RenderOptions& options) {
     LUXEL_TRY_STATUS(read_given(options.hierarchical, pipeline::hierarchical_options(),
                                 s.hierarchical.emplace()));
   LUXEL_TRY(s.overlays, pipeline::parse_overlays(options.overlay));
+  LUXEL_TRY_STATUS(read_given(options.reading, pipeline::import_options(), s.reading));
   LUXEL_TRY_STATUS(read_given(options.outside, pipeline::outside_light_options(), s.outside));
   return s;
 }
@@ -140,9 +142,13 @@ void register_render(CLI::App& app, Action& action) {
                    "Light to the screen (shoulder for light, else clamp)")
       ->type_name("shoulder|ratio|reinhard|filmic|clamp");
   auto* camera = render->add_option("--camera", s.camera, "Name of a camera of the scene");
+  auto* view = render->add_option("--view", s.view, std::string(pipeline::kViewHelp))
+                   ->type_name("interior|exterior|front|top|CAMERA")
+                   ->excludes(camera);
   auto* eye = render->add_option("--eye", options->eye, "Where the camera stands")
                   ->type_name("X,Y,Z")
-                  ->excludes(camera);
+                  ->excludes(camera)
+                  ->excludes(view);
   auto* look_at = render->add_option("--look-at", options->look_at, "The point it looks at")
                       ->type_name("X,Y,Z")
                       ->needs(eye);
@@ -167,6 +173,7 @@ void register_render(CLI::App& app, Action& action) {
                    "Lines over pictures of hierarchical radiosity: " + pipeline::overlay_names())
       ->type_name("NAME,NAME,...")
       ->group(std::string(pipeline::kHierarchicalHeading));
+  add_import(*render, options->reading);
   add_outside_light(*render, options->outside);
   add_common(*render, options->common);
   render->callback([options, &action] { action = [options] { return run_render(*options); }; });

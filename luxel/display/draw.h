@@ -42,8 +42,4 @@ Result<image::Image> draw(const scene::Scene& scene, const trace::RayTracer& tra
                           const scene::Camera& camera, const IrradianceAt& irradiance_at,
                           const DrawParams& params, Progress& progress);
 
-/// A camera that shows the scene well: of some candidates around it (and inside it, when nothing
-/// can be seen from outside) the one that sees the most front faces of different triangles.
-scene::Camera fit_camera(const scene::Scene& scene, const trace::RayTracer& tracer, float aspect);
-
 }  // namespace luxel::display

@@ -175,42 +175,5 @@ TEST(Draw, StopsWhenCancelled) {
   EXPECT_EQ(picture.error().code, ErrorCode::cancelled);
 }
 
-/// A room of one-sided walls that can be seen only from inside, open towards +z.
-scene::Scene open_room() {
-  scene::Scene scene;
-  add_square(scene, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, gray(0.5f));
-  add_square(scene, {0, -1, 0}, {1, 0, 0}, {0, 0, -1}, gray(0.5f));
-  add_square(scene, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}, gray(0.5f));
-  add_square(scene, {-1, 0, 0}, {0, 0, -1}, {0, 1, 0}, gray(0.5f));
-  add_square(scene, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}, gray(0.5f));
-  return scene;
-}
-
-TEST(FitCamera, SeesMostOfAnOpenRoom) {
-  const scene::Scene scene = open_room();
-  const auto tracer = trace::RayTracer::build(scene);
-  ASSERT_TRUE(tracer);
-  const scene::Camera camera = fit_camera(scene, *tracer, 4.0f / 3.0f);
-  const image::Image picture = draw_ok(scene, camera, {80, 60, 1});
-  int found = 0;
-  for (int i = 0; i < 80 * 60; ++i) found += picture.data[size_t(4 * i + 3)] > 0 ? 1 : 0;
-  EXPECT_GT(found, 80 * 60 * 4 / 10);
-  // The camera stands upright.
-  EXPECT_GT(camera.world_from_camera.row[1][1], 0.5f);
-  EXPECT_NEAR(camera.world_from_camera.row[1][0], 0, 1e-6f);
-}
-
-TEST(FitCamera, DoesNotDependOnTheUnitOfLength) {
-  scene::Scene scene = open_room();
-  const auto tracer = trace::RayTracer::build(scene);
-  const scene::Camera metres = fit_camera(scene, *tracer, 1.5f);
-  scene::Scene large = scene;
-  for (auto& instance : large.instances) instance.world_from_object = scaling({64, 64, 64});
-  const auto large_tracer = trace::RayTracer::build(large);
-  const scene::Camera other = fit_camera(large, *large_tracer, 1.5f);
-  for (int i = 0; i < 3; ++i)
-    EXPECT_NEAR(other.world_from_camera.row[i][3] / 64, metres.world_from_camera.row[i][3], 1e-3f);
-}
-
 }  // namespace
 }  // namespace luxel::display

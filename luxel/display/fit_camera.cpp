@@ -1,9 +1,11 @@
 // A camera for scenes that bring none.
 //
-// Candidates stand around the scene (one-sided walls are culled, so a room shows itself like a
-// dolls' house) and inside it. Each looks at the scene with a coarse grid of rays and is scored by
-// how much of the scene's front faces it shows, and how finely what it shows is made: the outer
-// walls of a house are large, but what people put their triangles into stands inside.
+// First inside or outside: a scene is looked at from inside when a good part of the places in it
+// lie in rooms that have light. Then candidates stand in these rooms, or around the scene. Each
+// looks with a coarse grid of rays and is scored by how much of the scene's front faces it shows,
+// how finely what it shows is made, and how much of it lies in the light.
+#include "luxel/display/fit_camera.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +13,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
-#include "luxel/display/draw.h"
+#include "luxel/display/places_inside.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/trace/camera_rays.h"
 
@@ -20,14 +22,34 @@ namespace {
 
 constexpr float kDegree = kPi / 180;
 constexpr float kOutsideFov = 40 * kDegree;
-constexpr float kInsideFov = 55 * kDegree;
-constexpr int kProbeRows = 48;  ///< rays over the height of a candidate's picture
+constexpr float kInsideFov = 60 * kDegree;
+constexpr float kMargin = 1.04f;  ///< of the picture's size around the scene
+constexpr int kProbeRows = 48;    ///< rays over the height of a candidate's picture
+
+/// A scene counts as rooms when of its places in the air this part lies in rooms, and of those this
+/// part has light. Towns, and gardens with a pavilion, have fewer rooms; the inside of a thing has
+/// no light.
+constexpr double kRooms = 0.5, kLitRooms = 0.1;
+/// Rooms of which so much is seen from outside need no camera inside.
+constexpr double kDollsHouse = 0.6;
+constexpr size_t kPlacesToTry = 24;
+/// Part of the scene's diagonal.
+constexpr double kWide = 0.25;
 
 /// `liking` multiplies the score: a view from a little above reads better than a map.
 struct Candidate {
   scene::Camera camera;
   float liking = 1;
   bool inside = false;
+};
+
+/// What all candidates look at.
+struct Stage {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  Glimpse glimpse;
+  std::vector<uint32_t> first;  ///< first_triangles()
+  float aspect = 1, diagonal_m = 0;
 };
 
 /// Camera at `eye` looking along `direction` with +y up; not for vertical directions.
@@ -62,7 +84,7 @@ float fitting_distance(const Box3& box, const Mat34& axes, float tan_y, float as
     const float z = dot(p, column(axes, 2));
     distance = std::max({distance, z + std::abs(x) / (tan_y * aspect), z + std::abs(y) / tan_y});
   }
-  return distance * 1.04f + 1e-3f * box.diagonal();  // a margin, and never on the surface
+  return distance * kMargin + 1e-3f * box.diagonal();  // never on the surface
 }
 
 void add_outside(const Box3& box, float aspect, std::vector<Candidate>& out) {
@@ -81,34 +103,23 @@ void add_outside(const Box3& box, float aspect, std::vector<Candidate>& out) {
     }
 }
 
-/// Whether surfaces are around the eye, as in a room or a street, and not only on one side of it.
-bool is_surrounded(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 eye) {
-  constexpr int kDirections = 64;
-  std::vector<trace::Ray> rays;
-  for (int i = 0; i < kDirections; ++i) {  // a spiral of equal areas
-    const float y = 1 - 2 * (float(i) + 0.5f) / kDirections, r = std::sqrt(1 - y * y);
-    const float phi = 2.3999632f * float(i);
-    rays.push_back({eye, 0, {r * std::cos(phi), y, r * std::sin(phi)}, INFINITY});
-  }
-  int found = 0;
-  for (const trace::Hit& hit : trace::visible_hits(scene, tracer, rays)) found += hit.found();
-  return 5 * found >= 3 * kDirections;
+/// The places to look from: those in lit rooms, else those with most surfaces around them.
+std::vector<PlaceInside> places_to_try(std::vector<PlaceInside> places) {
+  const auto is_room = [](const PlaceInside& p) { return is_enclosed(p) && is_lit(p); };
+  std::ranges::stable_sort(places, [&](const PlaceInside& a, const PlaceInside& b) {
+    return is_room(a) != is_room(b) ? is_room(a) : a.around + a.lit > b.around + b.lit;
+  });
+  if (places.size() > kPlacesToTry) places.resize(kPlacesToTry);
+  if (!places.empty() && is_room(places.front()))
+    std::erase_if(places, [&](const PlaceInside& p) { return !is_room(p); });
+  return places;
 }
 
-void add_inside(const scene::Scene& scene, const trace::RayTracer& tracer, const Box3& box,
-                std::vector<Candidate>& out) {
-  const Vec3 size = box.upper - box.lower;
-  const float eye_height = box.lower.y + std::min(1.6f, 0.3f * size.y);
-  constexpr std::array<Vec2, 5> places{
-      {{0.5f, 0.5f}, {0.25f, 0.5f}, {0.75f, 0.5f}, {0.5f, 0.25f}, {0.5f, 0.75f}}};
-  for (const float y : {box.lower.y + 0.5f * size.y, eye_height})
-    for (const Vec2 place : places) {
-      const Vec3 eye{box.lower.x + place.x * size.x, y, box.lower.z + place.y * size.z};
-      if (!is_surrounded(scene, tracer, eye)) continue;
-      for (int i = 0; i < 8; ++i) {
-        const Vec3 ahead = from_angles(float(i) * 45 * kDegree, 0);
-        out.push_back({camera_at(look_along(eye, ahead), kInsideFov), 1.0f, true});
-      }
+void add_inside(std::span<const PlaceInside> places, std::vector<Candidate>& out) {
+  for (const PlaceInside& place : places)
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 ahead = from_angles(float(i) * 45 * kDegree, 0);
+      out.push_back({camera_at(look_along(place.eye, ahead), kInsideFov), 1.0f, true});
     }
 }
 
@@ -126,18 +137,20 @@ struct View {
   double detail = 0;    ///< sum of sqrt(rays) over triangles / rays: 1 if each meets another one
   double coverage = 0;  ///< share of rays that see something
   double near = 0;      ///< share of rays blocked right before the eye
+  double width = 0;     ///< mean distance seen, up to kWide, over kWide
+  double lit = 0;       ///< share of what is seen that a light reaches
 };
 
-View look(const scene::Scene& scene, const trace::RayTracer& tracer,
-          const std::vector<uint32_t>& first, const Candidate& candidate, float aspect,
-          float diagonal, std::vector<Seen>& scratch) {
-  const int rows = kProbeRows, columns = std::clamp(int(float(rows) * aspect), 8, 4 * rows);
+View look(const Stage& stage, const Candidate& candidate, std::vector<Seen>& scratch) {
+  const scene::Scene& scene = stage.scene;
+  const int rows = kProbeRows, columns = std::clamp(int(float(rows) * stage.aspect), 8, 4 * rows);
   const trace::CameraRays rays_of(candidate.camera, columns, rows);
   std::vector<trace::Ray> rays;
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; ++x)
       rays.push_back(rays_of.through(float(x) + 0.5f, float(y) + 0.5f));
-  const std::vector<trace::Hit> hits = trace::visible_hits(scene, tracer, rays);
+  const std::vector<trace::Hit> hits = trace::visible_hits(scene, stage.tracer, rays);
+  const std::vector<uint8_t> lit = lit_by_sources(scene, stage.tracer, stage.glimpse, rays, hits);
 
   View view;
   const float pixel = 4 * length(rays_of.right) * length(rays_of.up) / float(rows * columns);
@@ -146,22 +159,26 @@ View look(const scene::Scene& scene, const trace::RayTracer& tracer,
     const trace::Hit& hit = hits[i];
     if (!hit.found()) continue;
     view.coverage += 1;
-    if (hit.t < 0.03f * diagonal) view.near += 1;
+    view.lit += lit[i];
+    if (hit.t < 0.03f * stage.diagonal_m) view.near += 1;
+    view.width += std::min(1.0, double(hit.t) / (kWide * double(stage.diagonal_m)));
     const float axis = dot(rays[i].direction, rays_of.forward);  // a pixel's solid angle: cos^3
     const float cosine =
         std::abs(dot(rays[i].direction, front_normal(scene, hit.instance, hit.triangle)));
     const float area = hit.t * hit.t * pixel * axis * axis * axis / std::max(cosine, 0.05f);
-    const uint32_t number = first[hit.instance] + hit.triangle;
+    const uint32_t number = stage.first[hit.instance] + hit.triangle;
     if (scratch[number].rays++ == 0) touched.push_back(number);
     scratch[number].area_m2 += area;
   }
   for (uint32_t number : touched) {
-    const auto [instance, triangle] = scene::drawn_triangle(first, number);
+    const auto [instance, triangle] = scene::drawn_triangle(stage.first, number);
     const float whole = area_m2(world_triangle(scene, instance, triangle));
     view.area_m2 += double(std::min(scratch[number].area_m2, whole));
     view.detail += std::sqrt(double(scratch[number].rays));
     scratch[number] = {};
   }
+  view.lit /= std::max(view.coverage, 1.0);
+  view.width /= std::max(view.coverage, 1.0);
   view.coverage /= double(rays.size());
   view.detail /= double(rays.size());
   view.near /= double(rays.size());
@@ -175,28 +192,109 @@ double coverage_marks(const Candidate& candidate, const View& view) {
   return 1;
 }
 
-}  // namespace
+/// Things are shown by their lit side, with shadows: three quarters in the light are enough.
+double light_marks(const Stage& stage, const View& view) {
+  if (stage.glimpse.sources.empty()) return 1;
+  return 0.3 + 0.7 * std::min(1.0, view.lit / 0.75);
+}
 
-scene::Camera fit_camera(const scene::Scene& scene, const trace::RayTracer& tracer, float aspect) {
-  LUXEL_CHECK(aspect > 0);
-  const Box3 box = world_bounds(scene);
-  if (box.empty()) return camera_at({}, kOutsideFov);
-  std::vector<Candidate> candidates;
-  add_outside(box, aspect, candidates);
-  add_inside(scene, tracer, box, candidates);
+double score_of(const Stage& stage, const Candidate& candidate, std::vector<Seen>& scratch) {
+  const View view = look(stage, candidate, scratch);
+  // Inside, the finest thing of all is close to the eye soon: the room is what is to be seen.
+  const double detail = candidate.inside ? std::sqrt(view.detail) * view.width : view.detail;
+  return detail * std::sqrt(view.area_m2) * coverage_marks(candidate, view) *
+         light_marks(stage, view) * (1 - view.near) * double(candidate.liking);
+}
 
-  const std::vector<uint32_t> first = first_triangles(scene);
+scene::Camera best_of(const Stage& stage, std::span<const Candidate> candidates) {
   std::vector<double> scores(candidates.size());
   parallel_for(candidates.size(), 8, [&](size_t begin, size_t end) {
-    std::vector<Seen> scratch(first.back());
-    for (size_t i = begin; i < end; ++i) {
-      const View view = look(scene, tracer, first, candidates[i], aspect, box.diagonal(), scratch);
-      scores[i] = view.detail * std::sqrt(view.area_m2) * coverage_marks(candidates[i], view) *
-                  (1 - view.near) * double(candidates[i].liking);
-    }
+    std::vector<Seen> scratch(stage.first.back());
+    for (size_t i = begin; i < end; ++i) scores[i] = score_of(stage, candidates[i], scratch);
   });
   const size_t best = size_t(std::max_element(scores.begin(), scores.end()) - scores.begin());
   return candidates[best].camera;
+}
+
+/// An elevation or a plan: all of the box, by parallel rays along the camera's -z.
+scene::Camera parallel_view(const Box3& box, Vec3 right, Vec3 up, float aspect) {
+  const Vec3 back = cross(right, up), size = box.upper - box.lower;
+  const auto along = [&](Vec3 axis) { return std::abs(dot(size, axis)); };
+  const float distance = 0.5f * along(back) + std::max(1e-3f, 0.1f * box.diagonal());
+  scene::Camera camera =
+      camera_at(from_columns(right, up, back, box.centre() + back * distance), kOutsideFov);
+  camera.orthographic_height_m =
+      kMargin * std::max({along(up), along(right) / aspect, 1e-3f * box.diagonal()});
+  return camera;
+}
+
+/// Whether rooms, and not all of them dark, are what there is of the scene.
+bool consists_of_rooms(std::span<const PlaceInside> places) {
+  const auto enclosed = std::ranges::count_if(places, is_enclosed);
+  const auto lit = std::ranges::count_if(
+      places, [](const PlaceInside& p) { return is_enclosed(p) && is_lit(p); });
+  return lit > 0 && double(enclosed) >= kRooms * double(places.size()) &&
+         double(lit) >= kLitRooms * double(enclosed);
+}
+
+/// The share of what rooms show from inside that the best of the cameras outside sees, too: most of
+/// it where walls are one-sided or missing, as in a dolls' house.
+double share_seen_from_outside(const Stage& stage, std::span<const PlaceInside> places,
+                               std::span<const Candidate> outside) {
+  std::vector<SeenSide> sides;
+  for (const PlaceInside& place : places)
+    if (is_enclosed(place))
+      for (size_t i = 0; i < place.seen.size(); i += 8) sides.push_back(place.seen[i]);
+  size_t most = 0;
+  for (const Candidate& candidate : outside) {
+    const Vec3 eye = column(candidate.camera.world_from_camera, 3);
+    std::vector<trace::Ray> rays;
+    for (const SeenSide& side : sides)
+      if (dot(side.normal, eye - side.at) > 0) rays.push_back({eye, 0, side.at - eye, INFINITY});
+    size_t seen = 0;
+    for (const trace::Hit& hit : trace::visible_hits(stage.scene, stage.tracer, rays))
+      seen += hit.found() && std::abs(hit.t - 1) < 1e-3f;
+    most = std::max(most, seen);
+  }
+  return sides.empty() ? 1 : double(most) / double(sides.size());
+}
+
+Stage stage_of(const scene::Scene& scene, const trace::RayTracer& tracer, float aspect) {
+  return {scene,
+          tracer,
+          glimpse_of(scene),
+          first_triangles(scene),
+          aspect,
+          world_bounds(scene).diagonal()};
+}
+
+/// Candidates for Viewpoint::automatic.
+std::vector<Candidate> usual_candidates(const Stage& stage, const Box3& box) {
+  std::vector<Candidate> outside, inside;
+  add_outside(box, stage.aspect, outside);
+  std::vector<PlaceInside> places = places_inside(stage.scene, stage.tracer, stage.glimpse);
+  if (!consists_of_rooms(places)) return outside;
+  if (share_seen_from_outside(stage, places, outside) >= kDollsHouse) return outside;
+  add_inside(places_to_try(std::move(places)), inside);
+  return inside;
+}
+
+}  // namespace
+
+scene::Camera fit_camera(const scene::Scene& scene, const trace::RayTracer& tracer, float aspect,
+                         Viewpoint from) {
+  LUXEL_CHECK(aspect > 0);
+  const Box3 box = world_bounds(scene);
+  if (box.empty()) return camera_at({}, kOutsideFov);
+  if (from == Viewpoint::front) return parallel_view(box, {1, 0, 0}, {0, 1, 0}, aspect);
+  if (from == Viewpoint::top) return parallel_view(box, {1, 0, 0}, {0, 0, -1}, aspect);
+  const Stage stage = stage_of(scene, tracer, aspect);
+  std::vector<Candidate> candidates;
+  if (from == Viewpoint::automatic) candidates = usual_candidates(stage, box);
+  if (from == Viewpoint::interior)
+    add_inside(places_to_try(places_inside(scene, tracer, stage.glimpse)), candidates);
+  if (candidates.empty()) add_outside(box, aspect, candidates);
+  return best_of(stage, candidates);
 }
 
 }  // namespace luxel::display

@@ -11,6 +11,14 @@ namespace luxel::display {
 namespace {
 
 constexpr float kLinearUpTo = 0.5f;
+constexpr double kBrightPercentile = 90;
+constexpr float kBrightShownAt = 0.6f;
+/// Before the shoulder, which brings 8 to 0.97.
+constexpr float kBrightestShownAt = 8;
+/// 42 % of a screen's range of values: dark, but all is to be seen.
+constexpr float kMeanShownAt = 0.15f;
+/// Part of the bright level. What is darker has next to nothing to show beside it.
+constexpr float kBlack = 0.002f;
 
 /// The identity up to a = 0.5, then a + (1 - a) t / (1 + t) with t = (x - a) / (1 - a): value and
 /// slope continue at a, and 1 is reached only at infinity.
@@ -36,22 +44,47 @@ float percentile_of(std::vector<float>& values, double percentile) {
   return values[rank];
 }
 
-}  // namespace
-
-float auto_exposure(const image::Image& radiance, double percentile) {
-  LUXEL_CHECK(radiance.channels >= 3 && percentile >= 0 && percentile <= 100);
+std::vector<float> luminances(const image::Image& radiance) {
   std::vector<float> values;
   for (int y = 0; y < radiance.height; ++y)
     for (int x = 0; x < radiance.width; ++x)
       if (radiance.channels == 3 || radiance.at(x, y)[3] > 0)
         values.push_back(luminance(radiance.rgb(x, y)));
+  return values;
+}
+
+/// The percentile, that of the pixels with light where it is black; 0 where nothing has light.
+/// Reorders `values`.
+float bright_level(std::vector<float>& values, double percentile) {
   float bright = percentile_of(values, percentile);
   if (!(bright > 0)) {
     std::erase_if(values, [](float v) { return !(v > 0); });
     bright = percentile_of(values, percentile);
   }
   // A denormal luminance would give an infinite factor.
-  return bright > 1e-30f ? 0.6f / bright : 1.0f;
+  return bright > 1e-30f ? bright : 0;
+}
+
+}  // namespace
+
+float auto_exposure(const image::Image& radiance, double percentile) {
+  LUXEL_CHECK(radiance.channels >= 3 && percentile >= 0 && percentile <= 100);
+  std::vector<float> values = luminances(radiance);
+  const float bright = bright_level(values, percentile);
+  return bright > 0 ? kBrightShownAt / bright : 1.0f;
+}
+
+float readable_exposure(const image::Image& radiance) {
+  LUXEL_CHECK(radiance.channels >= 3);
+  std::vector<float> values = luminances(radiance);
+  const float bright = bright_level(values, kBrightPercentile);
+  if (!(bright > 0)) return 1;
+  double sum = 0;
+  size_t count = 0;
+  for (const float v : values)
+    if (v > kBlack * bright) sum += std::log(double(v)), ++count;
+  const auto mean = float(std::exp(sum / double(count)));
+  return std::clamp(kMeanShownAt / mean, kBrightShownAt / bright, kBrightestShownAt / bright);
 }
 
 /// Two shoulders. The first brings luminance Y to f = shoulder(Y) and scales the colour by f / Y.

@@ -16,6 +16,12 @@ namespace luxel::display {
 /// is, the black ones do not count. `percentile` in [0, 100].
 float auto_exposure(const image::Image& radiance, double percentile = 90);
 
+/// The factor that a viewer would choose: auto_exposure(), but where much of the picture is far
+/// darker than its bright part (a room with the sun on its floor) more, up to 13 times. The mean of
+/// log luminance is then shown at 0.15, and highlights go over the shoulder. Pixels that are black
+/// beside the bright part have nothing to show and do not count.
+float readable_exposure(const image::Image& radiance);
+
 /// The factor of an exposure in photographic stops: 2^stops.
 float exposure_of_stops(double stops);
 

@@ -210,5 +210,48 @@ TEST(ToneMap, WritesThreeChannelsOfSrgb) {
   EXPECT_EQ(out.data[5], 0);
 }
 
+/// 20 x 20 pixels, the first `share` of them at one level, the rest at another.
+image::Image two_levels(float share, float first, float rest) {
+  image::Image picture(20, 20, 3);
+  for (int i = 0; i < 400; ++i) {
+    const float v = i < int(share * 400 + 0.5f) ? first : rest;
+    picture.set_rgb(i % 20, i / 20, {v, v, v});
+  }
+  return picture;
+}
+
+// Nothing is hard to read in a picture of low contrast.
+TEST(ReadableExposure, IsThatOfTheBrightPartWhereContrastIsLow) {
+  for (const auto& picture : {two_levels(1, 3, 3), two_levels(0.3f, 9, 3), two_levels(0.7f, 9, 3)})
+    EXPECT_FLOAT_EQ(readable_exposure(picture), auto_exposure(picture));
+}
+
+// The sun on 15 % of a room's floor, a hundred times as bright as its walls: their log mean is
+// 100^0.15, shown at 0.15. The walls can be read, and the sun is not more than white.
+TEST(ReadableExposure, ShowsARoomWithASunPatch) {
+  const image::Image picture = two_levels(0.15f, 100, 1);
+  const float e = readable_exposure(picture);
+  EXPECT_NEAR(e, 0.15f / std::pow(100.0f, 0.15f), 1e-5f);
+  EXPECT_GT(e, 10 * auto_exposure(picture));
+  EXPECT_LT(compress(Rgb{100, 100, 100} * e).x, 0.97f);
+}
+
+// However dark the rest, the bright part is shown at 8 before the shoulder at most.
+TEST(ReadableExposure, StopsBeforeTheBrightPartIsWhite) {
+  EXPECT_FLOAT_EQ(readable_exposure(two_levels(0.15f, 300, 1)), 8.0f / 300);
+}
+
+// Lamps in the night: what is black beside them stays black.
+TEST(ReadableExposure, LeavesTheNightDark) {
+  EXPECT_FLOAT_EQ(readable_exposure(two_levels(0.15f, 1, 1e-4f)), 0.6f);
+  EXPECT_FLOAT_EQ(readable_exposure(two_levels(0.15f, 1, 0)), 0.6f);
+  EXPECT_EQ(readable_exposure(two_levels(1, 0, 0)), 1);
+}
+
+TEST(ReadableExposure, DoesNotDependOnTheUnitOfLight) {
+  EXPECT_NEAR(readable_exposure(two_levels(0.15f, 1e5f, 1e3f)) * 1e3f,
+              readable_exposure(two_levels(0.15f, 100, 1)), 1e-5f);
+}
+
 }  // namespace
 }  // namespace luxel::display

@@ -258,6 +258,11 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   add_instances(*in, drawn, has_display_colors(source), imported.scene);
   add_assimp_lights(*in, source, transforms, imported);
   add_assimp_cameras(*in, source, transforms, imported.scene);
+  if (is_obj)
+    imported.about_lost_lights =
+        "an .obj file holds no lights but emissive materials, Ke in its .mtl";
+  if (source.extension == ".ply" || source.extension == ".stl")
+    imported.about_lost_lights = fmt::format("{} files hold no lights", source.extension);
   return imported;
 }
 

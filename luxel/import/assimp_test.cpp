@@ -38,6 +38,34 @@ TEST(Obj, GroupsBecomeMeshesAndKeEmits) {
     EXPECT_FLOAT_EQ(scene.meshes[0].uv0[v].y, scene.meshes[0].positions[v].y > 0 ? 0.0f : 0.75f);
 }
 
+/// Two squares that meet at about 11 degrees along the z axis: below the usual crease angle.
+constexpr const char* kFold = "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv -1 -0.2 0\nv -1 -0.2 1\n";
+constexpr const char* kFoldFaces = "f 1 2 3 4\nf 2 1 5 6\n";
+
+Result<Imported> import_fold(const std::string& before, std::optional<float> crease_deg = {}) {
+  const TemporaryFolder folder;
+  return import_scene(folder.write("a.obj", kFold + before + kFoldFaces), {crease_deg});
+}
+
+// OBJ does not say how a mesh without normals looks. `s off` does; groups that are on are no news.
+TEST(Obj, WithoutNormalsIsSmoothUnlessItsSmoothingGroupsAreOff) {
+  const Vec3 mean = normalize(normalize(Vec3{0, 1, 0}) + normalize(Vec3{-0.2f, 1, 0}));
+  for (const char* before : {"", "s 1\n", "s off\ns 2\n"}) {
+    const scene::Scene scene = scene_of(import_fold(before));
+    ASSERT_EQ(scene.meshes[0].normals.size(), 6u) << before;
+    expect_near(scene.meshes[0].normals[0], mean, 1e-5f);
+  }
+  for (const char* before : {"s off\n", "s 0\n"})
+    EXPECT_TRUE(scene_of(import_fold(before)).meshes[0].normals.empty()) << before;
+}
+
+TEST(Obj, WithoutNormalsTakesTheCreaseAngleThatWasAskedFor) {
+  EXPECT_TRUE(scene_of(import_fold("", 11.0f)).meshes[0].normals.empty());
+  EXPECT_FALSE(scene_of(import_fold("", 12.0f)).meshes[0].normals.empty());
+  EXPECT_TRUE(scene_of(import_fold("s 1\n", 0.0f)).meshes[0].normals.empty());
+  EXPECT_FALSE(scene_of(import_fold("s off\n", 30.0f)).meshes[0].normals.empty());
+}
+
 TEST(Obj, KsAndNsAreTheHighlight) {
   const TemporaryFolder folder;
   folder.write("m.mtl",

@@ -32,6 +32,14 @@ Rgb background_of(const nlohmann::json& document) {
   return {c[0], c[1], c[2]};
 }
 
+/// Exporters that leave lights out unless they are told otherwise.
+std::string about_lost_lights(const std::string& generator) {
+  if (generator.starts_with("Khronos glTF Blender I/O"))
+    return "Blender leaves lights out of a glTF file unless 'Punctual Lights' is ticked under "
+           "Include > Data of its export window";
+  return {};
+}
+
 }  // namespace
 
 Result<Imported> read_gltf(const SourceFile& source) {
@@ -46,6 +54,7 @@ Result<Imported> read_gltf(const SourceFile& source) {
   LUXEL_TRY_STATUS(read_meshes(reader));
   LUXEL_TRY_STATUS(read_nodes(reader));
   imported.scene.background = background_of(document);
+  imported.about_lost_lights = about_lost_lights(model.asset.generator);
   if (!model.scenes.empty())
     imported.scene.name = model.scenes[size_t(std::max(model.defaultScene, 0))].name;
   return imported;

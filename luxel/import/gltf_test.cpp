@@ -299,5 +299,18 @@ TEST(Gltf, CamerasKeepTheirViewAndLoseTheirScale) {
   EXPECT_FLOAT_EQ(scene.cameras[1].aspect, 1.5f);
 }
 
+// glTF 2.0, section 3.7.2.1: "When normals are not specified, client implementations must calculate
+// flat normals". Whoever asks for others gets them.
+TEST(Gltf, WithoutNormalsIsFlatUnlessAskedOtherwise) {
+  Gltf gltf;
+  const int positions = gltf.floats({0, 0, 0, 0, 0, 1, 1, 0, 0, -1, -0.2f, 0}, "VEC3", 3);
+  const int indices = gltf.add<uint16_t>({0, 1, 2, 1, 0, 3}, 5123, "SCALAR", 1);
+  gltf.draw({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.glb", gltf.glb());
+  EXPECT_TRUE(scene_of(import_scene(file)).meshes[0].normals.empty());
+  EXPECT_EQ(scene_of(import_scene(file, {30.0f})).meshes[0].normals.size(), 4u);
+}
+
 }  // namespace
 }  // namespace luxel::import

@@ -7,7 +7,9 @@
 
 #include "luxel/base/file.h"
 #include "luxel/import/readers.h"
+#include "luxel/import/text_lines.h"
 #include "luxel/scene/sides.h"
+#include "luxel/scene/smooth_normals.h"
 #include "luxel/scene/validate.h"
 
 namespace luxel::import {
@@ -24,7 +26,30 @@ Result<Imported> read_scene(const SourceFile& source) {
   return read_with_assimp(source);
 }
 
-Result<Imported> read_checked(const SourceFile& source) {
+/// Whether an .obj file has smoothing groups, and all of them are off: `s off`, `s 0`.
+bool asks_for_facets(const SourceFile& source) {
+  bool off = false;
+  for (std::string_view text = text_of(source.bytes); !text.empty();) {
+    std::string_view line = next_line(text);
+    if (next_word(line) != "s") continue;
+    const std::string_view group = next_word(line);
+    off = group == "off" || group == "0";
+    if (!off) return false;
+  }
+  return off;
+}
+
+/// The crease angle for a file [degrees]. OBJ and PLY leave open how a mesh without normals looks,
+/// and such files are mostly of curved things; glTF says that it is flat [glTF 2.0, section
+/// 3.7.2.1].
+float crease_deg(const SourceFile& source, const ImportParams& params) {
+  if (params.smooth_normals_deg) return *params.smooth_normals_deg;
+  const bool is_obj = source.extension == ".obj";
+  if (!is_obj && source.extension != ".ply") return 0;
+  return is_obj && asks_for_facets(source) ? 0 : kUsualCreaseDeg;
+}
+
+Result<Imported> read_checked(const SourceFile& source, const ImportParams& params) {
   LUXEL_TRY_STATUS(check_extension(source));
   if (source.bytes.empty()) return fail(ErrorCode::bad_input, "{}: the file is empty", source.name);
   // Third-party readers throw; nothing of it leaves this room.
@@ -33,6 +58,8 @@ Result<Imported> read_checked(const SourceFile& source) {
     if (imported.scene.name.empty()) imported.scene.name = source.path.stem().string();
     LUXEL_TRY(std::vector<std::string> repairs, scene::validate(imported.scene, source.name));
     imported.warnings.insert(imported.warnings.end(), repairs.begin(), repairs.end());
+    const float crease_rad = crease_deg(source, params) * kPi / 180;
+    for (scene::Mesh& mesh : imported.scene.meshes) scene::smooth_normals(mesh, crease_rad);
     scene::link_sides(imported.scene);
     return imported;
   } catch (const std::bad_alloc&) {
@@ -45,14 +72,14 @@ Result<Imported> read_checked(const SourceFile& source) {
 
 }  // namespace
 
-Result<Imported> import_scene(const std::filesystem::path& path) {
+Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params) {
   SourceFile source{path, path.string(), lower_case(path.extension().string()), {}};
   LUXEL_TRY(source.bytes, read_file(path));
-  return read_checked(source);
+  return read_checked(source, params);
 }
 
 Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name) {
-  return read_checked({name, name, ".glb", std::move(bytes)});
+  return read_checked({name, name, ".glb", std::move(bytes)}, {});
 }
 
 }  // namespace luxel::import

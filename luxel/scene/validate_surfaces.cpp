@@ -2,18 +2,14 @@
 #include <algorithm>
 #include <cfloat>
 
+#include "luxel/base/vec_double.h"
 #include "luxel/image/color.h"
 #include "luxel/scene/validate_steps.h"
 
 namespace luxel::scene {
 namespace {
 
-struct DVec3 {
-  double x, y, z;
-};
-DVec3 difference(Vec3 a, Vec3 b) {
-  return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
-}
+DVec3 difference(Vec3 a, Vec3 b) { return to_double(a) - to_double(b); }
 double squared_length(DVec3 a) { return a.x * a.x + a.y * a.y + a.z * a.z; }
 
 /// A triangle has no area when its height over the longest edge is not above the rounding unit of

@@ -22,8 +22,8 @@ struct Prepared {
   light::TexelScene input() const { return {scene, atlas, map, elements, lights, *tracer}; }
 };
 
-/// Lays the scene out on a lightmap of `resolution` squared. A scene without any light gets a white
-/// background. Errors: those of atlas and ray tracer, cancelled.
+/// Lays the scene out on a lightmap of `resolution` squared. A scene without any light gets a clear
+/// day. Errors: those of atlas and ray tracer, cancelled.
 Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution, Progress& progress);
 
 struct Timed {

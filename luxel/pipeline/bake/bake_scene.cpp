@@ -3,6 +3,8 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/import/import.h"
+#include "luxel/pipeline/bake/camera.h"
+#include "luxel/pipeline/bake/dark_surfaces.h"
 #include "luxel/pipeline/bake/denoise_light.h"
 #include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
@@ -20,10 +22,10 @@ namespace {
 Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>& warnings,
                           Progress& progress) {
   progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene));
+  LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene, settings.reading));
   warnings = std::move(imported.warnings);
   LUXEL_TRY(const std::vector<std::string> light,
-            add_outside_light(settings.outside, imported.scene));
+            add_outside_light(settings.outside, imported.scene, imported.about_lost_lights));
   warnings.insert(warnings.end(), light.begin(), light.end());
   LUXEL_TRY_STATUS(stopped(progress));
   return std::move(imported.scene);
@@ -113,6 +115,7 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
 Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
                    const OnBakeEstimate& on_estimate, Bake& bake, Progress& progress) {
   LUXEL_TRY(const std::vector<uint32_t> masked, masked_lights(settings, bake.scene));
+  LUXEL_TRY_STATUS(check_view(settings.view, bake.scene, settings.scene.string()));
   LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
   const light::TexelScene input{bake.scene,     bake.atlas,   bake.map,
                                 ready.elements, ready.lights, ready.tracer};
@@ -126,10 +129,13 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
   if (keepers.cache) keepers.cache->solved();
   LUXEL_TRY(bake.surface_maps, surface_maps(settings, input, masked, bake.light.hidden, progress));
+  const std::string dark =
+      settings.light == LightPart::all ? about_dark_surfaces(bake) : std::string();
+  if (!dark.empty()) bake.warnings.push_back(dark);
   LUXEL_TRY_STATUS(repair_light(settings, ready.tracer, bake, progress));
   LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
-  return draw_preview(ready.tracer, bake, progress);
+  return draw_preview(settings, ready.tracer, bake, progress);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "luxel/display/draw.h"
 #include "luxel/display/tone_map.h"
+#include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/texels/shown_light.h"
 #include "luxel/pipeline/texels/texel_picture.h"
 #include "luxel/post/dilate.h"
@@ -90,14 +91,14 @@ Status add_directions(const BakeSettings& settings, const light::TexelScene& inp
   return {};
 }
 
-Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progress) {
+Status draw_preview(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
+                    Progress& progress) {
   const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
   display::DrawParams params;
   params.width = kPreviewWidth, params.height = kPreviewHeight;
   const float aspect = float(params.width) / float(params.height);
-  const scene::Camera camera = bake.scene.cameras.empty()
-                                   ? display::fit_camera(bake.scene, tracer, aspect)
-                                   : bake.scene.cameras.front();
+  LUXEL_TRY(const scene::Camera camera, choose_camera({.view = settings.view, .aspect = aspect},
+                                                      bake.scene, tracer, settings.scene.string()));
   if (camera.aspect > 0) params.width = int(float(params.height) * camera.aspect + 0.5f);
   params.width = std::clamp(params.width, params.height / 4, params.height * 4);
   LUXEL_TRY(const image::Image picture,
@@ -105,7 +106,7 @@ Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progre
                 bake.scene, tracer, camera,
                 [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); },
                 params, progress));
-  bake.view = {camera, params.width, params.height, display::auto_exposure(picture)};
+  bake.view = {camera, params.width, params.height, display::readable_exposure(picture)};
   bake.preview = display::tone_map(picture, bake.view.exposure);
   return {};
 }

@@ -16,7 +16,9 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
 Status add_directions(const BakeSettings& settings, const light::TexelScene& input, Bake& bake,
                       Progress& progress);
 
-/// bake.preview: the scene's first camera, or one that sees all of it. Errors: cancelled.
-Status draw_preview(const trace::RayTracer& tracer, Bake& bake, Progress& progress);
+/// bake.preview, from where settings.view says, or else the scene's first camera, or a fitted one.
+/// Errors: those of choose_camera(); cancelled.
+Status draw_preview(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
+                    Progress& progress);
 
 }  // namespace luxel::pipeline

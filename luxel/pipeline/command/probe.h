@@ -9,6 +9,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/import/import.h"
 #include "luxel/pipeline/settings/light_unit.h"
 #include "luxel/pipeline/settings/outside_light.h"
 #include "luxel/pipeline/solver/hierarchical.h"
@@ -34,6 +35,7 @@ struct ProbeSettings {
   double max_error = 0.005;      ///< relative standard error at which rays are enough
   double time_budget_s = 10;     ///< about when no more rays are begun
   uint64_t seed = 1;
+  import::ImportParams reading;
   OutsideLight outside;
   HierarchicalSettings hierarchical;
   int threads = 0;

@@ -108,12 +108,13 @@ Status write_picture(const ProbeSettings& s, const hierarchical::Solution& solut
 Result<Probed> probe_by_faces(const ProbeSettings& s, Progress& progress) {
   // Scene and solution.
   progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
+  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, s.reading));
   scene::Scene& scene = imported.scene;
   Probed out;
   out.warnings = std::move(imported.warnings);
   out.unit = unit_of_light(s.scene, scene, s.outside);
-  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(s.outside, scene));
+  LUXEL_TRY(const std::vector<std::string> light,
+            add_outside_light(s.outside, scene, imported.about_lost_lights));
   out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(hierarchical::Solution solution,
@@ -136,6 +137,7 @@ Result<Probed> probe_by_faces(const ProbeSettings& s, Progress& progress) {
       hierarchical::locate(solution, mesh, nearest.face, nearest.place);
   out.interpolated = hierarchical::value_of(mesh.interpolant[place.triangle], place.s, place.t);
   out.irradiance = out.punctual_and_background = exact[0];
+  if (!(max_component(exact[0]) > 0)) out.warnings.push_back(no_light_arrives("the point"));
   out.name = name_of(scene, face.instance), out.material = scene.materials[face.material].name;
   out.position = to_float(nearest.place), out.normal = to_float(at.normal);
   out.distance_m = float(nearest.distance_m);

@@ -187,7 +187,7 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check(s));
   const ThreadLimit threads(s.threads);
   progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
+  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, s.reading));
   scene::Scene& scene = imported.scene;
   std::vector<std::string> warnings = std::move(imported.warnings);
   // A scene without light is no mistake here: its lights come later.

@@ -33,6 +33,7 @@ struct RelightSettings {
   uint64_t max_memory_bytes = 0;                   ///< 0: four fifths of what is free
   uint64_t seed = 1;
   int threads = 0;  ///< 0: all cores
+  import::ImportParams reading;
   OutsideLight outside;
 };
 

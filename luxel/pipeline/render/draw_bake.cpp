@@ -128,7 +128,7 @@ Result<image::Image> draw_from_folder(const Subject& subject, const RenderSettin
 
 Result<Bake> quick_bake(const RenderSettings& s, const TexelKind* kind, Progress& progress) {
   BakeSettings settings;
-  settings.scene = s.scene, settings.outside = s.outside;
+  settings.scene = s.scene, settings.reading = s.reading, settings.outside = s.outside;
   settings.output = s.output.parent_path().empty() ? "." : s.output.parent_path();
   settings.bounces = s.bounces.value_or(-1), settings.seed = s.seed.value_or(1);
   settings.resolution = kQuickResolution;

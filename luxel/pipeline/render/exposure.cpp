@@ -38,8 +38,9 @@ Result<Exposure> parse_exposure(std::string_view text) {
 }
 
 float exposure_factor(const Exposure& exposure, const image::Image& radiance) {
-  return exposure.automatic ? display::auto_exposure(radiance, exposure.percentile)
-                            : display::exposure_of_stops(exposure.stops);
+  if (!exposure.automatic) return display::exposure_of_stops(exposure.stops);
+  return exposure.percentile ? display::auto_exposure(radiance, *exposure.percentile)
+                             : display::readable_exposure(radiance);
 }
 
 }  // namespace luxel::pipeline

@@ -1,6 +1,7 @@
 // How bright a picture is shown, as people ask for it.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "luxel/base/result.h"
@@ -10,8 +11,9 @@ namespace luxel::pipeline {
 
 struct Exposure {
   bool automatic = true;
-  double percentile = 90;  ///< automatic: this percentile of luminance is shown at 0.6
-  double stops = 0;        ///< otherwise: light is multiplied by 2^stops
+  /// automatic: this percentile of luminance is shown at 0.6; none: display::readable_exposure().
+  std::optional<double> percentile;
+  double stops = 0;  ///< otherwise: light is multiplied by 2^stops
 };
 
 /// "auto", "auto:95" or a number of stops, as in --exposure.

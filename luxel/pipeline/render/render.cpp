@@ -9,7 +9,7 @@
 #include "luxel/image/codec.h"
 #include "luxel/import/import.h"
 #include "luxel/pipeline/bake/baked_folder.h"
-#include "luxel/pipeline/render/camera.h"
+#include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/render/render_check.h"
 #include "luxel/pipeline/render/techniques.h"
 #include "luxel/trace/ray_tracer.h"
@@ -46,12 +46,26 @@ float exposure_for(const Technique& technique, const RenderSettings& s,
   return exposure_factor(s.exposure.value_or(technique.is_light ? Exposure{} : as_it_is), picture);
 }
 
+/// Whether a picture shows surfaces, and all of them black.
+bool is_black(const image::Image& picture) {
+  bool found = false;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      if (picture.at(x, y)[3] < 1) continue;  // the sky shows beside the surface
+      if (max_component(picture.rgb(x, y)) > 0) return false;
+      found = true;
+    }
+  return found;
+}
+
 /// The bytes of settings.output.
 Result<std::vector<std::byte>> one_picture(const Technique& technique, const Subject& subject,
                                            const RenderSettings& s, Rendered& out,
                                            Progress& progress) {
   LUXEL_TRY(const image::Image picture, technique.draw(subject, s, out, progress));
   out.width = picture.width, out.height = picture.height;
+  if (technique.is_light && is_black(picture))
+    out.warnings.push_back(no_light_arrives("every surface in the picture"));
   const std::string extension = s.output.extension().string();
   if (extension == ".exr") return image::encode_exr(picture);
   if (extension == ".hdr") return image::encode_hdr(picture);
@@ -103,18 +117,23 @@ Result<Rendered> render(const RenderSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check(s));
   const Technique* technique = find_technique(s.technique);  // none: all
   progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene));
+  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, s.reading));
   Rendered out;
   out.warnings = std::move(imported.warnings);
   const OutsideLight outside = outside_light_of_bake(s.from, s.outside, out.warnings);
   const LightUnit unit = unit_of_light(s.scene, imported.scene, outside);
-  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(outside, imported.scene));
+  LUXEL_TRY(const std::vector<std::string> light,
+            add_outside_light(outside, imported.scene, imported.about_lost_lights));
   const bool computes_light = !technique || (technique->is_light && !technique->needs_bake);
   if (computes_light) out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(imported.scene));
-  LUXEL_TRY(const scene::Camera camera,
-            choose_camera({s.camera, s.eye, s.look_at, s.fov_deg, float(s.width) / float(s.height)},
-                          imported.scene, tracer, s.scene.string()));
+  LUXEL_TRY(const scene::Camera camera, choose_camera({.view = s.view,
+                                                       .name = s.camera,
+                                                       .eye = s.eye,
+                                                       .look_at = s.look_at,
+                                                       .fov_deg = s.fov_deg,
+                                                       .aspect = float(s.width) / float(s.height)},
+                                                      imported.scene, tracer, s.scene.string()));
   const Subject subject{imported.scene, tracer, camera, unit};
   LUXEL_TRY(const std::vector<std::byte> bytes,
             technique ? one_picture(*technique, subject, s, out, progress)

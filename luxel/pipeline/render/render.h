@@ -32,10 +32,12 @@ struct RenderSettings {
   std::string technique =
       "lightmap";      ///< a name of luxel/pipeline/render/techniques.h, or kAllTechniques
   std::string camera;  ///< by name; empty: the first, else a fitted one
+  std::string view;    ///< instead: CameraChoice::view
   std::optional<Vec3> eye;
   Vec3 look_at{};
   double fov_deg = 45;
   int width = 960, height = 720;  ///< of a contact sheet: each tile's
+  import::ImportParams reading;
   OutsideLight outside;
   std::optional<Exposure> exposure;                  ///< automatic for light, 0 stops for colours
   std::optional<display::ToneMap> tone_map;          ///< shoulder for light, clamp for colours

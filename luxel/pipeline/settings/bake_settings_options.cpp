@@ -1,5 +1,6 @@
 #include "luxel/pipeline/settings/bake_settings_options.h"
 
+#include "luxel/pipeline/settings/import_options.h"
 #include "luxel/pipeline/settings/option_rows.h"
 
 namespace luxel::pipeline {
@@ -169,6 +170,13 @@ Options<S> result_options() {
       BakeRows::toggle("--html", &S::html,
                        "Also write view.html: the baked scene as one page to walk around in")
           .leaves(Changes::nothing),
+      BakeRows::text(
+          "--view", &S::view,
+          [](std::string_view text) -> Result<std::string> { return std::string(text); },
+          [](const std::string& view) { return view.empty() ? json() : json(view); },
+          std::string(kViewHelp))
+          .unit("interior|exterior|front|top|CAMERA")
+          .leaves(Changes::nothing),
   };
 }
 
@@ -210,6 +218,8 @@ Options<BakeSettings> bake_settings_options() {
   Options<S> rows;
   for (Options<S>& part :
        std::array{layout_options(), sampling_options(), result_options(), running_options(),
+                  options_of_part<S, import::ImportParams>(
+                      import_options(), [](S& s) -> import::ImportParams& { return s.reading; }),
                   options_of_part<S, OutsideLight>(
                       outside_light_options(), [](S& s) -> OutsideLight& { return s.outside; })})
     rows.insert(rows.end(), part.begin(), part.end());

@@ -13,6 +13,9 @@ Options<BakeSettings> bake_settings_options();
 /// Options that other commands share with a bake.
 inline constexpr std::string_view kUvHelp =
     "keep = the file's TEXCOORD_1, unwrap = a new layout, auto = keep if it can hold the light";
+inline constexpr std::string_view kViewHelp =
+    "Where the picture is taken from: inside, outside, the front (looking along -Z), the top, or a "
+    "camera of the scene; by default its first, else inside of lit rooms and outside of all else";
 inline constexpr std::string_view kMaxMemoryHelp =
     "Memory to stay under, as 900M or 1.5G (default: most of what is free)";
 

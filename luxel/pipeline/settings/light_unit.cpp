@@ -37,8 +37,8 @@ LightUnit unit_of_light(const std::filesystem::path& file, const scene::Scene& o
   if (!lux.empty()) return {"lux", joined(lux)};
   if (!unknown.empty())
     return {"W/m^2", joined(unknown) + "; were its values candela and nits, these would be lux"};
-  // Nothing shines: add_outside_light() brings what it brings by default.
-  return {"W/m^2", "the light is the default one, of radiance 1"};
+  // Nothing shines: add_outside_light() brings kDefaultSky.
+  return {"lux", "the sky of scenes without light is in lux"};
 }
 
 }  // namespace luxel::pipeline

@@ -196,8 +196,8 @@ scene::PunctualLight sun_light(const Sun& sun) {
                     -std::cos(azimuth) * std::cos(elevation)});
 }
 
-Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,
-                                                   scene::Scene& scene) {
+Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, scene::Scene& scene,
+                                                   std::string_view about_lost_lights) {
   LUXEL_TRY(std::vector<std::string> warnings, add_profiles(outside.ies, scene));
   if (const auto& e = outside.environment) {
     LUXEL_TRY(import::ImportedEnvironment imported,
@@ -210,11 +210,21 @@ Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,
   if (outside.sun && outside.sun->lux > 0) scene.lights.push_back(sun_light(*outside.sun));
   if (outside.sky) add_sky(*outside.sky, scene);
   if (scene::has_light(scene)) return warnings;
-  scene.background = {1, 1, 1};
-  warnings.push_back(
-      "the scene has no light: lit by a white background of radiance 1; --background, "
-      "--environment, --sky and --sun give others");
+  add_sky(kDefaultSky, scene);
+  warnings.push_back(fmt::format(
+      "the scene has no light: lit by a clear day, --sky {},{}; choose another by --sky, --sun, "
+      "--environment or --background, or put lights into the file{}{}",
+      kDefaultSky.azimuth_deg, kDefaultSky.elevation_deg, about_lost_lights.empty() ? "" : "; ",
+      about_lost_lights));
   return warnings;
+}
+
+std::string no_light_arrives(std::string_view what) {
+  return fmt::format(
+      "{} is black: no light gets there; a closed room needs a light or an emissive surface "
+      "inside, "
+      "or an opening: a hole in its walls, or a window of a blended or transmissive material",
+      what);
 }
 
 }  // namespace luxel::pipeline

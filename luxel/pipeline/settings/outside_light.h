@@ -52,11 +52,19 @@ Result<Sun> parse_sun(std::string_view text);
 /// The sun's disc is half a degree wide: its shadows have penumbrae.
 scene::PunctualLight sun_light(const Sun& sun);
 
+/// The clear day that lights a scene which has no light: the sun stands in the south-east, to the
+/// right of and behind one who looks along -Z.
+inline constexpr SkySetting kDefaultSky{.azimuth_deg = 135, .elevation_deg = 40};
+
 /// Adds profiles of punctual lights, environment or sky, background and sun to a scene; an
 /// environment or a sky without a background beside it replaces the file's background. A scene that
-/// then has no light at all gets a white background of radiance 1. Returns warnings; that one comes
-/// last. Errors: those of import::read_environment and add_profiles.
-Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside,
-                                                   scene::Scene& scene);
+/// then has no light at all gets kDefaultSky. Returns warnings; the one that says so comes last and
+/// ends in `about_lost_lights` (import::Imported). Errors: those of import::read_environment and
+/// add_profiles.
+Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, scene::Scene& scene,
+                                                   std::string_view about_lost_lights = {});
+
+/// Why nothing is lit in a scene that has light: `what` is what stays black.
+std::string no_light_arrives(std::string_view what);
 
 }  // namespace luxel::pipeline

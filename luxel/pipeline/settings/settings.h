@@ -10,6 +10,7 @@
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/result.h"
 #include "luxel/export/attach.h"
+#include "luxel/import/import.h"
 #include "luxel/light/light_layers.h"
 #include "luxel/pipeline/settings/lightmap_files.h"
 #include "luxel/pipeline/settings/outside_light.h"
@@ -65,6 +66,7 @@ struct BakeSettings {
   uint64_t max_memory_bytes = 0;  ///< 0: four fifths of what is free when the bake starts
   uint64_t seed = gather::GatherParams{}.seed;
   int threads = 0;  ///< 0: all cores
+  import::ImportParams reading;
   OutsideLight outside;
   Directional directional = Directional::none;
   double probe_spacing_m = 0;                        ///< 0: no probes
@@ -81,6 +83,8 @@ struct BakeSettings {
   bool error_map = false;      ///< error.png too
   LightmapFormats formats;     ///< files beside lightmap.exr
   bool html = false;           ///< view.html too
+  std::string view;  ///< of preview.png and view.html: CameraChoice::view (bake/camera.h); empty:
+                     ///< the scene's first camera, else a fitted one
   /// Finished parts are kept once the bake has taken so long [s], docs/method/checkpoints.md; 0:
   /// never.
   double checkpoint_s = 30;

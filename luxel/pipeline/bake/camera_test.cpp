@@ -1,4 +1,4 @@
-#include "luxel/pipeline/render/camera.h"
+#include "luxel/pipeline/bake/camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -58,6 +58,27 @@ TEST(ChooseCamera, TakesTheScenesByName) {
   EXPECT_TRUE(room.camera(choice));  // fitted
   choice.eye = choice.look_at;
   EXPECT_THAT(room.camera(choice).error().message, HasSubstr("the same point"));
+}
+
+// The words come first; --camera takes a camera that is called like one of them.
+TEST(ChooseCamera, TakesAViewByItsWordOrACameraByItsName) {
+  Room room;
+  room.scene.cameras[0].name = "top";
+  const auto view = [&](const char* word) {
+    CameraChoice choice;
+    choice.view = word;
+    return room.camera(choice);
+  };
+  for (const char* word : {"front", "top"}) EXPECT_GT(view(word)->orthographic_height_m, 0) << word;
+  for (const char* word : {"interior", "exterior"}) EXPECT_EQ(view(word)->name, "fitted") << word;
+  CameraChoice by_name;
+  by_name.name = "top";
+  EXPECT_EQ(room.camera(by_name)->orthographic_height_m, 0);
+  room.scene.cameras[0].name = "door";
+  EXPECT_EQ(view("door")->name, "door");
+  EXPECT_THAT(view("window").error().message,
+              HasSubstr("--view window is neither interior, exterior, front or top nor a camera of "
+                        "box.glb; its cameras: door"));
 }
 
 }  // namespace

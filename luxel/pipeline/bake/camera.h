@@ -11,6 +11,9 @@
 namespace luxel::pipeline {
 
 struct CameraChoice {
+  /// interior, exterior, front or top (display::Viewpoint), or a camera of the scene; before
+  /// `name`.
+  std::string view;
   std::string name;         ///< of a camera of the scene; empty: the first, else a fitted one
   std::optional<Vec3> eye;  ///< instead of a camera of the scene
   Vec3 look_at{};
@@ -18,6 +21,13 @@ struct CameraChoice {
   float aspect = 4.0f / 3;         ///< of the picture
   std::string asked = "--camera";  ///< what messages call the choice of a name
 };
+
+/// The words of --view, with "or" before the last.
+std::string viewpoint_names();
+
+/// Whether `view` is empty, a word of --view or a camera of the scene. Errors: it is none of these;
+/// `file` is what messages call the scene.
+Status check_view(const std::string& view, const scene::Scene& scene, const std::string& file);
 
 /// `file` is what messages call the scene. Errors: no such camera, one that looks nowhere.
 Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Scene& scene,

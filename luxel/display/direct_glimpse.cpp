@@ -1,0 +1,111 @@
+#include "luxel/display/direct_glimpse.h"
+
+#include "luxel/base/warp.h"
+#include "luxel/scene/surface_points.h"
+#include "luxel/trace/camera_rays.h"
+
+namespace luxel::display {
+namespace {
+
+constexpr size_t kPointsOnEmitters = 16;
+/// Rays from a surface towards the surroundings.
+constexpr int kSkyRays = 8;
+
+/// side_seen_by(), its point a little above the surface: rays start there.
+SeenSide start_above(const scene::Scene& scene, const trace::Ray& ray, const trace::Hit& hit,
+                     float diagonal_m) {
+  SeenSide side = side_seen_by(scene, ray, hit);
+  side.at = trace::offset_origin(side.at, side.normal, diagonal_m);
+  return side;
+}
+
+/// Towards a source, up to just before it; no direction where it does not shine.
+trace::Ray towards(const Glimpse::Source& source, Vec3 from) {
+  if (source.is_direction) return {from, 0, source.at, INFINITY};
+  const Vec3 way = source.at - from;
+  const bool behind = dot(source.normal, source.normal) > 0 && dot(source.normal, way) >= 0;
+  return {from, 0, behind ? Vec3{} : way, 0.999f};
+}
+
+std::vector<scene::SurfacePoint> points_on_emitters(const scene::Scene& scene) {
+  const auto shines = [](const scene::Scene& s, const scene::SurfacePoint& p) {
+    return max_component(scene::material_at(s, p).emission) > 0;
+  };
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    for (uint32_t t = 0; t < scene.meshes[scene.instances[i].mesh].triangles.size(); ++t)
+      if (shines(scene, {i, t, {}}))
+        return scene::points_uniform_in_area(scene, kPointsOnEmitters, 1, shines);
+  return {};
+}
+
+}  // namespace
+
+SeenSide side_seen_by(const scene::Scene& scene, const trace::Ray& ray, const trace::Hit& hit) {
+  const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
+  return {scene::world_position(scene, hit.point()),
+          dot(front, ray.direction) > 0 ? -front : front};
+}
+
+Glimpse glimpse_of(const scene::Scene& scene) {
+  using Light = scene::PunctualLight;
+  Glimpse out;
+  for (const Light& light : scene.lights) {
+    if (!(max_component(light.intensity) > 0)) continue;
+    const bool is_sun = light.kind == Light::Kind::directional;
+    out.sources.push_back({is_sun ? -light.direction : light.position, is_sun, {}});
+  }
+  for (const scene::SurfacePoint& p : points_on_emitters(scene)) {
+    const bool both = scene::material_at(scene, p).double_sided;
+    out.sources.push_back({scene::world_position(scene, p), false,
+                           both ? Vec3{} : scene::front_normal(scene, p.instance, p.triangle)});
+  }
+  out.diagonal_m = scene::world_bounds(scene).diagonal();
+  out.has_surroundings = max_component(scene.background) > 0 || !scene.environment.radiance.empty();
+  return out;
+}
+
+std::vector<uint8_t> lit_by_sources(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                    const Glimpse& glimpse, std::span<const trace::Ray> rays,
+                                    std::span<const trace::Hit> hits) {
+  std::vector<trace::Ray> shadow;
+  std::vector<size_t> of;  // a hit
+  for (size_t i = 0; i < hits.size(); ++i) {
+    if (!hits[i].found()) continue;
+    const SeenSide seen = start_above(scene, rays[i], hits[i], glimpse.diagonal_m);
+    for (const Glimpse::Source& source : glimpse.sources) {
+      const trace::Ray ray = towards(source, seen.at);
+      if (!(dot(ray.direction, seen.normal) > 0)) continue;
+      shadow.push_back(ray), of.push_back(i);
+    }
+  }
+  std::vector<uint8_t> blocked(shadow.size()), lit(hits.size());
+  tracer.occluded(shadow, blocked);
+  for (size_t k = 0; k < of.size(); ++k) lit[of[k]] |= !blocked[k];
+  return lit;
+}
+
+std::vector<uint8_t> lit_by_surroundings(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                         const Glimpse& glimpse, std::span<const trace::Ray> rays,
+                                         std::span<const trace::Hit> hits) {
+  if (!glimpse.has_surroundings) return std::vector<uint8_t>(hits.size());
+  std::vector<trace::Ray> out;
+  std::vector<size_t> of;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    if (!hits[i].found()) continue;
+    const SeenSide seen = start_above(scene, rays[i], hits[i], glimpse.diagonal_m);
+    for (int k = 0; k < kSkyRays; ++k) {
+      // Each hit has another turn of the same directions: many hits look everywhere.
+      const Vec2 u{(float(k) + 0.5f) / kSkyRays,
+                   std::fmod(0.618034f * float(k + 5 * int(i)), 1.0f)};
+      out.push_back(
+          {seen.at, 0, frame_around(seen.normal).to_world(cosine_hemisphere_sample(u)), INFINITY});
+      of.push_back(i);
+    }
+  }
+  std::vector<uint8_t> blocked(out.size()), lit(hits.size());
+  tracer.occluded(out, blocked);
+  for (size_t k = 0; k < of.size(); ++k) lit[of[k]] |= !blocked[k];
+  return lit;
+}
+
+}  // namespace luxel::display

@@ -1,0 +1,82 @@
+#include "luxel/pipeline/bake/camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "luxel/display/fit_camera.h"
+
+namespace luxel::pipeline {
+namespace {
+
+using display::Viewpoint;
+
+struct NamedViewpoint {
+  std::string_view name;
+  Viewpoint from;
+};
+constexpr std::array kViewpoints{NamedViewpoint{"interior", Viewpoint::interior},
+                                 NamedViewpoint{"exterior", Viewpoint::exterior},
+                                 NamedViewpoint{"front", Viewpoint::front},
+                                 NamedViewpoint{"top", Viewpoint::top}};
+
+std::optional<Viewpoint> viewpoint_of(std::string_view word) {
+  for (const NamedViewpoint& known : kViewpoints)
+    if (known.name == word) return known.from;
+  return std::nullopt;
+}
+
+std::string camera_names(const scene::Scene& scene) {
+  std::string names;
+  for (const scene::Camera& camera : scene.cameras)
+    names += (names.empty() ? "" : ", ") + camera.name;
+  return names.empty() ? "none" : names;
+}
+
+scene::Camera camera_at(Vec3 eye, Vec3 look_at, float fov_y_rad) {
+  const Vec3 back = normalize(eye - look_at);
+  const Vec3 up = std::abs(back.y) > 0.999f ? Vec3{0, 0, -1} : Vec3{0, 1, 0};
+  const Vec3 right = normalize(cross(up, back));
+  scene::Camera camera;
+  camera.name = "eye";
+  camera.world_from_camera = from_columns(right, cross(back, right), back, eye);
+  camera.fov_y_rad = fov_y_rad;
+  return camera;
+}
+
+/// The scene's own, by name; nullptr when there is none of it.
+const scene::Camera* find_camera(const scene::Scene& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.cameras, name, &scene::Camera::name);
+  return found == scene.cameras.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::string viewpoint_names() { return "interior, exterior, front or top"; }
+
+Status check_view(const std::string& view, const scene::Scene& scene, const std::string& file) {
+  if (view.empty() || viewpoint_of(view) || find_camera(scene, view)) return {};
+  return fail(ErrorCode::bad_setting, "--view {} is neither {} nor a camera of {}; its cameras: {}",
+              view, viewpoint_names(), file, camera_names(scene));
+}
+
+Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Scene& scene,
+                                    const trace::RayTracer& tracer, const std::string& file) {
+  if (choice.eye) {
+    if (*choice.eye == choice.look_at)
+      return fail(ErrorCode::bad_setting, "--eye and --look-at are the same point");
+    return camera_at(*choice.eye, choice.look_at, float(choice.fov_deg) * kPi / 180);
+  }
+  LUXEL_TRY_STATUS(check_view(choice.view, scene, file));
+  if (const auto from = viewpoint_of(choice.view))
+    return display::fit_camera(scene, tracer, choice.aspect, *from);
+  const std::string& name = choice.view.empty() ? choice.name : choice.view;
+  if (name.empty())
+    return scene.cameras.empty() ? display::fit_camera(scene, tracer, choice.aspect)
+                                 : scene.cameras.front();
+  if (const scene::Camera* camera = find_camera(scene, name)) return *camera;
+  return fail(ErrorCode::bad_setting, "{} {} is not in {}; there is: {}", choice.asked, name, file,
+              camera_names(scene));
+}
+
+}  // namespace luxel::pipeline

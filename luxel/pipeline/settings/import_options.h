@@ -1,0 +1,12 @@
+// How a scene's file is read, as options of every command that lights it.
+#pragma once
+
+#include "luxel/import/import.h"
+#include "luxel/pipeline/settings/option.h"
+
+namespace luxel::pipeline {
+
+/// --smooth-normals.
+Options<import::ImportParams> import_options();
+
+}  // namespace luxel::pipeline

@@ -31,6 +31,8 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
 Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Progress& progress);
 Result<Section> validate_agreement(Progress& progress);
 Result<Section> validate_cornell_box(Progress& progress);
+/// Stated errors against true ones; needs no files.
+Result<Section> validate_stated_errors(Progress& progress);
 
 struct Page {
   std::string markdown;

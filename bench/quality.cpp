@@ -54,7 +54,9 @@ Result<pipeline::BakeSettings> settings_of(const std::filesystem::path& file,
   s.resolution = kQualityResolution, s.samples = numbers.samples;
   s.direct_samples = numbers.direct_samples, s.supersample = numbers.supersample;
   s.denoise = numbers.denoise;
-  if (!scene.sky.empty()) LUXEL_TRY(s.outside.sky, pipeline::parse_sky(scene.sky));
+  if (!scene.sky.empty()) {
+    LUXEL_TRY(s.outside.sky, pipeline::parse_sky(scene.sky));
+  }
   return s;
 }
 

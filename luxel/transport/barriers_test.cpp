@@ -131,14 +131,14 @@ size_t samples_moved_into_gap(float from_x, float to_x) {
   return in_gap;
 }
 
-/// A texel on the floor's diagonal looks at its own triangle alone.
-constexpr size_t kRowsOffDiagonal = Floor::kSide - 1;
-
-/// Half a texel wide, between two columns of samples, which all lie under walls. Of the texel on
-/// the diagonal in the first the half that is its own does not reach the slit.
+/// Half a texel wide, between two columns of samples, which all lie under walls. The texel on the
+/// floor's diagonal reaches the slit with its other triangle.
 TEST(OpenSamples, MoveIntoASlit) {
-  EXPECT_EQ(samples_moved_into_gap(1.05f, 1.08f), Floor::kSide + kRowsOffDiagonal);
+  EXPECT_EQ(samples_moved_into_gap(1.05f, 1.08f), 2u * Floor::kSide);
 }
+
+/// Of a texel on the floor's diagonal that lies beside a wall only its own triangle is looked at.
+constexpr size_t kRowsOffDiagonal = Floor::kSide - 1;
 
 /// Three columns of texels: one has its samples under a wall, one beside the other wall, and
 /// the middle one lies wholly in the alley: those stay. The half of the diagonal's texel in the

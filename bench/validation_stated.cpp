@@ -6,7 +6,7 @@
 #include "bench/validation.h"
 #include "luxel/validate/random_scenes.h"
 #include "luxel/validate/stated_errors.h"
-#include "luxel/viewfactor/random_contacts.h"
+#include "luxel/viewfactor/random_contacts_test_support.h"
 #include "luxel/viewfactor/sampled_factors.h"
 #include "luxel/viewfactor/visible_form_factor.h"
 

@@ -6,6 +6,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/scene/surface_points.h"
 
 namespace luxel::transport {
 namespace {
@@ -19,6 +20,10 @@ constexpr float kSteep = 1.0f / 16;
 /// Covered places see less than this of what lies beyond.
 constexpr float kOpen = 0.1f;
 constexpr uint32_t kRays = 64;
+/// Where so much of the emitting surface is covered, the scene's light is made in gaps: a panel
+/// close to a ceiling has half of its two sides in one.
+constexpr double kMadeInGaps = 0.75;
+constexpr size_t kShiningPlaces = 256;
 
 }  // namespace
 
@@ -35,6 +40,24 @@ float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float s
   tracer.occluded(rays, blocked);
   const float open = float(std::count(blocked.begin(), blocked.end(), 0)) / float(kRays);
   return open < kOpen ? open : 1;
+}
+
+float size_for_covers(const scene::Scene& scene, const trace::RayTracer& tracer, float size_m) {
+  const auto emits = [](const scene::Scene& s, const scene::SurfacePoint& p) {
+    const scene::Mesh& mesh = s.meshes[s.instances[p.instance].mesh];
+    return max_component(s.materials[mesh.triangle_material[p.triangle]].emission) > 0;
+  };
+  const std::vector<scene::SurfacePoint> places =
+      scene::points_uniform_in_area(scene, kShiningPlaces, 1, emits);
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
+  const auto is_covered = [&](const scene::SurfacePoint& p) {
+    const Vec3 normal = scene::front_normal(scene, p.instance, p.triangle);
+    const Vec3 from = trace::offset_origin(scene::world_position(scene, p), normal, diagonal_m);
+    return open_share(tracer, from, normal, size_m) < 1;
+  };
+  const auto covered = double(std::ranges::count_if(places, is_covered));
+  const bool made_in_gaps = !places.empty() && covered >= kMadeInGaps * double(places.size());
+  return made_in_gaps ? 0.0f : size_m;
 }
 
 std::vector<float> open_shares(const trace::RayTracer& tracer, const Elements& elements,

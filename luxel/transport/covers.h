@@ -17,6 +17,13 @@ namespace luxel::transport {
 /// however small the room. `from` lies just off the surface (trace::offset_origin); 64 fixed rays.
 float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float size_m);
 
+/// The size by which to look for covers: `size_m`, or 0, by which nothing is covered, where three
+/// quarters of the emitting surface lie in gaps that are covered by `size_m`. Such light does not
+/// come through the borders of gaps: elements have to carry it, as between two wide plates of
+/// which one shines. One such lamp among others changes nothing: its light stays in its gap. Looks
+/// at 256 places of the fronts that emit.
+float size_for_covers(const scene::Scene& scene, const trace::RayTracer& tracer, float size_m);
+
 /// The open share of each element, by its geometric normal.
 std::vector<float> open_shares(const trace::RayTracer& tracer, const Elements& elements,
                                float size_m, float diagonal_m);

@@ -68,5 +68,18 @@ TEST(Covers, ATableInASmallRoomIsNone) {
   EXPECT_EQ(share_at(scene, {0, 0.74f, 0}, kUp, 4), 1);
 }
 
+// Wide plates of which one shines have all of their light between them: nothing is covered. The
+// same plate that does not shine, under a lamp, covers the floor.
+TEST(Covers, AreNoneWhereTheLightIsMadeInTheGap) {
+  for (const bool plate_shines : {true, false}) {
+    scene::Scene scene = floor_under_plate(false);
+    const uint32_t lamp = scene::add_material(scene, "lamp", {0, 0, 0}, {1, 1, 1});
+    scene::add_rectangle(scene, {0, 50, -50, 50}, plate_shines ? 0.9f * kHeight_m : 3, false, lamp);
+    const auto tracer = trace::RayTracer::build(scene);
+    ASSERT_TRUE(tracer);
+    EXPECT_EQ(size_for_covers(scene, *tracer, kSize_m), plate_shines ? 0 : kSize_m);
+  }
+}
+
 }  // namespace
 }  // namespace luxel::transport

@@ -1,7 +1,7 @@
 // Form factors past blockers that nearly touch a polygon, against closed forms.
 #include <gtest/gtest.h>
 
-#include "luxel/viewfactor/random_contacts.h"
+#include "luxel/viewfactor/random_contacts_test_support.h"
 #include "luxel/viewfactor/visible_form_factor.h"
 
 namespace luxel::viewfactor {

@@ -70,9 +70,11 @@ struct Probed {
 /// Errors: settings, no surface near the point, what the scene and the solver say.
 Result<Probed> probe(const ProbeSettings& settings, Progress& progress);
 
-/// The methods; probe() checks the settings first. Errors: as there.
+/// ProbeMethod::hierarchical, for settings that probe() has checked. Errors: as there.
 Result<Probed> probe_by_faces(const ProbeSettings& settings, Progress& progress);
+/// ProbeMethod::paths, for settings that probe() has checked. Errors: as there.
 Result<Probed> probe_by_paths(const ProbeSettings& settings, Progress& progress);
+/// ProbeMethod::bake, for settings that probe() has checked. Errors: as there.
 Result<Probed> probe_in_bake(const ProbeSettings& settings, Progress& progress);
 
 /// A point farther away from all surfaces than this part of the scene's diagonal is a mistake.

@@ -44,6 +44,7 @@ struct Exchange {
   float diagonal_m = 0;
   double unit_area_m2 = 1;  ///< errors count in full on receivers of this size
   Basis basis = Basis::linear;
+  bool light_in_gaps = false;  ///< Solution::light_in_gaps
 };
 
 /// A link from `source` to `receiver`, different ids of the tree. `parent` is a link between the

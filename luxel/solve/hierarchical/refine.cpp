@@ -182,6 +182,7 @@ constexpr double kInwards = 0.1;
 
 /// Whether something much closer than the element covers its centre and its corners.
 bool is_covered(const Exchange& x, const Element& e) {
+  if (x.light_in_gaps) return false;
   const Vec3 normal = to_float(x.faces.faces[e.face].plane.normal);
   const auto size_m = float(std::sqrt(e.area_m2));
   const auto covered_at = [&](DVec3 place) {

@@ -6,6 +6,7 @@
 #include "luxel/solve/hierarchical/contacts.h"
 #include "luxel/solve/hierarchical/overlaps.h"
 #include "luxel/solve/hierarchical/unlinked_lights.h"
+#include "luxel/transport/covers.h"
 
 namespace luxel::hierarchical {
 namespace {
@@ -181,6 +182,9 @@ Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer
   s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kSolveLeastPart;
   s.unlinked = unlinked_lights_of(scene);
   // Links and light; then what a user should know.
+  double largest_m2 = 0;
+  for (const Element& e : s.tree.elements) largest_m2 = std::max(largest_m2, e.area_m2);
+  s.light_in_gaps = transport::size_for_covers(scene, tracer, float(std::sqrt(largest_m2))) == 0;
   Solving solving{s, s.exchange(tracer), {}, {scene, s.tree, s.light, s.links}};
   LUXEL_TRY_STATUS(run(solving, params, progress));
   if (params.eps && *params.eps < s.eps)

@@ -37,11 +37,14 @@ struct Solution {
   float diagonal_m = 0;
   double unit_area_m2 = 1;
   bool all_bounces = true;
+  /// The light is made in gaps that faces as a whole would cover: nothing counts as covered
+  /// (transport::size_for_covers).
+  bool light_in_gaps = false;
   Basis basis = Basis::linear;
 
   /// What form factors between elements are computed from. It refers to this solution.
   Exchange exchange(const trace::RayTracer& tracer) const {
-    return {faces, tree, blockers, tracer, diagonal_m, unit_area_m2, basis};
+    return {faces, tree, blockers, tracer, diagonal_m, unit_area_m2, basis, light_in_gaps};
   }
 };
 

@@ -26,12 +26,13 @@ struct VoxelGrid {
   float voxel_m = 1;
   Vec3 origin;           ///< of voxel 0, 0, 0
   float diagonal_m = 1;  ///< of the scene
+  float cover_m = 0;     ///< transport::size_for_covers of voxel_m
 };
 
 /// 21 bits per axis; places outside the grid fall into its border.
 uint64_t voxel_of(const VoxelGrid& grid, Vec3 position);
 
-/// transport::open_share by the size of voxels: below 1 where something much closer covers a place.
+/// transport::open_share by cover_m: below 1 where something much closer covers a place.
 /// No patch carries the light there.
 float open_share(const trace::RayTracer& tracer, const PatchPoint& p, const VoxelGrid& grid);
 inline bool is_covered(const trace::RayTracer& tracer, const PatchPoint& p, const VoxelGrid& grid) {

@@ -11,6 +11,7 @@
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/scene/surface_points.h"
+#include "luxel/transport/covers.h"
 
 namespace luxel::matrix {
 namespace {
@@ -389,7 +390,8 @@ Result<PatchedScene> make_patches(const scene::Scene& scene, const trace::RayTra
   // twice more with voxels that much larger or smaller.
   float voxel_m = voxel_for(scene, samples, params.count);
   for (int attempt = 0;; ++attempt) {
-    const VoxelGrid grid = grid_of(scene, voxel_m);
+    VoxelGrid grid = grid_of(scene, voxel_m);
+    grid.cover_m = transport::size_for_covers(scene, tracer, voxel_m);
     LUXEL_TRY(const std::vector<Part> parts, make_parts(scene, samples, grid, tracer, progress));
     const std::vector<uint32_t> patch =
         merge_slivers(parts, grid, tracer, area / double(params.count));

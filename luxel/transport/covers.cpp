@@ -25,6 +25,19 @@ constexpr uint32_t kRays = 64;
 constexpr double kMadeInGaps = 0.75;
 constexpr size_t kShiningPlaces = 256;
 
+/// Places of the fronts that emit, spread over their area; none where nothing emits.
+std::vector<scene::SurfacePoint> shining_places(const scene::Scene& scene) {
+  const auto emits = [](const scene::Scene& s, const scene::SurfacePoint& p) {
+    const scene::Mesh& mesh = s.meshes[s.instances[p.instance].mesh];
+    return max_component(s.materials[mesh.triangle_material[p.triangle]].emission) > 0;
+  };
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    for (uint32_t t = 0; t < scene.meshes[scene.instances[i].mesh].triangles.size(); ++t)
+      if (emits(scene, {i, t, {}}))
+        return scene::points_uniform_in_area(scene, kShiningPlaces, 1, emits);
+  return {};
+}
+
 }  // namespace
 
 float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float size_m) {
@@ -43,12 +56,7 @@ float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float s
 }
 
 float size_for_covers(const scene::Scene& scene, const trace::RayTracer& tracer, float size_m) {
-  const auto emits = [](const scene::Scene& s, const scene::SurfacePoint& p) {
-    const scene::Mesh& mesh = s.meshes[s.instances[p.instance].mesh];
-    return max_component(s.materials[mesh.triangle_material[p.triangle]].emission) > 0;
-  };
-  const std::vector<scene::SurfacePoint> places =
-      scene::points_uniform_in_area(scene, kShiningPlaces, 1, emits);
+  const std::vector<scene::SurfacePoint> places = shining_places(scene);
   const float diagonal_m = scene::world_bounds(scene).diagonal();
   const auto is_covered = [&](const scene::SurfacePoint& p) {
     const Vec3 normal = scene::front_normal(scene, p.instance, p.triangle);

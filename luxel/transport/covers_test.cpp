@@ -74,7 +74,7 @@ TEST(Covers, AreNoneWhereTheLightIsMadeInTheGap) {
   for (const bool plate_shines : {true, false}) {
     scene::Scene scene = floor_under_plate(false);
     const uint32_t lamp = scene::add_material(scene, "lamp", {0, 0, 0}, {1, 1, 1});
-    scene::add_rectangle(scene, {0, 50, -50, 50}, plate_shines ? 0.9f * kHeight_m : 3, false, lamp);
+    scene::add_rectangle(scene, {0, 5, -5, 5}, plate_shines ? 0.9f * kHeight_m : 3, false, lamp);
     const auto tracer = trace::RayTracer::build(scene);
     ASSERT_TRUE(tracer);
     EXPECT_EQ(size_for_covers(scene, *tracer, kSize_m), plate_shines ? 0 : kSize_m);

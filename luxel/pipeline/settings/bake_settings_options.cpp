@@ -34,7 +34,8 @@ Options<S> sampling_options() {
           "--denoise where they are not given; good if nothing else is said")
           .only(&Can::quality)
           .leaves(Changes::nothing),
-      BakeRows::number("--samples", &S::samples, {1, kMaxSamples}, "Indirect rays per texel")
+      BakeRows::number("--samples", &S::samples, {1, kMaxSamples},
+                       "Indirect rays per texel; gather has --quality's where none is given")
           .unit("RAYS")
           .only(&Can::samples),
       BakeRows::number("--direct-samples", &S::direct_samples, {1, kMaxSamples},

@@ -49,7 +49,7 @@ Status measure(const std::string& name, scene::Scene scene, Table& table) {
         validate::errors_of(bake.light.irradiance, reference, bake.light.hidden);
     // The filter, in place.
     const auto start = Clock::now();
-    LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), bake.light, progress));
+    LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), true, bake.light, progress));
     const double seconds = seconds_since(start);
     const validate::Errors after =
         validate::errors_of(bake.light.irradiance, reference, bake.light.hidden);
@@ -76,7 +76,7 @@ Status measure_large(Table& table) {
   LUXEL_TRY(const auto p, validate::prepare(scene::cornell_box(), 1024, progress));
   LUXEL_TRY(validate::Timed bake, validate::solve(*p, "gather", settings_of(64, 1), progress));
   const auto start = Clock::now();
-  LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), bake.light, progress));
+  LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), true, bake.light, progress));
   table.notes.push_back(
       fmt::format("The Cornell box at 1024 x 1024 ({} texels), 64 samples: {:.1f} s for the light, "
                   "{:.1f} s to denoise it.",

@@ -124,6 +124,21 @@ TEST(Leaks, ASealedRoomIsBlack) {
   }
 }
 
+/// The denoiser takes coplanar texels for one surface, but charts of a closed room hang together
+/// with none outside.
+TEST(Leaks, ASealedRoomStaysBlackWhenDenoised) {
+  const testing_support::SealedHouse house{0.06f, 0.3f};
+  BakeSettings settings;
+  settings.resolution = 128, settings.samples = 32, settings.direct_samples = 16;
+  settings.denoise = true, settings.stitch = false;
+  Progress progress;
+  const auto bake = bake_scene(sealed_house(house), settings, progress);
+  ASSERT_TRUE(bake) << bake.error().message;
+  const SealedLight light = sealed_light(house, *bake);
+  ASSERT_GT(light.texels, 300u);
+  EXPECT_EQ(light.lit_texels, 0u) << light.brightest;
+}
+
 /// With TEXCOORD_1 kept nothing is cut, and texels mix; still no ray reads beyond a wall.
 TEST(Leaks, RaysStayOnTheirSideWithoutCuts) {
   const testing_support::SealedHouse house{0.06f, 0.3f};

@@ -81,7 +81,7 @@ struct Sheet {
   }
   void filter() {
     Progress progress;
-    const TexelGeometry places{scene, atlas, map, position, normal, hidden};
+    const TexelGeometry places{scene, atlas, map, position, normal, hidden, {}};
     const std::vector<NoisyLight> parts{{values, variance}};
     ASSERT_TRUE(denoise(places, parts, {}, progress));
   }

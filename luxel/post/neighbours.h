@@ -13,6 +13,7 @@ struct SurfaceSample {
   Vec3 position;
   float spacing = 0;  ///< side of a texel of its chart in the world [m]; 0: takes no part
   Vec3 normal;
+  uint32_t region = 0;  ///< TexelGeometry::region
 };
 
 /// Texels near in space but not in the atlas, per block of texels.
@@ -64,6 +65,7 @@ inline Around around(const SurfaceSample& own, float radius, float min_cosine) {
 /// points must lie near each other's tangent plane: a quarter of a texel, or as far as a sphere
 /// rises whose normal turns by 0.4 over that distance.
 inline Neighbour neighbour(const Around& a, const SurfaceSample& b) {
+  if (a.own.region != b.region) return {};
   const Vec3 d = b.position - a.own.position;
   const float d2 = dot(d, d);
   const float near = 1 - d2 * a.per_reach2;

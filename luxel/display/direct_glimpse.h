@@ -34,7 +34,7 @@ Glimpse glimpse_of(const scene::Scene& scene);
 std::vector<uint8_t> lit_by_sources(const scene::Scene& scene, const trace::RayTracer& tracer,
                                     const Glimpse& glimpse, std::span<const trace::Ray> rays,
                                     std::span<const trace::Hit> hits);
-/// The same for light of the surroundings, by a few rays from each hit.
+/// Whether light of the surroundings reaches each hit, by a few rays from it.
 std::vector<uint8_t> lit_by_surroundings(const scene::Scene& scene, const trace::RayTracer& tracer,
                                          const Glimpse& glimpse, std::span<const trace::Ray> rays,
                                          std::span<const trace::Hit> hits);

@@ -201,7 +201,7 @@ Status read_nodes(GltfReader& reader) {
     for (auto it = nodes.rbegin(); it != nodes.rend(); ++it)
       stack.push_back({*it, parent, inherited});
   };
-  // Of meshes once: nodes may share them.
+  // Extras of meshes are read once: nodes may share them.
   std::vector<LightmapExtras> of_mesh;
   for (size_t m = 0; m < reader.model.meshes.size(); ++m)
     of_mesh.push_back(lightmap_extras(reader, reader.model.meshes[m].extras,

@@ -32,7 +32,7 @@ TEST(Barriers, AThinWallPartsEveryRow) {
   }
 }
 
-/// The same wall, which ends in the middle of the floor: light comes around its end within three
+/// A wall as above, which ends in the middle of the floor: light comes around its end within three
 /// texels, and only pairs farther from it are parted.
 TEST(Barriers, EndsPartNothing) {
   Floor floor;

@@ -111,7 +111,7 @@ struct Probe {
   /// The place of the texel's grid that is nearest to the middle of those in the open; nothing:
   /// none is, or all are and the sample, too.
   std::optional<scene::SurfacePoint> open_place(const atlas::Texel& texel, bool is_open) const;
-  /// The same of all that the texel's chart covers of it, by whichever triangle: of charts thinner
+  /// An open place in all that the texel's chart covers, by whichever triangle: of charts thinner
   /// than a texel the grid may meet nothing.
   std::optional<Place> open_place(const atlas::Texel& texel, const ChartTriangles& charts) const;
 };

@@ -17,7 +17,7 @@ namespace {
 
 /// Points along a pixel's side where a texture is averaged.
 constexpr int kPointsAcross = 4;
-/// Of the textured area, the part whose textures keep their pixels.
+/// The part of the textured area whose textures keep their pixels.
 constexpr double kSharpPart = 0.9;
 /// What a pixel takes while its picture is made: texel and number in the map, colour and alpha of
 /// the texel, four floats of each in the page, and the 8-bit picture.

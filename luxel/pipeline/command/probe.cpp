@@ -53,6 +53,16 @@ std::string name_of(const scene::Scene& scene, uint32_t instance) {
   return name.empty() ? fmt::format("instance {}", instance) : name;
 }
 
+Result<scene::Scene> read_probe_scene(const ProbeSettings& s, Probed& out) {
+  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, s.reading));
+  out.warnings = std::move(imported.warnings);
+  out.unit = unit_of_light(s.scene, imported.scene, s.outside);
+  LUXEL_TRY(const std::vector<std::string> light,
+            add_outside_light(s.outside, imported.scene, imported.about_lost_lights));
+  out.warnings.insert(out.warnings.end(), light.begin(), light.end());
+  return std::move(imported.scene);
+}
+
 Result<Probed> probe(const ProbeSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check_probe(s));
   const ThreadLimit threads(s.threads);

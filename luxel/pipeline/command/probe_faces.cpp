@@ -108,14 +108,8 @@ Status write_picture(const ProbeSettings& s, const hierarchical::Solution& solut
 Result<Probed> probe_by_faces(const ProbeSettings& s, Progress& progress) {
   // Scene and solution.
   progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, s.reading));
-  scene::Scene& scene = imported.scene;
   Probed out;
-  out.warnings = std::move(imported.warnings);
-  out.unit = unit_of_light(s.scene, scene, s.outside);
-  LUXEL_TRY(const std::vector<std::string> light,
-            add_outside_light(s.outside, scene, imported.about_lost_lights));
-  out.warnings.insert(out.warnings.end(), light.begin(), light.end());
+  LUXEL_TRY(const scene::Scene scene, read_probe_scene(s, out));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(hierarchical::Solution solution,
             hierarchical::solve(scene, tracer, s.hierarchical.solve, progress));

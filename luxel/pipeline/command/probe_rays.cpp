@@ -214,14 +214,8 @@ Status trace_rounds(const ProbeSettings& s, const scene::Scene& scene,
 Result<Probed> probe_by_paths(const ProbeSettings& s, Progress& progress) {
   const Clock::time_point start = Clock::now();
   progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, s.reading));
-  scene::Scene& scene = imported.scene;
   Probed out;
-  out.warnings = std::move(imported.warnings);
-  out.unit = unit_of_light(s.scene, scene, s.outside);
-  LUXEL_TRY(const std::vector<std::string> light,
-            add_outside_light(s.outside, scene, imported.about_lost_lights));
-  out.warnings.insert(out.warnings.end(), light.begin(), light.end());
+  LUXEL_TRY(const scene::Scene scene, read_probe_scene(s, out));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(const Place place, find_place(s, scene, out));
   const Look look = look_from(s, scene, tracer, place);

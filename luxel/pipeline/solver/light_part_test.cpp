@@ -81,7 +81,7 @@ TEST(LightPart, DirectAndIndirectAddUp) {
   EXPECT_GT(reflected, 0);
 }
 
-// Of a plate in the open nothing comes back: from its own sky pi L, from the sun its cosine.
+// A plate in the open gets nothing back: from its own sky pi L, from the sun its cosine.
 TEST(LightPart, KnowsSunFromSky) {
   scene::Scene scene;
   scene::add_material(scene, "plate", {0.5f, 0.5f, 0.5f});

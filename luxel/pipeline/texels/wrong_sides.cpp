@@ -27,8 +27,8 @@ constexpr float kStandardErrors = 2;
 constexpr float kNoLight = 1e-3f;
 /// Eyes that look back at a point, and directions downwards that each looks in.
 constexpr uint32_t kEyes = 8, kLooks = 32;
-/// Of the surfaces below an eye, so many are fronts where somebody may stand; of all it looks at,
-/// so many are surfaces; and so many of a point's eyes are there if it shows.
+/// Shares: fronts among the surfaces below an eye where somebody may stand; surfaces among all that
+/// it looks at; and eyes that are there among those of a point that shows.
 constexpr double kFewestFronts = 0.25, kFewestSurfaces = 0.25, kFewestEyes = 0.25;
 /// How far away eyes are where nothing is behind them, relative to the scene's diagonal.
 constexpr float kFarEye = 0.25f;

@@ -45,7 +45,7 @@ struct TraceParams {
   PartStore* keep = nullptr;   ///< where each ray's end is kept for later bakes; null: nowhere
   const EarlierRays* earlier = nullptr;        ///< what an earlier bake's rays met; null: nothing
   const light::LightLayers* layers = nullptr;  ///< null: light is not told apart
-  /// The same layers as followed rays see them; null: `layers`.
+  /// Layers as followed rays see them; null: `layers`.
   const light::LightLayers* followed_layers = nullptr;
 };
 

@@ -92,6 +92,14 @@ SealedLight sealed_light(const testing_support::SealedHouse& house, const Bake& 
   return out;
 }
 
+/// Few rays: light is there or it is not.
+BakeSettings sealed_settings(int resolution) {
+  BakeSettings settings;
+  settings.resolution = resolution, settings.samples = 32, settings.direct_samples = 16;
+  settings.stitch = false;
+  return settings;
+}
+
 /// A room of five walls at odd angles, thinner than a texel and up to three texels thick, beside
 /// sunlit courts; a floor, a ceiling, a terrace and a kerb run through under the walls. No ray
 /// comes in: every texel inside is black, to the bit. Where a surface in the room is narrower than
@@ -105,9 +113,7 @@ TEST(Leaks, ASealedRoomIsBlack) {
   };
   for (const auto& [house, resolution] : {Case{{0.01f, 0.3f}, 64}, Case{{0.06f, 0.3f}, 128},
                                           Case{{0.12f, 1.1f}, 64}, Case{{0.25f, 0.7f}, 256}}) {
-    BakeSettings settings;
-    settings.resolution = resolution, settings.samples = 32, settings.direct_samples = 16;
-    settings.stitch = false;
+    const BakeSettings settings = sealed_settings(resolution);
     Progress progress;
     const auto bake = bake_scene(sealed_house(house), settings, progress);
     ASSERT_TRUE(bake) << bake.error().message;
@@ -128,9 +134,8 @@ TEST(Leaks, ASealedRoomIsBlack) {
 /// with none outside.
 TEST(Leaks, ASealedRoomStaysBlackWhenDenoised) {
   const testing_support::SealedHouse house{0.06f, 0.3f};
-  BakeSettings settings;
-  settings.resolution = 128, settings.samples = 32, settings.direct_samples = 16;
-  settings.denoise = true, settings.stitch = false;
+  BakeSettings settings = sealed_settings(128);
+  settings.denoise = true;
   Progress progress;
   const auto bake = bake_scene(sealed_house(house), settings, progress);
   ASSERT_TRUE(bake) << bake.error().message;
@@ -142,9 +147,8 @@ TEST(Leaks, ASealedRoomStaysBlackWhenDenoised) {
 /// With TEXCOORD_1 kept nothing is cut, and texels mix; still no ray reads beyond a wall.
 TEST(Leaks, RaysStayOnTheirSideWithoutCuts) {
   const testing_support::SealedHouse house{0.06f, 0.3f};
-  BakeSettings settings;
-  settings.resolution = 128, settings.samples = 32, settings.direct_samples = 16;
-  settings.repair_leaks = false, settings.stitch = false;
+  BakeSettings settings = sealed_settings(128);
+  settings.repair_leaks = false;
   Progress progress;
   const auto bake = bake_scene(sealed_house(house), settings, progress);
   ASSERT_TRUE(bake) << bake.error().message;

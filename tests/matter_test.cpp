@@ -139,7 +139,7 @@ TEST(Sides, OnePlaceForBothIsNotKeptWhereTheyDiffer) {
   EXPECT_LT(b.light_seen(kBelow * 0.9f, kUp).x, 1);
 }
 
-// Nobody looks at the underside of a floor under which there is nothing.
+// The underside of a floor under which there is nothing is seen by nobody.
 TEST(Sides, OnePlaceForBothIsKeptWhereNobodyLooks) {
   scene::Scene s = plate_with_uv1();
   s.meshes.pop_back(), s.instances.pop_back();

@@ -137,7 +137,7 @@ TEST(OpenSamples, MoveIntoASlit) {
   EXPECT_EQ(samples_moved_into_gap(1.05f, 1.08f), 2u * Floor::kSide);
 }
 
-/// Of a texel on the floor's diagonal that lies beside a wall only its own triangle is looked at.
+/// A texel on the floor's diagonal beside a wall is looked at in its own triangle only.
 constexpr size_t kRowsOffDiagonal = Floor::kSide - 1;
 
 /// Three columns of texels: one has its samples under a wall, one beside the other wall, and

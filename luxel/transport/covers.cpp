@@ -68,8 +68,9 @@ float size_for_covers(const scene::Scene& scene, const trace::RayTracer& tracer,
   return made_in_gaps ? 0.0f : size_m;
 }
 
-std::vector<float> open_shares(const trace::RayTracer& tracer, const Elements& elements,
-                               float size_m, float diagonal_m) {
+std::vector<float> open_shares(const scene::Scene& scene, const trace::RayTracer& tracer,
+                               const Elements& elements, float size_m) {
+  const float diagonal_m = scene::world_bounds(scene).diagonal();
   std::vector<float> out(elements.size());
   parallel_for(out.size(), 256, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

@@ -25,7 +25,7 @@ float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float s
 float size_for_covers(const scene::Scene& scene, const trace::RayTracer& tracer, float size_m);
 
 /// The open share of each element, by its geometric normal.
-std::vector<float> open_shares(const trace::RayTracer& tracer, const Elements& elements,
-                               float size_m, float diagonal_m);
+std::vector<float> open_shares(const scene::Scene& scene, const trace::RayTracer& tracer,
+                               const Elements& elements, float size_m);
 
 }  // namespace luxel::transport

@@ -43,8 +43,7 @@ TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution&
   TexelLight out;
   const atlas::TexelMap& map = in.map;
   const float size_m = transport::size_for_covers(in.scene, in.tracer, solution.element_size_m);
-  const std::vector<float> open = transport::open_shares(in.tracer, in.elements, size_m,
-                                                         scene::world_bounds(in.scene).diagonal());
+  const std::vector<float> open = transport::open_shares(in.scene, in.tracer, in.elements, size_m);
   out.irradiance.resize(map.texels.size()), out.hidden.resize(map.texels.size());
   parallel_for(map.texels.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

@@ -78,8 +78,7 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
   out.irradiance.resize(in.map.texels.size());
   // Where something much closer than elements covers a texel, they have no light to tell.
   const std::vector<float> open = transport::open_shares(
-      in.tracer, in.elements, solution.light_in_gaps ? 0 : mean_side_m(solution.tree),
-      scene::world_bounds(in.scene).diagonal());
+      in.scene, in.tracer, in.elements, solution.light_in_gaps ? 0 : mean_side_m(solution.tree));
   parallel_for(in.map.texels.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       out.irradiance[i] =

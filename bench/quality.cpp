@@ -1,7 +1,9 @@
-// luxel bench quality: how different pictures of bakes look from that of a long one, for the
-// processor time that they take.
+// luxel bench quality: how far pictures of bakes of each quality look from one of a long bake, for
+// the processor time that their light takes.
 #include <cmath>
 #include <ctime>
+#include <memory>
+#include <optional>
 
 #include "bench/bench.h"
 #include "luxel/base/parallel.h"
@@ -9,80 +11,96 @@
 #include "luxel/display/tone_map.h"
 #include "luxel/image/flip.h"
 #include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/pipeline/bake/denoise_light.h"
+#include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/pipeline/settings/quality.h"
+#include "luxel/scene/procedural.h"
 #include "luxel/transport/irradiance_field.h"
 
 namespace luxel::bench {
 namespace {
 
-constexpr int kQualityResolution = 256, kQualityWidth = 480, kQualityHeight = 360;
+using pipeline::Quality;
+using pipeline::QualityNumbers;
+
+/// Small enough for two dozen scenes in minutes. A texel is a few pixels wide, as it is in
+/// pictures of bakes at the default density.
+constexpr int kQualityResolution = 128, kQualityWidth = 320, kQualityHeight = 240;
+/// Twice the rays of best, of another seed. Its own noise adds a fifth to the difference of best.
+constexpr QualityNumbers kQualityTruth{2048, 256, 64, false};
+constexpr uint64_t kQualityTruthSeed = 1000;
 
 struct QualityScene {
-  std::string_view file, sky;
+  std::string_view file;  ///< below shared/scenes
+  std::string_view view;                ///< --view
+  int resolution = kQualityResolution;  ///< the garden has more charts than small maps have room
 };
+/// The camera of the lit tile room looks from its dark back at a gap of light: there the long bake
+/// is noise, too.
 constexpr std::array kQualityScenes{
     QualityScene{"cornell_box/cornell_box.glb", ""},
+    QualityScene{"tile_game_room/tile_game_room6.glb", ""},
+    QualityScene{"tile_game_room/tile_game_room_lit_uv1.glb", "interior"},
+    QualityScene{"living_room/living_room.glb", ""},
     QualityScene{"living_room/living_room_lit_uv1.glb", ""},
-    QualityScene{"tile_game_room/tile_game_room_lit_uv1.glb", ""},
-    QualityScene{"suzanne_room/room.glb", "135,40"},
-    QualityScene{"japanese_bridge_garden/japanese_bridge_garden.glb", ""},
-    QualityScene{"spot_teapot_bunny/spot.obj", "135,40"}};
+    QualityScene{"suzanne_room/room.glb", ""},
+    QualityScene{"zdm2/zdm2.glb", ""},
+    QualityScene{"pandora/pandora.obj", ""},
+    QualityScene{"kaykit_city/kaykit_city.glb", ""},
+    QualityScene{"japanese_bridge_garden/japanese_bridge_garden.glb", "", 512},
+    QualityScene{"spot_teapot_bunny/spot.obj", ""},
+    QualityScene{"spot_teapot_bunny/teapot.obj", ""},
+    QualityScene{"spot_teapot_bunny/stanford-bunny.obj", ""}};
 
-struct QualityRow {
+/// A bake of these numbers gives two rows: as it was sampled, and denoised.
+struct QualityRun {
   std::string_view name;
-  pipeline::QualityNumbers numbers;
+  QualityNumbers numbers;
 };
 
-std::vector<QualityRow> quality_rows() {
-  using pipeline::Quality;
-  return {{"--quality draft", pipeline::numbers_of(Quality::draft)},
-          {"half the shadow rays of good", {128, 16, 16, true}},
-          {"half the points of good", {128, 32, 8, true}},
-          {"half the rays of good", {64, 32, 16, true}},
-          {"--quality good", pipeline::numbers_of(Quality::good)},
-          {"good, --no-denoise", {128, 32, 16, false}},
-          {"twice good", {256, 64, 16, true}},
-          {"the default before", {256, 64, 16, false}},
-          {"--quality best", pipeline::numbers_of(Quality::best)}};
+std::vector<QualityRun> quality_runs() {
+  const QualityNumbers good = pipeline::numbers_of(Quality::good);
+  const auto [rays, shadow_rays, points, denoise] = good;
+  return {{"draft", pipeline::numbers_of(Quality::draft)},
+          {"good, half the rays", {rays / 2, shadow_rays, points, true}},
+          {"good, half the shadow rays", {rays, shadow_rays / 2, points, true}},
+          {"good, half the points", {rays, shadow_rays, points / 2, true}},
+          {"good", good},
+          {"good, twice the rays", {2 * rays, shadow_rays, points, true}},
+          {"good, twice the shadow rays", {rays, 2 * shadow_rays, points, true}},
+          {"good, twice the points", {rays, shadow_rays, 2 * points, true}},
+          {"best", pipeline::numbers_of(Quality::best)}};
 }
 
-Result<pipeline::BakeSettings> settings_of(const std::filesystem::path& file,
-                                           const QualityScene& scene,
-                                           const pipeline::QualityNumbers& numbers, int threads) {
+pipeline::BakeSettings settings_of(const QualityNumbers& numbers, int threads) {
   pipeline::BakeSettings s;
-  s.scene = file, s.output = std::filesystem::temp_directory_path(), s.threads = threads;
+  s.output = std::filesystem::temp_directory_path(), s.threads = threads;
   s.resolution = kQualityResolution, s.samples = numbers.samples;
   s.direct_samples = numbers.direct_samples, s.supersample = numbers.supersample;
-  s.denoise = numbers.denoise;
-  if (!scene.sky.empty()) {
-    LUXEL_TRY(s.outside.sky, pipeline::parse_sky(scene.sky));
-  }
   return s;
 }
 
-/// What the bake's own camera sees, drawn from the lightmap's texels.
-Result<image::Image> picture_of(const pipeline::Bake& bake, Progress& progress) {
-  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
+/// What the bake's own camera sees, drawn from the lightmap's texels, as it is shown.
+Result<image::Image> picture_of(const pipeline::Bake& bake, const trace::RayTracer& tracer,
+                                Progress& progress) {
   const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
   display::DrawParams params;
-  params.width = kQualityWidth, params.height = kQualityHeight;
-  return display::draw(
-      bake.scene, tracer, bake.view.camera,
-      [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }, params,
-      progress);
-}
-
-image::Image shown(const image::Image& radiance, float exposure) {
+  params.width = kQualityWidth, params.height = kQualityHeight, params.samples_per_axis = 2;
+  LUXEL_TRY(
+      const image::Image radiance,
+      display::draw(
+          bake.scene, tracer, bake.view.camera,
+          [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }, params,
+          progress));
   image::Image out(radiance.width, radiance.height, 3);
   for (int y = 0; y < radiance.height; ++y)
     for (int x = 0; x < radiance.width; ++x)
-      out.set_rgb(x, y, display::compress(radiance.rgb(x, y) * exposure));
+      out.set_rgb(x, y, display::compress(radiance.rgb(x, y) * bake.view.exposure));
   return out;
 }
 
 double mean_flip(const image::Image& picture, const image::Image& reference) {
-  const float exposure = display::auto_exposure(reference);
-  const image::Image map = image::flip(shown(picture, exposure), shown(reference, exposure));
+  const image::Image map = image::flip(picture, reference);
   double sum = 0;
   for (int y = 0; y < map.height; ++y)
     for (int x = 0; x < map.width; ++x) sum += double(map.at(x, y)[0]);
@@ -90,69 +108,211 @@ double mean_flip(const image::Image& picture, const image::Image& reference) {
 }
 
 /// Standard error of a part of the light over the mean light.
-double noise_of(const pipeline::Bake& bake, std::span<const float> variance) {
-  double light = 0, sum = 0;
-  for (const Rgb& e : bake.light.irradiance) light += double(luminance(e));
+double noise_of(const pipeline::TexelLight& light, std::span<const float> variance) {
+  double mean = 0, sum = 0;
+  for (const Rgb& e : light.irradiance) mean += double(luminance(e));
   for (const float v : variance) sum += double(v);
-  const double n = double(bake.light.irradiance.size());
-  return light > 0 ? std::sqrt(sum / n) / (light / n) : 0;
+  const double n = double(light.irradiance.size());
+  return mean > 0 ? std::sqrt(sum / n) / (mean / n) : 0;
 }
 
-Status measure_scene(const std::filesystem::path& file, const QualityScene& scene, int threads,
-                     Table& table) {
+/// A setting in one scene, or the geometric mean over scenes.
+struct QualityFigures {
+  double seconds = 0, flip = 0, indirect = 0, direct = 0;
+};
+
+/// Processor seconds since a moment: those of a clock on the wall say how busy the machine is.
+double processor_seconds_since(std::clock_t start) {
+  return double(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+/// A long bake, whose layout and camera the others take. Members refer to each other: it is made in
+/// place and not moved.
+struct QualityCase {
+  pipeline::Bake bake;
+  std::optional<trace::RayTracer> tracer;
+  transport::Elements elements;
+  light::Lights lights;
+  image::Image reference;
+
+  light::TexelScene input() const {
+    return {bake.scene, bake.atlas, bake.map, elements, lights, *tracer};
+  }
+};
+
+Result<std::unique_ptr<QualityCase>> quality_case(pipeline::Bake truth, Progress& progress) {
+  auto c = std::make_unique<QualityCase>();
+  c->bake = std::move(truth);
+  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(c->bake.scene));
+  c->tracer.emplace(std::move(tracer));
+  LUXEL_TRY(c->reference, picture_of(c->bake, *c->tracer, progress));
+  c->elements = transport::elements_from_texels(c->bake.scene, c->bake.atlas, c->bake.map);
+  c->lights = light::collect_lights(c->bake.scene);
+  return c;
+}
+
+/// Both rows of a run: as it was sampled, and denoised.
+Result<std::array<QualityFigures, 2>> measure_run(QualityCase& c, const QualityNumbers& numbers,
+                                                  int threads, Progress& progress) {
+  const pipeline::BakeSettings settings = settings_of(numbers, threads);
+  std::clock_t start = std::clock();
+  LUXEL_TRY(pipeline::TexelLight light,
+            pipeline::find_solver("gather")->solve(c.input(), settings, {}, {}, progress));
+  double seconds = processor_seconds_since(start);
+  const double indirect = noise_of(light, light.variance);
+  const double direct = noise_of(light, light.direct_variance);
+  std::array<QualityFigures, 2> out;
+  for (const bool denoised : {false, true}) {
+    if (denoised) {
+      start = std::clock();
+      LUXEL_TRY_STATUS(pipeline::denoise_light(c.input(), settings.repair_leaks, light, progress));
+      seconds += processor_seconds_since(start);
+    }
+    c.bake.light = light;
+    LUXEL_TRY_STATUS(pipeline::repair_light(settings, *c.tracer, c.bake, progress));
+    LUXEL_TRY(const image::Image picture, picture_of(c.bake, *c.tracer, progress));
+    out[size_t(denoised)] = {seconds, mean_flip(picture, c.reference), indirect, direct};
+  }
+  return out;
+}
+
+/// Figures of all scenes by the name of the setting, in the order of the runs.
+struct QualityTable {
+  std::vector<std::string> scenes, settings;
+  std::vector<QualityNumbers> numbers;                ///< per setting
+  std::vector<std::vector<QualityFigures>> by_scene;  ///< per scene and setting
+};
+
+std::string name_of_row(const QualityRun& run, bool denoised) {
+  if (denoised == run.numbers.denoise) return std::string(run.name);
+  return fmt::format("{}, --{}denoise", run.name, denoised ? "" : "no-");
+}
+
+/// Rows that are of use: each run as it is meant, and both of draft, good and best.
+bool is_shown(const QualityRun& run, bool denoised) {
+  return denoised == run.numbers.denoise || run.name.find(',') == std::string_view::npos;
+}
+
+Status measure_case(const std::string& name, pipeline::Bake truth, int threads,
+                    QualityTable& table) {
   Progress progress;
-  LUXEL_TRY(pipeline::BakeSettings longest,
-            settings_of(file, scene, {2048, 512, 64, false}, threads));
-  longest.seed = 1000;
-  LUXEL_TRY(const pipeline::Bake truth, pipeline::bake_scene(longest, progress));
-  LUXEL_TRY(const image::Image reference, picture_of(truth, progress));
-  const std::string name = file.stem().string();
-  for (const QualityRow& row : quality_rows()) {
-    LUXEL_TRY(const pipeline::BakeSettings settings,
-              settings_of(file, scene, row.numbers, threads));
-    // Processor seconds: those of a clock on the wall say how busy the machine is.
-    const std::clock_t start = std::clock();
-    LUXEL_TRY(const pipeline::Bake bake, pipeline::bake_scene(settings, progress));
-    const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
-    LUXEL_TRY(const image::Image picture, picture_of(bake, progress));
-    const double flip = mean_flip(picture, reference);
-    const double indirect = noise_of(bake, bake.light.variance);
-    const double direct = noise_of(bake, bake.light.direct_variance);
-    const auto& [samples, direct_samples, points, denoise] = row.numbers;
-    table.rows.push_back({name, std::string(row.name),
-                          fmt::format("{} / {} / {}", samples, direct_samples, points),
-                          fmt::format("{:.1f}", seconds), fmt::format("{:.4f}", flip),
-                          percent(indirect), percent(direct)});
-    table.json.push_back({{"scene", name},
-                          {"setting", row.name},
-                          {"samples", samples},
-                          {"direct_samples", direct_samples},
-                          {"supersample", points},
-                          {"denoise", denoise},
-                          {"cpu_seconds", seconds},
-                          {"flip", flip},
-                          {"indirect_noise", indirect},
-                          {"direct_noise", direct}});
+  LUXEL_TRY(const auto c, quality_case(std::move(truth), progress));
+  table.scenes.push_back(name), table.settings.clear(), table.numbers.clear();
+  std::vector<QualityFigures>& row = table.by_scene.emplace_back();
+  for (const QualityRun& run : quality_runs()) {
+    LUXEL_TRY(const auto both, measure_run(*c, run.numbers, threads, progress));
+    for (const bool denoised : {false, true}) {
+      if (!is_shown(run, denoised)) continue;
+      row.push_back(both[size_t(denoised)]);
+      table.settings.push_back(name_of_row(run, denoised)), table.numbers.push_back(run.numbers);
+    }
   }
   return {};
+}
+
+pipeline::BakeSettings truth_settings(int threads) {
+  pipeline::BakeSettings settings = settings_of(kQualityTruth, threads);
+  settings.seed = kQualityTruthSeed;
+  return settings;
+}
+
+Status measure_shared(const std::filesystem::path& shared, int threads, QualityTable& table) {
+  for (const QualityScene& scene : kQualityScenes) {
+    pipeline::BakeSettings settings = truth_settings(threads);
+    settings.scene = shared / "scenes" / scene.file, settings.view = scene.view;
+    settings.resolution = scene.resolution;
+    if (!std::filesystem::exists(settings.scene)) continue;
+    Progress progress;
+    LUXEL_TRY(pipeline::Bake truth, pipeline::bake_scene(settings, progress));
+    LUXEL_TRY_STATUS(measure_case(settings.scene.stem().string(), std::move(truth), threads, table));
+  }
+  return {};
+}
+
+/// Scenes of our own but those that others hold: the Cornell box is among the shared ones, and in
+/// a furnace every texel has the same light.
+Status measure_own_scenes(int threads, QualityTable& table) {
+  for (scene::NamedScene& own : scene::procedural_scenes()) {
+    if (own.file.starts_with("cornell") || own.file.starts_with("furnace")) continue;
+    Progress progress;
+    LUXEL_TRY(pipeline::Bake truth,
+              pipeline::bake_scene(std::move(own.scene), truth_settings(threads), progress));
+    LUXEL_TRY_STATUS(measure_case(std::filesystem::path(own.file).stem().string(), std::move(truth), threads, table));
+  }
+  return {};
+}
+
+QualityFigures geometric_mean(const QualityTable& table, size_t setting) {
+  QualityFigures sum;
+  for (const auto& row : table.by_scene) {
+    sum.seconds += std::log(row[setting].seconds), sum.flip += std::log(row[setting].flip);
+    // Noise may be none at all, as direct light's of a scene with one point light.
+    sum.indirect += row[setting].indirect, sum.direct += row[setting].direct;
+  }
+  const double n = double(table.by_scene.size());
+  return {std::exp(sum.seconds / n), std::exp(sum.flip / n), sum.indirect / n, sum.direct / n};
+}
+
+std::string numbers_text(const QualityNumbers& n) {
+  return fmt::format("{} / {} / {}", n.samples, n.direct_samples, n.supersample);
+}
+
+/// The table's own rows are means over scenes, each of its notes' rows is a scene.
+Table printed(const QualityTable& measured) {
+  Table table =
+      new_table("quality", {"setting", "rays / shadow rays / points", "processor s", "FLIP",
+                            "noise of indirect light", "noise of direct light"});
+  std::string scenes = "| scene |", rules = "| --- |";
+  std::vector<size_t> shown;
+  for (size_t k = 0; k < measured.settings.size(); ++k) {
+    const QualityFigures f = geometric_mean(measured, k);
+    table.rows.push_back({measured.settings[k], numbers_text(measured.numbers[k]),
+                          fmt::format("{:.2f}", f.seconds), fmt::format("{:.4f}", f.flip),
+                          percent(f.indirect), percent(f.direct)});
+    if (measured.settings[k].find(", half") != std::string::npos ||
+        measured.settings[k].find(", twice") != std::string::npos)
+      continue;
+    shown.push_back(k);
+    scenes += fmt::format(" {}: s | FLIP |", measured.settings[k]), rules += " --- | --- |";
+  }
+  scenes += "\n" + rules;
+  for (size_t i = 0; i < measured.scenes.size(); ++i) {
+    scenes += fmt::format("\n| {} |", measured.scenes[i]);
+    for (const size_t k : shown) {
+      const QualityFigures& f = measured.by_scene[i][k];
+      scenes += fmt::format(" {:.2f} | {:.4f} |", f.seconds, f.flip);
+    }
+    for (size_t k = 0; k < measured.settings.size(); ++k) {
+      const QualityFigures& f = measured.by_scene[i][k];
+      table.json.push_back({{"scene", measured.scenes[i]},
+                            {"setting", measured.settings[k]},
+                            {"samples", measured.numbers[k].samples},
+                            {"direct_samples", measured.numbers[k].direct_samples},
+                            {"supersample", measured.numbers[k].supersample},
+                            {"processor_s", f.seconds},
+                            {"flip", f.flip},
+                            {"indirect_noise", f.indirect},
+                            {"direct_noise", f.direct}});
+    }
+  }
+  table.notes.push_back(scenes);
+  table.notes.push_back(fmt::format(
+      "{0} x {0} texels, {1} scenes: geometric means of processor seconds of the light and of FLIP "
+      "over {2} x {3} pixels, against a bake of {4} rays, {5} shadow rays and {6} points; means of "
+      "noise, which is before the denoiser and over the mean light.",
+      kQualityResolution, measured.scenes.size(), kQualityWidth, kQualityHeight,
+      kQualityTruth.samples, kQualityTruth.direct_samples, kQualityTruth.supersample));
+  return table;
 }
 
 }  // namespace
 
 Result<Table> measure_quality(const std::filesystem::path& shared, int threads) {
   const ThreadLimit limit(threads);
-  Table table =
-      new_table("quality", {"scene", "setting", "rays / shadow rays / points", "processor s",
-                            "FLIP", "noise of indirect light", "noise of direct light"});
-  for (const QualityScene& scene : kQualityScenes) {
-    const auto file = shared / "scenes" / scene.file;
-    if (!std::filesystem::exists(file)) continue;
-    LUXEL_TRY_STATUS(measure_scene(file, scene, threads, table));
-  }
-  table.notes.push_back(
-      "256 x 256 texels; mean FLIP of 480 x 360 pixels against a bake of 2048 rays, 512 shadow "
-      "rays and 64 points. Noise is before the denoiser, over the mean light.");
-  return table;
+  QualityTable measured;
+  LUXEL_TRY_STATUS(measure_shared(shared, threads, measured));
+  LUXEL_TRY_STATUS(measure_own_scenes(threads, measured));
+  return printed(measured);
 }
 
 }  // namespace luxel::bench

@@ -137,8 +137,8 @@ constexpr float kFirstDeviations = 2;
 /// Filters one part in place.
 Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLight& part,
               Progress& progress) {
-  if (part.may_have_fireflies) share_out_fireflies(n, part.variance, part.values);
   const NoiseLevel noise = noise_level(n, part.values, part.variance);
+  share_out_fireflies(n, {part.variance, noise, part.is_direct}, part.values);
   Planes planes{std::vector<Plane>(part.values.size()), std::vector<Shown>(part.values.size())};
   std::vector<Plane>& now = planes.planes;
   for (size_t i = 0; i < now.size(); ++i) now[i] = {part.values[i], {}, {}, noise.variance[i], 0};

@@ -39,9 +39,8 @@ struct DenoiseParams {
 struct NoisyLight {
   std::span<Rgb> values;
   std::span<const float> variance;
-  /// Rare paths can make single texels far too bright (luxel/post/outliers.h): never direct light,
-  /// of which a small bright spot is a spot.
-  bool may_have_fireflies = true;
+  /// Small bright spots may be light, and not fireflies (luxel/post/outliers.h).
+  bool is_direct = false;
 };
 
 /// The filter that this build has: "luxel", or "oidn" where Open Image Denoise was found.

@@ -4,18 +4,37 @@
 #include <span>
 
 #include "luxel/post/neighbours.h"
+#include "luxel/post/noise_level.h"
 
 namespace luxel::post {
 
-/// Finds texels with variance that are more than kFirefly times as bright as the third brightest
-/// (at borders the second) of those within kFireflyRadius on the same surface. They are lowered to
-/// that neighbour, and what they lose is shared out evenly among all within kShareRadius that have
-/// variance: the sum over texels stays. A firefly is light of a path that few of the texels found
-/// though all have it, so that its energy belongs to all of them. Texels without variance, such as
-/// those whose direct light is exact, are neither lowered nor changed. Returns how many were
-/// lowered.
-size_t share_out_fireflies(const Neighbourhood& n, std::span<const float> variance,
-                           std::span<Rgb> values);
-inline constexpr float kFirefly = 2, kFireflyRadius = 2.6f, kShareRadius = 6;
+/// A part of the light in which fireflies are looked for; spans have one entry per texel.
+struct Outliers {
+  std::span<const float> variance;  ///< that the solver states, of luminance
+  const NoiseLevel& noise;          ///< of the same part
+  /// Direct light, of which a small bright spot may be one: fireflies need more evidence.
+  bool is_direct = false;
+};
+
+/// Finds texels with variance that are brighter than the third brightest (at borders the second) of
+/// those within kFireflyRadius (on strips of one texel's width farther) on the same surface, by
+///
+/// - more than kStandsOut standard deviations of the noise level there, so that the filter would
+///   leave them alone, but no more than kExplained deviations that are stated, by the texel itself
+///   or in the mean within kShareRadius: light that is known not to be noise is none;
+/// - in light that is not direct also by more than kFirefly times, whatever is stated.
+///
+/// In direct light no more than kExplainedDirect deviations that the texel itself states, and at
+/// least half of those around must be noisy, too: a spot's circle is sharp, and so is a beam's edge.
+///
+/// Fireflies are lowered to that neighbour, and what they lose is shared out evenly among all
+/// within kShareRadius that have variance: the sum over texels stays. A firefly is light of a path
+/// that few of the texels found though all have it, so that its energy belongs to all of them.
+/// Texels without variance, such as those whose direct light is exact, are neither lowered nor
+/// changed. Returns how many were lowered.
+size_t share_out_fireflies(const Neighbourhood& n, const Outliers& part, std::span<Rgb> values);
+inline constexpr float kFirefly = 2, kFireflyRadius = 2.6f, kFireflyRadiusOfStrips = 4.6f;
+inline constexpr float kShareRadius = 6;
+inline constexpr float kStandsOut = 3, kExplained = 8, kExplainedDirect = 3;
 
 }  // namespace luxel::post

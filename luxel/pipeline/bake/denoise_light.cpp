@@ -48,7 +48,7 @@ Status denoise_light(const light::TexelScene& in, bool repair_leaks, TexelLight&
   for (size_t i = 0; i < light.direct.size(); ++i)
     rest[i] = max(light.irradiance[i] - light.direct[i], Rgb{});
   std::vector<post::NoisyLight> parts{{rest, light.variance}};
-  if (!light.direct.empty()) parts.push_back({light.direct, light.direct_variance, false});
+  if (!light.direct.empty()) parts.push_back({light.direct, light.direct_variance, true});
   LUXEL_TRY_STATUS(post::denoise(places, parts, params, progress));
   for (size_t i = 0; i < light.direct.size(); ++i) rest[i] += light.direct[i];
   light.irradiance = std::move(rest);

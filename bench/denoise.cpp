@@ -43,13 +43,13 @@ Status measure(const std::string& name, scene::Scene scene, Table& table) {
   LUXEL_TRY(const auto p, validate::prepare(std::move(scene), kResolution, progress));
   LUXEL_TRY(const std::vector<Rgb> reference, reference_of(*p, progress));
   for (const int samples : kSamples) {
-    LUXEL_TRY(validate::Timed bake,
-              validate::solve(*p, "gather", settings_of(samples, 1), progress));
+    const pipeline::BakeSettings settings = settings_of(samples, 1);
+    LUXEL_TRY(validate::Timed bake, validate::solve(*p, "gather", settings, progress));
     const validate::Errors before =
         validate::errors_of(bake.light.irradiance, reference, bake.light.hidden);
     // The filter, in place.
     const auto start = Clock::now();
-    LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), true, bake.light, progress));
+    LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), settings, bake.light, progress));
     const double seconds = seconds_since(start);
     const validate::Errors after =
         validate::errors_of(bake.light.irradiance, reference, bake.light.hidden);
@@ -74,9 +74,10 @@ Status measure(const std::string& name, scene::Scene scene, Table& table) {
 Status measure_large(Table& table) {
   Progress progress;
   LUXEL_TRY(const auto p, validate::prepare(scene::cornell_box(), 1024, progress));
-  LUXEL_TRY(validate::Timed bake, validate::solve(*p, "gather", settings_of(64, 1), progress));
+  const pipeline::BakeSettings settings = settings_of(64, 1);
+  LUXEL_TRY(validate::Timed bake, validate::solve(*p, "gather", settings, progress));
   const auto start = Clock::now();
-  LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), true, bake.light, progress));
+  LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), settings, bake.light, progress));
   table.notes.push_back(
       fmt::format("The Cornell box at 1024 x 1024 ({} texels), 64 samples: {:.1f} s for the light, "
                   "{:.1f} s to denoise it.",

@@ -31,13 +31,14 @@ constexpr QualityNumbers kQualityTruth{2048, 256, 64, false};
 constexpr uint64_t kQualityTruthSeed = 1000;
 
 struct QualityScene {
-  std::string_view file;  ///< below shared/scenes
+  std::string_view file;                ///< below shared/scenes
   std::string_view view;                ///< --view
   int resolution = kQualityResolution;  ///< the garden has more charts than small maps have room
 };
 /// The camera of the lit tile room looks from its dark back at a gap of light: there the long bake
 /// is noise, too.
 constexpr std::array kQualityScenes{
+    QualityScene{"japanese_bridge_garden/japanese_bridge_garden.glb", "", 512},
     QualityScene{"cornell_box/cornell_box.glb", ""},
     QualityScene{"tile_game_room/tile_game_room6.glb", ""},
     QualityScene{"tile_game_room/tile_game_room_lit_uv1.glb", "interior"},
@@ -47,7 +48,6 @@ constexpr std::array kQualityScenes{
     QualityScene{"zdm2/zdm2.glb", ""},
     QualityScene{"pandora/pandora.obj", ""},
     QualityScene{"kaykit_city/kaykit_city.glb", ""},
-    QualityScene{"japanese_bridge_garden/japanese_bridge_garden.glb", "", 512},
     QualityScene{"spot_teapot_bunny/spot.obj", ""},
     QualityScene{"spot_teapot_bunny/teapot.obj", ""},
     QualityScene{"spot_teapot_bunny/stanford-bunny.obj", ""}};
@@ -86,12 +86,11 @@ Result<image::Image> picture_of(const pipeline::Bake& bake, const trace::RayTrac
   const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
   display::DrawParams params;
   params.width = kQualityWidth, params.height = kQualityHeight, params.samples_per_axis = 2;
-  LUXEL_TRY(
-      const image::Image radiance,
-      display::draw(
-          bake.scene, tracer, bake.view.camera,
-          [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }, params,
-          progress));
+  LUXEL_TRY(const image::Image radiance,
+            display::draw(
+                bake.scene, tracer, bake.view.camera,
+                [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); },
+                params, progress));
   image::Image out(radiance.width, radiance.height, 3);
   for (int y = 0; y < radiance.height; ++y)
     for (int x = 0; x < radiance.width; ++x)
@@ -165,7 +164,7 @@ Result<std::array<QualityFigures, 2>> measure_run(QualityCase& c, const QualityN
   for (const bool denoised : {false, true}) {
     if (denoised) {
       start = std::clock();
-      LUXEL_TRY_STATUS(pipeline::denoise_light(c.input(), settings.repair_leaks, light, progress));
+      LUXEL_TRY_STATUS(pipeline::denoise_light(c.input(), settings, light, progress));
       seconds += processor_seconds_since(start);
     }
     c.bake.light = light;
@@ -224,7 +223,8 @@ Status measure_shared(const std::filesystem::path& shared, int threads, QualityT
     if (!std::filesystem::exists(settings.scene)) continue;
     Progress progress;
     LUXEL_TRY(pipeline::Bake truth, pipeline::bake_scene(settings, progress));
-    LUXEL_TRY_STATUS(measure_case(settings.scene.stem().string(), std::move(truth), threads, table));
+    LUXEL_TRY_STATUS(
+        measure_case(settings.scene.stem().string(), std::move(truth), threads, table));
   }
   return {};
 }
@@ -237,7 +237,8 @@ Status measure_own_scenes(int threads, QualityTable& table) {
     Progress progress;
     LUXEL_TRY(pipeline::Bake truth,
               pipeline::bake_scene(std::move(own.scene), truth_settings(threads), progress));
-    LUXEL_TRY_STATUS(measure_case(std::filesystem::path(own.file).stem().string(), std::move(truth), threads, table));
+    LUXEL_TRY_STATUS(measure_case(std::filesystem::path(own.file).stem().string(), std::move(truth),
+                                  threads, table));
   }
   return {};
 }
@@ -259,9 +260,8 @@ std::string numbers_text(const QualityNumbers& n) {
 
 /// The table's own rows are means over scenes, each of its notes' rows is a scene.
 Table printed(const QualityTable& measured) {
-  Table table =
-      new_table("quality", {"setting", "rays / shadow rays / points", "processor s", "FLIP",
-                            "noise of indirect light", "noise of direct light"});
+  Table table = new_table("quality", {"setting", "rays / shadow rays / points", "processor s",
+                                      "FLIP", "noise of indirect light", "noise of direct light"});
   std::string scenes = "| scene |", rules = "| --- |";
   std::vector<size_t> shown;
   for (size_t k = 0; k < measured.settings.size(); ++k) {

@@ -1,79 +1,116 @@
-// What is left of single bright texels in denoised bakes, and what small bright things lose.
+// Single bright texels in a denoised bake of few samples, and small bright things that must stay.
 #include <gtest/gtest.h>
-#include <cstdio>
-#include <cstdlib>
+
+#include <cmath>
 
 #include "luxel/pipeline/bake/bake_scene.h"
-#include "luxel/pipeline/bake/denoise_light.h"
-#include "luxel/export/baked_glb.h"
-#include "luxel/base/file.h"
 #include "tests/gallery.h"
 
 namespace luxel::pipeline {
 namespace {
 
-TEST(Fireflies, Try) {
-  Progress progress;
-  const int res = std::atoi(std::getenv("RES"));
+/// Texels of 9 cm.
+constexpr int kGalleryTexels = 160;
+
+Bake bake_gallery(int samples, int shadow_rays, bool denoise) {
   BakeSettings s;
   s.output = std::filesystem::temp_directory_path();
-  s.resolution = res;
-  s.samples = 512, s.direct_samples = 512, s.supersample = 16; s.seed = 77; s.denoise = true;
-  std::vector<Rgb> truth;
-  const std::string file = "/tmp/c/truth" + std::to_string(res) + ".bin";
-  s.stitch = false;
-  if (FILE* f = std::fopen(file.c_str(), "rb")) {
-    std::fseek(f, 0, SEEK_END); truth.resize(size_t(std::ftell(f)) / sizeof(Rgb)); std::rewind(f);
-    (void)!std::fread(truth.data(), sizeof(Rgb), truth.size(), f); std::fclose(f);
-  } else {
-    auto t = bake_scene(testing_support::gallery_of_spots(), s, progress);
-    ASSERT_TRUE(t);
-    truth = t->light.irradiance;
-    FILE* g = std::fopen(file.c_str(), "wb"); std::fwrite(truth.data(), sizeof(Rgb), truth.size(), g); std::fclose(g);
-  }
-  double mean = 0;
-  for (auto& e : truth) mean += double(luminance(e)) / truth.size();
-  std::printf("texels %zu mean %g\n", truth.size(), mean);
-  s.seed = std::getenv("SEED") ? std::atoi(std::getenv("SEED")) : 1; s.supersample = 16;
-  int samples = 16; int direct = std::getenv("DIRECT") ? std::atoi(std::getenv("DIRECT")) : 32;
-  s.samples = samples, s.direct_samples = direct, s.denoise = false;
+  s.resolution = kGalleryTexels, s.samples = samples, s.direct_samples = shadow_rays;
+  s.denoise = denoise, s.seed = uint64_t(samples);
+  Progress progress;
   auto bake = bake_scene(testing_support::gallery_of_spots(), s, progress);
-  ASSERT_EQ(truth.size(), bake->map.texels.size());
-  const TexelLight raw = bake->light;
-  trace::RayTracer tracer = *trace::RayTracer::build(bake->scene);
-  auto elements = transport::elements_from_texels(bake->scene, bake->atlas, bake->map);
-  auto lights = light::collect_lights(bake->scene);
-  light::TexelScene in{bake->scene, bake->atlas, bake->map, elements, lights, tracer};
-  std::printf("pieces %zu\n", lights.triangles.size());
-  for (bool dn : {false, true}) {
-    if (dn) ASSERT_TRUE(denoise_light(in, true, bake->light, progress));
-    size_t count13 = 0, count2 = 0; double m = 0, md = 0, mr = 0, sq = 0;
-    for (size_t i = 0; i < bake->map.texels.size(); ++i) {
-      m += double(luminance(bake->light.irradiance[i])) / bake->map.texels.size();
-      if (bake->light.hidden[i]) continue;
-      const auto& t = bake->map.texels[i];
-      float most = 0; Rgb around{};
-      for (int dy = -1; dy <= 1; ++dy) for (int dx = -1; dx <= 1; ++dx) {
-        int x = t.x + dx, y = t.y + dy;
-        if (x < 0 || y < 0 || x >= bake->map.resolution || y >= bake->map.resolution) continue;
-        auto j = bake->map.texel_at[size_t(y) * bake->map.resolution + x];
-        if (j == atlas::kNone) continue;
-        most = std::max(most, luminance(truth[j]));
-        if (j != i && luminance(raw.direct[j]) > luminance(around)) around = raw.direct[j];
-      }
-      float l = luminance(bake->light.irradiance[i]), tr = luminance(truth[i]);
-      sq += double(l - tr) * (l - tr) / bake->map.texels.size();
-      const bool a = l > 1.3 * most + 0.02 * mean;
-      count13 += a, count2 += l > 2 * most + 0.02 * mean;
-      if (a && dn) { 
-        std::printf("    %d %d inst %d: %.3f truth %.3f most %.3f | direct raw %.3f sd %.3f around %.3f now %.3f| rest raw %.3f sd %.3f\n", t.x, t.y, int(t.sample.instance), l/mean, luminance(truth[i])/mean, most/mean,
-        luminance(raw.direct[i])/mean, std::sqrt(raw.direct_variance[i])/mean, luminance(around)/mean, luminance(bake->light.direct[i])/mean, luminance(raw.irradiance[i]-raw.direct[i])/mean, std::sqrt(raw.variance[i])/mean); }
+  EXPECT_TRUE(bake) << bake.error().message;
+  return bake ? std::move(*bake) : Bake{};
+}
+
+double mean_light(const Bake& bake) {
+  double sum = 0;
+  for (const Rgb& e : bake.light.irradiance) sum += double(luminance(e));
+  return sum / double(bake.light.irradiance.size());
+}
+
+/// The texels around one in the lightmap.
+struct Around {
+  float brightest = 0;
+  int count = 0;
+};
+Around around(const Bake& bake, size_t i) {
+  const atlas::TexelMap& map = bake.map;
+  Around out;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      const int x = int(map.texels[i].x) + dx, y = int(map.texels[i].y) + dy;
+      if (x < 0 || y < 0 || x >= map.resolution || y >= map.resolution) continue;
+      const uint32_t j = map.texel_at[size_t(y) * size_t(map.resolution) + size_t(x)];
+      if (j == atlas::kNone || j == i) continue;
+      out.brightest = std::max(out.brightest, luminance(bake.light.irradiance[j])), ++out.count;
     }
-    if (std::getenv("AX") && !dn) { int ax = std::atoi(std::getenv("AX")), ay = std::atoi(std::getenv("AY"));
-      for (int y = ay - 3; y <= ay + 3; ++y) { for (int x = ax - 4; x <= ax + 4; ++x) { auto j = x < 0 || y < 0 || x >= res || y >= res ? atlas::kNone : bake->map.texel_at[size_t(y) * res + x];
-        if (j == atlas::kNone) std::printf("  -   "); else std::printf("%.2f~%.2f(%.2f) ", luminance(raw.irradiance[j]-raw.direct[j])/mean, std::sqrt(raw.variance[j])/mean, (luminance(truth[j]))/mean); } std::printf("\n"); } }
-    std::printf("samples %d direct %d denoise %d: x1.3 %zu, x2 %zu, mean %+.3f %%, rmse %.3f %%\n", samples, direct, dn, count13, count2, 100 * (m / mean - 1), 100 * std::sqrt(sq) / mean);
+  return out;
+}
+
+/// A firefly is a texel that is a third brighter than each texel beside it, and than the truth is
+/// there and beside it, and that is not in the dark, below a twentieth of the mean. A dot that
+/// stands out by a third is seen at a glance; what the denoiser leaves of the noise, and the noise
+/// of the truth, are a tenth of that. Charts of few texels have nothing to stand out from: there
+/// must be five neighbours, as at a border.
+size_t fireflies(const Bake& bake, const Bake& truth) {
+  constexpr float kSeen = 4.0f / 3;
+  const float dark = 0.05f * float(mean_light(truth));
+  size_t count = 0;
+  for (size_t i = 0; i < bake.light.irradiance.size(); ++i) {
+    const Around own = around(bake, i), true_light = around(truth, i);
+    const float brightest =
+        std::max({own.brightest, true_light.brightest, luminance(truth.light.irradiance[i])});
+    const float light = luminance(bake.light.irradiance[i]);
+    count += own.count >= 5 && light > dark && light > kSeen * brightest;
   }
+  return count;
+}
+
+/// The sum and the peak of direct light at those texels of the floor that `is_there` picks.
+struct Highlight {
+  double sum = 0;
+  float peak = 0;
+};
+template <class IsThere>
+Highlight highlight(const Bake& bake, const IsThere& is_there) {
+  Highlight out;
+  for (size_t i = 0; i < bake.map.texels.size(); ++i) {
+    const Vec3 p = scene::world_position(bake.scene, bake.map.texels[i].sample);
+    if (p.y > 0.01f || !is_there(p)) continue;
+    const float light = luminance(bake.light.direct[i]);
+    out.sum += double(light), out.peak = std::max(out.peak, light);
+  }
+  return out;
+}
+
+// 16 samples and 16 shadow rays; the truth has 256 and 64. Sums and peaks are held against what was
+// sampled: whether a texel's points find a circle is none of the denoiser's business. Where light
+// is known to some percent, the brightest texel of a few may fall by that, hence 0.85 and 0.95.
+TEST(Fireflies, NoneInAGalleryWhoseSmallLightsStay) {
+  using namespace testing_support::gallery;
+  const Bake truth = bake_gallery(256, 64, false), noisy = bake_gallery(16, 16, false),
+             quiet = bake_gallery(16, 16, true);
+  ASSERT_EQ(quiet.map.texels.size(), truth.map.texels.size());
+  EXPECT_GT(fireflies(noisy, truth), 50u);
+  EXPECT_EQ(fireflies(quiet, truth), 0u);
+  // Each part keeps its sum; seams and refilled texels, which follow, do not. The noise of the mean
+  // of 20,000 texels, 17 % each, is 0.12 %.
+  EXPECT_NEAR(mean_light(quiet), mean_light(noisy), 0.0012 * mean_light(noisy));
+  for (const Vec3 at : kCircles) {
+    const auto is_near = [&](Vec3 p) { return length(p - at) < kCircle_m + 0.13f; };
+    const Highlight before = highlight(noisy, is_near), after = highlight(quiet, is_near);
+    EXPECT_GT(after.sum, 0.85 * before.sum) << at.x;
+    EXPECT_GT(after.peak, 0.85f * before.peak) << at.x;
+  }
+  const auto is_in_beam = [&](Vec3 p) {
+    const Vec3 slit = p - kSunTravels * kHeight_m;
+    const auto [x0, x1, z0, z1] = kSlit;
+    return slit.x > x0 - 0.06f && slit.x < x1 + 0.06f && slit.z > z0 && slit.z < z1;
+  };
+  const Highlight before = highlight(noisy, is_in_beam), after = highlight(quiet, is_in_beam);
+  EXPECT_GT(after.sum, 0.99 * before.sum);
+  EXPECT_GT(after.peak, 0.95f * before.peak);
 }
 
 }  // namespace

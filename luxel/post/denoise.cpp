@@ -1,5 +1,7 @@
 #include "luxel/post/denoise.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "luxel/base/check.h"
@@ -134,11 +136,74 @@ constexpr float kRadii[] = {1.6f, 2.5f, 4, 6, 9};
 /// that no outlier stands alone for ever.
 constexpr float kFirstDeviations = 2;
 
+/// Standard deviation over luminance, 1 at most: black has no colour to be given light in.
+float relative_noise(Rgb value, float variance) {
+  const float l = luminance(value);
+  return l > 0 ? std::min(1.0f, std::sqrt(variance) / l) : 0.0f;
+}
+
+/// No more than this part of the light is given back: more is not the skew of noise.
+constexpr double kMostGivenBack = 0.2;
+
+/// Sums of values, and of values times relative noise, over texels that have noise.
+struct Balance {
+  std::array<double, 3> light{}, noise{};
+};
+Balance balance_of(const Neighbourhood& n, const NoiseLevel& noise, std::span<const Rgb> values) {
+  Balance sum;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (n.place[i].spacing <= 0 || noise.variance[i] <= 0) continue;
+    const float relative = relative_noise(values[i], noise.variance[i]);
+    for (int c = 0; c < 3; ++c) {
+      sum.light[size_t(c)] += double(values[i][c]);
+      sum.noise[size_t(c)] += double(values[i][c] * relative);
+    }
+  }
+  return sum;
+}
+
+/// Gives back what the filter has taken from the sum of the light, or takes what it has added, in
+/// proportion to light and to how noisy it was. Noise of few samples is skewed, and planes through
+/// what agrees lean towards its median, by as much as there is noise.
+void keep_sum(const Neighbourhood& n, const NoiseLevel& noise, const Balance& before,
+              std::span<Rgb> values) {
+  const Balance after = balance_of(n, noise, values);
+  const auto share = [&](size_t c) {
+    if (!(after.noise[c] > 0)) return 0.0f;
+    return float(std::clamp((before.light[c] - after.light[c]) / after.noise[c], -kMostGivenBack,
+                            kMostGivenBack));
+  };
+  const Rgb factor{share(0), share(1), share(2)};
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (n.place[i].spacing <= 0 || noise.variance[i] <= 0) continue;
+    values[i] += values[i] * factor * relative_noise(values[i], noise.variance[i]);
+  }
+}
+
+/// The fireflies of a part; of direct light those that are none on a closer look left out.
+Result<std::vector<Firefly>> fireflies_of(const Neighbourhood& n, const NoiseLevel& noise,
+                                          const NoisyLight& part) {
+  if (part.is_direct && !part.look_again) return std::vector<Firefly>{};
+  std::vector<Firefly> found =
+      find_fireflies(n, {part.values, part.variance, noise, part.is_direct});
+  if (!part.is_direct || found.empty()) return found;
+  std::vector<uint32_t> texels;
+  for (const Firefly& f : found) texels.push_back(f.texel);
+  LUXEL_TRY(const std::vector<Rgb> seen, part.look_again(texels));
+  LUXEL_CHECK(seen.size() == found.size());
+  for (size_t k = 0; k < found.size(); ++k) found[k].luminance = luminance(seen[k]);
+  std::erase_if(found,
+                [&](const Firefly& f) { return !(f.luminance < luminance(part.values[f.texel])); });
+  return found;
+}
+
 /// Filters one part in place.
 Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLight& part,
               Progress& progress) {
   const NoiseLevel noise = noise_level(n, part.values, part.variance);
-  share_out_fireflies(n, {part.variance, noise, part.is_direct}, part.values);
+  const Balance before = balance_of(n, noise, part.values);
+  LUXEL_TRY(const std::vector<Firefly> fireflies, fireflies_of(n, noise, part));
+  share_out(n, part.variance, fireflies, part.values);
   Planes planes{std::vector<Plane>(part.values.size()), std::vector<Shown>(part.values.size())};
   std::vector<Plane>& now = planes.planes;
   for (size_t i = 0; i < now.size(); ++i) now[i] = {part.values[i], {}, {}, noise.variance[i], 0};
@@ -153,6 +218,7 @@ Status filter(const Neighbourhood& n, const DenoiseParams& params, const NoisyLi
     if (n.place[i].spacing <= 0 || noise.variance[i] <= 0) continue;
     if (is_finite(now[i].value)) part.values[i] = max(now[i].value, Rgb{});
   }
+  keep_sum(n, noise, before, part.values);
   return {};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -34,13 +35,18 @@ struct DenoiseParams {
   float max_deviations = 2.5f;
 };
 
+/// Samples texels again, more finely: a value for each.
+using LookAgain = std::function<Result<std::vector<Rgb>>(std::span<const uint32_t> texels)>;
+
 /// A part of the light, one value per texel [any unit], and the estimated variance of its luminance
 /// [unit^2]: an upper bound, which is lowered to what neighbours show.
 struct NoisyLight {
   std::span<Rgb> values;
   std::span<const float> variance;
-  /// Small bright spots may be light, and not fireflies (luxel/post/outliers.h).
+  /// Direct light: a single bright texel may be a spot's circle. What looks like a firefly is
+  /// looked at again, and lowered to what is seen then; without `look_again` it stays.
   bool is_direct = false;
+  LookAgain look_again = {};
 };
 
 /// The filter that this build has: "luxel", or "oidn" where Open Image Denoise was found.
@@ -50,9 +56,9 @@ std::string_view denoiser_name();
 /// texels around it on the same surface, on whichever charts they lie; windows grow in steps, and a
 /// neighbour counts for as long as its estimate agrees with that plane to within what their
 /// variances explain (propagation and separation [Polzehl00, Polzehl06]; docs/method/denoise.md).
-/// Fireflies are shared out among their neighbours first. Texels without variance around them keep
-/// their values bit for bit. Values stay finite and non-negative. The same bits for any number of
-/// threads. Errors: cancelled.
+/// Fireflies (luxel/post/outliers.h) are shared out among their neighbours first. The sum of values
+/// stays. Texels without variance around them keep their values bit for bit. Values stay finite and
+/// non-negative. The same bits for any number of threads. Errors: cancelled; those of look_again.
 Status denoise(const TexelGeometry& places, std::span<const NoisyLight> parts,
                const DenoiseParams& params, Progress& progress);
 

@@ -14,40 +14,36 @@ constexpr size_t kFewestAround = 6;
 /// A whole neighbourhood is 20 texels, that of a texel at a straight border 12.
 constexpr size_t kMostAtBorder = 15;
 
-/// What the texels around one show.
-struct Surrounding {
-  size_t count = 0, noisy = 0;        ///< texels, and those that state a variance
-  std::array<float, 3> brightest{};  ///< luminances in descending order
+/// The brightest of some texels.
+struct Brightest {
+  size_t count = 0;
+  std::array<float, 3> luminances{};  ///< in descending order
 
-  void add(float light, bool is_noisy) {
-    ++count, noisy += is_noisy;
-    if (light > brightest[0])
-      brightest = {light, brightest[0], brightest[1]};
-    else if (light > brightest[1])
-      brightest = {brightest[0], light, brightest[1]};
+  void add(float light) {
+    ++count;
+    std::array<float, 3>& l = luminances;
+    if (light > l[0])
+      l = {light, l[0], l[1]};
+    else if (light > l[1])
+      l = {l[0], light, l[1]};
     else
-      brightest[2] = std::max(brightest[2], light);
-  }
-  /// The luminance that a texel is judged by; infinite where its neighbours are too few. At a
-  /// border half of a line's or a spot's texels are missing.
-  float usual() const {
-    if (count < kFewestAround) return INFINITY;
-    return count < kMostAtBorder ? brightest[1] : brightest[2];
+      l[2] = std::max(l[2], light);
   }
 };
 
-Surrounding surrounding(const Neighbourhood& n, std::span<const float> variance,
-                        std::span<const Rgb> values, uint32_t i) {
-  Surrounding around;
+/// The luminance of the neighbour that a texel is judged by; infinite where they are too few.
+float usual_around(const Neighbourhood& n, std::span<const Rgb> values, uint32_t i) {
   // On a strip of one texel's width neighbours are few: more of them lie farther away.
   for (const float radius : {kFireflyRadius, kFireflyRadiusOfStrips}) {
-    around = {};
+    Brightest around;
     for_neighbours(n, i, radius, [&](uint32_t j, const Neighbour&) {
-      if (j != i) around.add(luminance(values[j]), variance[j] > 0);
+      if (j != i) around.add(luminance(values[j]));
     });
-    if (around.count >= kFewestAround) break;
+    if (around.count < kFewestAround) continue;
+    // At a border half of a line's or a spot's texels are missing.
+    return around.luminances[around.count < kMostAtBorder ? 1 : 2];
   }
-  return around;
+  return INFINITY;
 }
 
 /// The largest variance that explains a texel of indirect light. A single square of a difference of
@@ -59,50 +55,55 @@ float stated_around(const Neighbourhood& n, std::span<const float> variance, uin
   return std::max(variance[i], sum / count);
 }
 
-/// The luminance to which a firefly is lowered; infinite for what is none.
-float lowered(const Neighbourhood& n, const Outliers& part, std::span<const Rgb> values,
-              uint32_t i) {
-  const Surrounding around = surrounding(n, part.variance, values, i);
-  const float light = luminance(values[i]), usual = around.usual(), above = light - usual;
+/// The luminance to which a texel is to be lowered; infinite for what is no firefly.
+float lowered(const Neighbourhood& n, const Outliers& part, uint32_t i) {
+  const float usual = usual_around(n, part.values, i);
+  const float light = luminance(part.values[i]), above = light - usual;
   if (!(above > 0)) return INFINITY;
   if (!part.is_direct && light > kFirefly * usual) return usual;
   const auto within = [&](float deviations, float variance) {
     return above * above <= deviations * deviations * variance;
   };
   if (within(kStandsOut, part.noise.variance[i])) return INFINITY;
-  const bool is_firefly = part.is_direct
-                              ? 2 * around.noisy >= around.count && within(kExplainedDirect, part.variance[i])
-                              : within(kExplained, stated_around(n, part.variance, i));
+  const bool is_firefly = part.is_direct ? within(kExplainedDirect, part.variance[i])
+                                         : within(kExplained, stated_around(n, part.variance, i));
   return is_firefly ? usual : INFINITY;
+}
+
+bool is_noisy(const Neighbourhood& n, std::span<const float> variance, uint32_t i) {
+  return variance[i] > 0 && n.place[i].spacing > 0;
 }
 
 }  // namespace
 
-size_t share_out_fireflies(const Neighbourhood& n, const Outliers& part, std::span<Rgb> values) {
-  const auto is_noisy = [&](size_t i) { return part.variance[i] > 0 && n.place[i].spacing > 0; };
-  std::vector<float> lowered_to(values.size(), INFINITY);
-  parallel_for(values.size(), kBlockTexels, [&](size_t begin, size_t end) {
-    for (uint32_t i = uint32_t(begin); i < end; ++i) {
-      if (!is_noisy(i)) continue;
-      lowered_to[i] = lowered(n, part, values, i);
-    }
+std::vector<Firefly> find_fireflies(const Neighbourhood& n, const Outliers& part) {
+  std::vector<float> lowered_to(part.values.size(), INFINITY);
+  parallel_for(part.values.size(), kBlockTexels, [&](size_t begin, size_t end) {
+    for (uint32_t i = uint32_t(begin); i < end; ++i)
+      if (is_noisy(n, part.variance, i)) lowered_to[i] = lowered(n, part, i);
   });
+  std::vector<Firefly> found;
+  for (uint32_t i = 0; i < lowered_to.size(); ++i)
+    if (lowered_to[i] < INFINITY) found.push_back({i, lowered_to[i]});
+  return found;
+}
+
+void share_out(const Neighbourhood& n, std::span<const float> variance,
+               std::span<const Firefly> fireflies, std::span<Rgb> values) {
   // Few and one after the other: sums have one order for any number of threads.
   std::vector<Rgb> added(values.size());
-  size_t count = 0;
-  for (uint32_t i = 0; i < values.size(); ++i) {
-    if (lowered_to[i] == INFINITY) continue;
-    std::vector<uint32_t> takers;
-    for_neighbours(n, i, kShareRadius, [&](uint32_t j, const Neighbour&) {
-      if (is_noisy(j)) takers.push_back(j);
+  std::vector<uint32_t> takers;
+  for (const Firefly& f : fireflies) {
+    takers.clear();
+    for_neighbours(n, f.texel, kShareRadius, [&](uint32_t j, const Neighbour&) {
+      if (is_noisy(n, variance, j)) takers.push_back(j);
     });
-    const Rgb kept = values[i] * (lowered_to[i] / luminance(values[i]));
-    for (const uint32_t j : takers) added[j] += (values[i] - kept) / float(takers.size());
-    values[i] = kept;
-    ++count;
+    Rgb& value = values[f.texel];
+    const Rgb kept = value * (f.luminance / luminance(value));
+    for (const uint32_t j : takers) added[j] += (value - kept) / float(takers.size());
+    value = kept;
   }
   for (size_t i = 0; i < values.size(); ++i) values[i] += added[i];
-  return count;
 }
 
 }  // namespace luxel::post

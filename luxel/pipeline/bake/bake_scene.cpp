@@ -48,7 +48,7 @@ Status solve(const BakeSettings& settings, const light::TexelScene& input,
         settings.solver));
   LUXEL_TRY(bake.light, solver.solve(input, settings, stores, observer, progress));
   if (settings.denoise)
-    LUXEL_TRY_STATUS(denoise_light(input, settings.repair_leaks, bake.light, progress));
+    LUXEL_TRY_STATUS(denoise_light(input, settings, bake.light, progress));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};
 }

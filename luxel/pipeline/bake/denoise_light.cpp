@@ -1,8 +1,11 @@
 #include "luxel/pipeline/bake/denoise_light.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "luxel/base/check.h"
+#include "luxel/base/random.h"
+#include "luxel/light/supersample.h"
 #include "luxel/pipeline/texels/texel_layout.h"
 #include "luxel/post/denoise.h"
 
@@ -28,14 +31,40 @@ std::vector<uint32_t> regions_of(const light::TexelScene& in, float max_angle_ra
   return least;
 }
 
+/// Any number: it sets these shadow rays apart from the first ones.
+constexpr uint64_t kAgainSeed = 0xa6a1;
+/// Texels between two looks at whether the bake is cancelled.
+constexpr size_t kAgainGrain = 64;
+
+/// The direct light of `texels`, averaged over each. Errors: cancelled.
+Result<std::vector<Rgb>> direct_light_again(const light::TexelScene& in,
+                                            const BakeSettings& settings, const TexelLight& light,
+                                            std::span<const uint32_t> texels, Progress& progress) {
+  light::SupersampleParams params{.points = std::max(settings.supersample, kLookAgain)};
+  params.direct.samples = settings.direct_samples * kLookAgain;
+  params.direct.seed = hash64(settings.seed, kAgainSeed);
+  light::DirectLight direct;
+  direct.irradiance = light.direct;
+  direct.variance = direct.split_variance = light.direct_variance;
+  std::vector<Rgb> out;
+  for (size_t begin = 0; begin < texels.size(); begin += kAgainGrain) {
+    LUXEL_TRY_STATUS(stopped(progress));
+    Progress quiet;  // the stage stays that of the denoiser
+    const auto some = texels.subspan(begin, std::min(kAgainGrain, texels.size() - begin));
+    LUXEL_TRY_STATUS(light::average_texels(in, some, params, direct, quiet));
+    for (const uint32_t i : some) out.push_back(direct.irradiance[i]);
+  }
+  return out;
+}
+
 }  // namespace
 
-Status denoise_light(const light::TexelScene& in, bool repair_leaks, TexelLight& light,
+Status denoise_light(const light::TexelScene& in, const BakeSettings& settings, TexelLight& light,
                      Progress& progress) {
   LUXEL_CHECK(light.variance.size() == light.irradiance.size());
   const post::DenoiseParams params;
   std::vector<uint32_t> regions;
-  if (repair_leaks) regions = regions_of(in, params.max_normal_angle_rad);
+  if (settings.repair_leaks) regions = regions_of(in, params.max_normal_angle_rad);
   const post::TexelGeometry places{.scene = in.scene,
                                    .atlas = in.atlas,
                                    .map = in.map,
@@ -48,7 +77,11 @@ Status denoise_light(const light::TexelScene& in, bool repair_leaks, TexelLight&
   for (size_t i = 0; i < light.direct.size(); ++i)
     rest[i] = max(light.irradiance[i] - light.direct[i], Rgb{});
   std::vector<post::NoisyLight> parts{{rest, light.variance}};
-  if (!light.direct.empty()) parts.push_back({light.direct, light.direct_variance, true});
+  const auto look_again = [&](std::span<const uint32_t> texels) {
+    return direct_light_again(in, settings, light, texels, progress);
+  };
+  if (!light.direct.empty())
+    parts.push_back({light.direct, light.direct_variance, true, look_again});
   LUXEL_TRY_STATUS(post::denoise(places, parts, params, progress));
   for (size_t i = 0; i < light.direct.size(); ++i) rest[i] += light.direct[i];
   light.irradiance = std::move(rest);

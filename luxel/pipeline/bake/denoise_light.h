@@ -6,10 +6,12 @@
 namespace luxel::pipeline {
 
 /// Filters the direct part and the rest apart, for the edges of shadows are in the one and most of
-/// the noise is in the other. With repair_leaks, light stays among charts that hang together by
-/// seams on which no barrier stands all along: charts are cut where walls stand on them, so none
-/// gets into a closed room. Errors: cancelled.
-Status denoise_light(const light::TexelScene& in, bool repair_leaks, TexelLight& light,
+/// the noise is in the other. With settings.repair_leaks, light stays among charts that hang
+/// together by seams on which no barrier stands all along: charts are cut where walls stand on
+/// them, so none gets into a closed room. Texels whose direct light looks like a firefly get
+/// kLookAgain times the shadow rays of settings. Errors: cancelled.
+Status denoise_light(const light::TexelScene& in, const BakeSettings& settings, TexelLight& light,
                      Progress& progress);
+inline constexpr int kLookAgain = 16;
 
 }  // namespace luxel::pipeline

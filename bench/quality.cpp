@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "bench/bench.h"
+#include "bench/timing.h"
 #include "luxel/base/parallel.h"
 #include "luxel/display/draw.h"
 #include "luxel/display/tone_map.h"
@@ -119,11 +120,6 @@ double noise_of(const pipeline::TexelLight& light, std::span<const float> varian
 struct QualityFigures {
   double seconds = 0, flip = 0, indirect = 0, direct = 0;
 };
-
-/// Processor seconds since a moment: those of a clock on the wall say how busy the machine is.
-double processor_seconds_since(std::clock_t start) {
-  return double(std::clock() - start) / CLOCKS_PER_SEC;
-}
 
 /// A long bake, whose layout and camera the others take. Members refer to each other: it is made in
 /// place and not moved.

@@ -26,6 +26,7 @@ pipeline::BakeSettings settings_of(int samples, uint64_t seed) {
   settings.samples = samples;
   settings.direct_samples = samples / 4;
   settings.seed = seed;
+  settings.supersample = 1;  // validate::solve() samples points
   return settings;
 }
 

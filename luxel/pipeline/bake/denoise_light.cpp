@@ -36,11 +36,12 @@ constexpr uint64_t kAgainSeed = 0xa6a1;
 /// Texels between two looks at whether the bake is cancelled.
 constexpr size_t kAgainGrain = 64;
 
-/// The direct light of `texels`, averaged over each. Errors: cancelled.
+/// The direct light of `texels`: averaged over each, or, as the bake has it, at their samples.
+/// Errors: cancelled.
 Result<std::vector<Rgb>> direct_light_again(const light::TexelScene& in,
                                             const BakeSettings& settings, const TexelLight& light,
                                             std::span<const uint32_t> texels, Progress& progress) {
-  light::SupersampleParams params{.points = std::max(settings.supersample, kLookAgain)};
+  light::SupersampleParams params{.points = settings.supersample};
   params.direct.samples = settings.direct_samples * kLookAgain;
   params.direct.seed = hash64(settings.seed, kAgainSeed);
   light::DirectLight direct;
@@ -51,7 +52,11 @@ Result<std::vector<Rgb>> direct_light_again(const light::TexelScene& in,
     LUXEL_TRY_STATUS(stopped(progress));
     Progress quiet;  // the stage stays that of the denoiser
     const auto some = texels.subspan(begin, std::min(kAgainGrain, texels.size() - begin));
-    LUXEL_TRY_STATUS(light::average_texels(in, some, params, direct, quiet));
+    if (params.points > 1)
+      LUXEL_TRY_STATUS(light::average_texels(in, some, params, direct, quiet));
+    else
+      LUXEL_TRY_STATUS(light::direct_light_again({in.scene, in.elements, in.lights, in.tracer},
+                                                 some, params.direct, direct, quiet));
     for (const uint32_t i : some) out.push_back(direct.irradiance[i]);
   }
   return out;

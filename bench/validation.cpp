@@ -37,9 +37,6 @@ std::string show(const PageFile& file, std::string_view words) {
   return fmt::format("![{}](../images/validation-{})", words, file.name);
 }
 
-namespace {
-
-/// Breaks lines of prose at 120 characters. Tables, pictures, headings and code stay as they are.
 std::string wrapped(std::string_view markdown) {
   constexpr size_t kWidth = 120;
   constexpr std::string_view kWhole = "|!# ";  // what a line begins with that is not prose
@@ -60,8 +57,6 @@ std::string wrapped(std::string_view markdown) {
   }
   return out;
 }
-
-}  // namespace
 
 Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
   const auto start = Clock::now();

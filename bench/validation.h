@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "luxel/base/progress.h"
@@ -45,6 +46,8 @@ Result<Page> validate(const std::filesystem::path& shared, Progress& progress);
 /// "| a | b |" lines of a table.
 std::string markdown_table(const std::vector<std::string>& columns,
                            const std::vector<std::vector<std::string>>& rows);
+/// Breaks lines of prose at 120 characters. Tables, pictures, headings and code stay as they are.
+std::string wrapped(std::string_view markdown);
 /// A plot as a file of the page.
 PageFile svg_file(std::string name, const std::string& svg);
 /// A picture as a file of the page.

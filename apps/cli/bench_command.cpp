@@ -1,10 +1,12 @@
 // `luxel bench NAME`: the tables and the page in docs/. What they measure: bench/.
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <span>
 
 #include "apps/cli/cli.h"
 #include "bench/bench.h"
+#include "bench/gallery.h"
 #include "bench/hemicube.h"
 #include "bench/hierarchical.h"
 #include "bench/relight.h"
@@ -17,11 +19,12 @@ namespace luxel::cli {
 namespace {
 
 constexpr const char *kValidation = "validation", *kHemicube = "hemicube", *kRelight = "relight",
-                     *kHierarchical = "hierarchical";
+                     *kHierarchical = "hierarchical", *kGallery = "gallery";
 
 struct BenchOptions {
   Common common;
   std::string name;
+  std::string scene;  ///< gallery: the stem of the only one
   std::string shared;
   std::string output = "docs";
 };
@@ -31,11 +34,11 @@ std::filesystem::path default_shared() {
   return "../shared";
 }
 
-/// Writes bench/NAME.EXTENSION and images/NAME-* in `folder`, all of them or none.
+/// Writes the page and images/NAME-* in `folder`, all of them or none.
 Status write_with_pictures(const OutputFile& page, const std::string& name,
                            std::span<const bench::PageFile> pictures,
                            const std::filesystem::path& folder) {
-  OutputFolder pages(folder / "bench"), images(folder / "images");
+  OutputFolder pages(page.path.parent_path()), images(folder / "images");
   LUXEL_TRY_STATUS(pages.make());
   LUXEL_TRY_STATUS(images.make());
   std::vector<OutputFile> files{page};
@@ -47,37 +50,46 @@ Status write_with_pictures(const OutputFile& page, const std::string& name,
 }
 
 /// Before work of minutes: whether write_with_pictures() will find its folders writable.
-Status try_out_folders(const std::filesystem::path& folder) {
-  LUXEL_TRY_STATUS(OutputFolder(folder / "bench").try_out());
+Status try_out_folders(const std::filesystem::path& folder, const char* pages = "bench") {
+  LUXEL_TRY_STATUS(OutputFolder(folder / pages).try_out());
   return OutputFolder(folder / "images").try_out();
 }
 
-std::filesystem::path validation_page(const std::filesystem::path& folder) {
-  return folder / "bench" / "validation.md";
-}
+/// A benchmark that writes a page of docs.
+struct BenchPage {
+  std::string name;    ///< begins the names of its pictures
+  const char* folder;  ///< of the page, in docs
+  Result<bench::Page> (*make)(const std::filesystem::path& shared, const BenchOptions& options,
+                              Progress& progress);
+};
+const std::array<BenchPage, 2> kPages{
+    {{kValidation, "bench",
+      [](const std::filesystem::path& shared, const BenchOptions&, Progress& progress) {
+        return bench::validate(shared, progress);
+      }},
+     {kGallery, "guide",
+      [](const std::filesystem::path& shared, const BenchOptions& options, Progress& progress) {
+        return bench::make_gallery(shared, options.scene, progress);
+      }}}};
 
-/// validation.md and its pictures.
-Status write_page(const bench::Page& page, const std::filesystem::path& folder,
-                  Progress& progress) {
-  progress.begin(kWriteStage, 0);
-  return write_with_pictures(text_file(validation_page(folder), page.markdown), kValidation,
-                             page.files, folder);
-}
-
-int run_validation(const BenchOptions& options, const std::filesystem::path& shared) {
+/// NAME.md and its pictures.
+int write_page(const BenchPage& which, const BenchOptions& options,
+               const std::filesystem::path& shared) {
   const ThreadLimit limit(options.common.threads);
   const std::filesystem::path folder = options.output;
+  const std::filesystem::path file = folder / which.folder / (which.name + ".md");
   bench::Page page;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
-    LUXEL_TRY_STATUS(try_out_folders(folder));
-    LUXEL_TRY(page, bench::validate(shared, progress));
-    return write_page(page, folder, progress);
+    LUXEL_TRY_STATUS(try_out_folders(folder, which.folder));
+    LUXEL_TRY(page, which.make(shared, options, progress));
+    progress.begin(kWriteStage, 0);
+    return write_with_pictures(text_file(file, page.markdown), which.name, page.files, folder);
   });
   if (!done) return report(done.error(), options.common);
   if (options.common.json)
     std::printf("%s\n", page.json.dump(2).c_str());
   else if (!options.common.quiet)
-    std::printf("wrote %s\n", validation_page(folder).c_str());
+    std::printf("wrote %s\n", file.c_str());
   return kDone;
 }
 
@@ -128,7 +140,8 @@ int run_tables(const BenchOptions& options, const std::filesystem::path& shared)
 int run_bench(const BenchOptions& options) {
   const std::filesystem::path shared =
       options.shared.empty() ? default_shared() : std::filesystem::path(options.shared);
-  if (options.name == kValidation) return run_validation(options, shared);
+  for (const BenchPage& page : kPages)
+    if (options.name == page.name) return write_page(page, options, shared);
   const bool all = options.name == "all";
   // First of all: it measures memory in a child process, which must not miss this one's threads.
   if (options.name == kHemicube || all)
@@ -150,22 +163,27 @@ int run_bench(const BenchOptions& options) {
 
 void register_bench(CLI::App& app, Action& action) {
   CLI::App* bench = app.add_subcommand(
-      "bench", "Print the tables of docs/bench/benchmarks.md, or write docs/bench/validation.md");
+      "bench",
+      "Print the tables of docs/bench/benchmarks.md, or write docs/bench/validation.md "
+      "or docs/guide/gallery.md");
   auto options = std::make_shared<BenchOptions>();
-  std::vector<std::string> names{"all", kValidation, kHemicube, kRelight, kHierarchical};
+  std::vector<std::string> names{"all", kValidation, kGallery, kHemicube, kRelight, kHierarchical};
   for (const bench::Bench& b : bench::kBenches) names.emplace_back(b.name);
   bench
-      ->add_option("NAME", options->name,
-                   "Which table; all of them; or validation: the page that holds luxel against "
-                   "exact answers and a path tracer (a quarter of an hour)")
+      ->add_option(
+          "NAME", options->name,
+          "Which table; all of them; or a page: validation holds luxel against exact answers "
+          "and a path tracer (a quarter of an hour), gallery shows bakes without options "
+          "(most of an hour)")
       ->check(CLI::IsMember(names))
       ->required();
+  bench->add_option("--scene", options->scene, "gallery: this scene alone, by its file's stem");
   bench->add_option("--shared", options->shared,
                     "Folder with scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
   bench->add_option(
       "-o,--output", options->output,
-      "validation, hemicube, relight, hierarchical: folder in which bench/ gets the page or the "
-      ".csv, and images/ the pictures "
+      "validation, gallery, hemicube, relight, hierarchical: folder in which bench/ or guide/ gets "
+      "the page or the .csv, and images/ the pictures "
       "(default: docs)");
   add_common(*bench, options->common);
   bench->callback([options, &action] { action = [options] { return run_bench(*options); }; });

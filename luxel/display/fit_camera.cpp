@@ -1,9 +1,10 @@
 // A camera for scenes that bring none.
 //
 // First inside or outside: a scene is looked at from inside when a good part of the places in it
-// lie in rooms that have light. Then candidates stand in these rooms, or around the scene. Each
-// looks with a coarse grid of rays and is scored by how much of the scene's front faces it shows,
-// how finely what it shows is made, and how much of it lies in the light.
+// lie in rooms that have light, or when it has rooms with light and none outside. Then candidates
+// stand in these rooms, or around the scene. Each looks with a coarse grid of rays and is scored by
+// how much of the scene's front faces it shows, how finely what it shows is made, and how much of
+// it lies in the light.
 #include "luxel/display/fit_camera.h"
 
 #include <algorithm>
@@ -32,6 +33,8 @@ constexpr int kProbeRows = 48;    ///< rays over the height of a candidate's pic
 constexpr double kRooms = 0.5, kLitRooms = 0.1;
 /// Rooms of which so much is seen from outside need no camera inside.
 constexpr double kDollsHouse = 0.6;
+/// Outside is dark when no camera there sees more than this share of its surfaces in the light.
+constexpr double kDark = 0.02;
 constexpr size_t kPlacesToTry = 24;
 /// Part of the scene's diagonal.
 constexpr double kWide = 0.25;
@@ -103,15 +106,16 @@ void add_outside(const Box3& box, float aspect, std::vector<Candidate>& out) {
     }
 }
 
+bool is_lit_room(const PlaceInside& p) { return is_enclosed(p) && is_lit(p); }
+
 /// The places to look from: those in lit rooms, else those with most surfaces around them.
 std::vector<PlaceInside> places_to_try(std::vector<PlaceInside> places) {
-  const auto is_room = [](const PlaceInside& p) { return is_enclosed(p) && is_lit(p); };
   std::ranges::stable_sort(places, [&](const PlaceInside& a, const PlaceInside& b) {
-    return is_room(a) != is_room(b) ? is_room(a) : a.around + a.lit > b.around + b.lit;
+    return is_lit_room(a) != is_lit_room(b) ? is_lit_room(a) : a.around + a.lit > b.around + b.lit;
   });
   if (places.size() > kPlacesToTry) places.resize(kPlacesToTry);
-  if (!places.empty() && is_room(places.front()))
-    std::erase_if(places, [&](const PlaceInside& p) { return !is_room(p); });
+  if (!places.empty() && is_lit_room(places.front()))
+    std::erase_if(places, [&](const PlaceInside& p) { return !is_lit_room(p); });
   return places;
 }
 
@@ -198,6 +202,17 @@ double light_marks(const Stage& stage, const View& view) {
   return 0.3 + 0.7 * std::min(1.0, view.lit / 0.75);
 }
 
+/// Whether lights leave what cameras show in the dark. The surroundings leave nothing so.
+bool is_dark(const Stage& stage, std::span<const Candidate> candidates) {
+  if (stage.glimpse.has_surroundings || stage.glimpse.sources.empty()) return false;
+  std::vector<uint8_t> dark(candidates.size());
+  parallel_for(candidates.size(), 8, [&](size_t begin, size_t end) {
+    std::vector<Seen> scratch(stage.first.back());
+    for (size_t i = begin; i < end; ++i) dark[i] = look(stage, candidates[i], scratch).lit <= kDark;
+  });
+  return std::ranges::all_of(dark, [](uint8_t d) { return d != 0; });
+}
+
 double score_of(const Stage& stage, const Candidate& candidate, std::vector<Seen>& scratch) {
   const View view = look(stage, candidate, scratch);
   // Inside, the finest thing of all is close to the eye soon: the room is what is to be seen.
@@ -231,8 +246,7 @@ scene::Camera parallel_view(const Box3& box, Vec3 right, Vec3 up, float aspect) 
 /// Whether rooms, and not all of them dark, are what there is of the scene.
 bool consists_of_rooms(std::span<const PlaceInside> places) {
   const auto enclosed = std::ranges::count_if(places, is_enclosed);
-  const auto lit = std::ranges::count_if(
-      places, [](const PlaceInside& p) { return is_enclosed(p) && is_lit(p); });
+  const auto lit = std::ranges::count_if(places, is_lit_room);
   return lit > 0 && double(enclosed) >= kRooms * double(places.size()) &&
          double(lit) >= kLitRooms * double(enclosed);
 }
@@ -273,8 +287,12 @@ std::vector<Candidate> usual_candidates(const Stage& stage, const Box3& box) {
   std::vector<Candidate> outside, inside;
   add_outside(box, stage.aspect, outside);
   std::vector<PlaceInside> places = places_inside(stage.scene, stage.tracer, stage.glimpse);
-  if (!consists_of_rooms(places)) return outside;
-  if (share_seen_from_outside(stage, places, outside) >= kDollsHouse) return outside;
+  const bool only_inside_is_lit =
+      std::ranges::any_of(places, is_lit_room) && is_dark(stage, outside);
+  if (!only_inside_is_lit) {
+    if (!consists_of_rooms(places)) return outside;
+    if (share_seen_from_outside(stage, places, outside) >= kDollsHouse) return outside;
+  }
   add_inside(places_to_try(std::move(places)), inside);
   return inside;
 }

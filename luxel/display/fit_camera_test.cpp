@@ -87,6 +87,18 @@ TEST(FitCamera, LooksFromInsideWhereThereIsLightInside) {
   EXPECT_TRUE(from_inside(with_window));
 }
 
+// A lit room before a wall three times as high and wide: most places in the air are out of the
+// room, but all that is to be seen is within.
+TEST(FitCamera, LooksFromInsideWhereOutsideIsDark) {
+  Scene scene = shell(false);
+  scene::add_quad(scene.meshes[0], {Vec3{-9, 0, -4}, {9, 0, -4}, {9, 12, -4}, {-9, 12, -4}}, 0);
+  scene::PunctualLight lamp;
+  lamp.position = {0, 2.5f, 0};
+  scene.lights.push_back(lamp);
+  const Vec3 eye = column(fitted(scene, 1.5f).world_from_camera, 3);
+  EXPECT_LT(std::max({std::abs(eye.x), std::abs(eye.y - 1.5f), std::abs(eye.z)}), 2);
+}
+
 // One-sided walls are invisible from outside: what there is of this closed room is seen from there.
 TEST(FitCamera, LooksIntoADollsHouseFromOutside) {
   Scene room = open_room();

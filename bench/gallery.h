@@ -1,0 +1,15 @@
+// The page that shows what a first bake gives: docs/guide/gallery.md, written by `luxel bench
+// gallery`.
+#pragma once
+
+#include "bench/validation.h"
+
+namespace luxel::bench {
+
+/// Every scene of `shared`/scenes, baked without any option, beside the same view path traced, with
+/// FLIP between both. `only`: the scene with this stem alone; empty: all. Some quarter of an hour
+/// per five scenes on two cores. Errors: no scene is there, cancelled, what bakes say.
+Result<Page> make_gallery(const std::filesystem::path& shared, std::string_view only,
+                          Progress& progress);
+
+}  // namespace luxel::bench

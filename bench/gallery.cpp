@@ -18,10 +18,10 @@
 namespace luxel::bench {
 namespace {
 
-constexpr int kPictureHeight = 300;
+constexpr int kPictureHeight = 240;
 /// Two independent pictures of this many paths per pixel each: their difference says how much of
 /// FLIP is noise of the paths.
-constexpr int kPathsPerPicture = 256;
+constexpr int kPathsPerPicture = 192;
 /// Pixels between the two pictures.
 constexpr int kGap = 4;
 

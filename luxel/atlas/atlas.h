@@ -112,4 +112,8 @@ AtlasStats atlas_stats(const scene::Scene& scene, const Atlas& atlas, const Texe
 /// The texels that triangles of more than one chart touch: only a kept TEXCOORD_1 has any.
 std::vector<uint32_t> overlapping_texels(const Atlas& atlas, const TexelMap& map);
 
+/// The texels of one chart that bilinear look-ups on another one blend in: charts lie less than a
+/// texel apart there. Only a kept TEXCOORD_1 has any.
+std::vector<uint32_t> blended_texels(const Atlas& atlas, const TexelMap& map);
+
 }  // namespace luxel::atlas

@@ -141,10 +141,11 @@ ChosenResolution choose_resolution(const scene::Scene& scene, const SceneDetail&
         out.wished,
         solve_rising([&](double d) { return texels_at(detail, d); }, most_texels, out.wished));
   const bool one_page = params.page_mode == PageMode::fixed && params.pages == 1;
-  const double kept = params.uv != UvMode::unwrap && one_page ? uv1_area(scene) : 0;
-  const double side = kept > 0 ? out.texels_per_metre * std::sqrt(detail.area_m2 / kept)
-                               : side_at(detail, out.texels_per_metre, params.gutter) /
-                                     std::sqrt(double(params.pages));
+  if (params.uv != UvMode::unwrap && one_page) out.uv1_area = uv1_area(scene);
+  const double side =
+      out.uv1_area > 0
+          ? out.texels_per_metre * std::sqrt(detail.area_m2 / out.uv1_area)
+          : side_at(detail, out.texels_per_metre, params.gutter) / std::sqrt(double(params.pages));
   out.resolution = nearest_side(side);
   return out;
 }

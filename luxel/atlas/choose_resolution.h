@@ -48,6 +48,7 @@ struct ChosenResolution {
   double texels_per_metre = 0;  ///< about what charts will get
   double wished = 0;            ///< fine_density()
   bool capped = false;          ///< the wished one needs more texels than `most_texels`
+  double uv1_area = 0;          ///< share of the square that TEXCOORD_1 fills; 0: it cannot be kept
 };
 
 /// The resolution of params.pages pages at which the density is about fine_density(), with no more

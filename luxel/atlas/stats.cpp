@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <span>
 
 #include "luxel/atlas/atlas.h"
 #include "luxel/atlas/cover.h"
@@ -29,11 +30,13 @@ Measure measure(const scene::Triangle3& world, const std::array<Vec2, 3>& uv) {
   return m;
 }
 
-/// Calls visit(index into map.texels) for every texel that the triangle touches.
+/// Calls visit(index into map.texels) for every texel that the triangle, moved by so much, touches.
 template <class Visit>
-void for_touched(const Atlas& atlas, const TexelMap& map, uint32_t number, const Visit& visit) {
+void for_touched(const Atlas& atlas, const TexelMap& map, uint32_t number, const Visit& visit,
+                 DVec2 moved = {}) {
   const auto& c = atlas.corners[number];
-  const UvTriangle t = uv_triangle({to_double(c[0]), to_double(c[1]), to_double(c[2])});
+  const UvTriangle t =
+      uv_triangle({to_double(c[0]) + moved, to_double(c[1]) + moved, to_double(c[2]) + moved});
   const int last = atlas.resolution - 1;
   const Span rows = touched_rows(t);
   for (int j = rows.begin; j < rows.end; ++j) {
@@ -44,6 +47,14 @@ void for_touched(const Atlas& atlas, const TexelMap& map, uint32_t number, const
       if (texel != kNone) visit(texel);
     }
   }
+}
+
+/// The texels that are marked.
+std::vector<uint32_t> numbers_of(std::span<const uint8_t> marked) {
+  std::vector<uint32_t> all;
+  for (uint32_t i = 0; i < marked.size(); ++i)
+    if (marked[i]) all.push_back(i);
+  return all;
 }
 
 /// Whether the triangle touches a texel of its chart, and whether it owns one.
@@ -101,10 +112,24 @@ std::vector<uint32_t> overlapping_texels(const Atlas& atlas, const TexelMap& map
     for_touched(atlas, map, t, [&](uint32_t texel) {
       if (atlas.chart[map.texels[texel].triangle_number] != atlas.chart[t]) shared[texel] = 1;
     });
-  std::vector<uint32_t> all;
-  for (uint32_t i = 0; i < shared.size(); ++i)
-    if (shared[i]) all.push_back(i);
-  return all;
+  return numbers_of(shared);
+}
+
+std::vector<uint32_t> blended_texels(const Atlas& atlas, const TexelMap& map) {
+  // A look-up blends texels whose centres lie less than a texel away in x and in y. A triangle
+  // looks a texel up if it reaches into the square of 2 x 2 texels about its centre: that square is
+  // the texel four times, moved by half a texel each way.
+  std::vector<uint8_t> blended(map.texels.size());
+  for (const DVec2 moved : {DVec2{-0.5, -0.5}, DVec2{0.5, -0.5}, DVec2{-0.5, 0.5}, DVec2{0.5, 0.5}})
+    for (uint32_t t = 0; t < atlas.corners.size(); ++t)
+      for_touched(
+          atlas, map, t,
+          [&](uint32_t texel) {
+            if (atlas.chart[map.texels[texel].triangle_number] != atlas.chart[t])
+              blended[texel] = 1;
+          },
+          moved);
+  return numbers_of(blended);
 }
 
 }  // namespace luxel::atlas

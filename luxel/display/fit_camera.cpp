@@ -34,7 +34,7 @@ constexpr double kRooms = 0.5, kLitRooms = 0.1;
 /// Rooms of which so much is seen from outside need no camera inside.
 constexpr double kDollsHouse = 0.6;
 /// Outside is dark when no camera there sees more than this share of its surfaces in the light.
-constexpr double kDark = 0.02;
+constexpr double kDark = 0.1;
 constexpr size_t kPlacesToTry = 24;
 /// Part of the scene's diagonal.
 constexpr double kWide = 0.25;
@@ -143,7 +143,24 @@ struct View {
   double near = 0;      ///< share of rays blocked right before the eye
   double width = 0;     ///< mean distance seen, up to kWide, over kWide
   double lit = 0;       ///< share of what is seen that a light reaches
+  double indoors = 0;   ///< share of the rays that see something with a roof above
 };
+
+/// For each hit, whether something is above it, or it is something above itself.
+std::vector<uint8_t> under_a_roof(const Stage& stage, std::span<const trace::Ray> rays,
+                                  std::span<const trace::Hit> hits) {
+  std::vector<trace::Ray> upwards;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    // A little before the surface, so that the ray does not begin on it.
+    const float t = hits[i].found() ? hits[i].t * (1 - 1e-3f) : 0;
+    upwards.push_back({rays[i].origin + rays[i].direction * t, 0, {0, 1, 0}, INFINITY});
+  }
+  std::vector<trace::Hit> above(hits.size());
+  stage.tracer.closest_hits(upwards, above);
+  std::vector<uint8_t> out(hits.size());
+  for (size_t i = 0; i < hits.size(); ++i) out[i] = hits[i].found() && above[i].found();
+  return out;
+}
 
 View look(const Stage& stage, const Candidate& candidate, std::vector<Seen>& scratch) {
   const scene::Scene& scene = stage.scene;
@@ -155,6 +172,8 @@ View look(const Stage& stage, const Candidate& candidate, std::vector<Seen>& scr
       rays.push_back(rays_of.through(float(x) + 0.5f, float(y) + 0.5f));
   const std::vector<trace::Hit> hits = trace::visible_hits(scene, stage.tracer, rays);
   const std::vector<uint8_t> lit = lit_by_sources(scene, stage.tracer, stage.glimpse, rays, hits);
+  const std::vector<uint8_t> roofed =
+      candidate.inside ? under_a_roof(stage, rays, hits) : std::vector<uint8_t>(hits.size());
 
   View view;
   const float pixel = 4 * length(rays_of.right) * length(rays_of.up) / float(rows * columns);
@@ -163,7 +182,7 @@ View look(const Stage& stage, const Candidate& candidate, std::vector<Seen>& scr
     const trace::Hit& hit = hits[i];
     if (!hit.found()) continue;
     view.coverage += 1;
-    view.lit += lit[i];
+    view.lit += lit[i], view.indoors += roofed[i];
     if (hit.t < 0.03f * stage.diagonal_m) view.near += 1;
     view.width += std::min(1.0, double(hit.t) / (kWide * double(stage.diagonal_m)));
     const float axis = dot(rays[i].direction, rays_of.forward);  // a pixel's solid angle: cos^3
@@ -186,6 +205,7 @@ View look(const Stage& stage, const Candidate& candidate, std::vector<Seen>& scr
   view.coverage /= double(rays.size());
   view.detail /= double(rays.size());
   view.near /= double(rays.size());
+  view.indoors /= double(rays.size());
   return view;
 }
 
@@ -217,8 +237,10 @@ double score_of(const Stage& stage, const Candidate& candidate, std::vector<Seen
   const View view = look(stage, candidate, scratch);
   // Inside, the finest thing of all is close to the eye soon: the room is what is to be seen.
   const double detail = candidate.inside ? std::sqrt(view.detail) * view.width : view.detail;
+  // What is seen through windows is not what a picture of rooms is to show.
+  const double indoors = candidate.inside ? view.indoors : 1;
   return detail * std::sqrt(view.area_m2) * coverage_marks(candidate, view) *
-         light_marks(stage, view) * (1 - view.near) * double(candidate.liking);
+         light_marks(stage, view) * (1 - view.near) * indoors * double(candidate.liking);
 }
 
 scene::Camera best_of(const Stage& stage, std::span<const Candidate> candidates) {

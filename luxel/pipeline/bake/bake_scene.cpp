@@ -91,6 +91,8 @@ Result<TexelLayout> lay_out_anew(const BakeSettings& settings, scene::Scene& sce
   layout.wrong_in_uv1 = sides.wrong_in_uv1, layout.warnings = std::move(sides.warnings);
   if (std::string text = about_resolution(settled, layout.atlas, layout.stats); !text.empty())
     layout.warnings.push_back(std::move(text));
+  LUXEL_TRY(std::string blended, about_blended(settled, scene, layout.atlas, layout.map, progress));
+  if (!blended.empty()) layout.warnings.push_back(std::move(blended));
   return layout;
 }
 

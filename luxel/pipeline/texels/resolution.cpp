@@ -25,6 +25,41 @@ int page_side_for(const atlas::SceneDetail& detail, double texels_per_metre) {
                     kLargestPageSide);
 }
 
+/// The part of a lightmap's texels that take light of another chart: so few need no word, and so
+/// many are worth a larger lightmap where the user leaves its size open.
+constexpr double kFewBlended = 1e-3, kManyBlended = 5e-3;
+
+/// The part of a kept layout's texels that other charts blend in; 1 where TEXCOORD_1 cannot be kept
+/// at this resolution.
+Result<double> blended_part(const scene::Scene& scene, int resolution, Progress& progress) {
+  atlas::AtlasParams params;
+  params.uv = atlas::UvMode::keep, params.resolution = resolution;
+  const Result<atlas::Atlas> atlas = atlas::make_atlas(scene, params, progress);
+  LUXEL_TRY_STATUS(stopped(progress));
+  if (!atlas) return 1.0;
+  const atlas::TexelMap map = atlas::rasterise(scene, *atlas);
+  return double(atlas::blended_texels(*atlas, map).size()) /
+         double(std::max<size_t>(1, map.texels.size()));
+}
+
+/// A layout is made for some resolution, at which its charts end between texels; at others they may
+/// lie less than a texel apart. Of this resolution and the next ones up to twice as large, with no
+/// more than `most` texels on a side: the first at which no more than `few` of the texels are
+/// blended, else that with the fewest.
+Result<int> resolution_for_uv1(const scene::Scene& scene, int resolution, double most, double few,
+                               Progress& progress) {
+  int best = resolution;
+  double fewest = 2;
+  for (int side = resolution; side <= 2 * resolution && side <= atlas::kMaxResolution;
+       side = atlas::round_side_up(side + 1)) {
+    if (side > resolution && side > most) break;
+    LUXEL_TRY(const double part, blended_part(scene, side, progress));
+    if (part < fewest) best = side, fewest = part;
+    if (part <= few || side == atlas::kMaxResolution) break;
+  }
+  return fewest < 1 ? best : resolution;
+}
+
 /// What would do: every chart but a fiftieth of the area kFewestTexelsAcross wide or wider.
 std::string advice_for(const SettledResolution& settled, double density) {
   const double pages = double(settled.settings.pages.count);
@@ -74,10 +109,34 @@ Result<SettledResolution> settle_resolution(const BakeSettings& settings, const 
       atlas::choose_resolution(scene, out.detail, params, kMostTexelsByDefault);
   out.chosen = chosen;
   out.settings.resolution = chosen.resolution;
+  if (chosen.uv1_area > 0) {
+    LUXEL_TRY(out.settings.resolution,
+              resolution_for_uv1(scene, chosen.resolution,
+                                 std::sqrt(kMostTexelsByDefault / chosen.uv1_area), kManyBlended,
+                                 progress));
+  }
   if (fixed) return out;
   out.settings.texels_per_metre = float(chosen.texels_per_metre);
   out.settings.resolution = page_side_for(out.detail, chosen.texels_per_metre);
   return out;
+}
+
+Result<std::string> about_blended(const SettledResolution& settled, const scene::Scene& scene,
+                                  const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                  Progress& progress) {
+  if (!atlas.kept) return std::string();
+  const double part = double(atlas::blended_texels(atlas, map).size()) /
+                      double(std::max<size_t>(1, map.texels.size()));
+  if (part <= kFewBlended) return std::string();
+  LUXEL_TRY(const int better, resolution_for_uv1(scene, atlas.resolution, atlas::kMaxResolution,
+                                                 kFewBlended, progress));
+  const std::string what = better != *settled.settings.resolution
+                               ? fmt::format("--resolution {} would do better", better)
+                               : "--uv unwrap keeps them apart";
+  return fmt::format(
+      "TEXCOORD_1 has charts less than a texel apart at {} x {}: {:.2g} % of the texels take light "
+      "of another surface; {}",
+      atlas.resolution, atlas.resolution, 100 * part, what);
 }
 
 std::string about_resolution(const SettledResolution& settled, const atlas::Atlas& atlas,

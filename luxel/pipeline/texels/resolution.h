@@ -23,9 +23,16 @@ struct SettledResolution {
 };
 
 /// Settles what the user has left open: the resolution of pages whose number is given, the density
-/// of others. Errors: cancelled.
+/// of others. Where TEXCOORD_1 may be kept, its charts lie a texel apart at that resolution, if
+/// there is such a one up to twice as large. Errors: cancelled.
 Result<SettledResolution> settle_resolution(const BakeSettings& settings, const scene::Scene& scene,
                                             Progress& progress);
+
+/// One sentence where a kept TEXCOORD_1 has charts so close together that look-ups blend one's
+/// light into the other, with what to do. Empty: all is well. Errors: cancelled.
+Result<std::string> about_blended(const SettledResolution& settled, const scene::Scene& scene,
+                                  const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                  Progress& progress);
 
 /// One sentence where light is coarser than the scene deserves, with what to do: more than a
 /// fiftieth of the surface lies in charts less than kFewestTexelsAcross wide, or the default

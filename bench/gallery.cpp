@@ -3,7 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <ctime>
+#include <fstream>
+#include <span>
 
 #include "bench/bench.h"
 #include "luxel/base/parallel.h"
@@ -165,11 +169,6 @@ Result<Pair> make_pair(const std::filesystem::path& file, Progress& progress) {
   return out;
 }
 
-std::string size_of(const Pair& pair) {
-  const std::string size = fmt::format("{} x {}", pair.width, pair.height);
-  return pair.pages == 1 ? size : fmt::format("{} pages of {}", pair.pages, size);
-}
-
 std::string heading() {
   return fmt::format(
       "# Gallery\n\n"
@@ -185,53 +184,108 @@ std::string heading() {
       2 * kPathsPerPicture, kPathsPerPicture, machine_name());
 }
 
-/// Errors: those of the bake, with the scene's name.
-Status add_scene(const GalleryScene& scene, const std::filesystem::path& file, Page& page,
-                 std::vector<std::vector<std::string>>& rows, Progress& progress) {
-  LUXEL_TRY(const Pair pair, make_pair(file, progress));
-  const std::string name = stem_of(scene);
-  rows.push_back({fmt::format("[{}](#{})", name, name), size_of(pair),
-                  fmt::format("{:.0f}", pair.bake_seconds),
-                  fmt::format("{:.0f}", pair.path_seconds), fmt::format("{:.3f}", pair.flip),
-                  fmt::format("{:.3f}", pair.flip_of_paths)});
-  page.files.push_back(png_file(name + ".png", side_by_side(pair.bake, pair.paths)));
-  page.markdown +=
-      fmt::format("## {}\n\n{}\n\n![{}: baked, path traced](../images/gallery-{}.png)\n\n", name,
-                  scene.credit, name, name);
-  page.json.push_back({{"scene", name},
-                       {"pages", pair.pages},
-                       {"width", pair.width},
-                       {"height", pair.height},
-                       {"bake_cpu_seconds", pair.bake_seconds},
-                       {"path_cpu_seconds", pair.path_seconds},
-                       {"flip", pair.flip},
-                       {"flip_of_paths", pair.flip_of_paths}});
-  return {};
+/// A scene's row of gallery.csv.
+struct Row {
+  std::string scene;
+  int pages = 0, width = 0, height = 0;
+  double bake_seconds = 0, path_seconds = 0, flip = 0, flip_of_paths = 0;
+};
+constexpr std::string_view kColumns =
+    "scene,pages,width,height,bake_cpu_s,path_cpu_s,flip,flip_of_paths";
+
+std::string csv_of(std::span<const Row> rows) {
+  std::string text = std::string(kColumns) + "\n";
+  for (const Row& r : rows)
+    text += fmt::format("{},{},{},{},{:.1f},{:.1f},{:.4f},{:.4f}\n", r.scene, r.pages, r.width,
+                        r.height, r.bake_seconds, r.path_seconds, r.flip, r.flip_of_paths);
+  return text;
+}
+
+/// The rows of an earlier gallery.csv; none where there is no such file.
+std::vector<Row> rows_of(const std::filesystem::path& csv) {
+  std::ifstream in(csv);
+  std::string line;
+  std::vector<Row> rows;
+  std::getline(in, line);
+  while (in && std::getline(in, line)) {
+    Row r;
+    char name[64];
+    if (std::sscanf(line.c_str(), "%63[^,],%d,%d,%d,%lf,%lf,%lf,%lf", name, &r.pages, &r.width,
+                    &r.height, &r.bake_seconds, &r.path_seconds, &r.flip, &r.flip_of_paths) == 8)
+      r.scene = name, rows.push_back(r);
+  }
+  return rows;
+}
+
+void replace(const Row& row, std::vector<Row>& rows) {
+  const auto found = std::ranges::find(rows, row.scene, &Row::scene);
+  if (found == rows.end())
+    rows.push_back(row);
+  else
+    *found = row;
+}
+
+/// The page of the rows, in the order of kGallery.
+std::string page_of(std::span<const Row> rows) {
+  std::vector<std::vector<std::string>> cells;
+  std::string pictures;
+  for (const GalleryScene& scene : kGallery) {
+    const std::string name = stem_of(scene);
+    const auto r = std::ranges::find(rows, name, &Row::scene);
+    if (r == rows.end()) continue;
+    const std::string size = fmt::format("{} x {}", r->width, r->height);
+    cells.push_back({fmt::format("[{}](#{})", name, name),
+                     r->pages == 1 ? size : fmt::format("{} pages of {}", r->pages, size),
+                     fmt::format("{:.0f}", r->bake_seconds), fmt::format("{:.0f}", r->path_seconds),
+                     fmt::format("{:.3f}", r->flip), fmt::format("{:.3f}", r->flip_of_paths)});
+    pictures +=
+        fmt::format("## {}\n\n{}\n\n![{}: baked, path traced](../images/gallery-{}.png)\n\n", name,
+                    scene.credit, name, name);
+  }
+  std::string page = wrapped(heading() +
+                             markdown_table({"scene", "lightmap", "seconds of the bake",
+                                             "seconds of the paths", "FLIP", "noise of the paths"},
+                                            cells) +
+                             "\n" + pictures);
+  while (page.ends_with("\n\n")) page.pop_back();
+  return page;
+}
+
+nlohmann::json json_of(std::span<const Row> rows) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const Row& r : rows)
+    out.push_back({{"scene", r.scene},
+                   {"pages", r.pages},
+                   {"width", r.width},
+                   {"height", r.height},
+                   {"bake_cpu_seconds", r.bake_seconds},
+                   {"path_cpu_seconds", r.path_seconds},
+                   {"flip", r.flip},
+                   {"flip_of_paths", r.flip_of_paths}});
+  return out;
 }
 
 }  // namespace
 
 Result<Page> make_gallery(const std::filesystem::path& shared, std::string_view only,
-                          Progress& progress) {
+                          const std::filesystem::path& earlier, Progress& progress) {
   Page page;
-  page.json = nlohmann::json::array();
-  std::vector<std::vector<std::string>> rows;
+  std::vector<Row> rows = only.empty() ? std::vector<Row>() : rows_of(earlier);
   for (const GalleryScene& scene : kGallery) {
-    if (!only.empty() && only != stem_of(scene)) continue;
+    const std::string name = stem_of(scene);
     const auto file = shared / "scenes" / scene.file;
-    if (!std::filesystem::exists(file)) continue;
-    LUXEL_TRY_STATUS(add_scene(scene, file, page, rows, progress));
+    if ((!only.empty() && only != name) || !std::filesystem::exists(file)) continue;
+    LUXEL_TRY(const Pair pair, make_pair(file, progress));
+    replace({name, pair.pages, pair.width, pair.height, pair.bake_seconds, pair.path_seconds,
+             pair.flip, pair.flip_of_paths},
+            rows);
+    page.files.push_back(png_file(name + ".png", side_by_side(pair.bake, pair.paths)));
   }
-  if (rows.empty())
+  if (page.files.empty())
     return fail(ErrorCode::bad_setting, "no scene of the gallery{} lies in {}",
                 only.empty() ? "" : fmt::format(" with the name {}", only),
                 (shared / "scenes").string());
-  page.markdown = wrapped(heading() +
-                          markdown_table({"scene", "lightmap", "seconds of the bake",
-                                          "seconds of the paths", "FLIP", "noise of the paths"},
-                                         rows) +
-                          "\n" + page.markdown);
-  while (page.markdown.ends_with("\n\n")) page.markdown.pop_back();
+  page.markdown = page_of(rows), page.csv = csv_of(rows), page.json = json_of(rows);
   return page;
 }
 

@@ -37,6 +37,7 @@ Result<Section> validate_stated_errors(Progress& progress);
 
 struct Page {
   std::string markdown;
+  std::string csv;  ///< its numbers for other programs; empty: none
   std::vector<PageFile> files;
   nlohmann::json json;
 };

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <span>
+#include <vector>
 
 #include "apps/cli/cli.h"
 #include "bench/bench.h"
@@ -34,18 +35,18 @@ std::filesystem::path default_shared() {
   return "../shared";
 }
 
-/// Writes the page and images/NAME-* in `folder`, all of them or none.
-Status write_with_pictures(const OutputFile& page, const std::string& name,
+/// Writes the files, which lie in one or two folders of `folder`, and images/NAME-*, all of them or
+/// none.
+Status write_with_pictures(std::vector<OutputFile> files, const std::string& name,
                            std::span<const bench::PageFile> pictures,
                            const std::filesystem::path& folder) {
-  OutputFolder pages(page.path.parent_path()), images(folder / "images");
-  LUXEL_TRY_STATUS(pages.make());
-  LUXEL_TRY_STATUS(images.make());
-  std::vector<OutputFile> files{page};
+  OutputFolder first(files.front().path.parent_path()), last(files.back().path.parent_path());
+  OutputFolder images(folder / "images");
+  for (OutputFolder* made : {&first, &last, &images}) LUXEL_TRY_STATUS(made->make());
   for (const bench::PageFile& file : pictures)
     files.push_back({folder / "images" / (name + "-" + file.name), file.bytes});
   LUXEL_TRY_STATUS(write_files_atomically(files));
-  pages.keep(), images.keep();
+  first.keep(), last.keep(), images.keep();
   return {};
 }
 
@@ -53,6 +54,10 @@ Status write_with_pictures(const OutputFile& page, const std::string& name,
 Status try_out_folders(const std::filesystem::path& folder, const char* pages = "bench") {
   LUXEL_TRY_STATUS(OutputFolder(folder / pages).try_out());
   return OutputFolder(folder / "images").try_out();
+}
+
+std::filesystem::path csv_of(const BenchOptions& options, const std::string& name) {
+  return std::filesystem::path(options.output) / "bench" / (name + ".csv");
 }
 
 /// A benchmark that writes a page of docs.
@@ -69,7 +74,7 @@ const std::array<BenchPage, 2> kPages{
       }},
      {kGallery, "guide",
       [](const std::filesystem::path& shared, const BenchOptions& options, Progress& progress) {
-        return bench::make_gallery(shared, options.scene, progress);
+        return bench::make_gallery(shared, options.scene, csv_of(options, kGallery), progress);
       }}}};
 
 /// NAME.md and its pictures.
@@ -83,7 +88,9 @@ int write_page(const BenchPage& which, const BenchOptions& options,
     LUXEL_TRY_STATUS(try_out_folders(folder, which.folder));
     LUXEL_TRY(page, which.make(shared, options, progress));
     progress.begin(kWriteStage, 0);
-    return write_with_pictures(text_file(file, page.markdown), which.name, page.files, folder);
+    std::vector<OutputFile> files{text_file(file, page.markdown)};
+    if (!page.csv.empty()) files.push_back(text_file(csv_of(options, which.name), page.csv));
+    return write_with_pictures(std::move(files), which.name, page.files, folder);
   });
   if (!done) return report(done.error(), options.common);
   if (options.common.json)
@@ -97,7 +104,7 @@ int write_page(const BenchPage& which, const BenchOptions& options,
 /// measure_ function below gives.
 template <class Page>
 Status write_plots(const Page& page, const std::string& name, const std::filesystem::path& folder) {
-  return write_with_pictures(text_file(folder / "bench" / (name + ".csv"), page.csv), name,
+  return write_with_pictures({text_file(folder / "bench" / (name + ".csv"), page.csv)}, name,
                              page.pictures, folder);
 }
 
@@ -177,7 +184,8 @@ void register_bench(CLI::App& app, Action& action) {
           "(most of an hour)")
       ->check(CLI::IsMember(names))
       ->required();
-  bench->add_option("--scene", options->scene, "gallery: this scene alone, by its file's stem");
+  bench->add_option("--scene", options->scene,
+                    "gallery: this scene alone, by its file's stem; the rest of the page stays");
   bench->add_option("--shared", options->shared,
                     "Folder with scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
   bench->add_option(

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "luxel/base/random.h"
+#include "luxel/pipeline/solver/hierarchical.h"
 #include "luxel/transport/irradiance_field.h"
 #include "luxel/validate/own_scenes.h"
 #include "tests/sealed_house.h"
@@ -164,6 +165,22 @@ TEST(Leaks, ThePathTracerKeepsItBlack) {
   const auto bake = bake_scene(sealed_house(house), settings, progress);
   ASSERT_TRUE(bake) << bake.error().message;
   EXPECT_EQ(sealed_light(house, *bake).lit_texels, 0u);
+}
+
+/// Light of the last mesh is exact at each sample but for MeshParams' tolerance, 5e-4 of the mean,
+/// and links may be as coarse as they like. Few elements, for the test's time.
+TEST(Leaks, HierarchicalRadiosityKeepsASealedRoomBlack) {
+  const testing_support::SealedHouse house{0.06f, 0.3f};
+  BakeSettings settings;
+  settings.solver = "hierarchical", settings.resolution = 64;
+  auto& own = settings.own.of<HierarchicalSettings>();
+  own.solve.eps = 20, own.mesh.discontinuities = false;
+  Progress progress;
+  const auto bake = bake_scene(sealed_house(house), settings, progress);
+  ASSERT_TRUE(bake) << bake.error().message;
+  const SealedLight light = sealed_light(house, *bake);
+  ASSERT_GT(light.texels, 300u);
+  EXPECT_LT(light.brightest, own.mesh.point.tolerance);
 }
 
 /// What has no thin walls keeps its triangles.

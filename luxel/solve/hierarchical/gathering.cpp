@@ -72,7 +72,8 @@ void Gathering::visit(uint32_t id) {
 /// sqrt(n) cells. Each of these errs by 1/n of the light, independently, so that all err by
 /// sqrt(sqrt n) / n = n^-3/4 of the error of one place. Solved for n.
 double Gathering::rays_for(double light) const {
-  return std::max(1.0, std::ceil(std::pow(kOneRay * light / params_.limit, 4.0 / 3)));
+  if (kOneRay * light <= params_.limit) return 1;
+  return std::ceil(std::pow(kOneRay * light / params_.limit, 4.0 / 3));
 }
 
 /// What an element brings at most, and what it hides of the sky [W/m^2].

@@ -50,7 +50,8 @@ Link undivided(uint32_t source) {
 struct Rules {
   const Tree& tree;
   const RefineParams& params;
-  bool full = false;  ///< no more elements
+  double unit_area_m2 = 1;  ///< Exchange::unit_area_m2
+  bool full = false;        ///< no more elements
 
   double radius(uint32_t id) const {
     return tree.is_cluster(id) ? tree.clusters[id].radius_m : tree.element(id).radius_m;
@@ -60,12 +61,19 @@ struct Rules {
     const Element& e = tree.element(id);
     return !e.is_leaf() || (!full && e.area_m2 > 4 * params.min_area_m2);
   }
+  /// A leaf no larger than the unit. That it is too near to a cluster for exchange between points
+  /// divides the cluster, whose parts there are already. Else each small thing on a floor would
+  /// divide it to its own size, however little light they exchange.
+  bool stays_whole(uint32_t id) const {
+    return !tree.is_cluster(id) && tree.element(id).is_leaf() &&
+           tree.element(id).area_m2 <= unit_area_m2;
+  }
 };
 
 enum class Division { none, receiver, source, both };
 
 /// The larger of the two is divided. A source whose parts differ in light is, when that is what
-/// makes the error.
+/// makes the error; and a cluster is, when it is too near to a leaf.
 Division division_of(const Rules& rules, const Light& light, uint32_t receiver, const Link& link) {
   const Tree& tree = rules.tree;
   const uint32_t source = link.source;
@@ -79,6 +87,8 @@ Division division_of(const Rules& rules, const Light& light, uint32_t receiver, 
     return tree.element(receiver).area_m2 >= tree.element(source).area_m2 ? Division::receiver
                                                                           : Division::source;
   }
+  if (std::isinf(link.spread) && rules.stays_whole(receiver)) return Division::source;
+  if (std::isinf(link.spread) && rules.stays_whole(source)) return Division::receiver;
   return rules.radius(receiver) >= rules.radius(source) ? Division::receiver : Division::source;
 }
 
@@ -143,7 +153,7 @@ Status settle(Refined& state, const Exchange& x, const RefineParams& params, std
   while (!open.empty()) {
     LUXEL_TRY_STATUS(stopped(progress));
     // The larger end of each open link is divided, or the link stays as it is.
-    Rules rules{state.tree, params};
+    Rules rules{state.tree, params, x.unit_area_m2};
     std::vector<Pair> pairs;
     std::vector<Open> divided;
     for (Open& o : open) {
@@ -262,7 +272,8 @@ Result<size_t> refine(Refined& state, const Exchange& x, const RefineParams& par
   std::vector<Open> open;
   state.links.at_least_area = 0;
   // Links that err too much by the light there is now are taken out.
-  const Rules rules{state.tree, params, state.tree.elements.size() + 4 > params.max_elements};
+  const Rules rules{state.tree, params, x.unit_area_m2,
+                    state.tree.elements.size() + 4 > params.max_elements};
   for (uint32_t id = 0; id < state.links.of.size(); ++id) {
     auto& links = state.links.of[id];
     size_t kept = 0;

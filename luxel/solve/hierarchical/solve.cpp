@@ -19,10 +19,10 @@ constexpr double kUsualEps = 0.01;
 /// The least eps, as a part of the mean irradiance: exact light at points is not known better
 /// (PointParams::tolerance), and links would be without end.
 constexpr double kLeastEps = 1e-4;
-/// The eps of the first links, as a part of the mean emission, which in a closed room is less than
-/// the mean irradiance. It is ten times the usual eps, because links are only ever divided: what a
-/// smaller one would divide in vain, before bounces are known, stays divided. Larger ones cost more
-/// iterations.
+/// The eps of the first links, as a part of the mean emission and the mean direct light of what is
+/// no surface. In a closed room both together are less than the mean irradiance. It is ten times
+/// the usual eps, because links are only ever divided: what a smaller one would divide in vain,
+/// before bounces are known, stays divided. Larger ones cost more iterations.
 constexpr double kFirstEps = 0.1;
 /// Errors count in full on receivers of a face's mean size, but of no more faces than so many: what
 /// is asked for must not depend on how finely a surface is cut into triangles.
@@ -61,7 +61,7 @@ double change_of(const Tree& tree, const Light& light, std::span<const Rgb> befo
 struct Solving {
   Solution& s;
   const Exchange x;
-  std::vector<uint8_t> lit;
+  std::vector<float> off;  ///< see light_leaves()
   Refined state;
 };
 
@@ -97,12 +97,14 @@ Status run(Solving& w, const SolveParams& params, Progress& progress) {
   w.s.light.clusters.resize(w.s.tree.clusters.size());
   push_pull(w.s.faces, w.s.tree, w.s.light);
   w.s.links.of.resize(w.s.tree.size());
-  // A first guess, from the power there is; it is made better when light has arrived.
-  const double power = double(max_component(totals_of(w.s).emission));
-  refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * power) : kFirstEps * power;
-  RefineParams first_params = refine_params;
-  if (!(first_params.eps > 0)) first_params.eps = INFINITY;  // no surface shines
-  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, first_params, w.lit, progress));
+  // A first guess, from the light that surfaces emit and that others send them.
+  refine_params.eps = INFINITY;
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.off, progress));
+  push_pull(w.s.faces, w.s.tree, w.s.light);
+  const double first =
+      double(max_component(totals_of(w.s).emission)) + mean_irradiance(w.s.tree, w.s.light);
+  refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * first) : kFirstEps * first;
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.off, progress));
   // All is linked to all, and refined by the light that the links bring, until none errs too much.
   LUXEL_TRY_STATUS(link_all(w.state, w.x, refine_params, progress));
   for (w.s.iterations = 0; w.s.iterations < kMostIterations; ++w.s.iterations) {
@@ -111,9 +113,9 @@ Status run(Solving& w, const SolveParams& params, Progress& progress) {
     refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * mean) : kUsualEps * mean;
     w.s.eps = refine_params.eps;
     const size_t leaves = w.s.tree.elements.size();
-    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.lit, progress));
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.off, progress));
     LUXEL_TRY(const size_t refined, refine(w.state, w.x, refine_params, progress));
-    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.lit, progress));
+    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.off, progress));
     if (refined == 0 && leaves == w.s.tree.elements.size()) break;
   }
   // The light of the last links; or that of so many bounces.

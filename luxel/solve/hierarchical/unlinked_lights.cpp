@@ -20,6 +20,8 @@ constexpr float kUnsureRays = 4;
 /// Points of a leaf of the unit's area at which lights are looked for, at least, so that no patch
 /// of sun of an eighth of its length is missed. Smaller leaves have fewer, by their area.
 constexpr double kPoints = 64;
+/// Of leaves that were not looked at yet.
+constexpr float kNotLit = -1;
 
 /// Where lights are looked for on a leaf: at Gauss's points, which are corners of a smaller copy of
 /// it, and on a grid, as fine as the leaf is large.
@@ -155,42 +157,45 @@ UnlinkedLights unlinked_lights_of(const scene::Scene& scene) {
 }
 
 Status light_leaves(Refined& state, const Exchange& x, const UnlinkedLights& unlinked,
-                    const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress) {
+                    const RefineParams& params, std::vector<float>& off, Progress& progress) {
   if (!unlinked.any()) return {};
   const float unsure = unlinked.has_sky ? brightest_sky(state.scene, unlinked.lights.around) * kPi *
                                               (kUnsureRays / kUnlinkedLightsSkyRays)
                                         : 0.0f;
   for (;;) {
     // Points of all leaves that have no light yet.
-    lit.resize(state.tree.elements.size());
+    off.resize(state.tree.elements.size(), kNotLit);
     std::vector<size_t> leaves;
     std::vector<Probe> probes;
     transport::Elements points;
-    for (size_t e = 0; e < lit.size(); ++e) {
-      if (lit[e] || !state.tree.elements[e].is_leaf()) continue;
-      lit[e] = 1;
+    for (size_t e = 0; e < off.size(); ++e) {
+      if (off[e] != kNotLit || !state.tree.elements[e].is_leaf()) continue;
       leaves.push_back(e);
       probes.push_back(probe_of(state.tree.elements[e], x.unit_area_m2));
       add_points(state.tree.elements[e], x.faces, probes.back(), points);
     }
-    if (leaves.empty()) return {};
-    // Light there, of punctual lights and of the sky.
+    // Light there, of punctual lights and of the sky: a linear function per leaf.
     LUXEL_TRY(light::DirectLight direct,
               light::direct_light(state.scene, points, unlinked.lights, x.tracer,
                                   {.samples = 64, .same_points = true}, progress));
     const std::vector<Rgb> sky = sky_light(state.scene, x, unlinked, points);
     for (size_t i = 0; i < sky.size(); ++i) direct.irradiance[i] += sky[i];
-    // A linear function per leaf. Where it is off, the leaf is divided, and its parts come next.
     std::span<const Rgb> light = direct.irradiance;
     for (size_t k = 0; k < leaves.size(); ++k) {
       const SkyFit fit = fit_of(probes[k], light.first(probes[k].at.size()));
       light = light.subspan(probes[k].at.size());
       state.light.elements[leaves[k]].unlinked = fit.corner;
-      const double area = state.tree.elements[leaves[k]].area_m2;
-      if (double(fit.error - unsure) * area / x.unit_area_m2 > params.eps &&
-          area > 4 * params.min_area_m2 && state.tree.elements.size() + 4 <= params.max_elements)
-        divide_element(state, x, leaves[k]);
+      off[leaves[k]] = std::max(0.0f, fit.error - unsure);
     }
+    // Leaves over which it is off are divided, and their parts come next.
+    const size_t elements = off.size();
+    for (size_t e = 0; e < elements; ++e) {
+      const double area = state.tree.elements[e].area_m2;
+      if (state.tree.elements[e].is_leaf() && double(off[e]) * area / x.unit_area_m2 > params.eps &&
+          area > 4 * params.min_area_m2 && state.tree.elements.size() + 4 <= params.max_elements)
+        divide_element(state, x, e);
+    }
+    if (state.tree.elements.size() == elements) return {};
   }
 }
 

@@ -30,10 +30,11 @@ Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32
 /// The largest radiance of the soft surroundings [W/(sr m^2)]: E of the sky is at most pi times it.
 float brightest_sky(const scene::Scene& scene, const light::Surroundings& around);
 
-/// Sets ElementLight::unlinked of all leaves that have none yet (`lit` counts elements, in order),
-/// dividing leaves over which it is farther than eps from linear. As with links, large leaves count
-/// for more: see error_of.
+/// Sets ElementLight::unlinked of all leaves that have none yet, and divides leaves over which it
+/// is farther than eps from linear, until none is. As with links, large leaves count for more: see
+/// error_of. `off`: how far it is [W/m^2], per element; calls of one solution hand it on, so that
+/// leaves are looked at once.
 Status light_leaves(Refined& state, const Exchange& exchange, const UnlinkedLights& unlinked,
-                    const RefineParams& params, std::vector<uint8_t>& lit, Progress& progress);
+                    const RefineParams& params, std::vector<float>& off, Progress& progress);
 
 }  // namespace luxel::hierarchical

@@ -97,7 +97,6 @@ SealedLight sealed_light(const testing_support::SealedHouse& house, const Bake& 
 BakeSettings sealed_settings(int resolution) {
   BakeSettings settings;
   settings.resolution = resolution, settings.samples = 32, settings.direct_samples = 16;
-  settings.stitch = false;
   return settings;
 }
 
@@ -106,7 +105,6 @@ BakeSettings sealed_settings(int resolution) {
 /// comes in: every texel inside is black, to the bit. Where a surface in the room is narrower than
 /// a texel, such as the foot of a wall that goes on into the ground, a look-up can still read a
 /// texel that has its sample outside.
-/// Seams are not stitched here: stitching can still spread light within a texel of a wall.
 TEST(Leaks, ASealedRoomIsBlack) {
   struct Case {
     testing_support::SealedHouse house;

@@ -29,6 +29,10 @@ std::vector<Seam> find_seams(const scene::Scene& scene, const atlas::Atlas& atla
 struct SeamParams {
   float keep_weight = 0.1f;  ///< how strongly a texel holds on to its own value
   int max_iterations = 200;  ///< of the conjugate gradient
+  /// Per texel, 1 where its light means nothing, inside of solids: no look-up reads it, and it
+  /// stays as it is. Else it would carry light from one side of a wall to the other. None: no
+  /// texel.
+  std::span<const uint8_t> hidden = {};
 };
 
 /// The system, in full. Along each seam lie points p, about two per texel of its longer side, two
@@ -44,7 +48,8 @@ struct SeamParams {
 /// by what the eye sees, that is relative to the light around. A dark room's seams thus matter as
 /// much as those beside the lamp, and where bright touches dark the dark points farther along the
 /// seam resist being lit. m_t is the mean of m_p over the points that look t up, the same on both
-/// sides of a seam, so that what one side gains the other loses. Solved by conjugate gradients on
+/// sides of a seam, so that what one side gains the other loses. Points at which one side is black
+/// do not count: no light goes on over them. Solved by conjugate gradients on
 /// the normal equations, all three channels side by side.
 ///
 /// Changes the values of the texels next to seams so that bilinear lookups from both sides agree
@@ -70,12 +75,12 @@ struct SeamResidual {
   /// 95th percentile and the largest.
   double relative_p95 = 0, relative_max = 0;
 };
-/// Measures `values`, one per texel of the map; nothing is changed.
+/// Measures `values`, one per texel of the map; nothing is changed. `hidden`: as in SeamParams.
 SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
-                           std::span<const Rgb> values);
+                           std::span<const Rgb> values, std::span<const uint8_t> hidden = {});
 
 /// Per texel, the largest relative difference at the points of seams that look it up; 0 elsewhere.
 std::vector<float> seam_errors(const atlas::TexelMap& map, std::span<const Seam> seams,
-                               std::span<const Rgb> values);
+                               std::span<const Rgb> values, std::span<const uint8_t> hidden = {});
 
 }  // namespace luxel::post

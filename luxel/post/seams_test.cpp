@@ -210,6 +210,30 @@ TEST(StitchSeams, BlackStaysBlack) {
   for (const Rgb& v : sheet.values) EXPECT_EQ(v, Rgb{});
 }
 
+// Light ends at a seam where a closed room does: the dark side is to stay dark to the bit.
+TEST(StitchSeams, ABlackSideStaysBlack) {
+  SeamSheet sheet({1, 2, 0.5f}, {}, 0.2f);
+  const std::vector<Rgb> before = sheet.values;
+  sheet.stitch();
+  EXPECT_EQ(sheet.values, before);
+}
+
+// A hidden texel neither changes nor counts: the others close the jump as if it was not there.
+TEST(StitchSeams, HiddenTexelsTieNothing) {
+  SeamSheet sheet({1, 1, 1}, {3, 3, 3}, 0);
+  const uint32_t texel =
+      sheet.map
+          .texel_at[size_t((2 + kSheetSide / 2) * sheet.map.resolution) + size_t(kSheetSide + 1)];
+  std::vector<uint8_t> hidden(sheet.values.size());
+  hidden[texel] = 1, sheet.values[texel] = {1000, 1000, 1000};
+  Progress progress;
+  ASSERT_TRUE(stitch_seams(sheet.map, sheet.seams, {.hidden = hidden}, sheet.values, progress));
+  EXPECT_EQ(sheet.values[texel].x, 1000);
+  for (size_t i = 0; i < sheet.values.size(); ++i)
+    if (i != texel) EXPECT_LE(sheet.values[i].x, 3.01f);
+  EXPECT_LT(seam_residual(sheet.map, sheet.seams, sheet.values, hidden).rms_over_mean, 0.02);
+}
+
 TEST(StitchSeams, SameBitsForAnyThreadCount) {
   SeamSheet one({1, 2, 0.5f}, {3, 1, 0.6f}, 0.5f), seven = one;
   {

@@ -15,14 +15,14 @@ using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  ///<
 using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// A bilinear lookup inside a chart, as transport::irradiance_at does it: only texels that carry a
-/// sample, weights renormalised.
+/// sample, weights renormalised; hidden ones are left out.
 struct Lookup {
   std::array<uint32_t, 4> texel{};
   std::array<double, 4> weight{};
   int count = 0;
 };
 
-Lookup lookup(const atlas::TexelMap& map, Vec2 at) {
+Lookup lookup(const atlas::TexelMap& map, std::span<const uint8_t> hidden, Vec2 at) {
   const int side = map.resolution;
   const int x0 = int(std::floor(at.x - 0.5f)), y0 = int(std::floor(at.y - 0.5f));
   const double fx = double(at.x) - 0.5 - x0, fy = double(at.y) - 0.5 - y0;
@@ -34,7 +34,7 @@ Lookup lookup(const atlas::TexelMap& map, Vec2 at) {
       if (x < 0 || y < 0 || x >= side || y >= side) continue;
       const uint32_t texel = map.texel_at[size_t(y) * size_t(side) + size_t(x)];
       const double w = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
-      if (texel == atlas::kNone || w <= 0) continue;
+      if (texel == atlas::kNone || w <= 0 || (!hidden.empty() && hidden[texel])) continue;
       out.texel[size_t(out.count)] = texel;
       out.weight[size_t(out.count++)] = w;
       sum += w;
@@ -50,15 +50,17 @@ struct SeamPoint {
 };
 
 /// Points where both sides have texels.
-std::vector<SeamPoint> seam_points(const atlas::TexelMap& map, std::span<const Seam> seams) {
+std::vector<SeamPoint> seam_points(const atlas::TexelMap& map, std::span<const Seam> seams,
+                                   std::span<const uint8_t> hidden) {
+  LUXEL_CHECK(hidden.empty() || hidden.size() == map.texels.size());
   std::vector<SeamPoint> points;
   for (const Seam& seam : seams) {
     const float texels = std::max(length(seam.a1 - seam.a0), length(seam.b1 - seam.b0));
     const int count = std::max(2, int(std::ceil(2 * texels)));
     for (int i = 0; i < count; ++i) {
       const float t = (float(i) + 0.5f) / float(count);
-      SeamPoint point{lookup(map, seam.a0 * (1 - t) + seam.a1 * t),
-                      lookup(map, seam.b0 * (1 - t) + seam.b1 * t),
+      SeamPoint point{lookup(map, hidden, seam.a0 * (1 - t) + seam.a1 * t),
+                      lookup(map, hidden, seam.b0 * (1 - t) + seam.b1 * t),
                       2 * double(texels) / double(count)};
       if (point.a.count > 0 && point.b.count > 0) points.push_back(point);
     }
@@ -78,6 +80,10 @@ std::array<double, 3> value(const Lookup& side, std::span<const Rgb> values) {
 double mean_value(const SeamPoint& point, std::span<const Rgb> values) {
   const auto a = value(point.a, values), b = value(point.b, values);
   return (a[0] + a[1] + a[2] + b[0] + b[1] + b[2]) / 6;
+}
+
+bool is_black(const Lookup& side, std::span<const Rgb> values) {
+  return value(side, values) == std::array<double, 3>{};
 }
 
 /// minimise |D d + D x|^2 + |K d|^2 over the change d of the unknown texels.
@@ -195,14 +201,16 @@ Result<Columns> solve(const System& system, const Columns& x, int max_iterations
   return change;
 }
 
-/// Nothing, where there is nothing to agree on: where all is black relative errors mean nothing.
+/// Nothing, where there is nothing to agree on. Where a side is black, relative errors mean
+/// nothing, and light does not go on over the seam.
 std::optional<System> system_of(const atlas::TexelMap& map, std::span<const Seam> seams,
                                 const SeamParams& params, std::span<const Rgb> values) {
   LUXEL_CHECK(values.size() == map.texels.size());
   LUXEL_CHECK(params.keep_weight > 0);
   for (const Rgb& v : values) LUXEL_CHECK(is_finite(v) && min_component(v) >= 0);
-  std::vector<SeamPoint> points = seam_points(map, seams);
-  std::erase_if(points, [&](const SeamPoint& p) { return !(mean_value(p, values) > 0); });
+  std::vector<SeamPoint> points = seam_points(map, seams, params.hidden);
+  std::erase_if(points,
+                [&](const SeamPoint& p) { return is_black(p.a, values) || is_black(p.b, values); });
   if (points.empty()) return std::nullopt;
   return build_system(points, values, double(params.keep_weight));
 }
@@ -270,9 +278,9 @@ Differences differences_at(const std::vector<SeamPoint>& points, std::span<const
 }  // namespace
 
 SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
-                           std::span<const Rgb> values) {
+                           std::span<const Rgb> values, std::span<const uint8_t> hidden) {
   LUXEL_CHECK(values.size() == map.texels.size());
-  const std::vector<SeamPoint> points = seam_points(map, seams);
+  const std::vector<SeamPoint> points = seam_points(map, seams, hidden);
   Differences d = differences_at(points, values);
   if (points.empty() || d.mean <= 0) return {};
   const auto p95 = d.relative.begin() + std::ptrdiff_t((d.relative.size() - 1) * 95 / 100);
@@ -282,9 +290,9 @@ SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> sea
 }
 
 std::vector<float> seam_errors(const atlas::TexelMap& map, std::span<const Seam> seams,
-                               std::span<const Rgb> values) {
+                               std::span<const Rgb> values, std::span<const uint8_t> hidden) {
   LUXEL_CHECK(values.size() == map.texels.size());
-  const std::vector<SeamPoint> points = seam_points(map, seams);
+  const std::vector<SeamPoint> points = seam_points(map, seams, hidden);
   const Differences d = differences_at(points, values);
   std::vector<float> error(map.texels.size());
   for (size_t p = 0; p < points.size(); ++p)

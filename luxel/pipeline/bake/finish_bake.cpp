@@ -20,13 +20,28 @@ namespace {
 constexpr int kRefillRings = 2;
 constexpr int kPreviewWidth = 960, kPreviewHeight = 720;
 
+/// Stitches all light of a bake: the whole, its layers and the maps beside it.
 Status stitch(std::span<const post::Seam> seams, Bake& bake, Progress& progress) {
+  const post::SeamParams params{.hidden = bake.light.hidden};
   std::vector<Rgb> before;
   if (!bake.light.layers.empty()) before = bake.light.irradiance;
-  LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, bake.light.irradiance, progress));
+  LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, params, bake.light.irradiance, progress));
+  for (SurfaceMap& map : bake.surface_maps)
+    for (std::vector<Rgb>& values : map.values)
+      LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, params, values, progress));
   if (before.empty()) return {};
-  return stitch_layers(bake.map, seams, before, bake.light.irradiance, bake.light.layer_irradiance,
-                       progress);
+  return stitch_layers(bake.map, seams, params, before, bake.light.irradiance,
+                       bake.light.layer_irradiance, progress);
+}
+
+/// Gives hidden texels beside open ones their light, in all that a bake has of it.
+void refill(const post::Parted& parted, Bake& bake) {
+  std::vector<std::span<Rgb>> arrays{bake.light.irradiance};
+  for (std::vector<Rgb>& layer : bake.light.layer_irradiance) arrays.push_back(layer);
+  for (SurfaceMap& map : bake.surface_maps)
+    arrays.insert(arrays.end(), map.values.begin(), map.values.end());
+  bake.repair.refilled =
+      post::refill_hidden(bake.atlas, bake.map, bake.light.hidden, kRefillRings, parted, arrays);
 }
 
 }  // namespace
@@ -35,26 +50,22 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
                     Progress& progress) {
   progress.begin("seams", 0);
   const std::span<const uint8_t> hidden = bake.light.hidden;
-  const post::Parted parted = settings.repair_leaks
-                                  ? parted_texels(bake.scene, bake.atlas, bake.map, tracer)
-                                  : post::Parted{};
-  std::vector<std::span<Rgb>> arrays{bake.light.irradiance};
-  for (std::vector<Rgb>& layer : bake.light.layer_irradiance) arrays.push_back(layer);
-  for (SurfaceMap& map : bake.surface_maps)
-    arrays.insert(arrays.end(), map.values.begin(), map.values.end());
-  bake.repair.refilled =
-      post::refill_hidden(bake.atlas, bake.map, hidden, kRefillRings, parted, arrays);
+  // Hidden texels have no light to tell, so seams are stitched without them, and they take what
+  // their neighbours have then.
   std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
   if (settings.repair_leaks) seams = open_seams(bake.scene, bake.atlas, tracer, std::move(seams));
-  bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance);
+  bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance, hidden);
   bake.seams = seams.size();
   if (settings.stitch) LUXEL_TRY_STATUS(stitch(seams, bake, progress));
-  bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance);
+  bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance, hidden);
+  refill(settings.repair_leaks ? parted_texels(bake.scene, bake.atlas, bake.map, tracer)
+                               : post::Parted{},
+         bake);
   if (settings.texels)
     bake.texel_pictures =
         draw_texels(bake.atlas, bake.map,
                     {hidden, bake.repair.overlapping, bake.repair.moved, bake.repair.refilled,
-                     post::seam_errors(bake.map, seams, bake.light.irradiance)});
+                     post::seam_errors(bake.map, seams, bake.light.irradiance, hidden)});
   if (settings.error_map)
     bake.error_pictures = draw_errors(bake.atlas, bake.map, bake.light.errors);
   bake.lightmaps = post::lightmap_pages(bake.atlas, bake.map, bake.light.irradiance);
@@ -65,12 +76,8 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
         shown_irradiance(bake.scene, bake.atlas, bake.map, bake.light.irradiance));
     for (image::Image& lightmap : bake.shown) post::dilate(lightmap, post::kDilationRings);
   }
-  for (SurfaceMap& map : bake.surface_maps) {
-    for (std::vector<Rgb>& values : map.values)
-      if (settings.stitch)
-        LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, {}, values, progress));
+  for (SurfaceMap& map : bake.surface_maps)
     make_pages(bake.atlas, bake.map, post::kDilationRings, map);
-  }
   bake.layers = bake_layers(bake.scene, bake.atlas, bake.map, post::kDilationRings, bake.light);
   return stopped(progress);
 }

@@ -31,9 +31,10 @@ Rgb mean_of(std::span<const Rgb> values) {
 }  // namespace
 
 Status stitch_layers(const atlas::TexelMap& map, std::span<const post::Seam> seams,
-                     std::span<const Rgb> before, std::span<const Rgb> after,
-                     std::span<std::vector<Rgb>> layers, Progress& progress) {
-  LUXEL_TRY_STATUS(post::stitch_layers(map, seams, {}, before, layers, progress));
+                     const post::SeamParams& params, std::span<const Rgb> before,
+                     std::span<const Rgb> after, std::span<std::vector<Rgb>> layers,
+                     Progress& progress) {
+  LUXEL_TRY_STATUS(post::stitch_layers(map, seams, params, before, layers, progress));
   parallel_for(after.size(), 4096, [&](size_t begin, size_t end) {
     std::vector<Rgb> own(layers.size());
     for (size_t i = begin; i < end; ++i) {

@@ -33,8 +33,9 @@ struct BakedLayer {
 /// Stitches layers as stitch_seams() stitched their sum: `before` and `after` are the whole's
 /// light, and the layers add up to `after` in the end.
 Status stitch_layers(const atlas::TexelMap& map, std::span<const post::Seam> seams,
-                     std::span<const Rgb> before, std::span<const Rgb> after,
-                     std::span<std::vector<Rgb>> layers, Progress& progress);
+                     const post::SeamParams& params, std::span<const Rgb> before,
+                     std::span<const Rgb> after, std::span<std::vector<Rgb>> layers,
+                     Progress& progress);
 
 /// The lightmaps of the layers of `light`, which are used up, with `rings` of dilation.
 std::vector<BakedLayer> bake_layers(const scene::Scene& scene, const atlas::Atlas& atlas,

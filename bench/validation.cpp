@@ -79,10 +79,8 @@ Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
   page.markdown = fmt::format(
       "# Validation\n\n"
       "Is luxel right? Everything on this page was computed and written by one command, `luxel "
-      "bench "
-      "validation`:\nview factors against closed forms, solvers against exact solutions, and "
-      "solvers "
-      "against a brute-force path tracer that shares\nnothing with them but the scene and the ray "
+      "bench validation`: view factors against closed forms, and solvers against exact solutions "
+      "and a brute-force path tracer. That one shares nothing with them but the scene and the ray "
       "tracer ([reference.md](../method/reference.md)).\n\n"
       "This run: version {}, {}, {} threads, {:.0f} s. The exact values are those of "
       "`shared/reference`.\n\n",

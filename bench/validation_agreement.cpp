@@ -39,11 +39,11 @@ Result<Section> validate_agreement(Progress& progress) {
   section.markdown = fmt::format(
       "## Solvers against the path tracer\n\n"
       "Small scenes, one row per solver: a new solver adds its rows by itself. The judge is two "
-      "independent runs of {} paths per texel;\nthe mean of (g - a)(g - b) over both leaves the "
-      "solver's own error, without the judge's noise. gather: {} rays, {} shadow rays; "
-      "hemicube: up to {} vertices. The path tracer's own\nrow is a third run of {} paths: what is "
-      "left there is its noise. hemicube, matrix and hierarchical leave out the colour that\nglass "
-      "gives to indirect light (lights.md): under \"coloured glass\" their errors are that.\n\n{}",
+      "independent runs of {} paths per texel. The mean of (g - a)(g - b) over both leaves the "
+      "solver's own error, without the judge's noise. gather: {} rays, {} shadow rays; hemicube: "
+      "up to {} vertices. The path tracer's own row is a third run of {} paths: what is left there "
+      "is its noise. hemicube, matrix and hierarchical leave out the colour that glass gives to "
+      "indirect light (lights.md). Under \"coloured glass\" their errors are that.\n\n{}",
       kPaths, kSamples, kDirect, kElements, kPaths,
       markdown_table({"scene", "shows", "solver", "texels", "relative RMSE", "bias", "seconds"},
                      rows));

@@ -303,7 +303,7 @@ TEST(BakeWithTheReference, AgreesWithGather) {
   const CommandResult r =
       bake_for_outputs(scene, s.path / "r", "--resolution 64 --samples 256 --solver reference");
   ASSERT_EQ(r.code, 0) << r.err;
-  EXPECT_THAT(r.err, HasSubstr("noise: RMS "));
+  EXPECT_THAT(r.err, HasSubstr("estimated error: RMS "));
   const auto json = nlohmann::json::parse(slurp(s.path / "r" / "bake.json"));
   EXPECT_EQ(json["settings"]["solver"], "reference");
   const image::Image a = lightmap_of(s.path / "g");

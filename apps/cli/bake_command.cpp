@@ -56,20 +56,18 @@ Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   return s;
 }
 
-/// How noisy the light is, as far as the solver knows, and where most; or how far it is off.
-std::string noise_text(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
+/// How far the light is off, as far as the solver knows, and where most.
+std::string error_text(const pipeline::BakeSettings& settings, const nlohmann::json& json) {
   const double rms = json["relative_error"].get<double>();
   if (rms <= 0) return {};
-  if (json["counts"]["elements"].get<uint64_t>() > 0)  // light between them has no noise
-    return fmt::format("estimated error: RMS {:.3g} % of the mean light", 100 * rms);
-  std::string text = fmt::format("noise{}: RMS {:.3g} % of the mean light",
-                                 settings.denoise ? " before the denoiser" : "", 100 * rms);
+  const std::string text = fmt::format("estimated error{}: RMS {:.3g} % of the mean light",
+                                       settings.denoise ? " before the denoiser" : "", 100 * rms);
   if (!json.contains("error")) return text;
   const auto& error = json["error"];
   const auto& worst = error["worst"];
   const auto at = worst["position"].get<std::array<double, 3>>();
   return text + fmt::format(
-                    "; 95th percentile of the relative standard error {:.3g} %; largest {:.3g} % "
+                    "; 95 % of texels err by less than {:.3g} %; largest standard error {:.3g} % "
                     "on '{}' at {:.4g}, {:.4g}, {:.4g}",
                     100 * error["relative_p95"].get<double>(),
                     100 * worst["relative"].get<double>(), worst["node"].get<std::string>(), at[0],
@@ -88,8 +86,8 @@ void print_summary(const pipeline::BakeSettings& settings, const nlohmann::json&
                   counts["texels"].get<uint64_t>(), counts["rays"].get<uint64_t>(),
                   json["seconds"]["total"].get<double>())
           .c_str());
-  if (const std::string noise = noise_text(settings, json); !noise.empty())
-    std::fprintf(stderr, "%s\n", noise.c_str());
+  if (const std::string error = error_text(settings, json); !error.empty())
+    std::fprintf(stderr, "%s\n", error.c_str());
   for (const nlohmann::json& name : json["files"])
     std::fprintf(stderr, "wrote %s\n", (settings.output / name.get<std::string>()).c_str());
 }

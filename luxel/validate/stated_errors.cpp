@@ -33,21 +33,26 @@ StatedError stated_error(const pipeline::TexelLight& light, const Judged& judged
     const double g = double(luminance(light.irradiance[i]));
     const double a = double(luminance(judged.first[i])), b = double(luminance(judged.second[i]));
     squares += (g - a) * (g - b) / double(texels.size());
-    errors.push_back(std::abs(g - 0.5 * (a + b)) / std::max(0.5 * (a + b), 0.1 * mean));
+    const double off = g - 0.5 * (a + b),
+                 noise = 1.96 * double(luminance(judged.standard_error[i]));
+    errors.push_back(std::sqrt(std::max(0.0, off * off - noise * noise)) /
+                     std::max(0.5 * (a + b), 0.1 * mean));
   }
   out.truth = std::sqrt(std::max(0.0, squares)) / mean;
   out.true_p95 = percentile(std::move(errors), 0.95);
   return out;
 }
 
-Held held(std::span<const double> stated, std::span<const double> truth) {
+Held held(Claim claim, std::span<const double> stated, std::span<const double> truth) {
   Held out;
   std::vector<double> ratios;
   for (size_t i = 0; i < stated.size(); ++i) {
     if (!(stated[i] > 0)) continue;
     ++out.scenes;
-    out.within += truth[i] <= stated[i];
-    ratios.push_back(truth[i] / stated[i]);
+    const double ratio = truth[i] / stated[i];
+    out.holds += claim == Claim::bound ? ratio <= 1
+                                       : ratio <= kEstimateFactor && ratio * kEstimateFactor >= 1;
+    ratios.push_back(ratio);
   }
   out.middle_ratio = percentile(ratios, 0.5), out.p95_ratio = percentile(ratios, 0.95);
   return out;

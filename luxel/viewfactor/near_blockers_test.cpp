@@ -1,11 +1,22 @@
 // Form factors past blockers that nearly touch a polygon, against closed forms.
 #include <gtest/gtest.h>
 
-#include "luxel/viewfactor/random_contacts_test_support.h"
+#include <algorithm>
+
+#include "luxel/viewfactor/polygon_form_factor.h"
+#include "luxel/viewfactor/polygon_test_support.h"
+#include "luxel/viewfactor/random_contacts.h"
 #include "luxel/viewfactor/visible_form_factor.h"
 
 namespace luxel::viewfactor {
 namespace {
+
+/// Facing up, or down when `down`.
+Polygon plate(double x0, double y0, double x1, double y1, double z, bool down = false) {
+  Polygon p{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}};
+  if (down) std::reverse(p.begin(), p.end());
+  return p;
+}
 
 // A plate a ten-thousandth above a third of the floor. What is seen jumps along its edge, and
 // samples that halve the floor again and again fall on the same side of it each time.
@@ -33,7 +44,7 @@ TEST(NearBlockersSlow, StatedErrorsHoldInRandomContacts) {
     const int scenes = 100;
     int beyond = 0, blocked = 0;
     for (int i = 0; i < scenes; ++i) {
-      const Contact c = random_contact(dice);
+      const Contact c = random_contact(dice.seed, dice.index);
       const Motion motion = dice.motion(1);
       std::vector<Blocker> opaque;
       for (const Polygon& s : c.blockers) opaque.push_back(make_blocker(moved(s, motion)));

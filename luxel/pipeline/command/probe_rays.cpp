@@ -216,6 +216,14 @@ Result<Probed> probe_by_paths(const ProbeSettings& s, Progress& progress) {
   progress.begin("import", 0);
   Probed out;
   LUXEL_TRY(const scene::Scene scene, read_probe_scene(s, out));
+  ProbeSettings rest = s;
+  rest.time_budget_s -= seconds_since(start);
+  return probe_by_paths(rest, scene, std::move(out), progress);
+}
+
+Result<Probed> probe_by_paths(const ProbeSettings& s, const scene::Scene& scene, Probed out,
+                              Progress& progress) {
+  const Clock::time_point start = Clock::now();
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   LUXEL_TRY(const Place place, find_place(s, scene, out));
   const Look look = look_from(s, scene, tracer, place);

@@ -54,8 +54,7 @@ Options<S> sampling_options() {
           {kSmallestError, 1, "",
            "an error of 0 would never end; give the part of their light to which texels must be "
            "known, as 0.02"},
-          "Add rays until the 95th percentile of the relative standard error is below this, "
-          "e.g. 0.02")
+          "Add rays until 95 % of texels err by less than this part of their light, e.g. 0.02")
           .unit("ERROR")
           .only(&Can::errors),
       BakeRows::number(

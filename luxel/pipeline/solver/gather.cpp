@@ -40,14 +40,16 @@ void warn_about_rounds(const BakeSettings& settings, const gather::GatherParams&
   if (settings.samples_given)
     warnings.push_back(fmt::format("{} decides how many rays there are; --samples {} is ignored",
                                    winner, settings.samples));
-  if (settings.max_error <= 0 || double(result.relative_error_p95) <= settings.max_error) return;
+  if (settings.max_error <= 0 || double(result.error_p95) <= settings.max_error) return;
+  const std::string why =
+      double(result.noise_p95) <= settings.max_error
+          ? "since texels are too large to show how light varies; give a higher --resolution"
+      : settings.time_budget_s > 0
+          ? fmt::format("when --time-budget {} was over", settings.time_budget_s)
+          : fmt::format("and none gets more than {} rays", params.max_samples);
   warnings.push_back(
-      fmt::format("--max-error {} was not reached: the 95th percentile of the relative standard "
-                  "error is {:.2g}, {}",
-                  settings.max_error, result.relative_error_p95,
-                  settings.time_budget_s > 0
-                      ? fmt::format("when --time-budget {} was over", settings.time_budget_s)
-                      : fmt::format("and none gets more than {} rays", params.max_samples)));
+      fmt::format("--max-error {} was not reached: 95 % of texels err by less than {:.2g}, {}",
+                  settings.max_error, result.error_p95, why));
 }
 
 /// Makes the first round small enough for `seconds`. The forecast is that of `params`.
@@ -119,7 +121,7 @@ namespace {
 /// Light from gather's result; without warnings.
 TexelLight light_of(gather::Gather& result, light::LightLayers& layers) {
   TexelLight out = texel_light(std::move(result));
-  out.errors = std::move(result.errors), out.error_p95 = result.relative_error_p95;
+  out.errors = std::move(result.errors), out.error_p95 = result.error_p95;
   out.samples = std::move(result.samples);
   out.layers = std::move(layers.layers), out.layer_irradiance = std::move(result.layers);
   out.direct = std::move(result.direct);

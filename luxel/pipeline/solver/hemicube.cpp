@@ -7,6 +7,7 @@
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/settings/option_rows.h"
+#include "luxel/pipeline/solver/field_error.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
 #include "luxel/pipeline/solver/vertex_lit.h"
@@ -53,7 +54,6 @@ TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution&
   });
   out.suspicious_texels = uint64_t(std::count(out.hidden.begin(), out.hidden.end(), 1));
   out.rays = solution.rays, out.sweeps = solution.sweeps;
-  out.relative_error = solution.relative_error;
   out.scratch_bytes = solution.row_bytes_in_file;
   out.elements = solution.field.receivers.size();
   return out;
@@ -72,7 +72,12 @@ Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSetting
   LUXEL_TRY(const hemicube::Solution solution,
             hemicube::solve(in.scene, in.lights, in.tracer, params, progress));
   TexelLight out = texel_light_of(in, solution);
-  out.relative_error = std::hypot(out.relative_error, kPixelError / params.resolution);
+  const auto irradiance = [&](const scene::SurfacePoint& p) {
+    return hemicube::irradiance_at(solution.field, p);
+  };
+  LUXEL_TRY(const double error,
+            field_error(in, out, irradiance, {params.direct_samples, settings.seed}, progress));
+  out.relative_error = std::hypot(error, kPixelError / params.resolution);
   if (settings.vertex_colors) out.vertex_lit = vertex_lit(in.scene, solution.field);
   return out;
 }

@@ -7,6 +7,7 @@
 
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/settings/option_rows.h"
+#include "luxel/pipeline/solver/field_error.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
@@ -18,9 +19,6 @@
 namespace luxel::pipeline {
 namespace {
 
-/// Texels at which the interpolants are held against exact irradiance.
-constexpr size_t kCheckedTexels = 400;
-
 /// The side of a square as large as the tree's leaves are on average [m].
 float mean_side_m(const hierarchical::Tree& tree) {
   double area = 0, count = 0;
@@ -29,33 +27,19 @@ float mean_side_m(const hierarchical::Tree& tree) {
   return float(std::sqrt(area / std::max(count, 1.0)));
 }
 
-/// Root mean square difference between interpolated and exact irradiance over the mean, where
-/// neither a solid nor a cover hides the texel; and what links may err by, over the mean, for what
-/// is exact at points still has the light of the links.
+/// How far texels are off what rays from them find, which shows what interpolants and links cost
+/// there; and what links may err by, over the mean, for the light that rays find is that of links.
 Result<double> stated_error(const light::TexelScene& in, const hierarchical::Solution& solution,
-                            const TexelLight& light, std::span<const float> open,
-                            Progress& progress) {
-  std::vector<hierarchical::Receiver> receivers;
-  std::vector<size_t> texels;
-  const size_t step = std::max<size_t>(1, in.map.texels.size() / kCheckedTexels);
-  for (size_t i = step / 2; i < in.map.texels.size(); i += step) {
-    const hierarchical::FacePoint place =
-        hierarchical::face_point_of(in.scene, solution.faces, in.map.texels[i].sample);
-    if (place.face == hierarchical::kNone || light.hidden[i] || open[i] < 1) continue;
-    receivers.push_back(
-        hierarchical::receiver_at(solution, in.scene, in.tracer, place.face, place.position));
-    texels.push_back(i);
-  }
-  LUXEL_TRY(const std::vector<Rgb> exact,
-            hierarchical::irradiance_at(solution, in.scene, in.tracer, receivers, {}, progress));
-  double squares = 0, sum = 0;
-  for (size_t k = 0; k < texels.size(); ++k) {
-    const double d = double(luminance(light.irradiance[texels[k]] - exact[k]));
-    squares += d * d, sum += double(luminance(exact[k]));
-  }
-  if (!(sum > 0)) return 0.0;
-  const auto n = double(texels.size());
-  return std::sqrt(squares * n) / sum + solution.eps * n / sum;
+                            const hierarchical::LightMesh& mesh, const TexelLight& light,
+                            const light::DirectParams& direct, Progress& progress) {
+  const auto irradiance = [&](const scene::SurfacePoint& p) {
+    return hierarchical::irradiance_at(solution, mesh, in.scene, p);
+  };
+  LUXEL_TRY(const double error, field_error(in, light, irradiance, direct, progress));
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < light.irradiance.size(); ++i)
+    if (!light.hidden[i]) sum += double(luminance(light.irradiance[i])), count += 1;
+  return sum > 0 ? std::hypot(error, solution.eps * count / sum) : 0;
 }
 
 Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSettings& settings,
@@ -96,7 +80,8 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
                     left_out.refinement && left_out.feedback ? "refinement and feedback were"
                     : left_out.refinement                    ? "refinement was"
                                                              : "some of the feedback was"));
-  LUXEL_TRY(out.relative_error, stated_error(in, solution, out, open, progress));
+  LUXEL_TRY(out.relative_error, stated_error(in, solution, mesh, out,
+                                             {settings.direct_samples, settings.seed}, progress));
   return out;
 }
 

@@ -2,7 +2,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/free_memory.h"
-#include "luxel/solve/gather/budget/adaptive.h"
+#include "luxel/solve/gather/budget/error_p95.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -32,7 +32,7 @@ void rescale_errors(std::span<const Rgb> all, TexelLight& light) {
   for (size_t i = 0; i < light.errors.size(); ++i)
     light.errors[i] = float(light.errors[i] * denominator(all[i], before) /
                             denominator(light.irradiance[i], after));
-  light.error_p95 = gather::percentile_95(light.errors);
+  light.error_p95 = gather::error_p95(light.errors, [&](size_t i) { return !light.hidden[i]; });
   light.relative_error *= before / after;
 }
 

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "luxel/base/parallel.h"
+#include "luxel/light/point_error.h"
 #include "luxel/light/supersample.h"
 #include "luxel/pipeline/settings/option_rows.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
 #include "luxel/pipeline/texels/two_sides.h"
-#include "luxel/solve/matrix/point_error.h"
 #include "luxel/transport/back_faces.h"
 
 namespace luxel::pipeline {
@@ -25,6 +25,19 @@ double mean_light(const TexelLight& light) {
   for (size_t i = 0; i < light.irradiance.size(); ++i)
     if (!light.hidden[i]) sum += double(luminance(light.irradiance[i])), count += 1;
   return count > 0 ? sum / count : 0;
+}
+
+/// Radiosity of the patch that a ray meets.
+Rgb patch_radiosity(const light::TexelScene& in, const matrix::PatchedScene& patched,
+                    const matrix::Solution& solution, const trace::Hit& hit) {
+  const scene::Scene& scene = in.scene;
+  const uint32_t material =
+      scene.meshes[scene.instances[hit.instance].mesh].triangle_material[hit.triangle];
+  const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
+  const uint32_t j = patched.locator.locate(scene::world_position(scene, hit.point()),
+                                            hit.back_face ? -front : front, material, in.tracer);
+  if (j == matrix::kNone) return {};
+  return patched.patches.elements.reflectance[j] * (solution.direct[j] + solution.indirect[j]);
 }
 
 /// Direct light for each texel, indirect light for each patch.
@@ -54,9 +67,12 @@ Result<TexelLight> solve_matrix(const light::TexelScene& in, const BakeSettings&
   out.irradiance.resize(in.elements.size());
   matrix::transfer(map, solution.indirect, out.irradiance);
   out.hidden = transport::find_enclosed(in.scene, in.tracer, in.elements);
+  const auto radiosity = [&](const trace::Hit& hit) {
+    return patch_radiosity(in, prepared.patched, solution, hit);
+  };
   LUXEL_TRY(const double error,
-            matrix::point_error({in.scene, in.tracer, in.lights.around, prepared, solution},
-                                in.elements, out.irradiance, out.hidden, settings.seed, progress));
+            light::point_error({in.scene, in.tracer, in.lights.around, radiosity, settings.seed},
+                               in.elements, out.irradiance, out.hidden, progress));
   parallel_for(in.elements.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) out.irradiance[i] += direct.irradiance[i];
   });

@@ -47,10 +47,11 @@ struct TexelLight {
   /// apart.
   std::vector<Rgb> direct;
   std::vector<float> direct_variance;
-  /// Where the solver knows how sure each texel's luminance is, relative to itself or, where it is
-  /// darker, to a tenth of the mean; empty: it does not. Hidden texels have none.
+  /// Where the solver knows it, the standard error of each texel's luminance, relative to itself
+  /// or, where it is darker, to a tenth of the mean; empty: it does not. Hidden texels have none.
   std::vector<float> errors;
-  float error_p95 = 0;  ///< their 95th percentile
+  /// With errors: 95 of 100 texels err by less than this (gather::error_p95).
+  float error_p95 = 0;
   /// With --layers: which there are, and E of each per texel; they add up to the irradiance.
   std::vector<light::LightLayer> layers;
   std::vector<std::vector<Rgb>> layer_irradiance;

@@ -9,6 +9,8 @@
 #include "luxel/solve/gather/bounce/bounces.h"
 #include "luxel/solve/gather/bounce/radiosity_map.h"
 #include "luxel/solve/gather/budget/adaptive.h"
+#include "luxel/solve/gather/budget/error_p95.h"
+#include "luxel/solve/gather/budget/texel_error.h"
 #include "luxel/solve/gather/reuse/earlier_direct.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 #include "luxel/transport/back_faces.h"
@@ -16,11 +18,15 @@
 namespace luxel::gather {
 namespace {
 
-double relative_error(std::span<const Rgb> irradiance, std::span<const float> variance) {
-  double mean = 0, sum = 0;
-  for (size_t i = 0; i < irradiance.size(); ++i)
-    mean += double(luminance(irradiance[i])), sum += double(variance[i]);
-  return mean > 0 ? std::sqrt(sum * double(irradiance.size())) / mean : 0;
+/// Root mean square standard error over the mean, of elements that no solid hides.
+double relative_error(std::span<const Rgb> irradiance, std::span<const float> variance,
+                      const TracedHits& hits) {
+  double mean = 0, sum = 0, count = 0;
+  for (size_t i = 0; i < irradiance.size(); ++i) {
+    if (is_hidden(hits, i)) continue;
+    mean += double(luminance(irradiance[i])), sum += double(variance[i]), count += 1;
+  }
+  return mean > 0 ? std::sqrt(sum * count) / mean : 0;
 }
 
 /// From an earlier bake's light they end at this part of its error: what is left does not show
@@ -33,11 +39,14 @@ constexpr double kFineOverRough = 4;
 constexpr double kSmallestRound = 1.0 / 16;
 /// The part of a round's rays that may be shadow rays.
 constexpr double kDirectShare = 0.25;
+/// What noise may have of an error when texels cost more than the rest of its square: half of it.
+constexpr float kNoiseWithTexels = 0.70710678f;
 
-/// Pooled variances, and relative errors by them.
+/// Variances of the noise, and with what texels cost; and relative errors by them.
 struct Errors {
-  std::vector<float> variance;
-  std::vector<float> direct, gathered, all;  ///< relative
+  std::vector<float> noise_variance, variance;
+  std::vector<float> direct, gathered, all;  ///< direct, gathered: of the noise
+  float noise_p95 = 0, p95 = 0;              ///< error_p95
 };
 
 constexpr uint8_t kPunctualLayer = 0, kOtherLayer = 1, kReflectedLayer = 2;
@@ -96,7 +105,18 @@ struct Progressive {
   uint64_t traced_rays = 0, traced_samples = 0;
 };
 
-Errors errors_of(const light::TexelScene& scene, const Progressive& light) {
+/// Adds the variance that the light which rays pick up has since texels are as large as they are.
+void add_texel_error(const light::TexelScene& scene, const Progressive& light,
+                     std::span<float> variance) {
+  const std::vector<Rgb>& e = light.bounced.irradiance;
+  const double part = texel_error(scene.atlas, scene.map, scene.elements, light.hits, e);
+  for (size_t i = 0; i < variance.size(); ++i) {
+    const double off = part * double(luminance(e[i] - light.direct.irradiance[i]));
+    variance[i] += float(off * off);
+  }
+}
+
+Errors errors_of(const light::TexelScene& scene, int bounces, const Progressive& light) {
   auto direct = pooled_variances(scene.atlas, scene.map,
                                  {light.direct.variance, light.direct.split_variance});
   const auto gathered = pooled_variances(scene.atlas, scene.map,
@@ -104,17 +124,23 @@ Errors errors_of(const light::TexelScene& scene, const Progressive& light) {
   Errors out;
   out.direct = relative_errors(direct, light.bounced.irradiance, light.hits);
   out.gathered = relative_errors(gathered, light.bounced.irradiance, light.hits);
-  out.variance = std::move(direct);
-  for (size_t i = 0; i < gathered.size(); ++i) out.variance[i] += gathered[i];
+  out.noise_variance = std::move(direct);
+  for (size_t i = 0; i < gathered.size(); ++i) out.noise_variance[i] += gathered[i];
+  const auto counts = [&](size_t i) { return !is_hidden(light.hits, i); };
+  out.all = relative_errors(out.noise_variance, light.bounced.irradiance, light.hits);
+  out.noise_p95 = error_p95(out.all, counts);
+  out.variance = out.noise_variance;
+  if (bounces != 0) add_texel_error(scene, light, out.variance);
   out.all = relative_errors(out.variance, light.bounced.irradiance, light.hits);
+  out.p95 = error_p95(out.all, counts);
   return out;
 }
 
 void show(const GatherObserver& observer, const Progressive& light) {
   if (!observer.on_estimate) return;
   const double n = double(std::max<size_t>(light.hits.size(), 1));
-  observer.on_estimate({light.bounced.irradiance, double(sum_of(light.hits.samples)) / n,
-                        percentile_95(light.errors.all)});
+  observer.on_estimate(
+      {light.bounced.irradiance, double(sum_of(light.hits.samples)) / n, light.errors.p95});
 }
 
 /// Direct light, from scratch or from an earlier bake. Errors: cancelled.
@@ -202,7 +228,7 @@ float last_tolerance(const Request& in) {
 /// The light of the rays so far, which are not all, and how well it is known.
 Status estimate_round(const Request& in, Progressive& light, Progress& progress) {
   LUXEL_TRY_STATUS(bounce_round(in, kRoughTolerance, light, progress));
-  light.errors = errors_of(in.scene, light);
+  light.errors = errors_of(in.scene, in.params.bounces, light);
   show(in.observer, light);
   return {};
 }
@@ -242,7 +268,9 @@ void expect_rounds(const GatherParams& params, std::span<const uint16_t> target,
 Result<bool> next_round(const Request& in, double seconds_left, Progressive& light,
                         Progress& progress) {
   const GatherParams& params = in.params;
-  if (percentile_95(light.errors.all) <= params.max_error) return false;
+  if (light.errors.p95 <= params.max_error) return false;
+  // The rest is what texels cost, and no ray helps.
+  if (light.errors.noise_p95 <= kNoiseWithTexels * params.max_error) return false;
   // Indirect light gets more rays, direct light more shadow rays, where either is off by too much.
   const float each = error_of_part(params.max_error);
   const light::SupersampleParams supersample = in.supersample_params();
@@ -371,20 +399,20 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
   }
   out.hit_bytes_in_file = light.hits.bytes_in_file();
   drop_light(light.hits);
-  light.errors = errors_of(in.scene, light);
+  light.errors = errors_of(in.scene, in.params.bounces, light);
   show(in.observer, light);
   return {};
 }
 
 /// Moves what the caller gets out of what is known in the end.
 void take_result(Progressive&& light, Gather& out) {
-  out.relative_error = relative_error(light.bounced.irradiance, light.errors.variance);
+  out.relative_error = relative_error(light.bounced.irradiance, light.errors.variance, light.hits);
   out.irradiance = std::move(light.bounced.irradiance);
   out.direct = std::move(light.direct.irradiance);
   out.direct_variance = std::move(light.direct.variance);
   out.indirect_variance = std::move(light.bounced.split_variance);
-  out.pooled_variance = std::move(light.errors.variance);
-  out.relative_error_p95 = percentile_95(light.errors.all);
+  out.pooled_variance = std::move(light.errors.noise_variance);
+  out.error_p95 = light.errors.p95, out.noise_p95 = light.errors.noise_p95;
   out.errors = std::move(light.errors.all);
   out.gathered_errors = std::move(light.errors.gathered);
   out.met_back = std::move(light.hits.met_back);

@@ -22,7 +22,8 @@ struct Earlier;
 /// How many rays, and how many bounces of their light.
 struct GatherParams {
   int samples = 256;  ///< indirect rays per element; with max_error or seconds, of the first round
-  /// > 0: rounds of more samples until 95 % of elements have a smaller relative error (adaptive.h).
+  /// > 0: rounds of more samples until 95 % of elements err by less than this part of their light,
+  /// or of a tenth of the mean where they are darker.
   float max_error = 0;
   /// > 0: rounds of more samples while they, and the bounces, end within so many seconds from the
   /// call. The first round and the first direct light are not cut short. Depends on the machine.
@@ -72,9 +73,10 @@ struct Gather {
   std::vector<uint16_t> met_back;  ///< rays per element that met the back of a one-sided surface
   std::vector<uint8_t> enclosed;   ///< per element: 1 inside a solid (transport::is_enclosed)
   std::vector<float> pooled_variance;  ///< of the luminance, per element: pooled_variances
-  std::vector<float> errors;           ///< per element: relative_errors
-  std::vector<float> gathered_errors;  ///< `errors` of the indirect part alone
-  float relative_error_p95 = 0;        ///< 95th percentile of `errors`
+  std::vector<float> errors;           ///< per element: relative_errors, with texel_error
+  std::vector<float> gathered_errors;  ///< of the indirect part's noise alone
+  float error_p95 = 0;                 ///< 95 of 100 elements err by less: error_p95 of `errors`
+  float noise_p95 = 0;                 ///< of their noise alone
   std::vector<uint16_t> samples;       ///< indirect rays per element
   /// With layers, of each: E per element after all bounces. They add up to `irradiance`.
   std::vector<std::vector<Rgb>> layers;
@@ -88,7 +90,8 @@ struct Gather {
   uint64_t supersampled = 0;  ///< elements whose direct light is a mean over points
   int sweeps = 0;
   uint64_t hit_bytes_in_file = 0;
-  /// Root mean square of the estimated standard errors (pooled_variances) over the mean irradiance.
+  /// Root mean square of the estimated standard errors over the mean irradiance, of elements that no
+  /// solid hides: of the noise (pooled_variances) and of what texels cost (texel_error).
   double relative_error = 0;
 };
 

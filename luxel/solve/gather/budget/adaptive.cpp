@@ -6,6 +6,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
+#include "luxel/solve/gather/budget/error_p95.h"
 #include "luxel/solve/gather/budget/neighbours.h"
 
 namespace luxel::gather {
@@ -72,7 +73,8 @@ std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::Texe
       const double prior = kPriorElements * mean;
       const double ratio =
           mean > 0 ? (near.split + prior * charts[chart[i]].ratio()) / (near.variance + prior) : 0;
-      out[i] = float(0.5 * (double(variance.independent[i]) + mean) * ratio);
+      // A path that is rare and bright may have been met by the neighbours only.
+      out[i] = float(std::max(double(variance.independent[i]), mean) * ratio);
     }
   });
   return out;
@@ -88,14 +90,6 @@ std::vector<float> relative_errors(std::span<const float> variance, std::span<co
     if (!is_hidden(hits, i))
       out[i] = std::sqrt(variance[i]) / std::max(luminance(irradiance[i]), kDarkest * float(mean));
   return out;
-}
-
-float percentile_95(std::span<const float> errors) {
-  if (errors.empty()) return 0;
-  std::vector<float> sorted(errors.begin(), errors.end());
-  const auto at = sorted.begin() + std::ptrdiff_t((sorted.size() - 1) * 95 / 100);
-  std::nth_element(sorted.begin(), at, sorted.end());
-  return *at;
 }
 
 std::vector<uint16_t> next_samples(std::span<const float> errors, float max_error, int max_samples,
@@ -132,7 +126,7 @@ std::vector<uint64_t> rounds_to_come(std::span<const float> all, std::span<const
   for (;;) {
     sum.clear();
     for (size_t i = 0; i < now.size(); ++i) sum.push_back(std::hypot(now[i], rest[i]));
-    if (percentile_95(sum) <= max_error) return rounds;
+    if (error_p95(sum) <= max_error) return rounds;
     const std::vector<uint16_t> next = next_samples(now, each, max_samples, n);
     const uint64_t added = sum_of(next) - sum_of(n);
     if (added == 0) return rounds;

@@ -19,9 +19,10 @@ struct VariancePair {
   std::span<const float> independent, split;
 };
 
-/// Stratification gains about as much for neighbours: the first estimate, smoothed, times the ratio
-/// of both, summed over the neighbours of the same chart; if `among` names some elements, those of
-/// them that are `among` too, for the others have fewer samples. docs/method/gather.md
+/// Stratification gains about as much for neighbours: the first estimate, or its mean over the
+/// neighbours of the same chart if that is larger, times the ratio of both, summed over them; if
+/// `among` names some elements, those of them that are `among` too, for the others have fewer
+/// samples. docs/method/gather.md
 std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                     VariancePair variance, std::span<const uint32_t> among = {});
 
@@ -30,24 +31,22 @@ std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::Texe
 std::vector<float> relative_errors(std::span<const float> variance, std::span<const Rgb> irradiance,
                                    const TracedHits& hits);
 
-/// The 95th percentile of the errors, over elements that have one.
-float percentile_95(std::span<const float> errors);
-
 /// Standard errors of stratified samples fall like n^-kDecay and a bit faster
 /// (docs/method/gather.md): it says how many samples more are needed.
 inline constexpr float kDecay = 0.7f;
 
-/// What the light from lights, or the rest, may be off by: half of the square each.
-inline float error_of_part(float max_error) { return max_error * 0.70710678f; }
+/// The standard error that the light from lights, or the rest, may have: with half of the square
+/// each, 95 of 100 elements err by less than max_error.
+inline float error_of_part(float max_error) { return max_error * (0.70710678f / 1.96f); }
 
 /// Samples of the next round: of elements whose relative error is larger than max_error two or four
 /// times as many as they have, of others what they have. More than max_samples nobody gets.
 std::vector<uint16_t> next_samples(std::span<const float> errors, float max_error, int max_samples,
                                    std::span<const uint16_t> samples);
 
-/// How many samples each round will add, until the 95th percentile of `all` errors is below
-/// max_error, if those of the gathered light, which are part of them, fall like n^-kDecay, and
-/// lights are looked at until theirs are small enough.
+/// How many samples each round will add, until error_p95 of `all` errors is below max_error, if
+/// those of the gathered light, which are part of them, fall like n^-kDecay, and lights are looked
+/// at until theirs are small enough.
 std::vector<uint64_t> rounds_to_come(std::span<const float> all, std::span<const float> gathered,
                                      float max_error, int max_samples,
                                      std::span<const uint16_t> samples);

@@ -141,7 +141,7 @@ struct Shown {
 std::vector<Shown> watched(const Room& room, const GatherParams& params, Gather& result) {
   std::vector<Shown> out;
   const auto on_estimate = [&](const light::LightEstimate& e) {
-    out.push_back({{e.irradiance.begin(), e.irradiance.end()}, e.samples, e.relative_error_p95});
+    out.push_back({{e.irradiance.begin(), e.irradiance.end()}, e.samples, e.error_p95});
   };
   result = solve(room, params, {}, nullptr, {.on_estimate = on_estimate});
   return out;
@@ -219,7 +219,7 @@ TEST_F(SlowAdaptive, TheErrorIsWhatWasAskedFor) {
   for (const float max_error : {0.05f, 0.02f}) {
     const Gather light = solve(
         room(), {.samples = 32, .max_error = max_error, .direct_samples = 16, .supersample = 16});
-    EXPECT_LE(light.relative_error_p95, max_error);
+    EXPECT_LE(light.error_p95, max_error);
     double mean = 0;
     for (const Rgb& e : judge().irradiance)
       mean += double(luminance(e)) / double(judge().irradiance.size());

@@ -6,6 +6,7 @@
 #include "luxel/base/clock.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/gather/budget/adaptive.h"
+#include "luxel/solve/gather/budget/error_p95.h"
 #include "luxel/solve/gather/budget/neighbours.h"
 #include "luxel/solve/gather/forecast/expected_bounces.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
@@ -116,7 +117,7 @@ Status trace(RoundsTrial& trial, std::span<const uint16_t> target, Progress& pro
 /// Relative, of the trial's texels; of all others 0.
 struct ForecastErrors {
   std::vector<float> direct, gathered, all;
-  float p95 = 0;  ///< of all that are tried
+  float p95 = 0;  ///< error_p95 of all that are tried
 };
 
 /// As gather() knows them, but in the coarse light: one bounce of it.
@@ -146,8 +147,9 @@ Result<ForecastErrors> errors_of(const RoundsTrial& trial, Progress& progress) {
   };
   ForecastErrors out{relative(direct), relative(gathered), relative(all)};
   std::vector<float> tried;
-  for (const uint32_t i : trial.texels) tried.push_back(out.all[i]);
-  out.p95 = percentile_95(tried);
+  for (const uint32_t i : trial.texels)
+    if (!is_hidden(trial.hits, i)) tried.push_back(out.all[i]);
+  out.p95 = error_p95(tried);
   return out;
 }
 

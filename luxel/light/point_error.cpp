@@ -1,6 +1,5 @@
-#include "luxel/solve/matrix/point_error.h"
+#include "luxel/light/point_error.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -9,7 +8,7 @@
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 
-namespace luxel::matrix {
+namespace luxel::light {
 namespace {
 
 /// Points that are checked: the error is known to about 1 / sqrt(2 x 500) = 3 % of itself where it
@@ -19,25 +18,18 @@ constexpr size_t kPoints = 500;
 /// or, by stratified rays, far better.
 constexpr size_t kRays = 1024;
 
-/// What a ray brings: radiosity of the patch that it meets over pi, or the sky's radiance.
+/// What a ray brings.
 Rgb radiance_of(const PointCheck& check, const trace::Ray& ray, const trace::Hit& hit) {
   const scene::Scene& scene = check.scene;
-  if (!hit.found()) return light::soft_radiance(scene, check.around, ray.direction);
-  const scene::Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
-  const uint32_t material = mesh.triangle_material[hit.triangle];
-  if (hit.back_face && !scene::reflects_from_behind(scene.materials[material])) return {};
-  const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
-  const PatchedScene& patched = check.prepared.patched;
-  const uint32_t j = patched.locator.locate(scene::world_position(scene, hit.point()),
-                                            hit.back_face ? -front : front, material, check.tracer);
-  if (j == kNone) return {};
-  return patched.patches.elements.reflectance[j] *
-         (check.solution.direct[j] + check.solution.indirect[j]) / kPi;
+  if (!hit.found()) return soft_radiance(scene, check.around, ray.direction);
+  if (hit.back_face && !scene::reflects_from_behind(scene::material_at(scene, hit.point())))
+    return {};
+  return check.radiosity(hit) / kPi;
 }
 
 /// E by rays [W/m^2].
-Rgb gathered(const PointCheck& check, const transport::Elements& points, size_t i, uint64_t seed,
-             float diagonal_m) {
+Rgb by_rays(const PointCheck& check, const transport::Elements& points, size_t i, uint64_t seed,
+            float diagonal_m) {
   std::array<trace::Ray, kRays> rays;
   std::array<trace::Hit, kRays> hits;
   const Vec3 from =
@@ -56,15 +48,19 @@ Rgb gathered(const PointCheck& check, const transport::Elements& points, size_t 
 
 }  // namespace
 
+std::vector<uint32_t> points_to_check(size_t count, std::span<const uint8_t> hidden) {
+  std::vector<uint32_t> out;
+  const size_t step = std::max<size_t>(1, count / kPoints);
+  for (size_t i = step / 2; i < count; i += step)
+    if (!hidden[i]) out.push_back(uint32_t(i));
+  return out;
+}
+
 Result<double> point_error(const PointCheck& check, const transport::Elements& points,
-                           std::span<const Rgb> indirect, std::span<const uint8_t> hidden,
-                           uint64_t seed, Progress& progress) {
-  LUXEL_CHECK(indirect.size() == points.size() && hidden.size() == points.size());
-  // Some of the points, spread over all.
-  std::vector<size_t> chosen;
-  const size_t step = std::max<size_t>(1, points.size() / kPoints);
-  for (size_t i = step / 2; i < points.size(); i += step)
-    if (!hidden[i]) chosen.push_back(i);
+                           std::span<const Rgb> gathered, std::span<const uint8_t> hidden,
+                           Progress& progress) {
+  LUXEL_CHECK(gathered.size() == points.size() && hidden.size() == points.size());
+  const std::vector<uint32_t> chosen = points_to_check(points.size(), hidden);
   // The product of both differences at each.
   const float diagonal_m = scene::world_bounds(check.scene).diagonal();
   std::vector<double> square(chosen.size());
@@ -73,8 +69,9 @@ Result<double> point_error(const PointCheck& check, const transport::Elements& p
     for (size_t k = begin; k < end && !progress.cancelled(); ++k) {
       const size_t i = chosen[k];
       const auto difference = [&](uint64_t answer) {
-        return double(luminance(
-            indirect[i] - gathered(check, points, i, hash64(seed, 2 * i + answer), diagonal_m)));
+        return double(
+            luminance(gathered[i] -
+                      by_rays(check, points, i, hash64(check.seed, 2 * i + answer), diagonal_m)));
       };
       square[k] = difference(0) * difference(1);
       progress.advance(1);
@@ -90,4 +87,4 @@ Result<double> point_error(const PointCheck& check, const transport::Elements& p
   return std::sqrt(std::max(0.0, mean + std::sqrt(variance / n)));
 }
 
-}  // namespace luxel::matrix
+}  // namespace luxel::light

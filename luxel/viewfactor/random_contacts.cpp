@@ -1,50 +1,50 @@
-// Polygons with blockers that touch them or nearly do, and their form factors in closed form: for
-// tests and the table of stated errors.
-#pragma once
+#include "luxel/viewfactor/random_contacts.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/base/random.h"
 #include "luxel/viewfactor/polygon_form_factor.h"
-#include "luxel/viewfactor/polygon_test_support.h"
 
 namespace luxel::viewfactor {
+namespace {
+
+struct ContactDice {
+  uint64_t seed;
+  uint64_t& index;
+
+  /// Uniform in [-1, 1), with all bits of a double.
+  double number() { return double(int64_t(hash64(seed, index++))) * 0x1p-63; }
+};
 
 /// Facing up, or down when `down`.
-inline Polygon plate(double x0, double y0, double x1, double y1, double z, bool down = false) {
+Polygon contact_plate(double x0, double y0, double x1, double y1, double z, bool down = false) {
   Polygon p{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}};
   if (down) std::reverse(p.begin(), p.end());
   return p;
 }
 
-inline Polygon turned(Polygon p) {
+Polygon turned_over(Polygon p) {
   std::reverse(p.begin(), p.end());
   return p;
 }
 
 /// What a polygon exchanges with the front of another, from both of its sides.
-inline double both_sides(const Polygon& s, const Polygon& b) {
-  return polygon_exchange_area(s, b).value + polygon_exchange_area(turned(s), b).value;
+double both_sides(const Polygon& s, const Polygon& b) {
+  return polygon_exchange_area(s, b).value + polygon_exchange_area(turned_over(s), b).value;
 }
 
-/// Two polygons and opaque ones, and A_a F(a -> b) past them.
-struct Contact {
-  Polygon a, b;
-  std::vector<Polygon> blockers;
-  double exact = 0;
-};
-
 /// A box in the plane of a.
-struct Box {
+struct ShadowBox {
   double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
   bool lies_in(double half) const { return x0 > -half && y0 > -half && x1 < half && y1 < half; }
-  bool meets(const Box& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
+  bool meets(const ShadowBox& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
 };
 
 /// The box about the shadow of s on the plane z = 0 with b as the light. Not finite where s
 /// is not between them.
-inline Box shadow_box(const Polygon& s, const Polygon& b) {
-  Box box;
+ShadowBox shadow_box(const Polygon& s, const Polygon& b) {
+  ShadowBox box;
   for (const DVec3& eye : b)
     for (const DVec3& p : s) {
       const double share = eye.z / (eye.z - p.z);
@@ -56,26 +56,27 @@ inline Box shadow_box(const Polygon& s, const Polygon& b) {
   return box;
 }
 
-inline Polygon upside_down(Polygon p, double height) {
+Polygon upside_down(Polygon p, double height) {
   for (DVec3& corner : p) corner.z = height - corner.z;
   return p;
 }
 
-inline double uniform(Dice& dice) { return 0.5 + 0.5 * dice.number(); }
+double uniform_of(ContactDice& dice) { return 0.5 + 0.5 * dice.number(); }
 /// 10^from to 10^to, evenly in the logarithm.
-inline double decades(Dice& dice, double from, double to) {
-  return std::pow(10, from + (to - from) * uniform(dice));
+double decades_of(ContactDice& dice, double from, double to) {
+  return std::pow(10, from + (to - from) * uniform_of(dice));
 }
 
 /// A plate, a tilted one, a wall or a sliver whose lowest edge is at z = `height`. What touches z =
 /// 0 is not parallel to it: a plate that lies on a polygon is neither above nor below it.
-inline Polygon near_blocker(Dice& dice, double height) {
-  const double size = decades(dice, -1.5, 0), turn = kPiDouble * dice.number();
-  const double width = uniform(dice) < 0.3 ? size * decades(dice, -3, -1) : size * uniform(dice);
-  const double kind = uniform(dice);
+Polygon near_blocker(ContactDice& dice, double height) {
+  const double size = decades_of(dice, -1.5, 0), turn = kPiDouble * dice.number();
+  const double width =
+      uniform_of(dice) < 0.3 ? size * decades_of(dice, -3, -1) : size * uniform_of(dice);
+  const double kind = uniform_of(dice);
   const double tilt = kind < 0.4 && height > 0 ? 0
                       : kind < 0.7             ? 0.5 * kPiDouble
-                                               : kPiDouble * uniform(dice);
+                                               : kPiDouble * uniform_of(dice);
   const DVec3 at{0.8 * dice.number(), 0.8 * dice.number(), height};
   const DVec3 u{size * std::cos(turn), size * std::sin(turn), 0};
   const DVec3 v{-std::sin(turn) * std::cos(tilt) * width, std::cos(turn) * std::cos(tilt) * width,
@@ -83,25 +84,28 @@ inline Polygon near_blocker(Dice& dice, double height) {
   return {at, at + u, at + u + v, at + v};
 }
 
+}  // namespace
+
 /// Where no line from a to b meets two blockers, what they hide is what they themselves exchange
 /// with b: each line from b to a blocker goes on to a. The shadows of the blockers near a lie
 /// within a and do not meet, which makes it so. Lines that meet one near each of both polygons are
 /// those between the two.
-inline Contact random_contact(Dice& dice) {
+Contact random_contact(uint64_t seed, uint64_t& index) {
+  ContactDice dice{seed, index};
   Contact c;
-  const double height = decades(dice, -0.5, 0.3), half = decades(dice, -1.5, 0.3);
-  c.a = plate(-1, -1, 1, 1, 0);
-  c.b = plate(-half, -half, half, half, height, true);
+  const double height = decades_of(dice, -0.5, 0.3), half = decades_of(dice, -1.5, 0.3);
+  c.a = contact_plate(-1, -1, 1, 1, 0);
+  c.b = contact_plate(-half, -half, half, half, height, true);
   const auto add_near = [&](const Polygon& b, double half_a) {
     std::vector<Polygon> kept;
-    std::vector<Box> shadows;
-    const int wanted = 1 + int(3 * uniform(dice));
+    std::vector<ShadowBox> shadows;
+    const int wanted = 1 + int(3 * uniform_of(dice));
     for (int tries = 0; tries < 40 && int(kept.size()) < wanted; ++tries) {
-      const double touching = uniform(dice) < 0.25 ? 0 : decades(dice, -6, -1);
+      const double touching = uniform_of(dice) < 0.25 ? 0 : decades_of(dice, -6, -1);
       Polygon s = near_blocker(dice, touching * height);
       for (DVec3& p : s) p.x *= half_a, p.y *= half_a;
-      const Box shadow = shadow_box(s, b);
-      const auto meets = [&](const Box& o) { return o.meets(shadow); };
+      const ShadowBox shadow = shadow_box(s, b);
+      const auto meets = [&](const ShadowBox& o) { return o.meets(shadow); };
       if (!shadow.lies_in(half_a) || std::any_of(shadows.begin(), shadows.end(), meets)) continue;
       shadows.push_back(shadow), kept.push_back(s);
     }
@@ -109,7 +113,7 @@ inline Contact random_contact(Dice& dice) {
   };
   const std::vector<Polygon> low = add_near(c.b, 1);
   std::vector<Polygon> high;
-  if (uniform(dice) < 0.5) {
+  if (uniform_of(dice) < 0.5) {
     for (const Polygon& t : add_near(upside_down(c.a, height), half)) {
       const auto goes_on = [&](const Polygon& s) {
         return shadow_box(s, upside_down(t, height)).lies_in(1) &&
@@ -122,7 +126,7 @@ inline Contact random_contact(Dice& dice) {
   for (const Polygon& s : low) c.exact -= both_sides(s, c.b);
   for (const Polygon& s : high) c.exact -= both_sides(s, c.a);
   for (const Polygon& s : low)
-    for (const Polygon& t : high) c.exact += both_sides(s, t) + both_sides(s, turned(t));
+    for (const Polygon& t : high) c.exact += both_sides(s, t) + both_sides(s, turned_over(t));
   c.blockers = low;
   c.blockers.insert(c.blockers.end(), high.begin(), high.end());
   return c;

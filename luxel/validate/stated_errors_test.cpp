@@ -86,7 +86,7 @@ Result<GatherStatements> gather_statements(int scenes) {
 }
 
 // The errors that 95 % of texels stay below, in 20 scenes, one of which may be an unlucky one. The
-// 95th percentile of standard errors, which is no percentile of errors, holds in NN and NN of them.
+// 95th percentile of standard errors, which is no percentile of errors, holds in 16 and 11 of them.
 // The paths' own noise is about as large as what is judged.
 TEST(StatedErrorsSlow, NineteenOfTwentyTexelsErrByLess) {
   const auto s = gather_statements(20);

@@ -32,7 +32,8 @@ void rescale_errors(std::span<const Rgb> all, TexelLight& light) {
   for (size_t i = 0; i < light.errors.size(); ++i)
     light.errors[i] = float(light.errors[i] * denominator(all[i], before) /
                             denominator(light.irradiance[i], after));
-  light.error_p95 = gather::error_p95(light.errors, [&](size_t i) { return !light.hidden[i]; });
+  light.error_p95 = gather::error_p95(
+      light.errors, [&](size_t i) { return light.hidden.empty() || !light.hidden[i]; });
   light.relative_error *= before / after;
 }
 

@@ -9,7 +9,8 @@ namespace luxel::gather {
 namespace {
 
 /// Errors of texels beside one another are alike, along an edge or around a lamp: they add up as if
-/// groups of so many had the same. With 25 the stated error holds in more than 95 of 100 random scenes
+/// groups of so many had the same. With 25 the stated error holds in more than 95 of 100 random
+/// scenes
 /// (`luxel bench validation`).
 constexpr double kAlike = 25;
 

@@ -63,17 +63,20 @@ struct SealedLight {
   size_t lookups = 0, lit_lookups = 0;  ///< lit: more than a thousandth of the mean of all texels
   double brightest = 0;                 ///< texel inside, over that mean
 };
+/// Whether a surface faces into the sealed room there.
+bool is_inside(const testing_support::SealedHouse& house, const scene::Scene& scene,
+               const scene::SurfacePoint& p) {
+  const Vec3 front = scene::front_normal(scene, p.instance, p.triangle);
+  return is_in_sealed_room(house, scene::world_position(scene, p) + front * 1e-3f);
+}
+
 SealedLight sealed_light(const testing_support::SealedHouse& house, const Bake& bake) {
-  const auto is_inside = [&](const scene::SurfacePoint& p) {
-    const Vec3 front = scene::front_normal(bake.scene, p.instance, p.triangle);
-    return is_in_sealed_room(house, scene::world_position(bake.scene, p) + front * 1e-3f);
-  };
   SealedLight out;
   double sum = 0;
   for (size_t i = 0; i < bake.map.texels.size(); ++i) {
     const float e = luminance(bake.light.irradiance[i]);
     sum += double(e);
-    if (!is_inside(bake.map.texels[i].sample)) continue;
+    if (!is_inside(house, bake.scene, bake.map.texels[i].sample)) continue;
     ++out.texels, out.lit_texels += e > 0;
     out.brightest = std::max(out.brightest, double(e));
   }
@@ -86,7 +89,7 @@ SealedLight sealed_light(const testing_support::SealedHouse& house, const Bake& 
         Vec2 u = sobol_owen_2d(k, t);
         if (u.x + u.y > 1) u = {1 - u.x, 1 - u.y};
         const scene::SurfacePoint p{i, t, {u.x, u.y}};
-        if (!is_inside(p)) continue;
+        if (!is_inside(house, bake.scene, p)) continue;
         ++out.lookups;
         out.lit_lookups += double(luminance(transport::irradiance_at(field, p))) > 1e-3 * mean;
       }
@@ -141,6 +144,54 @@ TEST(Leaks, ASealedRoomStaysBlackWhenDenoised) {
   const SealedLight light = sealed_light(house, *bake);
   ASSERT_GT(light.texels, 300u);
   EXPECT_EQ(light.lit_texels, 0u) << light.brightest;
+}
+
+/// The number of texels that face into the sealed room; each is black in all `pictures`.
+size_t expect_black(const testing_support::SealedHouse& house, const Bake& bake,
+                    std::span<const image::Image* const> pictures) {
+  size_t texels = 0;
+  for (const atlas::Texel& t : bake.map.texels) {
+    if (!is_inside(house, bake.scene, t.sample)) continue;
+    ++texels;
+    for (size_t k = 0; k < pictures.size(); ++k)
+      EXPECT_EQ(pictures[k]->rgb(int(t.x), int(t.y)), Rgb{}) << k << ": " << t.x << ' ' << t.y;
+  }
+  return texels;
+}
+
+/// Layers are made of the lightmap's own rays and stitched as it is.
+TEST(Leaks, LayersOfASealedRoomAreBlack) {
+  const testing_support::SealedHouse house{0.06f, 0.3f};
+  BakeSettings settings = sealed_settings(128);
+  settings.layers = light::LayerMode::per_light;
+  Progress progress;
+  const auto bake = bake_scene(sealed_house(house), settings, progress);
+  ASSERT_TRUE(bake) << bake.error().message;
+  std::vector<const image::Image*> pictures;
+  for (const BakedLayer& layer : bake->layers) pictures.push_back(&layer.lightmaps.at(0));
+  ASSERT_EQ(pictures.size(), 2u);  // sun and sky
+  EXPECT_GT(expect_black(house, *bake, pictures), 300u);
+}
+
+/// Directions and probes have rays of their own, which read the finished lightmap.
+TEST(Leaks, DirectionsAndProbesOfASealedRoomAreBlack) {
+  const testing_support::SealedHouse house{0.06f, 0.3f};
+  BakeSettings settings = sealed_settings(128);
+  settings.directional = Directional::sh1, settings.probe_spacing_m = 0.5;
+  Progress progress;
+  const auto bake = bake_scene(sealed_house(house), settings, progress);
+  ASSERT_TRUE(bake) << bake.error().message;
+  std::vector<const image::Image*> pictures;
+  for (const auto& pages : bake->directions.pictures) pictures.push_back(&pages.at(0));
+  ASSERT_EQ(pictures.size(), 3u);
+  EXPECT_GT(expect_black(house, *bake, pictures), 300u);
+  size_t probes = 0;
+  for (const light::Probe& probe : bake->probes->probes) {
+    if (!is_in_sealed_room(house, probe.position)) continue;
+    ++probes;
+    for (const Rgb& coefficient : probe.irradiance) EXPECT_EQ(coefficient, Rgb{});
+  }
+  EXPECT_GT(probes, 20u);
 }
 
 /// With TEXCOORD_1 kept nothing is cut, and texels mix; still no ray reads beyond a wall.

@@ -13,6 +13,16 @@ namespace {
 
 constexpr size_t kMost = 64;
 
+/// The set's directions about (0, 0, 1).
+const std::array<Vec3, kMost>& directions() {
+  static const auto all = [] {
+    std::array<Vec3, kMost> out;
+    for (uint32_t k = 0; k < kMost; ++k) out[k] = cosine_hemisphere_sample(sobol_owen_2d(k, 3));
+    return out;
+  }();
+  return all;
+}
+
 /// The first rays of the set, and what they meet.
 struct Look {
   std::array<trace::Ray, kMost> rays;
@@ -20,14 +30,21 @@ struct Look {
   size_t count = 0;
 };
 
+/// Traces the set's rays up to so many; those that the look has stay.
+void look_further(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, size_t count,
+                  Look& look) {
+  const auto frame = frame_around(normal);
+  const size_t first = look.count;
+  for (size_t k = first; k < count; ++k)
+    look.rays[k] = {from, 0, frame.to_world(directions()[k]), INFINITY};
+  tracer.closest_hits(std::span(look.rays).subspan(first, count - first),
+                      std::span(look.hits).subspan(first, count - first));
+  look.count = count;
+}
+
 Look look_from(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, size_t count) {
   Look out;
-  out.count = count;
-  const auto frame = frame_around(normal);
-  for (uint32_t k = 0; k < count; ++k)
-    out.rays[k] = {from, 0, frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 3))),
-                   INFINITY};
-  tracer.closest_hits(std::span(out.rays).first(count), std::span(out.hits).first(count));
+  look_further(tracer, from, normal, count, out);
   return out;
 }
 
@@ -49,15 +66,21 @@ bool sees_nearly_backs_alone(const BackFaces& seen) {
 /// Whether a place sees nothing but backs, by all rays of the set.
 bool sees_backs_alone(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
                       Vec3 normal) {
-  return is_enclosed(backs_of(scene, look_from(tracer, from, normal, kMost)));
+  Look look = look_from(tracer, from, normal, kMost / 2);
+  // With no back of a one-sided surface in the first half, the second cannot make a majority of
+  // them; two that are no backs are too many.
+  const BackFaces half = backs_of(scene, look);
+  if (half.one_sided == 0 && half.rays - all_backs(half) >= 2) return false;
+  look_further(tracer, from, normal, kMost, look);
+  return is_enclosed(backs_of(scene, look));
 }
 
 /// Whether a place lies inside a solid, by all rays of the set. A front that itself sees nothing
 /// but backs counts as a back: the floor within a box whose own bottom lies just as high, so that
-/// rays meet either.
+/// rays meet either. `look`: from there, with some of the rays.
 bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
-                float diagonal_m) {
-  const Look look = look_from(tracer, from, normal, kMost);
+                float diagonal_m, Look& look) {
+  look_further(tracer, from, normal, kMost, look);
   BackFaces seen = backs_of(scene, look);
   if (is_enclosed(seen)) return true;
   if (!sees_nearly_backs_alone(seen)) return false;
@@ -74,6 +97,14 @@ bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 
   return true;
 }
 
+/// Whether a place lies inside a solid, by the rays of `look`, and by all where those are not sure.
+bool is_enclosed_by(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
+                    Vec3 normal, float diagonal_m, Look& look) {
+  const BackFaces seen = backs_of(scene, look);
+  return is_enclosed(seen) || (sees_nearly_backs_alone(seen) &&
+                               is_shut_in(scene, tracer, from, normal, diagonal_m, look));
+}
+
 }  // namespace
 
 BackFaces count_back_faces(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
@@ -84,17 +115,20 @@ BackFaces count_back_faces(const scene::Scene& scene, const trace::RayTracer& tr
 
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from, Vec3 normal,
                  int rays, float diagonal_m) {
-  const BackFaces seen = count_back_faces(scene, tracer, from, normal, rays);
-  return is_enclosed(seen) ||
-         (sees_nearly_backs_alone(seen) && is_shut_in(scene, tracer, from, normal, diagonal_m));
+  LUXEL_CHECK(rays > 0 && size_t(rays) <= kMost);
+  Look look = look_from(tracer, from, normal, size_t(rays));
+  return is_enclosed_by(scene, tracer, from, normal, diagonal_m, look);
 }
 
 bool is_in_the_open(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 from,
                     Vec3 normal, float diagonal_m) {
   constexpr int kFirstRays = 8, kRays = 32;
-  const BackFaces few = count_back_faces(scene, tracer, from, normal, kFirstRays);
+  Look look = look_from(tracer, from, normal, kFirstRays);
+  const BackFaces few = backs_of(scene, look);
   if (all_backs(few) == 0) return true;
-  return !is_enclosed(few) && !is_enclosed(scene, tracer, from, normal, kRays, diagonal_m);
+  if (is_enclosed(few)) return false;
+  look_further(tracer, from, normal, kRays, look);
+  return !is_enclosed_by(scene, tracer, from, normal, diagonal_m, look);
 }
 
 bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
@@ -103,7 +137,8 @@ bool is_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
   if (4 * own.one_sided > 3 * own.rays) return true;
   const Vec3 from =
       trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
-  return is_shut_in(scene, tracer, from, elements.normal[i], diagonal_m);
+  Look look;
+  return is_shut_in(scene, tracer, from, elements.normal[i], diagonal_m, look);
 }
 
 std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTracer& tracer,
@@ -128,9 +163,10 @@ std::vector<uint8_t> find_enclosed(const scene::Scene& scene, const trace::RayTr
     for (size_t i = begin; i < end; ++i) {
       const Vec3 from =
           trace::offset_origin(elements.position[i], elements.geometric_normal[i], diagonal_m);
-      const BackFaces few = count_back_faces(scene, tracer, from, elements.normal[i], kFirst);
-      out[i] = all_backs(few) > 0 &&
-               is_enclosed(scene, tracer, from, elements.normal[i], int(kMost), diagonal_m);
+      Look look = look_from(tracer, from, elements.normal[i], kFirst);
+      if (all_backs(backs_of(scene, look)) == 0) continue;
+      look_further(tracer, from, elements.normal[i], kMost, look);
+      out[i] = is_enclosed_by(scene, tracer, from, elements.normal[i], diagonal_m, look);
     }
   });
   return out;

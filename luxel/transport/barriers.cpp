@@ -136,19 +136,36 @@ bool Search::is_way_past(uint32_t a, const Offset& to, std::span<const uint8_t> 
 
 std::vector<atlas::PartedPoints> Search::parted(uint32_t begin, uint32_t end,
                                                 std::span<const uint8_t> ways) const {
-  std::vector<atlas::PartedPoints> found;
+  // Pairs between which there may be a barrier: something is in the lowest line's way.
+  struct Pair {
+    uint32_t a, b;
+    Offset offset;
+  };
+  std::vector<Pair> pairs;
+  std::vector<trace::Ray> rays;
   const auto add = [&](uint32_t i, const Offset& o) {
     const uint32_t j = neighbour(i, o);
     if (j == atlas::kNone) return;
-    const auto plane = barrier(i, j, o);
-    if (!plane || is_way_past(i, o, ways) || !in_the_open(i) || !in_the_open(j)) return;
-    found.push_back({chart_of(i), place(i).position, place(j).position, *plane});
+    const FlatPoint a = place(i), b = place(j);
+    pairs.push_back({i, j, o});
+    rays.push_back(line_above(a, b, kLow * (length(b.position - a.position) / o.steps())));
   };
   for (uint32_t i = begin; i < end; ++i) {
     if (ways[i] == 0xff) continue;
     for (size_t k = 0; k < kHalf; ++k)
       if (!(ways[i] >> k & 1)) add(i, kNeighbours[k]);
     for (const Offset& o : kNext) add(i, o);
+  }
+  std::vector<uint8_t> blocked(rays.size());
+  tracer.occluded(rays, blocked);
+  // Those with a barrier and no way past it.
+  std::vector<atlas::PartedPoints> found;
+  for (size_t n = 0; n < pairs.size(); ++n) {
+    if (!blocked[n]) continue;
+    const auto& [i, j, o] = pairs[n];
+    const auto plane = barrier(i, j, o);
+    if (!plane || is_way_past(i, o, ways) || !in_the_open(i) || !in_the_open(j)) continue;
+    found.push_back({chart_of(i), place(i).position, place(j).position, *plane});
   }
   return found;
 }

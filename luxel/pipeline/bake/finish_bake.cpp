@@ -20,9 +20,21 @@ namespace {
 constexpr int kRefillRings = 2;
 constexpr int kPreviewWidth = 960, kPreviewHeight = 720;
 
-/// Stitches all light of a bake: the whole, its layers and the maps beside it.
-Status stitch(std::span<const post::Seam> seams, Bake& bake, Progress& progress) {
-  const post::SeamParams params{.hidden = bake.light.hidden};
+/// Texels that have nothing to tell of the light at seams: hidden ones, and those of a kept
+/// TEXCOORD_1 which look-ups on another chart blend in. Stitching would spread their light.
+std::vector<uint8_t> not_to_stitch(const Bake& bake) {
+  std::vector<uint8_t> out = bake.light.hidden;
+  if (!bake.atlas.kept) return out;
+  out.resize(bake.map.texels.size());
+  for (const uint32_t i : atlas::blended_texels(bake.atlas, bake.map)) out[i] = 1;
+  return out;
+}
+
+/// Stitches all light of a bake: the whole, its layers and the maps beside it. `hidden`:
+/// not_to_stitch().
+Status stitch(std::span<const post::Seam> seams, std::span<const uint8_t> hidden, Bake& bake,
+              Progress& progress) {
+  const post::SeamParams params{.hidden = hidden};
   std::vector<Rgb> before;
   if (!bake.light.layers.empty()) before = bake.light.irradiance;
   LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, params, bake.light.irradiance, progress));
@@ -49,23 +61,23 @@ void refill(const post::Parted& parted, Bake& bake) {
 Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
                     Progress& progress) {
   progress.begin("seams", 0);
-  const std::span<const uint8_t> hidden = bake.light.hidden;
+  const std::vector<uint8_t> hidden = not_to_stitch(bake);
   // Hidden texels have no light to tell, so seams are stitched without them, and they take what
   // their neighbours have then.
   std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
   if (settings.repair_leaks) seams = open_seams(bake.scene, bake.atlas, tracer, std::move(seams));
   bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance, hidden);
   bake.seams = seams.size();
-  if (settings.stitch) LUXEL_TRY_STATUS(stitch(seams, bake, progress));
+  if (settings.stitch) LUXEL_TRY_STATUS(stitch(seams, hidden, bake, progress));
   bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance, hidden);
   refill(settings.repair_leaks ? parted_texels(bake.scene, bake.atlas, bake.map, tracer)
                                : post::Parted{},
          bake);
   if (settings.texels)
-    bake.texel_pictures =
-        draw_texels(bake.atlas, bake.map,
-                    {hidden, bake.repair.overlapping, bake.repair.moved, bake.repair.refilled,
-                     post::seam_errors(bake.map, seams, bake.light.irradiance, hidden)});
+    bake.texel_pictures = draw_texels(
+        bake.atlas, bake.map,
+        {bake.light.hidden, bake.repair.overlapping, bake.repair.moved, bake.repair.refilled,
+         post::seam_errors(bake.map, seams, bake.light.irradiance, hidden)});
   if (settings.error_map)
     bake.error_pictures = draw_errors(bake.atlas, bake.map, bake.light.errors);
   bake.lightmaps = post::lightmap_pages(bake.atlas, bake.map, bake.light.irradiance);

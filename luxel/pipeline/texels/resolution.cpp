@@ -27,7 +27,7 @@ int page_side_for(const atlas::SceneDetail& detail, double texels_per_metre) {
 
 /// The part of a lightmap's texels that take light of another chart: so few need no word, and so
 /// many are worth a larger lightmap where the user leaves its size open.
-constexpr double kFewBlended = 1e-3, kManyBlended = 5e-3;
+constexpr double kFewBlended = 1e-3, kManyBlended = 2e-3;
 
 /// The part of a kept layout's texels that other charts blend in; 1 where TEXCOORD_1 cannot be kept
 /// at this resolution.

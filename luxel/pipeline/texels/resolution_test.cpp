@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/scene/shapes.h"
 
 namespace luxel::pipeline {
@@ -55,6 +56,53 @@ TEST(Resolution, KeepsTheChartsOfUv1Apart) {
   EXPECT_EQ(said_of(close, 2 * side), "");
   EXPECT_THAT(said_of(close, side),
               ::testing::HasSubstr(fmt::format("--resolution {} would do", 2 * side)));
+}
+
+/// A square that faces up, and two that face down and meet along an edge. In TEXCOORD_1, of 64
+/// texels, the first one's chart ends 0.6 texels beside that edge.
+scene::Scene bright_beside_a_seam() {
+  scene::Scene scene;
+  const uint32_t m = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
+  scene::Mesh mesh;
+  // By hand: the squares have vertices of their own, and so their own places in TEXCOORD_1.
+  const auto add = [&](const std::array<Vec3, 4>& corners, Vec2 from, Vec2 to) {
+    const auto first = uint32_t(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
+    for (const Vec2 uv : {from, Vec2{to.x, from.y}, to, Vec2{from.x, to.y}})
+      mesh.uv1.push_back(uv * (1.0f / 64));
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+    mesh.triangle_material.insert(mesh.triangle_material.end(), 2, m);
+  };
+  add({Vec3{0, 5, 1}, {1, 5, 1}, {1, 5, 0}, {0, 5, 0}}, {0, 0}, {31.7f, 32});
+  add({Vec3{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}, {32.3f, 0}, {64, 32});
+  add({Vec3{-1, 0, 0}, {0, 0, 0}, {0, 0, 1}, {-1, 0, 1}}, {0, 33}, {31, 64});
+  scene::place(scene, std::move(mesh));
+  for (const float up : {-1.0f, 1.0f}) {
+    scene::PunctualLight sun;
+    sun.kind = scene::PunctualLight::Kind::directional;
+    const float e = up < 0 ? 10 : 0.1f;
+    sun.direction = {0, up, 0}, sun.intensity = {e, e, e};
+    scene.lights.push_back(sun);
+  }
+  return scene;
+}
+
+// Both squares that face down get 0.1 W/m^2 everywhere. Look-ups on their edge blend in the texels
+// of the third, which has a hundred times as much.
+TEST(CloseCharts, StitchingSpreadsNoLightOfAnother) {
+  BakeSettings settings;
+  settings.uv = atlas::UvMode::keep, settings.resolution = 64, settings.bounces = 0;
+  settings.samples = 4, settings.denoise = false;
+  Progress progress;
+  const auto bake = bake_scene(bright_beside_a_seam(), settings, progress);
+  ASSERT_TRUE(bake) << bake.error().message;
+  EXPECT_GT(bake->seams, 0u);
+  float largest = 0;
+  for (size_t i = 0; i < bake->map.texels.size(); ++i)
+    if (bake->map.texels[i].triangle_number >= 2)
+      largest = std::max(largest, bake->light.irradiance[i].x);
+  EXPECT_LT(largest, 0.1f * 1.0001f);  // rounding
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // luxel bench relight: what is measured, on which scenes.
 #include "bench/relight.h"
 
+#include <algorithm>
+
 #include "luxel/import/import.h"
 #include "luxel/scene/procedural.h"
 
@@ -9,43 +11,71 @@ namespace {
 
 constexpr size_t kPaperPatches = 4096;
 
-/// Rooms that people made: smooth things close together; furniture, beams and windows.
-struct RealScene {
-  const char *name, *file;
+/// A scene in which the relighter is compared with the path tracer. Two of them are rooms that
+/// people made: smooth things close together; furniture, beams and windows.
+struct JudgedScene {
+  const char *name, *title;
+  const char* file;  ///< in shared/scenes/NAME; none: scene::cornell_box()
   size_t patches;
 };
-constexpr RealScene kRealScenes[]{{"suzanne_room", "room.glb", 8192},
-                                  {"suzanne_room", "room.glb", 32768},
-                                  {"living_room", "living_room.glb", 8192}};
+constexpr JudgedScene kJudgedScenes[]{{"cornell_box", "Cornell box", nullptr, 8192},
+                                      {"suzanne_room", "suzanne_room", "room.glb", 8192},
+                                      {"suzanne_room", "suzanne_room", "room.glb", 32768},
+                                      {"living_room", "living_room", "living_room.glb", 8192}};
 
-Status judge_all(const std::filesystem::path& shared, RelightRuns& runs, Progress& progress) {
-  LUXEL_TRY(JudgedRelight box, judge_relight("Cornell box", scene::cornell_box(), {}, progress));
-  runs.judged.push_back(std::move(box));
-  for (const RealScene& real : kRealScenes) {
-    const std::filesystem::path file = shared / "scenes" / real.name / real.file;
+Status judge_scene(const JudgedScene& judged, const std::filesystem::path& shared,
+                   JudgedScenes& out, Progress& progress) {
+  scene::Scene scene = scene::cornell_box();
+  if (judged.file) {
+    const std::filesystem::path file = shared / "scenes" / judged.name / judged.file;
     if (!std::filesystem::exists(file)) {
-      runs.missing.emplace_back(real.name);
-      continue;
+      out.missing.emplace_back(judged.name);
+      return {};
     }
-    LUXEL_TRY(import::Imported room, import::import_scene(file));
-    JudgeSettings settings;
-    settings.patches = real.patches;
-    LUXEL_TRY(JudgedRelight judged,
-              judge_relight(real.name, std::move(room.scene), settings, progress));
-    runs.judged.push_back(std::move(judged));
+    LUXEL_TRY(import::Imported imported, import::import_scene(file));
+    scene = std::move(imported.scene);
   }
+  JudgeSettings settings;
+  settings.patches = judged.patches;
+  LUXEL_TRY(JudgedRelight run, judge_relight(judged.title, std::move(scene), settings, progress));
+  out.runs.push_back(std::move(run));
   return {};
 }
 
+/// Those of the names; all where none is given.
+Result<JudgedScenes> judge_scenes(const std::filesystem::path& shared,
+                                  std::span<const std::string> names, Progress& progress) {
+  JudgedScenes out;
+  for (const JudgedScene& judged : kJudgedScenes)
+    if (names.empty() || std::ranges::find(names, judged.name) != names.end())
+      LUXEL_TRY_STATUS(judge_scene(judged, shared, out, progress));
+  return out;
+}
+
 }  // namespace
+
+std::vector<std::string> relight_scenes() {
+  std::vector<std::string> out;
+  for (const JudgedScene& judged : kJudgedScenes)
+    if (std::ranges::find(out, judged.name) == out.end()) out.emplace_back(judged.name);
+  return out;
+}
 
 Result<RelightPage> measure_relight(const std::filesystem::path& shared, Progress& progress) {
   RelightRuns runs;
   LUXEL_TRY(runs.paper, measure_paper(kPaperPatches, progress));
   LUXEL_TRY(runs.codecs, run_codecs(progress));
   LUXEL_TRY(runs.sizes, run_sizes(progress));
-  LUXEL_TRY_STATUS(judge_all(shared, runs, progress));
+  LUXEL_TRY(runs.judged, judge_scenes(shared, {}, progress));
   return page_of(std::move(runs));
+}
+
+Result<RelightPage> measure_relight_in(const std::filesystem::path& shared,
+                                       std::span<const std::string> scenes, Progress& progress) {
+  LUXEL_TRY(const JudgedScenes judged, judge_scenes(shared, scenes, progress));
+  RelightPage page;
+  append(judged, page);
+  return page;
 }
 
 }  // namespace luxel::bench

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -90,12 +91,16 @@ struct JudgeSettings {
 Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
                                     const JudgeSettings& settings, Progress& progress);
 
+struct JudgedScenes {
+  std::vector<JudgedRelight> runs;
+  std::vector<std::string> missing;  ///< scenes that are not on this machine
+};
+
 struct RelightRuns {
   PaperTables paper;
   CodecRuns codecs;
   std::vector<SizeRun> sizes;
-  std::vector<JudgedRelight> judged;
-  std::vector<std::string> missing;  ///< scenes that are not on this machine
+  JudgedScenes judged;
 };
 
 struct RelightPage {
@@ -106,9 +111,19 @@ struct RelightPage {
 };
 /// Tables, plots and numbers of finished runs.
 RelightPage page_of(RelightRuns runs);
+/// The tables and numbers of the judged scenes.
+void append(const JudgedScenes& judged, RelightPage& page);
+
+/// Scenes in which the relighter is compared with the path tracer.
+std::vector<std::string> relight_scenes();
 
 /// All of it, some seven minutes on two cores. `shared` is the folder with scenes/. Errors: those
 /// of what is measured.
 Result<RelightPage> measure_relight(const std::filesystem::path& shared, Progress& progress);
+
+/// The comparison with the path tracer alone, in some of relight_scenes(). Errors: those of
+/// judge_relight(); a file that cannot be read.
+Result<RelightPage> measure_relight_in(const std::filesystem::path& shared,
+                                       std::span<const std::string> scenes, Progress& progress);
 
 }  // namespace luxel::bench

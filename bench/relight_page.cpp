@@ -70,7 +70,8 @@ double seconds_of(const std::vector<Stage>& stages) {
 
 Table preparation_table(const std::vector<JudgedRelight>& judged) {
   Table t = new_table("relight: preparation", {"scene", "patches"});
-  for (const Stage& stage : judged.front().stages) t.columns.push_back(stage.name + ", s");
+  if (!judged.empty())
+    for (const Stage& stage : judged.front().stages) t.columns.push_back(stage.name + ", s");
   t.columns.push_back("all, s");
   for (const JudgedRelight& j : judged) {
     t.rows.push_back({j.scene, fmt::format("{}", j.patches)});
@@ -193,22 +194,26 @@ nlohmann::json json_of(const JudgedRelight& j) {
 
 }  // namespace
 
+void append(const JudgedScenes& judged, RelightPage& page) {
+  page.tables.push_back(preparation_table(judged.runs));
+  for (const JudgedRelight& j : judged.runs) page.tables.push_back(judged_table(j));
+  for (const std::string& missing : judged.missing)
+    page.tables.back().notes.push_back(
+        fmt::format("shared/scenes/{} is not on this machine: left out", missing));
+  for (const JudgedRelight& j : judged.runs) page.json["judged"].push_back(json_of(j));
+}
+
 RelightPage page_of(RelightRuns runs) {
   RelightPage page;
   page.tables = std::move(runs.paper.tables);
   page.tables.push_back(codecs_table(runs.codecs));
   page.tables.push_back(sizes_table(runs.sizes));
-  page.tables.push_back(preparation_table(runs.judged));
-  for (const JudgedRelight& j : runs.judged) page.tables.push_back(judged_table(j));
-  for (const std::string& missing : runs.missing)
-    page.tables.back().notes.push_back(
-        fmt::format("shared/scenes/{} is not on this machine: left out", missing));
   for (PageFile& file : runs.paper.pictures)
     page.pictures.push_back({"paper-" + file.name, std::move(file.bytes)});
   for (PageFile& file : plots_of(runs.codecs, runs.sizes)) page.pictures.push_back(std::move(file));
   page.json["paper"] = std::move(runs.paper.json);
   write_runs(runs.codecs, runs.sizes, page);
-  for (const JudgedRelight& j : runs.judged) page.json["judged"].push_back(json_of(j));
+  append(runs.judged, page);
   return page;
 }
 

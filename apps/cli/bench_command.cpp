@@ -28,6 +28,7 @@ struct BenchOptions {
   std::string scene;  ///< gallery: the stem of the only one
   std::string shared;
   std::string output = "docs";
+  std::vector<std::string> scenes;  ///< of relight
 };
 
 std::filesystem::path default_shared() {
@@ -108,14 +109,14 @@ Status write_plots(const Page& page, const std::string& name, const std::filesys
                              page.pictures, folder);
 }
 
-/// Files are written when it was asked for by name, not with all tables.
-template <class Page>
+/// Files are written when it was asked for by name and whole, not with all tables.
+/// `measure(shared, progress)` is a measure_ function, which gives a Result<Page>.
+template <class Page, class Measure>
 int run_page(const BenchOptions& options, const std::string& name,
-             const std::filesystem::path& shared,
-             Result<Page> (*measure)(const std::filesystem::path&, Progress&)) {
+             const std::filesystem::path& shared, const Measure& measure) {
   const ThreadLimit limit(options.common.threads);
   const std::filesystem::path folder = options.output;
-  const bool write = options.name == name;
+  const bool write = options.name == name && options.scenes.empty();
   Page page;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     if (write) LUXEL_TRY_STATUS(try_out_folders(folder));
@@ -129,6 +130,15 @@ int run_page(const BenchOptions& options, const std::string& name,
   }
   for (const bench::Table& table : page.tables) std::printf("%s\n", bench::markdown(table).c_str());
   return kDone;
+}
+
+/// All of it, or the comparison with the path tracer in --scene.
+int run_relight(const BenchOptions& options, const std::filesystem::path& shared) {
+  return run_page<bench::RelightPage>(
+      options, kRelight, shared, [&](const std::filesystem::path& folder, Progress& progress) {
+        return options.scenes.empty() ? bench::measure_relight(folder, progress)
+                                      : bench::measure_relight_in(folder, options.scenes, progress);
+      });
 }
 
 int run_tables(const BenchOptions& options, const std::filesystem::path& shared) {
@@ -145,6 +155,8 @@ int run_tables(const BenchOptions& options, const std::filesystem::path& shared)
 }
 
 int run_bench(const BenchOptions& options) {
+  if (!options.scenes.empty() && options.name != kRelight)
+    return report_usage("--scene belongs to `luxel bench relight`", options.common);
   const std::filesystem::path shared =
       options.shared.empty() ? default_shared() : std::filesystem::path(options.shared);
   for (const BenchPage& page : kPages)
@@ -152,15 +164,15 @@ int run_bench(const BenchOptions& options) {
   const bool all = options.name == "all";
   // First of all: it measures memory in a child process, which must not miss this one's threads.
   if (options.name == kHemicube || all)
-    if (const int code = run_page(options, kHemicube, shared, bench::measure_hemicube);
+    if (const int code =
+            run_page<bench::HemicubePage>(options, kHemicube, shared, bench::measure_hemicube);
         code != kDone || !all)
       return code;
   if (options.name == kRelight || all)
-    if (const int code = run_page(options, kRelight, shared, bench::measure_relight);
-        code != kDone || !all)
-      return code;
+    if (const int code = run_relight(options, shared); code != kDone || !all) return code;
   if (options.name == kHierarchical || all)
-    if (const int code = run_page(options, kHierarchical, shared, bench::measure_hierarchical);
+    if (const int code = run_page<bench::HierarchicalPage>(options, kHierarchical, shared,
+                                                           bench::measure_hierarchical);
         code != kDone || !all)
       return code;
   return run_tables(options, shared);
@@ -193,6 +205,12 @@ void register_bench(CLI::App& app, Action& action) {
       "validation, gallery, hemicube, relight, hierarchical: folder in which bench/ or guide/ gets "
       "the page or the .csv, and images/ the pictures "
       "(default: docs)");
+  bench
+      ->add_option("--scene", options->scenes,
+                   "relight: compare with the path tracer in this scene and print that alone, "
+                   "without files; can be given several times")
+      ->check(CLI::IsMember(bench::relight_scenes()))
+      ->allow_extra_args(false);
   add_common(*bench, options->common);
   bench->callback([options, &action] { action = [options] { return run_bench(*options); }; });
 }

@@ -65,24 +65,23 @@ struct JudgedLight {
   Vec3 position;
   double relative = 0;    ///< root mean square error over that of the light
   double resolution = 0;  ///< what cannot be told from 0: two standard errors of its square
-  double per_texel = 0;   ///< as Agreement::relative_rmse
+  double per_point = 0;   ///< as Agreement::relative_rmse
   double bias = 0;        ///< signed, over the mean
   double noise = 0;       ///< the judge's own, over the root mean square of the light
 };
 
 struct JudgedRelight {
   std::string scene;
-  size_t patches = 0, texels = 0;
-  int paths = 0;  ///< of the judge, per texel
+  size_t patches = 0, points = 0;
+  int paths = 0;  ///< of the judge, per point
   double codec_error = 0;
   std::vector<Stage> stages;  ///< of the preparation
   std::vector<JudgedLight> lights;
 };
 
 struct JudgeSettings {
-  int resolution = 128;
-  size_t texels = 512;  ///< of the map, about so many
-  int paths = 4096;     ///< per texel, half of them per independent answer
+  size_t points = 1024;  ///< spread evenly over the area
+  int paths = 2048;    ///< per point, half of them per independent answer
   size_t lights = 10;
   size_t patches = 8192;
 };

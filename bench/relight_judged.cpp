@@ -1,12 +1,16 @@
 // The relighter's indirect light against the path tracer's.
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include "bench/relight.h"
 #include "bench/timing.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
+#include "luxel/pipeline/settings/outside_light.h"
 #include "luxel/pipeline/texels/two_sides.h"
+#include "luxel/scene/surface_points.h"
 #include "luxel/solve/matrix/relight.h"
 #include "luxel/solve/matrix/relighter.h"
 #include "luxel/validate/agreement.h"
@@ -17,85 +21,90 @@ namespace {
 constexpr uint64_t kSeed = 7;
 
 /// A lamp stands this part of the scene's diagonal or more away from all surfaces, and so many of
-/// the rays around it meet surfaces, none their backs. Sides that were added behind double-sided
-/// surfaces are backs: on the roof of a house, or inside of its walls, little of a lamp's light
-/// comes back, and what is lost of it says nothing.
+/// the rays around it meet surfaces, none their backs, as they do on the roof of a house or inside
+/// of its walls: little of a lamp's light comes back there, and what is lost of it says nothing.
 constexpr float kClear = 0.04f, kMet = 0.6f;
 
-/// The scene in the air of which lamps stand.
-struct Air {
-  const scene::Scene& scene;
-  const trace::RayTracer& tracer;
-  std::span<const size_t> own_triangles;  ///< per mesh: what follows are added sides
-
-  bool is_back(const trace::Hit& hit) const {
-    return hit.back_face || hit.triangle >= own_triangles[scene.instances[hit.instance].mesh];
-  }
-};
-
-std::vector<size_t> triangle_counts(const scene::Scene& scene) {
-  std::vector<size_t> out;
-  for (const scene::Mesh& mesh : scene.meshes) out.push_back(mesh.triangles.size());
-  return out;
-}
-
-bool is_in_the_air(const Air& air, Vec3 position, float diagonal_m) {
+bool is_in_the_air(const trace::RayTracer& tracer, Vec3 position, float diagonal_m) {
   constexpr int kAround = 256;
   RandomStream random{kSeed};
   int met = 0;
   for (int k = 0; k < kAround; ++k) {
     const trace::Hit hit =
-        air.tracer.closest_hit({position, 0, uniform_sphere_sample(random.next2()), INFINITY});
-    if (hit.found() && (air.is_back(hit) || hit.t < kClear * diagonal_m)) return false;
+        tracer.closest_hit({position, 0, uniform_sphere_sample(random.next2()), INFINITY});
+    if (hit.found() && (hit.back_face || hit.t < kClear * diagonal_m)) return false;
     met += hit.found();
   }
   return float(met) >= kMet * float(kAround);
 }
 
-Result<std::vector<Vec3>> positions_in(const Air& air, size_t count) {
-  const Box3 box = scene::world_bounds(air.scene);
+/// Point lights at random in the air of the scene.
+Result<std::vector<scene::PunctualLight>> lights_in(const scene::Scene& scene, size_t count) {
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
+  const Box3 box = scene::world_bounds(scene);
   const Vec3 size = box.upper - box.lower;
   RandomStream random{kSeed};
-  std::vector<Vec3> out;
+  std::vector<scene::PunctualLight> out;
   for (int tries = 0; out.size() < count; ++tries) {
-    if (tries == 100000)
-      return fail(ErrorCode::bad_input, "{} has no air for lamps", air.scene.name);
+    if (tries == 100000) return fail(ErrorCode::bad_input, "{} has no air for lamps", scene.name);
     const Vec3 u{random.next(), random.next(), random.next()};
-    const Vec3 position = box.lower + u * size;
-    if (is_in_the_air(air, position, length(size))) out.push_back(position);
+    scene::PunctualLight light;
+    light.position = box.lower + u * size;
+    if (is_in_the_air(tracer, light.position, length(size))) out.push_back(light);
   }
   return out;
 }
 
-/// About `count` of the texels, spread over the map: what the judge's noise hides falls faster with
-/// paths per texel than with texels.
-matrix::Target take_texels(validate::Prepared& p, size_t count) {
-  matrix::Target target;
-  target.kind = matrix::Target::Kind::texels;
-  target.width = target.height = uint32_t(p.map.resolution);
-  transport::Elements taken;
-  const size_t step = std::max<size_t>(1, p.elements.size() / count);
-  for (size_t i = 0; i < p.elements.size(); i += step) {
-    const atlas::Texel& t = p.map.texels[i];
-    target.texel.push_back({uint16_t(t.x), uint16_t(t.y)});
-    taken.position.push_back(p.elements.position[i]);
-    taken.normal.push_back(p.elements.normal[i]);
-    taken.geometric_normal.push_back(p.elements.geometric_normal[i]);
-    taken.reflectance.push_back(p.elements.reflectance[i]);
+/// A scene with sides of their own behind double-sided surfaces, and points of its surfaces.
+struct Place {
+  scene::Scene scene;
+  std::vector<scene::PunctualLight> lights;  ///< the scene's own, one at a time
+  std::optional<trace::RayTracer> tracer;
+  std::vector<std::vector<uint8_t>> open_backs;
+  transport::Elements points;
+};
+
+/// Sides and backs are those of `luxel relight`, which looks at the file's own light, or at a day
+/// where it has none. That light is taken away then. Points are spread evenly over the area: the texels of a
+/// lightmap are not, since each sliver of a triangle has one. What the judge's noise hides falls
+/// faster with paths per point than with points.
+Result<std::unique_ptr<Place>> make_place(scene::Scene scene, const JudgeSettings& settings,
+                                          Progress& progress) {
+  auto out = std::make_unique<Place>();
+  LUXEL_TRY(out->lights, lights_in(scene, settings.lights));
+  LUXEL_TRY_STATUS(pipeline::add_outside_light({}, scene));
+  LUXEL_TRY_STATUS(pipeline::split_sides(
+      scene, {.uv = atlas::UvMode::unwrap, .light_is = pipeline::LightIs::to_come}, progress));
+  LUXEL_TRY(out->open_backs, pipeline::open_backs(scene, progress));
+  for (scene::Material& material : scene.materials) material.emission = {};
+  scene.background = {}, scene.environment = {}, scene.lights = {};
+  out->scene = std::move(scene);
+  LUXEL_TRY(out->tracer, trace::RayTracer::build(out->scene));
+  for (const scene::SurfacePoint& p :
+       scene::points_uniform_in_area(out->scene, settings.points, kSeed)) {
+    const transport::SmoothPoint at = transport::smooth_point(out->scene, p);
+    out->points.position.push_back(at.position), out->points.normal.push_back(at.normal);
+    out->points.geometric_normal.push_back(at.geometric_normal);
   }
-  p.elements = std::move(taken);
-  target.position = p.elements.position;
-  target.normal = p.elements.normal, target.geometric_normal = p.elements.geometric_normal;
-  return target;
+  return out;
+}
+
+matrix::Target target_of(const transport::Elements& points) {
+  matrix::Target out;
+  out.kind = matrix::Target::Kind::vertices;
+  out.position = points.position;
+  out.normal = points.normal, out.geometric_normal = points.geometric_normal;
+  return out;
 }
 
 /// The judge's indirect light: its light but what comes straight from the lamp, which one path
 /// finds exactly.
-Result<validate::Judged> judge_indirect(const validate::Prepared& p, int paths_each,
-                                        Progress& progress) {
-  LUXEL_TRY(validate::Judged judged, validate::judge(p, paths_each, kSeed, progress));
+Result<validate::Judged> judge_indirect(const Place& place, int paths_each, Progress& progress) {
+  const reference::Receivers receivers = reference::receivers(place.points);
+  LUXEL_TRY(validate::Judged judged,
+            validate::judge(place.scene, *place.tracer, receivers, paths_each, kSeed, progress));
   LUXEL_TRY(const reference::TexelPaths direct,
-            reference::irradiance_by_paths(p.scene, reference::receivers(p.elements), *p.tracer,
+            reference::irradiance_by_paths(place.scene, receivers, *place.tracer,
                                            {.samples = 1, .bounces = 0}, progress));
   for (size_t i = 0; i < judged.first.size(); ++i)
     for (std::vector<Rgb>* answer : {&judged.first, &judged.second})
@@ -120,7 +129,7 @@ JudgedLight compare(std::span<const Rgb> solved, const validate::Judged& judged)
   out.noise = std::sqrt(noise / light);
   out.resolution = std::sqrt(2 * std::sqrt(noise2) / light);
   const validate::Agreement a = validate::agreement(solved, {}, judged);
-  out.per_texel = a.relative_rmse, out.bias = a.bias_over_mean;
+  out.per_point = a.relative_rmse, out.bias = a.bias_over_mean;
   return out;
 }
 
@@ -128,35 +137,29 @@ JudgedLight compare(std::span<const Rgb> solved, const validate::Judged& judged)
 
 Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
                                     const JudgeSettings& settings, Progress& progress) {
-  for (scene::Material& material : scene.materials) material.emission = {};
-  scene.background = {}, scene.lights = {scene::PunctualLight{}};
-  const std::vector<size_t> own_triangles = triangle_counts(scene);
-  // One lamp alone lights the scene; some texels are compared.
-  LUXEL_TRY(const auto p, validate::prepare(std::move(scene), settings.resolution, progress));
-  matrix::Target target = take_texels(*p, settings.texels);
+  LUXEL_TRY(const auto place, make_place(std::move(scene), settings, progress));
   JudgedRelight out;
-  out.scene = std::move(name), out.texels = target.position.size(), out.paths = settings.paths;
+  out.scene = std::move(name), out.points = place->points.size(), out.paths = settings.paths;
   const size_t first_stage = progress.stages().size();
   // Preparation, timed.
   matrix::RelightParams params;
   params.patches.count = settings.patches;
-  LUXEL_TRY(params.patches.open_backs, pipeline::open_backs(p->scene, progress));
+  params.patches.open_backs = place->open_backs;
   params.factors.rays_per_patch = 8192;
   LUXEL_TRY(matrix::RelightData data,
-            matrix::make_relight_data(p->scene, *p->tracer, std::move(target), params, progress));
+            matrix::make_relight_data(place->scene, *place->tracer, target_of(place->points),
+                                      params, progress));
   progress.finish();
   out.stages = stages_from(progress, first_stage);
   out.patches = data.size(), out.codec_error = data.codec_error;
-  // The lamp at several places: relit, and by paths.
+  // One light after the other: relit, and by paths.
   LUXEL_TRY(matrix::Relighter relighter, matrix::Relighter::make(std::move(data), {}));
-  LUXEL_TRY(const std::vector<Vec3> positions,
-            positions_in({p->scene, *p->tracer, own_triangles}, settings.lights));
-  for (const Vec3 position : positions) {
-    p->scene.lights[0].position = position;
-    relighter.update({p->scene.lights, {}, {}});
-    LUXEL_TRY(const validate::Judged judged, judge_indirect(*p, settings.paths / 2, progress));
+  for (const scene::PunctualLight& light : place->lights) {
+    place->scene.lights = {light};
+    relighter.update({place->scene.lights, {}, {}});
+    LUXEL_TRY(const validate::Judged judged, judge_indirect(*place, settings.paths / 2, progress));
     out.lights.push_back(compare(relighter.latest().indirect_at_points, judged));
-    out.lights.back().position = position;
+    out.lights.back().position = light.position;
   }
   return out;
 }

@@ -88,27 +88,28 @@ Table preparation_table(const std::vector<JudgedRelight>& judged) {
 Table judged_table(const JudgedRelight& j) {
   Table t =
       new_table(fmt::format("relight against the path tracer: {}, {} patches", j.scene, j.patches),
-                {"point light at", "relative RMSE", "texel by texel", "bias", "judge's noise"});
-  double relative = 0, per_texel = 0, squares = 0, texel_squares = 0;
+                {"point light at", "relative RMSE", "point by point", "bias", "judge's noise"});
+  double relative = 0, per_point = 0, squares = 0, point_squares = 0;
   for (const JudgedLight& l : j.lights) {
     t.rows.push_back(
         {fmt::format("({:.2f}, {:.2f}, {:.2f})", l.position.x, l.position.y, l.position.z),
          l.relative < l.resolution ? fmt::format("< {}", percent(l.resolution))
                                    : percent(l.relative),
-         percent(l.per_texel), fmt::format("{:+.2f} %", 100 * l.bias), percent(l.noise)});
-    relative = std::max(relative, l.relative), per_texel = std::max(per_texel, l.per_texel);
+         percent(l.per_point), fmt::format("{:+.2f} %", 100 * l.bias), percent(l.noise)});
+    relative = std::max(relative, l.relative), per_point = std::max(per_point, l.per_point);
     squares += l.relative * l.relative / double(j.lights.size());
-    texel_squares += l.per_texel * l.per_texel / double(j.lights.size());
+    point_squares += l.per_point * l.per_point / double(j.lights.size());
   }
   t.rows.push_back(
-      {"root mean square", percent(std::sqrt(squares)), percent(std::sqrt(texel_squares)), "", ""});
-  t.rows.push_back({"largest", percent(relative), percent(per_texel), "", ""});
+      {"root mean square", percent(std::sqrt(squares)), percent(std::sqrt(point_squares)), "", ""});
+  t.rows.push_back({"largest", percent(relative), percent(per_point), "", ""});
   t.notes.push_back(fmt::format(
-      "Indirect light at {} texels, {} patches (codec error {}), infinite bounces, against {} "
-      "paths per texel. Relative RMSE: over the root mean square of the light. Texel by texel: of "
-      "errors over\nthe light of their texels. The judge's noise is taken out of both. The goal is "
+      "Indirect light at {} points spread evenly over the area, {} patches (codec error {}), "
+      "infinite bounces, against {} "
+      "paths per point. Relative RMSE: over the root mean square of the light. Point by point: of "
+      "errors over\nthe light of their points. The judge's noise is taken out of both. The goal is "
       "5 %. Lamps stand at random in the air.",
-      j.texels, j.patches, percent(j.codec_error), j.paths));
+      j.points, j.patches, percent(j.codec_error), j.paths));
   return t;
 }
 
@@ -180,13 +181,13 @@ void write_runs(const CodecRuns& codecs, const std::vector<SizeRun>& sizes, Reli
 
 nlohmann::json json_of(const JudgedRelight& j) {
   nlohmann::json out{
-      {"scene", j.scene}, {"patches", j.patches},         {"texels", j.texels},
+      {"scene", j.scene}, {"patches", j.patches},         {"points", j.points},
       {"paths", j.paths}, {"codec_error", j.codec_error}, {"stages_s", json_of(j.stages)}};
   for (const JudgedLight& l : j.lights)
     out["lights"].push_back({{"position", {l.position.x, l.position.y, l.position.z}},
                              {"relative_rmse", l.relative},
                              {"resolution", l.resolution},
-                             {"texel_by_texel", l.per_texel},
+                             {"point_by_point", l.per_point},
                              {"bias_over_mean", l.bias},
                              {"judge_noise", l.noise}});
   return out;

@@ -30,12 +30,7 @@ double mean_light(const TexelLight& light) {
 /// Radiosity of the patch that a ray meets.
 Rgb patch_radiosity(const light::TexelScene& in, const matrix::PatchedScene& patched,
                     const matrix::Solution& solution, const trace::Hit& hit) {
-  const scene::Scene& scene = in.scene;
-  const uint32_t material =
-      scene.meshes[scene.instances[hit.instance].mesh].triangle_material[hit.triangle];
-  const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
-  const uint32_t j = patched.locator.locate(scene::world_position(scene, hit.point()),
-                                            hit.back_face ? -front : front, material, in.tracer);
+  const uint32_t j = matrix::patch_met(patched, in.scene, in.tracer, hit);
   if (j == matrix::kNone) return {};
   return patched.patches.elements.reflectance[j] * (solution.direct[j] + solution.indirect[j]);
 }

@@ -229,12 +229,7 @@ Result<TracedFactors> trace_factors(const scene::Scene& scene, const trace::RayT
           ++escaped;
           continue;
         }
-        const scene::Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
-        const uint32_t material = mesh.triangle_material[hit.triangle];
-        if (hit.back_face && !scene::reflects_from_behind(scene.materials[material])) continue;
-        const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
-        const uint32_t j = patched.locator.locate(scene::world_position(scene, hit.point()),
-                                                  hit.back_face ? -front : front, material, tracer);
+        const uint32_t j = patch_met(patched, scene, tracer, hit);
         if (j != kNone) buffers.met.push_back(j);
       }
       // Shares of the rays.

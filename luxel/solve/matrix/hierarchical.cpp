@@ -172,6 +172,16 @@ Halving halving_of(const Source& s, const Block& block) {
   return {rows, columns};
 }
 
+/// Of a cluster's area, the smaller half has at least this. Where trees split off less, the larger
+/// half is nearly the cluster, and its functions see no more of a block, however uneven that is.
+constexpr double kLeastHalf = 1.0 / 16;
+
+bool has_two_halves(const Source& s, const Parts& parts, uint32_t cluster) {
+  if (parts.count == 1) return true;
+  const auto [a, b] = parts.cluster;
+  return std::min(s.cluster_m2[a], s.cluster_m2[b]) >= kLeastHalf * s.cluster_m2[cluster];
+}
+
 /// Whether a block passes through its own functions: what its parts' functions see more is little,
 /// or noise.
 bool is_smooth(const Source& s, const Block& block, const Coupling& coupling,
@@ -195,7 +205,9 @@ void visit(const Source& s, const Block& block, const Coupling& coupling, Found&
   const Parts rows = parts_of(s, block.receiver, halving.rows);
   const Parts columns = parts_of(s, block.sender, halving.columns);
   const Coupled coupled = couple(s, block, rows, columns);
-  if (is_smooth(s, block, coupling, coupled)) {
+  const bool telling =
+      has_two_halves(s, rows, block.receiver) && has_two_halves(s, columns, block.sender);
+  if (telling && is_smooth(s, block, coupling, coupled)) {
     out.far.push_back({block, coupling});
     return;
   }

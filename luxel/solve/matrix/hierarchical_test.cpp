@@ -74,6 +74,57 @@ TEST(Hierarchical, IsNearlyThePlainProduct) {
   EXPECT_LT(testing::relative_error(product(h, b), want, cluster_box().area_m2()), 0.02);
 }
 
+/// Two clusters R and S at depth 6, each of 16 patches on a line of 2 m and one of hardly any area,
+/// below a chain of clusters that split off a patch each.
+ClusterTree lopsided_tree() {
+  constexpr uint32_t kOfCluster = 17, kBoth = 2 * kOfCluster;
+  ClusterTree tree;
+  tree.clusters.push_back({0, kBoth + 5, 1, 0});
+  for (uint32_t depth = 1; depth <= 5; ++depth) {
+    const uint32_t end = kBoth + 5 - depth;
+    tree.clusters.push_back({0, end, 2 * depth + 1, depth});
+    tree.clusters.push_back({end, end + 1, 0, depth});
+  }
+  // R and S, the two parts of each, and the halves of their large parts.
+  tree.clusters.push_back({0, kOfCluster, 13, 6});
+  tree.clusters.push_back({kOfCluster, kBoth, 15, 6});
+  for (const uint32_t first : {0u, kOfCluster}) {
+    tree.clusters.push_back({first, first + 16, first == 0 ? 17u : 19u, 7});
+    tree.clusters.push_back({first + 16, first + 17, 0, 7});
+  }
+  for (const uint32_t first : {0u, kOfCluster})
+    for (const uint32_t half : {first, first + 8}) tree.clusters.push_back({half, half + 8, 0, 8});
+  for (uint32_t i = 0; i < kBoth + 5; ++i) tree.order.push_back(i);
+  return tree;
+}
+
+TEST(Hierarchical, ALopsidedHalfHidesNoExchange) {
+  // One patch of R exchanges light with one of S. The larger parts of R and S see no more of that
+  // than R and S do, their halves all of it.
+  const ClusterTree tree = lopsided_tree();
+  std::vector<Vec3> position;
+  std::vector<float> area_m2;
+  for (int i = 0; i < 39; ++i) {
+    const int k = i % 17;
+    position.push_back({0.125f * float(k), i < 17 ? 0.0f : 10.0f, 0});
+    area_m2.push_back(k == 16 ? 1e-6f : 1.0f / 16);
+  }
+  FormFactors f;
+  f.first.push_back(0);
+  for (uint32_t i = 0; i < 39; ++i) {
+    if (i == 0 || i == 17) f.column.push_back(17 - i), f.factor.push_back(0.1f);
+    f.first.push_back(f.column.size());
+  }
+  Progress progress;
+  const auto h = compress(f, tree, position, area_m2, {1e-3f, kNoNoise}, progress);
+  ASSERT_TRUE(h);
+  std::vector<Rgb> sent(39);
+  sent[17] = {1, 1, 1};
+  const std::vector<Rgb> got = product(*h, sent);
+  EXPECT_NEAR(got[0].x, 0.1f, 1e-3f);  // 8 bits
+  EXPECT_NEAR(got[1].x, 0, 1e-3f);
+}
+
 TEST(Hierarchical, LosesNoMoreThanRaysAreOff) {
   // The light of a lamp, which few rays of a patch meet; eight times as many know it better. What
   // blocks smooth over is to be noise: light is as near to the truth as before, within a fifth.

@@ -14,6 +14,16 @@ constexpr uint64_t kAxisMask = (uint64_t(1) << kAxisBits) - 1;
 /// surface, not over a wall.
 constexpr float kLift = 0.05f;
 
+/// A place so far above its surface; half as far as the surface above it, where that is nearer. In
+/// a wedge behind a wall that stands askew, the lifted place would lie on the wall's other side.
+Vec3 lifted(const trace::RayTracer& tracer, const PatchPoint& p, float voxel_m) {
+  const float lift_m = kLift * voxel_m;
+  // From a thousandth of that, so that the place's own surface is not met.
+  const Vec3 from = p.position + p.normal * (1e-3f * lift_m);
+  const trace::Hit above = tracer.closest_hit({from, 0, p.normal, lift_m});
+  return p.position + p.normal * (above.found() ? above.t / 2 : lift_m);
+}
+
 /// Calls visit(voxel) for all voxels within `reach` steps, in a fixed order, the middle first.
 template <class Visit>
 void around(uint64_t voxel, int reach, const Visit& visit) {
@@ -48,8 +58,7 @@ float open_share(const trace::RayTracer& tracer, const PatchPoint& p, const Voxe
 
 bool see_each_other(const trace::RayTracer& tracer, const PatchPoint& a, const PatchPoint& b,
                     float voxel_m) {
-  const Vec3 from = a.position + a.normal * (kLift * voxel_m);
-  const Vec3 to = b.position + b.normal * (kLift * voxel_m);
+  const Vec3 from = lifted(tracer, a, voxel_m), to = lifted(tracer, b, voxel_m);
   if (dot(to - from, to - from) <= 1e-12f * voxel_m * voxel_m) return true;
   const trace::Ray ray{from, 0, to - from, 1};
   uint8_t blocked = 0;

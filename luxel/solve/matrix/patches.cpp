@@ -24,11 +24,16 @@ struct Sample {
   Rgb reflectance, emission;
 };
 
+using OpenBacks = std::optional<std::vector<std::vector<uint8_t>>>;
+
+/// Whether light gets behind a surface and is reflected there.
 bool has_open_back(const scene::Scene& scene, const scene::SurfacePoint& p,
-                   const PatchParams& params) {
-  if (!params.open_backs) return true;
-  const std::vector<uint8_t>& flags = (*params.open_backs)[scene.instances[p.instance].mesh];
-  return !flags.empty() && flags[p.triangle];
+                   const OpenBacks& open_backs) {
+  const uint32_t m = scene.instances[p.instance].mesh;
+  const scene::Mesh& mesh = scene.meshes[m];
+  if (!scene::reflects_from_behind(scene.materials[mesh.triangle_material[p.triangle]]))
+    return false;
+  return !open_backs || (!(*open_backs)[m].empty() && (*open_backs)[m][p.triangle]);
 }
 
 /// Points spread evenly. Each stands for its part of the exact area of its instance's material, so
@@ -77,7 +82,8 @@ std::vector<Sample> spread(const scene::Scene& scene, const PatchParams& params)
                   scene::reflectance_at(scene, p),
                   scene::emission_at(scene, p) * kPi};
     out.push_back(sample);
-    if (!scene::material_at(scene, p).double_sided || !has_open_back(scene, p, params)) continue;
+    if (!scene::material_at(scene, p).double_sided || !has_open_back(scene, p, params.open_backs))
+      continue;
     sample.at.normal = -normal;
     out.push_back(sample);
   }
@@ -193,9 +199,16 @@ std::vector<Part> parts_of_voxel(std::span<const Sample> samples, std::span<cons
   return parts;
 }
 
-/// Whether most of a few rays from a part's samples meet backs of one-sided surfaces.
-bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer,
-               std::span<const Sample> samples, const Part& part, float voxel_m) {
+/// The scene to cut.
+struct Source {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  const OpenBacks& open_backs;
+};
+
+/// Whether most of a few rays from a part's samples meet backs that no light gets behind.
+bool is_hidden(const Source& source, std::span<const Sample> samples, const Part& part,
+               float voxel_m) {
   constexpr uint32_t kRays = 32;
   std::array<trace::Ray, kRays> rays;
   std::array<trace::Hit, kRays> hits;
@@ -204,16 +217,16 @@ bool is_hidden(const scene::Scene& scene, const trace::RayTracer& tracer,
     const Vec3 d = frame_around(p.normal).to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 1)));
     rays[k] = {p.position + p.normal * (1e-3f * voxel_m), 0, d, INFINITY};
   }
-  tracer.closest_hits(rays, hits);
+  source.tracer.closest_hits(rays, hits);
   const auto backs = std::count_if(hits.begin(), hits.end(), [&](const trace::Hit& hit) {
-    return hit.found() && hit.back_face && !scene::material_at(scene, hit.point()).double_sided;
+    return hit.found() && hit.back_face &&
+           !has_open_back(source.scene, hit.point(), source.open_backs);
   });
   return 2 * size_t(backs) > kRays;
 }
 
-Result<std::vector<Part>> make_parts(const scene::Scene& scene, std::span<const Sample> samples,
-                                     const VoxelGrid& grid, const trace::RayTracer& tracer,
-                                     Progress& progress) {
+Result<std::vector<Part>> make_parts(const Source& source, std::span<const Sample> samples,
+                                     const VoxelGrid& grid, Progress& progress) {
   // Samples by voxel.
   std::vector<uint64_t> voxel(samples.size());
   for (size_t s = 0; s < samples.size(); ++s) voxel[s] = voxel_of(grid, samples[s].at.position);
@@ -230,11 +243,12 @@ Result<std::vector<Part>> make_parts(const scene::Scene& scene, std::span<const 
   progress.begin("patches", found.size());
   parallel_for(found.size(), 64, [&](size_t begin, size_t end) {
     for (size_t v = begin; v < end && !progress.cancelled(); ++v) {
-      found[v] = parts_of_voxel(
-          samples, std::span(order).subspan(first[v], first[v + 1] - first[v]), grid, tracer);
+      found[v] =
+          parts_of_voxel(samples, std::span(order).subspan(first[v], first[v + 1] - first[v]), grid,
+                         source.tracer);
       for (Part& part : found[v]) {
         find_middle(samples, part);
-        part.hidden = part.covered || is_hidden(scene, tracer, samples, part, grid.voxel_m);
+        part.hidden = part.covered || is_hidden(source, samples, part, grid.voxel_m);
       }
       progress.advance(1);
     }
@@ -373,6 +387,17 @@ PatchedScene assemble(std::span<const Sample> samples, std::span<const Part> par
 
 }  // namespace
 
+uint32_t patch_met(const PatchedScene& patched, const scene::Scene& scene,
+                   const trace::RayTracer& tracer, const trace::Hit& hit) {
+  if (!hit.found() || (hit.back_face && !has_open_back(scene, hit.point(), patched.open_backs)))
+    return kNone;
+  const scene::Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
+  const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
+  return patched.locator.locate(scene::world_position(scene, hit.point()),
+                                hit.back_face ? -front : front,
+                                mesh.triangle_material[hit.triangle], tracer);
+}
+
 Result<PatchedScene> make_patches(const scene::Scene& scene, const trace::RayTracer& tracer,
                                   const PatchParams& params, Progress& progress) {
   LUXEL_CHECK(params.points_per_patch >= 1);
@@ -392,7 +417,8 @@ Result<PatchedScene> make_patches(const scene::Scene& scene, const trace::RayTra
   for (int attempt = 0;; ++attempt) {
     VoxelGrid grid = grid_of(scene, voxel_m);
     grid.cover_m = transport::size_for_covers(scene, tracer, voxel_m);
-    LUXEL_TRY(const std::vector<Part> parts, make_parts(scene, samples, grid, tracer, progress));
+    LUXEL_TRY(const std::vector<Part> parts,
+              make_parts({scene, tracer, params.open_backs}, samples, grid, progress));
     const std::vector<uint32_t> patch =
         merge_slivers(parts, grid, tracer, area / double(params.count));
     const size_t count = count_of(patch);
@@ -401,8 +427,11 @@ Result<PatchedScene> make_patches(const scene::Scene& scene, const trace::RayTra
           ErrorCode::bad_input,
           "every surface of the scene lies inside a solid; do its triangles show their backs?");
     const double ratio = double(count) / double(params.count);
-    if (attempt == kMaxRetries || (ratio > kFewest && ratio < kMost))
-      return assemble(samples, parts, patch, grid);
+    if (attempt == kMaxRetries || (ratio > kFewest && ratio < kMost)) {
+      PatchedScene out = assemble(samples, parts, patch, grid);
+      out.open_backs = params.open_backs;
+      return out;
+    }
     // Surfaces have as many patches as squares of the voxels' size.
     voxel_m *= float(std::sqrt(std::clamp(ratio, 0.5, 2.0)));
   }

@@ -70,7 +70,14 @@ struct PatchedScene {
   Patches patches;  ///< in the order of the tree
   ClusterTree tree;
   PatchLocator locator;
+  /// As in PatchParams: other backs have no patches.
+  std::optional<std::vector<std::vector<uint8_t>>> open_backs;
 };
+
+/// The patch that a ray meets; kNone on sides that have none: backs of one-sided surfaces, those of
+/// closed solids, and what is covered.
+uint32_t patch_met(const PatchedScene& patched, const scene::Scene& scene,
+                   const trace::RayTracer& tracer, const trace::Hit& hit);
 
 /// Spreads points over the scene's surfaces, groups them by voxel, material and direction, splits
 /// groups whose points do not see each other, and merges slivers into neighbours. The voxels are as

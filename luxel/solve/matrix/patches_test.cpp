@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "luxel/base/random.h"
+#include "luxel/base/warp.h"
+
 #include <algorithm>
 
 #include "luxel/base/parallel.h"
@@ -140,6 +143,16 @@ TEST(Patches, BacksInsideClosedSolidsAreInNone) {
       outside += double(cut->patches.area_m2[k]) / double(cut->patches.points_of(k).size());
     }
   EXPECT_NEAR(outside, 6 * 0.4 * 0.4, 0.01);
+  // Rays inside the box meet no patch, not that of a wall behind; those beside it do.
+  RandomStream random{1};
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 d = uniform_sphere_sample(random.next2());
+    const auto met = [&](Vec3 from) {
+      return patch_met(*cut, scene, *tracer, tracer->closest_hit({from, 0, d, INFINITY}));
+    };
+    EXPECT_EQ(met({0.5f, 0.5f, 0.5f}), kNone);
+    EXPECT_NE(met({0.15f, 0.15f, 0.15f}), kNone);
+  }
 }
 
 TEST(Patches, HoldOneMaterialEach) {
@@ -265,6 +278,19 @@ TEST(PatchLocator, TellsTheFloorsBesideAWallApart) {
       ASSERT_NE(patch, kNone);
       EXPECT_GT(x * cut.patches().centroid[patch].x, 0) << at.x << ", " << at.z;
     }
+}
+
+TEST(PatchLocator, DoesNotLookOverWhatLiesJustAbove) {
+  // A sheet one centimetre above one of two places: lifted by a twentieth of a voxel of one
+  // metre, that place would lie above the sheet.
+  scene::Scene scene = testing::plate();
+  scene::add_rectangle(scene, {0.6f, 1, 0, 1}, 0.01f, true, 0);
+  const auto tracer = trace::RayTracer::build(scene);
+  ASSERT_TRUE(tracer);
+  const PatchPoint open{{0.2f, 0, 0.5f}, {0, 1, 0}}, near{{0.5f, 0, 0.5f}, {0, 1, 0}},
+      under{{0.8f, 0, 0.5f}, {0, 1, 0}};
+  EXPECT_TRUE(see_each_other(*tracer, open, near, 1));
+  EXPECT_FALSE(see_each_other(*tracer, open, under, 1));
 }
 
 Result<PatchedScene> try_to_cut(const scene::Scene& scene, size_t count, bool cancelled = false) {

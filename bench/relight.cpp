@@ -42,24 +42,20 @@ Status judge_scene(const JudgedScene& judged, const std::filesystem::path& share
   return {};
 }
 
-/// Those of the names; all where none is given.
-Result<JudgedScenes> judge_scenes(const std::filesystem::path& shared,
-                                  std::span<const std::string> names, Progress& progress) {
+/// The scene of a name; all where it is empty.
+Result<JudgedScenes> judge_scenes(const std::filesystem::path& shared, const std::string& name,
+                                  Progress& progress) {
   JudgedScenes out;
   for (const JudgedScene& judged : kJudgedScenes)
-    if (names.empty() || std::ranges::find(names, judged.name) != names.end())
+    if (name.empty() || name == judged.name)
       LUXEL_TRY_STATUS(judge_scene(judged, shared, out, progress));
+  if (out.runs.empty() && out.missing.empty())
+    return fail(ErrorCode::bad_setting,
+                "--scene {} is not among cornell_box, suzanne_room, living_room", name);
   return out;
 }
 
 }  // namespace
-
-std::vector<std::string> relight_scenes() {
-  std::vector<std::string> out;
-  for (const JudgedScene& judged : kJudgedScenes)
-    if (std::ranges::find(out, judged.name) == out.end()) out.emplace_back(judged.name);
-  return out;
-}
 
 Result<RelightPage> measure_relight(const std::filesystem::path& shared, Progress& progress) {
   RelightRuns runs;
@@ -71,8 +67,8 @@ Result<RelightPage> measure_relight(const std::filesystem::path& shared, Progres
 }
 
 Result<RelightPage> measure_relight_in(const std::filesystem::path& shared,
-                                       std::span<const std::string> scenes, Progress& progress) {
-  LUXEL_TRY(const JudgedScenes judged, judge_scenes(shared, scenes, progress));
+                                       const std::string& scene, Progress& progress) {
+  LUXEL_TRY(const JudgedScenes judged, judge_scenes(shared, scene, progress));
   RelightPage page;
   append(judged, page);
   return page;

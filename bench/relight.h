@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -81,7 +80,7 @@ struct JudgedRelight {
 
 struct JudgeSettings {
   size_t points = 1024;  ///< spread evenly over the area
-  int paths = 2048;    ///< per point, half of them per independent answer
+  int paths = 2048;      ///< per point, half of them per independent answer
   size_t lights = 10;
   size_t patches = 8192;
 };
@@ -113,16 +112,13 @@ RelightPage page_of(RelightRuns runs);
 /// The tables and numbers of the judged scenes.
 void append(const JudgedScenes& judged, RelightPage& page);
 
-/// Scenes in which the relighter is compared with the path tracer.
-std::vector<std::string> relight_scenes();
-
 /// All of it, some seven minutes on two cores. `shared` is the folder with scenes/. Errors: those
 /// of what is measured.
 Result<RelightPage> measure_relight(const std::filesystem::path& shared, Progress& progress);
 
-/// The comparison with the path tracer alone, in some of relight_scenes(). Errors: those of
-/// judge_relight(); a file that cannot be read.
+/// The comparison with the path tracer alone, in the scene of a name. Errors: no such name; those
+/// of judge_relight(); a file that cannot be read.
 Result<RelightPage> measure_relight_in(const std::filesystem::path& shared,
-                                       std::span<const std::string> scenes, Progress& progress);
+                                       const std::string& scene, Progress& progress);
 
 }  // namespace luxel::bench

@@ -25,10 +25,9 @@ constexpr const char *kValidation = "validation", *kHemicube = "hemicube", *kRel
 struct BenchOptions {
   Common common;
   std::string name;
-  std::string scene;  ///< gallery: the stem of the only one
+  std::string scene;  ///< gallery: the stem of the only one; relight: its folder's name
   std::string shared;
   std::string output = "docs";
-  std::vector<std::string> scenes;  ///< of relight
 };
 
 std::filesystem::path default_shared() {
@@ -116,7 +115,7 @@ int run_page(const BenchOptions& options, const std::string& name,
              const std::filesystem::path& shared, const Measure& measure) {
   const ThreadLimit limit(options.common.threads);
   const std::filesystem::path folder = options.output;
-  const bool write = options.name == name && options.scenes.empty();
+  const bool write = options.name == name && options.scene.empty();
   Page page;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     if (write) LUXEL_TRY_STATUS(try_out_folders(folder));
@@ -136,8 +135,8 @@ int run_page(const BenchOptions& options, const std::string& name,
 int run_relight(const BenchOptions& options, const std::filesystem::path& shared) {
   return run_page<bench::RelightPage>(
       options, kRelight, shared, [&](const std::filesystem::path& folder, Progress& progress) {
-        return options.scenes.empty() ? bench::measure_relight(folder, progress)
-                                      : bench::measure_relight_in(folder, options.scenes, progress);
+        return options.scene.empty() ? bench::measure_relight(folder, progress)
+                                     : bench::measure_relight_in(folder, options.scene, progress);
       });
 }
 
@@ -155,8 +154,9 @@ int run_tables(const BenchOptions& options, const std::filesystem::path& shared)
 }
 
 int run_bench(const BenchOptions& options) {
-  if (!options.scenes.empty() && options.name != kRelight)
-    return report_usage("--scene belongs to `luxel bench relight`", options.common);
+  if (!options.scene.empty() && options.name != kRelight && options.name != kGallery)
+    return report_usage("--scene belongs to `luxel bench gallery` and `luxel bench relight`",
+                        options.common);
   const std::filesystem::path shared =
       options.shared.empty() ? default_shared() : std::filesystem::path(options.shared);
   for (const BenchPage& page : kPages)
@@ -196,8 +196,10 @@ void register_bench(CLI::App& app, Action& action) {
           "(most of an hour)")
       ->check(CLI::IsMember(names))
       ->required();
-  bench->add_option("--scene", options->scene,
-                    "gallery: this scene alone, by its file's stem; the rest of the page stays");
+  bench->add_option(
+      "--scene", options->scene,
+      "gallery: this scene alone, by its file's stem; the rest of the page stays. "
+      "relight: only the comparison with the path tracer in this scene, without files");
   bench->add_option("--shared", options->shared,
                     "Folder with scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
   bench->add_option(
@@ -205,12 +207,6 @@ void register_bench(CLI::App& app, Action& action) {
       "validation, gallery, hemicube, relight, hierarchical: folder in which bench/ or guide/ gets "
       "the page or the .csv, and images/ the pictures "
       "(default: docs)");
-  bench
-      ->add_option("--scene", options->scenes,
-                   "relight: compare with the path tracer in this scene and print that alone, "
-                   "without files; can be given several times")
-      ->check(CLI::IsMember(bench::relight_scenes()))
-      ->allow_extra_args(false);
   add_common(*bench, options->common);
   bench->callback([options, &action] { action = [options] { return run_bench(*options); }; });
 }

@@ -9,7 +9,7 @@ QualityNumbers numbers_of(Quality quality) {
     case Quality::good:
       return {128, 32, 16, true};
     case Quality::best:
-      return {1024, 128, 16, false};
+      return {1024, 128, 64, false};
     case Quality::none:
       break;
   }

@@ -64,10 +64,10 @@ struct Place {
   transport::Elements points;
 };
 
-/// Sides and backs are those of `luxel relight`, which looks at the file's own light, or at a day
-/// where it has none. That light is taken away then. Points are spread evenly over the area: the texels of a
-/// lightmap are not, since each sliver of a triangle has one. What the judge's noise hides falls
-/// faster with paths per point than with points.
+/// Sides and backs are those of `luxel bake`, which looks at the file's own light, or at a day
+/// where it has none. That light is taken away then. Points are spread evenly over the area: the
+/// texels of a lightmap are not, since each sliver of a triangle has one. What the judge's noise
+/// hides falls faster with paths per point than with points.
 Result<std::unique_ptr<Place>> make_place(scene::Scene scene, const JudgeSettings& settings,
                                           Progress& progress) {
   auto out = std::make_unique<Place>();

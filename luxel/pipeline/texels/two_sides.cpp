@@ -119,7 +119,7 @@ struct ShellScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
   const std::vector<Shells>& shells;  ///< per mesh
-  std::vector<Vec3> light_positions;  ///< of point and spot lights
+  std::vector<Vec3> light_positions;  ///< of point and spot lights, and on emissive surfaces
   bool sky_shines = false;            ///< light comes from where there is no surface
   float diagonal_m = 0;
 
@@ -135,9 +135,28 @@ struct Placed {
   bool closed = false;
 };
 
+/// The middles of emissive triangles, kMostLamps of them at most.
+std::vector<Vec3> lamp_positions(const scene::Scene& scene) {
+  constexpr size_t kMostLamps = 256;
+  std::vector<Vec3> all;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (max_component(scene.materials[mesh.triangle_material[t]].emission) <= 0) continue;
+      const scene::Triangle3 w = scene::world_triangle(scene, i, t);
+      all.push_back((w.a + w.b + w.c) * (1.0f / 3));
+    }
+  }
+  std::vector<Vec3> out;
+  const size_t count = std::min(all.size(), kMostLamps);
+  for (size_t k = 0; k < count; ++k) out.push_back(all[k * all.size() / count]);
+  return out;
+}
+
 ShellScene shell_scene_of(const scene::Scene& scene, const trace::RayTracer& tracer,
                           const std::vector<Shells>& shells) {
-  ShellScene shell_scene{scene, tracer, shells, {}, false, scene::world_bounds(scene).diagonal()};
+  ShellScene shell_scene{
+      scene, tracer, shells, lamp_positions(scene), false, scene::world_bounds(scene).diagonal()};
   shell_scene.sky_shines = max_component(scene.background) > 0 || !scene.environment.empty();
   for (const scene::PunctualLight& light : scene.lights)
     if (scene::has_position(light.kind))
@@ -147,11 +166,12 @@ ShellScene shell_scene_of(const scene::Scene& scene, const trace::RayTracer& tra
   return shell_scene;
 }
 
-enum class Step : uint8_t { on, out, stuck };
+/// `away`: into the dark around the scene, which says nothing of the light from its surfaces.
+enum class Step : uint8_t { on, out, stuck, away };
 
 Step judge(const ShellScene& shell_scene, const Placed& own, const trace::Ray& ray,
            const trace::Hit& hit) {
-  if (!hit.found()) return shell_scene.sky_shines ? Step::out : Step::stuck;
+  if (!hit.found()) return shell_scene.sky_shines ? Step::out : Step::away;
   if (hit.back_face && !scene::reflects_from_behind(material_at(shell_scene.scene, hit.point())))
     return Step::stuck;
   const Vec3 p = ray.origin + ray.direction * hit.t;
@@ -171,32 +191,37 @@ trace::Ray ray_from(const ShellScene& shell_scene, const scene::SurfacePoint& p,
   return {origin, 0, d, INFINITY};
 }
 
-/// Whether a randomly chosen point or spot light shines on a position.
+/// Whether a randomly chosen light with a position shines on another one. Not quite as far as it
+/// is: there may be the lamp's own surface.
 bool sees_light(const ShellScene& shell_scene, Vec3 origin, Vec3 side, RandomStream& random) {
   if (shell_scene.light_positions.empty()) return false;
   const size_t k = std::min(size_t(random.next() * float(shell_scene.light_positions.size())),
                             shell_scene.light_positions.size() - 1);
   const Vec3 towards = shell_scene.light_positions[k] - origin;
-  return dot(towards, side) > 0 && !shell_scene.tracer.closest_hit({origin, 0, towards, 1}).found();
+  return dot(towards, side) > 0 &&
+         !shell_scene.tracer.closest_hit({origin, 0, towards, 0.999f}).found();
 }
 
-/// Whether a walk from the back of a triangle gets out, or a light shines on it.
-bool gets_out(const ShellScene& shell_scene, const Placed& own, const scene::SurfacePoint& from,
-              RandomStream& random) {
+/// How a walk from the back of a triangle ends: `out` as well where a light shines on it, `on`
+/// where it is still within its shell after all steps.
+Step walk(const ShellScene& shell_scene, const Placed& own, const scene::SurfacePoint& from,
+          RandomStream& random) {
   const Vec3 behind = -scene::front_normal(shell_scene.scene, from.instance, from.triangle);
   trace::Ray ray = ray_from(shell_scene, from, behind, random);
-  if (sees_light(shell_scene, ray.origin, behind, random)) return true;
+  if (sees_light(shell_scene, ray.origin, behind, random)) return Step::out;
   for (uint32_t step = 0; step < kSteps; ++step) {
     const trace::Hit hit = shell_scene.tracer.closest_hit(ray);
     const Step what = judge(shell_scene, own, ray, hit);
-    if (what != Step::on) return what == Step::out;
+    if (what != Step::on) return what;
     const Vec3 front = scene::front_normal(shell_scene.scene, hit.instance, hit.triangle);
     ray = ray_from(shell_scene, hit.point(), hit.back_face ? -front : front, random);
   }
-  return false;
+  return Step::on;
 }
 
 /// The share of walks that get out, from points spread over the candidates in proportion to area.
+/// Those that go away do not count: a sheet at night sees few surfaces, but what shines on them may
+/// shine on it. 0 where all go away.
 double share_out(const ShellScene& shell_scene, const Placed& own, uint64_t seed) {
   const std::vector<uint32_t>& candidates =
       shell_scene.shells_at(own.instance).candidates[own.shell];
@@ -204,15 +229,17 @@ double share_out(const ShellScene& shell_scene, const Placed& own, uint64_t seed
   for (const uint32_t t : candidates)
     below.push_back(below.back() +
                     double(area_m2(scene::world_triangle(shell_scene.scene, own.instance, t))));
-  uint32_t out = 0;
+  uint32_t out = 0, counted = 0;
   for (uint32_t k = 0; k < kWalks; ++k) {
     RandomStream random{hash64(seed, k)};
     const double at = (double(k) + double(random.next())) / kWalks * below.back();
     const auto found = std::upper_bound(below.begin() + 1, below.end() - 1, at);
     const uint32_t t = candidates[size_t(found - below.begin()) - 1];
-    out += gets_out(shell_scene, own, {own.instance, t, triangle_sample(random.next2())}, random);
+    const Step end =
+        walk(shell_scene, own, {own.instance, t, triangle_sample(random.next2())}, random);
+    out += end == Step::out, counted += end != Step::away;
   }
-  return double(out) / kWalks;
+  return counted > 0 ? double(out) / counted : 0;
 }
 
 /// Shells of instances to look at: all that have candidates, in some of a mesh's places.

@@ -159,6 +159,19 @@ TEST(TwoSides, ASheetInAShutRoomHasABack) {
   EXPECT_EQ(open_share(s, 2), 1);
 }
 
+// A pond at night that is wound downwards, with a lantern above it: most of the rays from its upper
+// side go into the dark, but those that meet the lantern bring light.
+TEST(TwoSides, ASheetUnderALanternHasABack) {
+  scene::Scene s = empty();
+  s.background = {};
+  scene::Mesh pond;
+  scene::add_quad(pond, {Vec3{-2, 0, -2}, {2, 0, -2}, {2, 0, 2}, {-2, 0, 2}}, kSheet);
+  scene::place(s, std::move(pond));
+  scene::place(s, box({-0.2f, 2, -0.2f}, {0.2f, 2.4f, 0.2f}, kSolid));
+  s.materials[kSolid].emission = {5, 5, 5};
+  EXPECT_EQ(open_share(s), 1);
+}
+
 TEST(TwoSides, WhatLiesInASolidHasNone) {
   scene::Scene s = empty();
   scene::place(s, box({-2, 0, -2}, {2, 3, 2}, kSolid));

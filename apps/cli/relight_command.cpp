@@ -35,7 +35,8 @@ Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
 void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& json) {
   std::fprintf(
       stderr, "%s\n",
-      fmt::format("{} patches, {} places, {:.1f} s; matrix {:.2f} MB, loses {:.2f} %",
+      fmt::format("{} patches, {} places, {:.1f} s; matrix {:.2f} MB, loses {:.2f} % of the light "
+                  "of point lamps",
                   json["counts"]["patches"].get<uint64_t>(),
                   json["counts"]["places"].get<uint64_t>(), json["seconds"]["total"].get<double>(),
                   1e-6 * json["bytes"]["matrix"].get<double>(),
@@ -137,10 +138,11 @@ void add_making(CLI::App& relight, RelightOptions& options) {
   all.push_back(
       relight.add_option("--codec", s.codec, "How it is kept: " + pipeline::codec_names())
           ->capture_default_str());
-  all.push_back(relight
-                    .add_option("--max-error", s.max_error,
-                                "What the codec may lose of indirect light, root mean square")
-                    ->capture_default_str());
+  all.push_back(
+      relight
+          .add_option("--max-error", s.max_error,
+                      "What the codec may lose of the light of point lamps, root mean square")
+          ->capture_default_str());
   all.push_back(relight.add_option("--bounces", options.bounces, "Reflections to count, or inf")
                     ->capture_default_str());
   all.push_back(relight.add_option("--max-memory", options.max_memory,

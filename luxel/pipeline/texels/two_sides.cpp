@@ -166,12 +166,11 @@ ShellScene shell_scene_of(const scene::Scene& scene, const trace::RayTracer& tra
   return shell_scene;
 }
 
-/// `away`: into the dark around the scene, which says nothing of the light from its surfaces.
-enum class Step : uint8_t { on, out, stuck, away };
+enum class Step : uint8_t { on, out, stuck };
 
 Step judge(const ShellScene& shell_scene, const Placed& own, const trace::Ray& ray,
            const trace::Hit& hit) {
-  if (!hit.found()) return shell_scene.sky_shines ? Step::out : Step::away;
+  if (!hit.found()) return shell_scene.sky_shines ? Step::out : Step::stuck;
   if (hit.back_face && !scene::reflects_from_behind(material_at(shell_scene.scene, hit.point())))
     return Step::stuck;
   const Vec3 p = ray.origin + ray.direction * hit.t;
@@ -191,37 +190,40 @@ trace::Ray ray_from(const ShellScene& shell_scene, const scene::SurfacePoint& p,
   return {origin, 0, d, INFINITY};
 }
 
-/// Whether a randomly chosen light with a position shines on another one. Not quite as far as it
-/// is: there may be the lamp's own surface.
+/// Whether one of some randomly chosen lights with a position shines on another one. Not quite as
+/// far as it is: there may be the lamp's own surface.
 bool sees_light(const ShellScene& shell_scene, Vec3 origin, Vec3 side, RandomStream& random) {
-  if (shell_scene.light_positions.empty()) return false;
-  const size_t k = std::min(size_t(random.next() * float(shell_scene.light_positions.size())),
-                            shell_scene.light_positions.size() - 1);
-  const Vec3 towards = shell_scene.light_positions[k] - origin;
-  return dot(towards, side) > 0 &&
-         !shell_scene.tracer.closest_hit({origin, 0, towards, 0.999f}).found();
+  // Each lamp is mostly behind the others, and most triangles of a lantern face away.
+  constexpr int kTries = 8;
+  const std::vector<Vec3>& lights = shell_scene.light_positions;
+  if (lights.empty()) return false;
+  for (int i = 0; i < kTries; ++i) {
+    const size_t k = std::min(size_t(random.next() * float(lights.size())), lights.size() - 1);
+    const Vec3 towards = lights[k] - origin;
+    if (dot(towards, side) > 0 &&
+        !shell_scene.tracer.closest_hit({origin, 0, towards, 0.999f}).found())
+      return true;
+  }
+  return false;
 }
 
-/// How a walk from the back of a triangle ends: `out` as well where a light shines on it, `on`
-/// where it is still within its shell after all steps.
-Step walk(const ShellScene& shell_scene, const Placed& own, const scene::SurfacePoint& from,
-          RandomStream& random) {
+/// Whether a walk from the back of a triangle gets out, or a light shines on it.
+bool gets_out(const ShellScene& shell_scene, const Placed& own, const scene::SurfacePoint& from,
+              RandomStream& random) {
   const Vec3 behind = -scene::front_normal(shell_scene.scene, from.instance, from.triangle);
   trace::Ray ray = ray_from(shell_scene, from, behind, random);
-  if (sees_light(shell_scene, ray.origin, behind, random)) return Step::out;
+  if (sees_light(shell_scene, ray.origin, behind, random)) return true;
   for (uint32_t step = 0; step < kSteps; ++step) {
     const trace::Hit hit = shell_scene.tracer.closest_hit(ray);
     const Step what = judge(shell_scene, own, ray, hit);
-    if (what != Step::on) return what;
+    if (what != Step::on) return what == Step::out;
     const Vec3 front = scene::front_normal(shell_scene.scene, hit.instance, hit.triangle);
     ray = ray_from(shell_scene, hit.point(), hit.back_face ? -front : front, random);
   }
-  return Step::on;
+  return false;
 }
 
 /// The share of walks that get out, from points spread over the candidates in proportion to area.
-/// Those that go away do not count: a sheet at night sees few surfaces, but what shines on them may
-/// shine on it. 0 where all go away.
 double share_out(const ShellScene& shell_scene, const Placed& own, uint64_t seed) {
   const std::vector<uint32_t>& candidates =
       shell_scene.shells_at(own.instance).candidates[own.shell];
@@ -229,17 +231,15 @@ double share_out(const ShellScene& shell_scene, const Placed& own, uint64_t seed
   for (const uint32_t t : candidates)
     below.push_back(below.back() +
                     double(area_m2(scene::world_triangle(shell_scene.scene, own.instance, t))));
-  uint32_t out = 0, counted = 0;
+  uint32_t out = 0;
   for (uint32_t k = 0; k < kWalks; ++k) {
     RandomStream random{hash64(seed, k)};
     const double at = (double(k) + double(random.next())) / kWalks * below.back();
     const auto found = std::upper_bound(below.begin() + 1, below.end() - 1, at);
     const uint32_t t = candidates[size_t(found - below.begin()) - 1];
-    const Step end =
-        walk(shell_scene, own, {own.instance, t, triangle_sample(random.next2())}, random);
-    out += end == Step::out, counted += end != Step::away;
+    out += gets_out(shell_scene, own, {own.instance, t, triangle_sample(random.next2())}, random);
   }
-  return counted > 0 ? double(out) / counted : 0;
+  return double(out) / kWalks;
 }
 
 /// Shells of instances to look at: all that have candidates, in some of a mesh's places.

@@ -159,8 +159,8 @@ TEST(TwoSides, ASheetInAShutRoomHasABack) {
   EXPECT_EQ(open_share(s, 2), 1);
 }
 
-// A pond at night that is wound downwards, with a lantern above it: most of the rays from its upper
-// side go into the dark, but those that meet the lantern bring light.
+// A pond at night that is wound downwards, with a lantern above it: what its upper side sees is
+// nearly all dark, but the lantern shines on it.
 TEST(TwoSides, ASheetUnderALanternHasABack) {
   scene::Scene s = empty();
   s.background = {};

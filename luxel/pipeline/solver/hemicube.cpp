@@ -72,11 +72,11 @@ Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSetting
   LUXEL_TRY(const hemicube::Solution solution,
             hemicube::solve(in.scene, in.lights, in.tracer, params, progress));
   TexelLight out = texel_light_of(in, solution);
-  const auto irradiance = [&](const scene::SurfacePoint& p) {
-    return hemicube::irradiance_at(solution.field, p);
-  };
+  const SolvedField field{
+      [&](const scene::SurfacePoint& p) { return hemicube::irradiance_at(solution.field, p); },
+      transport::size_for_covers(in.scene, in.tracer, solution.element_size_m)};
   LUXEL_TRY(const double error,
-            field_error(in, out, irradiance, {params.direct_samples, settings.seed}, progress));
+            field_error(in, out, field, {params.direct_samples, settings.seed}, progress));
   out.relative_error = std::hypot(error, kPixelError / params.resolution);
   if (settings.vertex_colors) out.vertex_lit = vertex_lit(in.scene, solution.field);
   return out;

@@ -27,15 +27,21 @@ float mean_side_m(const hierarchical::Tree& tree) {
   return float(std::sqrt(area / std::max(count, 1.0)));
 }
 
+/// By which places are covered (transport::open_share).
+float cover_size_m(const hierarchical::Solution& solution) {
+  return solution.light_in_gaps ? 0 : mean_side_m(solution.tree);
+}
+
 /// How far texels are off what rays from them find, which shows what interpolants and links cost
 /// there; and what links may err by, over the mean, for the light that rays find is that of links.
 Result<double> stated_error(const light::TexelScene& in, const hierarchical::Solution& solution,
                             const hierarchical::LightMesh& mesh, const TexelLight& light,
                             const light::DirectParams& direct, Progress& progress) {
-  const auto irradiance = [&](const scene::SurfacePoint& p) {
-    return hierarchical::irradiance_at(solution, mesh, in.scene, p);
-  };
-  LUXEL_TRY(const double error, field_error(in, light, irradiance, direct, progress));
+  const SolvedField field{[&](const scene::SurfacePoint& p) {
+                            return hierarchical::irradiance_at(solution, mesh, in.scene, p);
+                          },
+                          cover_size_m(solution)};
+  LUXEL_TRY(const double error, field_error(in, light, field, direct, progress));
   double sum = 0, count = 0;
   for (size_t i = 0; i < light.irradiance.size(); ++i)
     if (!light.hidden[i]) sum += double(luminance(light.irradiance[i])), count += 1;
@@ -61,8 +67,8 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
   TexelLight out;
   out.irradiance.resize(in.map.texels.size());
   // Where something much closer than elements covers a texel, they have no light to tell.
-  const std::vector<float> open = transport::open_shares(
-      in.scene, in.tracer, in.elements, solution.light_in_gaps ? 0 : mean_side_m(solution.tree));
+  const std::vector<float> open =
+      transport::open_shares(in.scene, in.tracer, in.elements, cover_size_m(solution));
   parallel_for(in.map.texels.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       out.irradiance[i] =

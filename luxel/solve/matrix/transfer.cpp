@@ -17,9 +17,9 @@ namespace {
 /// eight patches. Fewer leave a plane to noise, more blur light.
 constexpr float kReach = 1.8f;
 constexpr int kVoxels = 2;
-/// How much more near ones count: at a third of the reach half as much as at the place. In the
-/// Cornell box, a furnished room and a walled garden this errs by a tenth less than without,
-/// against a path tracer (luxel bench relight), with 2,048 rays per patch as with 8,192.
+/// How much more near ones count: at a third of the reach half as much as at the place. Together
+/// with this reach it errs by a tenth less in the Cornell box and in a living room with its walled
+/// garden than a reach of 2.2 without it, against a path tracer (luxel bench relight).
 constexpr float kNearness = 10;
 /// Patches that face away by more than 60 degrees have light of their own.
 constexpr float kAlike = 0.5f;

@@ -23,9 +23,10 @@ namespace luxel::bench {
 namespace {
 
 constexpr int kPictureHeight = 240;
-/// Two independent pictures of this many paths per pixel each: their difference says how much of
-/// FLIP is noise of the paths.
-constexpr int kPathsPerPicture = 192;
+/// Two independent pictures get so many paths per pixel at a time, until FLIP between both, which
+/// is noise of the paths, is no more than kNoise, or they have kMostPaths each.
+constexpr int kPathsAtOnce = 192, kMostPaths = 4 * kPathsAtOnce;
+constexpr double kNoise = 0.05;
 /// Pixels between the two pictures.
 constexpr int kGap = 4;
 
@@ -94,13 +95,6 @@ double flip_between(const image::Image& a, const image::Image& b) {
   return sum / (double(map.width) * map.height);
 }
 
-image::Image mean_of(const image::Image& a, const image::Image& b) {
-  image::Image out(a.width, a.height, 3);
-  for (int y = 0; y < a.height; ++y)
-    for (int x = 0; x < a.width; ++x) out.set_rgb(x, y, (a.rgb(x, y) + b.rgb(x, y)) * 0.5f);
-  return out;
-}
-
 image::Image8 side_by_side(const image::Image& left, const image::Image& right) {
   image::Image both(left.width + kGap + right.width, left.height, 3);
   for (int y = 0; y < left.height; ++y) {
@@ -117,6 +111,7 @@ struct Pair {
   double flip = 0, flip_of_paths = 0;
   double bake_seconds = 0, path_seconds = 0;  ///< of processors
   int pages = 0, width = 0, height = 0;       ///< of the lightmap
+  int paths_per_pixel = 0;
 };
 
 double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
@@ -131,17 +126,36 @@ Result<pipeline::Bake> bake_by_default(const std::filesystem::path& file, Progre
 }
 
 /// Two pictures of the bake's view, by independent paths.
-Result<std::array<image::Image, 2>> trace_twice(const pipeline::Bake& bake,
-                                                const trace::RayTracer& tracer,
-                                                const display::DrawParams& size,
-                                                Progress& progress) {
-  std::array<image::Image, 2> out;
-  for (size_t k = 0; k < out.size(); ++k) {
-    const reference::PathParams params{.samples = kPathsPerPicture, .seed = 1 + k};
-    LUXEL_TRY(reference::Picture picture,
-              reference::radiance_by_paths(bake.scene, tracer, bake.view.camera, size.width,
-                                           size.height, params, progress));
-    out[k] = std::move(picture.radiance);
+struct PathPictures {
+  std::array<image::Image, 2> picture;
+  int paths = 0;     ///< per pixel, of each
+  double noise = 0;  ///< FLIP between both
+};
+
+/// The mean of `a`, which counts n times, and `b`. With n = 0 `a` may be empty.
+image::Image mean_of(const image::Image& a, float n, const image::Image& b) {
+  image::Image out(b.width, b.height, 3);
+  for (int y = 0; y < b.height; ++y)
+    for (int x = 0; x < b.width; ++x)
+      out.set_rgb(x, y, n > 0 ? (a.rgb(x, y) * n + b.rgb(x, y)) / (n + 1) : b.rgb(x, y));
+  return out;
+}
+
+Result<PathPictures> trace_pictures(const pipeline::Bake& bake, const trace::RayTracer& tracer,
+                                    const display::DrawParams& size, Progress& progress) {
+  PathPictures out;
+  for (uint64_t round = 0; out.paths == 0 || (out.noise > kNoise && out.paths < kMostPaths);
+       ++round) {
+    for (size_t k = 0; k < 2; ++k) {
+      const reference::PathParams params{.samples = kPathsAtOnce, .seed = 1 + k + 2 * round};
+      LUXEL_TRY(const reference::Picture more,
+                reference::radiance_by_paths(bake.scene, tracer, bake.view.camera, size.width,
+                                             size.height, params, progress));
+      out.picture[k] = mean_of(out.picture[k], float(round), more.radiance);
+    }
+    out.paths += kPathsAtOnce;
+    out.noise = flip_between(on_screen(out.picture[0], bake.view.exposure),
+                             on_screen(out.picture[1], bake.view.exposure));
   }
   return out;
 }
@@ -159,13 +173,13 @@ Result<Pair> make_pair(const std::filesystem::path& file, Progress& progress) {
   size.height = kPictureHeight, size.width = kPictureHeight * bake.view.width / bake.view.height;
   LUXEL_TRY(const image::Image drawn, draw_bake(bake, tracer, size, progress));
   const double begin = processor_seconds();
-  LUXEL_TRY(const auto halves, trace_twice(bake, tracer, size, progress));
+  LUXEL_TRY(const PathPictures traced, trace_pictures(bake, tracer, size, progress));
   out.path_seconds = processor_seconds() - begin;
   const float exposure = bake.view.exposure;
   out.bake = on_screen(drawn, exposure);
-  out.paths = on_screen(mean_of(halves[0], halves[1]), exposure);
+  out.paths = on_screen(mean_of(traced.picture[0], 1, traced.picture[1]), exposure);
   out.flip = flip_between(out.bake, out.paths);
-  out.flip_of_paths = flip_between(on_screen(halves[0], exposure), on_screen(halves[1], exposure));
+  out.flip_of_paths = traced.noise, out.paths_per_pixel = 2 * traced.paths;
   return out;
 }
 
@@ -173,31 +187,31 @@ std::string heading() {
   return fmt::format(
       "# Gallery\n\n"
       "What `luxel bake SCENE -o OUT` gives, without any other option. Left: the bake, drawn from "
-      "its lightmap as preview.png is. Right: the same view by path tracing, {} paths per pixel, "
+      "its lightmap as preview.png is. Right: the same view by path tracing, "
       "with the same exposure. `luxel bench gallery` wrote this page.\n\n"
       "The scenes are not luxel's, and not part of it. A scene without light gets the daylight "
       "that luxel gives by default.\n\n"
       "FLIP is the difference that a person sees who flips between both pictures, from 0 to 1 "
       "([compare.md](../method/compare.md)). *Noise of the paths*: FLIP between two pictures of "
-      "{} paths per pixel, whose mean is the one on the right. *Seconds* are those of processors, "
+      "half as many paths, whose mean is the one on the right. *Seconds* are those of processors, "
       "on an {}.\n\n",
-      2 * kPathsPerPicture, kPathsPerPicture, machine_name());
+      machine_name());
 }
 
 /// A scene's row of gallery.csv.
 struct Row {
   std::string scene;
-  int pages = 0, width = 0, height = 0;
+  int pages = 0, width = 0, height = 0, paths = 0;  ///< paths per pixel
   double bake_seconds = 0, path_seconds = 0, flip = 0, flip_of_paths = 0;
 };
 constexpr std::string_view kColumns =
-    "scene,pages,width,height,bake_cpu_s,path_cpu_s,flip,flip_of_paths";
+    "scene,pages,width,height,paths,bake_cpu_s,path_cpu_s,flip,flip_of_paths";
 
 std::string csv_of(std::span<const Row> rows) {
   std::string text = std::string(kColumns) + "\n";
   for (const Row& r : rows)
-    text += fmt::format("{},{},{},{},{:.1f},{:.1f},{:.4f},{:.4f}\n", r.scene, r.pages, r.width,
-                        r.height, r.bake_seconds, r.path_seconds, r.flip, r.flip_of_paths);
+    text += fmt::format("{},{},{},{},{},{:.1f},{:.1f},{:.4f},{:.4f}\n", r.scene, r.pages, r.width,
+                        r.height, r.paths, r.bake_seconds, r.path_seconds, r.flip, r.flip_of_paths);
   return text;
 }
 
@@ -210,8 +224,9 @@ std::vector<Row> rows_of(const std::filesystem::path& csv) {
   while (in && std::getline(in, line)) {
     Row r;
     char name[64];
-    if (std::sscanf(line.c_str(), "%63[^,],%d,%d,%d,%lf,%lf,%lf,%lf", name, &r.pages, &r.width,
-                    &r.height, &r.bake_seconds, &r.path_seconds, &r.flip, &r.flip_of_paths) == 8)
+    if (std::sscanf(line.c_str(), "%63[^,],%d,%d,%d,%d,%lf,%lf,%lf,%lf", name, &r.pages, &r.width,
+                    &r.height, &r.paths, &r.bake_seconds, &r.path_seconds, &r.flip,
+                    &r.flip_of_paths) == 9)
       r.scene = name, rows.push_back(r);
   }
   return rows;
@@ -236,17 +251,19 @@ std::string page_of(std::span<const Row> rows) {
     const std::string size = fmt::format("{} x {}", r->width, r->height);
     cells.push_back({fmt::format("[{}](#{})", name, name),
                      r->pages == 1 ? size : fmt::format("{} pages of {}", r->pages, size),
-                     fmt::format("{:.0f}", r->bake_seconds), fmt::format("{:.0f}", r->path_seconds),
-                     fmt::format("{:.3f}", r->flip), fmt::format("{:.3f}", r->flip_of_paths)});
+                     fmt::format("{:.0f}", r->bake_seconds), fmt::format("{}", r->paths),
+                     fmt::format("{:.0f}", r->path_seconds), fmt::format("{:.3f}", r->flip),
+                     fmt::format("{:.3f}", r->flip_of_paths)});
     pictures +=
         fmt::format("## {}\n\n{}\n\n![{}: baked, path traced](../images/gallery-{}.png)\n\n", name,
                     scene.credit, name, name);
   }
-  std::string page = wrapped(heading() +
-                             markdown_table({"scene", "lightmap", "seconds of the bake",
-                                             "seconds of the paths", "FLIP", "noise of the paths"},
-                                            cells) +
-                             "\n" + pictures);
+  std::string page =
+      wrapped(heading() +
+              markdown_table({"scene", "lightmap", "seconds of the bake", "paths per pixel",
+                              "seconds of the paths", "FLIP", "noise of the paths"},
+                             cells) +
+              "\n" + pictures);
   while (page.ends_with("\n\n")) page.pop_back();
   return page;
 }
@@ -258,6 +275,7 @@ nlohmann::json json_of(std::span<const Row> rows) {
                    {"pages", r.pages},
                    {"width", r.width},
                    {"height", r.height},
+                   {"paths", r.paths},
                    {"bake_cpu_seconds", r.bake_seconds},
                    {"path_cpu_seconds", r.path_seconds},
                    {"flip", r.flip},
@@ -276,8 +294,8 @@ Result<Page> make_gallery(const std::filesystem::path& shared, std::string_view 
     const auto file = shared / "scenes" / scene.file;
     if ((!only.empty() && only != name) || !std::filesystem::exists(file)) continue;
     LUXEL_TRY(const Pair pair, make_pair(file, progress));
-    replace({name, pair.pages, pair.width, pair.height, pair.bake_seconds, pair.path_seconds,
-             pair.flip, pair.flip_of_paths},
+    replace({name, pair.pages, pair.width, pair.height, pair.paths_per_pixel, pair.bake_seconds,
+             pair.path_seconds, pair.flip, pair.flip_of_paths},
             rows);
     page.files.push_back(png_file(name + ".png", side_by_side(pair.bake, pair.paths)));
   }

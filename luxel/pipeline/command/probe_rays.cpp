@@ -36,6 +36,7 @@ class Rounds {
   Rounds(const ProbeSettings& s, Clock::time_point start) : settings_(s), start_(start) {}
 
   void add(double weight, Rgb mean, Rgb error, float luminance_error) {
+    was_known_ = count_ > 0 && is_known();
     weight_ += weight, sum_ += mean * float(weight);
     for (size_t c = 0; c < 4; ++c) {
       const float e = c == 0 ? error.x : c == 1 ? error.y : c == 2 ? error.z : luminance_error;
@@ -48,10 +49,12 @@ class Rounds {
   bool is_known() const {
     return double(error(3)) <= settings_.max_error * double(luminance(mean()));
   }
-  /// Whether another round is wanted, and there is time for it, which takes twice the last.
+  /// Whether another round is wanted, and there is time for it, which takes twice the last. Rounds
+  /// that end because their light looks sure by chance are too sure of it: so one more round, with
+  /// most of all paths, has its say.
   bool goes_on(double last_round_s) const {
     const double left = settings_.time_budget_s - seconds_since(start_);
-    return !is_known() && count_ < kMostRounds && left > 2 * last_round_s;
+    return !(is_known() && was_known_) && count_ < kMostRounds && left > 2 * last_round_s;
   }
   void finish(Probed& out) const {
     out.irradiance = mean(), out.luminance_error = error(3);
@@ -66,6 +69,7 @@ class Rounds {
   Rgb sum_{};
   std::array<double, 4> squares_{};
   int count_ = 0;
+  bool was_known_ = false;  ///< before the last round
 };
 
 /// The place that is meant; what is said of its surface goes to `out`.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "bench/bench.h"
+#include "bench/timing.h"
 #include "luxel/base/file.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/settings/version.h"
@@ -59,7 +60,7 @@ std::string wrapped(std::string_view markdown) {
 }
 
 Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
-  const auto start = Clock::now();
+  const std::clock_t start = std::clock();
   Page page;
   page.json = nlohmann::json::object();
   std::string body;
@@ -82,9 +83,10 @@ Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
       "bench validation`: view factors against closed forms, and solvers against exact solutions "
       "and a brute-force path tracer. That one shares nothing with them but the scene and the ray "
       "tracer ([reference.md](../method/reference.md)).\n\n"
-      "This run: version {}, {}, {} threads, {:.0f} s. The exact values are those of "
+      "This run: version {}, {}, {} threads, {:.0f} processor seconds. The exact values are those "
+      "of "
       "`shared/reference`.\n\n",
-      pipeline::kVersion, machine_name(), thread_count(), seconds_since(start));
+      pipeline::kVersion, machine_name(), thread_count(), processor_seconds_since(start));
   page.markdown = wrapped(page.markdown + body);
   while (page.markdown.ends_with("\n\n")) page.markdown.pop_back();
   return page;

@@ -47,11 +47,11 @@ Result<Curve> measure_curve(const validate::Prepared& p, const validate::Judged&
               validate::solve(p, solver, with_samples(n, 5), progress));
     const validate::Agreement a =
         validate::agreement(solved.light.irradiance, solved.light.hidden, judged);
-    rows.push_back({std::string(solver), std::to_string(n), fmt::format("{:.2f}", solved.seconds),
-                    validate::relative_rmse_text(a),
-                    fmt::format("{:+.3f} %", 100 * a.bias_over_mean)});
+    rows.push_back(
+        {std::string(solver), std::to_string(n), fmt::format("{:.2f}", solved.processor_seconds),
+         validate::relative_rmse_text(a), fmt::format("{:+.3f} %", 100 * a.bias_over_mean)});
     curve.by_samples.push_back({double(n), a.relative_rmse});
-    curve.by_seconds.push_back({solved.seconds, a.relative_rmse});
+    curve.by_seconds.push_back({solved.processor_seconds, a.relative_rmse});
   }
   return curve;
 }
@@ -72,7 +72,7 @@ Status convergence(Section& section, Progress& progress) {
   // Each solver with more and more samples.
   std::vector<std::vector<std::string>> rows;
   export_::Plot samples = error_plot("Cornell box: error against samples", "samples per texel");
-  export_::Plot seconds = error_plot("Cornell box: error against time", "seconds");
+  export_::Plot seconds = error_plot("Cornell box: error against time", "processor seconds");
   for (const auto& [solver, steps] : {std::pair{"gather", std::vector{64, 256, 1024, 4096}},
                                       std::pair{"reference", std::vector{64, 256, 1024}}}) {
     LUXEL_TRY(const Curve curve, measure_curve(*p, judged, solver, steps, rows, progress));
@@ -83,13 +83,14 @@ Status convergence(Section& section, Progress& progress) {
   section.files.push_back(svg_file("error-samples.svg", export_::svg(samples)));
   section.files.push_back(svg_file("error-seconds.svg", export_::svg(seconds)));
   section.markdown += fmt::format(
-      "### Error against samples and seconds\n\n{0} x {0} texels, {1} shadow rays. The judge: "
+      "### Error against samples and processor seconds\n\n{0} x {0} texels, {1} shadow rays. The "
+      "judge: "
       "twice "
       "{2} paths per texel, independent of those of the row \"reference\".\n\n{3}\n{4}\n{5}\n\n",
       kResolution, kDirect, kPaths,
-      markdown_table({"solver", "samples", "seconds", "relative RMSE", "bias"}, rows),
+      markdown_table({"solver", "samples", "processor s", "relative RMSE", "bias"}, rows),
       show(section.files[0], "Error against samples"),
-      show(section.files[1], "Error against seconds"));
+      show(section.files[1], "Error against processor seconds"));
   return {};
 }
 
@@ -238,7 +239,8 @@ Status every_texel(const validate::Prepared& p, const validate::Timed& solved, S
   section.markdown += fmt::format(
       "### Every texel\n\nThe paper's setting: 512 x 512 texels, 200 direct and 2000 indirect "
       "samples "
-      "([Moreno05, section 5.1]); gather took {:.0f} s. Irradiance of both is tone\nmapped with "
+      "([Moreno05, section 5.1]); gather took {:.0f} processor seconds. Irradiance of both is "
+      "tone\nmapped with "
       "one "
       "exposure. A texel passes when its difference from the path tracer plus three of the path "
       "tracer's standard errors is below {:.0f} of 255; the others get\nmore "
@@ -250,7 +252,7 @@ Status every_texel(const validate::Prepared& p, const validate::Timed& solved, S
       "sample is a sliver at its edge, {} do not. Relative RMSE over all of them, the judge's "
       "noise "
       "taken out: **{:.2f} %**; bias {:+.3f} %.\n\n",
-      solved.seconds, kMostSteps,
+      solved.processor_seconds, kMostSteps,
       markdown_table({"paths each", "texels judged", "passed", "their largest difference"}, rows),
       off, covered, a.texels - covered, ptrdiff_t(left.size()) - off, 100 * a.relative_rmse,
       100 * a.bias_over_mean);

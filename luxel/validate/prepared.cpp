@@ -1,5 +1,7 @@
 #include "luxel/validate/prepared.h"
 
+#include <ctime>
+
 #include "luxel/base/check.h"
 #include "luxel/pipeline/texels/two_sides.h"
 
@@ -32,9 +34,11 @@ Result<Timed> solve(const Prepared& p, std::string_view solver, pipeline::BakeSe
   settings.resolution = p.map.resolution;
   settings.supersample = 1;  // judged at points, where the judge looks too
   const auto start = Clock::now();
+  const std::clock_t processors = std::clock();
   Timed out;
   LUXEL_TRY(out.light, found->solve(p.input(), settings, {}, {}, progress));
   out.seconds = seconds_since(start);
+  out.processor_seconds = double(std::clock() - processors) / CLOCKS_PER_SEC;
   return out;
 }
 

@@ -29,6 +29,7 @@ Result<std::unique_ptr<Prepared>> prepare(scene::Scene scene, int resolution, Pr
 struct Timed {
   pipeline::TexelLight light;
   double seconds = 0;
+  double processor_seconds = 0;  ///< of all threads, however busy the machine is
 };
 /// Runs a solver of the pipeline's table by name; settings' scene, output and resolution are not
 /// looked at. Errors: those of the solver, cancelled.

@@ -25,7 +25,7 @@ namespace {
 constexpr int kPictureHeight = 240;
 /// Two independent pictures get so many paths per pixel at a time, until FLIP between both, which
 /// is noise of the paths, is no more than kNoise, or they have kMostPaths each.
-constexpr int kPathsAtOnce = 192, kMostPaths = 4 * kPathsAtOnce;
+constexpr int kPathsAtOnce = 192, kMostPaths = 2 * kPathsAtOnce;
 constexpr double kNoise = 0.05;
 /// Pixels between the two pictures.
 constexpr int kGap = 4;

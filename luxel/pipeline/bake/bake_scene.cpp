@@ -47,8 +47,7 @@ Status solve(const BakeSettings& settings, const light::TexelScene& input,
         "by --solver {}: they are too dark; gather and reference have it",
         settings.solver));
   LUXEL_TRY(bake.light, solver.solve(input, settings, stores, observer, progress));
-  if (settings.denoise)
-    LUXEL_TRY_STATUS(denoise_light(input, settings, bake.light, progress));
+  if (settings.denoise) LUXEL_TRY_STATUS(denoise_light(input, settings, bake.light, progress));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};
 }

@@ -9,15 +9,12 @@
 #include <fstream>
 #include <span>
 
+#include "bench/baked_picture.h"
 #include "bench/bench.h"
+#include "bench/timing.h"
 #include "luxel/base/parallel.h"
-#include "luxel/display/draw.h"
-#include "luxel/display/tone_map.h"
-#include "luxel/image/flip.h"
-#include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/settings/quality.h"
 #include "luxel/reference/path_tracer.h"
-#include "luxel/transport/irradiance_field.h"
 
 namespace luxel::bench {
 namespace {
@@ -68,33 +65,6 @@ std::string stem_of(const GalleryScene& scene) {
   return std::filesystem::path(scene.file).stem().string();
 }
 
-/// What the bake's own camera sees, drawn from the lightmap's texels as preview.png is.
-Result<image::Image> draw_bake(const pipeline::Bake& bake, const trace::RayTracer& tracer,
-                               const display::DrawParams& size, Progress& progress) {
-  const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
-  return display::draw(
-      bake.scene, tracer, bake.view.camera,
-      [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }, size,
-      progress);
-}
-
-/// Colours of the screen as light, as FLIP takes them.
-image::Image on_screen(const image::Image& radiance, float exposure) {
-  image::Image out(radiance.width, radiance.height, 3);
-  for (int y = 0; y < radiance.height; ++y)
-    for (int x = 0; x < radiance.width; ++x)
-      out.set_rgb(x, y, display::compress(radiance.rgb(x, y) * exposure));
-  return out;
-}
-
-double flip_between(const image::Image& a, const image::Image& b) {
-  const image::Image map = image::flip(a, b);
-  double sum = 0;
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x) sum += double(map.at(x, y)[0]);
-  return sum / (double(map.width) * map.height);
-}
-
 image::Image8 side_by_side(const image::Image& left, const image::Image& right) {
   image::Image both(left.width + kGap + right.width, left.height, 3);
   for (int y = 0; y < left.height; ++y) {
@@ -113,8 +83,6 @@ struct Pair {
   int pages = 0, width = 0, height = 0;       ///< of the lightmap
   int paths_per_pixel = 0;
 };
-
-double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 Result<pipeline::Bake> bake_by_default(const std::filesystem::path& file, Progress& progress) {
   pipeline::BakeSettings settings;
@@ -154,31 +122,31 @@ Result<PathPictures> trace_pictures(const pipeline::Bake& bake, const trace::Ray
       out.picture[k] = mean_of(out.picture[k], float(round), more.radiance);
     }
     out.paths += kPathsAtOnce;
-    out.noise = flip_between(on_screen(out.picture[0], bake.view.exposure),
-                             on_screen(out.picture[1], bake.view.exposure));
+    out.noise = mean_flip(on_screen(out.picture[0], bake.view.exposure),
+                          on_screen(out.picture[1], bake.view.exposure));
   }
   return out;
 }
 
 Result<Pair> make_pair(const std::filesystem::path& file, Progress& progress) {
   Pair out;
-  // Processor seconds: those of a clock on the wall say how busy the machine is.
-  const double start = processor_seconds();
+  const std::clock_t start = std::clock();
   LUXEL_TRY(const pipeline::Bake bake, bake_by_default(file, progress));
-  out.bake_seconds = processor_seconds() - start;
+  out.bake_seconds = processor_seconds_since(start);
   out.pages = int(bake.lightmaps.size());
   out.width = bake.lightmaps[0].width, out.height = bake.lightmaps[0].height;
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
   display::DrawParams size;
   size.height = kPictureHeight, size.width = kPictureHeight * bake.view.width / bake.view.height;
-  LUXEL_TRY(const image::Image drawn, draw_bake(bake, tracer, size, progress));
-  const double begin = processor_seconds();
+  LUXEL_TRY(const image::Image drawn,
+            draw_baked(bake, tracer, bake.light.irradiance, size, progress));
+  const std::clock_t begin = std::clock();
   LUXEL_TRY(const PathPictures traced, trace_pictures(bake, tracer, size, progress));
-  out.path_seconds = processor_seconds() - begin;
+  out.path_seconds = processor_seconds_since(begin);
   const float exposure = bake.view.exposure;
   out.bake = on_screen(drawn, exposure);
   out.paths = on_screen(mean_of(traced.picture[0], 1, traced.picture[1]), exposure);
-  out.flip = flip_between(out.bake, out.paths);
+  out.flip = mean_flip(out.bake, out.paths);
   out.flip_of_paths = traced.noise, out.paths_per_pixel = 2 * traced.paths;
   return out;
 }

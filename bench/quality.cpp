@@ -5,17 +5,14 @@
 #include <memory>
 #include <optional>
 
+#include "bench/baked_picture.h"
 #include "bench/bench.h"
 #include "bench/timing.h"
 #include "luxel/base/parallel.h"
-#include "luxel/display/draw.h"
 #include "luxel/display/tone_map.h"
-#include "luxel/image/flip.h"
-#include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/bake/denoise_light.h"
 #include "luxel/pipeline/settings/quality.h"
 #include "luxel/scene/procedural.h"
-#include "luxel/transport/irradiance_field.h"
 
 namespace luxel::bench {
 namespace {
@@ -81,33 +78,8 @@ pipeline::BakeSettings settings_of(const QualityNumbers& numbers, int threads) {
   return s;
 }
 
-/// What the bake's own camera sees, drawn from the texels as they were solved.
-Result<image::Image> radiance_of(const pipeline::Bake& bake, const trace::RayTracer& tracer,
-                                 std::span<const Rgb> light, Progress& progress) {
-  const transport::TexelField field{&bake.atlas, &bake.map, light};
-  display::DrawParams params;
-  params.width = kQualityWidth, params.height = kQualityHeight, params.samples_per_axis = 2;
-  return display::draw(
-      bake.scene, tracer, bake.view.camera,
-      [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }, params,
-      progress);
-}
-
-/// A picture as it is shown.
-image::Image shown(const image::Image& radiance, float exposure) {
-  image::Image out(radiance.width, radiance.height, 3);
-  for (int y = 0; y < radiance.height; ++y)
-    for (int x = 0; x < radiance.width; ++x)
-      out.set_rgb(x, y, display::compress(radiance.rgb(x, y) * exposure));
-  return out;
-}
-
-double mean_flip(const image::Image& picture, const image::Image& reference) {
-  const image::Image map = image::flip(picture, reference);
-  double sum = 0;
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x) sum += double(map.at(x, y)[0]);
-  return sum / (double(map.width) * map.height);
+display::DrawParams picture_size() {
+  return {.width = kQualityWidth, .height = kQualityHeight, .samples_per_axis = 2};
 }
 
 /// Standard error of a part of the light over the mean light.
@@ -152,9 +124,9 @@ Result<std::unique_ptr<QualityCase>> quality_case(pipeline::Bake laid_out, int t
   LUXEL_TRY(const pipeline::TexelLight truth,
             pipeline::find_solver("gather")->solve(c->input(), settings, {}, {}, progress));
   LUXEL_TRY(const image::Image radiance,
-            radiance_of(c->bake, *c->tracer, truth.irradiance, progress));
+            draw_baked(c->bake, *c->tracer, truth.irradiance, picture_size(), progress));
   c->exposure = display::readable_exposure(radiance);
-  c->reference = shown(radiance, c->exposure);
+  c->reference = on_screen(radiance, c->exposure);
   return c;
 }
 
@@ -177,9 +149,9 @@ Result<std::array<QualityFigures, 2>> measure_run(const QualityCase& c, const Qu
     }
     if (!is_shown(run, denoised)) continue;
     LUXEL_TRY(const image::Image radiance,
-              radiance_of(c.bake, *c.tracer, light.irradiance, progress));
-    out[size_t(denoised)] = {seconds, mean_flip(shown(radiance, c.exposure), c.reference), indirect,
-                             direct};
+              draw_baked(c.bake, *c.tracer, light.irradiance, picture_size(), progress));
+    out[size_t(denoised)] = {seconds, mean_flip(on_screen(radiance, c.exposure), c.reference),
+                             indirect, direct};
   }
   return out;
 }

@@ -77,8 +77,8 @@ Result<scene::Scene> read_probe_scene(const ProbeSettings& settings, Probed& out
 Result<Probed> probe_by_faces(const ProbeSettings& settings, Progress& progress);
 /// ProbeMethod::paths, for settings that probe() has checked. Errors: as there.
 Result<Probed> probe_by_paths(const ProbeSettings& settings, Progress& progress);
-/// The same in a scene that is read already; settings.scene is only named in errors. `out` comes
-/// with what reading has said.
+/// ProbeMethod::paths in a scene that is read already; settings.scene is only named in errors.
+/// `out` comes with what reading has said.
 Result<Probed> probe_by_paths(const ProbeSettings& settings, const scene::Scene& scene, Probed out,
                               Progress& progress);
 /// ProbeMethod::bake, for settings that probe() has checked. Errors: as there.

@@ -39,12 +39,14 @@ bool is_hidden_at(const hemicube::Solution& s, const scene::SurfacePoint& p) {
   return s.enclosed[v[0]] && s.enclosed[v[1]] && s.enclosed[v[2]];
 }
 
-/// A covered texel gets what the field has around through what is open of it.
-TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution& solution) {
+/// A covered texel gets what the field has around through what is open of it. `cover_size_m`:
+/// SolvedField::cover_size_m.
+TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution& solution,
+                          float cover_size_m) {
   TexelLight out;
   const atlas::TexelMap& map = in.map;
-  const float size_m = transport::size_for_covers(in.scene, in.tracer, solution.element_size_m);
-  const std::vector<float> open = transport::open_shares(in.scene, in.tracer, in.elements, size_m);
+  const std::vector<float> open =
+      transport::open_shares(in.scene, in.tracer, in.elements, cover_size_m);
   out.irradiance.resize(map.texels.size()), out.hidden.resize(map.texels.size());
   parallel_for(map.texels.size(), 4096, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -71,10 +73,12 @@ Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSetting
   params.scratch_folder = nearest_folder(settings.output);
   LUXEL_TRY(const hemicube::Solution solution,
             hemicube::solve(in.scene, in.lights, in.tracer, params, progress));
-  TexelLight out = texel_light_of(in, solution);
+  const float cover_size_m =
+      transport::size_for_covers(in.scene, in.tracer, solution.element_size_m);
+  TexelLight out = texel_light_of(in, solution, cover_size_m);
   const SolvedField field{
       [&](const scene::SurfacePoint& p) { return hemicube::irradiance_at(solution.field, p); },
-      transport::size_for_covers(in.scene, in.tracer, solution.element_size_m)};
+      cover_size_m};
   LUXEL_TRY(const double error,
             field_error(in, out, field, {params.direct_samples, settings.seed}, progress));
   out.relative_error = std::hypot(error, kPixelError / params.resolution);

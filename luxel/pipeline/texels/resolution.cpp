@@ -29,6 +29,11 @@ int page_side_for(const atlas::SceneDetail& detail, double texels_per_metre) {
 /// many are worth a larger lightmap where the user leaves its size open.
 constexpr double kFewBlended = 1e-3, kManyBlended = 2e-3;
 
+double blended_part(const atlas::Atlas& atlas, const atlas::TexelMap& map) {
+  return double(atlas::blended_texels(atlas, map).size()) /
+         double(std::max<size_t>(1, map.texels.size()));
+}
+
 /// The part of a kept layout's texels that other charts blend in; 1 where TEXCOORD_1 cannot be kept
 /// at this resolution.
 Result<double> blended_part(const scene::Scene& scene, int resolution, Progress& progress) {
@@ -37,9 +42,7 @@ Result<double> blended_part(const scene::Scene& scene, int resolution, Progress&
   const Result<atlas::Atlas> atlas = atlas::make_atlas(scene, params, progress);
   LUXEL_TRY_STATUS(stopped(progress));
   if (!atlas) return 1.0;
-  const atlas::TexelMap map = atlas::rasterise(scene, *atlas);
-  return double(atlas::blended_texels(*atlas, map).size()) /
-         double(std::max<size_t>(1, map.texels.size()));
+  return blended_part(*atlas, atlas::rasterise(scene, *atlas));
 }
 
 /// A layout is made for some resolution, at which its charts end between texels; at others they may
@@ -125,8 +128,7 @@ Result<std::string> about_blended(const SettledResolution& settled, const scene:
                                   const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                   Progress& progress) {
   if (!atlas.kept) return std::string();
-  const double part = double(atlas::blended_texels(atlas, map).size()) /
-                      double(std::max<size_t>(1, map.texels.size()));
+  const double part = blended_part(atlas, map);
   if (part <= kFewBlended) return std::string();
   LUXEL_TRY(const int better, resolution_for_uv1(scene, atlas.resolution, atlas::kMaxResolution,
                                                  kFewBlended, progress));

@@ -20,7 +20,7 @@ constexpr float kUnsureRays = 4;
 /// Points of a leaf of the unit's area at which lights are looked for, at least, so that no patch
 /// of sun of an eighth of its length is missed. Smaller leaves have fewer, by their area.
 constexpr double kPoints = 64;
-/// Of leaves that were not looked at yet.
+/// Leaves that were not looked at yet have this.
 constexpr float kNotLit = -1;
 
 /// Where lights are looked for on a leaf: at Gauss's points, which are corners of a smaller copy of

@@ -172,8 +172,9 @@ Halving halving_of(const Source& s, const Block& block) {
   return {rows, columns};
 }
 
-/// Of a cluster's area, the smaller half has at least this. Where trees split off less, the larger
-/// half is nearly the cluster, and its functions see no more of a block, however uneven that is.
+/// The smaller half has at least this share of a cluster's area. Where trees split off less, the
+/// larger half is nearly the cluster, and its functions see no more of a block, however uneven that
+/// is.
 constexpr double kLeastHalf = 1.0 / 16;
 
 bool has_two_halves(const Source& s, const Parts& parts, uint32_t cluster) {

@@ -76,7 +76,7 @@ Result<Page> validate(const std::filesystem::path& shared, Progress& progress) {
   LUXEL_TRY_STATUS(add("exact_solutions", validate_exact_solutions(shared, progress)));
   LUXEL_TRY_STATUS(add("agreement", validate_agreement(progress)));
   LUXEL_TRY_STATUS(add("cornell_box", validate_cornell_box(progress)));
-  LUXEL_TRY_STATUS(add("stated_errors", validate_stated_errors(progress)));
+  LUXEL_TRY_STATUS(add("stated_errors", validate_stated_errors({}, progress)));
   page.markdown = fmt::format(
       "# Validation\n\n"
       "Is luxel right? Everything on this page was computed and written by one command, `luxel "

@@ -2,6 +2,7 @@
 // validation`.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -32,8 +33,15 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
 Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Progress& progress);
 Result<Section> validate_agreement(Progress& progress);
 Result<Section> validate_cornell_box(Progress& progress);
+/// Which stated errors are held against true ones, and on which scenes.
+struct StatedParams {
+  uint64_t first_seed = 1;  ///< of a hundred scenes
+  std::string only;         ///< one of stated_error_names(); empty: all
+};
+/// The solvers and commands whose errors validate_stated_errors() holds against the truth.
+std::vector<std::string> stated_error_names();
 /// Stated errors against true ones; needs no files.
-Result<Section> validate_stated_errors(Progress& progress);
+Result<Section> validate_stated_errors(const StatedParams& params, Progress& progress);
 
 struct Page {
   std::string markdown;

@@ -1,6 +1,7 @@
 // Stated errors against true ones, on random scenes.
 #include <fmt/format.h>
 
+#include <array>
 #include <map>
 
 #include "bench/validation.h"
@@ -27,18 +28,29 @@ using validate::Claim;
 struct Account {
   Claim claim = Claim::bound;
   std::vector<double> stated, truth;
+  std::vector<uint64_t> seed;  ///< of its scene
 };
 using Accounts = std::map<std::string, Account>;
 
 constexpr int kScenes = 100, kResolution = 32, kPathsEach = 512, kShadowRays = 16;
 constexpr int kSamples = 64, kReferencePaths = 256;
 constexpr double kMaxError = 0.05;
+constexpr std::array<std::string_view, 5> kStatedSolvers{"gather", "reference", "hemicube",
+                                                         "matrix", "hierarchical"};
+constexpr const char *kProbe = "probe", *kRelight = "relight", *kFactors = "factors";
 
-void add_entry(Accounts& accounts, const std::string& name, Claim claim, double stated,
-               double truth) {
+/// An entry of the scene of this seed.
+struct Entry {
+  Claim claim = Claim::bound;
+  uint64_t seed = 0;
+  double stated = 0, truth = 0;
+};
+
+void add_entry(Accounts& accounts, const std::string& name, const Entry& entry) {
   Account& account = accounts[name];
-  account.claim = claim;
-  account.stated.push_back(stated), account.truth.push_back(truth);
+  account.claim = entry.claim;
+  account.stated.push_back(entry.stated), account.truth.push_back(entry.truth);
+  account.seed.push_back(entry.seed);
 }
 
 /// A scene that is ready, and the judge's light of it.
@@ -94,13 +106,14 @@ Status add_solver(const JudgedScene& s, std::string_view solver, double max_erro
   const validate::StatedError e = validate::stated_error(solved.light, s.judged);
   const std::string name =
       std::string(solver) + (max_error > 0 ? fmt::format(" --max-error {}", max_error) : "");
-  add_entry(accounts, name + ", RMS over mean", claim_of(solver), e.stated, e.truth);
+  add_entry(accounts, name + ", RMS over mean", {claim_of(solver), s.seed, e.stated, e.truth});
   if (e.stated_p95 > 0)
-    add_entry(accounts, name + ", 95 % of texels err by less", Claim::bound, e.stated_p95,
-              e.true_p95);
+    add_entry(accounts, name + ", 95 % of texels err by less",
+              {Claim::bound, s.seed, e.stated_p95, e.true_p95});
   // What was asked for is a statement, too, where nobody warns that it was not reached.
   if (max_error > 0 && e.stated_p95 <= max_error)
-    add_entry(accounts, name + ", where it is reached", Claim::bound, max_error, e.true_p95);
+    add_entry(accounts, name + ", where it is reached",
+              {Claim::bound, s.seed, max_error, e.true_p95});
   return {};
 }
 
@@ -124,8 +137,9 @@ Status add_probe(const JudgedScene& s, Accounts& accounts, Progress& progress) {
   for (const Rgb& e : paths.irradiance) sum2 += std::pow(double(luminance(e)) - sum, 2);
   const double off = double(luminance(probed.irradiance)) - sum;
   const double noise2 = sum2 / (kStreams * (kStreams - 1));
-  add_entry(accounts, "probe, twice the standard error", Claim::bound,
-            2 * double(probed.luminance_error), std::sqrt(std::max(0.0, off * off - 4 * noise2)));
+  add_entry(accounts, "probe, twice the standard error",
+            {Claim::bound, s.seed, 2 * double(probed.luminance_error),
+             std::sqrt(std::max(0.0, off * off - 4 * noise2))});
   return {};
 }
 
@@ -156,54 +170,63 @@ Status add_codec(const JudgedScene& s, Accounts& accounts, Progress& progress) {
   add_entry(accounts,
             glows ? "relight, what the codec loses of glowing squares"
                   : "relight, what the codec loses of point lights and skies",
-            Claim::bound, stated, all > 0 ? std::sqrt(off / all) : 0);
+            {Claim::bound, s.seed, stated, all > 0 ? std::sqrt(off / all) : 0});
   return {};
 }
 
+/// Whether these rows are asked for: all, or those of one solver or command.
+bool is_asked_for(const StatedParams& params, std::string_view what) {
+  return params.only.empty() || params.only == what;
+}
+
 /// Every solver, the relighter and the probe on every scene.
-Status add_scenes(Accounts& accounts, Progress& progress) {
-  for (int seed = 1; seed <= kScenes; ++seed) {
-    validate::RandomScene random = validate::random_scene(uint64_t(seed));
+Status add_scenes(const StatedParams& params, Accounts& accounts, Progress& progress) {
+  for (uint64_t seed = params.first_seed; seed < params.first_seed + kScenes; ++seed) {
+    validate::RandomScene random = validate::random_scene(seed);
     LUXEL_TRY(const auto p, validate::prepare(std::move(random.scene), kResolution, progress));
     LUXEL_TRY(const validate::Judged judged, validate::judge(*p, kPathsEach, 1, progress));
-    const JudgedScene s{*p, judged, uint64_t(seed), random.lamp};
-    for (const std::string_view solver :
-         {"gather", "reference", "hemicube", "matrix", "hierarchical"})
-      LUXEL_TRY_STATUS(add_solver(s, solver, 0, accounts, progress));
-    LUXEL_TRY_STATUS(add_solver(s, "gather", kMaxError, accounts, progress));
-    LUXEL_TRY_STATUS(add_probe(s, accounts, progress));
-    LUXEL_TRY_STATUS(add_codec(s, accounts, progress));
+    const JudgedScene s{*p, judged, seed, random.lamp};
+    for (const std::string_view solver : kStatedSolvers)
+      if (is_asked_for(params, solver))
+        LUXEL_TRY_STATUS(add_solver(s, solver, 0, accounts, progress));
+    if (is_asked_for(params, "gather"))
+      LUXEL_TRY_STATUS(add_solver(s, "gather", kMaxError, accounts, progress));
+    if (is_asked_for(params, kProbe)) LUXEL_TRY_STATUS(add_probe(s, accounts, progress));
+    if (is_asked_for(params, kRelight)) LUXEL_TRY_STATUS(add_codec(s, accounts, progress));
   }
   return {};
 }
 
 /// Every method of `luxel factors` on polygons with blockers close to them.
-Status add_factors(Accounts& accounts, Progress& progress) {
+Status add_factors(const StatedParams& params, Accounts& accounts, Progress& progress) {
+  if (!is_asked_for(params, kFactors)) return {};
   uint64_t index = 0;
   for (int i = 0; i < kScenes; ++i) {
     LUXEL_TRY_STATUS(stopped(progress));
-    const viewfactor::Contact c = viewfactor::random_contact(1234, index);
+    const viewfactor::Contact c = viewfactor::random_contact(1233 + params.first_seed, index);
     const double exact = c.exact / viewfactor::area_m2(c.a);
     const viewfactor::FormFactor f = viewfactor::form_factor(c.a, c.b, c.blockers, 1e-4);
-    add_entry(accounts, "factors, analytic", Claim::bound, f.error, std::abs(f.value - exact));
+    add_entry(accounts, "factors, analytic",
+              {Claim::bound, uint64_t(i), f.error, std::abs(f.value - exact)});
     for (const bool hemicube : {false, true}) {
-      const viewfactor::SampledParams params{.samples = hemicube ? 64u : 1u << 14,
-                                             .hemicube = hemicube ? 64 : 0};
+      const viewfactor::SampledParams sampling{.samples = hemicube ? 64u : 1u << 14,
+                                               .hemicube = hemicube ? 64 : 0};
       LUXEL_TRY(const viewfactor::SampledFactor sampled,
-                viewfactor::sampled_form_factor(c.a, c.b, c.blockers, params));
+                viewfactor::sampled_form_factor(c.a, c.b, c.blockers, sampling));
       add_entry(accounts,
                 hemicube ? "factors, hemicube, twice the standard error"
                          : "factors, rays, twice the standard error",
-                Claim::bound, 2 * sampled.error, std::abs(sampled.value - exact));
+                {Claim::bound, uint64_t(i), 2 * sampled.error, std::abs(sampled.value - exact)});
     }
   }
   return {};
 }
 
-std::string introduction() {
+std::string introduction(uint64_t first_seed) {
   return fmt::format(
       "## Stated errors against true ones\n\n"
-      "{} random scenes, decided by seeds: closed rooms of 1 to 10 m and rooms under a sky. They "
+      "{} random scenes, of seeds from {} on: closed rooms of 1 to 10 m and rooms under a sky. "
+      "They "
       "hold plates and walls of a ten-thousandth to a hundredth of the room, slivers, and boxes. "
       "Lamps are tiny or huge. Factors: blockers that touch a polygon or nearly do; the truth is "
       "in closed form.\n\n"
@@ -225,16 +248,22 @@ std::string introduction() {
       "- relight states what its codec loses; the truth is the same matrix without a codec. What "
       "its patches cost is in the row of matrix.\n"
       "- `luxel compare` states no error.\n\n",
-      kScenes, validate::kEstimateFactor, kResolution, kResolution, kSamples, kShadowRays,
-      kReferencePaths, 500, 64, kPathsEach, 64 * 2048);
+      kScenes, first_seed, validate::kEstimateFactor, kResolution, kResolution, kSamples,
+      kShadowRays, kReferencePaths, 500, 64, kPathsEach, 64 * 2048);
 }
 
 }  // namespace
 
-Result<Section> validate_stated_errors(Progress& progress) {
+std::vector<std::string> stated_error_names() {
+  std::vector<std::string> names(kStatedSolvers.begin(), kStatedSolvers.end());
+  names.insert(names.end(), {kProbe, kRelight, kFactors});
+  return names;
+}
+
+Result<Section> validate_stated_errors(const StatedParams& params, Progress& progress) {
   Accounts accounts;
-  LUXEL_TRY_STATUS(add_scenes(accounts, progress));
-  LUXEL_TRY_STATUS(add_factors(accounts, progress));
+  LUXEL_TRY_STATUS(add_scenes(params, accounts, progress));
+  LUXEL_TRY_STATUS(add_factors(params, accounts, progress));
   Section section;
   section.json = nlohmann::json::array();
   std::vector<std::vector<std::string>> rows;
@@ -249,12 +278,15 @@ Result<Section> validate_stated_errors(Progress& progress) {
                             {"scenes", h.scenes},
                             {"holds", h.holds},
                             {"median_ratio", h.middle_ratio},
-                            {"p95_ratio", h.p95_ratio}});
+                            {"p95_ratio", h.p95_ratio},
+                            {"seeds", account.seed},
+                            {"stated", account.stated},
+                            {"true", account.truth}});
   }
-  section.markdown =
-      introduction() + markdown_table({"stated error", "claim", "scenes", "holds",
-                                       "true over stated, median", "95th percentile"},
-                                      rows);
+  section.markdown = introduction(params.first_seed) +
+                     markdown_table({"stated error", "claim", "scenes", "holds",
+                                     "true over stated, median", "95th percentile"},
+                                    rows);
   return section;
 }
 

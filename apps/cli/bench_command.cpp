@@ -20,12 +20,13 @@ namespace luxel::cli {
 namespace {
 
 constexpr const char *kValidation = "validation", *kHemicube = "hemicube", *kRelight = "relight",
-                     *kHierarchical = "hierarchical", *kGallery = "gallery";
+                     *kHierarchical = "hierarchical", *kGallery = "gallery", *kStated = "stated";
 
 struct BenchOptions {
   Common common;
   std::string name;
   std::string scene;  ///< gallery: the stem of the only one; relight: its folder's name
+  bench::StatedParams stated;
   std::string shared;
   std::string output = "docs";
 };
@@ -140,6 +141,20 @@ int run_relight(const BenchOptions& options, const std::filesystem::path& shared
       });
 }
 
+/// Stated errors alone, on other scenes or of one solver.
+int run_stated(const BenchOptions& options) {
+  const ThreadLimit limit(options.common.threads);
+  bench::Section section;
+  const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
+    LUXEL_TRY(section, bench::validate_stated_errors(options.stated, progress));
+    return {};
+  });
+  if (!done) return report(done.error(), options.common);
+  std::printf("%s\n", options.common.json ? section.json.dump(2).c_str()
+                                          : bench::wrapped(section.markdown).c_str());
+  return kDone;
+}
+
 int run_tables(const BenchOptions& options, const std::filesystem::path& shared) {
   for (const bench::Bench& table_of : bench::kBenches) {
     if (options.name != "all" && options.name != table_of.name) continue;
@@ -157,6 +172,10 @@ int run_bench(const BenchOptions& options) {
   if (!options.scene.empty() && options.name != kRelight && options.name != kGallery)
     return report_usage("--scene belongs to `luxel bench gallery` and `luxel bench relight`",
                         options.common);
+  const bool of_stated = options.stated.first_seed != 1 || !options.stated.only.empty();
+  if (of_stated && options.name != kStated)
+    return report_usage("--first-seed and --only belong to `luxel bench stated`", options.common);
+  if (options.name == kStated) return run_stated(options);
   const std::filesystem::path shared =
       options.shared.empty() ? default_shared() : std::filesystem::path(options.shared);
   for (const BenchPage& page : kPages)
@@ -186,20 +205,27 @@ void register_bench(CLI::App& app, Action& action) {
       "Print the tables of docs/bench/benchmarks.md, or write docs/bench/validation.md "
       "or docs/guide/gallery.md");
   auto options = std::make_shared<BenchOptions>();
-  std::vector<std::string> names{"all", kValidation, kGallery, kHemicube, kRelight, kHierarchical};
+  std::vector<std::string> names{"all",     kValidation, kStated,      kGallery,
+                                 kHemicube, kRelight,    kHierarchical};
   for (const bench::Bench& b : bench::kBenches) names.emplace_back(b.name);
   bench
       ->add_option(
           "NAME", options->name,
           "Which table; all of them; or a page: validation holds luxel against exact answers "
           "and a path tracer (a quarter of an hour), gallery shows bakes without options "
-          "(most of an hour)")
+          "(most of an hour), stated prints stated errors against true ones")
       ->check(CLI::IsMember(names))
       ->required();
   bench->add_option(
       "--scene", options->scene,
       "gallery: this scene alone, by its file's stem; the rest of the page stays. "
       "relight: only the comparison with the path tracer in this scene, without files");
+  bench->add_option("--first-seed", options->stated.first_seed,
+                    "stated: the first of the hundred scenes' seeds (default: 1)");
+  bench
+      ->add_option("--only", options->stated.only,
+                   "stated: the rows of one solver or command alone")
+      ->check(CLI::IsMember(bench::stated_error_names()));
   bench->add_option("--shared", options->shared,
                     "Folder with scenes/ and reference/ (default: $LUXEL_SHARED, else ../shared)");
   bench->add_option(

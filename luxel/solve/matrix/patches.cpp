@@ -105,7 +105,7 @@ constexpr double kSmall = 0.35;
 constexpr double kLarge = 1.6;
 /// The count of patches may be off by so much, a few percent that no error shows; every attempt
 /// cuts the whole scene anew.
-constexpr double kFewest = 0.93, kMost = 1.07;
+constexpr double kFewest = 0.98, kMost = 1.02;
 constexpr int kMaxRetries = 3;
 
 VoxelGrid grid_of(const scene::Scene& scene, float voxel_m) {

@@ -22,7 +22,7 @@ struct CodecRun {
   size_t patches = 0;
   uint64_t bytes = 0;
   double ms = 0;      ///< median: from what patches send to E of all bounces
-  double error = 0;   ///< of trial lamps, relative root mean square, by area
+  double error = 0;   ///< matrix::usual_error
   double make_s = 0;  ///< from the factors
   /// Products of F^c, plainly iterated, that err by no more.
   int products = 0;
@@ -72,9 +72,9 @@ struct JudgedLight {
 struct JudgedRelight {
   std::string scene;
   size_t patches = 0, points = 0;
-  int paths = 0;  ///< of the judge, per point
-  double codec_error = 0;
-  std::vector<Stage> stages;  ///< of the preparation
+  int paths = 0;                                    ///< of the judge, per point
+  double codec_error = 0, largest_codec_error = 0;  ///< usual, and seldom exceeded
+  std::vector<Stage> stages;                        ///< of the preparation
   std::vector<JudgedLight> lights;
 };
 

@@ -41,8 +41,8 @@ Result<Room> make_room(size_t patches, Progress& progress) {
   room.coarse = matrix::make_coarse_scene(
       room.prepared.factors, room.prepared.patched.tree, room.patches().area_m2,
       room.patches().elements.reflectance, matrix::kCoarseClusters);
-  LUXEL_TRY(room.trials,
-            matrix::make_trials(room.scene, tracer, room.prepared, room.coarse, {}, progress));
+  LUXEL_TRY(room.trials, matrix::make_trials(room.scene, tracer, room.prepared, room.coarse,
+                                             {.anywhere = 0}, progress));
   return room;
 }
 
@@ -56,7 +56,8 @@ Made made_of(const Room& room, std::string name, std::string setting, matrix::Co
   Made made{{.codec = std::move(name), .setting = std::move(setting)}, std::move(codec)};
   CodecRun& run = made.run;
   run.patches = room.patches().size(), run.bytes = matrix::bytes_of(made.codec);
-  run.error = matrix::error_of(made.codec, room.trials, room.patches(), -1);
+  run.error = matrix::usual_error(room.trials,
+                                  matrix::errors_of(made.codec, room.trials, room.patches(), -1));
   run.make_s = make_s;
   return made;
 }

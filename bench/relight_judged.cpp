@@ -151,7 +151,8 @@ Result<JudgedRelight> judge_relight(std::string name, scene::Scene scene,
                                       params, progress));
   progress.finish();
   out.stages = stages_from(progress, first_stage);
-  out.patches = data.size(), out.codec_error = data.codec_error;
+  out.patches = data.size(), out.codec_error = data.usual_codec_error;
+  out.largest_codec_error = data.codec_error;
   // One light after the other: relit, and by paths.
   LUXEL_TRY(matrix::Relighter relighter, matrix::Relighter::make(std::move(data), {}));
   for (const scene::PunctualLight& light : place->lights) {

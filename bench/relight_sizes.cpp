@@ -44,11 +44,13 @@ Result<SizeRun> run_size(const scene::Scene& scene, const trace::RayTracer& trac
               .stages = stages_from(progress, first_stage)};
   // Error and time of the codec with as many sweeps as it needs.
   LUXEL_TRY(const matrix::Trials trials,
-            make_trials(scene, tracer, prepared, coarse, {.count = kTrials}, progress));
+            make_trials(scene, tracer, prepared, coarse, {.in_the_open = kTrials, .anywhere = 0},
+                        progress));
   run.sweeps = enough_sweeps(prepared, coarse, trials, kErrorOfSweeps);
   const matrix::Codec codec =
       matrix::HierarchicalCodec{std::move(hierarchy), std::move(coarse), run.sweeps};
-  run.bytes = bytes_of(codec), run.error = error_of(codec, trials, patches, -1);
+  run.bytes = bytes_of(codec),
+  run.error = usual_error(trials, errors_of(codec, trials, patches, -1));
   matrix::CodecScratch scratch = make_scratch(codec, patches.size());
   std::vector<Rgb> e(patches.size());
   run.ms =

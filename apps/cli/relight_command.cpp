@@ -35,13 +35,22 @@ Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
 void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& json) {
   std::fprintf(
       stderr, "%s\n",
-      fmt::format("{} patches, {} places, {:.1f} s; matrix {:.2f} MB, loses {:.2f} % of the light "
-                  "of point lamps",
-                  json["counts"]["patches"].get<uint64_t>(),
-                  json["counts"]["places"].get<uint64_t>(), json["seconds"]["total"].get<double>(),
-                  1e-6 * json["bytes"]["matrix"].get<double>(),
-                  100 * json["codec_error"].get<double>())
+      fmt::format(
+          "{} patches, {} places, {:.1f} s; matrix {:.2f} MB, which loses "
+          "{:.2f} % of indirect light, seldom more than {:.2f} %",
+          json["counts"]["patches"].get<uint64_t>(), json["counts"]["places"].get<uint64_t>(),
+          json["seconds"]["total"].get<double>(), 1e-6 * json["bytes"]["matrix"].get<double>(),
+          100 * json["usual_codec_error"].get<double>(), 100 * json["codec_error"].get<double>())
           .c_str());
+  const nlohmann::json& error = json["indirect_error"];
+  const double own = error["scene_lights"], lamps = error["point_lights"];
+  const std::string of_own =
+      own > 0 ? fmt::format("{:.1f} % of its mean by the scene's lights, ", 100 * own) : "";
+  std::fprintf(stderr, "%s\n",
+               fmt::format("indirect light errs by at most {}{:.1f} % by point lights (root mean "
+                           "square, against paths)",
+                           of_own, 100 * lamps)
+                   .c_str());
   std::fprintf(stderr, "wrote %s (%.2f MB)\n", s.output.string().c_str(),
                1e-6 * json["bytes"]["file"].get<double>());
 }
@@ -138,11 +147,10 @@ void add_making(CLI::App& relight, RelightOptions& options) {
   all.push_back(
       relight.add_option("--codec", s.codec, "How it is kept: " + pipeline::codec_names())
           ->capture_default_str());
-  all.push_back(
-      relight
-          .add_option("--max-error", s.max_error,
-                      "What the codec may lose of the light of point lamps, root mean square")
-          ->capture_default_str());
+  all.push_back(relight
+                    .add_option("--max-error", s.max_error,
+                                "What the codec may lose of indirect light, root mean square")
+                    ->capture_default_str());
   all.push_back(relight.add_option("--bounces", options.bounces, "Reflections to count, or inf")
                     ->capture_default_str());
   all.push_back(relight.add_option("--max-memory", options.max_memory,

@@ -10,11 +10,13 @@
 #include "luxel/base/process_memory.h"
 #include "luxel/export/baked_glb.h"
 #include "luxel/import/import.h"
+#include "luxel/pipeline/command/relight_error.h"
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/pipeline/texels/two_sides.h"
 #include "luxel/post/dilate.h"
+#include "luxel/scene/validate.h"
 #include "luxel/solve/matrix/codec.h"
 #include "luxel/solve/matrix/lxr.h"
 #include "luxel/solve/matrix/relighter.h"
@@ -82,11 +84,23 @@ struct Wanted {
   std::vector<std::byte> glb;
 };
 
+/// Any light may come to a scene that has none: what a sky would find behind double-sided surfaces
+/// is lit on both sides then.
+template <class Do>
+auto as_if_lit(scene::Scene& scene, const Do& ask) {
+  const Rgb background = scene.background;
+  if (!scene::has_light(scene)) scene.background = {1, 1, 1};
+  auto out = ask();
+  scene.background = background;
+  return out;
+}
+
 /// Splits the scene's sides. Any light may come: what sees the open is to have texels of its own.
 Result<Wanted> texels_of(scene::Scene& scene, const RelightSettings& s,
                          std::vector<std::string>& warnings, Progress& progress) {
-  LUXEL_TRY(const Sides sides,
-            split_sides(scene, {s.uv, s.resolution, true, LightIs::to_come}, progress));
+  LUXEL_TRY(const Sides sides, as_if_lit(scene, [&] {
+              return split_sides(scene, {s.uv, s.resolution, true, LightIs::to_come}, progress);
+            }));
   warnings.insert(warnings.end(), sides.warnings.begin(), sides.warnings.end());
   LUXEL_TRY(const atlas::Atlas atlas,
             atlas::make_atlas(scene, {sides.uv, s.resolution, s.texels_per_metre}, progress));
@@ -155,23 +169,26 @@ Status fits(const RelightSettings& s) {
 
 nlohmann::json report(const RelightSettings& s, const matrix::RelightData& data, uint64_t bytes,
                       const std::vector<std::string>& warnings, const Progress& progress) {
-  return {{"version", kVersion},
-          {"settings",
-           {{"patches", s.matrix.patches.count},
-            {"rays", s.matrix.factors.rays_per_patch},
-            {"codec", s.codec},
-            {"max_error", s.max_error},
-            {"bounces", s.bounces},
-            {"target", s.target}}},
-          {"counts",
-           {{"patches", data.size()},
-            {"places", data.target.position.size()},
-            {"triangles", data.occluders.triangle.size()}}},
-          {"bytes", {{"file", bytes}, {"matrix", matrix::bytes_of(data.codec)}}},
-          {"codec_error", data.codec_error},
-          {"seconds", stage_seconds(progress.stages())},
-          {"peak_memory_bytes", peak_resident_bytes()},
-          {"warnings", warnings}};
+  return {
+      {"version", kVersion},
+      {"settings",
+       {{"patches", s.matrix.patches.count},
+        {"rays", s.matrix.factors.rays_per_patch},
+        {"codec", s.codec},
+        {"max_error", s.max_error},
+        {"bounces", s.bounces},
+        {"target", s.target}}},
+      {"counts",
+       {{"patches", data.size()},
+        {"places", data.target.position.size()},
+        {"triangles", data.occluders.triangle.size()}}},
+      {"bytes", {{"file", bytes}, {"matrix", matrix::bytes_of(data.codec)}}},
+      {"codec_error", data.codec_error},
+      {"usual_codec_error", data.usual_codec_error},
+      {"indirect_error", {{"scene_lights", data.baked_error}, {"point_lights", data.lamp_error}}},
+      {"seconds", stage_seconds(progress.stages())},
+      {"peak_memory_bytes", peak_resident_bytes()},
+      {"warnings", warnings}};
 }
 
 }  // namespace
@@ -205,15 +222,18 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   params.patches = s.matrix.patches, params.patches.seed = s.seed;
   params.factors = s.matrix.factors, params.factors.seed = s.seed;
   LUXEL_TRY(params.codec, codec_of(s.codec));
-  LUXEL_TRY(params.patches.open_backs, open_backs(scene, progress));
+  LUXEL_TRY(params.patches.open_backs,
+            as_if_lit(scene, [&] { return open_backs(scene, progress); }));
   params.max_error = float(s.max_error), params.bounces = s.bounces;
+  CheckedTarget checked = with_places(std::move(wanted.target), places_to_check(scene, s.seed));
   LUXEL_TRY(matrix::RelightData data,
-            matrix::make_relight_data(scene, tracer, std::move(wanted.target), params, progress));
+            matrix::make_relight_data(scene, tracer, std::move(checked.target), params, progress));
+  LUXEL_TRY_STATUS(measure_relight_error(scene, tracer, checked.own, s.seed, data, progress));
   data.scene_glb = std::move(wanted.glb);
-  if (data.codec_error > s.max_error)
+  if (data.usual_codec_error > s.max_error)
     warnings.push_back(
         fmt::format("the codec loses {:.2g} where {:.2g} was asked for: more --rays would help",
-                    data.codec_error, s.max_error));
+                    data.usual_codec_error, s.max_error));
   progress.begin(kWriteStage, 0);
   const std::vector<std::byte> bytes = matrix::encode_lxr(data);
   LUXEL_TRY_STATUS(stopped(progress));

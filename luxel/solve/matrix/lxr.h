@@ -10,7 +10,7 @@
 namespace luxel::matrix {
 
 /// Another major version cannot be read; a newer minor one has chunks that are skipped.
-inline constexpr uint16_t kLxrMajor = 1, kLxrMinor = 0;
+inline constexpr uint16_t kLxrMajor = 1, kLxrMinor = 1;
 
 /// Equal data gives equal bytes. `data` satisfies check(); writing what does not is a broken
 /// contract.

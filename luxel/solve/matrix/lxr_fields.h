@@ -95,6 +95,11 @@ void fields(Archive& a, Is<Target> auto& x) {
   a(kind, width, height, texel, position, normal, geometric_normal, transfer);
 }
 template <class Archive>
+void fields(Archive& a, Is<Glow> auto& x) {
+  auto& [first, material, irradiance] = x;
+  a(first, material, irradiance);
+}
+template <class Archive>
 void fields(Archive& a, Is<Occluders> auto& x) {
   auto& [position, triangle] = x;
   a(position, triangle);
@@ -113,8 +118,9 @@ void fields(Archive& a, Is<scene::PunctualLight> auto& x) {
 template <class Visit>
 void for_each_chunk(Is<RelightData> auto& x, const Visit& visit) {
   [[maybe_unused]] const auto& [position, normal, area_m2, reflectance, emission, sky, material,
-                                first_probe, probe, material_name, bounces, codec_error, codec,
-                                target, occluders, lights, background, scene_glb] = x;
+                                first_probe, probe, material_name, bounces, glow, codec_error,
+                                usual_codec_error, baked_error, lamp_error, codec, target,
+                                occluders, lights, background, scene_glb] = x;
   visit("PTCH", 0, [&](auto& a) {
     a(x.position, x.normal, x.area_m2, x.reflectance, x.emission, x.sky, x.material, x.first_probe,
       x.probe);
@@ -125,6 +131,7 @@ void for_each_chunk(Is<RelightData> auto& x, const Visit& visit) {
   visit("OCCL", 0, [&](auto& a) { a(x.occluders); });
   visit("LAMP", 0, [&](auto& a) { a(x.lights, x.background); });
   visit("GLTF", 0, [&](auto& a) { a(x.scene_glb); });
+  visit("GLOW", 1, [&](auto& a) { a(x.glow, x.usual_codec_error, x.baked_error, x.lamp_error); });
 }
 
 }  // namespace luxel::matrix

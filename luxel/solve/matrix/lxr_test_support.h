@@ -59,7 +59,7 @@ inline void append_chunk(Bytes& file, std::string_view tag, const Bytes& content
 inline Bytes forged(const RelightData& data) {
   Bytes file(32);
   std::memcpy(file.data(), "\x89LXR\r\n\x1a\n", 8);
-  put_at(file, 8, uint16_t(1));
+  put_at(file, 8, uint16_t(1)), put_at(file, 10, uint16_t(1));
   for_each_chunk(data, [&](std::string_view tag, int, const auto& write_fields) {
     Writer writer;
     write_fields(writer);
@@ -83,7 +83,9 @@ inline RelightData small_data(Codec codec) {
   d.first_probe = {0, 1, 1, 2, 2, 3, 3, 3, 3, 3, 4};
   for (uint32_t k = 0; k < 4; ++k) d.probe.push_back({{float(k), 1, 2}, {0, 0, -1}});
   d.material_name = {"wall", "Lampe \xc3\xa4"};
-  d.bounces = -1, d.codec_error = 0.0078125;
+  d.bounces = -1, d.codec_error = 0.0078125, d.usual_codec_error = 0.00390625;
+  d.baked_error = 0.03125, d.lamp_error = 0.0625;
+  d.glow = {{0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 3}, {1, 0, 1}, random_light(3, 5)};
   d.target.kind = Target::Kind::texels;
   d.target.width = 4, d.target.height = 300;
   d.target.texel = {{0, 0}, {3, 299}, {1, 7}};

@@ -56,7 +56,7 @@ Result<Codec> hierarchical_codec(const CodecInput& t, const RelightParams& param
     LUXEL_TRY(Hierarchical matrix, compress(t.prepared.factors, t.prepared.patched.tree,
                                             patches.centroid, patches.area_m2, tried, progress));
     Codec codec = HierarchicalCodec{std::move(matrix), t.coarse, sweeps};
-    const double error = error_of(codec, t.trials, patches, params.bounces);
+    const double error = usual_error(t.trials, errors_of(codec, t.trials, patches, params.bounces));
     if (error <= double(params.max_error) || step == kMaxSteps) return codec;
     factor = shrink(tried, double(params.max_error), error, before, factor);
     before = error;
@@ -91,7 +91,7 @@ Result<Codec> low_rank_codec(const CodecInput& t, const RelightParams& params, P
     LUXEL_TRY(LowRank matrix, make_low_rank(spectrum, rank, patches.area_m2,
                                             patches.elements.reflectance, progress));
     Codec codec = LowRankCodec{std::move(matrix)};
-    const double error = error_of(codec, t.trials, patches, params.bounces);
+    const double error = usual_error(t.trials, errors_of(codec, t.trials, patches, params.bounces));
     if (error <= double(params.max_error) || rank == spectrum.count()) return codec;
   }
 }

@@ -6,6 +6,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/light/direct_light.h"
+#include "luxel/solve/matrix/probes.h"
 
 namespace luxel::matrix {
 namespace {
@@ -16,28 +17,6 @@ constexpr int kLeastSamples = 64;
 /// Rays per probe towards a map of the surroundings: with eight probes, 1,024 per patch.
 constexpr int kSkySamples = 128;
 constexpr int kMaxSweeps = 4000;
-
-/// The probes of every patch as elements, patch after patch.
-struct Probes {
-  transport::Elements elements;
-  std::vector<size_t> first;  ///< per patch, one extra entry
-};
-
-Probes probes_of(const Patches& patches) {
-  Probes out;
-  for (size_t i = 0; i < patches.size(); ++i) {
-    out.first.push_back(out.elements.size());
-    for (size_t k = 0; k < patches.probes_of(i); ++k) {
-      const PatchPoint& p = patches.probe(i, k);
-      out.elements.position.push_back(p.position);
-      out.elements.normal.push_back(p.normal);
-      out.elements.geometric_normal.push_back(p.normal);
-      out.elements.reflectance.push_back(patches.elements.reflectance[i]);
-    }
-  }
-  out.first.push_back(out.elements.size());
-  return out;
-}
 
 double mean_square(std::span<const Rgb> values, std::span<const float> area_m2) {
   double sum = 0, area = 0;
@@ -116,9 +95,8 @@ Result<std::vector<Rgb>> sky_light(const scene::Scene& scene, const light::Light
   const light::DirectParams params{.samples = 1, .seed = seed, .sky_samples = kSkySamples};
   LUXEL_TRY(const light::DirectLight soft,
             light::direct_light(scene, probes.elements, map, tracer, params, progress));
-  for (size_t i = 0; i < n; ++i)
-    for (size_t k = probes.first[i]; k < probes.first[i + 1]; ++k)
-      sky[i] += soft.irradiance[k] / float(probes.first[i + 1] - probes.first[i]);
+  const std::vector<Rgb> mean = mean_at_patches(probes, soft.irradiance);
+  for (size_t i = 0; i < n; ++i) sky[i] += mean[i];
   return sky;
 }
 
@@ -135,17 +113,11 @@ Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
             light::direct_light(scene, probes.elements, lights, tracer,
                                 {samples, params.seed, false}, progress));
   Solution out;
-  out.direct.resize(n), out.indirect.resize(n);
+  out.direct = mean_at_patches(probes, direct.irradiance), out.indirect.resize(n);
   LUXEL_TRY(const std::vector<Rgb> sky,
             sky_light(scene, lights, tracer, prepared, probes, params.seed, progress));
   std::vector<Rgb> change(n), sent(n);
-  for (size_t i = 0; i < n; ++i) {
-    const auto count = float(probes.first[i + 1] - probes.first[i]);
-    for (size_t k = probes.first[i]; k < probes.first[i + 1]; ++k)
-      out.direct[i] += direct.irradiance[k] / count;
-    out.indirect[i] = sky[i];
-    change[i] = out.direct[i] + sky[i];
-  }
+  for (size_t i = 0; i < n; ++i) out.indirect[i] = sky[i], change[i] = out.direct[i] + sky[i];
   float largest = 0;
   for (const Rgb& rho : patches.elements.reflectance)
     largest = std::max(largest, max_component(rho));

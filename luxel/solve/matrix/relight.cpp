@@ -56,11 +56,15 @@ Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::Ra
   const CoarseScene coarse =
       make_coarse_scene(prepared.factors, prepared.patched.tree, patches.area_m2,
                         patches.elements.reflectance, kCoarseClusters);
+  LUXEL_TRY(out.glow, make_glow(scene, tracer, prepared, params.patches.seed, progress));
   LUXEL_TRY(const Trials trials,
             make_trials(scene, tracer, prepared, coarse,
-                        {.bounces = params.bounces, .seed = params.patches.seed}, progress));
+                        {.bounces = params.bounces, .seed = params.patches.seed, .glow = &out.glow},
+                        progress));
   LUXEL_TRY(out.codec, make_codec({prepared, coarse, trials}, params, progress));
-  out.codec_error = error_of(out.codec, trials, patches, params.bounces);
+  const std::vector<double> errors = errors_of(out.codec, trials, patches, params.bounces);
+  out.usual_codec_error = usual_error(trials, errors);
+  out.codec_error = largest_error(trials, errors);
   LUXEL_TRY(target.transfer, make_transfer(prepared.patched, tracer,
                                            {target.position, target.geometric_normal}, progress));
   out.target = std::move(target);

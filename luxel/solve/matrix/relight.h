@@ -28,7 +28,7 @@ struct RelightParams {
   FactorParams factors;
   CodecKind codec = CodecKind::hierarchical;
   /// What a codec may lose: relative root mean square error of the indirect light over all patches
-  /// (by area), for light that starts on a patch.
+  /// (by area), by usual_error().
   float max_error = 0.01f;
   int bounces = -1;  ///< products; < 0: all
 };

@@ -263,6 +263,17 @@ Status check_patches(const RelightData& d) {
   return below("materials of patches", d.material, d.material_name.size());
 }
 
+/// A file of version 1.0 keeps none.
+Status check_glow(const RelightData& d) {
+  const Glow& glow = d.glow;
+  if (glow.first.empty()) return length_is("glow", glow.material.size(), 0);
+  LUXEL_TRY_STATUS(parts("glow", glow.first, d.size(), glow.material.size()));
+  LUXEL_TRY_STATUS(below("materials of the glow", glow.material, d.material_name.size()));
+  LUXEL_TRY_STATUS(
+      length_is("irradiances of the glow", glow.irradiance.size(), glow.material.size()));
+  return within("irradiances of the glow", glow.irradiance, 0, FLT_MAX);
+}
+
 Status check_probes(const RelightData& d) {
   LUXEL_TRY_STATUS(parts("probes", d.first_probe, d.size(), d.probe.size()));
   for (size_t k = 0; k < d.probe.size(); ++k)
@@ -299,7 +310,11 @@ Status check_glb(std::span<const std::byte> glb) {
 Status check(const RelightData& d) {
   LUXEL_TRY_STATUS(check_patches(d));
   LUXEL_TRY_STATUS(check_probes(d));
-  LUXEL_TRY_STATUS(within("error of the codec", std::array{d.codec_error}, 0, DBL_MAX));
+  LUXEL_TRY_STATUS(check_glow(d));
+  LUXEL_TRY_STATUS(
+      within("error of the codec", std::array{d.codec_error, d.usual_codec_error}, 0, DBL_MAX));
+  LUXEL_TRY_STATUS(
+      within("errors of indirect light", std::array{d.baked_error, d.lamp_error}, 0, DBL_MAX));
   LUXEL_TRY_STATUS(std::visit([&](const auto& codec) { return check(codec, d.size()); }, d.codec));
   LUXEL_TRY_STATUS(check(d.target, d.size()));
   LUXEL_TRY_STATUS(check(d.occluders));

@@ -42,6 +42,12 @@ std::vector<Wrong> wrong_patches() {
       {"probes: from 1 to 4", [](RelightData& d) { d.first_probe[0] = 1; }},
       {"probes: there are 10, there must be 11", [](RelightData& d) { d.first_probe.pop_back(); }},
       {"error of the codec", [](RelightData& d) { d.codec_error = -0.1; }},
+      {"errors of indirect light", [](RelightData& d) { d.lamp_error = -0.1; }},
+      {"glow: there are 10, there must be 11", [](RelightData& d) { d.glow.first.pop_back(); }},
+      {"materials of the glow: index 2 at place 1", [](RelightData& d) { d.glow.material[1] = 2; }},
+      {"irradiances of the glow: there are 2",
+       [](RelightData& d) { d.glow.irradiance.pop_back(); }},
+      {"irradiances of the glow: number 0", [](RelightData& d) { d.glow.irradiance[0].y = kNan; }},
       {"probes: number 3", [](RelightData& d) { d.probe[3].normal.x = kNan; }},
   };
 }

@@ -49,6 +49,8 @@ struct Relighter::Impl {
 
   CodecScratch scratch;
   std::vector<Rgb> at_probe, sent;
+  std::vector<Rgb> straight;   ///< E per patch from the background and, where it is kept, the glow
+  std::vector<Rgb> radiosity;  ///< of its own, per material
 
   // Three results: one is written, one is read, and the third is the latest complete one, which
   // either side exchanges for its own. `middle` is its number, with kFresh while nobody has read
@@ -71,7 +73,8 @@ void Relighter::Impl::make_room() {
   for (const PatchPoint& p : data.probe)
     probe_position.push_back(p.position), probe_normal.push_back(p.normal);
   scratch = make_scratch(data.codec, data.size());
-  at_probe.resize(data.probe.size()), sent.resize(data.size());
+  at_probe.resize(data.probe.size()), sent.resize(data.size()), straight.resize(data.size());
+  radiosity.resize(mean_emission.size());
   const size_t places = data.target.position.size();
   for (Relit& r : result) {
     r.direct.resize(data.size()), r.indirect.resize(data.size());
@@ -91,18 +94,19 @@ void Relighter::Impl::direct_light(const RelightLights& lights, Relit& out) {
 }
 
 void Relighter::Impl::bounces(const RelightLights& lights, Relit& out) {
+  for (size_t m = 0; m < radiosity.size(); ++m)
+    radiosity[m] = lights.emission.empty() ? mean_emission[m] : lights.emission[m] * kPi;
+  for (size_t i = 0; i < data.size(); ++i) straight[i] = lights.background * (kPi * data.sky[i]);
+  const bool glow_is_kept = !data.glow.first.empty();
+  if (glow_is_kept) add_glow(data.glow, radiosity, straight);
   for (size_t i = 0; i < data.size(); ++i) {
     const uint32_t m = data.material[i];
-    const Rgb own = lights.emission.empty()
-                        ? data.emission[i]
-                        : emission_of(data.emission[i], mean_emission[m], lights.emission[m] * kPi);
-    const Rgb sky = lights.background * (kPi * data.sky[i]);
-    sent[i] = own + data.reflectance[i] * (out.direct[i] + sky);
+    sent[i] = data.reflectance[i] * (out.direct[i] + straight[i]);
+    if (!glow_is_kept) sent[i] += emission_of(data.emission[i], mean_emission[m], radiosity[m]);
   }
   irradiance_of(data.codec, {sent, data.reflectance, data.area_m2, data.bounces}, out.indirect,
                 scratch);
-  for (size_t i = 0; i < data.size(); ++i)
-    out.indirect[i] += lights.background * (kPi * data.sky[i]);
+  for (size_t i = 0; i < data.size(); ++i) out.indirect[i] += straight[i];
 }
 
 void Relighter::Impl::light_places(const RelightLights& lights, Relit& out) {

@@ -7,25 +7,31 @@
 #include "luxel/base/warp.h"
 #include "luxel/solve/matrix/codec.h"
 #include "luxel/solve/matrix/live_light.h"
+#include "luxel/solve/matrix/probes.h"
 
 namespace luxel::matrix {
 namespace {
 
-/// A trial's light stands where, of so many places, there is most room around: what a light close
-/// to a surface lights is little but a spot, and the noise of the few rays that went there. With so
-/// many, one is outside of closed solids, where in furnished rooms half of all patches are: 2^-16
-/// fail.
-constexpr int kPlacesPerTrial = 16;
+/// A place is on the way between two surfaces, from `nearest` of it to 1 - `nearest`: of so many
+/// places inside of a room the one with most room around.
+struct LampPlaces {
+  float nearest = 0;
+  int count = 1;
+};
+/// In the open: what a light close to a surface lights is little but a spot, and the noise of the
+/// few rays that went there.
+constexpr LampPlaces kInTheOpen{0.3f, 16};
+/// Anywhere, but no closer to a surface than a patch is wide.
+constexpr LampPlaces kAnywhere{0.1f, 1};
+/// Places that are looked at: half of them may lie outside, and 2^-24 of all lamps do.
+constexpr int kMostPlaces = 24;
 constexpr uint32_t kLooks = 64;
-/// A place is on the way between two surfaces, from 0.3 to 0.7 of it: near neither.
-constexpr float kNearest = 0.3f, kSpan = 0.4f;
 
 /// So many of the rays from a place inside of a room meet something. From outside little light
 /// comes back, and what is lost of it says nothing.
 constexpr float kInside = 0.6f;
 
-/// How far the nearest surface is, by rays in all directions; outside of rooms a thousandth of
-/// that.
+/// How far the nearest surface is, by rays in all directions; 0 outside of rooms.
 float room_around(const trace::RayTracer& tracer, Vec3 place) {
   float nearest = INFINITY;
   uint32_t met = 0;
@@ -34,36 +40,38 @@ float room_around(const trace::RayTracer& tracer, Vec3 place) {
     const trace::Hit hit = tracer.closest_hit({place, 0, towards, INFINITY});
     nearest = std::min(nearest, hit.t), met += hit.found();
   }
-  return float(met) >= kInside * kLooks ? nearest : nearest * 1e-3f;
+  return float(met) >= kInside * kLooks ? nearest : 0;
 }
 
-scene::PunctualLight trial_light(const trace::RayTracer& tracer, const Patches& patches,
-                                 float diagonal_m, uint64_t seed) {
+scene::PunctualLight lamp_at(const LampScene& s, const LampPlaces& places, uint64_t seed) {
   RandomStream random{seed};
-  scene::PunctualLight light;
-  float most = 0;
-  for (int k = 0; k < kPlacesPerTrial; ++k) {
-    const auto i = std::min(size_t(random.next() * float(patches.size())), patches.size() - 1);
-    const Vec3 normal = patches.elements.normal[i];
-    const Vec3 from = trace::offset_origin(patches.elements.position[i], normal, diagonal_m);
-    const Vec3 towards = frame_around(normal).to_world(cosine_hemisphere_sample(random.next2()));
-    const float hit_m = tracer.closest_hit({from, 0, towards, INFINITY}).t;
-    const Vec3 place =
-        from + towards * (std::min(hit_m, diagonal_m) * (kNearest + kSpan * random.next()));
-    if (const float room = room_around(tracer, place); room > most && room < INFINITY)
-      most = room, light.position = place;
+  scene::PunctualLight lamp;
+  float most = -1;
+  for (int k = 0, free = 0; k < kMostPlaces && free < places.count; ++k) {
+    const auto i =
+        std::min(size_t(random.next() * float(s.position.size())), s.position.size() - 1);
+    const Vec3 from = trace::offset_origin(s.position[i], s.normal[i], s.diagonal_m);
+    const Vec3 towards =
+        frame_around(s.normal[i]).to_world(cosine_hemisphere_sample(random.next2()));
+    const float hit_m = s.tracer.closest_hit({from, 0, towards, INFINITY}).t;
+    const float part = places.nearest + (1 - 2 * places.nearest) * random.next();
+    const Vec3 place = from + towards * (std::min(hit_m, s.diagonal_m) * part);
+    const float room = room_around(s.tracer, place);
+    free += room >= s.clearance_m;
+    if (room > most) most = room, lamp.position = place;
   }
-  return light;
+  return lamp;
 }
 
 /// Relative square of an error, by area.
-double relative_square(std::span<const Rgb> got, std::span<const Rgb> wanted,
+double relative_square(const Trials& trials, size_t trial, std::span<const Rgb> got,
                        std::span<const float> area_m2) {
   double error = 0, all = 0;
   for (size_t i = 0; i < got.size(); ++i) {
-    const Rgb d = got[i] - wanted[i];
+    const Rgb wanted = trials.irradiance[trial][i], d = got[i] - wanted;
+    const Rgb whole = wanted + trials.straight[trial][i];
     error += double(area_m2[i]) * double(dot(d, d));
-    all += double(area_m2[i]) * double(dot(wanted[i], wanted[i]));
+    all += double(area_m2[i]) * double(dot(whole, whole));
   }
   return all > 0 ? error / all : 0;
 }
@@ -100,40 +108,142 @@ class Exact {
   BounceScratch scratch_;
 };
 
-/// Root mean square over the trials of what `solve(sent)` errs by.
+/// What `solve(sent)` errs by in each trial, root mean square.
 template <class Solve>
-double rms_error(const Trials& trials, std::span<const float> area_m2, const Solve& solve) {
-  double sum = 0;
-  for (size_t t = 0; t < trials.sent.size(); ++t)
-    sum += relative_square(solve(trials.sent[t]), trials.irradiance[t], area_m2);
-  return std::sqrt(sum / double(trials.sent.size()));
+std::vector<double> rms_errors(const Trials& trials, std::span<const float> area_m2,
+                               const Solve& solve) {
+  std::vector<double> out;
+  for (size_t t = 0; t < trials.size(); ++t)
+    out.push_back(std::sqrt(relative_square(trials, t, solve(trials.sent[t]), area_m2)));
+  return out;
+}
+
+/// A lamp that was not tried loses less than the mean of eight others and this many of their
+/// standard deviations in 95 of 100 cases, were losses normal: 1.89 sqrt(1 + 1 / 8) = 2.0 by
+/// Student's distribution. They have a longer tail: lamps close to a surface.
+constexpr double kDeviations = 2.4;
+
+/// A light to try: E per patch of what shines on it unseen by others, and straight from others.
+struct Light {
+  std::vector<Rgb> direct, straight;
+};
+
+/// What trials are made of.
+struct Stage {
+  const scene::Scene& scene;
+  const trace::RayTracer& tracer;
+  const Prepared& prepared;
+  const Probes probes;
+  float diagonal_m = 0;
+
+  size_t size() const { return prepared.patched.patches.size(); }
+  Light dark() const { return {std::vector<Rgb>(size()), std::vector<Rgb>(size())}; }
+};
+
+Light lit_by(const Stage& s, std::span<const scene::PunctualLight> lamps) {
+  Light out = s.dark();
+  const transport::Elements& at = s.probes.elements;
+  std::vector<Rgb> at_probes(at.size());
+  live_light({at.position, at.normal, at.normal}, lamps, s.tracer, s.diagonal_m, at_probes);
+  out.direct = mean_at_patches(s.probes, at_probes);
+  return out;
+}
+
+void add_sky(const Stage& s, Rgb background, Light& light) {
+  for (size_t i = 0; i < s.size(); ++i) light.straight[i] += background * (kPi * s.prepared.sky[i]);
+}
+
+/// So many materials are tried: the first of those that glow, and others at random.
+constexpr size_t kMostGlowing = 8, kMostOthers = 4;
+
+std::vector<uint32_t> materials_to_try(std::span<const Rgb> mean,
+                                       std::span<const uint32_t> material_of_patch, uint64_t seed) {
+  std::vector<uint32_t> glowing, others;
+  std::vector<uint8_t> has_patches(mean.size());
+  for (const uint32_t m : material_of_patch) has_patches[m] = 1;
+  for (uint32_t m = 0; m < mean.size(); ++m)
+    if (has_patches[m]) (max_component(mean[m]) > 0 ? glowing : others).push_back(m);
+  glowing.resize(std::min(glowing.size(), kMostGlowing));
+  RandomStream random{seed};
+  for (size_t k = 0; k < std::min(others.size(), kMostOthers); ++k) {
+    const auto pick =
+        std::min(k + size_t(random.next() * float(others.size() - k)), others.size() - 1);
+    std::swap(others[k], others[pick]);
+    glowing.push_back(others[k]);
+  }
+  return glowing;
+}
+
+/// The scene's own lights, its background alone, and its materials.
+std::vector<Light> own_lights(const Stage& s, const Glow& glow, uint64_t seed) {
+  const Patches& patches = s.prepared.patched.patches;
+  const std::vector<Rgb> mean = mean_emission_of(patches.emission, patches.material,
+                                                 patches.area_m2, s.scene.materials.size());
+  std::vector<Light> out{lit_by(s, s.scene.lights)};
+  add_sky(s, s.scene.background, out[0]);
+  add_glow(glow, mean, out[0].straight);
+  out.push_back(s.dark());
+  add_sky(s, {1, 1, 1}, out[1]);
+  for (const uint32_t m : materials_to_try(mean, patches.material, seed)) {
+    std::vector<Rgb> one(mean.size());
+    one[m] = {1, 1, 1};
+    out.push_back(s.dark());
+    add_glow(glow, one, out.back().straight);
+  }
+  return out;
+}
+
+bool is_dark(std::span<const Rgb> light) {
+  return std::all_of(light.begin(), light.end(), [](Rgb c) { return max_component(c) <= 0; });
 }
 
 }  // namespace
+
+float side_of_patches(std::span<const float> area_m2) {
+  double sum = 0;
+  for (const float a : area_m2) sum += double(a);
+  return float(std::sqrt(sum / double(std::max<size_t>(area_m2.size(), 1))));
+}
+
+scene::PunctualLight lamp_at_random(const LampScene& scene, uint64_t seed) {
+  return lamp_at(scene, kAnywhere, seed);
+}
 
 Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tracer,
                            const Prepared& prepared, const CoarseScene& coarse,
                            const TrialParams& params, Progress& progress) {
   const Patches& patches = prepared.patched.patches;
+  const Stage stage{scene, tracer, prepared, probes_of(patches),
+                    scene::world_bounds(scene).diagonal()};
   const transport::Elements& at = patches.elements;
-  const Box3 bounds = scene::world_bounds(scene);
-  const float diagonal_m = length(bounds.upper - bounds.lower);
+  const LampScene places{tracer, at.position, at.normal, stage.diagonal_m,
+                         side_of_patches(patches.area_m2)};
+  std::vector<Light> lights;
+  for (int k = 0; k < params.in_the_open + params.anywhere; ++k) {
+    const scene::PunctualLight lamp = lamp_at(
+        places, k < params.in_the_open ? kInTheOpen : kAnywhere, hash64(params.seed, uint64_t(k)));
+    lights.push_back(lit_by(stage, {&lamp, 1}));
+  }
+  if (params.glow)
+    for (Light& light : own_lights(stage, *params.glow, params.seed))
+      lights.push_back(std::move(light));
+  // What all of them reflect at first, and what they get of that.
   Exact exact(prepared, coarse.count());
   Trials out;
-  progress.begin("trial lights", uint64_t(params.count));
-  for (int trial = 0; trial < params.count; ++trial) {
-    // What patches reflect of a light at first.
-    const scene::PunctualLight light =
-        trial_light(tracer, patches, diagonal_m, hash64(params.seed, uint64_t(trial)));
+  progress.begin("trial lights", lights.size());
+  for (Light& light : lights) {
     std::vector<Rgb> sent(patches.size());
-    live_light({at.position, at.normal, at.normal}, {&light, 1}, tracer, diagonal_m, sent);
-    for (size_t i = 0; i < sent.size(); ++i) sent[i] = at.reflectance[i] * sent[i];
-    // What all of them get of that.
+    for (size_t i = 0; i < sent.size(); ++i)
+      sent[i] = patches.elements.reflectance[i] * (light.direct[i] + light.straight[i]);
+    progress.advance(1);
+    LUXEL_TRY_STATUS(stopped(progress));
+    const auto k = int(&light - lights.data());
+    if (is_dark(sent)) continue;
+    if (k < params.in_the_open) ++out.in_the_open;
+    if (k >= params.in_the_open && k < params.in_the_open + params.anywhere) ++out.anywhere;
     out.irradiance.push_back(params.bounces < 0 ? exact.all(coarse, sent, kManySweeps)
                                                 : exact.counted(sent, params.bounces));
-    out.sent.push_back(std::move(sent));
-    LUXEL_TRY_STATUS(stopped(progress));
-    progress.advance(1);
+    out.sent.push_back(std::move(sent)), out.straight.push_back(std::move(light.straight));
   }
   return out;
 }
@@ -143,7 +253,8 @@ int enough_sweeps(const Prepared& prepared, const CoarseScene& coarse, const Tri
   Exact exact(prepared, coarse.count());
   for (int sweeps = 2; sweeps < kManySweeps; ++sweeps) {
     const auto solve = [&](std::span<const Rgb> sent) { return exact.all(coarse, sent, sweeps); };
-    if (rms_error(trials, prepared.patched.patches.area_m2, solve) <= error) return sweeps;
+    if (usual_error(trials, rms_errors(trials, prepared.patched.patches.area_m2, solve)) <= error)
+      return sweeps;
   }
   return kManySweeps;
 }
@@ -160,21 +271,41 @@ std::vector<double> errors_of_products(const Prepared& prepared, const Trials& t
       for (size_t i = 0; i < patches.size(); ++i)
         radiosity[i] = trials.sent[t][i] + rho[i] * irradiance[i];
       multiply(prepared.factors, radiosity, irradiance);
-      square += relative_square(irradiance, trials.irradiance[t], patches.area_m2);
+      square += relative_square(trials, t, irradiance, patches.area_m2);
     }
   }
   for (double& square : squares) square = std::sqrt(square / double(trials.sent.size()));
   return squares;
 }
 
-double error_of(const Codec& codec, const Trials& trials, const Patches& patches, int bounces) {
+std::vector<double> errors_of(const Codec& codec, const Trials& trials, const Patches& patches,
+                              int bounces) {
   CodecScratch scratch = make_scratch(codec, patches.size());
   std::vector<Rgb> irradiance(patches.size());
-  return rms_error(trials, patches.area_m2, [&](std::span<const Rgb> sent) {
+  return rms_errors(trials, patches.area_m2, [&](std::span<const Rgb> sent) {
     irradiance_of(codec, {sent, patches.elements.reflectance, patches.area_m2, bounces}, irradiance,
                   scratch);
     return std::span<const Rgb>(irradiance);
   });
+}
+
+double usual_error(const Trials& trials, std::span<const double> errors) {
+  double sum2 = 0, most = 0;
+  for (const double e : errors.first(trials.in_the_open)) sum2 += e * e;
+  for (const double e : errors.subspan(trials.in_the_open + trials.anywhere))
+    most = std::max(most, e);
+  return std::max(most, std::sqrt(sum2 / double(std::max<size_t>(trials.in_the_open, 1))));
+}
+
+double largest_error(const Trials& trials, std::span<const double> errors) {
+  double most = 0, sum = 0, sum2 = 0;
+  for (const double e : errors) most = std::max(most, e);
+  for (const double e : errors.subspan(trials.in_the_open, trials.anywhere))
+    sum += e, sum2 += e * e;
+  const auto n = double(trials.anywhere);
+  if (n < 2) return most;
+  const double variance = std::max(0.0, (sum2 - sum * sum / n) / (n - 1));
+  return std::max(most, sum / n + kDeviations * std::sqrt(variance));
 }
 
 }  // namespace luxel::matrix

@@ -8,18 +8,41 @@
 namespace luxel::matrix {
 
 struct TrialParams {
-  int count = 8;
+  /// Point lights: with room around them, and others no closer to a surface than a patch is wide.
+  int in_the_open = 8, anywhere = 8;
   int bounces = -1;  ///< products; < 0: all
   uint64_t seed = 1;
+  /// With it, the scene's own lights are tried, too, its background, and materials, one at a time.
+  const Glow* glow = nullptr;
 };
 
+/// Lights that were tried: what patches send, and what they get.
 struct Trials {
-  std::vector<std::vector<Rgb>> sent, irradiance;  ///< per trial, per patch
+  std::vector<std::vector<Rgb>> sent;        ///< per trial, per patch: what is reflected at first
+  std::vector<std::vector<Rgb>> straight;    ///< E from glowing surfaces and the background
+  std::vector<std::vector<Rgb>> irradiance;  ///< E from `sent`
+
+  /// The first of them are point lights in the open, then come some anywhere.
+  size_t in_the_open = 0, anywhere = 0;
+
+  size_t size() const { return sent.size(); }
 };
 
-/// Punctual lights in the open, each between a patch and what a ray from there meets: what patches
-/// reflect of each at first, and the irradiance that all of them get from each other of that,
-/// converged. Errors: cancelled.
+/// The side of a square as large as a mean patch [m].
+float side_of_patches(std::span<const float> area_m2);
+
+/// Where lamps may stand.
+struct LampScene {
+  const trace::RayTracer& tracer;
+  std::span<const Vec3> position, normal;  ///< of patches
+  float diagonal_m = 1;                    ///< of the scene
+  float clearance_m = 0;                   ///< to all surfaces, where such places are found
+};
+/// A point light somewhere between two surfaces, inside of a room if one is found.
+scene::PunctualLight lamp_at_random(const LampScene& scene, uint64_t seed);
+
+/// Point lights at random, and others as params.glow says: what patches reflect of each at first,
+/// and the irradiance that all of them get from each other of that, converged. Errors: cancelled.
 Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tracer,
                            const Prepared& prepared, const CoarseScene& coarse,
                            const TrialParams& params, Progress& progress);
@@ -34,8 +57,16 @@ int enough_sweeps(const Prepared& prepared, const CoarseScene& coarse, const Tri
 std::vector<double> errors_of_products(const Prepared& prepared, const Trials& trials,
                                        int products);
 
-/// Relative root mean square of the irradiance, over all trials and patches, by area; every trial
-/// counts alike.
-double error_of(const Codec& codec, const Trials& trials, const Patches& patches, int bounces);
+/// Relative root mean square error of the irradiance over all patches, by area, of each trial.
+std::vector<double> errors_of(const Codec& codec, const Trials& trials, const Patches& patches,
+                              int bounces);
+
+/// What codecs are held to, of errors_of(): root mean square over the point lights in the open, or
+/// the most of the other lights, but for point lights anywhere.
+double usual_error(const Trials& trials, std::span<const double> errors);
+
+/// What a light that was not tried seldom exceeds: the most of errors_of(), or, if that is more,
+/// the mean and some standard deviations over the point lights anywhere.
+double largest_error(const Trials& trials, std::span<const double> errors);
 
 }  // namespace luxel::matrix

@@ -1,0 +1,142 @@
+#include "luxel/pipeline/command/relight_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/base/random.h"
+#include "luxel/reference/path_tracer.h"
+#include "luxel/scene/surface_points.h"
+#include "luxel/scene/validate.h"
+#include "luxel/solve/matrix/relighter.h"
+#include "luxel/solve/matrix/trials.h"
+
+namespace luxel::pipeline {
+namespace {
+
+/// Errors lie in corners and at contacts: of so many places, some tens do. With these paths for
+/// each of two answers, a check takes about as long as the form factors of 500 patches.
+constexpr size_t kPlaces = 512;
+constexpr int kPaths = 256;
+constexpr uint64_t kLamps = 4;
+
+/// What is compared.
+struct Check {
+  scene::Scene scene;  ///< with the lights to try
+  const trace::RayTracer& tracer;
+  reference::Receivers places;
+  uint64_t seed = 1;
+};
+
+/// E of all light but what comes straight from point, spot and directional lights, once.
+Result<reference::TexelPaths> indirect_by_paths(const Check& check, uint64_t answer, int bounces,
+                                                Progress& progress) {
+  const uint64_t seed = hash64(check.seed, answer);
+  LUXEL_TRY(reference::TexelPaths all,
+            reference::irradiance_by_paths(check.scene, check.places, check.tracer,
+                                           {kPaths, bounces, seed}, progress));
+  if (check.scene.lights.empty()) return all;
+  scene::Scene only = check.scene;
+  for (scene::Material& m : only.materials) m.emission = {};
+  only.background = {}, only.environment = {};
+  // One path finds the light of what has no size.
+  const bool has_size =
+      std::any_of(only.lights.begin(), only.lights.end(),
+                  [](const scene::PunctualLight& light) { return light.angular_radius_rad > 0; });
+  LUXEL_TRY(const reference::TexelPaths direct,
+            reference::irradiance_by_paths(only, check.places, check.tracer,
+                                           {has_size ? kPaths : 1, 0, seed}, progress));
+  for (size_t i = 0; i < all.irradiance.size(); ++i)
+    all.irradiance[i] = all.irradiance[i] - direct.irradiance[i];
+  return all;
+}
+
+/// Root mean square error over the mean, two standard errors above what is found.
+double relative_error(std::span<const Rgb> got, const reference::TexelPaths& a,
+                      const reference::TexelPaths& b) {
+  double sum = 0, sum2 = 0, light = 0, n = 0;
+  for (size_t i = 0; i < got.size(); ++i) {
+    if (a.enclosed[i] || b.enclosed[i]) continue;
+    const double square =
+        double(luminance(got[i] - a.irradiance[i])) * double(luminance(got[i] - b.irradiance[i]));
+    sum += square, sum2 += square * square, n += 1;
+    light += 0.5 * double(luminance(a.irradiance[i] + b.irradiance[i]));
+  }
+  if (n == 0 || light <= 0) return 0;
+  const double mean = sum / n, variance = std::max(0.0, sum2 / n - mean * mean);
+  return std::sqrt(std::max(0.0, mean + 2 * std::sqrt(variance / n))) * n / light;
+}
+
+/// The error of the light that check.scene has.
+Result<double> error_of(const Check& check, std::span<const Rgb> got, int bounces,
+                        Progress& progress) {
+  LUXEL_TRY(const reference::TexelPaths a, indirect_by_paths(check, 0, bounces, progress));
+  LUXEL_TRY(const reference::TexelPaths b, indirect_by_paths(check, 1, bounces, progress));
+  return relative_error(got, a, b);
+}
+
+/// Places from `own` on are left out.
+void keep_own(size_t own, matrix::Target& target) {
+  target.position.resize(own), target.normal.resize(own), target.geometric_normal.resize(own);
+  matrix::Transfer& map = target.transfer;
+  map.first.resize(own + 1);
+  map.patch.resize(map.first[own]), map.weight.resize(map.first[own]);
+}
+
+}  // namespace
+
+transport::Elements places_to_check(const scene::Scene& scene, uint64_t seed) {
+  transport::Elements out;
+  for (const scene::SurfacePoint& p : scene::points_uniform_in_area(scene, kPlaces, seed)) {
+    const transport::SmoothPoint at = transport::smooth_point(scene, p);
+    out.position.push_back(at.position), out.normal.push_back(at.normal);
+    out.geometric_normal.push_back(at.geometric_normal);
+  }
+  return out;
+}
+
+CheckedTarget with_places(matrix::Target target, const transport::Elements& places) {
+  CheckedTarget out{std::move(target), 0};
+  out.own = out.target.position.size();
+  const auto append = [](std::vector<Vec3>& to, const std::vector<Vec3>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  };
+  append(out.target.position, places.position), append(out.target.normal, places.normal);
+  append(out.target.geometric_normal, places.geometric_normal);
+  return out;
+}
+
+Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& tracer,
+                             size_t own_places, uint64_t seed, matrix::RelightData& data,
+                             Progress& progress) {
+  // What the file's player will say of the checked places.
+  LUXEL_TRY(matrix::Relighter relighter, matrix::Relighter::make(data, {}));
+  const matrix::Target all = data.target;
+  keep_own(own_places, data.target);
+  const auto checked = [&](const std::vector<Vec3>& v) { return std::span(v).subspan(own_places); };
+  Check check{scene,
+              tracer,
+              {checked(all.position), checked(all.normal), checked(all.geometric_normal), {}},
+              hash64(seed, 0xc4ec)};
+  const auto relit = [&] { return checked(relighter.latest().indirect_at_points); };
+  // The scene's own lights.
+  if (scene::has_light(scene)) {
+    relighter.update({.punctual = scene.lights, .background = scene.background});
+    LUXEL_TRY(data.baked_error, error_of(check, relit(), data.bounces, progress));
+  }
+  // Point lights alone.
+  const std::vector<Rgb> dark(scene.materials.size());
+  for (scene::Material& m : check.scene.materials) m.emission = {};
+  check.scene.background = {}, check.scene.environment = {};
+  const matrix::LampScene places{tracer, data.position, data.normal,
+                                 scene::world_bounds(scene).diagonal(),
+                                 matrix::side_of_patches(data.area_m2)};
+  for (uint64_t k = 0; k < kLamps; ++k) {
+    check.scene.lights = {matrix::lamp_at_random(places, hash64(seed, k + 100))};
+    relighter.update({check.scene.lights, dark, {}});
+    LUXEL_TRY(const double error, error_of(check, relit(), data.bounces, progress));
+    data.lamp_error = std::max(data.lamp_error, error);
+  }
+  return {};
+}
+
+}  // namespace luxel::pipeline

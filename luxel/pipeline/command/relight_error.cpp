@@ -19,6 +19,11 @@ constexpr size_t kPlaces = 512;
 constexpr int kPaths = 256;
 constexpr uint64_t kLamps = 4;
 
+/// Few places and few lamps have much of the error, and a sample misses some. What is found, two
+/// standard errors above, was below the truth in 12 % of 200 lights in random scenes, and this many
+/// times that in 2 % (luxel bench stated --only relight).
+constexpr double kMissed = 1.4;
+
 /// What is compared.
 struct Check {
   scene::Scene scene;  ///< with the lights to try
@@ -50,7 +55,7 @@ Result<reference::TexelPaths> indirect_by_paths(const Check& check, uint64_t ans
   return all;
 }
 
-/// Root mean square error over the mean, two standard errors above what is found.
+/// Root mean square error over the mean: what the truth seldom exceeds.
 double relative_error(std::span<const Rgb> got, const reference::TexelPaths& a,
                       const reference::TexelPaths& b) {
   double sum = 0, sum2 = 0, light = 0, n = 0;
@@ -63,7 +68,7 @@ double relative_error(std::span<const Rgb> got, const reference::TexelPaths& a,
   }
   if (n == 0 || light <= 0) return 0;
   const double mean = sum / n, variance = std::max(0.0, sum2 / n - mean * mean);
-  return std::sqrt(std::max(0.0, mean + 2 * std::sqrt(variance / n))) * n / light;
+  return kMissed * std::sqrt(std::max(0.0, mean + 2 * std::sqrt(variance / n))) * n / light;
 }
 
 /// The error of the light that check.scene has.

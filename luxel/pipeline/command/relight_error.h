@@ -19,11 +19,10 @@ struct CheckedTarget {
 CheckedTarget with_places(matrix::Target target, const transport::Elements& places);
 
 /// Sets data.baked_error and data.lamp_error, and takes the checked places out of the target. They
-/// are root mean squares of the error of indirect light over its mean, by luminance: of the
-/// scene's own lights, and the largest of a few point lights in the open. Each is two standard
-/// errors above what was found. Light of the path tracer, twice and independent, is the truth: with
-/// a and b, (g - a)(g - b) has the mean of the square of g's error. Errors: cancelled; triangles
-/// that cannot be traced.
+/// are bounds of the root mean square of the error of indirect light over its mean, by luminance:
+/// of the scene's own lights, and of point lights, from the largest of a few. Light of the path
+/// tracer, twice and independent, is the truth: with a and b, (g - a)(g - b) has the mean of the
+/// square of g's error. Errors: cancelled; triangles that cannot be traced.
 Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& tracer,
                              size_t own_places, uint64_t seed, matrix::RelightData& data,
                              Progress& progress);

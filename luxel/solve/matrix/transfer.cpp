@@ -28,8 +28,9 @@ constexpr float kAlike = 0.5f;
 constexpr float kOffPlane = 0.35f;
 /// What a slope costs beside the squares that it is fitted to, against noise and extrapolation
 /// where patches lie on one side only. By the kernel below, places have a variance of 0.078 in
-/// units of the reach; slopes are flattened by 0.001 / (0.078 + 0.001) = 1 %. Ten times as much errs
-/// by 2 % more in living_room and the Cornell box (luxel bench relight), a third of it by as much.
+/// units of the reach; slopes are flattened by 0.001 / (0.078 + 0.001) = 1 %. Ten times as much
+/// errs by 2 % more in living_room and the Cornell box (luxel bench relight), a third of it by no
+/// less.
 constexpr double kStiffness = 0.001;
 /// A fit with a weight below this leaves what it was fitted to.
 constexpr float kMostNegative = -0.5f;

@@ -44,13 +44,13 @@ void print_summary(const pipeline::RelightSettings& s, const nlohmann::json& jso
           .c_str());
   const nlohmann::json& error = json["indirect_error"];
   const double own = error["scene_lights"], lamps = error["point_lights"];
-  const std::string of_own =
-      own > 0 ? fmt::format("{:.1f} % of its mean by the scene's lights, ", 100 * own) : "";
-  std::fprintf(stderr, "%s\n",
-               fmt::format("indirect light errs by at most {}{:.1f} % by point lights (root mean "
-                           "square, against paths)",
-                           of_own, 100 * lamps)
-                   .c_str());
+  std::string by;
+  if (own > 0) by = fmt::format("{:.1f} % of its mean by the scene's lights", 100 * own);
+  if (lamps > 0)
+    by += fmt::format("{}{:.1f} % of its mean by point lights", own > 0 ? ", " : "", 100 * lamps);
+  if (!by.empty())
+    std::fprintf(stderr, "indirect light errs by at most %s (root mean square, against paths)\n",
+                 by.c_str());
   std::fprintf(stderr, "wrote %s (%.2f MB)\n", s.output.string().c_str(),
                1e-6 * json["bytes"]["file"].get<double>());
 }

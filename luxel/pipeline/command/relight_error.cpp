@@ -136,7 +136,9 @@ Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& 
                                  scene::world_bounds(scene).diagonal(),
                                  matrix::side_of_patches(data.area_m2)};
   for (uint64_t k = 0; k < kLamps; ++k) {
-    check.scene.lights = {matrix::lamp_at_random(places, hash64(seed, k + 100))};
+    const auto lamp = matrix::lamp_at_random(places, hash64(seed, k + 100));
+    if (!lamp) continue;
+    check.scene.lights = {*lamp};
     relighter.update({check.scene.lights, dark, {}});
     LUXEL_TRY(const double error, error_of(check, relit(), data.bounces, progress));
     data.lamp_error = std::max(data.lamp_error, error);

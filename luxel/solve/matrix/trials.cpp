@@ -23,7 +23,7 @@ struct LampPlaces {
 constexpr LampPlaces kInTheOpen{0.3f, 16};
 /// Anywhere, but no closer to a surface than a patch is wide.
 constexpr LampPlaces kAnywhere{0.1f, 1};
-/// Places that are looked at: half of them may lie outside, and 2^-24 of all lamps do.
+/// Places that are looked at: where half of them are not free, 2^-24 of all lamps find none.
 constexpr int kMostPlaces = 24;
 constexpr uint32_t kLooks = 64;
 
@@ -43,10 +43,15 @@ float room_around(const trace::RayTracer& tracer, Vec3 place) {
   return float(met) >= kInside * kLooks ? nearest : 0;
 }
 
-scene::PunctualLight lamp_at(const LampScene& s, const LampPlaces& places, uint64_t seed) {
+/// A lamp, and the room around it [m]; 0 where no place inside of a room was found.
+struct PlacedLamp {
+  scene::PunctualLight light;
+  float room_m = 0;
+};
+
+PlacedLamp lamp_at(const LampScene& s, const LampPlaces& places, uint64_t seed) {
   RandomStream random{seed};
-  scene::PunctualLight lamp;
-  float most = -1;
+  PlacedLamp lamp{{}, -1};
   for (int k = 0, free = 0; k < kMostPlaces && free < places.count; ++k) {
     const auto i =
         std::min(size_t(random.next() * float(s.position.size())), s.position.size() - 1);
@@ -58,7 +63,7 @@ scene::PunctualLight lamp_at(const LampScene& s, const LampPlaces& places, uint6
     const Vec3 place = from + towards * (std::min(hit_m, s.diagonal_m) * part);
     const float room = room_around(s.tracer, place);
     free += room >= s.clearance_m;
-    if (room > most) most = room, lamp.position = place;
+    if (room > lamp.room_m) lamp.room_m = room, lamp.light.position = place;
   }
   return lamp;
 }
@@ -205,8 +210,10 @@ float side_of_patches(std::span<const float> area_m2) {
   return float(std::sqrt(sum / double(std::max<size_t>(area_m2.size(), 1))));
 }
 
-scene::PunctualLight lamp_at_random(const LampScene& scene, uint64_t seed) {
-  return lamp_at(scene, kAnywhere, seed);
+std::optional<scene::PunctualLight> lamp_at_random(const LampScene& scene, uint64_t seed) {
+  const PlacedLamp lamp = lamp_at(scene, kAnywhere, seed);
+  if (lamp.room_m <= 0) return {};
+  return lamp.light;
 }
 
 Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tracer,
@@ -220,9 +227,9 @@ Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tr
                          side_of_patches(patches.area_m2)};
   std::vector<Light> lights;
   for (int k = 0; k < params.in_the_open + params.anywhere; ++k) {
-    const scene::PunctualLight lamp = lamp_at(
-        places, k < params.in_the_open ? kInTheOpen : kAnywhere, hash64(params.seed, uint64_t(k)));
-    lights.push_back(lit_by(stage, {&lamp, 1}));
+    const PlacedLamp lamp = lamp_at(places, k < params.in_the_open ? kInTheOpen : kAnywhere,
+                                    hash64(params.seed, uint64_t(k)));
+    lights.push_back(lit_by(stage, {&lamp.light, 1}));
   }
   if (params.glow)
     for (Light& light : own_lights(stage, *params.glow, params.seed))

@@ -1,6 +1,8 @@
 // Light to try codecs with, and what the factors themselves make of it.
 #pragma once
 
+#include <optional>
+
 #include "luxel/base/progress.h"
 #include "luxel/solve/matrix/matrix.h"
 #include "luxel/solve/matrix/relight_data.h"
@@ -38,8 +40,8 @@ struct LampScene {
   float diagonal_m = 1;                    ///< of the scene
   float clearance_m = 0;                   ///< to all surfaces, where such places are found
 };
-/// A point light somewhere between two surfaces, inside of a room if one is found.
-scene::PunctualLight lamp_at_random(const LampScene& scene, uint64_t seed);
+/// A point light somewhere between two surfaces; none where no place inside of a room is found.
+std::optional<scene::PunctualLight> lamp_at_random(const LampScene& scene, uint64_t seed);
 
 /// Point lights at random, and others as params.glow says: what patches reflect of each at first,
 /// and the irradiance that all of them get from each other of that, converged. Errors: cancelled.
@@ -48,7 +50,7 @@ Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tr
                            const TrialParams& params, Progress& progress);
 
 /// The fewest sweeps of all_bounces with the factors themselves that err by `error` or less,
-/// relative as in error_of.
+/// by usual_error().
 int enough_sweeps(const Prepared& prepared, const CoarseScene& coarse, const Trials& trials,
                   double error);
 

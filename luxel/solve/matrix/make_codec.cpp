@@ -75,7 +75,7 @@ Result<Codec> bc1_codec(const CodecInput& t, const RelightParams& params, Progre
 
 /// The most eigenvectors: the small matrices of so many take as long as the large ones.
 constexpr uint32_t kMostRank = 768;
-/// The fewest that are tried: with 48 the Cornell box errs by 20 % (docs/method/relight.md).
+/// The fewest that are tried: with 48 the Cornell box errs by 19 % (docs/method/relight.md).
 constexpr size_t kFirstRank = 48;
 
 /// The fewest eigenvectors, up to a factor of two, that keep to params.max_error, as far as can be.

@@ -54,6 +54,7 @@ class PlaceLight {
     if (target_.kind != matrix::Target::Kind::texels) return;
     std::fill(map_.data.begin(), map_.data.end(), 0.0f);
     for (size_t k = 0; k < target_.texel.size(); ++k) {
+      if (is_hidden(k)) continue;
       float* pixel = map_.at(target_.texel[k][0], target_.texel[k][1]);
       pixel[0] = light[k].x, pixel[1] = light[k].y, pixel[2] = light[k].z, pixel[3] = 1;
     }
@@ -67,6 +68,13 @@ class PlaceLight {
   }
 
  private:
+  /// Inside a solid, or covered: no patch lights it, and what is seen beside it gets its
+  /// neighbours' light.
+  bool is_hidden(size_t place) const {
+    const std::vector<uint32_t>& first = target_.transfer.first;
+    return first[place] == first[place + 1];
+  }
+
   const scene::Scene& scene_;
   const matrix::Target& target_;
   std::vector<size_t> first_;  ///< per instance: its first vertex

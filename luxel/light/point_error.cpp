@@ -78,13 +78,13 @@ Result<double> point_error(const PointCheck& check, const transport::Elements& p
     }
   });
   LUXEL_TRY_STATUS(stopped(progress));
-  // Their mean, and one standard error of that.
+  // Their mean, and two standard errors of that.
   if (chosen.empty()) return 0.0;
   double sum = 0, sum2 = 0;
   for (const double s : square) sum += s, sum2 += s * s;
   const auto n = double(square.size());
   const double mean = sum / n, variance = std::max(0.0, sum2 / n - mean * mean);
-  return std::sqrt(std::max(0.0, mean + std::sqrt(variance / n)));
+  return std::sqrt(std::max(0.0, mean + 2 * std::sqrt(variance / n)));
 }
 
 }  // namespace luxel::light

@@ -6,6 +6,9 @@
 namespace luxel::validate {
 namespace {
 
+/// Standard errors within which a normal value lies in 95 of 100 cases.
+constexpr double kSurely = 1.96;
+
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
   const size_t at = std::min(values.size() - 1, size_t(share * double(values.size())));
@@ -27,32 +30,40 @@ StatedError stated_error(const pipeline::TexelLight& light, const Judged& judged
   out.texels = texels.size();
   if (texels.empty() || !(mean > 0)) return {};
   mean /= double(texels.size());
-  double squares = 0;
+  // With D = g - truth and the variance 2 m^2 of either answer, m being the standard error of their
+  // mean, (g - a)(g - b) has the mean D^2 and the variance 4 m^2 D^2 + 4 m^4.
+  double squares = 0, variance = 0;
   std::vector<double> errors;
   for (const size_t i : texels) {
     const double g = double(luminance(light.irradiance[i]));
     const double a = double(luminance(judged.first[i])), b = double(luminance(judged.second[i]));
-    squares += (g - a) * (g - b) / double(texels.size());
-    const double off = g - 0.5 * (a + b),
-                 noise = 1.96 * double(luminance(judged.standard_error[i]));
+    const double off = g - 0.5 * (a + b), product = (g - a) * (g - b);
+    const auto m = double(luminance(judged.standard_error[i]));
+    squares += product / double(texels.size());
+    variance += 4 * m * m * (std::max(0.0, product) + m * m) /
+                (double(texels.size()) * double(texels.size()));
+    const double noise = kSurely * m;
     errors.push_back(std::sqrt(std::max(0.0, off * off - noise * noise)) /
                      std::max(0.5 * (a + b), 0.1 * mean));
   }
-  out.truth = std::sqrt(std::max(0.0, squares)) / mean;
+  const auto rms = [&](double square) { return std::sqrt(std::max(0.0, square)) / mean; };
+  const double unsure = kSurely * std::sqrt(variance);
+  out.truth = rms(squares);
+  out.truth_low = rms(squares - unsure), out.truth_high = rms(squares + unsure);
   out.true_p95 = percentile(std::move(errors), 0.95);
   return out;
 }
 
-Held held(Claim claim, std::span<const double> stated, std::span<const double> truth) {
+Held held(Claim claim, std::span<const Compared> entries) {
   Held out;
   std::vector<double> ratios;
-  for (size_t i = 0; i < stated.size(); ++i) {
-    if (!(stated[i] > 0)) continue;
+  for (const Compared& c : entries) {
+    if (!(c.stated > 0)) continue;
     ++out.scenes;
-    const double ratio = truth[i] / stated[i];
-    out.holds += claim == Claim::bound ? ratio <= 1
-                                       : ratio <= kEstimateFactor && ratio * kEstimateFactor >= 1;
-    ratios.push_back(ratio);
+    out.holds += claim == Claim::bound
+                     ? c.low <= c.stated
+                     : c.low <= kEstimateFactor * c.stated && kEstimateFactor * c.high >= c.stated;
+    ratios.push_back(c.truth / c.stated);
   }
   out.middle_ratio = percentile(ratios, 0.5), out.p95_ratio = percentile(ratios, 0.95);
   return out;

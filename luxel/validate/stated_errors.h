@@ -13,6 +13,8 @@ struct StatedError {
   /// Root mean square of the luminance's difference from the judge over the mean luminance, without
   /// the judge's noise.
   double truth = 0;
+  /// 1.96 of the judge's standard errors below and above `truth`.
+  double truth_low = 0, truth_high = 0;
   double stated_p95 = 0;  ///< TexelLight::error_p95; 0: none is stated
   /// 95 % of the texels err by less, relative to themselves or a tenth of the mean. Each texel's
   /// difference from the judge is freed of 1.96 of the judge's standard errors, as squares, which
@@ -30,14 +32,22 @@ enum class Claim {
 };
 inline constexpr double kEstimateFactor = 1.5;
 
-/// How often the truth is as stated, over many solutions.
+/// An error that is stated, and what it is in truth, as far as the judge can tell: between `low`
+/// and `high`. A judge without noise knows it exactly.
+struct Compared {
+  double stated = 0;
+  double truth = 0, low = truth, high = truth;
+};
+
+/// How often the truth is as stated, over many solutions. What the judge cannot tell from a claim
+/// that holds counts as one that does.
 struct Held {
   int scenes = 0;
   int holds = 0;            ///< in so many of them the claim holds
   double middle_ratio = 0;  ///< median of truth / stated
   double p95_ratio = 0;     ///< its 95th percentile
 };
-/// Pairs with nothing stated are left out.
-Held held(Claim claim, std::span<const double> stated, std::span<const double> truth);
+/// Entries with nothing stated are left out.
+Held held(Claim claim, std::span<const Compared> entries);
 
 }  // namespace luxel::validate

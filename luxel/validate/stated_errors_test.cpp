@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "luxel/validate/random_scenes.h"
 
 namespace luxel::validate {
@@ -43,23 +45,47 @@ TEST(StatedErrors, TheJudgesNoiseIsTakenOutOfThePercentile) {
   EXPECT_NEAR(stated_error(light, judged).true_p95, 0.1552, 1e-3);
 }
 
+// Each of 400 texels has a light of 1 and is off by 0.1; the mean of the judge's answers has a
+// standard error of 0.1. A mean of squares then has one of sqrt(4 * 0.1^4 + 4 * 0.1^4) / 20.
+TEST(StatedErrors, TheJudgeTellsHowWellItKnows) {
+  constexpr size_t kTexels = 400;
+  Judged judged;
+  judged.first = judged.second = std::vector<Rgb>(kTexels, {1, 1, 1});
+  judged.standard_error.assign(kTexels, {0.1f, 0.1f, 0.1f});
+  judged.hidden.assign(kTexels, 0);
+  pipeline::TexelLight light;
+  light.irradiance.assign(kTexels, {1.1f, 1.1f, 1.1f});
+  const StatedError e = stated_error(light, judged);
+  const double unsure = 1.96 * 0.01 * std::sqrt(8.0) / 20;
+  EXPECT_NEAR(e.truth_low, std::sqrt(0.01 - unsure), 1e-5);
+  EXPECT_NEAR(e.truth_high, std::sqrt(0.01 + unsure), 1e-5);
+}
+
 TEST(StatedErrors, CountsWhatHolds) {
-  const std::vector<double> stated{1, 1, 2, 0, 1}, truth{0.5, 2, 1.5, 7, 1.2};
-  const Held bound = held(Claim::bound, stated, truth);
+  const std::vector<Compared> entries{{1, 0.5}, {1, 2}, {2, 1.5}, {0, 7}, {1, 1.2}};
+  const Held bound = held(Claim::bound, entries);
   EXPECT_EQ(bound.scenes, 4);
   EXPECT_EQ(bound.holds, 2);
   EXPECT_EQ(bound.middle_ratio, 1.2);
   // Ratios are 0.5, 2, 0.75 and 1.2; within a factor of 1.5 of one are two.
-  EXPECT_EQ(held(Claim::estimate, stated, truth).holds, 2);
+  EXPECT_EQ(held(Claim::estimate, entries).holds, 2);
+}
+
+// What lies beyond by less than the judge's noise is not refuted.
+TEST(StatedErrors, CountsWhatTheJudgeCannotTell) {
+  const std::vector<Compared> entries{
+      {1, 1.1, 0.9, 1.3}, {1, 1.1, 1.05, 1.2}, {1, 0.5, 0.3, 0.7}, {1, 0.5, 0.4, 0.6}};
+  EXPECT_EQ(held(Claim::bound, entries).holds, 3);
+  EXPECT_EQ(held(Claim::estimate, entries).holds, 3);
 }
 
 /// Stated errors, and true ones by the judge, one entry per scene.
 struct Statements {
-  std::vector<double> stated, truth, stated_p95, true_p95;
+  std::vector<Compared> rms, p95;
 
   void add(const StatedError& e) {
-    stated.push_back(e.stated), truth.push_back(e.truth);
-    stated_p95.push_back(e.stated_p95), true_p95.push_back(e.true_p95);
+    rms.push_back({e.stated, e.truth, e.truth_low, e.truth_high});
+    p95.push_back({e.stated_p95, e.true_p95});
   }
 };
 
@@ -92,13 +118,13 @@ TEST(StatedErrorsSlow, NineteenOfTwentyTexelsErrByLess) {
   const auto s = gather_statements(20);
   ASSERT_TRUE(s.has_value()) << s.error().message;
   for (const Statements* made : {&s->few, &s->asked}) {
-    const Held h = held(Claim::bound, made->stated_p95, made->true_p95);
+    const Held h = held(Claim::bound, made->p95);
     EXPECT_EQ(h.scenes, 20);
     EXPECT_GE(h.holds, 19);
     // Nor is it so large that it says nothing.
     EXPECT_GT(h.middle_ratio, 0.4);
   }
-  const Held rms = held(Claim::estimate, s->few.stated, s->few.truth);
+  const Held rms = held(Claim::estimate, s->few.rms);
   EXPECT_GT(rms.middle_ratio, 0.5);
   EXPECT_LT(rms.middle_ratio, 1.2);
 }

@@ -10,6 +10,7 @@
 #include "luxel/solve/gather/bounce/radiosity_map.h"
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/budget/error_p95.h"
+#include "luxel/solve/gather/budget/expected_rms.h"
 #include "luxel/solve/gather/budget/texel_error.h"
 #include "luxel/solve/gather/reuse/earlier_direct.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
@@ -17,17 +18,6 @@
 
 namespace luxel::gather {
 namespace {
-
-/// Root mean square standard error over the mean, of elements that no solid hides.
-double relative_error(std::span<const Rgb> irradiance, std::span<const float> variance,
-                      const TracedHits& hits) {
-  double mean = 0, sum = 0, count = 0;
-  for (size_t i = 0; i < irradiance.size(); ++i) {
-    if (is_hidden(hits, i)) continue;
-    mean += double(luminance(irradiance[i])), sum += double(variance[i]), count += 1;
-  }
-  return mean > 0 ? std::sqrt(sum * count) / mean : 0;
-}
 
 /// From an earlier bake's light they end at this part of its error: what is left does not show
 /// beside that, nor above this.
@@ -406,7 +396,8 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
 
 /// Moves what the caller gets out of what is known in the end.
 void take_result(Progressive&& light, Gather& out) {
-  out.relative_error = relative_error(light.bounced.irradiance, light.errors.variance, light.hits);
+  out.relative_error = expected_rms(
+      light.bounced.irradiance, {light.errors.noise_variance, light.errors.variance}, light.hits);
   out.irradiance = std::move(light.bounced.irradiance);
   out.direct = std::move(light.direct.irradiance);
   out.direct_variance = std::move(light.direct.variance);

@@ -1,4 +1,6 @@
 // `luxel probe SCENE --at x,y,z`: irradiance at a point, and where it comes from.
+#include <fmt/format.h>
+
 #include <cstdio>
 
 #include "apps/cli/cli.h"
@@ -11,7 +13,7 @@ struct ProbeOptions {
   Common common;
   Given reading, outside, hierarchical;
   std::string at, normal, solver = "paths";
-  CLI::Option* solver_given = nullptr;
+  CLI::Option *solver_given = nullptr, *budget_given = nullptr;
   pipeline::ProbeSettings settings;
 };
 
@@ -26,6 +28,8 @@ Result<pipeline::ProbeSettings> settings_from(const ProbeOptions& options) {
   s.method = by_faces         ? pipeline::ProbeMethod::hierarchical
              : s.from.empty() ? pipeline::ProbeMethod::paths
                               : pipeline::ProbeMethod::bake;
+  if (by_faces && options.budget_given->count() == 0)
+    s.time_budget_s = pipeline::kUsualSecondsByFaces;
   if (!s.from.empty() && options.solver_given->count() > 0)
     return fail(
         ErrorCode::bad_setting,
@@ -173,11 +177,14 @@ void register_probe(CLI::App& app, Action& action) {
                    "Relative standard error at which rays are enough (not for hierarchical)")
       ->type_name("ERROR")
       ->capture_default_str();
-  probe
-      ->add_option("--time-budget", s.time_budget_s,
-                   "About when to stop before that (not for hierarchical)")
-      ->type_name("SECONDS")
-      ->capture_default_str();
+  options->budget_given =
+      probe
+          ->add_option("--time-budget", s.time_budget_s,
+                       fmt::format("About when to stop before that; hierarchical: when to stop "
+                                   "refining, or altogether (default there: {:g})",
+                                   pipeline::kUsualSecondsByFaces))
+          ->type_name("SECONDS")
+          ->capture_default_str();
   probe->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();
   probe->add_option("-o,--output", s.output,
                     "A .png with the brightest sources: what the point sees of them is white "

@@ -15,6 +15,8 @@ namespace {
 constexpr float kHighest = 0.25f;
 /// Rays leave the gap at so many times its height: covers need not be quite even.
 constexpr float kAbove = 1.5f;
+/// Rays back down begin at this part of the height: off what the first rays met.
+constexpr float kOffTheCover = 1e-2f;
 /// Rays less steep than this stay in the gap, whatever its width: 1 / 16^2 = 0.4 % of them.
 constexpr float kSteep = 1.0f / 16;
 /// Covered places see less than this of what lies beyond.
@@ -43,15 +45,27 @@ std::vector<scene::SurfacePoint> shining_places(const scene::Scene& scene) {
 float open_share(const trace::RayTracer& tracer, Vec3 from, Vec3 normal, float size_m) {
   const trace::Hit above = tracer.closest_hit({from, 0, normal, kHighest * size_m});
   if (!above.found()) return 1;
+  // What rays meet on their way out of the gap.
   std::array<trace::Ray, kRays> rays;
-  std::array<uint8_t, kRays> blocked{};
+  std::array<trace::Hit, kRays> hits;
   const Frame frame = frame_around(normal);
   for (uint32_t k = 0; k < kRays; ++k) {
     const Vec3 d = cosine_hemisphere_sample(sobol_owen_2d(k, 5));
     rays[k] = {from, 0, frame.to_world(d), kAbove * above.t / std::max(d.z, kSteep)};
   }
-  tracer.occluded(rays, blocked);
-  const float open = float(std::count(blocked.begin(), blocked.end(), 0)) / float(kRays);
+  tracer.closest_hits(rays, hits);
+  // And whether that lies over the place's own surface.
+  std::array<trace::Ray, kRays> down;
+  std::array<uint8_t, kRays> closed{};
+  size_t met = 0;
+  for (uint32_t k = 0; k < kRays; ++k) {
+    if (!hits[k].found()) continue;
+    const Vec3 way = rays[k].direction * hits[k].t;
+    const float height = dot(way, normal);
+    down[met++] = {from + way, kOffTheCover * height, -normal, kAbove * height};
+  }
+  tracer.occluded(std::span(down).first(met), std::span(closed).first(met));
+  const float open = 1 - float(std::count(closed.begin(), closed.end(), 1)) / float(kRays);
   return open < kOpen ? open : 1;
 }
 

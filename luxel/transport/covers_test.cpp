@@ -49,6 +49,22 @@ TEST(Covers, PlacesBesideTheCoverAndAtItsBorderAreNotCovered) {
   EXPECT_EQ(share_at(scene, {1, kHeight_m, 0}, -kUp, kSize_m), 0);
 }
 
+// From a strip of half the width w, h above an endless floor, the part of the floor that does not
+// lie below the strip is 1 - w / sqrt(w^2 + h^2) of the hemisphere, seen from the strip's middle.
+TEST(Covers, AStripSeesTheFloorBesideIt) {
+  const auto middle_of_strip = [](float half_m) {
+    scene::Scene scene;
+    const uint32_t gray = scene::add_material(scene, "gray", {0.5f, 0.5f, 0.5f});
+    scene::add_rectangle(scene, {-5, 5, -5, 5}, 0, true, gray);
+    scene::add_rectangle(scene, {-half_m, half_m, -5, 5}, kHeight_m, false, gray);
+    return share_at(scene, {0, kHeight_m, 0}, -kUp, kSize_m);
+  };
+  EXPECT_EQ(middle_of_strip(0.2f * kHeight_m), 1);
+  EXPECT_EQ(middle_of_strip(kHeight_m), 1);  // 0.29 is open
+  // 0.030 is open; 64 stratified rays know that to about one of them.
+  EXPECT_NEAR(middle_of_strip(4 * kHeight_m), 0.030, 0.02);
+}
+
 TEST(Covers, AreLowerThanAQuarterOfTheSize) {
   const scene::Scene scene = floor_under_plate(true);
   EXPECT_EQ(share_at(scene, {1, 0, 0}, kUp, 3.8f * kHeight_m), 1);

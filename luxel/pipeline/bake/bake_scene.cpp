@@ -175,9 +175,7 @@ Status bake_in_time(const BakeSettings& settings, const Keepers& keepers,
                     const OnBakeEstimate& on_estimate, Bake& bake, Progress& progress) {
   if (settings.time_budget_s <= 0 || find_solver(settings.solver)->can.errors)
     return bake_loaded(settings, keepers, on_estimate, bake, progress);
-  const double left =
-      settings.time_budget_s - stage_seconds(progress.stages())["total"].get<double>();
-  const Deadline deadline(progress, left);
+  const Deadline deadline(progress, seconds_left(settings.time_budget_s, progress.stages()));
   const Status done = bake_loaded(settings, keepers, on_estimate, bake, progress);
   if (!done && done.error().code == ErrorCode::cancelled && deadline.passed())
     return out_of_time(settings, progress);

@@ -33,7 +33,9 @@ struct ProbeSettings {
   bool in_air = false;           ///< `at` itself is looked at; facing `normal`, or up
   std::filesystem::path output;  ///< hierarchical: a .png with the backprojections; empty: none
   double max_error = 0.005;      ///< relative standard error at which rays are enough
-  double time_budget_s = 10;     ///< about when no more rays are begun
+  /// About when no more rays are begun; hierarchical: when there is no result, or one without
+  /// refinement, as a warning says.
+  double time_budget_s = 10;
   uint64_t seed = 1;
   import::ImportParams reading;
   OutsideLight outside;
@@ -67,7 +69,11 @@ struct Probed {
   std::vector<std::string> warnings;
 };
 
-/// Errors: settings, no surface near the point, what the scene and the solver say.
+/// A usual time_budget_s of ProbeMethod::hierarchical, which solves the whole scene.
+inline constexpr double kUsualSecondsByFaces = 60;
+
+/// Errors: settings, no surface near the point, out of time (hierarchical), what the scene and the
+/// solver say.
 Result<Probed> probe(const ProbeSettings& settings, Progress& progress);
 
 /// The scene under its light from outside; `out` gets its unit of light and the warnings. Errors:

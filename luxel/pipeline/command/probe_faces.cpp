@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "luxel/base/clock.h"
+#include "luxel/base/deadline.h"
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
@@ -103,9 +105,10 @@ Status write_picture(const ProbeSettings& s, const hierarchical::Solution& solut
   return write_file_atomically(s.output, image::encode_png(display::contact_sheet(tiles)));
 }
 
-}  // namespace
-
-Result<Probed> probe_by_faces(const ProbeSettings& s, Progress& progress) {
+/// probe_by_faces(), which ends at the end of --time-budget; only refinement and feedback look at
+/// the clock.
+Result<Probed> probe_by_solution(const ProbeSettings& s, Progress& progress) {
+  const Clock::time_point start = Clock::now();
   // Scene and solution.
   progress.begin("import", 0);
   Probed out;
@@ -123,8 +126,14 @@ Result<Probed> probe_by_faces(const ProbeSettings& s, Progress& progress) {
   const hierarchical::Receiver at = hierarchical::receiver_at(solution, scene, tracer, nearest.face,
                                                               inwards(face, nearest.place));
   // Its E: exact, and as the mesh of light interpolates it.
+  hierarchical::RepresentParams represent;
+  represent.seconds = s.time_budget_s - seconds_since(start);
+  hierarchical::LeftOut left_out;
   LUXEL_TRY(const hierarchical::LightMesh mesh,
-            hierarchical::represent(solution, scene, tracer, s.hierarchical.mesh, {}, progress));
+            hierarchical::represent(solution, scene, tracer, s.hierarchical.mesh, represent,
+                                    progress, &left_out));
+  if (left_out.refinement || left_out.feedback)
+    out.warnings.push_back(about_left_out(left_out, s.time_budget_s));
   LUXEL_TRY(const std::vector<Rgb> exact,
             hierarchical::irradiance_at(solution, scene, tracer, {&at, 1}, {1e-6}, progress));
   const hierarchical::MeshPoint place =
@@ -146,6 +155,19 @@ Result<Probed> probe_by_faces(const ProbeSettings& s, Progress& progress) {
   }
   progress.begin(kWriteStage, 0);
   if (!s.output.empty()) LUXEL_TRY_STATUS(write_picture(s, solution, scene, at, seen));
+  return out;
+}
+
+}  // namespace
+
+Result<Probed> probe_by_faces(const ProbeSettings& s, Progress& progress) {
+  const Deadline deadline(progress, s.time_budget_s);
+  Result<Probed> out = probe_by_solution(s, progress);
+  if (!out && out.error().code == ErrorCode::cancelled && deadline.passed())
+    return fail(ErrorCode::out_of_time,
+                "--time-budget {:g} was over in the stage '{}', and --solver hierarchical has no "
+                "result before its end; give more time or a larger --eps, or leave out --solver",
+                s.time_budget_s, progress.snapshot().stage);
   return out;
 }
 

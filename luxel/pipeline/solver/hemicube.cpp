@@ -7,9 +7,10 @@
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/settings/option_rows.h"
-#include "luxel/pipeline/solver/field_error.h"
+#include "luxel/pipeline/solver/measured_error.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
+#include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/pipeline/solver/vertex_lit.h"
 #include "luxel/transport/covers.h"
 
@@ -26,10 +27,6 @@ constexpr double kMaxElements = 1 << 26;
 /// each of --direct-samples, as the help of that option says.
 constexpr int kShadowRaysPerSample = 4, kMostShadowRays = 65535;
 
-/// What form factors err by, times the pixels along an edge: 0.1 % at 512, falling as 1 / n
-/// (docs/method/hemicube.md).
-constexpr double kPixelError = 0.001 * 512;
-
 /// Whether the field has no light of its own at a texel.
 bool is_hidden_at(const hemicube::Solution& s, const scene::SurfacePoint& p) {
   const hemicube::MeshPoint place = hemicube::locate(s.field.mesh, p);
@@ -39,8 +36,8 @@ bool is_hidden_at(const hemicube::Solution& s, const scene::SurfacePoint& p) {
   return s.enclosed[v[0]] && s.enclosed[v[1]] && s.enclosed[v[2]];
 }
 
-/// A covered texel gets what the field has around through what is open of it. `cover_size_m`:
-/// SolvedField::cover_size_m.
+/// A covered texel gets what the field has around through what is open of it. `cover_size_m`: by
+/// which places are covered (transport::open_share).
 TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution& solution,
                           float cover_size_m) {
   TexelLight out;
@@ -76,12 +73,11 @@ Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSetting
   const float cover_size_m =
       transport::size_for_covers(in.scene, in.tracer, solution.element_size_m);
   TexelLight out = texel_light_of(in, solution, cover_size_m);
-  const SolvedField field{
-      [&](const scene::SurfacePoint& p) { return hemicube::irradiance_at(solution.field, p); },
-      cover_size_m};
-  LUXEL_TRY(const double error,
-            field_error(in, out, field, {params.direct_samples, settings.seed}, progress));
-  out.relative_error = std::hypot(error, kPixelError / params.resolution);
+  LUXEL_TRY(out.relative_error,
+            measured_error(in, out,
+                           {settings.bounces, settings.seed,
+                            seconds_left(settings.time_budget_s, progress.stages())},
+                           progress));
   if (settings.vertex_colors) out.vertex_lit = vertex_lit(in.scene, solution.field);
   return out;
 }

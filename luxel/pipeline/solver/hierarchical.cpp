@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/settings/option_rows.h"
-#include "luxel/pipeline/solver/field_error.h"
+#include "luxel/pipeline/solver/measured_error.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/solver.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
@@ -32,22 +31,6 @@ float cover_size_m(const hierarchical::Solution& solution) {
   return solution.light_in_gaps ? 0 : mean_side_m(solution.tree);
 }
 
-/// How far texels are off what rays from them find, which shows what interpolants and links cost
-/// there; and what links may err by, over the mean, for the light that rays find is that of links.
-Result<double> stated_error(const light::TexelScene& in, const hierarchical::Solution& solution,
-                            const hierarchical::LightMesh& mesh, const TexelLight& light,
-                            const light::DirectParams& direct, Progress& progress) {
-  const SolvedField field{[&](const scene::SurfacePoint& p) {
-                            return hierarchical::irradiance_at(solution, mesh, in.scene, p);
-                          },
-                          cover_size_m(solution)};
-  LUXEL_TRY(const double error, field_error(in, light, field, direct, progress));
-  double sum = 0, count = 0;
-  for (size_t i = 0; i < light.irradiance.size(); ++i)
-    if (!light.hidden[i]) sum += double(luminance(light.irradiance[i])), count += 1;
-  return sum > 0 ? std::hypot(error, solution.eps * count / sum) : 0;
-}
-
 Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSettings& settings,
                                       const SolveStores&, const SolveObserver&,
                                       Progress& progress) {
@@ -57,9 +40,7 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
   LUXEL_TRY(hierarchical::Solution solution,
             hierarchical::solve(in.scene, in.tracer, own.solve, progress));
   hierarchical::RepresentParams represent;
-  if (settings.time_budget_s > 0)
-    represent.seconds =
-        settings.time_budget_s - stage_seconds(progress.stages())["total"].get<double>();
+  represent.seconds = seconds_left(settings.time_budget_s, progress.stages());
   hierarchical::LeftOut left_out;
   LUXEL_TRY(const hierarchical::LightMesh mesh,
             hierarchical::represent(solution, in.scene, in.tracer, own.mesh, represent, progress,
@@ -79,19 +60,25 @@ Result<TexelLight> solve_hierarchical(const light::TexelScene& in, const BakeSet
   out.sweeps = solution.sweeps, out.elements = mesh.triangles.size();
   out.warnings = solution.warnings;
   if (left_out.refinement || left_out.feedback)
-    out.warnings.push_back(
-        fmt::format("--time-budget {:g} was short: {} left out; more time, or a larger --eps, "
-                    "gives better light",
-                    settings.time_budget_s,
-                    left_out.refinement && left_out.feedback ? "refinement and feedback were"
-                    : left_out.refinement                    ? "refinement was"
-                                                             : "some of the feedback was"));
-  LUXEL_TRY(out.relative_error, stated_error(in, solution, mesh, out,
-                                             {settings.direct_samples, settings.seed}, progress));
+    out.warnings.push_back(about_left_out(left_out, settings.time_budget_s));
+  LUXEL_TRY(out.relative_error,
+            measured_error(in, out,
+                           {settings.bounces, settings.seed,
+                            seconds_left(settings.time_budget_s, progress.stages())},
+                           progress));
   return out;
 }
 
 }  // namespace
+
+std::string about_left_out(const hierarchical::LeftOut& left_out, double budget_s) {
+  return fmt::format(
+      "--time-budget {:g} was short: {} left out; more time, or a larger --eps, gives better light",
+      budget_s,
+      left_out.refinement && left_out.feedback ? "refinement and feedback were"
+      : left_out.refinement                    ? "refinement was"
+                                               : "some of the feedback was");
+}
 
 Options<HierarchicalSettings> hierarchical_options() {
   using R = Rows<HierarchicalSettings>;

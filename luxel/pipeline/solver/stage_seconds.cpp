@@ -1,5 +1,6 @@
 #include "luxel/pipeline/solver/stage_seconds.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace luxel::pipeline {
@@ -13,6 +14,12 @@ nlohmann::json stage_seconds(std::span<const Stage> stages) {
   }
   seconds["total"] = total;
   return seconds;
+}
+
+double seconds_left(double budget_s, std::span<const Stage> stages) {
+  if (budget_s <= 0) return INFINITY;
+  for (const Stage& stage : stages) budget_s -= stage.seconds;
+  return budget_s;
 }
 
 }  // namespace luxel::pipeline

@@ -11,4 +11,8 @@ namespace luxel::pipeline {
 /// Wall-clock seconds per stage, one entry for stages of the same name, and their `total`.
 nlohmann::json stage_seconds(std::span<const Stage> stages);
 
+/// What stages have left of a --time-budget [s], 0 or less where it is over; infinite where there
+/// is none, which is 0.
+double seconds_left(double budget_s, std::span<const Stage> stages);
+
 }  // namespace luxel::pipeline

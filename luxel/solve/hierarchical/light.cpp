@@ -76,13 +76,28 @@ std::array<Rgb, 4> whole_of(const Light& light, const Element& e) {
   return out;
 }
 
+/// E at the corners of a leaf. What no link brings is negative where links brought too much when it
+/// was measured (feedback.h). When they bring less later, nothing is left: a mean below 0 is 0, as
+/// rays towards sources are spread over their power.
+std::array<Rgb, 4> light_at_corners(const Element& element, const ElementLight& l) {
+  std::array<Rgb, 4> e{};
+  for (const auto channel : {&Rgb::x, &Rgb::y, &Rgb::z}) {
+    float sum = 0;
+    for (uint32_t k = 0; k < element.corners; ++k)
+      e[k].*channel = l.unlinked[k].*channel + l.arriving[k].*channel, sum += e[k].*channel;
+    if (sum < 0)
+      for (Rgb& corner : e) corner.*channel = 0;
+  }
+  return e;
+}
+
 void pull_leaf(const Element& element, ElementLight& l) {
   l.irradiance = l.radiosity = {};
   l.rough = l.bend;
+  const std::array<Rgb, 4> e = light_at_corners(element, l);
   for (uint32_t k = 0; k < element.corners; ++k) {
-    const Rgb e = l.unlinked[k] + l.arriving[k];
-    l.shining[k] = l.emission + l.reflectance * e;
-    l.irradiance += e * (1 / float(element.corners));
+    l.shining[k] = l.emission + l.reflectance * e[k];
+    l.irradiance += e[k] * (1 / float(element.corners));
     l.radiosity += l.shining[k] * (1 / float(element.corners));
   }
   l.most = max_component(l.radiosity);

@@ -114,5 +114,21 @@ TEST(PushPull, KeepsPowerWhateverTheFunction) {
   EXPECT_GT(two.light.elements[0].rough, 0.01f);
 }
 
+// Links had brought 1 too much to a leaf, and bring only 0.4 now. No leaf sends less than nothing:
+// rays are spread over what sources send, and light would not be a number.
+TEST(PushPull, SendsNothingLessThanNothing) {
+  Two two;
+  for (ElementLight& l : two.light.elements) l.unlinked.fill({-1, 0.5f, -1});
+  for (const size_t root : {0, 1}) two.light.elements[root].received.fill({0.4f, 0.4f, 3});
+  push_pull(two.faces, two.tree, two.light);
+  for (size_t e = 0; e < two.tree.elements.size(); ++e) {
+    const ElementLight& l = two.light.elements[e];
+    EXPECT_EQ(l.radiosity.x, 0) << e;
+    EXPECT_NEAR(l.radiosity.y, 0.25 * 0.9, 1e-6);
+    EXPECT_NEAR(l.radiosity.z, 2, 1e-6);
+    if (two.tree.elements[e].is_leaf()) EXPECT_EQ(l.shining[0].x, 0);
+  }
+}
+
 }  // namespace
 }  // namespace luxel::hierarchical

@@ -313,5 +313,15 @@ TEST(Probe, EndsInTime) {
   EXPECT_THAT(r.err, HasSubstr("--time-budget 0.3 was over at a standard error of"));
 }
 
+// The office takes 14 seconds of a core.
+TEST(Probe, SolvesNoSceneForLongerThanItsTime) {
+  const CommandResult r = luxel("probe " + scene_file("office.glb") +
+                                " --at 0.3,0,0.2 --solver hierarchical --time-budget 0.2");
+  EXPECT_EQ(r.code, 3) << r.err;
+  EXPECT_THAT(r.err, HasSubstr("--time-budget 0.2 was over in the stage"));
+  EXPECT_THAT(r.err, HasSubstr("give more time or a larger --eps"));
+  EXPECT_EQ(r.out, "");
+}
+
 }  // namespace
 }  // namespace luxel::testing_support

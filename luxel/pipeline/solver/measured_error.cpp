@@ -17,9 +17,10 @@ namespace {
 /// Texels of the first round: the mean square of errors of one size is known to sqrt(2 / 600) = 6 %
 /// of itself by so many.
 constexpr size_t kFirstTexels = 600;
-/// Paths per texel and answer of the first round, and so many times as many paths in all. Light that
-/// varies by its own size between paths is known to 1 / sqrt(512) = 4 % at each of 600 texels; the
-/// product of two such errors has the mean 0, and it adds 0.04 / 600^(1/4) = 0.9 % of the light.
+/// Paths per texel and answer of the first round, and so many times as many paths in all. Light
+/// that varies by its own size between paths is known to 1 / sqrt(512) = 4 % at each of 600 texels;
+/// the product of two such errors has the mean 0, and it adds 0.04 / 600^(1/4) = 0.9 % of the
+/// light.
 constexpr int kFirstPaths = 32;
 constexpr size_t kMostTimes = 16;
 /// Rounds end when the largest error that is likely is so many times the likeliest one.
@@ -35,8 +36,8 @@ double light_at(const TexelLight& light, size_t i) {
   return double(luminance(light.irradiance[i]));
 }
 
-/// About `count` of the texels `seen`, by their light: half of the probability is the same for each,
-/// half goes with its light, since errors mostly do. They are taken at equal steps of the
+/// About `count` of the texels `seen`, by their light: half of the probability is the same for
+/// each, half goes with its light, since errors mostly do. They are taken at equal steps of the
 /// probability's sum, so they are spread over the charts; `first` says where in a step.
 std::vector<Chosen> choose_texels(const TexelLight& light, std::span<const uint32_t> seen,
                                   size_t count, double first) {
@@ -71,8 +72,7 @@ struct PathAnswers {
 Status trace_more(const light::TexelScene& in, size_t begin, int more, const CheckParams& params,
                   PathAnswers& answers, Progress& progress) {
   std::vector<uint32_t> texels;
-  for (size_t k = begin; k < answers.chosen.size(); ++k)
-    texels.push_back(answers.chosen[k].texel);
+  for (size_t k = begin; k < answers.chosen.size(); ++k) texels.push_back(answers.chosen[k].texel);
   const transport::Elements points = transport::subset(in.elements, texels);
   for (const int which : {0, 1}) {
     // No other paths begin at so many texels with as many before them.
@@ -145,8 +145,8 @@ Result<double> measured_error(const light::TexelScene& in, const TexelLight& lig
     answers.add(choose_texels(light, seen, count, 0.5));
   LUXEL_TRY_STATUS(trace_more(in, 0, kFirstPaths, params, answers, progress));
   answers.paths = kFirstPaths;
-  // Each round doubles the paths: at other texels, where errors vary from texel to texel, or else at
-  // the same ones.
+  // Each round doubles the paths: at other texels, where errors vary from texel to texel, or else
+  // at the same ones.
   for (size_t times = 1;; times *= 2) {
     const SquareError e = square_error(light, mean_light, answers);
     const bool known = e.largest <= kKnown * kKnown * e.likeliest;
@@ -155,8 +155,8 @@ Result<double> measured_error(const light::TexelScene& in, const TexelLight& lig
     size_t begin = 0;
     const int more = answers.paths;
     if (e.varies && 2 * count <= seen.size()) {
-      // Between those that are chosen already: at 1/2 of the first steps, at 0 of these, and then at
-      // 1/2 of steps half as large.
+      // Between those that are chosen already: at 1/2 of the first steps, at 0 of these, and then
+      // at 1/2 of steps half as large.
       begin = answers.chosen.size();
       answers.add(choose_texels(light, seen, count, count == kFirstTexels ? 0 : 0.5));
       count *= 2;

@@ -20,8 +20,9 @@ struct CheckParams {
 /// give two independent answers a and b at each. For light g the mean of (g - a)(g - b) is that of
 /// the square of g's error: the noise of the paths drops out. Rays that look at the solver's own
 /// light once would miss most of what bright rooms get too little of: light that is too dark by a
-/// part e everywhere shows them a difference of e (1 - rho) alone. Paths are added, at more texels or
-/// up to some hundred per texel, until the answer is known to a fifth of itself. Errors: cancelled.
+/// part e everywhere shows them a difference of e (1 - rho) alone. Paths are added, at more texels
+/// or up to some hundred per texel, until the answer is known to a fifth of itself. Errors:
+/// cancelled.
 Result<double> measured_error(const light::TexelScene& in, const TexelLight& light,
                               const CheckParams& params, Progress& progress);
 

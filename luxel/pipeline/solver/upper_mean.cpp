@@ -21,8 +21,7 @@ double upper_mean(std::span<const double> draws) {
   }
   if (!(second > 0)) return mean;
   const double z = kStandardErrors, skewness = third / (second * std::sqrt(second));
-  return mean +
-         std::sqrt(second / n) * (z + skewness * (2 * z * z + 1) / (6 * std::sqrt(n)));
+  return mean + std::sqrt(second / n) * (z + skewness * (2 * z * z + 1) / (6 * std::sqrt(n)));
 }
 
 }  // namespace luxel::pipeline

@@ -16,18 +16,18 @@ namespace {
 
 /// Texels of the first round: the mean square of errors of one size is known to sqrt(2 / 600) = 6 %
 /// of itself by so many.
-constexpr size_t kFirstTexels = 600;
+constexpr size_t kCheckTexels = 600;
 /// Paths per texel and answer of the first round, and so many times as many paths in all. Light
 /// that varies by its own size between paths is known to 1 / sqrt(512) = 4 % at each of 600 texels;
 /// the product of two such errors has the mean 0, and it adds 0.04 / 600^(1/4) = 0.9 % of the
 /// light.
-constexpr int kFirstPaths = 32;
-constexpr size_t kMostTimes = 16;
+constexpr int kCheckPaths = 32;
+constexpr size_t kCheckTimes = 16;
 /// Rounds end when the largest error that is likely is so many times the likeliest one.
-constexpr double kKnown = 1.2;
+constexpr double kCheckKnown = 1.2;
 
 /// A texel that is looked at, and what it counts.
-struct Chosen {
+struct CheckedTexel {
   uint32_t texel = 0;
   double weight = 1;
 };
@@ -39,11 +39,11 @@ double light_at(const TexelLight& light, size_t i) {
 /// About `count` of the texels `seen`, by their light: half of the probability is the same for
 /// each, half goes with its light, since errors mostly do. They are taken at equal steps of the
 /// probability's sum, so they are spread over the charts; `first` says where in a step.
-std::vector<Chosen> choose_texels(const TexelLight& light, std::span<const uint32_t> seen,
-                                  size_t count, double first) {
+std::vector<CheckedTexel> choose_texels(const TexelLight& light, std::span<const uint32_t> seen,
+                                        size_t count, double first) {
   double mean = 0;
   for (const uint32_t i : seen) mean += light_at(light, i) / double(seen.size());
-  std::vector<Chosen> out;
+  std::vector<CheckedTexel> out;
   const double step = double(seen.size()) / double(count);
   double next = first * step, sum = 0;
   for (const uint32_t i : seen) {
@@ -56,12 +56,12 @@ std::vector<Chosen> choose_texels(const TexelLight& light, std::span<const uint3
 
 /// What paths have found so far, per texel that is looked at.
 struct PathAnswers {
-  std::vector<Chosen> chosen;
+  std::vector<CheckedTexel> chosen;
   std::vector<double> first, second;  ///< sums of luminance over paths [W/m^2]
   std::vector<transport::BackFaces> backs;
   int paths = 0;  ///< per texel and answer
 
-  void add(std::span<const Chosen> more) {
+  void add(std::span<const CheckedTexel> more) {
     chosen.insert(chosen.end(), more.begin(), more.end());
     first.resize(chosen.size()), second.resize(chosen.size()), backs.resize(chosen.size());
   }
@@ -138,19 +138,19 @@ Result<double> measured_error(const light::TexelScene& in, const TexelLight& lig
   mean_light /= double(seen.size());
   // All texels, or some of many.
   PathAnswers answers;
-  size_t count = kFirstTexels;
+  size_t count = kCheckTexels;
   if (2 * count > seen.size())
-    for (const uint32_t i : seen) answers.add(std::array{Chosen{i, 1}});
+    for (const uint32_t i : seen) answers.add(std::array{CheckedTexel{i, 1}});
   else
     answers.add(choose_texels(light, seen, count, 0.5));
-  LUXEL_TRY_STATUS(trace_more(in, 0, kFirstPaths, params, answers, progress));
-  answers.paths = kFirstPaths;
+  LUXEL_TRY_STATUS(trace_more(in, 0, kCheckPaths, params, answers, progress));
+  answers.paths = kCheckPaths;
   // Each round doubles the paths: at other texels, where errors vary from texel to texel, or else
   // at the same ones.
   for (size_t times = 1;; times *= 2) {
     const SquareError e = square_error(light, mean_light, answers);
-    const bool known = e.largest <= kKnown * kKnown * e.likeliest;
-    if (known || times == kMostTimes || 2 * seconds_since(start) > params.seconds)
+    const bool known = e.largest <= kCheckKnown * kCheckKnown * e.likeliest;
+    if (known || times == kCheckTimes || 2 * seconds_since(start) > params.seconds)
       return std::sqrt(e.largest);
     size_t begin = 0;
     const int more = answers.paths;
@@ -158,7 +158,7 @@ Result<double> measured_error(const light::TexelScene& in, const TexelLight& lig
       // Between those that are chosen already: at 1/2 of the first steps, at 0 of these, and then
       // at 1/2 of steps half as large.
       begin = answers.chosen.size();
-      answers.add(choose_texels(light, seen, count, count == kFirstTexels ? 0 : 0.5));
+      answers.add(choose_texels(light, seen, count, count == kCheckTexels ? 0 : 0.5));
       count *= 2;
     }
     LUXEL_TRY_STATUS(trace_more(in, begin, more, params, answers, progress));

@@ -6,7 +6,7 @@ namespace luxel::pipeline {
 namespace {
 
 /// Quantile of the normal distribution: 97.7 %.
-constexpr double kStandardErrors = 2;
+constexpr double kUpperQuantile = 2;
 
 }  // namespace
 
@@ -20,7 +20,7 @@ double upper_mean(std::span<const double> draws) {
     second += d * d / n, third += d * d * d / n;
   }
   if (!(second > 0)) return mean;
-  const double z = kStandardErrors, skewness = third / (second * std::sqrt(second));
+  const double z = kUpperQuantile, skewness = third / (second * std::sqrt(second));
   return mean + std::sqrt(second / n) * (z + skewness * (2 * z * z + 1) / (6 * std::sqrt(n)));
 }
 

@@ -33,7 +33,7 @@ Result<Section> validate_view_factors(const std::filesystem::path& shared, Progr
 Result<Section> validate_exact_solutions(const std::filesystem::path& shared, Progress& progress);
 Result<Section> validate_agreement(Progress& progress);
 Result<Section> validate_cornell_box(Progress& progress);
-/// Which stated errors are held against true ones, and on which scenes.
+/// Stated errors to hold against true ones, and the scenes for it.
 struct StatedParams {
   uint64_t first_seed = 1;  ///< of a hundred scenes
   std::string only;         ///< one of stated_error_names(); empty: all

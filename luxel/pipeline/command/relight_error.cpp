@@ -26,7 +26,8 @@ constexpr double kMissed = 1.4;
 
 /// What is compared.
 struct Check {
-  scene::Scene scene;  ///< with the lights to try
+  const scene::Scene& scene;     ///< with the lights to try
+  const scene::Scene& punctual;  ///< its point, spot and directional lights alone
   const trace::RayTracer& tracer;
   reference::Receivers places;
   uint64_t seed = 1;
@@ -39,16 +40,14 @@ Result<reference::TexelPaths> indirect_by_paths(const Check& check, uint64_t ans
   LUXEL_TRY(reference::TexelPaths all,
             reference::irradiance_by_paths(check.scene, check.places, check.tracer,
                                            {kPaths, bounces, seed}, progress));
-  if (check.scene.lights.empty()) return all;
-  scene::Scene only = check.scene;
-  for (scene::Material& m : only.materials) m.emission = {};
-  only.background = {}, only.environment = {};
+  const std::vector<scene::PunctualLight>& lights = check.punctual.lights;
+  if (lights.empty()) return all;
   // One path finds the light of what has no size.
   const bool has_size =
-      std::any_of(only.lights.begin(), only.lights.end(),
+      std::any_of(lights.begin(), lights.end(),
                   [](const scene::PunctualLight& light) { return light.angular_radius_rad > 0; });
   LUXEL_TRY(const reference::TexelPaths direct,
-            reference::irradiance_by_paths(only, check.places, check.tracer,
+            reference::irradiance_by_paths(check.punctual, check.places, check.tracer,
                                            {has_size ? kPaths : 1, 0, seed}, progress));
   for (size_t i = 0; i < all.irradiance.size(); ++i)
     all.irradiance[i] = all.irradiance[i] - direct.irradiance[i];
@@ -118,29 +117,31 @@ Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& 
   const matrix::Target all = data.target;
   keep_own(own_places, data.target);
   const auto checked = [&](const std::vector<Vec3>& v) { return std::span(v).subspan(own_places); };
-  Check check{scene,
-              tracer,
-              {checked(all.position), checked(all.normal), checked(all.geometric_normal), {}},
-              hash64(seed, 0xc4ec)};
+  const reference::Receivers places{
+      checked(all.position), checked(all.normal), checked(all.geometric_normal), {}};
+  const uint64_t check_seed = hash64(seed, 0xc4ec);
   const auto relit = [&] { return checked(relighter.latest().indirect_at_points); };
+  scene::Scene punctual = scene;
+  for (scene::Material& m : punctual.materials) m.emission = {};
+  punctual.background = {}, punctual.environment = {};
   // The scene's own lights.
   if (scene::has_light(scene)) {
     relighter.update({.punctual = scene.lights, .background = scene.background});
-    LUXEL_TRY(data.baked_error, error_of(check, relit(), data.bounces, progress));
+    LUXEL_TRY(data.baked_error, error_of({scene, punctual, tracer, places, check_seed}, relit(),
+                                         data.bounces, progress));
   }
   // Point lights alone.
   const std::vector<Rgb> dark(scene.materials.size());
-  for (scene::Material& m : check.scene.materials) m.emission = {};
-  check.scene.background = {}, check.scene.environment = {};
-  const matrix::LampScene places{tracer, data.position, data.normal,
-                                 scene::world_bounds(scene).diagonal(),
-                                 matrix::side_of_patches(data.area_m2)};
+  const matrix::LampScene lamps{tracer, data.position, data.normal,
+                                scene::world_bounds(scene).diagonal(),
+                                matrix::side_of_patches(data.area_m2)};
   for (uint64_t k = 0; k < kLamps; ++k) {
-    const auto lamp = matrix::lamp_at_random(places, hash64(seed, k + 100));
+    const auto lamp = matrix::lamp_at_random(lamps, hash64(seed, k + 100));
     if (!lamp) continue;
-    check.scene.lights = {*lamp};
-    relighter.update({check.scene.lights, dark, {}});
-    LUXEL_TRY(const double error, error_of(check, relit(), data.bounces, progress));
+    punctual.lights = {*lamp};
+    relighter.update({punctual.lights, dark, {}});
+    LUXEL_TRY(const double error, error_of({punctual, punctual, tracer, places, check_seed},
+                                           relit(), data.bounces, progress));
     data.lamp_error = std::max(data.lamp_error, error);
   }
   return {};

@@ -39,6 +39,9 @@ struct EmitterPoint {
   Vec3 position;
 };
 EmitterPoint sample_emitters(const Emitters& emitters, RandomStream& random);
+/// The point that (x, y) of [0, 1)^2 stands for: x picks the triangle, and what is left of it and y
+/// the place. Parts of the square have the chance of their area.
+EmitterPoint emitter_point(const Emitters& emitters, double x, double y);
 
 /// The scene's environment by brightness: rows, then pixels of a row, each in proportion to what
 /// they send. Independent of how solvers divide it.

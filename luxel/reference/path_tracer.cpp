@@ -114,6 +114,8 @@ Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receiver
                                        Progress& progress) {
   const size_t count = receivers.size();
   LUXEL_CHECK(params.samples >= 1);
+  LUXEL_CHECK(!params.is_one_place ||
+              (receivers.first.empty() && count * size_t(params.samples) <= UINT32_MAX));
   LUXEL_CHECK(receivers.normal.size() == receivers.position.size());
   LUXEL_CHECK(receivers.geometric_normal.size() == receivers.position.size());
   const TracedScene world = traced_scene(scene, tracer);
@@ -128,6 +130,8 @@ Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receiver
         const Receiver at{receivers.position[k], receivers.normal[k],
                           receivers.geometric_normal[k]};
         paths.push_back(path_from(world, at, {path_seed(params.seed, i, s)}));
+        if (params.is_one_place)
+          paths.back().cell = {uint32_t(s * count + i), uint32_t(count * size_t(params.samples))};
       }
   };
   const auto each = [&](size_t i, const Path& path) {

@@ -23,6 +23,11 @@ struct PathParams {
   int samples = 256;  ///< paths per receiver or pixel; at least 1
   int bounces = -1;   ///< reflections to count; < 0: all
   uint64_t seed = 1;
+  /// All receivers are one place, without `first`, and have fewer than 2^32 paths together: their
+  /// first directions, and their first points on emitters, lie in as many cells of equal chance,
+  /// one in each. Such a mean varies no more than one of independent paths [Mitchell96],
+  /// mostly less; standard errors stay those of independent paths, and are upper bounds.
+  bool is_one_place = false;
 };
 
 /// Where irradiance is asked for; three spans of one length. A receiver is a point, or, with

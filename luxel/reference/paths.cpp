@@ -27,15 +27,22 @@ float mis_weight(float own, float other) {
 }
 
 trace::Ray random_ray(Path& path) {
-  const Vec3 local = cosine_hemisphere_sample(path.random.next2());
+  const DVec2 u = point_in(path.cell, path.random.next2());
+  const Vec3 local = cosine_hemisphere_sample({float(u.x), float(u.y)});
   const Vec3 d = frame_around(path.at.normal).to_world(local);
   return {path.origin, 0, light::mirrored_above(d, path.at.geometric_normal), INFINITY};
+}
+
+EmitterPoint pick_point(const Emitters& emitters, Path& path) {
+  if (path.cell.count == 0) return sample_emitters(emitters, path.random);
+  const DVec2 u = point_in(path.cell, path.random.next2());
+  return emitter_point(emitters, u.x, u.y);
 }
 
 /// Next-event estimation: one point of the emissive triangles, weighted against the chance that
 /// random_ray finds it.
 void aim_at_emitter(const TracedScene& world, Path& path, uint32_t index, PathBuffers& work) {
-  const EmitterPoint point = sample_emitters(world.emitters, path.random);
+  const EmitterPoint point = pick_point(world.emitters, path);
   const Emitter& e = *point.emitter;
   const Vec3 to_light = point.position - path.origin;
   const float d2 = dot(to_light, to_light);
@@ -181,6 +188,7 @@ bool advance(const TracedScene& world, const trace::Ray& ray, const trace::Hit& 
   if (!survives(path, depth + 1)) return false;
   path.at = receiver_at(world.scene, world.surfaces, side);
   path.origin = trace::offset_origin(path.at.position, path.at.geometric_normal, world.diagonal_m);
+  path.cell = {};
   return true;
 }
 
@@ -195,6 +203,17 @@ TracedScene traced_scene(const scene::Scene& scene, const trace::RayTracer& trac
           std::move(emitters),
           sky_sampler(scene.environment),
           scene::world_bounds(scene).diagonal()};
+}
+
+DVec2 point_in(Cell cell, Vec2 u) {
+  if (cell.count == 0) return {double(u.x), double(u.y)};
+  const auto n = uint64_t(cell.count), columns = uint64_t(std::sqrt(double(n)));
+  const uint64_t column = cell.number * columns / n;
+  const uint64_t first = (column * n + columns - 1) / columns;
+  const uint64_t next = ((column + 1) * n + columns - 1) / columns;
+  const auto in_column = double(next - first);
+  return {(double(first) + in_column * double(u.x)) / double(n),
+          (double(cell.number - first) + double(u.y)) / in_column};
 }
 
 Path path_from(const TracedScene& world, const Receiver& at, RandomStream random) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "luxel/base/random.h"
+#include "luxel/base/vec2_double.h"
 #include "luxel/reference/light_sampling.h"
 #include "luxel/reference/surfaces.h"
 #include "luxel/trace/ray_tracer.h"
@@ -25,6 +26,14 @@ TracedScene traced_scene(const scene::Scene& scene, const trace::RayTracer& trac
 
 enum class FirstHit : uint8_t { other, back, double_sided_back };
 
+/// One of `count` parts of the unit square, all of one area. No count: the whole square.
+struct Cell {
+  uint32_t number = 0, count = 0;
+};
+/// The point of a cell that u of [0, 1)^2 stands for. Cells lie in columns, about as many as cells
+/// in each.
+DVec2 point_in(Cell cell, Vec2 u);
+
 /// A path on its way. `value` is the light that it brings to its start: E / pi for a path that
 /// started at a receiver with throughput 1.
 struct Path {
@@ -33,6 +42,7 @@ struct Path {
   Rgb throughput{1, 1, 1};  ///< product of reflectances, over the chances to survive
   Rgb value{};
   RandomStream random;
+  Cell cell{};  ///< of its first direction, and of its first point on an emitter
   FirstHit first_hit = FirstHit::other;  ///< what its first ray met
   bool shows_surface = false;            ///< of paths from the eye
 };

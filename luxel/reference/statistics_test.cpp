@@ -60,6 +60,50 @@ TEST(SlowStatistics, TheStandardErrorIsHonest) {
               0.05 * result.relative_error);
 }
 
+// Cells have the area that they stand for, and a place in the middle of one lies in no other.
+TEST(Statistics, CellsFillTheSquare) {
+  for (const uint32_t count : {1u, 2u, 7u, 64u, 100u, 4096u}) {
+    std::vector<DVec2> lower, upper;
+    for (uint32_t k = 0; k < count; ++k) {
+      lower.push_back(point_in({k, count}, {0, 0})), upper.push_back(point_in({k, count}, {1, 1}));
+      const DVec2 size = upper[k] - lower[k];
+      EXPECT_NEAR(size.x * size.y * count, 1, 1e-9) << k << " of " << count;
+    }
+    const DVec2 middle = point_in({count / 2, count}, {0.5f, 0.5f});
+    for (uint32_t k = 0; k < count; ++k) {
+      const bool inside = middle.x > lower[k].x && middle.x < upper[k].x && middle.y > lower[k].y &&
+                          middle.y < upper[k].y;
+      EXPECT_EQ(inside, k == count / 2) << k << " of " << count;
+    }
+  }
+}
+
+// Paths of one place are spread over a lamp's square and over what the place sees: 500 answers of
+// 1,024 paths agree in the mean with Howell's factor, and scatter by less than half of what
+// independent paths would, and they state. z^2 of 500 answers is known to 6 %.
+TEST(Statistics, PathsOfOnePlaceErrByLessThanTheyState) {
+  scene::Scene scene;
+  const uint32_t glow = scene::add_material(scene, "lamp", {}, gray(1));
+  scene::add_rectangle(scene, {-0.5f, 0.5f, -0.5f, 0.5f}, 1, false, glow);
+  Points place;
+  for (int k = 0; k < 16; ++k) place.add({0.3f, 0, 0.2f}, {0, 1, 0});
+  const double exact = kPiDouble * viewfactor::rectangle_factor(-0.8, 0.2, -0.7, 0.3, 1);
+  double sum = 0, sum2 = 0;
+  for (uint64_t seed = 0; seed < 500; ++seed) {
+    const TexelPaths light =
+        solve(scene, place, {.samples = 64, .bounces = 0, .seed = seed, .is_one_place = true});
+    double mean = 0, variance = 0;
+    for (size_t i = 0; i < place.size(); ++i) {
+      mean += double(light.irradiance[i].x) / 16;
+      variance += std::pow(double(light.standard_error[i].x) / 16, 2);
+    }
+    const double z = (mean - exact) / std::sqrt(variance);
+    sum += z, sum2 += z * z;
+  }
+  EXPECT_NEAR(sum / 500, 0, 3 * std::sqrt(sum2) / 500);
+  EXPECT_LT(sum2 / 500, 0.25);
+}
+
 TEST(Statistics, NoLightHasNoErrorAndOnePathSaysNothing) {
   const Points points = random_points(scene::furnace_box(gray(0.5f), gray(1)), 10, 3);
   const TexelPaths dark = solve(scene::furnace_box(gray(0.5f), {}), points, {.samples = 10});

@@ -36,6 +36,7 @@ struct ProbeSettings {
   /// About when no more rays are begun; hierarchical: when there is no result, or one without
   /// refinement, as a warning says.
   double time_budget_s = 10;
+  int most_rounds = 18;  ///< of rays, each twice the last: by default 2^30, more than it ever needs
   uint64_t seed = 1;
   import::ImportParams reading;
   OutsideLight outside;
@@ -59,7 +60,7 @@ struct Probed {
   Vec3 position{}, normal{};
   float distance_m = 0;               ///< from `at`
   Rgb irradiance;                     ///< E [W/m^2]
-  Rgb standard_error;                 ///< of that; 0 for closed forms
+  Rgb standard_error;                 ///< of that, at most; 0 for closed forms
   float luminance_error = 0;          ///< standard error of the luminance of E
   std::optional<Rgb> interpolated;    ///< hierarchical: E of its light mesh; bake: of the lightmap
   Rgb punctual_and_background;        ///< the part of E that comes from no surface

@@ -20,7 +20,6 @@ namespace {
 constexpr size_t kStreams = 64;
 constexpr int kFirstPaths = 64;  ///< of each in the first round; rounds double
 constexpr int kFirstRays = 64;   ///< the same of a bake
-constexpr int kMostRounds = 18;  ///< 2^30 paths: no standard error needs more
 /// Rays that look for sources, and those of them that paths follow on.
 constexpr uint32_t kLookingRays = 1 << 15, kFollowedRays = 1 << 12;
 constexpr int kPathsPerRay = 16;
@@ -30,22 +29,37 @@ struct Place {
   Vec3 position{}, normal{}, geometric_normal{};
 };
 
+/// Squared standard errors of a round's mean: of red, green, blue and luminance.
+struct Squares {
+  std::array<double, 4> error2{};
+  std::array<double, 4> variance{};  ///< of error2, which is an estimate itself; 0: not known
+};
+
+std::array<double, 4> squared(Rgb error, float luminance_error) {
+  const DVec3 e = to_double(error);
+  return {e.x * e.x, e.y * e.y, e.z * e.z, std::pow(double(luminance_error), 2)};
+}
+
 /// Rounds of estimates, each weighted by its number of paths or rays.
 class Rounds {
  public:
   Rounds(const ProbeSettings& s, Clock::time_point start) : settings_(s), start_(start) {}
 
-  void add(double weight, Rgb mean, Rgb error, float luminance_error) {
+  void add(double weight, Rgb mean, const Squares& squares) {
     was_known_ = count_ > 0 && is_known();
     weight_ += weight, sum_ += mean * float(weight);
     for (size_t c = 0; c < 4; ++c) {
-      const float e = c == 0 ? error.x : c == 1 ? error.y : c == 2 ? error.z : luminance_error;
-      squares_[c] += std::pow(weight * double(e), 2);
+      squares_.error2[c] += std::pow(weight, 2) * squares.error2[c];
+      squares_.variance[c] += std::pow(weight, 4) * squares.variance[c];
     }
     ++count_;
   }
   Rgb mean() const { return sum_ / float(weight_); }
-  float error(size_t c) const { return float(std::sqrt(squares_[c]) / weight_); }
+  /// The standard error of a channel or the luminance, its square by two of its own standard errors
+  /// larger than found: light that few paths bring is missed by the mean and by its error at once.
+  float error(size_t c) const {
+    return float(std::sqrt(squares_.error2[c] + 2 * std::sqrt(squares_.variance[c])) / weight_);
+  }
   bool is_known() const {
     return double(error(3)) <= settings_.max_error * double(luminance(mean()));
   }
@@ -54,7 +68,7 @@ class Rounds {
   /// most of all paths, has its say.
   bool goes_on(double last_round_s) const {
     const double left = settings_.time_budget_s - seconds_since(start_);
-    return !(is_known() && was_known_) && count_ < kMostRounds && left > 2 * last_round_s;
+    return !(is_known() && was_known_) && count_ < settings_.most_rounds && left > 2 * last_round_s;
   }
   void finish(Probed& out) const {
     out.irradiance = mean(), out.luminance_error = error(3);
@@ -67,7 +81,7 @@ class Rounds {
   Clock::time_point start_;
   double weight_ = 0;
   Rgb sum_{};
-  std::array<double, 4> squares_{};
+  Squares squares_;
   int count_ = 0;
   bool was_known_ = false;  ///< before the last round
 };
@@ -182,6 +196,22 @@ Result<std::vector<Rgb>> reflected_by_paths(const ProbeSettings& s, const scene:
   return out;
 }
 
+/// Of the mean over all receivers of one place: each says how wide its own paths scatter.
+Squares squares_of(const reference::TexelPaths& traced) {
+  const auto n = double(traced.irradiance.size());
+  Squares out;
+  for (size_t c = 0; c < 4; ++c) {
+    double sum = 0, sum2 = 0;
+    for (size_t i = 0; i < traced.irradiance.size(); ++i) {
+      const double error2 = squared(traced.standard_error[i], traced.luminance_error[i])[c];
+      sum += error2, sum2 += error2 * error2;
+    }
+    out.error2[c] = sum / (n * n);
+    out.variance[c] = std::max(0.0, sum2 - sum * sum / n) * n / (n - 1) / (n * n * n * n);
+  }
+  return out;
+}
+
 /// E of a place by paths, round by round.
 Status trace_rounds(const ProbeSettings& s, const scene::Scene& scene,
                     const trace::RayTracer& tracer, const Place& place, Clock::time_point start,
@@ -195,18 +225,10 @@ Status trace_rounds(const ProbeSettings& s, const scene::Scene& scene,
     const Clock::time_point begun = Clock::now();
     LUXEL_TRY(const reference::TexelPaths traced,
               reference::irradiance_by_paths(scene, {positions, normals, geometric}, tracer,
-                                             {paths, -1, hash64(s.seed, round)}, progress));
-    Rgb mean{}, squares{};
-    float luminance2 = 0;
-    for (size_t i = 0; i < kStreams; ++i) {
-      mean += traced.irradiance[i];
-      squares += traced.standard_error[i] * traced.standard_error[i];
-      luminance2 += traced.luminance_error[i] * traced.luminance_error[i];
-    }
-    const float n = float(kStreams);
-    rounds.add(paths, mean / n,
-               {std::sqrt(squares.x) / n, std::sqrt(squares.y) / n, std::sqrt(squares.z) / n},
-               std::sqrt(luminance2) / n);
+                                             {paths, -1, hash64(s.seed, round), true}, progress));
+    Rgb mean{};
+    for (const Rgb& e : traced.irradiance) mean += e;
+    rounds.add(paths, mean / float(kStreams), squares_of(traced));
     last_s = seconds_since(begun);
   }
   rounds.finish(out);
@@ -267,7 +289,8 @@ Result<Probed> probe_in_bake(const ProbeSettings& s, Progress& progress) {
     LUXEL_TRY(const PlacesLight light,
               light_at_places(*bake, {&place.position, 1}, {&place.normal, 1},
                               {int(kStreams), rays, rays, hash64(s.seed, round)}, progress));
-    rounds.add(rays, light.irradiance[0], light.standard_error[0], light.luminance_error[0]);
+    rounds.add(rays, light.irradiance[0],
+               {squared(light.standard_error[0], light.luminance_error[0]), {}});
     last_s = seconds_since(begun);
   }
   rounds.finish(out);

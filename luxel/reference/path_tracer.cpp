@@ -131,7 +131,8 @@ Result<TexelPaths> irradiance_by_paths(const scene::Scene& scene, const Receiver
                           receivers.geometric_normal[k]};
         paths.push_back(path_from(world, at, {path_seed(params.seed, i, s)}));
         if (params.is_one_place)
-          paths.back().cell = {uint32_t(s * count + i), uint32_t(count * size_t(params.samples))};
+          paths.back().cells = {{uint32_t(s * count + i), uint32_t(count * size_t(params.samples))},
+                                params.seed};
       }
   };
   const auto each = [&](size_t i, const Path& path) {

@@ -24,9 +24,9 @@ struct PathParams {
   int bounces = -1;   ///< reflections to count; < 0: all
   uint64_t seed = 1;
   /// All receivers are one place, without `first`, and have fewer than 2^32 paths together: their
-  /// first directions, and their first points on emitters, lie in as many cells of equal chance,
-  /// one in each. Such a mean varies no more than one of independent paths [Mitchell96],
-  /// mostly less; standard errors stay those of independent paths, and are upper bounds.
+  /// k-th directions, and their k-th points on emitters, lie in as many cells of equal chance, one
+  /// in each: a Latin hypercube, whose mean varies no more than that of one independent path less
+  /// [Owen97], mostly less. Standard errors stay those of independent paths, and are upper bounds.
   bool is_one_place = false;
 };
 

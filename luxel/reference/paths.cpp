@@ -27,15 +27,16 @@ float mis_weight(float own, float other) {
 }
 
 trace::Ray random_ray(Path& path) {
-  const DVec2 u = point_in(path.cell, path.random.next2());
+  const DVec2 u = point_in(next_cell(path.cells), path.random.next2());
   const Vec3 local = cosine_hemisphere_sample({float(u.x), float(u.y)});
   const Vec3 d = frame_around(path.at.normal).to_world(local);
   return {path.origin, 0, light::mirrored_above(d, path.at.geometric_normal), INFINITY};
 }
 
 EmitterPoint pick_point(const Emitters& emitters, Path& path) {
-  if (path.cell.count == 0) return sample_emitters(emitters, path.random);
-  const DVec2 u = point_in(path.cell, path.random.next2());
+  const Cell cell = next_cell(path.cells);
+  if (cell.count == 0) return sample_emitters(emitters, path.random);
+  const DVec2 u = point_in(cell, path.random.next2());
   return emitter_point(emitters, u.x, u.y);
 }
 
@@ -188,7 +189,6 @@ bool advance(const TracedScene& world, const trace::Ray& ray, const trace::Hit& 
   if (!survives(path, depth + 1)) return false;
   path.at = receiver_at(world.scene, world.surfaces, side);
   path.origin = trace::offset_origin(path.at.position, path.at.geometric_normal, world.diagonal_m);
-  path.cell = {};
   return true;
 }
 
@@ -203,6 +203,35 @@ TracedScene traced_scene(const scene::Scene& scene, const trace::RayTracer& trac
           std::move(emitters),
           sky_sampler(scene.environment),
           scene::world_bounds(scene).diagonal()};
+}
+
+namespace {
+
+/// A place of number i in an order of `count`, one of many: [Kensler13, section 4].
+uint32_t place_in_order(uint32_t i, uint32_t count, uint32_t order) {
+  uint32_t w = count - 1;
+  for (const int shift : {1, 2, 4, 8, 16}) w |= w >> shift;
+  do {
+    i ^= order, i *= 0xe170893du, i ^= order >> 16;
+    i ^= (i & w) >> 4, i ^= order >> 8;
+    i *= 0x0929eb3fu, i ^= order >> 23;
+    i ^= (i & w) >> 1, i *= 1 | order >> 27;
+    i *= 0x6935fa69u, i ^= (i & w) >> 11;
+    i *= 0x74dcb303u, i ^= (i & w) >> 2;
+    i *= 0x9e501cc3u, i ^= (i & w) >> 2;
+    i *= 0xc860a3dfu, i &= w;
+    i ^= i >> 5;
+  } while (i >= count);
+  return (i + order) % count;
+}
+
+}  // namespace
+
+Cell next_cell(Cells& cells) {
+  if (cells.first.count == 0) return {};
+  const uint64_t order = hash64(cells.seed, cells.drawn++);
+  return {place_in_order(cells.first.number, cells.first.count, uint32_t(order)),
+          cells.first.count};
 }
 
 DVec2 point_in(Cell cell, Vec2 u) {

@@ -30,6 +30,14 @@ enum class FirstHit : uint8_t { other, back, double_sided_back };
 struct Cell {
   uint32_t number = 0, count = 0;
 };
+/// A path's cells: of its k-th pair of random numbers. Each pair has an order of its own of all
+/// cells, so that what two pairs bring together is as by chance.
+struct Cells {
+  Cell first{};
+  uint64_t seed = 1;  ///< of the orders
+  uint32_t drawn = 0;
+};
+Cell next_cell(Cells& cells);
 /// The point of a cell that u of [0, 1)^2 stands for. Cells lie in columns, about as many as cells
 /// in each.
 DVec2 point_in(Cell cell, Vec2 u);
@@ -42,7 +50,7 @@ struct Path {
   Rgb throughput{1, 1, 1};  ///< product of reflectances, over the chances to survive
   Rgb value{};
   RandomStream random;
-  Cell cell{};  ///< of its first direction, and of its first point on an emitter
+  Cells cells{};                         ///< of its first directions and points on emitters
   FirstHit first_hit = FirstHit::other;  ///< what its first ray met
   bool shows_surface = false;            ///< of paths from the eye
 };

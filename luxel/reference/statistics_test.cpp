@@ -78,6 +78,26 @@ TEST(Statistics, CellsFillTheSquare) {
   }
 }
 
+// An order has every place once, and orders differ.
+TEST(Statistics, EachPairOfNumbersHasEveryCellOnce) {
+  for (const uint32_t count : {1u, 2u, 7u, 100u, 4096u}) {
+    std::vector<std::array<uint32_t, 3>> times(count);
+    uint32_t alike = 0;
+    for (uint32_t k = 0; k < count; ++k) {
+      Cells cells{{k, count}, 5};
+      std::array<uint32_t, 3> number{};
+      for (size_t pair = 0; pair < 3; ++pair) {
+        number[pair] = next_cell(cells).number;
+        ++times[number[pair]][pair];
+      }
+      alike += number[0] == number[1];
+    }
+    for (const auto& t : times) EXPECT_EQ(t, (std::array<uint32_t, 3>{1, 1, 1})) << count;
+    // By chance about one is.
+    if (count >= 100) EXPECT_LE(alike, 8u);
+  }
+}
+
 // Paths of one place are spread over a lamp's square and over what the place sees: 500 answers of
 // 1,024 paths agree in the mean with Howell's factor, and scatter by less than half of what
 // independent paths would, and they state. z^2 of 500 answers is known to 6 %.

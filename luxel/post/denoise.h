@@ -22,7 +22,7 @@ struct TexelGeometry {
   std::span<const Vec3> position;   ///< world [m]
   std::span<const Vec3> normal;     ///< unit shading normal
   std::span<const uint8_t> hidden;  ///< 1: its light means nothing; neither read nor changed
-  /// Per chart: texels of charts with different numbers share no light. Empty: all may.
+  /// Texels with different numbers share no light. Empty: all may.
   std::span<const uint32_t> region;
 };
 

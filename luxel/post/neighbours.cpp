@@ -131,7 +131,7 @@ Result<Neighbourhood> make_neighbourhood(const TexelGeometry& places, const Deno
   const size_t count = places.map.texels.size();
   LUXEL_CHECK(places.position.size() == count && places.normal.size() == count);
   LUXEL_CHECK(places.hidden.size() == count && params.radius >= 1);
-  LUXEL_CHECK(places.region.empty() || places.region.size() == places.atlas.chart_count);
+  LUXEL_CHECK(places.region.empty() || places.region.size() == count);
   Neighbourhood n;
   n.map = &places.map;
   n.radius = int(params.radius);
@@ -141,7 +141,7 @@ Result<Neighbourhood> make_neighbourhood(const TexelGeometry& places, const Deno
   for (size_t i = 0; i < count; ++i) {
     const uint32_t chart = places.atlas.chart[places.map.texels[i].triangle_number];
     n.place[i] = {places.position[i], places.hidden[i] ? 0.0f : spacing[chart], places.normal[i],
-                  places.region.empty() ? 0 : places.region[chart]};
+                  places.region.empty() ? 0 : places.region[i]};
   }
   n.far.resize((count + kBlockTexels - 1) / kBlockTexels);
   const float typical = median_spacing(n.place);

@@ -25,14 +25,22 @@ struct Seam {
 std::vector<Seam> find_seams(const scene::Scene& scene, const atlas::Atlas& atlas,
                              float max_normal_angle_rad = 0.1f);
 
+/// What texels have to do with each other at seams. Else light would go from one side of a wall to
+/// the other. Spans have one entry per texel, or none.
+struct SeamTexels {
+  /// 1 where its light means nothing, inside of solids: no look-up reads it, and it stays as it is.
+  /// Empty: no texel.
+  std::span<const uint8_t> hidden = {};
+  /// Points whose look-ups read texels with different numbers do not count: light differs there for
+  /// good. Empty: all have the same number.
+  std::span<const uint32_t> region = {};
+};
+
 /// How stitch_seams() weighs and iterates.
 struct SeamParams {
   float keep_weight = 0.1f;  ///< how strongly a texel holds on to its own value
   int max_iterations = 200;  ///< of the conjugate gradient
-  /// Per texel, 1 where its light means nothing, inside of solids: no look-up reads it, and it
-  /// stays as it is. Else it would carry light from one side of a wall to the other. None: no
-  /// texel.
-  std::span<const uint8_t> hidden = {};
+  SeamTexels texels = {};
 };
 
 /// The system, in full. Along each seam lie points p, about two per texel of its longer side, two
@@ -75,12 +83,12 @@ struct SeamResidual {
   /// 95th percentile and the largest.
   double relative_p95 = 0, relative_max = 0;
 };
-/// Measures `values`, one per texel of the map; nothing is changed. `hidden`: as in SeamParams.
+/// Measures `values`, one per texel of the map; nothing is changed.
 SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
-                           std::span<const Rgb> values, std::span<const uint8_t> hidden = {});
+                           std::span<const Rgb> values, const SeamTexels& texels = {});
 
 /// Per texel, the largest relative difference at the points of seams that look it up; 0 elsewhere.
 std::vector<float> seam_errors(const atlas::TexelMap& map, std::span<const Seam> seams,
-                               std::span<const Rgb> values, std::span<const uint8_t> hidden = {});
+                               std::span<const Rgb> values, const SeamTexels& texels = {});
 
 }  // namespace luxel::post

@@ -227,11 +227,28 @@ TEST(StitchSeams, HiddenTexelsTieNothing) {
   std::vector<uint8_t> hidden(sheet.values.size());
   hidden[texel] = 1, sheet.values[texel] = {1000, 1000, 1000};
   Progress progress;
-  ASSERT_TRUE(stitch_seams(sheet.map, sheet.seams, {.hidden = hidden}, sheet.values, progress));
+  ASSERT_TRUE(stitch_seams(sheet.map, sheet.seams, {.texels = {hidden}}, sheet.values, progress));
   EXPECT_EQ(sheet.values[texel].x, 1000);
   for (size_t i = 0; i < sheet.values.size(); ++i)
     EXPECT_LE(sheet.values[i].x, i == texel ? 1000 : 3.01f);
-  EXPECT_LT(seam_residual(sheet.map, sheet.seams, sheet.values, hidden).rms_over_mean, 0.02);
+  EXPECT_LT(seam_residual(sheet.map, sheet.seams, sheet.values, {hidden}).rms_over_mean, 0.02);
+}
+
+// One texel beyond a wall keeps its light and gives none: the points that read it do not count.
+TEST(StitchSeams, PointsOfTwoRegionsTieNothing) {
+  SeamSheet sheet({1, 1, 1}, {3, 3, 3}, 0);
+  const uint32_t texel =
+      sheet.map
+          .texel_at[size_t((2 + kSheetSide / 2) * sheet.map.resolution) + size_t(kSheetSide + 1)];
+  std::vector<uint32_t> region(sheet.values.size());
+  region[texel] = texel, sheet.values[texel] = {1000, 1000, 1000};
+  Progress progress;
+  const SeamTexels texels{.region = region};
+  ASSERT_TRUE(stitch_seams(sheet.map, sheet.seams, {.texels = texels}, sheet.values, progress));
+  EXPECT_EQ(sheet.values[texel].x, 1000);
+  for (size_t i = 0; i < sheet.values.size(); ++i)
+    EXPECT_LE(sheet.values[i].x, i == texel ? 1000 : 3.01f);
+  EXPECT_LT(seam_residual(sheet.map, sheet.seams, sheet.values, texels).rms_over_mean, 0.02);
 }
 
 TEST(StitchSeams, SameBitsForAnyThreadCount) {

@@ -49,20 +49,32 @@ struct SeamPoint {
   double half_texels = 0;  ///< the length of seam that it stands for
 };
 
-/// Points where both sides have texels.
+/// Whether both look-ups read texels of one region.
+bool is_in_one_region(const SeamPoint& point, std::span<const uint32_t> region) {
+  if (region.empty()) return true;
+  for (const Lookup* side : {&point.a, &point.b})
+    for (int i = 0; i < side->count; ++i)
+      if (region[side->texel[size_t(i)]] != region[point.a.texel[0]]) return false;
+  return true;
+}
+
+/// Points where both sides have texels, of one region.
 std::vector<SeamPoint> seam_points(const atlas::TexelMap& map, std::span<const Seam> seams,
-                                   std::span<const uint8_t> hidden) {
+                                   const SeamTexels& texels) {
+  const auto& [hidden, region] = texels;
   LUXEL_CHECK(hidden.empty() || hidden.size() == map.texels.size());
+  LUXEL_CHECK(region.empty() || region.size() == map.texels.size());
   std::vector<SeamPoint> points;
   for (const Seam& seam : seams) {
-    const float texels = std::max(length(seam.a1 - seam.a0), length(seam.b1 - seam.b0));
-    const int count = std::max(2, int(std::ceil(2 * texels)));
+    const float longer = std::max(length(seam.a1 - seam.a0), length(seam.b1 - seam.b0));
+    const int count = std::max(2, int(std::ceil(2 * longer)));
     for (int i = 0; i < count; ++i) {
       const float t = (float(i) + 0.5f) / float(count);
       SeamPoint point{lookup(map, hidden, seam.a0 * (1 - t) + seam.a1 * t),
                       lookup(map, hidden, seam.b0 * (1 - t) + seam.b1 * t),
-                      2 * double(texels) / double(count)};
-      if (point.a.count > 0 && point.b.count > 0) points.push_back(point);
+                      2 * double(longer) / double(count)};
+      if (point.a.count > 0 && point.b.count > 0 && is_in_one_region(point, region))
+        points.push_back(point);
     }
   }
   return points;
@@ -208,7 +220,7 @@ std::optional<System> system_of(const atlas::TexelMap& map, std::span<const Seam
   LUXEL_CHECK(values.size() == map.texels.size());
   LUXEL_CHECK(params.keep_weight > 0);
   for (const Rgb& v : values) LUXEL_CHECK(is_finite(v) && min_component(v) >= 0);
-  std::vector<SeamPoint> points = seam_points(map, seams, params.hidden);
+  std::vector<SeamPoint> points = seam_points(map, seams, params.texels);
   std::erase_if(points,
                 [&](const SeamPoint& p) { return is_black(p.a, values) || is_black(p.b, values); });
   if (points.empty()) return std::nullopt;
@@ -278,9 +290,9 @@ Differences differences_at(const std::vector<SeamPoint>& points, std::span<const
 }  // namespace
 
 SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> seams,
-                           std::span<const Rgb> values, std::span<const uint8_t> hidden) {
+                           std::span<const Rgb> values, const SeamTexels& texels) {
   LUXEL_CHECK(values.size() == map.texels.size());
-  const std::vector<SeamPoint> points = seam_points(map, seams, hidden);
+  const std::vector<SeamPoint> points = seam_points(map, seams, texels);
   Differences d = differences_at(points, values);
   if (points.empty() || d.mean <= 0) return {};
   const auto p95 = d.relative.begin() + std::ptrdiff_t((d.relative.size() - 1) * 95 / 100);
@@ -290,9 +302,9 @@ SeamResidual seam_residual(const atlas::TexelMap& map, std::span<const Seam> sea
 }
 
 std::vector<float> seam_errors(const atlas::TexelMap& map, std::span<const Seam> seams,
-                               std::span<const Rgb> values, std::span<const uint8_t> hidden) {
+                               std::span<const Rgb> values, const SeamTexels& texels) {
   LUXEL_CHECK(values.size() == map.texels.size());
-  const std::vector<SeamPoint> points = seam_points(map, seams, hidden);
+  const std::vector<SeamPoint> points = seam_points(map, seams, texels);
   const Differences d = differences_at(points, values);
   std::vector<float> error(map.texels.size());
   for (size_t p = 0; p < points.size(); ++p)

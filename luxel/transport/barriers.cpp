@@ -10,8 +10,10 @@
 namespace luxel::transport {
 namespace {
 
-/// Heights of lines, in steps: of the lowest, and of ways over a barrier.
+/// Heights of lines, in steps: of that which a barrier blocks, and of ways over it.
 constexpr float kLow = 0.5f;
+/// Of lines over what lies on a surface, such as a rug; and of where ways begin.
+constexpr float kLowest = 0.05f, kFoot = 1e-3f;
 constexpr std::array kOver{1.0f, 2.0f};
 constexpr int kRaysForOpen = 32;
 /// How far around a texel a way past a barrier is looked for, in texels.
@@ -67,16 +69,26 @@ struct Search {
   }
 
   std::vector<uint8_t> open_ways() const;
-  void find_forward_ways(uint32_t begin, uint32_t end, std::span<uint8_t> ways) const;
+  template <class IsOpen>
+  void find_forward_ways(uint32_t begin, uint32_t end, float height, std::span<uint8_t> ways,
+                         const IsOpen& is_open) const;
   bool is_way_past(uint32_t a, const Offset& to, std::span<const uint8_t> ways) const;
   std::vector<atlas::PartedPoints> parted(uint32_t begin, uint32_t end,
                                           std::span<const uint8_t> ways) const;
 };
 
-/// Sets the bits k < kHalf of texels [begin, end): the neighbour is there, and no barrier between.
-void Search::find_forward_ways(uint32_t begin, uint32_t end, std::span<uint8_t> ways) const {
+/// Sets the bits k < kHalf of texels [begin, end): the neighbour is there, and nothing is in the
+/// way of the line at `height` steps, or is_open(texel, neighbour, step in m) says that it does not
+/// part them.
+template <class IsOpen>
+void Search::find_forward_ways(uint32_t begin, uint32_t end, float height, std::span<uint8_t> ways,
+                               const IsOpen& is_open) const {
+  struct Pair {
+    uint32_t a, b, offset;
+    float step_m;
+  };
   std::vector<trace::Ray> rays;
-  std::vector<std::array<uint32_t, 3>> pairs;  // texel, neighbour, offset
+  std::vector<Pair> pairs;
   for (uint32_t i = begin; i < end; ++i) {
     const FlatPoint a = place(i);
     for (uint32_t k = 0; k < kHalf; ++k) {
@@ -84,14 +96,14 @@ void Search::find_forward_ways(uint32_t begin, uint32_t end, std::span<uint8_t> 
       if (j == atlas::kNone) continue;
       const FlatPoint b = place(j);
       const float step_m = length(b.position - a.position) / kNeighbours[k].steps();
-      pairs.push_back({i, j, k}), rays.push_back(line_above(a, b, kLow * step_m));
+      pairs.push_back({i, j, k, step_m}), rays.push_back(line_above(a, b, height * step_m));
     }
   }
   std::vector<uint8_t> blocked(rays.size());
   tracer.occluded(rays, blocked);
   for (size_t n = 0; n < pairs.size(); ++n) {
-    const auto [i, j, k] = pairs[n];
-    if (!blocked[n] || !barrier(i, j, kNeighbours[k])) ways[i] |= uint8_t(1u << k);
+    const auto& [i, j, k, step_m] = pairs[n];
+    if (!blocked[n] || is_open(i, j, step_m)) ways[i] |= uint8_t(1u << k);
   }
 }
 
@@ -100,7 +112,10 @@ std::vector<uint8_t> Search::open_ways() const {
   constexpr size_t kBlock = 2048;
   std::vector<uint8_t> ways(map.texels.size());
   parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
-    find_forward_ways(uint32_t(begin), uint32_t(end), ways);
+    find_forward_ways(
+        uint32_t(begin), uint32_t(end), kLow, ways, [&](uint32_t i, uint32_t j, float step_m) {
+          return !barrier_between(scene, atlas, tracer, chart_of(i), place(i), place(j), step_m);
+        });
   });
   for (uint32_t i = 0; i < ways.size(); ++i)
     for (size_t k = 0; k < kHalf; ++k)
@@ -218,6 +233,43 @@ std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const at
   std::vector<atlas::PartedPoints> all;
   for (const auto& block : found) all.insert(all.end(), block.begin(), block.end());
   return all;
+}
+
+bool is_open_between(const scene::Scene& scene, const atlas::Atlas& atlas,
+                     const trace::RayTracer& tracer, const ChartPoint& a, const ChartPoint& b,
+                     float step_m) {
+  const auto above = [&](const ChartPoint& p, float height) {
+    return p.at.position + p.at.normal * (height * step_m);
+  };
+  const auto is_free = [&](Vec3 from, Vec3 to) {
+    const trace::Hit hit = tracer.closest_hit({from, 0, to - from, 1});
+    return !is_barrier(scene, atlas, a.chart, hit) || !is_barrier(scene, atlas, b.chart, hit);
+  };
+  const Vec3 from = above(a, kFoot), to = above(b, kFoot);
+  for (const float height : {kLowest, kLow, kOver[0], kOver[1]}) {
+    const Vec3 high_a = above(a, height), high_b = above(b, height);
+    if (is_free(high_a, high_b) && is_free(from, high_a) && is_free(to, high_b)) return true;
+  }
+  return false;
+}
+
+void for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
+                         const atlas::TexelMap& map, const trace::RayTracer& tracer,
+                         const std::function<void(uint32_t, uint32_t)>& visit) {
+  constexpr size_t kBlock = 2048;
+  const Search search{scene, atlas, map, tracer, 0};
+  std::vector<uint8_t> ways(map.texels.size());
+  parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
+    search.find_forward_ways(
+        uint32_t(begin), uint32_t(end), kFoot, ways, [&](uint32_t i, uint32_t j, float step_m) {
+          const uint32_t chart = search.chart_of(i);
+          return is_open_between(scene, atlas, tracer, {search.place(i), chart},
+                                 {search.place(j), chart}, step_m);
+        });
+  });
+  for (uint32_t i = 0; i < ways.size(); ++i)
+    for (size_t k = 0; k < kHalf; ++k)
+      if (ways[i] >> k & 1) visit(i, search.neighbour(i, kNeighbours[k]));
 }
 
 }  // namespace luxel::transport

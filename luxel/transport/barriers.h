@@ -4,6 +4,7 @@
 // with those of the next unless texels that nobody sees lie between: light leaks through the wall.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -41,5 +42,25 @@ std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atl
 std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
                                              const atlas::TexelMap& map,
                                              const trace::RayTracer& tracer);
+
+/// A place of a chart.
+struct ChartPoint {
+  FlatPoint at;
+  uint32_t chart = 0;
+};
+/// Whether light can be the same at two neighbouring places: nothing opaque is in the way of one of
+/// the ways up, across and down at a twentieth of a step above the surface, a half, one and two.
+/// Both charts bend without being in the way. A wall that leans over the surface, inside of which
+/// barrier_between() may begin, is seen.
+bool is_open_between(const scene::Scene& scene, const atlas::Atlas& atlas,
+                     const trace::RayTracer& tracer, const ChartPoint& a, const ChartPoint& b,
+                     float step_m);
+
+/// Calls visit(a, b) for all texels of one chart that are neighbours in a row, a column or a
+/// diagonal and open to each other (is_open_between), once for each pair, in the order of the
+/// texels.
+void for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
+                         const atlas::TexelMap& map, const trace::RayTracer& tracer,
+                         const std::function<void(uint32_t, uint32_t)>& visit);
 
 }  // namespace luxel::transport

@@ -15,8 +15,9 @@
 namespace luxel::transport {
 namespace {
 
-/// The height of a line above the surface, in texels: above what lies on it, such as a rug.
-constexpr float kLineHeight = 0.05f;
+/// The height of a line's end above the surface, in texels: above what lies on it, such as a rug;
+/// and beside a wall that leans over it, inside of which the line would begin.
+constexpr float kLineHeight = 0.05f, kLowHeight = 1e-3f;
 /// Texels of other charts that lie farther away than so many texels are no neighbours in space.
 constexpr float kFarTexels = 3;
 /// Texels around the four of a look-up that are asked, on each side.
@@ -29,18 +30,34 @@ constexpr int kRaysForInside = 32;
 struct Spot {
   FlatPoint at;
   uint32_t chart = 0;
-  float width_m = 0;  ///< of a texel there
+  float width_m = 0;                ///< of a texel there
+  float line_height = kLineHeight;  ///< in texels
 };
 
-Spot spot_at(const scene::Scene& scene, const atlas::Atlas& atlas, const scene::SurfacePoint& p) {
+Vec3 line_end(const Spot& s, float height) {
+  return s.at.position + s.at.normal * (height * s.width_m);
+}
+trace::Ray line_between(const Spot& a, const Spot& b) {
+  const Vec3 from = line_end(a, a.line_height);
+  return {from, 0, line_end(b, b.line_height) - from, 1};
+}
+/// What leans over a place is in its way.
+trace::Ray line_up(const Spot& s) {
+  const Vec3 from = line_end(s, kLowHeight);
+  return {from, 0, line_end(s, kLineHeight) - from, 1};
+}
+
+/// A spot over which nothing leans, for all that is known.
+Spot plain_spot(const scene::Scene& scene, const atlas::Atlas& atlas,
+                const scene::SurfacePoint& p) {
   return {flat_point(scene, p), atlas.chart[atlas.triangle_number(p.instance, p.triangle)],
           texel_width_m(scene, atlas, p.instance, p.triangle)};
 }
-
-trace::Ray line_between(const Spot& a, const Spot& b) {
-  const float height_m = kLineHeight * a.width_m;
-  const Vec3 from = a.at.position + a.at.normal * height_m;
-  return {from, 0, b.at.position + b.at.normal * height_m - from, 1};
+Spot spot_at(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,
+             const scene::SurfacePoint& p) {
+  Spot out = plain_spot(scene, atlas, p);
+  if (tracer.closest_hit(line_up(out)).found()) out.line_height = kLowHeight;
+  return out;
 }
 
 bool is_far(const Spot& a, const Spot& b) {
@@ -76,7 +93,9 @@ struct Texels {
   float diagonal_m;
 
   Spot spot(uint32_t texel) const {
-    return spot_at(in.scene, in.atlas, in.map.texels[texel].sample);
+    Spot out = plain_spot(in.scene, in.atlas, in.map.texels[texel].sample);
+    if (in.is_under(texel)) out.line_height = kLowHeight;
+    return out;
   }
   uint32_t at(int x, int y) const {
     const int side = in.map.resolution;
@@ -151,7 +170,8 @@ bool Texels::is_parted_within(uint32_t texel, std::span<const uint32_t> cover) c
     const auto is_hidden = [&](Vec2 p) {
       const Barycentric at = atlas::barycentric_in(corners, p + (middle - p) * kInwards);
       if (at.u < 0 || at.v < 0 || at.u + at.v > 1) return false;  // it has no area
-      const Spot there = spot_at(in.scene, in.atlas, {drawn.instance, drawn.triangle, at});
+      const Spot there =
+          spot_at(in.scene, in.atlas, in.tracer, {drawn.instance, drawn.triangle, at});
       return !sees(own, there) && are_open(own, there);
     };
     for (size_t k = 0; k < part.size(); ++k) {
@@ -231,6 +251,23 @@ Walls Texels::find_walls() const {
   return out;
 }
 
+/// Per texel a bit: something leans over its sample.
+std::vector<uint64_t> find_under(const OwnSides& in) {
+  constexpr size_t kBlock = 1024;  // whole words
+  const size_t count = in.map.texels.size();
+  std::vector<uint64_t> out((count + 63) / 64);
+  parallel_for(count, kBlock, [&](size_t begin, size_t end) {
+    std::vector<trace::Ray> rays;
+    for (size_t i = begin; i < end; ++i)
+      rays.push_back(line_up(plain_spot(in.scene, in.atlas, in.map.texels[i].sample)));
+    std::vector<uint8_t> blocked(rays.size());
+    in.tracer.occluded(rays, blocked);
+    for (size_t i = begin; i < end; ++i)
+      if (blocked[i - begin]) out[i / 64] |= uint64_t(1) << (i % 64);
+  });
+  return out;
+}
+
 uint32_t border_side(const atlas::TexelMap& map) { return uint32_t(map.resolution) + 2; }
 
 /// The place's four texels: those to the right have bit 0, those below bit 1.
@@ -290,6 +327,7 @@ LookupPlace lookup_place(const atlas::Atlas& atlas, const scene::SurfacePoint& p
 OwnSides find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
                         const atlas::TexelMap& map, const trace::RayTracer& tracer) {
   OwnSides out{scene, atlas, map, tracer};
+  out.under = find_under(out);
   const Walls walls = Texels{out, scene::world_bounds(scene).diagonal()}.find_walls();
   out.mixed = blocks_of(map, walls.parted), out.beside_solids = blocks_of(map, walls.beside);
   return out;
@@ -300,7 +338,7 @@ LookupPlace own_lookup(const OwnSides& sides, const scene::SurfacePoint& p, MayB
   const bool doubtful = inside == MayBeInside::yes && sides.is_beside_solids(place.base);
   if (!doubtful && !sides.is_mixed(place.base)) return place;
   const Texels texels{sides, 0};
-  const Spot here = spot_at(sides.scene, sides.atlas, p);
+  const Spot here = spot_at(sides.scene, sides.atlas, sides.tracer, p);
   const int side = int(border_side(sides.map));
   const int x0 = int(place.base) % side - 1, y0 = int(place.base) / side - 1;
   Four four;
@@ -370,14 +408,14 @@ uint64_t find_on_side(const scene::Scene& scene, const atlas::Atlas& atlas,
                       std::span<const scene::SurfacePoint> points, std::span<uint8_t> on_side) {
   std::vector<Spot> spots;
   std::vector<trace::Ray> rays;
-  const Spot own = spot_at(scene, atlas, sample);
+  const Spot own = spot_at(scene, atlas, tracer, sample);
   for (const scene::SurfacePoint& p : points) {
-    spots.push_back(spot_at(scene, atlas, p));
+    spots.push_back(spot_at(scene, atlas, tracer, p));
     rays.push_back(line_between(own, spots.back()));
   }
   std::vector<trace::Hit> hits(rays.size());
   tracer.closest_hits(rays, hits);
-  uint64_t traced = rays.size();
+  uint64_t traced = 2 * rays.size() + 1;
   for (size_t k = 0; k < points.size(); ++k)
     on_side[k] = !is_between(scene, atlas, own, spots[k], hits[k]);
   // Those that the sample does not see, around a corner, may be seen by others.

@@ -31,8 +31,10 @@ struct OwnSides {
   /// Bits per LookupPlace::base. Sides meet in its four texels; or a solid hides some of them from
   /// others, whose light a place in the open reads alone.
   std::vector<uint64_t> mixed{}, beside_solids{};
+  std::vector<uint64_t> under{};  ///< bits per texel: a wall leans over its sample
 
   bool is_mixed(uint32_t base) const { return mixed[base / 64] >> (base % 64) & 1; }
+  bool is_under(uint32_t texel) const { return under[texel / 64] >> (texel % 64) & 1; }
   bool is_beside_solids(uint32_t base) const { return beside_solids[base / 64] >> (base % 64) & 1; }
 };
 
@@ -41,7 +43,8 @@ enum class MayBeInside : bool { no, yes };
 
 /// Looks for walls between the samples of neighbouring texels, in rows, columns and diagonals, and
 /// within texels at the border of a chart. A line runs from place to place a twentieth of a texel
-/// above the surface; what is_barrier() stops it. Samples inside of solids do not count.
+/// above the surface, lower at an end beside a wall that leans over it; what is_barrier() stops it.
+/// Samples inside of solids do not count.
 OwnSides find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
                         const atlas::TexelMap& map, const trace::RayTracer& tracer);
 

@@ -1,35 +1,15 @@
 #include "luxel/pipeline/bake/denoise_light.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "luxel/base/check.h"
 #include "luxel/base/random.h"
 #include "luxel/light/supersample.h"
-#include "luxel/pipeline/texels/texel_layout.h"
+#include "luxel/pipeline/texels/connected_texels.h"
 #include "luxel/post/denoise.h"
 
 namespace luxel::pipeline {
 namespace {
-
-/// Per chart, the least number of those that it hangs together with by open seams. `max_angle_rad`:
-/// of the normals on both sides of a seam.
-std::vector<uint32_t> regions_of(const light::TexelScene& in, float max_angle_rad) {
-  std::vector<uint32_t> least(in.atlas.chart_count);
-  std::iota(least.begin(), least.end(), 0u);
-  const auto root = [&](uint32_t chart) {
-    while (least[chart] != chart) chart = least[chart] = least[least[chart]];
-    return chart;
-  };
-  const std::vector<post::Seam> seams = open_seams(
-      in.scene, in.atlas, in.tracer, post::find_seams(in.scene, in.atlas, max_angle_rad));
-  for (const post::Seam& s : seams) {
-    const uint32_t a = root(in.atlas.chart[s.triangle_a]), b = root(in.atlas.chart[s.triangle_b]);
-    least[std::max(a, b)] = std::min(a, b);
-  }
-  for (uint32_t chart = 0; chart < least.size(); ++chart) least[chart] = root(chart);
-  return least;
-}
 
 /// Any number: it sets these shadow rays apart from the first ones.
 constexpr uint64_t kAgainSeed = 0xa6a1;
@@ -69,7 +49,8 @@ Status denoise_light(const light::TexelScene& in, const BakeSettings& settings, 
   LUXEL_CHECK(light.variance.size() == light.irradiance.size());
   const post::DenoiseParams params;
   std::vector<uint32_t> regions;
-  if (settings.repair_leaks) regions = regions_of(in, params.max_normal_angle_rad);
+  if (settings.repair_leaks)
+    regions = connected_texels(in.scene, in.atlas, in.map, in.tracer, light.hidden);
   const post::TexelGeometry places{.scene = in.scene,
                                    .atlas = in.atlas,
                                    .map = in.map,

@@ -6,10 +6,9 @@
 namespace luxel::pipeline {
 
 /// Filters the direct part and the rest apart, for the edges of shadows are in the one and most of
-/// the noise is in the other. With settings.repair_leaks, light stays among charts that hang
-/// together by seams on which no barrier stands all along: charts are cut where walls stand on
-/// them, so none gets into a closed room. Texels whose direct light looks like a firefly get
-/// kLookAgain times the shadow rays of settings. Errors: cancelled.
+/// the noise is in the other. With settings.repair_leaks, light stays among texels that hang
+/// together (connected_texels()), so none gets into a closed room. Texels whose direct light looks
+/// like a firefly get kLookAgain times the shadow rays of settings. Errors: cancelled.
 Status denoise_light(const light::TexelScene& in, const BakeSettings& settings, TexelLight& light,
                      Progress& progress);
 inline constexpr int kLookAgain = 16;

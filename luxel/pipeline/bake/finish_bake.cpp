@@ -5,6 +5,7 @@
 #include "luxel/display/draw.h"
 #include "luxel/display/tone_map.h"
 #include "luxel/pipeline/bake/camera.h"
+#include "luxel/pipeline/texels/connected_texels.h"
 #include "luxel/pipeline/texels/shown_light.h"
 #include "luxel/pipeline/texels/texel_picture.h"
 #include "luxel/post/dilate.h"
@@ -30,11 +31,10 @@ std::vector<uint8_t> not_to_stitch(const Bake& bake) {
   return out;
 }
 
-/// Stitches all light of a bake: the whole, its layers and the maps beside it. `hidden`:
-/// not_to_stitch().
-Status stitch(std::span<const post::Seam> seams, std::span<const uint8_t> hidden, Bake& bake,
+/// Stitches all light of a bake: the whole, its layers and the maps beside it.
+Status stitch(std::span<const post::Seam> seams, const post::SeamTexels& texels, Bake& bake,
               Progress& progress) {
-  const post::SeamParams params{.hidden = hidden};
+  const post::SeamParams params{.texels = texels};
   std::vector<Rgb> before;
   if (!bake.light.layers.empty()) before = bake.light.irradiance;
   LUXEL_TRY_STATUS(post::stitch_seams(bake.map, seams, params, bake.light.irradiance, progress));
@@ -65,11 +65,16 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
   // Hidden texels have no light to tell, so seams are stitched without them, and they take what
   // their neighbours have then.
   std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
-  if (settings.repair_leaks) seams = open_seams(bake.scene, bake.atlas, tracer, std::move(seams));
-  bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance, hidden);
+  std::vector<uint32_t> regions;
+  if (settings.repair_leaks) {
+    seams = open_seams(bake.scene, bake.atlas, tracer, std::move(seams));
+    regions = connected_texels(bake.scene, bake.atlas, bake.map, tracer, bake.light.hidden);
+  }
+  const post::SeamTexels texels{hidden, regions};
+  bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance, texels);
   bake.seams = seams.size();
-  if (settings.stitch) LUXEL_TRY_STATUS(stitch(seams, hidden, bake, progress));
-  bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance, hidden);
+  if (settings.stitch) LUXEL_TRY_STATUS(stitch(seams, texels, bake, progress));
+  bake.seam_residual_after = post::seam_residual(bake.map, seams, bake.light.irradiance, texels);
   refill(settings.repair_leaks ? parted_texels(bake.scene, bake.atlas, bake.map, tracer)
                                : post::Parted{},
          bake);
@@ -77,7 +82,7 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
     bake.texel_pictures = draw_texels(
         bake.atlas, bake.map,
         {bake.light.hidden, bake.repair.overlapping, bake.repair.moved, bake.repair.refilled,
-         post::seam_errors(bake.map, seams, bake.light.irradiance, hidden)});
+         post::seam_errors(bake.map, seams, bake.light.irradiance, texels)});
   if (settings.error_map)
     bake.error_pictures = draw_errors(bake.atlas, bake.map, bake.light.errors);
   bake.lightmaps = post::lightmap_pages(bake.atlas, bake.map, bake.light.irradiance);

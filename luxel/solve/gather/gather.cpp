@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "luxel/base/clock.h"
 #include "luxel/base/free_memory.h"
@@ -9,9 +10,7 @@
 #include "luxel/solve/gather/bounce/bounces.h"
 #include "luxel/solve/gather/bounce/radiosity_map.h"
 #include "luxel/solve/gather/budget/adaptive.h"
-#include "luxel/solve/gather/budget/error_p95.h"
-#include "luxel/solve/gather/budget/expected_rms.h"
-#include "luxel/solve/gather/budget/texel_error.h"
+#include "luxel/solve/gather/budget/light_errors.h"
 #include "luxel/solve/gather/reuse/earlier_direct.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 #include "luxel/transport/back_faces.h"
@@ -31,13 +30,6 @@ constexpr double kSmallestRound = 1.0 / 16;
 constexpr double kDirectShare = 0.25;
 /// What noise may have of an error when texels cost more than the rest of its square: half of it.
 constexpr float kNoiseWithTexels = 0.70710678f;
-
-/// Variances of the noise, and with what texels cost; and relative errors by them.
-struct Errors {
-  std::vector<float> noise_variance, variance;
-  std::vector<float> direct, gathered, all;  ///< direct, gathered: of the noise
-  float noise_p95 = 0, p95 = 0;              ///< error_p95
-};
 
 constexpr uint8_t kPunctualLayer = 0, kOtherLayer = 1, kReflectedLayer = 2;
 
@@ -89,42 +81,12 @@ struct Progressive {
   size_t averaged = 0;
   TracedHits hits;
   Bounced bounced;
-  Errors errors;
+  LightErrors errors;
+  std::optional<ReadCheck> check;      ///< places at which what rays read is checked
   std::vector<Rgb> first_change;       ///< BounceParams
   double traced_s = 0, bounced_s = 0;  ///< of the last round in which something was traced
   uint64_t traced_rays = 0, traced_samples = 0;
 };
-
-/// Adds the variance that the light which rays pick up has since texels are as large as they are.
-void add_texel_error(const light::TexelScene& scene, const Progressive& light,
-                     std::span<float> variance) {
-  const std::vector<Rgb>& e = light.bounced.irradiance;
-  const double part = texel_error(scene.atlas, scene.map, scene.elements, light.hits, e);
-  for (size_t i = 0; i < variance.size(); ++i) {
-    const double off = part * double(luminance(e[i] - light.direct.irradiance[i]));
-    variance[i] += float(off * off);
-  }
-}
-
-Errors errors_of(const light::TexelScene& scene, int bounces, const Progressive& light) {
-  auto direct = pooled_variances(scene.atlas, scene.map,
-                                 {light.direct.variance, light.direct.split_variance});
-  const auto gathered = pooled_variances(scene.atlas, scene.map,
-                                         {light.bounced.variance, light.bounced.split_variance});
-  Errors out;
-  out.direct = relative_errors(direct, light.bounced.irradiance, light.hits);
-  out.gathered = relative_errors(gathered, light.bounced.irradiance, light.hits);
-  out.noise_variance = std::move(direct);
-  for (size_t i = 0; i < gathered.size(); ++i) out.noise_variance[i] += gathered[i];
-  const auto counts = [&](size_t i) { return !is_hidden(light.hits, i); };
-  out.all = relative_errors(out.noise_variance, light.bounced.irradiance, light.hits);
-  out.noise_p95 = error_p95(out.all, counts);
-  out.variance = out.noise_variance;
-  if (bounces != 0) add_texel_error(scene, light, out.variance);
-  out.all = relative_errors(out.variance, light.bounced.irradiance, light.hits);
-  out.p95 = error_p95(out.all, counts);
-  return out;
-}
 
 void show(const GatherObserver& observer, const Progressive& light) {
   if (!observer.on_estimate) return;
@@ -215,10 +177,19 @@ float last_tolerance(const Request& in) {
   return std::max(in.params.tolerance, float(std::min(of_error, kRoughestFromEarlier)));
 }
 
+/// How far the light so far is off. Errors: cancelled.
+Status judge(const Request& in, Progressive& light, Progress& progress) {
+  LUXEL_TRY(light.errors, light_errors(in.scene,
+                                       {light.direct, light.bounced, light.hits, in.behind,
+                                        light.check ? &*light.check : nullptr, in.params.bounces},
+                                       progress));
+  return {};
+}
+
 /// The light of the rays so far, which are not all, and how well it is known.
 Status estimate_round(const Request& in, Progressive& light, Progress& progress) {
   LUXEL_TRY_STATUS(bounce_round(in, kRoughTolerance, light, progress));
-  light.errors = errors_of(in.scene, in.params.bounces, light);
+  LUXEL_TRY_STATUS(judge(in, light, progress));
   show(in.observer, light);
   return {};
 }
@@ -354,11 +325,26 @@ Status trace_first(const Request& in, Progressive& light, Progress& progress) {
   return {};
 }
 
-/// What bounces have read. The counts of rays stay.
+/// What light was made of. The counts of rays stay.
 void drop_light(TracedHits& hits) {
-  hits.rounds.clear();
   free_memory(hits.sky), free_memory(hits.sky_by_layer);
   free_memory(hits.sky_luminance2), free_memory(hits.sky_first_less_second);
+}
+
+/// Places at which what rays read is checked, where that costs little beside the rays. Errors:
+/// cancelled, disk full.
+Status choose_places(const Request& in, Progressive& light, Progress& progress) {
+  const GatherParams& params = in.params;
+  const uint64_t rays = check_rays(sum_of(light.hits.samples), params.max_error > 0);
+  if (params.bounces == 0 || rays == 0) return {};
+  Progress own;  // its stages are not those of the bake
+  LUXEL_TRY(light.check, make_read_check(in.scene, in.sides, light.hits,
+                                         {.rays = rays,
+                                          .follows_near = params.bounces < 0,
+                                          .seed = params.seed,
+                                          .scratch_folder = in.stores.scratch_folder},
+                                         own));
+  return stopped(progress);
 }
 
 /// The light of source_layers().
@@ -388,16 +374,16 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
     out.layers = std::move(layers.irradiance), out.layers_shared_out = layers.shared_out;
   }
   out.hit_bytes_in_file = light.hits.bytes_in_file();
+  light.hits.rounds.clear();
+  LUXEL_TRY_STATUS(judge(in, light, progress));
   drop_light(light.hits);
-  light.errors = errors_of(in.scene, in.params.bounces, light);
   show(in.observer, light);
   return {};
 }
 
 /// Moves what the caller gets out of what is known in the end.
 void take_result(Progressive&& light, Gather& out) {
-  out.relative_error = expected_rms(
-      light.bounced.irradiance, {light.errors.noise_variance, light.errors.variance}, light.hits);
+  out.relative_error = light.errors.expected_rms;
   out.irradiance = std::move(light.bounced.irradiance);
   out.direct = std::move(light.direct.irradiance);
   out.direct_variance = std::move(light.direct.variance);
@@ -433,6 +419,7 @@ Result<Gather> gather(const light::TexelScene& scene, const light::LightLayers* 
   light.hits = no_hits(scene.elements.size(), in.layer_count());
   if (stores.earlier) light.bounced.irradiance = std::move(stores.earlier->irradiance);
   LUXEL_TRY_STATUS(trace_first(in, light, progress));
+  LUXEL_TRY_STATUS(choose_places(in, light, progress));
   // 3. Rounds of more rays where the estimated error is too large.
   for (bool more = in.adds_rounds(); more;) {
     LUXEL_TRY_STATUS(estimate_round(in, light, progress));

@@ -90,8 +90,8 @@ struct Gather {
   uint64_t supersampled = 0;  ///< elements whose direct light is a mean over points
   int sweeps = 0;
   uint64_t hit_bytes_in_file = 0;
-  /// Root mean square of the estimated standard errors over the mean irradiance, of elements that
-  /// no solid hides: of the noise (pooled_variances) and of what texels cost (texel_error).
+  /// Root mean square error to expect over the mean luminance, of elements that no solid hides: of
+  /// the noise (pooled_variances) and of what texels cost (texel_error).
   double relative_error = 0;
 };
 

@@ -106,7 +106,7 @@ TEST(TexelError, IsThatOfLightBetweenTexels) {
   std::fill(hits.samples.begin(), hits.samples.end(), uint16_t(1));
   std::vector<Rgb> light(n, {1, 1, 1});
   const auto error = [&] {
-    return texel_error(room->atlas, room->map, room->elements, hits, light);
+    return error_by_neighbours(room->atlas, room->map, room->elements, hits, light);
   };
   EXPECT_EQ(error(), 0);
   const auto chart = [&](size_t i) {

@@ -5,7 +5,7 @@
 namespace luxel::gather {
 namespace {
 
-constexpr double kOfNoise = 0.70710678, kOfTexels = 1.0 / 4;
+constexpr double kOfNoise = 0.70710678;
 
 }  // namespace
 
@@ -15,7 +15,8 @@ double expected_rms(std::span<const Rgb> irradiance, const SafeVariances& varian
   for (size_t i = 0; i < irradiance.size(); ++i) {
     if (is_hidden(hits, i)) continue;
     const double noise = double(variance.noise[i]), texels = double(variance.all[i]) - noise;
-    mean += double(luminance(irradiance[i])), sum += kOfNoise * noise + kOfTexels * texels;
+    mean += double(luminance(irradiance[i])),
+        sum += kOfNoise * noise + variance.likely_of_texels * texels;
     count += 1;
   }
   return mean > 0 ? std::sqrt(sum * count) / mean : 0;

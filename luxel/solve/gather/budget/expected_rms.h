@@ -11,14 +11,15 @@ namespace luxel::gather {
 /// Variances of each element's luminance, on the safe side [(W/m^2)^2].
 struct SafeVariances {
   std::span<const float> noise;  ///< pooled_variances() of direct and gathered light
-  std::span<const float> all;    ///< with what texel_error() adds
+  std::span<const float> all;    ///< with TexelError::safe
+  double likely_of_texels = 1;   ///< the likely square of what texels cost over the safe one
 };
 
 /// The root mean square error to expect over the mean luminance, of elements that no solid hides.
 /// It is smaller than the variances say, which are bounds:
 /// - Halves of n stratified samples tell the variance of n / 2, which is larger than twice that of
 ///   n. Along edges, where most of the noise is, it falls like n^-1.5: by sqrt(2) too large.
-/// - texel_error() holds in 95 of 100 scenes, and is about twice what it is in most.
+/// - TexelError::likely is smaller than TexelError::safe.
 /// [Mitchell96, section 4] for n^-1.5 of stratified samples in two dimensions.
 double expected_rms(std::span<const Rgb> irradiance, const SafeVariances& variance,
                     const TracedHits& hits);

@@ -48,11 +48,19 @@ struct SentSums {
   double squares = 0, sent = 0;
 };
 
+/// The root mean square of what is normal with `before` around 0 as long as it is not measured.
+double with_measured(double before, ReadError measured) {
+  const double b2 = before * before, m2 = measured.standard_error * measured.standard_error;
+  if (!std::isfinite(m2) || b2 + m2 == 0) return before;
+  const double mean = measured.part * b2 / (b2 + m2);
+  return std::sqrt(mean * mean + b2 * m2 / (b2 + m2));
+}
+
 }  // namespace
 
-double texel_error(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                   const transport::Elements& elements, const TracedHits& hits,
-                   std::span<const Rgb> irradiance) {
+double error_by_neighbours(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                           const transport::Elements& elements, const TracedHits& hits,
+                           std::span<const Rgb> irradiance) {
   const TexelLightMap light{atlas, map, hits, irradiance};
   constexpr size_t kBlock = 4096;
   std::vector<SentSums> blocks((irradiance.size() + kBlock - 1) / kBlock);
@@ -69,6 +77,11 @@ double texel_error(const atlas::Atlas& atlas, const atlas::TexelMap& map,
   SentSums all;
   for (const SentSums& s : blocks) all.squares += s.squares, all.sent += s.sent;
   return all.sent > 0 ? std::sqrt(kAlike * all.squares) / all.sent : 0;
+}
+
+TexelError texel_error(double by_neighbours, ReadError measured) {
+  constexpr double kLikely = 0.5;
+  return {with_measured(by_neighbours, measured), with_measured(kLikely * by_neighbours, measured)};
 }
 
 }  // namespace luxel::gather

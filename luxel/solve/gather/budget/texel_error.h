@@ -4,18 +4,30 @@
 #include <span>
 
 #include "luxel/atlas/atlas.h"
+#include "luxel/solve/gather/budget/read_check.h"
 #include "luxel/solve/gather/rays/traced_hits.h"
 #include "luxel/transport/elements.h"
 
 namespace luxel::gather {
 
 /// The light that rays pick up is bilinear between texels, and even beyond the last texel of a
-/// chart. By how much of itself it may be off, as one standard error: the sum of the texels'
-/// errors, as their neighbours show them, over the sum of what they send. The places where light
+/// chart. By how much of itself it may be off, as one standard error, as the texels' neighbours
+/// show it: the sum of the texels' errors over the sum of what they send. The places where light
 /// varies, such as a lamp's surroundings or the edge of a shadow, are few, and what they miss or
 /// add is missing or too much wherever rays see them. docs/method/gather.md
-double texel_error(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                   const transport::Elements& elements, const TracedHits& hits,
-                   std::span<const Rgb> irradiance);
+double error_by_neighbours(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                           const transport::Elements& elements, const TracedHits& hits,
+                           std::span<const Rgb> irradiance);
+
+/// By how much of itself gathered light is off since texels are as large as they are, as one
+/// standard error.
+struct TexelError {
+  double safe = 0;    ///< on the safe side: to be stated as a bound
+  double likely = 0;  ///< as it most likely is
+};
+/// What is known before is normal with error_by_neighbours(), which holds in most scenes and is
+/// twice the truth in the middle of them. A measurement replaces it as far as it is the surer one:
+/// of two normal densities' product, the root of the mean square.
+TexelError texel_error(double by_neighbours, ReadError measured);
 
 }  // namespace luxel::gather

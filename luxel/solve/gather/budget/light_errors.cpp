@@ -1,0 +1,61 @@
+#include "luxel/solve/gather/budget/light_errors.h"
+
+#include "luxel/solve/gather/bounce/sweep.h"
+#include "luxel/solve/gather/budget/adaptive.h"
+#include "luxel/solve/gather/budget/error_p95.h"
+#include "luxel/solve/gather/budget/expected_rms.h"
+#include "luxel/solve/gather/budget/texel_error.h"
+
+namespace luxel::gather {
+namespace {
+
+/// What texels cost all gathered light. Errors: the file of hits cannot be read, cancelled.
+Result<TexelError> error_of_texels(const light::TexelScene& scene, const LightToJudge& light,
+                                   Progress& progress) {
+  const std::vector<Rgb>& e = light.bounced.irradiance;
+  ReadError measured;
+  if (light.check) {
+    LUXEL_TRY(measured,
+              read_error(*light.check, {scene.map, scene.elements, light.hits, light.behind, e},
+                         progress));
+  }
+  return texel_error(error_by_neighbours(scene.atlas, scene.map, scene.elements, light.hits, e),
+                     measured);
+}
+
+}  // namespace
+
+Result<LightErrors> light_errors(const light::TexelScene& scene, const LightToJudge& light,
+                                 Progress& progress) {
+  const std::vector<Rgb>& e = light.bounced.irradiance;
+  auto direct = pooled_variances(scene.atlas, scene.map,
+                                 {light.direct.variance, light.direct.split_variance});
+  const auto gathered = pooled_variances(scene.atlas, scene.map,
+                                         {light.bounced.variance, light.bounced.split_variance});
+  LightErrors out;
+  out.direct = relative_errors(direct, e, light.hits);
+  out.gathered = relative_errors(gathered, e, light.hits);
+  out.noise_variance = std::move(direct);
+  for (size_t i = 0; i < gathered.size(); ++i) out.noise_variance[i] += gathered[i];
+  const auto counts = [&](size_t i) { return !is_hidden(light.hits, i); };
+  out.all = relative_errors(out.noise_variance, e, light.hits);
+  out.noise_p95 = error_p95(out.all, counts);
+  out.variance = out.noise_variance;
+  TexelError texels;
+  if (light.bounces != 0) {
+    LUXEL_TRY(texels, error_of_texels(scene, light, progress));
+  }
+  for (size_t i = 0; i < e.size(); ++i) {
+    const Rgb read = e[i] - source_of(light.hits, light.direct.irradiance, i);
+    const double off = texels.safe * double(luminance(read));
+    out.variance[i] += float(off * off);
+  }
+  out.all = relative_errors(out.variance, e, light.hits);
+  out.p95 = error_p95(out.all, counts);
+  const double likely = texels.safe > 0 ? texels.likely / texels.safe : 0;
+  out.expected_rms =
+      expected_rms(e, {out.noise_variance, out.variance, likely * likely}, light.hits);
+  return out;
+}
+
+}  // namespace luxel::gather

@@ -1,0 +1,63 @@
+// What commands state about their errors, and what is true, scene by scene.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "luxel/base/progress.h"
+#include "luxel/base/result.h"
+#include "luxel/validate/agreement.h"
+#include "luxel/validate/stated_errors.h"
+
+namespace luxel::bench {
+
+/// What one statement says and what is true, one entry per scene.
+struct Account {
+  validate::Claim claim = validate::Claim::bound;
+  std::vector<validate::Compared> compared;
+  std::vector<uint64_t> seed;  ///< of its scene
+};
+using Accounts = std::map<std::string, Account>;
+
+/// An entry of the scene of this seed.
+struct Entry {
+  validate::Claim claim = validate::Claim::bound;
+  uint64_t seed = 0;
+  validate::Compared compared{};
+};
+
+void add_entry(Accounts& accounts, const std::string& name, const Entry& entry);
+
+/// Paths of the judge, in each of its two answers.
+inline constexpr int kPathsEach = 1024;
+
+/// A scene that is ready, and the judge's light of it.
+struct JudgedScene {
+  const validate::Prepared& scene;
+  const validate::Judged& judged;
+  uint64_t seed = 1;
+  std::string lamp{};  ///< RandomScene::lamp
+
+  double mean_light() const {
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < judged.first.size(); ++i)
+      if (!judged.hidden[i]) sum += double(luminance(judged.mean(i))), count += 1;
+    return count > 0 ? sum / count : 0;
+  }
+  double area_m2() const {
+    double sum = 0;
+    const scene::Scene& s = scene.scene;
+    for (uint32_t i = 0; i < s.instances.size(); ++i)
+      for (uint32_t t = 0; t < s.meshes[s.instances[i].mesh].triangles.size(); ++t)
+        sum += scene::area_m2(scene::world_triangle(s, i, t));
+    return sum;
+  }
+};
+
+/// What the codec loses of light, over all patches: the same matrix without a codec is the truth.
+/// What all of the relighter errs by: the path tracer is. Errors: cancelled.
+Status add_relight(const JudgedScene& s, Accounts& accounts, Progress& progress);
+
+}  // namespace luxel::bench

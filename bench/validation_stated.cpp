@@ -115,6 +115,7 @@ bool is_asked_for(const StatedParams& params, std::string_view what) {
 
 /// Every solver, the relighter and the probe on every scene.
 Status add_scenes(const StatedParams& params, Accounts& accounts, Progress& progress) {
+  if (params.only == kFactors) return {};
   for (uint64_t seed = params.first_seed; seed < params.first_seed + kScenes; ++seed) {
     validate::RandomScene random = validate::random_scene(seed);
     LUXEL_TRY(const auto p, validate::prepare(std::move(random.scene), kResolution, progress));

@@ -1,36 +1,23 @@
 #include "luxel/solve/gather/gather.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include "luxel/base/clock.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/solve/gather/bounce/bounce_layers.h"
-#include "luxel/solve/gather/bounce/bounces.h"
 #include "luxel/solve/gather/bounce/radiosity_map.h"
 #include "luxel/solve/gather/budget/adaptive.h"
-#include "luxel/solve/gather/budget/light_errors.h"
-#include "luxel/solve/gather/reuse/earlier_direct.h"
+#include "luxel/solve/gather/reuse/earlier.h"
+#include "luxel/solve/gather/steps.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 #include "luxel/transport/back_faces.h"
 
 namespace luxel::gather {
 namespace {
 
-/// From an earlier bake's light they end at this part of its error: what is left does not show
-/// beside that, nor above this.
+/// The last bounces on the light of an earlier bake end at this part of its error, beside which what
+/// is left does not show; or at this part of the light, if that is less.
 constexpr double kPartOfError = 1.0 / 20, kRoughestFromEarlier = 3e-4;
-/// What the last bounces take, over those of a round: from a tolerance of 1e-2 to one of 1e-4 is as
-/// far as from 1 to 1e-2, and sweeps over all rays take more than sparse ones.
-constexpr double kFineOverRough = 4;
-/// A round that adds less than this part of the rays is not worth its bounces.
-constexpr double kSmallestRound = 1.0 / 16;
-/// The part of a round's rays that may be shadow rays.
-constexpr double kDirectShare = 0.25;
-/// What noise may have of an error when texels cost more than the rest of its square: half of it.
-constexpr float kNoiseWithTexels = 0.70710678f;
-
 constexpr uint8_t kPunctualLayer = 0, kOtherLayer = 1, kReflectedLayer = 2;
 
 /// Layers that tell light straight from its sources apart. That which rays bring that are followed
@@ -50,210 +37,11 @@ SourceLayers source_layers(const light::Lights& lights) {
   return {all_in(kPunctualLayer, kOtherLayer), all_in(kReflectedLayer, kReflectedLayer)};
 }
 
-/// What gather() was asked for.
-struct Request {
-  const light::TexelScene& scene;
-  const light::LightLayers* layers;
-  const GatherParams& params;
-  const GatherStores& stores;
-  const GatherObserver& observer;
-  const transport::OwnSides& sides;
-  std::vector<StoredHit> behind{};                      ///< places_behind()
-  const light::LightLayers* followed_layers = nullptr;  ///< of followed rays; null: `layers`
-
-  size_t layer_count() const { return layers ? layers->size() : 0; }
-  /// Whether rays are added where light is not known well enough.
-  bool adds_rounds() const { return params.max_error > 0 || params.seconds > 0; }
-  light::SupersampleParams supersample_params() const {
-    return {.points = params.supersample,
-            .direct = {.samples = params.direct_samples,
-                       .seed = params.seed,
-                       .parts = stores.parts,
-                       .layers = layers}};
-  }
-};
-
-/// The light so far, and the rays that it is made of.
-struct Progressive {
-  light::DirectLight direct;
-  std::vector<Rgb> direct_before;  ///< direct light of an earlier bake
-  light::DirectLevels levels;
-  size_t averaged = 0;
-  TracedHits hits;
-  Bounced bounced;
-  LightErrors errors;
-  std::optional<ReadCheck> check;      ///< places at which what rays read is checked
-  std::vector<Rgb> first_change;       ///< BounceParams
-  double traced_s = 0, bounced_s = 0;  ///< of the last round in which something was traced
-  uint64_t traced_rays = 0, traced_samples = 0;
-};
-
-void show(const GatherObserver& observer, const Progressive& light) {
-  if (!observer.on_estimate) return;
-  const double n = double(std::max<size_t>(light.hits.size(), 1));
-  observer.on_estimate(
-      {light.bounced.irradiance, double(sum_of(light.hits.samples)) / n, light.errors.p95});
-}
-
-/// Direct light, from scratch or from an earlier bake. Errors: cancelled.
-Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
-  const light::TexelScene& scene = in.scene;
-  const light::SupersampleParams supersample = in.supersample_params();
-  Earlier* earlier = in.stores.earlier;
-  if (earlier && !earlier->direct.irradiance.empty()) {
-    if (earlier->rays.same_light) light.direct_before = earlier->direct.irradiance;
-    LUXEL_TRY_STATUS(update_direct(scene, supersample, *earlier, progress));
-    light.direct = std::move(earlier->direct);
-    light.levels = std::move(earlier->levels);
-    light.averaged = size_t(std::ranges::count(light.levels.averaged, 1));
-    return {};
-  }
-  LUXEL_TRY(light.direct, light::direct_light(scene.scene, scene.elements, scene.lights,
-                                              scene.tracer, supersample.direct, progress));
-  LUXEL_TRY(const light::Supersampled averaged,
-            light::supersample(scene, supersample, light.direct, progress));
-  light.direct.rays += averaged.rays;
-  light.averaged = averaged.texels.size();
-  // Only rounds, and bakes that are kept, ask how finely light was sampled.
-  if (!in.adds_rounds() && in.stores.keep == nullptr) return {};
-  light.levels = {std::vector<uint8_t>(scene.elements.size()),
-                  std::vector<uint8_t>(scene.elements.size())};
-  for (const uint32_t i : averaged.texels) light.levels.averaged[i] = 1;
-  return {};
-}
-
-Status trace_round(const Request& in, std::span<const uint16_t> target, Progressive& light,
-                   Progress& progress) {
-  const TraceParams trace{
-      .seed = in.params.seed,
-      .memory_limit_bytes = in.stores.hit_memory_bytes,
-      .scratch_folder = in.stores.scratch_folder,
-      .follows_near = in.params.bounces < 0,
-      .parts = in.stores.parts,
-      .keep = in.stores.keep,
-      .earlier = in.stores.earlier ? &in.stores.earlier->rays : nullptr,
-      .layers = in.layers,
-      .followed_layers = in.followed_layers,
-  };
-  const auto start = Clock::now();
-  const uint64_t before = light.hits.rays, samples = sum_of(light.hits.samples);
-  LUXEL_TRY_STATUS(
-      trace_more(trace_scene(in.scene, &in.sides), target, trace, light.hits, progress));
-  // What was kept says nothing about how long rays take.
-  const Progress::Snapshot stage = progress.snapshot();
-  if (stage.total == stage.skipped) return {};
-  light.traced_s = seconds_since(start) * double(stage.total) / double(stage.total - stage.skipped);
-  light.traced_rays = light.hits.rays - before;
-  light.traced_samples = sum_of(light.hits.samples) - samples;
-  return {};
-}
-
-/// What hits leave of the memory that they may take.
-uint64_t spare_bytes(const GatherStores& stores, const TracedHits& hits) {
-  return stores.hit_memory_bytes - std::min(hits.bytes_in_memory(), stores.hit_memory_bytes);
-}
-
-Status bounce_round(const Request& in, float tolerance, Progressive& light, Progress& progress) {
-  const auto start = Clock::now();
-  const std::vector<Rgb> guess = std::move(light.bounced.irradiance);
-  const BounceParams params{.bounces = in.params.bounces,
-                            .tolerance = tolerance,
-                            .start = guess,
-                            .first_change = light.first_change,
-                            .unknown = light.hits.unknown,
-                            .spare_bytes = spare_bytes(in.stores, light.hits)};
-  light.bounced = {}, light.errors = {};
-  LUXEL_TRY(light.bounced, bounce(in.scene.map, in.scene.elements, light.hits,
-                                  light.direct.irradiance, in.behind, params, progress));
-  free_memory(light.first_change), free_memory(light.hits.unknown);
-  light.bounced_s = seconds_since(start);
-  return {};
-}
-
 /// The tolerance of the last bounces.
 float last_tolerance(const Request& in) {
   if (!in.stores.earlier) return in.params.tolerance;
   const double of_error = kPartOfError * in.stores.earlier->relative_error;
   return std::max(in.params.tolerance, float(std::min(of_error, kRoughestFromEarlier)));
-}
-
-/// How far the light so far is off. Errors: cancelled.
-Status judge(const Request& in, Progressive& light, Progress& progress) {
-  LUXEL_TRY(light.errors, light_errors(in.scene,
-                                       {light.direct, light.bounced, light.hits, in.behind,
-                                        light.check ? &*light.check : nullptr, in.params.bounces},
-                                       progress));
-  return {};
-}
-
-/// The light of the rays so far, which are not all, and how well it is known.
-Status estimate_round(const Request& in, Progressive& light, Progress& progress) {
-  LUXEL_TRY_STATUS(bounce_round(in, kRoughTolerance, light, progress));
-  LUXEL_TRY_STATUS(judge(in, light, progress));
-  show(in.observer, light);
-  return {};
-}
-
-/// How many rays the next round may have, such that it and the last bounces end in time: tracing
-/// takes as long per ray as the last round, and bounces grow with the number of all rays.
-double affordable_rays(const Progressive& light, double seconds_left) {
-  const double rays = double(light.hits.rays), bounces_s = light.bounced_s * (1 + kFineOverRough);
-  // Where all rays were found, some are traced to know what they take.
-  if (light.traced_rays == 0) return kSmallestRound * rays;
-  const double per_ray = light.traced_s / double(std::max<uint64_t>(light.traced_rays, 1));
-  return (seconds_left - bounces_s) / (per_ray + bounces_s / rays);
-}
-
-/// Tells the watcher what is still to come, when an error is asked for.
-void expect_rounds(const GatherParams& params, std::span<const uint16_t> target,
-                   const Progressive& light, Progress& progress) {
-  std::vector<uint64_t> rounds =
-      rounds_to_come(light.errors.all, light.errors.gathered, params.max_error, params.max_samples,
-                     light.hits.samples);
-  const double before = double(sum_of(light.hits.samples));
-  if (rounds.empty()) rounds.push_back(0);
-  rounds.front() = sum_of(target) - uint64_t(before);  // that is known
-  const double per_sample = light.traced_s / double(std::max<uint64_t>(light.traced_samples, 1));
-  std::vector<Stage> stages;
-  double samples = before;
-  for (const uint64_t added : rounds) {
-    samples += double(added);
-    stages.push_back({"trace rays", double(added) * per_sample});
-    stages.push_back({"bounces", light.bounced_s * samples / before});
-  }
-  stages.push_back({"bounces", kFineOverRough * light.bounced_s * samples / before});
-  progress.expect(std::move(stages));
-}
-
-/// Adds rays where they are needed most. False: there is nothing to add, or no time.
-Result<bool> next_round(const Request& in, double seconds_left, Progressive& light,
-                        Progress& progress) {
-  const GatherParams& params = in.params;
-  if (light.errors.p95 <= params.max_error) return false;
-  // The rest is what texels cost, and no ray helps.
-  if (light.errors.noise_p95 <= kNoiseWithTexels * params.max_error) return false;
-  // Indirect light gets more rays, direct light more shadow rays, where either is off by too much.
-  const float each = error_of_part(params.max_error);
-  const light::SupersampleParams supersample = in.supersample_params();
-  std::vector<uint16_t> target =
-      next_samples(light.errors.gathered, each, params.max_samples, light.hits.samples);
-  float direct_above = each;
-  // A time budget takes both back to what it can pay for, and ends the rounds.
-  if (params.seconds > 0) {
-    const double rays = affordable_rays(light, seconds_left);
-    if (rays < kSmallestRound * double(light.hits.rays)) return false;
-    const double rays_per_sample = double(light.hits.rays) / double(sum_of(light.hits.samples));
-    keep_affordable(light.errors.gathered, uint64_t((1 - kDirectShare) * rays / rays_per_sample),
-                    light.hits.samples, target);
-    direct_above =
-        affordable_error(light.errors.direct, each, kDirectShare * rays, supersample, light.levels);
-  }
-  if (params.seconds <= 0) expect_rounds(params, target, light, progress);
-  LUXEL_TRY(const size_t finer, refine_direct(in.scene, light.errors.direct, direct_above,
-                                              supersample, light.levels, light.direct, progress));
-  if (target == light.hits.samples) return finer > 0;
-  LUXEL_TRY_STATUS(trace_round(in, target, light, progress));
-  return true;
 }
 
 /// Light that surfaces send each other, if it is spread evenly: of what they reflect of the direct
@@ -329,22 +117,6 @@ Status trace_first(const Request& in, Progressive& light, Progress& progress) {
 void drop_light(TracedHits& hits) {
   free_memory(hits.sky), free_memory(hits.sky_by_layer);
   free_memory(hits.sky_luminance2), free_memory(hits.sky_first_less_second);
-}
-
-/// Places at which what rays read is checked, where that costs little beside the rays. Errors:
-/// cancelled, disk full.
-Status choose_places(const Request& in, Progressive& light, Progress& progress) {
-  const GatherParams& params = in.params;
-  const uint64_t rays = check_rays(sum_of(light.hits.samples), params.max_error > 0);
-  if (params.bounces == 0 || rays == 0) return {};
-  Progress own;  // its stages are not those of the bake
-  LUXEL_TRY(light.check, make_read_check(in.scene, in.sides, light.hits,
-                                         {.rays = rays,
-                                          .follows_near = params.bounces < 0,
-                                          .seed = params.seed,
-                                          .scratch_folder = in.stores.scratch_folder},
-                                         own));
-  return stopped(progress);
 }
 
 /// The light of source_layers().

@@ -1,0 +1,122 @@
+#include "luxel/solve/gather/steps.h"
+
+#include <algorithm>
+
+#include "luxel/base/clock.h"
+#include "luxel/base/free_memory.h"
+#include "luxel/solve/gather/budget/adaptive.h"
+#include "luxel/solve/gather/reuse/earlier_direct.h"
+#include "luxel/solve/gather/trace/trace_hits.h"
+
+namespace luxel::gather {
+
+void show(const GatherObserver& observer, const Progressive& light) {
+  if (!observer.on_estimate) return;
+  const double n = double(std::max<size_t>(light.hits.size(), 1));
+  observer.on_estimate(
+      {light.bounced.irradiance, double(sum_of(light.hits.samples)) / n, light.errors.p95});
+}
+
+Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
+  const light::TexelScene& scene = in.scene;
+  const light::SupersampleParams supersample = in.supersample_params();
+  Earlier* earlier = in.stores.earlier;
+  if (earlier && !earlier->direct.irradiance.empty()) {
+    if (earlier->rays.same_light) light.direct_before = earlier->direct.irradiance;
+    LUXEL_TRY_STATUS(update_direct(scene, supersample, *earlier, progress));
+    light.direct = std::move(earlier->direct);
+    light.levels = std::move(earlier->levels);
+    light.averaged = size_t(std::ranges::count(light.levels.averaged, 1));
+    return {};
+  }
+  LUXEL_TRY(light.direct, light::direct_light(scene.scene, scene.elements, scene.lights,
+                                              scene.tracer, supersample.direct, progress));
+  LUXEL_TRY(const light::Supersampled averaged,
+            light::supersample(scene, supersample, light.direct, progress));
+  light.direct.rays += averaged.rays;
+  light.averaged = averaged.texels.size();
+  // Only rounds, and bakes that are kept, ask how finely light was sampled.
+  if (!in.adds_rounds() && in.stores.keep == nullptr) return {};
+  light.levels = {std::vector<uint8_t>(scene.elements.size()),
+                  std::vector<uint8_t>(scene.elements.size())};
+  for (const uint32_t i : averaged.texels) light.levels.averaged[i] = 1;
+  return {};
+}
+
+Status trace_round(const Request& in, std::span<const uint16_t> target, Progressive& light,
+                   Progress& progress) {
+  const TraceParams trace{
+      .seed = in.params.seed,
+      .memory_limit_bytes = in.stores.hit_memory_bytes,
+      .scratch_folder = in.stores.scratch_folder,
+      .follows_near = in.params.bounces < 0,
+      .parts = in.stores.parts,
+      .keep = in.stores.keep,
+      .earlier = in.stores.earlier ? &in.stores.earlier->rays : nullptr,
+      .layers = in.layers,
+      .followed_layers = in.followed_layers,
+  };
+  const auto start = Clock::now();
+  const uint64_t before = light.hits.rays, samples = sum_of(light.hits.samples);
+  LUXEL_TRY_STATUS(
+      trace_more(trace_scene(in.scene, &in.sides), target, trace, light.hits, progress));
+  // What was kept says nothing about how long rays take.
+  const Progress::Snapshot stage = progress.snapshot();
+  if (stage.total == stage.skipped) return {};
+  light.traced_s = seconds_since(start) * double(stage.total) / double(stage.total - stage.skipped);
+  light.traced_rays = light.hits.rays - before;
+  light.traced_samples = sum_of(light.hits.samples) - samples;
+  return {};
+}
+
+uint64_t spare_bytes(const GatherStores& stores, const TracedHits& hits) {
+  return stores.hit_memory_bytes - std::min(hits.bytes_in_memory(), stores.hit_memory_bytes);
+}
+
+Status bounce_round(const Request& in, float tolerance, Progressive& light, Progress& progress) {
+  const auto start = Clock::now();
+  const std::vector<Rgb> guess = std::move(light.bounced.irradiance);
+  const BounceParams params{.bounces = in.params.bounces,
+                            .tolerance = tolerance,
+                            .start = guess,
+                            .first_change = light.first_change,
+                            .unknown = light.hits.unknown,
+                            .spare_bytes = spare_bytes(in.stores, light.hits)};
+  light.bounced = {}, light.errors = {};
+  LUXEL_TRY(light.bounced, bounce(in.scene.map, in.scene.elements, light.hits,
+                                  light.direct.irradiance, in.behind, params, progress));
+  free_memory(light.first_change), free_memory(light.hits.unknown);
+  light.bounced_s = seconds_since(start);
+  return {};
+}
+
+Status choose_places(const Request& in, Progressive& light, Progress& progress) {
+  const GatherParams& params = in.params;
+  const uint64_t rays = check_rays(sum_of(light.hits.samples), params.max_error > 0);
+  if (params.bounces == 0 || rays == 0) return {};
+  Progress own;  // its stages are not those of the bake
+  LUXEL_TRY(light.check, make_read_check(in.scene, in.sides, light.hits,
+                                         {.rays = rays,
+                                          .follows_near = params.bounces < 0,
+                                          .seed = params.seed,
+                                          .scratch_folder = in.stores.scratch_folder},
+                                         own));
+  return stopped(progress);
+}
+
+Status judge(const Request& in, Progressive& light, Progress& progress) {
+  LUXEL_TRY(light.errors, light_errors(in.scene,
+                                       {light.direct, light.bounced, light.hits, in.behind,
+                                        light.check ? &*light.check : nullptr, in.params.bounces},
+                                       progress));
+  return {};
+}
+
+Status estimate_round(const Request& in, Progressive& light, Progress& progress) {
+  LUXEL_TRY_STATUS(bounce_round(in, kRoughTolerance, light, progress));
+  LUXEL_TRY_STATUS(judge(in, light, progress));
+  show(in.observer, light);
+  return {};
+}
+
+}  // namespace luxel::gather

@@ -1,0 +1,76 @@
+// The steps of gather(), by which light and what it is made of grow.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "luxel/solve/gather/budget/light_errors.h"
+#include "luxel/solve/gather/gather.h"
+#include "luxel/transport/own_side.h"
+
+namespace luxel::gather {
+
+/// What gather() was asked for.
+struct Request {
+  const light::TexelScene& scene;
+  const light::LightLayers* layers;
+  const GatherParams& params;
+  const GatherStores& stores;
+  const GatherObserver& observer;
+  const transport::OwnSides& sides;
+  std::vector<StoredHit> behind{};                      ///< places_behind()
+  const light::LightLayers* followed_layers = nullptr;  ///< of followed rays; null: `layers`
+
+  size_t layer_count() const { return layers ? layers->size() : 0; }
+  /// Whether rays are added where light is not known well enough.
+  bool adds_rounds() const { return params.max_error > 0 || params.seconds > 0; }
+  light::SupersampleParams supersample_params() const {
+    return {.points = params.supersample,
+            .direct = {.samples = params.direct_samples,
+                       .seed = params.seed,
+                       .parts = stores.parts,
+                       .layers = layers}};
+  }
+};
+
+/// The light so far, and the rays that it is made of.
+struct Progressive {
+  light::DirectLight direct;
+  std::vector<Rgb> direct_before;  ///< direct light of an earlier bake
+  light::DirectLevels levels;
+  size_t averaged = 0;
+  TracedHits hits;
+  Bounced bounced;
+  LightErrors errors;
+  std::optional<ReadCheck> check;      ///< places at which what rays read is checked
+  std::vector<Rgb> first_change;       ///< BounceParams
+  double traced_s = 0, bounced_s = 0;  ///< of the last round in which something was traced
+  uint64_t traced_rays = 0, traced_samples = 0;
+};
+
+/// Direct light, from scratch or from an earlier bake. Errors: cancelled.
+Status begin_direct(const Request& in, Progressive& light, Progress& progress);
+/// Rays of each element up to so many as `target` says. Errors: cancelled, disk full.
+Status trace_round(const Request& in, std::span<const uint16_t> target, Progressive& light,
+                   Progress& progress);
+/// All bounces of the light of those rays. Errors: cancelled, the file of hits cannot be read.
+Status bounce_round(const Request& in, float tolerance, Progressive& light, Progress& progress);
+/// Places at which what rays read is checked, where that costs little beside the rays. Errors:
+/// cancelled, disk full.
+Status choose_places(const Request& in, Progressive& light, Progress& progress);
+/// How far the light so far is off. Errors: cancelled.
+Status judge(const Request& in, Progressive& light, Progress& progress);
+/// The light of the rays so far, which are not all, and how well it is known.
+Status estimate_round(const Request& in, Progressive& light, Progress& progress);
+/// Adds rays where they are needed most. False: there is nothing to add, or no time. Errors:
+/// cancelled, disk full.
+Result<bool> next_round(const Request& in, double seconds_left, Progressive& light,
+                        Progress& progress);
+
+/// Shows the light so far to who watches.
+void show(const GatherObserver& observer, const Progressive& light);
+/// What hits leave of the memory that they may take.
+uint64_t spare_bytes(const GatherStores& stores, const TracedHits& hits);
+
+}  // namespace luxel::gather

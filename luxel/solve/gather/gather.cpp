@@ -15,8 +15,8 @@
 namespace luxel::gather {
 namespace {
 
-/// The last bounces on the light of an earlier bake end at this part of its error, beside which what
-/// is left does not show; or at this part of the light, if that is less.
+/// The last bounces on the light of an earlier bake end at this part of its error, beside which
+/// what is left does not show; or at this part of the light, if that is less.
 constexpr double kPartOfError = 1.0 / 20, kRoughestFromEarlier = 3e-4;
 constexpr uint8_t kPunctualLayer = 0, kOtherLayer = 1, kReflectedLayer = 2;
 

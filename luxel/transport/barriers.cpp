@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "luxel/base/parallel.h"
+#include "luxel/scene/facet.h"
 #include "luxel/transport/back_faces.h"
 
 namespace luxel::transport {
@@ -37,6 +39,9 @@ trace::Ray line_above(const FlatPoint& a, const FlatPoint& b, float height_m) {
   return {from, 0, to - from, 1};
 }
 
+/// What is known of a texel.
+enum class Openness : uint8_t { not_asked, open, enclosed };
+
 /// Work that goes over the texels.
 struct Search {
   const scene::Scene& scene;
@@ -44,6 +49,7 @@ struct Search {
   const atlas::TexelMap& map;
   const trace::RayTracer& tracer;
   float diagonal_m;
+  std::span<Openness> openness;  ///< per texel, as in_the_open() finds it
 
   uint32_t chart_of(uint32_t texel) const { return atlas.chart[map.texels[texel].triangle_number]; }
   FlatPoint place(uint32_t texel) const { return flat_point(scene, map.texels[texel].sample); }
@@ -56,10 +62,16 @@ struct Search {
     return other != atlas::kNone && chart_of(other) == chart_of(texel) ? other : atlas::kNone;
   }
 
+  /// A texel is in many pairs: rays ask once. Threads that ask at a time find the same.
   bool in_the_open(uint32_t texel) const {
+    const std::atomic_ref<Openness> known(openness[texel]);
+    if (const Openness k = known.load(std::memory_order_relaxed); k != Openness::not_asked)
+      return k == Openness::open;
     const FlatPoint p = place(texel);
     const Vec3 from = trace::offset_origin(p.position, p.normal, diagonal_m);
-    return !is_enclosed(scene, tracer, from, p.normal, kRaysForOpen, diagonal_m);
+    const bool open = !is_enclosed(scene, tracer, from, p.normal, kRaysForOpen, diagonal_m);
+    known.store(open ? Openness::open : Openness::enclosed, std::memory_order_relaxed);
+    return open;
   }
 
   std::optional<Plane> barrier(uint32_t a, uint32_t b, const Offset& o) const {
@@ -173,14 +185,14 @@ std::vector<atlas::PartedPoints> Search::parted(uint32_t begin, uint32_t end,
   }
   std::vector<uint8_t> blocked(rays.size());
   tracer.occluded(rays, blocked);
-  // Those with a barrier and no way past it.
+  // Those with a barrier and no way past it; most of them lie inside of solids.
   std::vector<atlas::PartedPoints> found;
   for (size_t n = 0; n < pairs.size(); ++n) {
     if (!blocked[n]) continue;
     const auto& [i, j, o] = pairs[n];
-    const auto plane = barrier(i, j, o);
-    if (!plane || is_way_past(i, o, ways) || !in_the_open(i) || !in_the_open(j)) continue;
-    found.push_back({chart_of(i), place(i).position, place(j).position, *plane});
+    if (is_way_past(i, o, ways) || !in_the_open(i) || !in_the_open(j)) continue;
+    if (const auto plane = barrier(i, j, o))
+      found.push_back({chart_of(i), place(i).position, place(j).position, *plane});
   }
   return found;
 }
@@ -188,7 +200,9 @@ std::vector<atlas::PartedPoints> Search::parted(uint32_t begin, uint32_t end,
 }  // namespace
 
 FlatPoint flat_point(const scene::Scene& scene, const scene::SurfacePoint& p) {
-  return {scene::world_position(scene, p), scene::front_normal(scene, p.instance, p.triangle)};
+  const scene::Facet facet = scene::facet_of(scene, p.instance, p.triangle);
+  const scene::Triangle3& t = facet.corners;
+  return {interpolate(t.a, t.b, t.c, p.at), facet.front};
 }
 
 bool is_barrier(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t chart,
@@ -224,7 +238,8 @@ std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const at
                                              const atlas::TexelMap& map,
                                              const trace::RayTracer& tracer) {
   constexpr size_t kBlock = 256;
-  const Search search{scene, atlas, map, tracer, scene::world_bounds(scene).diagonal()};
+  std::vector<Openness> openness(map.texels.size());
+  const Search search{scene, atlas, map, tracer, scene::world_bounds(scene).diagonal(), openness};
   const std::vector<uint8_t> ways = search.open_ways();
   std::vector<std::vector<atlas::PartedPoints>> found((ways.size() + kBlock - 1) / kBlock);
   parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "luxel/atlas/cover.h"
@@ -88,9 +89,13 @@ struct Walls {
   std::vector<uint8_t> parted, beside;
 };
 
+/// What is known of a texel's sample.
+enum class Inside : uint8_t { not_asked, no, yes };
+
 struct Texels {
   const OwnSides& in;
   float diagonal_m;
+  std::span<Inside> inside{};  ///< per texel, as is_inside_solid() finds it; not for look-ups
 
   Spot spot(uint32_t texel) const {
     Spot out = plain_spot(in.scene, in.atlas, in.map.texels[texel].sample);
@@ -115,8 +120,15 @@ struct Texels {
     const BackFaces seen = count_back_faces(in.scene, in.tracer, from, s.at.normal, kRaysForInside);
     return 4 * seen.one_sided > 3 * seen.rays || 100 * all_backs(seen) >= 98 * seen.rays;
   }
-  bool are_open(const Spot& a, const Spot& b) const {
-    return !is_inside_solid(a) && !is_inside_solid(b);
+  /// Of a texel's sample. A texel is in many pairs: rays ask once. Threads that ask at a time find
+  /// the same.
+  bool is_inside_solid(uint32_t texel) const {
+    const std::atomic_ref<Inside> known(inside[texel]);
+    if (const Inside k = known.load(std::memory_order_relaxed); k != Inside::not_asked)
+      return k == Inside::yes;
+    const bool yes = is_inside_solid(spot(texel));
+    known.store(yes ? Inside::yes : Inside::no, std::memory_order_relaxed);
+    return yes;
   }
 
   bool is_at_border(uint32_t texel) const;
@@ -130,10 +142,10 @@ struct Texels {
 /// Whether a wall stands between two neighbours that do not see each other. Around the corner of a
 /// box, diagonal ones are seen by the texel between them.
 bool Texels::parts(const Neighbours& pair) const {
-  const Spot own = spot(pair.a), there = spot(pair.b);
-  if (!are_open(own, there)) return false;
+  if (is_inside_solid(pair.a) || is_inside_solid(pair.b)) return false;
   const auto [dx, dy] = pair.offset;
   if (dx == 0 || dy == 0) return true;
+  const Spot own = spot(pair.a), there = spot(pair.b);
   for (const uint32_t between : {beside(pair.a, dx, 0), beside(pair.a, 0, dy)}) {
     if (between == atlas::kNone) continue;
     const Spot elbow = spot(between);
@@ -172,7 +184,7 @@ bool Texels::is_parted_within(uint32_t texel, std::span<const uint32_t> cover) c
       if (at.u < 0 || at.v < 0 || at.u + at.v > 1) return false;  // it has no area
       const Spot there =
           spot_at(in.scene, in.atlas, in.tracer, {drawn.instance, drawn.triangle, at});
-      return !sees(own, there) && are_open(own, there);
+      return !sees(own, there) && !is_inside_solid(texel) && !is_inside_solid(there);
     };
     for (size_t k = 0; k < part.size(); ++k) {
       const Vec2 next = part[(k + 1) % part.size()];
@@ -328,7 +340,8 @@ OwnSides find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
                         const atlas::TexelMap& map, const trace::RayTracer& tracer) {
   OwnSides out{scene, atlas, map, tracer};
   out.under = find_under(out);
-  const Walls walls = Texels{out, scene::world_bounds(scene).diagonal()}.find_walls();
+  std::vector<Inside> inside(map.texels.size());
+  const Walls walls = Texels{out, scene::world_bounds(scene).diagonal(), inside}.find_walls();
   out.mixed = blocks_of(map, walls.parted), out.beside_solids = blocks_of(map, walls.beside);
   return out;
 }

@@ -66,19 +66,21 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
   const auto sky_rays =
       uint32_t(std::clamp(kSkyRays / params.tolerance, kLeastSkyRays, kMostSkyRays));
   const SkyScene sky{scene, unlinked.lights.around, tracer, s.diagonal_m};
-  const auto sky_at = [&](const Receiver& r) {
-    return soft_sky_at(
-        sky, {to_float(r.position), to_float(r.normal), to_float(r.geometric_normal)}, sky_rays);
+  const auto sky_at = [&](const Receiver& r, SkyRays& rays) {
+    return soft_sky_at(sky,
+                       {to_float(r.position), to_float(r.normal), to_float(r.geometric_normal)},
+                       sky_rays, rays);
   };
   // Each receiver gathers from all faces.
   progress.begin("irradiance", receivers.size());
   parallel_for(receivers.size(), 32, [&](size_t begin, size_t end) {
     Gathering gathering(s, tracer, sources, gathered);
+    SkyRays rays;
     for (size_t i = begin; i < end && !progress.cancelled(); ++i) {
       out[i] += gathering.from_faces(receivers[i], nullptr);
       if (!unlinked.has_sky) continue;
       out[i] += count_all ? scene.background * (kPi * float(std::max(0.0, 1 - gathering.covered())))
-                          : sky_at(receivers[i]);
+                          : sky_at(receivers[i], rays);
     }
     progress.advance(end - begin);
   });

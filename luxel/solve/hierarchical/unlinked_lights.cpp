@@ -100,6 +100,18 @@ void add_points(const Element& e, const Faces& faces, const Probe& probe,
   }
 }
 
+void turn_rays(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t count,
+               SkyRays& rays) {
+  rays.normal = point.normal, rays.geometric_normal = point.geometric_normal, rays.count = count;
+  rays.direction.clear();
+  const Frame frame = frame_around(point.normal);
+  for (uint32_t k = 0; k < count; ++k) {
+    const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 5)));
+    if (dot(d, point.geometric_normal) > 0) rays.direction.push_back(d);
+  }
+  light::soft_radiance(sky.scene, sky.around, rays.direction, rays.radiance);
+}
+
 /// E of the soft sky at each point.
 std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x,
                            const UnlinkedLights& unlinked, const transport::Elements& points) {
@@ -107,30 +119,31 @@ std::vector<Rgb> sky_light(const scene::Scene& scene, const Exchange& x,
   if (!unlinked.has_sky) return out;
   const SkyScene sky{scene, unlinked.lights.around, x.tracer, x.diagonal_m};
   parallel_for(points.size(), 64, [&](size_t begin, size_t end) {
+    SkyRays rays;
     for (size_t i = begin; i < end; ++i)
       out[i] = soft_sky_at(sky, {points.position[i], points.normal[i], points.normal[i]},
-                           kUnlinkedLightsSkyRays);
+                           kUnlinkedLightsSkyRays, rays);
   });
   return out;
 }
 
 }  // namespace
 
-Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t count) {
-  const auto frame = frame_around(point.normal);
+Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t count,
+                SkyRays& rays) {
+  if (rays.count != count || rays.normal != point.normal ||
+      rays.geometric_normal != point.geometric_normal)
+    turn_rays(sky, point, count, rays);
   const Vec3 from = trace::offset_origin(point.position, point.geometric_normal, sky.diagonal_m);
-  std::vector<trace::Ray> rays;
-  for (uint32_t k = 0; k < count; ++k) {
-    const Vec3 d = frame.to_world(cosine_hemisphere_sample(sobol_owen_2d(k, 5)));
-    if (dot(d, point.geometric_normal) > 0) rays.push_back({from, 0, d, INFINITY});
-  }
-  std::vector<uint8_t> blocked(rays.size());
-  sky.tracer.occluded(rays, blocked);
+  rays.rays.clear();
+  for (const Vec3 d : rays.direction) rays.rays.push_back({from, 0, d, INFINITY});
+  rays.blocked.resize(rays.rays.size());
+  sky.tracer.occluded(rays.rays, rays.blocked);
   // Summed in double: a sky of one radiance gives its share of the rays, whatever their order.
   double r = 0, g = 0, b = 0;
-  for (size_t k = 0; k < rays.size(); ++k) {
-    if (blocked[k]) continue;
-    const Rgb l = light::soft_radiance(sky.scene, sky.around, rays[k].direction);
+  for (size_t k = 0; k < rays.blocked.size(); ++k) {
+    if (rays.blocked[k]) continue;
+    const Rgb l = rays.radiance[k];
     r += double(l.x), g += double(l.y), b += double(l.z);
   }
   const double share = kPiDouble / double(count);

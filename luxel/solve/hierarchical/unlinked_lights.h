@@ -23,10 +23,22 @@ struct SkyScene {
   const trace::RayTracer& tracer;
   float diagonal_m = 0;  ///< of the scene's box
 };
-/// E of the soft light of the surroundings at a point [W/m^2], by `rays` cosine-distributed rays:
-/// pi / rays times the sum of the radiance of those that leave the scene. All points send theirs in
-/// the same directions of their frames, so that E has steps but no noise.
-Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t rays);
+/// Cosine-distributed rays towards the sky, the same for all points with these normals, and what
+/// the sky sends along them.
+struct SkyRays {
+  Vec3 normal{}, geometric_normal{};
+  uint32_t count = 0;           ///< with those below the surface
+  std::vector<Vec3> direction;  ///< those above it
+  std::vector<Rgb> radiance;    ///< of the soft light of the surroundings, per direction
+  std::vector<trace::Ray> rays;
+  std::vector<uint8_t> blocked;
+};
+/// E of the soft light of the surroundings at a point [W/m^2], by `count` rays: pi / count times
+/// the sum of the radiance of those that leave the scene. All points send theirs in the same
+/// directions of their frames, so that E has steps but no noise. `rays` are those of the last call,
+/// which stay where the normals do.
+Rgb soft_sky_at(const SkyScene& sky, const transport::SmoothPoint& point, uint32_t count,
+                SkyRays& rays);
 /// The largest radiance of the soft surroundings [W/(sr m^2)]: E of the sky is at most pi times it.
 float brightest_sky(const scene::Scene& scene, const light::Surroundings& around);
 

@@ -14,7 +14,7 @@ namespace {
 
 /// Heights of lines, in steps: of that which a barrier blocks, and of ways over it.
 constexpr float kLow = 0.5f;
-/// Of lines over what lies on a surface, such as a rug; and of where ways begin.
+/// Heights, in steps: of lines over what lies on a surface, such as a rug; and of where ways begin.
 constexpr float kLowest = 0.05f, kFoot = 1e-3f;
 constexpr std::array kOver{1.0f, 2.0f};
 constexpr int kRaysForOpen = 32;

@@ -120,8 +120,8 @@ struct Texels {
     const BackFaces seen = count_back_faces(in.scene, in.tracer, from, s.at.normal, kRaysForInside);
     return 4 * seen.one_sided > 3 * seen.rays || 100 * all_backs(seen) >= 98 * seen.rays;
   }
-  /// Of a texel's sample. A texel is in many pairs: rays ask once. Threads that ask at a time find
-  /// the same.
+  /// The answer for a texel's sample, for which rays are traced once: a texel is in many pairs.
+  /// Threads that ask at a time find the same.
   bool is_inside_solid(uint32_t texel) const {
     const std::atomic_ref<Inside> known(inside[texel]);
     if (const Inside k = known.load(std::memory_order_relaxed); k != Inside::not_asked)

@@ -196,7 +196,8 @@ Result<std::vector<Rgb>> reflected_by_paths(const ProbeSettings& s, const scene:
   return out;
 }
 
-/// Of the mean over all receivers of one place: each says how wide its own paths scatter.
+/// Squared errors of the mean over all receivers of one place: each says how wide its own paths
+/// scatter.
 Squares squares_of(const reference::TexelPaths& traced) {
   const auto n = double(traced.irradiance.size());
   Squares out;

@@ -13,8 +13,8 @@
 namespace luxel::pipeline {
 namespace {
 
-/// Of the shading normals on both sides of a seam: what the denoiser mixes, and more than stitching
-/// ties together.
+/// The largest angle between the shading normals on both sides of a seam: that which the denoiser
+/// mixes, and more than stitching ties together.
 constexpr float kMaxAngle_rad = 0.35f;
 
 struct Texels {

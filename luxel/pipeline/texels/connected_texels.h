@@ -1,4 +1,4 @@
-// Which texels light can be the same on. docs/method/leaks.md
+// Regions of texels that no wall parts: light can be the same on them. docs/method/leaks.md
 #pragma once
 
 #include <cstdint>

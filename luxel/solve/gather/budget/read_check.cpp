@@ -21,7 +21,7 @@ namespace {
 constexpr int kRaysOfPlace = 4, kShadowRaysOfPlace = 4;
 /// That which meets a place counts, too.
 constexpr uint64_t kRaysPerPlace = 1 + kRaysOfPlace + kShadowRaysOfPlace;
-/// Of a bake's rays, one in so many; and bounds of the number.
+/// A bake's rays for each that checks; and bounds of the number of those.
 constexpr uint64_t kSamplesPerRay = 32, kFewest = 1 << 15, kMost = 1 << 20;
 /// The number where an error is asked for: light is known to some thousandths of itself by so many.
 constexpr uint64_t kForError = 1 << 19;

@@ -7,6 +7,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/import/import.h"
 #include "luxel/pipeline/bake/denoise_light.h"
+#include "luxel/pipeline/texels/connected_texels.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/validate/agreement.h"
 #include "luxel/validate/prepared.h"
@@ -55,7 +56,9 @@ Status measure(const std::string& name, scene::Scene scene, Table& table) {
     // The filter, in place.
     const double light_s = processor_seconds_since(start);
     start = std::clock();
-    LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), settings, bake.light, progress));
+    LUXEL_TRY_STATUS(pipeline::denoise_light(
+        p->input(), settings, pipeline::connected_texels(p->input(), bake.light.hidden), bake.light,
+        progress));
     const double seconds = processor_seconds_since(start);
     const validate::Errors after =
         validate::errors_of(bake.light.irradiance, reference, bake.light.hidden);
@@ -85,7 +88,9 @@ Status measure_large(Table& table) {
   LUXEL_TRY(validate::Timed bake, validate::solve(*p, "gather", settings, progress));
   const double light_s = processor_seconds_since(start);
   start = std::clock();
-  LUXEL_TRY_STATUS(pipeline::denoise_light(p->input(), settings, bake.light, progress));
+  LUXEL_TRY_STATUS(pipeline::denoise_light(
+      p->input(), settings, pipeline::connected_texels(p->input(), bake.light.hidden), bake.light,
+      progress));
   const double seconds = processor_seconds_since(start);
   table.notes.push_back(
       fmt::format("The Cornell box at 1024 x 1024 ({} texels), 64 samples: {:.1f} processor "

@@ -12,6 +12,7 @@
 #include "luxel/display/tone_map.h"
 #include "luxel/pipeline/bake/denoise_light.h"
 #include "luxel/pipeline/settings/quality.h"
+#include "luxel/pipeline/texels/connected_texels.h"
 #include "luxel/scene/procedural.h"
 
 namespace luxel::bench {
@@ -144,7 +145,9 @@ Result<std::array<QualityFigures, 2>> measure_run(const QualityCase& c, const Qu
   for (const bool denoised : {false, true}) {
     if (denoised) {
       start = std::clock();
-      LUXEL_TRY_STATUS(pipeline::denoise_light(c.input(), settings, light, progress));
+      const light::TexelScene in = c.input();
+      const std::vector<uint32_t> regions = pipeline::connected_texels(in, light.hidden);
+      LUXEL_TRY_STATUS(pipeline::denoise_light(in, settings, regions, light, progress));
       seconds += processor_seconds_since(start);
     }
     if (!is_shown(run, denoised)) continue;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "luxel/base/deadline.h"
+#include "luxel/base/free_memory.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/process_memory.h"
 #include "luxel/import/import.h"
@@ -17,6 +18,7 @@
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/memory.h"
 #include "luxel/pipeline/solver/stage_seconds.h"
+#include "luxel/pipeline/texels/connected_texels.h"
 #include "luxel/pipeline/texels/resolution.h"
 #include "luxel/pipeline/texels/two_sides.h"
 #include "luxel/scene/sides.h"
@@ -47,7 +49,6 @@ Status solve(const BakeSettings& settings, const light::TexelScene& input,
         "by --solver {}: they are too dark; gather and reference have it",
         settings.solver));
   LUXEL_TRY(bake.light, solver.solve(input, settings, stores, observer, progress));
-  if (settings.denoise) LUXEL_TRY_STATUS(denoise_light(input, settings, bake.light, progress));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};
 }
@@ -148,12 +149,20 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
   else if (!looks_at_places(settings))
     observer.on_traced = [&] { transport::drop_places(ready.elements); };
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
+  std::vector<uint32_t> regions;
+  if (settings.repair_leaks) {
+    progress.begin("walls", 0);
+    regions = connected_texels(input, bake.light.hidden);
+  }
+  if (settings.denoise)
+    LUXEL_TRY_STATUS(denoise_light(input, settings, regions, bake.light, progress));
   if (keepers.cache) keepers.cache->solved();
   LUXEL_TRY(bake.surface_maps, surface_maps(settings, input, masked, bake.light.hidden, progress));
   const std::string dark =
       settings.light == LightPart::all ? about_dark_surfaces(bake) : std::string();
   if (!dark.empty()) bake.warnings.push_back(dark);
-  LUXEL_TRY_STATUS(repair_light(settings, ready.tracer, bake, progress));
+  LUXEL_TRY_STATUS(repair_light(settings, ready.tracer, regions, bake, progress));
+  free_memory(regions);
   LUXEL_TRY_STATUS(note_lights(bake.scene, ready.lights, settings.layers, bake.layers));
   LUXEL_TRY_STATUS(add_directions(settings, input, bake, progress));
   return draw_preview(settings, ready.tracer, bake, progress);

@@ -5,7 +5,6 @@
 #include "luxel/base/check.h"
 #include "luxel/base/random.h"
 #include "luxel/light/supersample.h"
-#include "luxel/pipeline/texels/connected_texels.h"
 #include "luxel/post/denoise.h"
 
 namespace luxel::pipeline {
@@ -44,13 +43,10 @@ Result<std::vector<Rgb>> direct_light_again(const light::TexelScene& in,
 
 }  // namespace
 
-Status denoise_light(const light::TexelScene& in, const BakeSettings& settings, TexelLight& light,
-                     Progress& progress) {
+Status denoise_light(const light::TexelScene& in, const BakeSettings& settings,
+                     std::span<const uint32_t> regions, TexelLight& light, Progress& progress) {
   LUXEL_CHECK(light.variance.size() == light.irradiance.size());
   const post::DenoiseParams params;
-  std::vector<uint32_t> regions;
-  if (settings.repair_leaks)
-    regions = connected_texels(in.scene, in.atlas, in.map, in.tracer, light.hidden);
   const post::TexelGeometry places{.scene = in.scene,
                                    .atlas = in.atlas,
                                    .map = in.map,

@@ -6,11 +6,11 @@
 namespace luxel::pipeline {
 
 /// Filters the direct part and the rest apart, for the edges of shadows are in the one and most of
-/// the noise is in the other. With settings.repair_leaks, light stays among texels that hang
-/// together (connected_texels()), so none gets into a closed room. Texels whose direct light looks
-/// like a firefly get kLookAgain times the shadow rays of settings. Errors: cancelled.
-Status denoise_light(const light::TexelScene& in, const BakeSettings& settings, TexelLight& light,
-                     Progress& progress);
+/// the noise is in the other. Light stays within each of `regions` (connected_texels(), or none),
+/// so none gets into a closed room. Texels whose direct light looks like a firefly get kLookAgain
+/// times the shadow rays of settings. Errors: cancelled.
+Status denoise_light(const light::TexelScene& in, const BakeSettings& settings,
+                     std::span<const uint32_t> regions, TexelLight& light, Progress& progress);
 inline constexpr int kLookAgain = 16;
 
 }  // namespace luxel::pipeline

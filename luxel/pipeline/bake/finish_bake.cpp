@@ -5,7 +5,6 @@
 #include "luxel/display/draw.h"
 #include "luxel/display/tone_map.h"
 #include "luxel/pipeline/bake/camera.h"
-#include "luxel/pipeline/texels/connected_texels.h"
 #include "luxel/pipeline/texels/shown_light.h"
 #include "luxel/pipeline/texels/texel_picture.h"
 #include "luxel/post/dilate.h"
@@ -58,18 +57,14 @@ void refill(const post::Parted& parted, Bake& bake) {
 
 }  // namespace
 
-Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
-                    Progress& progress) {
+Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer,
+                    std::span<const uint32_t> regions, Bake& bake, Progress& progress) {
   progress.begin("seams", 0);
   const std::vector<uint8_t> hidden = not_to_stitch(bake);
   // Hidden texels have no light to tell, so seams are stitched without them, and they take what
   // their neighbours have then.
   std::vector<post::Seam> seams = post::find_seams(bake.scene, bake.atlas);
-  std::vector<uint32_t> regions;
-  if (settings.repair_leaks) {
-    seams = open_seams(bake.scene, bake.atlas, tracer, std::move(seams));
-    regions = connected_texels(bake.scene, bake.atlas, bake.map, tracer, bake.light.hidden);
-  }
+  if (settings.repair_leaks) seams = open_seams(bake.scene, bake.atlas, tracer, std::move(seams));
   const post::SeamTexels texels{hidden, regions};
   bake.seam_residual_before = post::seam_residual(bake.map, seams, bake.light.irradiance, texels);
   bake.seams = seams.size();

@@ -5,11 +5,11 @@
 
 namespace luxel::pipeline {
 
-/// Repairs the light of hidden texels and at seams (settings.repair_leaks, settings.stitch), then
-/// makes the lightmaps, those of layers, and the pictures of texels and errors that are asked for.
-/// Errors: cancelled.
-Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
-                    Progress& progress);
+/// Repairs the light of hidden texels and at seams (settings.repair_leaks, settings.stitch),
+/// without mixing any of `regions` (connected_texels(), or none). Then makes the lightmaps, those
+/// of layers, and the pictures of texels and errors that are asked for. Errors: cancelled.
+Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer,
+                    std::span<const uint32_t> regions, Bake& bake, Progress& progress);
 
 /// Directional maps and probes where they are asked for, of the light that repair_light() left.
 /// Errors: too little memory, cancelled.

@@ -17,13 +17,6 @@ namespace {
 /// mixes, and more than stitching ties together.
 constexpr float kMaxAngle_rad = 0.35f;
 
-struct Texels {
-  const scene::Scene& scene;
-  const atlas::Atlas& atlas;
-  const atlas::TexelMap& map;
-  const trace::RayTracer& tracer;
-};
-
 /// Sets that grow together; each is known by the least of its members.
 struct Joined {
   std::vector<uint32_t> least;
@@ -44,7 +37,8 @@ struct Read {
   std::array<uint32_t, 4> texel{};
   size_t count = 0;
 };
-Read read_at(const Texels& in, std::span<const uint8_t> hidden, uint32_t triangle, Vec2 at) {
+Read read_at(const light::TexelScene& in, std::span<const uint8_t> hidden, uint32_t triangle,
+             Vec2 at) {
   const int side = in.map.resolution;
   const int x0 = int(std::floor(at.x - 0.5f)), y0 = int(std::floor(at.y - 0.5f));
   Read out;
@@ -60,7 +54,7 @@ Read read_at(const Texels& in, std::span<const uint8_t> hidden, uint32_t triangl
 }
 
 /// Whether the samples of two texels on both sides of a seam are open to each other.
-bool are_open(const Texels& in, uint32_t a, uint32_t b) {
+bool are_open(const light::TexelScene& in, uint32_t a, uint32_t b) {
   const auto place = [&](uint32_t texel) {
     const atlas::Texel& t = in.map.texels[texel];
     return transport::ChartPoint{transport::flat_point(in.scene, t.sample),
@@ -73,7 +67,7 @@ bool are_open(const Texels& in, uint32_t a, uint32_t b) {
 }
 
 /// Joins what an open seam has on both sides.
-void join_over(const Texels& in, std::span<const uint8_t> hidden, const post::Seam& seam,
+void join_over(const light::TexelScene& in, std::span<const uint8_t> hidden, const post::Seam& seam,
                Joined& regions) {
   const float texels = std::max(length(seam.a1 - seam.a0), length(seam.b1 - seam.b0));
   const int count = std::max(2, int(std::ceil(2 * texels)));
@@ -91,16 +85,16 @@ void join_over(const Texels& in, std::span<const uint8_t> hidden, const post::Se
 
 }  // namespace
 
-std::vector<uint32_t> connected_texels(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                       const atlas::TexelMap& map, const trace::RayTracer& tracer,
+std::vector<uint32_t> connected_texels(const light::TexelScene& in,
                                        std::span<const uint8_t> hidden) {
-  Joined regions(map.texels.size());
-  transport::for_open_neighbours(scene, atlas, map, tracer, [&](uint32_t a, uint32_t b) {
-    if (!hidden[a] && !hidden[b]) regions.join(a, b);
-  });
-  for (const post::Seam& seam :
-       open_seams(scene, atlas, tracer, post::find_seams(scene, atlas, kMaxAngle_rad)))
-    join_over({scene, atlas, map, tracer}, hidden, seam, regions);
+  Joined regions(in.map.texels.size());
+  transport::for_open_neighbours(in.scene, in.atlas, in.map, in.tracer,
+                                 [&](uint32_t a, uint32_t b) {
+                                   if (!hidden[a] && !hidden[b]) regions.join(a, b);
+                                 });
+  for (const post::Seam& seam : open_seams(in.scene, in.atlas, in.tracer,
+                                           post::find_seams(in.scene, in.atlas, kMaxAngle_rad)))
+    join_over(in, hidden, seam, regions);
   for (uint32_t i = 0; i < regions.least.size(); ++i) regions.least[i] = regions.root(i);
   return std::move(regions.least);
 }

@@ -46,6 +46,11 @@ double fine_number(RandomStream& random) {
   return double(u.x) + double(u.y) * 0x1p-24;
 }
 
+EmitterPoint point_on(const Emitter& e, Vec2 u) {
+  const Barycentric at = triangle_sample(u);
+  return {&e, at, interpolate(e.corners.a, e.corners.b, e.corners.c, at)};
+}
+
 /// To a float of [0, 1).
 float below_one(double u) { return std::clamp(float(u), 0.0f, 1 - 0x1p-24f); }
 
@@ -147,17 +152,14 @@ Emitters collect_emitters(const scene::Scene& scene, const Surfaces& surfaces) {
 
 EmitterPoint sample_emitters(const Emitters& emitters, RandomStream& random) {
   const Emitter& e = emitters.triangles[pick(emitters.chance_below, fine_number(random))];
-  const Barycentric at = triangle_sample(random.next2());
-  return {&e, at, interpolate(e.corners.a, e.corners.b, e.corners.c, at)};
+  return point_on(e, random.next2());
 }
 
 EmitterPoint emitter_point(const Emitters& emitters, double x, double y) {
   const std::vector<double>& below = emitters.chance_below;
   const size_t k = pick(below, x);
   const double left = (x * below.back() - below[k]) / (below[k + 1] - below[k]);
-  const Emitter& e = emitters.triangles[k];
-  const Barycentric at = triangle_sample({below_one(left), below_one(y)});
-  return {&e, at, interpolate(e.corners.a, e.corners.b, e.corners.c, at)};
+  return point_on(emitters.triangles[k], {below_one(left), below_one(y)});
 }
 
 SkySampler sky_sampler(const scene::Environment& map) {

@@ -272,7 +272,7 @@ void for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
                          const atlas::TexelMap& map, const trace::RayTracer& tracer,
                          const std::function<void(uint32_t, uint32_t)>& visit) {
   constexpr size_t kBlock = 2048;
-  const Search search{scene, atlas, map, tracer, 0};
+  const Search search{scene, atlas, map, tracer, 0, {}};
   std::vector<uint8_t> ways(map.texels.size());
   parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
     search.find_forward_ways(

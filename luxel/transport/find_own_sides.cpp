@@ -1,0 +1,217 @@
+// Where a map has texels of more than one side of a wall next to each other.
+#include <algorithm>
+#include <array>
+#include <atomic>
+
+#include "luxel/atlas/cover.h"
+#include "luxel/atlas/footprint.h"
+#include "luxel/base/parallel.h"
+#include "luxel/scene/drawn_triangle.h"
+#include "luxel/transport/back_faces.h"
+#include "luxel/transport/spots.h"
+
+namespace luxel::transport {
+namespace {
+
+constexpr int kRaysForInside = 32;
+
+/// Neighbours on the map.
+struct Neighbours {
+  uint32_t a, b;
+  std::array<int, 2> offset;  ///< of b from a
+};
+
+/// Per texel, 1 where a wall parts it from a neighbour or parts the texel itself; and where
+/// anything hides it from a neighbour.
+struct Walls {
+  std::vector<uint8_t> parted, beside;
+};
+
+/// What is known of a texel's sample.
+enum class Inside : uint8_t { not_asked, no, yes };
+
+/// Where walls stand between texels and within them.
+struct WallSearch : TexelSpots {
+  float diagonal_m;
+  std::span<Inside> inside{};  ///< per texel, as is_inside_solid() finds it
+
+  /// Whether light at a spot is never read, since it lies inside a solid for sure: more than half
+  /// of what it sees would do.
+  bool is_inside_solid(const Spot& s) const {
+    const Vec3 from = trace::offset_origin(s.at.position, s.at.normal, diagonal_m);
+    const BackFaces seen = count_back_faces(in.scene, in.tracer, from, s.at.normal, kRaysForInside);
+    return 4 * seen.one_sided > 3 * seen.rays || 100 * all_backs(seen) >= 98 * seen.rays;
+  }
+  /// The answer for a texel's sample, for which rays are traced once: a texel is in many pairs.
+  /// Threads that ask at a time find the same.
+  bool is_inside_solid(uint32_t texel) const {
+    const std::atomic_ref<Inside> known(inside[texel]);
+    if (const Inside k = known.load(std::memory_order_relaxed); k != Inside::not_asked)
+      return k == Inside::yes;
+    const bool yes = is_inside_solid(spot(texel));
+    known.store(yes ? Inside::yes : Inside::no, std::memory_order_relaxed);
+    return yes;
+  }
+
+  bool is_at_border(uint32_t texel) const;
+  bool parts(const Neighbours& pair) const;
+  bool is_parted_within(uint32_t texel, std::span<const uint32_t> cover) const;
+  std::vector<Neighbours> blocked(uint32_t begin, uint32_t end) const;
+  std::vector<Neighbours> blocked() const;
+  Walls find_walls() const;
+};
+
+/// Whether a wall stands between two neighbours that do not see each other. Around the corner of a
+/// box, diagonal ones are seen by the texel between them.
+bool WallSearch::parts(const Neighbours& pair) const {
+  if (is_inside_solid(pair.a) || is_inside_solid(pair.b)) return false;
+  const auto [dx, dy] = pair.offset;
+  if (dx == 0 || dy == 0) return true;
+  const Spot own = spot(pair.a), there = spot(pair.b);
+  for (const uint32_t between : {beside(pair.a, dx, 0), beside(pair.a, 0, dy)}) {
+    if (between == atlas::kNone) continue;
+    const Spot elbow = spot(between);
+    if (sees(own, elbow) && sees(elbow, there)) return false;
+  }
+  return true;
+}
+
+/// The corners of the part of a triangle that lies in a texel, in texels.
+std::vector<Vec2> part_in_texel(const std::array<Vec2, 3>& corners, const atlas::Texel& texel) {
+  const atlas::UvTriangle triangle =
+      atlas::uv_triangle({to_double(corners[0]), to_double(corners[1]), to_double(corners[2])});
+  if (triangle.area2 == 0) return {};
+  const auto [corner, count] = atlas::clipped_corners(triangle, int(texel.x), int(texel.y));
+  std::vector<Vec2> out;
+  for (size_t k = 0; k < count; ++k)
+    out.push_back({float(texel.x + corner[k].x), float(texel.y + corner[k].y)});
+  return out;
+}
+
+/// Whether a wall stands between a texel's sample and some of the outline of what `cover`, the
+/// triangles that cover it, have in the texel.
+bool WallSearch::is_parted_within(uint32_t texel, std::span<const uint32_t> cover) const {
+  constexpr size_t kMostTriangles = 16;
+  constexpr float kInwards = 0.02f;
+  const atlas::Texel& t = in.map.texels[texel];
+  const Spot own = spot(texel);
+  for (const uint32_t number : cover.first(std::min(cover.size(), kMostTriangles))) {
+    const auto& corners = in.atlas.corners[number];
+    const auto drawn = scene::drawn_triangle(in.atlas.first_triangle, number);
+    const std::vector<Vec2> part = part_in_texel(corners, t);
+    Vec2 middle{0, 0};
+    for (const Vec2& p : part) middle = middle + p * (1 / float(part.size()));
+    const auto is_hidden = [&](Vec2 p) {
+      const Barycentric at = atlas::barycentric_in(corners, p + (middle - p) * kInwards);
+      if (at.u < 0 || at.v < 0 || at.u + at.v > 1) return false;  // it has no area
+      const Spot there =
+          spot_at(in.scene, in.atlas, in.tracer, {drawn.instance, drawn.triangle, at});
+      return !sees(own, there) && !is_inside_solid(texel) && !is_inside_solid(there);
+    };
+    for (size_t k = 0; k < part.size(); ++k) {
+      const Vec2 next = part[(k + 1) % part.size()];
+      if (is_hidden(part[k]) || is_hidden((part[k] + next) * 0.5f)) return true;
+    }
+  }
+  return false;
+}
+
+/// The pairs of texels [begin, end) with neighbours that do not see each other.
+std::vector<Neighbours> WallSearch::blocked(uint32_t begin, uint32_t end) const {
+  constexpr std::array<std::array<int, 2>, 4> kForward{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
+  std::vector<Neighbours> pairs;
+  std::vector<std::array<Spot, 2>> spots;
+  std::vector<trace::Ray> rays;
+  for (uint32_t i = begin; i < end; ++i) {
+    const Spot own = spot(i);
+    for (const auto& offset : kForward) {
+      const uint32_t j = beside(i, offset[0], offset[1]);
+      if (j == atlas::kNone) continue;
+      pairs.push_back({i, j, offset}), spots.push_back({own, spot(j)});
+      rays.push_back(line_between(own, spots.back()[1]));
+    }
+  }
+  std::vector<trace::Hit> hits(rays.size());
+  in.tracer.closest_hits(rays, hits);
+  size_t kept = 0;
+  for (size_t k = 0; k < pairs.size(); ++k)
+    if (is_far(spots[k][0], spots[k][1]) ||
+        is_between(in.scene, in.atlas, spots[k][0], spots[k][1], hits[k]))
+      pairs[kept++] = pairs[k];
+  pairs.resize(kept);
+  return pairs;
+}
+
+std::vector<Neighbours> WallSearch::blocked() const {
+  constexpr size_t kBlock = 1024;
+  const size_t count = in.map.texels.size();
+  std::vector<std::vector<Neighbours>> found((count + kBlock - 1) / kBlock);
+  parallel_for(count, kBlock, [&](size_t begin, size_t end) {
+    found[begin / kBlock] = blocked(uint32_t(begin), uint32_t(end));
+  });
+  std::vector<Neighbours> all;
+  for (const auto& block : found) all.insert(all.end(), block.begin(), block.end());
+  return all;
+}
+
+bool WallSearch::is_at_border(uint32_t texel) const {
+  for (int k = 0; k < 9; ++k)
+    if (beside(texel, k % 3 - 1, k / 3 - 1) == atlas::kNone) return true;
+  return false;
+}
+
+Walls WallSearch::find_walls() const {
+  const size_t count = in.map.texels.size();
+  const std::vector<Neighbours> pairs = blocked();
+  std::vector<uint8_t> is_parted(pairs.size());
+  Walls out{std::vector<uint8_t>(count), std::vector<uint8_t>(count)};
+  parallel_for(pairs.size(), 16, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) is_parted[k] = parts(pairs[k]);
+  });
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    out.beside[pairs[k].a] = out.beside[pairs[k].b] = 1;
+    if (is_parted[k]) out.parted[pairs[k].a] = out.parted[pairs[k].b] = 1;
+  }
+  // A sliver beyond a wall has no sample of its own where a chart ends there, or where the wall
+  // hides the next one.
+  std::vector<uint32_t> which;
+  for (uint32_t i = 0; i < count; ++i)
+    if (!out.parted[i] && (out.beside[i] || is_at_border(i))) which.push_back(i);
+  const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
+  parallel_for(which.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k)
+      out.parted[which[k]] = is_parted_within(which[k], cover.of(k));
+  });
+  return out;
+}
+
+/// Per texel a bit: something leans over its sample.
+std::vector<uint64_t> find_under(const OwnSides& in) {
+  constexpr size_t kBlock = 1024;  // whole words
+  const size_t count = in.map.texels.size();
+  std::vector<uint64_t> out((count + 63) / 64);
+  parallel_for(count, kBlock, [&](size_t begin, size_t end) {
+    std::vector<trace::Ray> rays;
+    for (size_t i = begin; i < end; ++i)
+      rays.push_back(line_up(plain_spot(in.scene, in.atlas, in.map.texels[i].sample)));
+    std::vector<uint8_t> blocked(rays.size());
+    in.tracer.occluded(rays, blocked);
+    for (size_t i = begin; i < end; ++i)
+      if (blocked[i - begin]) out[i / 64] |= uint64_t(1) << (i % 64);
+  });
+  return out;
+}
+
+}  // namespace
+
+OwnSides find_own_sides(const scene::Scene& scene, const atlas::Atlas& atlas,
+                        const atlas::TexelMap& map, const trace::RayTracer& tracer) {
+  OwnSides out{scene, atlas, map, tracer};
+  out.under = find_under(out);
+  std::vector<Inside> inside(map.texels.size());
+  const Walls walls = WallSearch{{out}, scene::world_bounds(scene).diagonal(), inside}.find_walls();
+  out.mixed = blocks_of(map, walls.parted), out.beside_solids = blocks_of(map, walls.beside);
+  return out;
+}
+
+}  // namespace luxel::transport

@@ -1,0 +1,66 @@
+#include "luxel/transport/spots.h"
+
+#include <algorithm>
+
+#include "luxel/transport/texel_width.h"
+
+namespace luxel::transport {
+namespace {
+
+/// Texels of other charts that lie farther away than so many texels are no neighbours in space.
+constexpr float kFarTexels = 3;
+Vec3 line_end(const Spot& s, float height) {
+  return s.at.position + s.at.normal * (height * s.width_m);
+}
+
+}  // namespace
+
+trace::Ray line_between(const Spot& a, const Spot& b) {
+  const Vec3 from = line_end(a, a.line_height);
+  return {from, 0, line_end(b, b.line_height) - from, 1};
+}
+trace::Ray line_up(const Spot& s) {
+  const Vec3 from = line_end(s, kLowHeight);
+  return {from, 0, line_end(s, kLineHeight) - from, 1};
+}
+
+Spot plain_spot(const scene::Scene& scene, const atlas::Atlas& atlas,
+                const scene::SurfacePoint& p) {
+  return {flat_point(scene, p), atlas.chart[atlas.triangle_number(p.instance, p.triangle)],
+          texel_width_m(scene, atlas, p.instance, p.triangle)};
+}
+Spot spot_at(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,
+             const scene::SurfacePoint& p) {
+  Spot out = plain_spot(scene, atlas, p);
+  if (tracer.closest_hit(line_up(out)).found()) out.line_height = kLowHeight;
+  return out;
+}
+
+bool is_far(const Spot& a, const Spot& b) {
+  return a.chart != b.chart &&
+         length(b.at.position - a.at.position) > kFarTexels * std::max(a.width_m, b.width_m);
+}
+
+bool is_between(const scene::Scene& scene, const atlas::Atlas& atlas, const Spot& a, const Spot& b,
+                const trace::Hit& hit) {
+  return is_barrier(scene, atlas, a.chart, hit) && is_barrier(scene, atlas, b.chart, hit);
+}
+
+bool sees(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,
+          const Spot& a, const Spot& b) {
+  return !is_far(a, b) && !is_between(scene, atlas, a, b, tracer.closest_hit(line_between(a, b)));
+}
+
+std::vector<uint64_t> blocks_of(const atlas::TexelMap& map, std::span<const uint8_t> marked) {
+  const uint32_t side = border_side(map);
+  std::vector<uint64_t> out((size_t(side) * side + 63) / 64);
+  for (size_t i = 0; i < marked.size(); ++i) {
+    if (!marked[i]) continue;
+    const uint32_t last = (map.texels[i].y + 1u) * side + map.texels[i].x + 1u;
+    for (const uint32_t base : {last, last - 1, last - side, last - side - 1})
+      out[base / 64] |= uint64_t(1) << (base % 64);
+  }
+  return out;
+}
+
+}  // namespace luxel::transport

@@ -12,6 +12,7 @@
 
 #include "luxel/image/color.h"
 #include "luxel/import/assimp_parts.h"
+#include "luxel/import/nesting.h"
 #include "luxel/import/obj_groups.h"
 
 namespace Assimp {
@@ -238,7 +239,9 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   }
   if (source.extension == ".ply") LUXEL_TRY_STATUS(check_ply(source));
   if (source.extension == ".x") LUXEL_TRY_STATUS(check_x(source));
+  LUXEL_TRY_STATUS(check_nesting(source));
   if (source.extension == ".dae") LUXEL_TRY_STATUS(check_collada(source));
+  if (source.extension == ".fbx") LUXEL_TRY_STATUS(check_fbx(source));
 
   Assimp::Importer importer;
   if (is_obj) importer.SetIOHandler(new TextInsteadOfFile(source.path.string(), groups.text));

@@ -1,12 +1,12 @@
-// What is looked up in the text of a .dae itself. The lenses of its cameras: Assimp keeps only a
-// horizontal angle and loses a camera that states its vertical one alone, or is orthographic. And
-// the sizes of its lists, which Assimp trusts.
+// The lenses of a .dae file's cameras, looked up in its text: Assimp keeps only a horizontal angle
+// and loses a camera that states its vertical one alone, or is orthographic.
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <string_view>
 
 #include "luxel/import/assimp_parts.h"
+#include "luxel/import/xml_text.h"
 
 namespace luxel::import {
 namespace {
@@ -28,23 +28,6 @@ std::optional<std::string_view> next_element(std::string_view& text, std::string
     return element;
   }
   return std::nullopt;
-}
-
-constexpr std::string_view kBlanks = " \t\r\n";
-
-/// The value of an attribute of the element's own tag; empty without one.
-std::string_view attribute(std::string_view element, std::string_view name) {
-  const std::string_view tag = element.substr(0, element.find('>'));
-  for (size_t at = 0; (at = tag.find(name, at + 1)) != tag.npos;) {
-    if (kBlanks.find(tag[at - 1]) == kBlanks.npos) continue;
-    const size_t equals = tag.find_first_not_of(kBlanks, at + name.size());
-    if (equals == tag.npos || tag[equals] != '=') continue;
-    const size_t quote = tag.find_first_not_of(kBlanks, equals + 1);
-    if (quote == tag.npos) return {};
-    const size_t end = tag.find(tag[quote], quote + 1);
-    return end == tag.npos ? std::string_view() : tag.substr(quote + 1, end - quote - 1);
-  }
-  return {};
 }
 
 /// The number in a child element; 0 when it is missing or no number.
@@ -88,54 +71,7 @@ ColladaLens lens_of(std::string_view camera) {
   return lens;
 }
 
-/// A whole number in an attribute; `otherwise` when the attribute is missing, none when it is
-/// wrong.
-std::optional<uint64_t> attribute_number(std::string_view element, std::string_view name,
-                                         uint64_t otherwise) {
-  const std::string_view word = attribute(element, name);
-  if (word.empty()) return otherwise;
-  uint64_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  // 32 bits, as in Assimp, so that their products fit into 64.
-  if (error != std::errc() || end != word.data() + word.size() || value > UINT32_MAX) return {};
-  return value;
-}
-
-uint64_t params_of(std::string_view accessor) {
-  uint64_t count = 0;
-  accessor.remove_prefix(std::min(accessor.find('>'), accessor.size()));
-  while (next_element(accessor, "param")) ++count;
-  return count;
-}
-
 }  // namespace
-
-Status check_collada(const SourceFile& source) {
-  const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()),
-                              source.bytes.size());
-  std::map<std::string_view, uint64_t> sizes;
-  std::string_view rest = text;
-  while (const auto array = next_element(rest, "float_array"))
-    sizes[attribute(*array, "id")] = attribute_number(*array, "count", 0).value_or(0);
-  rest = text;
-  while (const auto accessor = next_element(rest, "accessor")) {
-    std::string_view id = attribute(*accessor, "source");
-    if (id.starts_with('#')) id.remove_prefix(1);
-    const auto size = sizes.find(id);
-    if (size == sizes.end()) continue;  // of names, in skins
-    const auto count = attribute_number(*accessor, "count", 0),
-               stride = attribute_number(*accessor, "stride", 1),
-               offset = attribute_number(*accessor, "offset", 0);
-    // Each of `count` entries begins a stride after the one before and has one number per param.
-    const uint64_t entry = std::max(params_of(*accessor), stride.value_or(0));
-    if (!count || !stride || !offset || *offset > size->second ||
-        (*count > 0 && *offset + (*count - 1) * *stride + entry > size->second))
-      return fail(ErrorCode::bad_input,
-                  "{}: an accessor reads past the float_array '{}', which holds {} numbers",
-                  source.name, id, size->second);
-  }
-  return {};
-}
 
 std::vector<ColladaLens> read_collada_lenses(const SourceFile& source) {
   const std::string_view text(reinterpret_cast<const char*>(source.bytes.data()),

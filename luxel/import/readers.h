@@ -35,6 +35,7 @@ Result<std::set<std::string>> check_obj(const SourceFile& source,
 Status check_ply(const SourceFile& source);
 Status check_x(const SourceFile& source);
 Status check_collada(const SourceFile& source);
+Status check_fbx(const SourceFile& source);
 
 /// Decodes `encoded` and keeps it. `name` is the picture's file or number, `user` who asked for it.
 Result<scene::Texture> decode_texture(std::vector<std::byte> encoded, const std::string& name,

@@ -220,8 +220,10 @@ void register_bench(CLI::App& app, Action& action) {
       "--scene", options->scene,
       "gallery: this scene alone, by its file's stem; the rest of the page stays. "
       "relight: only the comparison with the path tracer in this scene, without files");
-  bench->add_option("--first-seed", options->stated.first_seed,
-                    "stated: the first of the hundred scenes' seeds (default: 1)");
+  bench
+      ->add_option("--first-seed", options->stated.first_seed,
+                   "stated: the first of the hundred scenes' seeds (default: 1)")
+      ->check(whole_number());
   bench
       ->add_option("--only", options->stated.only,
                    "stated: the rows of one solver or command alone")

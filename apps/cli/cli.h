@@ -33,6 +33,9 @@ std::vector<CLI::Option*> add_import(CLI::App& command, Given& given);
 /// --background, --sun, --environment, --sky and --ies.
 std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given);
 
+/// Wrong usage unless the text is a whole number from 0 to `most`; CLI11 takes -1 for a large one.
+CLI::Validator whole_number(uint64_t most = UINT64_MAX);
+
 /// "x,y,z".
 Result<Vec3> parse_point(const char* option, const std::string& text);
 
@@ -63,6 +66,15 @@ Status run_with_progress(const Common& common, const std::function<Status(Progre
 int run_and_print(const Common& common,
                   const std::function<Result<nlohmann::json>(Progress&)>& work,
                   const std::function<void(const nlohmann::json&)>& summary);
+
+/// The exit code of a command that ended with `code`: results that standard output did not take are
+/// an error.
+int code_after_output(int code);
+
+/// From here on an overflow of this thread's stack ends the process with a sentence and code 1:
+/// readers of other libraries call themselves for what lies in each other in a file. `json`: with
+/// an object on standard output, too.
+void say_when_the_stack_overflows(bool json);
 
 /// A command registers itself in `app` and, when it was asked for, leaves what is to be done.
 using Action = std::function<int()>;

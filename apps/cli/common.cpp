@@ -1,18 +1,24 @@
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <thread>
 
 #include <unistd.h>
 
 #include "apps/cli/cli.h"
 #include "luxel/base/output_folder.h"
+#include "luxel/base/short_message.h"
 #include "luxel/pipeline/settings/bake_settings_options.h"
 #include "luxel/pipeline/settings/import_options.h"
 
 namespace luxel::cli {
 namespace {
 
+/// As the option of `luxel bake` has it, which is a row of a table.
+constexpr uint64_t kMostThreads = 1024;
 constexpr const char* kStopped = "stopped by the user";
 
 std::string stopped_text(const Progress& progress) {
@@ -173,9 +179,21 @@ std::string clock_text(double seconds) {
 void add_common(CLI::App& command, Common& common) {
   if (!command.get_option_no_throw("--threads"))
     command.add_option("--threads", common.threads, "Threads to use; 0 = all cores")
+        ->check(whole_number(kMostThreads))
         ->capture_default_str();
   command.add_flag("--quiet", common.quiet, "No progress, no warnings");
   command.add_flag("--json", common.json, "One JSON object on stdout, everything else on stderr");
+}
+
+CLI::Validator whole_number(uint64_t most) {
+  return {[most](const std::string& text) {
+            uint64_t value = 0;
+            const char* end = text.data() + text.size();
+            const auto [stop, error] = std::from_chars(text.data(), end, value);
+            if (error == std::errc() && stop == end && value <= most) return std::string();
+            return fmt::format("{} is not a whole number from 0 to {}", text, most);
+          },
+          ""};
 }
 
 Result<Vec3> parse_point(const char* option, const std::string& text) {
@@ -198,7 +216,9 @@ std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given) {
   return options;
 }
 
-int report(std::string_view code, int exit_code, const std::string& message, const Common& common) {
+int report(std::string_view code, int exit_code, const std::string& whole_message,
+           const Common& common) {
+  const std::string message = short_message(whole_message);
   std::fprintf(stderr, "luxel: %s\n", message.c_str());
   if (!common.json) return exit_code;
   const nlohmann::json json{
@@ -219,7 +239,20 @@ int report_usage(const std::string& message, const Common& common) {
 void print_warnings(const std::vector<std::string>& warnings, const Common& common) {
   if (common.quiet) return;
   for (const std::string& warning : warnings)
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    std::fprintf(stderr, "warning: %s\n", short_message(warning).c_str());
+}
+
+int code_after_output(int code) {
+  errno = 0;
+  const bool flushed = std::fflush(stdout) == 0;
+  int error = errno;
+  if ((flushed && !std::ferror(stdout)) || code != kDone) return code;
+  // When an earlier write failed, the next one says why; one more line break does no harm then.
+  if (flushed && ::write(STDOUT_FILENO, "\n", 1) < 0) error = errno;
+  return report({error == ENOSPC ? ErrorCode::out_of_disk : ErrorCode::io,
+                 fmt::format("cannot write the results to standard output{}{}",
+                             error != 0 ? ": " : "", error != 0 ? std::strerror(error) : "")},
+                {});
 }
 
 Status run_with_progress(const Common& common, const std::function<Status(Progress&)>& work) {

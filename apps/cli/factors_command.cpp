@@ -121,7 +121,9 @@ void register_factors(CLI::App& app, Action& action) {
   factors->add_option("--to", s.to, "Only to this surface")->type_name("NAME");
   factors->add_option("--max-memory", options->max_memory,
                       "Memory for the whole process: bytes, 900M, 1.5G (what is free)");
-  factors->add_option("--seed", s.seed, "Another seed, another noise")->capture_default_str();
+  factors->add_option("--seed", s.seed, "Another seed, another noise")
+      ->check(whole_number())
+      ->capture_default_str();
   add_common(*factors, options->common);
   factors->callback([options, &action] { action = [options] { return run_factors(*options); }; });
 }

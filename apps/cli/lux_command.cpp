@@ -140,7 +140,9 @@ void register_lux(CLI::App& app, Action& action) {
       ->type_name("Y")
       ->allow_extra_args(false);
   lux->add_option("--samples", s.samples, "Rays per point")->capture_default_str();
-  lux->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();
+  lux->add_option("--seed", s.seed, "Seed of all random numbers")
+      ->check(whole_number())
+      ->capture_default_str();
   add_outside_light(*lux, options->outside);
   add_common(*lux, options->common);
   lux->callback([options, &action] { action = [options] { return run_lux(*options); }; });

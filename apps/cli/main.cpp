@@ -1,4 +1,7 @@
 // The `luxel` command: argv in, exit code out. Each subcommand is a file beside this one.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -67,15 +70,24 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // Help and version end with code 0; everything else is wrong usage.
-    if (error.get_exit_code() == 0) return app.exit(error);
+    if (error.get_exit_code() == 0) return code_after_output(app.exit(error));
     return report_usage(usage_message(app, error), {.json = wants_json(argc, argv)});
   }
-  return action();
+  return code_after_output(action());
+}
+
+/// A standard stream that is closed would give its number to the next file that is opened, and what
+/// is printed would go into that. From here on writing to it is an error.
+void keep_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_standard_streams();
+  luxel::cli::say_when_the_stack_overflows(wants_json(argc, argv));
   // A limit on the size of files is an error of the write like any other.
   std::signal(SIGXFSZ, SIG_IGN);
   try {

@@ -185,7 +185,9 @@ void register_probe(CLI::App& app, Action& action) {
                                    pipeline::kUsualSecondsByFaces))
           ->type_name("SECONDS")
           ->capture_default_str();
-  probe->add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str();
+  probe->add_option("--seed", s.seed, "Seed of all random numbers")
+      ->check(whole_number())
+      ->capture_default_str();
   probe->add_option("-o,--output", s.output,
                     "A .png with the brightest sources: what the point sees of them is white "
                     "(hierarchical)");

@@ -15,11 +15,15 @@ struct RelightOptions {
   std::string uv = "auto", bounces = "inf", max_memory;
   pipeline::RelightSettings settings;
   std::filesystem::path lxr, script, output;
+  CLI::Option* density = nullptr;
   std::vector<CLI::Option*> of_making;  ///< options that playing does not look at
 };
 
 Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
   pipeline::RelightSettings s = options.settings;
+  // A density of 0 means in the settings that none was given.
+  if (options.density->count() > 0 && s.texels_per_metre == 0)
+    return fail(ErrorCode::bad_setting, "--texels-per-metre 0 is not a density; give a number > 0");
   s.output = options.output, s.threads = options.common.threads;
   s.uv = uv_mode(options.uv);
   LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
@@ -135,11 +139,12 @@ void add_making(CLI::App& relight, RelightOptions& options) {
   auto* resolution = relight.add_option("--resolution", s.resolution, "Side of the lightmap")
                          ->capture_default_str();
   all.push_back(resolution);
-  all.push_back(relight
-                    .add_option("--texels-per-metre", s.texels_per_metre,
-                                "Density; the side becomes the smallest power of two that holds "
-                                "the scene")
-                    ->excludes(resolution));
+  options.density = all.emplace_back(
+      relight
+          .add_option("--texels-per-metre", s.texels_per_metre,
+                      "Density; the side becomes the smallest power of two that holds "
+                      "the scene")
+          ->excludes(resolution));
   all.push_back(add_uv(relight, options.uv));
   for (CLI::Option* option :
        add_options(relight, pipeline::matrix_options(), s.matrix, options.matrix))
@@ -156,8 +161,9 @@ void add_making(CLI::App& relight, RelightOptions& options) {
   all.push_back(relight.add_option("--max-memory", options.max_memory,
                                    "Memory to stay under, as 900M or 1.5G (default: most of what "
                                    "is free)"));
-  all.push_back(
-      relight.add_option("--seed", s.seed, "Seed of all random numbers")->capture_default_str());
+  all.push_back(relight.add_option("--seed", s.seed, "Seed of all random numbers")
+                    ->check(whole_number())
+                    ->capture_default_str());
 }
 
 }  // namespace

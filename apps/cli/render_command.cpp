@@ -163,7 +163,8 @@ void register_render(CLI::App& app, Action& action) {
       ->type_name("WxH");
   render->add_option("--samples", s.samples, "Paths per pixel (path; 64)");
   render->add_option("--bounces", options->bounces, "Reflections to count, or inf (path; inf)");
-  render->add_option("--seed", s.seed, "Seed of all random numbers (path; 1)");
+  render->add_option("--seed", s.seed, "Seed of all random numbers (path; 1)")
+      ->check(whole_number());
   add_options(*render, pipeline::hemicube_options(), {}, options->hemicube,
               pipeline::kHemicubeHeading);
   add_options(*render, pipeline::hierarchical_options(), {}, options->hierarchical,

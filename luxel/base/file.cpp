@@ -1,11 +1,15 @@
 #include "luxel/base/file.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -41,6 +45,41 @@ struct TemporaryFile {
   }
 };
 
+constexpr std::string_view kPartial = ".partial-", kReplaced = ".replaced-";
+
+std::string temporary_name(const std::filesystem::path& path, std::string_view mark) {
+  return path.string() + std::string(mark) + std::to_string(::getpid());
+}
+
+/// The name of the file that a temporary was to become; empty when it is none, or its process still
+/// lives.
+std::string left_over_of(const std::string& name) {
+  for (const std::string_view mark : {kPartial, kReplaced}) {
+    const size_t at = name.rfind(mark);
+    if (at == name.npos) continue;
+    pid_t process = 0;
+    const char* end = name.data() + name.size();
+    const auto [stop, error] = std::from_chars(name.data() + at + mark.size(), end, process);
+    if (error == std::errc() && stop == end && process > 0 && ::kill(process, 0) != 0 &&
+        errno == ESRCH)
+      return name.substr(0, at);
+  }
+  return {};
+}
+
+/// Removes what processes that were killed left beside these files. What cannot be removed stays.
+void remove_left_overs(std::span<const std::filesystem::path> files) {
+  std::map<std::filesystem::path, std::set<std::string>> names_in;
+  for (const std::filesystem::path& file : files)
+    names_in[file.has_parent_path() ? file.parent_path() : "."].insert(file.filename());
+  for (const auto& [folder, names] : names_in) {
+    std::error_code error;
+    std::filesystem::directory_iterator entry(folder, error);
+    for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
+      if (names.contains(left_over_of(entry->path().filename()))) ::unlink(entry->path().c_str());
+  }
+}
+
 Result<TemporaryFile> write_temporary(const std::filesystem::path& path,
                                       std::span<const std::byte> bytes) {
   // Renaming onto a folder would fail too, but after the files before this one got their names.
@@ -49,7 +88,7 @@ Result<TemporaryFile> write_temporary(const std::filesystem::path& path,
     return fail(ErrorCode::io, "cannot write {}: a folder of this name is in the way",
                 path.string());
   TemporaryFile temporary;
-  temporary.name = path.string() + ".partial-" + std::to_string(::getpid());
+  temporary.name = temporary_name(path, kPartial);
   const int file = ::open(temporary.name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) return write_error(path, errno);
   int error = write_all(file, bytes);
@@ -61,7 +100,7 @@ Result<TemporaryFile> write_temporary(const std::filesystem::path& path,
 /// A second name for the file under `path`, if there is one, so that it can be brought back; where
 /// a file system knows no second names the file gives up its first. Returns 0 or an errno.
 int keep_old(const std::filesystem::path& path, TemporaryFile& old) {
-  std::string name = path.string() + ".replaced-" + std::to_string(::getpid());
+  std::string name = temporary_name(path, kReplaced);
   if (::link(path.c_str(), name.c_str()) != 0) {
     if (errno == ENOENT) return 0;
     if (::rename(path.c_str(), name.c_str()) != 0) return errno;
@@ -102,6 +141,9 @@ OutputFile text_file(std::filesystem::path path, std::string_view text) {
 }
 
 Status write_files_atomically(std::span<const OutputFile> files) {
+  std::vector<std::filesystem::path> paths;
+  for (const OutputFile& file : files) paths.push_back(file.path);
+  remove_left_overs(paths);
   std::vector<TemporaryFile> temporaries;
   for (const OutputFile& file : files) {
     LUXEL_TRY(TemporaryFile temporary, write_temporary(file.path, file.bytes));
@@ -123,6 +165,7 @@ Status write_files_atomically(std::span<const OutputFile> files) {
 }
 
 Status write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  remove_left_overs({&path, 1});
   LUXEL_TRY(TemporaryFile temporary, write_temporary(path, bytes));
   if (::rename(temporary.name.c_str(), path.c_str()) != 0) return write_error(path, errno);
   temporary.name.clear();

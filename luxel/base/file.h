@@ -27,7 +27,8 @@ OutputFile text_file(std::filesystem::path path, std::string_view text);
 /// Writes files that appear whole under their names, all of them or none: temporary neighbours are
 /// written and flushed to the disk, and only when the last one is safe are they renamed. When a
 /// rename fails, what the ones before it replaced is brought back.
-/// Errors: unwritable folder (io), full disk (out_of_disk); the temporaries are removed.
+/// Errors: unwritable folder (io), full disk (out_of_disk); the temporaries are removed. Those that
+/// a kill left go when the same files are written again.
 Status write_files_atomically(std::span<const OutputFile> files);
 /// write_files_atomically() of one file.
 Status write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);

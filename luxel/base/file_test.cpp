@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstring>
+#include <fstream>
 #include <set>
 #include <string>
 
@@ -160,6 +162,36 @@ TEST_F(AtomicFiles, AFullDiskIsAnErrorAndLeavesNothing) {
   EXPECT_EQ(status.error().code, ErrorCode::out_of_disk);
   EXPECT_NE(status.error().message.find("too big"), std::string::npos);
   EXPECT_TRUE(left.empty());
+}
+
+/// A process that has ended, and whose number nobody has yet.
+pid_t dead_process() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST_F(Files, WhatAKillLeftGoesWithTheNextWrite) {
+  const std::string dead = std::to_string(dead_process());
+  const std::string living = std::to_string(::getppid());
+  const std::set<std::string> others{"map.partial-" + living,        "map.replaced-" + living,
+                                     "other.partial-" + dead,        "map.partial-x" + dead,
+                                     "map.partial-" + dead + ".png", "map.partial-"};
+  for (const std::string& name : others) std::ofstream(folder_ / name) << name;
+  for (const char* mark : {"map.partial-", "map.replaced-", "list.partial-"})
+    std::ofstream(folder_ / (mark + dead)) << mark;
+  ASSERT_TRUE(write_file_atomically(folder_ / "map", bytes_of("new")));
+  std::set<std::string> left = others;
+  left.insert({"map", "list.partial-" + dead});
+  EXPECT_EQ(names(), left);
+  const std::vector<OutputFile> files{text_file(folder_ / "map", "newer"),
+                                      text_file(folder_ / "list", "1")};
+  ASSERT_TRUE(write_files_atomically(files));
+  left.erase("list.partial-" + dead);
+  left.insert("list");
+  EXPECT_EQ(names(), left);
+  EXPECT_EQ(text_of(folder_ / "map"), "newer");
 }
 
 }  // namespace

@@ -31,6 +31,14 @@ void remove_if_empty(const std::vector<fs::path>& folders) {
   for (const fs::path& path : folders) fs::remove(path, ignored);
 }
 
+Status try_to_write_into(const fs::path& folder) {
+  const fs::path probe = folder / ".luxel-can-write";
+  LUXEL_TRY_STATUS(write_file_atomically(probe, {}));
+  std::error_code ignored;
+  fs::remove(probe, ignored);
+  return {};
+}
+
 /// Whether an open folder is still the one of that name.
 bool is_still_there(int open_folder, const fs::path& folder) {
   struct stat opened {
@@ -45,6 +53,25 @@ fs::path nearest_folder(const fs::path& folder) {
   fs::path path = absolute_path(folder);
   while (!path.empty() && !exists_at(path)) path = path.parent_path();
   return path;
+}
+
+Status check_output_file(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored))
+    return fail(ErrorCode::bad_setting, "--output {}: there is no folder {}; make it first",
+                file.string(), folder.string());
+  const fs::file_status there = fs::status(file, ignored);
+  if (fs::is_directory(there))
+    return fail(ErrorCode::bad_setting, "--output {} is a folder; name a file in it",
+                file.string());
+  if (fs::exists(there) && !fs::is_regular_file(there))
+    return fail(ErrorCode::bad_setting,
+                "--output {} is a device or a pipe, which would be replaced; name a file",
+                file.string());
+  if (const Status tried = try_to_write_into(folder); !tried)
+    return fail(tried.error().code, "--output {}: {}", file.string(), tried.error().message);
+  return {};
 }
 
 Status OutputFolder::make() {
@@ -75,11 +102,7 @@ Status OutputFolder::write_probe() const {
   if (::access(folder_.c_str(), W_OK | X_OK) != 0)
     return fail(ErrorCode::io, "cannot write into the output folder {}: {}", folder_.string(),
                 std::strerror(errno));
-  const fs::path probe = folder_ / ".luxel-can-write";
-  LUXEL_TRY_STATUS(write_file_atomically(probe, {}));
-  std::error_code ignored;
-  fs::remove(probe, ignored);
-  return {};
+  return try_to_write_into(folder_);
 }
 
 Status OutputFolder::lock() {

@@ -16,6 +16,11 @@ inline constexpr std::string_view kWriteStage = "write files";
 /// `folder`, or the nearest folder above it that exists. Temporary files without a name go there.
 std::filesystem::path nearest_folder(const std::filesystem::path& folder);
 
+/// An error, before the work, when the file `file` could not be written after it: its folder is
+/// missing (bad_setting) or cannot be written to (io), or a folder or a device has its name
+/// (bad_setting).
+Status check_output_file(const std::filesystem::path& file);
+
 /// A folder for results. What make() made goes again, unless keep() is called: work that fails or
 /// is cancelled leaves nothing, not even an empty folder.
 class OutputFolder {

@@ -58,16 +58,16 @@ struct ColladaSkin {
 struct ColladaWalk {
   const SourceFile& source;
   std::string_view text;
-  std::map<std::string_view, ColladaArray> arrays;
-  std::map<std::string_view, ColladaAccessor> accessors;               // of sources, by their ids
-  std::map<std::string_view, std::vector<std::string_view>> vertices;  // sources, by their ids
-  std::map<std::string_view, uint64_t> geometry_sizes;                 // vertices
-  std::vector<ColladaSkin> skins;
+  std::map<std::string_view, ColladaArray> arrays{};
+  std::map<std::string_view, ColladaAccessor> accessors{};               // of sources, by their ids
+  std::map<std::string_view, std::vector<std::string_view>> vertices{};  // sources, by their ids
+  std::map<std::string_view, uint64_t> geometry_sizes{};                 // vertices
+  std::vector<ColladaSkin> skins{};
 
-  std::string_view geometry_id, source_id, vertices_id;  // that were opened last
+  std::string_view geometry_id{}, source_id{}, vertices_id{};  // that were opened last
   bool in_accessor = false;
-  std::optional<ColladaLists> lists;
-  std::map<std::string_view, std::string_view> joints;  // sources, by semantic
+  std::optional<ColladaLists> lists{};
+  std::map<std::string_view, std::string_view> joints{};  // sources, by semantic
 
   template <class... Parts>
   tl::unexpected<Error> error(size_t at, fmt::format_string<Parts...> format,

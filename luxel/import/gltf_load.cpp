@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "luxel/import/gltf_buffers.h"
 #include "luxel/import/gltf_check_steps.h"
 #include "luxel/import/gltf_checks.h"
 
@@ -58,6 +59,7 @@ Result<std::string> json_text_of(const SourceFile& source) {
 /// only ones to every buffer that has no uri: one byte stands for what nobody reads. It takes no
 /// indices without bytes either, as Draco's are: decode_draco() puts them in.
 Json for_tinygltf(Json document, const std::vector<bool>& is_placeholder) {
+  state_true_lengths(document);
   for (size_t i = 0; i < is_placeholder.size(); ++i)
     if (is_placeholder[i])
       document["buffers"][i] = {{"byteLength", 1},

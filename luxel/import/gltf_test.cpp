@@ -1,6 +1,9 @@
 // Geometry and nodes of glTF. Every case is the unit square, or something that must become it.
 #include <gmock/gmock.h>
 
+#include <span>
+
+#include "luxel/base/base64.h"
 #include "luxel/import/test_files.h"
 
 namespace luxel::import {
@@ -337,6 +340,38 @@ TEST(Gltf, WithoutNormalsIsFlatUnlessAskedOtherwise) {
   const auto file = folder.write("a.glb", gltf.glb());
   EXPECT_TRUE(scene_of(import_scene(file)).meshes[0].normals.empty());
   EXPECT_EQ(scene_of(import_scene(file, {30.0f})).meshes[0].normals.size(), 4u);
+}
+
+/// The square in a .gltf file whose only buffer holds `more` bytes after those that it states.
+Result<Imported> square_with_bytes(int more) {
+  const Gltf gltf = square_gltf();
+  const std::string stated = gltf.buffer;
+  std::string bytes = stated.substr(0, stated.size() + size_t(std::min(more, 0)));
+  bytes.append(size_t(std::max(more, 0)), '\0');
+  nlohmann::json document = gltf.json;
+  document["buffers"] = {
+      {{"byteLength", stated.size()},
+       {"uri", "data:application/octet-stream;base64," + base64(std::as_bytes(std::span(bytes)))}}};
+  return import_text("a.gltf", document.dump());
+}
+
+TEST(Gltf, ABufferMayBeLongerThanItStates) {
+  for (const int more : {0, 1, 2, 3, 4, 150000})
+    EXPECT_NEAR(drawn_area(scene_of(square_with_bytes(more))), 1, 1e-6f) << more;
+  for (const int less : {-1, -40}) {
+    const auto imported = square_with_bytes(less);
+    ASSERT_FALSE(imported) << less;
+    EXPECT_THAT(imported.error().message, HasSubstr("buffer 0 has fewer bytes than"));
+  }
+}
+
+TEST(Gltf, AnErrorDoesNotPrintAWholeUri) {
+  nlohmann::json document = square_gltf().json;
+  document["buffers"] = {
+      {{"byteLength", 60}, {"uri", "data:what/ever;base16," + std::string(200000, 'A')}}};
+  const auto imported = import_text("a.gltf", document.dump());
+  ASSERT_FALSE(imported);
+  EXPECT_LT(imported.error().message.size(), 1000u);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "luxel/base/random.h"
+#include "luxel/base/short_message.h"
 #include "luxel/image/codec.h"
 #include "luxel/import/readers.h"
 
@@ -91,7 +92,7 @@ std::string one_sentence(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '.' || text.back() == ' '))
     text.pop_back();
   for (size_t at; (at = text.find('\n')) != std::string::npos;) text.replace(at, 1, "; ");
-  return text.empty() ? "no reason is known" : text;
+  return text.empty() ? "no reason is known" : short_message(text);
 }
 
 scene::Material default_material() {

@@ -211,6 +211,7 @@ Result<Measured> measure(const Picture& a, const Picture& b, std::optional<doubl
 
 Result<Compared> compare(const CompareSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check(s));
+  if (s.report) LUXEL_TRY_STATUS(OutputFolder(*s.report).try_out());
   progress.begin("read", 0);
   LUXEL_TRY(const Picture a, read_subject(s.a));
   LUXEL_TRY(const Picture b, read_subject(s.b));

@@ -29,19 +29,6 @@ Status check_belongs(const FactorSettings& s, bool given, const char* option, co
               option, s.method, methods);
 }
 
-Status check_output(const std::filesystem::path& output) {
-  std::error_code ignored;
-  if (output.empty()) return {};
-  const std::filesystem::path folder = output.parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
-    return fail(ErrorCode::bad_setting, "--output {}: there is no folder {}; make it first",
-                output.string(), folder.string());
-  if (std::filesystem::is_directory(output, ignored))
-    return fail(ErrorCode::bad_setting, "--output {} is a folder; name a file in it",
-                output.string());
-  return {};
-}
-
 Status check(const FactorSettings& s) {
   if (s.method != "analytic" && s.method != "hemicube" && s.method != "rays")
     return fail(ErrorCode::bad_setting, "--method {} is none of analytic, hemicube, rays",
@@ -60,7 +47,7 @@ Status check(const FactorSettings& s) {
   if (s.smooth && (!s.from.empty() || !s.to.empty()))
     return fail(ErrorCode::bad_setting,
                 "--smooth needs the factors of all surfaces; leave --from and --to out");
-  return check_output(s.output);
+  return s.output.empty() ? Status{} : check_output_file(s.output);
 }
 
 Result<uint32_t> surface_named(const viewfactor::Surfaces& surfaces, const char* option,

@@ -29,10 +29,16 @@ Status check_lux(const LuxSettings& s) {
   if (s.samples < 2 * kEstimates || s.samples > 1 << 20)
     return fail(ErrorCode::bad_setting, "--samples {} is outside {} to {}", s.samples,
                 2 * kEstimates, 1 << 20);
+  for (const double floor_m : s.plane.floors)
+    if (!std::isfinite(floor_m))
+      return fail(ErrorCode::bad_setting, "--floor {} is no height; give metres", floor_m);
   for (const std::filesystem::path& output : s.outputs)
     if (output.extension() != ".csv" && output.extension() != ".png")
       return fail(ErrorCode::bad_setting, "-o {}: name it .csv for the points, or .png for plans",
                   output.string());
+  for (const std::filesystem::path& output : s.outputs) {
+    LUXEL_TRY_STATUS(check_output_file(output));
+  }
   return {};
 }
 

@@ -1,5 +1,6 @@
 #include "luxel/pipeline/command/probe.h"
 
+#include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
 
 namespace luxel::pipeline {
@@ -30,13 +31,15 @@ Status check_probe(const ProbeSettings& s) {
     return fail(ErrorCode::bad_setting, "--normal 0,0,0 is no direction");
   if (!(s.max_error > 0 && s.max_error <= 1))
     return fail(ErrorCode::bad_setting,
-                "--max-error {} is outside 0 to 1; give the part of the light to which it is to be "
+                "--max-error {} is not above 0 and up to 1; give the part of the light to which it "
+                "is to be "
                 "known, as 0.005",
                 s.max_error);
   if (!(s.time_budget_s > 0 && s.time_budget_s <= 1e7))
     return fail(ErrorCode::bad_setting, "--time-budget {} is not a time; give seconds, as 10",
                 s.time_budget_s);
-  return check_method(s);
+  LUXEL_TRY_STATUS(check_method(s));
+  return s.output.empty() ? Status{} : check_output_file(s.output);
 }
 
 }  // namespace

@@ -75,7 +75,8 @@ Status check(const RelightSettings& s) {
   BakeSettings map;  // the ranges of a lightmap
   map.resolution = s.resolution, map.texels_per_metre = s.texels_per_metre, map.scene = s.scene;
   map.output = s.output, map.threads = s.threads, map.seed = s.seed;
-  return check(map);
+  LUXEL_TRY_STATUS(check(map));
+  return check_output_file(s.output);
 }
 
 /// Where light is wanted, and the scene as its file is to have it.

@@ -1,5 +1,6 @@
 #include "luxel/pipeline/render/render_check.h"
 
+#include "luxel/base/output_folder.h"
 #include "luxel/pipeline/render/techniques.h"
 #include "luxel/pipeline/settings/option.h"
 
@@ -25,12 +26,7 @@ Status check_output(const RenderSettings& s, const Technique* technique) {
                   "{} means nothing for {}, which holds the light as it is; leave it out, or write "
                   "a .png",
                   option, name);
-  std::error_code ignored;
-  const std::filesystem::path folder = s.output.parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
-    return fail(ErrorCode::bad_setting, "--output {}: there is no folder {}; make it first", name,
-                folder.string());
-  return {};
+  return check_output_file(s.output);
 }
 
 /// "c, ca, ...": the techniques that have a feature.

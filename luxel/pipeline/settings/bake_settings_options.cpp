@@ -79,7 +79,7 @@ Options<S> layout_options() {
           "some 2 million texels")
           .unit("TEXELS"),
       BakeRows::number("--texels-per-metre", &S::texels_per_metre,
-                       {0, kNoLimit, "is not a density; give a number > 0"},
+                       {0, kNoLimit, "is not a density; give a number > 0", "", true},
                        "Density; the side becomes the smallest power of two that holds the scene")
           .unit("DENSITY"),
       BakeRows::text(
@@ -105,7 +105,7 @@ Options<S> result_options() {
                        "Also store how irradiance changes with the normal: dominant or sh1")
           .leaves(Changes::results),
       BakeRows::number("--probes", &S::probe_spacing_m,
-                       {0, kNoLimit, "is not a spacing; give metres > 0"},
+                       {0, kNoLimit, "is not a spacing; give metres > 0", "", true},
                        "Also write light probes on a grid of this spacing in metres")
           .key_is("probe_spacing_m")
           .unit("METRES")

@@ -23,6 +23,8 @@ struct Range {
   std::string wrong = "";
   /// What to do, after the sentence above.
   std::string advice = "";
+  /// `low` itself lies outside: the default 0 of an option means that it was not given.
+  bool above = false;
 };
 
 /// "1 to 16384", ">= 0"; empty for a range without limits.
@@ -170,7 +172,8 @@ struct Rows {
   static Row number_of(std::string_view flag, Access access, Range range, std::string help) {
     constexpr bool optional = is_optional<Value<Access>>::value;
     const auto in_range = [range](T value) {
-      return double(value) >= range.low && double(value) <= range.high;
+      return double(value) >= range.low && double(value) <= range.high &&
+             !(range.above && double(value) == range.low);
     };
     const auto set = [flag = std::string(flag), access, range, in_range](S& s, T value) -> Status {
       if (!in_range(value)) return out_of_range(flag, fmt::format("{}", value), range);

@@ -123,7 +123,7 @@ Options<hemicube::HemicubeParams> hemicube_options() {
                            "Light per vertex or per triangle"),
       resolution_option(),
       HemicubeRows::number("--element-size", &P::element_size_m,
-                           {0, kNoLimit, "is not a length; give metres > 0"},
+                           {0, kNoLimit, "is not a length; give metres > 0", "", true},
                            "Size of the first triangles in metres (default: by --max-elements)")
           .key_is("element_size_m")
           .unit("METRES"),

@@ -1,0 +1,50 @@
+#include "luxel/base/short_message.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace luxel {
+inline namespace base {
+namespace {
+
+/// File names may be this long, and are of use only whole.
+constexpr size_t kLongestWord = 400;
+constexpr size_t kLongestMessage = 4000;
+/// Bytes that stay of a word that is cut, before and after the cut.
+constexpr size_t kHead = 100, kTail = 20;
+
+/// `at`, or the start of the character that it lies in.
+size_t character_start(std::string_view text, size_t at) {
+  while (at > 0 && at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80) --at;
+  return at;
+}
+
+void append_short(std::string_view word, std::string& out) {
+  if (word.size() <= kLongestWord) {
+    out += word;
+    return;
+  }
+  const size_t head = character_start(word, kHead);
+  const size_t tail = character_start(word, word.size() - kTail);
+  out += fmt::format("{}[{} bytes]{}", word.substr(0, head), tail - head, word.substr(tail));
+}
+
+}  // namespace
+
+std::string short_message(const std::string& text) {
+  std::string out;
+  for (size_t at = 0; at < text.size() && out.size() <= kLongestMessage;) {
+    const size_t end = std::min(text.find_first_of(" \n", at), text.size());
+    append_short(std::string_view(text).substr(at, end - at), out);
+    if (end < text.size()) out += text[end];
+    at = end + 1;
+  }
+  if (out.size() <= kLongestMessage) return out;
+  const size_t end = character_start(out, kLongestMessage);
+  return out.substr(0, end) + fmt::format(" [{} bytes in all]", text.size());
+}
+
+}  // namespace base
+}  // namespace luxel

@@ -1,0 +1,14 @@
+// Sentences that quote what a file or a user gave, which may be of any length.
+#pragma once
+
+#include <string>
+
+namespace luxel {
+inline namespace base {
+
+/// The text with the middle of each word over 400 bytes, and all after 4000 bytes, taken out; it
+/// says how many bytes are missing. Characters of UTF-8 stay whole.
+std::string short_message(const std::string& text);
+
+}  // namespace base
+}  // namespace luxel

@@ -58,8 +58,9 @@ Result<std::string> json_text_of(const SourceFile& source) {
 /// The document as tinygltf takes it. It takes no buffer without bytes, and would give a .glb's
 /// only ones to every buffer that has no uri: one byte stands for what nobody reads. It takes no
 /// indices without bytes either, as Draco's are: decode_draco() puts them in.
-Json for_tinygltf(Json document, const std::vector<bool>& is_placeholder) {
-  state_true_lengths(document);
+Json for_tinygltf(Json document, const std::vector<bool>& is_placeholder,
+                  const std::filesystem::path& folder) {
+  state_true_lengths(document, folder);
   for (size_t i = 0; i < is_placeholder.size(); ++i)
     if (is_placeholder[i])
       document["buffers"][i] = {{"byteLength", 1},
@@ -81,7 +82,8 @@ Result<LoadedGltf> load_gltf(const SourceFile& source) {
   const std::vector<bool> is_placeholder = placeholder_buffers(document);
   std::vector<std::byte> new_glb;
   std::span<const std::byte> glb = source.bytes;
-  if (const Json adapted = for_tinygltf(document, is_placeholder); adapted != document) {
+  if (const Json adapted = for_tinygltf(document, is_placeholder, source.path.parent_path());
+      adapted != document) {
     text = adapted.dump();
     if (source.extension == ".glb") glb = new_glb = glb_with_json(source.bytes, text);
   }

@@ -242,6 +242,7 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   LUXEL_TRY_STATUS(check_nesting(source));
   if (source.extension == ".dae") LUXEL_TRY_STATUS(check_collada(source));
   if (source.extension == ".fbx") LUXEL_TRY_STATUS(check_fbx(source));
+  LUXEL_TRY_STATUS(check_packed(source));
 
   Assimp::Importer importer;
   if (is_obj) importer.SetIOHandler(new TextInsteadOfFile(source.path.string(), groups.text));

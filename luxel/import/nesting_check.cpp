@@ -71,7 +71,7 @@ Status check_nesting(const SourceFile& source) {
   const auto is_one_of = [&](std::initializer_list<std::string_view> extensions) {
     return std::find(extensions.begin(), extensions.end(), source.extension) != extensions.end();
   };
-  if (is_one_of({".dae", ".xgl", ".irr", ".irrmesh", ".amf", ".xml"}))
+  if (is_one_of({".dae", ".model", ".xgl", ".irr", ".irrmesh", ".amf", ".xml"}))
     return check_elements(source);
   if (is_one_of({".ase", ".ask", ".bvh", ".ogex"})) return check_brackets(source, "{}", '"');
   if (is_one_of({".ifc", ".step", ".stp"})) return check_brackets(source, "()", '\'');

@@ -1,6 +1,7 @@
 // Files whose parts lie in each other too deep, in circles, or in more copies than memory holds:
 // Assimp's stack would overflow, or it would never end.
 #include <gmock/gmock.h>
+#include <zlib.h>
 
 #include "luxel/import/test_files.h"
 
@@ -137,6 +138,97 @@ TEST(Nesting, OtherFormatsThatAssimpCallsItselfFor) {
   for (const auto& [name, text] : files)
     EXPECT_THAT(error_of_text(name, text),
                 AllOf(HasSubstr(fmt::format("{}, line ", name)), HasSubstr("more than 1000")));
+}
+
+std::string deflated(const std::string& text) {
+  std::string out(text.size() + 1000, '\0');
+  z_stream stream{};
+  EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string in = text;
+  stream.next_in = reinterpret_cast<Bytef*>(in.data()), stream.avail_in = uInt(in.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data()), stream.avail_out = uInt(out.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
+
+/// A zip archive of files; their names and texts.
+std::string zipped(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string archive, list;
+  for (const auto& [name, text] : files) {
+    const std::string packed = deflated(text);
+    const auto crc =
+        uint32_t(crc32(0, reinterpret_cast<const Bytef*>(text.data()), uInt(text.size())));
+    const std::string about =
+        bytes_of<uint16_t>({20, 0, 8, 0, 0x21}) +
+        bytes_of<uint32_t>({crc, uint32_t(packed.size()), uint32_t(text.size())}) +
+        bytes_of<uint16_t>({uint16_t(name.size()), 0});
+    list += "PK\1\2" + bytes_of<uint16_t>({20}) + about + bytes_of<uint16_t>({0, 0, 0}) +
+            bytes_of<uint32_t>({0, uint32_t(archive.size())}) + name;
+    archive += "PK\3\4" + about + name + packed;
+  }
+  const auto count = uint16_t(files.size());
+  return archive + list + "PK\5\6" + bytes_of<uint16_t>({0, 0, count, count}) +
+         bytes_of<uint32_t>({uint32_t(list.size()), uint32_t(archive.size())}) +
+         bytes_of<uint16_t>({0});
+}
+
+/// A .3mf file of these objects, which builds object 1.
+std::string printed(const std::string& objects) {
+  return zipped(
+      {{"[Content_Types].xml", "<Types/>"},
+       {"_rels/.rels",
+        "<Relationships><Relationship Target=\"/3D/a.model\" Id=\"rel0\" "
+        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>"},
+       {"3D/a.model", "<?xml version=\"1.0\"?><model unit=\"meter\"><resources>\n" + objects +
+                          "</resources><build><item objectid=\"1\"/></build></model>"}});
+}
+
+std::string object_of_others(int id, const std::string& others) {
+  return fmt::format("<object id=\"{}\"><components>{}</components></object>\n", id, others);
+}
+
+TEST(Nesting, ScenesInArchives) {
+  const std::string deep = nested("<node>\n", "</node>", kDeep);
+  EXPECT_THAT(error_of_text("a.zae", zipped({{"b.png", "x"}, {"c", dae("", deep)}})),
+              AllOf(HasSubstr("a.zae, c, line 1"), HasSubstr("more than 1000 elements")));
+  EXPECT_THAT(
+      error_of_text("a.zgl", "xx" + deflated("<WORLD>" + nested("<OBJECT>", "</OBJECT>", kDeep))),
+      HasSubstr("a.zgl, line 1: more than 1000 elements"));
+  EXPECT_THAT(
+      error_of_text("a.ifczip", zipped({{"b.ifc", "ISO-10303-21;\n" + nested("(", ")", kDeep)}})),
+      HasSubstr("a.ifczip, b.ifc, line 2: more than 1000 brackets"));
+  EXPECT_THAT(error_of_text("a.3mf", printed(object_of_others(1, "<component objectid=\"1\"/>"))),
+              HasSubstr("a.3mf, 3D/a.model, line 2: the object there holds itself"));
+  std::string chain;
+  for (int i = 1; i <= kDeep; ++i)
+    chain += object_of_others(i, fmt::format("<component objectid=\"{}\"/>", i + 1));
+  EXPECT_THAT(error_of_text("a.3mf", printed(chain)),
+              HasSubstr("holds more than 1000 others in each other"));
+  EXPECT_THAT(error_of_text("a.3mf", "PK\5\6"), HasSubstr("no zip archive"));
+}
+
+TEST(Nesting, AnArchiveThatIsRightIsRead) {
+  const scene::Scene scene = scene_of(import_text(
+      "a.3mf",
+      printed("<object id=\"2\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"2\" "
+              "y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/></vertices><triangles><triangle "
+              "v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object>" +
+              object_of_others(1, "<component objectid=\"2\"/>"))));
+  EXPECT_NEAR(drawn_area(scene), 1, 1e-6f);
+}
+
+TEST(Nesting, ADamagedArchiveAlwaysGivesAResult) {
+  const std::string archive = printed(object_of_others(1, "<component objectid=\"2\"/>"));
+  const TemporaryFolder folder;
+  for (size_t length = 0; length < archive.size(); length += 17)
+    EXPECT_FALSE(import_scene(folder.write("cut.3mf", archive.substr(0, length)))) << length;
+  for (size_t at = 0; at < archive.size(); at += 5) {
+    std::string damaged = archive;
+    damaged[at] = char(damaged[at] ^ "\x01\x80\xff"[at % 3]);
+    (void)import_scene(folder.write("flipped.3mf", damaged));
+  }
 }
 
 }  // namespace

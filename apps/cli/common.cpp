@@ -13,6 +13,7 @@
 #include "luxel/base/short_message.h"
 #include "luxel/pipeline/settings/bake_settings_options.h"
 #include "luxel/pipeline/settings/import_options.h"
+#include "luxel/scene/held_range.h"
 
 namespace luxel::cli {
 namespace {
@@ -199,9 +200,12 @@ CLI::Validator whole_number(uint64_t most) {
 Result<Vec3> parse_point(const char* option, const std::string& text) {
   Vec3 p;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%f,%f,%f%c", &p.x, &p.y, &p.z, &rest) == 3 && is_finite(p))
-    return p;
-  return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option, text);
+  if (std::sscanf(text.c_str(), "%f,%f,%f%c", &p.x, &p.y, &p.z, &rest) != 3)
+    return fail(ErrorCode::bad_setting, "{} '{}' is not a point; give x,y,z in metres", option,
+                text);
+  if (scene::is_held(p)) return p;
+  return fail(ErrorCode::bad_setting, "{} '{}' is no place in a scene: coordinates go up to {:g} m",
+              option, text, scene::kFarthest_m);
 }
 
 std::vector<CLI::Option*> add_import(CLI::App& command, Given& given) {

@@ -2,12 +2,27 @@
 // triangles, whose area only makes sense on finite numbers.
 #include "luxel/scene/validate.h"
 
+#include <fmt/format.h>
+
 #include "luxel/scene/validate_steps.h"
 
 namespace luxel::scene {
 
+namespace {
+
+/// Without the reasons, a scene of triangles would be refused for having none.
+tl::unexpected<Error> nothing_left(const Report& report) {
+  if (report.losses.empty())
+    return fail(ErrorCode::bad_input, "{}: the scene has no triangles; nothing can be lit",
+                report.file);
+  return fail(ErrorCode::bad_input, "{}: the scene has no triangles left; nothing can be lit: {}",
+              report.file, fmt::join(report.losses, "; "));
+}
+
+}  // namespace
+
 Result<std::vector<std::string>> validate(Scene& scene, const std::string& file) {
-  Report report{file, {}};
+  Report report{file, {}, {}};
   LUXEL_TRY_STATUS(check_references(scene, report));
   LUXEL_TRY_STATUS(check_numbers(scene, report));
   drop_singular_instances(scene, report);
@@ -16,7 +31,7 @@ Result<std::vector<std::string>> validate(Scene& scene, const std::string& file)
   clamp_reflectance(scene, report);
   for (const Instance& instance : scene.instances)
     if (!scene.meshes[instance.mesh].triangles.empty()) return std::move(report.warnings);
-  return fail(ErrorCode::bad_input, "{}: the scene has no triangles; nothing can be lit", file);
+  return nothing_left(report);
 }
 
 bool has_light(const Scene& scene) {

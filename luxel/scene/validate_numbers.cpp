@@ -1,6 +1,7 @@
 // NaN and infinity go no further; factors stay in the range that they mean something in.
 #include <algorithm>
 
+#include "luxel/scene/held_range.h"
 #include "luxel/scene/light_kinds.h"
 #include "luxel/scene/validate_steps.h"
 
@@ -16,6 +17,11 @@ Status check_positions(const Scene& scene, const Report& report) {
         return fail(ErrorCode::bad_input,
                     "{}: {}, vertex {}: position ({}, {}, {}) is not finite; repair the mesh",
                     report.file, label("mesh", i, mesh.name), v, p.x, p.y, p.z);
+      if (!is_held(p))
+        return fail(ErrorCode::bad_input,
+                    "{}: {}, vertex {}: position ({}, {}, {}) is too large: coordinates go up to "
+                    "{:g} m; repair the vertex or scale the scene down",
+                    report.file, label("mesh", i, mesh.name), v, p.x, p.y, p.z, kFarthest_m);
     }
   }
   return {};
@@ -28,6 +34,30 @@ bool is_finite(const Mat34& m) {
   return true;
 }
 
+/// Where an instance's transform puts the vertices of its mesh.
+Status check_world(const Scene& scene, const Instance& instance, const std::string& where) {
+  const Mesh& mesh = scene.meshes[instance.mesh];
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3 p = transform_point(instance.world_from_object, mesh.positions[v]);
+    if (!is_held(p))
+      return fail(ErrorCode::bad_input,
+                  "{}: its transform moves {}, vertex {} to ({}, {}, {}): coordinates go up to {:g} m; "
+                  "move it nearer to the origin or scale the scene down",
+                  where, label("mesh", instance.mesh, mesh.name), v, p.x, p.y, p.z, kFarthest_m);
+  }
+  return {};
+}
+
+/// A normal's transform has products of two scales in it, and its length their squares.
+Status check_scales(const Mat34& m, const std::string& where) {
+  const Scales s = scales_of(m);
+  if (s.largest_product() <= double(kFarthest_m) * double(kFarthest_m)) return {};
+  return fail(ErrorCode::bad_input,
+              "{}: its transform scales by {:.4g}, {:.4g} and {:.4g}: scales go up to {:g}; enlarge "
+              "the mesh instead",
+              where, s.x, s.y, s.z, kFarthest_m);
+}
+
 Status check_instances(const Scene& scene, const Report& report) {
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
@@ -38,10 +68,8 @@ Status check_instances(const Scene& scene, const Report& report) {
     if (!(density >= kMinTexelDensity && density <= kMaxTexelDensity))
       return fail(ErrorCode::bad_input, "{}: its density of texels, {}, is outside {} to {}", where,
                   density, kMinTexelDensity, kMaxTexelDensity);
-    for (const Vec3& p : scene.meshes[instance.mesh].positions)
-      if (!luxel::is_finite(transform_point(instance.world_from_object, p)))
-        return fail(ErrorCode::bad_input,
-                    "{}: its transform moves vertices beyond the range of float", where);
+    LUXEL_TRY_STATUS(check_world(scene, instance, where));
+    LUXEL_TRY_STATUS(check_scales(instance.world_from_object, where));
   }
   return {};
 }
@@ -157,6 +185,11 @@ Status check_lights(Scene& scene, Report& report) {
         !std::isfinite(light.outer_cone_rad) || !std::isfinite(light.angular_radius_rad))
       return fail(ErrorCode::bad_input, "{}: {}: one of its numbers is not finite", report.file,
                   name);
+    if (has_position(light.kind) && !is_held(light.position, kFarthestLight_m))
+      return fail(ErrorCode::bad_input,
+                  "{}: {}: position ({}, {}, {}) is too large: coordinates of lights go up to {:g} m",
+                  report.file, name, light.position.x, light.position.y, light.position.z,
+                  kFarthestLight_m);
     if (min_component(light.intensity) < 0) {
       light.intensity = max(light.intensity, Rgb{});
       report.warn("{}: negative intensity set to 0", name);
@@ -169,16 +202,28 @@ Status check_lights(Scene& scene, Report& report) {
   return {};
 }
 
+/// The widest picture, of height 1, and the narrowest: beyond, a side would have no pixel.
+constexpr float kWidestAspect = 1e4f;
+
+/// Whether rays can start from a camera: its place is held, and so are its axes and the products
+/// that tell which way it looks.
+bool is_usable(const Camera& camera) {
+  const Mat34& m = camera.world_from_camera;
+  if (!is_finite(m) || !is_held(column(m, 3)) || scales_of(m).volume == 0) return false;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!has_unit_vector(column(m, axis))) return false;
+  if (camera.aspect != 0 &&
+      !(camera.aspect >= 1 / kWidestAspect && camera.aspect <= kWidestAspect))
+    return false;
+  if (camera.orthographic_height_m > 0) return camera.orthographic_height_m <= kFarthest_m;
+  return camera.fov_y_rad > 0 && camera.fov_y_rad < kPi;
+}
+
 /// A camera that makes no picture is dropped: the scene can still be lit.
 void drop_bad_cameras(Scene& scene, Report& report) {
   std::vector<Camera> kept;
   for (const Camera& camera : scene.cameras) {
-    const bool good =
-        is_finite(camera.world_from_camera) && determinant(camera.world_from_camera) != 0 &&
-        std::isfinite(camera.aspect) && camera.aspect >= 0 &&
-        (camera.orthographic_height_m > 0 ? std::isfinite(camera.orthographic_height_m)
-                                          : camera.fov_y_rad > 0 && camera.fov_y_rad < kPi);
-    if (good)
+    if (is_usable(camera))
       kept.push_back(camera);
     else
       report.warn("camera '{}' has no usable view and is dropped", camera.name);

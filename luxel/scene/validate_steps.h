@@ -1,6 +1,7 @@
 // The steps of validate(), for its own files only.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,12 @@ namespace luxel::scene {
 struct Report {
   std::string file;
   std::vector<std::string> warnings;
+  std::vector<std::string> losses;  ///< those warnings that say why triangles are gone
+
+  void warn_of_loss(std::string text) {
+    warnings.push_back(file + ": " + text);
+    losses.push_back(std::move(text));
+  }
 
   template <class... Args>
   void warn(fmt::format_string<Args...> text, Args&&... args) {
@@ -29,14 +36,27 @@ inline std::string label(const char* kind, size_t index, const std::string& name
 /// "a, b, c and 4 more"
 std::string listed(const std::vector<std::string>& names);
 
+/// The lengths of a transform's axes and the volume that they span, in double: in float, products of
+/// three lengths overflow long before the lengths do.
+struct Scales {
+  double x = 0, y = 0, z = 0;
+  double volume = 0;  ///< negative where it mirrors
+
+  double largest_product() const { return std::max({x * y, y * z, z * x}); }
+  double smallest_product() const { return std::min({x * y, y * z, z * x}); }
+};
+Scales scales_of(const Mat34& m);
+
 /// Errors: an index that points nowhere, arrays that do not fit together.
 Status check_references(const Scene& scene, const Report& report);
 
-/// Errors: NaN or infinity where nothing sensible can stand in. Repairs texture coordinates, vertex
-/// colours and factors out of their range.
+/// Errors: NaN, infinity, or more than single precision holds (held_range.h), where nothing sensible
+/// can stand in. Repairs texture coordinates, vertex colours and factors out of their range.
 Status check_numbers(Scene& scene, Report& report);
 
+/// Drops instances that are squashed flat, or so small that their normals are lost.
 void drop_singular_instances(Scene& scene, Report& report);
+/// Drops triangles that have no normal, and says why.
 void drop_zero_area_triangles(Scene& scene, Report& report);
 void repair_normals(Scene& scene, Report& report);
 void clamp_reflectance(Scene& scene, Report& report);

@@ -1,37 +1,62 @@
 // Triangles without area, normals without direction, surfaces that reflect more than they receive.
 #include <algorithm>
+#include <array>
 #include <cfloat>
+#include <span>
 
 #include "luxel/base/vec_double.h"
 #include "luxel/image/color.h"
+#include "luxel/scene/held_range.h"
 #include "luxel/scene/validate_steps.h"
 
 namespace luxel::scene {
 namespace {
 
 DVec3 difference(Vec3 a, Vec3 b) { return to_double(a) - to_double(b); }
-double squared_length(DVec3 a) { return a.x * a.x + a.y * a.y + a.z * a.z; }
+double squared_length(DVec3 a) { return dot(a, a); }
 
-/// A triangle has no area when its height over the longest edge is not above the rounding unit of
-/// its own coordinates: its corners may then just as well lie on a line. Computed in double, where
-/// the differences of floats are exact, so the verdict is that of the stored numbers.
-bool has_area(const Triangle3& t) {
-  const DVec3 e0 = difference(t.b, t.a), e1 = difference(t.c, t.a), e2 = difference(t.c, t.b);
-  const DVec3 n{e0.y * e1.z - e0.z * e1.y, e0.z * e1.x - e0.x * e1.z, e0.x * e1.y - e0.y * e1.x};
-  const double longest2 = std::max({squared_length(e0), squared_length(e1), squared_length(e2)});
-  double magnitude = 0;
-  for (const Vec3& p : {t.a, t.b, t.c})
-    for (int axis = 0; axis < 3; ++axis) magnitude = std::max(magnitude, double(std::abs(p[axis])));
-  const double rounding = magnitude * double(FLT_EPSILON) / 2;
-  return squared_length(n) > longest2 * rounding * rounding;
+double largest_coordinate(Vec3 p) {
+  return double(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}));
 }
 
-/// Whether the single-precision cross product that everyone uses gives a direction, also on threads
-/// that flush denormals to zero.
-bool has_direction(const Triangle3& t) {
-  const Vec3 n = geometric_normal_area2(t);
-  const float length2 = dot(n, n);
-  return length2 >= FLT_MIN && std::isfinite(length2);
+DVec3 absolute(DVec3 a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
+
+/// How much n = e0 x e1 may change, per axis, when a corner at p is rounded and e is the edge across
+/// from it: the product of the edge and of half an ulp of each coordinate, without signs.
+DVec3 rounding_of_normal(Vec3 p, DVec3 e) {
+  const DVec3 d = absolute(to_double(p)) * (double(FLT_EPSILON) / 2);
+  e = absolute(e);
+  return {e.y * d.z + e.z * d.y, e.z * d.x + e.x * d.z, e.x * d.y + e.y * d.x};
+}
+
+/// A triangle has no area when the rounding of its corners alone could have made the area that it
+/// has: its corners may then just as well lie on a line. It has one when its height over the longest
+/// edge is above the rounding unit of its largest coordinate. What has one far corner is not so
+/// high, for that corner is rounded by metres; there the rounding of each corner counts, which
+/// matters little where it goes along the edge across. Computed in double, where the differences of
+/// floats are exact, so the verdict is that of the stored numbers.
+bool has_area(const Triangle3& t) {
+  const DVec3 e0 = difference(t.b, t.a), e1 = difference(t.c, t.a), e2 = difference(t.c, t.b);
+  const double n2 = squared_length(cross(e0, e1));
+  const double longest2 = std::max({squared_length(e0), squared_length(e1), squared_length(e2)});
+  const double rounding =
+      std::max({largest_coordinate(t.a), largest_coordinate(t.b), largest_coordinate(t.c)}) *
+      (double(FLT_EPSILON) / 2);
+  if (n2 > longest2 * rounding * rounding) return true;
+  const DVec3 by_corners = rounding_of_normal(t.a, e2) + rounding_of_normal(t.b, e1) +
+                           rounding_of_normal(t.c, e0);
+  return n2 > squared_length(by_corners);
+}
+
+/// What becomes of a triangle: flat has no area in its mesh, too_small one that single precision
+/// does not hold, blurred one that the rounding of its place in the world takes away.
+enum class Fate : uint8_t { kept, flat, too_small, blurred };
+
+/// The verdict on a triangle in the world, where solvers and rays take its normal in single
+/// precision; it has an area in its mesh.
+Fate fate_in_world(const Triangle3& t) {
+  if (has_unit_vector(geometric_normal_area2(t))) return Fate::kept;
+  return has_area(t) ? Fate::too_small : Fate::blurred;
 }
 
 std::vector<std::vector<uint32_t>> instances_by_mesh(const Scene& scene) {
@@ -86,58 +111,114 @@ Rgb brightest_texel(const Texture& texture) {
 
 }  // namespace
 
+Scales scales_of(const Mat34& m) {
+  const DVec3 a = to_double(column(m, 0)), b = to_double(column(m, 1)), c = to_double(column(m, 2));
+  return {length(a), length(b), length(c), dot(a, cross(b, c))};
+}
+
 void drop_singular_instances(Scene& scene, Report& report) {
-  std::vector<std::string> dropped;
+  std::vector<std::string> flat, tiny;
   std::vector<Instance> kept;
   for (size_t i = 0; i < scene.instances.size(); ++i) {
-    const Mat34& m = scene.instances[i].world_from_object;
+    const Scales s = scales_of(scene.instances[i].world_from_object);
     // Relative to a cube of the columns' lengths, so that a small scale is no reason.
-    const double volume =
-        double(length(column(m, 0))) * double(length(column(m, 1))) * double(length(column(m, 2)));
-    const DVec3 a{column(m, 0).x, column(m, 0).y, column(m, 0).z};
-    const DVec3 b{column(m, 1).x, column(m, 1).y, column(m, 1).z};
-    const DVec3 c{column(m, 2).x, column(m, 2).y, column(m, 2).z};
-    const double det = a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) +
-                       a.z * (b.x * c.y - b.y * c.x);
-    if (std::abs(det) > 1e-7 * volume)
-      kept.push_back(std::move(scene.instances[i]));
+    if (!(std::abs(s.volume) > 1e-7 * s.x * s.y * s.z))
+      flat.push_back(label("instance", i, scene.instances[i].name));
+    else if (s.smallest_product() < double(kLeastDoubleArea_m2))
+      tiny.push_back(label("instance", i, scene.instances[i].name));
     else
-      dropped.push_back(label("instance", i, scene.instances[i].name));
+      kept.push_back(std::move(scene.instances[i]));
   }
   scene.instances = std::move(kept);
-  if (!dropped.empty())
-    report.warn("{} instances are squashed flat by their transform and dropped: {}", dropped.size(),
-                listed(dropped));
+  if (!flat.empty())
+    report.warn_of_loss(
+        fmt::format("{} instances are squashed flat by their transform and dropped: {}",
+                    flat.size(), listed(flat)));
+  if (!tiny.empty())
+    report.warn_of_loss(
+        fmt::format("{} instances are scaled down to nothing (two of their scales have a product "
+                    "below {:.2g}) and dropped: {}",
+                    tiny.size(), kLeastDoubleArea_m2, listed(tiny)));
 }
+
+namespace {
+
+/// Per mesh, what has happened to its triangles.
+struct Dropped {
+  size_t count = 0;
+  std::vector<std::string> meshes;
+  std::string example;  ///< the instance that was the reason
+
+  void add(size_t n, const std::string& mesh) {
+    if (n == 0) return;
+    count += n;
+    meshes.push_back(mesh);
+  }
+};
+
+/// The fate of a mesh's triangle, and the instance that decides it.
+struct Verdict {
+  Fate fate = Fate::kept;
+  uint32_t instance = kNone;
+};
+
+Verdict verdict_on(const Scene& scene, const Mesh& mesh, std::span<const uint32_t> users,
+                   uint32_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  if (!has_area({mesh.positions[a], mesh.positions[b], mesh.positions[c]})) return {Fate::flat};
+  // One that vanishes in one place only (tiny scale, far translation) vanishes everywhere: a mesh
+  // is shared, and solvers must not meet it.
+  for (const uint32_t instance : users)
+    if (const Fate fate = fate_in_world(world_triangle(scene, instance, triangle));
+        fate != Fate::kept)
+      return {fate, instance};
+  return {};
+}
+
+void warn_of_dropped(const Dropped& flat, const Dropped& tiny, const Dropped& blurred,
+                     Report& report) {
+  if (flat.count)
+    report.warn_of_loss(
+        fmt::format("{} zero-area triangles dropped from {}", flat.count, listed(flat.meshes)));
+  if (tiny.count)
+    report.warn_of_loss(fmt::format(
+        "{} triangles are too small for single precision (twice their area is below {:.2g} m^2) "
+        "and dropped from {}; scale the scene up",
+        tiny.count, kLeastDoubleArea_m2, listed(tiny.meshes)));
+  if (blurred.count)
+    report.warn_of_loss(fmt::format(
+        "{} triangles are smaller than the steps of single precision where {} puts them, and "
+        "dropped from {}; move it nearer to the origin",
+        blurred.count, blurred.example, listed(blurred.meshes)));
+}
+
+}  // namespace
 
 void drop_zero_area_triangles(Scene& scene, Report& report) {
   const std::vector<std::vector<uint32_t>> users = instances_by_mesh(scene);
-  size_t dropped = 0;
-  std::vector<std::string> names;
+  Dropped flat, tiny, blurred;
   for (size_t i = 0; i < scene.meshes.size(); ++i) {
     Mesh& mesh = scene.meshes[i];
-    std::vector<uint8_t> keep(mesh.triangles.size());
-    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      keep[t] = has_area({mesh.positions[a], mesh.positions[b], mesh.positions[c]});
-      // One that vanishes in one place only (tiny scale, far translation) vanishes everywhere: a
-      // mesh is shared, and solvers must not meet it.
-      for (const uint32_t instance : users[i])
-        keep[t] = keep[t] && has_direction(world_triangle(scene, instance, t));
-    }
+    std::array<size_t, 4> with_fate{};
     size_t n = 0;
-    for (size_t t = 0; t < keep.size(); ++t)
-      if (keep[t]) {
-        mesh.triangles[n] = mesh.triangles[t];
-        mesh.triangle_material[n++] = mesh.triangle_material[t];
-      }
-    if (n == keep.size()) continue;
-    dropped += keep.size() - n;
-    names.push_back(label("mesh", i, mesh.name));
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto [fate, k] = verdict_on(scene, mesh, users[i], t);
+      ++with_fate[size_t(fate)];
+      if (fate == Fate::blurred && blurred.example.empty())
+        blurred.example = label("instance", k, scene.instances[k].name);
+      // Later verdicts look at later triangles only.
+      if (fate != Fate::kept) continue;
+      mesh.triangles[n] = mesh.triangles[t];
+      mesh.triangle_material[n++] = mesh.triangle_material[t];
+    }
+    const std::string name = label("mesh", i, mesh.name);
+    flat.add(with_fate[size_t(Fate::flat)], name);
+    tiny.add(with_fate[size_t(Fate::too_small)], name);
+    blurred.add(with_fate[size_t(Fate::blurred)], name);
     mesh.triangles.resize(n);
     mesh.triangle_material.resize(n);
   }
-  if (dropped) report.warn("{} zero-area triangles dropped from {}", dropped, listed(names));
+  warn_of_dropped(flat, tiny, blurred, report);
 }
 
 void repair_normals(Scene& scene, Report& report) {

@@ -76,6 +76,107 @@ TEST(Validate, NoTriangleWithoutDirectionInTheWorld) {
   EXPECT_THAT(warnings_of(scene), HasSubstr("no triangles"));
 }
 
+// A unit square 1e9 m away has corners that single precision rounds to one place.
+TEST(Validate, WhatRoundingTakesAwayIsNamed) {
+  Scene scene = good_scene();
+  scene.meshes.push_back(scene.meshes[0]);
+  scene.instances.push_back({"far", 1, translation({1e9f, 0, 0})});
+  EXPECT_THAT(warnings_of(scene), AllOf(HasSubstr("2 triangles are smaller than the steps"),
+                                        HasSubstr("where instance 1 (far) puts them")));
+}
+
+TEST(Validate, TooLargeCoordinatesAreErrorsThatNameTheirPlace) {
+  for (const float large : {1.5e9f, 1e12f, 1e19f, 3e38f}) {
+    Scene scene = good_scene();
+    scene.meshes[0].positions[3].y = -large;
+    EXPECT_THAT(error_of(scene),
+                HasSubstr(fmt::format("mesh 0 (quad), vertex 3: position (0, {}, 0) is too large: "
+                                      "coordinates go up to 1e+09 m",
+                                      -large)));
+    scene = good_scene();
+    scene.instances[0].world_from_object = translation({0, 0, large});
+    EXPECT_THAT(error_of(scene), AllOf(HasSubstr("instance 0 (it)"), HasSubstr("quad), vertex 0"),
+                                       HasSubstr("up to 1e+09 m")));
+    scene.instances[0].world_from_object = scaling({large, large, large});
+    EXPECT_THAT(error_of(scene), AllOf(HasSubstr("instance 0 (it)"), HasSubstr("quad), vertex 1")));
+    // Normals overflow, and no vertex is far away.
+    for (Vec3& p : scene.meshes[0].positions) p = p * (1 / large);
+    EXPECT_THAT(error_of(scene), HasSubstr("instance 0 (it): its transform scales by"));
+  }
+  Scene scene = good_scene();
+  scene.lights.push_back({});
+  scene.lights[0].name = "sun", scene.lights[0].position = {0, 1.5e11f, 0};
+  EXPECT_EQ(error_of(scene), "no error");
+  scene.lights[0].position.y = 1e19f;
+  EXPECT_THAT(error_of(scene), HasSubstr("light 0 (sun): position (0, 1e+19, 0) is too large"));
+}
+
+// Squares of all sizes that are held, and of those that are not; none is said to have no area.
+TEST(Validate, AreasAreKeptWithinTheRangeAndNamedBeyond) {
+  const auto square = [](float side) {
+    Scene scene = good_scene();
+    for (Vec3& p : scene.meshes[0].positions) p = p * side;
+    return scene;
+  };
+  for (const float side : {1e9f, 1e5f, 1e-5f, 1e-9f, 4e-10f}) {
+    Scene scene = square(side);
+    EXPECT_EQ(warnings_of(scene), "") << side;
+    EXPECT_EQ(scene.meshes[0].triangles.size(), 2u) << side;
+    // What every solver asks of a triangle.
+    EXPECT_NEAR(front_normal(scene, 0, 0).z, 1, 1e-6f) << side;
+    EXPECT_NEAR(area_m2(world_triangle(scene, 0, 1)) / side / side, 0.5f, 1e-6f) << side;
+  }
+  EXPECT_THAT(error_of(square(1e12f)), HasSubstr("too large"));
+  EXPECT_THAT(error_of(square(1e-12f)),
+              AllOf(HasSubstr("no triangles left"), HasSubstr("2 triangles are too small"),
+                    HasSubstr("mesh 0 (quad)"), HasSubstr("scale the scene up")));
+}
+
+// The triangle's corners near the origin are rounded by nanometres, and the far one by metres, but
+// along its long sides. Its area is that of its stored numbers, 0.25 m^2 or more.
+TEST(Validate, OneFarVertexIsNoReasonToDropATriangle) {
+  for (const Vec3 far : {Vec3{9e8f, 1, 0}, Vec3{9e8f, 0.5f, 0}, Vec3{9e8f, -9e8f, 9e8f}}) {
+    Scene scene = good_scene();
+    scene.meshes[0].positions[2] = far;
+    EXPECT_EQ(warnings_of(scene), "");
+    EXPECT_EQ(scene.meshes[0].triangles.size(), 2u);
+  }
+  // Here the rounding of the far one moves it by 32 m across, and the area is less than this.
+  Scene scene = good_scene();
+  scene.meshes[0].positions = {{0, 0, 0}, {1, 1, 0}, {9e8f, 9e8f, 0.5f}, {0, 1, 0}};
+  EXPECT_THAT(warnings_of(scene), HasSubstr("1 zero-area triangles dropped"));
+}
+
+TEST(Validate, InstancesOfNoSizeAreDropped) {
+  for (const float scale : {1e-10f, -1e-12f, 1e-30f}) {
+    Scene scene = good_scene();
+    scene.instances.push_back({"dot", 0, scaling({scale, scale, scale})});
+    EXPECT_THAT(warnings_of(scene), AllOf(HasSubstr("1 instances are scaled down to nothing"),
+                                          HasSubstr("instance 1 (dot)")));
+    EXPECT_EQ(scene.instances.size(), 1u);
+  }
+}
+
+TEST(Validate, CamerasThatMakeNoPictureAreDropped) {
+  const auto kept = [](const Camera& camera) {
+    Scene scene = good_scene();
+    scene.cameras = {camera};
+    EXPECT_THAT(error_of(scene), "no error");
+    return warnings_of(scene).empty();
+  };
+  EXPECT_TRUE(kept({}));
+  for (const float scale : {1e-15f, 1e-9f, 1e15f})
+    EXPECT_TRUE(kept({.world_from_camera = scaling({scale, scale, scale})})) << scale;
+  // The length of an axis is 0 or infinite in single precision, or two axes are one.
+  for (const float scale : {0.0f, 1e-20f, 1e20f})
+    EXPECT_FALSE(kept({.world_from_camera = scaling({scale, scale, scale})})) << scale;
+  EXPECT_FALSE(kept({.world_from_camera = from_columns({1, 0, 0}, {1, 0, 0}, {0, 0, 1}, {})}));
+  EXPECT_FALSE(kept({.world_from_camera = translation({1e12f, 0, 0})}));
+  for (const float aspect : {1e-30f, 1e30f, -1.0f, NAN})
+    EXPECT_FALSE(kept({.aspect = aspect})) << aspect;
+  EXPECT_FALSE(kept({.orthographic_height_m = 1e12f}));
+}
+
 TEST(Validate, SquashedInstancesAreDropped) {
   Scene scene = good_scene();
   scene.instances.push_back({"flat", 0, scaling({1, 0, 1})});

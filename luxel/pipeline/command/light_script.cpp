@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "luxel/scene/held_range.h"
 #include "luxel/scene/light_kinds.h"
 
 namespace luxel::pipeline {
@@ -90,6 +91,19 @@ Result<Track> track(const Node& node) {
   return out;
 }
 
+/// A place [m] that single precision holds.
+Status check_place(const Node& node, Vec3 place, float farthest_m) {
+  if (scene::is_held(place, farthest_m)) return {};
+  return wrong(node, fmt::format("a place with coordinates up to {} m", farthest_m));
+}
+
+Result<Track> place_track(const Node& node) {
+  LUXEL_TRY(Track out, track(node));
+  for (const Track::Key& key : out.keys)
+    LUXEL_TRY_STATUS(check_place(node, key.value, scene::kFarthestLight_m));
+  return out;
+}
+
 Result<Track> light_track(const Node& node) {
   LUXEL_TRY(Track out, track(node));
   for (const Track::Key& key : out.keys)
@@ -101,7 +115,8 @@ Result<Track> light_track(const Node& node) {
 Result<Track> direction_track(const Node& node) {
   LUXEL_TRY(Track out, track(node));
   for (Track::Key& key : out.keys) {
-    if (!(dot(key.value, key.value) > 0)) return wrong(node, "a direction that is not 0, 0, 0");
+    if (!scene::has_unit_vector(key.value))
+      return wrong(node, "a direction that is not 0, 0, 0, nor all but 0 or infinite");
     key.value = normalize(key.value);
   }
   return out;
@@ -149,7 +164,7 @@ Result<LightScript::MovingLight> light_of(const Node& node) {
                               : "a point light has no direction; leave it out");
   // The values.
   if (has_place) {
-    LUXEL_TRY(moving.position, track(node.at("position")));
+    LUXEL_TRY(moving.position, place_track(node.at("position")));
   }
   if (has_direction) {
     LUXEL_TRY(moving.direction, direction_track(node.at("direction")));
@@ -191,6 +206,8 @@ Status read_camera(const Node& node, LightScript& out) {
   LightScript::View view;
   LUXEL_TRY(view.eye, triple(node.at("eye")));
   LUXEL_TRY(view.look_at, triple(node.at("look_at")));
+  LUXEL_TRY_STATUS(check_place(node.at("eye"), view.eye, scene::kFarthest_m));
+  LUXEL_TRY_STATUS(check_place(node.at("look_at"), view.look_at, scene::kFarthest_m));
   if (view.eye == view.look_at) return wrong(node, "a camera that looks somewhere");
   if (node.has("fov_deg")) {
     LUXEL_TRY(view.fov_deg, number(node.at("fov_deg"), 1, 170));

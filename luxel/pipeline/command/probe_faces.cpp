@@ -136,9 +136,8 @@ Result<Probed> probe_by_solution(const ProbeSettings& s, Progress& progress) {
     out.warnings.push_back(about_left_out(left_out, s.time_budget_s));
   LUXEL_TRY(const std::vector<Rgb> exact,
             hierarchical::irradiance_at(solution, scene, tracer, {&at, 1}, {1e-6}, progress));
-  const hierarchical::MeshPoint place =
-      hierarchical::locate(solution, mesh, nearest.face, nearest.place);
-  out.interpolated = hierarchical::value_of(mesh.interpolant[place.triangle], place.s, place.t);
+  if (const auto p = hierarchical::locate(solution, mesh, nearest.face, nearest.place))
+    out.interpolated = hierarchical::value_of(mesh.interpolant[p->triangle], p->s, p->t);
   out.irradiance = out.punctual_and_background = exact[0];
   if (!(max_component(exact[0]) > 0)) out.warnings.push_back(no_light_arrives("the point"));
   out.name = name_of(scene, face.instance), out.material = scene.materials[face.material].name;

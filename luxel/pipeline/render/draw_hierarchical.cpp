@@ -113,11 +113,11 @@ Result<image::Image> draw_linear(const Subject& subject, const RenderSettings& s
     const hierarchical::FacePoint place =
         hierarchical::face_point_of(subject.scene, solution.faces, p);
     if (place.face == hierarchical::kNone) return {};
-    const hierarchical::MeshPoint at =
-        hierarchical::locate(solution, mesh, place.face, place.position);
-    const hierarchical::Interpolant& r = mesh.interpolant[at.triangle];
-    return hierarchical::value_of(r, 0, 0) * (1 - at.s - at.t) +
-           hierarchical::value_of(r, 1, 0) * at.s + hierarchical::value_of(r, 0, 1) * at.t;
+    const auto at = hierarchical::locate(solution, mesh, place.face, place.position);
+    if (!at) return {};
+    const hierarchical::Interpolant& r = mesh.interpolant[at->triangle];
+    return hierarchical::value_of(r, 0, 0) * (1 - at->s - at->t) +
+           hierarchical::value_of(r, 1, 0) * at->s + hierarchical::value_of(r, 0, 1) * at->t;
   };
   return display::draw(subject.scene, subject.tracer, subject.camera, irradiance, draw_params(s),
                        progress);

@@ -298,7 +298,9 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
   return mesh;
 }
 
-MeshPoint locate(const Solution& s, const LightMesh& mesh, uint32_t face, DVec3 place) {
+std::optional<MeshPoint> locate(const Solution& s, const LightMesh& mesh, uint32_t face,
+                                DVec3 place) {
+  if (mesh.triangles.empty()) return std::nullopt;
   const size_t leaf = leaf_at(s.tree, s.faces, face, place);
   MeshPoint best;
   double deepest = -INFINITY;
@@ -320,9 +322,9 @@ MeshPoint locate(const Solution& s, const LightMesh& mesh, uint32_t face, DVec3 
 Rgb irradiance_at(const Solution& s, const LightMesh& mesh, const scene::Scene& scene,
                   const scene::SurfacePoint& p) {
   const FacePoint place = face_point_of(scene, s.faces, p);
-  if (place.face == kNone || mesh.triangles.empty()) return {};
-  const MeshPoint at = locate(s, mesh, place.face, place.position);
-  return max(Rgb{}, value_of(mesh.interpolant[at.triangle], at.s, at.t));
+  if (place.face == kNone) return {};
+  const std::optional<MeshPoint> at = locate(s, mesh, place.face, place.position);
+  return at ? max(Rgb{}, value_of(mesh.interpolant[at->triangle], at->s, at->t)) : Rgb{};
 }
 
 }  // namespace luxel::hierarchical

@@ -69,8 +69,9 @@ struct MeshPoint {
   uint32_t triangle = 0;
   float s = 0, t = 0;
 };
-/// Where a place of a face lies in the mesh; clamped into the triangle.
-MeshPoint locate(const Solution& solution, const LightMesh& mesh, uint32_t face, DVec3 place);
+/// Where a place of a face lies in the mesh; clamped into the triangle. Nothing in a mesh without
+/// triangles: all faces are smaller than the rounding of the scene's coordinates.
+std::optional<MeshPoint> locate(const Solution& solution, const LightMesh& mesh, uint32_t face, DVec3 place);
 
 /// E at a surface point of the scene [W/m^2], never negative.
 Rgb irradiance_at(const Solution& solution, const LightMesh& mesh, const scene::Scene& scene,

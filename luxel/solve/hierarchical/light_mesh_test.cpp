@@ -125,7 +125,7 @@ TEST(LightMesh, ShadowsEndWhereTheyDo) {
   const LightMesh mesh = mesh_of(*s);
   const auto at = [&](double x) {
     const uint32_t floor = s->solution.faces.face_of_triangle[0];
-    const MeshPoint place = locate(s->solution, mesh, floor, {x, 0, 0.1});
+    const MeshPoint place = *locate(s->solution, mesh, floor, {x, 0, 0.1});
     return double(value_of(mesh.interpolant[place.triangle], place.s, place.t).x);
   };
   const double edge = 0.25 / (1 - 1 / 2.5), bright = at(edge + 0.02), dark = at(edge - 0.02);

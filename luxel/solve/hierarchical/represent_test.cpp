@@ -22,7 +22,7 @@ LightMesh represented(Solved& s, const RepresentParams& params = {}) {
 /// E of the first face, whose plane is y = 0.
 double floor_light(const Solved& s, const LightMesh& mesh, double x, double z) {
   const uint32_t floor = s.solution.faces.face_of_triangle[0];
-  const MeshPoint at = locate(s.solution, mesh, floor, {x, 0, z});
+  const MeshPoint at = *locate(s.solution, mesh, floor, {x, 0, z});
   return double(value_of(mesh.interpolant[at.triangle], at.s, at.t).x);
 }
 

@@ -317,6 +317,30 @@ TEST(Lxr, MendedDamageIsAnErrorOrOtherData) {
   }
 }
 
+// Checksums are right: only the numbers tell.
+TEST(Lxr, HoldsNoPlaceThatTheRayTracerDoesNot) {
+  const auto error_with = [](const auto& change) {
+    RelightData data = small_data();
+    change(data);
+    Bytes file = forged(data);
+    return error_of(file);
+  };
+  for (const float far : {-2e9f, 1e19f, 3e38f}) {
+    EXPECT_THAT(error_with([&](RelightData& d) { d.occluders.position[3].y = far; }),
+                HasSubstr(fmt::format("corners of occluders: number 3, (0, {}, 1), is not in", far)));
+    EXPECT_THAT(error_with([&](RelightData& d) { d.position[1].x = far; }),
+                HasSubstr("positions of patches: number 1, "));
+    EXPECT_THAT(error_with([&](RelightData& d) { d.target.position[2].z = far; }),
+                HasSubstr("positions of places: number 2, "));
+    EXPECT_THAT(error_with([&](RelightData& d) { d.probe[0].position.z = far; }),
+                HasSubstr("probes: number 0 at "));
+  }
+  EXPECT_THAT(error_with([&](RelightData& d) { d.lights[1].position.z = 1e19f; }),
+              HasSubstr("lights: the position of number 1, "));
+  EXPECT_THAT(error_with([&](RelightData& d) { d.occluders.position[3].y = 9e8f; }),
+              "none");
+}
+
 TEST(Lxr, KnowsItsCodecs) {
   Bytes file = encode_lxr(small_data());
   size_t at = 32;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "luxel/scene/held_range.h"
 #include "luxel/scene/light_kinds.h"
 
 namespace luxel::matrix {
@@ -31,14 +32,30 @@ bool lies_within(const std::array<float, N>& v, double lower, double upper) {
   return std::all_of(v.begin(), v.end(), [&](float x) { return lies_within(x, lower, upper); });
 }
 
+std::string in_words(double v) { return fmt::format("{}", v); }
+std::string in_words(Vec3 v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
+template <size_t N>
+std::string in_words(const std::array<float, N>& v) {
+  return fmt::format("({})", fmt::join(v, ", "));
+}
+
 /// Neither NaN nor infinite, too.
 template <class List>
 Status within(std::string_view what, const List& list, double lower, double upper) {
   for (size_t k = 0; k < list.size(); ++k)
     if (!lies_within(list[k], lower, upper))
-      return fail(ErrorCode::bad_input, "{}: number {} is not in [{}, {}]", what, k, lower, upper);
+      return fail(ErrorCode::bad_input, "{}: number {}, {}, is not in [{}, {}]", what, k,
+                  in_words(list[k]), lower, upper);
   return {};
 }
+/// What rays meet and leave from: more would abort in the ray tracer. Places on surfaces and just
+/// off them may round to a little more than the corners have.
+template <class List>
+Status placed(std::string_view what, const List& list, double room = 1) {
+  const double most = double(scene::kFarthest_m) * room;
+  return within(what, list, -most, most);
+}
+constexpr double kRoomOfPlaces = 1.01;
 template <class List>
 Status finite(std::string_view what, const List& list) {
   return within(what, list, -FLT_MAX, FLT_MAX);
@@ -227,7 +244,7 @@ Status check(const Target& target, size_t patches) {
     if (target.texel[k][0] >= target.width || target.texel[k][1] >= target.height)
       return fail(ErrorCode::bad_input, "texels of places: {}, {} at place {}, the map is {} x {}",
                   target.texel[k][0], target.texel[k][1], k, target.width, target.height);
-  LUXEL_TRY_STATUS(finite("positions of places", target.position));
+  LUXEL_TRY_STATUS(placed("positions of places", target.position, kRoomOfPlaces));
   for (const std::vector<Vec3>* normal : {&target.normal, &target.geometric_normal}) {
     LUXEL_TRY_STATUS(length_is("normals of places", normal->size(), places));
     LUXEL_TRY_STATUS(finite("normals of places", *normal));
@@ -236,7 +253,7 @@ Status check(const Target& target, size_t patches) {
 }
 
 Status check(const Occluders& occluders) {
-  LUXEL_TRY_STATUS(finite("corners of occluders", occluders.position));
+  LUXEL_TRY_STATUS(placed("corners of occluders", occluders.position));
   for (const std::array<uint32_t, 3>& triangle : occluders.triangle)
     LUXEL_TRY_STATUS(below("triangles of occluders", triangle, occluders.position.size()));
   return {};
@@ -254,7 +271,7 @@ Status check_patches(const RelightData& d) {
                                      {"background of patches", d.sky.size()},
                                      {"materials of patches", d.material.size()}})
     LUXEL_TRY_STATUS(length_is(what, length, n));
-  LUXEL_TRY_STATUS(finite("positions of patches", d.position));
+  LUXEL_TRY_STATUS(placed("positions of patches", d.position, kRoomOfPlaces));
   LUXEL_TRY_STATUS(finite("normals of patches", d.normal));
   LUXEL_TRY_STATUS(positive("areas of patches", d.area_m2));
   LUXEL_TRY_STATUS(within("reflectances of patches", d.reflectance, 0, 1));
@@ -276,9 +293,13 @@ Status check_glow(const RelightData& d) {
 
 Status check_probes(const RelightData& d) {
   LUXEL_TRY_STATUS(parts("probes", d.first_probe, d.size(), d.probe.size()));
+  const float most = scene::kFarthest_m * float(kRoomOfPlaces);
   for (size_t k = 0; k < d.probe.size(); ++k)
-    if (!is_finite(d.probe[k].position) || !is_finite(d.probe[k].normal))
-      return fail(ErrorCode::bad_input, "probes: number {} is not finite", k);
+    if (!scene::is_held(d.probe[k].position, most) || !is_finite(d.probe[k].normal))
+      return fail(ErrorCode::bad_input,
+                  "probes: number {} at {} with the normal {} is not finite, or its position not in "
+                  "[-{}, {}]",
+                  k, in_words(d.probe[k].position), in_words(d.probe[k].normal), most, most);
   return {};
 }
 
@@ -290,6 +311,9 @@ Status check_lights(const RelightData& d) {
     if (!scene::is_known(light.kind) || !is_finite(light.position) || !is_finite(light.direction) ||
         !lies_within(light.intensity, 0, FLT_MAX) || !lies_within(numbers, -FLT_MAX, FLT_MAX))
       return fail(ErrorCode::bad_input, "lights: number {} is of no kind or not finite", k);
+    if (!scene::is_held(light.position, scene::kFarthestLight_m))
+      return fail(ErrorCode::bad_input, "lights: the position of number {}, {}, is not in [-{}, {}]",
+                  k, in_words(light.position), scene::kFarthestLight_m, scene::kFarthestLight_m);
   }
   return within("background", std::array{d.background}, 0, FLT_MAX);
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "luxel/scene/brightness.h"
 #include "luxel/scene/validate_steps.h"
 
 namespace luxel::scene {
@@ -30,7 +31,10 @@ Result<std::vector<std::string>> validate(Scene& scene, const std::string& file)
   repair_normals(scene, report);
   clamp_reflectance(scene, report);
   for (const Instance& instance : scene.instances)
-    if (!scene.meshes[instance.mesh].triangles.empty()) return std::move(report.warnings);
+    if (!scene.meshes[instance.mesh].triangles.empty()) {
+      LUXEL_TRY_STATUS(check_brightness(scene, file));
+      return std::move(report.warnings);
+    }
   return nothing_left(report);
 }
 

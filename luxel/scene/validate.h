@@ -17,7 +17,7 @@ namespace luxel::scene {
 /// counted, reflectance clamped with the material's name).
 /// `file` is named in the messages. Errors: no triangles, or none left (says why), coordinates that
 /// are not finite or too large (names mesh, vertex and value), index out of range (names mesh and
-/// triangle).
+/// triangle), light that is too bright (check_brightness).
 Result<std::vector<std::string>> validate(Scene& scene, const std::string& file);
 
 /// Whether anything shines: emissive triangles, lights, background, environment.

@@ -1,6 +1,7 @@
 #include "luxel/pipeline/bake/bake_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -21,6 +22,7 @@
 #include "luxel/pipeline/texels/connected_texels.h"
 #include "luxel/pipeline/texels/resolution.h"
 #include "luxel/pipeline/texels/two_sides.h"
+#include "luxel/scene/brightness.h"
 #include "luxel/scene/sides.h"
 #include "luxel/scene/validate.h"
 
@@ -39,6 +41,21 @@ Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>
   return std::move(imported.scene);
 }
 
+/// Errors: light of a texel that overflows, or whose variance does; what follows squares both.
+Status check_held(const light::TexelScene& in, const TexelLight& light) {
+  const auto place = [&](size_t i) {
+    return scene::world_position(in.scene, in.map.texels[i].sample);
+  };
+  LUXEL_TRY_STATUS(scene::check_held(in.scene, light.irradiance, place));
+  for (const std::vector<Rgb>& layer : light.layer_irradiance)
+    LUXEL_TRY_STATUS(scene::check_held(in.scene, layer, place));
+  for (const std::vector<float>* variance : {&light.variance, &light.direct_variance})
+    for (size_t i = 0; i < variance->size(); ++i)
+      if (!std::isfinite((*variance)[i]))
+        return tl::unexpected(scene::overflow_at(in.scene, place(i)));
+  return {};
+}
+
 Status solve(const BakeSettings& settings, const light::TexelScene& input,
              const SolveStores& stores, const SolveObserver& observer, Bake& bake,
              Progress& progress) {
@@ -49,6 +66,7 @@ Status solve(const BakeSettings& settings, const light::TexelScene& input,
         "by --solver {}: they are too dark; gather and reference have it",
         settings.solver));
   LUXEL_TRY(bake.light, solver.solve(input, settings, stores, observer, progress));
+  LUXEL_TRY_STATUS(check_held(input, bake.light));
   bake.warnings.insert(bake.warnings.end(), bake.light.warnings.begin(), bake.light.warnings.end());
   return {};
 }

@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "luxel/display/fit_camera.h"
+#include "luxel/scene/brightness.h"
+#include "luxel/scene/held_range.h"
+#include "luxel/trace/camera_rays.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -63,7 +66,7 @@ Status check_view(const std::string& view, const scene::Scene& scene, const std:
 Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Scene& scene,
                                     const trace::RayTracer& tracer, const std::string& file) {
   if (choice.eye) {
-    if (*choice.eye == choice.look_at)
+    if (!scene::has_unit_vector(*choice.eye - choice.look_at))
       return fail(ErrorCode::bad_setting, "--eye and --look-at are the same point");
     return camera_at(*choice.eye, choice.look_at, float(choice.fov_deg) * kPi / 180);
   }
@@ -77,6 +80,20 @@ Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Sce
   if (const scene::Camera* camera = find_camera(scene, name)) return *camera;
   return fail(ErrorCode::bad_setting, "{} {} is not in {}; there is: {}", choice.asked, name, file,
               camera_names(scene));
+}
+
+Status check_picture(const scene::Scene& scene, const trace::RayTracer& tracer,
+                     const scene::Camera& camera, const image::Image& picture) {
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      if (scene::is_held_light(picture.rgb(x, y))) continue;
+      const trace::CameraRays rays(camera, picture.width, picture.height);
+      const trace::Ray ray = rays.through(float(x) + 0.5f, float(y) + 0.5f);
+      const trace::Hit hit = tracer.closest_hit(ray);
+      return tl::unexpected(scene::overflow_at(
+          scene, hit.found() ? scene::world_position(scene, hit.point()) : ray.origin));
+    }
+  return {};
 }
 
 }  // namespace luxel::pipeline

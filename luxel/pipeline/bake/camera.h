@@ -5,6 +5,7 @@
 #include <string>
 
 #include "luxel/base/result.h"
+#include "luxel/image/image.h"
 #include "luxel/scene/scene.h"
 #include "luxel/trace/ray_tracer.h"
 
@@ -32,5 +33,9 @@ Status check_view(const std::string& view, const scene::Scene& scene, const std:
 /// `file` is what messages call the scene. Errors: no such camera, one that looks nowhere.
 Result<scene::Camera> choose_camera(const CameraChoice& choice, const scene::Scene& scene,
                                     const trace::RayTracer& tracer, const std::string& file);
+
+/// Errors: a pixel of a picture of the scene has more light than can be held (scene::check_held).
+Status check_picture(const scene::Scene& scene, const trace::RayTracer& tracer,
+                     const scene::Camera& camera, const image::Image& picture);
 
 }  // namespace luxel::pipeline

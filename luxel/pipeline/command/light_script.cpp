@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "luxel/scene/brightness.h"
 #include "luxel/scene/held_range.h"
 #include "luxel/scene/light_kinds.h"
 
@@ -94,7 +95,7 @@ Result<Track> track(const Node& node) {
 /// A place [m] that single precision holds.
 Status check_place(const Node& node, Vec3 place, float farthest_m) {
   if (scene::is_held(place, farthest_m)) return {};
-  return wrong(node, fmt::format("a place with coordinates up to {} m", farthest_m));
+  return wrong(node, fmt::format("a place with coordinates up to {:g} m", farthest_m));
 }
 
 Result<Track> place_track(const Node& node) {
@@ -104,11 +105,14 @@ Result<Track> place_track(const Node& node) {
   return out;
 }
 
-Result<Track> light_track(const Node& node) {
+/// Light up to `brightest`, as scene::check_brightness() asks of the lights of files.
+Result<Track> light_track(const Node& node, float brightest = scene::kBrightest) {
   LUXEL_TRY(Track out, track(node));
-  for (const Track::Key& key : out.keys)
-    if (std::min({key.value.x, key.value.y, key.value.z}) < 0)
-      return wrong(node, "light, which is never negative");
+  for (const Track::Key& key : out.keys) {
+    if (min_component(key.value) < 0) return wrong(node, "light, which is never negative");
+    if (max_component(key.value) > brightest)
+      return wrong(node, fmt::format("light of at most {:g}", brightest));
+  }
   return out;
 }
 
@@ -116,7 +120,7 @@ Result<Track> direction_track(const Node& node) {
   LUXEL_TRY(Track out, track(node));
   for (Track::Key& key : out.keys) {
     if (!scene::has_unit_vector(key.value))
-      return wrong(node, "a direction that is not 0, 0, 0, nor all but 0 or infinite");
+      return wrong(node, "a direction that is not 0, 0, 0, of a length up to 1e19");
     key.value = normalize(key.value);
   }
   return out;
@@ -170,7 +174,8 @@ Result<LightScript::MovingLight> light_of(const Node& node) {
     LUXEL_TRY(moving.direction, direction_track(node.at("direction")));
   }
   if (node.has("intensity")) {
-    LUXEL_TRY(moving.intensity, light_track(node.at("intensity")));
+    const float brightest = has_place ? scene::kMostIntensity : scene::kBrightest;
+    LUXEL_TRY(moving.intensity, light_track(node.at("intensity"), brightest));
   }
   if (node.has("range_m")) {
     LUXEL_TRY(const double range, number(node.at("range_m"), 0, 1e9));

@@ -206,6 +206,8 @@ Result<std::vector<OutputFile>> draw_frames(const PlaySettings& s, const LightSc
     show_lights(script, lights, time_s, view);
     const Clock::time_point start = Clock::now();
     LUXEL_TRY(const image::Image picture, draw_frame(view, indirect, lights, script, progress));
+    view.scene.lights = lights.punctual;  // only to be named
+    LUXEL_TRY_STATUS(check_picture(view.scene, *view.tracer, view.camera, picture));
     const matrix::Relighter::Seconds seconds = relighter.seconds();
     out.frames.push_back({time_s, 1e3 * seconds.direct, 1e3 * seconds.bounces, 1e3 * seconds.places,
                           1e3 * seconds_since(start)});

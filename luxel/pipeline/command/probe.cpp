@@ -2,6 +2,7 @@
 
 #include "luxel/base/output_folder.h"
 #include "luxel/base/parallel.h"
+#include "luxel/scene/brightness.h"
 
 namespace luxel::pipeline {
 namespace {
@@ -64,6 +65,10 @@ Result<scene::Scene> read_probe_scene(const ProbeSettings& s, Probed& out) {
             add_outside_light(s.outside, imported.scene, imported.about_lost_lights));
   out.warnings.insert(out.warnings.end(), light.begin(), light.end());
   return std::move(imported.scene);
+}
+
+Status check_held(const scene::Scene& scene, Vec3 place, const Probed& out) {
+  return scene::check_held(scene, {&out.irradiance, 1}, [&](size_t) { return place; });
 }
 
 Result<Probed> probe(const ProbeSettings& s, Progress& progress) {

@@ -80,6 +80,8 @@ Result<Probed> probe(const ProbeSettings& settings, Progress& progress);
 /// The scene under its light from outside; `out` gets its unit of light and the warnings. Errors:
 /// those of files and of light from outside.
 Result<scene::Scene> read_probe_scene(const ProbeSettings& settings, Probed& out);
+/// Errors: the light found at a place overflows.
+Status check_held(const scene::Scene& scene, Vec3 place, const Probed& out);
 /// ProbeMethod::hierarchical, for settings that probe() has checked. Errors: as there.
 Result<Probed> probe_by_faces(const ProbeSettings& settings, Progress& progress);
 /// ProbeMethod::paths, for settings that probe() has checked. Errors: as there.

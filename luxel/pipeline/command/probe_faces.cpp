@@ -139,6 +139,7 @@ Result<Probed> probe_by_solution(const ProbeSettings& s, Progress& progress) {
   if (const auto p = hierarchical::locate(solution, mesh, nearest.face, nearest.place))
     out.interpolated = hierarchical::value_of(mesh.interpolant[p->triangle], p->s, p->t);
   out.irradiance = out.punctual_and_background = exact[0];
+  LUXEL_TRY_STATUS(check_held(scene, to_float(nearest.place), out));
   if (!(max_component(exact[0]) > 0)) out.warnings.push_back(no_light_arrives("the point"));
   out.name = name_of(scene, face.instance), out.material = scene.materials[face.material].name;
   out.position = to_float(nearest.place), out.normal = to_float(at.normal);

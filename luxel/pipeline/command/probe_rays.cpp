@@ -257,6 +257,7 @@ Result<Probed> probe_by_paths(const ProbeSettings& s, const scene::Scene& scene,
   LUXEL_TRY(const std::vector<Rgb> reflected, reflected_by_paths(s, scene, tracer, look, progress));
   out.sources = sources_of(scene, look, reflected);
   LUXEL_TRY_STATUS(trace_rounds(s, scene, tracer, place, start, out, progress));
+  LUXEL_TRY_STATUS(check_held(scene, place.position, out));
   if (!(max_component(out.irradiance) > 0)) out.warnings.push_back(no_light_arrives("the point"));
   set_rest(out);
   return out;
@@ -295,6 +296,7 @@ Result<Probed> probe_in_bake(const ProbeSettings& s, Progress& progress) {
     last_s = seconds_since(begun);
   }
   rounds.finish(out);
+  LUXEL_TRY_STATUS(check_held(bake->scene, place.position, out));
   set_rest(out);
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "luxel/base/file.h"
@@ -16,6 +17,7 @@
 #include "luxel/pipeline/solver/stage_seconds.h"
 #include "luxel/pipeline/texels/two_sides.h"
 #include "luxel/post/dilate.h"
+#include "luxel/scene/brightness.h"
 #include "luxel/scene/validate.h"
 #include "luxel/solve/matrix/codec.h"
 #include "luxel/solve/matrix/lxr.h"
@@ -230,6 +232,8 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   LUXEL_TRY(matrix::RelightData data,
             matrix::make_relight_data(scene, tracer, std::move(checked.target), params, progress));
   LUXEL_TRY_STATUS(measure_relight_error(scene, tracer, checked.own, s.seed, data, progress));
+  if (!std::isfinite(data.baked_error) || !std::isfinite(data.lamp_error))
+    return tl::unexpected(scene::overflow_at(scene, scene::world_bounds(scene).centre()));
   data.scene_glb = std::move(wanted.glb);
   if (data.usual_codec_error > s.max_error)
     warnings.push_back(

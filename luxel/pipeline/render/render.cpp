@@ -63,6 +63,7 @@ Result<std::vector<std::byte>> one_picture(const Technique& technique, const Sub
                                            const RenderSettings& s, Rendered& out,
                                            Progress& progress) {
   LUXEL_TRY(const image::Image picture, technique.draw(subject, s, out, progress));
+  LUXEL_TRY_STATUS(check_picture(subject.scene, subject.tracer, subject.camera, picture));
   out.width = picture.width, out.height = picture.height;
   if (technique.is_light && is_black(picture))
     out.warnings.push_back(no_light_arrives("every surface in the picture"));
@@ -98,6 +99,7 @@ Result<std::vector<std::byte>> contact_sheet(const Subject& subject, const Rende
           fmt::format("{} is left out: {}", technique.name, picture.error().message));
       continue;
     }
+    LUXEL_TRY_STATUS(check_picture(subject.scene, subject.tracer, subject.camera, *picture));
     float exposure = exposure_for(technique, s, *picture);
     if (technique.is_light) {
       if (!exposure_of_light) exposure_of_light = exposure;

@@ -6,10 +6,14 @@
 #include "luxel/import/environment.h"
 #include "luxel/pipeline/settings/comma_list.h"
 #include "luxel/pipeline/settings/option_rows.h"
+#include "luxel/scene/brightness.h"
 #include "luxel/scene/validate.h"
 
 namespace luxel::pipeline {
 namespace {
+
+/// The number as the scene has it: none is larger, so that the conversion to float is defined.
+bool is_held(double brightness) { return brightness <= double(scene::kBrightest); }
 
 /// Three numbers with commas between them.
 std::optional<std::array<double, 3>> parse_triple(std::string_view text) {
@@ -31,6 +35,9 @@ Result<Rgb> parse_background(std::string_view text) {
   if (!v || (*v)[0] < 0 || (*v)[1] < 0 || (*v)[2] < 0)
     return fail(ErrorCode::bad_setting,
                 "--background '{}' is not a radiance; give three numbers >= 0 as r,g,b", text);
+  if (!is_held((*v)[0]) || !is_held((*v)[1]) || !is_held((*v)[2]))
+    return fail(ErrorCode::bad_setting, "--background '{}' is too bright; it may be {:g} at most",
+                text, scene::kBrightest);
   return Rgb{float((*v)[0]), float((*v)[1]), float((*v)[2])};
 }
 
@@ -48,7 +55,11 @@ Result<EnvironmentSetting> parse_environment(std::string_view text) {
   }
   EnvironmentSetting out{std::string(file)};
   if (numbers.size() > 0) out.rotation_deg = float(numbers[0]);
-  if (numbers.size() > 1) out.scale = float(numbers[1]);
+  const double scale = numbers.size() > 1 ? numbers[1] : 1;
+  if (!is_held(scale))
+    return fail(ErrorCode::bad_setting, "--environment '{}': the scale may be {:g} at most", text,
+                scene::kBrightest);
+  out.scale = float(scale);
   if (file.empty() || !(out.scale >= 0))
     return fail(ErrorCode::bad_setting,
                 "--environment '{}' is not FILE,rotate_deg,scale; the scale is >= 0, as in "
@@ -64,6 +75,9 @@ Result<Sun> parse_sun(std::string_view text) {
                 "--sun '{}' is not azimuth_deg,elevation_deg,lux; the elevation is -90 to 90, lux "
                 ">= 0, as in --sun 135,45,100",
                 text);
+  if (!is_held((*v)[2]))
+    return fail(ErrorCode::bad_setting, "--sun '{}' is too bright; it may be {:g} lux at most",
+                text, scene::kBrightest);
   return Sun{float((*v)[0]), float((*v)[1]), float((*v)[2])};
 }
 
@@ -209,6 +223,7 @@ Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, 
   if (outside.background) scene.background = *outside.background;
   if (outside.sun && outside.sun->lux > 0) scene.lights.push_back(sun_light(*outside.sun));
   if (outside.sky) add_sky(*outside.sky, scene);
+  LUXEL_TRY_STATUS(scene::check_brightness(scene, ""));
   if (scene::has_light(scene)) return warnings;
   add_sky(kDefaultSky, scene);
   warnings.push_back(fmt::format(

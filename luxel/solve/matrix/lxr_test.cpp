@@ -341,6 +341,20 @@ TEST(Lxr, HoldsNoPlaceThatTheRayTracerDoesNot) {
               "none");
 }
 
+TEST(Lxr, HoldsNoLightThatIsTooBright) {
+  const auto error_with = [](const auto& change) {
+    RelightData data = small_data();
+    change(data);
+    return error_of(forged(data));
+  };
+  EXPECT_THAT(error_with([](RelightData& d) { d.emission[1].x = 1e37f; }),
+              HasSubstr("emissions of patches: number 1, "));
+  EXPECT_THAT(error_with([](RelightData& d) { d.background.x = 1e38f; }), HasSubstr("background"));
+  EXPECT_THAT(error_with([](RelightData& d) { d.lights[0].intensity.y = 1e16f; }),
+              HasSubstr("lights: number 0 is of no kind, not finite or brighter than 1e+15"));
+  EXPECT_EQ(error_with([](RelightData& d) { d.lights[1].intensity.y = 1e27f; }), "none");
+}
+
 TEST(Lxr, KnowsItsCodecs) {
   Bytes file = encode_lxr(small_data());
   size_t at = 32;

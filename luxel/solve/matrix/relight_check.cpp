@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "luxel/scene/brightness.h"
 #include "luxel/scene/held_range.h"
 #include "luxel/scene/light_kinds.h"
 
@@ -56,6 +57,8 @@ Status placed(std::string_view what, const List& list, double room = 1) {
   return within(what, list, -most, most);
 }
 constexpr double kRoomOfPlaces = 1.01;
+/// B_e = pi L of the brightest surface; means over patches may round to a little more.
+constexpr double kMostEmission = 1.01 * double(kPi) * double(scene::kBrightest);
 template <class List>
 Status finite(std::string_view what, const List& list) {
   return within(what, list, -FLT_MAX, FLT_MAX);
@@ -275,7 +278,7 @@ Status check_patches(const RelightData& d) {
   LUXEL_TRY_STATUS(finite("normals of patches", d.normal));
   LUXEL_TRY_STATUS(positive("areas of patches", d.area_m2));
   LUXEL_TRY_STATUS(within("reflectances of patches", d.reflectance, 0, 1));
-  LUXEL_TRY_STATUS(within("emissions of patches", d.emission, 0, FLT_MAX));
+  LUXEL_TRY_STATUS(within("emissions of patches", d.emission, 0, kMostEmission));
   LUXEL_TRY_STATUS(within("background of patches", d.sky, 0, 1));
   return below("materials of patches", d.material, d.material_name.size());
 }
@@ -306,16 +309,19 @@ Status check_probes(const RelightData& d) {
 Status check_lights(const RelightData& d) {
   for (size_t k = 0; k < d.lights.size(); ++k) {
     const scene::PunctualLight& light = d.lights[k];
+    const float brightest =
+        scene::has_position(light.kind) ? scene::kMostIntensity : scene::kBrightest;
     const std::array numbers{light.range_m, light.inner_cone_rad, light.outer_cone_rad,
                              light.angular_radius_rad};
     if (!scene::is_known(light.kind) || !is_finite(light.position) || !is_finite(light.direction) ||
-        !lies_within(light.intensity, 0, FLT_MAX) || !lies_within(numbers, -FLT_MAX, FLT_MAX))
-      return fail(ErrorCode::bad_input, "lights: number {} is of no kind or not finite", k);
+        !lies_within(light.intensity, 0, brightest) || !lies_within(numbers, -FLT_MAX, FLT_MAX))
+      return fail(ErrorCode::bad_input,
+                  "lights: number {} is of no kind, not finite or brighter than {:g}", k, brightest);
     if (!scene::is_held(light.position, scene::kFarthestLight_m))
       return fail(ErrorCode::bad_input, "lights: the position of number {}, {}, is not in [-{}, {}]",
                   k, in_words(light.position), scene::kFarthestLight_m, scene::kFarthestLight_m);
   }
-  return within("background", std::array{d.background}, 0, FLT_MAX);
+  return within("background", std::array{d.background}, 0, scene::kBrightest);
 }
 
 /// "glTF", the first bytes of binary glTF.

@@ -92,7 +92,6 @@ TEST(SlowExtremes, LightThatOverflowsIsASentence) {
        {bake + "gather --quality draft", bake + "hemicube --max-elements 2000",
         bake + "matrix --patches 64", bake + "hierarchical", bake + "reference --samples 1",
         "probe " + file + " --at 0.27,0,0.28 --time-budget 0.3",
-        "probe " + file + " --at 0.27,0,0.28 --solver hierarchical",
         "render " + file + " --technique path --view top --size 64x48 --samples 4 -o " + to +
             ".exr"}) {
     const CommandResult r = luxel(command);

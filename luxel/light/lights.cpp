@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "luxel/base/check.h"
+#include "luxel/light/punctual_tree.h"
 #include "luxel/light/textured_lights.h"
 #include "luxel/scene/light_kinds.h"
 
@@ -85,17 +86,6 @@ void build_triangle_tree(Lights& lights) {
   lights.triangles = std::move(sorted);
 }
 
-void build_punctual_tree(Lights& lights) {
-  std::vector<LightLeaf> leaves;
-  for (uint32_t i = 0; i < lights.punctual.size(); ++i) {
-    if (!scene::has_position(lights.punctual[i].kind)) continue;
-    const LightLeaf leaf = leaf_of(lights.punctual[i], lights.profiles, i);
-    if (leaf.node.power > 0) leaves.push_back(leaf);
-  }
-  lights.punctual_nodes = build_light_tree(leaves);
-  for (const LightLeaf& leaf : leaves) lights.punctual_order.push_back(leaf.index);
-}
-
 /// I / d^2 times the range's window, the ramp between the cones and the candela of the profile.
 PunctualIncidence incidence_from_point(const scene::PunctualLight& light,
                                        std::span<const scene::LightProfile> profiles,
@@ -132,6 +122,18 @@ Rgb radiance_at(const scene::Scene& scene, const TriangleLight& light, Barycentr
   if (light.flipped) std::swap(at.u, at.v);
   const scene::SurfacePoint p{light.instance, light.triangle, at};
   return scene::emission_at(scene, p) * scene::passage_at(scene, p).coverage;
+}
+
+void build_punctual_tree(Lights& lights) {
+  std::vector<LightLeaf> leaves;
+  lights.punctual_order.clear();
+  for (uint32_t i = 0; i < lights.punctual.size(); ++i) {
+    if (!scene::has_position(lights.punctual[i].kind)) continue;
+    const LightLeaf leaf = leaf_of(lights.punctual[i], lights.profiles, i);
+    if (leaf.node.power > 0) leaves.push_back(leaf);
+  }
+  lights.punctual_nodes = build_light_tree(leaves);
+  for (const LightLeaf& leaf : leaves) lights.punctual_order.push_back(leaf.index);
 }
 
 Lights collect_lights(const scene::Scene& scene) {

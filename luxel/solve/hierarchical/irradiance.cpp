@@ -4,6 +4,7 @@
 
 #include "luxel/base/parallel.h"
 #include "luxel/light/direct_light.h"
+#include "luxel/light/punctual_tree.h"
 #include "luxel/solve/hierarchical/gathering.h"
 #include "luxel/solve/hierarchical/surface.h"
 
@@ -53,7 +54,10 @@ Result<std::vector<Rgb>> irradiance_at(const Solution& s, const scene::Scene& sc
                                        const PointParams& params, Progress& progress) {
   // Punctual lights.
   UnlinkedLights unlinked = s.unlinked;
-  if (!params.sharp_lights) std::erase_if(unlinked.lights.punctual, is_sharp);
+  if (!params.sharp_lights) {
+    std::erase_if(unlinked.lights.punctual, is_sharp);
+    light::build_punctual_tree(unlinked.lights);
+  }
   LUXEL_TRY(std::vector<Rgb> out,
             from_punctual_lights(scene, tracer, unlinked.lights, receivers, progress));
   // A sky of one radiance is what no face hides; one that varies is looked at.
@@ -95,6 +99,7 @@ Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
   light::Lights lights;
   lights.punctual = scene.lights;
   std::erase_if(lights.punctual, [](const auto& light) { return !is_sharp(light); });
+  light::build_punctual_tree(lights);
   return from_punctual_lights(scene, tracer, lights, receivers, progress);
 }
 

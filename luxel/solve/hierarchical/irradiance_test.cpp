@@ -189,6 +189,22 @@ TEST(ExactIrradiance, SourcesAddUp) {
   EXPECT_GE(luminance(seen[0].irradiance), luminance(seen[1].irradiance));
 }
 
+// More lamps than are looked at, in one place: 300 I / d^2 on a floor under them. All were left out.
+TEST(ExactIrradiance, CountsManyLamps) {
+  scene::Scene scene;
+  const uint32_t dark = scene::add_material(scene, "dark", {0, 0, 0});
+  scene::add_rectangle(scene, {-1, 1, -1, 1}, 0, true, dark);
+  scene::PunctualLight lamp;
+  lamp.position = {0, 2, 0}, lamp.intensity = {1, 2, 3};
+  scene.lights.assign(300, lamp);
+  const Receiver at{{0, 0, 0}, {0, 1, 0}, {0, 1, 0}};
+  const auto s = solved(scene);
+  // 64 of them stand for all, evenly drawn: they may count one too many or too few.
+  EXPECT_NEAR(light_at(*s, {&at, 1}, 1e-6)[0].y, 300 * 2 / 4.0, 150 / 64.0);
+  Progress progress;
+  EXPECT_NEAR((*sharp_irradiance_at(scene, *s->tracer, {&at, 1}, progress))[0].y, 150, 150 / 64.0);
+}
+
 // An open plate under the sky: pi L; a wall beside it hides its share.
 TEST(ExactIrradiance, CountsTheSky) {
   scene::Scene scene;

@@ -6,6 +6,7 @@
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/light/direct_light.h"
+#include "luxel/light/punctual_tree.h"
 
 namespace luxel::hierarchical {
 namespace {
@@ -164,6 +165,7 @@ float brightest_sky(const scene::Scene& scene, const light::Surroundings& around
 UnlinkedLights unlinked_lights_of(const scene::Scene& scene) {
   UnlinkedLights out;
   out.lights.punctual = scene.lights, out.lights.profiles = scene.profiles;
+  light::build_punctual_tree(out.lights);
   out.lights.around = light::surroundings_of(scene);
   out.has_sky = max_component(scene.background) > 0 || !scene.environment.empty();
   return out;

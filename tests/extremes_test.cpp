@@ -75,8 +75,8 @@ TEST(Extremes, PlacesBeyondAreRefused) {
   }
 }
 
-// Sums that overflow, where no lamp is too bright by itself: at the far corners each makes 7e14 lux,
-// and on the floor under them 100 make more than what is held. `bake` aborted while stitching.
+// Sums that overflow, where no lamp is too bright by itself: at the far corners each makes 7e14
+// lux, and on the floor under them 100 make more than what is held. `bake` aborted while stitching.
 TEST(SlowExtremes, LightThatOverflowsIsASentence) {
   scene::Scene box = scene::cornell_box(scene::CornellColors::pbrt, false);
   scene::PunctualLight lamp{"lamp", scene::PunctualLight::Kind::point, {3e14f, 3e14f, 3e14f}};

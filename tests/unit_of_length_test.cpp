@@ -1,4 +1,5 @@
-// E has no unit of length in it: a scene that is scaled, its lamps with it, has the light that it had.
+// E has no unit of length in it: a scene that is scaled, its lamps with it, has the light that it
+// had.
 #include <gtest/gtest.h>
 
 #include "luxel/pipeline/solver/hemicube.h"
@@ -34,8 +35,8 @@ double relative_difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b)
 class UnitOfLength : public ::testing::TestWithParam<const char*> {};
 
 // Powers of two round as 1 does, so not a bit may differ, up to the ends of what is held
-// (luxel/scene/held_range.h): these boxes are half a micrometre and 150,000 km wide. An overflow, or
-// a length that somebody held for small, would show.
+// (luxel/scene/held_range.h): these boxes are half a micrometre and 150,000 km wide. An overflow,
+// or a length that somebody held for small, would show.
 TEST_P(UnitOfLength, IsOfNoConsequence) {
   const std::string solver = GetParam();
   const std::vector<Rgb> light = light_of(box_with_lamps(), solver);

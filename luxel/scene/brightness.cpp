@@ -99,9 +99,10 @@ Error overflow_at(const Scene& scene, Vec3 place) {
     const std::string name = label("light", i, light.name);
     if (has_position(light.kind))
       consider(brightest / std::max(distance_m * distance_m, 1e-300), [&] {
-        return fmt::format("{}, whose intensity of {:g} is {:.3g} m away: lower it, or move it "
-                           "away from surfaces",
-                           name, brightest, distance_m);
+        return fmt::format(
+            "{}, whose intensity of {:g} is {:.3g} m away: lower it, or move it "
+            "away from surfaces",
+            name, brightest, distance_m);
       });
     else
       consider(brightest,

@@ -21,9 +21,7 @@ inline constexpr float kMostIntensity = 1e30f;
 inline constexpr float kMostIrradiance = 1e18f;
 
 /// Whether light can be summed and squared: finite, and at most kMostIrradiance.
-inline bool is_held_light(Rgb c) {
-  return is_finite(c) && max_component(c) <= kMostIrradiance;
-}
+inline bool is_held_light(Rgb c) { return is_finite(c) && max_component(c) <= kMostIrradiance; }
 
 /// The largest I of a light [W/sr], with that of its profile; for directional lights E [W/m^2].
 /// Infinite where the product overflows.

@@ -40,10 +40,11 @@ Status check_world(const Scene& scene, const Instance& instance, const std::stri
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
     const Vec3 p = transform_point(instance.world_from_object, mesh.positions[v]);
     if (!is_held(p))
-      return fail(ErrorCode::bad_input,
-                  "{}: its transform moves {}, vertex {} to ({}, {}, {}): coordinates go up to {:g} m; "
-                  "move it nearer to the origin or scale the scene down",
-                  where, label("mesh", instance.mesh, mesh.name), v, p.x, p.y, p.z, kFarthest_m);
+      return fail(
+          ErrorCode::bad_input,
+          "{}: its transform moves {}, vertex {} to ({}, {}, {}): coordinates go up to {:g} m; "
+          "move it nearer to the origin or scale the scene down",
+          where, label("mesh", instance.mesh, mesh.name), v, p.x, p.y, p.z, kFarthest_m);
   }
   return {};
 }
@@ -52,10 +53,11 @@ Status check_world(const Scene& scene, const Instance& instance, const std::stri
 Status check_scales(const Mat34& m, const std::string& where) {
   const Scales s = scales_of(m);
   if (s.largest_product() <= double(kFarthest_m) * double(kFarthest_m)) return {};
-  return fail(ErrorCode::bad_input,
-              "{}: its transform scales by {:.4g}, {:.4g} and {:.4g}: scales go up to {:g}; enlarge "
-              "the mesh instead",
-              where, s.x, s.y, s.z, kFarthest_m);
+  return fail(
+      ErrorCode::bad_input,
+      "{}: its transform scales by {:.4g}, {:.4g} and {:.4g}: scales go up to {:g}; enlarge "
+      "the mesh instead",
+      where, s.x, s.y, s.z, kFarthest_m);
 }
 
 Status check_instances(const Scene& scene, const Report& report) {
@@ -186,10 +188,11 @@ Status check_lights(Scene& scene, Report& report) {
       return fail(ErrorCode::bad_input, "{}: {}: one of its numbers is not finite", report.file,
                   name);
     if (has_position(light.kind) && !is_held(light.position, kFarthestLight_m))
-      return fail(ErrorCode::bad_input,
-                  "{}: {}: position ({}, {}, {}) is too large: coordinates of lights go up to {:g} m",
-                  report.file, name, light.position.x, light.position.y, light.position.z,
-                  kFarthestLight_m);
+      return fail(
+          ErrorCode::bad_input,
+          "{}: {}: position ({}, {}, {}) is too large: coordinates of lights go up to {:g} m",
+          report.file, name, light.position.x, light.position.y, light.position.z,
+          kFarthestLight_m);
     if (min_component(light.intensity) < 0) {
       light.intensity = max(light.intensity, Rgb{});
       report.warn("{}: negative intensity set to 0", name);
@@ -212,8 +215,7 @@ bool is_usable(const Camera& camera) {
   if (!is_finite(m) || !is_held(column(m, 3)) || scales_of(m).volume == 0) return false;
   for (int axis = 0; axis < 3; ++axis)
     if (!has_unit_vector(column(m, axis))) return false;
-  if (camera.aspect != 0 &&
-      !(camera.aspect >= 1 / kWidestAspect && camera.aspect <= kWidestAspect))
+  if (camera.aspect != 0 && !(camera.aspect >= 1 / kWidestAspect && camera.aspect <= kWidestAspect))
     return false;
   if (camera.orthographic_height_m > 0) return camera.orthographic_height_m <= kFarthest_m;
   return camera.fov_y_rad > 0 && camera.fov_y_rad < kPi;

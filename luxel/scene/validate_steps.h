@@ -36,8 +36,8 @@ inline std::string label(const char* kind, size_t index, const std::string& name
 /// "a, b, c and 4 more"
 std::string listed(const std::vector<std::string>& names);
 
-/// The lengths of a transform's axes and the volume that they span, in double: in float, products of
-/// three lengths overflow long before the lengths do.
+/// The lengths of a transform's axes and the volume that they span, in double: in float, products
+/// of three lengths overflow long before the lengths do.
 struct Scales {
   double x = 0, y = 0, z = 0;
   double volume = 0;  ///< negative where it mirrors
@@ -50,8 +50,9 @@ Scales scales_of(const Mat34& m);
 /// Errors: an index that points nowhere, arrays that do not fit together.
 Status check_references(const Scene& scene, const Report& report);
 
-/// Errors: NaN, infinity, or more than single precision holds (held_range.h), where nothing sensible
-/// can stand in. Repairs texture coordinates, vertex colours and factors out of their range.
+/// Errors: NaN, infinity, or more than single precision holds (held_range.h), where nothing
+/// sensible can stand in. Repairs texture coordinates, vertex colours and factors out of their
+/// range.
 Status check_numbers(Scene& scene, Report& report);
 
 /// Drops instances that are squashed flat, or so small that their normals are lost.

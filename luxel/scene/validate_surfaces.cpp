@@ -21,8 +21,8 @@ double largest_coordinate(Vec3 p) {
 
 DVec3 absolute(DVec3 a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
 
-/// How much n = e0 x e1 may change, per axis, when a corner at p is rounded and e is the edge across
-/// from it: the product of the edge and of half an ulp of each coordinate, without signs.
+/// How much n = e0 x e1 may change, per axis, when a corner at p is rounded and e is the edge
+/// across from it: the product of the edge and of half an ulp of each coordinate, without signs.
 DVec3 rounding_of_normal(Vec3 p, DVec3 e) {
   const DVec3 d = absolute(to_double(p)) * (double(FLT_EPSILON) / 2);
   e = absolute(e);
@@ -30,11 +30,11 @@ DVec3 rounding_of_normal(Vec3 p, DVec3 e) {
 }
 
 /// A triangle has no area when the rounding of its corners alone could have made the area that it
-/// has: its corners may then just as well lie on a line. It has one when its height over the longest
-/// edge is above the rounding unit of its largest coordinate. What has one far corner is not so
-/// high, for that corner is rounded by metres; there the rounding of each corner counts, which
-/// matters little where it goes along the edge across. Computed in double, where the differences of
-/// floats are exact, so the verdict is that of the stored numbers.
+/// has: its corners may then just as well lie on a line. It has one when its height over the
+/// longest edge is above the rounding unit of its largest coordinate. What has one far corner is
+/// not so high, for that corner is rounded by metres; there the rounding of each corner counts,
+/// which matters little where it goes along the edge across. Computed in double, where the
+/// differences of floats are exact, so the verdict is that of the stored numbers.
 bool has_area(const Triangle3& t) {
   const DVec3 e0 = difference(t.b, t.a), e1 = difference(t.c, t.a), e2 = difference(t.c, t.b);
   const double n2 = squared_length(cross(e0, e1));
@@ -43,8 +43,8 @@ bool has_area(const Triangle3& t) {
       std::max({largest_coordinate(t.a), largest_coordinate(t.b), largest_coordinate(t.c)}) *
       (double(FLT_EPSILON) / 2);
   if (n2 > longest2 * rounding * rounding) return true;
-  const DVec3 by_corners = rounding_of_normal(t.a, e2) + rounding_of_normal(t.b, e1) +
-                           rounding_of_normal(t.c, e0);
+  const DVec3 by_corners =
+      rounding_of_normal(t.a, e2) + rounding_of_normal(t.b, e1) + rounding_of_normal(t.c, e0);
   return n2 > squared_length(by_corners);
 }
 

@@ -132,8 +132,8 @@ Result<PlacesLight> light_at_places(const LitBake& bake, std::span<const Vec3> p
     LUXEL_TRY_STATUS(add_light(bake, positions.subspan(first, count), normals.subspan(first, count),
                                some, out, progress));
   }
-  LUXEL_TRY_STATUS(scene::check_held(bake.scene, out.irradiance,
-                                     [&](size_t i) { return positions[i]; }));
+  LUXEL_TRY_STATUS(
+      scene::check_held(bake.scene, out.irradiance, [&](size_t i) { return positions[i]; }));
   return out;
 }
 

@@ -189,7 +189,8 @@ TEST(ExactIrradiance, SourcesAddUp) {
   EXPECT_GE(luminance(seen[0].irradiance), luminance(seen[1].irradiance));
 }
 
-// More lamps than are looked at, in one place: 300 I / d^2 on a floor under them. All were left out.
+// More lamps than are looked at, in one place: 300 I / d^2 on a floor under them. All were left
+// out.
 TEST(ExactIrradiance, CountsManyLamps) {
   scene::Scene scene;
   const uint32_t dark = scene::add_material(scene, "dark", {0, 0, 0});

@@ -71,7 +71,8 @@ struct MeshPoint {
 };
 /// Where a place of a face lies in the mesh; clamped into the triangle. Nothing in a mesh without
 /// triangles: all faces are smaller than the rounding of the scene's coordinates.
-std::optional<MeshPoint> locate(const Solution& solution, const LightMesh& mesh, uint32_t face, DVec3 place);
+std::optional<MeshPoint> locate(const Solution& solution, const LightMesh& mesh, uint32_t face,
+                                DVec3 place);
 
 /// E at a surface point of the scene [W/m^2], never negative.
 Rgb irradiance_at(const Solution& solution, const LightMesh& mesh, const scene::Scene& scene,

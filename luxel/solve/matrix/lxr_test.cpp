@@ -326,8 +326,9 @@ TEST(Lxr, HoldsNoPlaceThatTheRayTracerDoesNot) {
     return error_of(file);
   };
   for (const float far : {-2e9f, 1e19f, 3e38f}) {
-    EXPECT_THAT(error_with([&](RelightData& d) { d.occluders.position[3].y = far; }),
-                HasSubstr(fmt::format("corners of occluders: number 3, (0, {}, 1), is not in", far)));
+    EXPECT_THAT(
+        error_with([&](RelightData& d) { d.occluders.position[3].y = far; }),
+        HasSubstr(fmt::format("corners of occluders: number 3, (0, {}, 1), is not in", far)));
     EXPECT_THAT(error_with([&](RelightData& d) { d.position[1].x = far; }),
                 HasSubstr("positions of patches: number 1, "));
     EXPECT_THAT(error_with([&](RelightData& d) { d.target.position[2].z = far; }),
@@ -337,8 +338,7 @@ TEST(Lxr, HoldsNoPlaceThatTheRayTracerDoesNot) {
   }
   EXPECT_THAT(error_with([&](RelightData& d) { d.lights[1].position.z = 1e19f; }),
               HasSubstr("lights: the position of number 1, "));
-  EXPECT_THAT(error_with([&](RelightData& d) { d.occluders.position[3].y = 9e8f; }),
-              "none");
+  EXPECT_THAT(error_with([&](RelightData& d) { d.occluders.position[3].y = 9e8f; }), "none");
 }
 
 TEST(Lxr, HoldsNoLightThatIsTooBright) {

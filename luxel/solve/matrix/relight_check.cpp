@@ -299,10 +299,11 @@ Status check_probes(const RelightData& d) {
   const float most = scene::kFarthest_m * float(kRoomOfPlaces);
   for (size_t k = 0; k < d.probe.size(); ++k)
     if (!scene::is_held(d.probe[k].position, most) || !is_finite(d.probe[k].normal))
-      return fail(ErrorCode::bad_input,
-                  "probes: number {} at {} with the normal {} is not finite, or its position not in "
-                  "[-{}, {}]",
-                  k, in_words(d.probe[k].position), in_words(d.probe[k].normal), most, most);
+      return fail(
+          ErrorCode::bad_input,
+          "probes: number {} at {} with the normal {} is not finite, or its position not in "
+          "[-{}, {}]",
+          k, in_words(d.probe[k].position), in_words(d.probe[k].normal), most, most);
   return {};
 }
 
@@ -316,10 +317,12 @@ Status check_lights(const RelightData& d) {
     if (!scene::is_known(light.kind) || !is_finite(light.position) || !is_finite(light.direction) ||
         !lies_within(light.intensity, 0, brightest) || !lies_within(numbers, -FLT_MAX, FLT_MAX))
       return fail(ErrorCode::bad_input,
-                  "lights: number {} is of no kind, not finite or brighter than {:g}", k, brightest);
+                  "lights: number {} is of no kind, not finite or brighter than {:g}", k,
+                  brightest);
     if (!scene::is_held(light.position, scene::kFarthestLight_m))
-      return fail(ErrorCode::bad_input, "lights: the position of number {}, {}, is not in [-{}, {}]",
-                  k, in_words(light.position), scene::kFarthestLight_m, scene::kFarthestLight_m);
+      return fail(ErrorCode::bad_input,
+                  "lights: the position of number {}, {}, is not in [-{}, {}]", k,
+                  in_words(light.position), scene::kFarthestLight_m, scene::kFarthestLight_m);
   }
   return within("background", std::array{d.background}, 0, scene::kBrightest);
 }

@@ -4,6 +4,7 @@
 
 #include "luxel/base/file.h"
 #include "luxel/export/baked_glb.h"
+#include "luxel/pipeline/settings/outside_light.h"
 #include "tests/command.h"
 #include "tests/extremes.h"
 
@@ -121,6 +122,7 @@ TEST(Extremes, TooBrightLightIsASentence) {
       EXPECT_THAT(r.err, HasSubstr(sentence)) << command << options;
     }
   EXPECT_TRUE(files_in(s.path).empty());
+  EXPECT_TRUE(pipeline::parse_sun("0,45,1e15")) << "the most that is said";
 }
 
 }  // namespace

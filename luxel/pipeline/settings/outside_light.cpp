@@ -1,6 +1,7 @@
 #include "luxel/pipeline/settings/outside_light.h"
 
 #include <array>
+#include <cfloat>
 #include <cmath>
 
 #include "luxel/import/environment.h"
@@ -12,8 +13,10 @@
 namespace luxel::pipeline {
 namespace {
 
-/// The number as the scene has it: none is larger, so that the conversion to float is defined.
-bool is_held(double brightness) { return brightness <= double(scene::kBrightest); }
+/// Compared as the scene has it, in float; numbers beyond float are not converted.
+bool is_held(double brightness) {
+  return brightness <= double(FLT_MAX) && float(brightness) <= scene::kBrightest;
+}
 
 /// Three numbers with commas between them.
 std::optional<std::array<double, 3>> parse_triple(std::string_view text) {

@@ -97,7 +97,7 @@ Result<std::vector<Rgb>> sharp_irradiance_at(const scene::Scene& scene,
                                              std::span<const Receiver> receivers,
                                              Progress& progress) {
   light::Lights lights;
-  lights.punctual = scene.lights;
+  lights.punctual = scene.lights, lights.profiles = scene.profiles;
   std::erase_if(lights.punctual, [](const auto& light) { return !is_sharp(light); });
   light::build_punctual_tree(lights);
   return from_punctual_lights(scene, tracer, lights, receivers, progress);

@@ -221,6 +221,41 @@ void drop_zero_area_triangles(Scene& scene, Report& report) {
   warn_of_dropped(flat, tiny, blurred, report);
 }
 
+namespace {
+
+/// "mesh 3 (chair), vertex 7", with the largest coordinate in the world.
+std::string farthest_vertex(const Scene& scene) {
+  double most = -1;
+  std::string out;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Vec3 p = transform_point(instance.world_from_object, mesh.positions[v]);
+      if (largest_coordinate(p) <= most) continue;
+      most = largest_coordinate(p);
+      out = fmt::format("{}, vertex {} at ({:.6g}, {:.6g}, {:.6g})",
+                        label("mesh", instance.mesh, mesh.name), v, p.x, p.y, p.z);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void warn_of_width(const Scene& scene, Report& report) {
+  // As trace::offset_origin() does: a step over the rounding of the scene's coordinates.
+  const float width_m = world_bounds(scene).diagonal(), step_m = 0x1p-18f * width_m;
+  size_t all = 0, small = 0;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    for (uint32_t t = 0; t < scene.meshes[scene.instances[i].mesh].triangles.size(); ++t, ++all)
+      if (std::sqrt(area_m2(world_triangle(scene, i, t))) < step_m) ++small;
+  if (2 * small <= all) return;
+  report.warn(
+      "{} of {} triangles are smaller than {:.3g} m, by which rays start off surfaces in a scene "
+      "that is {:.3g} m wide: light will go past them; {} lies farthest out",
+      small, all, step_m, width_m, farthest_vertex(scene));
+}
+
 void repair_normals(Scene& scene, Report& report) {
   size_t replaced = 0;
   for (Mesh& mesh : scene.meshes) {

@@ -147,6 +147,20 @@ TEST(Validate, OneFarVertexIsNoReasonToDropATriangle) {
   EXPECT_THAT(warnings_of(scene), HasSubstr("1 zero-area triangles dropped"));
 }
 
+// Rays start 2^-18 of the scene's width off surfaces: over 3 km here, so that a house casts no
+// shadow.
+TEST(Validate, AFarVertexThatMakesAllElseSmallIsNamed) {
+  Scene scene = good_scene();
+  Mesh& mesh = scene.meshes[0];
+  for (uint32_t k = 0; k < 3; ++k)
+    mesh.triangles.push_back(mesh.triangles[0]), mesh.triangle_material.push_back(0);
+  EXPECT_EQ(warnings_of(scene), "");
+  mesh.positions[3] = {9e8f, 0.5f, 0};
+  EXPECT_THAT(warnings_of(scene),
+              AllOf(HasSubstr("4 of 5 triangles are smaller than 3.43e+03 m"),
+                    HasSubstr("mesh 0 (quad), vertex 3 at (9e+08, 0.5, 0) lies farthest out")));
+}
+
 TEST(Validate, InstancesOfNoSizeAreDropped) {
   for (const float scale : {1e-10f, -1e-12f, 1e-30f}) {
     Scene scene = good_scene();

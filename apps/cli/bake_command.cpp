@@ -34,6 +34,7 @@ Status check_resolution(const Given& given, const pipeline::BakeSettings& s) {
 Result<pipeline::BakeSettings> settings_from(const BakeOptions& options) {
   pipeline::BakeSettings s;
   if (!options.settings.empty()) LUXEL_TRY_STATUS(pipeline::read_settings(options.settings, s));
+  if (options.given.has("--ies")) s.outside.ies.clear();  // those given win
   if (!options.scene.empty()) s.scene = options.scene;
   if (!options.solver.empty()) s.solver = options.solver;
   s.output = options.output;

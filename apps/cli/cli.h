@@ -28,7 +28,7 @@ struct Common {
 };
 void add_common(CLI::App& command, Common& common);
 
-/// --smooth-normals.
+/// --smooth-normals, --search-path, --trust-paths.
 std::vector<CLI::Option*> add_import(CLI::App& command, Given& given);
 /// --background, --sun, --environment, --sky and --ies.
 std::vector<CLI::Option*> add_outside_light(CLI::App& command, Given& given);

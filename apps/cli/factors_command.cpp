@@ -10,6 +10,7 @@ namespace {
 
 struct FactorOptions {
   Common common;
+  Given reading;
   pipeline::FactorSettings settings;
   std::string max_memory;
 };
@@ -78,6 +79,9 @@ int run_factors(const FactorOptions& options) {
     if (!size) return report(size.error(), options.common);
     settings.max_memory_bytes = *size;
   }
+  if (const Status read = read_given(options.reading, pipeline::import_options(), settings.reading);
+      !read)
+    return report(read.error(), options.common);
   pipeline::FactorReport report_of_factors;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     const ThreadLimit threads(options.common.threads);
@@ -124,6 +128,7 @@ void register_factors(CLI::App& app, Action& action) {
   factors->add_option("--seed", s.seed, "Another seed, another noise")
       ->check(whole_number())
       ->capture_default_str();
+  add_import(*factors, options->reading);
   add_common(*factors, options->common);
   factors->callback([options, &action] { action = [options] { return run_factors(*options); }; });
 }

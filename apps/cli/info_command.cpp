@@ -9,6 +9,7 @@ namespace {
 
 struct InfoOptions {
   Common common;
+  Given reading;
   std::string scene;
 };
 
@@ -47,7 +48,10 @@ nlohmann::json describe(const scene::Scene& scene, const std::vector<std::string
 }
 
 int run_info(const InfoOptions& options) {
-  const auto imported = import::import_scene(options.scene);
+  import::ImportParams reading;
+  if (const Status read = read_given(options.reading, pipeline::import_options(), reading); !read)
+    return report(read.error(), options.common);
+  const auto imported = import::import_scene(options.scene, reading);
   if (!imported) return report(imported.error(), options.common);
   const nlohmann::json json = describe(imported->scene, imported->warnings);
   if (options.common.json) {
@@ -66,6 +70,7 @@ void register_info(CLI::App& app, Action& action) {
   CLI::App* info = app.add_subcommand("info", "Say what is in a scene");
   auto options = std::make_shared<InfoOptions>();
   info->add_option("SCENE", options->scene, "glTF, OBJ, FBX, ... file")->required();
+  add_import(*info, options->reading);
   add_common(*info, options->common);
   info->callback([options, &action] { action = [options] { return run_info(*options); }; });
 }

@@ -12,7 +12,7 @@ constexpr double kSmallRoom_m2 = 1;
 
 struct LuxOptions {
   Common common;
-  Given outside;
+  Given reading, outside;
   double spacing_m = 0;
   CLI::Option* spacing = nullptr;
   pipeline::LuxSettings settings;
@@ -96,6 +96,9 @@ int run_lux(const LuxOptions& options) {
           read_given(options.outside, pipeline::outside_light_options(), settings.outside);
       !read)
     return report(read.error(), options.common);
+  if (const Status read = read_given(options.reading, pipeline::import_options(), settings.reading);
+      !read)
+    return report(read.error(), options.common);
   pipeline::LuxReport lit;
   const Status done = run_with_progress(options.common, [&](Progress& progress) -> Status {
     LUXEL_TRY(lit, pipeline::lux(settings, progress));
@@ -143,6 +146,7 @@ void register_lux(CLI::App& app, Action& action) {
   lux->add_option("--seed", s.seed, "Seed of all random numbers")
       ->check(whole_number())
       ->capture_default_str();
+  add_import(*lux, options->reading);
   add_outside_light(*lux, options->outside);
   add_common(*lux, options->common);
   lux->callback([options, &action] { action = [options] { return run_lux(*options); }; });

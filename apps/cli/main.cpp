@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "apps/cli/cli.h"
@@ -83,20 +84,37 @@ void keep_standard_streams() {
     if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);
 }
 
+constexpr const char* kNoMemory =
+    "out of memory; lower --resolution or --samples, or set --max-memory";
+
+/// Memory that ends where no exception can be passed on, as in a library's noexcept function: the
+/// sentence and the code are those of main(). Anything else is a fault, and leaves its trace.
+[[noreturn]] void end_without_memory() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "luxel: %s\n", kNoMemory);
+    std::_Exit(luxel::cli::kOutOfResource);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "luxel: internal error: %s; please report this\n", error.what());
+  } catch (...) {
+  }
+  std::abort();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   keep_standard_streams();
+  std::set_terminate(end_without_memory);
   luxel::cli::say_when_the_stack_overflows(wants_json(argc, argv));
   // A limit on the size of files is an error of the write like any other.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
-    return luxel::cli::report(
-        {luxel::ErrorCode::out_of_memory,
-         "out of memory; lower --resolution or --samples, or set --max-memory"},
-        {.json = wants_json(argc, argv)});
+    return luxel::cli::report({luxel::ErrorCode::out_of_memory, kNoMemory},
+                              {.json = wants_json(argc, argv)});
   } catch (const std::exception& error) {
     return luxel::cli::report("internal", luxel::cli::kBadInput,
                               fmt::format("internal error: {}; please report this", error.what()),

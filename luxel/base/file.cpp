@@ -2,12 +2,12 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <set>
 #include <string>
@@ -33,6 +33,17 @@ int write_all(int file, std::span<const std::byte> bytes) {
   }
   return ::fsync(file) == 0 || errno == EINVAL ? 0 : errno;
 }
+
+/// Closes the file with this object.
+struct OpenFile {
+  int number = -1;
+  explicit OpenFile(int file) : number(file) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() {
+    if (number >= 0) ::close(number);
+  }
+};
 
 /// A file that is removed with this object unless its name was cleared.
 struct TemporaryFile {
@@ -121,17 +132,29 @@ void bring_back(const std::filesystem::path& path, const TemporaryFile& old) {
 }  // namespace
 
 Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
+  const auto error = [&](int number) {
+    return fail(ErrorCode::io, "cannot read {}: {}", path.string(), std::strerror(number));
+  };
+  // Without O_NONBLOCK a pipe would be waited for until somebody writes to it.
+  const OpenFile file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  if (file.number < 0 && errno == ENOENT)
     return fail(ErrorCode::io, "{}: no such file", path.string());
-  if (std::filesystem::is_directory(path, ignored))
+  if (file.number < 0) return error(errno);
+  struct stat about {};
+  if (::fstat(file.number, &about) != 0) return error(errno);
+  if (S_ISDIR(about.st_mode))
     return fail(ErrorCode::io, "{} is a folder, not a file", path.string());
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) return fail(ErrorCode::io, "cannot read {}: {}", path.string(), std::strerror(errno));
-  std::vector<std::byte> bytes(size_t(in.tellg()));
-  in.seekg(0);
-  in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
-  if (!in) return fail(ErrorCode::io, "cannot read {}: the read stopped early", path.string());
+  if (!S_ISREG(about.st_mode))
+    return fail(ErrorCode::io, "{} is a pipe or a device; only files on a disk can be read",
+                path.string());
+  std::vector<std::byte> bytes(size_t(about.st_size));
+  for (size_t done = 0; done < bytes.size();) {
+    const ssize_t n = ::read(file.number, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return error(errno);
+    if (n == 0) return fail(ErrorCode::io, "cannot read {}: the read stopped early", path.string());
+    done += size_t(n);
+  }
   return bytes;
 }
 

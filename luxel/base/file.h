@@ -12,7 +12,7 @@
 namespace luxel {
 inline namespace base {
 
-/// The bytes of a file. Errors: missing, a directory, unreadable.
+/// The bytes of a file. Errors (io): missing; a folder, a pipe or a device; unreadable.
 Result<std::vector<std::byte>> read_file(const std::filesystem::path& path);
 
 /// A file to be written: its final name and all its bytes.

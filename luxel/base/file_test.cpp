@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -66,6 +67,13 @@ TEST_F(Files, ReadSaysWhatIsWrong) {
   const auto directory = read_file(folder_);
   ASSERT_FALSE(directory);
   EXPECT_NE(directory.error().message.find("is a folder"), std::string::npos);
+  // A pipe that nobody writes to would be waited for.
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  for (const fs::path& path : {folder_ / "pipe", fs::path("/dev/zero")}) {
+    const auto read = read_file(path);
+    ASSERT_FALSE(read);
+    EXPECT_NE(read.error().message.find("is a pipe or a device"), std::string::npos);
+  }
   if (::geteuid() == 0) return;  // root reads everything
   ASSERT_TRUE(write_file_atomically(folder_ / "secret", bytes_of("x")));
   fs::permissions(folder_ / "secret", fs::perms::none);

@@ -148,6 +148,13 @@ Status check_picture_size(uint32_t width, uint32_t height, std::string_view name
   return {};
 }
 
+Result<std::array<uint32_t, 2>> size_of_ldr(std::span<const std::byte> bytes,
+                                            std::string_view name) {
+  if (is_webp(bytes)) return size_of_webp(bytes, name);
+  LUXEL_TRY(const Bytes data, checked(bytes, name));
+  return stated_size(data, starts_with(data, kPngMagic));
+}
+
 Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name) {
   if (is_webp(bytes)) return decode_webp(bytes, name);
   LUXEL_TRY(const Bytes data, checked(bytes, name));

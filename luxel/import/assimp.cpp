@@ -3,15 +3,15 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <assimp/DefaultIOSystem.h>
-#include <assimp/MemoryIOWrapper.h>
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <map>
 #include <stdexcept>
 
 #include "luxel/image/color.h"
+#include "luxel/import/assimp_files.h"
 #include "luxel/import/assimp_parts.h"
+#include "luxel/import/mtl_text.h"
 #include "luxel/import/nesting.h"
 #include "luxel/import/obj_groups.h"
 
@@ -102,21 +102,6 @@ scene::Mesh merged_mesh(const aiScene& in, const std::vector<unsigned>& parts, b
   return mesh;
 }
 
-/// Gives Assimp a text of ours in the place of one file; other files it reads itself.
-class TextInsteadOfFile : public Assimp::DefaultIOSystem {
- public:
-  TextInsteadOfFile(std::string path, const std::string& text)
-      : path_(std::move(path)), text_(text) {}
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    if (path_ != file) return DefaultIOSystem::Open(file, mode);
-    return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(text_.data()), text_.size());
-  }
-
- private:
-  std::string path_;
-  const std::string& text_;
-};
-
 /// A node that draws something.
 struct DrawnNode {
   std::string name;
@@ -165,6 +150,9 @@ void join_groups(const ObjGroups& groups, std::vector<DrawnNode>& drawn) {
   drawn = std::move(joined);
 }
 
+/// What an .obj names in the place of its own material libraries.
+constexpr const char* kMaterialFile = "luxel-materials.mtl";
+
 /// Nodes that draw the same parts share one mesh.
 void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, bool srgb_colors,
                    scene::Scene& out) {
@@ -199,6 +187,19 @@ const aiScene* read_file_with(Assimp::Importer& importer, const SourceFile& sour
   return importer.ApplyPostProcessing(kSteps);
 }
 
+/// An .obj gets the materials of its libraries as one beside it, and no other file.
+FilesForAssimp* files_for_assimp(const SourceFile& source, const ObjGroups& groups,
+                                 const MtlText& materials) {
+  auto* files = new FilesForAssimp(source);
+  if (source.extension != ".obj") return files;
+  files->allow_no_others();
+  const bool has_materials = !materials.text.empty();
+  files->replace(source.path,
+                 (has_materials ? fmt::format("mtllib {}\n", kMaterialFile) : "") + groups.text);
+  if (has_materials) files->replace(source.path.parent_path() / kMaterialFile, materials.text);
+  return files;
+}
+
 std::vector<std::string> known_extensions() {
   Assimp::Importer importer;
   aiString list;  // "*.3d;*.3ds;..."
@@ -230,11 +231,11 @@ Status check_extension(const SourceFile& source) {
 
 Result<Imported> read_with_assimp(const SourceFile& source) {
   Imported imported;
-  std::set<std::string> with_color;
+  MtlText materials;
   ObjGroups groups;
   const bool is_obj = source.extension == ".obj";
   if (is_obj) {
-    LUXEL_TRY(with_color, check_obj(source, imported.warnings));
+    LUXEL_TRY(materials, check_obj(source, imported.warnings));
     groups = number_groups(source);
   }
   if (source.extension == ".ply") LUXEL_TRY_STATUS(check_ply(source));
@@ -245,7 +246,7 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   LUXEL_TRY_STATUS(check_packed(source));
 
   Assimp::Importer importer;
-  if (is_obj) importer.SetIOHandler(new TextInsteadOfFile(source.path.string(), groups.text));
+  importer.SetIOHandler(files_for_assimp(source, groups, materials));  // which deletes it
   // Points and lines are sorted out into meshes of their own and dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -254,7 +255,7 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
                 one_sentence(importer.GetErrorString()));
 
-  LUXEL_TRY_STATUS(read_assimp_materials(*in, source, with_color, imported));
+  LUXEL_TRY_STATUS(read_assimp_materials(*in, source, materials.with_color, imported));
   NodeTransforms transforms;
   std::vector<DrawnNode> drawn =
       drawn_nodes(*in, world_from_file(*in, source, imported.warnings), transforms);

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <map>
 
-#include "luxel/base/file.h"
 #include "luxel/import/assimp_parts.h"
 
 namespace luxel::import {
@@ -20,22 +19,6 @@ struct Textures {
   Imported& out;
   std::map<std::string, uint32_t> known;  ///< by the path in the file
 };
-
-/// Files from Windows name "textures\brick.png", and some exporters the place on their author's
-/// disk: the path is tried as it stands, then its last part beside the scene.
-Result<std::vector<std::byte>> read_beside(const SourceFile& source, const std::string& path,
-                                           const std::string& user) {
-  std::string slashed = path;
-  std::replace(slashed.begin(), slashed.end(), '\\', '/');
-  const std::filesystem::path stated(slashed);
-  const std::filesystem::path folder = source.path.parent_path();
-  for (const std::filesystem::path& candidate : {folder / stated, folder / stated.filename()}) {
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(candidate, ignored)) return read_file(candidate);
-  }
-  return fail(ErrorCode::io, "{}: the texture {} of {} is missing; put it beside the scene",
-              source.name, slashed, user);
-}
 
 /// Uncompressed: mWidth x mHeight texels in the order b, g, r, a.
 scene::Texture raw_texture(const aiTexture& in, const std::string& name) {
@@ -59,9 +42,12 @@ Result<scene::Texture> load_texture(const Textures& textures, const std::string&
     encoded.resize(embedded->mWidth);  // then its size in bytes
     std::memcpy(encoded.data(), embedded->pcData, encoded.size());
   } else {
-    LUXEL_TRY(encoded, read_beside(textures.source, path, user));
+    LUXEL_TRY(encoded,
+              read_named_file(textures.source.files, path,
+                              fmt::format("{}: the texture of {}", textures.source.name, user)));
   }
-  LUXEL_TRY(scene::Texture texture, decode_texture(std::move(encoded), name, user));
+  LUXEL_TRY(scene::Texture texture,
+            decode_texture(std::move(encoded), name, user, textures.source.memory));
   texture.name = path;
   return texture;
 }

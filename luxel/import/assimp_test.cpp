@@ -44,7 +44,8 @@ constexpr const char* kFoldFaces = "f 1 2 3 4\nf 2 1 5 6\n";
 
 Result<Imported> import_fold(const std::string& before, std::optional<float> crease_deg = {}) {
   const TemporaryFolder folder;
-  return import_scene(folder.write("a.obj", kFold + before + kFoldFaces), {crease_deg});
+  return import_scene(folder.write("a.obj", kFold + before + kFoldFaces),
+                      {.smooth_normals_deg = crease_deg});
 }
 
 // OBJ does not say how a mesh without normals looks. `s off` does; groups that are on are no news.
@@ -131,7 +132,7 @@ TEST(Obj, BentFacesAreSaidWithTheirGroup) {
 TEST(Obj, MissingMaterialFileIsAWarning) {
   const auto imported = import_text("a.obj", kTwoSquares);
   const scene::Scene scene = scene_of(imported);
-  EXPECT_THAT(all_of(imported->warnings), HasSubstr("m.mtl is missing"));
+  EXPECT_THAT(all_of(imported->warnings), HasSubstr("m.mtl, which is missing"));
   expect_near(scene::reflectance_at(scene, {0, 0, {0.3f, 0.3f}}), {0.8f, 0.8f, 0.8f}, 1e-6f);
 }
 

@@ -3,36 +3,78 @@
 #include <algorithm>
 #include <span>
 
+#include "luxel/base/file.h"
 #include "luxel/import/gltf_buffers.h"
 #include "luxel/import/gltf_check_steps.h"
 #include "luxel/import/gltf_checks.h"
+#include "luxel/import/gltf_images.h"
 
 namespace luxel::import {
 namespace {
 
-/// Keeps the encoded bytes: pictures are decoded where a material asks for them.
+/// Keeps the encoded bytes of a data URI: pictures are decoded where a material asks for them.
 bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int size, void*) {
   image->image.assign(bytes, bytes + std::max(size, 0));
   return true;
 }
 
+/// What tinygltf's callbacks for files are given: it reads the buffers by them, and nothing else.
+struct BufferFiles {
+  const SourceFile& source;
+  Error error{};  ///< of the first file that could not be read; no message: none
+};
+
+bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::string& file,
+                 void* user) {
+  BufferFiles& files = *static_cast<BufferFiles*>(user);
+  const auto read = [&]() -> Result<std::vector<std::byte>> {
+    LUXEL_TRY(const std::filesystem::path path,
+              find_named_file(files.source.files, file, files.source.name + ": a buffer"));
+    std::error_code unknown;  // read_file() says so
+    const uintmax_t size = std::filesystem::file_size(path, unknown);
+    if (!unknown) LUXEL_TRY_STATUS(files.source.memory.take(size, path.string()));
+    return read_file(path);
+  };
+  const Result<std::vector<std::byte>> bytes = read();
+  if (!bytes) {
+    files.error = bytes.error();
+    return false;
+  }
+  const auto* first = reinterpret_cast<const unsigned char*>(bytes->data());
+  out->assign(first, first + bytes->size());
+  return true;
+}
+
+/// The callbacks. A name comes as the file states it, since tinygltf is told no folder.
+tinygltf::FsCallbacks callbacks_of(BufferFiles& files) {
+  tinygltf::FsCallbacks out{};
+  out.FileExists = [](const std::string&, void*) { return true; };  // else read_buffer() says so
+  out.ExpandFilePath = [](const std::string& file, void*) { return file; };
+  out.ReadWholeFile = read_buffer;
+  out.WriteWholeFile = nullptr;
+  out.user_data = &files;
+  return out;
+}
+
 Result<tinygltf::Model> load_model(const SourceFile& source, const std::string& text,
                                    std::span<const std::byte> glb) {
   tinygltf::TinyGLTF loader;
+  BufferFiles files{source};
   loader.SetImageLoader(keep_encoded, nullptr);
+  loader.SetFsCallbacks(callbacks_of(files));
   tinygltf::Model model;
   std::string error, warning;
-  const std::string folder = (source.path.parent_path() / ".").string();
   if (source.bytes.size() > UINT32_MAX)
     return fail(ErrorCode::unsupported, "{}: glTF files over 4 GB cannot be read", source.name);
   const bool loaded =
       source.extension == ".glb"
           ? loader.LoadBinaryFromMemory(&model, &error, &warning,
                                         reinterpret_cast<const unsigned char*>(glb.data()),
-                                        static_cast<unsigned int>(glb.size()), folder)
+                                        static_cast<unsigned int>(glb.size()), "")
           : loader.LoadASCIIFromString(&model, &error, &warning, text.data(),
-                                       static_cast<unsigned int>(text.size()), folder);
+                                       static_cast<unsigned int>(text.size()), "");
+  if (!files.error.message.empty()) return tl::unexpected(files.error);
   if (!loaded)
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name, one_sentence(error));
   return model;
@@ -57,10 +99,11 @@ Result<std::string> json_text_of(const SourceFile& source) {
 
 /// The document as tinygltf takes it. It takes no buffer without bytes, and would give a .glb's
 /// only ones to every buffer that has no uri: one byte stands for what nobody reads. It takes no
-/// indices without bytes either, as Draco's are: decode_draco() puts them in.
-Json for_tinygltf(Json document, const std::vector<bool>& is_placeholder,
-                  const std::filesystem::path& folder) {
-  state_true_lengths(document, folder);
+/// indices without bytes either, as Draco's are: decode_draco() puts them in. Pictures are read
+/// where they are asked for.
+Json for_tinygltf(Json document, const std::vector<bool>& is_placeholder, const SceneFiles& files) {
+  leave_images_out(document);
+  state_true_lengths(document, files);
   for (size_t i = 0; i < is_placeholder.size(); ++i)
     if (is_placeholder[i])
       document["buffers"][i] = {{"byteLength", 1},
@@ -82,7 +125,7 @@ Result<LoadedGltf> load_gltf(const SourceFile& source) {
   const std::vector<bool> is_placeholder = placeholder_buffers(document);
   std::vector<std::byte> new_glb;
   std::span<const std::byte> glb = source.bytes;
-  if (const Json adapted = for_tinygltf(document, is_placeholder, source.path.parent_path());
+  if (const Json adapted = for_tinygltf(document, is_placeholder, source.files);
       adapted != document) {
     text = adapted.dump();
     if (source.extension == ".glb") glb = new_glb = glb_with_json(source.bytes, text);

@@ -1,6 +1,7 @@
 // Materials and their textures.
 #include <optional>
 
+#include "luxel/import/gltf_images.h"
 #include "luxel/import/gltf_parts.h"
 #include "luxel/scene/specular.h"
 
@@ -14,37 +15,6 @@ scene::Wrap wrap_of(int mode) {
   if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return scene::Wrap::mirror;
   return scene::Wrap::repeat;
 }
-
-/// The scene's number of a glTF image, decoded when first asked for: files carry normal maps and
-/// variants that nobody here looks at.
-class ImageLoader {
- public:
-  explicit ImageLoader(GltfReader& reader)
-      : reader_(reader), number_(reader.model.images.size(), scene::kNone) {}
-
-  Result<uint32_t> load(int image_index, const std::string& user) {
-    uint32_t& number = number_[size_t(image_index)];
-    if (number != scene::kNone) return number;
-    const tinygltf::Image& image = reader_.model.images[size_t(image_index)];
-    const std::string file =
-        image.uri.empty() ? label("image", size_t(image_index), image.name) : image.uri;
-    const std::string name = reader_.source.name + ": " + file;
-    // The loader callback stored the encoded bytes; tinygltf leaves none where it found no file.
-    if (image.image.empty())
-      return fail(ErrorCode::io, "{}: the texture of {} is missing or empty", name, user);
-    std::vector<std::byte> encoded(image.image.size());
-    std::memcpy(encoded.data(), image.image.data(), encoded.size());
-    LUXEL_TRY(scene::Texture texture, decode_texture(std::move(encoded), name, user));
-    texture.name = image.name.empty() ? file : image.name;
-    number = uint32_t(reader_.out.scene.textures.size());
-    reader_.out.scene.textures.push_back(std::move(texture));
-    return number;
-  }
-
- private:
-  GltfReader& reader_;
-  std::vector<uint32_t> number_;
-};
 
 void apply_transform(TextureRef& ref, const tinygltf::ExtensionMap& extensions) {
   const auto found = extensions.find("KHR_texture_transform");
@@ -78,7 +48,7 @@ Result<int> image_of(const GltfReader& reader, const tinygltf::Texture& texture,
               where);
 }
 
-Result<TextureRef> read_ref(GltfReader& reader, ImageLoader& images,
+Result<TextureRef> read_ref(GltfReader& reader, GltfImages& images,
                             const tinygltf::TextureInfo& info, const std::string& user) {
   TextureRef ref;
   if (info.index < 0) return ref;
@@ -163,7 +133,7 @@ Result<tinygltf::TextureInfo> texture_in(const GltfReader& reader, const tinyglt
   return info;
 }
 
-Status read_diffuse_transmission(GltfReader& reader, ImageLoader& images,
+Status read_diffuse_transmission(GltfReader& reader, GltfImages& images,
                                  const tinygltf::Material& in, const std::string& user,
                                  scene::Material& out) {
   const auto it = in.extensions.find("KHR_materials_diffuse_transmission");
@@ -182,7 +152,7 @@ Status read_diffuse_transmission(GltfReader& reader, ImageLoader& images,
 }
 
 /// Light does without normal maps: one that cannot be read is left out.
-void read_normal_map(GltfReader& reader, ImageLoader& images, const tinygltf::NormalTextureInfo& in,
+void read_normal_map(GltfReader& reader, GltfImages& images, const tinygltf::NormalTextureInfo& in,
                      const std::string& user, scene::Material& out) {
   tinygltf::TextureInfo info;
   info.index = in.index, info.texCoord = in.texCoord, info.extensions = in.extensions;
@@ -194,7 +164,7 @@ void read_normal_map(GltfReader& reader, ImageLoader& images, const tinygltf::No
   out.normal_texture = *ref, out.normal_scale = float(in.scale);
 }
 
-Result<scene::Material> read_material(GltfReader& reader, ImageLoader& images, size_t index) {
+Result<scene::Material> read_material(GltfReader& reader, GltfImages& images, size_t index) {
   const tinygltf::Material& in = reader.model.materials[index];
   const auto& pbr = in.pbrMetallicRoughness;
   const std::string user = label("material", index, in.name);
@@ -281,7 +251,7 @@ Rgb vec3_in(const tinygltf::Value& object, const char* key, Rgb fallback) {
 }
 
 Status read_materials(GltfReader& reader) {
-  ImageLoader images(reader);
+  GltfImages images(reader);
   for (size_t i = 0; i < reader.model.materials.size(); ++i) {
     LUXEL_TRY(scene::Material material, read_material(reader, images, i));
     reader.out.scene.materials.push_back(std::move(material));

@@ -295,7 +295,7 @@ TEST(GltfMaterial, AMissingTextureOfAMaskIsSaid) {
   const auto imported = import_glb(gltf);
   ASSERT_FALSE(imported);
   EXPECT_THAT(imported.error().message,
-              HasSubstr("leaves.png: the texture of material 0 (brick) is missing"));
+              HasSubstr("the texture of material 0 (brick) is leaves.png, which is missing"));
 }
 
 nlohmann::json glossy(nlohmann::json values) {

@@ -3,6 +3,7 @@
 
 #include <tiny_gltf.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace luxel::import {
 
 /// What the steps of the reader share. Materials and meshes keep their glTF index in the scene.
 struct GltfReader {
+  const nlohmann::json& document;  ///< as the file says it
   const tinygltf::Model& model;
   const SourceFile& source;
   Imported& out;

@@ -73,13 +73,31 @@ Result<Imported> read_checked(const SourceFile& source, const ImportParams& para
 }  // namespace
 
 Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params) {
-  SourceFile source{path, path.string(), lower_case(path.extension().string()), {}};
+  ReadingMemory memory(params.max_memory_bytes);
+  std::error_code missing;  // read_file() says so
+  const uintmax_t size = std::filesystem::file_size(path, missing);
+  if (!missing) LUXEL_TRY_STATUS(memory.take(size, path.string()));
+  SourceFile source{path,
+                    path.string(),
+                    lower_case(path.extension().string()),
+                    {path.parent_path(), params.search_paths, params.trust_paths},
+                    memory,
+                    {}};
   LUXEL_TRY(source.bytes, read_file(path));
   return read_checked(source, params);
 }
 
+Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& name,
+                              const ImportParams& params) {
+  ReadingMemory memory(params.max_memory_bytes);
+  LUXEL_TRY_STATUS(memory.take(bytes.size(), name));
+  const std::string extension = lower_case(std::filesystem::path(name).extension().string());
+  return read_checked({name, name, extension, {}, memory, std::move(bytes)}, params);
+}
+
 Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name) {
-  return read_checked({name, name, ".glb", std::move(bytes)}, {});
+  ReadingMemory memory(0);
+  return read_checked({name, name, ".glb", {}, memory, std::move(bytes)}, {});
 }
 
 }  // namespace luxel::import

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "luxel/base/file.h"
 #include "luxel/base/vec_double.h"
+#include "luxel/import/mtl_text.h"
 #include "luxel/import/readers.h"
 #include "luxel/import/text_lines.h"
 
@@ -34,7 +34,7 @@ struct ObjScan {
   ObjCounts counts;
   Index largest[3];
   bool has_faces = false;
-  std::set<std::string> with_color;
+  MtlText materials;
   std::vector<DVec3> positions;
   std::string group;
   BentFaces bent;
@@ -134,32 +134,11 @@ Status check_corners(std::string_view rest, ObjScan& scan, size_t line, const st
   return {};
 }
 
-/// The materials of an .mtl that state Kd.
-void read_library(std::string_view rest, const SourceFile& source, ObjScan& scan,
-                  std::vector<std::string>& warnings) {
-  const std::string_view name = trimmed(rest);
-  if (name.empty()) return;
-  const auto bytes = read_file(source.path.parent_path() / std::filesystem::path(name));
-  if (!bytes) {
-    warnings.push_back(
-        fmt::format("{}: its material file {} is missing; a white that reflects 0.8 is used",
-                    source.name, name));
-    return;
-  }
-  std::string material;
-  for (std::string_view text = text_of(*bytes); !text.empty();) {
-    std::string_view line = next_line(text);
-    const std::string_view word = next_word(line);
-    if (word == "newmtl") material = trimmed(line);
-    if (word == "Kd") scan.with_color.insert(material);
-  }
-}
-
 Status check_line(std::string_view line, size_t number, const SourceFile& source, ObjScan& scan,
                   std::vector<std::string>& warnings) {
   const std::string_view word = next_word(line);
   const bool is_v = word == "v", is_vt = word == "vt", is_vn = word == "vn", is_f = word == "f";
-  if (word == "mtllib") read_library(line, source, scan, warnings);
+  if (word == "mtllib") add_libraries(line, source, scan.materials, warnings);
   if (word == "o" || word == "g") scan.group = trimmed(line);
   if (!is_v && !is_vt && !is_vn && !is_f) return {};
   const std::string where = fmt::format("{}, line {}", source.name, number);
@@ -178,8 +157,7 @@ Status check_line(std::string_view line, size_t number, const SourceFile& source
 
 }  // namespace
 
-Result<std::set<std::string>> check_obj(const SourceFile& source,
-                                        std::vector<std::string>& warnings) {
+Result<MtlText> check_obj(const SourceFile& source, std::vector<std::string>& warnings) {
   std::string_view text = text_of(source.bytes);
   ObjScan scan;
   for (size_t number = 1; !text.empty(); ++number) {
@@ -197,7 +175,7 @@ Result<std::set<std::string>> check_obj(const SourceFile& source,
     return fail(ErrorCode::bad_input, "{}: the scene has no triangles; nothing can be lit",
                 source.name);
   if (scan.bent.count > 0) warnings.push_back(bent_faces_warning(source.name, scan.bent));
-  return std::move(scan.with_color);
+  return std::move(scan.materials);
 }
 
 }  // namespace luxel::import

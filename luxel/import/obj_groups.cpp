@@ -21,6 +21,10 @@ ObjGroups number_groups(const SourceFile& source) {
     const std::string_view line = next_line(text);
     std::string_view rest = line;
     const std::string_view word = next_word(rest);
+    if (word == "mtllib") {
+      groups.text += '\n';
+      continue;
+    }
     if (word != "o" && word != "g") {
       groups.text.append(line).append("\n");
       continue;

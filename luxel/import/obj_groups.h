@@ -10,6 +10,7 @@ namespace luxel::import {
 
 /// The file's text with every `o` and `g` line replaced by a `g` with a number: Assimp ends the
 /// name of an `o` at its first blank, and an `o` that is opened again loses its faces to another.
+/// Lines with `mtllib` are empty (mtl_text.h).
 struct ObjGroups {
   std::string text;
   std::vector<std::string> names;  ///< by number

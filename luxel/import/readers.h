@@ -2,12 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "luxel/base/result.h"
 #include "luxel/import/import.h"
+#include "luxel/import/reading_memory.h"
+#include "luxel/import/scene_files.h"
 #include "luxel/scene/scene.h"
 
 namespace luxel::import {
@@ -17,6 +18,8 @@ struct SourceFile {
   std::filesystem::path path;
   std::string name;       ///< what messages call it
   std::string extension;  ///< lower case, with the dot
+  SceneFiles files;       ///< where files that it names may lie
+  ReadingMemory& memory;  ///< what is left for reading it
   std::vector<std::byte> bytes;
 };
 
@@ -28,10 +31,9 @@ Result<Imported> read_with_assimp(const SourceFile& source);
 
 /// Assimp's readers trust their input, and Debian's build aborts where an assertion fails: what can
 /// be told cheaply is told before. Errors: NaN, index out of range, a file that ends early.
-/// Returns the names of the materials whose .mtl states a diffuse colour: Assimp makes up 0.6 for
-/// the others. A missing .mtl is a warning.
-Result<std::set<std::string>> check_obj(const SourceFile& source,
-                                        std::vector<std::string>& warnings);
+/// check_obj() returns the file's materials (mtl_text.h); a missing .mtl is a warning.
+struct MtlText;
+Result<MtlText> check_obj(const SourceFile& source, std::vector<std::string>& warnings);
 Status check_ply(const SourceFile& source);
 Status check_x(const SourceFile& source);
 Status check_collada(const SourceFile& source);
@@ -40,8 +42,9 @@ Status check_fbx(const SourceFile& source);
 Status check_packed(const SourceFile& source);
 
 /// Decodes `encoded` and keeps it. `name` is the picture's file or number, `user` who asked for it.
+/// Errors: damaged; more pixels than memory is left for.
 Result<scene::Texture> decode_texture(std::vector<std::byte> encoded, const std::string& name,
-                                      const std::string& user);
+                                      const std::string& user, ReadingMemory& memory);
 
 /// Merges vertices that agree in every bit of every attribute, in the order of their first use.
 void join_identical_vertices(scene::Mesh& mesh);

@@ -16,11 +16,12 @@ namespace luxel::pipeline {
 namespace {
 
 /// A full disk has room when the checkpoint, and what is kept for later bakes, are gone.
-Status write_results(std::span<const OutputFile> files, Checkpoint& checkpoint, BakeCache& cache) {
+Status write_results(std::span<const OutputFile> files, Checkpoint& checkpoint, BakeCache& cache,
+                     Progress& progress) {
   const Status written = write_files_atomically(files);
   if (written || written.error().code != ErrorCode::out_of_disk) return written;
   const bool has_file = checkpoint.has_file();
-  if (!cache.make_room() && !has_file) return written;
+  if (!cache.make_room(progress) && !has_file) return written;
   checkpoint.remove();
   return write_files_atomically(files);
 }
@@ -51,7 +52,7 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   json["files"].push_back("bake.json");
   files.push_back(text_file(settings.output / "bake.json", json.dump(2) + "\n"));
   LUXEL_TRY_STATUS(folder.make());
-  LUXEL_TRY_STATUS(write_results(files, checkpoint, cache));
+  LUXEL_TRY_STATUS(write_results(files, checkpoint, cache, progress));
   folder.keep();
   checkpoint.remove();
   cache.finish(progress);

@@ -9,6 +9,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/import/import.h"
 #include "luxel/viewfactor/factor_matrix.h"
 
 namespace luxel::pipeline {
@@ -26,6 +27,7 @@ struct FactorSettings {
   std::string from, to;  ///< names of surfaces; empty: all
   uint64_t seed = 1;
   uint64_t max_memory_bytes = 0;  ///< of the process; 0: what is free
+  import::ImportParams reading;
 };
 
 /// The table of view factors, and how good it is.

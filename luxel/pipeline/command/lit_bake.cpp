@@ -91,10 +91,11 @@ Status add_light(const LitBake& bake, std::span<const Vec3> positions,
 }  // namespace
 
 Result<std::unique_ptr<LitBake>> read_lit_bake(const std::filesystem::path& scene,
+                                               const import::ImportParams& reading,
                                                const std::filesystem::path& folder,
                                                const OutsideLight& given) {
   auto bake = std::make_unique<LitBake>();
-  LUXEL_TRY(import::Imported imported, import::import_scene(scene));
+  LUXEL_TRY(import::Imported imported, import::import_scene(scene, reading));
   bake->scene = std::move(imported.scene), bake->warnings = std::move(imported.warnings);
   LUXEL_TRY_STATUS(check_has_colors(folder));
   LUXEL_TRY_STATUS(check_has_all_light(folder));

@@ -9,6 +9,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/import/import.h"
 #include "luxel/light/light_around.h"
 #include "luxel/light/lights.h"
 #include "luxel/pipeline/bake/baked_folder.h"
@@ -35,6 +36,7 @@ struct LitBake {
 /// `given` replaces the light from outside that bake.json names. Errors: files, a bake of another
 /// scene, a bake without lightmaps.
 Result<std::unique_ptr<LitBake>> read_lit_bake(const std::filesystem::path& scene,
+                                               const import::ImportParams& reading,
                                                const std::filesystem::path& folder,
                                                const OutsideLight& given);
 

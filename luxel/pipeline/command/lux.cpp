@@ -99,7 +99,8 @@ Result<LuxReport> lux(const LuxSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check_lux(s));
   const ThreadLimit threads(s.threads);
   progress.begin("import", 0);
-  LUXEL_TRY(const std::unique_ptr<LitBake> bake, read_lit_bake(s.scene, s.from, s.outside));
+  LUXEL_TRY(const std::unique_ptr<LitBake> bake,
+            read_lit_bake(s.scene, s.reading, s.from, s.outside));
   LuxReport report;
   report.warnings = bake->warnings, report.unit = bake->unit;
   // The bake's scene: surfaces with two sides have both of them there.

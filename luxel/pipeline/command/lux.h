@@ -7,6 +7,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/import/import.h"
 #include "luxel/pipeline/command/work_plane.h"
 #include "luxel/pipeline/settings/light_unit.h"
 #include "luxel/pipeline/settings/outside_light.h"
@@ -21,7 +22,8 @@ struct LuxSettings {
   WorkPlaneParams plane;
   int samples = 1024;  ///< rays per point
   uint64_t seed = 1;
-  OutsideLight outside;  ///< replaces that of the bake
+  import::ImportParams reading;  ///< of the scene's file
+  OutsideLight outside;          ///< replaces that of the bake
   int threads = 0;
 };
 

@@ -266,7 +266,8 @@ Result<Probed> probe_by_paths(const ProbeSettings& s, const scene::Scene& scene,
 Result<Probed> probe_in_bake(const ProbeSettings& s, Progress& progress) {
   const Clock::time_point start = Clock::now();
   progress.begin("import", 0);
-  LUXEL_TRY(const std::unique_ptr<LitBake> bake, read_lit_bake(s.scene, s.from, s.outside));
+  LUXEL_TRY(const std::unique_ptr<LitBake> bake,
+            read_lit_bake(s.scene, s.reading, s.from, s.outside));
   Probed out;
   out.warnings = bake->warnings, out.unit = bake->unit;
   LUXEL_TRY(Place place, find_place(s, bake->baked, out));

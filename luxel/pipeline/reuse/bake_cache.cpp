@@ -157,10 +157,10 @@ void BakeCache::begin(Progress& progress) {
       progress);
 }
 
-bool BakeCache::make_room() {
+bool BakeCache::make_room(Progress& progress) {
   if (!rays_) return false;
   remove_unfinished();
-  if (failure_.empty()) failure_ = "the disk is full; the bake is not kept";
+  if (failure_.empty()) give_up("the disk is full", progress);
   return true;
 }
 

@@ -53,7 +53,7 @@ class BakeCache {
   /// Why nothing is kept though it was asked for; empty: it is, or was not asked for.
   std::string failure() const;
   /// The bake must do with the room that its unfinished files take. Whether there were any.
-  bool make_room();
+  bool make_room(Progress& progress);
 
  private:
   bool find(const scene::Scene& scene);

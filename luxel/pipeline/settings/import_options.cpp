@@ -1,11 +1,46 @@
 #include "luxel/pipeline/settings/import_options.h"
 
+#include <filesystem>
+
 #include "luxel/pipeline/settings/option_rows.h"
 
 namespace luxel::pipeline {
 
-Options<import::ImportParams> import_options() {
-  using import::ImportParams;
+namespace {
+
+using import::ImportParams;
+
+/// bake.json does not keep it, nor --trust-paths: whoever uses a file of settings again decides
+/// anew what its scene may open.
+Option<ImportParams> search_path_option() {
+  using Paths = std::vector<std::filesystem::path>;
+  Option<ImportParams> row =
+      Rows<ImportParams>::text(
+          "--search-path", &ImportParams::search_paths,
+          [](std::string_view text) -> Result<Paths> { return Paths{text}; },
+          [](const Paths& paths) {
+            nlohmann::json out;
+            for (const std::filesystem::path& path : paths) out.push_back(path.string());
+            return out;
+          },
+          "A folder besides the scene's own in which pictures and buffers may lie that the scene "
+          "names; may be given for several")
+          .key_is("")
+          .unit("DIR")
+          .leaves(Changes::scene);
+  row.repeats = true;
+  row.read_text = [](ImportParams& params, std::string_view text) -> Status {
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(text, ignored))
+      return fail(ErrorCode::bad_setting, "--search-path {}: there is no such folder", text);
+    return params.search_paths.emplace_back(text), Status{};
+  };
+  return row;
+}
+
+}  // namespace
+
+Options<ImportParams> import_options() {
   return {Rows<ImportParams>::number(
               "--smooth-normals", &ImportParams::smooth_normals_deg, {0, 180},
               fmt::format("Meshes without normals: smooth across edges that bend by at most this "
@@ -13,6 +48,12 @@ Options<import::ImportParams> import_options() {
                           import::kUsualCreaseDeg))
               .key_is("smooth_normals_deg")
               .unit("DEG")
+              .leaves(Changes::scene),
+          search_path_option(),
+          Rows<ImportParams>::toggle("--trust-paths", &ImportParams::trust_paths,
+                                     "Read files that the scene names wherever they lie, outside "
+                                     "of its folder too")
+              .key_is("")
               .leaves(Changes::scene)};
 }
 

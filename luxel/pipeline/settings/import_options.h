@@ -1,4 +1,4 @@
-// How a scene's file is read, as options of every command that lights it.
+// How a scene's file is read, as options of every command that reads one.
 #pragma once
 
 #include "luxel/import/import.h"
@@ -6,7 +6,7 @@
 
 namespace luxel::pipeline {
 
-/// --smooth-normals.
+/// --smooth-normals, --search-path, --trust-paths.
 Options<import::ImportParams> import_options();
 
 }  // namespace luxel::pipeline

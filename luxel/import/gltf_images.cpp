@@ -1,0 +1,91 @@
+#include "luxel/import/gltf_images.h"
+
+#include <charconv>
+#include <cstring>
+
+namespace luxel::import {
+namespace {
+
+using Json = nlohmann::json;
+
+bool is_data(const std::string& uri) { return uri.starts_with("data:"); }
+
+/// What images with the same bytes have in common.
+std::string place_of(const Json& image, size_t index) {
+  if (image.contains("bufferView")) return fmt::format("view {}", image["bufferView"].dump());
+  const std::string uri = image.value("uri", "");
+  return is_data(uri) ? fmt::format("image {}", index) : "file " + decoded_uri(uri);
+}
+
+std::vector<std::byte> bytes_of(const unsigned char* first, size_t count) {
+  std::vector<std::byte> out(count);
+  if (count > 0) std::memcpy(out.data(), first, count);
+  return out;
+}
+
+}  // namespace
+
+std::string decoded_uri(std::string_view uri) {
+  std::string out;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    unsigned value = 0;
+    const char* const digits = uri.data() + i + 1;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2) {
+      out += char(value), i += 2;
+    } else {
+      out += uri[i];
+    }
+  }
+  return out;
+}
+
+void leave_images_out(Json& document) {
+  if (!document.contains("images")) return;
+  for (Json& image : document["images"]) {
+    const bool in_view = image.contains("bufferView");
+    if (!in_view && (!image.contains("uri") || is_data(image.value("uri", "")))) continue;
+    image.erase("bufferView"), image.erase("mimeType");
+    image["uri"] = "data:application/octet-stream;base64,AA==";
+  }
+}
+
+Result<std::vector<std::byte>> encoded_image(const GltfReader& reader, size_t index,
+                                             const std::string& what) {
+  const Json& image = reader.document["images"][index];
+  if (image.contains("bufferView")) {
+    const auto& view = reader.model.bufferViews[image["bufferView"].get<size_t>()];
+    const auto& buffer = reader.model.buffers[size_t(view.buffer)].data;
+    // A buffer that nothing but pictures uses may have been left out (placeholder_buffers()).
+    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
+      return fail(ErrorCode::bad_input, "{} lies beyond the end of its buffer", what);
+    return bytes_of(buffer.data() + view.byteOffset, view.byteLength);
+  }
+  const std::string uri = image.value("uri", "");
+  if (!is_data(uri)) return read_named_file(reader.source.files, decoded_uri(uri), what);
+  const std::vector<unsigned char>& held = reader.model.images[index].image;
+  return bytes_of(held.data(), held.size());
+}
+
+Result<uint32_t> GltfImages::load(int image_index, const std::string& user) {
+  const size_t index = size_t(image_index);
+  const Json& image = reader_.document["images"][index];
+  const auto [known, is_new] = known_.try_emplace(place_of(image, index), scene::kNone);
+  if (!is_new) return known->second;
+  const std::string uri = image.value("uri", ""), name = reader_.model.images[index].name;
+  const std::string file = uri.empty() || is_data(uri) ? label("image", index, name) : uri;
+  const std::string where = reader_.source.name + ": " + file;
+  LUXEL_TRY(std::vector<std::byte> encoded,
+            encoded_image(reader_, index,
+                          fmt::format("{}: the texture of {}", reader_.source.name, user)));
+  if (encoded.empty())
+    return fail(ErrorCode::bad_input, "{}: the texture of {} is empty", where, user);
+  LUXEL_TRY(scene::Texture texture,
+            decode_texture(std::move(encoded), where, user, reader_.source.memory));
+  texture.name = name.empty() ? file : name;
+  known->second = uint32_t(reader_.out.scene.textures.size());
+  reader_.out.scene.textures.push_back(std::move(texture));
+  return known->second;
+}
+
+}  // namespace luxel::import

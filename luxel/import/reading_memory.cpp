@@ -1,0 +1,28 @@
+#include "luxel/import/reading_memory.h"
+
+#include <algorithm>
+
+#include "luxel/base/process_memory.h"
+
+namespace luxel::import {
+
+ReadingMemory::ReadingMemory(uint64_t max_bytes) : max_bytes_(max_bytes) {
+  constexpr uint64_t kLeast = 64 * 1024 * 1024;
+  const uint64_t held = resident_bytes();
+  left_bytes_ = max_bytes == 0 ? available_bytes() : std::max(max_bytes, held) - held;
+  left_bytes_ = std::max(left_bytes_, kLeast);
+}
+
+Status ReadingMemory::take(uint64_t bytes, std::string_view what) {
+  constexpr double kMiB = 1024 * 1024;
+  if (bytes > left_bytes_)
+    return fail(ErrorCode::out_of_memory, "{} needs {:.1f} MiB, and {:.1f} MiB are {}; {}", what,
+                double(bytes) / kMiB, double(left_bytes_) / kMiB,
+                max_bytes_ == 0 ? "free" : "left of --max-memory",
+                max_bytes_ == 0 ? "use smaller pictures or fewer triangles, or a larger machine"
+                                : "raise it, or use smaller pictures or fewer triangles");
+  left_bytes_ -= bytes;
+  return {};
+}
+
+}  // namespace luxel::import

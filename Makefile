@@ -20,7 +20,7 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-.PHONY: setup setup-tests setup-docs build test test-all demo docs bench asan format format-check clean
+.PHONY: setup setup-tests setup-docs build test test-all demo docs bench asan fuzz format format-check clean
 
 setup:
 	@tools/setup.sh
@@ -70,6 +70,14 @@ asan: setup-tests
 	cmake --preset asan
 	cmake --build --preset asan --parallel $(JOBS)
 	ctest --preset asan --parallel $$(nproc)
+
+# Each fuzzer for a minute: tests/fuzz/README.md. FUZZ_SECONDS and TARGET choose otherwise.
+FUZZ_SECONDS ?= 60
+fuzz:
+	@tools/setup.sh fuzz
+	cmake --preset fuzz
+	cmake --build --preset fuzz --parallel $(JOBS) --target luxel_fuzz
+	tools/fuzz.sh $(FUZZ_SECONDS) $(TARGET)
 
 format:
 	$(SOURCES) | xargs -0 clang-format -i

@@ -5,6 +5,7 @@
 #   tools/setup.sh          what luxel is built from
 #   tools/setup.sh tests    and what only tests use
 #   tools/setup.sh docs     and what only the API pages need
+#   tools/setup.sh fuzz     and what only the fuzzers need
 #
 # luxel builds without node, npm and chromium, with less (docs/format/bake.md, view.html): where they
 # cannot be installed, that is said and no error.
@@ -39,6 +40,11 @@ done
 if [[ ${1:-} == tests ]]; then
   command -v chromium >/dev/null || wanted+=(chromium)
   command -v patch >/dev/null || wanted+=(patch)
+  command -v bwrap >/dev/null || wanted+=(bubblewrap)
+fi
+if [[ ${1:-} == fuzz ]]; then
+  command -v clang++ >/dev/null || wanted+=(clang)
+  [[ -n $(find /usr/lib -name 'libclang_rt.fuzzer-*' -print -quit 2>/dev/null) ]] || wanted+=(libclang-rt-dev)
 fi
 if [[ ${1:-} == docs ]]; then
   command -v doxygen >/dev/null || wanted+=(doxygen)

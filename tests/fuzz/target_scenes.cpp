@@ -1,0 +1,85 @@
+#include "tests/fuzz/target_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "luxel/base/process_memory.h"
+#include "luxel/import/import.h"
+#include "luxel/pipeline/bake/bake_scene.h"
+#include "tests/fuzz/support.h"
+
+namespace luxel::fuzz {
+namespace {
+
+constexpr uint64_t kReadingBytes = 256 * 1024 * 1024;
+
+import::ImportParams reading(){import::ImportParams params;
+params.max_memory_bytes = resident_bytes() + kReadingBytes;
+return params;
+}  // namespace
+
+void read(std::span<const std::byte> input, const char* name) {
+  is_read(import::import_bytes(copy_of(input), name, reading()));
+}
+
+/// Lengths of the file and of its chunks, as far as they go.
+std::vector<std::byte> repaired_glb(std::span<const std::byte> input) {
+  std::vector<std::byte> out = copy_of(input);
+  if (out.size() < 28) return out;
+  const auto put32 = [&](size_t at, size_t value) {
+    for (size_t k = 0; k < 4; ++k) out[at + k] = std::byte(value >> (8 * k));
+  };
+  std::memcpy(out.data(), "glTF\2\0\0\0", 8);
+  put32(8, out.size());
+  // The JSON ends where its braces do.
+  int depth = 0;
+  size_t end = 20;
+  for (; end < out.size(); ++end) {
+    const char c = char(out[end]);
+    depth += c == '{' ? 1 : c == '}' ? -1 : 0;
+    if (depth == 0) break;
+  }
+  const size_t json = std::min((end + 1 - 20 + 3) / 4 * 4, out.size() - 20);
+  put32(12, json);
+  std::memcpy(out.data() + 16, "JSON", 4);
+  if (20 + json + 8 <= out.size()) put32(20 + json, out.size() - 28 - json);
+  return out;
+}
+
+}  // namespace luxel::fuzz
+
+void run_gltf(std::span<const std::byte> input) { read(input, "a.gltf"); }
+void run_glb(std::span<const std::byte> input) {
+  read(input, "a.glb");
+  read(repaired_glb(input), "a.glb");
+}
+void run_ply(std::span<const std::byte> input) { read(input, "a.ply"); }
+void run_x(std::span<const std::byte> input) { read(input, "a.x"); }
+void run_dae(std::span<const std::byte> input) { read(input, "a.dae"); }
+void run_fbx(std::span<const std::byte> input) { read(input, "a.fbx"); }
+void run_stl(std::span<const std::byte> input) { read(input, "a.stl"); }
+
+void run_obj(std::span<const std::byte> input) {
+  static const Scratch scratch;
+  constexpr std::string_view kDivider = "\n#mtl\n";
+  const std::string_view text = text_of(input);
+  const size_t at = std::min(text.find(kDivider), text.size());
+  scratch.write("a.mtl", text.substr(std::min(at + kDivider.size(), text.size())));
+  is_read(import::import_scene(scratch.write("a.obj", text.substr(0, at)), reading()));
+}
+
+void run_bake(std::span<const std::byte> input) {
+  Result<import::Imported> imported = import::import_bytes(copy_of(input), "a.gltf", reading());
+  if (!is_read(imported)) return;
+  pipeline::BakeSettings settings;
+  settings.scene = "a.gltf", settings.resolution = 8, settings.samples = 4;
+  settings.direct_samples = 2, settings.threads = 1, settings.bounces = 3;
+  Progress progress;
+  const auto bake = pipeline::bake_scene(std::move(imported->scene), settings, progress);
+  if (!is_read(bake)) return;
+  for (const Rgb e : bake->light.irradiance)
+    LUXEL_CHECK(std::isfinite(e.x) && std::isfinite(e.y) && std::isfinite(e.z));
+}
+
+}  // namespace luxel::fuzz

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Runs luxel_fuzz (tests/fuzz) on each target for some seconds, from the corpus and what earlier runs
+# have found, and prints a row per target: inputs, coverage, findings. Ends with 1 when there is a finding.
+#
+#   tools/fuzz.sh SECONDS [TARGET]
+set -uo pipefail
+cd "$(dirname "$0")/.."
+seconds=${1:?seconds per target}
+program=build/fuzz/bin/luxel_fuzz
+targets=${2:-$("$program" 2>&1 | sed -n 's/^  //p')}
+status=0
+echo "target,inputs,edges covered,seconds,findings"
+for target in $targets; do
+  grown=build/fuzz/grown/$target findings=build/fuzz/findings/$target log=build/fuzz/$target.log
+  mkdir -p "$grown" "$findings"
+  arguments=(--target="$target" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=2048 -max_len=65536
+             -print_final_stats=1 -artifact_prefix="$findings/")
+  dictionary=tests/fuzz/dictionaries/$target.dict
+  [[ -f $dictionary ]] && arguments+=(-dict="$dictionary")
+  # Leaks are looked for at the end: after each input it would take longer than the input.
+  ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0 \
+    "$program" "${arguments[@]}" "$grown" "tests/fuzz/corpus/$target" > "$log" 2>&1 || status=1
+  inputs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+  covered=$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "$log" | tail -1)
+  echo "$target,${inputs:-0},${covered:-0},$seconds,$(find "$findings" -type f | wc -l)"
+done
+exit $status

@@ -89,6 +89,19 @@ TEST(RelightCommand, GivesTheSameBitsWithAnyNumberOfThreads) {
     EXPECT_EQ(slurp(s.path / "1" / frame), slurp(s.path / "2" / frame)) << frame;
 }
 
+// A lamp of 1e30 W/sr is held at the distance of the sun, not in a box of half a metre.
+TEST(RelightCommand, LightOfAScriptThatOverflowsIsASentence) {
+  const ScratchFolder s;
+  ASSERT_EQ(make(s.path / "a.lxr", "--codec dense16").code, 0);
+  const auto script = s.write("bright.json", R"({"frames": 1, "size": [16, 12], "lights": [
+      {"position": [0.27, 0.27, 0.27], "intensity": [1e30, 1e30, 1e30]}]})");
+  const CommandResult r = play(s.path / "a.lxr", script, s.path / "frames");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_THAT(r.err, HasSubstr("is above 1e+18, which is too bright to be held; most of it can "
+                               "come from light 0, whose intensity of 1e+30"));
+  EXPECT_FALSE(std::filesystem::exists(s.path / "frames"));
+}
+
 // A lamp may come behind a sheet of a file that has none yet, as a sky may.
 TEST(RelightCommand, SheetsHaveTwoSidesInAFileWithoutLight) {
   scene::Scene sheet;

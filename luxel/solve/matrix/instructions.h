@@ -5,6 +5,7 @@
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define LUXEL_X86_VECTORS 1
+#include <cpuid.h>
 #else
 #define LUXEL_X86_VECTORS 0
 #endif
@@ -20,8 +21,10 @@ enum class Instructions {
 /// The best that this processor has.
 inline Instructions instructions() {
 #if LUXEL_X86_VECTORS
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("f16c") ||
-      !__builtin_cpu_supports("fma"))
+  // Clang 14 does not know "f16c" by name: bit 29 of leaf 1. [Intel SDM, vol. 2A, CPUID]
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  const bool f16c = __get_cpuid(1, &a, &b, &c, &d) != 0 && (c >> 29 & 1) != 0;
+  if (!__builtin_cpu_supports("avx2") || !f16c || !__builtin_cpu_supports("fma"))
     return Instructions::any;
   const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                     __builtin_cpu_supports("bmi2");

@@ -83,14 +83,14 @@ struct Trial {
 };
 
 Status try_direct(Trial& trial, Forecast& out, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
+  const light::TexelScene& in = trial.in;
   const light::DirectParams params{trial.params.direct_samples, trial.params.seed};
-  trial.direct.irradiance.resize(elements.size());
-  trial.direct.variance.resize(elements.size());
-  trial.direct.split_variance.resize(elements.size());
+  trial.direct.irradiance.resize(in.elements.size());
+  trial.direct.variance.resize(in.elements.size());
+  trial.direct.split_variance.resize(in.elements.size());
   LUXEL_TRY(const double seconds, seconds_of([&] {
-              return direct_light_again({scene, elements, lights, tracer}, trial.texels, params,
-                                        trial.direct, progress);
+              return direct_light_again({in.scene, in.elements, in.lights, in.tracer}, trial.texels,
+                                        params, trial.direct, progress);
             }));
   out.direct_s = trial.scale * seconds;
   out.rays += trial.scale * double(trial.direct.rays);
@@ -98,13 +98,13 @@ Status try_direct(Trial& trial, Forecast& out, Progress& progress) {
 }
 
 Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
+  const light::TexelScene& in = trial.in;
   if (trial.params.supersample <= 1) return {};
   const light::SupersampleParams params{.points = trial.params.supersample,
                                         .direct = {trial.params.direct_samples, trial.params.seed}};
-  const std::vector<uint32_t> known = within(map, trial.texels);
+  const std::vector<uint32_t> known = within(in.map, trial.texels);
   if (known.empty()) return {};
-  const double scale = double(elements.size()) / double(known.size());
+  const double scale = double(in.elements.size()) / double(known.size());
   // They are too few for many threads, and a call looks at the whole map once: that is no texel's,
   // and much longer than what is looked for.
   const int threads = thread_count();
@@ -113,8 +113,7 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
   const auto seconds_for = [&](std::span<const uint32_t> among) {
     return processor_seconds_of([&]() -> Status {
       LUXEL_TRY(const light::Supersampled done,
-                light::supersample({scene, atlas, map, elements, lights, tracer}, among, params,
-                                   trial.direct, progress));
+                light::supersample(in, among, params, trial.direct, progress));
       rays = done.rays;
       return {};
     });
@@ -129,13 +128,13 @@ Status try_supersample(Trial& trial, Forecast& out, Progress& progress) {
 /// The elements tried are traced as if there were no others: were they to lie in the midst of
 /// others that get no rays, little of what rays share would be shared.
 Status try_tracing(Trial& trial, Forecast& out, Progress& progress) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
-  const transport::Elements tried = transport::subset(elements, trial.texels);
+  const light::TexelScene& in = trial.in;
+  const transport::Elements tried = transport::subset(in.elements, trial.texels);
   const TraceParams params{.seed = trial.params.seed,
                            .scratch_folder = trial.stores.scratch_folder,
                            .follows_near = trial.params.bounces < 0};
   LUXEL_TRY(const double seconds, seconds_of([&]() -> Status {
-              LUXEL_TRY(trial.hits, trace_hits({scene, atlas, tried, lights, tracer},
+              LUXEL_TRY(trial.hits, trace_hits({in.scene, in.atlas, tried, in.lights, in.tracer},
                                                trial.params.samples, params, progress));
               return {};
             }));
@@ -146,16 +145,16 @@ Status try_tracing(Trial& trial, Forecast& out, Progress& progress) {
 }
 
 Status try_bounces(Trial& trial, Forecast& out) {
-  const auto& [scene, atlas, map, elements, lights, tracer] = trial.in;
+  const light::TexelScene& in = trial.in;
   const GatherParams& params = trial.params;
   std::vector<Rgb> direct;
   for (const uint32_t i : trial.texels) direct.push_back(trial.direct.irradiance[i]);
   LUXEL_TRY(const double sweeps,
-            expected_sweeps(map, elements, {trial.hits, trial.texels, direct}, params.samples,
+            expected_sweeps(in.map, in.elements, {trial.hits, trial.texels, direct}, params.samples,
                             {params.bounces, params.tolerance}));
   trial.direct = {};  // sweeps need a whole map of radiosity, which is as large
   const double hits = out.hit_bytes / double(sizeof(StoredHit));
-  out.bounces_s = sweeps * hits * seconds_per_hit(map, trial.hits) / double(thread_count());
+  out.bounces_s = sweeps * hits * seconds_per_hit(in.map, trial.hits) / double(thread_count());
   return {};
 }
 

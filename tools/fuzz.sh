@@ -2,12 +2,13 @@
 # Runs luxel_fuzz (tests/fuzz) on each target for some seconds, from the corpus and what earlier runs
 # have found, and prints a row per target: inputs, coverage, findings. Ends with 1 when there is a finding.
 #
-#   tools/fuzz.sh SECONDS [TARGET]
+#   tools/fuzz.sh SECONDS [TARGET|all [INPUTS]]     stops earlier after so many inputs
 set -uo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:?seconds per target}
 program=build/fuzz/bin/luxel_fuzz
-targets=${2:-$("$program" 2>&1 | sed -n 's/^  //p')}
+targets=${2:-all}
+[[ $targets == all ]] && targets=$("$program" 2>&1 | sed -n 's/^  //p')
 status=0
 echo "target,inputs,edges covered,seconds,findings"
 for target in $targets; do
@@ -16,6 +17,7 @@ for target in $targets; do
   arguments=(--target="$target" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=2048 -max_len=65536
              -print_final_stats=1 -artifact_prefix="$findings/")
   dictionary=tests/fuzz/dictionaries/$target.dict
+  [[ -n ${3:-} ]] && arguments+=(-runs="$3")
   [[ -f $dictionary ]] && arguments+=(-dict="$dictionary")
   # Leaks are looked for at the end: after each input it would take longer than the input.
   ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0 \

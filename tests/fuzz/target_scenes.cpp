@@ -6,7 +6,7 @@
 
 #include "luxel/base/process_memory.h"
 #include "luxel/import/import.h"
-#include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/validate/prepared.h"
 #include "tests/fuzz/support.h"
 
 namespace luxel::fuzz {
@@ -72,13 +72,14 @@ void run_obj(std::span<const std::byte> input) {
 void run_bake(std::span<const std::byte> input) {
   Result<import::Imported> imported = import::import_bytes(copy_of(input), "a.gltf", reading());
   if (!is_read(imported)) return;
-  pipeline::BakeSettings settings;
-  settings.scene = "a.gltf", settings.resolution = 8, settings.samples = 4;
-  settings.direct_samples = 2, settings.threads = 1, settings.bounces = 3;
   Progress progress;
-  const auto bake = pipeline::bake_scene(std::move(imported->scene), settings, progress);
-  if (!is_read(bake)) return;
-  for (const Rgb e : bake->light.irradiance)
+  const auto prepared = validate::prepare(std::move(imported->scene), 8, progress);
+  if (!is_read(prepared)) return;
+  pipeline::BakeSettings settings;
+  settings.samples = 4, settings.direct_samples = 2, settings.threads = 1, settings.bounces = 3;
+  const auto solved = validate::solve(**prepared, "gather", settings, progress);
+  if (!is_read(solved)) return;
+  for (const Rgb e : solved->light.irradiance)
     LUXEL_CHECK(std::isfinite(e.x) && std::isfinite(e.y) && std::isfinite(e.z));
 }
 

@@ -17,7 +17,7 @@ void run_fbx(std::span<const std::byte> input);
 void run_stl(std::span<const std::byte> input);
 /// An .obj; what follows the line "#mtl" is its material library.
 void run_obj(std::span<const std::byte> input);
-/// A .gltf, baked at 8 x 8 texels with few rays.
+/// A .gltf, its light gathered at 8 x 8 texels with few rays.
 void run_bake(std::span<const std::byte> input);
 
 }  // namespace luxel::fuzz

@@ -10,7 +10,8 @@ program=build/fuzz/bin/luxel_fuzz
 targets=${2:-all}
 [[ $targets == all ]] && targets=$("$program" 2>&1 | sed -n 's/^  //p')
 status=0
-echo "target,inputs,edges covered,seconds,findings"
+version=$(sed -n 's/^project(luxel VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+echo "version,target,inputs,edges covered,time [s],findings"
 for target in $targets; do
   grown=build/fuzz/grown/$target findings=build/fuzz/findings/$target log=build/fuzz/$target.log
   mkdir -p "$grown" "$findings"
@@ -19,11 +20,12 @@ for target in $targets; do
   dictionary=tests/fuzz/dictionaries/$target.dict
   [[ -n ${3:-} ]] && arguments+=(-runs="$3")
   [[ -f $dictionary ]] && arguments+=(-dict="$dictionary")
-  # Leaks are looked for at the end: after each input it would take longer than the input.
+  # Memory that a library leaks when it throws is freed by the end of the process, and no finding.
   ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0 \
     "$program" "${arguments[@]}" "$grown" "tests/fuzz/corpus/$target" > "$log" 2>&1 || status=1
   inputs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   covered=$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "$log" | tail -1)
-  echo "$target,${inputs:-0},${covered:-0},$seconds,$(find "$findings" -type f | wc -l)"
+  took=$(sed -n 's/^Done [0-9]* runs in \([0-9]*\) second.*/\1/p' "$log")
+  echo "$version,$target,${inputs:-0},${covered:-0},${took:-0},$(find "$findings" -type f | wc -l)"
 done
 exit $status

@@ -1,6 +1,7 @@
 // OpenEXR in memory. OpenEXR reports by exceptions; they end in this file.
 #include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
@@ -110,6 +111,13 @@ Status check_finite(const Image& image, std::string_view name) {
   return {};
 }
 
+/// How many bytes of pixels a byte of the file can stand for. Deflate reaches 1032, run lengths 64
+/// and PIZ's Huffman codes less; DWA keeps blocks of one value in next to nothing.
+uint64_t largest_ratio(Imf::Compression compression) {
+  const bool dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
+  return dwa ? 1 << 14 : 1100;
+}
+
 Result<Image> read_exr(std::span<const std::byte> bytes, std::string_view name) {
   MemoryInput stream(bytes);
   Imf::InputFile file(stream);
@@ -120,6 +128,13 @@ Result<Image> read_exr(std::span<const std::byte> bytes, std::string_view name) 
     return fail(ErrorCode::bad_input, "{}: the EXR file claims {} x {} pixels; the most is {}",
                 name, width, height, kMaxPixels);
   LUXEL_TRY(const int channels, channels_of(file.header().channels(), name));
+  // Memory for all pixels is taken before the first is read. A channel has two bytes or four.
+  if (uint64_t(width * height) * uint64_t(channels) * 2 /
+          largest_ratio(file.header().compression()) >
+      bytes.size())
+    return fail(ErrorCode::bad_input,
+                "{}: the EXR file claims {} x {} pixels, more than its {} bytes can hold", name,
+                width, height, bytes.size());
   if (!file.isComplete())
     return fail(ErrorCode::bad_input, "{}: the EXR file ends too early; fetch or save it again",
                 name);

@@ -81,6 +81,20 @@ TEST(Exr, CorruptBytesNeverCrash) {
   }
 }
 
+// Memory for 8 million pixels would be 134 MB.
+TEST(Exr, MorePixelsThanTheBytesCanHoldAreRefusedBeforeMemoryIsTaken) {
+  std::vector<std::byte> bytes = *encode_exr(Image(4, 4, 4));
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  constexpr std::string_view kWindow("dataWindow\0box2i\0", 17);
+  const size_t at = text.find(kWindow) + kWindow.size() + 4;  // its size, then x and y of both ends
+  const int32_t right = (1 << 21) - 1;
+  std::memcpy(bytes.data() + at + 8, &right, sizeof right);
+  const auto image = decode_exr(bytes, "wide.exr");
+  ASSERT_FALSE(image);
+  EXPECT_THAT(image.error().message,
+              testing::HasSubstr("claims 2097152 x 4 pixels, more than its"));
+}
+
 TEST(Exr, MissingChannelIsNamed) {
   const auto bytes = encode_exr(Image(4, 4, 2));
   ASSERT_TRUE(bytes);

@@ -70,8 +70,8 @@ Result<std::vector<std::byte>> encoded_image(const GltfReader& reader, size_t in
 Result<uint32_t> GltfImages::load(int image_index, const std::string& user) {
   const size_t index = size_t(image_index);
   const Json& image = reader_.document["images"][index];
-  const auto [known, is_new] = known_.try_emplace(place_of(image, index), scene::kNone);
-  if (!is_new) return known->second;
+  const std::string place = place_of(image, index);
+  if (const auto known = known_.find(place); known != known_.end()) return known->second;
   const std::string uri = image.value("uri", ""), name = reader_.model.images[index].name;
   const std::string file = uri.empty() || is_data(uri) ? label("image", index, name) : uri;
   const std::string where = reader_.source.name + ": " + file;
@@ -83,9 +83,9 @@ Result<uint32_t> GltfImages::load(int image_index, const std::string& user) {
   LUXEL_TRY(scene::Texture texture,
             decode_texture(std::move(encoded), where, user, reader_.source.memory));
   texture.name = name.empty() ? file : name;
-  known->second = uint32_t(reader_.out.scene.textures.size());
   reader_.out.scene.textures.push_back(std::move(texture));
-  return known->second;
+  // Only now: one that cannot be read is an error for everybody who asks for it.
+  return known_[place] = uint32_t(reader_.out.scene.textures.size() - 1);
 }
 
 }  // namespace luxel::import

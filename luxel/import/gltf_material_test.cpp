@@ -298,6 +298,18 @@ TEST(GltfMaterial, AMissingTextureOfAMaskIsSaid) {
               HasSubstr("the texture of material 0 (brick) is leaves.png, which is missing"));
 }
 
+// As a normal map it can be left out; the same picture as a colour cannot.
+TEST(GltfMaterial, AMissingTextureIsSaidToEverybodyWhoNeedsIt) {
+  Gltf gltf = square_with_texture({{"source", 0}}, {});
+  gltf.json["images"] = {{{"uri", "leaves.png"}}};
+  const nlohmann::json needs_it = gltf.json["materials"][0];
+  gltf.json["materials"] = {{{"name", "first"}, {"normalTexture", {{"index", 0}}}}, needs_it};
+  const auto imported = import_glb(gltf);
+  ASSERT_FALSE(imported);
+  EXPECT_THAT(imported.error().message,
+              HasSubstr("the texture of material 1 (brick) is leaves.png, which is missing"));
+}
+
 nlohmann::json glossy(nlohmann::json values) {
   return {{"name", "gold"},
           {"extensions", {{"KHR_materials_pbrSpecularGlossiness", std::move(values)}}}};

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/scratch_folder.h"
 #include "tests/support.h"
 
 namespace luxel::testing_support {
@@ -26,32 +27,17 @@ inline std::string slurp(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// A folder of this test's own, empty, removed with the object.
-struct ScratchFolder {
-  std::filesystem::path path;
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "luxel-test-XXXXXX").string();
-    path = ::mkdtemp(name.data());
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path / name, std::ios::binary) << text;
-    return path / name;
-  }
-};
+/// A command through the shell, and what it prints. A signal that ends it is 128 and its number.
+inline CommandResult shell(const std::string& command) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch.path / "out").string(), err = (scratch.path / "err").string();
+  const int status = std::system((command + " >" + out + " 2>" + err).c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out), slurp(err)};
+}
 
 /// `luxel ARGUMENTS` through the shell; `before` stands in front of it (timeout, ulimit).
 inline CommandResult luxel(const std::string& arguments, const std::string& before = "") {
-  const ScratchFolder scratch;
-  const std::string out = (scratch.path / "out").string(), err = (scratch.path / "err").string();
-  const int status =
-      std::system((before + " " LUXEL_BINARY " " + arguments + " >" + out + " 2>" + err).c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out), slurp(err)};
+  return shell(before + " " LUXEL_BINARY " " + arguments);
 }
 
 inline std::set<std::string> files_in(const std::filesystem::path& folder) {

@@ -17,7 +17,7 @@ inline scene::Scene box_with_lamps() {
   return box;
 }
 
-/// The same in another unit of length. Lamps need the square of it to be as bright.
+/// A scene in another unit of length. Lamps need the square of it to be as bright.
 inline scene::Scene scaled(scene::Scene scene, float factor) {
   for (scene::Mesh& mesh : scene.meshes)
     for (Vec3& p : mesh.positions) p *= factor;

@@ -33,27 +33,17 @@ std::string command_of_page(const std::filesystem::path& folder) {
   return command;
 }
 
-struct Ran {
-  int code = -1;
-  std::string out, err;
-};
-Ran run(const std::string& command, const ScratchFolder& s) {
-  const std::string out = (s.path / "out").string(), err = (s.path / "err").string();
-  const int status = std::system((command + " >" + out + " 2>" + err).c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out), slurp(err)};
-}
-
 TEST(Untrusted, TheSandboxOfThePageWorks) {
   const ScratchFolder s;
-  if (run("bwrap --unshare-all --ro-bind / / true", s).code != 0)
-    GTEST_SKIP() << "bwrap is not here, or may make no namespaces: " << slurp(s.path / "err");
+  if (const CommandResult none = shell("bwrap --unshare-all --ro-bind / / true"); none.code != 0)
+    GTEST_SKIP() << "bwrap is not here, or may make no namespaces: " << none.err;
   for (const char* folder : {"uploads", "results"})
     std::filesystem::create_directory(s.path / folder);
   std::filesystem::copy(std::filesystem::path(LUXEL_SOURCE_DIR) / "scenes/cornell-box.glb",
                         s.path / "uploads/scene.glb");
   const std::string small = " --resolution 16 --samples 4 --direct-samples 2";
   const std::string command = command_of_page(s.path) + small;
-  const Ran good = run(command, s);
+  const CommandResult good = shell(command);
   ASSERT_EQ(good.code, 0) << good.err;
   EXPECT_EQ(nlohmann::json::parse(good.out)["settings"]["resolution"], 16);
   EXPECT_TRUE(std::filesystem::exists(s.path / "results/bake/lightmap.exr"));
@@ -66,13 +56,13 @@ TEST(Untrusted, TheSandboxOfThePageWorks) {
   s.write("uploads/scene.gltf", gltf);
   std::string other = command;
   other.replace(other.find("scene.glb"), 9, "scene.gltf");
-  const Ran bad = run(other + " --trust-paths", s);
+  const CommandResult bad = shell(other + " --trust-paths");
   EXPECT_EQ(bad.code, 1);
   EXPECT_THAT(bad.err, HasSubstr("secret.bin, which is missing"));
   // The scene's folder is there to read only.
   std::string into_uploads = command;
   into_uploads.replace(into_uploads.find("/out/bake"), 9, "/in/bake");
-  EXPECT_EQ(run(into_uploads, s).code, 1);
+  EXPECT_EQ(shell(into_uploads).code, 1);
 }
 
 }  // namespace

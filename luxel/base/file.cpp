@@ -13,6 +13,8 @@
 #include <string>
 #include <utility>
 
+#include "luxel/base/transfer.h"
+
 namespace luxel {
 inline namespace base {
 namespace {
@@ -148,13 +150,8 @@ Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
     return fail(ErrorCode::io, "{} is a pipe or a device; only files on a disk can be read",
                 path.string());
   std::vector<std::byte> bytes(size_t(about.st_size));
-  for (size_t done = 0; done < bytes.size();) {
-    const ssize_t n = ::read(file.number, bytes.data() + done, bytes.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return error(errno);
-    if (n == 0) return fail(ErrorCode::io, "cannot read {}: the read stopped early", path.string());
-    done += size_t(n);
-  }
+  if (const int number = transfer_all(::pread, file.number, bytes.data(), bytes.size(), 0))
+    return error(number);
   return bytes;
 }
 

@@ -2,9 +2,9 @@
 // emit NaN or infinity (LUXEL_CHECK on the input).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -20,13 +20,14 @@ struct Image8 {
   std::vector<uint8_t> data;
 };
 
+/// Asked for a picture's width and height before memory for its pixels is taken. Its error is the
+/// decoder's.
+using AllowSize = std::function<Status(uint32_t width, uint32_t height)>;
+
 /// PNG, JPEG (what glTF allows) or WebP (its extension EXT_texture_webp) to RGBA. `name` is the
 /// file or texture named in errors.
-Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name);
-/// Width and height of what decode_ldr() would make of these bytes, by their header. Errors: no
-/// picture, a damaged one, more than 16384 pixels a side.
-Result<std::array<uint32_t, 2>> size_of_ldr(std::span<const std::byte> bytes,
-                                            std::string_view name);
+Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name,
+                          const AllowSize& allow = {});
 /// Display values in [0, 1], four channels, of a file as for decode_ldr, with all 16 bits that a
 /// PNG may have.
 Result<Image> decode_display(std::span<const std::byte> bytes, std::string_view name);

@@ -148,16 +148,14 @@ Status check_picture_size(uint32_t width, uint32_t height, std::string_view name
   return {};
 }
 
-Result<std::array<uint32_t, 2>> size_of_ldr(std::span<const std::byte> bytes,
-                                            std::string_view name) {
-  if (is_webp(bytes)) return size_of_webp(bytes, name);
+Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name,
+                          const AllowSize& allow) {
+  if (is_webp(bytes)) return decode_webp(bytes, name, allow);
   LUXEL_TRY(const Bytes data, checked(bytes, name));
-  return stated_size(data, starts_with(data, kPngMagic));
-}
-
-Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view name) {
-  if (is_webp(bytes)) return decode_webp(bytes, name);
-  LUXEL_TRY(const Bytes data, checked(bytes, name));
+  if (allow) {
+    const auto [width, height] = stated_size(data, starts_with(data, kPngMagic));
+    LUXEL_TRY_STATUS(allow(width, height));
+  }
   Image8 image{0, 0, 4, {}};
   const auto pixels = load_rgba(stbi_load_from_memory, data, image.width, image.height);
   if (pixels == nullptr)
@@ -170,7 +168,7 @@ Result<Image8> decode_ldr(std::span<const std::byte> bytes, std::string_view nam
 
 Result<Image> decode_display(std::span<const std::byte> bytes, std::string_view name) {
   if (is_webp(bytes)) {
-    LUXEL_TRY(const Image8 webp, decode_webp(bytes, name));
+    LUXEL_TRY(const Image8 webp, decode_webp(bytes, name, {}));
     Image image(webp.width, webp.height, 4);
     for (size_t i = 0; i < image.data.size(); ++i) image.data[i] = float(webp.data[i]) / 255.0f;
     return image;

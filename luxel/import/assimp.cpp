@@ -150,9 +150,6 @@ void join_groups(const ObjGroups& groups, std::vector<DrawnNode>& drawn) {
   drawn = std::move(joined);
 }
 
-/// What an .obj names in the place of its own material libraries.
-constexpr const char* kMaterialFile = "luxel-materials.mtl";
-
 /// Nodes that draw the same parts share one mesh.
 void add_instances(const aiScene& in, const std::vector<DrawnNode>& drawn, bool srgb_colors,
                    scene::Scene& out) {
@@ -186,6 +183,9 @@ const aiScene* read_file_with(Assimp::Importer& importer, const SourceFile& sour
   make_names_unique(const_cast<aiScene&>(*importer.GetScene()), warnings);
   return importer.ApplyPostProcessing(kSteps);
 }
+
+/// What an .obj names in the place of its own material libraries.
+constexpr const char* kMaterialFile = "luxel-materials.mtl";
 
 /// An .obj gets the materials of its libraries as one beside it, and no other file.
 FilesForAssimp* files_for_assimp(const SourceFile& source, const ObjGroups& groups,

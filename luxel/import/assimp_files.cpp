@@ -39,9 +39,8 @@ Assimp::IOStream* FilesForAssimp::Open(const char* file, const char* mode) {
     return stream_over(std::as_bytes(std::span(text->second)));
   if (source_.path == file) return stream_over(source_.bytes);
   if (!others_) return nullptr;
-  const auto bytes = read_named_file(source_.files, stated(file), source_.name);
-  if (!bytes || !source_.memory.take(bytes->size(), file)) return nullptr;
-  return stream_with(*bytes);
+  const auto bytes = read_named_file(source_.files, stated(file), source_.name, source_.memory);
+  return bytes ? stream_with(*bytes) : nullptr;
 }
 
 void FilesForAssimp::Close(Assimp::IOStream* stream) { delete stream; }

@@ -44,7 +44,8 @@ Result<scene::Texture> load_texture(const Textures& textures, const std::string&
   } else {
     LUXEL_TRY(encoded,
               read_named_file(textures.source.files, path,
-                              fmt::format("{}: the texture of {}", textures.source.name, user)));
+                              fmt::format("{}: the texture of {}", textures.source.name, user),
+                              textures.source.memory));
   }
   LUXEL_TRY(scene::Texture texture,
             decode_texture(std::move(encoded), name, user, textures.source.memory));

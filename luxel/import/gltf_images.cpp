@@ -62,7 +62,8 @@ Result<std::vector<std::byte>> encoded_image(const GltfReader& reader, size_t in
     return bytes_of(buffer.data() + view.byteOffset, view.byteLength);
   }
   const std::string uri = image.value("uri", "");
-  if (!is_data(uri)) return read_named_file(reader.source.files, decoded_uri(uri), what);
+  if (!is_data(uri))
+    return read_named_file(reader.source.files, decoded_uri(uri), what, reader.source.memory);
   const std::vector<unsigned char>& held = reader.model.images[index].image;
   return bytes_of(held.data(), held.size());
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <span>
 
-#include "luxel/base/file.h"
 #include "luxel/import/gltf_buffers.h"
 #include "luxel/import/gltf_check_steps.h"
 #include "luxel/import/gltf_checks.h"
@@ -28,15 +27,8 @@ struct BufferFiles {
 bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::string& file,
                  void* user) {
   BufferFiles& files = *static_cast<BufferFiles*>(user);
-  const auto read = [&]() -> Result<std::vector<std::byte>> {
-    LUXEL_TRY(const std::filesystem::path path,
-              find_named_file(files.source.files, file, files.source.name + ": a buffer"));
-    std::error_code unknown;  // read_file() says so
-    const uintmax_t size = std::filesystem::file_size(path, unknown);
-    if (!unknown) LUXEL_TRY_STATUS(files.source.memory.take(size, path.string()));
-    return read_file(path);
-  };
-  const Result<std::vector<std::byte>> bytes = read();
+  const SourceFile& source = files.source;
+  const auto bytes = read_named_file(source.files, file, source.name + ": a buffer", source.memory);
   if (!bytes) {
     files.error = bytes.error();
     return false;

@@ -5,7 +5,6 @@
 #include <exception>
 #include <new>
 
-#include "luxel/base/file.h"
 #include "luxel/import/readers.h"
 #include "luxel/import/text_lines.h"
 #include "luxel/scene/sides.h"
@@ -14,12 +13,6 @@
 
 namespace luxel::import {
 namespace {
-
-std::string lower_case(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-  return text;
-}
 
 Result<Imported> read_scene(const SourceFile& source) {
   if (source.extension == ".gltf" || source.extension == ".glb") return read_gltf(source);
@@ -72,27 +65,25 @@ Result<Imported> read_checked(const SourceFile& source, const ImportParams& para
 
 }  // namespace
 
-Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params) {
-  ReadingMemory memory(params.max_memory_bytes);
-  std::error_code missing;  // read_file() says so
-  const uintmax_t size = std::filesystem::file_size(path, missing);
-  if (!missing) LUXEL_TRY_STATUS(memory.take(size, path.string()));
-  SourceFile source{path,
-                    path.string(),
-                    lower_case(path.extension().string()),
-                    {path.parent_path(), params.search_paths, params.trust_paths},
-                    memory,
-                    {}};
-  LUXEL_TRY(source.bytes, read_file(path));
-  return read_checked(source, params);
+Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params,
+                              uint64_t max_memory_bytes) {
+  ReadingMemory memory(max_memory_bytes);
+  LUXEL_TRY(std::vector<std::byte> bytes, read_counted(path, memory));
+  return read_checked({path,
+                       path.string(),
+                       lower_case(path.extension().string()),
+                       {path.parent_path(), params.search_paths, params.trust_paths},
+                       memory,
+                       std::move(bytes)},
+                      params);
 }
 
 Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& name,
-                              const ImportParams& params) {
-  ReadingMemory memory(params.max_memory_bytes);
+                              uint64_t max_memory_bytes) {
+  ReadingMemory memory(max_memory_bytes);
   LUXEL_TRY_STATUS(memory.take(bytes.size(), name));
   const std::string extension = lower_case(std::filesystem::path(name).extension().string());
-  return read_checked({name, name, extension, {}, memory, std::move(bytes)}, params);
+  return read_checked({name, name, extension, {}, memory, std::move(bytes)}, {});
 }
 
 Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name) {

@@ -30,20 +30,20 @@ struct ImportParams {
   /// Folders besides the scene's own in which files may lie that the scene names (scene_files.h).
   std::vector<std::filesystem::path> search_paths;
   bool trust_paths = false;  ///< files that the scene names may lie anywhere
-  /// Memory that the process may have while a scene is read [bytes]; 0: what the machine has free.
-  uint64_t max_memory_bytes = 0;
 };
 inline constexpr float kUsualCreaseDeg = 30;
 
 /// Reads .gltf and .glb with tinygltf, everything else that Assimp knows (.obj, .x, .fbx, .dae,
 /// .ply, ...) through Assimp. Errors say file, field, value and what to do. out_of_memory: what the
-/// file holds needs more than the params allow; it is said before it is used.
-Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params = {});
+/// file holds needs more than `max_memory_bytes`, which the process may have while it reads (0:
+/// what the machine has free); it is said before it is used.
+Result<Imported> import_scene(const std::filesystem::path& path, const ImportParams& params = {},
+                              uint64_t max_memory_bytes = 0);
 
 /// Imports a file that lies in memory and names no other. `name` is for messages; its extension
 /// says what the file is.
 Result<Imported> import_bytes(std::vector<std::byte> bytes, const std::string& name,
-                              const ImportParams& params = {});
+                              uint64_t max_memory_bytes = 0);
 
 /// Imports a binary glTF file that lies in memory, self-contained; `name` is for messages.
 Result<Imported> import_glb(std::vector<std::byte> bytes, const std::string& name);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <optional>
 
 #include "luxel/import/text_lines.h"
@@ -14,22 +12,8 @@ namespace {
 /// Assimp keeps names of up to 1023 bytes, and drops longer ones.
 constexpr size_t kLongestName = 1023;
 
-std::string lower_case_of(std::string_view word) {
-  std::string out(word);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-  return out;
-}
-
-std::optional<float> finite_number(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  float value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (end != word.data() + word.size() || word.empty()) return std::nullopt;
-  if (error == std::errc::result_out_of_range)  // too small is a zero, too large is none
-    return word.find("e-") != word.npos || word.find("E-") != word.npos ? std::optional(0.0f)
-                                                                        : std::nullopt;
-  return error == std::errc() && std::isfinite(value) ? std::optional(value) : std::nullopt;
+bool is_name(std::string_view name) {
+  return !name.empty() && name.size() <= kLongestName && name.find('\0') == name.npos;
 }
 
 /// "Kd 0.5 0.6 0.7"; one number stands for three.
@@ -81,13 +65,13 @@ std::string picture_line(const char* keyword, std::string_view rest) {
     }
   }
   const std::string_view name = trimmed(rest);
-  if (name.empty() || name.size() > kLongestName || name.find('\0') != name.npos) return {};
+  if (!is_name(name)) return {};
   return fmt::format("{}{} {}\n", keyword, clamp ? " -clamp on" : "", name);
 }
 
 /// A line as Assimp gets it; empty when it is wrong, none when it says nothing that is used.
 std::optional<std::string> line_for_assimp(std::string_view line) {
-  const std::string word = lower_case_of(next_word(line));
+  const std::string word = lower_case(std::string(next_word(line)));
   if (word == "kd") return color_line("Kd", line);
   if (word == "ks") return color_line("Ks", line);
   if (word == "ke") return color_line("Ke", line);
@@ -101,10 +85,6 @@ std::optional<std::string> line_for_assimp(std::string_view line) {
   return std::nullopt;
 }
 
-bool is_name(std::string_view name) {
-  return !name.empty() && name.size() <= kLongestName && name.find('\0') == name.npos;
-}
-
 }  // namespace
 
 void add_library(std::string_view text, const std::string& name, MtlText& out,
@@ -114,7 +94,7 @@ void add_library(std::string_view text, const std::string& name, MtlText& out,
   for (size_t number = 1; !text.empty(); ++number) {
     std::string_view line = next_line(text);
     std::string_view rest = line;
-    if (lower_case_of(next_word(rest)) == "newmtl") {
+    if (lower_case(std::string(next_word(rest))) == "newmtl") {
       material = is_name(trimmed(rest)) ? std::string(trimmed(rest)) : std::string();
       if (!material.empty()) out.text += fmt::format("newmtl {}\n", material);
     }
@@ -137,9 +117,9 @@ void add_library(std::string_view text, const std::string& name, MtlText& out,
 void add_libraries(std::string_view names, const SourceFile& source, MtlText& out,
                    std::vector<std::string>& warnings) {
   const auto add = [&](std::string_view name) -> Status {
-    LUXEL_TRY(const std::vector<std::byte> bytes,
-              read_named_file(source.files, name, source.name + ": a material file"));
-    LUXEL_TRY_STATUS(source.memory.take(bytes.size(), name));
+    LUXEL_TRY(
+        const std::vector<std::byte> bytes,
+        read_named_file(source.files, name, source.name + ": a material file", source.memory));
     add_library(text_of(bytes), std::string(name), out, warnings);
     return {};
   };

@@ -46,16 +46,9 @@ Status check_numbers(std::string_view rest, const std::string& where, DVec3& fir
   size_t count = 0;
   for (std::string_view word; !(word = next_word(rest)).empty();) {
     if (word.front() == '#') break;
-    if (word.front() == '+') word.remove_prefix(1);
-    float value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool too_small =
-        error == std::errc::result_out_of_range &&
-        (word.find("e-") != word.npos || word.find("E-") != word.npos);  // underflow is a zero
-    if ((error != std::errc() && !too_small) || end != word.data() + word.size() ||
-        !std::isfinite(value))
-      return fail(ErrorCode::bad_input, "{}: '{}' is not a finite number", where, word);
-    if (count < 3) *coordinate[count++] = double(value);
+    const std::optional<float> value = finite_number(word);
+    if (!value) return fail(ErrorCode::bad_input, "{}: '{}' is not a finite number", where, word);
+    if (count < 3) *coordinate[count++] = double(*value);
   }
   return {};
 }

@@ -38,7 +38,7 @@ Status check_ply(const SourceFile& source);
 Status check_x(const SourceFile& source);
 Status check_collada(const SourceFile& source);
 Status check_fbx(const SourceFile& source);
-/// Of a scene in an archive: .zae, .3mf, .zgl, .ifczip.
+/// Checks of a scene in an archive: .zae, .3mf, .zgl, .ifczip.
 Status check_packed(const SourceFile& source);
 
 /// Decodes `encoded` and keeps it. `name` is the picture's file or number, `user` who asked for it.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "luxel/base/file.h"
 #include "luxel/base/process_memory.h"
 
 namespace luxel::import {
@@ -23,6 +24,14 @@ Status ReadingMemory::take(uint64_t bytes, std::string_view what) {
                                 : "raise it, or use smaller pictures or fewer triangles");
   left_bytes_ -= bytes;
   return {};
+}
+
+Result<std::vector<std::byte>> read_counted(const std::filesystem::path& file,
+                                            ReadingMemory& memory) {
+  std::error_code unknown;  // read_file() says so
+  const uintmax_t size = std::filesystem::file_size(file, unknown);
+  if (!unknown) LUXEL_TRY_STATUS(memory.take(size, file.string()));
+  return read_file(file);
 }
 
 }  // namespace luxel::import

@@ -1,8 +1,11 @@
 // How much memory reading a scene may take.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include "luxel/base/result.h"
 
@@ -23,5 +26,9 @@ class ReadingMemory {
  private:
   uint64_t left_bytes_ = 0, max_bytes_ = 0;
 };
+
+/// The bytes of a file, taken off `memory` first. Errors: those of read_file() and of take().
+Result<std::vector<std::byte>> read_counted(const std::filesystem::path& file,
+                                            ReadingMemory& memory);
 
 }  // namespace luxel::import

@@ -42,9 +42,8 @@ Gltf with_pictures(size_t count, const std::string& png) {
 TEST(ReadingMemory, ImagesThatShareTheirBytesAreOneTexture) {
   const std::string glb = with_pictures(200, png_of(2048, 2048, {10, 20, 30, 255})).glb();
   const TemporaryFolder folder;
-  ImportParams params;
-  params.max_memory_bytes = resident_bytes() + 100 * kMiB;
-  const scene::Scene scene = scene_of(import_scene(folder.write("a.glb", glb), params));
+  const scene::Scene scene =
+      scene_of(import_scene(folder.write("a.glb", glb), {}, resident_bytes() + 100 * kMiB));
   ASSERT_EQ(scene.textures.size(), 1u);
   EXPECT_EQ(scene.textures[0].width, 2048);
   EXPECT_EQ(scene.materials[199].base_color_texture.texture, 0u);
@@ -53,10 +52,8 @@ TEST(ReadingMemory, ImagesThatShareTheirBytesAreOneTexture) {
 TEST(ReadingMemory, APictureTooLargeForItIsRefusedBeforeItIsDecoded) {
   const std::string glb = with_pictures(1, png_of(4096, 4096, {10, 20, 30, 255})).glb();
   const TemporaryFolder folder;
-  ImportParams params;
   const uint64_t before = resident_bytes();
-  params.max_memory_bytes = before + 32 * kMiB;
-  const auto imported = import_scene(folder.write("a.glb", glb), params);
+  const auto imported = import_scene(folder.write("a.glb", glb), {}, before + 32 * kMiB);
   ASSERT_FALSE(imported);
   EXPECT_EQ(imported.error().code, ErrorCode::out_of_memory);
   EXPECT_THAT(imported.error().message, HasSubstr("a picture of 4096 x 4096 pixels"));

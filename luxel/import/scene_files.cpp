@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "luxel/base/file.h"
 #include "luxel/base/short_message.h"
 
 namespace luxel::import {
@@ -68,9 +67,9 @@ Result<fs::path> find_named_file(const SceneFiles& files, std::string_view state
 }
 
 Result<std::vector<std::byte>> read_named_file(const SceneFiles& files, std::string_view stated,
-                                               std::string_view what) {
+                                               std::string_view what, ReadingMemory& memory) {
   LUXEL_TRY(const fs::path file, find_named_file(files, stated, what));
-  return read_file(file);
+  return read_counted(file, memory);
 }
 
 }  // namespace luxel::import

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "luxel/base/result.h"
+#include "luxel/import/reading_memory.h"
 
 namespace luxel::import {
 
@@ -28,8 +29,8 @@ struct SceneFiles {
 Result<std::filesystem::path> find_named_file(const SceneFiles& files, std::string_view stated,
                                               std::string_view what);
 
-/// The bytes of find_named_file(). Errors: those of it and of read_file().
+/// The bytes of find_named_file(). Errors: those of it and of read_counted().
 Result<std::vector<std::byte>> read_named_file(const SceneFiles& files, std::string_view stated,
-                                               std::string_view what);
+                                               std::string_view what, ReadingMemory& memory);
 
 }  // namespace luxel::import

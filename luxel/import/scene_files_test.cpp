@@ -27,7 +27,8 @@ struct Places {
   }
   /// What the file holds, or the error's sentence.
   std::string read(const std::string& stated) const {
-    const auto bytes = read_named_file(files, stated, "a.obj: the texture of wall");
+    ReadingMemory memory(0);
+    const auto bytes = read_named_file(files, stated, "a.obj: the texture of wall", memory);
     if (!bytes) return bytes.error().message;
     return {reinterpret_cast<const char*>(bytes->data()), bytes->size()};
   }
@@ -154,7 +155,8 @@ TEST(SceneFiles, HoldForEveryFileThatASceneNames) {
 // Without a folder of its own nothing can be named: what an .lxr file holds.
 TEST(SceneFiles, ASceneInMemoryNamesNone) {
   const SceneFiles none;
-  const auto read = read_named_file(none, "/etc/hostname", "box.lxr: a buffer");
+  ReadingMemory memory(0);
+  const auto read = read_named_file(none, "/etc/hostname", "box.lxr: a buffer", memory);
   ASSERT_FALSE(read);
   EXPECT_THAT(read.error().message, HasSubstr("a scene in memory can name no file"));
 }

@@ -73,12 +73,11 @@ void join_identical_vertices(scene::Mesh& mesh) {
 
 Result<scene::Texture> decode_texture(std::vector<std::byte> encoded, const std::string& name,
                                       const std::string& user, ReadingMemory& memory) {
-  const auto size = image::size_of_ldr(encoded, name);
-  if (size)
-    LUXEL_TRY_STATUS(
-        memory.take(uint64_t(4) * (*size)[0] * (*size)[1],
-                    fmt::format("{}, a picture of {} x {} pixels", name, (*size)[0], (*size)[1])));
-  auto image = image::decode_ldr(encoded, name);
+  const auto allow = [&](uint32_t width, uint32_t height) {
+    return memory.take(uint64_t(4) * width * height,
+                       fmt::format("{}, a picture of {} x {} pixels", name, width, height));
+  };
+  auto image = image::decode_ldr(encoded, name, allow);
   if (!image) return fail(image.error().code, "{} (texture of {})", image.error().message, user);
   scene::Texture texture;
   texture.name = name;

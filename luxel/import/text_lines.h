@@ -2,7 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +21,27 @@ inline std::string_view next_word(std::string_view& line) {
   const std::string_view word = line.substr(start, end - start);
   line.remove_prefix(end);
   return word;
+}
+
+/// The letters A to Z made small, whatever the language of the machine.
+inline std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  return text;
+}
+
+/// The whole word as a number; a + may stand before it. One that is too small for a float is 0, one
+/// that is too large is none.
+inline std::optional<float> finite_number(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  float value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool too_small = error == std::errc::result_out_of_range &&
+                         (word.find("e-") != word.npos || word.find("E-") != word.npos);
+  if ((error != std::errc() && !too_small) || end != word.data() + word.size() ||
+      !std::isfinite(value))
+    return std::nullopt;
+  return value;
 }
 
 inline std::string_view text_of(const std::vector<std::byte>& bytes) {

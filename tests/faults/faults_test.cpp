@@ -22,16 +22,6 @@ std::string bake(const std::filesystem::path& out) {
          " --resolution 8 --samples 4 --direct-samples 2 --threads 1 --formats exr,hdr";
 }
 
-struct Ran {
-  int code = -1;
-  std::string err;
-};
-Ran run(const std::string& environment, const std::string& command, const ScratchFolder& s) {
-  const std::string err = (s.path / "err").string();
-  const int status = std::system((environment + " " + command + " >/dev/null 2>" + err).c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(err)};
-}
-
 /// How often each call comes in a bake without faults, and what it leaves.
 struct Whole {
   std::map<std::string, long> calls;
@@ -41,7 +31,8 @@ struct Whole {
 Whole whole_bake(const ScratchFolder& s, const std::string& more) {
   Whole out;
   const std::string counts = (s.path / "counts").string();
-  const Ran r = run("LUXEL_FAULT_COUNTS=" + counts, bake(s.path / "whole") + more, s);
+  const CommandResult r =
+      shell("LUXEL_FAULT_COUNTS=" + counts + " " + bake(s.path / "whole") + more);
   EXPECT_EQ(r.code, 0) << r.err;
   std::istringstream in(slurp(counts));
   std::string name;
@@ -57,7 +48,7 @@ void expect_an_end(const std::string& fault, const std::string& more, const Whol
   SCOPED_TRACE(fault + more);
   const std::filesystem::path folder = s.path / "out";
   std::filesystem::remove_all(folder);
-  const Ran r = run("LUXEL_FAULT=" + fault, bake(folder) + more, s);
+  const CommandResult r = shell("LUXEL_FAULT=" + fault + " " + bake(folder) + more);
   EXPECT_THAT(r.code, AnyOf(0, 1, 3)) << r.err;
   if (r.code == 0) {
     std::set<std::string> files = files_in(folder);
@@ -83,13 +74,13 @@ TEST(Faults, OfFilesEndWithASentenceOrARightResult) {
   const ScratchFolder s;
   const std::string more = " --checkpoint 0";
   const Whole whole = whole_bake(s, more);
-  for (const char* call : {"write", "fsync", "rename", "open", "read"}) {
+  for (const char* call : {"write", "fsync", "rename", "open", "pread"}) {
     ASSERT_GT(whole.calls.at(call), 0) << call;
     for (long n = 1; n <= whole.calls.at(call); ++n)
       expect_an_end(fmt::format("{}:{}:ENOSPC", call, n), more, whole, s);
   }
   // What is interrupted or cut short goes on.
-  for (const char* call : {"write", "read"})
+  for (const char* call : {"write", "pread"})
     for (long n = 1; n <= whole.calls.at(call); ++n)
       for (const char* how : {"EINTR", "SHORT"}) {
         const std::string fault = fmt::format("{}:{}:{}", call, n, how);

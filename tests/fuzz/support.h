@@ -1,17 +1,15 @@
 // What the fuzzers' targets share.
 #pragma once
 
-#include <unistd.h>
-
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "luxel/base/check.h"
 #include "luxel/base/result.h"
+#include "tests/scratch_folder.h"
 
 namespace luxel::fuzz {
 
@@ -32,29 +30,11 @@ bool is_read(const Result<T>& result) {
   return false;
 }
 
-/// A folder of this process, in memory where the machine has such; removed with this object.
-class Scratch {
- public:
-  Scratch() {
-    const bool in_memory = std::filesystem::is_directory("/dev/shm");
-    std::string name = in_memory ? "/dev/shm/luxel-fuzz-XXXXXX" : "/tmp/luxel-fuzz-XXXXXX";
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-
-  std::filesystem::path write(const std::string& name, std::string_view bytes) const {
-    std::ofstream(path_ / name, std::ios::binary)
-        .write(bytes.data(), std::streamsize(bytes.size()));
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
+/// A folder in memory, where the machine has such: millions of inputs are written into it.
+inline testing_support::ScratchFolder scratch_in_memory() {
+  const std::filesystem::path memory = "/dev/shm";
+  return testing_support::ScratchFolder(
+      std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path());
+}
 
 }  // namespace luxel::fuzz

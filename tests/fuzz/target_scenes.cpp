@@ -14,13 +14,10 @@ namespace {
 
 constexpr uint64_t kReadingBytes = 256 * 1024 * 1024;
 
-import::ImportParams reading(){import::ImportParams params;
-params.max_memory_bytes = resident_bytes() + kReadingBytes;
-return params;
-}  // namespace
+uint64_t most_memory() { return resident_bytes() + kReadingBytes; }
 
 void read(std::span<const std::byte> input, const char* name) {
-  is_read(import::import_bytes(copy_of(input), name, reading()));
+  is_read(import::import_bytes(copy_of(input), name, most_memory()));
 }
 
 /// Lengths of the file and of its chunks, as far as they go.
@@ -47,7 +44,7 @@ std::vector<std::byte> repaired_glb(std::span<const std::byte> input) {
   return out;
 }
 
-}  // namespace luxel::fuzz
+}  // namespace
 
 void run_gltf(std::span<const std::byte> input) { read(input, "a.gltf"); }
 void run_glb(std::span<const std::byte> input) {
@@ -61,16 +58,17 @@ void run_fbx(std::span<const std::byte> input) { read(input, "a.fbx"); }
 void run_stl(std::span<const std::byte> input) { read(input, "a.stl"); }
 
 void run_obj(std::span<const std::byte> input) {
-  static const Scratch scratch;
+  static const auto scratch = scratch_in_memory();
   constexpr std::string_view kDivider = "\n#mtl\n";
   const std::string_view text = text_of(input);
   const size_t at = std::min(text.find(kDivider), text.size());
-  scratch.write("a.mtl", text.substr(std::min(at + kDivider.size(), text.size())));
-  is_read(import::import_scene(scratch.write("a.obj", text.substr(0, at)), reading()));
+  scratch.write("a.mtl", std::string(text.substr(std::min(at + kDivider.size(), text.size()))));
+  is_read(import::import_scene(scratch.write("a.obj", std::string(text.substr(0, at))), {},
+                               most_memory()));
 }
 
 void run_bake(std::span<const std::byte> input) {
-  Result<import::Imported> imported = import::import_bytes(copy_of(input), "a.gltf", reading());
+  Result<import::Imported> imported = import::import_bytes(copy_of(input), "a.gltf", most_memory());
   if (!is_read(imported)) return;
   Progress progress;
   const auto prepared = validate::prepare(std::move(imported->scene), 8, progress);

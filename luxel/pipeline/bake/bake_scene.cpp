@@ -32,9 +32,8 @@ namespace {
 Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>& warnings,
                           Progress& progress) {
   progress.begin("import", 0);
-  import::ImportParams reading = settings.reading;
-  reading.max_memory_bytes = settings.max_memory_bytes;
-  LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene, reading));
+  LUXEL_TRY(import::Imported imported,
+            import::import_scene(settings.scene, settings.reading, settings.max_memory_bytes));
   warnings = std::move(imported.warnings);
   LUXEL_TRY(const std::vector<std::string> light,
             add_outside_light(settings.outside, imported.scene, imported.about_lost_lights));

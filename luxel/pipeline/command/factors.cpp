@@ -230,9 +230,8 @@ Result<FactorReport> view_factors(const FactorSettings& settings, Progress& prog
   LUXEL_TRY_STATUS(check(settings));
   // The surfaces, and those that are asked for.
   progress.begin("read scene", 1);
-  import::ImportParams reading = settings.reading;
-  reading.max_memory_bytes = settings.max_memory_bytes;
-  LUXEL_TRY(import::Imported imported, import::import_scene(settings.scene, reading));
+  LUXEL_TRY(import::Imported imported,
+            import::import_scene(settings.scene, settings.reading, settings.max_memory_bytes));
   FactorReport report;
   report.warnings = std::move(imported.warnings);
   LUXEL_TRY(const viewfactor::Surfaces surfaces,

@@ -207,9 +207,8 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
   LUXEL_TRY_STATUS(check(s));
   const ThreadLimit threads(s.threads);
   progress.begin("import", 0);
-  import::ImportParams reading = s.reading;
-  reading.max_memory_bytes = s.max_memory_bytes;
-  LUXEL_TRY(import::Imported imported, import::import_scene(s.scene, reading));
+  LUXEL_TRY(import::Imported imported,
+            import::import_scene(s.scene, s.reading, s.max_memory_bytes));
   scene::Scene& scene = imported.scene;
   std::vector<std::string> warnings = std::move(imported.warnings);
   // A scene without light is no mistake here: its lights come later.

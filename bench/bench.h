@@ -58,6 +58,9 @@ Result<Table> measure_supersample(const std::filesystem::path& shared, int threa
 /// Seconds to 1 % against the path tracer, adaptive against uniform rays, plans, times left and
 /// time budgets against what came. Half an hour, most of it of paths.
 Result<Table> measure_budget(const std::filesystem::path& shared, int threads);
+/// Those of one scene, by its file's stem. Errors: no scene of that name.
+Result<Table> measure_budget_in(const std::filesystem::path& shared, const std::string& scene,
+                                int threads);
 
 /// What a lightmap for each of 20 lamps costs besides that of all.
 Result<Table> measure_layers(const std::filesystem::path& shared, int threads);

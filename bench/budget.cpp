@@ -216,12 +216,20 @@ Status measure_time_budget(const std::filesystem::path& scene, Table& table) {
 }  // namespace
 
 Result<Table> measure_budget(const std::filesystem::path& shared, int threads) {
+  return measure_budget_in(shared, "", threads);
+}
+
+Result<Table> measure_budget_in(const std::filesystem::path& shared, const std::string& scene,
+                                int threads) {
   const ThreadLimit limit(threads);
   Table table =
       new_table("budget", {"scene, 256 x 256, --uv keep", "samples", "seconds", "RMSE over mean",
                            "claimed", "noise of the paths", "seconds of the paths"});
+  bool is_known = scene.empty();
   const auto for_scene = [&](const char* file, const auto& measure) -> Status {
     const auto path = shared / "scenes" / file;
+    if (!scene.empty() && path.stem() != scene) return {};
+    is_known = true;
     if (std::filesystem::exists(path)) return measure(path, table);
     table.notes.push_back(path.string() + " is not on this machine: left out");
     return {};
@@ -230,6 +238,10 @@ Result<Table> measure_budget(const std::filesystem::path& shared, int threads) {
   LUXEL_TRY_STATUS(for_scene(kPlannedScenes[1], measure_time_budget));
   for (const char* file : kPlannedScenes) LUXEL_TRY_STATUS(for_scene(file, measure_plan));
   for (const char* file : kJudgedScenes) LUXEL_TRY_STATUS(for_scene(file, measure_to_one_percent));
+  if (!is_known)
+    return fail(ErrorCode::bad_setting,
+                "--scene {}: no scene of luxel bench budget has this name; kaykit_city is one",
+                scene);
   table.notes.push_back(fmt::format(
       "Judged by {} paths per texel, whose own noise is a part of what is measured; seconds of the "
       "whole bake without writing files.",

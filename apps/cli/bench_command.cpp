@@ -20,12 +20,13 @@ namespace luxel::cli {
 namespace {
 
 constexpr const char *kValidation = "validation", *kHemicube = "hemicube", *kRelight = "relight",
-                     *kHierarchical = "hierarchical", *kGallery = "gallery", *kStated = "stated";
+                     *kHierarchical = "hierarchical", *kGallery = "gallery", *kStated = "stated",
+                     *kBudget = "budget";
 
 struct BenchOptions {
   Common common;
   std::string name;
-  std::string scene;  ///< gallery: the stem of the only one; relight: its folder's name
+  std::string scene;  ///< gallery, budget: the stem of the only one; relight: its folder's name
   bench::StatedParams stated;
   std::string shared;
   std::string output = "docs";
@@ -158,7 +159,9 @@ int run_stated(const BenchOptions& options) {
 int run_tables(const BenchOptions& options, const std::filesystem::path& shared) {
   for (const bench::Bench& table_of : bench::kBenches) {
     if (options.name != "all" && options.name != table_of.name) continue;
-    const auto table = table_of.run(shared, options.common.threads);
+    const auto table = options.scene.empty() ? table_of.run(shared, options.common.threads)
+                                             : bench::measure_budget_in(shared, options.scene,
+                                                                        options.common.threads);
     if (!table) return report(table.error(), options.common);
     if (options.common.json)
       std::printf("%s\n", table->json.dump(2).c_str());
@@ -169,9 +172,11 @@ int run_tables(const BenchOptions& options, const std::filesystem::path& shared)
 }
 
 int run_bench(const BenchOptions& options) {
-  if (!options.scene.empty() && options.name != kRelight && options.name != kGallery)
-    return report_usage("--scene belongs to `luxel bench gallery` and `luxel bench relight`",
-                        options.common);
+  if (!options.scene.empty() && options.name != kRelight && options.name != kGallery &&
+      options.name != kBudget)
+    return report_usage(
+        "--scene belongs to `luxel bench gallery`, `luxel bench relight` and `luxel bench budget`",
+        options.common);
   const bool of_stated = options.stated.first_seed != 1 || !options.stated.only.empty();
   if (of_stated && options.name != kStated)
     return report_usage("--first-seed and --only belong to `luxel bench stated`", options.common);
@@ -219,7 +224,8 @@ void register_bench(CLI::App& app, Action& action) {
   bench->add_option(
       "--scene", options->scene,
       "gallery: this scene alone, by its file's stem; the rest of the page stays. "
-      "relight: only the comparison with the path tracer in this scene, without files");
+      "relight: only the comparison with the path tracer in this scene, without files. "
+      "budget: only the rows of this scene, by its file's stem");
   bench
       ->add_option("--first-seed", options->stated.first_seed,
                    "stated: the first of the hundred scenes' seeds (default: 1)")

@@ -1,5 +1,8 @@
 #include "luxel/display/direct_glimpse.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "luxel/base/warp.h"
 #include "luxel/scene/surface_points.h"
 #include "luxel/trace/camera_rays.h"
@@ -8,6 +11,8 @@ namespace luxel::display {
 namespace {
 
 constexpr size_t kPointsOnEmitters = 16;
+/// More lights than these are not looked at one by one: a view is chosen in a moment.
+constexpr size_t kMostLights = 256;
 /// Rays from a surface towards the surroundings.
 constexpr int kSkyRays = 8;
 
@@ -38,6 +43,30 @@ std::vector<scene::SurfacePoint> points_on_emitters(const scene::Scene& scene) {
   return {};
 }
 
+/// All lights that shine; of more than kMostLights so many, spread evenly over the sum of what they
+/// bring across the scene: none that brings a greater share is left out.
+std::vector<const scene::PunctualLight*> some_lights(std::span<const scene::PunctualLight> lights,
+                                                     float diagonal_m) {
+  const auto brings = [&](const scene::PunctualLight& light) {
+    const bool is_sun = light.kind == scene::PunctualLight::Kind::directional;
+    const double power = double(max_component(light.intensity));
+    return std::max(0.0, is_sun ? power * double(diagonal_m) * double(diagonal_m) : power);
+  };
+  std::vector<const scene::PunctualLight*> shining;
+  double sum = 0;
+  for (const scene::PunctualLight& light : lights)
+    if (max_component(light.intensity) > 0) shining.push_back(&light), sum += brings(light);
+  if (shining.size() <= kMostLights) return shining;
+  std::vector<const scene::PunctualLight*> out;
+  double before = 0;
+  for (const scene::PunctualLight* light : shining) {
+    const double after = before + brings(*light) * kMostLights / sum;
+    if (std::floor(after) > std::floor(before)) out.push_back(light);
+    before = after;
+  }
+  return out;
+}
+
 }  // namespace
 
 SeenSide side_seen_by(const scene::Scene& scene, const trace::Ray& ray, const trace::Hit& hit) {
@@ -47,19 +76,17 @@ SeenSide side_seen_by(const scene::Scene& scene, const trace::Ray& ray, const tr
 }
 
 Glimpse glimpse_of(const scene::Scene& scene) {
-  using Light = scene::PunctualLight;
   Glimpse out;
-  for (const Light& light : scene.lights) {
-    if (!(max_component(light.intensity) > 0)) continue;
-    const bool is_sun = light.kind == Light::Kind::directional;
-    out.sources.push_back({is_sun ? -light.direction : light.position, is_sun, {}});
+  out.diagonal_m = scene::world_bounds(scene).diagonal();
+  for (const scene::PunctualLight* light : some_lights(scene.lights, out.diagonal_m)) {
+    const bool is_sun = light->kind == scene::PunctualLight::Kind::directional;
+    out.sources.push_back({is_sun ? -light->direction : light->position, is_sun, {}});
   }
   for (const scene::SurfacePoint& p : points_on_emitters(scene)) {
     const bool both = scene::material_at(scene, p).double_sided;
     out.sources.push_back({scene::world_position(scene, p), false,
                            both ? Vec3{} : scene::front_normal(scene, p.instance, p.triangle)});
   }
-  out.diagonal_m = scene::world_bounds(scene).diagonal();
   out.has_surroundings = max_component(scene.background) > 0 || !scene.environment.radiance.empty();
   return out;
 }

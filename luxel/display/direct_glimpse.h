@@ -16,7 +16,7 @@ struct SeenSide {
 /// The side that a ray's hit lies on.
 SeenSide side_seen_by(const scene::Scene& scene, const trace::Ray& ray, const trace::Hit& hit);
 
-/// The lights of a scene as points and directions.
+/// The lights of a scene as points and directions: all, or some hundred that stand for more.
 struct Glimpse {
   struct Source {
     Vec3 at{};  ///< a point, or the direction towards a sun

@@ -265,6 +265,25 @@ TEST(SceneGlb, LightsShineAlongTheirDirection) {
 }
 
 // 100 cos v below, dark above: a quarter over all directions, (1 + cos a) / 2 over a cone of a.
+/// A million lamps of one kind: one entry, and for each a node with three numbers.
+TEST(SceneGlb, EqualLightsShareTheirEntry) {
+  scene::Scene scene = rich_scene();
+  scene.cameras.clear();
+  scene.lights.assign(5, {});
+  for (size_t k = 0; k < scene.lights.size(); ++k) scene.lights[k].position = {float(k), 2, 3};
+  scene.lights.back().intensity = {7, 7, 7};
+  const Document d = parse(*scene_glb(scene));
+  EXPECT_EQ(d.j["extensions"]["KHR_lights_punctual"]["lights"].size(), 2u);
+  size_t lamps = 0;
+  for (const json& node : d.j["nodes"]) {
+    if (!node.contains("extensions")) continue;
+    EXPECT_EQ(node["translation"], json({float(lamps), 2.0f, 3.0f}));
+    EXPECT_EQ(node["extensions"]["KHR_lights_punctual"]["light"], lamps == 4 ? 1 : 0);
+    ++lamps;
+  }
+  EXPECT_EQ(lamps, 5u);
+}
+
 TEST(SceneGlb, LampsWithProfilesGetTheirMean) {
   scene::Scene scene = rich_scene();
   scene::LightProfile plate;

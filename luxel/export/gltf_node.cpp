@@ -82,6 +82,11 @@ json light_json(const scene::PunctualLight& light) {
 
 size_t append_node(Glb& glb, const Mat34& world, json content) {
   if (world == Mat34{}) return append(glb, "nodes", std::move(content));
+  const Vec3 place = column(world, 3);
+  if (world == translation(place)) {
+    content["translation"] = {place.x, place.y, place.z};
+    return append(glb, "nodes", std::move(content));
+  }
   if (!is_trs(linear_part(world))) return append_sheared(glb, world, std::move(content));
   json matrix = json::array();
   for (size_t j = 0; j < 4; ++j) {
@@ -93,8 +98,10 @@ size_t append_node(Glb& glb, const Mat34& world, json content) {
 }
 
 size_t append_light(Glb& glb, const scene::PunctualLight& light) {
+  // Scenes have rows of equal lights, and some have a million: one entry for each row.
   json& list = glb.json["extensions"]["KHR_lights_punctual"]["lights"];
-  list.push_back(light_json(light));
+  if (json entry = light_json(light); list.empty() || list.back() != entry)
+    list.push_back(std::move(entry));
   glb.extensions_used.insert("KHR_lights_punctual");
   json node = {{"extensions", {{"KHR_lights_punctual", {{"light", list.size() - 1}}}}}};
   if (!light.name.empty()) node["name"] = light.name;

@@ -107,6 +107,15 @@ Json for_tinygltf(Json document, const std::vector<bool>& is_placeholder, const 
   return document;
 }
 
+/// A member, which leaves the document; null where there is none.
+Json take(Json& document, const char* key) {
+  const auto found = document.find(key);
+  if (found == document.end()) return {};
+  Json out = std::move(*found);
+  document.erase(found);
+  return out;
+}
+
 }  // namespace
 
 Result<LoadedGltf> load_gltf(const SourceFile& source) {
@@ -117,10 +126,15 @@ Result<LoadedGltf> load_gltf(const SourceFile& source) {
   const std::vector<bool> is_placeholder = placeholder_buffers(document);
   std::vector<std::byte> new_glb;
   std::span<const std::byte> glb = source.bytes;
-  if (const Json adapted = for_tinygltf(document, is_placeholder, source.files);
-      adapted != document) {
-    text = adapted.dump();
-    if (source.extension == ".glb") glb = new_glb = glb_with_json(source.bytes, text);
+  {
+    // A scene may have a million nodes, a kilobyte each here and once more in tinygltf, which is
+    // the only one to read them: none are left when it begins.
+    Json nodes = take(document, "nodes");
+    if (Json adapted = for_tinygltf(document, is_placeholder, source.files); adapted != document) {
+      if (!nodes.is_null()) adapted["nodes"] = std::move(nodes);
+      text = adapted.dump();
+      if (source.extension == ".glb") glb = new_glb = glb_with_json(source.bytes, text);
+    }
   }
   LUXEL_TRY(tinygltf::Model model, load_model(source, text, glb));
   LUXEL_TRY_STATUS(check_buffers(model, document, is_placeholder, source.name));

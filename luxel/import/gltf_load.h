@@ -11,7 +11,7 @@
 namespace luxel::import {
 
 struct LoadedGltf {
-  nlohmann::json document;  ///< as the file says it
+  nlohmann::json document;  ///< as the file says it, without its nodes, which the model has
   tinygltf::Model model;    ///< its accessors point at decoded bytes
 };
 

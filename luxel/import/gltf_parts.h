@@ -15,7 +15,7 @@ namespace luxel::import {
 
 /// What the steps of the reader share. Materials and meshes keep their glTF index in the scene.
 struct GltfReader {
-  const nlohmann::json& document;  ///< as the file says it
+  const nlohmann::json& document;  ///< as the file says it, without its nodes
   const tinygltf::Model& model;
   const SourceFile& source;
   Imported& out;

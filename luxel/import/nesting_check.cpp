@@ -65,6 +65,20 @@ Status check_kids(const SourceFile& source) {
   return {};
 }
 
+/// Items of an .lws file each name a parent, so that a chain of them may be as long as the list.
+/// Assimp follows chains by calling itself, and looks through all items for each. The list is
+/// bounded, not the chains: no scene has so many.
+Status check_parents(const SourceFile& source) {
+  constexpr size_t kMostParents = 4000;
+  const std::string_view text = text_of(source.bytes);
+  size_t parents = 0;
+  for (size_t at = 0; (at = text.find("ParentItem", at)) != text.npos; ++at)
+    if (++parents > kMostParents)
+      return fail(ErrorCode::bad_input, "{}, line {}: more than {} items have a parent",
+                  source.name, line_of(text, at), kMostParents);
+  return {};
+}
+
 }  // namespace
 
 Status check_nesting(const SourceFile& source) {
@@ -76,6 +90,10 @@ Status check_nesting(const SourceFile& source) {
   if (is_one_of({".ase", ".ask", ".bvh", ".ogex"})) return check_brackets(source, "{}", '"');
   if (is_one_of({".ifc", ".step", ".stp"})) return check_brackets(source, "()", '\'');
   if (is_one_of({".ac", ".ac3d", ".acc"})) return check_kids(source);
+  if (is_one_of({".lws", ".mot"})) {
+    LUXEL_TRY_STATUS(check_brackets(source, "{}", '"'));
+    return check_parents(source);
+  }
   return {};
 }
 

@@ -134,10 +134,26 @@ TEST(Nesting, OtherFormatsThatAssimpCallsItselfFor) {
       {"a.ifc",
        "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC2X3'));\nENDSEC;\nDATA;\n"
        "#1=IFCPROJECT('a'," +
-           nested("(", ")", kDeep) + ");\nENDSEC;\n"}};
+           nested("(", ")", kDeep) + ");\nENDSEC;\n"},
+      {"a.lws", "LWSC\n3\n\n" + nested("{ Item\n", "}\n", kDeep)}};
   for (const auto& [name, text] : files)
     EXPECT_THAT(error_of_text(name, text),
                 AllOf(HasSubstr(fmt::format("{}, line ", name)), HasSubstr("more than 1000")));
+}
+
+/// Each item's parent is the one before it.
+std::string lws_chain(int count) {
+  std::string text = "LWSC\n3\n\nAddNullObject first\nParentItem 0\n";
+  for (int i = 1; i < count; ++i)
+    text += fmt::format("AddNullObject item\nParentItem {:x}\n", 0x10000000 + i - 1);
+  return text;
+}
+
+TEST(Nesting, ParentsOfLightWaveItems) {
+  EXPECT_THAT(error_of_text("a.lws", lws_chain(kDeep)),
+              HasSubstr("a.lws, line 8005: more than 4000 items have a parent"));
+  // The longest chain that Assimp gets leaves room on its stack.
+  EXPECT_THAT(error_of_text("a.lws", lws_chain(4000)), HasSubstr("a.lws"));
 }
 
 std::string deflated(const std::string& text) {

@@ -15,7 +15,7 @@ namespace {
 TEST(Supersample, LightIsAveragedOverPlacesInTheOpen) {
   transport::Floor floor = transport::floor_under_a_shell();
   const trace::RayTracer rays = floor.tracer();
-  transport::move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
+  floor.move_samples(rays);
   const transport::Elements elements =
       transport::elements_from_texels(floor.scene, floor.atlas, floor.map);
   const Lights lights = collect_lights(floor.scene);

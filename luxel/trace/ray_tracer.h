@@ -1,7 +1,9 @@
 // What a ray hits. Batches in, hits out.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -31,6 +33,13 @@ struct Hit {
   bool found() const { return instance != scene::kNone; }
   /// Where it meets it; only when found().
   scene::SurfacePoint point() const { return {instance, triangle, at}; }
+};
+
+/// A box that may be turned: all that is no farther from its middle than `half_m` along three axes.
+struct TurnedBox {
+  Vec3 middle;
+  std::array<Vec3, 3> axes{};  ///< of unit length, at right angles
+  Vec3 half_m;                 ///< along each axis
 };
 
 /// What the tracer may expect of 16 rays that follow each other in a batch.
@@ -63,6 +72,12 @@ class RayTracer {
   /// blocked[i] is 1 when anything solid lies on rays[i] within (t_min, t_max).
   void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const;
 
+  /// Whether no triangle reaches into the box, apart from those for which counts(instance,
+  /// triangle) is false. True is certain; false may be said of a box that a triangle only comes
+  /// near to, and is said of every box of a scene with meshes that are stored once. A microsecond:
+  /// worth it where many rays would lie within the box.
+  bool is_empty(const TurnedBox& box, const std::function<bool(uint32_t, uint32_t)>& counts) const;
+
   /// Whether there are surfaces that colour the light they let through.
   bool has_tints() const;
   /// Multiplies by the tints of what each ray that closest_hits has traced has passed on its way to
@@ -79,9 +94,11 @@ class RayTracer {
   std::unique_ptr<Impl> impl_;
 };
 
+/// How far rounding may put a point off its surface [m]: a few float steps of its own magnitude and
+/// of the scene's size.
+float rounding_m(Vec3 position, float scene_diagonal_m);
 /// A ray's start just off a surface: the point moved along `normal` (the side the ray leaves from)
-/// by a few float steps of its own magnitude and of the scene's size, so that rounding cannot put
-/// it behind the surface.
+/// by rounding_m(), so that it does not lie behind the surface.
 Vec3 offset_origin(Vec3 position, Vec3 normal, float scene_diagonal_m);
 
 }  // namespace luxel::trace

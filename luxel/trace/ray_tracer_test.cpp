@@ -335,5 +335,27 @@ TEST(RayTracer, ATriangleTintsOnce) {
   EXPECT_GT(met, 3800u);
 }
 
+/// The quad in the plane z = 0, and boxes above, across and beside it, also turned by 45 degrees.
+TEST(RayTracer, KnowsEmptyBoxes) {
+  const scene::Scene scene = quad_scene(translation({10, 0, 0}));
+  const auto tracer = RayTracer::build(scene);
+  const auto all = [](uint32_t, uint32_t) { return true; };
+  const std::array<Vec3, 3> straight{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const float r = std::sqrt(0.5f);
+  const std::array<Vec3, 3> turned{{{r, r, 0}, {-r, r, 0}, {0, 0, 1}}};
+  EXPECT_TRUE(tracer->is_empty({{10.5f, 0.5f, 0.2f}, straight, {0.4f, 0.4f, 0.19f}}, all));
+  EXPECT_FALSE(tracer->is_empty({{10.5f, 0.5f, 0.2f}, straight, {0.4f, 0.4f, 0.21f}}, all));
+  EXPECT_TRUE(tracer->is_empty({{9.5f, 0.5f, 0}, straight, {0.49f, 0.1f, 0.1f}}, all));
+  EXPECT_FALSE(tracer->is_empty({{9.5f, 0.5f, 0}, straight, {0.51f, 0.1f, 0.1f}}, all));
+  // A box about the corner (10, 0): half of it along the diagonal reaches the quad.
+  EXPECT_TRUE(tracer->is_empty({{9.8f, -0.2f, 0}, turned, {0.27f, 0.01f, 0.1f}}, all));
+  EXPECT_FALSE(tracer->is_empty({{9.8f, -0.2f, 0}, turned, {0.29f, 0.01f, 0.1f}}, all));
+  // Only the triangle that counts.
+  const TurnedBox lower_right{{10.9f, 0.1f, 0}, straight, {0.05f, 0.05f, 0.1f}};
+  EXPECT_FALSE(tracer->is_empty(lower_right, [](uint32_t, uint32_t t) { return t == 0; }));
+  EXPECT_TRUE(tracer->is_empty({{10.9f, 0.1f, 0}, turned, {0.05f, 0.05f, 0.1f}},
+                               [](uint32_t, uint32_t t) { return t == 1; }));
+}
+
 }  // namespace
 }  // namespace luxel::trace

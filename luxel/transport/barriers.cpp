@@ -8,6 +8,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/scene/facet.h"
 #include "luxel/transport/back_faces.h"
+#include "luxel/transport/clear_runs.h"
 
 namespace luxel::transport {
 namespace {
@@ -80,7 +81,16 @@ struct Search {
                            length(q.position - p.position) / o.steps());
   }
 
-  std::vector<uint8_t> open_ways() const;
+  /// Whether nothing is in the way of lines between the texels of a run and their neighbours on
+  /// its triangle, at `height` steps. The texels' samples lie anywhere in them: a step between two
+  /// may be three times that between their centres.
+  bool has_clear_lines(TexelRun run, float height) const {
+    const scene::SurfacePoint& p = map.texels[run.first].sample;
+    const float rounding_m = trace::rounding_m(scene::world_position(scene, p), diagonal_m);
+    return is_clear(scene, atlas, map, tracer, run, {-rounding_m, 3 * height, 0, false});
+  }
+
+  std::vector<uint8_t> open_ways(Progress& progress) const;
   template <class IsOpen>
   void find_forward_ways(uint32_t begin, uint32_t end, float height, std::span<uint8_t> ways,
                          const IsOpen& is_open) const;
@@ -101,14 +111,25 @@ void Search::find_forward_ways(uint32_t begin, uint32_t end, float height, std::
   };
   std::vector<trace::Ray> rays;
   std::vector<Pair> pairs;
+  TexelRun run;
+  bool clear = false;
   for (uint32_t i = begin; i < end; ++i) {
-    const FlatPoint a = place(i);
+    if (i >= run.first + run.count) {
+      run = run_from(map, i, end - i);
+      clear = has_clear_lines(run, height);
+    }
+    std::optional<FlatPoint> a;
     for (uint32_t k = 0; k < kHalf; ++k) {
       const uint32_t j = neighbour(i, kNeighbours[k]);
       if (j == atlas::kNone) continue;
+      if (clear && map.texels[j].triangle_number == map.texels[i].triangle_number) {
+        ways[i] |= uint8_t(1u << k);
+        continue;
+      }
+      if (!a) a = place(i);
       const FlatPoint b = place(j);
-      const float step_m = length(b.position - a.position) / kNeighbours[k].steps();
-      pairs.push_back({i, j, k, step_m}), rays.push_back(line_above(a, b, height * step_m));
+      const float step_m = length(b.position - a->position) / kNeighbours[k].steps();
+      pairs.push_back({i, j, k, step_m}), rays.push_back(line_above(*a, b, height * step_m));
     }
   }
   std::vector<uint8_t> blocked(rays.size());
@@ -120,14 +141,16 @@ void Search::find_forward_ways(uint32_t begin, uint32_t end, float height, std::
 }
 
 /// Per texel a bit for each of kNeighbours: there is one, and no barrier between.
-std::vector<uint8_t> Search::open_ways() const {
+std::vector<uint8_t> Search::open_ways(Progress& progress) const {
   constexpr size_t kBlock = 2048;
   std::vector<uint8_t> ways(map.texels.size());
   parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
     find_forward_ways(
         uint32_t(begin), uint32_t(end), kLow, ways, [&](uint32_t i, uint32_t j, float step_m) {
           return !barrier_between(scene, atlas, tracer, chart_of(i), place(i), place(j), step_m);
         });
+    progress.advance(end - begin);
   });
   for (uint32_t i = 0; i < ways.size(); ++i)
     for (size_t k = 0; k < kHalf; ++k)
@@ -236,14 +259,17 @@ std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atl
 
 std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
                                              const atlas::TexelMap& map,
-                                             const trace::RayTracer& tracer) {
+                                             const trace::RayTracer& tracer, Progress& progress) {
   constexpr size_t kBlock = 256;
+  progress.begin("walls", 2 * map.texels.size());
   std::vector<Openness> openness(map.texels.size());
   const Search search{scene, atlas, map, tracer, scene::world_bounds(scene).diagonal(), openness};
-  const std::vector<uint8_t> ways = search.open_ways();
+  const std::vector<uint8_t> ways = search.open_ways(progress);
   std::vector<std::vector<atlas::PartedPoints>> found((ways.size() + kBlock - 1) / kBlock);
   parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
     found[begin / kBlock] = search.parted(uint32_t(begin), uint32_t(end), ways);
+    progress.advance(end - begin);
   });
   std::vector<atlas::PartedPoints> all;
   for (const auto& block : found) all.insert(all.end(), block.begin(), block.end());
@@ -270,17 +296,20 @@ bool is_open_between(const scene::Scene& scene, const atlas::Atlas& atlas,
 
 void for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
                          const atlas::TexelMap& map, const trace::RayTracer& tracer,
-                         const std::function<void(uint32_t, uint32_t)>& visit) {
+                         const std::function<void(uint32_t, uint32_t)>& visit, Progress& progress) {
   constexpr size_t kBlock = 2048;
-  const Search search{scene, atlas, map, tracer, 0, {}};
+  progress.begin("walls", map.texels.size());
+  const Search search{scene, atlas, map, tracer, scene::world_bounds(scene).diagonal(), {}};
   std::vector<uint8_t> ways(map.texels.size());
   parallel_for(ways.size(), kBlock, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
     search.find_forward_ways(
         uint32_t(begin), uint32_t(end), kFoot, ways, [&](uint32_t i, uint32_t j, float step_m) {
           const uint32_t chart = search.chart_of(i);
           return is_open_between(scene, atlas, tracer, {search.place(i), chart},
                                  {search.place(j), chart}, step_m);
         });
+    progress.advance(end - begin);
   });
   for (uint32_t i = 0; i < ways.size(); ++i)
     for (size_t k = 0; k < kHalf; ++k)

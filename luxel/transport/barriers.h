@@ -10,6 +10,7 @@
 
 #include "luxel/atlas/atlas.h"
 #include "luxel/atlas/cut_charts.h"
+#include "luxel/base/progress.h"
 #include "luxel/trace/ray_tracer.h"
 
 namespace luxel::transport {
@@ -38,10 +39,11 @@ std::optional<Plane> barrier_between(const scene::Scene& scene, const atlas::Atl
 /// and both in the open, that a barrier parts, and around which no way leads from neighbour to
 /// neighbour within three texels; of those two texels apart the ones with a barrier, or no texel,
 /// right beside the first. A look-up mixes both, or one with a hidden texel between them that
-/// has the light of the other. In the order of the texels.
+/// has the light of the other. In the order of the texels; not whole when cancelled. The stage
+/// "walls".
 std::vector<atlas::PartedPoints> find_parted(const scene::Scene& scene, const atlas::Atlas& atlas,
                                              const atlas::TexelMap& map,
-                                             const trace::RayTracer& tracer);
+                                             const trace::RayTracer& tracer, Progress& progress);
 
 /// A place of a chart.
 struct ChartPoint {
@@ -58,9 +60,9 @@ bool is_open_between(const scene::Scene& scene, const atlas::Atlas& atlas,
 
 /// Calls visit(a, b) for all texels of one chart that are neighbours in a row, a column or a
 /// diagonal and open to each other (is_open_between), once for each pair, in the order of the
-/// texels.
+/// texels; not for all when cancelled. The stage "walls".
 void for_open_neighbours(const scene::Scene& scene, const atlas::Atlas& atlas,
                          const atlas::TexelMap& map, const trace::RayTracer& tracer,
-                         const std::function<void(uint32_t, uint32_t)>& visit);
+                         const std::function<void(uint32_t, uint32_t)>& visit, Progress& progress);
 
 }  // namespace luxel::transport

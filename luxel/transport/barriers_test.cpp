@@ -32,6 +32,23 @@ TEST(Barriers, AThinWallPartsEveryRow) {
   }
 }
 
+/// Whoever waits sees how far the search is, and may stop it.
+TEST(Barriers, AreSearchedWithProgress) {
+  Floor floor;
+  floor.add_box({0.99f, 0, 0}, {1.0f, 1, 2});
+  const trace::RayTracer rays = floor.tracer();
+  Progress progress;
+  EXPECT_FALSE(find_parted(floor.scene, floor.atlas, floor.map, rays, progress).empty());
+  const Progress::Snapshot end = progress.snapshot();
+  EXPECT_EQ(end.stage, "walls");
+  EXPECT_EQ(end.total, 2 * floor.map.texels.size());
+  EXPECT_EQ(end.done, end.total);
+  Progress stopped;
+  stopped.request_cancel();
+  EXPECT_TRUE(find_parted(floor.scene, floor.atlas, floor.map, rays, stopped).empty());
+  EXPECT_EQ(stopped.snapshot().done, 0u);
+}
+
 /// A wall as above, which ends in the middle of the floor: light comes around its end within three
 /// texels, and only pairs farther from it are parted.
 TEST(Barriers, EndsPartNothing) {
@@ -91,7 +108,7 @@ TEST(OpenSamples, MoveOutFromUnderABox) {
   floor.add_box({1.02f, 0, -1}, {3, 1, 3});  // texels of column 16 span 1 .. 1.0625
   const trace::RayTracer rays = floor.tracer();
   const std::vector<atlas::Texel> before = floor.map.texels;
-  const MovedSamples opened = move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
+  const MovedSamples opened = floor.move_samples(rays);
   EXPECT_EQ(opened.moved.size(), size_t(Floor::kSide));
   for (size_t i = 0; i < before.size(); ++i) {
     const float x = scene::world_position(floor.scene, floor.map.texels[i].sample).x;
@@ -107,7 +124,7 @@ TEST(OpenSamples, MoveOutOfAThinWall) {
   Floor floor;
   floor.add_box({1.026f, 0, -1}, {1.036f, 1, 3});  // their centre is at 1.03125
   const trace::RayTracer rays = floor.tracer();
-  const MovedSamples opened = move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
+  const MovedSamples opened = floor.move_samples(rays);
   // The texel on the floor's diagonal has its sample elsewhere.
   EXPECT_EQ(opened.moved.size(), size_t(Floor::kSide - 1));
   for (const atlas::Texel& texel : floor.map.texels) {
@@ -122,7 +139,7 @@ size_t samples_moved_into_gap(float from_x, float to_x) {
   floor.add_box({0.1f, 0, -1}, {from_x, 1, 3});
   floor.add_box({to_x, 0, -1}, {1.95f, 1, 3});
   const trace::RayTracer rays = floor.tracer();
-  const MovedSamples opened = move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
+  const MovedSamples opened = floor.move_samples(rays);
   size_t in_gap = 0;
   for (const uint32_t i : opened.moved) {
     const float x = scene::world_position(floor.scene, floor.map.texels[i].sample).x;
@@ -161,13 +178,11 @@ TEST(OpenSamples, AgainAreThoseFromScratch) {
   Floor before = floor_with(there), now = floor_with(here), again = floor_with(here);
   const trace::RayTracer rays_before = before.tracer(), rays = now.tracer();
   const trace::RayTracer rays_again = again.tracer();
-  const MovedSamples kept =
-      move_samples_out_of_solids(before.scene, before.atlas, rays_before, before.map);
-  const MovedSamples full = move_samples_out_of_solids(now.scene, now.atlas, rays, now.map);
+  const MovedSamples kept = before.move_samples(rays_before);
+  const MovedSamples full = now.move_samples(rays);
   EXPECT_NE(kept.moved, full.moved);
   const std::array boxes{there, here};
-  const MovedSamples opened = move_samples_near_changes(again.scene, again.atlas, rays_again, boxes,
-                                                        kept.near_back_faces, again.map);
+  const MovedSamples opened = again.move_samples_near(boxes, kept.near_back_faces, rays_again);
   EXPECT_EQ(opened.moved, full.moved);
   EXPECT_EQ(opened.near_back_faces, full.near_back_faces);
   for (size_t i = 0; i < now.map.texels.size(); ++i) {
@@ -178,9 +193,7 @@ TEST(OpenSamples, AgainAreThoseFromScratch) {
   // Nothing else is looked at: where it is not said that backs are near, they are not found.
   Floor unsaid = floor_with(here);
   const trace::RayTracer rays_unsaid = unsaid.tracer();
-  for (const uint32_t i :
-       move_samples_near_changes(unsaid.scene, unsaid.atlas, rays_unsaid, boxes, {}, unsaid.map)
-           .near_back_faces)
+  for (const uint32_t i : unsaid.move_samples_near(boxes, {}, rays_unsaid).near_back_faces)
     EXPECT_LT(unsaid.map.texels[i].x, 16);
 }
 
@@ -196,7 +209,7 @@ bool in_the_open(const Floor& floor, const trace::RayTracer& rays, Barycentric a
 TEST(OpenSamples, MoveOutFromUnderAShell) {
   Floor floor = floor_under_a_shell();
   const trace::RayTracer rays = floor.tracer();
-  const MovedSamples opened = move_samples_out_of_solids(floor.scene, floor.atlas, rays, floor.map);
+  const MovedSamples opened = floor.move_samples(rays);
   EXPECT_TRUE(opened.near_back_faces.size() < floor.map.texels.size());
   EXPECT_GT(opened.moved.size(), 20u);
   size_t enclosed = 0, edges = 0;

@@ -11,14 +11,16 @@
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/transport/back_faces.h"
 #include "luxel/transport/barriers.h"
+#include "luxel/transport/clear_runs.h"
 #include "luxel/transport/texel_width.h"
 
 namespace luxel::transport {
 namespace {
 
-constexpr int kGrid = 4;        ///< places looked at along a texel's side
-constexpr int kFeelers = 6;     ///< short rays around a sample
-constexpr float kReach = 1.5f;  ///< their length in texels
+constexpr int kGrid = 4;               ///< places looked at along a texel's side
+constexpr int kFeelers = 6;            ///< short rays around a sample
+constexpr float kReach = 1.5f;         ///< their length in texels
+constexpr float kFeelerSlope = 0.34f;  ///< the sine of the angle at which they rise: 20 degrees
 /// Charts of no more texels are looked at texel by texel: they fall between those of a lattice.
 constexpr uint32_t kSmallChart = 32;
 /// Places looked at in the part of a texel that a chart covers, at most.
@@ -103,9 +105,17 @@ struct Probe {
     const auto frame = frame_around(at.normal);
     for (int k = 0; k < kFeelers; ++k) {
       const float turn = 2 * kPi * float(k) / kFeelers;
-      const Vec3 d{0.94f * std::cos(turn), 0.94f * std::sin(turn), 0.34f};
+      const Vec3 d{0.94f * std::cos(turn), 0.94f * std::sin(turn), kFeelerSlope};
       rays.push_back({from, 0, frame.to_world(d), reach});
     }
+  }
+
+  /// Whether the feelers of a run's samples meet nothing.
+  bool has_clear_feelers(const atlas::TexelMap& map, TexelRun run) const {
+    const scene::SurfacePoint& p = map.texels[run.first].sample;
+    const float rounding_m = trace::rounding_m(scene::world_position(scene, p), diagonal_m);
+    return is_clear(scene, atlas, map, tracer, run,
+                    {0.5f * rounding_m, 1.01f * kReach * kFeelerSlope, kReach, true});
   }
 
   /// The place of the texel's grid that is nearest to the middle of those in the open; nothing:
@@ -180,23 +190,41 @@ std::optional<Place> Probe::open_place(const atlas::Texel& texel,
 /// What is known of a texel.
 enum class Found : uint8_t { nothing, back_near, enclosed, moved };
 
+/// The run that begins at texels[k]: none of its texels is left out of `texels`, which ascend.
+TexelRun run_at(const atlas::TexelMap& map, std::span<const uint32_t> texels, size_t k) {
+  TexelRun run = run_from(map, texels[k], uint32_t(texels.size() - k));
+  while (texels[k + run.count - 1] != texels[k] + run.count - 1) --run.count;
+  return run;
+}
+
 /// Looks at some texels' samples, and sets what is found per texel of the map.
 void look_around(const Probe& probe, std::span<const uint32_t> texels, const atlas::TexelMap& map,
-                 std::span<Found> found) {
+                 std::span<Found> found, Progress& progress) {
   constexpr size_t kBlock = 2048;
   parallel_for(texels.size(), kBlock, [&](size_t begin, size_t end) {
+    if (progress.cancelled()) return;
+    const std::span<const uint32_t> block = texels.subspan(begin, end - begin);
+    // Most runs have nothing near them: feelers look at the others.
+    std::vector<uint32_t> looking;
     std::vector<trace::Ray> rays;
-    for (size_t k = begin; k < end; ++k) probe.add_feelers(map.texels[texels[k]], rays);
+    for (size_t k = 0; k < block.size();) {
+      const TexelRun run = run_at(map, block, k);
+      k += run.count;
+      if (probe.has_clear_feelers(map, run)) continue;
+      for (uint32_t i = run.first; i < run.first + run.count; ++i)
+        looking.push_back(i), probe.add_feelers(map.texels[i], rays);
+    }
     std::vector<trace::Hit> hits(rays.size());
     probe.tracer.closest_hits(rays, hits);
-    for (size_t k = begin; k < end; ++k) {
-      const auto first = hits.begin() + long((k - begin) * kFeelers);
+    for (size_t k = 0; k < looking.size(); ++k) {
+      const auto first = hits.begin() + long(k * kFeelers);
       if (std::none_of(first, first + kFeelers,
                        [](const trace::Hit& hit) { return hit.found() && hit.back_face; }))
         continue;
-      const bool open = probe.in_the_open(map.texels[texels[k]].sample);
-      found[texels[k]] = open ? Found::back_near : Found::enclosed;
+      const bool open = probe.in_the_open(map.texels[looking[k]].sample);
+      found[looking[k]] = open ? Found::back_near : Found::enclosed;
     }
+    progress.advance(end - begin);
   });
 }
 
@@ -281,9 +309,11 @@ void move_to(const atlas::Atlas& atlas, const Place& place, atlas::Texel& texel)
 }
 
 /// Opens the samples of the map's texels, of which only some can have backs near them.
-MovedSamples move_some(const Probe& probe, std::span<const uint32_t> texels, atlas::TexelMap& map) {
+MovedSamples move_some(const Probe& probe, std::span<const uint32_t> texels, atlas::TexelMap& map,
+                       Progress& progress) {
   std::vector<Found> found(map.texels.size());
-  look_around(probe, texels, map, found);
+  progress.begin("samples", texels.size());
+  look_around(probe, texels, map, found, progress);
   MovedSamples out;
   for (uint32_t i = 0; i < found.size(); ++i)
     if (found[i] != Found::nothing) out.near_back_faces.push_back(i);
@@ -339,16 +369,18 @@ std::vector<float> reaches_to(const Probe& probe, std::span<const Box3> boxes) {
 }  // namespace
 
 MovedSamples move_samples_out_of_solids(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                        const trace::RayTracer& tracer, atlas::TexelMap& map) {
+                                        const trace::RayTracer& tracer, atlas::TexelMap& map,
+                                        Progress& progress) {
   std::vector<uint32_t> all(map.texels.size());
   std::iota(all.begin(), all.end(), 0);
-  return move_some({scene, atlas, tracer, scene::world_bounds(scene).diagonal()}, all, map);
+  return move_some({scene, atlas, tracer, scene::world_bounds(scene).diagonal()}, all, map,
+                   progress);
 }
 
 MovedSamples move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,
                                        const trace::RayTracer& tracer, std::span<const Box3> boxes,
                                        std::span<const uint32_t> near_back_faces,
-                                       atlas::TexelMap& map) {
+                                       atlas::TexelMap& map, Progress& progress) {
   const Probe probe{scene, atlas, tracer, scene::world_bounds(scene).diagonal()};
   const std::vector<float> reaches = reaches_to(probe, boxes);
   std::vector<uint8_t> look(map.texels.size());
@@ -364,7 +396,7 @@ MovedSamples move_samples_near_changes(const scene::Scene& scene, const atlas::A
   std::vector<uint32_t> texels;
   for (uint32_t i = 0; i < look.size(); ++i)
     if (look[i]) texels.push_back(i);
-  return move_some(probe, texels, map);
+  return move_some(probe, texels, map, progress);
 }
 
 }  // namespace luxel::transport

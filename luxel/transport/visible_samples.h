@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "luxel/atlas/atlas.h"
+#include "luxel/base/progress.h"
 #include "luxel/trace/ray_tracer.h"
 
 namespace luxel::transport {
@@ -23,9 +24,11 @@ struct MovedSamples {
 /// grid of 4 x 4 in their own triangle: where the back of a surface is within a texel and a half,
 /// and along the borders of larger regions of such samples. Where the grid's corners are like the
 /// sample, so is the rest taken to be. Where some places are in the open and some are not, the
-/// sample moves to the one in the middle of those that are; elsewhere it stays.
+/// sample moves to the one in the middle of those that are; elsewhere it stays. Not all are moved
+/// when cancelled. The stage "samples".
 MovedSamples move_samples_out_of_solids(const scene::Scene& scene, const atlas::Atlas& atlas,
-                                        const trace::RayTracer& tracer, atlas::TexelMap& map);
+                                        const trace::RayTracer& tracer, atlas::TexelMap& map,
+                                        Progress& progress);
 
 /// Moves samples where rays meet something else than then within `boxes` alone [m], in a map whose
 /// samples all are where they were before they were moved: of texels away from the boxes only
@@ -34,6 +37,6 @@ MovedSamples move_samples_out_of_solids(const scene::Scene& scene, const atlas::
 MovedSamples move_samples_near_changes(const scene::Scene& scene, const atlas::Atlas& atlas,
                                        const trace::RayTracer& tracer, std::span<const Box3> boxes,
                                        std::span<const uint32_t> near_back_faces,
-                                       atlas::TexelMap& map);
+                                       atlas::TexelMap& map, Progress& progress);
 
 }  // namespace luxel::transport

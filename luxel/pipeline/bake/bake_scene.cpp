@@ -34,6 +34,7 @@ Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>
   progress.begin("import", 0);
   LUXEL_TRY(import::Imported imported,
             import::import_scene(settings.scene, settings.reading, settings.max_memory_bytes));
+  return_free_memory();  // of documents and files: many small ones
   warnings = std::move(imported.warnings);
   LUXEL_TRY(const std::vector<std::string> light,
             add_outside_light(settings.outside, imported.scene, imported.about_lost_lights));
@@ -170,8 +171,8 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
   std::vector<uint32_t> regions;
   if (settings.repair_leaks) {
-    progress.begin("walls", 0);
-    regions = connected_texels(input, bake.light.hidden);
+    regions = connected_texels(input, bake.light.hidden, progress);
+    LUXEL_TRY_STATUS(stopped(progress));
   }
   if (settings.denoise)
     LUXEL_TRY_STATUS(denoise_light(input, settings, regions, bake.light, progress));

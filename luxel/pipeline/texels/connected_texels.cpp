@@ -85,13 +85,15 @@ void join_over(const light::TexelScene& in, std::span<const uint8_t> hidden, con
 
 }  // namespace
 
-std::vector<uint32_t> connected_texels(const light::TexelScene& in,
-                                       std::span<const uint8_t> hidden) {
+std::vector<uint32_t> connected_texels(const light::TexelScene& in, std::span<const uint8_t> hidden,
+                                       Progress& progress) {
   Joined regions(in.map.texels.size());
-  transport::for_open_neighbours(in.scene, in.atlas, in.map, in.tracer,
-                                 [&](uint32_t a, uint32_t b) {
-                                   if (!hidden[a] && !hidden[b]) regions.join(a, b);
-                                 });
+  transport::for_open_neighbours(
+      in.scene, in.atlas, in.map, in.tracer,
+      [&](uint32_t a, uint32_t b) {
+        if (!hidden[a] && !hidden[b]) regions.join(a, b);
+      },
+      progress);
   for (const post::Seam& seam : open_seams(in.scene, in.atlas, in.tracer,
                                            post::find_seams(in.scene, in.atlas, kMaxAngle_rad)))
     join_over(in, hidden, seam, regions);

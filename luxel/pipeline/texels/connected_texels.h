@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "luxel/base/progress.h"
 #include "luxel/light/texel_scene.h"
 
 namespace luxel::pipeline {
@@ -13,7 +14,8 @@ namespace luxel::pipeline {
 /// and over seams, that are open to each other (transport::is_open_between). Those inside of solids
 /// (1 in `hidden`, one per texel) hang together with none: a wall may be so thick that it hides the
 /// texels under it, and the chart goes on. So texels of a closed room have numbers of their own.
-std::vector<uint32_t> connected_texels(const light::TexelScene& in,
-                                       std::span<const uint8_t> hidden);
+/// Without meaning when cancelled. The stage "walls".
+std::vector<uint32_t> connected_texels(const light::TexelScene& in, std::span<const uint8_t> hidden,
+                                       Progress& progress);
 
 }  // namespace luxel::pipeline

@@ -41,8 +41,9 @@ Status cut_at_barriers(const atlas::AtlasParams& params, scene::Scene& scene, Te
   atlas::AtlasParams grouped = params;
   uint32_t cuts = 0;
   for (int k = 0;; ++k) {
-    progress.begin("walls", 0);
-    const auto parted = transport::find_parted(scene, layout.atlas, layout.map, layout.tracer);
+    const auto parted =
+        transport::find_parted(scene, layout.atlas, layout.map, layout.tracer, progress);
+    LUXEL_TRY_STATUS(stopped(progress));
     layout.repair.parted = parted.size(), layout.repair.cuts = cuts;
     if (layout.atlas.kept || k == kMostTimes || parted.size() < atlas::kFewestParted) return {};
     atlas::CutScene cut = atlas::cut_charts(scene, layout.atlas, parted, grouped.group);
@@ -112,10 +113,10 @@ Result<TexelLayout> lay_out_texels(const BakeSettings& settings, scene::Scene& s
   LUXEL_TRY(TexelLayout layout, lay_out_once(params, scene, progress));
   if (settings.repair_leaks) {
     LUXEL_TRY_STATUS(cut_at_barriers(params, scene, layout, progress));
-    progress.begin("samples", 0);
-    take_moved(
-        transport::move_samples_out_of_solids(scene, layout.atlas, layout.tracer, layout.map),
-        layout);
+    take_moved(transport::move_samples_out_of_solids(scene, layout.atlas, layout.tracer, layout.map,
+                                                     progress),
+               layout);
+    LUXEL_TRY_STATUS(stopped(progress));
   }
   layout.repair.overlapping = atlas::overlapping_texels(layout.atlas, layout.map);
   layout.stats = atlas::atlas_stats(scene, layout.atlas, layout.map);
@@ -164,10 +165,10 @@ Result<TexelLayout> lay_out_again(const BakeSettings& settings, KeptLayout kept,
                      std::move(kept.warnings)};
   if (!kept.wrong_in_uv1.empty()) layout.wrong_in_uv1 = kept.wrong_in_uv1.front();
   if (!same_places && settings.repair_leaks) {
-    progress.begin("samples", 0);
     take_moved(transport::move_samples_near_changes(scene, layout.atlas, layout.tracer, boxes,
-                                                    layout.near_back_faces, layout.map),
+                                                    layout.near_back_faces, layout.map, progress),
                layout);
+    LUXEL_TRY_STATUS(stopped(progress));
   }
   return layout;
 }

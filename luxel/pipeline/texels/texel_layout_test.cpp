@@ -59,7 +59,8 @@ TEST(LayOutAgain, OpensTheSamplesThatOpeningAllWould) {
   const auto again = lay_out_again(kept.settings, kept.layout, boxes, now, kept.progress);
   ASSERT_TRUE(again);
   atlas::TexelMap map = atlas::rasterise(now, again->atlas);
-  const auto all = transport::move_samples_out_of_solids(now, again->atlas, again->tracer, map);
+  const auto all =
+      transport::move_samples_out_of_solids(now, again->atlas, again->tracer, map, kept.progress);
   EXPECT_NE(all.moved, kept.layout.repair.moved);
   EXPECT_EQ(again->repair.moved, all.moved);
   EXPECT_EQ(again->near_back_faces, all.near_back_faces);

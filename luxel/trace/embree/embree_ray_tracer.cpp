@@ -344,6 +344,53 @@ void RayTracer::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) 
   }
 }
 
+namespace {
+
+/// What is_empty() hands to Embree's callback.
+struct BoxQuestion {
+  const scene::Scene& scene;
+  const TurnedBox& box;
+  const std::function<bool(uint32_t, uint32_t)>& counts;
+  bool is_empty = true;
+};
+
+/// Whether a triangle lies beyond one of the box's sides.
+bool is_outside(const scene::Triangle3& t, const TurnedBox& box) {
+  const std::array<float, 3> half{box.half_m.x, box.half_m.y, box.half_m.z};
+  for (size_t k = 0; k < 3; ++k) {
+    const float a = dot(t.a - box.middle, box.axes[k]), b = dot(t.b - box.middle, box.axes[k]),
+                c = dot(t.c - box.middle, box.axes[k]);
+    if (std::min({a, b, c}) > half[k] || std::max({a, b, c}) < -half[k]) return true;
+  }
+  return false;
+}
+
+/// Returns whether the radius has changed: nothing more is looked at once something is found.
+bool look_at_triangle(RTCPointQueryFunctionArguments* args) {
+  BoxQuestion& question = *static_cast<BoxQuestion*>(args->userPtr);
+  if (!question.counts(args->geomID, args->primID)) return false;
+  if (is_outside(scene::world_triangle(question.scene, args->geomID, args->primID), question.box))
+    return false;
+  question.is_empty = false;
+  args->query->radius = 0;
+  return true;
+}
+
+}  // namespace
+
+bool RayTracer::is_empty(const TurnedBox& box,
+                         const std::function<bool(uint32_t, uint32_t)>& counts) const {
+  if (impl_->has_shared_meshes) return false;
+  BoxQuestion question{*impl_->tag.scene, box, counts};
+  RTCPointQuery query;
+  query.x = box.middle.x, query.y = box.middle.y, query.z = box.middle.z;
+  query.time = 0, query.radius = length(box.half_m);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(impl_->top, &query, &context, look_at_triangle, &question);
+  return question.is_empty;
+}
+
 bool RayTracer::has_tints() const { return impl_->has_tints; }
 
 void RayTracer::tint(std::span<const Ray> rays, std::span<const Hit> hits,
@@ -380,12 +427,16 @@ void RayTracer::transmitted(std::span<const Ray> rays, std::span<Rgb> share) con
   }
 }
 
-Vec3 offset_origin(Vec3 position, Vec3 normal, float scene_diagonal_m) {
+float rounding_m(Vec3 position, float scene_diagonal_m) {
   // Interpolating three corners, moving them into the world and intersecting them errs by some ten
   // roundings (2^-24) of the largest number involved; 2^-18 of it is safe and stays under a
   // hundredth of a millimetre per metre. [Waechter19]
   const Vec3 size{std::abs(position.x), std::abs(position.y), std::abs(position.z)};
-  return position + normal * (0x1p-18f * std::max(max_component(size), scene_diagonal_m));
+  return 0x1p-18f * std::max(max_component(size), scene_diagonal_m);
+}
+
+Vec3 offset_origin(Vec3 position, Vec3 normal, float scene_diagonal_m) {
+  return position + normal * rounding_m(position, scene_diagonal_m);
 }
 
 }  // namespace luxel::trace

@@ -17,7 +17,7 @@ for target in $targets; do
   mkdir -p "$grown" "$findings"
   arguments=(--target="$target" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=2048 -max_len=65536
              -print_final_stats=1 -artifact_prefix="$findings/")
-  dictionary=tests/fuzz/dictionaries/$target.dict
+  dictionary=tests/fuzz/dictionaries/${target%_binary}.dict
   [[ -n ${3:-} ]] && arguments+=(-runs="$3")
   [[ -f $dictionary ]] && arguments+=(-dict="$dictionary")
   # Memory that a library leaks when it throws is freed by the end of the process, and no finding.

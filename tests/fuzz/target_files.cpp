@@ -53,6 +53,18 @@ std::vector<std::byte> repaired_png(std::span<const std::byte> input) {
   return out;
 }
 
+/// A WebP's length, and that of its first chunk where that would be too long.
+std::vector<std::byte> repaired_webp(std::span<const std::byte> input) {
+  constexpr size_t kStart = 20;
+  std::vector<std::byte> out = copy_of(input);
+  if (out.size() < kStart) return out;
+  std::memcpy(out.data(), "RIFF", 4), std::memcpy(out.data() + 8, "WEBP", 4);
+  put_number<uint32_t>(out, 4, uint32_t(out.size() - 8));
+  const auto rest = uint32_t(out.size() - kStart);
+  if (number_at<uint32_t>(out, 16) > rest) put_number(std::span(out), 16, rest);
+  return out;
+}
+
 /// [docs/format/lxr.md]: the header's length and checksum, and those of the chunks.
 std::vector<std::byte> repaired_lxr(std::span<const std::byte> input) {
   constexpr size_t kHeader = 32, kChunk = 16;
@@ -98,10 +110,17 @@ void open_records(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-void run_picture(std::span<const std::byte> input) {
+void run_jpeg(std::span<const std::byte> input) {
   is_read(image::decode_ldr(input, "a", [](uint32_t, uint32_t) { return Status{}; }));
   is_read(image::decode_display(input, "a"));
+}
+void run_png(std::span<const std::byte> input) {
+  run_jpeg(input);
   is_read(image::decode_ldr(repaired_png(input), "a"));
+}
+void run_webp(std::span<const std::byte> input) {
+  run_jpeg(input);
+  is_read(image::decode_ldr(repaired_webp(input), "a"));
 }
 void run_hdr(std::span<const std::byte> input) { is_read(image::decode_hdr(input, "a")); }
 void run_exr(std::span<const std::byte> input) { is_read(image::decode_exr(input, "a")); }

@@ -6,8 +6,12 @@
 
 namespace luxel::fuzz {
 
-/// A PNG, JPEG or WebP; a PNG with its checksums repaired, too.
-void run_picture(std::span<const std::byte> input);
+/// A picture as it is, a PNG, JPEG or WebP by its first bytes.
+void run_jpeg(std::span<const std::byte> input);
+/// A picture as it is, and as a PNG with its checksums repaired.
+void run_png(std::span<const std::byte> input);
+/// A picture as it is, and as a WebP with its lengths repaired.
+void run_webp(std::span<const std::byte> input);
 void run_hdr(std::span<const std::byte> input);
 void run_exr(std::span<const std::byte> input);
 /// A picture of the surroundings, .hdr or .exr.

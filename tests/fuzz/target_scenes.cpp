@@ -7,6 +7,8 @@
 #include "luxel/base/process_memory.h"
 #include "luxel/import/import.h"
 #include "luxel/validate/prepared.h"
+#include "tests/fuzz/compressed_gltf.h"
+#include "tests/fuzz/fbx_binary.h"
 #include "tests/fuzz/support.h"
 
 namespace luxel::fuzz {
@@ -37,10 +39,10 @@ std::vector<std::byte> repaired_glb(std::span<const std::byte> input) {
     depth += c == '{' ? 1 : c == '}' ? -1 : 0;
     if (depth == 0) break;
   }
-  const size_t json = std::min((end + 1 - 20 + 3) / 4 * 4, out.size() - 20);
-  put32(12, json);
+  const size_t length = std::min((end + 1 - 20 + 3) / 4 * 4, out.size() - 20);
+  put32(12, length);
   std::memcpy(out.data() + 16, "JSON", 4);
-  if (20 + json + 8 <= out.size()) put32(20 + json, out.size() - 28 - json);
+  if (20 + length + 8 <= out.size()) put32(20 + length, out.size() - 28 - length);
   return out;
 }
 
@@ -55,6 +57,9 @@ void run_ply(std::span<const std::byte> input) { read(input, "a.ply"); }
 void run_x(std::span<const std::byte> input) { read(input, "a.x"); }
 void run_dae(std::span<const std::byte> input) { read(input, "a.dae"); }
 void run_fbx(std::span<const std::byte> input) { read(input, "a.fbx"); }
+void run_fbx_binary(std::span<const std::byte> input) { read(binary_fbx(text_of(input)), "a.fbx"); }
+void run_draco(std::span<const std::byte> input) { read(draco_glb(input), "a.glb"); }
+void run_meshopt(std::span<const std::byte> input) { read(meshopt_glb(input), "a.glb"); }
 void run_stl(std::span<const std::byte> input) { read(input, "a.stl"); }
 
 void run_obj(std::span<const std::byte> input) {

@@ -84,7 +84,7 @@ bool is_clear(const scene::Scene& scene, const atlas::Atlas& atlas, const atlas:
   const std::optional<OnPlane> plane = on_plane(scene, atlas, map, run);
   if (!plane || !(plane->step_m > 0)) return false;
   const atlas::Texel& first = map.texels[run.first];
-  const auto& [instance, triangle, at] = first.sample;
+  const uint32_t instance = first.sample.instance, triangle = first.sample.triangle;
   const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
   const uint32_t behind = mesh.other_side.empty() ? scene::kNone : mesh.other_side[triangle];
   const auto counts = [&](uint32_t other_instance, uint32_t other) {

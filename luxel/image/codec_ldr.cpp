@@ -62,10 +62,35 @@ std::string damage_of_png(Bytes bytes) {
   }
 }
 
+/// What is wrong with a segment of Huffman tables, behind its two bytes of length. A table says how
+/// many codes there are of 1 to 16 bits, then their values. stb takes more codes of a length than
+/// there can be, and ends the process or looks beyond its tables. [JPEG, B.2.4.2 and C.2]
+std::string damage_of_tables(Bytes segment) {
+  constexpr std::string_view kDamage = "a table of codes is not one";
+  constexpr size_t kLengths = 16, kMostCodes = 256;
+  while (!segment.empty()) {
+    if (segment.size() < 1 + kLengths) return std::string(kDamage);
+    size_t codes = 0, free = 1;  // `free`: codes of this length that begin like none so far
+    for (size_t k = 1; k <= kLengths; ++k) {
+      free *= 2;
+      if (segment[k] > free) return std::string(kDamage);
+      free -= segment[k], codes += segment[k];
+    }
+    if (codes > kMostCodes || segment.size() < 1 + kLengths + codes) return std::string(kDamage);
+    segment = segment.subspan(1 + kLengths + codes);
+  }
+  return {};
+}
+
 /// What is wrong with the segments of a JPEG file. The end marker may also stand in the thumbnail
 /// of an APP segment, so these are stepped over before it is looked for.
 std::string damage_of_jpeg(Bytes bytes) {
-  constexpr uint8_t kStartOfScan = 0xda, kEndOfImage = 0xd9;
+  constexpr uint8_t kTables = 0xc4, kStartOfScan = 0xda, kEndOfImage = 0xd9;
+  const auto tables_at = [&](size_t marker) -> std::string {
+    const size_t length = size_t(bytes[marker + 2]) << 8 | bytes[marker + 3];
+    if (length < 2 || length > bytes.size() - marker - 2) return "it ends early";
+    return damage_of_tables(bytes.subspan(marker + 4, length - 2));
+  };
   size_t at = 2;
   while (bytes.size() - at >= 4) {
     if (bytes[at] != 0xff) return fmt::format("there is no marker at byte {}", at);
@@ -76,10 +101,17 @@ std::string damage_of_jpeg(Bytes bytes) {
     }
     const size_t length = size_t(bytes[at + 2]) << 8 | bytes[at + 3];
     if (length < 2 || length > bytes.size() - at - 2) return "it ends early";
+    if (marker == kTables)
+      if (const std::string damage = tables_at(at); !damage.empty()) return damage;
     at += 2 + length;
     if (marker != kStartOfScan) continue;
-    for (size_t i = at; i + 1 < bytes.size(); ++i)
-      if (bytes[i] == 0xff && bytes[i + 1] == kEndOfImage) return {};
+    // In the pixels' codes no marker stands by chance. Scans may bring tables of their own.
+    for (size_t i = at; i + 1 < bytes.size(); ++i) {
+      if (bytes[i] != 0xff) continue;
+      if (bytes[i + 1] == kEndOfImage) return {};
+      if (bytes[i + 1] != kTables || i + 4 > bytes.size()) continue;
+      if (const std::string damage = tables_at(i); !damage.empty()) return damage;
+    }
     return "it ends early";
   }
   return "it ends early";

@@ -47,6 +47,22 @@ TEST(DecodeLdr, JpegComesBackNearly) {
   EXPECT_EQ(image->data[3], 255);
 }
 
+/// There are two codes of one bit: a table that states three would send stb beyond its tables.
+TEST(DecodeLdr, JpegsWithTablesThatAreNoneAreRefused) {
+  const std::string good = jpeg();
+  for (size_t at = good.find("\xff\xc4"); at != good.npos; at = good.find("\xff\xc4", at + 2)) {
+    std::string three = good, more_than_there_are = good;
+    three[at + 5] = 3;
+    more_than_there_are[at + 20] = char(uint8_t(200));
+    for (const std::string& bad : {three, more_than_there_are}) {
+      const auto image = decoded_ldr(bad);
+      ASSERT_FALSE(image);
+      EXPECT_EQ(image.error().message,
+                "pic: the JPEG picture is damaged: a table of codes is not one");
+    }
+  }
+}
+
 TEST(DecodeDisplay, BytesAreOver255) {
   const std::string file = png();
   const auto image = decode_display(std::as_bytes(std::span(file.data(), file.size())), "pic");

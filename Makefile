@@ -20,7 +20,7 @@ endif
 JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ { gb = int($$2 / 1048576); \
           print gb < 1 ? 1 : gb < cores ? gb : cores }' /proc/meminfo)
 
-.PHONY: setup setup-tests setup-docs build test test-all demo docs bench asan fuzz format format-check clean
+.PHONY: setup setup-tests setup-docs build test test-all demo docs bench asan tsan fuzz format format-check clean
 
 setup:
 	@tools/setup.sh
@@ -70,6 +70,12 @@ asan: setup-tests
 	cmake --preset asan
 	cmake --build --preset asan --parallel $(JOBS)
 	ctest --preset asan --parallel $$(nproc)
+
+# The fast tests under ThreadSanitizer: once before each release, for it takes an hour.
+tsan: setup-tests
+	cmake --preset tsan
+	cmake --build --preset tsan --parallel $(JOBS)
+	ctest --preset tsan --parallel $$(nproc)
 
 # Each fuzzer for a minute: tests/fuzz/README.md. FUZZ_SECONDS and TARGET choose otherwise.
 FUZZ_SECONDS ?= 60

@@ -71,7 +71,7 @@ asan: setup-tests
 	cmake --build --preset asan --parallel $(JOBS)
 	ctest --preset asan --parallel $$(nproc)
 
-# The fast tests under ThreadSanitizer: once before each release, for it takes an hour.
+# The fast tests under ThreadSanitizer: once before each release.
 tsan: setup-tests
 	cmake --preset tsan
 	cmake --build --preset tsan --parallel $(JOBS)

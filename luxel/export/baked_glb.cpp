@@ -50,7 +50,7 @@ void append_lights_and_cameras(Glb& glb, const scene::Scene& scene, json& roots)
     roots.push_back(append_camera(glb, camera, 1e-3f * diagonal, 10 * diagonal));
 }
 
-Result<std::vector<std::byte>> finish_scene(Glb& glb, const scene::Scene& scene, json roots) {
+Result<std::vector<std::byte>> finish_scene(Glb glb, const scene::Scene& scene, json roots) {
   json root = json::object();
   if (!roots.empty()) root["nodes"] = std::move(roots);
   if (!scene.name.empty()) root["name"] = scene.name;
@@ -61,7 +61,7 @@ Result<std::vector<std::byte>> finish_scene(Glb& glb, const scene::Scene& scene,
   glb.json["asset"]["generator"] = "luxel";
   glb.json["scenes"] = json::array({std::move(root)});
   glb.json["scene"] = 0;
-  return finish(glb);
+  return finish(std::move(glb));
 }
 
 json instance_node(const scene::Instance& instance, size_t mesh) {
@@ -172,7 +172,7 @@ Result<std::vector<std::byte>> write_baked(Glb& glb, MaterialBook& book, const s
     roots.push_back(append_node(glb, scene.instances[i].world_from_object, std::move(node)));
   }
   append_lights_and_cameras(glb, scene, roots);
-  return finish_scene(glb, scene, std::move(roots));
+  return finish_scene(std::move(glb), scene, std::move(roots));
 }
 
 Result<std::vector<std::byte>> write_scene(const scene::Scene& scene, json luxel_extras) {
@@ -189,7 +189,7 @@ Result<std::vector<std::byte>> write_scene(const scene::Scene& scene, json luxel
     roots.push_back(append_node(glb, instance.world_from_object, instance_node(instance, index)));
   }
   append_lights_and_cameras(glb, scene, roots);
-  return finish_scene(glb, scene, std::move(roots));
+  return finish_scene(std::move(glb), scene, std::move(roots));
 }
 
 /// The JSON of a file that export has written.

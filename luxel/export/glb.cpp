@@ -93,10 +93,10 @@ size_t append_indices(Glb& glb, std::span<const uint32_t> indices) {
                  {"max", {*highest}}});
 }
 
-Result<std::vector<std::byte>> finish(const Glb& glb) {
-  std::vector<std::byte> binary = glb.buffer;
+Result<std::vector<std::byte>> finish(Glb glb) {
+  std::vector<std::byte> binary = std::move(glb.buffer);
   pad_to_4(binary, std::byte{0});
-  json document = glb.json;
+  json document = std::move(glb.json);
   if (!glb.extensions_used.empty()) document["extensionsUsed"] = glb.extensions_used;
   if (!binary.empty()) document["buffers"] = json::array({{{"byteLength", binary.size()}}});
   // Names from files need not be valid UTF-8: what is not becomes U+FFFD instead of an exception.

@@ -34,6 +34,6 @@ size_t append_accessor(Glb& glb, std::span<const Vec3> values);
 size_t append_indices(Glb& glb, std::span<const uint32_t> indices);
 
 /// The file: header, JSON chunk, BIN chunk. Error: more bytes than the format can count.
-Result<std::vector<std::byte>> finish(const Glb& glb);
+Result<std::vector<std::byte>> finish(Glb glb);
 
 }  // namespace luxel::export_

@@ -56,6 +56,11 @@ inline std::vector<float> floats(const Document& d, const json& accessor) {
   return out;
 }
 
+inline void expect_close(Vec3 a, Vec3 b, float tolerance) {
+  EXPECT_LE(length(a - b), tolerance)
+      << a.x << " " << a.y << " " << a.z << " for " << b.x << " " << b.y << " " << b.z;
+}
+
 template <class T>
 std::vector<T> vectors(const Document& d, const json& attributes, const char* name) {
   const std::vector<float> raw = floats(d, d.j["accessors"][attributes[name].get<size_t>()]);

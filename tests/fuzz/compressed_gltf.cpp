@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/fuzz/support.h"
+
 namespace luxel::fuzz {
 namespace {
 
@@ -28,19 +30,16 @@ json scene_of(json primitive) {
           {"meshes", {{{"primitives", {std::move(primitive)}}}}}};
 }
 
-void put32(std::vector<std::byte>& out, size_t value) {
-  for (size_t k = 0; k < 4; ++k) out.push_back(std::byte(value >> (8 * k)));
-}
-
 std::vector<std::byte> glb_of(const json& scene, std::span<const std::byte> data) {
   std::string text = scene.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const size_t padded = (data.size() + 3) / 4 * 4;
   std::vector<std::byte> out;
-  put32(out, 0x46546c67), put32(out, 2), put32(out, 28 + text.size() + padded);
-  put32(out, text.size()), put32(out, 0x4e4f534a);
+  append_number(out, 0x46546c67, 4), append_number(out, 2, 4),
+      append_number(out, 28 + text.size() + padded, 4);
+  append_number(out, text.size(), 4), append_number(out, 0x4e4f534a, 4);
   for (const char c : text) out.push_back(std::byte(c));
-  put32(out, padded), put32(out, 0x004e4942);
+  append_number(out, padded, 4), append_number(out, 0x004e4942, 4);
   out.insert(out.end(), data.begin(), data.end());
   out.resize(out.size() + padded - data.size());
   return out;

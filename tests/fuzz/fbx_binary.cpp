@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
+
+#include "tests/fuzz/support.h"
 
 namespace luxel::fuzz {
 namespace {
@@ -72,15 +75,9 @@ class Writer {
 
   template <class T>
   void number(T value, size_t bytes = sizeof(T)) {
-    const auto bits = uint64_t(value);
-    for (size_t k = 0; k < bytes; ++k) out_.push_back(std::byte(bits >> (8 * k)));
+    append_number(out_, uint64_t(value), bytes);
   }
-  void real(double value) {
-    uint64_t bits;
-    static_assert(sizeof bits == sizeof value);
-    std::copy_n(reinterpret_cast<const char*>(&value), 8, reinterpret_cast<char*>(&bits));
-    number(bits);
-  }
+  void real(double value) { number(std::bit_cast<uint64_t>(value)); }
   void letters(std::string_view text) {
     for (const char c : text) out_.push_back(std::byte(c));
   }
@@ -108,9 +105,7 @@ class Writer {
     return node.values.size() == 1 && node.values[0].starts_with('*') &&
            node.children.size() == 1 && node.children[0].key == "a";
   }
-  void patch(size_t at, uint64_t value) {
-    for (size_t k = 0; k < word_; ++k) out_[at + k] = std::byte(value >> (8 * k));
-  }
+  void patch(size_t at, uint64_t value) { put_number(out_, at, value, word_); }
 
   size_t write_values(const Node& node, const Context& context) {
     if (is_array(node)) {

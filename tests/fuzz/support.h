@@ -20,6 +20,15 @@ inline std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+/// The low `bytes` bytes of a number, little-endian, at the end.
+inline void append_number(std::vector<std::byte>& out, uint64_t value, size_t bytes) {
+  for (size_t k = 0; k < bytes; ++k) out.push_back(std::byte(value >> (8 * k)));
+}
+/// Over what stands at `at`.
+inline void put_number(std::span<std::byte> out, size_t at, uint64_t value, size_t bytes) {
+  for (size_t k = 0; k < bytes; ++k) out[at + k] = std::byte(value >> (8 * k));
+}
+
 /// An error is a sentence of a readable length: no dump of the file, and not empty.
 template <class T>
 bool is_read(const Result<T>& result) {

@@ -20,18 +20,13 @@
 namespace luxel::fuzz {
 namespace {
 
-/// Copies of a number out of bytes and into them, in the machine's order, which is little-endian.
+/// A number out of bytes, in the machine's order, which is little-endian.
 template <class T>
 T number_at(std::span<const std::byte> bytes, size_t at) {
   T value{};
   std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
 }
-template <class T>
-void put_number(std::span<std::byte> bytes, size_t at, T value) {
-  std::memcpy(bytes.data() + at, &value, sizeof value);
-}
-
 uint32_t crc_of(std::span<const std::byte> bytes) {
   return uint32_t(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
@@ -59,9 +54,9 @@ std::vector<std::byte> repaired_webp(std::span<const std::byte> input) {
   std::vector<std::byte> out = copy_of(input);
   if (out.size() < kStart) return out;
   std::memcpy(out.data(), "RIFF", 4), std::memcpy(out.data() + 8, "WEBP", 4);
-  put_number<uint32_t>(out, 4, uint32_t(out.size() - 8));
+  put_number(out, 4, uint32_t(out.size() - 8), 4);
   const auto rest = uint32_t(out.size() - kStart);
-  if (number_at<uint32_t>(out, 16) > rest) put_number(std::span(out), 16, rest);
+  if (number_at<uint32_t>(out, 16) > rest) put_number(out, 16, rest, 4);
   return out;
 }
 
@@ -70,12 +65,12 @@ std::vector<std::byte> repaired_lxr(std::span<const std::byte> input) {
   constexpr size_t kHeader = 32, kChunk = 16;
   std::vector<std::byte> out = copy_of(input);
   if (out.size() < kHeader) return out;
-  put_number<uint64_t>(out, 16, out.size());
-  put_number<uint32_t>(out, 28, crc_of(std::span(out).first(28)));
+  put_number(out, 16, out.size(), 8);
+  put_number(out, 28, crc_of(std::span(out).first(28)), 4);
   for (size_t at = kHeader; at + kChunk <= out.size();) {
     const uint64_t bytes = number_at<uint64_t>(out, at + 8);
     if (bytes > out.size() - at - kChunk) break;
-    put_number<uint32_t>(out, at, crc_of(std::span(out).subspan(at + 4, kChunk - 4 + bytes)));
+    put_number(out, at, crc_of(std::span(out).subspan(at + 4, kChunk - 4 + bytes)), 4);
     at += kChunk + bytes;
   }
   return out;
@@ -89,13 +84,13 @@ std::vector<std::byte> repaired_records(std::span<const std::byte> input) {
   if (out.size() < kStart) return out;
   const uint64_t header = number_at<uint64_t>(out, 16);
   if (header > out.size() - kStart) return out;
-  put_number(all, 24, digest_of(all.subspan(kStart, header)));
-  put_number(all, 32, digest_of(all.first(32)));
+  put_number(all, 24, digest_of(all.subspan(kStart, header)), 8);
+  put_number(all, 32, digest_of(all.first(32)), 8);
   for (size_t at = kStart + header; at + kRecord <= out.size();) {
     const uint64_t bytes = number_at<uint64_t>(out, at + 16);
     if (bytes > out.size() - at - kRecord) break;
-    put_number(all, at + 24, digest_of(all.subspan(at + kRecord, bytes)));
-    put_number(all, at + 32, digest_of(all.subspan(at, 32)));
+    put_number(all, at + 24, digest_of(all.subspan(at + kRecord, bytes)), 8);
+    put_number(all, at + 32, digest_of(all.subspan(at, 32)), 8);
     at += kRecord + bytes;
   }
   return out;

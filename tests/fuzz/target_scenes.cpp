@@ -26,9 +26,7 @@ void read(std::span<const std::byte> input, const char* name) {
 std::vector<std::byte> repaired_glb(std::span<const std::byte> input) {
   std::vector<std::byte> out = copy_of(input);
   if (out.size() < 28) return out;
-  const auto put32 = [&](size_t at, size_t value) {
-    for (size_t k = 0; k < 4; ++k) out[at + k] = std::byte(value >> (8 * k));
-  };
+  const auto put32 = [&](size_t at, size_t value) { put_number(out, at, value, 4); };
   std::memcpy(out.data(), "glTF\2\0\0\0", 8);
   put32(8, out.size());
   // The JSON ends where its braces do.

@@ -52,7 +52,12 @@ TEST(DecodeLdr, JpegsWithTablesThatAreNoneAreRefused) {
   const std::string good = jpeg();
   for (size_t at = good.find("\xff\xc4"); at != good.npos; at = good.find("\xff\xc4", at + 2)) {
     std::string three = good, more_than_there_are = good;
-    three[at + 5] = 3;
+    // As many codes in all, so that the segment is as long as it says.
+    const size_t counts = at + 5;
+    three[counts] = char(three[counts] + 3);
+    size_t longer = counts + 1;
+    while (uint8_t(three[longer]) < 3) ++longer;
+    three[longer] = char(three[longer] - 3);
     more_than_there_are[at + 20] = char(uint8_t(200));
     for (const std::string& bad : {three, more_than_there_are}) {
       const auto image = decoded_ldr(bad);

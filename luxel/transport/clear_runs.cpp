@@ -66,7 +66,7 @@ trace::TurnedBox box_above(const OnPlane& run, float around_m, float from_m, flo
 
 TexelRun run_from(const atlas::TexelMap& map, uint32_t first, uint32_t most) {
   const atlas::Texel& begin = map.texels[first];
-  const uint32_t limit = std::min(most, kLongest);
+  const uint32_t limit = std::min({most, kLongest, uint32_t(map.texels.size()) - first});
   uint32_t count = 1;
   while (count < limit) {
     const atlas::Texel& next = map.texels[first + count];

@@ -14,7 +14,8 @@ struct TexelRun {
   uint32_t first = 0, count = 0;
 };
 
-/// The run that begins at a texel, of `most` texels at most and of no more than are worth one look.
+/// The run that begins at a texel, of `most` texels at most, of which the map may have fewer, and
+/// of no more than are worth one look.
 TexelRun run_from(const atlas::TexelMap& map, uint32_t first, uint32_t most);
 
 /// Where above a run nothing may be. A step is the longer of the two sides of a texel on the

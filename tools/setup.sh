@@ -17,7 +17,7 @@ packages=(
   libopenexr-dev libstb-dev          # images
   libtinygltf-dev nlohmann-json3-dev # glTF, JSON
   libdraco-dev libmeshoptimizer-dev  # compressed glTF
-  libwebp-dev                        # WebP textures
+  libjpeg-dev libwebp-dev            # JPEG and WebP textures
   libassimp-dev                      # OBJ, FBX, Collada, ...
   libeigen3-dev                      # least squares
   libcgal-dev                        # exact predicates, constrained Delaunay triangulation

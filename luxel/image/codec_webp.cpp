@@ -1,4 +1,4 @@
-#include "luxel/image/codec_webp.h"
+#include "luxel/image/codec_ldr.h"
 
 #include <webp/decode.h>
 

@@ -12,10 +12,10 @@
 namespace luxel::image {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 48;
+constexpr int kPictureWidth = 64, kPictureHeight = 48;
 
 template <class Function>
-Image image_of(const Function& color_at, int width = kWidth, int height = kHeight) {
+Image image_of(const Function& color_at, int width = kPictureWidth, int height = kPictureHeight) {
   Image image(width, height, 3);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) image.set_rgb(x, y, color_at(x, y));
@@ -84,7 +84,7 @@ TEST(HdrFlip, ABrightSpotIsAsByDenseConvolution) {
     return base + c * c * c * 4;
   });
   const Image a = image_of([&](int x, int y) { return b.rgb(x, y) * 1.1f + Rgb{0, 0.05f, 0}; });
-  const FlipExposures exposures = flip_exposures(b, Mask(kWidth * kHeight, 1));
+  const FlipExposures exposures = flip_exposures(b, Mask(kPictureWidth * kPictureHeight, 1));
   EXPECT_NEAR(exposures.start, -4.8321315, 1e-5);
   EXPECT_NEAR(exposures.stop, 2.9222541, 1e-5);
   EXPECT_EQ(exposures.count, 8);
@@ -96,19 +96,19 @@ TEST(HdrFlip, ABrightSpotIsAsByDenseConvolution) {
 TEST(HdrFlip, StopsWhenAsked) {
   const Image grey = uniform({0.5f, 0.5f, 0.5f}), dark = uniform({0.2f, 0.2f, 0.2f});
   Progress progress;
-  progress.begin("flip", uint64_t(kHeight));
+  progress.begin("flip", uint64_t(kPictureHeight));
   const Image whole = flip(grey, dark, {.progress = &progress});
-  EXPECT_EQ(progress.snapshot().done, uint64_t(kHeight));
+  EXPECT_EQ(progress.snapshot().done, uint64_t(kPictureHeight));
   progress.request_cancel();
   hdr_flip(grey, dark, {-4, 4, 1000000}, {.progress = &progress});
-  EXPECT_EQ(progress.snapshot().done, uint64_t(kHeight));
+  EXPECT_EQ(progress.snapshot().done, uint64_t(kPictureHeight));
 }
 
 // The ranks of luminances, against sorting them.
 TEST(FlipExposures, AreThoseOfTheBrightestAndTheMedian) {
-  for (const size_t count : {size_t(1), size_t(2), size_t(kWidth * kHeight)}) {
+  for (const size_t count : {size_t(1), size_t(2), size_t(kPictureWidth * kPictureHeight)}) {
     std::vector<float> sorted;
-    Mask covered(kWidth * kHeight, 0);
+    Mask covered(kPictureWidth * kPictureHeight, 0);
     std::fill_n(covered.begin(), count, uint8_t(1));
     const Image image = image_of([&](int x, int y) {
       const uint64_t dice = hash64(uint64_t(x), uint64_t(y));
@@ -116,7 +116,8 @@ TEST(FlipExposures, AreThoseOfTheBrightestAndTheMedian) {
       return Rgb{v, v, v};
     });
     for (size_t i = 0; i < count; ++i)
-      sorted.push_back(std::max(luminance(image.rgb(int(i) % kWidth, int(i) / kWidth)), 0.0f));
+      sorted.push_back(
+          std::max(luminance(image.rgb(int(i) % kPictureWidth, int(i) / kPictureWidth)), 0.0f));
     std::sort(sorted.begin(), sorted.end());
     const double median = 0.5 * (double(sorted[(count - 1) / 2]) + double(sorted[count / 2]));
     const FlipExposures found = flip_exposures(image, covered);
@@ -162,11 +163,12 @@ TEST(Flip, HasNoPreferredDirection) {
   const Image a = ramps();
   const Image b = image_of([&](int x, int y) { return a.rgb(x, y) * (x > y ? 0.5f : 1.0f); });
   const auto turned = [](const Image& image) {
-    return image_of([&](int x, int y) { return image.rgb(y, 47 - x); }, kHeight, kWidth);
+    return image_of([&](int x, int y) { return image.rgb(y, 47 - x); }, kPictureHeight,
+                    kPictureWidth);
   };
   const Image map = flip(a, b), other = flip(turned(a), turned(b));
-  for (int y = 0; y < kWidth; ++y)
-    for (int x = 0; x < kHeight; ++x) EXPECT_NEAR(*other.at(x, y), *map.at(y, 47 - x), 2e-4);
+  for (int y = 0; y < kPictureWidth; ++y)
+    for (int x = 0; x < kPictureHeight; ++x) EXPECT_NEAR(*other.at(x, y), *map.at(y, 47 - x), 2e-4);
 }
 
 TEST(Flip, ASmallerPixelIsSeenLess) {
@@ -182,9 +184,10 @@ TEST(Flip, ASmallerPixelIsSeenLess) {
 
 TEST(Flip, ThreadsAndBandsDoNotShow) {
   const Image a = ramps();
-  const Image b = image_of([&](int x, int y) { return a.rgb((x + 5) % kWidth, y); });
+  const Image b = image_of([&](int x, int y) { return a.rgb((x + 5) % kPictureWidth, y); });
   const auto tall = [](const Image& image) {
-    return image_of([&](int x, int y) { return image.rgb(x, y % kHeight); }, kWidth, 150);
+    return image_of([&](int x, int y) { return image.rgb(x, y % kPictureHeight); }, kPictureWidth,
+                    150);
   };
   const Image map = flip(tall(a), tall(b));
   {
@@ -192,7 +195,7 @@ TEST(Flip, ThreadsAndBandsDoNotShow) {
     EXPECT_EQ(flip(tall(a), tall(b)).data, map.data);
   }
   // 150 rows are three bands, the picture repeats each 48 rows: row 64 + 8 is row 24 again
-  for (int x = 0; x < kWidth; ++x) EXPECT_EQ(*map.at(x, 72), *map.at(x, 24)) << x;
+  for (int x = 0; x < kPictureWidth; ++x) EXPECT_EQ(*map.at(x, 72), *map.at(x, 24)) << x;
 }
 
 TEST(FlipFilters, SumsAndMomentsAreThoseOfTheGaussians) {
@@ -217,7 +220,7 @@ TEST(FlipFilters, SumsAndMomentsAreThoseOfTheGaussians) {
 
 TEST(FlipExposures, OfUniformBlackAndMasked) {
   const Image grey = uniform({2, 2, 2});
-  const Mask all(kWidth * kHeight, 1);
+  const Mask all(kPictureWidth * kPictureHeight, 1);
   const FlipExposures one = flip_exposures(grey, all);
   EXPECT_DOUBLE_EQ(one.start, one.stop);
   EXPECT_EQ(one.count, 2);
@@ -241,7 +244,7 @@ TEST(FlipExposures, OfUniformBlackAndMasked) {
 TEST(HdrFlip, IsZeroForEqualImagesAndTakesNegativeAndHugeValues) {
   Image b = image_of([](int x, int y) { return Rgb{float(x), float(y), 1e30f}; });
   b.set_rgb(1, 1, {-5, 0, 3e38f});
-  const FlipExposures exposures = flip_exposures(b, Mask(kWidth * kHeight, 1));
+  const FlipExposures exposures = flip_exposures(b, Mask(kPictureWidth * kPictureHeight, 1));
   for (const float v : hdr_flip(b, b, exposures).data) EXPECT_EQ(v, 0);
   Image a = b;
   a.set_rgb(9, 9, {1, 2, -3});
@@ -255,7 +258,7 @@ TEST(HdrFlip, DoesNotDependOnTheUnit) {
   const auto scaled = [](const Image& image) {
     return image_of([&](int x, int y) { return image.rgb(x, y) * 64; });
   };
-  const Mask all(kWidth * kHeight, 1);
+  const Mask all(kPictureWidth * kPictureHeight, 1);
   const Image small = hdr_flip(a, b, flip_exposures(b, all));
   const Image large = hdr_flip(scaled(a), scaled(b), flip_exposures(scaled(b), all));
   EXPECT_NEAR(mean(small), mean(large), 1e-5);
@@ -265,10 +268,10 @@ TEST(HdrFlip, DoesNotDependOnTheUnit) {
 TEST(Flip, WhatIsNotCoveredDoesNotBleed) {
   const Image b = ramps();
   Image a = b;
-  Mask covered(kWidth * kHeight, 1);
-  for (int x = 0; x < kWidth; ++x) {
+  Mask covered(kPictureWidth * kPictureHeight, 1);
+  for (int x = 0; x < kPictureWidth; ++x) {
     a.set_rgb(x, 20, {1, 0, 1});
-    covered[size_t(20 * kWidth + x)] = 0;
+    covered[size_t(20 * kPictureWidth + x)] = 0;
   }
   for (const float v : flip(with_uncovered_of(a, b, covered), b).data) EXPECT_EQ(v, 0);
 }

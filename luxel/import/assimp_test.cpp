@@ -44,8 +44,9 @@ constexpr const char* kFoldFaces = "f 1 2 3 4\nf 2 1 5 6\n";
 
 Result<Imported> import_fold(const std::string& before, std::optional<float> crease_deg = {}) {
   const TemporaryFolder folder;
-  return import_scene(folder.write("a.obj", kFold + before + kFoldFaces),
-                      {.smooth_normals_deg = crease_deg});
+  ImportParams params;
+  params.smooth_normals_deg = crease_deg;
+  return import_scene(folder.write("a.obj", kFold + before + kFoldFaces), params);
 }
 
 // OBJ does not say how a mesh without normals looks. `s off` does; groups that are on are no news.

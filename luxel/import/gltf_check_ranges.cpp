@@ -142,6 +142,11 @@ Result<uint64_t> whole_number(const Json& object, const char* key, uint64_t fall
 }
 
 Status check_ranges(const Json& document, const std::string& file) {
+  // Also of buffers that no view names: what was read is compared with it.
+  const Json& buffers = list_of(document, "buffers");
+  for (size_t i = 0; i < buffers.size(); ++i)
+    LUXEL_TRY_STATUS(whole_number(buffers[i], "byteLength", UINT64_MAX,
+                                  file + ": " + name_of("buffer", i, buffers[i])));
   const Json& views = list_of(document, "bufferViews");
   for (size_t i = 0; i < views.size(); ++i)
     LUXEL_TRY_STATUS(

@@ -339,7 +339,7 @@ TEST(Gltf, WithoutNormalsIsFlatUnlessAskedOtherwise) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.glb", gltf.glb());
   EXPECT_TRUE(scene_of(import_scene(file)).meshes[0].normals.empty());
-  EXPECT_EQ(scene_of(import_scene(file, {30.0f})).meshes[0].normals.size(), 4u);
+  EXPECT_EQ(scene_of(import_scene(file, {30.0f, {}})).meshes[0].normals.size(), 4u);
 }
 
 /// The square in a .gltf file whose only buffer holds `more` bytes after those that it states, in
@@ -369,6 +369,27 @@ TEST(Gltf, ABufferMayBeLongerThanItStates) {
       EXPECT_THAT(imported.error().message, HasSubstr("buffer 0 has fewer bytes than"));
     }
   }
+}
+
+// A buffer that no view names is read all the same, and its length compared with what it states.
+TEST(Gltf, EveryBufferStatesItsLength) {
+  const auto error_with = [](const nlohmann::json& second_buffer) {
+    const Gltf gltf = square_gltf();
+    nlohmann::json document = gltf.json;
+    const std::string uri = "data:application/octet-stream;base64,";
+    document["buffers"] = {
+        {{"byteLength", gltf.buffer.size()},
+         {"uri", uri + base64(std::as_bytes(std::span(gltf.buffer.data(), gltf.buffer.size())))}},
+        {{"uri", uri + "AAAA"}}};
+    document["buffers"][1].update(second_buffer);
+    const TemporaryFolder folder;
+    const auto imported = import_scene(folder.write("a.gltf", document.dump()));
+    return imported ? "no error" : imported.error().message;
+  };
+  EXPECT_EQ(error_with({{"byteLength", 3}}), "no error");
+  EXPECT_THAT(error_with(nlohmann::json::object()), HasSubstr("buffer 1: it has no byteLength"));
+  EXPECT_THAT(error_with({{"byteLength", "three"}}),
+              HasSubstr("buffer 1: byteLength is \"three\", must be a whole number from 0 on"));
 }
 
 TEST(Gltf, AnErrorDoesNotPrintAWholeUri) {

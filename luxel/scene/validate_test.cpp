@@ -178,17 +178,27 @@ TEST(Validate, CamerasThatMakeNoPictureAreDropped) {
     EXPECT_THAT(error_of(scene), "no error");
     return warnings_of(scene).empty();
   };
+  const auto placed = [](const Mat34& world_from_camera) {
+    Camera camera;
+    camera.world_from_camera = world_from_camera;
+    return camera;
+  };
   EXPECT_TRUE(kept({}));
   for (const float scale : {1e-15f, 1e-9f, 1e15f})
-    EXPECT_TRUE(kept({.world_from_camera = scaling({scale, scale, scale})})) << scale;
+    EXPECT_TRUE(kept(placed(scaling({scale, scale, scale})))) << scale;
   // The length of an axis is 0 or infinite in single precision, or two axes are one.
   for (const float scale : {0.0f, 1e-20f, 1e20f})
-    EXPECT_FALSE(kept({.world_from_camera = scaling({scale, scale, scale})})) << scale;
-  EXPECT_FALSE(kept({.world_from_camera = from_columns({1, 0, 0}, {1, 0, 0}, {0, 0, 1}, {})}));
-  EXPECT_FALSE(kept({.world_from_camera = translation({1e12f, 0, 0})}));
-  for (const float aspect : {1e-30f, 1e30f, -1.0f, NAN})
-    EXPECT_FALSE(kept({.aspect = aspect})) << aspect;
-  EXPECT_FALSE(kept({.orthographic_height_m = 1e12f}));
+    EXPECT_FALSE(kept(placed(scaling({scale, scale, scale})))) << scale;
+  EXPECT_FALSE(kept(placed(from_columns({1, 0, 0}, {1, 0, 0}, {0, 0, 1}, {}))));
+  EXPECT_FALSE(kept(placed(translation({1e12f, 0, 0}))));
+  Camera shaped;
+  for (const float aspect : {1e-30f, 1e30f, -1.0f, NAN}) {
+    shaped.aspect = aspect;
+    EXPECT_FALSE(kept(shaped)) << aspect;
+  }
+  shaped = Camera{};
+  shaped.orthographic_height_m = 1e12f;
+  EXPECT_FALSE(kept(shaped));
 }
 
 TEST(Validate, SquashedInstancesAreDropped) {

@@ -61,9 +61,9 @@ std::vector<Rgb> with_ambient(const transport::Elements& elements, std::span<con
 
 /// The samples after each round, for one who watches: doubled from a few up to all.
 std::vector<int> growing(int samples) {
-  constexpr int kFewest = 8;
+  constexpr int kFirst = 8;
   std::vector<int> out{samples};
-  while (out.back() >= 2 * kFewest) out.push_back(out.back() / 2);
+  while (out.back() >= 2 * kFirst) out.push_back(out.back() / 2);
   std::ranges::reverse(out);
   return out;
 }

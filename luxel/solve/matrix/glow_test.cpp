@@ -72,7 +72,9 @@ TEST(Glow, WhatCouldGlowIsSeenAsByTheFactors) {
   const Stage stage(room_with_small_lamp(), small(CodecKind::dense32));
   const RelightData d = stage.data();
   for (size_t i = 0; i < d.size(); ++i)
-    if (d.material[i] == 0) EXPECT_NEAR(double(glow_of(d, i, 0).x), 1, 5e-3) << i;
+    if (d.material[i] == 0) {
+      EXPECT_NEAR(double(glow_of(d, i, 0).x), 1, 5e-3) << i;
+    }
 }
 
 // The light of a small lamp used to pass through the codec, which lost a tenth and more of it.

@@ -1,5 +1,6 @@
 // A walk through an .fbx file before Assimp gets it: Assimp calls itself for blocks in blocks, and
 // for models that its list of connections puts into models, and asks neither for depth nor circles.
+// It makes room for as many numbers as an array states.
 #include <charconv>
 #include <cstring>
 #include <map>
@@ -16,7 +17,8 @@ struct FbxElement {
   static constexpr size_t kMostValues = 4;
   std::string_view key;
   std::vector<std::string_view> values;
-  size_t at = 0;  ///< its first byte in the file
+  size_t at = 0;                  ///< its first byte in the file
+  std::string_view all_values{};  ///< as they stand in a binary file
 };
 
 /// What the file's models hold, by the list of connections.
@@ -193,13 +195,67 @@ std::optional<FbxElement> next_block(FbxBytes& bytes, size_t limit, uint64_t& en
   if (*length > limit - bytes.at) return std::nullopt;
   if (element.key == "Model" || element.key == "C")
     element.values = values_of(bytes.file.substr(bytes.at, *length));
+  element.all_values = bytes.file.substr(bytes.at, *length);
   bytes.at += *length;
   return element;
 }
 
+/// Bytes of a number of a binary file, by its letter; 0 for what is none.
+uint64_t bytes_per_number(char type) {
+  switch (type) {
+    case 'C':
+    case 'c':
+      return 1;
+    case 'Y':
+      return 2;
+    case 'I':
+    case 'F':
+    case 'i':
+    case 'f':
+      return 4;
+    case 'L':
+    case 'D':
+    case 'l':
+    case 'd':
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+/// Assimp makes room for all numbers that an array states before it looks for them. An array:
+/// small letter, count, 1 if it is compressed, bytes, and these.
+Status check_arrays(const SourceFile& source, const FbxElement& element) {
+  constexpr uint64_t kMostExpansion = 1032;  // by zlib: 258 bytes for two bits
+  constexpr size_t kHead = 1 + 3 * 4;
+  std::string_view left = element.all_values;
+  while (!left.empty()) {
+    const char type = left.front();
+    const uint64_t size = bytes_per_number(type);
+    size_t length = 1 + size;
+    if (size == 0 || type >= 'a') {
+      const size_t head = size == 0 ? 1 + 4 : kHead;
+      if (left.size() < head) return {};
+      uint32_t numbers[3] = {};  // of a text or of raw bytes only the last: their length
+      std::memcpy(size == 0 ? &numbers[2] : numbers, left.data() + 1, head - 1);
+      const auto [count, is_compressed, bytes] = numbers;
+      const uint64_t needed = count * size;
+      if (needed > UINT32_MAX || needed > bytes * (is_compressed ? kMostExpansion : 1))
+        return fail(ErrorCode::bad_input,
+                    "{}, byte {}: {} states {} numbers, more than its {} bytes can hold",
+                    source.name, element.at, element.key, count, bytes);
+      LUXEL_TRY_STATUS(source.memory.take(needed, "the numbers of " + source.name));
+      length = head + bytes;
+    }
+    if (length > left.size()) return {};
+    left.remove_prefix(length);
+  }
+  return {};
+}
+
 constexpr std::string_view kFbxMagic = "Kaydara FBX Binary";
 
-/// Other damages than depth and circles are left to Assimp, which checks every size.
+/// Other damages are left to Assimp, which checks every other size.
 Status check_binary(const SourceFile& source) {
   FbxBytes bytes{text_of(source.bytes), 23};
   const auto version = bytes.number(4, source.bytes.size());
@@ -223,6 +279,7 @@ Status check_binary(const SourceFile& source) {
     // Assimp steps over zeros in a block.
     if (!element && end == 0 && !ends.empty() && bytes.at > before) continue;
     if (!element) break;
+    LUXEL_TRY_STATUS(check_arrays(source, *element));
     if (ends.size() == 1) note(section, *element, id_in_bytes, models);
     if (ends.empty()) section = element->key;
     if (bytes.at == end) continue;

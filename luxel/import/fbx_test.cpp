@@ -1,4 +1,5 @@
-// Text .fbx files: units, axes, the node tree, materials, lights and a camera.
+// Text .fbx files: units, axes, the node tree, materials, lights and a camera. Arrays of binary
+// ones.
 #include <gmock/gmock.h>
 
 #include "luxel/import/test_files.h"
@@ -7,6 +8,7 @@ namespace luxel::import {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::string settings(const std::string& unit, int up, int front, int front_sign,
                      int coord_sign = 1) {
@@ -313,6 +315,36 @@ TEST(Fbx, NonsenseUnitsAndAxesAreWarnings) {
   const auto axes = import_text("a.fbx", lone_square(settings("1", 1, 1, 1)));
   expect_near(scene::front_normal(scene_of(axes), 0, 0), {0, 0, 1}, 1e-6f);
   EXPECT_THAT(all_of(axes->warnings), HasSubstr("are not three axes"));
+}
+
+/// Why a binary file is refused whose only element holds a text and an array of `bytes` zeros.
+std::string error_of_array(char type, uint32_t count, bool is_compressed, uint32_t bytes,
+                           uint64_t max_memory_bytes = 0) {
+  const std::string values = std::string("S\4\0\0\0text", 9) + type +
+                             bytes_of<uint32_t>({count, is_compressed, bytes}) +
+                             std::string(bytes, '\0');
+  std::string file = std::string("Kaydara FBX Binary  \0\x1a\0", 23) + bytes_of<uint32_t>({7400});
+  const size_t end = file.size() + 13 + 8 + values.size();
+  file += bytes_of<uint32_t>({uint32_t(end), 2, uint32_t(values.size())}) + "\10Vertices" + values +
+          std::string(13, '\0');
+  const auto all = std::as_bytes(std::span(file));
+  const auto imported = import_bytes({all.begin(), all.end()}, "a.fbx", max_memory_bytes);
+  return imported ? "no error" : imported.error().message;
+}
+
+// Assimp took 4 GB for the first.
+TEST(Fbx, ArraysDoNotStateMoreThanTheyHold) {
+  EXPECT_EQ(error_of_array('i', UINT32_MAX, false, 12),
+            "a.fbx, byte 27: Vertices states 4294967295 numbers, more than its 12 bytes can hold");
+  EXPECT_THAT(error_of_array('d', 2, false, 12), HasSubstr("more than its 12 bytes can hold"));
+  EXPECT_THAT(error_of_array('f', 3, false, 12), Not(HasSubstr("can hold")));
+  // zlib makes at most 1032 bytes of one.
+  EXPECT_THAT(error_of_array('d', 1291, true, 10), HasSubstr("more than its 10 bytes can hold"));
+  EXPECT_THAT(error_of_array('d', 1290, true, 10), Not(HasSubstr("can hold")));
+  // 2^29 numbers of 8 bytes are none in 32 bits.
+  EXPECT_THAT(error_of_array('d', 1u << 29, true, 1u << 22), HasSubstr("can hold"));
+  EXPECT_THAT(error_of_array('d', 100'000'000, true, 1u << 20, uint64_t(512) << 20),
+              HasSubstr("--max-memory"));
 }
 
 }  // namespace

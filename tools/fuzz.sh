@@ -17,11 +17,12 @@ for target in $targets; do
   mkdir -p "$grown" "$findings"
   # Draco may take ten seconds for a short input (docs/guide/untrusted.md), and more on a busy machine.
   arguments=(--target="$target" -max_total_time="$seconds" -timeout=100 -report_slow_units=100
-             -rss_limit_mb=2048 -max_len=65536 -print_final_stats=1 -artifact_prefix="$findings/")
+             -rss_limit_mb=4096 -malloc_limit_mb=2048 -max_len=65536 -print_final_stats=1 -artifact_prefix="$findings/")
   dictionary=tests/fuzz/dictionaries/${target%_binary}.dict
   [[ -n ${3:-} ]] && arguments+=(-runs="$3")
   [[ -f $dictionary ]] && arguments+=(-dict="$dictionary")
-  # Memory that a library leaks when it throws is freed by the end of the process, and no finding.
+  # Memory that a library leaks when it throws is freed by the end of the process, and no finding: a
+  # million inputs leave a gigabyte.
   ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0 \
     "$program" "${arguments[@]}" "$grown" "tests/fuzz/corpus/$target" > "$log" 2>&1 || status=1
   inputs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")

@@ -153,6 +153,29 @@ TEST(BadInput, PlyNamesTheElement) {
   EXPECT_THAT(error_of(import_text("a.ply", "ply\nformat ascii 1.0\n")), HasSubstr("header"));
 }
 
+// Assimp reads some headers differently, and takes every element's count on trust.
+TEST(BadInput, PlyHeadersMeanOneThing) {
+  const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
+  const auto error = [&](const std::string& header) {
+    return error_of(
+        import_text("a.ply", "ply\n" + header + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+  };
+  const std::string format = "format ascii 1.0\n", vertex = "element vertex 3\n",
+                    axes = "property float x\nproperty float y\nproperty float z\n";
+  const std::string comment = "comment by hand\n";
+  EXPECT_EQ(error(format + comment + vertex + comment + axes + face), "no error");
+  EXPECT_EQ(error(format + "obj_info 1\n" + vertex + axes + face), "no error");
+  EXPECT_THAT(error(vertex + axes + face), HasSubstr("a.ply: its header states no format"));
+  const char* nonsense = "this line of the header makes no sense";
+  EXPECT_THAT(error(format + vertex + "obj_info 1\n" + axes + face), HasSubstr(nonsense));
+  EXPECT_THAT(error(format + vertex + axes + format + face), HasSubstr(nonsense));
+  EXPECT_THAT(error(axes + format + vertex + face), HasSubstr(nonsense));
+  EXPECT_THAT(error(format + "element vertex\r3\n" + axes + face),
+              HasSubstr("a.ply, line 3: a line break of old Macs"));
+  EXPECT_THAT(error(format + vertex + axes + face + "element face 4000000000\n"),
+              HasSubstr("a.ply: there are 4000000000 of the element face, and no properties"));
+}
+
 /// A document that uses most of what the reader knows.
 std::string rich_glb() {
   Gltf gltf = square_gltf();

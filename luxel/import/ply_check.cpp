@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "luxel/import/readers.h"
 
@@ -42,8 +43,9 @@ struct Element {
 };
 
 struct PlyHeader {
-  enum class Format { ascii, little, big } format = Format::ascii;
+  enum class Format { none, ascii, little, big } format = Format::none;
   std::vector<Element> elements;
+  bool is_open = false;  ///< properties may follow the last line
   std::string_view body;
 };
 
@@ -91,10 +93,16 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-/// One line of the header; false when it makes no sense.
+/// One line of the header; false when it makes no sense. Assimp ends an element at the first line
+/// that is neither a property nor a comment, and would take the properties after it for nothing.
 bool read_header_line(const std::vector<std::string_view>& words, PlyHeader& header) {
-  if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return true;
+  if (!words.empty() && words[0] == "comment") return true;
+  const bool was_open = header.is_open;
+  header.is_open =
+      !words.empty() && (words[0] == "element" || (was_open && words[0] == "property"));
+  if (words.empty() || words[0] == "obj_info") return true;
   if (words[0] == "format" && words.size() >= 2) {
+    if (header.format != PlyHeader::Format::none || !header.elements.empty()) return false;
     header.format = words[1] == "ascii"                  ? PlyHeader::Format::ascii
                     : words[1] == "binary_little_endian" ? PlyHeader::Format::little
                                                          : PlyHeader::Format::big;
@@ -107,7 +115,7 @@ bool read_header_line(const std::vector<std::string_view>& words, PlyHeader& hea
     header.elements.push_back(std::move(element));
     return error == std::errc() && stop == end;
   }
-  if (words[0] != "property" || header.elements.empty()) return false;
+  if (words[0] != "property" || !was_open) return false;
   Property property;
   if (words.size() == 5 && words[1] == "list")
     property = {kind_of(words[3]), kind_of(words[2]), std::string(words[4])};
@@ -124,7 +132,11 @@ Result<PlyHeader> read_header(const SourceFile& source) {
     const size_t end = text.find('\n');
     if (end == text.npos)
       return fail(ErrorCode::bad_input, "{}: its header ends early", source.name);
-    const auto words = words_of(text.substr(0, end));
+    const std::string_view line = text.substr(0, end);
+    if (const size_t at = line.find('\r'); at != line.npos && at + 1 < line.size())
+      return fail(ErrorCode::bad_input, "{}, line {}: a line break of old Macs stands within it",
+                  source.name, number);
+    const auto words = words_of(line);
     text.remove_prefix(end + 1);
     if (number == 1) {
       if (words.size() == 1 && words[0] == "ply") continue;
@@ -136,6 +148,8 @@ Result<PlyHeader> read_header(const SourceFile& source) {
       return fail(ErrorCode::bad_input, "{}, line {}: this line of the header makes no sense",
                   source.name, number);
   }
+  if (header.format == PlyHeader::Format::none)
+    return fail(ErrorCode::bad_input, "{}: its header states no format", source.name);
   header.body = text;
   return header;
 }
@@ -195,7 +209,11 @@ Status check_ply(const SourceFile& source) {
     if (element.name == "vertex") vertices = element.count;
   Reader reader{header.format, header.body};
   for (const Element& element : header.elements) {
-    // Nothing to read means nothing that a wrong count would run into.
+    // Nothing to read is nothing that a wrong count would run into, but Assimp counts it one by
+    // one.
+    if (element.properties.empty() && element.count > header.body.size())
+      return fail(ErrorCode::bad_input, "{}: there are {} of the element {}, and no properties",
+                  source.name, element.count, element.name);
     if (element.properties.empty()) continue;
     for (uint64_t i = 0; i < element.count; ++i) {
       const auto where = [&] { return fmt::format("{}: {} {}", source.name, element.name, i); };

@@ -97,6 +97,11 @@ Status skip_numbers(Walk& walk, uint64_t count) {
     if (error == std::errc::invalid_argument || end != word.data() + word.size() ||
         !std::isfinite(value))
       return walk.error("'{}' is not a finite number", word);
+    // Assimp takes 1,5 for one number, 1.5, and all that follows for something else.
+    const std::string_view rest = walk.words.text.substr(walk.words.at);
+    const bool is_whole = word.find_first_not_of("+-0123456789") == word.npos;
+    if (is_whole && rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9')
+      return walk.error("a comma and a digit follow {}; write {}.0", word, word);
   }
   return {};
 }
@@ -181,7 +186,7 @@ Status check_weights(Walk& walk, const MeshSize& mesh) {
 Status check_materials(Walk& walk, const MeshSize& mesh) {
   LUXEL_TRY_STATUS(next_count(walk));  // of materials; those that are there count
   LUXEL_TRY(const uint64_t faces, next_count(walk));
-  if (faces != 1)
+  if (faces != 1 || mesh.faces == 0)
     LUXEL_TRY_STATUS(check_equal(walk, faces, "material indices", mesh.faces, "faces"));
   uint64_t largest = 0;
   for (uint64_t i = 0; i < faces; ++i) {

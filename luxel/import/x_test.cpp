@@ -190,7 +190,18 @@ INSTANTIATE_TEST_SUITE_P(
         XDamage{"Material glow", "Materiel glow", "material index 0 is out of range"},
         XDamage{"0,1;\n    0.5", "0,9;\n    0.5", "the vertex of a weight 9 is out of range"},
         XDamage{"2.0;1.0;0.0;,", "2.0;nan;0.0;,", "'nan' is not a finite number"},
+        XDamage{"2.0;1.0;0.0;,", "2.0;1.0;0,1;,", "a comma and a digit follow 0; write 0.0"},
         XDamage{"square {", "square", "stands where '{' should"}));
+
+// Assimp gives the one material to the first face.
+TEST(DirectX, AMaterialOfNoFaceIsAnError) {
+  const auto imported = import_x(
+      "xof 0303txt 0032\nMesh { 1; 0.0;0.0;0.0;; 0; MeshMaterialList { 1; 1; 0; Material { "
+      "0.8;0.8;0.8;1.0;; 1.0; 0.0;0.0;0.0;; 0.0;0.0;0.0;; } } }\n");
+  ASSERT_FALSE(imported);
+  EXPECT_THAT(imported.error().message,
+              HasSubstr("a.x, line 2: there are 1 material indices, but the mesh has 0 faces"));
+}
 
 TEST(DirectX, AFileThatEndsEarlyIsAnErrorWhereverItEnds) {
   const std::string text = kRoom;

@@ -163,11 +163,12 @@ TEST(BadInput, PlyHeadersMeanOneThing) {
   const std::string format = "format ascii 1.0\n", vertex = "element vertex 3\n",
                     axes = "property float x\nproperty float y\nproperty float z\n";
   const std::string comment = "comment by hand\n";
-  EXPECT_EQ(error(format + comment + vertex + comment + axes + face), "no error");
+  EXPECT_EQ(error(format + comment + vertex + axes + comment + face), "no error");
   EXPECT_EQ(error(format + "obj_info 1\n" + vertex + axes + face), "no error");
   EXPECT_THAT(error(vertex + axes + face), HasSubstr("a.ply: its header states no format"));
   const char* nonsense = "this line of the header makes no sense";
-  EXPECT_THAT(error(format + vertex + "obj_info 1\n" + axes + face), HasSubstr(nonsense));
+  for (const char* between : {"comment by hand\n", "obj_info 1\n", "\n"})
+    EXPECT_THAT(error(format + vertex + between + axes + face), HasSubstr(nonsense));
   EXPECT_THAT(error(format + vertex + axes + format + face), HasSubstr(nonsense));
   EXPECT_THAT(error(axes + format + vertex + face), HasSubstr(nonsense));
   EXPECT_THAT(error(format + "element vertex\r3\n" + axes + face),

@@ -94,13 +94,11 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 /// One line of the header; false when it makes no sense. Assimp ends an element at the first line
-/// that is neither a property nor a comment, and would take the properties after it for nothing.
+/// that is no property, and would take the properties after it for nothing.
 bool read_header_line(const std::vector<std::string_view>& words, PlyHeader& header) {
-  if (!words.empty() && words[0] == "comment") return true;
-  const bool was_open = header.is_open;
-  header.is_open =
-      !words.empty() && (words[0] == "element" || (was_open && words[0] == "property"));
-  if (words.empty() || words[0] == "obj_info") return true;
+  const bool was_open = std::exchange(header.is_open, false);
+  if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return true;
+  header.is_open = words[0] == "element" || (was_open && words[0] == "property");
   if (words[0] == "format" && words.size() >= 2) {
     if (header.format != PlyHeader::Format::none || !header.elements.empty()) return false;
     header.format = words[1] == "ascii"                  ? PlyHeader::Format::ascii

@@ -131,7 +131,9 @@ Result<Image8> decode_jpeg(std::span<const std::byte> bytes, std::string_view na
   if (!read_header(reader, bytes)) return damage();
   const uint32_t width = reader.library.image_width, height = reader.library.image_height;
   LUXEL_TRY_STATUS(check_picture_size(width, height, name));
-  if (allow) LUXEL_TRY_STATUS(allow(width, height));
+  // Besides the pixels: what many scans add up to is kept in up to twice their bytes.
+  const int times = jpeg_has_multiple_scans(&reader.library) ? 3 : 1;
+  for (int i = 0; allow && i < times; ++i) LUXEL_TRY_STATUS(allow(width, height));
   const size_t channels = reader.library.num_components == 4 ? 4 : 3;
   std::vector<uint8_t> row(channels * width);
   Image8 image{int(width), int(height), 4, {}};

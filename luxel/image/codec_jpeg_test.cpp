@@ -135,6 +135,21 @@ TEST(DecodeJpeg, PixelsThatTheLibraryWouldMakeUpAreRefused) {
       "pic: cannot decode the JPEG picture: Corrupt JPEG data: premature end of data segment");
 }
 
+TEST(DecodeJpeg, AsksForAllTheMemoryThatItTakes) {
+  const auto asked_for = [](Scans scans) {
+    const std::string file = jpeg_of(30, 20, {200, 30, 90}, scans);
+    uint64_t pixels = 0;
+    EXPECT_TRUE(decode_ldr(std::as_bytes(std::span(file.data(), file.size())), "pic",
+                           [&](uint32_t width, uint32_t height) -> Status {
+                             pixels += uint64_t(width) * height;
+                             return {};
+                           }));
+    return pixels;
+  };
+  EXPECT_EQ(asked_for(Scans::one), 600u);
+  EXPECT_EQ(asked_for(Scans::ten), 1800u);
+}
+
 // A scan of a few bytes takes as long as any other. [libjpeg-turbo, LJT-01-003]
 TEST(DecodeJpeg, HundredsOfScansAreRefused) {
   const auto image = decoded_jpeg(jpeg_of(16, 16, {200, 30, 90}, Scans::one_per_coefficient));

@@ -11,7 +11,6 @@ namespace {
 
 /// File names may be this long, and are of use only whole.
 constexpr size_t kLongestWord = 400;
-constexpr size_t kLongestMessage = 4000;
 /// Bytes that stay of a word that is cut, before and after the cut.
 constexpr size_t kHead = 100, kTail = 20;
 
@@ -33,16 +32,16 @@ void append_short(std::string_view word, std::string& out) {
 
 }  // namespace
 
-std::string short_message(const std::string& text) {
+std::string short_message(const std::string& text, size_t most_bytes) {
   std::string out;
-  for (size_t at = 0; at < text.size() && out.size() <= kLongestMessage;) {
+  for (size_t at = 0; at < text.size() && out.size() <= most_bytes;) {
     const size_t end = std::min(text.find_first_of(" \n", at), text.size());
     append_short(std::string_view(text).substr(at, end - at), out);
     if (end < text.size()) out += text[end];
     at = end + 1;
   }
-  if (out.size() <= kLongestMessage) return out;
-  const size_t end = character_start(out, kLongestMessage);
+  if (out.size() <= most_bytes) return out;
+  const size_t end = character_start(out, most_bytes);
   return out.substr(0, end) + fmt::format(" [{} bytes in all]", text.size());
 }
 

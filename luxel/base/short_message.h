@@ -6,9 +6,9 @@
 namespace luxel {
 inline namespace base {
 
-/// The text with the middle of each word over 400 bytes, and all after 4000 bytes, taken out; it
+/// The text with the middle of each word over 400 bytes, and all after `most_bytes`, taken out; it
 /// says how many bytes are missing. Characters of UTF-8 stay whole.
-std::string short_message(const std::string& text);
+std::string short_message(const std::string& text, size_t most_bytes = 4000);
 
 }  // namespace base
 }  // namespace luxel

@@ -23,6 +23,7 @@ TEST(ShortMessage, CutsAMessageOfManyWords) {
   const std::string cut = short_message(text);
   EXPECT_LT(cut.size(), 4100u);
   EXPECT_TRUE(cut.ends_with("[50000 bytes in all]")) << cut.substr(3990);
+  EXPECT_EQ(short_message(text, 12), "word word wo [50000 bytes in all]");
 }
 
 // A letter of two bytes starts at every odd place, where the cuts would fall at even ones.

@@ -171,10 +171,12 @@ TEST(BadInput, PlyHeadersMeanOneThing) {
     EXPECT_THAT(error(format + vertex + between + axes + face), HasSubstr(nonsense));
   EXPECT_THAT(error(format + vertex + axes + format + face), HasSubstr(nonsense));
   EXPECT_THAT(error(axes + format + vertex + face), HasSubstr(nonsense));
+  EXPECT_THAT(error(format + "element vertex 1\n" + axes + vertex + axes + face),
+              HasSubstr("line 7: this line of the header makes no sense"));
   EXPECT_THAT(error(format + "element vertex\r3\n" + axes + face),
               HasSubstr("a.ply, line 3: a line break of old Macs"));
-  EXPECT_THAT(error(format + vertex + axes + face + "element face 4000000000\n"),
-              HasSubstr("a.ply: there are 4000000000 of the element face, and no properties"));
+  EXPECT_THAT(error(format + vertex + axes + face + "element edge 4000000000\n"),
+              HasSubstr("a.ply: there are 4000000000 of the element edge, and no properties"));
 }
 
 /// A document that uses most of what the reader knows.

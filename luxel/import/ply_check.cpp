@@ -110,6 +110,9 @@ bool read_header_line(const std::vector<std::string_view>& words, PlyHeader& hea
     Element element{std::string(words[1]), 0, {}};
     const char* end = words[2].data() + words[2].size();
     const auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
+    // Assimp makes room for the first vertices, and puts the second there, too.
+    for (const Element& other : header.elements)
+      if (other.name == element.name) return false;
     header.elements.push_back(std::move(element));
     return error == std::errc() && stop == end;
   }

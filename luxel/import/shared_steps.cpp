@@ -96,7 +96,8 @@ std::string one_sentence(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '.' || text.back() == ' '))
     text.pop_back();
   for (size_t at; (at = text.find('\n')) != std::string::npos;) text.replace(at, 1, "; ");
-  return text.empty() ? "no reason is known" : short_message(text);
+  constexpr size_t kMostBytes = 400;  // Assimp may quote the rest of the file
+  return text.empty() ? "no reason is known" : short_message(text, kMostBytes);
 }
 
 scene::Material default_material() {

@@ -150,6 +150,16 @@ TEST(BadInput, PlyNamesTheElement) {
   EXPECT_THAT(error_of(import_text("a.ply", header + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n")),
               HasSubstr("vertex 1"));
   EXPECT_THAT(error_of(import_text("a.ply", header + vertices + "3 0 1")), HasSubstr("face 0"));
+  for (const char* face : {"3.5 0 1 2", "-3 0 1 2", "3 0 1 2.5", "3 0 1 99999999999", "3, 0 1 2"})
+    EXPECT_THAT(error_of(import_text("a.ply", header + vertices + face + "\n")),
+                HasSubstr("face 0: the file ends early, or a number is broken"));
+  // Assimp reads one element from each line.
+  EXPECT_THAT(error_of(import_text("a.ply", header + "0 0\n0 1 0 0 0 1 0\n3 0 1 2\n")),
+              HasSubstr("vertex 0: the file ends early, or a number is broken"));
+  EXPECT_THAT(error_of(import_text("a.ply", header + "0 0 0\r1 0 0\n0 1 0\n3 0 1 2\n")),
+              HasSubstr("vertex 0: the file ends early, or a line break is broken"));
+  EXPECT_TRUE(import_text("a.ply", header + "0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2\r\n"));
+  EXPECT_TRUE(import_text("a.ply", header + "0 +0 -0.0\n1e0 .0 0.\n0 1 0\n3 0 +1 2\n"));
   EXPECT_THAT(error_of(import_text("a.ply", "ply\nformat ascii 1.0\n")), HasSubstr("header"));
 }
 

@@ -155,10 +155,40 @@ Result<PlyHeader> read_header(const SourceFile& source) {
   return header;
 }
 
+/// A whole word as a number. Assimp reads whole numbers up to what is no digit, in 32 bits, and
+/// would take the rest of 0.05 for the next number.
+bool is_number(std::string_view word, Kind kind, double& value) {
+  const bool is_signed = kind != Kind::u8 && kind != Kind::u16 && kind != Kind::u32;
+  if (is_signed && word.starts_with('+')) word.remove_prefix(1);
+  const char* const end = word.data() + word.size();
+  if (kind == Kind::f32 || kind == Kind::f64) {
+    const auto [stop, error] = std::from_chars(word.data(), end, value);
+    return error != std::errc::invalid_argument && stop == end;
+  }
+  int64_t whole = 0;
+  const auto [stop, error] = std::from_chars(word.data(), end, whole);
+  value = double(whole);
+  return error == std::errc() && stop == end && whole >= (is_signed ? INT32_MIN : 0) &&
+         whole <= (is_signed ? INT32_MAX : int64_t(UINT32_MAX));
+}
+
 /// Hands out the numbers of the body one by one.
 struct Reader {
   PlyHeader::Format format;
   std::string_view rest;
+  std::string_view line = {};  ///< what is left of it; text only
+
+  /// To the next line of a text, since Assimp reads each element from a line of its own. False
+  /// where there is none, or where Assimp would break it.
+  bool begin_element() {
+    if (format != PlyHeader::Format::ascii) return true;
+    if (rest.empty()) return false;
+    const size_t length = std::min(rest.find('\n'), rest.size());
+    line = rest.substr(0, length);
+    rest.remove_prefix(std::min(length + 1, rest.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line.find_first_of(std::string_view("\r\f\0", 3)) == line.npos;
+  }
 
   /// False at the end of the file, or at a word that is no number.
   bool next(Kind kind, double& value) {
@@ -168,12 +198,11 @@ struct Reader {
       rest.remove_prefix(size_of(kind));
       return true;
     }
-    rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
-    if (rest.starts_with('+')) rest.remove_prefix(1);
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-    if (error == std::errc::invalid_argument) return false;
-    rest.remove_prefix(size_t(end - rest.data()));
-    return true;
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    const size_t length = std::min(line.find_first_of(" \t"), line.size());
+    const std::string_view word = line.substr(0, length);
+    line.remove_prefix(length);
+    return is_number(word, kind, value);
   }
 };
 
@@ -215,9 +244,11 @@ Status check_ply(const SourceFile& source) {
     if (element.properties.empty() && element.count > header.body.size())
       return fail(ErrorCode::bad_input, "{}: there are {} of the element {}, and no properties",
                   source.name, element.count, element.name);
-    if (element.properties.empty()) continue;
     for (uint64_t i = 0; i < element.count; ++i) {
       const auto where = [&] { return fmt::format("{}: {} {}", source.name, element.name, i); };
+      if (!reader.begin_element())
+        return fail(ErrorCode::bad_input, "{}: the file ends early, or a line break is broken",
+                    where());
       for (const Property& property : element.properties)
         LUXEL_TRY_STATUS(check_property(property, reader, vertices, where));
     }

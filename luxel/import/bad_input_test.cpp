@@ -183,8 +183,9 @@ TEST(BadInput, PlyHeadersMeanOneThing) {
   EXPECT_THAT(error(axes + format + vertex + face), HasSubstr(nonsense));
   EXPECT_THAT(error(format + "element vertex 1\n" + axes + vertex + axes + face),
               HasSubstr("line 7: this line of the header makes no sense"));
-  EXPECT_THAT(error(format + "element vertex\r3\n" + axes + face),
-              HasSubstr("a.ply, line 3: a line break of old Macs"));
+  for (const char end : {'\r', '\f', '\0'})
+    EXPECT_THAT(error(format + "element vertex" + end + "3\n" + axes + face),
+                HasSubstr("a.ply, line 3: a line break is broken"));
   EXPECT_THAT(error(format + vertex + axes + face + "element edge 4000000000\n"),
               HasSubstr("a.ply: there are 4000000000 of the element edge, and no properties"));
 }

@@ -93,6 +93,11 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
+/// Assimp ends a line at more than its end.
+bool would_be_broken(std::string_view line) {
+  return line.find_first_of(std::string_view("\r\f\0", 3)) != line.npos;
+}
+
 /// One line of the header; false when it makes no sense. Assimp ends an element at the first line
 /// that is no property, and would take the properties after it for nothing.
 bool read_header_line(const std::vector<std::string_view>& words, PlyHeader& header) {
@@ -133,10 +138,10 @@ Result<PlyHeader> read_header(const SourceFile& source) {
     const size_t end = text.find('\n');
     if (end == text.npos)
       return fail(ErrorCode::bad_input, "{}: its header ends early", source.name);
-    const std::string_view line = text.substr(0, end);
-    if (const size_t at = line.find('\r'); at != line.npos && at + 1 < line.size())
-      return fail(ErrorCode::bad_input, "{}, line {}: a line break of old Macs stands within it",
-                  source.name, number);
+    std::string_view line = text.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (would_be_broken(line))
+      return fail(ErrorCode::bad_input, "{}, line {}: a line break is broken", source.name, number);
     const auto words = words_of(line);
     text.remove_prefix(end + 1);
     if (number == 1) {
@@ -187,7 +192,7 @@ struct Reader {
     line = rest.substr(0, length);
     rest.remove_prefix(std::min(length + 1, rest.size()));
     if (line.ends_with('\r')) line.remove_suffix(1);
-    return line.find_first_of(std::string_view("\r\f\0", 3)) == line.npos;
+    return !would_be_broken(line);
   }
 
   /// False at the end of the file, or at a word that is no number.

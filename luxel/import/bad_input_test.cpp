@@ -153,6 +153,8 @@ TEST(BadInput, PlyNamesTheElement) {
   for (const char* face : {"3.5 0 1 2", "-3 0 1 2", "3 0 1 2.5", "3 0 1 99999999999", "3, 0 1 2"})
     EXPECT_THAT(error_of(import_text("a.ply", header + vertices + face + "\n")),
                 HasSubstr("face 0: the file ends early, or a number is broken"));
+  EXPECT_THAT(error_of(import_text("a.ply", header + vertices + "0\n")),
+              HasSubstr("face 0: it has no corner"));
   // Assimp reads one element from each line.
   EXPECT_THAT(error_of(import_text("a.ply", header + "0 0\n0 1 0 0 0 1 0\n3 0 1 2\n")),
               HasSubstr("vertex 0: the file ends early, or a number is broken"));

@@ -221,6 +221,8 @@ Status check_property(const Property& property, Reader& reader, uint64_t vertice
   if (is_list && (!reader.next(property.list_count, count) || count < 0))
     return fail(ErrorCode::bad_input, "{}: the file ends early, or a number is broken", where());
   const bool is_index = property.name == "vertex_indices" || property.name == "vertex_index";
+  if (is_list && is_index && count == 0)  // Assimp crashes on some
+    return fail(ErrorCode::bad_input, "{}: it has no corner", where());
   for (double i = 0; i < count; ++i) {
     if (!reader.next(property.kind, value))
       return fail(ErrorCode::bad_input, "{}: the file ends early, or a number is broken", where());

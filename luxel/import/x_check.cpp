@@ -129,6 +129,7 @@ Status enter(Walk& walk) {
 Status check_faces(Walk& walk, uint64_t faces, uint64_t limit, const char* what) {
   for (uint64_t f = 0; f < faces; ++f) {
     LUXEL_TRY(const uint64_t corners, next_count(walk));
+    if (corners == 0) return walk.error("a face has no corner");
     for (uint64_t c = 0; c < corners; ++c) {
       LUXEL_TRY_STATUS(next_index(walk, limit, what));
     }

@@ -191,6 +191,7 @@ INSTANTIATE_TEST_SUITE_P(
         XDamage{"0,1;\n    0.5", "0,9;\n    0.5", "the vertex of a weight 9 is out of range"},
         XDamage{"2.0;1.0;0.0;,", "2.0;nan;0.0;,", "'nan' is not a finite number"},
         XDamage{"2.0;1.0;0.0;,", "2.0;1.0;0,1;,", "a comma and a digit follow 0; write 0.0"},
+        XDamage{"4;0,3,2,1;;", "0;;", "a face has no corner"},
         XDamage{"square {", "square", "stands where '{' should"}));
 
 // Assimp gives the one material to the first face.

@@ -63,8 +63,7 @@ void on_message(j_common_ptr library, int level) {
 /// or so are usual.
 void on_progress(j_common_ptr library) {
   constexpr int kMostScans = 100;
-  if (library->is_decompressor &&
-      reinterpret_cast<j_decompress_ptr>(library)->input_scan_number > kMostScans)
+  if (reinterpret_cast<j_decompress_ptr>(library)->input_scan_number > kMostScans)
     stop(reader_of(library), "It has more than 100 scans");
 }
 
@@ -134,7 +133,7 @@ Result<Image8> decode_jpeg(std::span<const std::byte> bytes, std::string_view na
   // Besides the pixels: what many scans add up to is kept in up to twice their bytes.
   const int times = jpeg_has_multiple_scans(&reader.library) ? 3 : 1;
   for (int i = 0; allow && i < times; ++i) LUXEL_TRY_STATUS(allow(width, height));
-  const size_t channels = reader.library.num_components == 4 ? 4 : 3;
+  const size_t channels = reader.library.out_color_space == JCS_CMYK ? 4 : 3;
   std::vector<uint8_t> row(channels * width);
   Image8 image{int(width), int(height), 4, {}};
   image.data.reserve(size_t(4) * width * height);

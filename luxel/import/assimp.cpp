@@ -14,6 +14,7 @@
 #include "luxel/import/mtl_text.h"
 #include "luxel/import/nesting.h"
 #include "luxel/import/obj_groups.h"
+#include "luxel/import/ply.h"
 
 namespace Assimp {
 /// Debian's Assimp is built with its assertions, and a wrong .fbx or .x that meets one would end
@@ -28,14 +29,6 @@ void aiAssertViolation(const char* expression, const char* file, int line) {
 
 namespace luxel::import {
 namespace {
-
-/// PLY holds colours as 8-bit display values, or as linear floats.
-bool has_display_colors(const SourceFile& source) {
-  const std::string_view header(reinterpret_cast<const char*>(source.bytes.data()),
-                                std::min<size_t>(source.bytes.size(), 4096));
-  return source.extension == ".ply" && (header.find("property uchar red") != header.npos ||
-                                        header.find("property uint8 red") != header.npos);
-}
 
 Rgb linear(Rgb c) {
   return {image::linear_from_srgb(c.x), image::linear_from_srgb(c.y), image::linear_from_srgb(c.z)};
@@ -187,10 +180,12 @@ const aiScene* read_file_with(Assimp::Importer& importer, const SourceFile& sour
 /// What an .obj names in the place of its own material libraries.
 constexpr const char* kMaterialFile = "luxel-materials.mtl";
 
-/// An .obj gets the materials of its libraries as one beside it, and no other file.
+/// An .obj gets the materials of its libraries as one beside it, and no other file. A .ply is the
+/// plain one.
 FilesForAssimp* files_for_assimp(const SourceFile& source, const ObjGroups& groups,
-                                 const MtlText& materials) {
+                                 const MtlText& materials, const PlainPly& ply) {
   auto* files = new FilesForAssimp(source);
+  if (source.extension == ".ply") files->replace(source.path, ply.text);
   if (source.extension != ".obj") return files;
   files->allow_no_others();
   const bool has_materials = !materials.text.empty();
@@ -238,7 +233,10 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
     LUXEL_TRY(materials, check_obj(source, imported.warnings));
     groups = number_groups(source);
   }
-  if (source.extension == ".ply") LUXEL_TRY_STATUS(check_ply(source));
+  PlainPly ply;
+  if (source.extension == ".ply") {
+    LUXEL_TRY(ply, write_plain_ply(source, imported.warnings));
+  }
   if (source.extension == ".x") LUXEL_TRY_STATUS(check_x(source));
   LUXEL_TRY_STATUS(check_nesting(source));
   if (source.extension == ".dae") LUXEL_TRY_STATUS(check_collada(source));
@@ -246,7 +244,7 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   LUXEL_TRY_STATUS(check_packed(source));
 
   Assimp::Importer importer;
-  importer.SetIOHandler(files_for_assimp(source, groups, materials));  // which deletes it
+  importer.SetIOHandler(files_for_assimp(source, groups, materials, ply));  // which deletes it
   // Points and lines are sorted out into meshes of their own and dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -260,7 +258,7 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
   std::vector<DrawnNode> drawn =
       drawn_nodes(*in, world_from_file(*in, source, imported.warnings), transforms);
   if (is_obj) join_groups(groups, drawn);
-  add_instances(*in, drawn, has_display_colors(source), imported.scene);
+  add_instances(*in, drawn, ply.has_display_colors, imported.scene);
   add_assimp_lights(*in, source, transforms, imported);
   add_assimp_cameras(*in, source, transforms, imported.scene);
   if (is_obj)

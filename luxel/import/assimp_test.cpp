@@ -1,4 +1,4 @@
-// What comes through Assimp: .obj with its .mtl, .ply, and a word of .dae.
+// What comes through Assimp: .obj with its .mtl, and a word of .dae.
 #include <gmock/gmock.h>
 
 #include "luxel/import/test_files.h"
@@ -154,32 +154,6 @@ TEST(Obj, TexturesAreFoundThroughBackslashesAndMissingOnesNamed) {
   ASSERT_FALSE(imported);
   EXPECT_THAT(imported.error().message, HasSubstr("lost.png"));
   EXPECT_THAT(imported.error().message, HasSubstr("white"));
-}
-
-TEST(Ply, VertexColoursBecomeLinear) {
-  const std::string text =
-      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-      "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
-      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-      "0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 255 0 188\n3 0 1 2\n";
-  const scene::Scene scene = scene_of(import_text("a.ply", text));
-  ASSERT_EQ(scene.meshes.size(), 1u);
-  ASSERT_EQ(scene.meshes[0].colors.size(), 3u);
-  EXPECT_EQ(scene.meshes[0].colors[0], (Rgb{1, 0, 0}));
-  EXPECT_NEAR(scene.meshes[0].colors[2].z, 0.503f, 0.001f) << "sRGB 188 is half the light";
-}
-
-TEST(Ply, BinaryFilesAreRead) {
-  const std::string header =
-      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
-      "property float y\nproperty float z\nelement face 1\n"
-      "property list uchar int vertex_indices\nend_header\n";
-  const std::string vertices = bytes_of<float>({0, 0, 0, 2, 0, 0, 0, 1, 0});
-  const auto face = [](int last) { return "\x03" + bytes_of<int>({0, 1, last}); };
-  EXPECT_NEAR(drawn_area(scene_of(import_text("a.ply", header + vertices + face(2)))), 1, 1e-6f);
-  const auto bad = import_text("a.ply", header + vertices + face(3));
-  ASSERT_FALSE(bad);
-  EXPECT_THAT(bad.error().message, HasSubstr("vertex index 3"));
 }
 
 }  // namespace

@@ -11,13 +11,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-std::string error_of(const Result<Imported>& imported) {
-  if (imported) return "no error";
-  EXPECT_NE(imported.error().message.back(), '.');
-  EXPECT_EQ(imported.error().message.find('\n'), std::string::npos);
-  return imported.error().message;
-}
-
 TEST(BadInput, FilesThatAreNone) {
   const TemporaryFolder folder;
   EXPECT_THAT(error_of(import_scene(folder.path() / "absent.glb")), HasSubstr("no such file"));
@@ -137,59 +130,6 @@ TEST(BadInput, ObjNamesTheLine) {
   EXPECT_THAT(error_of(import_text("a.obj", "v 0 1e99 0\n" + vertices + "f 1 2 3\n")),
               HasSubstr("line 1"));
   EXPECT_THAT(error_of(import_text("a.obj", vertices)), HasSubstr("no triangles"));
-}
-
-TEST(BadInput, PlyNamesTheElement) {
-  const std::string header =
-      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
-  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n";
-  ASSERT_TRUE(import_text("a.ply", header + vertices + "3 0 1 2\n"));
-  EXPECT_THAT(error_of(import_text("a.ply", header + vertices + "3 0 1 3\n")),
-              AllOf(HasSubstr("face 0"), HasSubstr("vertex index 3")));
-  EXPECT_THAT(error_of(import_text("a.ply", header + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n")),
-              HasSubstr("vertex 1"));
-  EXPECT_THAT(error_of(import_text("a.ply", header + vertices + "3 0 1")), HasSubstr("face 0"));
-  for (const char* face : {"3.5 0 1 2", "-3 0 1 2", "3 0 1 2.5", "3 0 1 99999999999", "3, 0 1 2"})
-    EXPECT_THAT(error_of(import_text("a.ply", header + vertices + face + "\n")),
-                HasSubstr("face 0: the file ends early, or a number is broken"));
-  EXPECT_THAT(error_of(import_text("a.ply", header + vertices + "0\n")),
-              HasSubstr("face 0: it has no corner"));
-  // Assimp reads one element from each line.
-  EXPECT_THAT(error_of(import_text("a.ply", header + "0 0\n0 1 0 0 0 1 0\n3 0 1 2\n")),
-              HasSubstr("vertex 0: the file ends early, or a number is broken"));
-  EXPECT_THAT(error_of(import_text("a.ply", header + "0 0 0\r1 0 0\n0 1 0\n3 0 1 2\n")),
-              HasSubstr("vertex 0: the file ends early, or a line break is broken"));
-  EXPECT_TRUE(import_text("a.ply", header + "0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2\r\n"));
-  EXPECT_TRUE(import_text("a.ply", header + "0 +0 -0.0\n1e0 .0 0.\n0 1 0\n3 0 +1 2\n"));
-  EXPECT_THAT(error_of(import_text("a.ply", "ply\nformat ascii 1.0\n")), HasSubstr("header"));
-}
-
-// Assimp reads some headers differently, and takes every element's count on trust.
-TEST(BadInput, PlyHeadersMeanOneThing) {
-  const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
-  const auto error = [&](const std::string& header) {
-    return error_of(
-        import_text("a.ply", "ply\n" + header + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
-  };
-  const std::string format = "format ascii 1.0\n", vertex = "element vertex 3\n",
-                    axes = "property float x\nproperty float y\nproperty float z\n";
-  const std::string comment = "comment by hand\n";
-  EXPECT_EQ(error(format + comment + vertex + axes + comment + face), "no error");
-  EXPECT_EQ(error(format + "obj_info 1\n" + vertex + axes + face), "no error");
-  EXPECT_THAT(error(vertex + axes + face), HasSubstr("a.ply: its header states no format"));
-  const char* nonsense = "this line of the header makes no sense";
-  for (const char* between : {"comment by hand\n", "obj_info 1\n", "\n"})
-    EXPECT_THAT(error(format + vertex + between + axes + face), HasSubstr(nonsense));
-  EXPECT_THAT(error(format + vertex + axes + format + face), HasSubstr(nonsense));
-  EXPECT_THAT(error(axes + format + vertex + face), HasSubstr(nonsense));
-  EXPECT_THAT(error(format + "element vertex 1\n" + axes + vertex + axes + face),
-              HasSubstr("line 7: this line of the header makes no sense"));
-  for (const char end : {'\r', '\f', '\0'})
-    EXPECT_THAT(error(format + "element vertex" + end + "3\n" + axes + face),
-                HasSubstr("a.ply, line 3: a line break is broken"));
-  EXPECT_THAT(error(format + vertex + axes + face + "element edge 4000000000\n"),
-              HasSubstr("a.ply: there are 4000000000 of the element edge, and no properties"));
 }
 
 /// A document that uses most of what the reader knows.

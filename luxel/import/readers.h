@@ -34,7 +34,6 @@ Result<Imported> read_with_assimp(const SourceFile& source);
 /// check_obj() returns the file's materials (mtl_text.h); a missing .mtl is a warning.
 struct MtlText;
 Result<MtlText> check_obj(const SourceFile& source, std::vector<std::string>& warnings);
-Status check_ply(const SourceFile& source);
 Status check_x(const SourceFile& source);
 Status check_collada(const SourceFile& source);
 Status check_fbx(const SourceFile& source);

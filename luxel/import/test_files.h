@@ -178,4 +178,12 @@ inline void expect_room_in_metres(const scene::Scene& scene) {
   expect_near(scene::shading_normal(scene, a), {0, 0.8f, -0.6f}, 1e-5f);
 }
 
+/// The message of a failed import: one line that ends without a full stop.
+inline std::string error_of(const Result<Imported>& imported) {
+  if (imported) return "no error";
+  EXPECT_NE(imported.error().message.back(), '.');
+  EXPECT_EQ(imported.error().message.find('\n'), std::string::npos);
+  return imported.error().message;
+}
+
 }  // namespace luxel::import

@@ -41,7 +41,8 @@ bool read_element(const std::vector<std::string_view>& words, PlyHeader& header)
   if (words.size() != 3) return false;
   for (const PlyElement& other : header.elements)
     if (other.name == words[1]) return false;
-  PlyElement& element = header.elements.emplace_back(std::string(words[1]));
+  PlyElement& element = header.elements.emplace_back();
+  element.name = words[1];
   const char* const end = words[2].data() + words[2].size();
   const auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
   return error == std::errc() && stop == end;

@@ -319,6 +319,9 @@ std::string text_of(const PlyHeader& header, const Surfaces& surfaces) {
 Result<PlainPly> write_plain_ply(const SourceFile& source, std::vector<std::string>& warnings) {
   LUXEL_TRY(const PlyHeader header, read_ply_header(source));
   LUXEL_TRY(Surfaces surfaces, read_surfaces(source, header, warnings));
+  if (surfaces.corner_counts.empty())
+    return fail(ErrorCode::bad_input, "{}: it has points but no faces; nothing can be lit",
+                source.name);
   const std::string what = "the vertices of " + source.name;
   if (!surfaces.wedge_uvs.empty()) {
     LUXEL_TRY_STATUS(

@@ -48,7 +48,7 @@ struct PlainPly {
 /// elements and an element's name for its count, cannot step over an element that it does not know,
 /// keeps one triangle of a strip, and trusts every number.
 /// Errors: those of the header; an early end, a number that is none or not finite, an index without
-/// a vertex, a face without a corner, memory.
+/// a vertex, a face without a corner, no face, memory.
 Result<PlainPly> write_plain_ply(const SourceFile& source, std::vector<std::string>& warnings);
 
 }  // namespace luxel::import

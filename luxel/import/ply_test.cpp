@@ -67,6 +67,8 @@ TEST(Ply, ErrorsNameTheElement) {
   EXPECT_TRUE(import_text("a.ply", header + "0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2\r\n"));
   EXPECT_TRUE(import_text("a.ply", header + "0 +0 -0.0\n1e0 .0 0.\n0 1 0\n3 0 +1 2\n"));
   EXPECT_THAT(error_of(import_text("a.ply", "ply\nformat ascii 1.0\n")), HasSubstr("header"));
+  EXPECT_THAT(error_of(import_text("a.ply", kText + kVertices + "end_header\n" + kCorners)),
+              HasSubstr("a.ply: it has points but no faces"));
 }
 
 // Assimp would find a vertex element in a comment, and a count in an element's name.

@@ -152,6 +152,7 @@ TEST(Ply, CornersHaveTheirOwnTextureCoordinates) {
   EXPECT_EQ(scene.textures.size(), 1u);
   const scene::Mesh& mesh = scene.meshes.at(0);
   ASSERT_EQ(mesh.triangles.size(), 2u);
+  ASSERT_EQ(mesh.uv0.size(), 6u);
   const auto u_of_corner = [&](size_t triangle, size_t corner) {
     return mesh.uv0[mesh.triangles[triangle][corner]].x;
   };

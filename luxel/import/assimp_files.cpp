@@ -3,22 +3,23 @@
 #include <assimp/MemoryIOWrapper.h>
 
 #include <cstring>
-#include <span>
 
 namespace luxel::import {
 namespace {
 
-/// A stream over bytes that outlive it.
-Assimp::IOStream* stream_over(std::span<const std::byte> bytes) {
-  return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
-}
+/// A stream that is in `open` as long as it lives.
+class Stream : public Assimp::MemoryIOStream {
+ public:
+  /// `is_owner`: the bytes are an array that this stream deletes.
+  Stream(const uint8_t* bytes, size_t size, bool is_owner, std::set<Assimp::IOStream*>& open)
+      : MemoryIOStream(bytes, size, is_owner), open_(open) {
+    open_.insert(this);
+  }
+  ~Stream() override { open_.erase(this); }
 
-/// A stream with bytes of its own.
-Assimp::IOStream* stream_with(std::span<const std::byte> bytes) {
-  auto* copy = new uint8_t[bytes.size()];
-  if (!bytes.empty()) std::memcpy(copy, bytes.data(), bytes.size());
-  return new Assimp::MemoryIOStream(copy, bytes.size(), true);
-}
+ private:
+  std::set<Assimp::IOStream*>& open_;
+};
 
 }  // namespace
 
@@ -35,12 +36,21 @@ bool FilesForAssimp::Exists(const char* file) const {
 
 Assimp::IOStream* FilesForAssimp::Open(const char* file, const char* mode) {
   if (std::strchr(mode, 'w') != nullptr || std::strchr(mode, 'a') != nullptr) return nullptr;
-  if (const auto text = texts_.find(file); text != texts_.end())
-    return stream_over(std::as_bytes(std::span(text->second)));
+  const auto stream_over = [&](const auto& bytes) {
+    return new Stream(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), false, open_);
+  };
+  if (const auto text = texts_.find(file); text != texts_.end()) return stream_over(text->second);
   if (source_.path == file) return stream_over(source_.bytes);
   if (!others_) return nullptr;
   const auto bytes = read_named_file(source_.files, stated(file), source_.name, source_.memory);
-  return bytes ? stream_with(*bytes) : nullptr;
+  if (!bytes) return nullptr;
+  auto* copy = new uint8_t[bytes->size()];
+  if (!bytes->empty()) std::memcpy(copy, bytes->data(), bytes->size());
+  return new Stream(copy, bytes->size(), true, open_);
+}
+
+FilesForAssimp::~FilesForAssimp() {
+  while (!open_.empty()) delete *open_.begin();
 }
 
 void FilesForAssimp::Close(Assimp::IOStream* stream) { delete stream; }

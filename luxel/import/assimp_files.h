@@ -4,6 +4,7 @@
 #include <assimp/IOSystem.hpp>
 
 #include <map>
+#include <set>
 #include <string>
 
 #include "luxel/import/readers.h"
@@ -15,6 +16,8 @@ namespace luxel::import {
 class FilesForAssimp : public Assimp::IOSystem {
  public:
   explicit FilesForAssimp(const SourceFile& source) : source_(source) {}
+  /// Closes what Assimp has left open where it met an error.
+  ~FilesForAssimp() override;
 
   /// `text` instead of the file `path`; the scene's own, or one beside it.
   void replace(const std::filesystem::path& path, std::string text) {
@@ -34,6 +37,7 @@ class FilesForAssimp : public Assimp::IOSystem {
 
   const SourceFile& source_;
   std::map<std::string, std::string> texts_;
+  std::set<Assimp::IOStream*> open_;  ///< some of Assimp's readers delete theirs without Close()
   bool others_ = true;
 };
 

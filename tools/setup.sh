@@ -22,6 +22,7 @@ packages=(
   libeigen3-dev                      # least squares
   libcgal-dev                        # exact predicates, constrained Delaunay triangulation
   zlib1g-dev                         # checksums
+  libvulkan-dev libvulkan-volk-dev glslang-tools # graphics devices
   libcli11-dev libfmt-dev libexpected-dev
   libgtest-dev libgmock-dev          # tests
 )
@@ -41,6 +42,10 @@ if [[ ${1:-} == tests ]]; then
   command -v chromium >/dev/null || wanted+=(chromium)
   command -v patch >/dev/null || wanted+=(patch)
   command -v bwrap >/dev/null || wanted+=(bubblewrap)
+  # A graphics device without a graphics card, and who watches how it is used.
+  compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || wanted+=(mesa-vulkan-drivers)
+  compgen -G '/usr/share/vulkan/explicit_layer.d/*validation*.json' >/dev/null ||
+    wanted+=(vulkan-validationlayers)
 fi
 if [[ ${1:-} == fuzz ]]; then
   command -v clang++ >/dev/null || wanted+=(clang)

@@ -19,6 +19,7 @@ enum class ErrorCode {
   out_of_memory,  ///< a stated memory limit is too small
   out_of_disk,    ///< the disk is full
   out_of_time,    ///< a stated time limit is too short
+  no_device,      ///< a graphics device or a display is missing, or is lost
   cancelled,      ///< the user stopped the work
 };
 

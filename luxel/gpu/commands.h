@@ -1,0 +1,59 @@
+// Work that is recorded and given to a device.
+#pragma once
+
+#include <deque>
+#include <functional>
+
+#include "luxel/gpu/device.h"
+
+namespace luxel::gpu {
+
+/// Records command buffers and gives them to the device's queue, in order. Each has a number; the
+/// device has done all up to the number that its timeline semaphore shows. One thread uses one
+/// Commands; several may work on one device.
+class Commands {
+ public:
+  static Result<Commands> make(const Device& device);
+  Commands(Commands&&) = default;
+  Commands& operator=(Commands&&) = default;
+  /// Waits for what was given.
+  ~Commands();
+
+  using Record = std::function<void(VkCommandBuffer)>;
+
+  /// What a picture of a window waits for and tells when it is done; null: nothing.
+  struct WindowSemaphores {
+    VkSemaphore wait_for = VK_NULL_HANDLE;
+    VkSemaphore signal = VK_NULL_HANDLE;
+  };
+
+  /// Records and gives to the device; the number to wait for. Errors: the device is lost.
+  Result<uint64_t> submit(const Record& record, WindowSemaphores window);
+  Result<uint64_t> submit(const Record& record) { return submit(record, {}); }
+  /// Returns when everything up to this number is done. Errors: the device is lost.
+  Status wait(uint64_t number);
+  /// submit() and wait().
+  Status run(const Record& record);
+
+  const Device& device() const { return *device_; }
+
+ private:
+  explicit Commands(const Device& device) : device_(&device) {}
+  Result<VkCommandBuffer> next_buffer();
+
+  struct Given {
+    uint64_t number;
+    VkCommandBuffer buffer;
+  };
+  const Device* device_;
+  Owned<VkCommandPool, &VolkDeviceTable::vkDestroyCommandPool> pool_;
+  Owned<VkSemaphore, &VolkDeviceTable::vkDestroySemaphore> timeline_;
+  uint64_t last_ = 0;
+  std::deque<Given> given_;
+};
+
+/// All that came before is done and seen by all that comes after. Simple, and as fast as anything
+/// for the few passes of a frame.
+void full_barrier(const Device& device, VkCommandBuffer commands);
+
+}  // namespace luxel::gpu

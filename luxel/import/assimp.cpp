@@ -180,18 +180,45 @@ const aiScene* read_file_with(Assimp::Importer& importer, const SourceFile& sour
 /// What an .obj names in the place of its own material libraries.
 constexpr const char* kMaterialFile = "luxel-materials.mtl";
 
-/// An .obj gets the materials of its libraries as one beside it, and no other file. A .ply is the
-/// plain one.
-FilesForAssimp* files_for_assimp(const SourceFile& source, const ObjGroups& groups,
-                                 const MtlText& materials, const PlainPly& ply) {
+/// What Assimp gets in the place of a file that its reader could misread.
+struct Rewritten {
+  ObjGroups obj;
+  MtlText obj_materials;  ///< of all its libraries
+  PlainPly ply;
+  std::optional<std::string> x;
+};
+
+/// Checks a file by its own rules, and writes it anew where Assimp needs that.
+Result<Rewritten> rewrite(const SourceFile& source, std::vector<std::string>& warnings) {
+  Rewritten out;
+  LUXEL_TRY_STATUS(check_nesting(source));
+  LUXEL_TRY_STATUS(check_packed(source));
+  if (source.extension == ".obj") {
+    LUXEL_TRY(out.obj_materials, check_obj(source, warnings));
+    out.obj = number_groups(source);
+  } else if (source.extension == ".ply") {
+    LUXEL_TRY(out.ply, write_plain_ply(source, warnings));
+  } else if (source.extension == ".x") {
+    LUXEL_TRY(out.x, write_plain_x(source));
+  } else if (source.extension == ".dae") {
+    LUXEL_TRY_STATUS(check_collada(source));
+  } else if (source.extension == ".fbx") {
+    LUXEL_TRY_STATUS(check_fbx(source));
+  }
+  return out;
+}
+
+/// An .obj gets the materials of its libraries as one beside it, and no other file.
+FilesForAssimp* files_for_assimp(const SourceFile& source, const Rewritten& rewritten) {
   auto* files = new FilesForAssimp(source);
-  if (source.extension == ".ply") files->replace(source.path, ply.text);
+  if (source.extension == ".ply") files->replace(source.path, rewritten.ply.text);
+  if (rewritten.x) files->replace(source.path, *rewritten.x);
   if (source.extension != ".obj") return files;
   files->allow_no_others();
-  const bool has_materials = !materials.text.empty();
-  files->replace(source.path,
-                 (has_materials ? fmt::format("mtllib {}\n", kMaterialFile) : "") + groups.text);
-  if (has_materials) files->replace(source.path.parent_path() / kMaterialFile, materials.text);
+  const std::string& materials = rewritten.obj_materials.text;
+  files->replace(source.path, (materials.empty() ? "" : fmt::format("mtllib {}\n", kMaterialFile)) +
+                                  rewritten.obj.text);
+  if (!materials.empty()) files->replace(source.path.parent_path() / kMaterialFile, materials);
   return files;
 }
 
@@ -226,25 +253,11 @@ Status check_extension(const SourceFile& source) {
 
 Result<Imported> read_with_assimp(const SourceFile& source) {
   Imported imported;
-  MtlText materials;
-  ObjGroups groups;
+  LUXEL_TRY(const Rewritten rewritten, rewrite(source, imported.warnings));
   const bool is_obj = source.extension == ".obj";
-  if (is_obj) {
-    LUXEL_TRY(materials, check_obj(source, imported.warnings));
-    groups = number_groups(source);
-  }
-  PlainPly ply;
-  if (source.extension == ".ply") {
-    LUXEL_TRY(ply, write_plain_ply(source, imported.warnings));
-  }
-  if (source.extension == ".x") LUXEL_TRY_STATUS(check_x(source));
-  LUXEL_TRY_STATUS(check_nesting(source));
-  if (source.extension == ".dae") LUXEL_TRY_STATUS(check_collada(source));
-  if (source.extension == ".fbx") LUXEL_TRY_STATUS(check_fbx(source));
-  LUXEL_TRY_STATUS(check_packed(source));
 
   Assimp::Importer importer;
-  importer.SetIOHandler(files_for_assimp(source, groups, materials, ply));  // which deletes it
+  importer.SetIOHandler(files_for_assimp(source, rewritten));  // which deletes it
   // Points and lines are sorted out into meshes of their own and dropped.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -253,12 +266,13 @@ Result<Imported> read_with_assimp(const SourceFile& source) {
     return fail(ErrorCode::bad_input, "{}: cannot be read: {}", source.name,
                 one_sentence(importer.GetErrorString()));
 
-  LUXEL_TRY_STATUS(read_assimp_materials(*in, source, materials.with_color, imported));
+  LUXEL_TRY_STATUS(
+      read_assimp_materials(*in, source, rewritten.obj_materials.with_color, imported));
   NodeTransforms transforms;
   std::vector<DrawnNode> drawn =
       drawn_nodes(*in, world_from_file(*in, source, imported.warnings), transforms);
-  if (is_obj) join_groups(groups, drawn);
-  add_instances(*in, drawn, ply.has_display_colors, imported.scene);
+  if (is_obj) join_groups(rewritten.obj, drawn);
+  add_instances(*in, drawn, rewritten.ply.has_display_colors, imported.scene);
   add_assimp_lights(*in, source, transforms, imported);
   add_assimp_cameras(*in, source, transforms, imported.scene);
   if (is_obj)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,9 @@ Result<Imported> read_with_assimp(const SourceFile& source);
 /// check_obj() returns the file's materials (mtl_text.h); a missing .mtl is a warning.
 struct MtlText;
 Result<MtlText> check_obj(const SourceFile& source, std::vector<std::string>& warnings);
-Status check_x(const SourceFile& source);
+/// The text of a .x file of the same surfaces; none for a binary or packed one, or what is no .x.
+/// Errors: those of checks; memory.
+Result<std::optional<std::string>> write_plain_x(const SourceFile& source);
 Status check_collada(const SourceFile& source);
 Status check_fbx(const SourceFile& source);
 /// Checks of a scene in an archive: .zae, .3mf, .zgl, .ifczip.

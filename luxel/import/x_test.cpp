@@ -188,11 +188,41 @@ INSTANTIATE_TEST_SUITE_P(
         XDamage{"3;1.0;0.5", "4;1.0;0.5", "the vertex of a colour 4 is out of range"},
         XDamage{"    { paint }\n", "", "material index 0 is out of range, the mesh lists 0"},
         XDamage{"Material glow", "Materiel glow", "material index 0 is out of range"},
-        XDamage{"0,1;\n    0.5", "0,9;\n    0.5", "the vertex of a weight 9 is out of range"},
         XDamage{"2.0;1.0;0.0;,", "2.0;nan;0.0;,", "'nan' is not a finite number"},
-        XDamage{"2.0;1.0;0.0;,", "2.0;1.0;0,1;,", "a comma and a digit follow 0; write 0.0"},
+        XDamage{"2.0;1.0;0.0;,", "2.0;1e39;0.0;,", "'1e39' is not a finite number"},
+        XDamage{"0.5;0.6;0.7", "0.5;inf;0.7", "'inf' is not a finite number"},
+        XDamage{"\"pics\\\\paint.png\"", "paint.png",
+                "'paint.png' stands where the name of a picture in quotes should"},
         XDamage{"4;0,3,2,1;;", "0;;", "a face has no corner"},
         XDamage{"square {", "square", "stands where '{' should"}));
+
+// Assimp would take a lone ; for an object's name and step over what comes next, the end of the
+// mesh included, and 0,1 for a tenth.
+TEST(DirectX, SeparatorsMayStandAnywhere) {
+  std::string text = kRoom;
+  for (const auto& [from, to] : {std::pair("4;0,3,2,1;;", "4;0,3,2,1;;; ,"),
+                                 {"0.0;0.0;;\n }\n}\nFrame room", "0.0;0.0;;\n; }\n};\nFrame room"},
+                                 {"2.0;0.0;0.0;,", "2,0,0"},
+                                 {"{ paint }", ", { paint };"}}) {
+    const size_t at = text.find(from);
+    if (at != text.npos) text.replace(at, std::string_view(from).size(), to);
+  }
+  const scene::Scene scene = scene_of(import_x(text));
+  ASSERT_EQ(scene.instances.size(), 2u);
+  EXPECT_NEAR(drawn_area(scene), 2.5f, 1e-6f);
+  EXPECT_EQ(scene::material_at(scene, {0, 0, {0.3f, 0.3f}}).name, "paint");
+}
+
+// Assimp would crash on the material list that stands behind the first mesh.
+TEST(DirectX, MeshesWithoutFacesAreLeftOut) {
+  const std::string empty = "Mesh { 1; 0.0;0.0;0.0;; 0;; }\n";
+  const std::string list =
+      "MeshMaterialList { 1; 1; 0; Material { 0.8;0.8;0.8;1.0;; 1.0; "
+      "0.0;0.0;0.0;; 0.0;0.0;0.0;; } }\n";
+  std::string text = kPlain;
+  text.insert(text.find("Mesh"), empty + list);
+  EXPECT_NEAR(drawn_area(scene_of(import_x(text))), 0.5f, 1e-6f);
+}
 
 // Assimp gives the one material to the first face.
 TEST(DirectX, AMaterialOfNoFaceIsAnError) {

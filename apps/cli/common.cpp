@@ -57,6 +57,8 @@ std::string_view name_of(ErrorCode code) {
       return "out_of_disk";
     case ErrorCode::out_of_time:
       return "out_of_time";
+    case ErrorCode::no_device:
+      return "no_device";
     case ErrorCode::cancelled:
       return "cancelled";
   }

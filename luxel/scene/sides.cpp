@@ -70,13 +70,18 @@ bool let_through_alike(const Scene& scene, const Mesh& mesh, uint32_t material_a
       !lets_light_through(scene.materials[material_b]))
     return true;
   if (material_a != material_b) return false;
-  const auto equal = [&](const std::vector<Vec2>& uv) {
-    if (uv.empty()) return true;
+  // Of the pictures that say where light goes through. In a baked file TEXCOORD_1 differs: each
+  // side has its own light.
+  const auto looked_up_alike = [&](const TextureRef& ref) {
+    const std::vector<Vec2>& uv = ref.uv_set == 0 ? mesh.uv0 : mesh.uv1;
+    if (ref.texture == kNone || uv.empty()) return true;
     for (size_t k = 0; k < 3; ++k)
       if (!(uv[a[k]] == uv[b[k]])) return false;
     return true;
   };
-  return equal(mesh.uv0) && equal(mesh.uv1);
+  const Material& material = scene.materials[material_a];
+  return looked_up_alike(material.base_color_texture) &&
+         looked_up_alike(material.transmission_texture);
 }
 
 /// Ties the two when they are sides of one sheet.

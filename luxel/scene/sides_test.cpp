@@ -111,9 +111,15 @@ TEST(Sides, WhatIsNotTheOtherSideIsLeftAlone) {
   for (size_t k = 4; k < 8; ++k) leaf.uv0[k].x += 0.5f;
   Scene holes = scene_of(std::move(leaf));
   holes.materials[0].alpha_mode = AlphaMode::mask;
+  holes.materials[0].base_color_texture.texture = 0;
   EXPECT_EQ(link_sides(holes), 0u);
   std::swap(holes.meshes[0].uv0, holes.meshes[0].uv1);
+  holes.materials[0].base_color_texture.uv_set = 1;
   EXPECT_EQ(link_sides(holes), 0u);
+  // As in a baked file: the picture is the same, and each side has its own place in the lightmap.
+  holes.materials[0].base_color_texture.uv_set = 0;
+  Scene baked = holes;
+  EXPECT_EQ(link_sides(baked), 1u);
   holes.meshes[0].uv1.clear();
   add_material(holes, "other holes", {0.5f, 0.5f, 0.5f});
   holes.meshes[0].triangle_material[1] = 1;

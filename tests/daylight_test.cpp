@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include <functional>
 
 #include "tests/command.h"
@@ -57,6 +59,12 @@ TEST(NoLight, IsTheSameClearDayForEveryCommand) {
     EXPECT_TRUE(chosen.bytes == asked.bytes);
   }
   EXPECT_THAT(luxel("probe " + plate + " --at 0.5,0,0.5").err, HasSubstr(kSaid));
+  // bake.json says which it was, for viewers that show the sky.
+  for (const char* light : {"", " --sky 135,40"}) {
+    bake(light);
+    const auto report = nlohmann::json::parse(slurp(s.path / "b" / "bake.json"));
+    EXPECT_EQ(report.at("default_day"), *light == 0);
+  }
 }
 
 // An .obj file cannot hold lights: its users cannot have ticked anything.

@@ -134,6 +134,29 @@ json to_json(const View& view) {
             {"height_m", view.camera.orthographic_height_m}}}};
 }
 
+std::optional<View> view_of_json(const json& from) {
+  try {
+    View out;
+    from.at("width").get_to(out.width);
+    from.at("height").get_to(out.height);
+    from.at("exposure").get_to(out.exposure);
+    const json& camera = from.at("camera");
+    const auto matrix = camera.at("matrix").get<std::vector<float>>();
+    if (matrix.size() != 16) return std::nullopt;
+    for (size_t i = 0; i < 12; ++i)
+      out.camera.world_from_camera.row[i / 4][i % 4] = matrix[4 * (i % 4) + i / 4];
+    camera.at("yfov").get_to(out.camera.fov_y_rad);
+    camera.at("aspect").get_to(out.camera.aspect);
+    camera.at("height_m").get_to(out.camera.orthographic_height_m);
+    const bool makes_sense = out.width > 0 && out.height > 0 && out.exposure > 0 &&
+                             std::isfinite(out.exposure) && out.camera.aspect >= 0 &&
+                             out.camera.fov_y_rad > 0 && out.camera.fov_y_rad < kPi;
+    return makes_sense ? std::optional(out) : std::nullopt;
+  } catch (const json::exception&) {
+    return std::nullopt;
+  }
+}
+
 Status check_view_page() {
   if (!view_page_before_data().empty()) return {};
   return fail(

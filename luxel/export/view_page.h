@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -25,6 +26,8 @@ struct View {
 /// radians, `aspect` 0 where the camera leaves it to the picture, `height_m` > 0 for an
 /// orthographic camera.
 nlohmann::json to_json(const View& view);
+/// What to_json() wrote; none where it is something else.
+std::optional<View> view_of_json(const nlohmann::json& json);
 
 struct ViewPage {
   std::string title;

@@ -61,6 +61,28 @@ TEST(ViewJson, MatrixStandsColumnByColumn) {
   EXPECT_EQ(j["width"], 96);
 }
 
+TEST(ViewJson, IsReadBack) {
+  View view = some_view();
+  view.camera.world_from_camera.row[0] = {0.5f, 0.25f, 7, 8};
+  view.camera.aspect = 2, view.camera.orthographic_height_m = 3;
+  const nlohmann::json json = to_json(view);
+  const std::optional<View> read = view_of_json(json);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(to_json(*read), json);
+  EXPECT_EQ(read->camera.world_from_camera.row, view.camera.world_from_camera.row);
+  for (const char* key : {"width", "exposure", "camera"}) {
+    nlohmann::json damaged = json;
+    damaged[key] = nullptr;
+    EXPECT_FALSE(view_of_json(damaged)) << key;
+    damaged[key] = -1;
+    EXPECT_FALSE(view_of_json(damaged)) << key;
+  }
+  nlohmann::json short_matrix = json;
+  short_matrix["camera"]["matrix"] = {1, 2, 3};
+  EXPECT_FALSE(view_of_json(short_matrix));
+  EXPECT_FALSE(view_of_json(nullptr));
+}
+
 class ViewPageTest : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -39,4 +39,6 @@ HalfImage to_half(const Image& image) {
   return out;
 }
 
+float from_half(uint16_t bits) { return Imath::half(Imath::half::FromBits, bits); }
+
 }  // namespace luxel::image

@@ -21,4 +21,7 @@ struct HalfImage {
 /// and a black image has scale 1.
 HalfImage to_half(const Image& image);
 
+/// The number that the bits of a half are.
+float from_half(uint16_t bits);
+
 }  // namespace luxel::image

@@ -36,6 +36,12 @@ TEST(Half, KeepsElevenBitsOverEightPowersOfTen) {
   EXPECT_LT(top, 0x1p15);
 }
 
+TEST(Half, EveryBitPatternIsRead) {
+  for (uint32_t bits = 0; bits < 65536; ++bits)
+    if ((bits >> 10 & 31) != 31)
+      ASSERT_EQ(double(from_half(uint16_t(bits))), value_of(uint16_t(bits)));
+}
+
 TEST(Half, DarkerThanThatHasAFixedStep) {
   Image image(2, 1, 3);
   image.set_rgb(0, 0, {1, 0x1p-40f, 0x1.8p-39f});

@@ -100,6 +100,7 @@ nlohmann::json bake_report(const BakeSettings& settings, const Bake& bake,
       {"scratch_bytes", bake.light.scratch_bytes},
       {"relative_error", bake.light.relative_error},
       {"preview", to_json(bake.view)},
+      {"default_day", is_lit_by_default_day(settings.outside, bake.scene)},
       {"warnings", bake.warnings}};
   if (!bake.light.errors.empty()) out["error"] = about_error(settings, bake);
   return out;

@@ -237,6 +237,10 @@ Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, 
   return warnings;
 }
 
+bool is_lit_by_default_day(const OutsideLight& outside, const scene::Scene& scene) {
+  return !scene.environment.empty() && !outside.environment && !outside.sky;
+}
+
 std::string no_light_arrives(std::string_view what) {
   return fmt::format(
       "{} is black: no light gets there; a closed room needs a light or an emissive surface "

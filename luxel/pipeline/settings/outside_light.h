@@ -64,6 +64,9 @@ inline constexpr SkySetting kDefaultSky{.azimuth_deg = 135, .elevation_deg = 40}
 Result<std::vector<std::string>> add_outside_light(const OutsideLight& outside, scene::Scene& scene,
                                                    std::string_view about_lost_lights = {});
 
+/// Whether add_outside_light() had to bring kDefaultSky: no file brings surroundings of its own.
+bool is_lit_by_default_day(const OutsideLight& outside, const scene::Scene& scene);
+
 /// Why nothing is lit in a scene that has light: `what` is what stays black.
 std::string no_light_arrives(std::string_view what);
 

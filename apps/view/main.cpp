@@ -1,0 +1,102 @@
+// The `luxel-view` program: a bake drawn by a graphics device.
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "luxel/base/file.h"
+#include "luxel/base/output_folder.h"
+#include "luxel/image/codec.h"
+#include "luxel/pipeline/settings/version.h"
+#include "luxel/view/open_bake.h"
+
+namespace {
+
+using namespace luxel;
+
+constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kOutOfResource = 3;
+
+struct Options {
+  std::filesystem::path subject, screenshot;
+  std::string size, device;
+  bool offscreen = false;
+  int width = 0, height = 0;  ///< 0: as preview.png
+};
+
+Status parse_size(Options& options) {
+  char rest = 0;
+  constexpr int kMost = 16384;
+  if (options.size.empty()) return {};
+  if (std::sscanf(options.size.c_str(), "%dx%d%c", &options.width, &options.height, &rest) == 2 &&
+      options.width > 0 && options.height > 0 && options.width <= kMost && options.height <= kMost)
+    return {};
+  return fail(ErrorCode::bad_setting,
+              "--size '{}' is not WIDTHxHEIGHT, as in 960x720, each up to {}", options.size, kMost);
+}
+
+/// One picture of the bake, without a window.
+Status draw_offscreen(const Options& options) {
+  LUXEL_TRY_STATUS(check_output_file(options.screenshot));
+  gpu::DeviceParams params;
+  params.name = options.device;
+  LUXEL_TRY(const std::unique_ptr<gpu::Device> device, gpu::Device::open(params));
+  LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device));
+  LUXEL_TRY(const view::OpenedBake bake, view::open_bake(options.subject));
+  for (const std::string& warning : bake.warnings)
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  LUXEL_TRY(const view::DeviceScene scene,
+            view::put_on_device(commands, bake.scene, bake.lightmaps));
+  LUXEL_TRY(const view::Painter painter,
+            view::make_painter(*device, scene, uint32_t(options.width ? options.width : bake.width),
+                               uint32_t(options.height ? options.height : bake.height)));
+  LUXEL_TRY(const image::Image8 picture, view::painted(commands, painter, scene, bake.first));
+  LUXEL_TRY_STATUS(write_file_atomically(options.screenshot, image::encode_png(picture)));
+  std::fprintf(stderr, "wrote %s, drawn by %s\n", options.screenshot.string().c_str(),
+               device->name.c_str());
+  return {};
+}
+
+int report(const Error& error) {
+  std::fprintf(stderr, "luxel-view: %s\n", error.message.c_str());
+  const bool is_resource = error.code == ErrorCode::out_of_memory ||
+                           error.code == ErrorCode::out_of_disk ||
+                           error.code == ErrorCode::out_of_time;
+  return is_resource ? kOutOfResource : kBadInput;
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app{"luxel-view: look at a bake, drawn by the graphics card", "luxel-view"};
+  app.set_version_flag("--version", std::string("luxel-view ") + pipeline::kVersion);
+  app.add_option("FOLDER", options.subject, "What `luxel bake` left")->required();
+  app.add_flag("--offscreen", options.offscreen, "Draw one picture, without a window")->required();
+  app.add_option("--screenshot", options.screenshot, "The picture to write: .png")->required();
+  app.add_option("--size", options.size, "Size of the picture (that of preview.png)")
+      ->type_name("WxH");
+  app.add_option("--device", options.device,
+                 "A part of the graphics device's name (the fastest kind)")
+      ->type_name("NAME");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    std::fprintf(stderr, "luxel-view: %s; 'luxel-view --help' lists what there is\n", error.what());
+    return kUsage;
+  }
+  if (const Status size = parse_size(options); !size) return report(size.error());
+  const Status done = draw_offscreen(options);
+  return done ? kDone : report(done.error());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return report({ErrorCode::out_of_memory, "out of memory"});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "luxel-view: internal error: %s; please report this\n", error.what());
+    return kBadInput;
+  }
+}

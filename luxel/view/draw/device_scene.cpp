@@ -1,0 +1,277 @@
+#include "luxel/view/draw/device_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <span>
+#include <tuple>
+
+#include "luxel/image/half.h"
+
+namespace luxel::view {
+namespace {
+
+// The structs of shaders/surface.glsl, in scalar layout.
+struct DeviceVertex {
+  Vec3 position;
+  Vec2 uv0, uv1;
+  Vec2 uv_behind;  ///< uv1 of the surface's other side
+  Rgb color;
+};
+static_assert(sizeof(DeviceVertex) == 48);
+
+struct DeviceLookUp {
+  Vec3 u{1, 0, 0}, v{0, 1, 0};
+  uint32_t uv_set = 0;
+};
+
+struct DeviceMaterial {
+  Rgb base_color;
+  float alpha = 1;
+  Rgb emission;
+  float metallic = 0;
+  float cutoff = 0;  ///< alpha below it is a hole
+  float light_scale = 1;
+  uint32_t unlit = 0;
+  Rgb through_color;  ///< of light that is scattered through
+  float through = 0;
+  DeviceLookUp map, metal, glow, through_share, through_tint;
+};
+static_assert(sizeof(DeviceMaterial) == 60 + 5 * 28);
+
+template <class Values>
+std::span<const std::byte> bytes_of(const Values& values) {
+  return std::as_bytes(std::span(values));
+}
+
+/// scene::transformed_uv() as two rows that are multiplied by (u, v, 1).
+DeviceLookUp look_up_of(const scene::TextureRef& ref) {
+  const Vec2 o = scene::transformed_uv(ref, {0, 0});
+  const Vec2 u = scene::transformed_uv(ref, {1, 0}), v = scene::transformed_uv(ref, {0, 1});
+  return {{u.x - o.x, v.x - o.x, o.x}, {u.y - o.y, v.y - o.y, o.y}, uint32_t(ref.uv_set)};
+}
+
+/// Puts pictures and samplers on the device, each once.
+class Pictures {
+ public:
+  Pictures(gpu::Commands& commands, const scene::Scene& scene, DeviceScene& out)
+      : commands_(commands), scene_(scene), out_(out) {}
+
+  /// One white pixel: what is looked up where there is no picture.
+  Result<gpu::Binding> white() {
+    constexpr std::array<uint8_t, 4> kWhite{255, 255, 255, 255};
+    if (white_ == nullptr) {
+      gpu::PictureParams params;
+      params.width = params.height = 1;
+      LUXEL_TRY(white_, add(params, bytes_of(kWhite), "a white pixel"));
+    }
+    return binding(white_, {});
+  }
+
+  /// A texture of the scene: display values, or numbers where `is_linear`.
+  Result<gpu::Binding> texture(const scene::TextureRef& ref, bool is_linear) {
+    if (ref.texture == scene::kNone) return white();
+    const scene::Texture& texture = scene_.textures[ref.texture];
+    const gpu::Picture*& picture = textures_[{ref.texture, is_linear}];
+    if (picture == nullptr) {
+      gpu::PictureParams params;
+      params.format = is_linear ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R8G8B8A8_SRGB;
+      params.width = uint32_t(texture.width), params.height = uint32_t(texture.height);
+      params.levels = gpu::full_levels(params.width, params.height);
+      LUXEL_TRY(picture, add(params, bytes_of(texture.rgba), "the texture " + texture.name));
+    }
+    const auto wrap = [](scene::Wrap w) {
+      if (w == scene::Wrap::clamp) return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+      return w == scene::Wrap::mirror ? VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT
+                                      : VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    };
+    const bool is_nearest = ref.filter == scene::Filter::nearest;
+    return binding(picture, {is_nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR, wrap(ref.wrap_u),
+                             wrap(ref.wrap_v)});
+  }
+
+  /// Linear light as halves; `scale` brings it back. `around`: how the width goes on at its end.
+  Result<gpu::Binding> light(const image::Image& image, VkSamplerAddressMode around,
+                             std::string_view what, float& scale) {
+    const image::HalfImage half = image::to_half(image);
+    scale = half.scale;
+    gpu::PictureParams params;
+    params.format = VK_FORMAT_R16G16B16A16_SFLOAT;
+    params.width = uint32_t(half.width), params.height = uint32_t(half.height);
+    LUXEL_TRY(const gpu::Picture* picture, add(params, bytes_of(half.data), what));
+    return binding(picture, {VK_FILTER_LINEAR, around, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE});
+  }
+
+ private:
+  Result<const gpu::Picture*> add(const gpu::PictureParams& params,
+                                  std::span<const std::byte> pixels, std::string_view what) {
+    LUXEL_TRY(gpu::Picture picture, gpu::picture_with(commands_, params, pixels, what));
+    out_.pictures.push_back(std::move(picture));
+    return &out_.pictures.back();
+  }
+
+  Result<gpu::Binding> binding(const gpu::Picture* picture, const gpu::SamplerParams& params) {
+    VkSampler& sampler = samplers_[{params.filter, params.u, params.v}];
+    if (sampler == VK_NULL_HANDLE) {
+      LUXEL_TRY(gpu::OwnedSampler made, gpu::make_sampler(commands_.device(), params));
+      sampler = made.get();
+      out_.samplers.push_back(std::move(made));
+    }
+    return gpu::Binding{picture, sampler};
+  }
+
+  gpu::Commands& commands_;
+  const scene::Scene& scene_;
+  DeviceScene& out_;
+  const gpu::Picture* white_ = nullptr;
+  std::map<std::pair<uint32_t, bool>, const gpu::Picture*> textures_;
+  std::map<std::tuple<VkFilter, VkSamplerAddressMode, VkSamplerAddressMode>, VkSampler> samplers_;
+};
+
+DeviceVertex vertex_of(const scene::Mesh& mesh, uint32_t i) {
+  const Vec2 uv1 = mesh.uv1.empty() ? Vec2{} : mesh.uv1[i];
+  return {mesh.positions[i], mesh.uv0.empty() ? Vec2{} : mesh.uv0[i], uv1, uv1,
+          mesh.colors.empty() ? Rgb{1, 1, 1} : mesh.colors[i]};
+}
+
+/// Triangles of all meshes in the making.
+struct Triangles {
+  std::vector<DeviceVertex> vertices;
+  std::vector<uint32_t> indices;
+};
+
+/// The corners of a triangle that has another side, (a, c, b) of it: each becomes a vertex of its
+/// own, which knows where light lies on that side.
+void add_two_sided(const scene::Mesh& mesh, uint32_t triangle, Triangles& out) {
+  const auto& front = mesh.triangles[triangle];
+  const auto& back = mesh.triangles[mesh.other_side[triangle]];
+  for (const size_t corner : {0, 1, 2}) {
+    DeviceVertex vertex = vertex_of(mesh, front[corner]);
+    vertex.uv_behind = mesh.uv1[back[(3 - corner) % 3]];
+    out.indices.push_back(uint32_t(out.vertices.size()));
+    out.vertices.push_back(vertex);
+  }
+}
+
+/// A mesh's triangles by their materials.
+std::vector<DrawRange> add_mesh(const scene::Scene& scene, const scene::Mesh& mesh,
+                                Triangles& out) {
+  std::vector<uint32_t> order(mesh.triangles.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return mesh.triangle_material[a] < mesh.triangle_material[b];
+  });
+  const auto first_vertex = uint32_t(out.vertices.size());
+  for (uint32_t i = 0; i < mesh.positions.size(); ++i) out.vertices.push_back(vertex_of(mesh, i));
+  std::vector<DrawRange> ranges;
+  for (const uint32_t t : order) {
+    const uint32_t material = mesh.triangle_material[t];
+    if (ranges.empty() || ranges.back().material != material)
+      ranges.push_back({uint32_t(out.indices.size()), 0, material});
+    ranges.back().indices += 3;
+    const bool has_other_side = !mesh.other_side.empty() && !mesh.uv1.empty() &&
+                                mesh.other_side[t] != scene::kNone &&
+                                scene.materials[material].diffuse_transmission > 0;
+    if (has_other_side)
+      add_two_sided(mesh, t, out);
+    else
+      for (const uint32_t corner : mesh.triangles[t]) out.indices.push_back(first_vertex + corner);
+  }
+  return ranges;
+}
+
+Status put_meshes(const gpu::Device& device, const scene::Scene& scene, DeviceScene& out) {
+  Triangles triangles;
+  for (const scene::Mesh& mesh : scene.meshes)
+    out.ranges.push_back(add_mesh(scene, mesh, triangles));
+  std::vector<std::array<float, 12>> rows;
+  for (const scene::Instance& instance : scene.instances) {
+    const Mat34& m = instance.world_from_object;
+    std::array<float, 12>& row = rows.emplace_back();
+    for (size_t i = 0; i < 12; ++i) row[i] = m.row[i / 4][i % 4];
+    out.mesh_of.push_back(instance.mesh);
+    out.is_mirrored.push_back(dot(cross(column(m, 0), column(m, 1)), column(m, 2)) < 0);
+  }
+  LUXEL_TRY(out.vertices,
+            gpu::buffer_with(device, bytes_of(triangles.vertices), "the scene's vertices"));
+  LUXEL_TRY(out.indices,
+            gpu::buffer_with(device, bytes_of(triangles.indices), "the scene's triangles"));
+  LUXEL_TRY(out.instances, gpu::buffer_with(device, bytes_of(rows), "the scene's instances"));
+  return {};
+}
+
+DeviceMaterial device_material(const scene::Material& m, float light_scale) {
+  DeviceMaterial out;
+  out.base_color = m.base_color, out.alpha = m.alpha;
+  out.emission = m.emission, out.metallic = m.metallic;
+  out.cutoff = m.alpha_mode == scene::AlphaMode::mask ? m.alpha_cutoff : 0;
+  out.light_scale = light_scale;
+  out.unlit = m.unlit;
+  out.through_color = m.diffuse_transmission_color, out.through = m.diffuse_transmission;
+  out.map = look_up_of(m.base_color_texture);
+  out.metal = look_up_of(m.metallic_texture);
+  out.glow = look_up_of(m.emission_texture);
+  out.through_share = look_up_of(m.diffuse_transmission_texture);
+  out.through_tint = look_up_of(m.diffuse_transmission_color_texture);
+  return out;
+}
+
+/// Each material with its pictures and the lightmap of its page.
+Status put_materials(const gpu::Device& device, Pictures& pictures, const scene::Scene& scene,
+                     const pipeline::LightmapPages& lightmaps, DeviceScene& out) {
+  std::vector<gpu::Binding> lights;
+  std::vector<float> scales(lightmaps.pictures.size(), 1);
+  for (size_t i = 0; i < lightmaps.pictures.size(); ++i) {
+    LUXEL_TRY(const gpu::Binding light,
+              pictures.light(lightmaps.pictures[i], VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                             "the lightmap", scales[i]));
+    lights.push_back(light);
+  }
+  std::vector<DeviceMaterial> materials;
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const scene::Material& m = scene.materials[i];
+    const size_t page = lightmaps.of_material[i];
+    materials.push_back(device_material(m, scales[page]));
+    LUXEL_TRY(const gpu::Binding map, pictures.texture(m.base_color_texture, false));
+    LUXEL_TRY(const gpu::Binding metal, pictures.texture(m.metallic_texture, true));
+    LUXEL_TRY(const gpu::Binding glow, pictures.texture(m.emission_texture, false));
+    LUXEL_TRY(const gpu::Binding share, pictures.texture(m.diffuse_transmission_texture, true));
+    LUXEL_TRY(const gpu::Binding tint,
+              pictures.texture(m.diffuse_transmission_color_texture, false));
+    out.bindings.push_back({lights[page], map, metal, glow, share, tint});
+    out.is_double_sided.push_back(m.double_sided);
+  }
+  LUXEL_TRY(out.materials, gpu::buffer_with(device, bytes_of(materials), "the scene's materials"));
+  return {};
+}
+
+Status put_surroundings(Pictures& pictures, const scene::Scene& scene, DeviceScene& out) {
+  out.background = scene.background;
+  LUXEL_TRY(out.surroundings, pictures.white());
+  const scene::Environment& map = scene.environment;
+  if (map.empty()) return {};
+  image::Image image(map.width, map.height, 4);
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x)
+      image.set_rgb(x, y, map.radiance[size_t(y) * size_t(map.width) + size_t(x)]);
+  LUXEL_TRY(out.surroundings, pictures.light(image, VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                                             "the surroundings", out.surroundings_scale));
+  out.rotation_rad = map.rotation_rad;
+  return {};
+}
+
+}  // namespace
+
+Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
+                                  const pipeline::LightmapPages& lightmaps) {
+  DeviceScene out;
+  out.bounds = scene::world_bounds(scene);
+  Pictures pictures(commands, scene, out);
+  LUXEL_TRY_STATUS(put_meshes(commands.device(), scene, out));
+  LUXEL_TRY_STATUS(put_materials(commands.device(), pictures, scene, lightmaps, out));
+  LUXEL_TRY_STATUS(put_surroundings(pictures, scene, out));
+  return out;
+}
+
+}  // namespace luxel::view

@@ -1,0 +1,51 @@
+// A baked scene on a graphics device.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "luxel/gpu/pipeline.h"
+#include "luxel/pipeline/bake/baked_folder.h"
+#include "luxel/scene/scene.h"
+
+namespace luxel::view {
+
+/// What the shaders of surfaces look up, in the order of their bindings: E, the base colour, the
+/// metallic factor, emission, the share of light that is scattered through and its colour.
+inline constexpr uint32_t kLookUps = 6;
+
+/// Triangles of one material in one mesh: a range of the indices.
+struct DrawRange {
+  uint32_t first_index = 0, indices = 0;
+  uint32_t material = 0;
+};
+
+/// A scene's surfaces and their light, ready to be drawn. Structs in its buffers are those of
+/// shaders/surface.glsl.
+struct DeviceScene {
+  gpu::Buffer vertices;                        ///< of all meshes
+  gpu::Buffer indices;                         ///< 32 bits each, into all vertices
+  gpu::Buffer materials;                       ///< of the scene, in its order
+  gpu::Buffer instances;                       ///< world from object, three rows of four
+  std::vector<std::vector<DrawRange>> ranges;  ///< of each mesh
+  std::vector<uint32_t> mesh_of;               ///< of each instance
+  std::vector<uint8_t> is_mirrored;            ///< of each instance: its triangles are turned round
+  std::vector<uint8_t> is_double_sided;        ///< of each material
+
+  std::deque<gpu::Picture> pictures;  ///< where they lie when others are added
+  std::vector<gpu::OwnedSampler> samplers;
+  /// For each material what its kLookUps bindings are.
+  std::vector<std::vector<gpu::Binding>> bindings;
+
+  Box3 bounds;
+  Rgb background{};
+  float surroundings_scale = 0;  ///< 0: there is no map
+  float rotation_rad = 0;
+  gpu::Binding surroundings;  ///< white where there is no map
+};
+
+/// Errors: no memory on the device, a picture larger than the device's may be.
+Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
+                                  const pipeline::LightmapPages& lightmaps);
+
+}  // namespace luxel::view

@@ -1,0 +1,207 @@
+#include "luxel/view/draw/painter.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "luxel/image/half.h"
+#include "luxel/trace/camera_rays.h"
+#include "luxel/view/shaders/behind.frag.h"
+#include "luxel/view/shaders/behind.vert.h"
+#include "luxel/view/shaders/screen.frag.h"
+#include "luxel/view/shaders/screen.vert.h"
+#include "luxel/view/shaders/surface.frag.h"
+#include "luxel/view/shaders/surface.vert.h"
+
+namespace luxel::view {
+namespace {
+
+constexpr VkFormat kExposed = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr VkFormat kShown = VK_FORMAT_R8G8B8A8_UNORM;
+constexpr VkSampleCountFlagBits kSamples = VK_SAMPLE_COUNT_4_BIT;  // which every device has
+constexpr float kNear = 1e-5f;  // the near plane, over the scene's diagonal
+constexpr VkDescriptorType kLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+
+// The push constants of the shaders, in scalar layout.
+struct SurfacePush {
+  std::array<float, 16> clip_from_world;  ///< column by column
+  VkDeviceAddress vertices, materials, instances;
+  uint32_t instance = 0, material = 0;
+  float exposure = 1;
+  uint32_t show = 0;
+};
+static_assert(sizeof(SurfacePush) == 104);
+
+struct BehindPush {
+  Vec3 forward, right, up;
+  Rgb background;
+  float map_scale, rotation;
+  float exposure;
+  uint32_t show;
+};
+static_assert(sizeof(BehindPush) == 64);
+
+struct ScreenPush {
+  uint32_t curve;
+};
+
+/// The camera of trace::CameraRays as a matrix. Depth is 1 at the near plane and 0 infinitely far,
+/// where floats are finest; parallel rays start at the eye and see as far as the scene goes.
+std::array<float, 16> clip_from_world(const trace::CameraRays& c, const Box3& bounds) {
+  const float diagonal = bounds.diagonal();
+  const Vec3 x = c.right / dot(c.right, c.right), y = c.up / dot(c.up, c.up);
+  const auto row = [&](Vec3 v, float w) { return std::array{v.x, v.y, v.z, w - dot(v, c.eye)}; };
+  std::array<std::array<float, 4>, 4> rows{
+      row(x, 0), row(-y, 0), {0, 0, 0, kNear * diagonal}, row(c.forward, 0)};
+  if (c.orthographic) {
+    const float far = diagonal + length(bounds.centre() - c.eye);
+    rows[2] = row(c.forward / -far, 1);
+    rows[3] = {0, 0, 0, 1};
+  }
+  std::array<float, 16> out;
+  for (size_t r = 0; r < 4; ++r)
+    for (size_t k = 0; k < 4; ++k) out[4 * k + r] = rows[r][k];
+  return out;
+}
+
+gpu::DrawParams surface_params(VkCullModeFlags cull) {
+  gpu::DrawParams params;
+  params.vertex = surface_vert, params.fragment = surface_frag;
+  params.interface = {sizeof(SurfacePush), std::vector<VkDescriptorType>(kLookUps, kLookUp)};
+  params.colors = {kExposed};
+  params.depth = VK_FORMAT_D32_SFLOAT;
+  params.samples = kSamples;
+  params.cull = cull;
+  return params;
+}
+
+gpu::DrawParams behind_params() {
+  gpu::DrawParams params = surface_params(VK_CULL_MODE_NONE);
+  params.vertex = behind_vert, params.fragment = behind_frag;
+  params.interface = {sizeof(BehindPush), {kLookUp}};
+  params.writes_depth = false;
+  params.depth_compare = VK_COMPARE_OP_EQUAL;  // where no surface is
+  return params;
+}
+
+gpu::DrawParams screen_params() {
+  gpu::DrawParams params;
+  params.vertex = screen_vert, params.fragment = screen_frag;
+  params.interface = {sizeof(ScreenPush), {kLookUp}};
+  params.colors = {kShown};
+  return params;
+}
+
+Status make_pipelines(const gpu::Device& device, Painter& out) {
+  LUXEL_TRY(out.surface, gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_BACK_BIT)));
+  LUXEL_TRY(out.surface_mirrored,
+            gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_FRONT_BIT)));
+  LUXEL_TRY(out.surface_double_sided,
+            gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_NONE)));
+  LUXEL_TRY(out.behind, gpu::make_draw_pipeline(device, behind_params()));
+  LUXEL_TRY(out.screen, gpu::make_draw_pipeline(device, screen_params()));
+  return {};
+}
+
+void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Painter& painter,
+                   const DeviceScene& scene, SurfacePush push) {
+  device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
+  push.vertices = scene.vertices.address;
+  push.materials = scene.materials.address;
+  push.instances = scene.instances.address;
+  for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance)
+    for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {
+      const bool is_mirrored = scene.is_mirrored[push.instance];
+      const gpu::Pipeline& pipeline = scene.is_double_sided[range.material]
+                                          ? painter.surface_double_sided
+                                      : is_mirrored ? painter.surface_mirrored
+                                                    : painter.surface;
+      push.material = range.material;
+      gpu::bind(device, commands, pipeline, push);
+      gpu::bind_set(device, commands, pipeline, painter.materials.sets[range.material]);
+      device.vk.vkCmdDrawIndexed(commands, range.indices, 1, range.first_index, 0, 0);
+    }
+}
+
+}  // namespace
+
+Result<Painter> make_painter(const gpu::Device& device, const DeviceScene& scene, uint32_t width,
+                             uint32_t height) {
+  Painter out;
+  LUXEL_TRY_STATUS(make_pipelines(device, out));
+  LUXEL_TRY(out.exposed,
+            gpu::make_target(device, {width, height, kExposed, kSamples, true}, "the picture"));
+  LUXEL_TRY(out.shown,
+            gpu::make_target(device, {width, height, kShown, VK_SAMPLE_COUNT_1_BIT, false},
+                             "the picture"));
+  LUXEL_TRY(out.sampler, gpu::make_sampler(device, {VK_FILTER_NEAREST}));
+  LUXEL_TRY(out.materials, gpu::make_sets(device, out.surface, scene.bindings));
+  const std::vector<std::vector<gpu::Binding>> surroundings{{scene.surroundings}};
+  LUXEL_TRY(out.surroundings, gpu::make_sets(device, out.behind, surroundings));
+  const std::vector<std::vector<gpu::Binding>> exposed{{{&out.exposed.picture, out.sampler.get()}}};
+  LUXEL_TRY(out.to_screen, gpu::make_sets(device, out.screen, exposed));
+  return out;
+}
+
+void paint(const gpu::Device& device, VkCommandBuffer commands, const Painter& painter,
+           const DeviceScene& scene, const Frame& frame) {
+  const gpu::TargetParams& size = painter.exposed.params;
+  const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
+  const auto show = uint32_t(frame.show);
+  gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
+  SurfacePush surface{};
+  surface.clip_from_world = clip_from_world(camera, scene.bounds);
+  surface.exposure = frame.exposure, surface.show = show;
+  draw_surfaces(device, commands, painter, scene, surface);
+  const BehindPush behind{camera.forward,
+                          camera.orthographic ? Vec3{} : camera.right,
+                          camera.orthographic ? Vec3{} : camera.up,
+                          scene.background,
+                          scene.surroundings_scale,
+                          scene.rotation_rad,
+                          frame.exposure,
+                          show};
+  gpu::bind(device, commands, painter.behind, behind);
+  gpu::bind_set(device, commands, painter.behind, painter.surroundings.sets[0]);
+  device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  gpu::end_drawing(device, commands, painter.exposed, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+
+  gpu::begin_drawing(device, commands, painter.shown, {0, 0, 0, 1});
+  const bool is_light = frame.show != Show::colour;
+  const ScreenPush screen{uint32_t(is_light ? frame.curve : display::ToneMap::clamp)};
+  gpu::bind(device, commands, painter.screen, screen);
+  gpu::bind_set(device, commands, painter.screen, painter.to_screen.sets[0]);
+  device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  gpu::end_drawing(device, commands, painter.shown, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  gpu::change_layout(device, commands, painter.exposed.picture,
+                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                     VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+}
+
+Result<image::Image8> painted(gpu::Commands& commands, const Painter& painter,
+                              const DeviceScene& scene, const Frame& frame) {
+  LUXEL_TRY_STATUS(commands.run(
+      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, painter, scene, frame); }));
+  LUXEL_TRY(const std::vector<std::byte> pixels, gpu::pixels_of(commands, painter.shown.picture));
+  image::Image8 out;
+  out.width = int(painter.shown.params.width), out.height = int(painter.shown.params.height);
+  out.channels = 3;
+  for (size_t i = 0; i < pixels.size(); ++i)
+    if (i % 4 != 3) out.data.push_back(uint8_t(pixels[i]));
+  return out;
+}
+
+Result<image::Image> painted_radiance(gpu::Commands& commands, const Painter& painter,
+                                      const DeviceScene& scene, const Frame& frame) {
+  LUXEL_TRY_STATUS(commands.run(
+      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, painter, scene, frame); }));
+  LUXEL_TRY(const std::vector<std::byte> pixels, gpu::pixels_of(commands, painter.exposed.picture));
+  image::Image out(int(painter.exposed.params.width), int(painter.exposed.params.height), 4);
+  for (size_t i = 0; i < out.data.size(); ++i) {
+    uint16_t half = 0;
+    std::memcpy(&half, pixels.data() + 2 * i, 2);
+    out.data[i] = image::from_half(half) / (i % 4 == 3 ? 1 : frame.exposure);
+  }
+  return out;
+}
+
+}  // namespace luxel::view

@@ -1,0 +1,55 @@
+// Draws a scene that lies on a graphics device.
+#pragma once
+
+#include "luxel/display/tone_map.h"
+#include "luxel/gpu/pipeline.h"
+#include "luxel/gpu/target.h"
+#include "luxel/image/codec.h"
+#include "luxel/image/image.h"
+#include "luxel/view/draw/device_scene.h"
+
+namespace luxel::view {
+
+/// What of surfaces is shown.
+enum class Show : uint32_t {
+  light_and_colour,  ///< what they send to the eye
+  light,             ///< as if all surfaces were white
+  colour,            ///< their reflectance, whatever falls on them
+};
+
+/// One picture.
+struct Frame {
+  scene::Camera camera;
+  float exposure = 1;  ///< factor of the radiance before the curve
+  display::ToneMap curve = display::ToneMap::shoulder;
+  Show show = Show::light_and_colour;
+};
+
+/// What pictures of one size are drawn with: pipelines, targets.
+struct Painter {
+  gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen;
+  gpu::Target exposed;  ///< halves: exposed radiance, and the share of the pixel that is a surface
+  gpu::Target shown;    ///< 8 bits, display values
+  gpu::BindingSets materials, surroundings, to_screen;
+  gpu::OwnedSampler sampler;
+};
+
+/// For this scene, which must live as long as the painter does.
+Result<Painter> make_painter(const gpu::Device& device, const DeviceScene& scene, uint32_t width,
+                             uint32_t height);
+
+/// Records the drawing of a frame; `shown` is then in the layout TRANSFER_SRC_OPTIMAL, as `exposed`
+/// is. The back faces of one-sided materials are left out and alpha masks cut, as display::draw
+/// does.
+void paint(const gpu::Device& device, VkCommandBuffer commands, const Painter& painter,
+           const DeviceScene& scene, const Frame& frame);
+
+/// Draws a frame and reads the picture back: 3 channels.
+Result<image::Image8> painted(gpu::Commands& commands, const Painter& painter,
+                              const DeviceScene& scene, const Frame& frame);
+/// Draws a frame and reads the exposed radiance back, divided by the exposure: 4 channels, as
+/// display::draw gives them.
+Result<image::Image> painted_radiance(gpu::Commands& commands, const Painter& painter,
+                                      const DeviceScene& scene, const Frame& frame);
+
+}  // namespace luxel::view

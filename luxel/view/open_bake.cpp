@@ -1,0 +1,55 @@
+#include "luxel/view/open_bake.h"
+
+#include <nlohmann/json.hpp>
+
+#include "luxel/base/file.h"
+#include "luxel/export/view_page.h"
+#include "luxel/pipeline/bake/camera.h"
+#include "luxel/pipeline/settings/outside_light.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::view {
+namespace {
+
+/// bake.json, or an empty object where it cannot be read.
+nlohmann::json report_of(const std::filesystem::path& folder) {
+  const Result<std::vector<std::byte>> bytes = read_file(folder / "bake.json");
+  if (!bytes) return nlohmann::json::object();
+  const auto* text = reinterpret_cast<const char*>(bytes->data());
+  auto json = nlohmann::json::parse(text, text + bytes->size(), nullptr, false);
+  return json.is_object() ? std::move(json) : nlohmann::json::object();
+}
+
+/// The sky and the background that the bake was made under; its lamps are in the lightmap.
+Status add_surroundings(const std::filesystem::path& folder, const nlohmann::json& report,
+                        OpenedBake& out) {
+  pipeline::OutsideLight outside = pipeline::outside_light_of_bake(folder, {}, out.warnings);
+  if (report.value("default_day", nlohmann::json()) == true) outside.sky = pipeline::kDefaultSky;
+  // What it warns of was said when the bake was made.
+  LUXEL_TRY_STATUS(pipeline::add_outside_light(outside, out.scene));
+  return {};
+}
+
+}  // namespace
+
+Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
+  LUXEL_TRY_STATUS(pipeline::check_has_colors(folder));
+  OpenedBake out;
+  LUXEL_TRY(out.scene, pipeline::scene_of_bake(folder));
+  LUXEL_TRY(out.lightmaps,
+            pipeline::read_pages(folder, out.scene.materials.size(), pipeline::read_lightmap));
+  const nlohmann::json report = report_of(folder);
+  LUXEL_TRY_STATUS(add_surroundings(folder, report, out));
+  if (const auto preview = export_::view_of_json(report.value("preview", nlohmann::json()))) {
+    out.first.camera = preview->camera, out.first.exposure = preview->exposure;
+    out.width = preview->width, out.height = preview->height;
+    return out;
+  }
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(out.scene));
+  pipeline::CameraChoice choice;
+  choice.aspect = float(out.width) / float(out.height);
+  LUXEL_TRY(out.first.camera, pipeline::choose_camera(choice, out.scene, tracer, folder.string()));
+  return out;
+}
+
+}  // namespace luxel::view

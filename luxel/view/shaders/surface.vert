@@ -1,0 +1,33 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "surface.glsl"
+
+layout(location = 0) centroid out vec2 at_light;
+layout(location = 1) centroid out vec2 at_light_behind;
+layout(location = 2) out vec2 at_map;
+layout(location = 3) out vec2 at_metal;
+layout(location = 4) out vec2 at_glow;
+layout(location = 5) out vec2 at_through_share;
+layout(location = 6) out vec2 at_through_tint;
+layout(location = 7) out vec3 tint;
+
+vec2 looked_up(LookUp look_up, Vertex v) {
+  vec3 uv = vec3(look_up.uv_set == 0 ? v.uv0 : v.uv1, 1);
+  return vec2(dot(look_up.u, uv), dot(look_up.v, uv));
+}
+
+void main() {
+  Vertex v = vertices.at[gl_VertexIndex];
+  Instance i = instances.at[instance];
+  Material m = materials.at[material];
+  vec4 p = vec4(v.position, 1);
+  gl_Position = clip_from_world * vec4(dot(i.row0, p), dot(i.row1, p), dot(i.row2, p), 1);
+  at_light = v.uv1;
+  at_light_behind = v.uv_behind;
+  at_map = looked_up(m.map, v);
+  at_metal = looked_up(m.metal, v);
+  at_glow = looked_up(m.glow, v);
+  at_through_share = looked_up(m.through_share, v);
+  at_through_tint = looked_up(m.through_tint, v);
+  tint = v.color;
+}

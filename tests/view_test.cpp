@@ -1,0 +1,76 @@
+// luxel-view without a window: it draws what `luxel render --from` draws, and says what is missing.
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "luxel/image/flip.h"
+#include "tests/command.h"
+#include "tests/pictures.h"
+
+namespace luxel::testing_support {
+namespace {
+
+using ::testing::HasSubstr;
+
+CommandResult view(const std::string& arguments, const std::string& before = "") {
+  return shell(before + " " LUXEL_VIEW_BINARY " " + arguments);
+}
+
+/// Whether this machine has a device that luxel can use; says why not.
+bool has_device(const ScratchFolder& s) {
+  const CommandResult r = view((s.path / "absent").string() + " --offscreen --screenshot " +
+                               (s.path / "x.png").string());
+  return r.err.find("device") == std::string::npos && r.err.find("Vulkan") == std::string::npos;
+}
+
+class ViewOfABake : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ViewOfABake, IsWhatRenderDraws) {
+  const ScratchFolder s;
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  const std::string scene = scene_file(GetParam()), bake = (s.path / "baked").string();
+  ASSERT_EQ(luxel("bake " + scene + " -o " + bake + " --resolution 128 --samples 16 --quiet").code,
+            0);
+  const CommandResult seen =
+      view(bake + " --offscreen --screenshot " + (s.path / "view.png").string());
+  ASSERT_EQ(seen.code, 0) << seen.err;
+  // preview.png is the picture of `luxel render --from`, and says with what it was taken. 0.002 to
+  // 0.008 for 4 samples per pixel and not 9, and mipmaps; 0.03 more where one level of 255 is
+  // rounded otherwise all over the sky.
+  const image::Image flip =
+      image::flip(png_at(s.path / "view.png"), png_at(s.path / "baked/preview.png"));
+  const double mean =
+      std::accumulate(flip.data.begin(), flip.data.end(), 0.0) / double(flip.data.size());
+  EXPECT_LT(mean, 0.05);
+  EXPECT_GT(mean, 0) << "the same file";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ViewOfABake,
+                         ::testing::Values("cornell-box.glb", "foliage.glb", "tiled-kit.glb"));
+
+TEST(View, SaysWhatIsWrong) {
+  const ScratchFolder s;
+  const std::string shot = " --offscreen --screenshot " + (s.path / "x.png").string();
+  const auto error = [&](const std::string& arguments, int code, const std::string& before = "") {
+    const CommandResult r = view(arguments, before);
+    EXPECT_EQ(r.code, code) << r.err;
+    EXPECT_EQ(r.err.find('\n'), r.err.size() - 1) << "one line: " << r.err;
+    EXPECT_FALSE(std::filesystem::exists(s.path / "x.png"));
+    return r.err;
+  };
+  EXPECT_THAT(error("", 2), HasSubstr("FOLDER is required; 'luxel-view --help' lists"));
+  EXPECT_THAT(error("bake --offscreen", 2), HasSubstr("--screenshot is required"));
+  EXPECT_THAT(error("bake --size 10 " + shot, 1), HasSubstr("--size '10' is not WIDTHxHEIGHT"));
+  EXPECT_THAT(error("bake --size 99999x1 " + shot, 1), HasSubstr("each up to 16384"));
+  EXPECT_THAT(error("bake --offscreen --screenshot /nowhere/x.png", 1), HasSubstr("/nowhere"));
+  // Drivers that are not there are no device.
+  EXPECT_THAT(error("bake" + shot, 1, "VK_DRIVER_FILES=/absent VK_ICD_FILENAMES=/absent"),
+              HasSubstr("Vulkan"));
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  EXPECT_THAT(error("bake --device nonesuch" + shot, 1),
+              HasSubstr("named 'nonesuch'; there are: "));
+  EXPECT_THAT(error((s.path / "absent").string() + shot, 1), HasSubstr("absent/baked.glb"));
+}
+
+}  // namespace
+}  // namespace luxel::testing_support

@@ -15,19 +15,23 @@ bool invisible(const scene::Scene& scene, const Hit& hit) {
 
 }  // namespace
 
+float half_height(const scene::Camera& camera, float aspect) {
+  const float own = camera.orthographic_height_m > 0 ? 0.5f * camera.orthographic_height_m
+                                                     : std::tan(0.5f * camera.fov_y_rad);
+  return camera.aspect > aspect ? own * (camera.aspect / aspect) : own;
+}
+
 CameraRays::CameraRays(const scene::Camera& camera, int width_px, int height_px)
     : orthographic(camera.orthographic_height_m > 0),
       width(float(width_px)),
       height(float(height_px)) {
   const float aspect = width / height;
-  float half_height =
-      orthographic ? 0.5f * camera.orthographic_height_m : std::tan(0.5f * camera.fov_y_rad);
-  if (camera.aspect > aspect) half_height *= camera.aspect / aspect;
+  const float to_edge = half_height(camera, aspect);
   // A node may scale its camera; glTF ignores that, so only the axes' directions count.
   const Mat34& m = camera.world_from_camera;
   eye = {m.row[0][3], m.row[1][3], m.row[2][3]};
-  right = normalize(column(m, 0)) * (half_height * aspect);
-  up = normalize(column(m, 1)) * half_height;
+  right = normalize(column(m, 0)) * (to_edge * aspect);
+  up = normalize(column(m, 1)) * to_edge;
   forward = -normalize(column(m, 2));
 }
 

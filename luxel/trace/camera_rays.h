@@ -9,9 +9,13 @@
 
 namespace luxel::trace {
 
+/// Half of what a picture of this aspect (width / height) shows from top to bottom: at a distance
+/// of 1 m, or for a parallel camera at any [m]. A picture narrower than the camera's own aspect
+/// shows the camera's full width.
+float half_height(const scene::Camera& camera, float aspect);
+
 /// The rays of a camera for a picture of some size.
 struct CameraRays {
-  /// A picture narrower than the camera's own aspect shows the camera's full width.
   CameraRays(const scene::Camera& camera, int width, int height);
 
   /// Through picture coordinates, (0, 0) = the top left corner, pixels have size 1. Directions are

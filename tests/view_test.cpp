@@ -43,6 +43,18 @@ TEST_P(ViewOfABake, IsWhatRenderDraws) {
       std::accumulate(flip.data.begin(), flip.data.end(), 0.0) / double(flip.data.size());
   EXPECT_LT(mean, 0.05);
   EXPECT_GT(mean, 0) << "the same file";
+  // Up and down again is where it was; what is played is drawn.
+  const auto played = [&](const std::string& keys) {
+    const auto events = s.write("play.json", "{\"end\": 2, \"events\": [" + keys + "]}");
+    const CommandResult r = view(bake + " --offscreen --size 60x45 --play " + events.string() +
+                                 " --screenshot " + (s.path / "played.png").string());
+    EXPECT_EQ(r.code, 0) << r.err;
+    return slurp(s.path / "played.png");
+  };
+  const std::string up = R"({"at": 0, "key": "e"}, {"at": 1, "key_up": "e"})";
+  const std::string down = R"(, {"at": 1, "key": "q"}, {"at": 2, "key_up": "q"})";
+  EXPECT_EQ(played(up + down), played(""));
+  EXPECT_NE(played(up), played(""));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ViewOfABake,
@@ -67,6 +79,8 @@ TEST(View, SaysWhatIsWrong) {
   EXPECT_THAT(error("bake" + shot, 1, "VK_DRIVER_FILES=/absent VK_ICD_FILENAMES=/absent"),
               HasSubstr("Vulkan"));
   if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  const std::string play = s.write("play.json", "{}").string();
+  EXPECT_THAT(error("bake" + shot + " --play " + play, 1), HasSubstr("play.json: "));
   EXPECT_THAT(error("bake --device nonesuch" + shot, 1),
               HasSubstr("named 'nonesuch'; there are: "));
   EXPECT_THAT(error((s.path / "absent").string() + shot, 1), HasSubstr("absent/baked.glb"));

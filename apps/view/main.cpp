@@ -8,6 +8,8 @@
 #include "luxel/base/output_folder.h"
 #include "luxel/image/codec.h"
 #include "luxel/pipeline/settings/version.h"
+#include "luxel/trace/ray_tracer.h"
+#include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
 
 namespace {
@@ -17,7 +19,7 @@ using namespace luxel;
 constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kOutOfResource = 3;
 
 struct Options {
-  std::filesystem::path subject, screenshot;
+  std::filesystem::path subject, screenshot, play;
   std::string size, device;
   bool offscreen = false;
   int width = 0, height = 0;  ///< 0: as preview.png
@@ -34,9 +36,25 @@ Status parse_size(Options& options) {
               "--size '{}' is not WIDTHxHEIGHT, as in 960x720, each up to {}", options.size, kMost);
 }
 
+/// The frame to draw: the first, or where a play gets to.
+Result<view::Frame> frame_to_draw(const std::optional<view::Play>& events,
+                                  const view::OpenedBake& bake, int width, int height) {
+  if (!events) return bake.first;
+  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
+  const view::PlaceSeen place_seen = view::place_seen_in(bake.scene, tracer, width, height);
+  view::Walk walk =
+      view::begin_walk(bake.first, scene::world_bounds(bake.scene), width, height, place_seen);
+  view::play(*events, place_seen, walk);
+  return walk.shown;
+}
+
 /// One picture of the bake, without a window.
 Status draw_offscreen(const Options& options) {
   LUXEL_TRY_STATUS(check_output_file(options.screenshot));
+  std::optional<view::Play> events;
+  if (!options.play.empty()) {
+    LUXEL_TRY(events, view::read_play(options.play));
+  }
   gpu::DeviceParams params;
   params.name = options.device;
   LUXEL_TRY(const std::unique_ptr<gpu::Device> device, gpu::Device::open(params));
@@ -44,12 +62,14 @@ Status draw_offscreen(const Options& options) {
   LUXEL_TRY(const view::OpenedBake bake, view::open_bake(options.subject));
   for (const std::string& warning : bake.warnings)
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  const int width = options.width ? options.width : bake.width;
+  const int height = options.height ? options.height : bake.height;
+  LUXEL_TRY(const view::Frame frame, frame_to_draw(events, bake, width, height));
   LUXEL_TRY(const view::DeviceScene scene,
             view::put_on_device(commands, bake.scene, bake.lightmaps));
   LUXEL_TRY(const view::Painter painter,
-            view::make_painter(*device, scene, uint32_t(options.width ? options.width : bake.width),
-                               uint32_t(options.height ? options.height : bake.height)));
-  LUXEL_TRY(const image::Image8 picture, view::painted(commands, painter, scene, bake.first));
+            view::make_painter(*device, scene, uint32_t(width), uint32_t(height)));
+  LUXEL_TRY(const image::Image8 picture, view::painted(commands, painter, scene, frame));
   LUXEL_TRY_STATUS(write_file_atomically(options.screenshot, image::encode_png(picture)));
   std::fprintf(stderr, "wrote %s, drawn by %s\n", options.screenshot.string().c_str(),
                device->name.c_str());
@@ -71,6 +91,8 @@ int run(int argc, char** argv) {
   app.add_option("FOLDER", options.subject, "What `luxel bake` left")->required();
   app.add_flag("--offscreen", options.offscreen, "Draw one picture, without a window")->required();
   app.add_option("--screenshot", options.screenshot, "The picture to write: .png")->required();
+  app.add_option("--play", options.play, "Events to play before the picture: .json")
+      ->type_name("FILE");
   app.add_option("--size", options.size, "Size of the picture (that of preview.png)")
       ->type_name("WxH");
   app.add_option("--device", options.device,

@@ -82,7 +82,7 @@ class PainterTest : public ::testing::Test {
 };
 
 /// Halves have 11 bits.
-void expect_near(Rgb a, Rgb b) {
+void expect_radiance(Rgb a, Rgb b) {
   EXPECT_LE(max_component(max(a - b, b - a)), max_component(b) * 2e-3f + 1e-6f)
       << a.x << " " << a.y << " " << a.z << " for " << b.x << " " << b.y << " " << b.z;
 }
@@ -95,15 +95,15 @@ TEST_F(PainterTest, SurfacesSendReflectedAndEmittedLight) {
   const Rgb reflected = lit.scene.materials[0].base_color * (3 / kPi);
   for (const float exposure : {1.0f, 1e-4f, 100.0f}) {
     frame.exposure = exposure;
-    expect_near(middle_of(lit, frame), reflected + Rgb{0, 0, 7});
+    expect_radiance(middle_of(lit, frame), reflected + Rgb{0, 0, 7});
   }
   frame.exposure = 1, frame.show = Show::light;
-  expect_near(middle_of(lit, frame), Rgb{3, 3, 3} * (1 / kPi));
+  expect_radiance(middle_of(lit, frame), Rgb{3, 3, 3} * (1 / kPi));
   frame.show = Show::colour;
-  expect_near(middle_of(lit, frame), lit.scene.materials[0].base_color);
+  expect_radiance(middle_of(lit, frame), lit.scene.materials[0].base_color);
   frame.show = Show::light_and_colour;
   lit.scene.materials[0].unlit = true;
-  expect_near(middle_of(lit, frame), lit.scene.materials[0].base_color);
+  expect_radiance(middle_of(lit, frame), lit.scene.materials[0].base_color);
 }
 
 // Metal reflects nothing diffusely, and no surface reflects more than 0.99.
@@ -112,9 +112,9 @@ TEST_F(PainterTest, ReflectanceIsThatOfTheSolvers) {
   Frame frame;
   frame.camera = camera_at(3);
   lit.scene.materials[0].base_color = {1, 1, 1};
-  expect_near(middle_of(lit, frame), Rgb{3, 3, 3} * (scene::kMaxReflectance / kPi));
+  expect_radiance(middle_of(lit, frame), Rgb{3, 3, 3} * (scene::kMaxReflectance / kPi));
   lit.scene.materials[0].metallic = 0.75f;
-  expect_near(middle_of(lit, frame), Rgb{3, 3, 3} * (0.25f / kPi));
+  expect_radiance(middle_of(lit, frame), Rgb{3, 3, 3} * (0.25f / kPi));
 }
 
 TEST_F(PainterTest, BackFacesOfOneSidedMaterialsAreLeftOut) {
@@ -128,9 +128,9 @@ TEST_F(PainterTest, BackFacesOfOneSidedMaterialsAreLeftOut) {
       const Rgb seen = lit.scene.materials[0].base_color * (3 / kPi);
       Frame frame;
       frame.camera = camera_at(3);
-      expect_near(middle_of(lit, frame), seen);
+      expect_radiance(middle_of(lit, frame), seen);
       frame.camera = camera_at(-3);
-      expect_near(middle_of(lit, frame), is_double_sided ? seen : Rgb{9, 9, 9});
+      expect_radiance(middle_of(lit, frame), is_double_sided ? seen : Rgb{9, 9, 9});
     }
 }
 
@@ -140,9 +140,9 @@ TEST_F(PainterTest, HolesOfMasksShowWhatIsBehind) {
   lit.scene.materials[0].alpha = 0.4f;
   Frame frame;
   frame.camera = camera_at(3);
-  expect_near(middle_of(lit, frame), lit.scene.materials[0].base_color * (3 / kPi));
+  expect_radiance(middle_of(lit, frame), lit.scene.materials[0].base_color * (3 / kPi));
   lit.scene.materials[0].alpha_mode = scene::AlphaMode::mask;
-  expect_near(middle_of(lit, frame), {9, 9, 9});
+  expect_radiance(middle_of(lit, frame), {9, 9, 9});
 }
 
 // Nearer than what stands before it, drawn first or last.
@@ -159,7 +159,7 @@ TEST_F(PainterTest, NearSurfacesHideFarOnes) {
     Frame frame;
     frame.camera = camera_at(3);
     const size_t nearer = second_z > 0 ? 1 : 0;
-    expect_near(middle_of(lit, frame), lit.scene.materials[nearer].base_color * (3 / kPi));
+    expect_radiance(middle_of(lit, frame), lit.scene.materials[nearer].base_color * (3 / kPi));
   }
 }
 

@@ -1,0 +1,81 @@
+// What a user does at the window, as data: from the window itself, or from a file that is played.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "luxel/base/result.h"
+#include "luxel/base/vec.h"
+
+namespace luxel::view {
+
+enum class Button : uint8_t { left, middle, right };
+
+/// Places are pixels of the picture, (0, 0) its top left corner.
+struct PointerMoved {
+  Vec2 to;
+};
+struct ButtonChanged {
+  Button button = Button::left;
+  bool is_down = false;
+};
+struct Scrolled {
+  float by = 0;  ///< notches of a wheel, away from the user > 0
+};
+/// A key by the letter or the name that kKeys has for it.
+struct KeyChanged {
+  std::string key;
+  bool is_down = false;
+};
+using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged>;
+
+/// A key and what it does, as F1 and the documentation list it.
+struct KeyHelp {
+  const char* key;
+  const char* does;
+};
+inline constexpr KeyHelp kKeys[] = {
+    {"w", "fly ahead"},
+    {"s", "fly back"},
+    {"a", "fly to the left"},
+    {"d", "fly to the right"},
+    {"e", "fly up"},
+    {"q", "fly down"},
+    {"shift", "fly four times as fast; move the picture where it would turn"},
+    {"f", "show the whole scene"},
+    {"home", "back to the first view"},
+    {"1", "light and colour"},
+    {"2", "light alone"},
+    {"3", "colour alone"},
+    {"+", "brighter by half a stop"},
+    {"-", "darker by half a stop"},
+    {"0", "as bright as at first"},
+};
+
+struct TimedEvent {
+  double at_s = 0;  ///< since the beginning
+  Event event;
+};
+
+/// What is played: events in the order of their times, and when it ends.
+struct Play {
+  std::vector<TimedEvent> events;
+  double end_s = 0;
+  double frames_per_s = 30;  ///< time goes on in steps of this, whatever a frame takes
+};
+
+/// A file of events:
+///
+///     {"frames_per_s": 30, "end": 2.0, "events": [
+///       {"at": 0, "pointer": [480, 360]}, {"at": 0, "press": "left"},
+///       {"at": 1, "pointer": [600, 360]}, {"at": 1, "release": "left"},
+///       {"at": 1.2, "scroll": 3}, {"at": 1.5, "key": "w"}, {"at": 1.8, "key_up": "w"}]}
+///
+/// Errors: no JSON, something else in it, times that go back; each with the event's number.
+Result<Play> parse_play(std::string_view text, const std::string& name);
+/// Errors: those of files, too.
+Result<Play> read_play(const std::filesystem::path& file);
+
+}  // namespace luxel::view

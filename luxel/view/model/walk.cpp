@@ -1,0 +1,136 @@
+#include "luxel/view/model/walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/trace/camera_rays.h"
+#include "luxel/view/model/camera_moves.h"
+
+namespace luxel::view {
+namespace {
+
+constexpr float kTurnPerHeight = 2 * kPi;  ///< of a drag over the picture's height
+constexpr float kNearerPerNotch = 0.9f;
+constexpr float kSceneSizesPerSecond = 0.2f;
+constexpr float kFast = 4;
+constexpr float kHalfStop = 1.41421356f;
+
+float aspect_of(const Walk& walk) { return float(walk.width) / float(walk.height); }
+
+/// What lies under a pixel, or else where the target's distance ends.
+Vec3 place_at(const Walk& walk, Vec2 pixel, const PlaceSeen& place_seen) {
+  if (const auto place = place_seen(walk.shown, pixel)) return *place;
+  const trace::CameraRays rays(walk.shown.camera, walk.width, walk.height);
+  const trace::Ray ray = rays.through(pixel.x, pixel.y);
+  const float ahead = dot(walk.target - rays.eye, rays.forward);
+  const float distance = ahead > 0 ? ahead : length(walk.target - rays.eye);
+  return ray.origin + ray.direction * (distance / dot(ray.direction, rays.forward));
+}
+
+bool moves_picture(const Walk& walk) {
+  return *walk.dragging != Button::left || walk.keys.contains("shift");
+}
+
+void drag(Vec2 by, Walk& walk) {
+  const Vec2 parts = by * (1 / float(walk.height));
+  scene::Camera& camera = walk.shown.camera;
+  camera = moves_picture(walk)
+               ? panned(camera, walk.target, parts, aspect_of(walk))
+               : orbited(camera, walk.target, -parts.x * kTurnPerHeight, parts.y * kTurnPerHeight);
+}
+
+/// What a key does when it goes down; those that fly do it as long as they are down.
+void press(const std::string& key, Walk& walk) {
+  if (key == "f") {
+    walk.shown.camera = framed(walk.shown.camera, walk.bounds, aspect_of(walk));
+    walk.target = walk.bounds.centre();
+  }
+  if (key == "home") walk.shown.camera = walk.first.camera;
+  if (key == "1") walk.shown.show = Show::light_and_colour;
+  if (key == "2") walk.shown.show = Show::light;
+  if (key == "3") walk.shown.show = Show::colour;
+  if (key == "+") walk.shown.exposure *= kHalfStop;
+  if (key == "-") walk.shown.exposure /= kHalfStop;
+  if (key == "0") walk.shown.exposure = walk.first.exposure;
+  // 40 stops either way show anything; beyond that floats end.
+  walk.shown.exposure = std::clamp(walk.shown.exposure, walk.first.exposure * 0x1p-40f,
+                                   walk.first.exposure * 0x1p40f);
+}
+
+}  // namespace
+
+PlaceSeen place_seen_in(const scene::Scene& scene, const trace::RayTracer& tracer, int width,
+                        int height) {
+  return [&scene, &tracer, width, height](const Frame& frame, Vec2 pixel) -> std::optional<Vec3> {
+    std::array rays{trace::CameraRays(frame.camera, width, height).through(pixel.x, pixel.y)};
+    const trace::Hit hit = trace::visible_hits(scene, tracer, rays).front();
+    if (!hit.found()) return std::nullopt;
+    return scene::world_position(scene, hit.point());
+  };
+}
+
+Walk begin_walk(const Frame& first, const Box3& bounds, int width, int height,
+                const PlaceSeen& place_seen) {
+  Walk walk;
+  walk.shown = walk.first = first;
+  walk.bounds = bounds;
+  walk.width = width, walk.height = height;
+  const Vec2 middle{0.5f * float(width), 0.5f * float(height)};
+  walk.pointer = middle;
+  walk.target = bounds.centre();
+  walk.target = place_at(walk, middle, place_seen);
+  return walk;
+}
+
+void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk) {
+  if (const auto* moved = std::get_if<PointerMoved>(&event)) {
+    if (walk.dragging) drag(moved->to - walk.pointer, walk);
+    walk.pointer = moved->to;
+  }
+  if (const auto* changed = std::get_if<ButtonChanged>(&event)) {
+    if (changed->is_down && !walk.dragging) {
+      walk.dragging = changed->button;
+      walk.target = place_at(walk, walk.pointer, place_seen);
+    } else if (!changed->is_down && walk.dragging == changed->button) {
+      walk.dragging.reset();
+    }
+  }
+  if (const auto* scrolled = std::get_if<Scrolled>(&event)) {
+    const Vec3 place = place_at(walk, walk.pointer, place_seen);
+    walk.shown.camera =
+        approached(walk.shown.camera, place, std::pow(kNearerPerNotch, scrolled->by));
+  }
+  if (const auto* key = std::get_if<KeyChanged>(&event)) {
+    if (!key->is_down) walk.keys.erase(key->key);
+    if (key->is_down && walk.keys.insert(key->key).second) press(key->key, walk);
+  }
+}
+
+void pass(double seconds, Walk& walk) {
+  const auto along = [&](const char* there, const char* back) {
+    return float(walk.keys.contains(there)) - float(walk.keys.contains(back));
+  };
+  const Vec3 direction{along("d", "a"), along("e", "q"), along("w", "s")};
+  if (length(direction) == 0) return;
+  const float speed =
+      kSceneSizesPerSecond * walk.bounds.diagonal() * (walk.keys.contains("shift") ? kFast : 1);
+  const Vec3 by = normalize(direction) * (speed * float(seconds));
+  const Vec3 before = column(walk.shown.camera.world_from_camera, 3);
+  walk.shown.camera = flown(walk.shown.camera, by);
+  walk.target += column(walk.shown.camera.world_from_camera, 3) - before;
+}
+
+void play(const Play& events, const PlaceSeen& place_seen, Walk& walk) {
+  const auto frames = int64_t(std::llround(events.end_s * events.frames_per_s));
+  size_t next = 0;
+  for (int64_t frame = 0; frame <= frames; ++frame) {
+    const double now = double(frame) / events.frames_per_s;
+    for (; next < events.events.size() && events.events[next].at_s <= now + 1e-9; ++next)
+      handle(events.events[next].event, place_seen, walk);
+    if (frame < frames) pass(1 / events.frames_per_s, walk);
+  }
+  for (; next < events.events.size(); ++next)  // in what is left of the last frame
+    handle(events.events[next].event, place_seen, walk);
+}
+
+}  // namespace luxel::view

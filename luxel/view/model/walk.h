@@ -1,0 +1,50 @@
+// Walking about in a scene: events in, camera and exposure out.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "luxel/trace/ray_tracer.h"
+#include "luxel/view/draw/painter.h"
+#include "luxel/view/model/events.h"
+
+namespace luxel::view {
+
+/// The place of the surface that is seen at a pixel; none where there is none.
+using PlaceSeen = std::function<std::optional<Vec3>(const Frame& frame, Vec2 pixel)>;
+
+/// By a ray from the eye; for pictures of this size. Scene and tracer must outlive it.
+PlaceSeen place_seen_in(const scene::Scene& scene, const trace::RayTracer& tracer, int width,
+                        int height);
+
+/// What is shown, and what the user is about to do.
+struct Walk {
+  Frame shown;
+  Frame first;  ///< what it began with
+  Box3 bounds;  ///< of the scene [m]
+  int width = 960, height = 720;
+
+  Vec3 target{};  ///< what the camera turns about
+  Vec2 pointer{};
+  std::optional<Button> dragging;
+  std::set<std::string> keys;  ///< that are down
+};
+
+/// Begins with a frame. The target lies in the middle of the picture, or as far away as the scene.
+Walk begin_walk(const Frame& first, const Box3& bounds, int width, int height,
+                const PlaceSeen& place_seen);
+
+/// What an event changes at once. Dragging turns the camera about the place that was under the
+/// pointer; with the middle or right button, or with shift, it moves the picture with the pointer.
+/// The wheel goes towards the place under the pointer.
+void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk);
+
+/// What goes on while keys are down: flying, a fifth of the scene's size per second.
+void pass(double seconds, Walk& walk);
+
+/// All of a play from its beginning to its end, in steps of its frames.
+void play(const Play& events, const PlaceSeen& place_seen, Walk& walk);
+
+}  // namespace luxel::view

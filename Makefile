@@ -51,6 +51,7 @@ demo: build
 	$(LUXEL) bake scenes/cornell-box.glb -o baked/cornell-box --resolution 256 --samples 512
 	@echo
 	@echo "Open baked/cornell-box/preview.png; baked/cornell-box/baked.glb goes into any glTF viewer."
+	@echo "Walk about in it: build/release/bin/luxel-view baked/cornell-box"
 
 # docs/options.md is made by tools/make_options_page.py, docs/bench/benchmarks.md by
 # tools/make_bench_page.py from the .csv files beside it.

@@ -60,6 +60,33 @@ TEST_P(ViewOfABake, IsWhatRenderDraws) {
 INSTANTIATE_TEST_SUITE_P(Scenes, ViewOfABake,
                          ::testing::Values("cornell-box.glb", "foliage.glb", "tiled-kit.glb"));
 
+// A virtual display, the panel over the picture, and a window of another size than the bake's.
+TEST(View, AWindowShowsWhatIsDrawnWithoutOne) {
+  const ScratchFolder s;
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  if (shell("command -v xvfb-run").code != 0) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  const std::string bake = (s.path / "baked").string();
+  ASSERT_EQ(luxel("bake " + scene_file("cornell-box.glb") + " -o " + bake +
+                  " --resolution 64 --samples 4 --quiet")
+                .code,
+            0);
+  const std::string play = s.write("play.json", R"({"end": 0.3, "events": [
+        {"at": 0, "pointer": [100, 80]}, {"at": 0, "press": "left"},
+        {"at": 0.1, "pointer": [130, 90]}, {"at": 0.2, "release": "left"},
+        {"at": 0.2, "scroll": 1}, {"at": 0.2, "key": "+"}, {"at": 0.25, "key": "w"}]})")
+                               .string();
+  const auto shot = [&](const std::string& name) {
+    return " --size 200x150 --play " + play + " --screenshot " + (s.path / name).string();
+  };
+  const CommandResult window =
+      view(bake + shot("window.png"),
+           "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
+  ASSERT_EQ(window.code, 0) << window.err;
+  EXPECT_EQ(window.out + window.err, "") << "the validation layer has nothing to say";
+  ASSERT_EQ(view(bake + shot("without.png") + " --offscreen").code, 0);
+  EXPECT_EQ(slurp(s.path / "window.png"), slurp(s.path / "without.png"));
+}
+
 TEST(View, SaysWhatIsWrong) {
   const ScratchFolder s;
   const std::string shot = " --offscreen --screenshot " + (s.path / "x.png").string();
@@ -71,7 +98,7 @@ TEST(View, SaysWhatIsWrong) {
     return r.err;
   };
   EXPECT_THAT(error("", 2), HasSubstr("FOLDER is required; 'luxel-view --help' lists"));
-  EXPECT_THAT(error("bake --offscreen", 2), HasSubstr("--screenshot is required"));
+  EXPECT_THAT(error("bake --offscreen", 2), HasSubstr("--offscreen requires --screenshot"));
   EXPECT_THAT(error("bake --size 10 " + shot, 1), HasSubstr("--size '10' is not WIDTHxHEIGHT"));
   EXPECT_THAT(error("bake --size 99999x1 " + shot, 1), HasSubstr("each up to 16384"));
   EXPECT_THAT(error("bake --offscreen --screenshot /nowhere/x.png", 1), HasSubstr("/nowhere"));
@@ -79,6 +106,12 @@ TEST(View, SaysWhatIsWrong) {
   EXPECT_THAT(error("bake" + shot, 1, "VK_DRIVER_FILES=/absent VK_ICD_FILENAMES=/absent"),
               HasSubstr("Vulkan"));
   if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  ASSERT_EQ(luxel("bake " + scene_file("cornell-box-empty.glb") + " -o " +
+                  (s.path / "baked").string() + " --resolution 16 --samples 1 --quiet")
+                .code,
+            0);
+  EXPECT_THAT(error((s.path / "baked").string(), 1, "env -u DISPLAY -u WAYLAND_DISPLAY"),
+              HasSubstr("there is no display to open a window on; draw without a window by"));
   const std::string play = s.write("play.json", "{}").string();
   EXPECT_THAT(error("bake" + shot + " --play " + play, 1), HasSubstr("play.json: "));
   EXPECT_THAT(error("bake --device nonesuch" + shot, 1),

@@ -23,6 +23,7 @@ packages=(
   libcgal-dev                        # exact predicates, constrained Delaunay triangulation
   zlib1g-dev                         # checksums
   libvulkan-dev libvulkan-volk-dev glslang-tools # graphics devices
+  libglfw3-dev libimgui-dev libfreetype-dev      # the window and its panels
   libcli11-dev libfmt-dev libexpected-dev
   libgtest-dev libgmock-dev          # tests
 )
@@ -42,6 +43,7 @@ if [[ ${1:-} == tests ]]; then
   command -v chromium >/dev/null || wanted+=(chromium)
   command -v patch >/dev/null || wanted+=(patch)
   command -v bwrap >/dev/null || wanted+=(bubblewrap)
+  command -v xvfb-run >/dev/null || wanted+=(xvfb xauth)
   # A graphics device without a graphics card, and who watches how it is used.
   compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null || wanted+=(mesa-vulkan-drivers)
   compgen -G '/usr/share/vulkan/explicit_layer.d/*validation*.json' >/dev/null ||

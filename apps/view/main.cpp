@@ -1,9 +1,10 @@
-// The `luxel-view` program: a bake drawn by a graphics device.
+// The `luxel-view` program: a bake in a window, or drawn by a graphics device without one.
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <filesystem>
 
+#include "apps/view/window.h"
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/image/codec.h"
@@ -48,20 +49,40 @@ Result<view::Frame> frame_to_draw(const std::optional<view::Play>& events,
   return walk.shown;
 }
 
+Result<std::optional<view::Play>> events_of(const Options& options) {
+  if (options.play.empty()) return std::nullopt;
+  return view::read_play(options.play);
+}
+
+void print_warnings(const view::OpenedBake& bake) {
+  for (const std::string& warning : bake.warnings)
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+}
+
+Status show(const Options& options) {
+  if (!options.screenshot.empty()) LUXEL_TRY_STATUS(check_output_file(options.screenshot));
+  view_window::WindowParams params;
+  LUXEL_TRY(params.play, events_of(options));
+  LUXEL_TRY(const view::OpenedBake bake, view::open_bake(options.subject));
+  print_warnings(bake);
+  params.title = std::filesystem::absolute(options.subject).lexically_normal().filename().string();
+  params.device = options.device;
+  params.width = options.width ? options.width : bake.width;
+  params.height = options.height ? options.height : bake.height;
+  params.screenshot = options.screenshot;
+  return view_window::show_in_window(bake, params);
+}
+
 /// One picture of the bake, without a window.
 Status draw_offscreen(const Options& options) {
   LUXEL_TRY_STATUS(check_output_file(options.screenshot));
-  std::optional<view::Play> events;
-  if (!options.play.empty()) {
-    LUXEL_TRY(events, view::read_play(options.play));
-  }
+  LUXEL_TRY(const std::optional<view::Play> events, events_of(options));
   gpu::DeviceParams params;
   params.name = options.device;
   LUXEL_TRY(const std::unique_ptr<gpu::Device> device, gpu::Device::open(params));
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device));
   LUXEL_TRY(const view::OpenedBake bake, view::open_bake(options.subject));
-  for (const std::string& warning : bake.warnings)
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  print_warnings(bake);
   const int width = options.width ? options.width : bake.width;
   const int height = options.height ? options.height : bake.height;
   LUXEL_TRY(const view::Frame frame, frame_to_draw(events, bake, width, height));
@@ -89,11 +110,13 @@ int run(int argc, char** argv) {
   CLI::App app{"luxel-view: look at a bake, drawn by the graphics card", "luxel-view"};
   app.set_version_flag("--version", std::string("luxel-view ") + pipeline::kVersion);
   app.add_option("FOLDER", options.subject, "What `luxel bake` left")->required();
-  app.add_flag("--offscreen", options.offscreen, "Draw one picture, without a window")->required();
-  app.add_option("--screenshot", options.screenshot, "The picture to write: .png")->required();
-  app.add_option("--play", options.play, "Events to play before the picture: .json")
+  auto* screenshot = app.add_option("--screenshot", options.screenshot,
+                                    "The picture to write: .png; of a window at the end of --play");
+  app.add_flag("--offscreen", options.offscreen, "Draw one picture, without a window")
+      ->needs(screenshot);
+  app.add_option("--play", options.play, "Mouse and keys to play: .json; then the window closes")
       ->type_name("FILE");
-  app.add_option("--size", options.size, "Size of the picture (that of preview.png)")
+  app.add_option("--size", options.size, "Size of the picture or window (that of preview.png)")
       ->type_name("WxH");
   app.add_option("--device", options.device,
                  "A part of the graphics device's name (the fastest kind)")
@@ -106,7 +129,7 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   if (const Status size = parse_size(options); !size) return report(size.error());
-  const Status done = draw_offscreen(options);
+  const Status done = options.offscreen ? draw_offscreen(options) : show(options);
   return done ? kDone : report(done.error());
 }
 

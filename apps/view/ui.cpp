@@ -1,0 +1,182 @@
+#include "apps/view/ui.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
+
+#include <vector>
+
+namespace luxel::view_window {
+namespace {
+
+/// One attachment that is drawn over and shown afterwards.
+VkRenderPass make_pass(const UiDevice& device) {
+  VkAttachmentDescription attachment{};
+  attachment.format = device.format;
+  attachment.samples = VK_SAMPLE_COUNT_1_BIT;
+  attachment.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  attachment.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+  attachment.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  attachment.initialLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  attachment.finalLayout = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
+  const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+  VkSubpassDescription subpass{};
+  subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+  subpass.colorAttachmentCount = 1;
+  subpass.pColorAttachments = &reference;
+  VkRenderPassCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
+  info.attachmentCount = 1, info.pAttachments = &attachment;
+  info.subpassCount = 1, info.pSubpasses = &subpass;
+  VkRenderPass pass = VK_NULL_HANDLE;
+  vkCreateRenderPass(device.device, &info, nullptr, &pass);
+  return pass;
+}
+
+VkDescriptorPool make_pool(const UiDevice& device) {
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16};
+  VkDescriptorPoolCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  info.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
+  info.maxSets = 16;
+  info.poolSizeCount = 1, info.pPoolSizes = &size;
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  vkCreateDescriptorPool(device.device, &info, nullptr, &pool);
+  return pool;
+}
+
+class ImGuiUi : public Ui {
+ public:
+  explicit ImGuiUi(const UiDevice& device)
+      : device_(device), pass_(make_pass(device)), pool_(make_pool(device)) {}
+
+  bool open(GLFWwindow* window) {
+    if (pass_ == VK_NULL_HANDLE || pool_ == VK_NULL_HANDLE) return false;
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // nothing is written where the program is run
+    float scale = 1;
+    glfwGetWindowContentScale(window, &scale, nullptr);
+    ImGui::GetIO().FontGlobalScale = scale;
+    ImGui::GetStyle().ScaleAllSizes(scale);
+    ImGui::GetIO().Fonts->Build();  // record() puts them on the device
+    has_context_ = true;
+    if (!ImGui_ImplGlfw_InitForVulkan(window, true)) return false;
+    has_window_ = true;
+    ImGui_ImplVulkan_InitInfo info{};
+    info.Instance = device_.instance, info.PhysicalDevice = device_.physical;
+    info.Device = device_.device;
+    info.QueueFamily = device_.queue_family, info.Queue = device_.queue;
+    info.DescriptorPool = pool_;
+    info.MinImageCount = info.ImageCount = 3;  // as many frames as may be under way
+    info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+    has_device_ = ImGui_ImplVulkan_Init(&info, pass_);
+    return has_device_;
+  }
+
+  ~ImGuiUi() override {
+    vkDeviceWaitIdle(device_.device);
+    if (has_device_) ImGui_ImplVulkan_Shutdown();
+    if (has_window_) ImGui_ImplGlfw_Shutdown();
+    if (has_context_) ImGui::DestroyContext();
+    end_pictures();
+    vkDestroyDescriptorPool(device_.device, pool_, nullptr);
+    vkDestroyRenderPass(device_.device, pass_, nullptr);
+  }
+
+  bool set_pictures(std::span<const VkImageView> views, uint32_t width, uint32_t height) override {
+    end_pictures();
+    width_ = width, height_ = height;
+    for (const VkImageView& view : views) {
+      VkFramebufferCreateInfo info{};
+      info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+      info.renderPass = pass_;
+      info.attachmentCount = 1, info.pAttachments = &view;
+      info.width = width, info.height = height, info.layers = 1;
+      VkFramebuffer picture = VK_NULL_HANDLE;
+      if (vkCreateFramebuffer(device_.device, &info, nullptr, &picture) != VK_SUCCESS) return false;
+      pictures_.push_back(picture);
+    }
+    return true;
+  }
+
+  bool has_pointer() const override { return ImGui::GetIO().WantCaptureMouse; }
+  bool has_keys() const override { return ImGui::GetIO().WantTextInput; }
+
+  void lay_out(Panel& panel) override {
+    ImGui_ImplVulkan_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    lay_out_panel(panel);
+    if (panel.keys_open) lay_out_keys(panel);
+    ImGui::Render();
+  }
+
+  void record(VkCommandBuffer commands, uint32_t picture) override {
+    if (!has_font_) has_font_ = ImGui_ImplVulkan_CreateFontsTexture(commands);
+    VkRenderPassBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    info.renderPass = pass_;
+    info.framebuffer = pictures_[picture];
+    info.renderArea.extent = {width_, height_};
+    vkCmdBeginRenderPass(commands, &info, VK_SUBPASS_CONTENTS_INLINE);
+    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
+    vkCmdEndRenderPass(commands);
+  }
+
+ private:
+  static void lay_out_panel(Panel& panel) {
+    ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
+    ImGui::Begin(panel.title.c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::TextUnformatted(panel.about.c_str());
+    ImGui::RadioButton("light and colour", &panel.show, 0);
+    ImGui::RadioButton("light", &panel.show, 1);
+    ImGui::RadioButton("colour", &panel.show, 2);
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
+    ImGui::SliderFloat("exposure", &panel.stops, -8, 8, "%+.1f stops");
+    ImGui::Text("%.1f ms per frame", double(panel.milliseconds));
+    if (ImGui::Button("keys (F1)")) panel.keys_open = !panel.keys_open;
+    ImGui::End();
+  }
+
+  static void lay_out_keys(Panel& panel) {
+    const float beside_panel = ImGui::GetFontSize() * 20;
+    ImGui::SetNextWindowPos({beside_panel, 10}, ImGuiCond_FirstUseEver);
+    ImGui::Begin("keys", &panel.keys_open, ImGuiWindowFlags_AlwaysAutoResize);
+    if (ImGui::BeginTable("keys", 2)) {
+      for (const KeyLine& line : panel.keys) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(line.key);
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(line.does);
+      }
+      ImGui::EndTable();
+    }
+    ImGui::End();
+  }
+
+  void end_pictures() {
+    for (const VkFramebuffer picture : pictures_)
+      vkDestroyFramebuffer(device_.device, picture, nullptr);
+    pictures_.clear();
+  }
+
+  UiDevice device_;
+  VkRenderPass pass_;
+  VkDescriptorPool pool_;
+  std::vector<VkFramebuffer> pictures_;
+  uint32_t width_ = 0, height_ = 0;
+  bool has_context_ = false, has_window_ = false, has_device_ = false, has_font_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Ui> Ui::make(GLFWwindow* window, const UiDevice& device) {
+  auto out = std::make_unique<ImGuiUi>(device);
+  if (!out->open(window)) return nullptr;
+  return out;
+}
+
+}  // namespace luxel::view_window

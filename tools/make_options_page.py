@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes docs/options.md from what the program says of its own options.
 
-    tools/make_options_page.py LUXEL            prints the page; LUXEL is the program
+    tools/make_options_page.py LUXEL            prints the page; LUXEL is the program, luxel-view lies beside it
     tools/make_options_page.py LUXEL --write    writes docs/options.md
     tools/make_options_page.py LUXEL --check    exit 1 when docs/options.md is another page
     tools/make_options_page.py LUXEL --names    prints the names of all options, one a line
@@ -21,7 +21,7 @@ TEXT = re.compile(r"^ {10,}(\S.*)$")
 
 class Option:
     def __init__(self, head, text):
-        head = re.sub(r" Excludes:.*$", "", head.replace("{false}", ""))
+        head = re.sub(r" (Excludes|Needs):.*$", "", head.replace("{false}", ""))
         names, *rest = head.split(" ", 1)
         self.names = names.split(",")
         rest = rest[0] if rest else ""
@@ -66,8 +66,11 @@ def read_help(text):
     return [g for g in groups if g[1]]
 
 
-def help_of(luxel, command):
-    return subprocess.run([luxel, command, "--help"], check=True, capture_output=True, text=True).stdout
+def helps(luxel):
+    """[(name, help)] of every command, and of the window's program."""
+    programs = [(f"luxel {command}", [luxel, command]) for command in COMMANDS] + [("luxel-view", [f"{luxel}-view"])]
+    return [(name, subprocess.run(program + ["--help"], check=True, capture_output=True, text=True).stdout)
+            for name, program in programs]
 
 
 def page(luxel):
@@ -75,9 +78,8 @@ def page(luxel):
              "Every option of every command, as `luxel COMMAND --help` prints them. This page is made from that text by",
              "`tools/make_options_page.py`, and a test compares the two. The guides in [guide/](guide/README.md) say when to use",
              "which; the pages in `method/` say what each one steers."]
-    for command in COMMANDS:
-        text = help_of(luxel, command)
-        lines += ["", f"## luxel {command}", "", text.splitlines()[0].rstrip(".") + "."]
+    for name, text in helps(luxel):
+        lines += ["", f"## {name}", "", text.splitlines()[0].rstrip(".") + "."]
         for title, options in read_help(text):
             lines += [""] if title == "Options" else ["", f"{title}:", ""]
             lines += ["| option | value | default | meaning |", "|---|---|---|---|"]
@@ -86,7 +88,7 @@ def page(luxel):
 
 
 def names(luxel):
-    found = {n for c in COMMANDS for _, options in read_help(help_of(luxel, c)) for o in options for n in o.names}
+    found = {n for _, text in helps(luxel) for _, options in read_help(text) for o in options for n in o.names}
     return sorted(found)
 
 

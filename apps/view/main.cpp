@@ -107,7 +107,7 @@ int report(const Error& error) {
 
 int run(int argc, char** argv) {
   Options options;
-  CLI::App app{"luxel-view: look at a bake, drawn by the graphics card", "luxel-view"};
+  CLI::App app{"Look at a bake in a window, drawn by the graphics card", "luxel-view"};
   app.set_version_flag("--version", std::string("luxel-view ") + pipeline::kVersion);
   app.add_option("FOLDER", options.subject, "What `luxel bake` left")->required();
   auto* screenshot = app.add_option("--screenshot", options.screenshot,

@@ -99,6 +99,7 @@ TEST(View, SaysWhatIsWrong) {
   };
   EXPECT_THAT(error("", 2), HasSubstr("FOLDER is required; 'luxel-view --help' lists"));
   EXPECT_THAT(error("bake --offscreen", 2), HasSubstr("--offscreen requires --screenshot"));
+  EXPECT_THAT(error("bake --screenshot x.png", 2), HasSubstr("needs --offscreen or --play"));
   EXPECT_THAT(error("bake --size 10 " + shot, 1), HasSubstr("--size '10' is not WIDTHxHEIGHT"));
   EXPECT_THAT(error("bake --size 99999x1 " + shot, 1), HasSubstr("each up to 16384"));
   EXPECT_THAT(error("bake --offscreen --screenshot /nowhere/x.png", 1), HasSubstr("/nowhere"));
@@ -116,7 +117,8 @@ TEST(View, SaysWhatIsWrong) {
   EXPECT_THAT(error("bake" + shot + " --play " + play, 1), HasSubstr("play.json: "));
   EXPECT_THAT(error("bake --device nonesuch" + shot, 1),
               HasSubstr("named 'nonesuch'; there are: "));
-  EXPECT_THAT(error((s.path / "absent").string() + shot, 1), HasSubstr("absent/baked.glb"));
+  EXPECT_THAT(error((s.path / "absent").string() + shot, 1),
+              HasSubstr("absent is no bake: there is no baked.glb in it"));
 }
 
 }  // namespace

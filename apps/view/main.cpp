@@ -128,6 +128,10 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "luxel-view: %s; 'luxel-view --help' lists what there is\n", error.what());
     return kUsage;
   }
+  if (!options.screenshot.empty() && !options.offscreen && options.play.empty()) {
+    std::fprintf(stderr, "luxel-view: --screenshot needs --offscreen or --play\n");
+    return kUsage;
+  }
   if (const Status size = parse_size(options); !size) return report(size.error());
   const Status done = options.offscreen ? draw_offscreen(options) : show(options);
   return done ? kDone : report(done.error());

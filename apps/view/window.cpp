@@ -55,6 +55,8 @@ class Window {
   GLFWwindow* get() const { return window_; }
   /// What the user did since the last call.
   std::vector<view::Event> taken() { return std::exchange(events_, {}); }
+  /// Whether something has happened since the last call that may change the picture.
+  bool has_changed() { return std::exchange(has_changed_, false) || !events_.empty(); }
   bool asks_for_keys() { return std::exchange(asks_for_keys_, false); }
   std::array<int, 2> pixels() const {
     std::array<int, 2> size{};
@@ -76,6 +78,7 @@ class Window {
   /// Before ImGui's own callbacks, which call these.
   void listen() {
     glfwSetWindowUserPointer(window_, this);
+    glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { of(w).has_changed_ = true; });
     glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
       int width = 1, height = 1;  // in the display's units, which may be several pixels
       glfwGetWindowSize(w, &width, &height);
@@ -95,6 +98,7 @@ class Window {
     });
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int code, int action, int) {
       if (action == GLFW_REPEAT) return;
+      of(w).has_changed_ = true;
       if (key == GLFW_KEY_F1 && action == GLFW_PRESS) of(w).asks_for_keys_ = true;
       if (const std::string name = name_of(key, code); !name.empty())
         of(w).events_.push_back(view::KeyChanged{name, action == GLFW_PRESS});
@@ -121,7 +125,7 @@ class Window {
   }
 
   GLFWwindow* window_ = nullptr;
-  bool is_open_ = false, asks_for_keys_ = false;
+  bool is_open_ = false, asks_for_keys_ = false, has_changed_ = true;
   std::vector<view::Event> events_;
 };
 
@@ -245,56 +249,94 @@ double seconds_since(Clock::time_point then) {
   return std::chrono::duration<double>(Clock::now() - then).count();
 }
 
+/// The panel lays itself out anew for some frames after a change.
+constexpr int kFramesToSettle = 3;
+
+/// A window while it is open.
+struct Session {
+  Window& window;
+  Screen& screen;
+  const view::OpenedBake& bake;
+  const trace::RayTracer& tracer;
+  const WindowParams& params;
+  std::vector<KeyLine> keys = key_lines();
+  Panel panel;
+  std::optional<view::Walk> walk;  ///< once the window has a size
+  view::PlaceSeen place_seen;
+  int still_frames = 0;  ///< since something changed
+  bool fits = false;     ///< what is drawn into has the window's size
+  int64_t frame = 0;     ///< of a play
+  size_t next_event = 0;
+  Clock::time_point last = Clock::now();
+};
+
+/// Fits what is drawn into to the window. False while the window has no size, as when it is hidden.
+Result<bool> fit(Session& s) {
+  if (s.fits && has_size_of(s.window, s.screen.swapchain)) return true;
+  LUXEL_TRY(s.fits, fit_window(s.window, s.screen));
+  if (!s.fits) return false;
+  const auto width = int(s.screen.swapchain.width), height = int(s.screen.swapchain.height);
+  s.place_seen = view::place_seen_in(s.bake.scene, s.tracer, width, height);
+  if (!s.walk)
+    s.walk = view::begin_walk(s.bake.first, scene::world_bounds(s.bake.scene), width, height,
+                              s.place_seen);
+  s.walk->width = width, s.walk->height = height;
+  return true;
+}
+
+/// The events of a play up to its present frame.
+void play_events(Session& s) {
+  const view::Play& play = *s.params.play;
+  const double now = double(s.frame) / play.frames_per_s;
+  for (; s.next_event < play.events.size() && play.events[s.next_event].at_s <= now + 1e-9;
+       ++s.next_event)
+    view::handle(play.events[s.next_event].event, s.place_seen, *s.walk);
+}
+
+/// One frame of the window. False when a play has come to its end.
+Result<bool> go_on(Session& s) {
+  // A window in which nothing moves is not drawn.
+  const bool moves = s.params.play || (s.walk && !s.walk->keys.empty());
+  moves ? glfwPollEvents() : glfwWaitEventsTimeout(0.1);
+  const bool fitted = s.fits;
+  LUXEL_TRY(const bool fits, fit(s));
+  const double passed = seconds_since(std::exchange(s.last, Clock::now()));
+  if (!fits) return true;
+  s.still_frames = moves || !fitted || s.window.has_changed() ? 0 : s.still_frames + 1;
+  if (s.still_frames > kFramesToSettle) return true;
+  if (s.params.play) {
+    play_events(s);
+  } else {
+    take_events(s.window, *s.screen.ui, s.place_seen, *s.walk);
+    view::pass(std::min(passed, 0.1), *s.walk);
+  }
+  if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
+  exchange(*s.screen.ui, s.panel, *s.walk);
+  const auto begin = Clock::now();
+  LUXEL_TRY(s.fits, draw(s.walk->shown, s.screen));
+  s.panel.milliseconds = float(1000 * seconds_since(begin));
+  if (!s.params.play) return true;
+  if (double(s.frame) >= s.params.play->end_s * s.params.play->frames_per_s) return false;
+  view::pass(1 / s.params.play->frames_per_s, *s.walk);
+  ++s.frame;
+  return true;
+}
+
 }  // namespace
 
 Status show_in_window(const view::OpenedBake& bake, const WindowParams& params) {
   LUXEL_TRY(const std::unique_ptr<Window> window, Window::open(params));
   LUXEL_TRY(Screen screen, open_screen(*window, bake, params));
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
-  const Box3 bounds = scene::world_bounds(bake.scene);
-  std::optional<view::Walk> walk;
-  view::PlaceSeen place_seen;
-  const std::vector<KeyLine> keys = key_lines();
-  Panel panel;
-  panel.title = params.title, panel.about = screen.device->name, panel.keys = keys;
-  bool fits = false;
-  int64_t frame = 0;
-  size_t next_event = 0;
-  auto last = Clock::now();
-  while (!glfwWindowShouldClose(window->get())) {
-    params.play ? glfwPollEvents() : glfwWaitEventsTimeout(walk && !walk->keys.empty() ? 0 : 0.1);
-    if (!fits || !has_size_of(*window, screen.swapchain)) {
-      LUXEL_TRY(fits, fit_window(*window, screen));
-      if (!fits) continue;  // it is hidden
-      const auto width = int(screen.swapchain.width), height = int(screen.swapchain.height);
-      place_seen = view::place_seen_in(bake.scene, tracer, width, height);
-      if (!walk) walk = view::begin_walk(bake.first, bounds, width, height, place_seen);
-      walk->width = width, walk->height = height;
-    }
-    const double passed = seconds_since(std::exchange(last, Clock::now()));
-    if (params.play) {
-      const double now = double(frame) / params.play->frames_per_s;
-      for (; next_event < params.play->events.size() &&
-             params.play->events[next_event].at_s <= now + 1e-9;
-           ++next_event)
-        view::handle(params.play->events[next_event].event, place_seen, *walk);
-    } else {
-      take_events(*window, *screen.ui, place_seen, *walk);
-      view::pass(std::min(passed, 0.1), *walk);
-    }
-    if (window->asks_for_keys()) panel.keys_open = !panel.keys_open;
-    exchange(*screen.ui, panel, *walk);
-    const auto begin = Clock::now();
-    LUXEL_TRY(fits, draw(walk->shown, screen));
-    panel.milliseconds = float(1000 * seconds_since(begin));
-    if (!params.play) continue;
-    if (double(frame) >= params.play->end_s * params.play->frames_per_s) break;
-    view::pass(1 / params.play->frames_per_s, *walk);
-    ++frame;
-  }
-  if (params.screenshot.empty() || !walk || !params.play) return {};
+  Session session{*window, screen, bake, tracer, params};
+  session.panel.title = params.title, session.panel.about = screen.device->name;
+  session.panel.keys = session.keys;
+  bool is_going_on = true;
+  while (is_going_on && !glfwWindowShouldClose(window->get()))
+    LUXEL_TRY_STATUS(go_on(session).map([&](bool more) { is_going_on = more; }));
+  if (params.screenshot.empty() || !session.walk) return {};
   LUXEL_TRY(const image::Image8 picture,
-            view::painted(*screen.commands, screen.painter, screen.scene, walk->shown));
+            view::painted(*screen.commands, screen.painter, screen.scene, session.walk->shown));
   return write_file_atomically(params.screenshot, image::encode_png(picture));
 }
 

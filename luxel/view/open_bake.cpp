@@ -33,6 +33,12 @@ Status add_surroundings(const std::filesystem::path& folder, const nlohmann::jso
 }  // namespace
 
 Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder / "baked.glb", ignored))
+    return fail(
+        ErrorCode::bad_input,
+        "{} is no bake: there is no baked.glb in it; `luxel bake SCENE -o FOLDER` makes one",
+        folder.string());
   LUXEL_TRY_STATUS(pipeline::check_has_colors(folder));
   OpenedBake out;
   LUXEL_TRY(out.scene, pipeline::scene_of_bake(folder));

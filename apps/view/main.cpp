@@ -10,6 +10,7 @@
 #include "luxel/image/codec.h"
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/trace/ray_tracer.h"
+#include "luxel/view/draw/painter.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
 

@@ -8,7 +8,7 @@
 #include "luxel/base/result.h"
 #include "luxel/pipeline/bake/baked_folder.h"
 #include "luxel/scene/scene.h"
-#include "luxel/view/draw/painter.h"
+#include "luxel/view/frame.h"
 
 namespace luxel::view {
 

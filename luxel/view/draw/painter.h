@@ -1,29 +1,14 @@
 // Draws a scene that lies on a graphics device.
 #pragma once
 
-#include "luxel/display/tone_map.h"
 #include "luxel/gpu/pipeline.h"
 #include "luxel/gpu/target.h"
 #include "luxel/image/codec.h"
 #include "luxel/image/image.h"
 #include "luxel/view/draw/device_scene.h"
+#include "luxel/view/frame.h"
 
 namespace luxel::view {
-
-/// What of surfaces is shown.
-enum class Show : uint32_t {
-  light_and_colour,  ///< what they send to the eye
-  light,             ///< as if all surfaces were white
-  colour,            ///< their reflectance, whatever falls on them
-};
-
-/// One picture.
-struct Frame {
-  scene::Camera camera;
-  float exposure = 1;  ///< factor of the radiance before the curve
-  display::ToneMap curve = display::ToneMap::shoulder;
-  Show show = Show::light_and_colour;
-};
 
 /// What pictures of one size are drawn with: pipelines, targets.
 struct Painter {

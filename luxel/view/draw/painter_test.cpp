@@ -212,7 +212,7 @@ TEST_F(PainterTest, CamerasSeeWhatDisplayDraws) {
     double off = 0;
     for (size_t i = 0; i < picture.data.size(); ++i)
       off += std::abs(picture.data[i] - wanted->data[i]);
-    // Of 4096 pixels some 160 lie on the edge, whose shares of 4 and of 9 samples differ by 0.1.
+    // Some 160 of 4096 pixels lie on the edge, whose shares of 4 and of 9 samples differ by 0.1.
     EXPECT_LT(off / double(picture.data.size()), 0.01) << aspect << " " << height_m;
   }
 }

@@ -10,7 +10,7 @@
 namespace luxel::view {
 namespace {
 
-/// Of 3 : 2, so that parts of its height are pixels over 200.
+/// The picture is 3 : 2; parts of its height are pixels over 200.
 constexpr int kWidth = 300, kHeight = 200;
 constexpr float kAspect = 1.5f;
 

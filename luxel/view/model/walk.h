@@ -7,7 +7,7 @@
 #include <string>
 
 #include "luxel/trace/ray_tracer.h"
-#include "luxel/view/draw/painter.h"
+#include "luxel/view/frame.h"
 #include "luxel/view/model/events.h"
 
 namespace luxel::view {

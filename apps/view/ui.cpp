@@ -136,7 +136,14 @@ class ImGuiUi : public Ui {
     ImGui::RadioButton("colour", &panel.show, 2);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
     ImGui::SliderFloat("exposure", &panel.stops, -8, 8, "%+.1f stops");
+    if (!panel.views.empty() && ImGui::CollapsingHeader("views of the file"))
+      for (size_t i = 0; i < panel.views.size(); ++i) {
+        ImGui::PushID(int(i));  // names need not differ
+        if (ImGui::Selectable(panel.views[i].c_str())) panel.view = int(i);
+        ImGui::PopID();
+      }
     ImGui::Text("%.1f ms per frame", double(panel.milliseconds));
+    if (!panel.message.empty()) ImGui::TextUnformatted(panel.message.c_str());
     if (ImGui::Button("keys (F1)")) panel.keys_open = !panel.keys_open;
     ImGui::End();
   }

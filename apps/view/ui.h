@@ -36,6 +36,9 @@ struct Panel {
   float stops = 0;         ///< changed: exposure over the first
   bool keys_open = false;  ///< changed: the list of keys
   std::span<const KeyLine> keys;
+  std::span<const std::string> views;  ///< of the scene's cameras
+  int view = -1;                       ///< changed: the one that was asked for; -1: none
+  std::string message;                 ///< what was done last
 };
 
 class Ui {

@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "apps/view/ui.h"
@@ -58,6 +59,7 @@ class Window {
   /// Whether something has happened since the last call that may change the picture.
   bool has_changed() { return std::exchange(has_changed_, false) || !events_.empty(); }
   bool asks_for_keys() { return std::exchange(asks_for_keys_, false); }
+  bool asks_for_screenshot() { return std::exchange(asks_for_screenshot_, false); }
   std::array<int, 2> pixels() const {
     std::array<int, 2> size{};
     glfwGetFramebufferSize(window_, &size[0], &size[1]);
@@ -100,6 +102,7 @@ class Window {
       if (action == GLFW_REPEAT) return;
       of(w).has_changed_ = true;
       if (key == GLFW_KEY_F1 && action == GLFW_PRESS) of(w).asks_for_keys_ = true;
+      if (key == GLFW_KEY_F12 && action == GLFW_PRESS) of(w).asks_for_screenshot_ = true;
       if (const std::string name = name_of(key, code); !name.empty())
         of(w).events_.push_back(view::KeyChanged{name, action == GLFW_PRESS});
     });
@@ -125,7 +128,8 @@ class Window {
   }
 
   GLFWwindow* window_ = nullptr;
-  bool is_open_ = false, asks_for_keys_ = false, has_changed_ = true;
+  bool is_open_ = false, has_changed_ = true;
+  bool asks_for_keys_ = false, asks_for_screenshot_ = false;
   std::vector<view::Event> events_;
 };
 
@@ -220,13 +224,28 @@ std::vector<KeyLine> key_lines() {
 }
 
 /// What the panel changes of a walk, and the walk of the panel.
-void exchange(Ui& ui, Panel& panel, view::Walk& walk) {
+void exchange(Ui& ui, std::span<const scene::Camera> views, Panel& panel, view::Walk& walk) {
   panel.show = int(walk.shown.show);
   panel.stops = std::log2(walk.shown.exposure / walk.first.exposure);
   const float before = panel.stops;
   ui.lay_out(panel);
   walk.shown.show = view::Show(panel.show);
   if (panel.stops != before) walk.shown.exposure = walk.first.exposure * std::exp2(panel.stops);
+  if (const int view = std::exchange(panel.view, -1); view >= 0)
+    walk.shown.camera = views[size_t(view)];
+}
+
+/// Writes what is shown, without the panel, into the first file of this name that is not there.
+Status write_screenshot(const view::Frame& frame, Screen& screen, std::string& message) {
+  LUXEL_TRY(const image::Image8 picture,
+            view::painted(*screen.commands, screen.painter, screen.scene, frame));
+  std::filesystem::path file;
+  std::error_code ignored;
+  for (int number = 1; file.empty() || std::filesystem::exists(file, ignored); ++number)
+    file = fmt::format("luxel-view-{}.png", number);
+  const Status written = write_file_atomically(file, image::encode_png(picture));
+  message = written ? "wrote " + file.string() : written.error().message;
+  return {};
 }
 
 /// Events of the user, but for those that are the panel's.
@@ -260,6 +279,7 @@ struct Session {
   const trace::RayTracer& tracer;
   const WindowParams& params;
   std::vector<KeyLine> keys = key_lines();
+  std::vector<std::string> views = {};  ///< names of the scene's cameras
   Panel panel;
   std::optional<view::Walk> walk;  ///< once the window has a size
   view::PlaceSeen place_seen;
@@ -311,10 +331,12 @@ Result<bool> go_on(Session& s) {
     view::pass(std::min(passed, 0.1), *s.walk);
   }
   if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
-  exchange(*s.screen.ui, s.panel, *s.walk);
+  exchange(*s.screen.ui, s.bake.scene.cameras, s.panel, *s.walk);
   const auto begin = Clock::now();
   LUXEL_TRY(s.fits, draw(s.walk->shown, s.screen));
   s.panel.milliseconds = float(1000 * seconds_since(begin));
+  if (s.window.asks_for_screenshot())
+    LUXEL_TRY_STATUS(write_screenshot(s.walk->shown, s.screen, s.panel.message));
   if (!s.params.play) return true;
   if (double(s.frame) >= s.params.play->end_s * s.params.play->frames_per_s) return false;
   view::pass(1 / s.params.play->frames_per_s, *s.walk);
@@ -331,6 +353,9 @@ Status show_in_window(const view::OpenedBake& bake, const WindowParams& params) 
   Session session{*window, screen, bake, tracer, params};
   session.panel.title = params.title, session.panel.about = screen.device->name;
   session.panel.keys = session.keys;
+  for (const scene::Camera& camera : bake.scene.cameras)
+    session.views.push_back(camera.name.empty() ? "camera" : camera.name);
+  session.panel.views = session.views;
   bool is_going_on = true;
   while (is_going_on && !glfwWindowShouldClose(window->get()))
     LUXEL_TRY_STATUS(go_on(session).map([&](bool more) { is_going_on = more; }));

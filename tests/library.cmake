@@ -9,6 +9,7 @@ file(REMOVE_RECURSE ${FOLDER})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${FOLDER}/installed)
 file(RENAME ${FOLDER}/installed ${FOLDER}/moved)
 set(luxel ${FOLDER}/moved/bin/luxel)
+run(${FOLDER}/moved/bin/luxel-view --version)  # with the library beside it that has its panel
 run(${PYTHON} ${SOURCE}/tools/check_api.py --installed ${FOLDER}/moved)
 
 # A program that includes the whole API, in the order of its table.

@@ -1,4 +1,4 @@
-# What `cmake --install` copies: the program, the headers and static libraries of the rooms, and a
+# What `cmake --install` copies: the programs, the headers and static libraries of the rooms, and a
 # CMake package whose targets are luxel::pipeline and luxel::relight. docs/guide/library.md.
 
 # The rooms that playing an .lxr file needs: free of Assimp and CGAL. The others need these.
@@ -23,12 +23,15 @@ function(luxel_install_rooms export)
 endfunction()
 luxel_install_rooms(luxelRelightTargets ${luxel_relight_rooms} relight)
 luxel_install_rooms(luxelPipelineTargets ${luxel_pipeline_rooms})
-install(TARGETS luxel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS luxel luxel-view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS luxel_view_ui LIBRARY DESTINATION ${luxel_archives})
+file(RELATIVE_PATH view_ui_folder /${CMAKE_INSTALL_BINDIR} /${luxel_archives})
+set_target_properties(luxel-view PROPERTIES INSTALL_RPATH "$ORIGIN/${view_ui_folder}")
 install(FILES ${draco_archive} DESTINATION ${luxel_archives})
 
 # One by one, because install(DIRECTORY) would leave folders without headers, too.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/luxel/*.h)
-list(FILTER headers EXCLUDE REGEX "(^luxel/validate/|/test_|_test[_.]|/node_modules/)")
+list(FILTER headers EXCLUDE REGEX "(^luxel/(validate|gpu|view)/|/test_|_test[_.]|/node_modules/)")
 foreach(header ${headers})
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})

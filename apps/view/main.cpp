@@ -89,9 +89,10 @@ Status draw_offscreen(const Options& options) {
   LUXEL_TRY(const view::Frame frame, frame_to_draw(events, bake, width, height));
   LUXEL_TRY(const view::DeviceScene scene,
             view::put_on_device(commands, bake.scene, bake.lightmaps));
+  LUXEL_TRY(const view::Shaders shaders, view::make_shaders(*device));
   LUXEL_TRY(const view::Painter painter,
-            view::make_painter(*device, scene, uint32_t(width), uint32_t(height)));
-  LUXEL_TRY(const image::Image8 picture, view::painted(commands, painter, scene, frame));
+            view::make_painter(*device, shaders, scene, uint32_t(width), uint32_t(height)));
+  LUXEL_TRY(const image::Image8 picture, view::painted(commands, {shaders, painter, scene}, frame));
   LUXEL_TRY_STATUS(write_file_atomically(options.screenshot, image::encode_png(picture)));
   std::fprintf(stderr, "wrote %s, drawn by %s\n", options.screenshot.string().c_str(),
                device->name.c_str());

@@ -139,9 +139,12 @@ struct Screen {
   std::optional<gpu::Surface> surface;
   std::optional<gpu::Commands> commands;
   view::DeviceScene scene;
+  view::Shaders shaders;
   gpu::Swapchain swapchain;
-  view::Painter painter;
+  view::Painter painter;  ///< of the window's size
   std::unique_ptr<Ui> ui;
+
+  view::Canvas canvas() const { return {shaders, painter, scene}; }
 };
 
 /// The window's pictures and what is drawn into them, of the window's size. False while it has
@@ -155,8 +158,8 @@ Result<bool> fit_window(const Window& window, Screen& screen) {
             gpu::make_swapchain(device, *screen.surface, uint32_t(width), uint32_t(height),
                                 screen.swapchain.images.empty() ? nullptr : &screen.swapchain));
   screen.swapchain = std::move(swapchain);
-  LUXEL_TRY(screen.painter, view::make_painter(device, screen.scene, screen.swapchain.width,
-                                               screen.swapchain.height));
+  LUXEL_TRY(screen.painter, view::make_painter(device, screen.shaders, screen.scene,
+                                               screen.swapchain.width, screen.swapchain.height));
   if (!screen.ui) {
     screen.ui =
         Ui::make(window.get(), {device.instance, device.physical, device.device,
@@ -192,6 +195,7 @@ Result<Screen> open_screen(const Window& window, const view::OpenedBake& bake,
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*out.device));
   out.commands.emplace(std::move(commands));
   LUXEL_TRY(out.scene, view::put_on_device(*out.commands, bake.scene, bake.lightmaps));
+  LUXEL_TRY(out.shaders, view::make_shaders(*out.device));
   return out;
 }
 
@@ -204,7 +208,7 @@ Result<bool> draw(const view::Frame& frame, Screen& screen) {
   LUXEL_TRY(const uint64_t number,
             screen.commands->submit(
                 [&](VkCommandBuffer commands) {
-                  view::paint(device, commands, screen.painter, screen.scene, frame);
+                  view::paint(device, commands, screen.canvas(), frame);
                   const gpu::Picture& shown = screen.painter.shown.picture;
                   gpu::copy_to_window(device, commands, shown.image.get(), shown.params.width,
                                       shown.params.height, screen.swapchain, next->number);
@@ -237,8 +241,7 @@ void exchange(Ui& ui, std::span<const scene::Camera> views, Panel& panel, view::
 
 /// Writes what is shown, without the panel, into the first file of this name that is not there.
 Status write_screenshot(const view::Frame& frame, Screen& screen, std::string& message) {
-  LUXEL_TRY(const image::Image8 picture,
-            view::painted(*screen.commands, screen.painter, screen.scene, frame));
+  LUXEL_TRY(const image::Image8 picture, view::painted(*screen.commands, screen.canvas(), frame));
   std::filesystem::path file;
   std::error_code ignored;
   for (int number = 1; file.empty() || std::filesystem::exists(file, ignored); ++number)
@@ -361,7 +364,7 @@ Status show_in_window(const view::OpenedBake& bake, const WindowParams& params) 
     LUXEL_TRY_STATUS(go_on(session).map([&](bool more) { is_going_on = more; }));
   if (params.screenshot.empty() || !session.walk) return {};
   LUXEL_TRY(const image::Image8 picture,
-            view::painted(*screen.commands, screen.painter, screen.scene, session.walk->shown));
+            view::painted(*screen.commands, screen.canvas(), session.walk->shown));
   return write_file_atomically(params.screenshot, image::encode_png(picture));
 }
 

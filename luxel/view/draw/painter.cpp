@@ -91,19 +91,9 @@ gpu::DrawParams screen_params() {
   return params;
 }
 
-Status make_pipelines(const gpu::Device& device, Painter& out) {
-  LUXEL_TRY(out.surface, gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_BACK_BIT)));
-  LUXEL_TRY(out.surface_mirrored,
-            gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_FRONT_BIT)));
-  LUXEL_TRY(out.surface_double_sided,
-            gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_NONE)));
-  LUXEL_TRY(out.behind, gpu::make_draw_pipeline(device, behind_params()));
-  LUXEL_TRY(out.screen, gpu::make_draw_pipeline(device, screen_params()));
-  return {};
-}
-
-void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Painter& painter,
-                   const DeviceScene& scene, SurfacePush push) {
+void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
+                   SurfacePush push) {
+  const auto& [shaders, painter, scene] = canvas;
   device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   push.vertices = scene.vertices.address;
   push.materials = scene.materials.address;
@@ -112,9 +102,9 @@ void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Pa
     for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {
       const bool is_mirrored = scene.is_mirrored[push.instance];
       const gpu::Pipeline& pipeline = scene.is_double_sided[range.material]
-                                          ? painter.surface_double_sided
-                                      : is_mirrored ? painter.surface_mirrored
-                                                    : painter.surface;
+                                          ? shaders.surface_double_sided
+                                      : is_mirrored ? shaders.surface_mirrored
+                                                    : shaders.surface;
       push.material = range.material;
       gpu::bind(device, commands, pipeline, push);
       gpu::bind_set(device, commands, pipeline, painter.materials.sets[range.material]);
@@ -124,26 +114,38 @@ void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Pa
 
 }  // namespace
 
-Result<Painter> make_painter(const gpu::Device& device, const DeviceScene& scene, uint32_t width,
-                             uint32_t height) {
+Result<Shaders> make_shaders(const gpu::Device& device) {
+  Shaders out;
+  LUXEL_TRY(out.surface, gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_BACK_BIT)));
+  LUXEL_TRY(out.surface_mirrored,
+            gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_FRONT_BIT)));
+  LUXEL_TRY(out.surface_double_sided,
+            gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_NONE)));
+  LUXEL_TRY(out.behind, gpu::make_draw_pipeline(device, behind_params()));
+  LUXEL_TRY(out.screen, gpu::make_draw_pipeline(device, screen_params()));
+  return out;
+}
+
+Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
+                             const DeviceScene& scene, uint32_t width, uint32_t height) {
   Painter out;
-  LUXEL_TRY_STATUS(make_pipelines(device, out));
   LUXEL_TRY(out.exposed,
             gpu::make_target(device, {width, height, kExposed, kSamples, true}, "the picture"));
   LUXEL_TRY(out.shown,
             gpu::make_target(device, {width, height, kShown, VK_SAMPLE_COUNT_1_BIT, false},
                              "the picture"));
   LUXEL_TRY(out.sampler, gpu::make_sampler(device, {VK_FILTER_NEAREST}));
-  LUXEL_TRY(out.materials, gpu::make_sets(device, out.surface, scene.bindings));
+  LUXEL_TRY(out.materials, gpu::make_sets(device, shaders.surface, scene.bindings));
   const std::vector<std::vector<gpu::Binding>> surroundings{{scene.surroundings}};
-  LUXEL_TRY(out.surroundings, gpu::make_sets(device, out.behind, surroundings));
+  LUXEL_TRY(out.surroundings, gpu::make_sets(device, shaders.behind, surroundings));
   const std::vector<std::vector<gpu::Binding>> exposed{{{&out.exposed.picture, out.sampler.get()}}};
-  LUXEL_TRY(out.to_screen, gpu::make_sets(device, out.screen, exposed));
+  LUXEL_TRY(out.to_screen, gpu::make_sets(device, shaders.screen, exposed));
   return out;
 }
 
-void paint(const gpu::Device& device, VkCommandBuffer commands, const Painter& painter,
-           const DeviceScene& scene, const Frame& frame) {
+void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
+           const Frame& frame) {
+  const auto& [shaders, painter, scene] = canvas;
   const gpu::TargetParams& size = painter.exposed.params;
   const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
   const auto show = uint32_t(frame.show);
@@ -151,7 +153,7 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Painter& p
   SurfacePush surface{};
   surface.clip_from_world = clip_from_world(camera, scene.bounds);
   surface.exposure = frame.exposure, surface.show = show;
-  draw_surfaces(device, commands, painter, scene, surface);
+  draw_surfaces(device, commands, canvas, surface);
   const BehindPush behind{camera.forward,
                           camera.orthographic ? Vec3{} : camera.right,
                           camera.orthographic ? Vec3{} : camera.up,
@@ -160,16 +162,16 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Painter& p
                           scene.rotation_rad,
                           frame.exposure,
                           show};
-  gpu::bind(device, commands, painter.behind, behind);
-  gpu::bind_set(device, commands, painter.behind, painter.surroundings.sets[0]);
+  gpu::bind(device, commands, shaders.behind, behind);
+  gpu::bind_set(device, commands, shaders.behind, painter.surroundings.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
   gpu::end_drawing(device, commands, painter.exposed, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
   gpu::begin_drawing(device, commands, painter.shown, {0, 0, 0, 1});
   const bool is_light = frame.show != Show::colour;
   const ScreenPush screen{uint32_t(is_light ? frame.curve : display::ToneMap::clamp)};
-  gpu::bind(device, commands, painter.screen, screen);
-  gpu::bind_set(device, commands, painter.screen, painter.to_screen.sets[0]);
+  gpu::bind(device, commands, shaders.screen, screen);
+  gpu::bind_set(device, commands, shaders.screen, painter.to_screen.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
   gpu::end_drawing(device, commands, painter.shown, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   gpu::change_layout(device, commands, painter.exposed.picture,
@@ -177,10 +179,10 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Painter& p
                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
 }
 
-Result<image::Image8> painted(gpu::Commands& commands, const Painter& painter,
-                              const DeviceScene& scene, const Frame& frame) {
+Result<image::Image8> painted(gpu::Commands& commands, const Canvas& canvas, const Frame& frame) {
+  const Painter& painter = canvas.painter;
   LUXEL_TRY_STATUS(commands.run(
-      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, painter, scene, frame); }));
+      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, canvas, frame); }));
   LUXEL_TRY(const std::vector<std::byte> pixels, gpu::pixels_of(commands, painter.shown.picture));
   image::Image8 out;
   out.width = int(painter.shown.params.width), out.height = int(painter.shown.params.height);
@@ -190,10 +192,11 @@ Result<image::Image8> painted(gpu::Commands& commands, const Painter& painter,
   return out;
 }
 
-Result<image::Image> painted_radiance(gpu::Commands& commands, const Painter& painter,
-                                      const DeviceScene& scene, const Frame& frame) {
+Result<image::Image> painted_radiance(gpu::Commands& commands, const Canvas& canvas,
+                                      const Frame& frame) {
+  const Painter& painter = canvas.painter;
   LUXEL_TRY_STATUS(commands.run(
-      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, painter, scene, frame); }));
+      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, canvas, frame); }));
   LUXEL_TRY(const std::vector<std::byte> pixels, gpu::pixels_of(commands, painter.exposed.picture));
   image::Image out(int(painter.exposed.params.width), int(painter.exposed.params.height), 4);
   for (size_t i = 0; i < out.data.size(); ++i) {

@@ -10,31 +10,42 @@
 
 namespace luxel::view {
 
-/// What pictures of one size are drawn with: pipelines, targets.
-struct Painter {
+/// The shaders of all pictures.
+struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen;
+};
+/// Takes some tenths of a second on the processor.
+Result<Shaders> make_shaders(const gpu::Device& device);
+
+/// What pictures of one size are drawn with.
+struct Painter {
   gpu::Target exposed;  ///< halves: exposed radiance, and the share of the pixel that is a surface
   gpu::Target shown;    ///< 8 bits, display values
   gpu::BindingSets materials, surroundings, to_screen;
   gpu::OwnedSampler sampler;
 };
+/// For this scene.
+Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
+                             const DeviceScene& scene, uint32_t width, uint32_t height);
 
-/// For this scene, which must live as long as the painter does.
-Result<Painter> make_painter(const gpu::Device& device, const DeviceScene& scene, uint32_t width,
-                             uint32_t height);
+/// What a picture is drawn with and of. All of it must live until it is drawn.
+struct Canvas {
+  const Shaders& shaders;
+  const Painter& painter;
+  const DeviceScene& scene;
+};
 
-/// Records the drawing of a frame; `shown` is then in the layout TRANSFER_SRC_OPTIMAL, as `exposed`
-/// is. The back faces of one-sided materials are left out and alpha masks cut, as display::draw
-/// does.
-void paint(const gpu::Device& device, VkCommandBuffer commands, const Painter& painter,
-           const DeviceScene& scene, const Frame& frame);
+/// Records the drawing of a frame; the painter's `shown` is then in the layout
+/// TRANSFER_SRC_OPTIMAL, as `exposed` is. The back faces of one-sided materials are left out and
+/// alpha masks cut, as display::draw does.
+void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
+           const Frame& frame);
 
 /// Draws a frame and reads the picture back: 3 channels.
-Result<image::Image8> painted(gpu::Commands& commands, const Painter& painter,
-                              const DeviceScene& scene, const Frame& frame);
+Result<image::Image8> painted(gpu::Commands& commands, const Canvas& canvas, const Frame& frame);
 /// Draws a frame and reads the exposed radiance back, divided by the exposure: 4 channels, as
 /// display::draw gives them.
-Result<image::Image> painted_radiance(gpu::Commands& commands, const Painter& painter,
-                                      const DeviceScene& scene, const Frame& frame);
+Result<image::Image> painted_radiance(gpu::Commands& commands, const Canvas& canvas,
+                                      const Frame& frame);
 
 }  // namespace luxel::view

@@ -55,8 +55,12 @@ class PainterTest : public ::testing::Test {
     auto commands = gpu::Commands::make(*device_);
     ASSERT_TRUE(commands) << commands.error().message;
     commands_.emplace(std::move(*commands));
+    auto shaders = make_shaders(*device_);
+    ASSERT_TRUE(shaders) << shaders.error().message;
+    shaders_.emplace(std::move(*shaders));
   }
   void TearDown() override {
+    shaders_.reset();
     commands_.reset();
     if (device_) {
       EXPECT_THAT(device_->messages(), IsEmpty());
@@ -67,9 +71,9 @@ class PainterTest : public ::testing::Test {
   image::Image picture_of(const LitSquare& lit, const Frame& frame) {
     const auto scene = put_on_device(*commands_, lit.scene, lit.lightmaps);
     if (!scene) ADD_FAILURE() << scene.error().message;
-    const auto painter = make_painter(*device_, *scene, kSide, kSide);
+    const auto painter = make_painter(*device_, *shaders_, *scene, kSide, kSide);
     if (!painter) ADD_FAILURE() << painter.error().message;
-    auto picture = painted_radiance(*commands_, *painter, *scene, frame);
+    auto picture = painted_radiance(*commands_, {*shaders_, *painter, *scene}, frame);
     if (!picture) ADD_FAILURE() << picture.error().message;
     return std::move(*picture);
   }
@@ -79,6 +83,7 @@ class PainterTest : public ::testing::Test {
 
   std::unique_ptr<gpu::Device> device_;
   std::optional<gpu::Commands> commands_;
+  std::optional<Shaders> shaders_;
 };
 
 /// Halves have 11 bits.

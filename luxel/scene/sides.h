@@ -13,8 +13,8 @@ std::optional<SurfacePoint> other_side_of(const Scene& scene, const SurfacePoint
 /// Models of leaves and cloth often hold a sheet twice, once for each side. Finds triangles of a
 /// mesh with the same three places, wound against each other, and ties them together in
 /// Mesh::other_side, each with at most one; the corners of the later one are rotated to (a, c, b).
-/// Where light can go through them, they must have one material and the same places in its pictures.
-/// From then on they are one-sided. Returns the number of pairs.
+/// Where light can go through them, they must have one material and the same places in its
+/// pictures. From then on they are one-sided. Returns the number of pairs.
 size_t link_sides(Scene& scene);
 
 /// Gives triangles of a mesh a side of their own behind: a copy (a, c, b) at the end of the mesh,

@@ -283,9 +283,9 @@ struct Session {
   const WindowParams& params;
   std::vector<KeyLine> keys = key_lines();
   std::vector<std::string> views = {};  ///< names of the scene's cameras
-  Panel panel;
-  std::optional<view::Walk> walk;  ///< once the window has a size
-  view::PlaceSeen place_seen;
+  Panel panel = {};
+  std::optional<view::Walk> walk = {};  ///< once the window has a size
+  view::PlaceSeen place_seen = {};
   int still_frames = 0;  ///< since something changed
   bool fits = false;     ///< what is drawn into has the window's size
   int64_t frame = 0;     ///< of a play

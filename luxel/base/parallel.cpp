@@ -2,6 +2,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <exception>
 
 #include <algorithm>
 #include <thread>
@@ -61,13 +62,17 @@ struct ThreadLimit::State {
   tbb::global_control control;
 };
 
-ThreadLimit::ThreadLimit(int threads) {
+ThreadLimit::ThreadLimit(int threads) : exceptions_before_(std::uncaught_exceptions()) {
   LUXEL_CHECK(threads >= 0);
   const size_t all = std::max(1u, std::thread::hardware_concurrency());
   const size_t limit = threads == 0 ? all : size_t(threads);
   state_.reset(new State{{tbb::global_control::max_allowed_parallelism, limit}});
 }
-ThreadLimit::~ThreadLimit() = default;
+/// Memory that ends within TBB leaves its own lock taken: the end of its limit would wait for ever.
+/// Then the limit stays, and the process ends soon.
+ThreadLimit::~ThreadLimit() {
+  if (std::uncaught_exceptions() > exceptions_before_) static_cast<void>(state_.release());
+}
 
 int thread_count() {
   const size_t allowed =

@@ -23,6 +23,7 @@ class ThreadLimit {
  private:
   struct State;
   std::unique_ptr<State> state_;
+  int exceptions_before_;  ///< that were under way when it was made
 };
 
 /// The number of threads a loop started now may use.

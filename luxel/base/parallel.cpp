@@ -2,9 +2,9 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
-#include <exception>
 
 #include <algorithm>
+#include <exception>
 #include <thread>
 
 #if defined(__SSE2__)

@@ -256,7 +256,9 @@ RayTracer::~RayTracer() = default;
 Result<RayTracer> RayTracer::build(const scene::Scene& scene, size_t max_flat_triangles) {
   auto impl = std::make_unique<Impl>();
   impl->device = rtcNewDevice(nullptr);
-  if (!impl->device) return fail(ErrorCode::unsupported, "Embree does not run on this processor");
+  if (!impl->device && rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU)
+    return fail(ErrorCode::unsupported, "Embree does not run on this processor");
+  if (!impl->device) return fail(ErrorCode::out_of_memory, "no memory for the ray tracer");
   impl->tag.scene = &scene;
   bool good = true;
   const std::vector<bool> shared = shared_meshes(scene, max_flat_triangles);

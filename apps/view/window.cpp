@@ -307,15 +307,6 @@ Result<bool> fit(Session& s) {
   return true;
 }
 
-/// The events of a play up to its present frame.
-void play_events(Session& s) {
-  const view::Play& play = *s.params.play;
-  const double now = double(s.frame) / play.frames_per_s;
-  for (; s.next_event < play.events.size() && play.events[s.next_event].at_s <= now + 1e-9;
-       ++s.next_event)
-    view::handle(play.events[s.next_event].event, s.place_seen, *s.walk);
-}
-
 /// One frame of the window. False when a play has come to its end.
 Result<bool> go_on(Session& s) {
   // A window in which nothing moves is not drawn.
@@ -328,7 +319,7 @@ Result<bool> go_on(Session& s) {
   s.still_frames = moves || !fitted || s.window.has_changed() ? 0 : s.still_frames + 1;
   if (s.still_frames > kFramesToSettle) return true;
   if (s.params.play) {
-    play_events(s);
+    view::handle_frame(*s.params.play, s.frame, s.place_seen, s.next_event, *s.walk);
   } else {
     take_events(s.window, *s.screen.ui, s.place_seen, *s.walk);
     view::pass(std::min(passed, 0.1), *s.walk);

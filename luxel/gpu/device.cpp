@@ -94,10 +94,9 @@ struct Features {
       structure<VkPhysicalDeviceSynchronization2FeaturesKHR>(
           VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES_KHR);
 
-  Features() { chain(); }
+  Features() { base.pNext = &v12, v12.pNext = &rendering, rendering.pNext = &synchronization; }
   Features(const Features&) = delete;
   Features& operator=(const Features&) = delete;
-  void chain() { base.pNext = &v12, v12.pNext = &rendering, rendering.pNext = &synchronization; }
 };
 
 struct Need {

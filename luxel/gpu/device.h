@@ -18,7 +18,7 @@
 
 namespace luxel::gpu {
 
-/// Which device is opened, and how.
+/// The choice of a device, and how it is opened.
 struct DeviceParams {
   std::string name;       ///< a part of it, in small or capital letters; empty: the fastest kind
   bool validate = false;  ///< with Vulkan's validation layer: Device::messages()

@@ -30,16 +30,21 @@ size_t bytes_per_pixel(VkFormat format) {
 
 size_t bytes_of(const PictureParams& p) { return bytes_per_pixel(p.format) * p.width * p.height; }
 
-VkImageMemoryBarrier2 barrier_of(const Picture& picture, VkImageLayout from, VkImageLayout to) {
+VkImageMemoryBarrier2 barrier_of(VkImage image, VkImageAspectFlags aspect, VkImageLayout from,
+                                 VkImageLayout to) {
   auto barrier = structure<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
   barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
   barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
   barrier.oldLayout = from, barrier.newLayout = to;
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = picture.image.get();
-  barrier.subresourceRange = {picture.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, 1};
+  barrier.image = image;
+  barrier.subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
   return barrier;
+}
+
+VkImageMemoryBarrier2 barrier_of(const Picture& picture, VkImageLayout from, VkImageLayout to) {
+  return barrier_of(picture.image.get(), picture.aspect(), from, to);
 }
 
 void put(const Device& device, VkCommandBuffer commands, const VkImageMemoryBarrier2& barrier) {
@@ -126,6 +131,11 @@ Result<Picture> make_picture(const Device& device, const PictureParams& params,
       check(device.vk.vkCreateImageView(device.device, &view_info, nullptr, &view), cannot));
   out.view = {device, view};
   return out;
+}
+
+void change_layout(const Device& device, VkCommandBuffer commands, VkImage image,
+                   VkImageLayout from, VkImageLayout to) {
+  put(device, commands, barrier_of(image, VK_IMAGE_ASPECT_COLOR_BIT, from, to));
 }
 
 void change_layout(const Device& device, VkCommandBuffer commands, const Picture& picture,

@@ -42,7 +42,10 @@ uint32_t full_levels(uint32_t width, uint32_t height);
 Result<Picture> picture_with(Commands& commands, PictureParams params,
                              std::span<const std::byte> pixels, std::string_view what);
 
-/// A picture goes from one use to another, after all that came before.
+/// A colour image, all its mipmaps, goes from one use to another, after all that came before.
+void change_layout(const Device& device, VkCommandBuffer commands, VkImage image,
+                   VkImageLayout from, VkImageLayout to);
+/// A picture, which may be of depth, goes from one use to another.
 void change_layout(const Device& device, VkCommandBuffer commands, const Picture& picture,
                    VkImageLayout from, VkImageLayout to);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "luxel/gpu/picture.h"
+
 namespace luxel::gpu {
 namespace {
 
@@ -50,22 +52,6 @@ Status add_pictures(const Device& device, Swapchain& out) {
     out.drawn.push_back(std::move(drawn));
   }
   return {};
-}
-
-void change_window_layout(const Device& device, VkCommandBuffer commands, VkImage image,
-                          VkImageLayout from, VkImageLayout to) {
-  auto barrier = structure<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
-  barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  barrier.oldLayout = from, barrier.newLayout = to;
-  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = image;
-  barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-  auto info = structure<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
-  info.imageMemoryBarrierCount = 1;
-  info.pImageMemoryBarriers = &barrier;
-  device.vk.vkCmdPipelineBarrier2KHR(commands, &info);
 }
 
 }  // namespace
@@ -153,16 +139,16 @@ Result<bool> show(const Device& device, const Swapchain& swapchain, uint32_t num
 void copy_to_window(const Device& device, VkCommandBuffer commands, VkImage from, uint32_t width,
                     uint32_t height, const Swapchain& swapchain, uint32_t number) {
   const VkImage to = swapchain.images[number];
-  change_window_layout(device, commands, to, VK_IMAGE_LAYOUT_UNDEFINED,
-                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  change_layout(device, commands, to, VK_IMAGE_LAYOUT_UNDEFINED,
+                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
   VkImageBlit blit{};
   blit.srcSubresource = blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
   blit.srcOffsets[1] = {int32_t(width), int32_t(height), 1};
   blit.dstOffsets[1] = {int32_t(swapchain.width), int32_t(swapchain.height), 1};
   device.vk.vkCmdBlitImage(commands, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to,
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_LINEAR);
-  change_window_layout(device, commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                       VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+  change_layout(device, commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
 }
 
 }  // namespace luxel::gpu

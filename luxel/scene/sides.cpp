@@ -70,8 +70,8 @@ bool let_through_alike(const Scene& scene, const Mesh& mesh, uint32_t material_a
       !lets_light_through(scene.materials[material_b]))
     return true;
   if (material_a != material_b) return false;
-  // Of the pictures that say where light goes through. In a baked file TEXCOORD_1 differs: each
-  // side has its own light.
+  // Only the pictures that say where light goes through count. In a baked file TEXCOORD_1 differs:
+  // each side has its own light.
   const auto looked_up_alike = [&](const TextureRef& ref) {
     const std::vector<Vec2>& uv = ref.uv_set == 0 ? mesh.uv0 : mesh.uv1;
     if (ref.texture == kNone || uv.empty()) return true;

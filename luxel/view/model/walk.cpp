@@ -120,13 +120,18 @@ void pass(double seconds, Walk& walk) {
   walk.target += column(walk.shown.camera.world_from_camera, 3) - before;
 }
 
+void handle_frame(const Play& events, int64_t frame, const PlaceSeen& place_seen, size_t& next,
+                  Walk& walk) {
+  const double now = double(frame) / events.frames_per_s;
+  for (; next < events.events.size() && events.events[next].at_s <= now + 1e-9; ++next)
+    handle(events.events[next].event, place_seen, walk);
+}
+
 void play(const Play& events, const PlaceSeen& place_seen, Walk& walk) {
   const auto frames = int64_t(std::llround(events.end_s * events.frames_per_s));
   size_t next = 0;
   for (int64_t frame = 0; frame <= frames; ++frame) {
-    const double now = double(frame) / events.frames_per_s;
-    for (; next < events.events.size() && events.events[next].at_s <= now + 1e-9; ++next)
-      handle(events.events[next].event, place_seen, walk);
+    handle_frame(events, frame, place_seen, next, walk);
     if (frame < frames) pass(1 / events.frames_per_s, walk);
   }
   for (; next < events.events.size(); ++next)  // in what is left of the last frame

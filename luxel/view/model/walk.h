@@ -44,6 +44,10 @@ void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk);
 /// What goes on while keys are down: flying, a fifth of the scene's size per second.
 void pass(double seconds, Walk& walk);
 
+/// Handles the events of a play that come up to a frame, from number `next` on, and moves it on.
+void handle_frame(const Play& events, int64_t frame, const PlaceSeen& place_seen, size_t& next,
+                  Walk& walk);
+
 /// All of a play from its beginning to its end, in steps of its frames.
 void play(const Play& events, const PlaceSeen& place_seen, Walk& walk);
 

@@ -51,10 +51,12 @@ std::vector<pipeline::Limit> limits_of(const CompareOptions& options) {
 nlohmann::json json_of(const pipeline::Compared& compared,
                        const std::vector<pipeline::Limit>& limits) {
   nlohmann::json json = pipeline::to_json(compared);
+  if (limits.empty()) return json;
+  nlohmann::json& told = json["limits"] = nlohmann::json::array();
   for (const pipeline::Limit& limit : limits)
-    json["limits"].push_back({{"measure", pipeline::limited_measures()[limit.measure].key},
-                              {"at_most", limit.most},
-                              {"holds", pipeline::holds(limit, compared)}});
+    told.push_back({{"measure", pipeline::limited_measures()[limit.measure].key},
+                    {"at_most", limit.most},
+                    {"holds", pipeline::holds(limit, compared)}});
   return json;
 }
 

@@ -11,6 +11,7 @@
 #include "luxel/base/vec_double.h"
 #include "luxel/export/gltf_mesh.h"
 #include "luxel/export/gltf_node.h"
+#include "luxel/export/json_parts.h"
 #include "luxel/image/codec.h"
 #include "luxel/image/white_level.h"
 #include "luxel/scene/light_kinds.h"
@@ -42,6 +43,9 @@ scene::PunctualLight as_even_light(const scene::Scene& scene, scene::PunctualLig
   return light;
 }
 
+/// What glTF has no word for.
+json& luxel_extras(json& object) { return object_in(object, {"extras", "luxel"}); }
+
 void append_lights_and_cameras(Glb& glb, const scene::Scene& scene, json& roots) {
   for (const scene::PunctualLight& light : scene.lights)
     roots.push_back(append_light(glb, as_even_light(scene, light)));
@@ -55,10 +59,10 @@ Result<std::vector<std::byte>> finish_scene(Glb glb, const scene::Scene& scene, 
   if (!roots.empty()) root["nodes"] = std::move(roots);
   if (!scene.name.empty()) root["name"] = scene.name;
   if (scene.background != Rgb{})  // glTF has no word for it
-    root["extras"]["luxel"]["background"] = {scene.background.x, scene.background.y,
-                                             scene.background.z};
-  glb.json["asset"]["version"] = "2.0";
-  glb.json["asset"]["generator"] = "luxel";
+    luxel_extras(root)["background"] = {scene.background.x, scene.background.y, scene.background.z};
+  json& asset = object_in(glb.json, {"asset"});
+  asset["version"] = "2.0";
+  asset["generator"] = "luxel";
   glb.json["scenes"] = json::array({std::move(root)});
   glb.json["scene"] = 0;
   return finish(std::move(glb));
@@ -67,8 +71,8 @@ Result<std::vector<std::byte>> finish_scene(Glb glb, const scene::Scene& scene, 
 json instance_node(const scene::Instance& instance, size_t mesh) {
   json node = {{"mesh", mesh}};
   if (!instance.name.empty()) node["name"] = instance.name;
-  if (instance.texel_density != 1) node["extras"]["luxel"]["density"] = instance.texel_density;
-  if (!instance.lightmapped) node["extras"]["luxel"]["bake"] = false;
+  if (instance.texel_density != 1) luxel_extras(node)["density"] = instance.texel_density;
+  if (!instance.lightmapped) luxel_extras(node)["bake"] = false;
   return node;
 }
 
@@ -98,15 +102,15 @@ void append_lightmaps(Glb& glb, MaterialBook& book, std::span<const image::Image
         {{{"index", texture}, {"texCoord", 1}, {"intensity", intensity}}, name});
     names.push_back(name + ".exr");
   }
-  glb.json["asset"]["extras"]["luxel"] = {
-      {"irradiance",
-       "E [W/m^2] = intensity * linear(picture), the picture in sRGB; " +
-           std::string(lightmaps.size() == 1 ? "lightmap.exr holds" : "lightmap-N.exr hold") +
-           " E itself"}};
+  json& about = luxel_extras(object_in(glb.json, {"asset"}));
+  about = {{"irradiance",
+            "E [W/m^2] = intensity * linear(picture), the picture in sRGB; " +
+                std::string(lightmaps.size() == 1 ? "lightmap.exr holds" : "lightmap-N.exr hold") +
+                " E itself"}};
   if (lightmaps.size() == 1)
-    glb.json["asset"]["extras"]["luxel"]["lightmap"] = names[0];
+    about["lightmap"] = names[0];
   else
-    glb.json["asset"]["extras"]["luxel"]["lightmaps"] = names;
+    about["lightmaps"] = names;
 }
 
 /// Pictures are encoded side by side: there may be dozens.
@@ -132,9 +136,10 @@ void append_layers(Glb& glb, MaterialBook& book, std::span<const LightmapLayer> 
     const size_t pages = encoded[l].png.size();
     if (pages > 0) about["intensity"] = encoded[l].intensity;
     for (size_t p = 0; p < pages; ++p)
-      about["textures"].push_back(append_lightmap_texture(glb, book, encoded[l].png[p],
-                                                          lightmap_name(p, pages, layers[l].name)));
-    glb.json["asset"]["extras"]["luxel"]["layers"].push_back(std::move(about));
+      array_in(about, "textures")
+          .push_back(append_lightmap_texture(glb, book, encoded[l].png[p],
+                                             lightmap_name(p, pages, layers[l].name)));
+    array_in(luxel_extras(object_in(glb.json, {"asset"})), "layers").push_back(std::move(about));
   }
 }
 
@@ -147,7 +152,7 @@ void append_pictures(Glb& glb, MaterialBook& book, const LitPictures& pictures) 
     const size_t texture = append_lightmap_texture(glb, book, png[p], name, pictures.scale > 1);
     book.lightmap.push_back({{{"index", texture}, {"texCoord", 1}}, name});
   }
-  json& about = glb.json["asset"]["extras"]["luxel"];
+  json& about = luxel_extras(object_in(glb.json, {"asset"}));
   about["attached"] = book.attach == Attach::combined ? kCombined : kEmissive;
   about["exposure"] = pictures.exposure;
 }
@@ -168,17 +173,17 @@ Result<std::vector<std::byte>> write_baked(Glb& glb, MaterialBook& book, const s
     json node = instance_node(scene.instances[i], index);
     for (const LightmapLayer& layer : layers)
       if (std::ranges::find(layer.instances, i) != layer.instances.end())
-        node["extras"]["luxel"]["layer"] = layer.name;
+        luxel_extras(node)["layer"] = layer.name;
     roots.push_back(append_node(glb, scene.instances[i].world_from_object, std::move(node)));
   }
   append_lights_and_cameras(glb, scene, roots);
   return finish_scene(std::move(glb), scene, std::move(roots));
 }
 
-Result<std::vector<std::byte>> write_scene(const scene::Scene& scene, json luxel_extras) {
+Result<std::vector<std::byte>> write_scene(const scene::Scene& scene, json extras) {
   Glb glb;
   MaterialBook book;
-  if (!luxel_extras.empty()) glb.json["asset"]["extras"]["luxel"] = std::move(luxel_extras);
+  if (!extras.empty()) luxel_extras(object_in(glb.json, {"asset"})) = std::move(extras);
   std::vector<size_t> index_of(scene.meshes.size(), SIZE_MAX);
   json roots = json::array();
   for (const scene::Instance& instance : scene.instances) {

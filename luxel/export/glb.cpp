@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "luxel/base/check.h"
+#include "luxel/export/json_parts.h"
 
 namespace luxel::export_ {
 namespace {
@@ -51,7 +52,7 @@ size_t append_floats(Glb& glb, std::span<const std::byte> bytes, const char* typ
 }  // namespace
 
 size_t append(Glb& glb, const char* array, json value) {
-  json& list = glb.json[array];
+  json& list = array_in(glb.json, array);
   list.push_back(std::move(value));
   return list.size() - 1;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/export/json_parts.h"
 #include "luxel/image/codec.h"
 #include "luxel/scene/specular.h"
 
@@ -87,9 +88,10 @@ json texture_info(Glb& glb, MaterialBook& book, const scene::Scene& scene,
                                         nearest ? kNearest : kLinearMipmapLinear})}};
   if (slot != 0) info["texCoord"] = slot;
   if (ref.offset != Vec2{0, 0} || ref.scale != Vec2{1, 1} || ref.rotation != 0) {
-    info["extensions"]["KHR_texture_transform"] = {{"offset", {ref.offset.x, ref.offset.y}},
-                                                   {"scale", {ref.scale.x, ref.scale.y}},
-                                                   {"rotation", ref.rotation}};
+    object_in(info, {"extensions"})["KHR_texture_transform"] = {
+        {"offset", {ref.offset.x, ref.offset.y}},
+        {"scale", {ref.scale.x, ref.scale.y}},
+        {"rotation", ref.rotation}};
     glb.extensions_used.insert("KHR_texture_transform");
   }
   return info;
@@ -114,7 +116,8 @@ json surface(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scen
 
 void set_strength(Glb& glb, float strength, json& out) {
   if (strength == 1) return;
-  out["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
+  object_in(out,
+            {"extensions"})["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
   glb.extensions_used.insert("KHR_materials_emissive_strength");
 }
 
@@ -141,7 +144,7 @@ void set_normal_map(Glb& glb, MaterialBook& book, const scene::Scene& scene,
 void set_transmission(Glb& glb, MaterialBook& book, const scene::Scene& scene,
                       const scene::Material& m, TexcoordSlots slots, json& out) {
   if (!(m.transmission > 0)) return;
-  json& extension = out["extensions"]["KHR_materials_transmission"];
+  json& extension = object_in(out, {"extensions"})["KHR_materials_transmission"];
   extension = {{"transmissionFactor", m.transmission}};
   set_if(extension, "transmissionTexture",
          texture_info(glb, book, scene, m.transmission_texture, slots));
@@ -151,7 +154,7 @@ void set_transmission(Glb& glb, MaterialBook& book, const scene::Scene& scene,
 void set_diffuse_transmission(Glb& glb, MaterialBook& book, const scene::Scene& scene,
                               const scene::Material& m, TexcoordSlots slots, json& out) {
   if (!(m.diffuse_transmission > 0)) return;
-  json& extension = out["extensions"]["KHR_materials_diffuse_transmission"];
+  json& extension = object_in(out, {"extensions"})["KHR_materials_diffuse_transmission"];
   extension = {
       {"diffuseTransmissionFactor", m.diffuse_transmission},
       {"diffuseTransmissionColorFactor", rgb(min(m.diffuse_transmission_color, Rgb{1, 1, 1}))}};
@@ -167,8 +170,8 @@ void set_diffuse_transmission(Glb& glb, MaterialBook& book, const scene::Scene& 
 void set_highlight(Glb& glb, const scene::Material& m, json& out) {
   if (!(max_component(m.specular) > 0) || m.metallic > 0) return;
   const Rgb color = scene::f0_of(m.specular, m.sharpness) / scene::kDielectricF0;
-  out["pbrMetallicRoughness"]["roughnessFactor"] = scene::roughness_of(m.sharpness);
-  out["extensions"]["KHR_materials_specular"] = {{"specularColorFactor", rgb(color)}};
+  object_in(out, {"pbrMetallicRoughness"})["roughnessFactor"] = scene::roughness_of(m.sharpness);
+  object_in(out, {"extensions"})["KHR_materials_specular"] = {{"specularColorFactor", rgb(color)}};
   glb.extensions_used.insert("KHR_materials_specular");
 }
 
@@ -180,14 +183,14 @@ void set_alpha(const scene::Material& m, json& out) {
 }
 
 void set_unlit(Glb& glb, json& out) {
-  out["extensions"]["KHR_materials_unlit"] = json::object();
+  object_in(out, {"extensions"})["KHR_materials_unlit"] = json::object();
   glb.extensions_used.insert("KHR_materials_unlit");
 }
 
 /// The picture of a page as the material's colour, or as what it emits.
 void set_picture(Glb& glb, const MaterialBook& book, const json& picture, json& out) {
   if (book.attach == Attach::combined) {
-    out["pbrMetallicRoughness"]["baseColorTexture"] = picture;
+    object_in(out, {"pbrMetallicRoughness"})["baseColorTexture"] = picture;
     set_unlit(glb, out);
     return;
   }
@@ -195,7 +198,7 @@ void set_picture(Glb& glb, const MaterialBook& book, const json& picture, json& 
   out["emissiveTexture"] = picture;
   set_strength(glb, book.strength, out);
   // A black surface would still shine like plastic in the lights of the file or of a viewer.
-  out["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+  object_in(out, {"extensions"})["KHR_materials_specular"] = {{"specularFactor", 0}};
   glb.extensions_used.insert("KHR_materials_specular");
 }
 
@@ -213,13 +216,13 @@ json material_json(Glb& glb, MaterialBook& book, const scene::Scene& scene,
   // What is baked is diffuse.
   if (book.lightmap.empty()) set_highlight(glb, m, out);
   if (book.lightmap.empty() || m.unlit) return out;
-  out["extras"]["luxel"]["lightmap"] = book.lightmap[place.page].name + ".exr";
+  object_in(out, {"extras", "luxel"})["lightmap"] = book.lightmap[place.page].name + ".exr";
   if (!place.attached) return out;
   if (book.attach != Attach::lightmap) {
     set_picture(glb, book, book.lightmap[place.page].picture, out);
     return out;
   }
-  out["extensions"]["MOZ_lightmap"] = book.lightmap[place.page].picture;
+  object_in(out, {"extensions"})["MOZ_lightmap"] = book.lightmap[place.page].picture;
   glb.extensions_used.insert("MOZ_lightmap");
   return out;
 }

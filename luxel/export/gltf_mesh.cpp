@@ -92,7 +92,7 @@ struct Part {
 
 json primitive(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scene::Mesh& mesh,
                Part part, const Vertices& vertices, bool lightmapped) {
-  json attributes;
+  json attributes = json::object();
   attributes["POSITION"] =
       append_accessor(glb, std::span<const Vec3>(picked(mesh.positions, vertices.source)));
   if (!mesh.normals.empty()) {

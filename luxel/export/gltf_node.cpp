@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "luxel/export/json_parts.h"
 #include "luxel/scene/light_kinds.h"
 
 namespace luxel::export_ {
@@ -74,7 +75,7 @@ json light_json(const scene::PunctualLight& light) {
                    {"outerConeAngle", std::min(double(outer), 1.5707963267948966)}};
   }
   if (scene::has_disc(light))
-    out["extras"]["luxel"]["angular_radius_rad"] = light.angular_radius_rad;
+    object_in(out, {"extras", "luxel"})["angular_radius_rad"] = light.angular_radius_rad;
   return out;
 }
 
@@ -99,7 +100,7 @@ size_t append_node(Glb& glb, const Mat34& world, json content) {
 
 size_t append_light(Glb& glb, const scene::PunctualLight& light) {
   // Scenes have rows of equal lights, and some have a million: one entry for each row.
-  json& list = glb.json["extensions"]["KHR_lights_punctual"]["lights"];
+  json& list = array_in(object_in(glb.json, {"extensions", "KHR_lights_punctual"}), "lights");
   if (json entry = light_json(light); list.empty() || list.back() != entry)
     list.push_back(std::move(entry));
   glb.extensions_used.insert("KHR_lights_punctual");

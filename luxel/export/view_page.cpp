@@ -8,6 +8,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/export/baked_glb.h"
+#include "luxel/export/json_parts.h"
 #include "luxel/export/small_picture.h"
 #include "luxel/export/view_template.h"
 #include "luxel/image/half.h"
@@ -98,7 +99,7 @@ Result<json> append_layers(std::string& html, std::span<const LightmapLayer> lay
     });
     for (size_t l = 0; l < layers.size(); ++l) {
       LUXEL_TRY(PackedImage image, std::move(packed[l]));
-      pages[p]["layers"].push_back(append_image(html, std::move(image)));
+      array_in(pages[p], "layers").push_back(append_image(html, std::move(image)));
     }
   }
   for (const LightmapLayer& layer : layers)

@@ -7,6 +7,7 @@
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfThreading.h>
 
 #include <array>
 #include <cstring>
@@ -145,6 +146,10 @@ Result<Image> read_exr(std::span<const std::byte> bytes, std::string_view name) 
   return image;
 }
 
+/// OpenEXR makes its pool of threads, an empty one, with the first lines that it reads or writes.
+/// Where there is no memory for it, the file waits for ever for these lines.
+void make_threads() { Imf::globalThreadCount(); }
+
 }  // namespace
 
 Result<std::vector<std::byte>> encode_exr(const Image& image) {
@@ -152,6 +157,7 @@ Result<std::vector<std::byte>> encode_exr(const Image& image) {
   LUXEL_CHECK(image.channels >= 1 && image.channels <= 4);
   for (const float v : image.data) LUXEL_CHECK(std::isfinite(v));
   try {
+    make_threads();
     MemoryOutput stream;
     {
       Imf::OutputFile file(stream, make_header(image), 0);
@@ -167,6 +173,7 @@ Result<std::vector<std::byte>> encode_exr(const Image& image) {
 
 Result<Image> decode_exr(std::span<const std::byte> bytes, std::string_view name) {
   try {
+    make_threads();
     return read_exr(bytes, name);
   } catch (const std::exception& e) {
     return fail(ErrorCode::bad_input, "{}: this is not a readable EXR file: {}", name, e.what());

@@ -48,8 +48,9 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   json["checkpoint"] = checkpoint.about();
   json["cache"] = cache.about(result.light);
   json.update(about_files);
-  for (const OutputFile& file : files) json["files"].push_back(file.path.filename().string());
-  json["files"].push_back("bake.json");
+  nlohmann::json& names = json["files"] = nlohmann::json::array();
+  for (const OutputFile& file : files) names.push_back(file.path.filename().string());
+  names.push_back("bake.json");
   files.push_back(text_file(settings.output / "bake.json", json.dump(2) + "\n"));
   LUXEL_TRY_STATUS(folder.make());
   LUXEL_TRY_STATUS(write_results(files, checkpoint, cache, progress));

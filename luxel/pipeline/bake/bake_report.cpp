@@ -20,7 +20,8 @@ nlohmann::json about_atlas(const BakeSettings& settings, const Bake& bake) {
                         {"kept_uv1", bake.atlas.kept},
                         {"utilisation", bake.atlas_stats.utilisation},
                         {"mean_stretch_l2", bake.atlas_stats.mean_stretch_l2},
-                        {"texels_per_metre", bake.atlas_stats.texels_per_metre}};
+                        {"texels_per_metre", bake.atlas_stats.texels_per_metre},
+                        {"pages", nlohmann::json::array()}};
   for (size_t p = 0; p < pages.size(); ++p) {
     out["resolution"] = std::max(out["resolution"].get<int>(), pages[p].side);
     out["pages"].push_back({{"file", export_::lightmap_name(p, pages.size()) + ".exr"},

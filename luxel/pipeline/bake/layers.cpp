@@ -96,7 +96,8 @@ Result<std::vector<OutputFile>> layer_files(std::span<const BakedLayer> layers,
     nlohmann::json about = {{"name", layers[l].about.name},
                             {"lights", layers[l].about.lights},
                             {"share", layers[l].share},
-                            {"mean_irradiance", {mean.x, mean.y, mean.z}}};
+                            {"mean_irradiance", {mean.x, mean.y, mean.z}},
+                            {"files", nlohmann::json::array()}};
     if (own.rgbm_range > 0) about["rgbm_range"] = own.rgbm_range;
     for (const OutputFile& file : own.files)
       about["files"].push_back(file.path.filename().string());

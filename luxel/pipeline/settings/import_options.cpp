@@ -19,7 +19,7 @@ Option<ImportParams> search_path_option() {
           "--search-path", &ImportParams::search_paths,
           [](std::string_view text) -> Result<Paths> { return Paths{text}; },
           [](const Paths& paths) {
-            nlohmann::json out;
+            nlohmann::json out = paths.empty() ? nlohmann::json() : nlohmann::json::array();
             for (const std::filesystem::path& path : paths) out.push_back(path.string());
             return out;
           },

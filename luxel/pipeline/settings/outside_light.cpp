@@ -159,7 +159,7 @@ Option<L> ies_option() {
                         return std::vector<IesSetting>{std::move(one)};
                       },
                       [](const std::vector<IesSetting>& all) {
-                        json out;
+                        json out = all.empty() ? json() : json::array();
                         for (const IesSetting& ies : all)
                           out.push_back({{"light", ies.light},
                                          {"lamp", ies.light},  // the key before version 0.2

@@ -92,7 +92,15 @@ Status draw_offscreen(const Options& options) {
   LUXEL_TRY(const view::Shaders shaders, view::make_shaders(*device));
   LUXEL_TRY(const view::Painter painter,
             view::make_painter(*device, shaders, scene, uint32_t(width), uint32_t(height)));
-  LUXEL_TRY(const image::Image8 picture, view::painted(commands, {shaders, painter, scene}, frame));
+  std::optional<view::Overlay> overlay;
+  if (view::looks_into_bake(frame.show)) {
+    LUXEL_TRY(const view::Look look, view::look_into(options.subject, bake.scene, bake.lightmaps));
+    LUXEL_TRY(overlay, view::make_overlay(commands, shaders.overlay, bake.scene, bake.lightmaps,
+                                          look, scene));
+  }
+  LUXEL_TRY(
+      const image::Image8 picture,
+      view::painted(commands, {shaders, painter, scene, overlay ? &*overlay : nullptr}, frame));
   LUXEL_TRY_STATUS(write_file_atomically(options.screenshot, image::encode_png(picture)));
   std::fprintf(stderr, "wrote %s, drawn by %s\n", options.screenshot.string().c_str(),
                device->name.c_str());

@@ -157,15 +157,10 @@ void add_two_sided(const scene::Mesh& mesh, uint32_t triangle, Triangles& out) {
 /// A mesh's triangles by their materials.
 std::vector<DrawRange> add_mesh(const scene::Scene& scene, const scene::Mesh& mesh,
                                 Triangles& out) {
-  std::vector<uint32_t> order(mesh.triangles.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    return mesh.triangle_material[a] < mesh.triangle_material[b];
-  });
   const auto first_vertex = uint32_t(out.vertices.size());
   for (uint32_t i = 0; i < mesh.positions.size(); ++i) out.vertices.push_back(vertex_of(mesh, i));
   std::vector<DrawRange> ranges;
-  for (const uint32_t t : order) {
+  for (const uint32_t t : triangles_by_material(mesh)) {
     const uint32_t material = mesh.triangle_material[t];
     if (ranges.empty() || ranges.back().material != material)
       ranges.push_back({uint32_t(out.indices.size()), 0, material});
@@ -262,6 +257,15 @@ Status put_surroundings(Pictures& pictures, const scene::Scene& scene, DeviceSce
 }
 
 }  // namespace
+
+std::vector<uint32_t> triangles_by_material(const scene::Mesh& mesh) {
+  std::vector<uint32_t> order(mesh.triangles.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return mesh.triangle_material[a] < mesh.triangle_material[b];
+  });
+  return order;
+}
 
 Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
                                   const pipeline::LightmapPages& lightmaps) {

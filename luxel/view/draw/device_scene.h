@@ -44,6 +44,9 @@ struct DeviceScene {
   gpu::Binding surroundings;  ///< white where there is no map
 };
 
+/// The triangles of a mesh in the order in which a DeviceScene has them: material by material.
+std::vector<uint32_t> triangles_by_material(const scene::Mesh& mesh);
+
 /// Errors: no memory on the device, a picture larger than the device's may be.
 Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
                                   const pipeline::LightmapPages& lightmaps);

@@ -18,6 +18,7 @@ namespace {
 constexpr VkFormat kExposed = VK_FORMAT_R16G16B16A16_SFLOAT;
 constexpr VkFormat kShown = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr VkSampleCountFlagBits kSamples = VK_SAMPLE_COUNT_4_BIT;  // which every device has
+constexpr Rgb kBehindColors{0.806952f, 0.806952f, 0.806952f};      // 232 of 255 on a screen
 constexpr float kNear = 1e-5f;  // the near plane, over the scene's diagonal
 constexpr VkDescriptorType kLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 
@@ -93,7 +94,7 @@ gpu::DrawParams screen_params() {
 
 void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
                    SurfacePush push) {
-  const auto& [shaders, painter, scene] = canvas;
+  const auto& [shaders, painter, scene, overlay] = canvas;
   device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   push.vertices = scene.vertices.address;
   push.materials = scene.materials.address;
@@ -112,6 +113,26 @@ void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Ca
     }
 }
 
+/// Whether it shows colours that stand for something, not light.
+bool shows_colors(Show show) { return looks_into_bake(show) && show != Show::checker; }
+
+/// The surroundings, or a light grey behind colours that stand for something.
+BehindPush behind_of(const trace::CameraRays& camera, const DeviceScene& scene, const Frame& frame,
+                     bool has_overlay) {
+  BehindPush out{camera.forward,
+                 camera.orthographic ? Vec3{} : camera.right,
+                 camera.orthographic ? Vec3{} : camera.up,
+                 scene.background,
+                 scene.surroundings_scale,
+                 scene.rotation_rad,
+                 frame.exposure,
+                 uint32_t(frame.show)};
+  if (!has_overlay || !shows_colors(frame.show)) return out;
+  out.background = kBehindColors;
+  out.map_scale = 0, out.exposure = 1;
+  return out;
+}
+
 }  // namespace
 
 Result<Shaders> make_shaders(const gpu::Device& device) {
@@ -123,6 +144,7 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
             gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_NONE)));
   LUXEL_TRY(out.behind, gpu::make_draw_pipeline(device, behind_params()));
   LUXEL_TRY(out.screen, gpu::make_draw_pipeline(device, screen_params()));
+  LUXEL_TRY(out.overlay, make_overlay_shader(device, kExposed, kSamples));
   return out;
 }
 
@@ -145,30 +167,27 @@ Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
 
 void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
            const Frame& frame) {
-  const auto& [shaders, painter, scene] = canvas;
+  const auto& [shaders, painter, scene, overlay] = canvas;
   const gpu::TargetParams& size = painter.exposed.params;
   const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
-  const auto show = uint32_t(frame.show);
-  gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
+  const bool has_overlay = overlay != nullptr && looks_into_bake(frame.show);
   SurfacePush surface{};
   surface.clip_from_world = clip_from_world(camera, scene.bounds);
-  surface.exposure = frame.exposure, surface.show = show;
-  draw_surfaces(device, commands, canvas, surface);
-  const BehindPush behind{camera.forward,
-                          camera.orthographic ? Vec3{} : camera.right,
-                          camera.orthographic ? Vec3{} : camera.up,
-                          scene.background,
-                          scene.surroundings_scale,
-                          scene.rotation_rad,
-                          frame.exposure,
-                          show};
+  surface.exposure = frame.exposure, surface.show = uint32_t(frame.show);
+  if (has_overlay) set_shown(device, commands, *overlay, frame, normalize(camera.forward));
+  gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
+  if (has_overlay)
+    draw_overlay(device, commands, shaders.overlay, *overlay, scene, surface.clip_from_world);
+  else
+    draw_surfaces(device, commands, canvas, surface);
+  const BehindPush behind = behind_of(camera, scene, frame, has_overlay);
   gpu::bind(device, commands, shaders.behind, behind);
   gpu::bind_set(device, commands, shaders.behind, painter.surroundings.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
   gpu::end_drawing(device, commands, painter.exposed, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
   gpu::begin_drawing(device, commands, painter.shown, {0, 0, 0, 1});
-  const bool is_light = frame.show != Show::colour;
+  const bool is_light = frame.show != Show::colour && !(has_overlay && shows_colors(frame.show));
   const ScreenPush screen{uint32_t(is_light ? frame.curve : display::ToneMap::clamp)};
   gpu::bind(device, commands, shaders.screen, screen);
   gpu::bind_set(device, commands, shaders.screen, painter.to_screen.sets[0]);

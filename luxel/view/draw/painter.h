@@ -6,13 +6,14 @@
 #include "luxel/image/codec.h"
 #include "luxel/image/image.h"
 #include "luxel/view/draw/device_scene.h"
+#include "luxel/view/draw/overlay.h"
 #include "luxel/view/frame.h"
 
 namespace luxel::view {
 
 /// The shaders of all pictures.
 struct Shaders {
-  gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen;
+  gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, overlay;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
@@ -33,6 +34,7 @@ struct Canvas {
   const Shaders& shaders;
   const Painter& painter;
   const DeviceScene& scene;
+  const Overlay* overlay = nullptr;  ///< without one no frame looks into the bake
 };
 
 /// Records the drawing of a frame; the painter's `shown` is then in the layout

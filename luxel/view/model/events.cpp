@@ -27,6 +27,38 @@ bool is_key(const std::string& name) {
                      [&](const KeyHelp& key) { return name == key.key; });
 }
 
+/// The number of a name in a table; none where it has no such name.
+template <class Table, class Name>
+std::optional<uint32_t> number_of(const std::string& name, const Table& table,
+                                  const Name& name_of) {
+  for (uint32_t i = 0; i < table.size(); ++i)
+    if (name == name_of(table[i])) return i;
+  return std::nullopt;
+}
+
+/// What changes what is shown of a bake. May throw json::exception.
+std::optional<Event> look_event_of(const json& from) {
+  if (from.contains("show")) {
+    const auto show = number_of(from["show"].get<std::string>(), kShows,
+                                [](const ShowName& known) { return known.name; });
+    return show ? std::optional<Event>(ShowChanged{Show(*show)}) : std::nullopt;
+  }
+  if (from.contains("channel")) {
+    const auto channel = number_of(from["channel"].get<std::string>(), kChannels,
+                                   [](const char* known) { return known; });
+    return channel ? std::optional<Event>(ChannelChanged{Channel(*channel)}) : std::nullopt;
+  }
+  for (const bool is_logarithmic : {false, true}) {
+    const char* name = is_logarithmic ? "logarithmic_range" : "range";
+    if (!from.contains(name)) continue;
+    const auto range = from[name].get<std::array<float, 2>>();
+    const bool is_range = std::isfinite(range[0]) && std::isfinite(range[1]) &&
+                          range[0] < range[1] && (range[0] > 0 || !is_logarithmic);
+    if (is_range) return RangeChanged{{range[0], range[1], is_logarithmic}};
+  }
+  return std::nullopt;
+}
+
 /// One event; none where it is something else. May throw json::exception.
 std::optional<Event> event_of(const json& from) {
   if (from.size() != 2) return std::nullopt;  // "at" and what happens
@@ -49,7 +81,7 @@ std::optional<Event> event_of(const json& from) {
     const auto by = from["scroll"].get<float>();
     if (std::abs(by) <= 100) return Scrolled{by};
   }
-  return std::nullopt;
+  return look_event_of(from);
 }
 
 /// The whole file but its events. May throw json::exception.

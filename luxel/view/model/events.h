@@ -8,6 +8,7 @@
 
 #include "luxel/base/result.h"
 #include "luxel/base/vec.h"
+#include "luxel/view/frame.h"
 
 namespace luxel::view {
 
@@ -29,7 +30,20 @@ struct KeyChanged {
   std::string key;
   bool is_down = false;
 };
-using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged>;
+/// What is shown becomes another, by its name in kShows.
+struct ShowChanged {
+  Show show = Show::light_and_colour;
+};
+/// False colours of what is shown run over this range; high <= low: that of the bake.
+struct RangeChanged {
+  ColorScale scale;
+};
+/// False colours of the irradiance are those of a channel, by its name in kChannels.
+struct ChannelChanged {
+  Channel channel = Channel::luminance;
+};
+using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, ShowChanged,
+                           RangeChanged, ChannelChanged>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -49,6 +63,12 @@ inline constexpr KeyHelp kKeys[] = {
     {"1", "light and colour"},
     {"2", "light alone"},
     {"3", "colour alone"},
+    {"4", "irradiance in false colours"},
+    {"5", "texels as squares"},
+    {"6", "density of texels"},
+    {"7", "charts of the lightmap"},
+    {"8", "seams of the lightmap"},
+    {"9", "overlaps in the lightmap"},
     {"+", "brighter by half a stop"},
     {"-", "darker by half a stop"},
     {"0", "as bright as at first"},
@@ -71,8 +91,11 @@ struct Play {
 ///     {"frames_per_s": 30, "end": 2.0, "events": [
 ///       {"at": 0, "pointer": [480, 360]}, {"at": 0, "press": "left"},
 ///       {"at": 1, "pointer": [600, 360]}, {"at": 1, "release": "left"},
-///       {"at": 1.2, "scroll": 3}, {"at": 1.5, "key": "w"}, {"at": 1.8, "key_up": "w"}]}
+///       {"at": 1.2, "scroll": 3}, {"at": 1.5, "key": "w"}, {"at": 1.8, "key_up": "w"},
+///       {"at": 1.9, "show": "irradiance"}, {"at": 1.9, "range": [0, 500]},
+///       {"at": 1.9, "channel": "red"}]}
 ///
+/// A range is by the logarithm where "logarithmic_range" says so.
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.
 Result<Play> parse_play(std::string_view text, const std::string& name);
 /// Errors: those of files, too.

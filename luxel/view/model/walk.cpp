@@ -46,9 +46,8 @@ void press(const std::string& key, Walk& walk) {
     walk.target = walk.bounds.centre();
   }
   if (key == "home") walk.shown.camera = walk.first.camera;
-  if (key == "1") walk.shown.show = Show::light_and_colour;
-  if (key == "2") walk.shown.show = Show::light;
-  if (key == "3") walk.shown.show = Show::colour;
+  for (uint32_t i = 0; i < kShows.size(); ++i)
+    if (key == kShows[i].key) walk.shown.show = Show(i);
   if (key == "+") walk.shown.exposure *= kHalfStop;
   if (key == "-") walk.shown.exposure /= kHalfStop;
   if (key == "0") walk.shown.exposure = walk.first.exposure;
@@ -104,6 +103,12 @@ void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk) {
     if (!key->is_down) walk.keys.erase(key->key);
     if (key->is_down && walk.keys.insert(key->key).second) press(key->key, walk);
   }
+  if (const auto* changed = std::get_if<ShowChanged>(&event)) walk.shown.show = changed->show;
+  if (const auto* changed = std::get_if<ChannelChanged>(&event))
+    walk.shown.channel = changed->channel;
+  if (const auto* changed = std::get_if<RangeChanged>(&event))
+    (walk.shown.show == Show::density ? walk.shown.density : walk.shown.irradiance) =
+        changed->scale;
 }
 
 void pass(double seconds, Walk& walk) {

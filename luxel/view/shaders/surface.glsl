@@ -32,6 +32,7 @@ layout(buffer_reference, scalar) readonly buffer Vertices { Vertex at[]; };
 layout(buffer_reference, scalar) readonly buffer Materials { Material at[]; };
 layout(buffer_reference, scalar) readonly buffer Instances { Instance at[]; };
 
+#ifndef OWN_PUSH
 layout(push_constant, scalar) uniform Push {
   mat4 clip_from_world;
   Vertices vertices;
@@ -41,3 +42,4 @@ layout(push_constant, scalar) uniform Push {
   float exposure;
   uint show;
 };
+#endif

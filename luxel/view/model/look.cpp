@@ -1,0 +1,157 @@
+#include "luxel/view/model/look.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/base/file.h"
+#include "luxel/image/value_scale.h"
+#include "luxel/pipeline/settings/light_unit.h"
+#include "luxel/pipeline/settings/settings.h"
+#include "luxel/pipeline/solver/bake_options.h"
+#include "luxel/pipeline/texels/texel_picture.h"
+#include "luxel/view/model/uv_overlaps.h"
+
+namespace luxel::view {
+namespace {
+
+ColorScale irradiance_scale(const pipeline::LightmapPages& lightmaps) {
+  std::vector<float> values;
+  for (const image::Image& page : lightmaps.pictures)
+    for (int y = 0; y < page.height; ++y)
+      for (int x = 0; x < page.width; ++x)
+        if (page.channels < 4 || page.at(x, y)[3] > 0) values.push_back(luminance(page.rgb(x, y)));
+  return {0, float(image::scale_for(values, "").top), false};
+}
+
+/// The surface of a scene by its density.
+struct DensityShare {
+  float per_metre = 0;
+  double area = 0;
+};
+
+void add_densities(const scene::Scene& scene, const scene::Instance& instance,
+                   const pipeline::LightmapPages& lightmaps, std::vector<DensityShare>& out) {
+  const scene::Mesh& mesh = scene.meshes[instance.mesh];
+  if (mesh.uv1.empty()) return;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const uint32_t material = mesh.triangle_material[t];
+    const image::Image& page = lightmaps.pictures[lightmaps.of_material[material]];
+    std::array<Vec3, 3> p;
+    std::array<Vec2, 3> uv;
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t corner = mesh.triangles[t][k];
+      p[k] = transform_point(instance.world_from_object, mesh.positions[corner]);
+      uv[k] = {mesh.uv1[corner].x * float(page.width), mesh.uv1[corner].y * float(page.height)};
+    }
+    const float area = length(cross(p[1] - p[0], p[2] - p[0]));
+    const float texels = std::abs(cross(uv[1] - uv[0], uv[2] - uv[0]));
+    if (area > 0 && texels > 0) out.push_back({std::sqrt(texels / area), double(area)});
+  }
+}
+
+/// Where a share of the surface has less.
+float density_below(const std::vector<DensityShare>& sorted, double share) {
+  double all = 0, so_far = 0;
+  for (const DensityShare& d : sorted) all += d.area;
+  for (const DensityShare& d : sorted)
+    if ((so_far += d.area) >= share * all) return d.per_metre;
+  return 1;
+}
+
+/// At least a factor of four, so that an even density is one even colour.
+ColorScale density_scale(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps) {
+  std::vector<DensityShare> shares;
+  for (const scene::Instance& instance : scene.instances)
+    add_densities(scene, instance, lightmaps, shares);
+  std::sort(shares.begin(), shares.end(),
+            [](const DensityShare& a, const DensityShare& b) { return a.per_metre < b.per_metre; });
+  const float low = density_below(shares, 0.01), high = density_below(shares, 0.99);
+  const float wider = std::max(1.0f, 2 / std::sqrt(high / low));
+  return {low / wider, high * wider, true};
+}
+
+/// E's unit in the light of a bake, whose own file may be gone.
+std::string unit_of_bake(const std::filesystem::path& folder, const scene::Scene& scene) {
+  pipeline::BakeSettings baked;
+  if (!pipeline::read_settings(folder / "bake.json", baked)) baked.scene = "baked.glb";
+  scene::Scene own = scene;  // baked.glb has the file's lights, the bake's surroundings are others
+  own.environment = {}, own.background = {};
+  return pipeline::unit_of_light(baked.scene, own, baked.outside).symbol;
+}
+
+/// NAME.png beside each lightmap.exr, NAME-1.png beside lightmap-1.exr; none where one is not
+/// there.
+Result<std::vector<image::Image8>> texel_pictures(const std::filesystem::path& folder,
+                                                  const std::string& name,
+                                                  const pipeline::LightmapPages& lightmaps) {
+  const auto beside = [&](const std::filesystem::path& lightmap) {
+    const std::string number = lightmap.stem().string().substr(std::string("lightmap").size());
+    return folder / (name + number + ".png");
+  };
+  bool is_there = true;
+  const auto read = [&](const std::filesystem::path& lightmap) -> Result<image::Image> {
+    std::error_code ignored;
+    is_there &= std::filesystem::exists(beside(lightmap), ignored);
+    if (!is_there) return image::Image();
+    LUXEL_TRY(const std::vector<std::byte> bytes, read_file(beside(lightmap)));
+    return image::decode_display(bytes, beside(lightmap).string());
+  };
+  LUXEL_TRY(const pipeline::LightmapPages pages,
+            pipeline::read_pages(folder, lightmaps.of_material.size(), read));
+  std::vector<image::Image8> out;
+  if (!is_there) return out;
+  for (size_t i = 0; i < pages.pictures.size(); ++i) {
+    const image::Image& from = pages.pictures[i];
+    const image::Image& page = lightmaps.pictures[i];
+    if (from.width != page.width || from.height != page.height)
+      return fail(ErrorCode::bad_input,
+                  "{} of {} has {} x {} pixels and the lightmap {} x {}: they are not of one bake",
+                  name, folder.string(), from.width, from.height, page.width, page.height);
+    image::Image8& picture = out.emplace_back(image::Image8{from.width, from.height, 4, {}});
+    for (const float v : from.data) picture.data.push_back(uint8_t(std::lround(v * 255)));
+  }
+  return out;
+}
+
+}  // namespace
+
+Look look_at(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps) {
+  Look out;
+  out.unit = "W/m^2";
+  out.irradiance = irradiance_scale(lightmaps);
+  out.density = density_scale(scene, lightmaps);
+  for (const scene::Mesh& mesh : scene.meshes) {
+    out.charts.push_back(charts_of(mesh));
+    out.chart_count += out.charts.back().charts;
+  }
+  out.overlaps = uv_overlaps(scene, lightmaps);
+  return out;
+}
+
+Result<Look> look_into(const std::filesystem::path& folder, const scene::Scene& scene,
+                       const pipeline::LightmapPages& lightmaps) {
+  Look out = look_at(scene, lightmaps);
+  out.unit = unit_of_bake(folder, scene);
+  LUXEL_TRY(out.texels, texel_pictures(folder, "texels", lightmaps));
+  LUXEL_TRY(out.errors, texel_pictures(folder, "error", lightmaps));
+  return out;
+}
+
+ColorScale scale_of(const ColorScale& own, const ColorScale& of_bake) {
+  if (own.high > own.low) return own;
+  return {of_bake.low, of_bake.high, own.is_logarithmic || of_bake.is_logarithmic};
+}
+
+std::optional<Legend> legend_of(const Frame& frame, const Look& look) {
+  if (frame.show == Show::irradiance)
+    return Legend{kChannels[size_t(frame.channel)], look.unit,
+                  scale_of(frame.irradiance, look.irradiance)};
+  if (frame.show == Show::density)
+    return Legend{"texels", "1/m", scale_of(frame.density, look.density)};
+  if (frame.show == Show::error && !look.errors.empty())
+    return Legend{
+        "relative standard error", "", {pipeline::kLowestError, pipeline::kHighestError, true}};
+  return std::nullopt;
+}
+
+}  // namespace luxel::view

@@ -95,6 +95,8 @@ Status draw_offscreen(const Options& options) {
   std::optional<view::Overlay> overlay;
   if (view::looks_into_bake(frame.show)) {
     LUXEL_TRY(const view::Look look, view::look_into(options.subject, bake.scene, bake.lightmaps));
+    if (const auto missing = view::missing_for(frame.show, look, options.subject.string()))
+      return fail(ErrorCode::bad_input, "{}", *missing);
     LUXEL_TRY(overlay, view::make_overlay(commands, shaders.overlay, bake.scene, bake.lightmaps,
                                           look, scene));
   }

@@ -42,6 +42,11 @@ uint32_t full_levels(uint32_t width, uint32_t height);
 Result<Picture> picture_with(Commands& commands, PictureParams params,
                              std::span<const std::byte> pixels, std::string_view what);
 
+/// Pixels of a picture that picture_with() made, instead of those that it has. Nothing may still
+/// look it up. Errors: no memory for the copy, the device is lost.
+Status put_pixels(Commands& commands, const Picture& picture, std::span<const std::byte> pixels,
+                  std::string_view what);
+
 /// A colour image, all its mipmaps, goes from one use to another, after all that came before.
 void change_layout(const Device& device, VkCommandBuffer commands, VkImage image,
                    VkImageLayout from, VkImageLayout to);

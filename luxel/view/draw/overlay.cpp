@@ -11,26 +11,28 @@ namespace luxel::view {
 namespace {
 
 constexpr VkDescriptorType kOverlayLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-/// Light, base colour, texels.png, error.png, overlaps.
-constexpr size_t kOverlayLookUps = 5;
+/// Light, base colour, texels.png, error.png, overlaps, the second light.
+constexpr size_t kOverlayLookUps = 6;
 
 // The structs of shaders/overlay.glsl, in scalar layout.
 struct OverlayPush {
   std::array<float, 16> clip_from_world;  ///< column by column
-  VkDeviceAddress vertices, materials, instances, corners, charts, look;
+  VkDeviceAddress vertices, materials, instances, look;
   uint32_t instance = 0, material = 0, culled = 0;
 };
-static_assert(sizeof(OverlayPush) == 128);
+static_assert(sizeof(OverlayPush) == 112);
 
 struct ShownLook {
+  VkDeviceAddress corners, charts, light_scales;
+  float second_light = 0;
   uint32_t show = 0, channel = 0;
   float low = 0, high = 1;
   uint32_t is_logarithmic = 0;
   float exposure = 1;
-  Vec3 forward;
+  Vec3 forward{};
   std::array<uint32_t, 256> colors{};
 };
-static_assert(sizeof(ShownLook) == 36 + 1024);
+static_assert(sizeof(ShownLook) == 64 + 1024);
 
 std::array<uint32_t, 256> packed_false_colors() {
   std::array<uint32_t, 256> out{};
@@ -70,7 +72,7 @@ std::vector<std::byte> bytes_of_picture(const image::Image8& from) {
 Result<std::vector<gpu::Binding>> put_pages(gpu::Commands& commands,
                                             std::vector<image::Image8> pages, size_t count,
                                             std::string_view what, Overlay& out) {
-  if (pages.empty()) pages.assign(count, image::Image8{1, 1, 1, {255}});
+  if (pages.empty()) pages.resize(count, {1, 1, 1, std::vector<uint8_t>(1, 255)});
   std::vector<gpu::Binding> bindings;
   for (const image::Image8& page : pages) {
     gpu::PictureParams params;
@@ -120,19 +122,21 @@ Result<Overlay> make_overlay(gpu::Commands& commands, const gpu::Pipeline& shade
   std::vector<std::vector<gpu::Binding>> bindings;
   for (size_t m = 0; m < on_device.bindings.size(); ++m) {
     const size_t page = lightmaps.of_material[m];
-    bindings.push_back({on_device.bindings[m][0], on_device.bindings[m][1], texels[page],
-                        errors[page], overlaps[page]});
+    const std::vector<gpu::Binding>& known = on_device.bindings[m];
+    bindings.push_back(
+        {known[0], known[1], texels[page], errors[page], overlaps[page], known[kLookUps - 1]});
   }
   LUXEL_TRY(out.sets, gpu::make_sets(device, shader, bindings));
   return out;
 }
 
 void set_shown(const gpu::Device& device, VkCommandBuffer commands, const Overlay& overlay,
-               const Frame& frame, Vec3 forward) {
+               const DeviceScene& scene, const Frame& frame, Vec3 forward) {
   const ColorScale scale = frame.show == Show::density
                                ? scale_of(frame.density, overlay.density)
                                : scale_of(frame.irradiance, overlay.irradiance);
-  ShownLook shown;
+  ShownLook shown{scene.indices.address, overlay.charts.address, scene.light_scales.address,
+                  scene.second_light};
   shown.show = uint32_t(frame.show), shown.channel = uint32_t(frame.channel);
   shown.low = scale.low, shown.high = scale.high;
   shown.is_logarithmic = scale.is_logarithmic;
@@ -147,9 +151,8 @@ void set_shown(const gpu::Device& device, VkCommandBuffer commands, const Overla
 void draw_overlay(const gpu::Device& device, VkCommandBuffer commands, const gpu::Pipeline& shader,
                   const Overlay& overlay, const DeviceScene& scene,
                   const std::array<float, 16>& clip_from_world) {
-  OverlayPush push{clip_from_world,         scene.vertices.address, scene.materials.address,
-                   scene.instances.address, scene.indices.address,  overlay.charts.address,
-                   overlay.shown.address};
+  OverlayPush push{clip_from_world, scene.vertices.address, scene.materials.address,
+                   scene.instances.address, overlay.shown.address};
   for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance)
     for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {
       push.material = range.material;

@@ -37,7 +37,7 @@ Result<Overlay> make_overlay(gpu::Commands& commands, const gpu::Pipeline& shade
 
 /// To be recorded before the drawing begins: what is shown, seen along `forward`.
 void set_shown(const gpu::Device& device, VkCommandBuffer commands, const Overlay& overlay,
-               const Frame& frame, Vec3 forward);
+               const DeviceScene& scene, const Frame& frame, Vec3 forward);
 /// All surfaces of the scene, back faces of one-sided materials left out and alpha masks cut.
 void draw_overlay(const gpu::Device& device, VkCommandBuffer commands, const gpu::Pipeline& shader,
                   const Overlay& overlay, const DeviceScene& scene,

@@ -25,12 +25,13 @@ constexpr VkDescriptorType kLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 // The push constants of the shaders, in scalar layout.
 struct SurfacePush {
   std::array<float, 16> clip_from_world;  ///< column by column
-  VkDeviceAddress vertices, materials, instances;
+  VkDeviceAddress vertices, materials, instances, light_scales;
   uint32_t instance = 0, material = 0;
   float exposure = 1;
   uint32_t show = 0;
+  float second_light = 0;
 };
-static_assert(sizeof(SurfacePush) == 104);
+static_assert(sizeof(SurfacePush) == 120);
 
 struct BehindPush {
   Vec3 forward, right, up;
@@ -99,6 +100,8 @@ void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Ca
   push.vertices = scene.vertices.address;
   push.materials = scene.materials.address;
   push.instances = scene.instances.address;
+  push.light_scales = scene.light_scales.address;
+  push.second_light = scene.second_light;
   for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance)
     for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {
       const bool is_mirrored = scene.is_mirrored[push.instance];
@@ -174,7 +177,7 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   SurfacePush surface{};
   surface.clip_from_world = clip_from_world(camera, scene.bounds);
   surface.exposure = frame.exposure, surface.show = uint32_t(frame.show);
-  if (has_overlay) set_shown(device, commands, *overlay, frame, normalize(camera.forward));
+  if (has_overlay) set_shown(device, commands, *overlay, scene, frame, normalize(camera.forward));
   gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
   if (has_overlay)
     draw_overlay(device, commands, shaders.overlay, *overlay, scene, surface.clip_from_world);

@@ -26,7 +26,7 @@ std::vector<uint32_t> first_alike(uint32_t vertices, const Key& key_of) {
 /// An edge of a triangle, the one across from a corner.
 struct ChartEdge {
   std::array<uint32_t, 2> places;   ///< its ends, by what places they have
-  std::array<uint32_t, 2> corners;  ///< and by what places and TEXCOORD_1
+  std::array<uint32_t, 2> corners;  ///< and by their places in the lightmap, too
   uint32_t triangle = 0;
   uint8_t across = 0;
 };
@@ -36,14 +36,14 @@ std::array<uint32_t, 2> sorted_pair(uint32_t a, uint32_t b) {
 }
 
 /// All edges, those with the same ends behind one another.
-std::vector<ChartEdge> edges_of(const scene::Mesh& mesh) {
+std::vector<ChartEdge> edges_of(const scene::Mesh& mesh, std::span<const Vec2> light_uv) {
   const auto count = uint32_t(mesh.positions.size());
   const auto place = [&](uint32_t i) {
     const Vec3 p = mesh.positions[i];
     return std::tuple(p.x, p.y, p.z);
   };
   const auto place_and_uv = [&](uint32_t i) {
-    return std::tuple_cat(place(i), std::tuple(mesh.uv1[i].x, mesh.uv1[i].y));
+    return std::tuple_cat(place(i), std::tuple(light_uv[i].x, light_uv[i].y));
   };
   const std::vector<uint32_t> places = first_alike(count, place);
   const std::vector<uint32_t> corners = first_alike(count, place_and_uv);
@@ -75,10 +75,10 @@ EdgeIterator end_of_run(EdgeIterator from, EdgeIterator last, Member member) {
 
 }  // namespace
 
-MeshCharts charts_of(const scene::Mesh& mesh) {
+MeshCharts charts_of(const scene::Mesh& mesh, std::span<const Vec2> light_uv) {
   MeshCharts out;
-  if (mesh.uv1.empty()) return out;
-  const std::vector<ChartEdge> edges = edges_of(mesh);
+  if (light_uv.empty()) return out;
+  const std::vector<ChartEdge> edges = edges_of(mesh, light_uv);
   std::vector<uint32_t> parent(mesh.triangles.size());
   std::iota(parent.begin(), parent.end(), 0);
   out.seams.assign(mesh.triangles.size(), 0);

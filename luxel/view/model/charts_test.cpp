@@ -31,6 +31,8 @@ scene::Mesh sheet_of(int side, const std::vector<int>& piece) {
   return mesh;
 }
 
+MeshCharts charts_in(const scene::Mesh& mesh) { return charts_of(mesh, mesh.uv1); }
+
 int seams_of(const MeshCharts& charts) {
   int out = 0;
   for (const uint8_t bits : charts.seams) out += std::popcount(bits);
@@ -63,7 +65,7 @@ TEST(Charts, AreThePiecesThatHangTogether) {
       cuts += has_right && piece[size_t(cell)] != piece[size_t(cell + 1)];
       cuts += has_below && piece[size_t(cell)] != piece[size_t(cell + kSheet)];
     }
-    const MeshCharts charts = charts_of(sheet_of(kSheet, piece));
+    const MeshCharts charts = charts_in(sheet_of(kSheet, piece));
     EXPECT_EQ(charts.charts, uint32_t(islands));
     EXPECT_EQ(seams_of(charts), 2 * cuts) << "both sides of each cut";
     for (size_t a = 0; a < piece.size(); ++a)
@@ -74,13 +76,13 @@ TEST(Charts, AreThePiecesThatHangTogether) {
 
 // The border of a sheet is no seam: nothing lies beyond it.
 TEST(Charts, SeamsLieAcrossFromTheirCorners) {
-  const MeshCharts charts = charts_of(sheet_of(2, {0, 1, 0, 1}));
+  const MeshCharts charts = charts_in(sheet_of(2, {0, 1, 0, 1}));
   EXPECT_EQ(charts.charts, 2u);
   // The right edge of a left cell is that of its first triangle from the second to the third
   // corner.
   EXPECT_EQ(charts.seams, (std::vector<uint8_t>{1, 0, 0, 2, 1, 0, 0, 2}));
-  EXPECT_EQ(seams_of(charts_of(sheet_of(2, {5, 5, 5, 5}))), 0);
-  EXPECT_EQ(charts_of(scene::Mesh()).charts, 0u);
+  EXPECT_EQ(seams_of(charts_in(sheet_of(2, {5, 5, 5, 5}))), 0);
+  EXPECT_EQ(charts_in(scene::Mesh()).charts, 0u);
 }
 
 TEST(UvOverlaps, AreWhereTwoSurfacesShareThePlace) {
@@ -92,7 +94,7 @@ TEST(UvOverlaps, AreWhereTwoSurfacesShareThePlace) {
   pages.pictures.emplace_back(10, 10, 4);
   pages.of_material = {0};
   const auto shared_pixels = [&] {
-    const image::Image8 picture = uv_overlaps(scene, pages).front();
+    const image::Image8 picture = uv_overlaps(scene, pages, {}).front();
     EXPECT_EQ(picture.width, 20);
     return std::count(picture.data.begin(), picture.data.end(), 255);
   };

@@ -1,6 +1,7 @@
 #include "luxel/view/model/look.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "luxel/base/file.h"
@@ -14,6 +15,10 @@
 namespace luxel::view {
 namespace {
 
+/// Neighbours, the nearest first.
+constexpr std::array<std::array<int, 2>, 8> kAround{
+    {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
+
 ColorScale irradiance_scale(const pipeline::LightmapPages& lightmaps) {
   std::vector<float> values;
   for (const image::Image& page : lightmaps.pictures)
@@ -23,16 +28,22 @@ ColorScale irradiance_scale(const pipeline::LightmapPages& lightmaps) {
   return {0, float(image::scale_for(values, "").top), false};
 }
 
+std::span<const Vec2> places_of(const scene::Scene& scene, size_t mesh,
+                                std::span<const std::vector<Vec2>> light_uv) {
+  return light_uv.empty() ? scene.meshes[mesh].uv1 : light_uv[mesh];
+}
+
 /// The surface of a scene by its density.
 struct DensityShare {
   float per_metre = 0;
   double area = 0;
 };
 
-void add_densities(const scene::Scene& scene, const scene::Instance& instance,
-                   const pipeline::LightmapPages& lightmaps, std::vector<DensityShare>& out) {
-  const scene::Mesh& mesh = scene.meshes[instance.mesh];
-  if (mesh.uv1.empty()) return;
+/// `places`: of the mesh's vertices in the lightmap.
+void add_densities(const scene::Mesh& mesh, const Mat34& world_from_object,
+                   std::span<const Vec2> places, const pipeline::LightmapPages& lightmaps,
+                   std::vector<DensityShare>& out) {
+  if (places.empty()) return;
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
     const uint32_t material = mesh.triangle_material[t];
     const image::Image& page = lightmaps.pictures[lightmaps.of_material[material]];
@@ -40,8 +51,8 @@ void add_densities(const scene::Scene& scene, const scene::Instance& instance,
     std::array<Vec2, 3> uv;
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t corner = mesh.triangles[t][k];
-      p[k] = transform_point(instance.world_from_object, mesh.positions[corner]);
-      uv[k] = {mesh.uv1[corner].x * float(page.width), mesh.uv1[corner].y * float(page.height)};
+      p[k] = transform_point(world_from_object, mesh.positions[corner]);
+      uv[k] = {places[corner].x * float(page.width), places[corner].y * float(page.height)};
     }
     const float area = length(cross(p[1] - p[0], p[2] - p[0]));
     const float texels = std::abs(cross(uv[1] - uv[0], uv[2] - uv[0]));
@@ -59,10 +70,12 @@ float density_below(const std::vector<DensityShare>& sorted, double share) {
 }
 
 /// At least a factor of four, so that an even density is one even colour.
-ColorScale density_scale(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps) {
+ColorScale density_scale(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps,
+                         std::span<const std::vector<Vec2>> light_uv) {
   std::vector<DensityShare> shares;
   for (const scene::Instance& instance : scene.instances)
-    add_densities(scene, instance, lightmaps, shares);
+    add_densities(scene.meshes[instance.mesh], instance.world_from_object,
+                  places_of(scene, instance.mesh, light_uv), lightmaps, shares);
   std::sort(shares.begin(), shares.end(),
             [](const DensityShare& a, const DensityShare& b) { return a.per_metre < b.per_metre; });
   const float low = density_below(shares, 0.01), high = density_below(shares, 0.99);
@@ -77,6 +90,32 @@ std::string unit_of_bake(const std::filesystem::path& folder, const scene::Scene
   scene::Scene own = scene;  // baked.glb has the file's lights, the bake's surroundings are others
   own.environment = {}, own.background = {};
   return pipeline::unit_of_light(baked.scene, own, baked.outside).symbol;
+}
+
+/// White pixels, which stand for no texel, become what is beside them: at the rim of a chart
+/// surfaces reach half a texel beyond the last one.
+image::Image8 without_white_rim(const image::Image8& from) {
+  image::Image8 out = from;
+  const auto pixel = [&](int x, int y) {
+    const size_t i = 4 * (size_t(y) * size_t(from.width) + size_t(x));
+    return std::span(from.data).subspan(i, 4);
+  };
+  const auto is_white = [](std::span<const uint8_t> p) {
+    return p[0] == 255 && p[1] == 255 && p[2] == 255;
+  };
+  for (int y = 0; y < from.height; ++y)
+    for (int x = 0; x < from.width; ++x)
+      for (const auto& [dx, dy] : kAround) {
+        if (!is_white(pixel(x, y))) break;
+        const int ox = x + dx, oy = y + dy;
+        if (ox < 0 || oy < 0 || ox >= from.width || oy >= from.height) continue;
+        const auto other = pixel(ox, oy);
+        if (is_white(other)) continue;
+        const size_t i = 4 * (size_t(y) * size_t(from.width) + size_t(x));
+        std::copy(other.begin(), other.end(), out.data.begin() + std::ptrdiff_t(i));
+        break;
+      }
+  return out;
 }
 
 /// NAME.png beside each lightmap.exr, NAME-1.png beside lightmap-1.exr; none where one is not
@@ -107,24 +146,26 @@ Result<std::vector<image::Image8>> texel_pictures(const std::filesystem::path& f
       return fail(ErrorCode::bad_input,
                   "{} of {} has {} x {} pixels and the lightmap {} x {}: they are not of one bake",
                   name, folder.string(), from.width, from.height, page.width, page.height);
-    image::Image8& picture = out.emplace_back(image::Image8{from.width, from.height, 4, {}});
+    image::Image8 picture{from.width, from.height, 4, {}};
     for (const float v : from.data) picture.data.push_back(uint8_t(std::lround(v * 255)));
+    out.push_back(without_white_rim(picture));
   }
   return out;
 }
 
 }  // namespace
 
-Look look_at(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps) {
+Look look_at(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps,
+             std::span<const std::vector<Vec2>> light_uv) {
   Look out;
   out.unit = "W/m^2";
   out.irradiance = irradiance_scale(lightmaps);
-  out.density = density_scale(scene, lightmaps);
-  for (const scene::Mesh& mesh : scene.meshes) {
-    out.charts.push_back(charts_of(mesh));
+  out.density = density_scale(scene, lightmaps, light_uv);
+  for (size_t m = 0; m < scene.meshes.size(); ++m) {
+    out.charts.push_back(charts_of(scene.meshes[m], places_of(scene, m, light_uv)));
     out.chart_count += out.charts.back().charts;
   }
-  out.overlaps = uv_overlaps(scene, lightmaps);
+  out.overlaps = uv_overlaps(scene, lightmaps, light_uv);
   return out;
 }
 
@@ -135,6 +176,14 @@ Result<Look> look_into(const std::filesystem::path& folder, const scene::Scene& 
   LUXEL_TRY(out.texels, texel_pictures(folder, "texels", lightmaps));
   LUXEL_TRY(out.errors, texel_pictures(folder, "error", lightmaps));
   return out;
+}
+
+std::optional<std::string> missing_for(Show show, const Look& look, const std::string& folder) {
+  if (show == Show::texels && look.texels.empty())
+    return folder + ": there is no texels.png in it; bake with --texels";
+  if (show == Show::error && look.errors.empty())
+    return folder + ": there is no error.png in it; bake with --error-map";
+  return std::nullopt;
 }
 
 ColorScale scale_of(const ColorScale& own, const ColorScale& of_bake) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,13 +28,18 @@ struct Look {
 
 /// Of a scene with these lightmaps: all but the unit and the pictures of the folder. E runs up to a
 /// round number that 98 % of the texels stay below; the density by its logarithm, from the first
-/// percentile of the surface to the last.
-Look look_at(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps);
+/// percentile of the surface to the last. `light_uv`: of each mesh and vertex its place in the
+/// lightmap; empty: uv1 is.
+Look look_at(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps,
+             std::span<const std::vector<Vec2>> light_uv = {});
 
 /// look_at() and what lies in the bake's folder. Errors: those of files; texels.png or error.png of
 /// another size than the lightmap.
 Result<Look> look_into(const std::filesystem::path& folder, const scene::Scene& scene,
                        const pipeline::LightmapPages& lightmaps);
+
+/// What is missing to show it, as a sentence on the bake in `folder`; none where nothing is.
+std::optional<std::string> missing_for(Show show, const Look& look, const std::string& folder);
 
 /// What the scale of a frame is: its own, or that of the bake.
 ColorScale scale_of(const ColorScale& own, const ColorScale& of_bake);

@@ -32,7 +32,8 @@ void cover_triangle(std::array<Vec2, 3> c, int width, int height, const Cover& c
 }  // namespace
 
 std::vector<image::Image8> uv_overlaps(const scene::Scene& scene,
-                                       const pipeline::LightmapPages& lightmaps) {
+                                       const pipeline::LightmapPages& lightmaps,
+                                       std::span<const std::vector<Vec2>> light_uv) {
   std::vector<image::Image8> out;
   for (const image::Image& page : lightmaps.pictures) {
     const int width = kPixelsPerTexel * page.width, height = kPixelsPerTexel * page.height;
@@ -40,14 +41,15 @@ std::vector<image::Image8> uv_overlaps(const scene::Scene& scene,
   }
   for (const scene::Instance& instance : scene.instances) {
     const scene::Mesh& mesh = scene.meshes[instance.mesh];
-    if (mesh.uv1.empty()) continue;
+    const std::vector<Vec2>& places = light_uv.empty() ? mesh.uv1 : light_uv[instance.mesh];
+    if (places.empty()) continue;
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
       const uint32_t material = mesh.triangle_material[t];
       if (scene.materials[material].unlit) continue;
       image::Image8& page = out[lightmaps.of_material[material]];
       std::array<Vec2, 3> corners;
       for (size_t k = 0; k < 3; ++k) {
-        const Vec2 uv = mesh.uv1[mesh.triangles[t][k]];
+        const Vec2 uv = places[mesh.triangles[t][k]];
         corners[k] = {uv.x * float(page.width), uv.y * float(page.height)};
       }
       cover_triangle(corners, page.width, page.height, [&](int x, int y) {

@@ -1,7 +1,10 @@
 // A user drags, scrolls and flies before a wall: where the camera gets to is known.
 #include "luxel/view/model/walk.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <algorithm>
 
 #include "luxel/trace/camera_rays.h"
 
@@ -167,6 +170,39 @@ TEST(Play, GoesOnInStepsOfItsOwn) {
   EXPECT_GT(length(walk.target), 1);
 }
 
+TEST(Play, ChoosesWhatIsShownOfABake) {
+  const auto events = parse_play(R"({"end": 1, "events": [
+    {"at": 0, "show": "irradiance"}, {"at": 0, "range": [5, 500]}, {"at": 0, "channel": "blue"},
+    {"at": 1, "show": "density"}, {"at": 1, "logarithmic_range": [1, 64]}]})",
+                                 "walk.json");
+  ASSERT_TRUE(events) << events.error().message;
+  Walk walk = before_the_wall();
+  play(*events, on_the_wall, walk);
+  EXPECT_EQ(walk.shown.show, Show::density);
+  EXPECT_EQ(walk.shown.channel, Channel::blue);
+  EXPECT_EQ(walk.shown.irradiance, (ColorScale{5, 500, false}));
+  EXPECT_EQ(walk.shown.density, (ColorScale{1, 64, true}));
+  for (uint32_t i = 0; i < kShows.size(); ++i) {
+    const auto shows = parse_play(fmt::format(R"({{"end": 0, "events": [
+      {{"at": 0, "show": "{}"}}]}})",
+                                              kShows[i].name),
+                                  "walk.json");
+    ASSERT_TRUE(shows) << shows.error().message;
+    play(*shows, on_the_wall, walk);
+    EXPECT_EQ(walk.shown.show, Show(i));
+  }
+}
+
+// The list of F1 says the keys of kShows with the same words.
+TEST(Walk, KeysOfTheListAreThoseOfWhatIsShown) {
+  for (const ShowName& shows : kShows) {
+    const bool is_listed = std::any_of(std::begin(kKeys), std::end(kKeys), [&](const KeyHelp& key) {
+      return std::string(key.key) == shows.key && std::string(key.does) == shows.words;
+    });
+    EXPECT_EQ(is_listed, *shows.key != 0) << shows.name;
+  }
+}
+
 TEST(Play, SaysWhichEventIsWrong) {
   const auto error = [](const std::string& events, const std::string& rest = R"("end": 2)") {
     const auto read = parse_play("{" + rest + R"(, "events": [)" + events + "]}", "walk.json");
@@ -176,9 +212,12 @@ TEST(Play, SaysWhichEventIsWrong) {
   EXPECT_EQ(error(right), "no error");
   EXPECT_THAT(error(right + R"(, {"at": 0.5, "scroll": 1})"),
               HasSubstr("walk.json, event 2: its time, 0.5, is not from 1 to 2"));
-  for (const char* wrong : {R"({"at": 1})", R"({"at": 1, "jump": 1})",
-                            R"({"at": 1, "press": "fourth"})", R"({"at": 1, "key": "ctrl"})",
-                            R"({"at": 1, "scroll": 1, "key": "w"})", R"({"at": 1, "scroll": 1e9})"})
+  for (const char* wrong :
+       {R"({"at": 1})", R"({"at": 1, "jump": 1})", R"({"at": 1, "press": "fourth"})",
+        R"({"at": 1, "key": "ctrl"})", R"({"at": 1, "scroll": 1, "key": "w"})",
+        R"({"at": 1, "scroll": 1e9})", R"({"at": 1, "show": "depth"})",
+        R"({"at": 1, "channel": "alpha"})", R"({"at": 1, "range": [2, 2]})",
+        R"({"at": 1, "logarithmic_range": [0, 1]})"})
     EXPECT_THAT(error(wrong), AllOf(HasSubstr("walk.json, event 1: "), HasSubstr("is no event")));
   for (const char* wrong : {R"({"at": "now", "scroll": 1})", R"({"at": 1, "pointer": [1]})", "7"})
     EXPECT_THAT(error(wrong), HasSubstr("walk.json, event 1: "));

@@ -8,6 +8,7 @@ layout(binding = 1) uniform sampler2D map;
 layout(binding = 2) uniform sampler2D texels;  // the three: one pixel or some for each texel
 layout(binding = 3) uniform sampler2D errors;
 layout(binding = 4) uniform sampler2D overlaps;
+layout(binding = 5) uniform sampler2D second;
 
 layout(location = 0) centroid in vec2 at_light;
 layout(location = 1) in vec2 at_map;
@@ -84,7 +85,9 @@ void main() {
   if (alpha < m.cutoff) discard;
   if (culled == (gl_FrontFacing ? 2 : 1)) discard;
 
-  vec3 e = textureLod(light, at_light, 0).rgb * m.light_scale;
+  vec2 scale = look.light_scales.at[m.page];
+  vec3 e = mix(textureLod(light, at_light, 0).rgb * scale.x,
+               textureLod(second, at_light, 0).rgb * scale.y, look.second_light);
   vec3 color = vec3(0);
   if (look.show == irradiance) color = false_color(value_of(e));
   if (look.show == checker) color = e / pi * look.exposure * mix(0.45, 1, light_squares);

@@ -5,8 +5,12 @@
 layout(buffer_reference, scalar) readonly buffer Corners { uint at[]; };
 /// Of each triangle: its chart, times eight, and a bit for each edge that is a seam.
 layout(buffer_reference, scalar) readonly buffer Charts { uint at[]; };
-/// 256 false colours, 0xbbggrr, and what is shown.
+/// The scene's triangles, what is shown, and 256 false colours, 0xbbggrr.
 layout(buffer_reference, scalar) readonly buffer Look {
+  Corners corners;
+  Charts charts;
+  LightScales light_scales;
+  float second_light;  // its share
   uint show, channel;
   float low, high;
   uint is_logarithmic;
@@ -20,8 +24,6 @@ layout(push_constant, scalar) uniform Push {
   Vertices vertices;
   Materials materials;
   Instances instances;
-  Corners corners;
-  Charts charts;
   Look look;
   uint instance, material;
   uint culled;  // faces that are left out: 0 none, 1 the back ones, 2 the front ones

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "apps/view/looking.h"
 #include "apps/view/ui.h"
 #include "luxel/base/file.h"
 #include "luxel/gpu/swapchain.h"
@@ -143,8 +144,11 @@ struct Screen {
   gpu::Swapchain swapchain;
   view::Painter painter;  ///< of the window's size
   std::unique_ptr<Ui> ui;
+  Looking looking;
 
-  view::Canvas canvas() const { return {shaders, painter, scene}; }
+  view::Canvas canvas() const {
+    return {shaders, painter, scene, looking.overlay ? &*looking.overlay : nullptr};
+  }
 };
 
 /// The window's pictures and what is drawn into them, of the window's size. False while it has
@@ -227,16 +231,28 @@ std::vector<KeyLine> key_lines() {
   return out;
 }
 
+/// The surface under the pointer; none under the panel.
+std::optional<scene::SurfacePoint> pointed_surface(const Ui& ui, const view::OpenedBake& bake,
+                                                   const trace::RayTracer& tracer,
+                                                   const view::Walk& walk) {
+  if (ui.has_pointer() || !view::looks_into_bake(walk.shown.show)) return std::nullopt;
+  return view::surface_seen(bake.scene, tracer, walk.shown, walk.pointer, walk.width, walk.height);
+}
+
 /// What the panel changes of a walk, and the walk of the panel.
-void exchange(Ui& ui, std::span<const scene::Camera> views, Panel& panel, view::Walk& walk) {
+void exchange(Ui& ui, const view::OpenedBake& bake, const trace::RayTracer& tracer,
+              const Looking& looking, Panel& panel, view::Walk& walk) {
   panel.show = int(walk.shown.show);
   panel.stops = std::log2(walk.shown.exposure / walk.first.exposure);
-  const float before = panel.stops;
+  fill_panel(walk.shown, bake, looking, pointed_surface(ui, bake, tracer, walk), panel.look);
+  const Panel before = panel;
   ui.lay_out(panel);
-  walk.shown.show = view::Show(panel.show);
-  if (panel.stops != before) walk.shown.exposure = walk.first.exposure * std::exp2(panel.stops);
+  if (panel.show != before.show) walk.shown.show = view::Show(panel.show);
+  take_panel(panel.look, before.look, walk.shown);
+  if (panel.stops != before.stops)
+    walk.shown.exposure = walk.first.exposure * std::exp2(panel.stops);
   if (const int view = std::exchange(panel.view, -1); view >= 0)
-    walk.shown.camera = views[size_t(view)];
+    walk.shown.camera = bake.scene.cameras[size_t(view)];
 }
 
 /// Writes what is shown, without the panel, into the first file of this name that is not there.
@@ -325,7 +341,9 @@ Result<bool> go_on(Session& s) {
     view::pass(std::min(passed, 0.1), *s.walk);
   }
   if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
-  exchange(*s.screen.ui, s.bake.scene.cameras, s.panel, *s.walk);
+  prepare_look(s.bake, *s.screen.commands, s.screen.shaders, s.screen.scene, s.walk->shown,
+               s.screen.looking, s.panel.message);
+  exchange(*s.screen.ui, s.bake, s.tracer, s.screen.looking, s.panel, *s.walk);
   const auto begin = Clock::now();
   LUXEL_TRY(s.fits, draw(s.walk->shown, s.screen));
   s.panel.milliseconds = float(1000 * seconds_since(begin));

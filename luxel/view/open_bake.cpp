@@ -41,6 +41,7 @@ Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
         folder.string());
   LUXEL_TRY_STATUS(pipeline::check_has_colors(folder));
   OpenedBake out;
+  out.folder = folder;
   LUXEL_TRY(out.scene, pipeline::scene_of_bake(folder));
   LUXEL_TRY(out.lightmaps,
             pipeline::read_pages(folder, out.scene.materials.size(), pipeline::read_lightmap));

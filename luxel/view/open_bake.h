@@ -14,6 +14,7 @@ namespace luxel::view {
 
 /// What lies in a bake's folder.
 struct OpenedBake {
+  std::filesystem::path folder;
   scene::Scene scene;  ///< of baked.glb, with the surroundings that it was baked under
   pipeline::LightmapPages lightmaps;
   Frame first;  ///< what is shown first: what preview.png shows, or the scene's own view

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "luxel/base/file.h"
+#include "luxel/display/lightmap_lookup.h"
 #include "luxel/image/value_scale.h"
 #include "luxel/pipeline/settings/light_unit.h"
 #include "luxel/pipeline/settings/settings.h"
@@ -18,6 +19,9 @@ namespace {
 /// Neighbours, the nearest first.
 constexpr std::array<std::array<int, 2>, 8> kAround{
     {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
+
+/// Where a logarithmic scale begins that would begin at 0, over its end.
+constexpr float kLowestOfLogarithm = 1e-3f;
 
 ColorScale irradiance_scale(const pipeline::LightmapPages& lightmaps) {
   std::vector<float> values;
@@ -39,24 +43,31 @@ struct DensityShare {
   double area = 0;
 };
 
-/// `places`: of the mesh's vertices in the lightmap.
+/// A triangle's texels per metre and its area, twice; 0 where it has none. `places`: of the mesh's
+/// vertices in the lightmap.
+DensityShare density_of(const scene::Mesh& mesh, size_t triangle, const Mat34& world_from_object,
+                        std::span<const Vec2> places, const image::Image& page) {
+  std::array<Vec3, 3> p;
+  std::array<Vec2, 3> uv;
+  for (size_t k = 0; k < 3; ++k) {
+    const uint32_t corner = mesh.triangles[triangle][k];
+    p[k] = transform_point(world_from_object, mesh.positions[corner]);
+    uv[k] = {places[corner].x * float(page.width), places[corner].y * float(page.height)};
+  }
+  const float area = length(cross(p[1] - p[0], p[2] - p[0]));
+  const float texels = std::abs(cross(uv[1] - uv[0], uv[2] - uv[0]));
+  return {area > 0 ? std::sqrt(texels / area) : 0, double(area)};
+}
+
 void add_densities(const scene::Mesh& mesh, const Mat34& world_from_object,
                    std::span<const Vec2> places, const pipeline::LightmapPages& lightmaps,
                    std::vector<DensityShare>& out) {
   if (places.empty()) return;
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const uint32_t material = mesh.triangle_material[t];
-    const image::Image& page = lightmaps.pictures[lightmaps.of_material[material]];
-    std::array<Vec3, 3> p;
-    std::array<Vec2, 3> uv;
-    for (size_t k = 0; k < 3; ++k) {
-      const uint32_t corner = mesh.triangles[t][k];
-      p[k] = transform_point(world_from_object, mesh.positions[corner]);
-      uv[k] = {places[corner].x * float(page.width), places[corner].y * float(page.height)};
-    }
-    const float area = length(cross(p[1] - p[0], p[2] - p[0]));
-    const float texels = std::abs(cross(uv[1] - uv[0], uv[2] - uv[0]));
-    if (area > 0 && texels > 0) out.push_back({std::sqrt(texels / area), double(area)});
+    const size_t page = lightmaps.of_material[mesh.triangle_material[t]];
+    const DensityShare share =
+        density_of(mesh, t, world_from_object, places, lightmaps.pictures[page]);
+    if (share.per_metre > 0) out.push_back(share);
   }
 }
 
@@ -187,19 +198,45 @@ std::optional<std::string> missing_for(Show show, const Look& look, const std::s
 }
 
 ColorScale scale_of(const ColorScale& own, const ColorScale& of_bake) {
-  if (own.high > own.low) return own;
-  return {of_bake.low, of_bake.high, own.is_logarithmic || of_bake.is_logarithmic};
+  ColorScale out = own;
+  if (!(own.high > own.low)) {
+    out.low = of_bake.low, out.high = of_bake.high;
+    out.is_logarithmic |= of_bake.is_logarithmic;
+  }
+  if (out.is_logarithmic && !(out.low > 0)) out.low = out.high * kLowestOfLogarithm;
+  return out;
 }
 
 std::optional<Legend> legend_of(const Frame& frame, const Look& look) {
-  if (frame.show == Show::irradiance)
-    return Legend{kChannels[size_t(frame.channel)], look.unit,
-                  scale_of(frame.irradiance, look.irradiance)};
+  if (frame.show == Show::irradiance) {
+    const bool is_whole = frame.channel == Channel::luminance;
+    const std::string channel =
+        is_whole ? "" : fmt::format(", {}", kChannels[size_t(frame.channel)]);
+    return Legend{"irradiance" + channel, look.unit, scale_of(frame.irradiance, look.irradiance)};
+  }
   if (frame.show == Show::density)
-    return Legend{"texels", "1/m", scale_of(frame.density, look.density)};
+    return Legend{"density", "texels per m", scale_of(frame.density, look.density)};
   if (frame.show == Show::error && !look.errors.empty())
     return Legend{
         "relative standard error", "", {pipeline::kLowestError, pipeline::kHighestError, true}};
+  return std::nullopt;
+}
+
+float value_of(Rgb light, Channel channel) {
+  return channel == Channel::luminance ? luminance(light) : light[int(channel)];
+}
+
+std::optional<float> value_at(const Frame& frame, const scene::Scene& scene,
+                              const pipeline::LightmapPages& lightmaps,
+                              const scene::SurfacePoint& point) {
+  const scene::Instance& instance = scene.instances[point.instance];
+  const scene::Mesh& mesh = scene.meshes[instance.mesh];
+  const image::Image& page = lightmaps.of(scene, point);
+  if (mesh.uv1.empty()) return std::nullopt;
+  if (frame.show == Show::irradiance)
+    return value_of(display::lightmap_at(scene, page, point), frame.channel);
+  if (frame.show == Show::density)
+    return density_of(mesh, point.triangle, instance.world_from_object, mesh.uv1, page).per_metre;
   return std::nullopt;
 }
 

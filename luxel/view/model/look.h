@@ -51,4 +51,12 @@ struct Legend {
 };
 std::optional<Legend> legend_of(const Frame& frame, const Look& look);
 
+/// The value that a frame shows in false colours at a point of baked.glb; none where it shows no
+/// values, or error.png, which has colours only.
+std::optional<float> value_at(const Frame& frame, const scene::Scene& scene,
+                              const pipeline::LightmapPages& lightmaps,
+                              const scene::SurfacePoint& point);
+/// A channel of light, or its luminance.
+float value_of(Rgb light, Channel channel);
+
 }  // namespace luxel::view

@@ -58,13 +58,19 @@ void press(const std::string& key, Walk& walk) {
 
 }  // namespace
 
+std::optional<scene::SurfacePoint> surface_seen(const scene::Scene& scene,
+                                                const trace::RayTracer& tracer, const Frame& frame,
+                                                Vec2 pixel, int width, int height) {
+  std::array rays{trace::CameraRays(frame.camera, width, height).through(pixel.x, pixel.y)};
+  const trace::Hit hit = trace::visible_hits(scene, tracer, rays).front();
+  return hit.found() ? std::optional(hit.point()) : std::nullopt;
+}
+
 PlaceSeen place_seen_in(const scene::Scene& scene, const trace::RayTracer& tracer, int width,
                         int height) {
   return [&scene, &tracer, width, height](const Frame& frame, Vec2 pixel) -> std::optional<Vec3> {
-    std::array rays{trace::CameraRays(frame.camera, width, height).through(pixel.x, pixel.y)};
-    const trace::Hit hit = trace::visible_hits(scene, tracer, rays).front();
-    if (!hit.found()) return std::nullopt;
-    return scene::world_position(scene, hit.point());
+    const auto point = surface_seen(scene, tracer, frame, pixel, width, height);
+    return point ? std::optional(scene::world_position(scene, *point)) : std::nullopt;
   };
 }
 

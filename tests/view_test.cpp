@@ -121,6 +121,36 @@ TEST(View, LooksIntoABakeAsRenderDoes) {
   EXPECT_LT(apart_where_not_black(shown, seen), 0.01);
 }
 
+// Layers at half of their light, and an exposure of one stop more: what was baked. Without one
+// lamp its side of the room is dark.
+TEST(View, MixesLayers) {
+  const ScratchFolder s;
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  const std::string bake = (s.path / "baked").string();
+  ASSERT_EQ(luxel("bake " + scene_file("office.glb") + " -o " + bake +
+                  " --resolution 64 --samples 4 --layers per-light --quiet")
+                .code,
+            0);
+  const auto layer = [](const std::string& name, const std::string& dimmer) {
+    return R"({"at": 0, "layer": {"name": ")" + name + R"(", "dimmer": )" + dimmer + "}}";
+  };
+  const auto look = [&](const std::string& events) {
+    const auto play = s.write("play.json", R"({"end": 0, "events": [)" + events + "]}");
+    const std::string file = (s.path / "view.png").string();
+    const CommandResult r =
+        view(bake + " --offscreen --size 120x90 --play " + play.string() + " --screenshot " + file);
+    EXPECT_EQ(r.code, 0) << r.err;
+    return png_at(file);
+  };
+  const image::Image baked = look("");
+  const std::string brighter =
+      R"({"at": 0, "key": "+"}, {"at": 0, "key_up": "+"}, {"at": 0, "key": "+"})";
+  const image::Image mixed =
+      look(layer("light__left", "0.5") + ", " + layer("light__right", "0.5") + ", " + brighter);
+  EXPECT_LT(apart_where_not_black(baked, mixed), 0.002);
+  EXPECT_GT(apart_where_not_black(baked, look(layer("light__left", "0"))), 0.02);
+}
+
 // A virtual display, the panel over the picture, and a window of another size than the bake's.
 TEST(View, AWindowShowsWhatIsDrawnWithoutOne) {
   const ScratchFolder s;

@@ -1,5 +1,6 @@
 #include "apps/view/looking.h"
 
+#include <algorithm>
 #include <array>
 
 #include "luxel/image/false_color.h"
@@ -50,6 +51,22 @@ std::string note_on(const view::Frame& frame, const view::OpenedBake& bake,
   }
 }
 
+std::vector<LayerLine> lines_of(const view::Layers& layers, const view::Frame& frame) {
+  std::vector<LayerLine> out;
+  for (const view::LayerLight& layer : layers.layers) {
+    LayerLine line{
+        layer.name, fmt::format("{} ({:.0f} %)", layer.name, 100 * layer.share), 1, {1, 1, 1}};
+    for (const view::LayerSetting& setting : frame.layers)
+      if (setting.name == layer.name)
+        line = {line.layer,
+                line.words,
+                setting.dimmer,
+                {setting.color.x, setting.color.y, setting.color.z}};
+    out.push_back(std::move(line));
+  }
+  return out;
+}
+
 }  // namespace
 
 void prepare_look(const view::OpenedBake& bake, gpu::Commands& commands,
@@ -67,6 +84,27 @@ void prepare_look(const view::OpenedBake& bake, gpu::Commands& commands,
   frame.show = view::Show::light_and_colour;
 }
 
+void prepare_layers(const view::OpenedBake& bake, gpu::Commands& commands, bool is_asked_for,
+                    view::Frame& frame, view::DeviceScene& scene, Looking& looking,
+                    std::string& message) {
+  const auto prepared = [&]() -> Status {
+    const bool is_other = frame.layers != looking.put;
+    if ((is_other || is_asked_for) && !looking.layers) {
+      LUXEL_TRY(looking.layers, view::read_layers(bake.folder, bake.lightmaps));
+    }
+    if (!is_other) return {};
+    LUXEL_TRY(std::vector<image::Image> mixed,
+              view::mixed_light(*looking.layers, frame.layers, bake.lightmaps));
+    LUXEL_TRY_STATUS(view::put_layers(commands, *looking.layers, frame.layers, mixed, scene));
+    looking.put = frame.layers;
+    looking.mixed = {std::move(mixed), bake.lightmaps.of_material};
+    return {};
+  }();
+  if (prepared) return;
+  message = prepared.error().message;
+  frame.layers = looking.put;
+}
+
 void fill_panel(const view::Frame& frame, const view::OpenedBake& bake, const Looking& looking,
                 const std::optional<scene::SurfacePoint>& pointed, LookPanel& panel) {
   static constexpr std::array<uint32_t, 0> kNone{};
@@ -76,6 +114,8 @@ void fill_panel(const view::Frame& frame, const view::OpenedBake& bake, const Lo
   panel.kind = view::looks_into_bake(frame.show) ? int(size_t(frame.show) - kFirstKind) : -1;
   panel.colors = kNone;
   panel.channel = int(frame.channel);
+  panel.has_layers = bake.has_layers;
+  if (looking.layers) panel.layers = lines_of(*looking.layers, frame);
   if (frame.show == view::Show::irradiance) panel.channels = view::kChannels;
   if (!looking.look || panel.kind < 0) return;
   panel.note = note_on(frame, bake, *looking.look);
@@ -87,8 +127,8 @@ void fill_panel(const view::Frame& frame, const view::OpenedBake& bake, const Lo
   panel.low = legend->scale.low, panel.high = legend->scale.high;
   panel.is_logarithmic = legend->scale.is_logarithmic;
   panel.can_scale = frame.show != view::Show::error;
-  if (pointed)
-    panel.pointed = view::value_at(frame, bake.scene, bake.lightmaps, *pointed).value_or(-1);
+  const auto& lightmaps = looking.mixed.pictures.empty() ? bake.lightmaps : looking.mixed;
+  if (pointed) panel.pointed = view::value_at(frame, bake.scene, lightmaps, *pointed).value_or(-1);
 }
 
 void take_panel(const LookPanel& panel, const LookPanel& before, view::Frame& frame) {
@@ -99,6 +139,12 @@ void take_panel(const LookPanel& panel, const LookPanel& before, view::Frame& fr
                           panel.is_logarithmic != before.is_logarithmic;
   if (is_changed) scale = {panel.low, panel.high, panel.is_logarithmic};
   if (panel.asks_for_own_scale) scale = {};
+  for (size_t i = 0; i < panel.layers.size() && i < before.layers.size(); ++i) {
+    const LayerLine &line = panel.layers[i], &earlier = before.layers[i];
+    if (line.dimmer == earlier.dimmer && std::ranges::equal(line.color, earlier.color)) continue;
+    view::set_layer({earlier.layer, line.dimmer, {line.color[0], line.color[1], line.color[2]}},
+                    frame.layers);
+  }
 }
 
 }  // namespace luxel::view_window

@@ -11,6 +11,7 @@
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/view/draw/painter.h"
+#include "luxel/view/draw/put_layers.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
 
@@ -87,8 +88,16 @@ Status draw_offscreen(const Options& options) {
   const int width = options.width ? options.width : bake.width;
   const int height = options.height ? options.height : bake.height;
   LUXEL_TRY(const view::Frame frame, frame_to_draw(events, bake, width, height));
-  LUXEL_TRY(const view::DeviceScene scene,
-            view::put_on_device(commands, bake.scene, bake.lightmaps));
+  view::DeviceSceneParams scene_params;
+  scene_params.light_changes = !frame.layers.empty();
+  LUXEL_TRY(view::DeviceScene scene,
+            view::put_on_device(commands, bake.scene, bake.lightmaps, scene_params));
+  if (!frame.layers.empty()) {
+    LUXEL_TRY(const view::Layers layers, view::read_layers(options.subject, bake.lightmaps));
+    LUXEL_TRY(const std::vector<image::Image> mixed,
+              view::mixed_light(layers, frame.layers, bake.lightmaps));
+    LUXEL_TRY_STATUS(view::put_layers(commands, layers, frame.layers, mixed, scene));
+  }
   LUXEL_TRY(const view::Shaders shaders, view::make_shaders(*device));
   LUXEL_TRY(const view::Painter painter,
             view::make_painter(*device, shaders, scene, uint32_t(width), uint32_t(height)));

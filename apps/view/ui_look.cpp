@@ -72,9 +72,31 @@ void lay_out_choice(const char* label, std::span<const char* const> names, const
   ImGui::EndCombo();
 }
 
+/// A dimmer and a colour for each layer. "only" puts all others out.
+void lay_out_layers(LookPanel& look) {
+  look.asks_for_layers = ImGui::CollapsingHeader("layers of light");
+  if (!look.asks_for_layers) return;
+  for (size_t i = 0; i < look.layers.size(); ++i) {
+    LayerLine& line = look.layers[i];
+    ImGui::PushID(int(i));
+    ImGui::ColorEdit3("##color", line.color,
+                      ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_Float);
+    ImGui::SameLine();
+    if (ImGui::SmallButton("only"))
+      for (LayerLine& other : look.layers) other.dimmer = &other == &line ? 1 : 0;
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
+    ImGui::SliderFloat(line.words.c_str(), &line.dimmer, 0, 2, "%.2f");
+    ImGui::PopID();
+  }
+  if (ImGui::Button("as baked"))
+    for (LayerLine& line : look.layers) line = {line.layer, line.words, 1, {1, 1, 1}};
+}
+
 }  // namespace
 
 void lay_out_look(LookPanel& look) {
+  if (look.has_layers) lay_out_layers(look);
   lay_out_choice("##look", look.kinds, "look into the bake", look.kind);
   if (look.kind < 0) return;
   if (!look.channels.empty()) lay_out_choice("##channel", look.channels, "", look.channel);

@@ -4,8 +4,17 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace luxel::view_window {
+
+/// A layer of light; what the user may change of it.
+struct LayerLine {
+  std::string layer;    ///< its name
+  std::string words;    ///< that, and its share of the light
+  float dimmer = 1;     ///< changed
+  float color[3] = {};  ///< changed: linear
+};
 
 /// What the panel says of what is shown of a bake, and what of it the user may change.
 struct LookPanel {
@@ -22,6 +31,10 @@ struct LookPanel {
   bool can_scale = false;            ///< the scale may be changed
   bool asks_for_own_scale = false;   ///< changed: the user wants that of the bake
   float pointed = -1;                ///< the value under the pointer; < 0: none
+
+  bool has_layers = false;        ///< there are layers to be asked for
+  bool asks_for_layers = false;   ///< changed: their lines are looked at
+  std::vector<LayerLine> layers;  ///< changed
 
   std::string note;  ///< a line about what is shown
 };

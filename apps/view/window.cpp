@@ -198,7 +198,10 @@ Result<Screen> open_screen(const Window& window, const view::OpenedBake& bake,
   out.surface.emplace(std::move(surface));
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*out.device));
   out.commands.emplace(std::move(commands));
-  LUXEL_TRY(out.scene, view::put_on_device(*out.commands, bake.scene, bake.lightmaps));
+  view::DeviceSceneParams scene_params;
+  scene_params.light_changes = bake.has_layers;
+  LUXEL_TRY(out.scene,
+            view::put_on_device(*out.commands, bake.scene, bake.lightmaps, scene_params));
   LUXEL_TRY(out.shaders, view::make_shaders(*out.device));
   return out;
 }
@@ -343,6 +346,8 @@ Result<bool> go_on(Session& s) {
   if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
   prepare_look(s.bake, *s.screen.commands, s.screen.shaders, s.screen.scene, s.walk->shown,
                s.screen.looking, s.panel.message);
+  prepare_layers(s.bake, *s.screen.commands, s.panel.look.asks_for_layers, s.walk->shown,
+                 s.screen.scene, s.screen.looking, s.panel.message);
   exchange(*s.screen.ui, s.bake, s.tracer, s.screen.looking, s.panel, *s.walk);
   const auto begin = Clock::now();
   LUXEL_TRY(s.fits, draw(s.walk->shown, s.screen));

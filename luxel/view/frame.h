@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <vector>
 
 #include "luxel/display/tone_map.h"
 #include "luxel/scene/scene.h"
@@ -57,6 +59,14 @@ struct ColorScale {
   friend bool operator==(const ColorScale&, const ColorScale&) = default;
 };
 
+/// What became of a layer's light since it was baked.
+struct LayerSetting {
+  std::string name;
+  float dimmer = 1;    ///< factor of it
+  Rgb color{1, 1, 1};  ///< and of each channel
+  friend bool operator==(const LayerSetting&, const LayerSetting&) = default;
+};
+
 /// One picture.
 struct Frame {
   scene::Camera camera;
@@ -66,6 +76,7 @@ struct Frame {
   Channel channel = Channel::luminance;  ///< of Show::irradiance
   ColorScale irradiance;                 ///< E [unit of the scene's light]
   ColorScale density;                    ///< [1/m]
+  std::vector<LayerSetting> layers;      ///< those that are not as they were baked
 };
 
 }  // namespace luxel::view

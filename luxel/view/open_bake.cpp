@@ -46,6 +46,8 @@ Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
   LUXEL_TRY(out.lightmaps,
             pipeline::read_pages(folder, out.scene.materials.size(), pipeline::read_lightmap));
   const nlohmann::json report = report_of(folder);
+  const auto layers = report.find("layers");
+  out.has_layers = layers != report.end() && layers->is_array() && !layers->empty();
   LUXEL_TRY_STATUS(add_surroundings(folder, report, out));
   if (const auto preview = export_::view_of_json(report.value("preview", nlohmann::json()))) {
     out.first.camera = preview->camera, out.first.exposure = preview->exposure;

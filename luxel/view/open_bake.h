@@ -19,6 +19,7 @@ struct OpenedBake {
   pipeline::LightmapPages lightmaps;
   Frame first;  ///< what is shown first: what preview.png shows, or the scene's own view
   int width = 960, height = 720;  ///< of preview.png
+  bool has_layers = false;        ///< read_layers() finds some
   std::vector<std::string> warnings;
 };
 

@@ -40,6 +40,12 @@ struct DeviceMaterial {
 };
 static_assert(sizeof(DeviceMaterial) == 60 + 5 * 28);
 
+struct DeviceInstance {
+  std::array<float, 12> rows{};  ///< world from object, three rows of four
+  Rgb emission_factor{1, 1, 1};
+};
+static_assert(sizeof(DeviceInstance) == 60);
+
 template <class Values>
 std::span<const std::byte> bytes_of(const Values& values) {
   return std::as_bytes(std::span(values));
@@ -193,11 +199,11 @@ Status put_meshes(const gpu::Device& device, const scene::Scene& scene,
     const LitMesh lit{mesh, light_uv.empty() ? mesh.uv1 : light_uv[m]};
     out.ranges.push_back(add_mesh(scene, lit, triangles));
   }
-  std::vector<std::array<float, 12>> rows;
+  std::vector<DeviceInstance> instances;
   for (const scene::Instance& instance : scene.instances) {
     const Mat34& m = instance.world_from_object;
-    std::array<float, 12>& row = rows.emplace_back();
-    for (size_t i = 0; i < 12; ++i) row[i] = m.row[i / 4][i % 4];
+    DeviceInstance& out_instance = instances.emplace_back();
+    for (size_t i = 0; i < 12; ++i) out_instance.rows[i] = m.row[i / 4][i % 4];
     out.mesh_of.push_back(instance.mesh);
     out.is_mirrored.push_back(dot(cross(column(m, 0), column(m, 1)), column(m, 2)) < 0);
   }
@@ -205,7 +211,7 @@ Status put_meshes(const gpu::Device& device, const scene::Scene& scene,
             gpu::buffer_with(device, bytes_of(triangles.vertices), "the scene's vertices"));
   LUXEL_TRY(out.indices,
             gpu::buffer_with(device, bytes_of(triangles.indices), "the scene's triangles"));
-  LUXEL_TRY(out.instances, gpu::buffer_with(device, bytes_of(rows), "the scene's instances"));
+  LUXEL_TRY(out.instances, gpu::buffer_with(device, bytes_of(instances), "the scene's instances"));
   return {};
 }
 
@@ -329,6 +335,11 @@ Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> page
     scales_of(scene)[2 * page + which] = pages[page].scale;
   }
   return {};
+}
+
+void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene) {
+  LUXEL_CHECK(instance < scene.mesh_of.size());
+  reinterpret_cast<DeviceInstance*>(scene.instances.mapped)[instance].emission_factor = factor;
 }
 
 }  // namespace luxel::view

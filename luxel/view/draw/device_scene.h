@@ -30,7 +30,7 @@ struct DeviceScene {
   gpu::Buffer vertices;                        ///< of all meshes
   gpu::Buffer indices;                         ///< 32 bits each, into all vertices
   gpu::Buffer materials;                       ///< of the scene, in its order
-  gpu::Buffer instances;                       ///< world from object, three rows of four
+  gpu::Buffer instances;                       ///< world from object, and factors of emission
   std::vector<std::vector<DrawRange>> ranges;  ///< of each mesh
   std::vector<uint32_t> mesh_of;               ///< of each instance
   std::vector<uint8_t> is_mirrored;            ///< of each instance: its triangles are turned round
@@ -49,7 +49,8 @@ struct DeviceScene {
 
   Box3 bounds;
   Rgb background{};
-  float surroundings_scale = 0;  ///< 0: there is no map
+  Rgb surroundings_factor{1, 1, 1};  ///< of background and map
+  float surroundings_scale = 0;      ///< 0: there is no map
   float rotation_rad = 0;
   gpu::Binding surroundings;  ///< white where there is no map
 };
@@ -72,5 +73,9 @@ Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& s
 /// that the scene came with. Nothing may still draw the scene. Errors: no memory.
 Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> pages, uint32_t which,
                  DeviceScene& scene);
+
+/// The factor of the light that an instance's surfaces emit, 1 to begin with. Nothing may still
+/// draw the scene.
+void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene);
 
 }  // namespace luxel::view

@@ -35,12 +35,12 @@ static_assert(sizeof(SurfacePush) == 120);
 
 struct BehindPush {
   Vec3 forward, right, up;
-  Rgb background;
-  float map_scale, rotation;
+  Rgb background, map_scale;
+  float rotation;
   float exposure;
   uint32_t show;
 };
-static_assert(sizeof(BehindPush) == 64);
+static_assert(sizeof(BehindPush) == 72);
 
 struct ScreenPush {
   uint32_t curve;
@@ -125,14 +125,14 @@ BehindPush behind_of(const trace::CameraRays& camera, const DeviceScene& scene, 
   BehindPush out{camera.forward,
                  camera.orthographic ? Vec3{} : camera.right,
                  camera.orthographic ? Vec3{} : camera.up,
-                 scene.background,
-                 scene.surroundings_scale,
+                 scene.background * scene.surroundings_factor,
+                 scene.surroundings_factor * scene.surroundings_scale,
                  scene.rotation_rad,
                  frame.exposure,
                  uint32_t(frame.show)};
   if (!has_overlay || !shows_colors(frame.show)) return out;
   out.background = kBehindColors;
-  out.map_scale = 0, out.exposure = 1;
+  out.map_scale = {}, out.exposure = 1;
   return out;
 }
 

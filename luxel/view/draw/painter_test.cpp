@@ -6,6 +6,7 @@
 #include "luxel/trace/camera_rays.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/view/draw/painter.h"
+#include "luxel/view/draw/put_layers.h"
 
 namespace luxel::view {
 namespace {
@@ -244,6 +245,47 @@ TEST_F(PainterTest, CamerasSeeWhatDisplayDraws) {
       off += std::abs(picture.data[i] - wanted->data[i]);
     // Some 160 of 4096 pixels lie on the edge, whose shares of 4 and of 9 samples differ by 0.1.
     EXPECT_LT(off / double(picture.data.size()), 0.01) << aspect << " " << height_m;
+  }
+}
+
+// A lamp that is seen and the surroundings shine as their layers do, and so does the lightmap.
+TEST_F(PainterTest, LayersDimWhatIsSeenOfThem) {
+  LitSquare lit;
+  lit.scene.materials[0].emission = {1, 1, 1};
+  lit.scene.background = {4, 4, 4};
+  Layers layers;
+  layers.layers.resize(2);
+  layers.layers[0].name = "lamp", layers.layers[1].name = "sky";
+  layers.layers[1].has_surroundings = true;
+  image::Image light(2, 2, 4);
+  for (int i = 0; i < 4; ++i) light.set_rgb(i % 2, i / 2, {1, 1, 1});
+  layers.layers[0].pages = {light};
+  for (int i = 0; i < 4; ++i) light.set_rgb(i % 2, i / 2, {2, 2, 2});
+  layers.layers[1].pages = {light};
+  layers.shines_in = {0};
+  DeviceSceneParams params;
+  params.light_changes = true;
+  auto scene = put_on_device(*commands_, lit.scene, lit.lightmaps, params);
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto painter = make_painter(*device_, *shaders_, *scene, kSide, kSide);
+  ASSERT_TRUE(painter) << painter.error().message;
+  Frame frame;
+  const Rgb lamp{0.5f, 1, 0}, sky{2, 0, 1};
+  for (const bool is_set : {true, false}) {  // and back to what was baked
+    if (is_set) frame.layers = {{"lamp", 0.5f, {1, 2, 0}}, {"sky", 1, sky}};
+    if (!is_set) frame.layers.clear();
+    const auto mixed = mixed_light(layers, frame.layers, lit.lightmaps);
+    ASSERT_TRUE(mixed) << mixed.error().message;
+    ASSERT_TRUE(put_layers(*commands_, layers, frame.layers, *mixed, *scene));
+    const Rgb one{1, 1, 1}, by_lamp = is_set ? lamp : one, by_sky = is_set ? sky : one;
+    const auto middle = [&](float from) {
+      frame.camera = camera_at(from);
+      const auto picture = painted_radiance(*commands_, {*shaders_, *painter, *scene}, frame);
+      return picture ? picture->rgb(kSide / 2, kSide / 2) : Rgb{};
+    };
+    const Rgb e = by_lamp + by_sky * 2;
+    expect_radiance(middle(3), lit.scene.materials[0].base_color * e * (1 / kPi) + by_lamp);
+    expect_radiance(middle(-3), by_sky * 4);  // the square has no back
   }
 }
 

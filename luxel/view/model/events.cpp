@@ -14,6 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kLongest_s = 3600;
+constexpr float kBrightest = 1e6f;  ///< of a layer, over what it was baked with
 
 std::optional<Button> button_of(const std::string& name) {
   if (name == "left") return Button::left;
@@ -36,6 +37,18 @@ std::optional<uint32_t> number_of(const std::string& name, const Table& table,
   return std::nullopt;
 }
 
+/// May throw json::exception.
+std::optional<Event> layer_event_of(const json& from) {
+  LayerSetting out;
+  out.name = from.at("name").get<std::string>();
+  out.dimmer = from.value("dimmer", 1.0f);
+  const auto color = from.value("color", std::array<float, 3>{1, 1, 1});
+  out.color = {color[0], color[1], color[2]};
+  const bool is_light = out.dimmer >= 0 && out.dimmer <= kBrightest &&
+                        min_component(out.color) >= 0 && max_component(out.color) <= kBrightest;
+  return is_light ? std::optional<Event>(LayerChanged{out}) : std::nullopt;
+}
+
 /// What changes what is shown of a bake. May throw json::exception.
 std::optional<Event> look_event_of(const json& from) {
   if (from.contains("show")) {
@@ -43,6 +56,7 @@ std::optional<Event> look_event_of(const json& from) {
                                 [](const ShowName& known) { return known.name; });
     return show ? std::optional<Event>(ShowChanged{Show(*show)}) : std::nullopt;
   }
+  if (from.contains("layer")) return layer_event_of(from["layer"]);
   if (from.contains("channel")) {
     const auto channel = number_of(from["channel"].get<std::string>(), kChannels,
                                    [](const char* known) { return known; });

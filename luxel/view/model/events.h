@@ -42,8 +42,12 @@ struct RangeChanged {
 struct ChannelChanged {
   Channel channel = Channel::luminance;
 };
+/// A layer of the light is dimmed or coloured.
+struct LayerChanged {
+  LayerSetting setting;
+};
 using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, ShowChanged,
-                           RangeChanged, ChannelChanged>;
+                           RangeChanged, ChannelChanged, LayerChanged>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -93,7 +97,8 @@ struct Play {
 ///       {"at": 1, "pointer": [600, 360]}, {"at": 1, "release": "left"},
 ///       {"at": 1.2, "scroll": 3}, {"at": 1.5, "key": "w"}, {"at": 1.8, "key_up": "w"},
 ///       {"at": 1.9, "show": "irradiance"}, {"at": 1.9, "range": [0, 500]},
-///       {"at": 1.9, "channel": "red"}]}
+///       {"at": 1.9, "channel": "red"},
+///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}}]}
 ///
 /// A range is by the logarithm where "logarithmic_range" says so.
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.

@@ -5,6 +5,7 @@
 
 #include "luxel/trace/camera_rays.h"
 #include "luxel/view/model/camera_moves.h"
+#include "luxel/view/model/layers.h"
 
 namespace luxel::view {
 namespace {
@@ -112,6 +113,8 @@ void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk) {
   if (const auto* changed = std::get_if<ShowChanged>(&event)) walk.shown.show = changed->show;
   if (const auto* changed = std::get_if<ChannelChanged>(&event))
     walk.shown.channel = changed->channel;
+  if (const auto* changed = std::get_if<LayerChanged>(&event))
+    set_layer(changed->setting, walk.shown.layers);
   if (const auto* changed = std::get_if<RangeChanged>(&event))
     (walk.shown.show == Show::density ? walk.shown.density : walk.shown.irradiance) =
         changed->scale;

@@ -29,7 +29,9 @@ struct KeyChanged {
   std::string key;
   bool is_down = false;
 };
-using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged>;
+/// Of a play: what comes after it is played when the bake has ended and its light is shown.
+struct WaitForBake {};
+using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, WaitForBake>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -71,7 +73,8 @@ struct Play {
 ///     {"frames_per_s": 30, "end": 2.0, "events": [
 ///       {"at": 0, "pointer": [480, 360]}, {"at": 0, "press": "left"},
 ///       {"at": 1, "pointer": [600, 360]}, {"at": 1, "release": "left"},
-///       {"at": 1.2, "scroll": 3}, {"at": 1.5, "key": "w"}, {"at": 1.8, "key_up": "w"}]}
+///       {"at": 1.2, "scroll": 3}, {"at": 1.5, "key": "w"}, {"at": 1.8, "key_up": "w"},
+///       {"at": 2, "wait": "bake"}]}
 ///
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.
 Result<Play> parse_play(std::string_view text, const std::string& name);

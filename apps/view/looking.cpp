@@ -28,9 +28,9 @@ std::array<uint32_t, 256> legend_colors() {
 }
 
 /// A line on what is shown; empty where nothing needs to be said.
-std::string note_on(const view::Frame& frame, const view::OpenedBake& bake,
+std::string note_on(const view::Frame& frame, const view::ShownScene& shown,
                     const view::Look& look) {
-  if (const auto missing = view::missing_for(frame.show, look, bake.folder.filename().string()))
+  if (const auto missing = view::missing_for(frame.show, look, shown.folder.filename().string()))
     return *missing;
   switch (frame.show) {
     case view::Show::charts:
@@ -67,45 +67,48 @@ std::vector<LayerLine> lines_of(const view::Layers& layers, const view::Frame& f
   return out;
 }
 
+Status make_overlay_of(gpu::Commands& commands, const gpu::Pipeline& shader,
+                       const view::ShownScene& shown, Looking& looking) {
+  LUXEL_TRY(looking.look, view::look_of(shown));
+  LUXEL_TRY(looking.overlay, view::make_overlay(commands, shader, shown.drawn(), shown.lightmaps,
+                                                *looking.look, shown.device));
+  return {};
+}
+
+Status put_layers_of(gpu::Commands& commands, const view::Frame& frame, view::ShownScene& shown,
+                     Looking& looking) {
+  if (!looking.layers && shown.has_layers) {
+    LUXEL_TRY(looking.layers, view::read_layers(shown.folder, shown.lightmaps));
+  }
+  if (frame.layers == looking.put) return {};
+  const view::Layers none;
+  const view::Layers& layers = looking.layers ? *looking.layers : none;
+  LUXEL_TRY(std::vector<image::Image> mixed,
+            view::mixed_light(layers, frame.layers, shown.lightmaps));
+  const uint32_t other = 1 - shown.fade.newest;
+  LUXEL_TRY_STATUS(view::put_layers(commands, layers, frame.layers, mixed, other, shown.device));
+  shown.fade.newest = other, shown.fade.share = 1;
+  looking.put = frame.layers;
+  looking.mixed = {std::move(mixed), shown.lightmaps.of_material};
+  return {};
+}
+
 }  // namespace
 
-void prepare_look(const view::OpenedBake& bake, gpu::Commands& commands,
-                  const view::Shaders& shaders, const view::DeviceScene& scene, view::Frame& frame,
-                  Looking& looking, std::string& message) {
-  if (looking.overlay || !view::looks_into_bake(frame.show)) return;
-  const auto prepared = [&]() -> Status {
-    LUXEL_TRY(looking.look, view::look_into(bake.folder, bake.scene, bake.lightmaps));
-    LUXEL_TRY(looking.overlay, view::make_overlay(commands, shaders.overlay, bake.scene,
-                                                  bake.lightmaps, *looking.look, scene));
-    return {};
-  }();
-  if (prepared) return;
-  message = prepared.error().message;
-  frame.show = view::Show::light_and_colour;
+Status prepare_look(gpu::Commands& commands, const gpu::Pipeline& shader, bool needs_layers,
+                    view::Frame& frame, view::ShownScene& shown, Looking& looking) {
+  Status out;
+  if (view::looks_into_bake(frame.show) && shown.has_light && !looking.overlay)
+    if (out = make_overlay_of(commands, shader, shown, looking); !out)
+      frame.show = view::Show::light_and_colour;
+  if (needs_layers || frame.layers != looking.put) {
+    const Status put = put_layers_of(commands, frame, shown, looking);
+    if (!put) frame.layers = looking.put, out = put;
+  }
+  return out;
 }
 
-void prepare_layers(const view::OpenedBake& bake, gpu::Commands& commands, bool is_asked_for,
-                    view::Frame& frame, view::DeviceScene& scene, Looking& looking,
-                    std::string& message) {
-  const auto prepared = [&]() -> Status {
-    const bool is_other = frame.layers != looking.put;
-    if ((is_other || is_asked_for) && !looking.layers) {
-      LUXEL_TRY(looking.layers, view::read_layers(bake.folder, bake.lightmaps));
-    }
-    if (!is_other) return {};
-    LUXEL_TRY(std::vector<image::Image> mixed,
-              view::mixed_light(*looking.layers, frame.layers, bake.lightmaps));
-    LUXEL_TRY_STATUS(view::put_layers(commands, *looking.layers, frame.layers, mixed, scene));
-    looking.put = frame.layers;
-    looking.mixed = {std::move(mixed), bake.lightmaps.of_material};
-    return {};
-  }();
-  if (prepared) return;
-  message = prepared.error().message;
-  frame.layers = looking.put;
-}
-
-void fill_panel(const view::Frame& frame, const view::OpenedBake& bake, const Looking& looking,
+void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const Looking& looking,
                 const std::optional<scene::SurfacePoint>& pointed, LookPanel& panel) {
   static constexpr std::array<uint32_t, 0> kNone{};
   static const std::array<uint32_t, 256> colors = legend_colors();
@@ -114,11 +117,11 @@ void fill_panel(const view::Frame& frame, const view::OpenedBake& bake, const Lo
   panel.kind = view::looks_into_bake(frame.show) ? int(size_t(frame.show) - kFirstKind) : -1;
   panel.colors = kNone;
   panel.channel = int(frame.channel);
-  panel.has_layers = bake.has_layers;
+  panel.has_layers = shown.has_layers;
   if (looking.layers) panel.layers = lines_of(*looking.layers, frame);
   if (frame.show == view::Show::irradiance) panel.channels = view::kChannels;
   if (!looking.look || panel.kind < 0) return;
-  panel.note = note_on(frame, bake, *looking.look);
+  panel.note = note_on(frame, shown, *looking.look);
   const std::optional<view::Legend> legend = view::legend_of(frame, *looking.look);
   panel.has_scale = legend.has_value();
   if (!legend) return;
@@ -127,8 +130,9 @@ void fill_panel(const view::Frame& frame, const view::OpenedBake& bake, const Lo
   panel.low = legend->scale.low, panel.high = legend->scale.high;
   panel.is_logarithmic = legend->scale.is_logarithmic;
   panel.can_scale = frame.show != view::Show::error;
-  const auto& lightmaps = looking.mixed.pictures.empty() ? bake.lightmaps : looking.mixed;
-  if (pointed) panel.pointed = view::value_at(frame, bake.scene, lightmaps, *pointed).value_or(-1);
+  const auto& lightmaps = looking.mixed.pictures.empty() ? shown.lightmaps : looking.mixed;
+  if (pointed)
+    panel.pointed = view::value_at(frame, shown.drawn(), lightmaps, *pointed).value_or(-1);
 }
 
 void take_panel(const LookPanel& panel, const LookPanel& before, view::Frame& frame) {

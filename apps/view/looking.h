@@ -8,11 +8,11 @@
 #include "luxel/view/draw/put_layers.h"
 #include "luxel/view/model/look.h"
 #include "luxel/view/model/walk.h"
-#include "luxel/view/open_bake.h"
+#include "luxel/view/shown_scene.h"
 
 namespace luxel::view_window {
 
-/// Made when it is first asked for.
+/// Made when it is first asked for; of one scene.
 struct Looking {
   std::optional<view::Look> look;
   std::optional<view::Overlay> overlay;
@@ -21,20 +21,14 @@ struct Looking {
   pipeline::LightmapPages mixed;        ///< the light that it shows; none while that is the bake's
 };
 
-/// Makes what a frame needs, once. Takes about a second for a million triangles. What does not work
-/// is said in `message`, and the frame then shows light and colour.
-void prepare_look(const view::OpenedBake& bake, gpu::Commands& commands,
-                  const view::Shaders& shaders, const view::DeviceScene& scene, view::Frame& frame,
-                  Looking& looking, std::string& message);
-
-/// Puts the layers of a frame into its scene where they are others than those that it shows, or the
-/// panel asks for them. What does not work is said in `message`, and the frame then has none.
-void prepare_layers(const view::OpenedBake& bake, gpu::Commands& commands, bool is_asked_for,
-                    view::Frame& frame, view::DeviceScene& scene, Looking& looking,
-                    std::string& message);
+/// Makes what a frame needs, once, and puts its layers into the scene. The panel's lines of layers
+/// need them, too. Takes about a second for a million triangles. Nothing may still draw the scene.
+/// What a bake has not is said in an error, after which the frame shows what it can.
+Status prepare_look(gpu::Commands& commands, const gpu::Pipeline& shader, bool needs_layers,
+                    view::Frame& frame, view::ShownScene& shown, Looking& looking);
 
 /// What the panel says of a frame. `pointed`: the surface under the pointer.
-void fill_panel(const view::Frame& frame, const view::OpenedBake& bake, const Looking& looking,
+void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const Looking& looking,
                 const std::optional<scene::SurfacePoint>& pointed, LookPanel& panel);
 /// What the user has changed in it, since `before`.
 void take_panel(const LookPanel& panel, const LookPanel& before, view::Frame& frame);

@@ -239,12 +239,11 @@ std::span<float> scales_of(const DeviceScene& scene) {
 /// The bindings of each page's light, of either picture.
 using Lights = std::vector<std::array<gpu::Binding, 2>>;
 Result<Lights> put_lights(const gpu::Device& device, Pictures& pictures,
-                          std::span<const image::Image> pages, bool changes, DeviceScene& out) {
+                          std::span<const image::HalfImage> pages, bool changes, DeviceScene& out) {
   Lights lights;
   LUXEL_TRY(out.light_scales, gpu::make_buffer(device, pages.size() * 2 * sizeof(float),
                                                gpu::Access::from_host, "the scales of light"));
-  for (const image::Image& page : pages) {
-    const image::HalfImage half = image::to_half(page);
+  for (const image::HalfImage& half : pages) {
     std::array<gpu::Binding, 2>& light = lights.emplace_back();
     for (const size_t which : {0, 1}) {
       if (which == 0 || changes) {
@@ -311,18 +310,25 @@ std::vector<uint32_t> triangles_by_material(const scene::Mesh& mesh) {
 }
 
 Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
-                                  const pipeline::LightmapPages& lightmaps,
-                                  const DeviceSceneParams& params) {
+                                  const PagesOfLight& light, const DeviceSceneParams& params) {
   DeviceScene out;
   out.bounds = scene::world_bounds(scene);
   Pictures pictures(commands, scene, out);
   LUXEL_TRY_STATUS(put_meshes(commands.device(), scene, params.light_uv, out));
   LUXEL_TRY(const Lights lights,
-            put_lights(commands.device(), pictures, lightmaps.pictures, params.light_changes, out));
+            put_lights(commands.device(), pictures, light.pages, params.light_changes, out));
   LUXEL_TRY_STATUS(
-      put_materials(commands.device(), pictures, scene, lightmaps.of_material, lights, out));
+      put_materials(commands.device(), pictures, scene, light.of_material, lights, out));
   LUXEL_TRY_STATUS(put_surroundings(pictures, scene, out));
   return out;
+}
+
+Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
+                                  const pipeline::LightmapPages& lightmaps,
+                                  const DeviceSceneParams& params) {
+  std::vector<image::HalfImage> halves;
+  for (const image::Image& page : lightmaps.pictures) halves.push_back(image::to_half(page));
+  return put_on_device(commands, scene, PagesOfLight{halves, lightmaps.of_material}, params);
 }
 
 Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> pages, uint32_t which,

@@ -276,7 +276,7 @@ TEST_F(PainterTest, LayersDimWhatIsSeenOfThem) {
     if (!is_set) frame.layers.clear();
     const auto mixed = mixed_light(layers, frame.layers, lit.lightmaps);
     ASSERT_TRUE(mixed) << mixed.error().message;
-    ASSERT_TRUE(put_layers(*commands_, layers, frame.layers, *mixed, *scene));
+    ASSERT_TRUE(put_layers(*commands_, layers, frame.layers, *mixed, is_set, *scene));
     const Rgb one{1, 1, 1}, by_lamp = is_set ? lamp : one, by_sky = is_set ? sky : one;
     const auto middle = [&](float from) {
       frame.camera = camera_at(from);

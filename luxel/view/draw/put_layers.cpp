@@ -6,12 +6,11 @@ namespace luxel::view {
 
 Status put_layers(gpu::Commands& commands, const Layers& layers,
                   std::span<const LayerSetting> settings, std::span<const image::Image> mixed,
-                  DeviceScene& scene) {
+                  uint32_t which, DeviceScene& scene) {
   std::vector<image::HalfImage> halves;
   for (const image::Image& page : mixed) halves.push_back(image::to_half(page));
-  const uint32_t other = scene.second_light > 0.5f ? 0 : 1;
-  LUXEL_TRY_STATUS(put_light(commands, halves, other, scene));
-  scene.second_light = float(other);
+  LUXEL_TRY_STATUS(put_light(commands, halves, which, scene));
+  scene.second_light = float(which);
   scene.surroundings_factor = {1, 1, 1};
   for (const LayerLight& layer : layers.layers)
     if (layer.has_surroundings) scene.surroundings_factor = factor_of(settings, layer.name);

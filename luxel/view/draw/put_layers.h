@@ -9,10 +9,10 @@
 namespace luxel::view {
 
 /// Shows `mixed`, which mixed_light() gave for these settings: the lightmap, and lamps and
-/// surroundings that are seen. The scene was made with light_changes. Nothing may still draw it.
-/// Errors: no memory on the device.
+/// surroundings that are seen. Light goes into the first (0) or second (1) pictures, which are then
+/// shown. The scene was made with light_changes. Nothing may still draw it. Errors: no memory.
 Status put_layers(gpu::Commands& commands, const Layers& layers,
                   std::span<const LayerSetting> settings, std::span<const image::Image> mixed,
-                  DeviceScene& scene);
+                  uint32_t which, DeviceScene& scene);
 
 }  // namespace luxel::view

@@ -46,8 +46,10 @@ struct ChannelChanged {
 struct LayerChanged {
   LayerSetting setting;
 };
+/// Of a play: what comes after it is played when the bake has ended and its light is shown.
+struct WaitForBake {};
 using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, ShowChanged,
-                           RangeChanged, ChannelChanged, LayerChanged>;
+                           RangeChanged, ChannelChanged, LayerChanged, WaitForBake>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -98,7 +100,8 @@ struct Play {
 ///       {"at": 1.2, "scroll": 3}, {"at": 1.5, "key": "w"}, {"at": 1.8, "key_up": "w"},
 ///       {"at": 1.9, "show": "irradiance"}, {"at": 1.9, "range": [0, 500]},
 ///       {"at": 1.9, "channel": "red"},
-///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}}]}
+///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
+///       {"at": 2, "wait": "bake"}]}
 ///
 /// A range is by the logarithm where "logarithmic_range" says so.
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.

@@ -7,9 +7,6 @@
 #include "luxel/base/file.h"
 #include "luxel/display/lightmap_lookup.h"
 #include "luxel/image/value_scale.h"
-#include "luxel/pipeline/settings/light_unit.h"
-#include "luxel/pipeline/settings/settings.h"
-#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/texels/texel_picture.h"
 #include "luxel/view/model/uv_overlaps.h"
 
@@ -94,15 +91,6 @@ ColorScale density_scale(const scene::Scene& scene, const pipeline::LightmapPage
   return {low / wider, high * wider, true};
 }
 
-/// E's unit in the light of a bake, whose own file may be gone.
-std::string unit_of_bake(const std::filesystem::path& folder, const scene::Scene& scene) {
-  pipeline::BakeSettings baked;
-  if (!pipeline::read_settings(folder / "bake.json", baked)) baked.scene = "baked.glb";
-  scene::Scene own = scene;  // baked.glb has the file's lights, the bake's surroundings are others
-  own.environment = {}, own.background = {};
-  return pipeline::unit_of_light(baked.scene, own, baked.outside).symbol;
-}
-
 /// White pixels, which stand for no texel, become what is beside them: at the rim of a chart
 /// surfaces reach half a texel beyond the last one.
 image::Image8 without_white_rim(const image::Image8& from) {
@@ -169,7 +157,6 @@ Result<std::vector<image::Image8>> texel_pictures(const std::filesystem::path& f
 Look look_at(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps,
              std::span<const std::vector<Vec2>> light_uv) {
   Look out;
-  out.unit = "W/m^2";
   out.irradiance = irradiance_scale(lightmaps);
   out.density = density_scale(scene, lightmaps, light_uv);
   for (size_t m = 0; m < scene.meshes.size(); ++m) {
@@ -183,7 +170,6 @@ Look look_at(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps
 Result<Look> look_into(const std::filesystem::path& folder, const scene::Scene& scene,
                        const pipeline::LightmapPages& lightmaps) {
   Look out = look_at(scene, lightmaps);
-  out.unit = unit_of_bake(folder, scene);
   LUXEL_TRY(out.texels, texel_pictures(folder, "texels", lightmaps));
   LUXEL_TRY(out.errors, texel_pictures(folder, "error", lightmaps));
   return out;

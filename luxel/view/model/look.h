@@ -17,7 +17,7 @@ namespace luxel::view {
 
 /// A bake, looked into.
 struct Look {
-  std::string unit;                     ///< of E: "lux" or "W/m^2"
+  std::string unit;                     ///< of E; who looks knows it
   ColorScale irradiance, density;       ///< that fit this bake
   std::vector<MeshCharts> charts;       ///< of each mesh
   uint32_t chart_count = 0;             ///< of all meshes
@@ -26,7 +26,7 @@ struct Look {
   std::vector<image::Image8> overlaps;  ///< uv_overlaps()
 };
 
-/// Of a scene with these lightmaps: all but the unit and the pictures of the folder. E runs up to a
+/// Of a scene with these lightmaps: all but its unit and the pictures of the folder. E runs up to a
 /// round number that 98 % of the texels stay below; the density by its logarithm, from the first
 /// percentile of the surface to the last. `light_uv`: of each mesh and vertex its place in the
 /// lightmap; empty: uv1 is.

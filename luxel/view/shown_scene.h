@@ -1,0 +1,62 @@
+// A scene on a graphics device, with its light as far as it is known.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "luxel/view/draw/device_scene.h"
+#include "luxel/view/live/fade.h"
+#include "luxel/view/live/live_bake.h"
+#include "luxel/view/model/look.h"
+#include "luxel/view/open_bake.h"
+
+namespace luxel::view {
+
+struct ShownScene {
+  DeviceScene device;
+  std::shared_ptr<const ReadScene> read;  ///< null: there is nothing to see yet
+  bool has_light = false;                 ///< false: colours can be shown, nothing else
+  Fade fade;
+  std::optional<LiveLight> waiting;  ///< light that comes when what was there before has faded in
+  LiveNumbers numbers;               ///< of the light that came last
+  bool has_last = false;             ///< all light has come
+
+  /// What is looked into: the light of a bake that is there; of one that is made, its first.
+  pipeline::LightmapPages lightmaps;
+  std::optional<LitScene> lit;   ///< of a bake that is made: what `device` draws; else read->scene
+  std::filesystem::path folder;  ///< of a bake that is there
+  bool has_layers = false;       ///< read_layers() finds some there
+
+  /// What `device` draws, and where its vertices lie in the lightmap; empty: uv1.
+  const scene::Scene& drawn() const { return lit ? lit->scene : read->scene; }
+  std::span<const std::vector<Vec2>> light_uv() const {
+    return lit ? std::span<const std::vector<Vec2>>(lit->light_uv)
+               : std::span<const std::vector<Vec2>>();
+  }
+};
+
+/// What of it can be looked into, whose light has come. Errors: those of look_into().
+Result<Look> look_of(const ShownScene& shown);
+
+/// A scene in which nothing can be seen, for a window that opens before the file is read.
+Result<ShownScene> nothing_shown(gpu::Commands& commands);
+
+/// A bake that is there. It is used up.
+Result<ShownScene> bake_shown(gpu::Commands& commands, OpenedBake bake);
+
+/// Puts what has come on the device. True: `device` is another one than before. `said` gets what is
+/// to be told. Nothing may still draw the scene. Errors: no memory on the device.
+Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown,
+                       std::string& said);
+
+/// Light fades in, and what has waited for that comes. Nothing may still draw the scene. Errors: no
+/// memory on the device.
+Status pass(double seconds, gpu::Commands& commands, ShownScene& shown);
+
+/// Whether all light that has come is shown.
+bool is_settled(const ShownScene& shown);
+
+}  // namespace luxel::view

@@ -51,6 +51,16 @@ std::string note_on(const view::Frame& frame, const view::ShownScene& shown,
   }
 }
 
+/// Luminance is in candela per square metre where E is in lux.
+void fill_histogram(const view::Histogram& histogram, const std::string& unit, LookPanel& panel) {
+  const char* of_radiance = unit == "lux" ? "cd/m^2" : "W/(sr m^2)";
+  panel.histogram = histogram.shares;
+  panel.white_place = float(-view::kDarkestStop) / float(view::kBrightestStop - view::kDarkestStop);
+  panel.histogram_words =
+      fmt::format("median {:.3g}, 95 % below {:.3g} {}\n{:.1f} % above white", histogram.median,
+                  histogram.p95, of_radiance, 100 * histogram.over);
+}
+
 std::vector<LayerLine> lines_of(const view::Layers& layers, const view::Frame& frame) {
   std::vector<LayerLine> out;
   for (const view::LayerLight& layer : layers.layers) {
@@ -120,6 +130,7 @@ void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const L
   panel.has_layers = shown.has_layers;
   if (looking.layers) panel.layers = lines_of(*looking.layers, frame);
   if (frame.show == view::Show::irradiance) panel.channels = view::kChannels;
+  if (looking.histogram) fill_histogram(*looking.histogram, shown.read->light_unit, panel);
   if (!looking.look || panel.kind < 0) return;
   panel.note = note_on(frame, shown, *looking.look);
   const std::optional<view::Legend> legend = view::legend_of(frame, *looking.look);

@@ -6,6 +6,7 @@
 #include "apps/view/ui_look.h"
 #include "luxel/view/draw/painter.h"
 #include "luxel/view/draw/put_layers.h"
+#include "luxel/view/model/histogram.h"
 #include "luxel/view/model/look.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/shown_scene.h"
@@ -17,8 +18,9 @@ struct Looking {
   std::optional<view::Look> look;
   std::optional<view::Overlay> overlay;
   std::optional<view::Layers> layers;
-  std::vector<view::LayerSetting> put;  ///< what of them the scene shows
-  pipeline::LightmapPages mixed;        ///< the light that it shows; none while that is the bake's
+  std::vector<view::LayerSetting> put;       ///< what of them the scene shows
+  std::optional<view::Histogram> histogram;  ///< of the last frame
+  pipeline::LightmapPages mixed;  ///< the light that it shows; none while that is the bake's
 };
 
 /// Makes what a frame needs, once, and puts its layers into the scene. The panel's lines of layers

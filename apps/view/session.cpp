@@ -219,12 +219,26 @@ bool play_on(Session& s) {
   return true;
 }
 
+/// The histogram of the frame that was just drawn, where the panel shows it. Colours that stand for
+/// something have none.
+Status count_pixels(const view::Frame& frame, Session& s) {
+  s.screen.looking.histogram.reset();
+  const bool is_light =
+      frame.show == view::Show::light || frame.show == view::Show::light_and_colour;
+  if (!s.panel.look.asks_for_histogram || !is_light) return {};
+  LUXEL_TRY(const image::Image radiance,
+            view::last_radiance(*s.screen.commands, s.screen.painter, frame.exposure));
+  s.screen.looking.histogram = view::histogram_of(radiance, frame.exposure);
+  return {};
+}
+
 /// Draws and takes the time.
 Status draw_frame(Session& s) {
   const auto begin = Clock::now();
   const view::Frame frame = frame_of(s);
   LUXEL_TRY(s.fits, draw(s.shown.device, frame, s.screen));
   s.panel.milliseconds = float(1000 * seconds_since(begin));
+  LUXEL_TRY_STATUS(count_pixels(frame, s));
   if (!s.params.frame_table.empty())
     LUXEL_TRY_STATUS(add_row(s.screen, s.panel.milliseconds, s.shown, s.table));
   if (!s.window.asks_for_screenshot()) return {};

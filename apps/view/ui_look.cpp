@@ -93,9 +93,26 @@ void lay_out_layers(LookPanel& look) {
     for (LayerLine& line : look.layers) line = {line.layer, line.words, 1, {1, 1, 1}};
 }
 
+/// How many pixels are how bright; the line is what the exposure brings to white.
+void lay_out_histogram(LookPanel& look) {
+  look.asks_for_histogram = ImGui::CollapsingHeader("histogram of luminance");
+  if (!look.asks_for_histogram || look.histogram.empty()) return;
+  const ImVec2 size{ImGui::GetFontSize() * 17, ImGui::GetFontSize() * 5};
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float most =
+      std::max(*std::max_element(look.histogram.begin(), look.histogram.end()), 1e-6f);
+  ImGui::PlotHistogram("##histogram", look.histogram.data(), int(look.histogram.size()), 0, nullptr,
+                       0, most, size);
+  const float x = corner.x + size.x * look.white_place;
+  ImGui::GetWindowDrawList()->AddLine({x, corner.y}, {x, corner.y + size.y},
+                                      ImGui::GetColorU32(ImGuiCol_Text));
+  ImGui::TextUnformatted(look.histogram_words.c_str());
+}
+
 }  // namespace
 
 void lay_out_look(LookPanel& look) {
+  lay_out_histogram(look);
   if (look.has_layers) lay_out_layers(look);
   lay_out_choice("##look", look.kinds, "look into the bake", look.kind);
   if (look.kind < 0) return;

@@ -36,6 +36,11 @@ struct LookPanel {
   bool asks_for_layers = false;   ///< changed: their lines are looked at
   std::vector<LayerLine> layers;  ///< changed
 
+  bool asks_for_histogram = false;  ///< changed: it is looked at
+  std::vector<float> histogram;     ///< shares of pixels; empty: not known yet
+  float white_place = 1;            ///< of what is exposed to 1, in [0, 1] of its width
+  std::string histogram_words;      ///< under it
+
   std::string note;  ///< a line about what is shown
 };
 

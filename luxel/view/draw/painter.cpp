@@ -214,19 +214,23 @@ Result<image::Image8> painted(gpu::Commands& commands, const Canvas& canvas, con
   return out;
 }
 
-Result<image::Image> painted_radiance(gpu::Commands& commands, const Canvas& canvas,
-                                      const Frame& frame) {
-  const Painter& painter = canvas.painter;
-  LUXEL_TRY_STATUS(commands.run(
-      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, canvas, frame); }));
+Result<image::Image> last_radiance(gpu::Commands& commands, const Painter& painter,
+                                   float exposure) {
   LUXEL_TRY(const std::vector<std::byte> pixels, gpu::pixels_of(commands, painter.exposed.picture));
   image::Image out(int(painter.exposed.params.width), int(painter.exposed.params.height), 4);
   for (size_t i = 0; i < out.data.size(); ++i) {
     uint16_t half = 0;
     std::memcpy(&half, pixels.data() + 2 * i, 2);
-    out.data[i] = image::from_half(half) / (i % 4 == 3 ? 1 : frame.exposure);
+    out.data[i] = image::from_half(half) / (i % 4 == 3 ? 1 : exposure);
   }
   return out;
+}
+
+Result<image::Image> painted_radiance(gpu::Commands& commands, const Canvas& canvas,
+                                      const Frame& frame) {
+  LUXEL_TRY_STATUS(commands.run(
+      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, canvas, frame); }));
+  return last_radiance(commands, canvas.painter, frame.exposure);
 }
 
 }  // namespace luxel::view

@@ -45,6 +45,8 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
 
 /// Draws a frame and reads the picture back: 3 channels.
 Result<image::Image8> painted(gpu::Commands& commands, const Canvas& canvas, const Frame& frame);
+/// The exposed radiance of what was drawn last, divided by its exposure: 4 channels.
+Result<image::Image> last_radiance(gpu::Commands& commands, const Painter& painter, float exposure);
 /// Draws a frame and reads the exposed radiance back, divided by the exposure: 4 channels, as
 /// display::draw gives them.
 Result<image::Image> painted_radiance(gpu::Commands& commands, const Canvas& canvas,

@@ -176,11 +176,14 @@ Result<Look> look_into(const std::filesystem::path& folder, const scene::Scene& 
 }
 
 std::optional<std::string> missing_for(Show show, const Look& look, const std::string& folder) {
-  if (show == Show::texels && look.texels.empty())
-    return folder + ": there is no texels.png in it; bake with --texels";
-  if (show == Show::error && look.errors.empty())
-    return folder + ": there is no error.png in it; bake with --error-map";
-  return std::nullopt;
+  const bool is_texels = show == Show::texels && look.texels.empty();
+  const bool is_error = show == Show::error && look.errors.empty();
+  if (!is_texels && !is_error) return std::nullopt;
+  const std::string file = is_texels ? "texels.png" : "error.png";
+  const std::string option = is_texels ? "--texels" : "--error-map";
+  if (folder.empty())
+    return fmt::format("{} is a file of bakes with {}; look at its folder", file, option);
+  return fmt::format("{}: there is no {} in it; bake with {}", folder, file, option);
 }
 
 ColorScale scale_of(const ColorScale& own, const ColorScale& of_bake) {

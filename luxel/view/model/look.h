@@ -38,7 +38,8 @@ Look look_at(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps
 Result<Look> look_into(const std::filesystem::path& folder, const scene::Scene& scene,
                        const pipeline::LightmapPages& lightmaps);
 
-/// What is missing to show it, as a sentence on the bake in `folder`; none where nothing is.
+/// What is missing to show it, as a sentence on the bake in `folder`, which is empty where it is
+/// being made; none where nothing is.
 std::optional<std::string> missing_for(Show show, const Look& look, const std::string& folder);
 
 /// What the scale of a frame is: its own, or that of the bake.

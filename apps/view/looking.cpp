@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "luxel/image/false_color.h"
-
 namespace luxel::view_window {
 namespace {
 
@@ -17,15 +15,6 @@ constexpr std::array<const char*, kKinds> words_of_kinds() {
   return out;
 }
 constexpr std::array<const char*, kKinds> kKindWords = words_of_kinds();
-
-std::array<uint32_t, 256> legend_colors() {
-  std::array<uint32_t, 256> out{};
-  for (size_t i = 0; i < out.size(); ++i) {
-    const image::Color8 c = image::false_color(double(i) / 255);
-    out[i] = uint32_t(c[0]) | uint32_t(c[1]) << 8 | uint32_t(c[2]) << 16;
-  }
-  return out;
-}
 
 /// A line on what is shown; empty where nothing needs to be said.
 std::string note_on(const view::Frame& frame, const view::ShownScene& shown,
@@ -121,7 +110,7 @@ Status prepare_look(gpu::Commands& commands, const gpu::Pipeline& shader, bool n
 void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const Looking& looking,
                 const std::optional<scene::SurfacePoint>& pointed, LookPanel& panel) {
   static constexpr std::array<uint32_t, 0> kNone{};
-  static const std::array<uint32_t, 256> colors = legend_colors();
+  static const std::array<uint32_t, 256> colors = view::packed_false_colors();
   panel = {};
   panel.kinds = kKindWords;
   panel.kind = view::looks_into_bake(frame.show) ? int(size_t(frame.show) - kFirstKind) : -1;
@@ -130,25 +119,33 @@ void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const L
   panel.has_layers = shown.has_layers;
   if (looking.layers) panel.layers = lines_of(*looking.layers, frame);
   if (frame.show == view::Show::irradiance) panel.channels = view::kChannels;
+  if (frame.beside) {
+    panel.beside_modes = view::kBesideModes;
+    panel.beside_mode = int(frame.beside->mode);
+  }
   if (looking.histogram) fill_histogram(*looking.histogram, shown.read->light_unit, panel);
-  if (!looking.look || panel.kind < 0) return;
-  panel.note = note_on(frame, shown, *looking.look);
-  const std::optional<view::Legend> legend = view::legend_of(frame, *looking.look);
+  const view::Look nothing;
+  const view::Look& look = looking.look ? *looking.look : nothing;
+  if (looking.look && panel.kind >= 0) panel.note = note_on(frame, shown, look);
+  const std::optional<view::Legend> legend = view::legend_of(frame, look);
   panel.has_scale = legend.has_value();
   if (!legend) return;
   panel.colors = colors;
   panel.title = legend->title, panel.unit = legend->unit;
   panel.low = legend->scale.low, panel.high = legend->scale.high;
   panel.is_logarithmic = legend->scale.is_logarithmic;
-  panel.can_scale = frame.show != view::Show::error;
+  const bool is_of_one = !frame.beside || frame.beside->mode == view::BesideMode::split;
+  panel.can_scale = is_of_one && frame.show != view::Show::error;
   const auto& lightmaps = looking.mixed.pictures.empty() ? shown.lightmaps : looking.mixed;
-  if (pointed)
+  // While a scene is baked, what is drawn of it has other triangles than what is pointed at.
+  if (pointed && is_of_one && !shown.lit)
     panel.pointed = view::value_at(frame, shown.drawn(), lightmaps, *pointed).value_or(-1);
 }
 
 void take_panel(const LookPanel& panel, const LookPanel& before, view::Frame& frame) {
   if (panel.kind != before.kind) frame.show = view::Show(kFirstKind + size_t(panel.kind));
   frame.channel = view::Channel(panel.channel);
+  if (frame.beside) frame.beside->mode = view::BesideMode(panel.beside_mode);
   view::ColorScale& scale = frame.show == view::Show::density ? frame.density : frame.irradiance;
   const bool is_changed = panel.low != before.low || panel.high != before.high ||
                           panel.is_logarithmic != before.is_logarithmic;

@@ -33,11 +33,12 @@ std::optional<scene::SurfacePoint> pointed_surface(const Ui& ui, const view::Rea
 }
 
 /// What the panel changes of a walk, and the walk of the panel.
-void exchange(Ui& ui, const view::ShownScene& shown, const Looking& looking, Panel& panel,
-              view::Walk& walk) {
+void exchange(Ui& ui, const view::ShownScene& shown, const Looking& looking, float flip,
+              Panel& panel, view::Walk& walk) {
   panel.show = int(walk.shown.show);
   panel.stops = std::log2(walk.shown.exposure / walk.first.exposure);
   fill_panel(walk.shown, shown, looking, pointed_surface(ui, *shown.read, walk), panel.look);
+  panel.look.flip = flip;
   const Panel before = panel;
   ui.lay_out(panel);
   if (panel.show != before.show) walk.shown.show = view::Show(panel.show);
@@ -147,6 +148,12 @@ void look(Session& s) {
       prepare_look(*s.screen.commands, s.screen.shaders.overlay, s.panel.look.asks_for_layers,
                    s.walk->shown, s.shown, s.screen.looking);
   if (!done) s.panel.message = done.error().message;
+  if (!s.screen.beside) return;
+  // What the second bake has not is not shown of it: the first one's panel says what is.
+  view::Frame frame = s.walk->shown;
+  const Status beside = prepare_look(*s.screen.commands, s.screen.shaders.overlay, false, frame,
+                                     *s.screen.beside, s.screen.looking_beside);
+  if (!beside) s.panel.message = "beside: " + beside.error().message;
 }
 
 /// What the panel says of a bake.
@@ -184,7 +191,7 @@ BakeLines lines_of(const Session& s) {
 void lay_out(Session& s) {
   s.panel.bake = s.live ? std::optional(lines_of(s)) : std::nullopt;
   if (s.walk)
-    exchange(*s.screen.ui, s.shown, s.screen.looking, s.panel, *s.walk);
+    exchange(*s.screen.ui, s.shown, s.screen.looking, s.screen.flip, s.panel, *s.walk);
   else
     s.screen.ui->lay_out(s.panel);
   if (!s.live) return;
@@ -285,18 +292,24 @@ Status show(Session s) {
         write_file_atomically(s.params.frame_table, std::as_bytes(std::span<const char>(csv))));
   }
   if (s.params.screenshot.empty() || !s.walk) return {};
-  LUXEL_TRY(const image::Image8 picture,
-            view::painted(*s.screen.commands, s.screen.canvas(s.shown.device), frame_of(s)));
+  LUXEL_TRY(const image::Image8 picture, picture_of(s.shown.device, frame_of(s), s.screen));
   return write_file_atomically(s.params.screenshot, image::encode_png(picture));
 }
 
 }  // namespace
 
-Status show_in_window(view::OpenedBake bake, const WindowParams& params) {
+Status show_in_window(view::OpenedBake bake, std::optional<view::OpenedBake> beside,
+                      const WindowParams& params) {
   LUXEL_TRY(const std::unique_ptr<Window> window,
             Window::open(params.title, params.width, params.height));
   LUXEL_TRY(Screen screen, open_screen(*window, params.device));
+  if (beside) bake.first.beside.emplace();
   LUXEL_TRY(view::ShownScene shown, view::bake_shown(*screen.commands, std::move(bake)));
+  std::optional<view::ShownScene> second;
+  if (beside) {
+    LUXEL_TRY(second, view::bake_shown(*screen.commands, std::move(*beside)));
+    screen.beside = &*second;
+  }
   return show({*window, screen, shown, nullptr, params});
 }
 

@@ -109,13 +109,22 @@ void lay_out_histogram(LookPanel& look) {
   ImGui::TextUnformatted(look.histogram_words.c_str());
 }
 
+void lay_out_beside(LookPanel& look) {
+  for (size_t i = 0; i < look.beside_modes.size(); ++i) {
+    if (i > 0) ImGui::SameLine();
+    ImGui::RadioButton(look.beside_modes[i], &look.beside_mode, int(i));
+  }
+  if (look.flip >= 0) ImGui::Text("mean FLIP %.4f", double(look.flip));
+}
+
 }  // namespace
 
 void lay_out_look(LookPanel& look) {
+  lay_out_beside(look);
   lay_out_histogram(look);
   if (look.has_layers) lay_out_layers(look);
   lay_out_choice("##look", look.kinds, "look into the bake", look.kind);
-  if (look.kind < 0) return;
+  if (look.kind < 0 && !look.has_scale) return;
   if (!look.channels.empty()) lay_out_choice("##channel", look.channels, "", look.channel);
   if (look.has_scale) {
     const char* unit = look.unit.c_str();

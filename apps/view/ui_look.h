@@ -36,6 +36,10 @@ struct LookPanel {
   bool asks_for_layers = false;   ///< changed: their lines are looked at
   std::vector<LayerLine> layers;  ///< changed
 
+  std::span<const char* const> beside_modes;  ///< how a second bake is shown; empty: none is
+  int beside_mode = 0;                        ///< changed
+  float flip = -1;                            ///< of the two pictures; < 0: not known
+
   bool asks_for_histogram = false;  ///< changed: it is looked at
   std::vector<float> histogram;     ///< shares of pixels; empty: not known yet
   float white_place = 1;            ///< of what is exposed to 1, in [0, 1] of its width

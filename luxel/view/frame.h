@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,16 @@ struct ColorScale {
   friend bool operator==(const ColorScale&, const ColorScale&) = default;
 };
 
+/// How a second bake is shown beside the first.
+enum class BesideMode : uint32_t { split, difference, flip };
+inline constexpr std::array<const char*, 3> kBesideModes{"split", "difference", "flip"};
+struct Beside {
+  BesideMode mode = BesideMode::split;
+  float split = 0.5f;  ///< where the second begins, over the picture's width
+};
+/// The relative difference of luminance that has the last of the false colours.
+inline constexpr float kMostDifference = 0.2f;
+
 /// What became of a layer's light since it was baked.
 struct LayerSetting {
   std::string name;
@@ -77,6 +88,7 @@ struct Frame {
   ColorScale irradiance;                 ///< E [unit of the scene's light]
   ColorScale density;                    ///< [1/m]
   std::vector<LayerSetting> layers;      ///< those that are not as they were baked
+  std::optional<Beside> beside;          ///< where there is a second bake
 };
 
 }  // namespace luxel::view

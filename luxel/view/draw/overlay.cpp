@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <span>
 
-#include "luxel/image/false_color.h"
 #include "luxel/view/shaders/overlay.frag.h"
 #include "luxel/view/shaders/overlay.vert.h"
 
@@ -33,15 +32,6 @@ struct ShownLook {
   std::array<uint32_t, 256> colors{};
 };
 static_assert(sizeof(ShownLook) == 64 + 1024);
-
-std::array<uint32_t, 256> packed_false_colors() {
-  std::array<uint32_t, 256> out{};
-  for (size_t i = 0; i < out.size(); ++i) {
-    const image::Color8 c = image::false_color(double(i) / 255);
-    out[i] = uint32_t(c[0]) | uint32_t(c[1]) << 8 | uint32_t(c[2]) << 16;
-  }
-  return out;
-}
 
 /// Charts and seams of all triangles, in the order in which they are drawn.
 std::vector<uint32_t> drawn_charts(const scene::Scene& scene, const Look& look) {

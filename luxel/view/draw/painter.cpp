@@ -7,6 +7,7 @@
 #include "luxel/trace/camera_rays.h"
 #include "luxel/view/shaders/behind.frag.h"
 #include "luxel/view/shaders/behind.vert.h"
+#include "luxel/view/shaders/beside.frag.h"
 #include "luxel/view/shaders/screen.frag.h"
 #include "luxel/view/shaders/screen.vert.h"
 #include "luxel/view/shaders/surface.frag.h"
@@ -93,6 +94,15 @@ gpu::DrawParams screen_params() {
   return params;
 }
 
+/// Two pictures and what each was made from, and the map of FLIP.
+gpu::DrawParams beside_params() {
+  gpu::DrawParams params = screen_params();
+  params.fragment = beside_frag;
+  constexpr uint32_t kPushBytes = 24;  // BesidePush of beside.cpp
+  params.interface = {kPushBytes, std::vector<VkDescriptorType>(5, kLookUp)};
+  return params;
+}
+
 void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
                    SurfacePush push) {
   const auto& [shaders, painter, scene, overlay] = canvas;
@@ -147,6 +157,7 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
             gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_NONE)));
   LUXEL_TRY(out.behind, gpu::make_draw_pipeline(device, behind_params()));
   LUXEL_TRY(out.screen, gpu::make_draw_pipeline(device, screen_params()));
+  LUXEL_TRY(out.beside, gpu::make_draw_pipeline(device, beside_params()));
   LUXEL_TRY(out.overlay, make_overlay_shader(device, kExposed, kSamples));
   return out;
 }
@@ -201,17 +212,20 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
 }
 
-Result<image::Image8> painted(gpu::Commands& commands, const Canvas& canvas, const Frame& frame) {
-  const Painter& painter = canvas.painter;
-  LUXEL_TRY_STATUS(commands.run(
-      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, canvas, frame); }));
-  LUXEL_TRY(const std::vector<std::byte> pixels, gpu::pixels_of(commands, painter.shown.picture));
+Result<image::Image8> shown_pixels(gpu::Commands& commands, const gpu::Target& shown) {
+  LUXEL_TRY(const std::vector<std::byte> pixels, gpu::pixels_of(commands, shown.picture));
   image::Image8 out;
-  out.width = int(painter.shown.params.width), out.height = int(painter.shown.params.height);
+  out.width = int(shown.params.width), out.height = int(shown.params.height);
   out.channels = 3;
   for (size_t i = 0; i < pixels.size(); ++i)
     if (i % 4 != 3) out.data.push_back(uint8_t(pixels[i]));
   return out;
+}
+
+Result<image::Image8> painted(gpu::Commands& commands, const Canvas& canvas, const Frame& frame) {
+  LUXEL_TRY_STATUS(commands.run(
+      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, canvas, frame); }));
+  return shown_pixels(commands, canvas.painter.shown);
 }
 
 Result<image::Image> last_radiance(gpu::Commands& commands, const Painter& painter,

@@ -13,7 +13,7 @@ namespace luxel::view {
 
 /// The shaders of all pictures.
 struct Shaders {
-  gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, overlay;
+  gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, overlay, beside;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
@@ -43,6 +43,8 @@ struct Canvas {
 void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
            const Frame& frame);
 
+/// The pixels of a picture for a screen that is in the layout TRANSFER_SRC_OPTIMAL: 3 channels.
+Result<image::Image8> shown_pixels(gpu::Commands& commands, const gpu::Target& shown);
 /// Draws a frame and reads the picture back: 3 channels.
 Result<image::Image8> painted(gpu::Commands& commands, const Canvas& canvas, const Frame& frame);
 /// The exposed radiance of what was drawn last, divided by its exposure: 4 channels.

@@ -56,6 +56,15 @@ std::optional<Event> look_event_of(const json& from) {
                                 [](const ShowName& known) { return known.name; });
     return show ? std::optional<Event>(ShowChanged{Show(*show)}) : std::nullopt;
   }
+  if (from.contains("beside")) {
+    const auto mode = number_of(from["beside"].get<std::string>(), kBesideModes,
+                                [](const char* known) { return known; });
+    return mode ? std::optional<Event>(BesideChanged{BesideMode(*mode)}) : std::nullopt;
+  }
+  if (from.contains("split")) {
+    const auto to = from["split"].get<float>();
+    return to >= 0 && to <= 1 ? std::optional<Event>(SplitMoved{to}) : std::nullopt;
+  }
   if (from.contains("layer")) return layer_event_of(from["layer"]);
   if (from.contains("channel")) {
     const auto channel = number_of(from["channel"].get<std::string>(), kChannels,

@@ -46,10 +46,19 @@ struct ChannelChanged {
 struct LayerChanged {
   LayerSetting setting;
 };
+/// A second bake is shown in another way; where none is shown, nothing changes.
+struct BesideChanged {
+  BesideMode mode = BesideMode::split;
+};
+/// The line between the two is moved, to a share of the picture's width.
+struct SplitMoved {
+  float to = 0.5f;
+};
 /// Of a play: what comes after it is played when the bake has ended and its light is shown.
 struct WaitForBake {};
-using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, ShowChanged,
-                           RangeChanged, ChannelChanged, LayerChanged, WaitForBake>;
+using Event =
+    std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, ShowChanged, RangeChanged,
+                 ChannelChanged, LayerChanged, BesideChanged, SplitMoved, WaitForBake>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -101,6 +110,7 @@ struct Play {
 ///       {"at": 1.9, "show": "irradiance"}, {"at": 1.9, "range": [0, 500]},
 ///       {"at": 1.9, "channel": "red"},
 ///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
+///       {"at": 2, "beside": "difference"}, {"at": 2, "split": 0.3},
 ///       {"at": 2, "wait": "bake"}]}
 ///
 /// A range is by the logarithm where "logarithmic_range" says so.

@@ -6,6 +6,7 @@
 
 #include "luxel/base/file.h"
 #include "luxel/display/lightmap_lookup.h"
+#include "luxel/image/false_color.h"
 #include "luxel/image/value_scale.h"
 #include "luxel/pipeline/texels/texel_picture.h"
 #include "luxel/view/model/uv_overlaps.h"
@@ -196,7 +197,20 @@ ColorScale scale_of(const ColorScale& own, const ColorScale& of_bake) {
   return out;
 }
 
+std::array<uint32_t, 256> packed_false_colors() {
+  std::array<uint32_t, 256> out{};
+  for (size_t i = 0; i < out.size(); ++i) {
+    const image::Color8 c = image::false_color(double(i) / 255);
+    out[i] = uint32_t(c[0]) | uint32_t(c[1]) << 8 | uint32_t(c[2]) << 16;
+  }
+  return out;
+}
+
 std::optional<Legend> legend_of(const Frame& frame, const Look& look) {
+  if (frame.beside && frame.beside->mode == BesideMode::difference)
+    return Legend{"difference, over the mean", "", {0, kMostDifference, false}};
+  if (frame.beside && frame.beside->mode == BesideMode::flip)
+    return Legend{"FLIP", "", {0, 1, false}};
   if (frame.show == Show::irradiance) {
     const bool is_whole = frame.channel == Channel::luminance;
     const std::string channel =

@@ -1,6 +1,7 @@
 // What there is to see of a bake besides its light.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -44,6 +45,9 @@ std::optional<std::string> missing_for(Show show, const Look& look, const std::s
 
 /// What the scale of a frame is: its own, or that of the bake.
 ColorScale scale_of(const ColorScale& own, const ColorScale& of_bake);
+
+/// image::false_color() in 256 steps, as 0xbbggrr.
+std::array<uint32_t, 256> packed_false_colors();
 
 /// The unit and the scale of what a frame shows; none where it shows no values.
 struct Legend {

@@ -14,6 +14,7 @@ constexpr float kTurnPerHeight = 2 * kPi;  ///< of a drag over the picture's hei
 constexpr float kNearerPerNotch = 0.9f;
 constexpr float kSceneSizesPerSecond = 0.2f;
 constexpr float kFast = 4;
+constexpr float kNearLine = 6;  ///< so near is the pointer on the line [pixels]
 constexpr float kHalfStop = 1.41421356f;
 
 float aspect_of(const Walk& walk) { return float(walk.width) / float(walk.height); }
@@ -38,6 +39,13 @@ void drag(Vec2 by, Walk& walk) {
   camera = moves_picture(walk)
                ? panned(camera, walk.target, parts, aspect_of(walk))
                : orbited(camera, walk.target, -parts.x * kTurnPerHeight, parts.y * kTurnPerHeight);
+}
+
+/// Whether the pointer is on the line between two bakes.
+bool is_on_line(const Walk& walk) {
+  const auto& beside = walk.shown.beside;
+  return beside && beside->mode == BesideMode::split &&
+         std::abs(walk.pointer.x - beside->split * float(walk.width)) <= kNearLine;
 }
 
 /// What a key does when it goes down; those that fly do it as long as they are down.
@@ -90,12 +98,16 @@ Walk begin_walk(const Frame& first, const Box3& bounds, int width, int height,
 
 void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk) {
   if (const auto* moved = std::get_if<PointerMoved>(&event)) {
-    if (walk.dragging) drag(moved->to - walk.pointer, walk);
+    if (walk.dragging && walk.drags_line)
+      walk.shown.beside->split = std::clamp(moved->to.x / float(walk.width), 0.0f, 1.0f);
+    else if (walk.dragging)
+      drag(moved->to - walk.pointer, walk);
     walk.pointer = moved->to;
   }
   if (const auto* changed = std::get_if<ButtonChanged>(&event)) {
     if (changed->is_down && !walk.dragging) {
       walk.dragging = changed->button;
+      walk.drags_line = changed->button == Button::left && is_on_line(walk);
       walk.target = place_at(walk, walk.pointer, place_seen);
     } else if (!changed->is_down && walk.dragging == changed->button) {
       walk.dragging.reset();
@@ -113,6 +125,10 @@ void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk) {
   if (const auto* changed = std::get_if<ShowChanged>(&event)) walk.shown.show = changed->show;
   if (const auto* changed = std::get_if<ChannelChanged>(&event))
     walk.shown.channel = changed->channel;
+  if (const auto* changed = std::get_if<BesideChanged>(&event); changed && walk.shown.beside)
+    walk.shown.beside->mode = changed->mode;
+  if (const auto* moved = std::get_if<SplitMoved>(&event); moved && walk.shown.beside)
+    walk.shown.beside->split = moved->to;
   if (const auto* changed = std::get_if<LayerChanged>(&event))
     set_layer(changed->setting, walk.shown.layers);
   if (const auto* changed = std::get_if<RangeChanged>(&event))

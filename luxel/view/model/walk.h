@@ -34,6 +34,7 @@ struct Walk {
   Vec3 target{};  ///< what the camera turns about
   Vec2 pointer{};
   std::optional<Button> dragging;
+  bool drags_line = false;     ///< between two bakes, not the camera
   std::set<std::string> keys;  ///< that are down
 };
 

@@ -154,6 +154,27 @@ TEST(Walk, AKeyOfEveryLineOfTheListDoesSomething) {
   }
 }
 
+TEST(Walk, DraggingTheLineBetweenTwoBakesMovesIt) {
+  Walk walk = before_the_wall();
+  const Vec3 eye = eye_of(walk);
+  handle(SplitMoved{0.1f}, on_the_wall, walk);
+  EXPECT_FALSE(walk.shown.beside) << "there is no second bake";
+  walk.shown.beside.emplace();  // the line is at 150 of 300
+  drag(Button::left, {153, 50}, {225, 80}, walk);
+  EXPECT_FLOAT_EQ(walk.shown.beside->split, 0.75f);
+  expect_place(eye_of(walk), eye);
+  drag(Button::left, {225, 50}, {900, 80}, walk);
+  EXPECT_FLOAT_EQ(walk.shown.beside->split, 1);
+  handle(SplitMoved{0.5f}, on_the_wall, walk);
+  drag(Button::left, {170, 50}, {225, 80}, walk);  // beside the line: the camera turns
+  EXPECT_FLOAT_EQ(walk.shown.beside->split, 0.5f);
+  EXPECT_GT(length(eye_of(walk) - eye), 1);
+  const Vec3 turned = eye_of(walk);
+  handle(BesideChanged{BesideMode::flip}, on_the_wall, walk);
+  drag(Button::left, {150, 50}, {225, 80}, walk);  // there is no line
+  EXPECT_GT(length(eye_of(walk) - turned), 1);
+}
+
 TEST(Play, GoesOnInStepsOfItsOwn) {
   const auto events = parse_play(R"({"frames_per_s": 10, "end": 2, "events": [
     {"at": 0, "key": "w"}, {"at": 1, "key_up": "w"},
@@ -217,7 +238,8 @@ TEST(Play, SaysWhichEventIsWrong) {
         R"({"at": 1, "key": "ctrl"})", R"({"at": 1, "scroll": 1, "key": "w"})",
         R"({"at": 1, "scroll": 1e9})", R"({"at": 1, "show": "depth"})",
         R"({"at": 1, "channel": "alpha"})", R"({"at": 1, "range": [2, 2]})",
-        R"({"at": 1, "logarithmic_range": [0, 1]})"})
+        R"({"at": 1, "logarithmic_range": [0, 1]})", R"({"at": 1, "beside": "above"})",
+        R"({"at": 1, "split": 2})"})
     EXPECT_THAT(error(wrong), AllOf(HasSubstr("walk.json, event 1: "), HasSubstr("is no event")));
   for (const char* wrong : {R"({"at": "now", "scroll": 1})", R"({"at": 1, "pointer": [1]})", "7"})
     EXPECT_THAT(error(wrong), HasSubstr("walk.json, event 1: "));

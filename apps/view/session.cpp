@@ -144,10 +144,12 @@ BakeLines lines_of(const Session& s) {
   out.can_save = state == view::LiveState::baked;
   const view::LiveNumbers& known = s.shown.numbers;
   if (!s.shown.has_light) return out;
-  if (known.samples == 0)
-    out.lines.push_back("direct light, and an even guess of the rest");
-  else
-    out.lines.push_back(fmt::format("{:.0f} rays per texel", known.samples));
+  if (known.kind == view::LiveKind::draft) out.lines.push_back("shown: a coarse draft");
+  if (known.kind == view::LiveKind::direct_and_draft)
+    out.lines.push_back("shown: direct light, reflections of the draft");
+  if (known.kind == view::LiveKind::direct_and_even_rest)
+    out.lines.push_back("shown: direct light, reflections spread evenly");
+  if (known.samples > 0) out.lines.push_back(fmt::format("{:.0f} rays per texel", known.samples));
   if (known.rays_per_s > 0)
     out.lines.push_back(fmt::format("{:.2f} million rays/s", 1e-6 * known.rays_per_s));
   if (known.error_p95 > 0)

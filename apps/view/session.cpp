@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <span>
 
 #include "apps/view/frame_table.h"
@@ -169,10 +170,21 @@ void lay_out(Session& s) {
     exchange(*s.screen.ui, s.shown.read->scene.cameras, s.panel, *s.walk);
   else
     s.screen.ui->lay_out(s.panel);
+}
+
+/// What keys and the panel ask of a bake.
+void follow_user(Session& s) {
+  std::vector<view::Command> asked;
+  if (s.walk) asked = std::exchange(s.walk->asked, {});
   if (!s.live) return;
-  if (s.panel.bake->asks_to_stop) s.live->pause(true);
-  if (s.panel.bake->asks_to_go_on) s.live->pause(false);
-  if (s.panel.bake->asks_to_save) s.live->save();
+  const BakeLines& panel = *s.panel.bake;
+  if (panel.asks_to_stop || panel.asks_to_go_on) asked.push_back(view::Command::stop_or_go_on);
+  if (panel.asks_to_save) asked.push_back(view::Command::save);
+  for (const view::Command command : asked) {
+    if (command == view::Command::save) s.live->save();
+    if (command == view::Command::stop_or_go_on)
+      s.live->pause(s.live->state() == view::LiveState::baking);
+  }
 }
 
 /// What is drawn: without light, colours.
@@ -235,8 +247,18 @@ Result<bool> go_on(Session& s) {
   const bool goes_on = !s.params.play || play_on(s);
   if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
   lay_out(s);
+  follow_user(s);
   LUXEL_TRY_STATUS(draw_frame(s));
   return goes_on;
+}
+
+/// A play that saves a bake ends when it is saved. Errors: those of the bake.
+Status end_bake(Session& s) {
+  if (s.live->state() != view::LiveState::baked) return {};
+  s.live->wait();
+  const view::LiveNews news = s.live->take();
+  if (news.said) std::fprintf(stderr, "%s\n", news.said->c_str());
+  return {};
 }
 
 /// Until the window is closed or a play has ended.
@@ -246,6 +268,7 @@ Status show(Session s) {
   bool is_going_on = true;
   while (is_going_on && !glfwWindowShouldClose(s.window.get()))
     LUXEL_TRY_STATUS(go_on(s).map([&](bool more) { is_going_on = more; }));
+  if (s.params.play && s.live) LUXEL_TRY_STATUS(end_bake(s));
   if (!s.params.frame_table.empty()) {
     const std::string csv = csv_of(s.table);
     LUXEL_TRY_STATUS(

@@ -93,7 +93,10 @@ class Worker : public LiveBake {
     is_saving_ = true;
     thread_ = std::thread([this] { write(); });
   }
-  void wait() override { state_.wait(LiveState::baking); }
+  void wait() override {
+    state_.wait(LiveState::baking);
+    is_saving_.wait(true);
+  }
 
  private:
   void bake() {
@@ -119,10 +122,14 @@ class Worker : public LiveBake {
   void write() try {
     const auto saved = pipeline::save_bake(settings_, *baked_, progress_, *saving_);
     say(saved ? "wrote " + settings_.output.string() : saved.error().message);
-    is_saving_ = false;
+    has_saved();
   } catch (const std::bad_alloc&) {
     say("out of memory");
+    has_saved();
+  }
+  void has_saved() {
     is_saving_ = false;
+    is_saving_.notify_all();
   }
 
   void say(std::string sentence) {

@@ -69,7 +69,7 @@ class LiveBake {
   /// Writes the files of `luxel bake` into settings.output, in the background; take() tells the
   /// end. Only once it is baked.
   virtual void save() = 0;
-  /// Returns when the bake has ended, well or not.
+  /// Returns when the bake has ended, well or not, and is saved if it was asked for.
   virtual void wait() = 0;
 };
 

@@ -162,6 +162,18 @@ Result<Picture> picture_with(Commands& commands, PictureParams params,
   return out;
 }
 
+void copy_pixels(const Device& device, VkCommandBuffer commands, const Buffer& staging,
+                 const Picture& picture) {
+  LUXEL_CHECK(picture.params.levels == 1 && staging.size == bytes_of(picture.params));
+  change_layout(device, commands, picture, VK_IMAGE_LAYOUT_UNDEFINED,
+                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  const VkBufferImageCopy copy = whole(picture);
+  device.vk.vkCmdCopyBufferToImage(commands, staging.buffer.get(), picture.image.get(),
+                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+  change_layout(device, commands, picture, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+}
+
 Result<std::vector<std::byte>> pixels_of(Commands& commands, const Picture& picture) {
   const Device& device = commands.device();
   LUXEL_TRY(const Buffer read, make_buffer(device, bytes_of(picture.params), Access::to_host,
@@ -185,6 +197,8 @@ Result<OwnedSampler> make_sampler(const Device& device, const SamplerParams& par
   info.addressModeU = params.u, info.addressModeV = params.v;
   info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   info.maxLod = VK_LOD_CLAMP_NONE;
+  info.compareEnable = params.compares_depth;
+  info.compareOp = VK_COMPARE_OP_GREATER_OR_EQUAL;
   VkSampler sampler = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateSampler(device.device, &info, nullptr, &sampler),
                          "a sampler cannot be made"));

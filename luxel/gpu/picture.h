@@ -49,6 +49,11 @@ void change_layout(const Device& device, VkCommandBuffer commands, VkImage image
 void change_layout(const Device& device, VkCommandBuffer commands, const Picture& picture,
                    VkImageLayout from, VkImageLayout to);
 
+/// Records that a picture of one level, which shaders may look up, gets other pixels, as
+/// picture_with() takes them. They are in `staging` until it is done.
+void copy_pixels(const Device& device, VkCommandBuffer commands, const Buffer& staging,
+                 const Picture& picture);
+
 /// The pixels of level 0, which is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL; whole rows, top first.
 Result<std::vector<std::byte>> pixels_of(Commands& commands, const Picture& picture);
 
@@ -56,6 +61,8 @@ Result<std::vector<std::byte>> pixels_of(Commands& commands, const Picture& pict
 struct SamplerParams {
   VkFilter filter = VK_FILTER_LINEAR;
   VkSamplerAddressMode u = VK_SAMPLER_ADDRESS_MODE_REPEAT, v = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  /// A look-up tells whether a depth is at least the picture's, which is one of depth.
+  bool compares_depth = false;
 };
 using OwnedSampler = Owned<VkSampler, &VolkDeviceTable::vkDestroySampler>;
 Result<OwnedSampler> make_sampler(const Device& device, const SamplerParams& params);

@@ -76,20 +76,6 @@ json instance_node(const scene::Instance& instance, size_t mesh) {
   return node;
 }
 
-LightmapCoordinates lightmap_places(const atlas::Atlas& atlas,
-                                    const std::vector<atlas::Page>& pages, uint32_t instance) {
-  LightmapCoordinates out;
-  for (uint32_t t = atlas.first_triangle[instance]; t < atlas.first_triangle[instance + 1]; ++t) {
-    out.page.push_back(atlas::page_of(atlas, t));
-    const atlas::Page& page = pages[out.page.back()];
-    std::array<Vec2, 3> uv = atlas.corners[t];
-    for (Vec2& c : uv)
-      c = {(c.x - float(page.x)) / float(page.side), (c.y - float(page.y)) / float(page.side)};
-    out.uv.push_back(uv);
-  }
-  return out;
-}
-
 /// One intensity for all pages: the same light is the same byte on each.
 void append_lightmaps(Glb& glb, MaterialBook& book, std::span<const image::Image> lightmaps) {
   const float intensity = image::white_level(lightmaps);

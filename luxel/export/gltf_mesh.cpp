@@ -11,41 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr uint32_t kNone = UINT32_MAX;
-
-/// The vertices of one primitive: where each comes from, and its place in the lightmap.
-struct Vertices {
-  std::vector<uint32_t> source;  ///< vertex of the mesh
-  std::vector<Vec2> lightmap;
-  std::vector<uint32_t> indices;  ///< three per triangle
-};
-
-/// Hands out the vertices of one primitive after the other; a mesh vertex becomes several where its
-/// triangles disagree about the lightmap. The versions of a vertex form a list: few are long.
-class Splitter {
- public:
-  explicit Splitter(size_t vertex_count) : first_(vertex_count, kNone) {}
-
-  uint32_t vertex(Vertices& out, uint32_t source, Vec2 lightmap) {
-    for (uint32_t v = first_[source]; v != kNone; v = next_[v])
-      if (out.lightmap[v] == lightmap) return v;
-    const uint32_t fresh = uint32_t(out.source.size());
-    out.source.push_back(source);
-    out.lightmap.push_back(lightmap);
-    next_.push_back(first_[source]);
-    first_[source] = fresh;
-    return fresh;
-  }
-
-  void start_next_primitive(const Vertices& done) {
-    for (const uint32_t source : done.source) first_[source] = kNone;
-    next_.clear();
-  }
-
- private:
-  std::vector<uint32_t> first_, next_;
-};
-
 template <class T>
 std::vector<T> picked(const std::vector<T>& values, std::span<const uint32_t> source) {
   std::vector<T> out;
@@ -63,7 +28,8 @@ bool needs_uv_set(const scene::Material& m, int set) {
 /// Texture coordinates must be numbered without gaps: a missing TEXCOORD_0 is stood in for by the
 /// accessor of TEXCOORD_1.
 TexcoordSlots append_texcoords(Glb& glb, const scene::Mesh& mesh, const scene::Material& material,
-                               const Vertices& vertices, bool lightmapped, json& attributes) {
+                               const LightmapVertices& vertices, bool lightmapped,
+                               json& attributes) {
   TexcoordSlots slots{-1, -1};
   if (!mesh.uv0.empty()) {
     attributes["TEXCOORD_0"] =
@@ -91,7 +57,7 @@ struct Part {
 };
 
 json primitive(Glb& glb, MaterialBook& book, const scene::Scene& scene, const scene::Mesh& mesh,
-               Part part, const Vertices& vertices, bool lightmapped) {
+               Part part, const LightmapVertices& vertices, bool lightmapped) {
   json attributes = json::object();
   attributes["POSITION"] =
       append_accessor(glb, std::span<const Vec3>(picked(mesh.positions, vertices.source)));
@@ -136,10 +102,10 @@ size_t append_mesh(Glb& glb, MaterialBook& book, const scene::Scene& scene, cons
     triangles_of[known->second].push_back(t);
   }
 
-  Splitter splitter(mesh.positions.size());
+  VertexSplitter splitter(mesh.positions.size());
   json primitives = json::array();
   for (size_t k = 0; k < parts.size(); ++k) {
-    Vertices vertices;
+    LightmapVertices vertices;
     for (const uint32_t t : triangles_of[k])
       for (size_t c = 0; c < 3; ++c) {
         const Vec2 place = lightmap.uv.empty() ? Vec2{} : lightmap.uv[t][c];
@@ -147,7 +113,7 @@ size_t append_mesh(Glb& glb, MaterialBook& book, const scene::Scene& scene, cons
       }
     primitives.push_back(
         primitive(glb, book, scene, mesh, parts[k], vertices, !lightmap.uv.empty()));
-    splitter.start_next_primitive(vertices);
+    splitter.start_next_part(vertices);
   }
   json out = {{"primitives", std::move(primitives)}};
   if (!mesh.name.empty()) out["name"] = mesh.name;

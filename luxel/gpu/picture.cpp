@@ -150,28 +150,23 @@ Result<Picture> picture_with(Commands& commands, PictureParams params,
   params.usage |= VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
                   VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   LUXEL_TRY(Picture out, make_picture(device, params, what));
-  LUXEL_TRY(const Buffer staging, buffer_with(device, pixels, what));
-  LUXEL_TRY_STATUS(commands.run([&](VkCommandBuffer buffer) {
-    change_layout(device, buffer, out, VK_IMAGE_LAYOUT_UNDEFINED,
-                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    const VkBufferImageCopy copy = whole(out);
-    device.vk.vkCmdCopyBufferToImage(buffer, staging.buffer.get(), out.image.get(),
-                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-    fill_levels(device, buffer, out);
-  }));
+  LUXEL_TRY_STATUS(put_pixels(commands, out, pixels, what));
   return out;
 }
 
-void copy_pixels(const Device& device, VkCommandBuffer commands, const Buffer& staging,
-                 const Picture& picture) {
-  LUXEL_CHECK(picture.params.levels == 1 && staging.size == bytes_of(picture.params));
-  change_layout(device, commands, picture, VK_IMAGE_LAYOUT_UNDEFINED,
-                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-  const VkBufferImageCopy copy = whole(picture);
-  device.vk.vkCmdCopyBufferToImage(commands, staging.buffer.get(), picture.image.get(),
-                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-  change_layout(device, commands, picture, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+Status put_pixels(Commands& commands, const Picture& picture, std::span<const std::byte> pixels,
+                  std::string_view what) {
+  LUXEL_CHECK(pixels.size() == bytes_of(picture.params));
+  const Device& device = commands.device();
+  LUXEL_TRY(const Buffer staging, buffer_with(device, pixels, what));
+  return commands.run([&](VkCommandBuffer buffer) {
+    change_layout(device, buffer, picture, VK_IMAGE_LAYOUT_UNDEFINED,
+                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    const VkBufferImageCopy copy = whole(picture);
+    device.vk.vkCmdCopyBufferToImage(buffer, staging.buffer.get(), picture.image.get(),
+                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    fill_levels(device, buffer, picture);
+  });
 }
 
 Result<std::vector<std::byte>> pixels_of(Commands& commands, const Picture& picture) {

@@ -42,17 +42,17 @@ uint32_t full_levels(uint32_t width, uint32_t height);
 Result<Picture> picture_with(Commands& commands, PictureParams params,
                              std::span<const std::byte> pixels, std::string_view what);
 
+/// Pixels of a picture that picture_with() made, instead of those that it has. Nothing may still
+/// look it up. Errors: no memory for the copy, the device is lost.
+Status put_pixels(Commands& commands, const Picture& picture, std::span<const std::byte> pixels,
+                  std::string_view what);
+
 /// A colour image, all its mipmaps, goes from one use to another, after all that came before.
 void change_layout(const Device& device, VkCommandBuffer commands, VkImage image,
                    VkImageLayout from, VkImageLayout to);
 /// A picture, which may be of depth, goes from one use to another.
 void change_layout(const Device& device, VkCommandBuffer commands, const Picture& picture,
                    VkImageLayout from, VkImageLayout to);
-
-/// Records that a picture of one level, which shaders may look up, gets other pixels, as
-/// picture_with() takes them. They are in `staging` until it is done.
-void copy_pixels(const Device& device, VkCommandBuffer commands, const Buffer& staging,
-                 const Picture& picture);
 
 /// The pixels of level 0, which is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL; whole rows, top first.
 Result<std::vector<std::byte>> pixels_of(Commands& commands, const Picture& picture);

@@ -7,7 +7,7 @@
 #include <span>
 #include <tuple>
 
-#include "luxel/image/half.h"
+#include "luxel/base/check.h"
 
 namespace luxel::view {
 namespace {
@@ -16,10 +16,10 @@ namespace {
 struct DeviceVertex {
   Vec3 position;
   Vec2 uv0, uv1;
-  Vec2 uv_behind;  ///< uv1 of the surface's other side
+  Vec2 light, light_behind;  ///< places in the lightmap: its own, that of the other side
   Rgb color;
 };
-static_assert(sizeof(DeviceVertex) == 48);
+static_assert(sizeof(DeviceVertex) == 56);
 
 struct DeviceLookUp {
   Vec3 u{1, 0, 0}, v{0, 1, 0};
@@ -31,8 +31,8 @@ struct DeviceMaterial {
   float alpha = 1;
   Rgb emission;
   float metallic = 0;
-  float cutoff = 0;  ///< alpha below it is a hole
-  float light_scale = 1;
+  float cutoff = 0;   ///< alpha below it is a hole
+  uint32_t page = 0;  ///< of the lightmap
   uint32_t unlit = 0;
   Rgb through_color;  ///< of light that is scattered through
   float through = 0;
@@ -91,11 +91,9 @@ class Pictures {
                              wrap(ref.wrap_v)});
   }
 
-  /// Linear light as halves; `scale` brings it back. `around`: how the width goes on at its end.
-  Result<gpu::Binding> light(const image::Image& image, VkSamplerAddressMode around,
-                             std::string_view what, float& scale) {
-    const image::HalfImage half = image::to_half(image);
-    scale = half.scale;
+  /// Linear light. `around`: how the width goes on at its end.
+  Result<gpu::Binding> light(const image::HalfImage& half, VkSamplerAddressMode around,
+                             std::string_view what) {
     gpu::PictureParams params;
     params.format = VK_FORMAT_R16G16B16A16_SFLOAT;
     params.width = uint32_t(half.width), params.height = uint32_t(half.height);
@@ -129,9 +127,20 @@ class Pictures {
   std::map<std::tuple<VkFilter, VkSamplerAddressMode, VkSamplerAddressMode>, VkSampler> samplers_;
 };
 
-DeviceVertex vertex_of(const scene::Mesh& mesh, uint32_t i) {
-  const Vec2 uv1 = mesh.uv1.empty() ? Vec2{} : mesh.uv1[i];
-  return {mesh.positions[i], mesh.uv0.empty() ? Vec2{} : mesh.uv0[i], uv1, uv1,
+/// A mesh and the places of its vertices in the lightmap; none where there are none.
+struct LitMesh {
+  const scene::Mesh& mesh;
+  std::span<const Vec2> light_uv;
+};
+
+DeviceVertex vertex_of(const LitMesh& lit, uint32_t i) {
+  const scene::Mesh& mesh = lit.mesh;
+  const Vec2 light = lit.light_uv.empty() ? Vec2{} : lit.light_uv[i];
+  return {mesh.positions[i],
+          mesh.uv0.empty() ? Vec2{} : mesh.uv0[i],
+          mesh.uv1.empty() ? Vec2{} : mesh.uv1[i],
+          light,
+          light,
           mesh.colors.empty() ? Rgb{1, 1, 1} : mesh.colors[i]};
 }
 
@@ -143,48 +152,52 @@ struct Triangles {
 
 /// The corners of a triangle that has another side, (a, c, b) of it: each becomes a vertex of its
 /// own, which knows where light lies on that side.
-void add_two_sided(const scene::Mesh& mesh, uint32_t triangle, Triangles& out) {
-  const auto& front = mesh.triangles[triangle];
-  const auto& back = mesh.triangles[mesh.other_side[triangle]];
+void add_two_sided(const LitMesh& lit, uint32_t triangle, Triangles& out) {
+  const auto& front = lit.mesh.triangles[triangle];
+  const auto& back = lit.mesh.triangles[lit.mesh.other_side[triangle]];
   for (const size_t corner : {0, 1, 2}) {
-    DeviceVertex vertex = vertex_of(mesh, front[corner]);
-    vertex.uv_behind = mesh.uv1[back[(3 - corner) % 3]];
+    DeviceVertex vertex = vertex_of(lit, front[corner]);
+    vertex.light_behind = lit.light_uv[back[(3 - corner) % 3]];
     out.indices.push_back(uint32_t(out.vertices.size()));
     out.vertices.push_back(vertex);
   }
 }
 
 /// A mesh's triangles by their materials.
-std::vector<DrawRange> add_mesh(const scene::Scene& scene, const scene::Mesh& mesh,
-                                Triangles& out) {
+std::vector<DrawRange> add_mesh(const scene::Scene& scene, const LitMesh& lit, Triangles& out) {
+  const scene::Mesh& mesh = lit.mesh;
   std::vector<uint32_t> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
     return mesh.triangle_material[a] < mesh.triangle_material[b];
   });
   const auto first_vertex = uint32_t(out.vertices.size());
-  for (uint32_t i = 0; i < mesh.positions.size(); ++i) out.vertices.push_back(vertex_of(mesh, i));
+  for (uint32_t i = 0; i < mesh.positions.size(); ++i) out.vertices.push_back(vertex_of(lit, i));
   std::vector<DrawRange> ranges;
   for (const uint32_t t : order) {
     const uint32_t material = mesh.triangle_material[t];
     if (ranges.empty() || ranges.back().material != material)
       ranges.push_back({uint32_t(out.indices.size()), 0, material});
     ranges.back().indices += 3;
-    const bool has_other_side = !mesh.other_side.empty() && !mesh.uv1.empty() &&
+    const bool has_other_side = !mesh.other_side.empty() && !lit.light_uv.empty() &&
                                 mesh.other_side[t] != scene::kNone &&
                                 scene.materials[material].diffuse_transmission > 0;
     if (has_other_side)
-      add_two_sided(mesh, t, out);
+      add_two_sided(lit, t, out);
     else
       for (const uint32_t corner : mesh.triangles[t]) out.indices.push_back(first_vertex + corner);
   }
   return ranges;
 }
 
-Status put_meshes(const gpu::Device& device, const scene::Scene& scene, DeviceScene& out) {
+Status put_meshes(const gpu::Device& device, const scene::Scene& scene,
+                  std::span<const std::vector<Vec2>> light_uv, DeviceScene& out) {
   Triangles triangles;
-  for (const scene::Mesh& mesh : scene.meshes)
-    out.ranges.push_back(add_mesh(scene, mesh, triangles));
+  for (size_t m = 0; m < scene.meshes.size(); ++m) {
+    const scene::Mesh& mesh = scene.meshes[m];
+    const LitMesh lit{mesh, light_uv.empty() ? mesh.uv1 : light_uv[m]};
+    out.ranges.push_back(add_mesh(scene, lit, triangles));
+  }
   std::vector<std::array<float, 12>> rows;
   for (const scene::Instance& instance : scene.instances) {
     const Mat34& m = instance.world_from_object;
@@ -201,12 +214,12 @@ Status put_meshes(const gpu::Device& device, const scene::Scene& scene, DeviceSc
   return {};
 }
 
-DeviceMaterial device_material(const scene::Material& m, float light_scale) {
+DeviceMaterial device_material(const scene::Material& m, size_t page) {
   DeviceMaterial out;
   out.base_color = m.base_color, out.alpha = m.alpha;
   out.emission = m.emission, out.metallic = m.metallic;
   out.cutoff = m.alpha_mode == scene::AlphaMode::mask ? m.alpha_cutoff : 0;
-  out.light_scale = light_scale;
+  out.page = uint32_t(page);
   out.unlit = m.unlit;
   out.through_color = m.diffuse_transmission_color, out.through = m.diffuse_transmission;
   out.map = look_up_of(m.base_color_texture);
@@ -217,29 +230,51 @@ DeviceMaterial device_material(const scene::Material& m, float light_scale) {
   return out;
 }
 
+std::span<float> scales_of(const DeviceScene& scene) {
+  return {reinterpret_cast<float*>(scene.light_scales.mapped),
+          scene.light_scales.size / sizeof(float)};
+}
+
+/// The bindings of each page's light, of either picture.
+using Lights = std::vector<std::array<gpu::Binding, 2>>;
+Result<Lights> put_lights(const gpu::Device& device, Pictures& pictures,
+                          std::span<const image::Image> pages, bool changes, DeviceScene& out) {
+  Lights lights;
+  LUXEL_TRY(out.light_scales, gpu::make_buffer(device, pages.size() * 2 * sizeof(float),
+                                               gpu::Access::from_host, "the scales of light"));
+  for (const image::Image& page : pages) {
+    const image::HalfImage half = image::to_half(page);
+    std::array<gpu::Binding, 2>& light = lights.emplace_back();
+    for (const size_t which : {0, 1}) {
+      if (which == 0 || changes) {
+        LUXEL_TRY(light[which],
+                  pictures.light(half, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, "the lightmap"));
+      } else {
+        light[1] = light[0];
+      }
+      out.lights[which].push_back(light[which].picture);
+      scales_of(out)[2 * (lights.size() - 1) + which] = half.scale;
+    }
+  }
+  return lights;
+}
+
 /// Each material with its pictures and the lightmap of its page.
 Status put_materials(const gpu::Device& device, Pictures& pictures, const scene::Scene& scene,
-                     const pipeline::LightmapPages& lightmaps, DeviceScene& out) {
-  std::vector<gpu::Binding> lights;
-  std::vector<float> scales(lightmaps.pictures.size(), 1);
-  for (size_t i = 0; i < lightmaps.pictures.size(); ++i) {
-    LUXEL_TRY(const gpu::Binding light,
-              pictures.light(lightmaps.pictures[i], VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                             "the lightmap", scales[i]));
-    lights.push_back(light);
-  }
+                     std::span<const size_t> page_of_material, const Lights& lights,
+                     DeviceScene& out) {
   std::vector<DeviceMaterial> materials;
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const scene::Material& m = scene.materials[i];
-    const size_t page = lightmaps.of_material[i];
-    materials.push_back(device_material(m, scales[page]));
+    const size_t page = page_of_material[i];
+    materials.push_back(device_material(m, page));
     LUXEL_TRY(const gpu::Binding map, pictures.texture(m.base_color_texture, false));
     LUXEL_TRY(const gpu::Binding metal, pictures.texture(m.metallic_texture, true));
     LUXEL_TRY(const gpu::Binding glow, pictures.texture(m.emission_texture, false));
     LUXEL_TRY(const gpu::Binding share, pictures.texture(m.diffuse_transmission_texture, true));
     LUXEL_TRY(const gpu::Binding tint,
               pictures.texture(m.diffuse_transmission_color_texture, false));
-    out.bindings.push_back({lights[page], map, metal, glow, share, tint});
+    out.bindings.push_back({lights[page][0], map, metal, glow, share, tint, lights[page][1]});
     out.is_double_sided.push_back(m.double_sided);
   }
   LUXEL_TRY(out.materials, gpu::buffer_with(device, bytes_of(materials), "the scene's materials"));
@@ -255,8 +290,10 @@ Status put_surroundings(Pictures& pictures, const scene::Scene& scene, DeviceSce
   for (int y = 0; y < map.height; ++y)
     for (int x = 0; x < map.width; ++x)
       image.set_rgb(x, y, map.radiance[size_t(y) * size_t(map.width) + size_t(x)]);
-  LUXEL_TRY(out.surroundings, pictures.light(image, VK_SAMPLER_ADDRESS_MODE_REPEAT,
-                                             "the surroundings", out.surroundings_scale));
+  const image::HalfImage half = image::to_half(image);
+  out.surroundings_scale = half.scale;
+  LUXEL_TRY(out.surroundings,
+            pictures.light(half, VK_SAMPLER_ADDRESS_MODE_REPEAT, "the surroundings"));
   out.rotation_rad = map.rotation_rad;
   return {};
 }
@@ -264,14 +301,30 @@ Status put_surroundings(Pictures& pictures, const scene::Scene& scene, DeviceSce
 }  // namespace
 
 Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
-                                  const pipeline::LightmapPages& lightmaps) {
+                                  const pipeline::LightmapPages& lightmaps,
+                                  const DeviceSceneParams& params) {
   DeviceScene out;
   out.bounds = scene::world_bounds(scene);
   Pictures pictures(commands, scene, out);
-  LUXEL_TRY_STATUS(put_meshes(commands.device(), scene, out));
-  LUXEL_TRY_STATUS(put_materials(commands.device(), pictures, scene, lightmaps, out));
+  LUXEL_TRY_STATUS(put_meshes(commands.device(), scene, params.light_uv, out));
+  LUXEL_TRY(const Lights lights,
+            put_lights(commands.device(), pictures, lightmaps.pictures, params.light_changes, out));
+  LUXEL_TRY_STATUS(
+      put_materials(commands.device(), pictures, scene, lightmaps.of_material, lights, out));
   LUXEL_TRY_STATUS(put_surroundings(pictures, scene, out));
   return out;
+}
+
+Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> pages, uint32_t which,
+                 DeviceScene& scene) {
+  LUXEL_CHECK(pages.size() == scene.lights[which].size());
+  LUXEL_CHECK(scene.lights[0] != scene.lights[1]);
+  for (size_t page = 0; page < pages.size(); ++page) {
+    LUXEL_TRY_STATUS(gpu::put_pixels(commands, *scene.lights[which][page],
+                                     bytes_of(pages[page].data), "the lightmap"));
+    scales_of(scene)[2 * page + which] = pages[page].scale;
+  }
+  return {};
 }
 
 }  // namespace luxel::view

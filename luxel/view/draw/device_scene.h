@@ -1,18 +1,22 @@
 // A baked scene on a graphics device.
 #pragma once
 
+#include <array>
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "luxel/gpu/pipeline.h"
+#include "luxel/image/half.h"
 #include "luxel/pipeline/bake/baked_folder.h"
 #include "luxel/scene/scene.h"
 
 namespace luxel::view {
 
 /// What the shaders of surfaces look up, in the order of their bindings: E, the base colour, the
-/// metallic factor, emission, the share of light that is scattered through and its colour.
-inline constexpr uint32_t kLookUps = 6;
+/// metallic factor, emission, the share of light that is scattered through and its colour, and the
+/// second picture of E.
+inline constexpr uint32_t kLookUps = 7;
 
 /// Triangles of one material in one mesh: a range of the indices.
 struct DrawRange {
@@ -32,6 +36,12 @@ struct DeviceScene {
   std::vector<uint8_t> is_mirrored;            ///< of each instance: its triangles are turned round
   std::vector<uint8_t> is_double_sided;        ///< of each material
 
+  /// E per page of the lightmap, in two pictures: where light changes, the one fades into the
+  /// other. Elsewhere they are one.
+  std::array<std::vector<const gpu::Picture*>, 2> lights;
+  gpu::Buffer light_scales;  ///< per page, for either picture: E = scale * picture
+  float second_light = 0;    ///< the share of the second pictures in what is shown
+
   std::deque<gpu::Picture> pictures;  ///< where they lie when others are added
   std::vector<gpu::OwnedSampler> samplers;
   /// For each material what its kLookUps bindings are.
@@ -44,8 +54,20 @@ struct DeviceScene {
   gpu::Binding surroundings;  ///< white where there is no map
 };
 
+struct DeviceSceneParams {
+  bool light_changes = false;  ///< put_light() will be called
+  /// Per mesh and vertex, its place in the lightmap; empty: uv1 is.
+  std::span<const std::vector<Vec2>> light_uv{};
+};
+
 /// Errors: no memory on the device, a picture larger than the device's may be.
 Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
-                                  const pipeline::LightmapPages& lightmaps);
+                                  const pipeline::LightmapPages& lightmaps,
+                                  const DeviceSceneParams& params = {});
+
+/// Puts E into the first (0) or the second (1) pictures of all pages. They have the sizes of those
+/// that the scene came with. Nothing may still draw the scene. Errors: no memory.
+Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> pages, uint32_t which,
+                 DeviceScene& scene);
 
 }  // namespace luxel::view

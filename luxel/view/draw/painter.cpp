@@ -24,12 +24,13 @@ constexpr VkDescriptorType kLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 // The push constants of the shaders, in scalar layout.
 struct SurfacePush {
   std::array<float, 16> clip_from_world;  ///< column by column
-  VkDeviceAddress vertices, materials, instances;
+  VkDeviceAddress vertices, materials, instances, light_scales;
   uint32_t instance = 0, material = 0;
   float exposure = 1;
   uint32_t show = 0;
+  float second_light = 0;
 };
-static_assert(sizeof(SurfacePush) == 104);
+static_assert(sizeof(SurfacePush) == 120);
 
 struct BehindPush {
   Vec3 forward, right, up;
@@ -98,6 +99,8 @@ void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Ca
   push.vertices = scene.vertices.address;
   push.materials = scene.materials.address;
   push.instances = scene.instances.address;
+  push.light_scales = scene.light_scales.address;
+  push.second_light = scene.second_light;
   for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance)
     for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {
       const bool is_mirrored = scene.is_mirrored[push.instance];

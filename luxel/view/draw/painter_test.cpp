@@ -111,6 +111,31 @@ TEST_F(PainterTest, SurfacesSendReflectedAndEmittedLight) {
   expect_radiance(middle_of(lit, frame), lit.scene.materials[0].base_color);
 }
 
+// Light that changes: a part of what was there and the rest of what comes, each with a scale of its
+// own, which halves have where the brightest differs.
+TEST_F(PainterTest, LightFadesIntoItsSecondPicture) {
+  const LitSquare lit;
+  DeviceSceneParams params;
+  params.light_changes = true;
+  auto scene = put_on_device(*commands_, lit.scene, lit.lightmaps, params);
+  ASSERT_TRUE(scene) << scene.error().message;
+  image::Image bright(2, 2, 4);
+  for (int i = 0; i < 4; ++i) bright.set_rgb(i % 2, i / 2, {5000, 3, 0});
+  const std::vector<image::HalfImage> pages{image::to_half(bright)};
+  ASSERT_TRUE(put_light(*commands_, pages, 1, *scene));
+  const auto painter = make_painter(*device_, *shaders_, *scene, kSide, kSide);
+  ASSERT_TRUE(painter) << painter.error().message;
+  Frame frame;
+  frame.camera = camera_at(3), frame.show = Show::light;
+  for (const float share : {0.0f, 0.25f, 1.0f}) {
+    scene->second_light = share;
+    const auto picture = painted_radiance(*commands_, {*shaders_, *painter, *scene}, frame);
+    ASSERT_TRUE(picture) << picture.error().message;
+    expect_radiance(picture->rgb(kSide / 2, kSide / 2),
+                    (Rgb{3, 3, 3} * (1 - share) + Rgb{5000, 3, 0} * share) * (1 / kPi));
+  }
+}
+
 // Metal reflects nothing diffusely, and no surface reflects more than 0.99.
 TEST_F(PainterTest, ReflectanceIsThatOfTheSolvers) {
   LitSquare lit;

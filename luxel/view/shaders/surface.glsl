@@ -5,7 +5,7 @@
 struct Vertex {
   vec3 position;
   vec2 uv0, uv1;
-  vec2 uv_behind;  // uv1 of the surface's other side
+  vec2 light, light_behind;  // places in the lightmap: its own, that of the other side
   vec3 color;
 };
 struct LookUp {
@@ -18,7 +18,7 @@ struct Material {
   vec3 emission;
   float metallic;
   float cutoff;
-  float light_scale;
+  uint page;  // of the lightmap
   uint unlit;
   vec3 through_color;  // of light that is scattered through
   float through;
@@ -31,13 +31,16 @@ struct Instance {
 layout(buffer_reference, scalar) readonly buffer Vertices { Vertex at[]; };
 layout(buffer_reference, scalar) readonly buffer Materials { Material at[]; };
 layout(buffer_reference, scalar) readonly buffer Instances { Instance at[]; };
+layout(buffer_reference, scalar) readonly buffer LightScales { vec2 at[]; };  // of pages
 
 layout(push_constant, scalar) uniform Push {
   mat4 clip_from_world;
   Vertices vertices;
   Materials materials;
   Instances instances;
+  LightScales light_scales;
   uint instance, material;
   float exposure;
   uint show;
+  float second_light;  // its share
 };

@@ -22,8 +22,8 @@ void main() {
   Material m = materials.at[material];
   vec4 p = vec4(v.position, 1);
   gl_Position = clip_from_world * vec4(dot(i.row0, p), dot(i.row1, p), dot(i.row2, p), 1);
-  at_light = v.uv1;
-  at_light_behind = v.uv_behind;
+  at_light = v.light;
+  at_light_behind = v.light_behind;
   at_map = looked_up(m.map, v);
   at_metal = looked_up(m.metal, v);
   at_glow = looked_up(m.glow, v);

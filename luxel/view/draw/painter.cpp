@@ -24,7 +24,7 @@ constexpr VkDescriptorType kLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 // The push constants of the shaders, in scalar layout.
 struct SurfacePush {
   std::array<float, 16> clip_from_world;  ///< column by column
-  VkDeviceAddress vertices, materials, instances, light_scales;
+  VkDeviceAddress vertices, materials, instances, light_now;
   uint32_t instance = 0, material = 0;
   float exposure = 1;
   uint32_t show = 0;
@@ -99,7 +99,7 @@ void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Ca
   push.vertices = scene.vertices.address;
   push.materials = scene.materials.address;
   push.instances = scene.instances.address;
-  push.light_scales = scene.light_scales.address;
+  push.light_now = scene.light_now.address;
   push.second_light = scene.second_light;
   for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance)
     for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {
@@ -156,6 +156,7 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   SurfacePush surface{};
   surface.clip_from_world = clip_from_world(camera, scene.bounds);
   surface.exposure = frame.exposure, surface.show = show;
+  light_now(scene).eye = camera.eye;
   draw_surfaces(device, commands, canvas, surface);
   const BehindPush behind{camera.forward,
                           camera.orthographic ? Vec3{} : camera.right,

@@ -13,6 +13,7 @@
 #include "luxel/view/draw/painter.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
+#include "luxel/view/relight/draw_lxr.h"
 
 namespace {
 
@@ -74,14 +75,20 @@ Status show(const Options& options) {
   return view_window::show_in_window(bake, params);
 }
 
-/// One picture of the bake, without a window.
-Status draw_offscreen(const Options& options) {
-  LUXEL_TRY_STATUS(check_output_file(options.screenshot));
-  LUXEL_TRY(const std::optional<view::Play> events, events_of(options));
-  gpu::DeviceParams params;
-  params.name = options.device;
-  LUXEL_TRY(const std::unique_ptr<gpu::Device> device, gpu::Device::open(params));
-  LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device));
+/// One picture of an .lxr file after what is played.
+Result<image::Image8> picture_of_lxr(const Options& options,
+                                     const std::optional<view::Play>& events,
+                                     gpu::Commands& commands) {
+  LUXEL_TRY(const std::unique_ptr<view::OpenedLxr> opened, view::open_lxr(options.subject));
+  const int width = options.width ? options.width : view::kLxrWidth;
+  const int height = options.height ? options.height : view::kLxrHeight;
+  return view::draw_lxr(commands, *opened, events, options.play.string(), width, height);
+}
+
+/// One picture of a bake after what is played.
+Result<image::Image8> picture_of_bake(const Options& options,
+                                      const std::optional<view::Play>& events,
+                                      gpu::Commands& commands) {
   LUXEL_TRY(const view::OpenedBake bake, view::open_bake(options.subject));
   print_warnings(bake);
   const int width = options.width ? options.width : bake.width;
@@ -89,10 +96,23 @@ Status draw_offscreen(const Options& options) {
   LUXEL_TRY(const view::Frame frame, frame_to_draw(events, bake, width, height));
   LUXEL_TRY(const view::DeviceScene scene,
             view::put_on_device(commands, bake.scene, bake.lightmaps));
-  LUXEL_TRY(const view::Shaders shaders, view::make_shaders(*device));
-  LUXEL_TRY(const view::Painter painter,
-            view::make_painter(*device, shaders, scene, uint32_t(width), uint32_t(height)));
-  LUXEL_TRY(const image::Image8 picture, view::painted(commands, {shaders, painter, scene}, frame));
+  LUXEL_TRY(const view::Shaders shaders, view::make_shaders(commands.device()));
+  LUXEL_TRY(const view::Painter painter, view::make_painter(commands.device(), shaders, scene,
+                                                            uint32_t(width), uint32_t(height)));
+  return view::painted(commands, {shaders, painter, scene}, frame);
+}
+
+/// One picture without a window.
+Status draw_offscreen(const Options& options) {
+  LUXEL_TRY_STATUS(check_output_file(options.screenshot));
+  LUXEL_TRY(const std::optional<view::Play> events, events_of(options));
+  gpu::DeviceParams params;
+  params.name = options.device;
+  LUXEL_TRY(const std::unique_ptr<gpu::Device> device, gpu::Device::open(params));
+  LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device));
+  LUXEL_TRY(const image::Image8 picture, view::is_lxr(options.subject)
+                                             ? picture_of_lxr(options, events, commands)
+                                             : picture_of_bake(options, events, commands));
   LUXEL_TRY_STATUS(write_file_atomically(options.screenshot, image::encode_png(picture)));
   std::fprintf(stderr, "wrote %s, drawn by %s\n", options.screenshot.string().c_str(),
                device->name.c_str());

@@ -25,4 +25,15 @@ std::vector<Rgb> glowing(const Lamps& lamps) {
   return out;
 }
 
+Rgb emission_now(const scene::Material& material, const Lamps& now, const Lamps& baked) {
+  const auto channel = [](float own, float was, float is) { return was > 0 ? own / was * is : is; };
+  for (size_t m = 0; m < now.glows.size(); ++m) {
+    if (now.glows[m].name != material.name) continue;
+    const Rgb own = material.emission, was = baked.glows[m].radiance;
+    const Rgb is = now.glows[m].is_on ? now.glows[m].radiance : Rgb{};
+    return {channel(own.x, was.x, is.x), channel(own.y, was.y, is.y), channel(own.z, was.z, is.z)};
+  }
+  return material.emission;
+}
+
 }  // namespace luxel::view

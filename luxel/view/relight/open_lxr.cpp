@@ -12,7 +12,7 @@ namespace luxel::view {
 namespace {
 
 /// Small, and enough to see how bright the scene is.
-constexpr int kFirstWidth = 160, kFirstHeight = 120;
+constexpr int kFirstWidth = kLxrWidth / 6, kFirstHeight = kLxrHeight / 6;
 
 Status check_texels(const matrix::RelightData& data, const std::string& name) {
   if (!data.scene_glb.empty() && data.target.kind == matrix::Target::Kind::texels) return {};
@@ -59,11 +59,6 @@ Result<std::unique_ptr<OpenedLxr>> open_lxr(const std::filesystem::path& file) {
   LUXEL_TRY(out->first.camera, pipeline::choose_camera({}, out->scene, tracer, name));
   LUXEL_TRY(out->first.exposure, first_exposure(*out, tracer));
   return out;
-}
-
-void set_glow(const Glow& glow, scene::Scene& scene) {
-  for (scene::Material& material : scene.materials)
-    if (material.name == glow.name) material.emission = glow.is_on ? glow.radiance : Rgb{};
 }
 
 }  // namespace luxel::view

@@ -18,11 +18,11 @@ struct OpenedLxr {
   Frame first;  ///< what is shown first
 };
 
+/// The size of the first picture, where none is asked for.
+inline constexpr int kLxrWidth = 960, kLxrHeight = 720;
+
 /// The light of the file's lamps is there at once. Errors: those of files; a file without texels to
 /// light or without its scene.
 Result<std::unique_ptr<OpenedLxr>> open_lxr(const std::filesystem::path& file);
-
-/// The scene's materials of this name glow as their entry in `lamps` says.
-void set_glow(const Glow& glow, scene::Scene& scene);
 
 }  // namespace luxel::view

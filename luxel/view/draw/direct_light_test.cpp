@@ -2,13 +2,11 @@
 // without a device.
 #include "luxel/view/draw/direct_light.h"
 
-#include <gmock/gmock.h>
-
 #include "luxel/scene/procedural.h"
 #include "luxel/solve/matrix/live_light.h"
 #include "luxel/trace/camera_rays.h"
 #include "luxel/trace/ray_tracer.h"
-#include "luxel/view/draw/painter.h"
+#include "luxel/view/draw/device_test_support.h"
 
 namespace luxel::view {
 namespace {
@@ -68,29 +66,8 @@ bool is_within(const std::vector<Pixel>& pixels, int x, int y, int around, float
   return true;
 }
 
-class DirectLightTest : public ::testing::Test {
+class DirectLightTest : public testing::OnDevice {
  protected:
-  void SetUp() override {
-    gpu::DeviceParams params;
-    params.validate = true;
-    auto opened = gpu::Device::open(params);
-    if (!opened) GTEST_SKIP() << opened.error().message;
-    device_ = std::move(*opened);
-    auto commands = gpu::Commands::make(*device_);
-    ASSERT_TRUE(commands) << commands.error().message;
-    commands_.emplace(std::move(*commands));
-    auto shaders = make_shaders(*device_);
-    ASSERT_TRUE(shaders) << shaders.error().message;
-    shaders_.emplace(std::move(*shaders));
-  }
-  void TearDown() override {
-    shaders_.reset();
-    commands_.reset();
-    if (device_) {
-      EXPECT_THAT(device_->messages(), ::testing::IsEmpty());
-    }
-  }
-
   /// Puts a scene on the device, without any light.
   void put(const scene::Scene& scene, uint32_t shadow_side) {
     pipeline::LightmapPages black;
@@ -121,9 +98,11 @@ class DirectLightTest : public ::testing::Test {
     return std::move(*picture);
   }
 
-  std::unique_ptr<gpu::Device> device_;
-  std::optional<gpu::Commands> commands_;
-  std::optional<Shaders> shaders_;
+  void TearDown() override {
+    direct_.reset(), scene_.reset();
+    OnDevice::TearDown();
+  }
+
   std::optional<DeviceScene> scene_;
   std::optional<DirectLight> direct_;
 };

@@ -25,8 +25,9 @@ std::optional<Button> button_of(const std::string& name) {
 }
 
 bool is_key(const std::string& name) {
-  return std::any_of(std::begin(kKeys), std::end(kKeys),
-                     [&](const KeyHelp& key) { return name == key.key; });
+  const auto is_it = [&](const KeyHelp& key) { return name == key.key; };
+  return std::any_of(std::begin(kKeys), std::end(kKeys), is_it) ||
+         std::any_of(std::begin(kLampKeys), std::end(kLampKeys), is_it);
 }
 
 /// Three numbers; none where one is not held. May throw json::exception.

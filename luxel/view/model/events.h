@@ -77,6 +77,9 @@ inline constexpr KeyHelp kKeys[] = {
     {"+", "brighter by half a stop"},
     {"-", "darker by half a stop"},
     {"0", "as bright as at first"},
+};
+/// Those of .lxr files.
+inline constexpr KeyHelp kLampKeys[] = {
     {"x", "move a lamp along x alone, or freely again"},
     {"y", "along y alone"},
     {"z", "along z alone"},

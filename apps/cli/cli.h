@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/cli/table_options.h"
+#include "apps/options/table_options.h"
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"

@@ -1,19 +1,23 @@
-// The `luxel-view` program: a bake in a window, or drawn by a graphics device without one.
+// The `luxel-view` program: a bake, or a scene while it is baked, in a window, or drawn by a
+// graphics device without one.
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <thread>
 
-#include "apps/view/window.h"
+#include "apps/options/bake_options.h"
+#include "apps/view/session.h"
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/image/codec.h"
 #include "luxel/pipeline/settings/version.h"
-#include "luxel/trace/ray_tracer.h"
 #include "luxel/view/draw/painter.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
 #include "luxel/view/relight/draw_lxr.h"
+#include "luxel/view/shown_scene.h"
 
 namespace {
 
@@ -22,10 +26,11 @@ using namespace luxel;
 constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kOutOfResource = 3;
 
 struct Options {
-  std::filesystem::path subject, screenshot, play;
+  std::filesystem::path subject, screenshot, play, frame_table;
   std::string size, device;
   bool offscreen = false;
   int width = 0, height = 0;  ///< 0: as preview.png
+  cli::BakeChoice choice;     ///< of a subject that is a scene
 };
 
 Status parse_size(Options& options) {
@@ -39,70 +44,124 @@ Status parse_size(Options& options) {
               "--size '{}' is not WIDTHxHEIGHT, as in 960x720, each up to {}", options.size, kMost);
 }
 
-/// The frame to draw: the first, or where a play gets to.
-Result<view::Frame> frame_to_draw(const std::optional<view::Play>& events,
-                                  const view::OpenedBake& bake, int width, int height) {
-  if (!events) return bake.first;
-  LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(bake.scene));
-  const view::PlaceSeen place_seen = view::place_seen_in(bake.scene, tracer, width, height);
-  view::Walk walk =
-      view::begin_walk(bake.first, scene::world_bounds(bake.scene), width, height, place_seen);
-  view::play(*events, place_seen, walk);
-  return walk.shown;
-}
-
 Result<std::optional<view::Play>> events_of(const Options& options) {
   if (options.play.empty()) return std::nullopt;
   return view::read_play(options.play);
 }
 
-void print_warnings(const view::OpenedBake& bake) {
-  for (const std::string& warning : bake.warnings)
+/// A scene, which is to be baked; everything else is an .lxr file or the folder of a bake.
+bool is_scene(const std::filesystem::path& subject) {
+  std::error_code ignored;
+  return !view::is_lxr(subject) && std::filesystem::is_regular_file(subject, ignored);
+}
+
+/// Errors: options of a bake beside a bake that is there.
+Status check_choice(const Options& options) {
+  const cli::BakeChoice& choice = options.choice;
+  std::string flag;
+  if (!choice.solver.empty()) flag = "--solver";
+  if (!choice.settings.empty()) flag = "--settings";
+  if (!choice.output.empty()) flag = "--output";
+  if (!choice.given.empty()) flag = choice.given.values[0].first;
+  if (is_scene(options.subject) || flag.empty()) return {};
+  return fail(ErrorCode::bad_setting, "{} is for a scene that is to be baked; {} is no such file",
+              flag, options.subject.string());
+}
+
+/// Those of `luxel bake`, but that a processor is left to the window, and a folder is chosen.
+Result<pipeline::BakeSettings> settings_of(const Options& options) {
+  cli::BakeChoice choice = options.choice;
+  choice.scene = options.subject;
+  if (choice.output.empty())
+    choice.output = std::filesystem::path("baked") / options.subject.stem();
+  LUXEL_TRY(pipeline::BakeSettings settings, cli::settings_of(choice));
+  if (!options.offscreen && !choice.given.has("--threads"))
+    settings.threads = std::max(1, int(std::thread::hardware_concurrency()) - 1);
+  return settings;
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings)
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
 Status show(const Options& options) {
-  if (!options.screenshot.empty()) LUXEL_TRY_STATUS(check_output_file(options.screenshot));
+  for (const auto& file : {options.screenshot, options.frame_table})
+    if (!file.empty()) LUXEL_TRY_STATUS(check_output_file(file));
   view_window::WindowParams params;
   LUXEL_TRY(params.play, events_of(options));
-  LUXEL_TRY(const view::OpenedBake bake, view::open_bake(options.subject));
-  print_warnings(bake);
   params.title = std::filesystem::absolute(options.subject).lexically_normal().filename().string();
   params.device = options.device;
-  params.width = options.width ? options.width : bake.width;
-  params.height = options.height ? options.height : bake.height;
-  params.screenshot = options.screenshot;
-  return view_window::show_in_window(bake, params);
+  params.screenshot = options.screenshot, params.frame_table = options.frame_table;
+  if (options.width > 0) params.width = options.width, params.height = options.height;
+  if (is_scene(options.subject)) {
+    LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
+    return view_window::bake_in_window(settings, params);
+  }
+  LUXEL_TRY(view::OpenedBake bake, view::open_bake(options.subject));
+  print_warnings(bake.warnings);
+  if (options.width == 0) params.width = bake.width, params.height = bake.height;
+  return view_window::show_in_window(std::move(bake), params);
+}
+
+/// What is to be drawn without a window: a bake that is there, or one that is made first.
+Result<view::ShownScene> shown_offscreen(const Options& options, gpu::Commands& commands) {
+  if (!is_scene(options.subject)) {
+    LUXEL_TRY(view::OpenedBake bake, view::open_bake(options.subject));
+    print_warnings(bake.warnings);
+    return view::bake_shown(commands, std::move(bake));
+  }
+  LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
+  const std::unique_ptr<view::LiveBake> live = view::LiveBake::begin(settings);
+  live->wait();
+  view::LiveNews news = live->take();
+  if (live->state() == view::LiveState::failed)
+    return fail(ErrorCode::bad_input, "{}", news.said.value_or("the bake failed"));
+  view::ShownScene out;
+  std::string said;
+  LUXEL_TRY_STATUS(view::take_news(std::move(news), commands, out, said).map([](bool) {}));
+  return out;
 }
 
 /// One picture of an .lxr file after what is played.
 Result<image::Image8> picture_of_lxr(const Options& options,
                                      const std::optional<view::Play>& events,
                                      gpu::Commands& commands) {
-  LUXEL_TRY(const std::unique_ptr<view::OpenedLxr> opened, view::open_lxr(options.subject));
-  const int width = options.width ? options.width : view::kLxrWidth;
-  const int height = options.height ? options.height : view::kLxrHeight;
-  return view::draw_lxr(commands, *opened, events, options.play.string(), width, height);
+  LUXEL_TRY(view::OpenedLxr opened, view::open_lxr(options.subject));
+  return view::draw_lxr(commands, opened,
+                        {options.width, options.height, events, options.play.string()});
+}
+
+/// The frame to draw: the first, or where a play gets to.
+view::Frame frame_to_draw(const std::optional<view::Play>& events, const view::ShownScene& shown,
+                          int width, int height) {
+  const view::ReadScene& read = *shown.read;
+  view::Frame first = read.first;
+  first.exposure = view::exposure(shown.fade);
+  if (!events) return first;
+  const view::PlaceSeen place_seen = view::place_seen_in(read.scene, *read.tracer, width, height);
+  view::Walk walk =
+      view::begin_walk(first, scene::world_bounds(read.scene), width, height, place_seen);
+  view::play(*events, place_seen, walk);
+  return walk.shown;
 }
 
 /// One picture of a bake after what is played.
 Result<image::Image8> picture_of_bake(const Options& options,
                                       const std::optional<view::Play>& events,
                                       gpu::Commands& commands) {
-  LUXEL_TRY(const view::OpenedBake bake, view::open_bake(options.subject));
-  print_warnings(bake);
-  const int width = options.width ? options.width : bake.width;
-  const int height = options.height ? options.height : bake.height;
-  LUXEL_TRY(const view::Frame frame, frame_to_draw(events, bake, width, height));
-  LUXEL_TRY(const view::DeviceScene scene,
-            view::put_on_device(commands, bake.scene, bake.lightmaps));
+  LUXEL_TRY(const view::ShownScene shown, shown_offscreen(options, commands));
+  const int width = options.width ? options.width : shown.read->width;
+  const int height = options.height ? options.height : shown.read->height;
+  const view::Frame frame = frame_to_draw(events, shown, width, height);
   LUXEL_TRY(const view::Shaders shaders, view::make_shaders(commands.device()));
+  const view::DeviceScene& scene = shown.device;
   LUXEL_TRY(const view::Painter painter, view::make_painter(commands.device(), shaders, scene,
                                                             uint32_t(width), uint32_t(height)));
   return view::painted(commands, {shaders, painter, scene}, frame);
 }
 
-/// One picture without a window.
+/// One picture, without a window.
 Status draw_offscreen(const Options& options) {
   LUXEL_TRY_STATUS(check_output_file(options.screenshot));
   LUXEL_TRY(const std::optional<view::Play> events, events_of(options));
@@ -127,22 +186,48 @@ int report(const Error& error) {
   return is_resource ? kOutOfResource : kBadInput;
 }
 
-int run(int argc, char** argv) {
-  Options options;
-  CLI::App app{"Look at a bake in a window, drawn by the graphics card", "luxel-view"};
-  app.set_version_flag("--version", std::string("luxel-view ") + pipeline::kVersion);
-  app.add_option("FOLDER", options.subject, "What `luxel bake` left")->required();
+void add_own(CLI::App& app, Options& options) {
+  app.add_option("SUBJECT", options.subject,
+                 "A scene, which is baked while you look, with all options of `luxel bake`; or the "
+                 "folder that a bake left")
+      ->required();
+  app.add_option("-o,--output", options.choice.output,
+                 "Where 'save' puts the bake of a scene (baked/NAME)")
+      ->type_name("FOLDER");
   auto* screenshot = app.add_option("--screenshot", options.screenshot,
                                     "The picture to write: .png; of a window at the end of --play");
   app.add_flag("--offscreen", options.offscreen, "Draw one picture, without a window")
       ->needs(screenshot);
-  app.add_option("--play", options.play, "Mouse and keys to play: .json; then the window closes")
-      ->type_name("FILE");
+  auto* play = app.add_option("--play", options.play,
+                              "Mouse and keys to play: .json; then the window closes")
+                   ->type_name("FILE");
+  app.add_option("--frame-times", options.frame_table,
+                 "Milliseconds and brightness of each frame of --play: .csv")
+      ->type_name("FILE")
+      ->needs(play)
+      ->excludes("--offscreen");
   app.add_option("--size", options.size, "Size of the picture or window (that of preview.png)")
       ->type_name("WxH");
   app.add_option("--device", options.device,
                  "A part of the graphics device's name (the fastest kind)")
       ->type_name("NAME");
+}
+
+/// They are many, and `luxel bake --help` lists them.
+void add_hidden_bake_options(CLI::App& app, cli::BakeChoice& choice) {
+  const std::vector<CLI::Option*> before = app.get_options();
+  cli::add_bake_settings(app, choice);
+  cli::add_bake_table(app, choice.given);
+  for (CLI::Option* option : app.get_options())
+    if (std::ranges::find(before, option) == before.end()) option->group("");
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Look at light in a window, drawn by the graphics card", "luxel-view"};
+  app.set_version_flag("--version", std::string("luxel-view ") + pipeline::kVersion);
+  add_own(app, options);
+  add_hidden_bake_options(app, options.choice);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -155,6 +240,7 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   if (const Status size = parse_size(options); !size) return report(size.error());
+  if (const Status choice = check_choice(options); !choice) return report(choice.error());
   const Status done = options.offscreen ? draw_offscreen(options) : show(options);
   return done ? kDone : report(done.error());
 }

@@ -131,6 +131,7 @@ class ImGuiUi : public Ui {
     ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
     ImGui::Begin(panel.title.c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::TextUnformatted(panel.about.c_str());
+    if (panel.bake) lay_out_bake(*panel.bake);
     ImGui::RadioButton("light and colour", &panel.show, 0);
     ImGui::RadioButton("light", &panel.show, 1);
     ImGui::RadioButton("colour", &panel.show, 2);
@@ -143,9 +144,22 @@ class ImGuiUi : public Ui {
         ImGui::PopID();
       }
     ImGui::Text("%.1f ms per frame", double(panel.milliseconds));
-    if (!panel.message.empty()) ImGui::TextUnformatted(panel.message.c_str());
+    if (!panel.message.empty()) {
+      ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
+      ImGui::TextUnformatted(panel.message.c_str());
+      ImGui::PopTextWrapPos();
+    }
     if (ImGui::Button("keys (F1)")) panel.keys_open = !panel.keys_open;
     ImGui::End();
+  }
+
+  static void lay_out_bake(BakeLines& bake) {
+    ImGui::ProgressBar(bake.share, {ImGui::GetFontSize() * 18, 0}, bake.state.c_str());
+    for (const std::string& line : bake.lines) ImGui::TextUnformatted(line.c_str());
+    if (bake.can_stop) bake.asks_to_stop = ImGui::Button("stop");
+    if (bake.can_go_on) bake.asks_to_go_on = ImGui::Button("go on");
+    if (bake.can_save) bake.asks_to_save = ImGui::Button("save");
+    ImGui::Separator();
   }
 
   static void lay_out_keys(Panel& panel) {

@@ -5,8 +5,10 @@
 #include <vulkan/vulkan_core.h>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 struct GLFWwindow;
 
@@ -27,6 +29,15 @@ struct KeyLine {
   const char *key, *does;
 };
 
+/// What the panel shows of a bake that is being made.
+struct BakeLines {
+  std::string state;  ///< the stage, or how it ended
+  float share = 0;    ///< of the stage that is done
+  std::vector<std::string> lines;
+  bool can_stop = false, can_go_on = false, can_save = false;
+  bool asks_to_stop = false, asks_to_go_on = false, asks_to_save = false;  ///< changed
+};
+
 /// What the panel shows, and what of it the user may change.
 struct Panel {
   std::string title;       ///< of the scene
@@ -38,7 +49,8 @@ struct Panel {
   std::span<const KeyLine> keys;
   std::span<const std::string> views;  ///< of the scene's cameras
   int view = -1;                       ///< changed: the one that was asked for; -1: none
-  std::string message;                 ///< what was done last
+  std::optional<BakeLines> bake;
+  std::string message;  ///< what was done last
 };
 
 class Ui {

@@ -1,26 +1,49 @@
-// A bake in a window.
+// A window of the display, and what the user does in it.
 #pragma once
 
+#include <array>
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "luxel/base/result.h"
 #include "luxel/view/model/events.h"
-#include "luxel/view/open_bake.h"
+
+struct GLFWwindow;
 
 namespace luxel::view_window {
 
-struct WindowParams {
-  std::string title;
-  std::string device;  ///< gpu::DeviceParams::name
-  int width = 960, height = 720;
-  std::optional<view::Play> play;    ///< then the window closes
-  std::filesystem::path screenshot;  ///< written at the end of a play; empty: none
-};
+/// GLFW itself and one window.
+class Window {
+ public:
+  /// Errors (no_device): no display, no Vulkan.
+  static Result<std::unique_ptr<Window>> open(const std::string& title, int width, int height);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
 
-/// Shows a bake until the window is closed. Errors (no_device): no display, no device that shows
-/// pictures in a window; those of files.
-Status show_in_window(const view::OpenedBake& bake, const WindowParams& params);
+  GLFWwindow* get() const { return window_; }
+  /// What the user did since the last call.
+  std::vector<view::Event> taken() { return std::exchange(events_, {}); }
+  /// Whether something has happened since the last call that may change the picture.
+  bool has_changed() { return std::exchange(has_changed_, false) || !events_.empty(); }
+  bool asks_for_keys() { return std::exchange(asks_for_keys_, false); }
+  bool asks_for_screenshot() { return std::exchange(asks_for_screenshot_, false); }
+  std::array<int, 2> pixels() const;
+  /// That Vulkan must have to draw into windows.
+  static std::vector<std::string> extensions();
+
+ private:
+  Window() = default;
+  static Window& of(GLFWwindow* window);
+  void listen();
+
+  GLFWwindow* window_ = nullptr;
+  bool is_open_ = false, has_changed_ = true;
+  bool asks_for_keys_ = false, asks_for_screenshot_ = false;
+  std::vector<view::Event> events_;
+};
 
 }  // namespace luxel::view_window

@@ -150,6 +150,15 @@ void Progress::clean_up() const {
   if (clean_up_) clean_up_();
 }
 
+void Progress::set_paused(bool is_paused) {
+  // Nobody holds work that was asked to stop.
+  if (is_paused && cancelled_.load(std::memory_order_relaxed)) return;
+  is_paused_.store(is_paused, std::memory_order_relaxed);
+  is_paused_.notify_all();
+}
+
+void Progress::wait_while_paused() const { is_paused_.wait(true, std::memory_order_relaxed); }
+
 Status stopped(const Progress& progress) {
   if (progress.cancelled()) return fail(ErrorCode::cancelled, "stopped by the user");
   return {};

@@ -59,10 +59,19 @@ class Progress {
   /// All before the end takes so many seconds from now, whatever stages come.
   void expect_within(double seconds);
 
-  /// Asks the work to stop. Thread-safe, also in a signal handler.
-  void request_cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-  /// Whether the work was asked to stop. Thread-safe.
-  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+  /// Asks the work to stop, held or not. Thread-safe, also in a signal handler.
+  void request_cancel() {
+    cancelled_.store(true, std::memory_order_relaxed);
+    set_paused(false);
+  }
+  /// Whether the work was asked to stop. Returns only when the work may go on or is to end.
+  /// Thread-safe.
+  bool cancelled() const {
+    if (is_paused_.load(std::memory_order_relaxed)) wait_while_paused();
+    return cancelled_.load(std::memory_order_relaxed);
+  }
+  /// Holds the work where it next calls cancelled(), and lets it go on. Thread-safe.
+  void set_paused(bool is_paused);
 
   /// What a watcher sees: the running stage, its units and the time [s].
   struct Snapshot {
@@ -107,7 +116,8 @@ class Progress {
   std::vector<std::string> notes_;
   std::string way_on_;
   std::function<void()> clean_up_;
-  std::atomic<bool> cancelled_{false};
+  void wait_while_paused() const;
+  std::atomic<bool> cancelled_{false}, is_paused_{false};
 };
 
 /// The error (cancelled) of work that was asked to stop; success while it may go on:

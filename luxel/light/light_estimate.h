@@ -13,7 +13,8 @@ struct LightEstimate {
   std::span<const Rgb> irradiance;  ///< valid during the call
   /// Rays per element in the mean; 0: none yet, what surfaces send each other is an ambient term.
   double samples = 0;
-  float error_p95 = 0;  ///< 95 of 100 elements err by less, relative; 0: not known yet
+  float error_p95 = 0;   ///< 95 of 100 elements err by less, relative; 0: not known yet
+  double error_rms = 0;  ///< root mean square error to expect over the mean; 0: not known yet
 };
 
 /// Called by the thread that called the solver, between its stages: the work goes on when it

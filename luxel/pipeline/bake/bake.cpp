@@ -26,6 +26,32 @@ Status write_results(std::span<const OutputFile> files, Checkpoint& checkpoint, 
   return write_files_atomically(files);
 }
 
+/// A bake's files, bake.json the last of them.
+struct FinishedFiles {
+  std::vector<OutputFile> files;
+  nlohmann::json report;
+};
+
+/// `about_stores`: what bake.json says of checkpoint and cache. `baked`: the stages of the bake.
+Result<FinishedFiles> finished_files(const BakeSettings& settings, const Bake& bake,
+                                     const nlohmann::json& about_stores, const Progress& baked,
+                                     Progress& progress) {
+  progress.begin(kWriteStage, 0);
+  FinishedFiles out;
+  nlohmann::json about_files = nlohmann::json::object();
+  LUXEL_TRY(out.files, files_of(settings, bake, about_files, progress));
+  LUXEL_TRY_STATUS(stopped(progress));
+  progress.finish();
+  out.report = bake_report(settings, bake, baked);
+  out.report.update(about_stores);
+  out.report.update(about_files);
+  nlohmann::json& names = out.report["files"] = nlohmann::json::array();
+  for (const OutputFile& file : out.files) names.push_back(file.path.filename().string());
+  names.push_back("bake.json");
+  out.files.push_back(text_file(settings.output / "bake.json", out.report.dump(2) + "\n"));
+  return out;
+}
+
 }  // namespace
 
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
@@ -39,25 +65,30 @@ Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress) {
   if (checkpoint.parts() != nullptr && checkpoint.parts()->has_failed())
     result.warnings.push_back(checkpoint.parts()->failure());
   if (!cache.failure().empty()) result.warnings.push_back(cache.failure());
-  progress.begin(kWriteStage, 0);
-  nlohmann::json about_files = nlohmann::json::object();
-  LUXEL_TRY(std::vector<OutputFile> files, files_of(settings, result, about_files, progress));
-  LUXEL_TRY_STATUS(stopped(progress));
-  progress.finish();
-  nlohmann::json json = bake_report(settings, result, progress);
-  json["checkpoint"] = checkpoint.about();
-  json["cache"] = cache.about(result.light);
-  json.update(about_files);
-  nlohmann::json& names = json["files"] = nlohmann::json::array();
-  for (const OutputFile& file : files) names.push_back(file.path.filename().string());
-  names.push_back("bake.json");
-  files.push_back(text_file(settings.output / "bake.json", json.dump(2) + "\n"));
+  LUXEL_TRY(FinishedFiles finished, finished_files(settings, result,
+                                                   {{"checkpoint", checkpoint.about()},
+                                                    {"cache", cache.about(result.light)}},
+                                                   progress, progress));
   LUXEL_TRY_STATUS(folder.make());
-  LUXEL_TRY_STATUS(write_results(files, checkpoint, cache, progress));
+  LUXEL_TRY_STATUS(write_results(finished.files, checkpoint, cache, progress));
   folder.keep();
   checkpoint.remove();
   cache.finish(progress);
-  return json;
+  return std::move(finished.report);
+}
+
+Result<nlohmann::json> save_bake(const BakeSettings& settings, const Bake& bake,
+                                 const Progress& baked, Progress& progress) {
+  const ThreadLimit threads(settings.threads);
+  OutputFolder folder(settings.output);
+  LUXEL_TRY_STATUS(folder.hold(progress));
+  LUXEL_TRY(FinishedFiles finished,
+            finished_files(settings, bake, {{"checkpoint", nullptr}, {"cache", nullptr}}, baked,
+                           progress));
+  LUXEL_TRY_STATUS(folder.make());
+  LUXEL_TRY_STATUS(write_files_atomically(finished.files));
+  folder.keep();
+  return std::move(finished.report);
 }
 
 }  // namespace luxel::pipeline

@@ -9,11 +9,18 @@
 
 namespace luxel::pipeline {
 
+struct Bake;
+
 /// bake_scene(), then lightmap.exr (and its other formats), baked.glb,
 /// preview.png, texels.png, error.png, view.html when asked for, and bake.json in settings.output,
 /// all of them or none. Of several pages they are lightmap-0.exr and so on; with --layers there is
 /// a lightmap-LAYER.exr of each besides. Returns what bake.json holds. A bake that does not come to
 /// its end leaves its checkpoint, nothing else; one that does leaves DIR/cache with settings.keep.
 Result<nlohmann::json> bake(const BakeSettings& settings, Progress& progress);
+
+/// Writes what bake() leaves of a bake that bake_scene() made, whose stages are those of `baked`.
+/// Returns what bake.json holds. Errors: those of files; cancelled.
+Result<nlohmann::json> save_bake(const BakeSettings& settings, const Bake& bake,
+                                 const Progress& baked, Progress& progress);
 
 }  // namespace luxel::pipeline

@@ -155,7 +155,7 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
 
 /// The rest of bake_scene() for a bake that has its scene.
 Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
-                   const OnBakeEstimate& on_estimate, Bake& bake, Progress& progress) {
+                   const BakeObserver& watcher, Bake& bake, Progress& progress) {
   LUXEL_TRY(const std::vector<uint32_t> masked, masked_lights(settings, bake.scene));
   LUXEL_TRY_STATUS(check_view(settings.view, bake.scene, settings.scene.string()));
   LUXEL_TRY(Ready ready, make_ready(settings, bake, keepers, progress));
@@ -164,8 +164,8 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
   const SolveStores stores{keepers.checkpoint ? keepers.checkpoint->parts() : nullptr,
                            keepers.cache};
   SolveObserver observer;
-  if (on_estimate)
-    observer.on_estimate = [&](const light::LightEstimate& e) { on_estimate(input, e); };
+  if (watcher.on_estimate)
+    observer.on_estimate = [&](const light::LightEstimate& e) { watcher.on_estimate(input, e); };
   else if (!looks_at_places(settings))
     observer.on_traced = [&] { transport::drop_places(ready.elements); };
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
@@ -201,11 +201,11 @@ tl::unexpected<Error> out_of_time(const BakeSettings& settings, const Progress& 
 
 /// bake_loaded(), but no longer than --time-budget where the solver does not look at the clock.
 Status bake_in_time(const BakeSettings& settings, const Keepers& keepers,
-                    const OnBakeEstimate& on_estimate, Bake& bake, Progress& progress) {
+                    const BakeObserver& watcher, Bake& bake, Progress& progress) {
   if (settings.time_budget_s <= 0 || find_solver(settings.solver)->can.errors)
-    return bake_loaded(settings, keepers, on_estimate, bake, progress);
+    return bake_loaded(settings, keepers, watcher, bake, progress);
   const Deadline deadline(progress, seconds_left(settings.time_budget_s, progress.stages()));
-  const Status done = bake_loaded(settings, keepers, on_estimate, bake, progress);
+  const Status done = bake_loaded(settings, keepers, watcher, bake, progress);
   if (!done && done.error().code == ErrorCode::cancelled && deadline.passed())
     return out_of_time(settings, progress);
   return done;
@@ -214,12 +214,13 @@ Status bake_in_time(const BakeSettings& settings, const Keepers& keepers,
 }  // namespace
 
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const Keepers& keepers,
-                        const OnBakeEstimate& on_estimate) {
+                        const BakeObserver& watcher) {
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
   LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
-  LUXEL_TRY_STATUS(bake_in_time(settings, keepers, on_estimate, bake, progress));
+  if (watcher.on_read) watcher.on_read(bake.scene);
+  LUXEL_TRY_STATUS(bake_in_time(settings, keepers, watcher, bake, progress));
   return bake;
 }
 

@@ -59,11 +59,18 @@ struct Bake {
 /// stitched. The bake goes on when it returns.
 using OnBakeEstimate = std::function<void(const light::TexelScene&, const light::LightEstimate&)>;
 
+/// Who watches a bake; nothing where nobody does.
+struct BakeObserver {
+  /// Gets the scene when it is read, its outside light added, and not yet laid out.
+  std::function<void(const scene::Scene&)> on_read{};
+  OnBakeEstimate on_estimate{};
+};
+
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
 /// name in or above settings.output, and the checkpoint and the cache, if there are any. Errors:
 /// whatever the stages say; settings out of range.
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
-                        const Keepers& keepers = {}, const OnBakeEstimate& on_estimate = {});
+                        const Keepers& keepers = {}, const BakeObserver& observer = {});
 
 /// Bakes a scene that a program has built: settings.scene is not looked at. The scene is validated
 /// first (luxel/scene/validate.h). Nothing is written but temporary files in or above

@@ -1,6 +1,7 @@
 #include "luxel/pipeline/bake/finish_bake.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "luxel/display/draw.h"
 #include "luxel/display/tone_map.h"
@@ -18,7 +19,7 @@ namespace {
 
 /// Hidden texels are refilled as far as a bilinear lookup from outside can reach.
 constexpr int kRefillRings = 2;
-constexpr int kPreviewWidth = 960, kPreviewHeight = 720;
+constexpr int kPreviewHeight = 720;
 
 /// Texels that have nothing to tell of the light at seams: hidden ones, and those of a kept
 /// TEXCOORD_1 which look-ups on another chart blend in. Stitching would spread their light.
@@ -110,16 +111,20 @@ Status add_directions(const BakeSettings& settings, const light::TexelScene& inp
   return {};
 }
 
+std::pair<int, int> preview_size(const scene::Camera& camera) {
+  const float aspect = camera.aspect > 0 ? camera.aspect : kPreviewAspect;
+  const int width = int(float(kPreviewHeight) * aspect + 0.5f);
+  return {std::clamp(width, kPreviewHeight / 4, kPreviewHeight * 4), kPreviewHeight};
+}
+
 Status draw_preview(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
                     Progress& progress) {
   const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
+  LUXEL_TRY(const scene::Camera camera,
+            choose_camera({.view = settings.view, .aspect = kPreviewAspect}, bake.scene, tracer,
+                          settings.scene.string()));
   display::DrawParams params;
-  params.width = kPreviewWidth, params.height = kPreviewHeight;
-  const float aspect = float(params.width) / float(params.height);
-  LUXEL_TRY(const scene::Camera camera, choose_camera({.view = settings.view, .aspect = aspect},
-                                                      bake.scene, tracer, settings.scene.string()));
-  if (camera.aspect > 0) params.width = int(float(params.height) * camera.aspect + 0.5f);
-  params.width = std::clamp(params.width, params.height / 4, params.height * 4);
+  std::tie(params.width, params.height) = preview_size(camera);
   LUXEL_TRY(const image::Image picture,
             display::draw(
                 bake.scene, tracer, camera,

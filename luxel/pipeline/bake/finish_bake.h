@@ -1,6 +1,8 @@
 // What follows the solver: leaks repaired, seams stitched, lightmaps and the preview made.
 #pragma once
 
+#include <utility>
+
 #include "luxel/pipeline/bake/bake_scene.h"
 
 namespace luxel::pipeline {
@@ -15,6 +17,11 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
 /// Errors: too little memory, cancelled.
 Status add_directions(const BakeSettings& settings, const light::TexelScene& input, Bake& bake,
                       Progress& progress);
+
+/// Of a picture whose camera leaves its shape to it.
+inline constexpr float kPreviewAspect = 4.0f / 3;
+/// Width and height of preview.png [pixels].
+std::pair<int, int> preview_size(const scene::Camera& camera);
 
 /// bake.preview, from where settings.view says, or else the scene's first camera, or a fitted one.
 /// Errors: those of choose_camera(); cancelled.

@@ -240,14 +240,13 @@ std::span<float> scales_of(const DeviceScene& scene) {
 /// The bindings of each page's light, of either picture.
 using Lights = std::vector<std::array<gpu::Binding, 2>>;
 Result<Lights> put_lights(const gpu::Device& device, Pictures& pictures,
-                          std::span<const image::Image> pages, bool changes, DeviceScene& out) {
+                          std::span<const image::HalfImage> pages, bool changes, DeviceScene& out) {
   Lights lights;
   const size_t size = sizeof(LightNow) + pages.size() * 2 * sizeof(float);
   LUXEL_TRY(out.light_now,
             gpu::make_buffer(device, size, gpu::Access::from_host, "the scales of light"));
   light_now(out) = {};
-  for (const image::Image& page : pages) {
-    const image::HalfImage half = image::to_half(page);
+  for (const image::HalfImage& half : pages) {
     std::array<gpu::Binding, 2>& light = lights.emplace_back();
     for (const size_t which : {0, 1}) {
       if (which == 0 || changes) {
@@ -332,19 +331,26 @@ LightNow& light_now(const DeviceScene& scene) {
 }
 
 Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
-                                  const pipeline::LightmapPages& lightmaps,
-                                  const DeviceSceneParams& params) {
+                                  const PagesOfLight& light, const DeviceSceneParams& params) {
   DeviceScene out;
   out.bounds = scene::world_bounds(scene);
   Pictures pictures(commands, scene, out);
   LUXEL_TRY_STATUS(put_meshes(commands.device(), scene, params.light_uv, out));
   LUXEL_TRY_STATUS(put_shadow_maps(commands, params.shadow_side, out));
   LUXEL_TRY(const Lights lights,
-            put_lights(commands.device(), pictures, lightmaps.pictures, params.light_changes, out));
+            put_lights(commands.device(), pictures, light.pages, params.light_changes, out));
   LUXEL_TRY_STATUS(
-      put_materials(commands.device(), pictures, scene, lightmaps.of_material, lights, out));
+      put_materials(commands.device(), pictures, scene, light.of_material, lights, out));
   LUXEL_TRY_STATUS(put_surroundings(pictures, scene, out));
   return out;
+}
+
+Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
+                                  const pipeline::LightmapPages& lightmaps,
+                                  const DeviceSceneParams& params) {
+  std::vector<image::HalfImage> halves;
+  for (const image::Image& page : lightmaps.pictures) halves.push_back(image::to_half(page));
+  return put_on_device(commands, scene, PagesOfLight{halves, lightmaps.of_material}, params);
 }
 
 void set_emission(size_t material, Rgb emission, DeviceScene& scene) {

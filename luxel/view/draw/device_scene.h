@@ -72,7 +72,15 @@ struct DeviceSceneParams {
   uint32_t shadow_side = 1;  ///< of the square picture of all shadow maps [pixels]
 };
 
+/// E of all pages of the lightmap, and the page of each material.
+struct PagesOfLight {
+  std::span<const image::HalfImage> pages;
+  std::span<const size_t> of_material;
+};
+
 /// Errors: no memory on the device, a picture larger than the device's may be.
+Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
+                                  const PagesOfLight& light, const DeviceSceneParams& params);
 Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
                                   const pipeline::LightmapPages& lightmaps,
                                   const DeviceSceneParams& params = {});

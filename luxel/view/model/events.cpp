@@ -91,6 +91,7 @@ std::optional<Event> event_of(const json& from) {
       return is_key(key) ? std::optional<Event>(KeyChanged{key, is_down}) : std::nullopt;
     }
   }
+  if (from.contains("wait") && from["wait"] == "bake") return WaitForBake{};
   if (from.contains("scroll")) {
     const auto by = from["scroll"].get<float>();
     if (std::abs(by) <= 100) return Scrolled{by};

@@ -53,8 +53,10 @@ struct GlowChanged {
   std::string material;
   Rgb radiance{};
 };
+/// Of a play: what comes after it is played when the bake has ended and its light is shown.
+struct WaitForBake {};
 using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
-                           LampAdded, GlowChanged>;
+                           LampAdded, GlowChanged, WaitForBake>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -104,6 +106,7 @@ struct Play {
 ///       {"at": 0, "pointer": [480, 360]}, {"at": 0, "press": "left"},
 ///       {"at": 1, "pointer": [600, 360]}, {"at": 1, "release": "left"},
 ///       {"at": 1.2, "scroll": 3}, {"at": 1.5, "key": "w"}, {"at": 1.8, "key_up": "w"},
+///       {"at": 2, "wait": "bake"},
 ///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]}]}
 ///
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.

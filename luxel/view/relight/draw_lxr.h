@@ -1,18 +1,22 @@
 // A picture of an .lxr file, without a window.
 #pragma once
 
+#include "luxel/image/codec.h"
 #include "luxel/view/relight/lamp_desk.h"
 #include "luxel/view/relight/relit_scene.h"
 
 namespace luxel::view {
 
-/// Whether a file is one by its name.
-bool is_lxr(const std::filesystem::path& file);
+/// How a picture is asked for.
+struct LxrPicture {
+  int width = 0, height = 0;   ///< 0: those of the first view
+  std::optional<Play> events;  ///< then what is shown at their end
+  std::string play_name;       ///< for messages
+};
 
-/// What is shown at first, or where a play gets to, in the light that the lamps have then. Errors:
-/// those of the device; a play of lamps that there are not, `play_name` is the file's.
+/// What is seen in the light that the lamps have then. Errors: those of the device; a play of lamps
+/// that there are not.
 Result<image::Image8> draw_lxr(gpu::Commands& commands, OpenedLxr& opened,
-                               const std::optional<Play>& events, const std::string& play_name,
-                               int width, int height);
+                               const LxrPicture& wanted);
 
 }  // namespace luxel::view

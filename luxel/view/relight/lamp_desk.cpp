@@ -219,8 +219,7 @@ Status check_lamps(const Play& play, const Lamps& lamps, const std::string& name
 
 void handle_frame_with_lamps(const Play& events, int64_t frame, const PlaceSeen& place_seen,
                              size_t& next, Walk& walk, LampDesk& desk) {
-  const double now = double(frame) / events.frames_per_s;
-  for (; next < events.events.size() && events.events[next].at_s <= now + 1e-9; ++next) {
+  for (; has_come(events, frame, next); ++next) {
     const Event& event = events.events[next].event;
     if (!handle_lamps(event, walk, desk)) handle(event, place_seen, walk);
   }

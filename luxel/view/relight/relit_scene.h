@@ -2,23 +2,31 @@
 #pragma once
 
 #include "luxel/view/draw/direct_light.h"
-#include "luxel/view/draw/painter.h"
 #include "luxel/view/relight/open_lxr.h"
+#include "luxel/view/shown_scene.h"
 
 namespace luxel::view {
 
-/// What of an .lxr file lies on the device.
+/// The scene of an .lxr file, and what draws its lamps.
 struct RelitScene {
-  DeviceScene scene;
+  ShownScene shown;
   DirectLight direct;
 };
 
-/// With the light of the lamps as they were opened. Errors: no memory on the device.
-Result<RelitScene> put_on_device(gpu::Commands& commands, OpenedLxr& opened);
+/// With the light of the lamps as they were baked. Errors: no memory on the device.
+Result<RelitScene> lxr_shown(gpu::Commands& commands, OpenedLxr& opened);
+
+/// What the light of a picture took [ms].
+struct LightTimes {
+  double direct = 0, bounces = 0, places = 0;  ///< of matrix::Relighter
+  double map = 0;                              ///< the lightmap, and its way to the device
+  double shadows = 0;                          ///< maps of shadows
+  double relit() const { return direct + bounces + places; }
+};
 
 /// The next picture is lit by these lamps: light of all bounces, then the lamps themselves, then
 /// their shadows. Nothing may still draw the scene. Errors: no memory, the device is lost.
-Status follow_lamps(gpu::Commands& commands, const Lamps& lamps, OpenedLxr& opened,
-                    RelitScene& relit);
+Result<LightTimes> follow_lamps(gpu::Commands& commands, const Lamps& lamps, OpenedLxr& opened,
+                                DirectLight& direct, DeviceScene& scene);
 
 }  // namespace luxel::view

@@ -56,7 +56,7 @@ class RelitSceneTest : public testing::OnDevice {
     return folder_.path / name;
   }
 
-  std::unique_ptr<OpenedLxr> prepared(const scene::Scene& scene) const {
+  OpenedLxr prepared(const scene::Scene& scene) const {
     pipeline::RelightSettings settings;
     settings.scene = write_scene(scene, "scene.glb"), settings.output = folder_.path / "scene.lxr";
     settings.resolution = 128;
@@ -66,7 +66,7 @@ class RelitSceneTest : public testing::OnDevice {
     EXPECT_TRUE(report) << report.error().message;
     auto opened = open_lxr(settings.output);
     EXPECT_TRUE(opened) << opened.error().message;
-    return opened ? std::move(*opened) : nullptr;
+    return std::move(*opened);
   }
 
   /// The picture of a bake of a scene.
@@ -102,20 +102,20 @@ TEST_F(RelitSceneTest, ALampIsDraggedToWhereABakeHasIt) {
   ASSERT_TRUE(relit) << relit.error().message;
   const Box3 bounds = scene::world_bounds(opened->scene);
   const PlaceSeen nowhere = [](const Frame&, Vec2) { return std::nullopt; };
-  Walk walk = begin_walk(opened->first, bounds, kShotSide, kShotSide, nowhere);
-  LampDesk desk = begin_desk(opened->lamps, bounds);
-  const image::Image8 before = drawn(relit->scene, walk.shown);
+  Walk walk = begin_walk(opened.read->first, bounds, kShotSide, kShotSide, nowhere);
+  LampDesk desk = begin_desk(opened.lamps, bounds);
+  const image::Image8 before = drawn(device, walk.shown);
 
   const Vec2 from = *pixel_of(walk, desk.lamps.lamps[0].light.position);
   const Event events[] = {PointerMoved{from + Vec2{3, 2}}, ButtonChanged{Button::left, true},
                           PointerMoved{from + Vec2{-40, 0}}, ButtonChanged{Button::left, false}};
   for (const Event& event : events)
     if (!handle_lamps(event, walk, desk)) handle(event, nowhere, walk);
-  ASSERT_TRUE(follow_lamps(*commands_, desk.lamps, *opened, *relit));
-  const image::Image8 after = drawn(relit->scene, walk.shown);
+  ASSERT_TRUE(follow_lamps(*commands_, desk.lamps, opened, relit->direct, device));
+  const image::Image8 after = drawn(device, walk.shown);
 
   const scene::PunctualLight& moved = desk.lamps.lamps[0].light;
-  EXPECT_GT(length(moved.position - opened->lamps.lamps[0].light.position), 0.1f);
+  EXPECT_GT(length(moved.position - opened.lamps.lamps[0].light.position), 0.1f);
   const image::Image8 wanted = baked(box_with_lamp(moved), walk.shown);
   EXPECT_LT(mean_flip(after, wanted), 0.05);
   EXPECT_GT(mean_flip(before, wanted), 0.1);

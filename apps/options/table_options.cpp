@@ -1,4 +1,4 @@
-#include "apps/cli/table_options.h"
+#include "apps/options/table_options.h"
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>

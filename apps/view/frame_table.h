@@ -1,0 +1,27 @@
+// A table of the frames of a play: how long each took, and how bright it was.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/view/screen.h"
+#include "luxel/view/shown_scene.h"
+
+namespace luxel::view_window {
+
+struct FrameTable {
+  struct Row {
+    float milliseconds = 0;  ///< from the first command to the picture in the window
+    double brightness = 0;   ///< the mean of what the screen shows, in [0, 1] of its range
+    double samples = 0;      ///< of the light that came last
+  };
+  std::vector<Row> rows;
+};
+
+/// The frame that was just drawn. Reads it back, which is not counted. Errors: the device is lost.
+Status add_row(Screen& screen, float milliseconds, const view::ShownScene& shown,
+               FrameTable& table);
+
+std::string csv_of(const FrameTable& table);
+
+}  // namespace luxel::view_window

@@ -1,0 +1,95 @@
+#include "apps/view/screen.h"
+
+#include <volk.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <vector>
+
+#include "luxel/base/file.h"
+#include "luxel/image/codec.h"
+
+namespace luxel::view_window {
+
+Result<bool> fit_window(const Window& window, const view::DeviceScene& scene, Screen& screen) {
+  const auto [width, height] = window.pixels();
+  if (width == 0 || height == 0) return false;
+  const gpu::Device& device = *screen.device;
+  device.vk.vkDeviceWaitIdle(device.device);
+  LUXEL_TRY(gpu::Swapchain swapchain,
+            gpu::make_swapchain(device, *screen.surface, uint32_t(width), uint32_t(height),
+                                screen.swapchain.images.empty() ? nullptr : &screen.swapchain));
+  screen.swapchain = std::move(swapchain);
+  LUXEL_TRY(screen.painter, view::make_painter(device, screen.shaders, scene,
+                                               screen.swapchain.width, screen.swapchain.height));
+  if (!screen.ui) {
+    screen.ui =
+        Ui::make(window.get(), {device.instance, device.physical, device.device,
+                                device.queue_family, device.queue, screen.swapchain.format});
+  }
+  std::vector<VkImageView> views;
+  for (const auto& view : screen.swapchain.views) views.push_back(view.get());
+  if (!screen.ui ||
+      !screen.ui->set_pictures(views, screen.swapchain.width, screen.swapchain.height))
+    return fail(ErrorCode::no_device, "{} cannot draw the panel", device.name);
+  return true;
+}
+
+bool has_size_of(const Window& window, const gpu::Swapchain& swapchain) {
+  const auto [width, height] = window.pixels();
+  return uint32_t(width) == swapchain.width && uint32_t(height) == swapchain.height;
+}
+
+Result<Screen> open_screen(const Window& window, const std::string& device_name) {
+  Screen out;
+  gpu::DeviceParams device_params;
+  device_params.name = device_name;
+  device_params.window_extensions = Window::extensions();
+  LUXEL_TRY(out.device, gpu::Device::open(device_params));
+  VkSurfaceKHR handle = VK_NULL_HANDLE;
+  LUXEL_TRY_STATUS(
+      gpu::check(glfwCreateWindowSurface(out.device->instance, window.get(), nullptr, &handle),
+                 "the window cannot be drawn into"));
+  LUXEL_TRY(gpu::Surface surface, gpu::Surface::adopt(*out.device, handle));
+  out.surface.emplace(std::move(surface));
+  LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*out.device));
+  out.commands.emplace(std::move(commands));
+  LUXEL_TRY(out.shaders, view::make_shaders(*out.device));
+  return out;
+}
+
+Result<bool> draw(const view::DeviceScene& scene, const view::Frame& frame, Screen& screen) {
+  const gpu::Device& device = *screen.device;
+  LUXEL_TRY(const std::optional<gpu::NextPicture> next,
+            gpu::next_picture(device, screen.swapchain));
+  if (!next) return false;
+  LUXEL_TRY(const uint64_t number,
+            screen.commands->submit(
+                [&](VkCommandBuffer commands) {
+                  view::paint(device, commands, screen.canvas(scene), frame);
+                  const gpu::Picture& shown = screen.painter.shown.picture;
+                  gpu::copy_to_window(device, commands, shown.image.get(), shown.params.width,
+                                      shown.params.height, screen.swapchain, next->number);
+                  screen.ui->record(commands, next->number);
+                },
+                next->semaphores));
+  LUXEL_TRY(const bool is_current, gpu::show(device, screen.swapchain, next->number));
+  LUXEL_TRY_STATUS(screen.commands->wait(number));
+  return is_current;
+}
+
+Status write_screenshot(const view::DeviceScene& scene, const view::Frame& frame, Screen& screen,
+                        std::string& message) {
+  LUXEL_TRY(const image::Image8 picture,
+            view::painted(*screen.commands, screen.canvas(scene), frame));
+  std::filesystem::path file;
+  std::error_code ignored;
+  for (int number = 1; file.empty() || std::filesystem::exists(file, ignored); ++number)
+    file = fmt::format("luxel-view-{}.png", number);
+  const Status written = write_file_atomically(file, image::encode_png(picture));
+  message = written ? "wrote " + file.string() : written.error().message;
+  return {};
+}
+
+}  // namespace luxel::view_window

@@ -1,0 +1,278 @@
+#include "apps/view/session.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <chrono>
+#include <cmath>
+#include <span>
+
+#include "apps/view/frame_table.h"
+#include "apps/view/screen.h"
+#include "luxel/base/file.h"
+#include "luxel/image/codec.h"
+#include "luxel/view/model/walk.h"
+#include "luxel/view/shown_scene.h"
+
+namespace luxel::view_window {
+namespace {
+
+std::vector<KeyLine> key_lines() {
+  std::vector<KeyLine> out{
+      {"left button", "turn"}, {"other buttons", "move the picture"}, {"wheel", "nearer, farther"}};
+  for (const view::KeyHelp& key : view::kKeys) out.push_back({key.key, key.does});
+  return out;
+}
+
+/// What the panel changes of a walk, and the walk of the panel.
+void exchange(Ui& ui, std::span<const scene::Camera> views, Panel& panel, view::Walk& walk) {
+  panel.show = int(walk.shown.show);
+  panel.stops = std::log2(walk.shown.exposure / walk.first.exposure);
+  const float before = panel.stops;
+  ui.lay_out(panel);
+  walk.shown.show = view::Show(panel.show);
+  if (panel.stops != before) walk.shown.exposure = walk.first.exposure * std::exp2(panel.stops);
+  if (const int view = std::exchange(panel.view, -1); view >= 0)
+    walk.shown.camera = views[size_t(view)];
+}
+
+/// Events of the user, but for those that are the panel's.
+void take_events(Window& window, const Ui& ui, const view::PlaceSeen& place_seen,
+                 view::Walk& walk) {
+  for (const view::Event& event : window.taken()) {
+    const bool is_key = std::holds_alternative<view::KeyChanged>(event);
+    const auto* button = std::get_if<view::ButtonChanged>(&event);
+    const bool is_end = button && !button->is_down;  // a drag ends wherever it does
+    if (!is_end && !std::holds_alternative<view::PointerMoved>(event) &&
+        (is_key ? ui.has_keys() : ui.has_pointer()))
+      continue;
+    view::handle(event, place_seen, walk);
+  }
+}
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point then) {
+  return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+/// The panel lays itself out anew for some frames after a change.
+constexpr int kFramesToSettle = 3;
+/// So often the panel tells how a bake goes on.
+constexpr double kReport_s = 0.5;
+
+/// A window while it is open.
+struct Session {
+  Window& window;
+  Screen& screen;
+  view::ShownScene& shown;
+  view::LiveBake* live;  ///< null: the bake is there
+  const WindowParams& params;
+  std::vector<KeyLine> keys = key_lines();
+  std::vector<std::string> views = {};  ///< names of the scene's cameras
+  Panel panel = {};
+  std::optional<view::Walk> walk = {};  ///< once there is a scene, and the window has a size
+  view::PlaceSeen place_seen = {};
+  int still_frames = 0;  ///< since something changed
+  bool fits = false;     ///< what is drawn with is of the window's size and the scene
+  int64_t frame = 0;     ///< of a play
+  size_t next_event = 0;
+  FrameTable table = {};
+  Clock::time_point last = Clock::now(), last_report = Clock::now();
+};
+
+/// Where looking begins: with the scene that was read.
+void begin(const view::ReadScene& read, Session& s) {
+  const auto width = int(s.screen.swapchain.width), height = int(s.screen.swapchain.height);
+  s.place_seen = view::place_seen_in(read.scene, *read.tracer, width, height);
+  if (!s.walk)
+    s.walk =
+        view::begin_walk(read.first, scene::world_bounds(read.scene), width, height, s.place_seen);
+  s.walk->width = width, s.walk->height = height;
+  s.views.clear();
+  for (const scene::Camera& camera : read.scene.cameras)
+    s.views.push_back(camera.name.empty() ? "camera" : camera.name);
+  s.panel.views = s.views;
+}
+
+/// Fits what is drawn with to the window and the scene. False while the window has no size, as when
+/// it is hidden.
+Result<bool> fit(Session& s) {
+  if (s.fits && has_size_of(s.window, s.screen.swapchain)) return true;
+  LUXEL_TRY(s.fits, fit_window(s.window, s.shown.device, s.screen));
+  if (s.fits && s.shown.read) begin(*s.shown.read, s);
+  return s.fits;
+}
+
+/// Takes what the bake has come to. True: something is to be drawn.
+Result<bool> follow_bake(Session& s) {
+  if (!s.live) return false;
+  view::LiveNews news = s.live->take();
+  const bool has_news = news.read || news.light || news.said;
+  if (has_news) {
+    LUXEL_TRY(const bool is_another,
+              view::take_news(std::move(news), *s.screen.commands, s.shown, s.panel.message));
+    if (is_another) s.fits = false;
+  }
+  if (!has_news && seconds_since(s.last_report) < kReport_s) return false;
+  s.last_report = Clock::now();
+  return has_news || s.live->state() == view::LiveState::baking;
+}
+
+/// Light fades in; the exposure goes with it, by as many stops as the user has chosen.
+Status fade(double seconds, Session& s) {
+  LUXEL_TRY_STATUS(view::pass(seconds, *s.screen.commands, s.shown));
+  if (!s.walk || !s.shown.has_light) return {};
+  const float stops = s.walk->shown.exposure / s.walk->first.exposure;
+  s.walk->first.exposure = view::exposure(s.shown.fade);
+  s.walk->shown.exposure = s.walk->first.exposure * stops;
+  return {};
+}
+
+/// What the panel says of a bake.
+BakeLines lines_of(const Session& s) {
+  BakeLines out;
+  const view::LiveState state = s.live->state();
+  const Progress::Snapshot at = s.live->snapshot();
+  out.state = state == view::LiveState::baked    ? "baked"
+              : state == view::LiveState::failed ? "no light"
+              : state == view::LiveState::paused ? "stopped"
+                                                 : at.stage;
+  if (at.total > 0) out.share = float(double(at.done) / double(at.total));
+  if (state != view::LiveState::baking) out.share = state == view::LiveState::baked ? 1 : 0;
+  out.can_stop = state == view::LiveState::baking, out.can_go_on = state == view::LiveState::paused;
+  out.can_save = state == view::LiveState::baked;
+  const view::LiveNumbers& known = s.shown.numbers;
+  if (!s.shown.has_light) return out;
+  if (known.samples == 0)
+    out.lines.push_back("direct light, and an even guess of the rest");
+  else
+    out.lines.push_back(fmt::format("{:.0f} rays per texel", known.samples));
+  if (known.rays_per_s > 0)
+    out.lines.push_back(fmt::format("{:.2f} million rays/s", 1e-6 * known.rays_per_s));
+  if (known.error_p95 > 0)
+    out.lines.push_back(
+        fmt::format("95 % of texels err by less than {:.3g} %", 100 * double(known.error_p95)));
+  if (known.error_rms > 0)
+    out.lines.push_back(fmt::format("RMS error {:.3g} % of the mean light", 100 * known.error_rms));
+  if (state == view::LiveState::baking && at.seconds_left >= 0)
+    out.lines.push_back(fmt::format("{:.0f} s left", std::ceil(at.seconds_left)));
+  return out;
+}
+
+/// The panel, what the user changes in it, and what it asks for.
+void lay_out(Session& s) {
+  s.panel.bake = s.live ? std::optional(lines_of(s)) : std::nullopt;
+  if (s.walk)
+    exchange(*s.screen.ui, s.shown.read->scene.cameras, s.panel, *s.walk);
+  else
+    s.screen.ui->lay_out(s.panel);
+  if (!s.live) return;
+  if (s.panel.bake->asks_to_stop) s.live->pause(true);
+  if (s.panel.bake->asks_to_go_on) s.live->pause(false);
+  if (s.panel.bake->asks_to_save) s.live->save();
+}
+
+/// What is drawn: without light, colours.
+view::Frame frame_of(const Session& s) {
+  view::Frame out;
+  if (s.walk) out = s.walk->shown;
+  if (!s.shown.has_light) out.show = view::Show::colour, out.exposure = 1;
+  return out;
+}
+
+/// The events of a play up to this frame, and the time until the next. False: it has come to its
+/// end.
+bool play_on(Session& s) {
+  const view::Play& play = *s.params.play;
+  const bool is_baking = s.live && s.live->state() == view::LiveState::baking;
+  const bool is_to_come =
+      is_baking || !s.walk || !view::is_settled(s.shown) ||
+      (s.live && s.live->state() == view::LiveState::baked && !s.shown.has_last);
+  do {
+    if (s.walk) view::handle_frame(play, s.frame, s.place_seen, s.next_event, *s.walk);
+    if (view::waits(play, s.frame, is_to_come, s.next_event)) return true;
+  } while (s.walk && view::has_come(play, s.frame, s.next_event));
+  if (double(s.frame) >= play.end_s * play.frames_per_s) return false;
+  if (s.walk) view::pass(1 / play.frames_per_s, *s.walk);
+  ++s.frame;
+  return true;
+}
+
+/// Draws and takes the time.
+Status draw_frame(Session& s) {
+  const auto begin = Clock::now();
+  const view::Frame frame = frame_of(s);
+  LUXEL_TRY(s.fits, draw(s.shown.device, frame, s.screen));
+  s.panel.milliseconds = float(1000 * seconds_since(begin));
+  if (!s.params.frame_table.empty())
+    LUXEL_TRY_STATUS(add_row(s.screen, s.panel.milliseconds, s.shown, s.table));
+  if (!s.window.asks_for_screenshot()) return {};
+  return write_screenshot(s.shown.device, frame, s.screen, s.panel.message);
+}
+
+/// One frame of the window. False when a play has come to its end.
+Result<bool> go_on(Session& s) {
+  // A window in which nothing moves is not drawn.
+  const bool moves =
+      s.params.play || (s.walk && !s.walk->keys.empty()) || !view::is_settled(s.shown);
+  moves ? glfwPollEvents() : glfwWaitEventsTimeout(0.1);
+  const bool fitted = s.fits;
+  LUXEL_TRY(const bool has_news, follow_bake(s));
+  LUXEL_TRY(const bool fits, fit(s));
+  const double passed = seconds_since(std::exchange(s.last, Clock::now()));
+  if (!fits) return true;
+  const bool changes = moves || !fitted || has_news || s.window.has_changed();
+  s.still_frames = changes ? 0 : s.still_frames + 1;
+  if (s.still_frames > kFramesToSettle) return true;
+  if (!s.params.play && s.walk) {
+    take_events(s.window, *s.screen.ui, s.place_seen, *s.walk);
+    view::pass(std::min(passed, 0.1), *s.walk);
+  }
+  LUXEL_TRY_STATUS(fade(s.params.play ? 1 / s.params.play->frames_per_s : passed, s));
+  const bool goes_on = !s.params.play || play_on(s);
+  if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
+  lay_out(s);
+  LUXEL_TRY_STATUS(draw_frame(s));
+  return goes_on;
+}
+
+/// Until the window is closed or a play has ended.
+Status show(Session s) {
+  s.panel.title = s.params.title, s.panel.about = s.screen.device->name;
+  s.panel.keys = s.keys;
+  bool is_going_on = true;
+  while (is_going_on && !glfwWindowShouldClose(s.window.get()))
+    LUXEL_TRY_STATUS(go_on(s).map([&](bool more) { is_going_on = more; }));
+  if (!s.params.frame_table.empty()) {
+    const std::string csv = csv_of(s.table);
+    LUXEL_TRY_STATUS(
+        write_file_atomically(s.params.frame_table, std::as_bytes(std::span<const char>(csv))));
+  }
+  if (s.params.screenshot.empty() || !s.walk) return {};
+  LUXEL_TRY(const image::Image8 picture,
+            view::painted(*s.screen.commands, s.screen.canvas(s.shown.device), frame_of(s)));
+  return write_file_atomically(s.params.screenshot, image::encode_png(picture));
+}
+
+}  // namespace
+
+Status show_in_window(view::OpenedBake bake, const WindowParams& params) {
+  LUXEL_TRY(const std::unique_ptr<Window> window,
+            Window::open(params.title, params.width, params.height));
+  LUXEL_TRY(Screen screen, open_screen(*window, params.device));
+  LUXEL_TRY(view::ShownScene shown, view::bake_shown(*screen.commands, std::move(bake)));
+  return show({*window, screen, shown, nullptr, params});
+}
+
+Status bake_in_window(const pipeline::BakeSettings& settings, const WindowParams& params) {
+  LUXEL_TRY(const std::unique_ptr<Window> window,
+            Window::open(params.title, params.width, params.height));
+  // The bake reads while the device opens.
+  const std::unique_ptr<view::LiveBake> live = view::LiveBake::begin(settings);
+  LUXEL_TRY(Screen screen, open_screen(*window, params.device));
+  LUXEL_TRY(view::ShownScene shown, view::nothing_shown(*screen.commands));
+  return show({*window, screen, shown, live.get(), params});
+}
+
+}  // namespace luxel::view_window

@@ -1,0 +1,32 @@
+// A window while it is open: a bake that is there, or one that is being made.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "luxel/base/result.h"
+#include "luxel/view/live/live_bake.h"
+#include "luxel/view/model/events.h"
+#include "luxel/view/open_bake.h"
+
+namespace luxel::view_window {
+
+struct WindowParams {
+  std::string title;
+  std::string device;  ///< gpu::DeviceParams::name
+  int width = 960, height = 720;
+  std::optional<view::Play> play;    ///< then the window closes
+  std::filesystem::path screenshot;  ///< written at the end of a play; empty: none
+  /// A table of a play's frames: .csv; empty: none.
+  std::filesystem::path frame_table;
+};
+
+/// Shows a bake until the window is closed. Errors (no_device): no display, no device that shows
+/// pictures in a window; those of files.
+Status show_in_window(view::OpenedBake bake, const WindowParams& params);
+/// Bakes a scene and shows it meanwhile and afterwards, until the window is closed. A bake that
+/// fails says so in the window. Errors as above.
+Status bake_in_window(const pipeline::BakeSettings& settings, const WindowParams& params);
+
+}  // namespace luxel::view_window

@@ -1,0 +1,20 @@
+// A scene in memory that a viewer shows: what the mouse points at, and where looking begins.
+#pragma once
+
+#include <optional>
+
+#include "luxel/scene/scene.h"
+#include "luxel/trace/ray_tracer.h"
+#include "luxel/view/frame.h"
+
+namespace luxel::view {
+
+/// It stays where it is: the tracer looks at the scene.
+struct ReadScene {
+  scene::Scene scene;                      ///< as it was read, its outside light added
+  std::optional<trace::RayTracer> tracer;  ///< of `scene`
+  Frame first;                             ///< from where preview.png is taken
+  int width = 960, height = 720;           ///< of preview.png
+};
+
+}  // namespace luxel::view

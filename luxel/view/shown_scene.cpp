@@ -1,0 +1,95 @@
+#include "luxel/view/shown_scene.h"
+
+namespace luxel::view {
+namespace {
+
+/// Pages of one white texel, for surfaces whose light is not known.
+Result<DeviceScene> without_light(gpu::Commands& commands, const scene::Scene& scene) {
+  image::Image white(1, 1, 4);
+  white.set_rgb(0, 0, {1, 1, 1});
+  const std::vector<image::HalfImage> pages{image::to_half(white)};
+  const std::vector<size_t> of_material(scene.materials.size(), 0);
+  return put_on_device(commands, scene, PagesOfLight{pages, of_material}, {});
+}
+
+Result<DeviceScene> with_light(gpu::Commands& commands, const LitScene& lit,
+                               const LiveLight& light) {
+  DeviceSceneParams params;
+  params.light_changes = true, params.light_uv = lit.light_uv;
+  return put_on_device(commands, lit.scene, PagesOfLight{light.pages, lit.page_of_material},
+                       params);
+}
+
+/// Light fades in over what is shown.
+Status fade_in(const LiveLight& light, gpu::Commands& commands, ShownScene& shown) {
+  shown.fade = faded_to_other(shown.fade, light.exposure);
+  shown.device.second_light = second_light(shown.fade);
+  return put_light(commands, light.pages, shown.fade.newest, shown.device);
+}
+
+}  // namespace
+
+Result<ShownScene> nothing_shown(gpu::Commands& commands) {
+  scene::Scene nothing;
+  scene::Mesh& mesh = nothing.meshes.emplace_back();
+  mesh.positions.resize(3);
+  mesh.triangles.push_back({0, 1, 2});
+  mesh.triangle_material.push_back(0);
+  nothing.instances.resize(1), nothing.materials.resize(1);
+  ShownScene out;
+  LUXEL_TRY(out.device, without_light(commands, nothing));
+  return out;
+}
+
+Result<ShownScene> bake_shown(gpu::Commands& commands, OpenedBake bake) {
+  ShownScene out;
+  LUXEL_TRY(out.device, put_on_device(commands, bake.scene, bake.lightmaps));
+  auto read = std::make_shared<ReadScene>();
+  read->scene = std::move(bake.scene), read->first = bake.first;
+  read->width = bake.width, read->height = bake.height;
+  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(read->scene));
+  read->tracer.emplace(std::move(tracer));
+  out.read = std::move(read);
+  out.fade.exposure_before = out.fade.exposure_newest = bake.first.exposure;
+  out.has_light = out.has_last = true;
+  return out;
+}
+
+Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown,
+                       std::string& said) {
+  bool is_another = false;
+  if (news.said) said = *news.said;
+  if (news.read) {
+    shown.read = std::move(news.read);
+    is_another = true;
+    if (!news.lit) {
+      LUXEL_TRY(shown.device, without_light(commands, shown.read->scene));
+    }
+  }
+  if (!news.light) return is_another;
+  shown.numbers = news.light->numbers;
+  shown.has_last = news.light->is_last;
+  if (news.lit) {
+    LUXEL_TRY(shown.device, with_light(commands, *news.lit, *news.light));
+    shown.fade = {0, 1, news.light->exposure, news.light->exposure};
+    shown.has_light = is_another = true;
+  } else {
+    shown.waiting = std::move(*news.light);
+    LUXEL_TRY_STATUS(pass(0, commands, shown));
+  }
+  return is_another;
+}
+
+Status pass(double seconds, gpu::Commands& commands, ShownScene& shown) {
+  pass(seconds, shown.fade);
+  // The two pictures of a light that does not change are one.
+  shown.device.second_light = second_light(shown.fade);
+  if (!shown.waiting || !is_free(shown.fade)) return {};
+  const LiveLight light = std::move(*shown.waiting);
+  shown.waiting.reset();
+  return fade_in(light, commands, shown);
+}
+
+bool is_settled(const ShownScene& shown) { return !shown.waiting && is_free(shown.fade); }
+
+}  // namespace luxel::view

@@ -90,6 +90,7 @@ Status show(const Options& options) {
     if (!file.empty()) LUXEL_TRY_STATUS(check_output_file(file));
   view_window::WindowParams params;
   LUXEL_TRY(params.play, events_of(options));
+  params.play_name = options.play.string();
   params.title = std::filesystem::absolute(options.subject).lexically_normal().filename().string();
   params.device = options.device;
   params.screenshot = options.screenshot, params.frame_table = options.frame_table;
@@ -97,6 +98,10 @@ Status show(const Options& options) {
   if (is_scene(options.subject)) {
     LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
     return view_window::bake_in_window(settings, params);
+  }
+  if (view::is_lxr(options.subject)) {
+    LUXEL_TRY(view::OpenedLxr opened, view::open_lxr(options.subject));
+    return view_window::relight_in_window(std::move(opened), params);
   }
   LUXEL_TRY(view::OpenedBake bake, view::open_bake(options.subject));
   print_warnings(bake.warnings);
@@ -188,8 +193,8 @@ int report(const Error& error) {
 
 void add_own(CLI::App& app, Options& options) {
   app.add_option("SUBJECT", options.subject,
-                 "A scene, which is baked while you look, with all options of `luxel bake`; or the "
-                 "folder that a bake left")
+                 "A scene, which is baked while you look, with all options of `luxel bake`; the "
+                 "folder that a bake left; or an .lxr file, whose lamps move")
       ->required();
   app.add_option("-o,--output", options.choice.output,
                  "Where 'save' puts the bake of a scene (baked/NAME)")

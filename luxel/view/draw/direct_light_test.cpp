@@ -172,7 +172,7 @@ TEST_F(DirectLightTest, LampsShineAndThrowShadowsAsRaysSay) {
 TEST_F(DirectLightTest, ShadowsFollowALamp) {
   const scene::Scene scene = scene::cornell_box();
   const trace::RayTracer tracer = *trace::RayTracer::build(scene);
-  put(scene, 2048);
+  put(scene, 4096);
   std::array lamps{lamp_of(Kind::point, {0.1f, 0.45f, 0.3f}, {0, -1, 0}),
                    lamp_of(Kind::point, {0.5f, 0.3f, 0.1f}, {0, -1, 0})};
   drawn(scene.cameras[0], lamps);
@@ -213,7 +213,7 @@ TEST_F(DirectLightTest, HolesOfMasksLetLightThrough) {
     if (!has_holes)
       for (scene::Material& m : scene.materials) m.alpha_mode = scene::AlphaMode::opaque;
     const trace::RayTracer tracer = *trace::RayTracer::build(scene);
-    put(scene, 2048);
+    put(scene, 4096);
     const image::Image picture = drawn(scene.cameras[0], lamps);
     double want = 0;
     for (const Pixel& p : by_rays(scene, tracer, scene.cameras[0], lamps))
@@ -230,15 +230,22 @@ TEST(ShadowMaps, AllLampsFindRoomUntilThereIsNone) {
   std::vector<scene::PunctualLight> lamps;
   for (int k = 0; k < 200; ++k)
     lamps.push_back(lamp_of(k % 2 ? Kind::point : Kind::directional, {1, 0.5f, 1}, {0, -1, 0.1f}));
-  EXPECT_EQ(plan_shadows(std::span(lamps).first(2), box, 4096).maps[0].side, 1024);
-  EXPECT_EQ(plan_shadows(std::span(lamps).first(18), box, 4096).maps[0].side, 512);
+  const auto sides = [&](size_t count) {
+    const ShadowPlan plan = plan_shadows(std::span(lamps).first(count), box, 4096);
+    return std::pair(plan.maps[plan.first_map[0]].side, plan.maps[plan.first_map[1]].side);
+  };
+  EXPECT_EQ(sides(2), std::pair(2048.0f, 1024.0f));  // 10 of 16 cells
+  EXPECT_EQ(sides(12), std::pair(1024.0f, 512.0f));  // 60 of 64
+  EXPECT_EQ(sides(14), std::pair(512.0f, 256.0f));
   const ShadowPlan plan = plan_shadows(lamps, box, 1024);
-  EXPECT_EQ(plan.maps[0].side, 64);
-  std::set<std::pair<float, float>> corners;
+  std::set<std::pair<float, float>> taken;
   for (const ShadowMap& map : plan.maps) {
-    EXPECT_TRUE(corners.insert({map.corner.x, map.corner.y}).second) << "a place for each";
     EXPECT_TRUE(map.corner.x + map.side <= 1024 && map.corner.y + map.side <= 1024);
+    for (float y = 0; y < map.side; y += 64)
+      for (float x = 0; x < map.side; x += 64)
+        EXPECT_TRUE(taken.insert({map.corner.x + x, map.corner.y + y}).second) << "not shared";
   }
+  EXPECT_GT(taken.size(), 250u) << "of 256";
   size_t without = 0;
   for (const uint32_t first : plan.first_map) without += first == scene::kNone;
   EXPECT_GT(without, 0u);

@@ -8,9 +8,9 @@
 namespace luxel::view {
 namespace {
 
-constexpr uint32_t kSmallestMap = 64;
-/// Texels around what a map is to show, so that neighbours can be looked up there, too.
-constexpr float kMargin = 3;
+constexpr uint32_t kSmallestCell = 64;
+/// Texels around what a map is to show: shaders/direct.glsl looks up some that lie beside it.
+constexpr float kMargin = 6;
 constexpr float kNearest = 1e-3f;  ///< of the scene's diagonal: what is nearer casts no shadow
 constexpr float kNarrowCone = 1.2f;
 
@@ -87,29 +87,54 @@ std::vector<ShadowMap> maps_of(const scene::PunctualLight& light, const Box3& bo
   return out;
 }
 
+/// What a lamp's maps take: six cells, or a map that is two cells wide.
+size_t cells_of(const scene::PunctualLight& light) { return looks_all_round(light) ? 6 : 4; }
+
+/// A square of cells that are given away, those in squares of two by two first.
+class Cells {
+ public:
+  explicit Cells(uint32_t side) : side_(side / 2 * 2) {}
+  size_t count() const { return size_t(side_) * side_; }
+  size_t left() const { return count() - taken_; }
+  /// The left upper cell of a square of 1 or 2 along its side.
+  std::array<uint32_t, 2> take(uint32_t along) {
+    const auto square = uint32_t(taken_ / 4), part = uint32_t(taken_ % 4);
+    taken_ += size_t(along) * along;
+    const uint32_t across = side_ / 2;
+    return {2 * (square % across) + part % 2, 2 * (square / across) + part / 2};
+  }
+
+ private:
+  uint32_t side_;
+  size_t taken_ = 0;
+};
+
 }  // namespace
 
 ShadowPlan plan_shadows(std::span<const scene::PunctualLight> lights, const Box3& bounds,
                         uint32_t picture_side) {
   size_t wanted = 0;
-  for (const scene::PunctualLight& light : lights) wanted += looks_all_round(light) ? 6 : 1;
-  uint32_t side = std::min(kLargestShadowMap, picture_side);
-  const auto fit = [&] { return size_t(picture_side / side) * (picture_side / side); };
-  while (fit() < wanted && side > kSmallestMap) side /= 2;
-  const size_t room = fit(), along = picture_side / side;
+  for (const scene::PunctualLight& light : lights) wanted += cells_of(light);
+  uint32_t side = std::min(kLargestShadowMap / 2, picture_side / 2);
+  while (Cells(picture_side / side).count() < wanted && side > kSmallestCell) side /= 2;
+  Cells cells(picture_side / side);
   ShadowPlan out;
-  for (const scene::PunctualLight& light : lights) {
-    std::vector<ShadowMap> maps = maps_of(light, bounds, float(side));
-    out.looks_all_round.push_back(maps.size() > 1);
-    const bool fits = out.maps.size() + maps.size() <= room;
-    out.first_map.push_back(fits ? uint32_t(out.maps.size()) : scene::kNone);
-    if (!fits) continue;
-    for (ShadowMap& map : maps) {
-      const size_t k = out.maps.size();
-      map.corner = {float((k % along) * side), float((k / along) * side)};
-      out.maps.push_back(map);
+  out.first_map.assign(lights.size(), scene::kNone), out.looks_all_round.assign(lights.size(), 0);
+  // Large ones first: then small ones leave no gap in which none of them fits.
+  for (const bool is_round : {false, true})
+    for (size_t i = 0; i < lights.size(); ++i) {
+      if (looks_all_round(lights[i]) != is_round) continue;
+      out.looks_all_round[i] = is_round;
+      const uint32_t along = is_round ? 1 : 2;  // of cells
+      std::vector<ShadowMap> maps = maps_of(lights[i], bounds, float(along * side));
+      if (cells.left() < cells_of(lights[i])) continue;
+      out.first_map[i] = uint32_t(out.maps.size());
+      for (ShadowMap& map : maps) {
+        const auto [x, y] = cells.take(along);
+        map.corner = {float(x * side), float(y * side)};
+        out.maps.push_back(map);
+      }
     }
-  }
   return out;
 }
 

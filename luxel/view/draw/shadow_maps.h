@@ -27,11 +27,12 @@ struct ShadowPlan {
   std::vector<uint8_t> looks_all_round;
 };
 
-/// Maps in a square picture, all of one size: as large as fits, at most kLargestShadowMap.
-/// Directional lamps see all of `bounds`; spots whose cone is narrow see it with one map. Lamps for
-/// which no room is left have first_map = scene::kNone, and cast no shadows.
+/// Maps in a square picture, as large as fits: at most kLargestShadowMap, and half of it for each
+/// of six. Directional lamps see all of `bounds`; spots whose cone is narrow see it with one map.
+/// Lamps for which no room is left have first_map = scene::kNone, and cast no shadows.
+/// `picture_side` >= 2.
 ShadowPlan plan_shadows(std::span<const scene::PunctualLight> lights, const Box3& bounds,
                         uint32_t picture_side);
-inline constexpr uint32_t kLargestShadowMap = 1024;
+inline constexpr uint32_t kLargestShadowMap = 2048;
 
 }  // namespace luxel::view

@@ -96,11 +96,11 @@ class RelitSceneTest : public testing::OnDevice {
 };
 
 TEST_F(RelitSceneTest, ALampIsDraggedToWhereABakeHasIt) {
-  const std::unique_ptr<OpenedLxr> opened = prepared(box_with_lamp(warm_lamp({0.1f, 0.45f, 0.3f})));
-  ASSERT_TRUE(opened);
-  auto relit = put_on_device(*commands_, *opened);
+  OpenedLxr opened = prepared(box_with_lamp(warm_lamp({0.1f, 0.45f, 0.3f})));
+  auto relit = lxr_shown(*commands_, opened);
   ASSERT_TRUE(relit) << relit.error().message;
-  const Box3 bounds = scene::world_bounds(opened->scene);
+  DeviceScene& device = relit->shown.device;
+  const Box3 bounds = scene::world_bounds(opened.read->scene);
   const PlaceSeen nowhere = [](const Frame&, Vec2) { return std::nullopt; };
   Walk walk = begin_walk(opened.read->first, bounds, kShotSide, kShotSide, nowhere);
   LampDesk desk = begin_desk(opened.lamps, bounds);

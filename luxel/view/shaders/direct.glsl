@@ -29,37 +29,53 @@ uint side_of_cube(vec3 d) {
   return d.z < 0 ? 5 : 4;
 }
 
-// The share of four texels around a place of a map that its depth is not behind of.
+// Shares of four texels side by side, for a place `part` of the way from the second to the third: a
+// cubic B-spline, whose edges are smooth where a step of one texel would show.
+vec4 spline(float part) {
+  float rest = 1 - part, p2 = part * part, r2 = rest * rest;
+  return vec4(r2 * rest, 4 - 6 * p2 + 3 * p2 * part, 4 - 6 * r2 + 3 * r2 * rest, p2 * part) / 6;
+}
+
+// The share of 4 x 4 texels around a place of a map that its depth is not behind of.
 float lit_share(ShadowMap map, vec3 place) {
   vec4 clip = map.clip_from_world * vec4(place, 1);
   if (clip.w <= 0) return 1;
-  vec2 at = clamp((clip.xy / clip.w * 0.5 + 0.5) * map.side - 0.5, vec2(0), vec2(map.side - 1.01));
-  vec2 texel = floor(at), part = at - texel;
-  // Of the left upper, right upper, right lower and left lower texel: w, z, y, x.
-  vec4 lit = textureGather(shadow_maps, (map.corner + texel + 1) / vec2(textureSize(shadow_maps, 0)),
-                           clip.z / clip.w);
-  vec2 rows = mix(lit.wx, lit.zy, part.x);
-  return mix(rows.x, rows.y, part.y);
+  vec2 at = clamp((clip.xy / clip.w * 0.5 + 0.5) * map.side - 0.5, vec2(1), vec2(map.side - 2.01));
+  vec2 texel = floor(at);
+  vec4 x = spline(at.x - texel.x), y = spline(at.y - texel.y);
+  vec2 size = vec2(textureSize(shadow_maps, 0));
+  float sum = 0;
+  for (int v = 0; v < 2; ++v)
+    for (int u = 0; u < 2; ++u) {
+      vec2 corner = (map.corner + texel + vec2(2 * u, 2 * v)) / size;
+      // Of the left upper, right upper, right lower and left lower texel: w, z, y, x.
+      vec4 lit = textureGather(shadow_maps, corner, clip.z / clip.w);
+      vec2 across = u == 0 ? x.xy : x.zw, down = v == 0 ? y.xy : y.zw;
+      sum += down.x * dot(across, lit.wz) + down.y * dot(across, lit.xy);
+    }
+  return sum;
 }
 
-// The share of a lamp's light that nothing is in the way of. What is looked up lies a little before
-// the surface, which must not be in its own way: a texel stands for all of its width.
-float visible_share(Lamp lamp, vec3 place, vec3 facet, vec3 towards) {
+vec3 axis_of_side(uint side) {
+  float way = side % 2 == 0 ? 1 : -1;
+  return side < 2 ? vec3(way, 0, 0) : side < 4 ? vec3(0, way, 0) : vec3(0, 0, way);
+}
+
+// The share of a lamp's light that nothing is in the way of. A surface must not be in its own way: a
+// texel has one depth for all of its width. Looked up is a place before the surface by what the
+// surface's depth changes over the texels of a look-up, two to each side. With the surface p n = c,
+// depth w and a place s at w = 1, w = c / n (s, 1): along s it changes by w |n_s| / n (s, 1), and with
+// c by 1 / n (s, 1). So c is to change by w |n_s| times the width.
+float visible_share(Lamp lamp, vec3 place, vec3 facet) {
   if (lamp.first_map == 0xffffffffu) return 1;
   vec3 from_lamp = place - lamp.position;
-  uint side = lamp.looks_all_round != 0 ? side_of_cube(from_lamp) : 0;
+  bool all_round = lamp.looks_all_round != 0;
+  uint side = all_round ? side_of_cube(from_lamp) : 0;
+  vec3 forward = all_round ? axis_of_side(side) : lamp.direction;
   ShadowMap map = light_now.maps.at[lamp.first_map + side];
-  vec3 a = abs(from_lamp);
-  float ahead = lamp.kind == 2             ? 1
-                : lamp.looks_all_round != 0 ? max(max(a.x, a.y), a.z)
-                                            : dot(from_lamp, lamp.direction);
-  float cosine = clamp(dot(facet, towards), 0, 1);
-  float before = map.texel_m * ahead * (0.3 + 1.5 * sqrt(1 - cosine * cosine));
-  vec3 p = place + facet * before;
-  if (lamp.looks_all_round != 0) {
-    uint now = side_of_cube(p - lamp.position);
-    if (now != side) map = light_now.maps.at[lamp.first_map + now];
-  }
+  float depth = lamp.kind == 2 ? 1 : dot(from_lamp, forward);
+  float along = dot(facet, forward);
+  vec3 p = place + facet * (map.texel_m * depth * (0.2 + 2.9 * sqrt(max(1 - along * along, 0))));
   return lit_share(map, p);
 }
 
@@ -74,7 +90,7 @@ vec3 direct_light(vec3 place, vec3 normal, vec3 facet) {
     float cosine = dot(normal, towards);
     if (cosine <= 0 || dot(facet, towards) <= 0 || max(max(arriving.r, arriving.g), arriving.b) <= 0)
       continue;
-    sum += arriving * (cosine * visible_share(lamp, place, facet, towards));
+    sum += arriving * (cosine * visible_share(lamp, place, facet));
   }
   return sum;
 }

@@ -125,6 +125,7 @@ Result<view::ShownScene> shown_offscreen(const Options& options, gpu::Commands& 
   view::ShownScene out;
   std::string said;
   LUXEL_TRY_STATUS(view::take_news(std::move(news), commands, out, said).map([](bool) {}));
+  LUXEL_TRY_STATUS(view::settle(commands, out));
   return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <span>
 
 #include "apps/view/frame_table.h"
@@ -150,10 +151,12 @@ BakeLines lines_of(const Session& s) {
   out.can_save = state == view::LiveState::baked;
   const view::LiveNumbers& known = s.shown.numbers;
   if (!s.shown.has_light) return out;
-  if (known.samples == 0)
-    out.lines.push_back("direct light, and an even guess of the rest");
-  else
-    out.lines.push_back(fmt::format("{:.0f} rays per texel", known.samples));
+  if (known.kind == view::LiveKind::draft) out.lines.push_back("shown: a coarse draft");
+  if (known.kind == view::LiveKind::direct_and_draft)
+    out.lines.push_back("shown: direct light, reflections of the draft");
+  if (known.kind == view::LiveKind::direct_and_even_rest)
+    out.lines.push_back("shown: direct light, reflections spread evenly");
+  if (known.samples > 0) out.lines.push_back(fmt::format("{:.0f} rays per texel", known.samples));
   if (known.rays_per_s > 0)
     out.lines.push_back(fmt::format("{:.2f} million rays/s", 1e-6 * known.rays_per_s));
   if (known.error_p95 > 0)
@@ -175,10 +178,21 @@ void lay_out(Session& s) {
   else
     s.screen.ui->lay_out(s.panel);
   if (s.lamps) take_changes(*s.panel.lamps, *s.lamps);
+}
+
+/// What keys and the panel ask of a bake.
+void follow_user(Session& s) {
+  std::vector<view::Command> asked;
+  if (s.walk) asked = std::exchange(s.walk->asked, {});
   if (!s.live) return;
-  if (s.panel.bake->asks_to_stop) s.live->pause(true);
-  if (s.panel.bake->asks_to_go_on) s.live->pause(false);
-  if (s.panel.bake->asks_to_save) s.live->save();
+  const BakeLines& panel = *s.panel.bake;
+  if (panel.asks_to_stop || panel.asks_to_go_on) asked.push_back(view::Command::stop_or_go_on);
+  if (panel.asks_to_save) asked.push_back(view::Command::save);
+  for (const view::Command command : asked) {
+    if (command == view::Command::save) s.live->save();
+    if (command == view::Command::stop_or_go_on)
+      s.live->pause(s.live->state() == view::LiveState::baking);
+  }
 }
 
 /// What is drawn: without light, colours.
@@ -252,8 +266,18 @@ Result<bool> go_on(Session& s) {
   const bool goes_on = !s.params.play || play_on(s);
   if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
   lay_out(s);
+  follow_user(s);
   LUXEL_TRY_STATUS(draw_frame(s));
   return goes_on;
+}
+
+/// A play that saves a bake ends when it is saved. Errors: those of the bake.
+Status end_bake(Session& s) {
+  if (s.live->state() != view::LiveState::baked) return {};
+  s.live->wait();
+  const view::LiveNews news = s.live->take();
+  if (news.said) std::fprintf(stderr, "%s\n", news.said->c_str());
+  return {};
 }
 
 /// Until the window is closed or a play has ended.
@@ -263,6 +287,7 @@ Status show(Session s) {
   bool is_going_on = true;
   while (is_going_on && !glfwWindowShouldClose(s.window.get()))
     LUXEL_TRY_STATUS(go_on(s).map([&](bool more) { is_going_on = more; }));
+  if (s.params.play && s.live) LUXEL_TRY_STATUS(end_bake(s));
   if (!s.params.frame_table.empty()) {
     const std::string csv = csv_of(s.table);
     LUXEL_TRY_STATUS(

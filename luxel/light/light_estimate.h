@@ -11,6 +11,7 @@ namespace luxel::light {
 /// E per element as far as it is known [W/m^2].
 struct LightEstimate {
   std::span<const Rgb> irradiance;  ///< valid during the call
+  std::span<const Rgb> direct;      ///< the part of it that comes straight from lights; likewise
   /// Rays per element in the mean; 0: none yet, what surfaces send each other is an ambient term.
   double samples = 0;
   float error_p95 = 0;   ///< 95 of 100 elements err by less, relative; 0: not known yet

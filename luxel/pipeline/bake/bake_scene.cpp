@@ -224,7 +224,8 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const 
   return bake;
 }
 
-Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& asked, Progress& progress) {
+Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& asked, Progress& progress,
+                        const BakeObserver& watcher) {
   BakeSettings settings = asked;
   if (settings.output.empty()) settings.output = ".";
   LUXEL_TRY_STATUS(check(settings));
@@ -234,7 +235,7 @@ Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& asked, Progress&
   LUXEL_TRY(bake.warnings, scene::validate(bake.scene, "scene '" + bake.scene.name + "'"));
   LUXEL_TRY(const std::vector<std::string> light, add_outside_light(settings.outside, bake.scene));
   bake.warnings.insert(bake.warnings.end(), light.begin(), light.end());
-  LUXEL_TRY_STATUS(bake_in_time(settings, {}, {}, bake, progress));
+  LUXEL_TRY_STATUS(bake_in_time(settings, {}, watcher, bake, progress));
   return bake;
 }
 

@@ -77,7 +77,8 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
 /// settings.output, the folder of the process if that is empty. The result stands by itself:
 /// Bake::lightmaps has E [W/m^2], Bake::atlas where it lies. Errors: settings out of range
 /// (bad_setting), a scene that cannot be repaired (bad_input), too little memory, cancelled.
-Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& settings, Progress& progress);
+Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& settings, Progress& progress,
+                        const BakeObserver& observer = {});
 
 /// `luxel bake --plan`: reads and lays out, and tries a few texels. Nothing is written.
 Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);

@@ -103,7 +103,8 @@ Status trace_first(const Request& in, Progressive& light, Progress& progress) {
   if (in.stores.earlier) return trace_earlier(in, light, progress);
   if (!in.observer.on_estimate)
     return trace_round(in, std::vector<uint16_t>(n, uint16_t(all)), light, progress);
-  in.observer.on_estimate({with_ambient(in.scene.elements, light.direct.irradiance)});
+  const std::vector<Rgb> guess = with_ambient(in.scene.elements, light.direct.irradiance);
+  in.observer.on_estimate({.irradiance = guess, .direct = light.direct.irradiance});
   for (const int samples : growing(all)) {
     const std::vector<uint16_t> target(n, uint16_t(samples));
     LUXEL_TRY_STATUS(trace_round(in, target, light, progress));

@@ -13,8 +13,11 @@ namespace luxel::gather {
 void show(const GatherObserver& observer, const Progressive& light) {
   if (!observer.on_estimate) return;
   const double n = double(std::max<size_t>(light.hits.size(), 1));
-  observer.on_estimate({light.bounced.irradiance, double(sum_of(light.hits.samples)) / n,
-                        light.errors.p95, light.errors.expected_rms});
+  observer.on_estimate({.irradiance = light.bounced.irradiance,
+                        .direct = light.direct.irradiance,
+                        .samples = double(sum_of(light.hits.samples)) / n,
+                        .error_p95 = light.errors.p95,
+                        .error_rms = light.errors.expected_rms});
 }
 
 Status begin_direct(const Request& in, Progressive& light, Progress& progress) {

@@ -15,9 +15,18 @@
 
 namespace luxel::view {
 
+/// What light is made of.
+enum class LiveKind : uint8_t {
+  draft,                 ///< coarse, see draft.h
+  direct_and_draft,      ///< sharp direct light, reflections of the draft
+  direct_and_even_rest,  ///< sharp direct light and an ambient term
+  bake,                  ///< all of it the bake's
+};
+
 /// How well light is known.
 struct LiveNumbers {
-  double samples = 0;     ///< rays per texel; 0: direct light and an ambient term
+  LiveKind kind = LiveKind::bake;
+  double samples = 0;     ///< rays per texel, traced by now
   float error_p95 = 0;    ///< LightEstimate::error_p95
   double error_rms = 0;   ///< LightEstimate::error_rms
   double rays_per_s = 0;  ///< of the last round; 0: not known
@@ -34,9 +43,12 @@ struct LiveLight {
 /// What has come since it was last asked for.
 struct LiveNews {
   std::shared_ptr<const ReadScene> read;  ///< once, first
-  std::optional<LitScene> lit;            ///< once, with the first light
-  std::optional<LiveLight> light;         ///< the newest
-  std::optional<std::string> said;        ///< of saving, or why there is no light; a sentence
+  /// With the first light: of a draft, and then of the bake itself, which lies elsewhere.
+  std::optional<LitScene> lit;
+  std::optional<LiveLight> light;  ///< the newest
+  /// With `lit`, where something else was shown before: its light where `lit` has its own.
+  std::optional<LiveLight> before;
+  std::optional<std::string> said;  ///< of saving, or why there is no light; a sentence
 };
 
 /// The state of the work.
@@ -57,7 +69,7 @@ class LiveBake {
   /// Writes the files of `luxel bake` into settings.output, in the background; take() tells the
   /// end. Only once it is baked.
   virtual void save() = 0;
-  /// Returns when the bake has ended, well or not.
+  /// Returns when the bake has ended, well or not, and is saved if it was asked for.
   virtual void wait() = 0;
 };
 

@@ -79,6 +79,8 @@ inline constexpr KeyHelp kKeys[] = {
     {"+", "brighter by half a stop"},
     {"-", "darker by half a stop"},
     {"0", "as bright as at first"},
+    {"space", "stop the bake, or let it go on"},
+    {"ctrl+s", "save the bake"},
 };
 /// Those of .lxr files.
 inline constexpr KeyHelp kLampKeys[] = {

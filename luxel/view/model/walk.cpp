@@ -46,6 +46,8 @@ void press(const std::string& key, Walk& walk) {
     walk.target = walk.bounds.centre();
   }
   if (key == "home") walk.shown.camera = walk.first.camera;
+  if (key == "space") walk.asked.push_back(Command::stop_or_go_on);
+  if (key == "ctrl+s") walk.asked.push_back(Command::save);
   if (key == "1") walk.shown.show = Show::light_and_colour;
   if (key == "2") walk.shown.show = Show::light;
   if (key == "3") walk.shown.show = Show::colour;

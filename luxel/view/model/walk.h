@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/view/frame.h"
@@ -19,6 +20,9 @@ using PlaceSeen = std::function<std::optional<Vec3>(const Frame& frame, Vec2 pix
 PlaceSeen place_seen_in(const scene::Scene& scene, const trace::RayTracer& tracer, int width,
                         int height);
 
+/// What a user can ask for besides looking.
+enum class Command : uint8_t { stop_or_go_on, save };
+
 /// What is shown, and what the user is about to do.
 struct Walk {
   Frame shown;
@@ -30,6 +34,8 @@ struct Walk {
   Vec2 pointer{};
   std::optional<Button> dragging;
   std::set<std::string> keys;  ///< that are down
+  /// What keys have asked for that is not the walk's to do; whoever does it takes it out.
+  std::vector<Command> asked;
 };
 
 /// Begins with a frame. The target lies in the middle of the picture, or as far away as the scene.

@@ -16,6 +16,7 @@
 #include "luxel/view/draw/painter.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
+#include "luxel/view/relight/draw_lxr.h"
 #include "luxel/view/shown_scene.h"
 
 namespace {
@@ -48,10 +49,10 @@ Result<std::optional<view::Play>> events_of(const Options& options) {
   return view::read_play(options.play);
 }
 
-/// A scene, which is to be baked; everything else is the folder of a bake.
+/// A scene, which is to be baked; everything else is an .lxr file or the folder of a bake.
 bool is_scene(const std::filesystem::path& subject) {
   std::error_code ignored;
-  return std::filesystem::is_regular_file(subject, ignored);
+  return !view::is_lxr(subject) && std::filesystem::is_regular_file(subject, ignored);
 }
 
 /// Errors: options of a bake beside a bake that is there.
@@ -89,6 +90,7 @@ Status show(const Options& options) {
     if (!file.empty()) LUXEL_TRY_STATUS(check_output_file(file));
   view_window::WindowParams params;
   LUXEL_TRY(params.play, events_of(options));
+  params.play_name = options.play.string();
   params.title = std::filesystem::absolute(options.subject).lexically_normal().filename().string();
   params.device = options.device;
   params.screenshot = options.screenshot, params.frame_table = options.frame_table;
@@ -96,6 +98,10 @@ Status show(const Options& options) {
   if (is_scene(options.subject)) {
     LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
     return view_window::bake_in_window(settings, params);
+  }
+  if (view::is_lxr(options.subject)) {
+    LUXEL_TRY(view::OpenedLxr opened, view::open_lxr(options.subject));
+    return view_window::relight_in_window(std::move(opened), params);
   }
   LUXEL_TRY(view::OpenedBake bake, view::open_bake(options.subject));
   print_warnings(bake.warnings);
@@ -123,6 +129,15 @@ Result<view::ShownScene> shown_offscreen(const Options& options, gpu::Commands& 
   return out;
 }
 
+/// One picture of an .lxr file after what is played.
+Result<image::Image8> picture_of_lxr(const Options& options,
+                                     const std::optional<view::Play>& events,
+                                     gpu::Commands& commands) {
+  LUXEL_TRY(view::OpenedLxr opened, view::open_lxr(options.subject));
+  return view::draw_lxr(commands, opened,
+                        {options.width, options.height, events, options.play.string()});
+}
+
 /// The frame to draw: the first, or where a play gets to.
 view::Frame frame_to_draw(const std::optional<view::Play>& events, const view::ShownScene& shown,
                           int width, int height) {
@@ -137,6 +152,21 @@ view::Frame frame_to_draw(const std::optional<view::Play>& events, const view::S
   return walk.shown;
 }
 
+/// One picture of a bake after what is played.
+Result<image::Image8> picture_of_bake(const Options& options,
+                                      const std::optional<view::Play>& events,
+                                      gpu::Commands& commands) {
+  LUXEL_TRY(const view::ShownScene shown, shown_offscreen(options, commands));
+  const int width = options.width ? options.width : shown.read->width;
+  const int height = options.height ? options.height : shown.read->height;
+  const view::Frame frame = frame_to_draw(events, shown, width, height);
+  LUXEL_TRY(const view::Shaders shaders, view::make_shaders(commands.device()));
+  const view::DeviceScene& scene = shown.device;
+  LUXEL_TRY(const view::Painter painter, view::make_painter(commands.device(), shaders, scene,
+                                                            uint32_t(width), uint32_t(height)));
+  return view::painted(commands, {shaders, painter, scene}, frame);
+}
+
 /// One picture, without a window.
 Status draw_offscreen(const Options& options) {
   LUXEL_TRY_STATUS(check_output_file(options.screenshot));
@@ -145,15 +175,9 @@ Status draw_offscreen(const Options& options) {
   params.name = options.device;
   LUXEL_TRY(const std::unique_ptr<gpu::Device> device, gpu::Device::open(params));
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device));
-  LUXEL_TRY(const view::ShownScene shown, shown_offscreen(options, commands));
-  const int width = options.width ? options.width : shown.read->width;
-  const int height = options.height ? options.height : shown.read->height;
-  const view::Frame frame = frame_to_draw(events, shown, width, height);
-  LUXEL_TRY(const view::Shaders shaders, view::make_shaders(*device));
-  const view::DeviceScene& scene = shown.device;
-  LUXEL_TRY(const view::Painter painter,
-            view::make_painter(*device, shaders, scene, uint32_t(width), uint32_t(height)));
-  LUXEL_TRY(const image::Image8 picture, view::painted(commands, {shaders, painter, scene}, frame));
+  LUXEL_TRY(const image::Image8 picture, view::is_lxr(options.subject)
+                                             ? picture_of_lxr(options, events, commands)
+                                             : picture_of_bake(options, events, commands));
   LUXEL_TRY_STATUS(write_file_atomically(options.screenshot, image::encode_png(picture)));
   std::fprintf(stderr, "wrote %s, drawn by %s\n", options.screenshot.string().c_str(),
                device->name.c_str());
@@ -170,8 +194,8 @@ int report(const Error& error) {
 
 void add_own(CLI::App& app, Options& options) {
   app.add_option("SUBJECT", options.subject,
-                 "A scene, which is baked while you look, with all options of `luxel bake`; or the "
-                 "folder that a bake left")
+                 "A scene, which is baked while you look, with all options of `luxel bake`; the "
+                 "folder that a bake left; or an .lxr file, whose lamps move")
       ->required();
   app.add_option("-o,--output", options.choice.output,
                  "Where 'save' puts the bake of a scene (baked/NAME)")

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "apps/view/frame_table.h"
+#include "apps/view/lamp_session.h"
 #include "apps/view/screen.h"
 #include "luxel/base/file.h"
 #include "luxel/image/codec.h"
@@ -18,10 +19,13 @@
 namespace luxel::view_window {
 namespace {
 
-std::vector<KeyLine> key_lines() {
+std::vector<KeyLine> key_lines(bool has_lamps) {
   std::vector<KeyLine> out{
       {"left button", "turn"}, {"other buttons", "move the picture"}, {"wheel", "nearer, farther"}};
   for (const view::KeyHelp& key : view::kKeys) out.push_back({key.key, key.does});
+  if (!has_lamps) return out;
+  out.insert(out.begin(), {"left button on a lamp", "move it"});
+  for (const view::KeyHelp& key : view::kLampKeys) out.push_back({key.key, key.does});
   return out;
 }
 
@@ -37,9 +41,9 @@ void exchange(Ui& ui, std::span<const scene::Camera> views, Panel& panel, view::
     walk.shown.camera = views[size_t(view)];
 }
 
-/// Events of the user, but for those that are the panel's.
-void take_events(Window& window, const Ui& ui, const view::PlaceSeen& place_seen,
-                 view::Walk& walk) {
+/// Events of the user, but for those that are the panel's. `lamps` may be null.
+void take_events(Window& window, const Ui& ui, const view::PlaceSeen& place_seen, view::Walk& walk,
+                 LampSession* lamps) {
   for (const view::Event& event : window.taken()) {
     const bool is_key = std::holds_alternative<view::KeyChanged>(event);
     const auto* button = std::get_if<view::ButtonChanged>(&event);
@@ -47,7 +51,8 @@ void take_events(Window& window, const Ui& ui, const view::PlaceSeen& place_seen
     if (!is_end && !std::holds_alternative<view::PointerMoved>(event) &&
         (is_key ? ui.has_keys() : ui.has_pointer()))
       continue;
-    view::handle(event, place_seen, walk);
+    if (!lamps || !view::handle_lamps(event, walk, lamps->desk))
+      view::handle(event, place_seen, walk);
   }
 }
 
@@ -68,8 +73,9 @@ struct Session {
   Screen& screen;
   view::ShownScene& shown;
   view::LiveBake* live;  ///< null: the bake is there
+  LampSession* lamps;    ///< null: they do not move
   const WindowParams& params;
-  std::vector<KeyLine> keys = key_lines();
+  std::vector<KeyLine> keys = key_lines(lamps != nullptr);
   std::vector<std::string> views = {};  ///< names of the scene's cameras
   Panel panel = {};
   std::optional<view::Walk> walk = {};  ///< once there is a scene, and the window has a size
@@ -169,10 +175,12 @@ BakeLines lines_of(const Session& s) {
 /// The panel, what the user changes in it, and what it asks for.
 void lay_out(Session& s) {
   s.panel.bake = s.live ? std::optional(lines_of(s)) : std::nullopt;
+  if (s.lamps) s.panel.lamps = panel_of(*s.lamps);
   if (s.walk)
     exchange(*s.screen.ui, s.shown.read->scene.cameras, s.panel, *s.walk);
   else
     s.screen.ui->lay_out(s.panel);
+  if (s.lamps) take_changes(*s.panel.lamps, *s.lamps);
 }
 
 /// What keys and the panel ask of a bake.
@@ -196,6 +204,7 @@ view::Frame frame_of(const Session& s) {
   view::Frame out;
   if (s.walk) out = s.walk->shown;
   if (!s.shown.has_light) out.show = view::Show::colour, out.exposure = 1;
+  if (s.lamps && s.walk) out.marks = view::marks_of(s.lamps->desk, *s.walk);
   return out;
 }
 
@@ -208,7 +217,11 @@ bool play_on(Session& s) {
       is_baking || !s.walk || !view::is_settled(s.shown) ||
       (s.live && s.live->state() == view::LiveState::baked && !s.shown.has_last);
   do {
-    if (s.walk) view::handle_frame(play, s.frame, s.place_seen, s.next_event, *s.walk);
+    if (s.walk && s.lamps)
+      view::handle_frame_with_lamps(play, s.frame, s.place_seen, s.next_event, *s.walk,
+                                    s.lamps->desk);
+    else if (s.walk)
+      view::handle_frame(play, s.frame, s.place_seen, s.next_event, *s.walk);
     if (view::waits(play, s.frame, is_to_come, s.next_event)) return true;
   } while (s.walk && view::has_come(play, s.frame, s.next_event));
   if (double(s.frame) >= play.end_s * play.frames_per_s) return false;
@@ -221,7 +234,13 @@ bool play_on(Session& s) {
 Status draw_frame(Session& s) {
   const auto begin = Clock::now();
   const view::Frame frame = frame_of(s);
+  view::LightTimes light;
+  if (s.lamps) {
+    LUXEL_TRY(light, light_lamps(*s.screen.commands, s.shown.device, *s.lamps));
+  }
+  const auto lit = Clock::now();
   LUXEL_TRY(s.fits, draw(s.shown.device, frame, s.screen));
+  if (s.lamps) add_times(light, float(1000 * seconds_since(lit)), *s.lamps);
   s.panel.milliseconds = float(1000 * seconds_since(begin));
   if (!s.params.frame_table.empty())
     LUXEL_TRY_STATUS(add_row(s.screen, s.panel.milliseconds, s.shown, s.table));
@@ -244,7 +263,7 @@ Result<bool> go_on(Session& s) {
   s.still_frames = changes ? 0 : s.still_frames + 1;
   if (s.still_frames > kFramesToSettle) return true;
   if (!s.params.play && s.walk) {
-    take_events(s.window, *s.screen.ui, s.place_seen, *s.walk);
+    take_events(s.window, *s.screen.ui, s.place_seen, *s.walk, s.lamps);
     view::pass(std::min(passed, 0.1), *s.walk);
   }
   LUXEL_TRY_STATUS(fade(s.params.play ? 1 / s.params.play->frames_per_s : passed, s));
@@ -291,7 +310,7 @@ Status show_in_window(view::OpenedBake bake, const WindowParams& params) {
             Window::open(params.title, params.width, params.height));
   LUXEL_TRY(Screen screen, open_screen(*window, params.device));
   LUXEL_TRY(view::ShownScene shown, view::bake_shown(*screen.commands, std::move(bake)));
-  return show({*window, screen, shown, nullptr, params});
+  return show({*window, screen, shown, nullptr, nullptr, params});
 }
 
 Status bake_in_window(const pipeline::BakeSettings& settings, const WindowParams& params) {
@@ -301,7 +320,18 @@ Status bake_in_window(const pipeline::BakeSettings& settings, const WindowParams
   const std::unique_ptr<view::LiveBake> live = view::LiveBake::begin(settings);
   LUXEL_TRY(Screen screen, open_screen(*window, params.device));
   LUXEL_TRY(view::ShownScene shown, view::nothing_shown(*screen.commands));
-  return show({*window, screen, shown, live.get(), params});
+  return show({*window, screen, shown, live.get(), nullptr, params});
+}
+
+Status relight_in_window(view::OpenedLxr opened, const WindowParams& params) {
+  if (params.play)
+    LUXEL_TRY_STATUS(view::check_lamps(*params.play, opened.lamps, params.play_name));
+  LUXEL_TRY(const std::unique_ptr<Window> window,
+            Window::open(params.title, params.width, params.height));
+  LUXEL_TRY(Screen screen, open_screen(*window, params.device));
+  LUXEL_TRY(view::RelitScene relit, view::lxr_shown(*screen.commands, opened));
+  LampSession lamps = begin_lamps(std::move(opened), std::move(relit.direct));
+  return show({*window, screen, relit.shown, nullptr, &lamps, params});
 }
 
 }  // namespace luxel::view_window

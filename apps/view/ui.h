@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/lamp_panel.h"
+
 struct GLFWwindow;
 
 namespace luxel::view_window {
@@ -50,6 +52,7 @@ struct Panel {
   std::span<const std::string> views;  ///< of the scene's cameras
   int view = -1;                       ///< changed: the one that was asked for; -1: none
   std::optional<BakeLines> bake;
+  std::optional<LampPanel> lamps;
   std::string message;  ///< what was done last
 };
 

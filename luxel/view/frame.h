@@ -1,8 +1,11 @@
 // What a picture of the viewer shows.
 #pragma once
 
+#include <vector>
+
 #include "luxel/display/tone_map.h"
 #include "luxel/scene/scene.h"
+#include "luxel/view/mark.h"
 
 namespace luxel::view {
 
@@ -19,6 +22,7 @@ struct Frame {
   float exposure = 1;  ///< factor of the radiance before the curve
   display::ToneMap curve = display::ToneMap::shoulder;
   Show show = Show::light_and_colour;
+  std::vector<Mark> marks;  ///< over the picture, the last one uppermost
 };
 
 }  // namespace luxel::view

@@ -12,7 +12,7 @@ namespace luxel::view {
 
 /// The shaders of all pictures.
 struct Shaders {
-  gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen;
+  gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);

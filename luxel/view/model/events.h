@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "luxel/base/result.h"
 #include "luxel/base/vec.h"
+#include "luxel/scene/scene.h"
 
 namespace luxel::view {
 
@@ -29,9 +31,32 @@ struct KeyChanged {
   std::string key;
   bool is_down = false;
 };
+/// What of a lamp becomes otherwise; the rest stays.
+struct LampChange {
+  std::optional<Vec3> to;         ///< place [m]
+  std::optional<Vec3> direction;  ///< in which its light travels; not 0
+  std::optional<Rgb> intensity;   ///< scene::PunctualLight::intensity
+  std::optional<bool> is_on;
+};
+/// A lamp of an .lxr file, by its number.
+struct LampChanged {
+  uint32_t lamp = 0;
+  LampChange change;
+};
+/// One lamp more, white and of 1 W/sr or W/m^2 where nothing else is said.
+struct LampAdded {
+  scene::PunctualLight::Kind kind = scene::PunctualLight::Kind::point;
+  LampChange change;
+};
+/// The materials of this name glow otherwise [W/(sr m^2)].
+struct GlowChanged {
+  std::string material;
+  Rgb radiance{};
+};
 /// Of a play: what comes after it is played when the bake has ended and its light is shown.
 struct WaitForBake {};
-using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, WaitForBake>;
+using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
+                           LampAdded, GlowChanged, WaitForBake>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -57,6 +82,13 @@ inline constexpr KeyHelp kKeys[] = {
     {"space", "stop the bake, or let it go on"},
     {"ctrl+s", "save the bake"},
 };
+/// Those of .lxr files.
+inline constexpr KeyHelp kLampKeys[] = {
+    {"x", "move a lamp along x alone, or freely again"},
+    {"y", "along y alone"},
+    {"z", "along z alone"},
+    {"m", "hide the marks of lamps, or show them"},
+};
 
 struct TimedEvent {
   double at_s = 0;  ///< since the beginning
@@ -76,7 +108,8 @@ struct Play {
 ///       {"at": 0, "pointer": [480, 360]}, {"at": 0, "press": "left"},
 ///       {"at": 1, "pointer": [600, 360]}, {"at": 1, "release": "left"},
 ///       {"at": 1.2, "scroll": 3}, {"at": 1.5, "key": "w"}, {"at": 1.8, "key_up": "w"},
-///       {"at": 2, "wait": "bake"}]}
+///       {"at": 2, "wait": "bake"},
+///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]}]}
 ///
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.
 Result<Play> parse_play(std::string_view text, const std::string& name);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/view/screen.h"
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view_window {
 

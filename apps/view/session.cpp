@@ -14,7 +14,7 @@
 #include "luxel/base/file.h"
 #include "luxel/image/codec.h"
 #include "luxel/view/model/walk.h"
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view_window {
 namespace {

@@ -9,7 +9,7 @@
 #include "luxel/view/model/histogram.h"
 #include "luxel/view/model/look.h"
 #include "luxel/view/model/walk.h"
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view_window {
 

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "apps/options/bake_options.h"
 #include "apps/view/looking.h"
 #include "apps/view/session.h"
+#include "luxel/arguments/bake_options.h"
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/image/codec.h"
@@ -18,7 +18,8 @@
 #include "luxel/view/draw/painter.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/relight/draw_lxr.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace {
 
@@ -30,8 +31,8 @@ struct Options {
   std::filesystem::path subject, beside, screenshot, play, frame_table;
   std::string size, device;
   bool offscreen = false;
-  int width = 0, height = 0;  ///< 0: as preview.png
-  cli::BakeChoice choice;     ///< of a subject that is a scene
+  int width = 0, height = 0;     ///< 0: as preview.png
+  arguments::BakeChoice choice;  ///< of a subject that is a scene
 };
 
 Status parse_size(Options& options) {
@@ -50,15 +51,15 @@ Result<std::optional<view::Play>> events_of(const Options& options) {
   return view::read_play(options.play);
 }
 
-/// A scene, which is to be baked; everything else is the folder of a bake.
+/// A scene, which is to be baked; everything else is an .lxr file or the folder of a bake.
 bool is_scene(const std::filesystem::path& subject) {
   std::error_code ignored;
-  return std::filesystem::is_regular_file(subject, ignored);
+  return !view::is_lxr(subject) && std::filesystem::is_regular_file(subject, ignored);
 }
 
 /// Errors: options of a bake beside a bake that is there.
 Status check_choice(const Options& options) {
-  const cli::BakeChoice& choice = options.choice;
+  const arguments::BakeChoice& choice = options.choice;
   std::string flag;
   if (!choice.solver.empty()) flag = "--solver";
   if (!choice.settings.empty()) flag = "--settings";
@@ -71,11 +72,11 @@ Status check_choice(const Options& options) {
 
 /// Those of `luxel bake`, but that a processor is left to the window, and a folder is chosen.
 Result<pipeline::BakeSettings> settings_of(const Options& options) {
-  cli::BakeChoice choice = options.choice;
+  arguments::BakeChoice choice = options.choice;
   choice.scene = options.subject;
   if (choice.output.empty())
     choice.output = std::filesystem::path("baked") / options.subject.stem();
-  LUXEL_TRY(pipeline::BakeSettings settings, cli::settings_of(choice));
+  LUXEL_TRY(pipeline::BakeSettings settings, arguments::settings_of(choice));
   if (!options.offscreen && !choice.given.has("--threads"))
     settings.threads = std::max(1, int(std::thread::hardware_concurrency()) - 1);
   return settings;
@@ -103,6 +104,7 @@ Status show(const Options& options) {
     if (!file.empty()) LUXEL_TRY_STATUS(check_output_file(file));
   view_window::WindowParams params;
   LUXEL_TRY(params.play, events_of(options));
+  params.play_name = options.play.string();
   params.title = std::filesystem::absolute(options.subject).lexically_normal().filename().string();
   params.device = options.device;
   params.screenshot = options.screenshot, params.frame_table = options.frame_table;
@@ -110,6 +112,10 @@ Status show(const Options& options) {
   if (is_scene(options.subject)) {
     LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
     return view_window::bake_in_window(settings, params);
+  }
+  if (view::is_lxr(options.subject)) {
+    LUXEL_TRY(view::OpenedLxr opened, view::open_lxr(options.subject));
+    return view_window::relight_in_window(std::move(opened), params);
   }
   LUXEL_TRY(view::OpenedBake bake, view::open_bake(options.subject));
   print_warnings(bake.warnings);
@@ -134,7 +140,17 @@ Result<view::ShownScene> shown_offscreen(const Options& options, gpu::Commands& 
   view::ShownScene out;
   std::string said;
   LUXEL_TRY_STATUS(view::take_news(std::move(news), commands, out, said).map([](bool) {}));
+  LUXEL_TRY_STATUS(view::settle(commands, out));
   return out;
+}
+
+/// One picture of an .lxr file after what is played.
+Result<image::Image8> picture_of_lxr(const Options& options,
+                                     const std::optional<view::Play>& events,
+                                     gpu::Commands& commands) {
+  LUXEL_TRY(view::OpenedLxr opened, view::open_lxr(options.subject));
+  return view::draw_lxr(commands, opened,
+                        {options.width, options.height, events, options.play.string()});
 }
 
 /// The frame to draw: the first, or where a play gets to.
@@ -167,6 +183,29 @@ Result<image::Image8> painted_beside(const Options& options, gpu::Commands& comm
   return view::painted_together(commands, first, second, pair, frame);
 }
 
+/// One picture of a bake after what is played.
+Result<image::Image8> picture_of_bake(const Options& options,
+                                      const std::optional<view::Play>& events,
+                                      gpu::Commands& commands) {
+  LUXEL_TRY(view::ShownScene shown, shown_offscreen(options, commands));
+  const int width = options.width ? options.width : shown.read->width;
+  const int height = options.height ? options.height : shown.read->height;
+  view::Frame frame = frame_to_draw(events, shown, !options.beside.empty(), width, height);
+  LUXEL_TRY(const view::Shaders shaders, view::make_shaders(commands.device()));
+  view_window::Looking looking;
+  LUXEL_TRY_STATUS(
+      view_window::prepare_look(commands, shaders.overlay, false, frame, shown, looking));
+  if (looking.look)
+    if (const auto missing = view::missing_for(frame.show, *looking.look, shown.folder.string()))
+      return fail(ErrorCode::bad_input, "{}", *missing);
+  const view::DeviceScene& scene = shown.device;
+  LUXEL_TRY(const view::Painter painter, view::make_painter(commands.device(), shaders, scene,
+                                                            uint32_t(width), uint32_t(height)));
+  const view::Canvas canvas{shaders, painter, scene, looking.overlay ? &*looking.overlay : nullptr};
+  return frame.beside ? painted_beside(options, commands, canvas, frame)
+                      : view::painted(commands, canvas, frame);
+}
+
 /// One picture, without a window.
 Status draw_offscreen(const Options& options) {
   LUXEL_TRY_STATUS(check_output_file(options.screenshot));
@@ -175,24 +214,9 @@ Status draw_offscreen(const Options& options) {
   params.name = options.device;
   LUXEL_TRY(const std::unique_ptr<gpu::Device> device, gpu::Device::open(params));
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device));
-  LUXEL_TRY(view::ShownScene shown, shown_offscreen(options, commands));
-  const int width = options.width ? options.width : shown.read->width;
-  const int height = options.height ? options.height : shown.read->height;
-  view::Frame frame = frame_to_draw(events, shown, !options.beside.empty(), width, height);
-  LUXEL_TRY(const view::Shaders shaders, view::make_shaders(*device));
-  view_window::Looking looking;
-  LUXEL_TRY_STATUS(
-      view_window::prepare_look(commands, shaders.overlay, false, frame, shown, looking));
-  if (looking.look)
-    if (const auto missing = view::missing_for(frame.show, *looking.look, shown.folder.string()))
-      return fail(ErrorCode::bad_input, "{}", *missing);
-  const view::DeviceScene& scene = shown.device;
-  LUXEL_TRY(const view::Painter painter,
-            view::make_painter(*device, shaders, scene, uint32_t(width), uint32_t(height)));
-  const view::Canvas canvas{shaders, painter, scene, looking.overlay ? &*looking.overlay : nullptr};
-  LUXEL_TRY(const image::Image8 picture, frame.beside
-                                             ? painted_beside(options, commands, canvas, frame)
-                                             : view::painted(commands, canvas, frame));
+  LUXEL_TRY(const image::Image8 picture, view::is_lxr(options.subject)
+                                             ? picture_of_lxr(options, events, commands)
+                                             : picture_of_bake(options, events, commands));
   LUXEL_TRY_STATUS(write_file_atomically(options.screenshot, image::encode_png(picture)));
   std::fprintf(stderr, "wrote %s, drawn by %s\n", options.screenshot.string().c_str(),
                device->name.c_str());
@@ -209,8 +233,8 @@ int report(const Error& error) {
 
 void add_own(CLI::App& app, Options& options) {
   app.add_option("SUBJECT", options.subject,
-                 "A scene, which is baked while you look, with all options of `luxel bake`; or the "
-                 "folder that a bake left")
+                 "A scene, which is baked while you look, with all options of `luxel bake`; the "
+                 "folder that a bake left; or an .lxr file, whose lamps move")
       ->required();
   app.add_option("-o,--output", options.choice.output,
                  "Where 'save' puts the bake of a scene (baked/NAME)")
@@ -237,10 +261,10 @@ void add_own(CLI::App& app, Options& options) {
 }
 
 /// They are many, and `luxel bake --help` lists them.
-void add_hidden_bake_options(CLI::App& app, cli::BakeChoice& choice) {
+void add_hidden_bake_options(CLI::App& app, arguments::BakeChoice& choice) {
   const std::vector<CLI::Option*> before = app.get_options();
-  cli::add_bake_settings(app, choice);
-  cli::add_bake_table(app, choice.given);
+  arguments::add_bake_settings(app, choice);
+  arguments::add_bake_table(app, choice.given);
   for (CLI::Option* option : app.get_options())
     if (std::ranges::find(before, option) == before.end()) option->group("");
 }

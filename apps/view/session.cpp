@@ -5,22 +5,27 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <span>
 
 #include "apps/view/frame_table.h"
+#include "apps/view/lamp_session.h"
 #include "apps/view/screen.h"
 #include "luxel/base/file.h"
 #include "luxel/image/codec.h"
 #include "luxel/view/model/walk.h"
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view_window {
 namespace {
 
-std::vector<KeyLine> key_lines() {
+std::vector<KeyLine> key_lines(bool has_lamps) {
   std::vector<KeyLine> out{
       {"left button", "turn"}, {"other buttons", "move the picture"}, {"wheel", "nearer, farther"}};
   for (const view::KeyHelp& key : view::kKeys) out.push_back({key.key, key.does});
+  if (!has_lamps) return out;
+  out.insert(out.begin(), {"left button on a lamp", "move it"});
+  for (const view::KeyHelp& key : view::kLampKeys) out.push_back({key.key, key.does});
   return out;
 }
 
@@ -49,9 +54,9 @@ void exchange(Ui& ui, const view::ShownScene& shown, const Looking& looking, flo
     walk.shown.camera = shown.read->scene.cameras[size_t(view)];
 }
 
-/// Events of the user, but for those that are the panel's.
-void take_events(Window& window, const Ui& ui, const view::PlaceSeen& place_seen,
-                 view::Walk& walk) {
+/// Events of the user, but for those that are the panel's. `lamps` may be null.
+void take_events(Window& window, const Ui& ui, const view::PlaceSeen& place_seen, view::Walk& walk,
+                 LampSession* lamps) {
   for (const view::Event& event : window.taken()) {
     const bool is_key = std::holds_alternative<view::KeyChanged>(event);
     const auto* button = std::get_if<view::ButtonChanged>(&event);
@@ -59,7 +64,8 @@ void take_events(Window& window, const Ui& ui, const view::PlaceSeen& place_seen
     if (!is_end && !std::holds_alternative<view::PointerMoved>(event) &&
         (is_key ? ui.has_keys() : ui.has_pointer()))
       continue;
-    view::handle(event, place_seen, walk);
+    if (!lamps || !view::handle_lamps(event, walk, lamps->desk))
+      view::handle(event, place_seen, walk);
   }
 }
 
@@ -80,8 +86,9 @@ struct Session {
   Screen& screen;
   view::ShownScene& shown;
   view::LiveBake* live;  ///< null: the bake is there
+  LampSession* lamps;    ///< null: they do not move
   const WindowParams& params;
-  std::vector<KeyLine> keys = key_lines();
+  std::vector<KeyLine> keys = key_lines(lamps != nullptr);
   std::vector<std::string> views = {};  ///< names of the scene's cameras
   Panel panel = {};
   std::optional<view::Walk> walk = {};  ///< once there is a scene, and the window has a size
@@ -171,9 +178,14 @@ BakeLines lines_of(const Session& s) {
   out.can_save = state == view::LiveState::baked;
   const view::LiveNumbers& known = s.shown.numbers;
   if (!s.shown.has_light) return out;
-  if (known.samples == 0)
-    out.lines.push_back("direct light, and an even guess of the rest");
-  else
+  if (known.kind == view::LiveKind::draft) out.lines.push_back("shown: a coarse draft");
+  if (known.kind == view::LiveKind::direct_and_draft)
+    out.lines.push_back("shown: direct light, reflections of the draft");
+  if (known.kind == view::LiveKind::direct_and_even_rest)
+    out.lines.push_back("shown: direct light, reflections spread evenly");
+  if (known.kind == view::LiveKind::partly)
+    out.lines.push_back(fmt::format("shown: {:.0f} % of the texels' own light", 100 * known.share));
+  if (known.kind == view::LiveKind::bake && known.samples > 0)
     out.lines.push_back(fmt::format("{:.0f} rays per texel", known.samples));
   if (known.rays_per_s > 0)
     out.lines.push_back(fmt::format("{:.2f} million rays/s", 1e-6 * known.rays_per_s));
@@ -190,14 +202,28 @@ BakeLines lines_of(const Session& s) {
 /// The panel, what the user changes in it, and what it asks for.
 void lay_out(Session& s) {
   s.panel.bake = s.live ? std::optional(lines_of(s)) : std::nullopt;
+  if (s.lamps) s.panel.lamps = panel_of(*s.lamps);
   if (s.walk)
     exchange(*s.screen.ui, s.shown, s.screen.looking, s.screen.flip, s.panel, *s.walk);
   else
     s.screen.ui->lay_out(s.panel);
+  if (s.lamps) take_changes(*s.panel.lamps, *s.lamps);
+}
+
+/// What keys and the panel ask of a bake.
+void follow_user(Session& s) {
+  std::vector<view::Command> asked;
+  if (s.walk) asked = std::exchange(s.walk->asked, {});
   if (!s.live) return;
-  if (s.panel.bake->asks_to_stop) s.live->pause(true);
-  if (s.panel.bake->asks_to_go_on) s.live->pause(false);
-  if (s.panel.bake->asks_to_save) s.live->save();
+  if (s.walk) s.live->look(s.walk->shown.camera, float(s.walk->width) / float(s.walk->height));
+  const BakeLines& panel = *s.panel.bake;
+  if (panel.asks_to_stop || panel.asks_to_go_on) asked.push_back(view::Command::stop_or_go_on);
+  if (panel.asks_to_save) asked.push_back(view::Command::save);
+  for (const view::Command command : asked) {
+    if (command == view::Command::save) s.live->save();
+    if (command == view::Command::stop_or_go_on)
+      s.live->pause(s.live->state() == view::LiveState::baking);
+  }
 }
 
 /// What is drawn: without light, colours.
@@ -205,6 +231,7 @@ view::Frame frame_of(const Session& s) {
   view::Frame out;
   if (s.walk) out = s.walk->shown;
   if (!s.shown.has_light) out.show = view::Show::colour, out.exposure = 1;
+  if (s.lamps && s.walk) out.marks = view::marks_of(s.lamps->desk, *s.walk);
   return out;
 }
 
@@ -217,7 +244,11 @@ bool play_on(Session& s) {
       is_baking || !s.walk || !view::is_settled(s.shown) ||
       (s.live && s.live->state() == view::LiveState::baked && !s.shown.has_last);
   do {
-    if (s.walk) view::handle_frame(play, s.frame, s.place_seen, s.next_event, *s.walk);
+    if (s.walk && s.lamps)
+      view::handle_frame_with_lamps(play, s.frame, s.place_seen, s.next_event, *s.walk,
+                                    s.lamps->desk);
+    else if (s.walk)
+      view::handle_frame(play, s.frame, s.place_seen, s.next_event, *s.walk);
     if (view::waits(play, s.frame, is_to_come, s.next_event)) return true;
   } while (s.walk && view::has_come(play, s.frame, s.next_event));
   if (double(s.frame) >= play.end_s * play.frames_per_s) return false;
@@ -243,7 +274,13 @@ Status count_pixels(const view::Frame& frame, Session& s) {
 Status draw_frame(Session& s) {
   const auto begin = Clock::now();
   const view::Frame frame = frame_of(s);
+  view::LightTimes light;
+  if (s.lamps) {
+    LUXEL_TRY(light, light_lamps(*s.screen.commands, s.shown.device, *s.lamps));
+  }
+  const auto lit = Clock::now();
   LUXEL_TRY(s.fits, draw(s.shown.device, frame, s.screen));
+  if (s.lamps) add_times(light, float(1000 * seconds_since(lit)), *s.lamps);
   s.panel.milliseconds = float(1000 * seconds_since(begin));
   LUXEL_TRY_STATUS(count_pixels(frame, s));
   if (!s.params.frame_table.empty())
@@ -267,7 +304,7 @@ Result<bool> go_on(Session& s) {
   s.still_frames = changes ? 0 : s.still_frames + 1;
   if (s.still_frames > kFramesToSettle) return true;
   if (!s.params.play && s.walk) {
-    take_events(s.window, *s.screen.ui, s.place_seen, *s.walk);
+    take_events(s.window, *s.screen.ui, s.place_seen, *s.walk, s.lamps);
     view::pass(std::min(passed, 0.1), *s.walk);
   }
   LUXEL_TRY_STATUS(fade(s.params.play ? 1 / s.params.play->frames_per_s : passed, s));
@@ -275,8 +312,18 @@ Result<bool> go_on(Session& s) {
   if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
   if (s.walk) look(s);
   lay_out(s);
+  follow_user(s);
   LUXEL_TRY_STATUS(draw_frame(s));
   return goes_on;
+}
+
+/// A play that saves a bake ends when it is saved. Errors: those of the bake.
+Status end_bake(Session& s) {
+  if (s.live->state() != view::LiveState::baked) return {};
+  s.live->wait();
+  const view::LiveNews news = s.live->take();
+  if (news.said) std::fprintf(stderr, "%s\n", news.said->c_str());
+  return {};
 }
 
 /// Until the window is closed or a play has ended.
@@ -286,6 +333,7 @@ Status show(Session s) {
   bool is_going_on = true;
   while (is_going_on && !glfwWindowShouldClose(s.window.get()))
     LUXEL_TRY_STATUS(go_on(s).map([&](bool more) { is_going_on = more; }));
+  if (s.params.play && s.live) LUXEL_TRY_STATUS(end_bake(s));
   if (!s.params.frame_table.empty()) {
     const std::string csv = csv_of(s.table);
     LUXEL_TRY_STATUS(
@@ -310,7 +358,7 @@ Status show_in_window(view::OpenedBake bake, std::optional<view::OpenedBake> bes
     LUXEL_TRY(second, view::bake_shown(*screen.commands, std::move(*beside)));
     screen.beside = &*second;
   }
-  return show({*window, screen, shown, nullptr, params});
+  return show({*window, screen, shown, nullptr, nullptr, params});
 }
 
 Status bake_in_window(const pipeline::BakeSettings& settings, const WindowParams& params) {
@@ -320,7 +368,18 @@ Status bake_in_window(const pipeline::BakeSettings& settings, const WindowParams
   const std::unique_ptr<view::LiveBake> live = view::LiveBake::begin(settings);
   LUXEL_TRY(Screen screen, open_screen(*window, params.device));
   LUXEL_TRY(view::ShownScene shown, view::nothing_shown(*screen.commands));
-  return show({*window, screen, shown, live.get(), params});
+  return show({*window, screen, shown, live.get(), nullptr, params});
+}
+
+Status relight_in_window(view::OpenedLxr opened, const WindowParams& params) {
+  if (params.play)
+    LUXEL_TRY_STATUS(view::check_lamps(*params.play, opened.lamps, params.play_name));
+  LUXEL_TRY(const std::unique_ptr<Window> window,
+            Window::open(params.title, params.width, params.height));
+  LUXEL_TRY(Screen screen, open_screen(*window, params.device));
+  LUXEL_TRY(view::RelitScene relit, view::lxr_shown(*screen.commands, opened));
+  LampSession lamps = begin_lamps(std::move(opened), std::move(relit.direct));
+  return show({*window, screen, relit.shown, nullptr, &lamps, params});
 }
 
 }  // namespace luxel::view_window

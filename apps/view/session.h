@@ -1,4 +1,5 @@
-// A window while it is open: a bake that is there, or one that is being made.
+// A window while it is open: a bake that is there, one that is being made, or lamps that
+// are moved.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include "luxel/view/live/live_bake.h"
 #include "luxel/view/model/events.h"
 #include "luxel/view/open_bake.h"
+#include "luxel/view/relight/open_lxr.h"
 
 namespace luxel::view_window {
 
@@ -17,6 +19,7 @@ struct WindowParams {
   std::string device;  ///< gpu::DeviceParams::name
   int width = 960, height = 720;
   std::optional<view::Play> play;    ///< then the window closes
+  std::string play_name;             ///< for messages
   std::filesystem::path screenshot;  ///< written at the end of a play; empty: none
   /// A table of a play's frames: .csv; empty: none.
   std::filesystem::path frame_table;
@@ -29,5 +32,9 @@ Status show_in_window(view::OpenedBake bake, std::optional<view::OpenedBake> bes
 /// Bakes a scene and shows it meanwhile and afterwards, until the window is closed. A bake that
 /// fails says so in the window. Errors as above.
 Status bake_in_window(const pipeline::BakeSettings& settings, const WindowParams& params);
+
+/// Shows an .lxr file whose lamps can be moved, until the window is closed. Errors as above; a play
+/// of lamps that there are not.
+Status relight_in_window(view::OpenedLxr opened, const WindowParams& params);
 
 }  // namespace luxel::view_window

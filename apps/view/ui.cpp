@@ -144,6 +144,7 @@ class ImGuiUi : public Ui {
         if (ImGui::Selectable(panel.views[i].c_str())) panel.view = int(i);
         ImGui::PopID();
       }
+    if (panel.lamps) lay_out_lamps(*panel.lamps);
     ImGui::Text("%.1f ms per frame", double(panel.milliseconds));
     if (!panel.message.empty()) {
       ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);

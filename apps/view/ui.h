@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/lamp_panel.h"
 #include "apps/view/ui_look.h"
 
 struct GLFWwindow;
@@ -53,6 +54,7 @@ struct Panel {
   std::span<const std::string> views;  ///< of the scene's cameras
   int view = -1;                       ///< changed: the one that was asked for; -1: none
   std::optional<BakeLines> bake;
+  std::optional<LampPanel> lamps;
   std::string message;  ///< what was done last
 };
 

@@ -19,6 +19,8 @@ std::string name_of(int key, int code) {
     case GLFW_KEY_LEFT_SHIFT:
     case GLFW_KEY_RIGHT_SHIFT:
       return "shift";
+    case GLFW_KEY_SPACE:
+      return "space";
     case GLFW_KEY_HOME:
       return "home";
     case GLFW_KEY_KP_ADD:
@@ -95,13 +97,18 @@ void Window::listen() {
   glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) {
     of(w).events_.push_back(view::Scrolled{float(y)});
   });
-  glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int code, int action, int) {
+  glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int code, int action, int with) {
     if (action == GLFW_REPEAT) return;
     of(w).has_changed_ = true;
     if (key == GLFW_KEY_F1 && action == GLFW_PRESS) of(w).asks_for_keys_ = true;
     if (key == GLFW_KEY_F12 && action == GLFW_PRESS) of(w).asks_for_screenshot_ = true;
-    if (const std::string name = name_of(key, code); !name.empty())
-      of(w).events_.push_back(view::KeyChanged{name, action == GLFW_PRESS});
+    const std::string name = name_of(key, code);
+    if (name.empty()) return;
+    const bool is_down = action == GLFW_PRESS, has_ctrl = (with & GLFW_MOD_CONTROL) != 0;
+    // Either key may go up first.
+    if (is_down == has_ctrl || !is_down)
+      of(w).events_.push_back(view::KeyChanged{"ctrl+" + name, is_down});
+    if (!is_down || !has_ctrl) of(w).events_.push_back(view::KeyChanged{name, is_down});
   });
 }
 

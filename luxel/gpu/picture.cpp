@@ -192,6 +192,8 @@ Result<OwnedSampler> make_sampler(const Device& device, const SamplerParams& par
   info.addressModeU = params.u, info.addressModeV = params.v;
   info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   info.maxLod = VK_LOD_CLAMP_NONE;
+  info.compareEnable = params.compares_depth;
+  info.compareOp = VK_COMPARE_OP_GREATER_OR_EQUAL;
   VkSampler sampler = VK_NULL_HANDLE;
   LUXEL_TRY_STATUS(check(device.vk.vkCreateSampler(device.device, &info, nullptr, &sampler),
                          "a sampler cannot be made"));

@@ -61,6 +61,8 @@ Result<std::vector<std::byte>> pixels_of(Commands& commands, const Picture& pict
 struct SamplerParams {
   VkFilter filter = VK_FILTER_LINEAR;
   VkSamplerAddressMode u = VK_SAMPLER_ADDRESS_MODE_REPEAT, v = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  /// A look-up tells whether a depth is at least the picture's, which is one of depth.
+  bool compares_depth = false;
 };
 using OwnedSampler = Owned<VkSampler, &VolkDeviceTable::vkDestroySampler>;
 Result<OwnedSampler> make_sampler(const Device& device, const SamplerParams& params);

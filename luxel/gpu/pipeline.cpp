@@ -80,10 +80,12 @@ Result<Pipeline> make_draw_pipeline(const Device& device, const DrawParams& para
   LUXEL_TRY(Pipeline out, with_layout(device, params.interface, kStages));
   out.point = VK_PIPELINE_BIND_POINT_GRAPHICS;
   LUXEL_TRY(const OwnedShader vertex, make_shader(device, params.vertex));
-  LUXEL_TRY(const OwnedShader fragment, make_shader(device, params.fragment));
-  const VkPipelineShaderStageCreateInfo stages[] = {
-      stage_of(VK_SHADER_STAGE_VERTEX_BIT, vertex),
-      stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+  std::vector stages{stage_of(VK_SHADER_STAGE_VERTEX_BIT, vertex)};
+  OwnedShader fragment;
+  if (!params.fragment.empty()) {
+    LUXEL_TRY(fragment, make_shader(device, params.fragment));
+    stages.push_back(stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, fragment));
+  }
   const auto nothing_bound = structure<VkPipelineVertexInputStateCreateInfo>(
       VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
   auto assembly = structure<VkPipelineInputAssemblyStateCreateInfo>(
@@ -129,7 +131,7 @@ Result<Pipeline> make_draw_pipeline(const Device& device, const DrawParams& para
   auto info =
       structure<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
   info.pNext = &rendering;
-  info.stageCount = 2, info.pStages = stages;
+  info.stageCount = uint32_t(stages.size()), info.pStages = stages.data();
   info.pVertexInputState = &nothing_bound;
   info.pInputAssemblyState = &assembly;
   info.pViewportState = &viewport;

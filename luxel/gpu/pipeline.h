@@ -32,7 +32,8 @@ Result<Pipeline> make_compute_pipeline(const Device& device, Spirv shader,
 
 /// How triangles or lines become pixels. Vertices are read from buffers, not bound.
 struct DrawParams {
-  Spirv vertex, fragment;
+  Spirv vertex;
+  Spirv fragment;  ///< empty: depth alone is drawn
   Interface interface;
   std::vector<VkFormat> colors;   ///< of the pictures that are drawn into
   std::optional<VkFormat> depth;  ///< none: no depth

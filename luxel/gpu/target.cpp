@@ -3,6 +3,39 @@
 #include <array>
 
 namespace luxel::gpu {
+namespace {
+
+/// A depth that is cleared, of no picture yet.
+VkRenderingAttachmentInfo infinitely_far() {
+  auto depth = structure<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
+  depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+  depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  depth.clearValue.depthStencil = {0, 0};  // DrawParams::depth_compare
+  return depth;
+}
+
+/// Begins to draw into a part, which is the viewport; null: no colour, no depth.
+void begin_rendering(const Device& device, VkCommandBuffer commands,
+                     const VkRenderingAttachmentInfo* color, const VkRenderingAttachmentInfo* depth,
+                     const VkRect2D& part) {
+  auto info = structure<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
+  info.renderArea = part;
+  info.layerCount = 1;
+  info.colorAttachmentCount = color != nullptr;
+  info.pColorAttachments = color;
+  info.pDepthAttachment = depth;
+  device.vk.vkCmdBeginRenderingKHR(commands, &info);
+  const VkViewport viewport{float(part.offset.x),
+                            float(part.offset.y),
+                            float(part.extent.width),
+                            float(part.extent.height),
+                            0,
+                            1};
+  device.vk.vkCmdSetViewport(commands, 0, 1, &viewport);
+  device.vk.vkCmdSetScissor(commands, 0, 1, &part);
+}
+
+}  // namespace
 
 Result<Target> make_target(const Device& device, const TargetParams& params,
                            std::string_view what) {
@@ -48,26 +81,23 @@ void begin_drawing(const Device& device, VkCommandBuffer commands, const Target&
     color.resolveImageView = target.picture.view.get();
     color.resolveImageLayout = kColor;
   }
-  auto depth = structure<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
-  depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-  depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-  depth.clearValue.depthStencil = {0, 0};  // infinitely far: DrawParams::depth_compare
+  VkRenderingAttachmentInfo depth = infinitely_far();
   if (target.depth) {
     change_layout(device, commands, *target.depth, VK_IMAGE_LAYOUT_UNDEFINED, kDepth);
     depth.imageView = target.depth->view.get();
     depth.imageLayout = kDepth;
   }
-  const VkRect2D all{{0, 0}, {target.params.width, target.params.height}};
-  auto info = structure<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
-  info.renderArea = all;
-  info.layerCount = 1;
-  info.colorAttachmentCount = 1;
-  info.pColorAttachments = &color;
-  info.pDepthAttachment = target.depth ? &depth : nullptr;
-  device.vk.vkCmdBeginRenderingKHR(commands, &info);
-  const VkViewport viewport{0, 0, float(all.extent.width), float(all.extent.height), 0, 1};
-  device.vk.vkCmdSetViewport(commands, 0, 1, &viewport);
-  device.vk.vkCmdSetScissor(commands, 0, 1, &all);
+  begin_rendering(device, commands, &color, target.depth ? &depth : nullptr,
+                  {{0, 0}, {target.params.width, target.params.height}});
+}
+
+void begin_drawing_depth(const Device& device, VkCommandBuffer commands, const Picture& depth,
+                         const VkRect2D& part) {
+  VkRenderingAttachmentInfo attachment = infinitely_far();
+  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  attachment.imageView = depth.view.get();
+  attachment.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  begin_rendering(device, commands, nullptr, &attachment, part);
 }
 
 void end_drawing(const Device& device, VkCommandBuffer commands, const Target& target,

@@ -32,4 +32,10 @@ void begin_drawing(const Device& device, VkCommandBuffer commands, const Target&
 void end_drawing(const Device& device, VkCommandBuffer commands, const Target& target,
                  VkImageLayout next);
 
+/// Begins to draw depth alone into a part of a picture that is DEPTH_ATTACHMENT_OPTIMAL. What was
+/// there is lost: that part is infinitely far, and it is the viewport. vkCmdEndRenderingKHR ends
+/// it.
+void begin_drawing_depth(const Device& device, VkCommandBuffer commands, const Picture& depth,
+                         const VkRect2D& part);
+
 }  // namespace luxel::gpu

@@ -8,6 +8,7 @@
 
 #include "luxel/display/tone_map.h"
 #include "luxel/scene/scene.h"
+#include "luxel/view/mark.h"
 
 namespace luxel::view {
 
@@ -89,6 +90,7 @@ struct Frame {
   ColorScale density;                    ///< [1/m]
   std::vector<LayerSetting> layers;      ///< those that are not as they were baked
   std::optional<Beside> beside;          ///< where there is a second bake
+  std::vector<Mark> marks;               ///< over the picture, the last one uppermost
 };
 
 }  // namespace luxel::view

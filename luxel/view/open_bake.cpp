@@ -18,8 +18,8 @@ nlohmann::json report_of(const std::filesystem::path& folder) {
   const Result<std::vector<std::byte>> bytes = read_file(folder / "bake.json");
   if (!bytes) return nlohmann::json::object();
   const auto* text = reinterpret_cast<const char*>(bytes->data());
-  auto json = nlohmann::json::parse(text, text + bytes->size(), nullptr, false);
-  return json.is_object() ? std::move(json) : nlohmann::json::object();
+  auto report = nlohmann::json::parse(text, text + bytes->size(), nullptr, false);
+  return report.is_object() ? std::move(report) : nlohmann::json::object();
 }
 
 /// The sky and the background that the bake was made under; its lamps are in the lightmap.

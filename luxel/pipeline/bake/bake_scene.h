@@ -64,6 +64,10 @@ struct BakeObserver {
   /// Gets the scene when it is read, its outside light added, and not yet laid out.
   std::function<void(const scene::Scene&)> on_read{};
   OnBakeEstimate on_estimate{};
+  /// With on_estimate: the guess that light begins with, E per element after all bounces, from its
+  /// direct part; and whether light of an element should come early.
+  std::function<std::vector<Rgb>(const light::TexelScene&, std::span<const Rgb> direct)> guess{};
+  std::function<bool(const light::TexelScene&, size_t element)> is_watched{};
 };
 
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
@@ -77,7 +81,8 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress,
 /// settings.output, the folder of the process if that is empty. The result stands by itself:
 /// Bake::lightmaps has E [W/m^2], Bake::atlas where it lies. Errors: settings out of range
 /// (bad_setting), a scene that cannot be repaired (bad_input), too little memory, cancelled.
-Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& settings, Progress& progress);
+Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& settings, Progress& progress,
+                        const BakeObserver& observer = {});
 
 /// `luxel bake --plan`: reads and lays out, and tries a few texels. Nothing is written.
 Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);

@@ -17,9 +17,10 @@ struct DeviceVertex {
   Vec3 position;
   Vec2 uv0, uv1;
   Vec2 light, light_behind;  ///< places in the lightmap: its own, that of the other side
+  Vec3 normal;               ///< 0: that of the facet
   Rgb color;
 };
-static_assert(sizeof(DeviceVertex) == 56);
+static_assert(sizeof(DeviceVertex) == 68);
 
 struct DeviceLookUp {
   Vec3 u{1, 0, 0}, v{0, 1, 0};
@@ -147,6 +148,7 @@ DeviceVertex vertex_of(const LitMesh& lit, uint32_t i) {
           mesh.uv1.empty() ? Vec2{} : mesh.uv1[i],
           light,
           light,
+          mesh.normals.empty() ? Vec3{} : mesh.normals[i],
           mesh.colors.empty() ? Rgb{1, 1, 1} : mesh.colors[i]};
 }
 
@@ -232,8 +234,8 @@ DeviceMaterial device_material(const scene::Material& m, size_t page) {
 }
 
 std::span<float> scales_of(const DeviceScene& scene) {
-  return {reinterpret_cast<float*>(scene.light_scales.mapped),
-          scene.light_scales.size / sizeof(float)};
+  return {reinterpret_cast<float*>(scene.light_now.mapped + sizeof(LightNow)),
+          (scene.light_now.size - sizeof(LightNow)) / sizeof(float)};
 }
 
 /// The bindings of each page's light, of either picture.
@@ -241,8 +243,10 @@ using Lights = std::vector<std::array<gpu::Binding, 2>>;
 Result<Lights> put_lights(const gpu::Device& device, Pictures& pictures,
                           std::span<const image::HalfImage> pages, bool changes, DeviceScene& out) {
   Lights lights;
-  LUXEL_TRY(out.light_scales, gpu::make_buffer(device, pages.size() * 2 * sizeof(float),
-                                               gpu::Access::from_host, "the scales of light"));
+  const size_t size = sizeof(LightNow) + pages.size() * 2 * sizeof(float);
+  LUXEL_TRY(out.light_now,
+            gpu::make_buffer(device, size, gpu::Access::from_host, "the scales of light"));
+  light_now(out) = {};
   for (const image::HalfImage& half : pages) {
     std::array<gpu::Binding, 2>& light = lights.emplace_back();
     for (const size_t which : {0, 1}) {
@@ -274,8 +278,10 @@ Status put_materials(const gpu::Device& device, Pictures& pictures, const scene:
     LUXEL_TRY(const gpu::Binding share, pictures.texture(m.diffuse_transmission_texture, true));
     LUXEL_TRY(const gpu::Binding tint,
               pictures.texture(m.diffuse_transmission_color_texture, false));
-    out.bindings.push_back({lights[page][0], map, metal, glow, share, tint, lights[page][1]});
+    out.bindings.push_back(
+        {lights[page][0], map, metal, glow, share, tint, lights[page][1], out.shadow_maps});
     out.is_double_sided.push_back(m.double_sided);
+    out.is_masked.push_back(m.alpha_mode == scene::AlphaMode::mask && m.alpha_cutoff > 0);
   }
   LUXEL_TRY(out.materials, gpu::buffer_with(device, bytes_of(materials), "the scene's materials"));
   return {};
@@ -298,6 +304,27 @@ Status put_surroundings(Pictures& pictures, const scene::Scene& scene, DeviceSce
   return {};
 }
 
+/// What lamps see, of undefined content.
+Status put_shadow_maps(gpu::Commands& commands, uint32_t side, DeviceScene& out) {
+  const gpu::Device& device = commands.device();
+  gpu::PictureParams params;
+  params.format = VK_FORMAT_D32_SFLOAT;
+  params.width = params.height = side;
+  params.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  LUXEL_TRY(gpu::Picture picture, gpu::make_picture(device, params, "the maps of shadows"));
+  LUXEL_TRY_STATUS(commands.run([&](VkCommandBuffer buffer) {
+    gpu::change_layout(device, buffer, picture, VK_IMAGE_LAYOUT_UNDEFINED,
+                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  }));
+  constexpr VkSamplerAddressMode kClamp = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  LUXEL_TRY(gpu::OwnedSampler sampler,
+            gpu::make_sampler(device, {VK_FILTER_NEAREST, kClamp, kClamp, true}));
+  out.pictures.push_back(std::move(picture));
+  out.samplers.push_back(std::move(sampler));
+  out.shadow_maps = {&out.pictures.back(), out.samplers.back().get()};
+  return {};
+}
+
 }  // namespace
 
 std::vector<uint32_t> triangles_by_material(const scene::Mesh& mesh) {
@@ -309,12 +336,17 @@ std::vector<uint32_t> triangles_by_material(const scene::Mesh& mesh) {
   return order;
 }
 
+LightNow& light_now(const DeviceScene& scene) {
+  return *reinterpret_cast<LightNow*>(scene.light_now.mapped);
+}
+
 Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& scene,
                                   const PagesOfLight& light, const DeviceSceneParams& params) {
   DeviceScene out;
   out.bounds = scene::world_bounds(scene);
   Pictures pictures(commands, scene, out);
   LUXEL_TRY_STATUS(put_meshes(commands.device(), scene, params.light_uv, out));
+  LUXEL_TRY_STATUS(put_shadow_maps(commands, params.shadow_side, out));
   LUXEL_TRY(const Lights lights,
             put_lights(commands.device(), pictures, light.pages, params.light_changes, out));
   LUXEL_TRY_STATUS(
@@ -329,6 +361,11 @@ Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& s
   std::vector<image::HalfImage> halves;
   for (const image::Image& page : lightmaps.pictures) halves.push_back(image::to_half(page));
   return put_on_device(commands, scene, PagesOfLight{halves, lightmaps.of_material}, params);
+}
+
+void set_emission(size_t material, Rgb emission, DeviceScene& scene) {
+  LUXEL_CHECK((material + 1) * sizeof(DeviceMaterial) <= scene.materials.size);
+  reinterpret_cast<DeviceMaterial*>(scene.materials.mapped)[material].emission = emission;
 }
 
 Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> pages, uint32_t which,

@@ -14,15 +14,23 @@
 namespace luxel::view {
 
 /// What the shaders of surfaces look up, in the order of their bindings: E, the base colour, the
-/// metallic factor, emission, the share of light that is scattered through and its colour, and the
-/// second picture of E.
-inline constexpr uint32_t kLookUps = 7;
+/// metallic factor, emission, the share of light that is scattered through and its colour, the
+/// second picture of E, and the maps of shadows.
+inline constexpr uint32_t kLookUps = 8;
 
 /// Triangles of one material in one mesh: a range of the indices.
 struct DrawRange {
   uint32_t first_index = 0, indices = 0;
   uint32_t material = 0;
 };
+
+/// What changes from picture to picture, as shaders/scene.glsl has it.
+struct LightNow {
+  Vec3 eye;
+  uint32_t lamp_count = 0;
+  VkDeviceAddress lamps = 0, maps = 0;  ///< direct_light.h
+};
+static_assert(sizeof(LightNow) == 32);
 
 /// A scene's surfaces and their light, ready to be drawn. Structs in its buffers are those of
 /// shaders/surface.glsl.
@@ -35,12 +43,14 @@ struct DeviceScene {
   std::vector<uint32_t> mesh_of;               ///< of each instance
   std::vector<uint8_t> is_mirrored;            ///< of each instance: its triangles are turned round
   std::vector<uint8_t> is_double_sided;        ///< of each material
+  std::vector<uint8_t> is_masked;              ///< of each material: it has holes
 
   /// E per page of the lightmap, in two pictures: where light changes, the one fades into the
   /// other. Elsewhere they are one.
   std::array<std::vector<const gpu::Picture*>, 2> lights;
-  gpu::Buffer light_scales;  ///< per page, for either picture: E = scale * picture
-  float second_light = 0;    ///< the share of the second pictures in what is shown
+  /// LightNow, then per page, for either picture: E = scale * picture.
+  gpu::Buffer light_now;
+  float second_light = 0;  ///< the share of the second pictures in what is shown
 
   std::deque<gpu::Picture> pictures;  ///< where they lie when others are added
   std::vector<gpu::OwnedSampler> samplers;
@@ -53,6 +63,7 @@ struct DeviceScene {
   float surroundings_scale = 0;      ///< 0: there is no map
   float rotation_rad = 0;
   gpu::Binding surroundings;  ///< white where there is no map
+  gpu::Binding shadow_maps;   ///< of lamps that are drawn by direct_light.h
 };
 
 /// The triangles of a mesh in the order in which a DeviceScene has them: material by material.
@@ -62,6 +73,7 @@ struct DeviceSceneParams {
   bool light_changes = false;  ///< put_light() will be called
   /// Per mesh and vertex, its place in the lightmap; empty: uv1 is.
   std::span<const std::vector<Vec2>> light_uv{};
+  uint32_t shadow_side = 1;  ///< of the square picture of all shadow maps [pixels]
 };
 
 /// E of all pages of the lightmap, and the page of each material.
@@ -85,5 +97,11 @@ Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> page
 /// The factor of the light that an instance's surfaces emit, 1 to begin with. Nothing may still
 /// draw the scene.
 void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene);
+/// What the next picture is drawn with. Nothing may still draw the scene when it is changed.
+LightNow& light_now(const DeviceScene& scene);
+
+/// Another emission of a material's surfaces [W/(sr m^2)], a factor of its texture. Nothing may
+/// still draw the scene.
+void set_emission(size_t material, Rgb emission, DeviceScene& scene);
 
 }  // namespace luxel::view

@@ -12,6 +12,8 @@ namespace {
 constexpr VkDescriptorType kOverlayLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 /// Light, base colour, texels.png, error.png, overlaps, the second light.
 constexpr size_t kOverlayLookUps = 6;
+/// Where DeviceScene::bindings have the second light.
+constexpr size_t kSecondLight = 6;
 
 // The structs of shaders/overlay.glsl, in scalar layout.
 struct OverlayPush {
@@ -22,7 +24,7 @@ struct OverlayPush {
 static_assert(sizeof(OverlayPush) == 112);
 
 struct ShownLook {
-  VkDeviceAddress corners, charts, light_scales;
+  VkDeviceAddress corners, charts, light_now;
   float second_light = 0;
   uint32_t show = 0, channel = 0;
   float low = 0, high = 1;
@@ -114,7 +116,7 @@ Result<Overlay> make_overlay(gpu::Commands& commands, const gpu::Pipeline& shade
     const size_t page = lightmaps.of_material[m];
     const std::vector<gpu::Binding>& known = on_device.bindings[m];
     bindings.push_back(
-        {known[0], known[1], texels[page], errors[page], overlaps[page], known[kLookUps - 1]});
+        {known[0], known[1], texels[page], errors[page], overlaps[page], known[kSecondLight]});
   }
   LUXEL_TRY(out.sets, gpu::make_sets(device, shader, bindings));
   return out;
@@ -125,7 +127,7 @@ void set_shown(const gpu::Device& device, VkCommandBuffer commands, const Overla
   const ColorScale scale = frame.show == Show::density
                                ? scale_of(frame.density, overlay.density)
                                : scale_of(frame.irradiance, overlay.irradiance);
-  ShownLook shown{scene.indices.address, overlay.charts.address, scene.light_scales.address,
+  ShownLook shown{scene.indices.address, overlay.charts.address, scene.light_now.address,
                   scene.second_light};
   shown.show = uint32_t(frame.show), shown.channel = uint32_t(frame.channel);
   shown.low = scale.low, shown.high = scale.high;

@@ -8,6 +8,8 @@
 #include "luxel/view/shaders/behind.frag.h"
 #include "luxel/view/shaders/behind.vert.h"
 #include "luxel/view/shaders/beside.frag.h"
+#include "luxel/view/shaders/mark.frag.h"
+#include "luxel/view/shaders/mark.vert.h"
 #include "luxel/view/shaders/screen.frag.h"
 #include "luxel/view/shaders/screen.vert.h"
 #include "luxel/view/shaders/surface.frag.h"
@@ -26,7 +28,7 @@ constexpr VkDescriptorType kLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 // The push constants of the shaders, in scalar layout.
 struct SurfacePush {
   std::array<float, 16> clip_from_world;  ///< column by column
-  VkDeviceAddress vertices, materials, instances, light_scales;
+  VkDeviceAddress vertices, materials, instances, light_now;
   uint32_t instance = 0, material = 0;
   float exposure = 1;
   uint32_t show = 0;
@@ -46,6 +48,13 @@ static_assert(sizeof(BehindPush) == 72);
 struct ScreenPush {
   uint32_t curve;
 };
+
+struct MarkPush {
+  Vec2 from, to, picture;
+  float radius, edge_width;
+  Rgb color, edge;
+};
+static_assert(sizeof(MarkPush) == 56);
 
 /// The camera of trace::CameraRays as a matrix. Depth is 1 at the near plane and 0 infinitely far,
 /// where floats are finest; parallel rays start at the eye and see as far as the scene goes.
@@ -103,6 +112,31 @@ gpu::DrawParams beside_params() {
   return params;
 }
 
+gpu::DrawParams mark_params() {
+  gpu::DrawParams params;
+  params.vertex = mark_vert, params.fragment = mark_frag;
+  params.interface.push_bytes = sizeof(MarkPush);
+  params.colors = {kShown};
+  params.blends = true;
+  return params;
+}
+
+void draw_marks(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
+                std::span<const Mark> marks) {
+  const gpu::TargetParams& size = canvas.painter.shown.params;
+  for (const Mark& mark : marks) {
+    gpu::bind(device, commands, canvas.shaders.mark,
+              MarkPush{mark.from,
+                       mark.to,
+                       {float(size.width), float(size.height)},
+                       mark.radius,
+                       mark.edge_width,
+                       mark.color,
+                       mark.edge});
+    device.vk.vkCmdDraw(commands, 6, 1, 0, 0);
+  }
+}
+
 void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
                    SurfacePush push) {
   const auto& [shaders, painter, scene, overlay] = canvas;
@@ -110,7 +144,7 @@ void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Ca
   push.vertices = scene.vertices.address;
   push.materials = scene.materials.address;
   push.instances = scene.instances.address;
-  push.light_scales = scene.light_scales.address;
+  push.light_now = scene.light_now.address;
   push.second_light = scene.second_light;
   for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance)
     for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {
@@ -159,6 +193,7 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
   LUXEL_TRY(out.screen, gpu::make_draw_pipeline(device, screen_params()));
   LUXEL_TRY(out.beside, gpu::make_draw_pipeline(device, beside_params()));
   LUXEL_TRY(out.overlay, make_overlay_shader(device, kExposed, kSamples));
+  LUXEL_TRY(out.mark, gpu::make_draw_pipeline(device, mark_params()));
   return out;
 }
 
@@ -188,6 +223,7 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   SurfacePush surface{};
   surface.clip_from_world = clip_from_world(camera, scene.bounds);
   surface.exposure = frame.exposure, surface.show = uint32_t(frame.show);
+  light_now(scene).eye = camera.eye;
   if (has_overlay) set_shown(device, commands, *overlay, scene, frame, normalize(camera.forward));
   gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
   if (has_overlay)
@@ -206,6 +242,7 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   gpu::bind(device, commands, shaders.screen, screen);
   gpu::bind_set(device, commands, shaders.screen, painter.to_screen.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  draw_marks(device, commands, canvas, frame.marks);
   gpu::end_drawing(device, commands, painter.shown, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   gpu::change_layout(device, commands, painter.exposed.picture,
                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,

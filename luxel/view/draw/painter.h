@@ -13,7 +13,8 @@ namespace luxel::view {
 
 /// The shaders of all pictures.
 struct Shaders {
-  gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, overlay, beside;
+  gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
+  gpu::Pipeline overlay, beside;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);

@@ -21,6 +21,7 @@ void pass(double seconds, Fade& fade) {
 float second_light(const Fade& fade) { return fade.newest == 1 ? fade.share : 1 - fade.share; }
 
 float exposure(const Fade& fade) {
+  if (is_free(fade)) return fade.exposure_newest;
   return fade.exposure_before * std::pow(fade.exposure_newest / fade.exposure_before, fade.share);
 }
 

@@ -16,7 +16,9 @@
 #include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/post/dilate.h"
+#include "luxel/trace/camera_rays.h"
 #include "luxel/transport/irradiance_field.h"
+#include "luxel/view/live/draft.h"
 #include "luxel/view/open_bake.h"
 
 namespace luxel::view {
@@ -24,6 +26,8 @@ namespace {
 
 /// The picture whose exposure is chosen: as large as it must be for percentiles of luminance.
 constexpr int kSmallWidth = 128, kSmallHeight = 96;
+/// Of the picture whose texels come first; only its shape counts.
+constexpr int kViewHeight = 1000;
 
 Result<std::shared_ptr<const ReadScene>> read_scene(const scene::Scene& scene,
                                                     const pipeline::BakeSettings& settings) {
@@ -46,24 +50,11 @@ std::vector<image::HalfImage> halves_of(std::span<const image::Image> pages) {
 }
 
 /// The lightmap that a bake would write, seams and hidden texels aside.
-std::vector<image::HalfImage> pages_of(const light::TexelScene& in, std::span<const Rgb> e) {
-  std::vector<image::Image> pages = post::lightmap_pages(in.atlas, in.map, e);
+std::vector<image::HalfImage> pages_of(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                       std::span<const Rgb> e) {
+  std::vector<image::Image> pages = post::lightmap_pages(atlas, map, e);
   for (image::Image& page : pages) post::dilate(page, post::kDilationRings);
   return halves_of(pages);
-}
-
-Result<float> exposure_of(const light::TexelScene& in, std::span<const Rgb> e,
-                          const scene::Camera& camera) {
-  const transport::TexelField field{&in.atlas, &in.map, e};
-  display::DrawParams params;
-  params.width = kSmallWidth, params.height = kSmallHeight, params.samples_per_axis = 1;
-  Progress own;  // its stage is not of the bake
-  LUXEL_TRY(const image::Image picture,
-            display::draw(
-                in.scene, in.tracer, camera,
-                [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); },
-                params, own));
-  return display::readable_exposure(picture);
 }
 
 /// Seconds of all stages in which rays are traced.
@@ -89,6 +80,12 @@ class Worker : public LiveBake {
     const std::scoped_lock lock(mutex_);
     return std::exchange(news_, {});
   }
+  void look(const scene::Camera& camera, float aspect) override {
+    auto eye =
+        std::make_shared<const trace::CameraRays>(camera, int(kViewHeight * aspect), kViewHeight);
+    const std::scoped_lock lock(mutex_);
+    eye_ = std::move(eye);
+  }
   LiveState state() const override {
     const LiveState state = state_;
     return state == LiveState::baking && is_paused_ ? LiveState::paused : state;
@@ -107,7 +104,10 @@ class Worker : public LiveBake {
     is_saving_ = true;
     thread_ = std::thread([this] { write(); });
   }
-  void wait() override { state_.wait(LiveState::baking); }
+  void wait() override {
+    state_.wait(LiveState::baking);
+    is_saving_.wait(true);
+  }
 
  private:
   void bake() {
@@ -116,12 +116,14 @@ class Worker : public LiveBake {
     state_.notify_all();
   }
   bool bake_it() try {
-    pipeline::BakeObserver observer;
-    observer.on_read = [this](const scene::Scene& scene) { has_read(scene); };
-    observer.on_estimate = [this](const light::TexelScene& in, const light::LightEstimate& e) {
+    observer_.on_read = [this](const scene::Scene& scene) { has_read(scene); };
+    observer_.on_estimate = [this](const light::TexelScene& in, const light::LightEstimate& e) {
       has_light(in, e);
     };
-    auto baked = pipeline::bake_scene(settings_, progress_, {}, observer);
+    observer_.is_watched = [this](const light::TexelScene& in, size_t element) {
+      return is_seen(in, element);
+    };
+    auto baked = pipeline::bake_scene(settings_, progress_, {}, observer_);
     progress_.finish();
     if (!baked) return say(baked.error().message), false;
     baked_.emplace(std::move(*baked));
@@ -133,10 +135,14 @@ class Worker : public LiveBake {
   void write() try {
     const auto saved = pipeline::save_bake(settings_, *baked_, progress_, *saving_);
     say(saved ? "wrote " + settings_.output.string() : saved.error().message);
-    is_saving_ = false;
+    has_saved();
   } catch (const std::bad_alloc&) {
     say("out of memory");
+    has_saved();
+  }
+  void has_saved() {
     is_saving_ = false;
+    is_saving_.notify_all();
   }
 
   void say(std::string sentence) {
@@ -147,28 +153,74 @@ class Worker : public LiveBake {
     auto read = read_scene(scene, settings_);
     if (!read) return;  // the bake ends with the same error
     camera_ = (*read)->first.camera;
+    {
+      const std::scoped_lock lock(mutex_);
+      news_.read = std::move(*read);
+    }
+    // Without one, the window waits for the bake itself.
+    if (auto draft = make_draft(scene, settings_, progress_)) draft_ = std::move(*draft);
+    if (!draft_) return;
+    has_draft();
+    observer_.guess = [this](const light::TexelScene& in, std::span<const Rgb> direct) {
+      return with_reflections_of_draft(in, direct);
+    };
+  }
+  void has_draft() {
+    LiveLight light;
+    light.numbers.kind = LiveKind::draft;
+    light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
+    light.exposure = draft_exposure_ = exposure_of(
+        {draft_->scene, *draft_->tracer}, {&draft_->atlas, &draft_->map, draft_->irradiance});
     const std::scoped_lock lock(mutex_);
-    news_.read = std::move(*read);
+    news_.lit = lit_scene(draft_->scene, draft_->atlas);
+    news_.light = std::move(light);
   }
   void has_light(const light::TexelScene& in, const light::LightEstimate& estimate) {
     // Light that cannot be held ends the bake with an error.
     for (const Rgb& e : estimate.irradiance)
       if (!std::isfinite(e.x + e.y + e.z)) return;
     LiveLight light;
-    light.pages = pages_of(in, estimate.irradiance);
-    if (const auto exposure = exposure_of(in, estimate.irradiance, camera_))
-      light.exposure = *exposure;
-    known_ = {estimate.samples, estimate.error_p95, estimate.error_rms,
+    light.pages = pages_of(in.atlas, in.map, estimate.irradiance);
+    light.exposure = exposure_of({in.scene, in.tracer}, {&in.atlas, &in.map, estimate.irradiance});
+    const LiveKind guess = draft_ ? LiveKind::direct_and_draft : LiveKind::direct_and_even_rest;
+    const LiveKind kind = estimate.share == 0   ? guess
+                          : estimate.share == 1 ? LiveKind::bake
+                                                : LiveKind::partly;
+    known_ = {kind,
+              estimate.share,
+              estimate.samples,
+              estimate.error_p95,
+              estimate.error_rms,
               rays_per_s(estimate.samples * double(estimate.irradiance.size()))};
     light.numbers = known_;
     // Vertices are split while nobody waits.
     std::optional<LitScene> lit;
-    if (!std::exchange(is_laid_out_, true)) lit = lit_scene(in.scene, in.atlas);
+    std::optional<LiveLight> before;
+    if (!std::exchange(is_laid_out_, true)) {
+      lit = lit_scene(in.scene, in.atlas);
+      if (draft_) before = draft_elsewhere(in);
+    }
     const std::scoped_lock lock(mutex_);
-    if (lit) news_.lit = std::move(lit);
+    if (lit) news_.lit = std::move(lit), news_.before = std::move(before);
     news_.light = std::move(light);
   }
+  LiveLight draft_elsewhere(const light::TexelScene& in) const {
+    LiveLight out;
+    out.pages = pages_of(in.atlas, in.map, light_of_draft(*draft_, draft_->irradiance, in));
+    out.exposure = draft_exposure_;
+    return out;
+  }
+  /// What surfaces send each other, by the draft, and direct light of the bake.
+  std::vector<Rgb> with_reflections_of_draft(const light::TexelScene& in,
+                                             std::span<const Rgb> direct) const {
+    std::vector<Rgb> reflected = draft_->irradiance;
+    for (size_t i = 0; i < reflected.size(); ++i) reflected[i] = reflected[i] - draft_->direct[i];
+    std::vector<Rgb> out = light_of_draft(*draft_, reflected, in);
+    for (size_t i = 0; i < out.size(); ++i) out[i] = max(out[i], Rgb{}) + direct[i];
+    return out;
+  }
   void has_baked() {
+    known_.kind = LiveKind::bake;
     LiveLight light;
     light.numbers = known_;
     light.pages = halves_of(baked_->lightmaps);
@@ -178,6 +230,30 @@ class Worker : public LiveBake {
     const std::scoped_lock lock(mutex_);
     if (lit) news_.lit = std::move(lit);
     news_.light = std::move(light);
+  }
+  struct Traced {
+    const scene::Scene& scene;
+    const trace::RayTracer& tracer;
+  };
+  /// At which the first view is readable.
+  float exposure_of(const Traced& in, const transport::TexelField& field) const {
+    display::DrawParams params;
+    params.width = kSmallWidth, params.height = kSmallHeight, params.samples_per_axis = 1;
+    Progress own;  // its stage is not of the bake
+    const auto picture = display::draw(
+        in.scene, in.tracer, camera_,
+        [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }, params,
+        own);
+    return picture ? display::readable_exposure(*picture) : 1;
+  }
+  /// Whether an element lies in the picture and shows its front.
+  bool is_seen(const light::TexelScene& in, size_t element) const {
+    std::shared_ptr<const trace::CameraRays> eye;
+    {
+      const std::scoped_lock lock(mutex_);
+      eye = eye_;
+    }
+    return eye && trace::faces(*eye, in.elements.position[element], in.elements.normal[element]);
   }
   double rays_per_s(double rays) {
     const double seconds = tracing_seconds(progress_);
@@ -191,12 +267,16 @@ class Worker : public LiveBake {
   std::unique_ptr<Progress> saving_;  ///< made anew by each save()
   mutable std::mutex mutex_;
   LiveNews news_;
+  std::shared_ptr<const trace::CameraRays> eye_;  ///< null: nobody has looked yet
   std::atomic<LiveState> state_{LiveState::baking};
   std::atomic<bool> is_saving_{false};
   bool is_paused_ = false;
 
   // The thread's own.
-  scene::Camera camera_;
+  pipeline::BakeObserver observer_;
+  scene::Camera camera_;          ///< of the first view
+  std::unique_ptr<Draft> draft_;  ///< null: there is none
+  float draft_exposure_ = 1;
   bool is_laid_out_ = false;
   LiveNumbers known_;
   double rays_before_ = 0, seconds_before_ = 0;

@@ -15,9 +15,20 @@
 
 namespace luxel::view {
 
+/// What light is made of.
+enum class LiveKind : uint8_t {
+  draft,                 ///< coarse, see draft.h
+  direct_and_draft,      ///< sharp direct light, and reflections of the draft
+  direct_and_even_rest,  ///< sharp direct light and an ambient term
+  partly,                ///< the bake's in part, elsewhere one of the two above
+  bake,                  ///< all of it the bake's
+};
+
 /// How well light is known.
 struct LiveNumbers {
-  double samples = 0;     ///< rays per texel; 0: direct light and an ambient term
+  LiveKind kind = LiveKind::bake;
+  double share = 1;       ///< LightEstimate::share
+  double samples = 0;     ///< rays per texel, traced by now
   float error_p95 = 0;    ///< LightEstimate::error_p95
   double error_rms = 0;   ///< LightEstimate::error_rms
   double rays_per_s = 0;  ///< of the last round; 0: not known
@@ -34,9 +45,12 @@ struct LiveLight {
 /// What has come since it was last asked for.
 struct LiveNews {
   std::shared_ptr<const ReadScene> read;  ///< once, first
-  std::optional<LitScene> lit;            ///< once, with the first light
-  std::optional<LiveLight> light;         ///< the newest
-  std::optional<std::string> said;        ///< of saving, or why there is no light; a sentence
+  /// With the first light: of a draft, and then of the bake itself, which lies elsewhere.
+  std::optional<LitScene> lit;
+  std::optional<LiveLight> light;  ///< the newest
+  /// With `lit`, where something else was shown before: its light where `lit` has its own.
+  std::optional<LiveLight> before;
+  std::optional<std::string> said;  ///< of saving, or why there is no light; a sentence
 };
 
 /// The state of the work.
@@ -51,13 +65,15 @@ class LiveBake {
   virtual ~LiveBake() = default;
 
   virtual LiveNews take() = 0;
+  /// Light of what this camera sees, in a picture of that aspect (width / height), comes first.
+  virtual void look(const scene::Camera& camera, float aspect) = 0;
   virtual LiveState state() const = 0;
   virtual Progress::Snapshot snapshot() const = 0;
   virtual void pause(bool is_paused) = 0;
   /// Writes the files of `luxel bake` into settings.output, in the background; take() tells the
   /// end. Only once it is baked.
   virtual void save() = 0;
-  /// Returns when the bake has ended, well or not.
+  /// Returns when the bake has ended, well or not, and is saved if it was asked for.
   virtual void wait() = 0;
 };
 

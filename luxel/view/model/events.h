@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "luxel/base/result.h"
 #include "luxel/base/vec.h"
+#include "luxel/scene/scene.h"
 #include "luxel/view/frame.h"
 
 namespace luxel::view {
@@ -54,11 +56,33 @@ struct BesideChanged {
 struct SplitMoved {
   float to = 0.5f;
 };
+/// What of a lamp becomes otherwise; the rest stays.
+struct LampChange {
+  std::optional<Vec3> to;         ///< place [m]
+  std::optional<Vec3> direction;  ///< in which its light travels; not 0
+  std::optional<Rgb> intensity;   ///< scene::PunctualLight::intensity
+  std::optional<bool> is_on;
+};
+/// A lamp of an .lxr file, by its number.
+struct LampChanged {
+  uint32_t lamp = 0;
+  LampChange change;
+};
+/// One lamp more, white and of 1 W/sr or W/m^2 where nothing else is said.
+struct LampAdded {
+  scene::PunctualLight::Kind kind = scene::PunctualLight::Kind::point;
+  LampChange change;
+};
+/// The materials of this name glow otherwise [W/(sr m^2)].
+struct GlowChanged {
+  std::string material;
+  Rgb radiance{};
+};
 /// Of a play: what comes after it is played when the bake has ended and its light is shown.
 struct WaitForBake {};
-using Event =
-    std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, ShowChanged, RangeChanged,
-                 ChannelChanged, LayerChanged, BesideChanged, SplitMoved, WaitForBake>;
+using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
+                           LampAdded, GlowChanged, ShowChanged, RangeChanged, ChannelChanged,
+                           LayerChanged, BesideChanged, SplitMoved, WaitForBake>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -87,6 +111,15 @@ inline constexpr KeyHelp kKeys[] = {
     {"+", "brighter by half a stop"},
     {"-", "darker by half a stop"},
     {"0", "as bright as at first"},
+    {"space", "stop the bake, or let it go on"},
+    {"ctrl+s", "save the bake"},
+};
+/// Those of .lxr files.
+inline constexpr KeyHelp kLampKeys[] = {
+    {"x", "move a lamp along x alone, or freely again"},
+    {"y", "along y alone"},
+    {"z", "along z alone"},
+    {"m", "hide the marks of lamps, or show them"},
 };
 
 struct TimedEvent {
@@ -111,7 +144,8 @@ struct Play {
 ///       {"at": 1.9, "channel": "red"},
 ///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
 ///       {"at": 2, "beside": "difference"}, {"at": 2, "split": 0.3},
-///       {"at": 2, "wait": "bake"}]}
+///       {"at": 2, "wait": "bake"},
+///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]}]}
 ///
 /// A range is by the logarithm where "logarithmic_range" says so.
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.

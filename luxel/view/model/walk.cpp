@@ -57,6 +57,8 @@ void press(const std::string& key, Walk& walk) {
   if (key == "home") walk.shown.camera = walk.first.camera;
   for (uint32_t i = 0; i < kShows.size(); ++i)
     if (key == kShows[i].key) walk.shown.show = Show(i);
+  if (key == "space") walk.asked.push_back(Command::stop_or_go_on);
+  if (key == "ctrl+s") walk.asked.push_back(Command::save);
   if (key == "+") walk.shown.exposure *= kHalfStop;
   if (key == "-") walk.shown.exposure /= kHalfStop;
   if (key == "0") walk.shown.exposure = walk.first.exposure;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/view/frame.h"
@@ -24,6 +25,9 @@ std::optional<scene::SurfacePoint> surface_seen(const scene::Scene& scene,
 PlaceSeen place_seen_in(const scene::Scene& scene, const trace::RayTracer& tracer, int width,
                         int height);
 
+/// What a user can ask for besides looking.
+enum class Command : uint8_t { stop_or_go_on, save };
+
 /// What is shown, and what the user is about to do.
 struct Walk {
   Frame shown;
@@ -36,6 +40,8 @@ struct Walk {
   std::optional<Button> dragging;
   bool drags_line = false;     ///< between two bakes, not the camera
   std::set<std::string> keys;  ///< that are down
+  /// What keys have asked for that is not the walk's to do; whoever does it takes it out.
+  std::vector<Command> asked;
 };
 
 /// Begins with a frame. The target lies in the middle of the picture, or as far away as the scene.

@@ -85,7 +85,7 @@ void main() {
   if (alpha < m.cutoff) discard;
   if (culled == (gl_FrontFacing ? 2 : 1)) discard;
 
-  vec2 scale = look.light_scales.at[m.page];
+  vec2 scale = look.light_now.scale[m.page];
   vec3 e = mix(textureLod(light, at_light, 0).rgb * scale.x,
                textureLod(second, at_light, 0).rgb * scale.y, look.second_light);
   vec3 color = vec3(0);

@@ -1,6 +1,5 @@
 // What the shaders that look into a bake share: luxel/view/draw/overlay.cpp has the structs.
-#define OWN_PUSH
-#include "surface.glsl"
+#include "scene.glsl"
 
 layout(buffer_reference, scalar) readonly buffer Corners { uint at[]; };
 /// Of each triangle: its chart, times eight, and a bit for each edge that is a seam.
@@ -9,7 +8,7 @@ layout(buffer_reference, scalar) readonly buffer Charts { uint at[]; };
 layout(buffer_reference, scalar) readonly buffer Look {
   Corners corners;
   Charts charts;
-  LightScales light_scales;
+  LightNow light_now;
   float second_light;  // its share
   uint show, channel;
   float low, high;

@@ -10,6 +10,7 @@ layout(binding = 3) uniform sampler2D glow;
 layout(binding = 4) uniform sampler2D through_share;
 layout(binding = 5) uniform sampler2D through_tint;
 layout(binding = 6) uniform sampler2D second;
+layout(binding = 7) uniform sampler2DShadow shadow_maps;
 
 // At pixels that a triangle covers in part, the middle can lie outside of it: far away in the atlas,
 // on nothing, where the triangle is seen edge-on.
@@ -21,15 +22,40 @@ layout(location = 4) in vec2 at_glow;
 layout(location = 5) in vec2 at_through_share;
 layout(location = 6) in vec2 at_through_tint;
 layout(location = 7) in vec3 tint;
+layout(location = 8) in vec3 from_eye;
+layout(location = 9) centroid in vec3 from_eye_inside;
+layout(location = 10) in vec3 smooth_normal;
+layout(location = 11) flat in float turned;
 layout(location = 0) out vec4 seen;
 
 const float pi = 3.14159265358979;
 const float most = 60000;  // of the picture's halves
 const float max_reflectance = 0.99;  // scene::kMaxReflectance
 
+#include "direct.glsl"
+
+// The front of the surface; a coarse grid of pixels knows it.
+vec3 facet_normal() {
+  vec3 facet = normalize(cross(dFdy(from_eye), dFdx(from_eye)));  // looks at the eye
+  return gl_FrontFacing == (turned < 0) ? -facet : facet;
+}
+
+// A place of the surface that the triangle covers: beside it shadows may be those of others. Some
+// drivers interpolate there with the depth of the pixel's middle, and leave the facet's plane.
+vec3 place_from_eye(vec3 facet) {
+  return from_eye_inside + facet * dot(from_eye - from_eye_inside, facet);
+}
+
+// As scene::shading_normal().
+vec3 normal_on(vec3 facet) {
+  vec3 n = normalize(smooth_normal);
+  float side = dot(n, facet);
+  return !(abs(side) >= 1e-3) ? facet : side < 0 ? -n : n;
+}
+
 // E at a place of the lightmap. Its second picture comes while light changes.
 vec3 irradiance_at(vec2 place) {
-  vec2 scale = light_scales.at[materials.at[material].page];
+  vec2 scale = light_now.scale[materials.at[material].page];
   vec3 first = textureLod(light, place, 0).rgb * scale.x;
   if (second_light == 0) return first;
   return mix(first, textureLod(second, place, 0).rgb * scale.y, second_light);
@@ -37,6 +63,7 @@ vec3 irradiance_at(vec2 place) {
 
 void main() {
   Material m = materials.at[material];
+  vec3 facet = facet_normal();
   vec4 base = texture(map, at_map) * vec4(m.base_color * tint, m.alpha);
   if (base.a < m.cutoff) discard;
   vec3 emitted = m.emission * texture(glow, at_glow).rgb * instances.at[instance].emission_factor;
@@ -45,13 +72,18 @@ void main() {
   if (m.through > 0)
     through = clamp(m.through * texture(through_share, at_through_share).a, 0, 1);
   vec3 rho = clamp(base.rgb * ((1 - metallic) * (1 - through)), 0, max_reflectance);
-  vec3 irradiance = irradiance_at(at_light);
+  vec3 irradiance = irradiance_at(at_light), behind = vec3(0);
+  if (light_now.lamp_count > 0) {
+    vec3 place = light_now.eye + place_from_eye(facet), n = normal_on(facet);
+    irradiance += direct_light(place, n, facet);
+    if (through > 0) behind = direct_light(place, -n, -facet);
+  }
   vec3 radiosity = rho * irradiance;
   if (through > 0) {
     vec3 tau = m.through_color * texture(through_tint, at_through_tint).rgb *
                (through * (1 - metallic));
     radiosity += clamp(tau, vec3(0), max_reflectance - rho) *
-                 irradiance_at(at_light_behind);
+                 (irradiance_at(at_light_behind) + behind);
   }
   vec3 radiance = m.unlit != 0 ? base.rgb : radiosity / pi + emitted;
   if (show == 1) radiance = irradiance / pi;

@@ -1,4 +1,4 @@
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view {
 namespace {
@@ -89,15 +89,17 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
   shown.numbers = news.light->numbers;
   shown.has_last = news.light->is_last;
   if (news.lit) {
-    LUXEL_TRY(shown.device, with_light(commands, *news.lit, *news.light));
-    shown.lightmaps = pages_of(*news.light, *news.lit);
+    const LiveLight& first = news.before ? *news.before : *news.light;
+    LUXEL_TRY(shown.device, with_light(commands, *news.lit, first));
+    shown.lightmaps = pages_of(first, *news.lit);
     shown.lit = std::move(news.lit);
-    shown.fade = {0, 1, news.light->exposure, news.light->exposure};
+    shown.fade = {0, 1, first.exposure, first.exposure};
+    shown.waiting.reset();
     shown.has_light = is_another = true;
-  } else {
-    shown.waiting = std::move(*news.light);
-    LUXEL_TRY_STATUS(pass(0, commands, shown));
+    if (!news.before) return true;
   }
+  shown.waiting = std::move(*news.light);
+  LUXEL_TRY_STATUS(pass(0, commands, shown));
   return is_another;
 }
 
@@ -109,6 +111,11 @@ Status pass(double seconds, gpu::Commands& commands, ShownScene& shown) {
   const LiveLight light = std::move(*shown.waiting);
   shown.waiting.reset();
   return fade_in(light, commands, shown);
+}
+
+Status settle(gpu::Commands& commands, ShownScene& shown) {
+  while (!is_settled(shown)) LUXEL_TRY_STATUS(pass(kFade_s, commands, shown));
+  return {};
 }
 
 bool is_settled(const ShownScene& shown) { return !shown.waiting && is_free(shown.fade); }

@@ -56,6 +56,8 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
 /// memory on the device.
 Status pass(double seconds, gpu::Commands& commands, ShownScene& shown);
 
+/// pass(), until all light that has come is shown.
+Status settle(gpu::Commands& commands, ShownScene& shown);
 /// Whether all light that has come is shown.
 bool is_settled(const ShownScene& shown);
 

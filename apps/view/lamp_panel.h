@@ -1,0 +1,36 @@
+// What the panel shows of lamps, and what of them the user may change. Dear ImGui draws it.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace luxel::view_window {
+
+/// A lamp, or a material that glows. All but the name and the unit may be changed.
+struct LampLine {
+  std::string name, unit;
+  bool is_on = true;
+  std::array<float, 3> color{1, 1, 1};  ///< display values, the largest one 1
+  float strength = 1;                   ///< of the largest [unit]
+  bool has_place = false, has_direction = false;
+  std::array<float, 3> place{}, direction{};
+  friend bool operator==(const LampLine&, const LampLine&) = default;
+};
+
+/// What the light of a picture took, in the order of kStages [ms].
+inline constexpr const char* kStages[] = {"lamps at patches", "bounces",     "texels",
+                                          "map to device",    "shadow maps", "picture"};
+using StageTimes = std::array<float, 6>;
+
+struct LampPanel {
+  std::vector<LampLine> lamps, glows;
+  int selected = -1, selected_glow = -1;                         ///< may be changed; -1: none
+  bool adds_point = false, adds_spot = false, adds_sun = false;  ///< changed: a lamp more
+  std::vector<StageTimes> history;  ///< of the last pictures, the newest last
+};
+
+/// Lays itself out in the window of ImGui that is open.
+void lay_out_lamps(LampPanel& panel);
+
+}  // namespace luxel::view_window

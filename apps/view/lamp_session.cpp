@@ -1,0 +1,134 @@
+#include "apps/view/lamp_session.h"
+
+#include <algorithm>
+
+#include "luxel/image/color.h"
+#include "luxel/scene/light_kinds.h"
+
+namespace luxel::view_window {
+namespace {
+
+constexpr size_t kHistory = 120;
+
+std::array<float, 3> numbers(Vec3 v) { return {v.x, v.y, v.z}; }
+Vec3 vector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+
+/// Light as a colour and a strength.
+void set_light(Rgb light, LampLine& line) {
+  line.strength = max_component(light);
+  const Rgb c = line.strength > 0 ? light / line.strength : Rgb{1, 1, 1};
+  line.color = {image::srgb_from_linear(c.x), image::srgb_from_linear(c.y),
+                image::srgb_from_linear(c.z)};
+}
+
+Rgb light_of(const LampLine& line) {
+  return Rgb{image::linear_from_srgb(line.color[0]), image::linear_from_srgb(line.color[1]),
+             image::linear_from_srgb(line.color[2])} *
+         line.strength;
+}
+
+LampLine line_of(const view::Lamp& lamp) {
+  const scene::PunctualLight& light = lamp.light;
+  LampLine out;
+  out.name = light.name.empty() ? std::string(scene::name_of(light.kind)) : light.name;
+  out.is_on = lamp.is_on;
+  out.has_place = scene::has_position(light.kind);
+  out.has_direction = scene::has_direction(light.kind);
+  out.unit = out.has_place ? "W/sr" : "W/m2";
+  out.place = numbers(light.position), out.direction = numbers(light.direction);
+  set_light(light.intensity, out);
+  return out;
+}
+
+LampLine line_of(const view::Glow& glow) {
+  LampLine out;
+  out.name = glow.name, out.unit = "W/(sr m2)", out.is_on = glow.is_on;
+  set_light(glow.radiance, out);
+  return out;
+}
+
+/// Of what can be chosen: materials that glow now, or did when they were baked.
+std::vector<uint32_t> glows_shown(const LampSession& session) {
+  std::vector<uint32_t> out;
+  for (uint32_t m = 0; m < session.desk.lamps.glows.size(); ++m)
+    if (max_component(session.desk.lamps.glows[m].radiance) > 0 ||
+        max_component(session.opened.lamps.glows[m].radiance) > 0)
+      out.push_back(m);
+  return out;
+}
+
+/// Only what was changed: other numbers are rounded on their way through the panel.
+void take_line(const LampLine& before, const LampLine& now, view::Lamp& lamp) {
+  lamp.is_on = now.is_on;
+  if (now.color != before.color || now.strength != before.strength)
+    lamp.light.intensity = light_of(now);
+  if (now.place != before.place) lamp.light.position = vector(now.place);
+  if (now.direction != before.direction && length(vector(now.direction)) > 0)
+    lamp.light.direction = normalize(vector(now.direction));
+}
+
+void add(scene::PunctualLight::Kind kind, LampSession& session) {
+  view::LampAdded added;
+  added.kind = kind;
+  // As bright on the surfaces of a large scene as on those of a small one.
+  const float diagonal_m = session.desk.bounds.diagonal();
+  const float strength = scene::has_position(kind) ? diagonal_m * diagonal_m : 3;
+  added.change.intensity = Rgb{strength, strength, strength};
+  if (!scene::has_position(kind)) added.change.direction = Vec3{-0.4f, -0.8f, -0.45f};
+  view::add_lamp(added, session.desk);
+}
+
+}  // namespace
+
+LampSession begin_lamps(view::OpenedLxr opened, view::DirectLight direct) {
+  view::LampDesk desk = view::begin_desk(opened.lamps, scene::world_bounds(opened.read->scene));
+  return LampSession{std::move(opened), std::move(direct), std::move(desk)};
+}
+
+LampPanel panel_of(const LampSession& session) {
+  LampPanel out;
+  for (const view::Lamp& lamp : session.desk.lamps.lamps) out.lamps.push_back(line_of(lamp));
+  for (const uint32_t m : glows_shown(session))
+    out.glows.push_back(line_of(session.desk.lamps.glows[m]));
+  out.selected = session.desk.selected ? int(*session.desk.selected) : -1;
+  out.selected_glow = session.selected_glow;
+  out.history = session.history;
+  return out;
+}
+
+void take_changes(const LampPanel& panel, LampSession& session) {
+  const LampPanel before = panel_of(session);
+  view::LampDesk& desk = session.desk;
+  for (size_t i = 0; i < before.lamps.size(); ++i) {
+    if (panel.lamps[i] == before.lamps[i]) continue;
+    take_line(before.lamps[i], panel.lamps[i], desk.lamps.lamps[i]);
+    ++desk.changes;
+  }
+  const std::vector<uint32_t> glows = glows_shown(session);
+  for (size_t i = 0; i < glows.size(); ++i) {
+    if (panel.glows[i] == before.glows[i]) continue;
+    view::Glow& glow = desk.lamps.glows[glows[i]];
+    glow.radiance = light_of(panel.glows[i]), glow.is_on = panel.glows[i].is_on;
+    ++desk.changes;
+  }
+  desk.selected = panel.selected >= 0 ? std::optional(uint32_t(panel.selected)) : std::nullopt;
+  session.selected_glow = panel.selected_glow;
+  if (panel.adds_point) add(scene::LightKind::point, session);
+  if (panel.adds_spot) add(scene::LightKind::spot, session);
+  if (panel.adds_sun) add(scene::LightKind::directional, session);
+}
+
+Result<view::LightTimes> light_lamps(gpu::Commands& commands, view::DeviceScene& scene,
+                                     LampSession& session) {
+  if (session.lit == session.desk.changes) return view::LightTimes{};
+  session.lit = session.desk.changes;
+  return view::follow_lamps(commands, session.desk.lamps, session.opened, session.direct, scene);
+}
+
+void add_times(const view::LightTimes& light, float draw_ms, LampSession& session) {
+  session.history.push_back({float(light.direct), float(light.bounces), float(light.places),
+                             float(light.map), float(light.shadows), draw_ms});
+  if (session.history.size() > kHistory) session.history.erase(session.history.begin());
+}
+
+}  // namespace luxel::view_window

@@ -1,0 +1,33 @@
+// The lamps of an .lxr file in a window: what the panel says of them, and light that follows.
+#pragma once
+
+#include "apps/view/lamp_panel.h"
+#include "luxel/view/relight/lamp_desk.h"
+#include "luxel/view/relight/relit_scene.h"
+
+namespace luxel::view_window {
+
+struct LampSession {
+  view::OpenedLxr opened;
+  view::DirectLight direct;
+  view::LampDesk desk;
+  uint64_t lit = 0;  ///< view::LampDesk::changes that the picture shows
+  int selected_glow = -1;
+  std::vector<StageTimes> history = {};  ///< of the last pictures
+};
+
+LampSession begin_lamps(view::OpenedLxr opened, view::DirectLight direct);
+
+/// What the panel is to show.
+LampPanel panel_of(const LampSession& session);
+/// What the user has changed in it.
+void take_changes(const LampPanel& panel, LampSession& session);
+
+/// Light follows the lamps where they have changed. Returns what it took. Nothing may still draw
+/// the scene. Errors: the device is lost, no memory.
+Result<view::LightTimes> light_lamps(gpu::Commands& commands, view::DeviceScene& scene,
+                                     LampSession& session);
+/// Keeps what a picture took; `draw_ms` is its drawing alone.
+void add_times(const view::LightTimes& light, float draw_ms, LampSession& session);
+
+}  // namespace luxel::view_window

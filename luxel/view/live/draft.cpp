@@ -1,0 +1,83 @@
+#include "luxel/view/live/draft.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/base/parallel.h"
+#include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/transport/irradiance_field.h"
+
+namespace luxel::view {
+namespace {
+
+/// Laying out a million triangles takes seconds.
+constexpr size_t kMostTriangles = 200'000;
+constexpr int kDraftSide = 96, kDraftSamples = 32, kDraftDirectSamples = 8;
+/// How far above a surface the draft's surface is looked for, and as far below, over the scene's
+/// diagonal.
+constexpr float kReach = 1e-4f;
+
+pipeline::BakeSettings draft_settings(const pipeline::BakeSettings& of) {
+  pipeline::BakeSettings out;
+  out.output = of.output;
+  out.resolution = kDraftSide;
+  out.samples = kDraftSamples, out.direct_samples = kDraftDirectSamples, out.supersample = 4;
+  out.bounces = of.bounces;
+  out.seed = of.seed, out.threads = of.threads, out.max_memory_bytes = of.max_memory_bytes;
+  return out;
+}
+
+void keep(const light::TexelScene& in, const light::LightEstimate& light, Draft& out) {
+  out.scene = in.scene, out.atlas = in.atlas, out.map = in.map;
+  out.irradiance.assign(light.irradiance.begin(), light.irradiance.end());
+  out.direct.assign(light.direct.begin(), light.direct.end());
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
+                                          const pipeline::BakeSettings& settings,
+                                          const Progress& watched) {
+  const bool is_coarse = settings.resolution && *settings.resolution <= kDraftSide;
+  if (is_coarse || settings.solver != "gather" || settings.light != pipeline::LightPart::all ||
+      scene::first_triangles(scene).back() > kMostTriangles)
+    return nullptr;
+  auto out = std::make_unique<Draft>();
+  Progress own;
+  bool has_light = false;
+  pipeline::BakeObserver observer;
+  observer.on_estimate = [&](const light::TexelScene& in, const light::LightEstimate& light) {
+    if (light.is_last) keep(in, light, *out);
+    has_light = light.is_last;
+    // What comes after the light is not looked at.
+    if (light.is_last || watched.cancelled()) own.request_cancel();
+  };
+  const auto baked = pipeline::bake_scene(scene, draft_settings(settings), own, observer);
+  if (watched.cancelled()) return stopped(watched).map([] { return std::unique_ptr<Draft>(); });
+  if (!has_light)
+    return baked ? nullptr : Result<std::unique_ptr<Draft>>(tl::unexpected(baked.error()));
+  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(out->scene));
+  out->tracer.emplace(std::move(tracer));
+  return out;
+}
+
+std::vector<Rgb> light_of_draft(const Draft& draft, std::span<const Rgb> of_texels,
+                                const light::TexelScene& in) {
+  const transport::TexelField field{&draft.atlas, &draft.map, of_texels};
+  Rgb mean{};
+  for (const Rgb& e : of_texels) mean += e;
+  mean = mean * (1 / float(std::max<size_t>(of_texels.size(), 1)));
+  const float reach = kReach * scene::world_bounds(draft.scene).diagonal();
+  std::vector<Rgb> out(in.elements.size(), mean);
+  parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Vec3 n = in.elements.geometric_normal[i];
+      const trace::Hit hit =
+          draft.tracer->closest_hit({in.elements.position[i] + n * reach, 0, n * -1.0f, 2 * reach});
+      if (hit.found()) out[i] = transport::irradiance_at(field, hit.point());
+    }
+  });
+  return out;
+}
+
+}  // namespace luxel::view

@@ -1,0 +1,36 @@
+// Coarse light, to be looked at until there is better: a bake of few texels and few rays.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "luxel/atlas/atlas.h"
+#include "luxel/light/texel_scene.h"
+#include "luxel/pipeline/settings/settings.h"
+#include "luxel/trace/ray_tracer.h"
+
+namespace luxel::view {
+
+/// It stays where it is: the tracer looks at the scene.
+struct Draft {
+  scene::Scene scene;  ///< as it was laid out
+  std::optional<trace::RayTracer> tracer;
+  atlas::Atlas atlas;
+  atlas::TexelMap map;
+  std::vector<Rgb> irradiance;  ///< E per texel of the map [W/m^2], after all bounces
+  std::vector<Rgb> direct;      ///< the part of it that comes straight from lights
+};
+
+/// Bakes `scene`, which was read and has its outside light. Null where that would take long, since
+/// there are many triangles, where another solver than gather is asked for, and where the bake
+/// itself is no finer. Errors: those of a bake; cancelled.
+Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
+                                          const pipeline::BakeSettings& settings,
+                                          const Progress& watched);
+
+/// E of a draft at the elements of another layout of its scene: all of it, or the part that is
+/// direct. Elements at which the draft has no surface get the mean.
+std::vector<Rgb> light_of_draft(const Draft& draft, std::span<const Rgb> of_texels,
+                                const light::TexelScene& in);
+
+}  // namespace luxel::view

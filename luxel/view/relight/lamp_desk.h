@@ -1,0 +1,63 @@
+// Taking hold of lamps: events in, lamps and their marks out.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "luxel/view/mark.h"
+#include "luxel/view/model/walk.h"
+#include "luxel/view/relight/lamps.h"
+
+namespace luxel::view {
+
+/// What of a lamp can be taken hold of.
+struct Handle {
+  uint32_t lamp = 0;
+  bool turns = false;  ///< a spot's direction; otherwise the lamp itself, or the sun in its sky
+  friend bool operator==(const Handle&, const Handle&) = default;
+};
+
+/// The lamps, and what the user is doing with them.
+struct LampDesk {
+  Lamps lamps;
+  Box3 bounds;  ///< of the scene [m]
+  std::optional<uint32_t> selected;
+  std::optional<int> axis;  ///< 0 to 2: lamps move along x, y, z alone
+  bool has_marks = true;    ///< lamps are marked
+  uint64_t changes = 0;     ///< of light
+
+  std::optional<Handle> held;
+  Vec3 held_from{};     ///< where the handle was when it was taken
+  Vec2 pointer_from{};  ///< and the pointer
+};
+
+LampDesk begin_desk(const Lamps& lamps, const Box3& bounds);
+
+/// Where a handle is [m].
+Vec3 place_of(const Handle& handle, const LampDesk& desk);
+/// Where a place lies in the picture, in pixels; none behind the eye.
+std::optional<Vec2> pixel_of(const Walk& walk, Vec3 place);
+
+/// What an event does to lamps. True: it is no longer the walk's. A press of the left button near a
+/// mark takes the lamp; while it is held it follows the pointer in the plane that faces the camera,
+/// or along one axis. A sun turns around the scene.
+bool handle_lamps(const Event& event, const Walk& walk, LampDesk& desk);
+
+/// The lamp `changed` becomes otherwise. A number that there is not changes nothing.
+void change_lamp(const LampChanged& changed, LampDesk& desk);
+/// A lamp more, which is selected; without a place of its own it is in the scene's middle.
+void add_lamp(const LampAdded& added, LampDesk& desk);
+
+/// The marks of all lamps as they are seen.
+std::vector<Mark> marks_of(const LampDesk& desk, const Walk& walk);
+
+/// Errors: an event of a lamp or a material that there is not; `name` is the play's.
+Status check_lamps(const Play& play, const Lamps& lamps, const std::string& name);
+
+/// All of a play from its beginning to its end, in steps of its frames, as view::play().
+void play_with_lamps(const Play& events, const PlaceSeen& place_seen, Walk& walk, LampDesk& desk);
+/// The events that come up to a frame, as view::handle_frame().
+void handle_frame_with_lamps(const Play& events, int64_t frame, const PlaceSeen& place_seen,
+                             size_t& next, Walk& walk, LampDesk& desk);
+
+}  // namespace luxel::view

@@ -1,0 +1,27 @@
+// An .lxr file, read so that its lamps can be moved.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "luxel/base/result.h"
+#include "luxel/view/read_scene.h"
+#include "luxel/view/relight/relit_light.h"
+
+namespace luxel::view {
+
+/// A scene that is relit as its lamps change.
+struct OpenedLxr {
+  std::shared_ptr<const ReadScene> read;  ///< the file's, under its background
+  RelitLight light;
+  Lamps lamps;  ///< as baked
+};
+
+/// Whether a file is one by its name.
+bool is_lxr(const std::filesystem::path& file);
+
+/// The light of the file's lamps is there at once. Errors: those of files; a file without texels to
+/// light or without its scene.
+Result<OpenedLxr> open_lxr(const std::filesystem::path& file);
+
+}  // namespace luxel::view

@@ -1,0 +1,96 @@
+// Light straight from lamps, as luxel/light/lights.h has it. luxel/view/draw/direct_light.h has the
+// structs and the maps of shadows.
+
+// E on a surface that faces the lamp squarely, and the way to it.
+vec3 arriving_from(Lamp lamp, vec3 place, out vec3 towards, out float distance_m) {
+  distance_m = 0;
+  towards = -lamp.direction;
+  if (lamp.kind == 2) return lamp.intensity;
+  vec3 to_lamp = lamp.position - place;
+  distance_m = length(to_lamp);
+  if (distance_m <= 0) return vec3(0);
+  towards = to_lamp / distance_m;
+  float factor = 1 / (distance_m * distance_m);
+  if (lamp.range_m > 0) {
+    float q = distance_m / lamp.range_m;
+    factor *= clamp(1 - q * q * q * q, 0, 1);
+  }
+  if (lamp.kind == 1) {
+    float t = clamp((-dot(towards, lamp.direction) - lamp.cos_outer) * lamp.cone, 0, 1);
+    factor *= t * t;
+  }
+  return lamp.intensity * factor;
+}
+
+uint side_of_cube(vec3 d) {
+  vec3 a = abs(d);
+  if (a.x >= a.y && a.x >= a.z) return d.x < 0 ? 1 : 0;
+  if (a.y >= a.z) return d.y < 0 ? 3 : 2;
+  return d.z < 0 ? 5 : 4;
+}
+
+// Shares of four texels side by side, for a place `part` of the way from the second to the third: a
+// cubic B-spline, whose edges are smooth where a step of one texel would show.
+vec4 spline(float part) {
+  float rest = 1 - part, p2 = part * part, r2 = rest * rest;
+  return vec4(r2 * rest, 4 - 6 * p2 + 3 * p2 * part, 4 - 6 * r2 + 3 * r2 * rest, p2 * part) / 6;
+}
+
+// The share of 4 x 4 texels around a place of a map that its depth is not behind of.
+float lit_share(ShadowMap map, vec3 place) {
+  vec4 clip = map.clip_from_world * vec4(place, 1);
+  if (clip.w <= 0) return 1;
+  vec2 at = clamp((clip.xy / clip.w * 0.5 + 0.5) * map.side - 0.5, vec2(1), vec2(map.side - 2.01));
+  vec2 texel = floor(at);
+  vec4 x = spline(at.x - texel.x), y = spline(at.y - texel.y);
+  vec2 size = vec2(textureSize(shadow_maps, 0));
+  float sum = 0;
+  for (int v = 0; v < 2; ++v)
+    for (int u = 0; u < 2; ++u) {
+      vec2 corner = (map.corner + texel + vec2(2 * u, 2 * v)) / size;
+      // Of the left upper, right upper, right lower and left lower texel: w, z, y, x.
+      vec4 lit = textureGather(shadow_maps, corner, clip.z / clip.w);
+      vec2 across = u == 0 ? x.xy : x.zw, down = v == 0 ? y.xy : y.zw;
+      sum += down.x * dot(across, lit.wz) + down.y * dot(across, lit.xy);
+    }
+  return sum;
+}
+
+vec3 axis_of_side(uint side) {
+  float way = side % 2 == 0 ? 1 : -1;
+  return side < 2 ? vec3(way, 0, 0) : side < 4 ? vec3(0, way, 0) : vec3(0, 0, way);
+}
+
+// The share of a lamp's light that nothing is in the way of. A surface must not be in its own way: a
+// texel has one depth for all of its width. Looked up is a place before the surface by what the
+// surface's depth changes over the texels of a look-up, two to each side. With the surface p n = c,
+// depth w and a place s at w = 1, w = c / n (s, 1): along s it changes by w |n_s| / n (s, 1), and with
+// c by 1 / n (s, 1). So c is to change by w |n_s| times the width.
+float visible_share(Lamp lamp, vec3 place, vec3 facet) {
+  if (lamp.first_map == 0xffffffffu) return 1;
+  vec3 from_lamp = place - lamp.position;
+  bool all_round = lamp.looks_all_round != 0;
+  uint side = all_round ? side_of_cube(from_lamp) : 0;
+  vec3 forward = all_round ? axis_of_side(side) : lamp.direction;
+  ShadowMap map = light_now.maps.at[lamp.first_map + side];
+  float depth = lamp.kind == 2 ? 1 : dot(from_lamp, forward);
+  float along = dot(facet, forward);
+  vec3 p = place + facet * (map.texel_m * depth * (0.2 + 2.9 * sqrt(max(1 - along * along, 0))));
+  return lit_share(map, p);
+}
+
+// E at a place with this normal, on a facet that looks this way.
+vec3 direct_light(vec3 place, vec3 normal, vec3 facet) {
+  vec3 sum = vec3(0);
+  for (uint i = 0; i < light_now.lamp_count; ++i) {
+    Lamp lamp = light_now.lamps.at[i];
+    vec3 towards;
+    float distance_m;
+    vec3 arriving = arriving_from(lamp, place, towards, distance_m);
+    float cosine = dot(normal, towards);
+    if (cosine <= 0 || dot(facet, towards) <= 0 || max(max(arriving.r, arriving.g), arriving.b) <= 0)
+      continue;
+    sum += arriving * (cosine * visible_share(lamp, place, facet));
+  }
+  return sum;
+}

@@ -1,0 +1,12 @@
+// Holes of masks let light through.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shadow.glsl"
+
+layout(binding = 0) uniform sampler2D map;
+layout(location = 0) in vec2 at_map;
+
+void main() {
+  Material m = materials.at[material];
+  if (texture(map, at_map).a * m.alpha < m.cutoff) discard;
+}

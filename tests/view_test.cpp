@@ -123,6 +123,49 @@ TEST(View, LooksIntoABakeAsRenderDoes) {
   EXPECT_LT(apart_where_not_black(shown, seen), 0.01);
 }
 
+// A bake beside itself differs by nothing; beside another one it does, and a window shows the same.
+TEST(View, ShowsTwoBakesBesideOneAnother) {
+  const ScratchFolder s;
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  const std::string a = (s.path / "a").string(), b = (s.path / "b").string();
+  for (const auto& [folder, samples] : {std::pair(a, "16"), {b, "1"}})
+    ASSERT_EQ(luxel("bake " + scene_file("cornell-box.glb") + " -o " + folder +
+                    " --resolution 64 --samples " + samples + " --quiet")
+                  .code,
+              0);
+  const auto shot = [&](const std::string& beside, const std::string& mode, const char* more = "",
+                        const char* before = "") {
+    const auto play =
+        s.write("play.json", R"({"end": 0, "events": [{"at": 0, "beside": ")" + mode + "\"}]}");
+    const std::string file = (s.path / "view.png").string();
+    const CommandResult r = view(a + " --beside " + beside + " --size 160x160 --play " +
+                                     play.string() + " --screenshot " + file + " " + more,
+                                 before);
+    EXPECT_EQ(r.code, 0) << r.err;
+    if (*before) EXPECT_EQ(r.out + r.err, "") << "the validation layer has nothing to say";
+    return png_at(file);
+  };
+  const auto nothing = [&](const image::Image& picture) {
+    const image::Color8 dark = image::false_color(0);
+    for (size_t i = 0; i < picture.data.size(); ++i)
+      if (std::abs(picture.data[i] - image::linear_from_srgb(float(dark[i % 3]) / 255)) > 1e-5f)
+        return false;
+    return true;
+  };
+  for (const std::string mode : {"difference", "flip"}) {
+    EXPECT_TRUE(nothing(shot(a, mode, "--offscreen"))) << mode;
+    const image::Image other = shot(b, mode, "--offscreen");
+    EXPECT_FALSE(nothing(other)) << mode;
+    if (shell("command -v xvfb-run").code != 0) continue;
+    const image::Image window =
+        shot(b, mode, "", "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
+    EXPECT_EQ(window.data, other.data) << mode;
+  }
+  const CommandResult refused = view(scene_file("cornell-box.glb") + " --beside " + a);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--beside shows a second bake beside a first one"));
+}
+
 // Layers at half of their light, and an exposure of one stop more: what was baked. Without one
 // lamp its side of the room is dark.
 TEST(View, MixesLayers) {

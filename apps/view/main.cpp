@@ -57,9 +57,13 @@ bool is_scene(const std::filesystem::path& subject) {
   return !view::is_lxr(subject) && std::filesystem::is_regular_file(subject, ignored);
 }
 
-/// Errors: options of a bake beside a bake that is there.
+/// Errors: options of a bake beside a bake that is there, or a second bake beside none.
 Status check_choice(const Options& options) {
   const arguments::BakeChoice& choice = options.choice;
+  if (!options.beside.empty() && is_scene(options.subject))
+    return fail(ErrorCode::bad_setting,
+                "--beside shows a second bake beside a first one; {} is no folder of a bake",
+                options.subject.string());
   std::string flag;
   if (!choice.solver.empty()) flag = "--solver";
   if (!choice.settings.empty()) flag = "--settings";
@@ -90,10 +94,6 @@ void print_warnings(const std::vector<std::string>& warnings) {
 /// The second bake, if there is one.
 Result<std::optional<view::OpenedBake>> opened_beside(const Options& options) {
   if (options.beside.empty()) return std::nullopt;
-  if (is_scene(options.subject))
-    return fail(ErrorCode::bad_setting,
-                "--beside needs the folder of a bake; {} is a scene that is to be baked",
-                options.subject.string());
   LUXEL_TRY(view::OpenedBake out, view::open_bake(options.beside));
   print_warnings(out.warnings);
   return out;

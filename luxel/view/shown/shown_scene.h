@@ -38,7 +38,8 @@ struct ShownScene {
   }
 };
 
-/// What of it can be looked into, whose light has come. Errors: those of look_into().
+/// What of it can be looked into, whose light has come. Errors: those of look_into(); it has no
+/// lightmap.
 Result<Look> look_of(const ShownScene& shown);
 
 /// A scene in which nothing can be seen, for a window that opens before the file is read.

@@ -47,7 +47,8 @@ TEST_F(LeaksOfReuse, AResumedBakeIsBlack) {
   {
     Checkpoint left(asked, settings_of_checkpoint(asked));
     Progress progress;
-    const auto stop = [&](const light::TexelScene&, const light::LightEstimate&) {
+    BakeObserver stop;
+    stop.on_estimate = [&](const light::TexelScene&, const light::LightEstimate&) {
       progress.request_cancel();
     };
     const auto bake = bake_scene(asked, progress, {&left, nullptr}, stop);

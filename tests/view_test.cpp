@@ -1,7 +1,9 @@
 // luxel-view without a window: it draws what `luxel render --from` draws, and says what is missing.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <numeric>
+#include <sstream>
 
 #include "luxel/image/flip.h"
 #include "tests/command.h"
@@ -85,6 +87,54 @@ TEST(View, AWindowShowsWhatIsDrawnWithoutOne) {
   EXPECT_EQ(window.out + window.err, "") << "the validation layer has nothing to say";
   ASSERT_EQ(view(bake + shot("without.png") + " --offscreen").code, 0);
   EXPECT_EQ(slurp(s.path / "window.png"), slurp(s.path / "without.png"));
+}
+
+/// The column of a table of frames.
+std::vector<double> column_of(const std::filesystem::path& csv, size_t column) {
+  std::vector<double> out;
+  std::istringstream in(slurp(csv));
+  std::string line;
+  for (std::getline(in, line); std::getline(in, line);) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (size_t i = 0; i <= column; ++i) std::getline(cells, cell, ',');
+    out.push_back(std::stod(cell));
+  }
+  return out;
+}
+
+// The window begins with a draft, fades the bake's light in, saves it, and ends as the picture
+// without a window does.
+TEST(View, ASceneIsBakedWhileItIsLookedAt) {
+  const ScratchFolder s;
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  if (shell("command -v xvfb-run").code != 0) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  const std::string scene = scene_file("office.glb") + " --resolution 128 --samples 16 ";
+  ASSERT_EQ(luxel("bake " + scene + " -o " + (s.path / "baked").string() + " --quiet").code, 0);
+  const std::string play = s.write("play.json", R"({"end": 0.2, "events": [
+        {"at": 0.1, "wait": "bake"}, {"at": 0.1, "key": "ctrl+s"}]})")
+                               .string();
+  const auto shot = [&](const std::string& name) {
+    return scene + " --size 120x90 --play " + play + " --screenshot " + (s.path / name).string();
+  };
+  const CommandResult window =
+      view(shot("window.png") + " -o " + (s.path / "saved").string() + " --frame-times " +
+               (s.path / "frames.csv").string(),
+           "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
+  ASSERT_EQ(window.code, 0) << window.err;
+  EXPECT_EQ(window.out + window.err, "wrote " + (s.path / "saved").string() + "\n");
+  ASSERT_EQ(view(shot("without.png") + " --offscreen").code, 0);
+  EXPECT_EQ(slurp(s.path / "window.png"), slurp(s.path / "without.png"));
+  for (const char* file : {"lightmap.exr", "baked.glb", "preview.png"})
+    EXPECT_EQ(slurp(s.path / "saved" / file), slurp(s.path / "baked" / file)) << file;
+  // What has light never jumps; before that come the empty window and colours alone.
+  const std::vector<double> brightness = column_of(s.path / "frames.csv", 2);
+  const std::vector<double> has_light = column_of(s.path / "frames.csv", 4);
+  ASSERT_GT(std::ranges::count(has_light, 1.0), 30) << "a second to fade in";
+  for (size_t i = 1; i < brightness.size(); ++i)
+    if (has_light[i - 1] == 1) {
+      EXPECT_NEAR(brightness[i], brightness[i - 1], 0.02 * brightness[i - 1]) << i;
+    }
 }
 
 TEST(View, SaysWhatIsWrong) {

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "apps/cli/cli.h"
-#include "apps/options/bake_options.h"
+#include "luxel/arguments/bake_options.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/settings/quality.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/options/table_options.h"
+#include "luxel/arguments/table_options.h"
 #include "luxel/atlas/atlas.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
@@ -17,6 +17,8 @@
 #include "luxel/pipeline/settings/settings.h"
 
 namespace luxel::cli {
+
+using namespace arguments;  // options from tables
 
 enum ExitCode { kDone = 0, kBadInput = 1, kUsage = 2, kOutOfResource = 3, kInterrupted = 130 };
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/view/screen.h"
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view_window {
 
@@ -14,6 +14,7 @@ struct FrameTable {
     float milliseconds = 0;  ///< from the first command to the picture in the window
     double brightness = 0;   ///< the mean of what the screen shows, in [0, 1] of its range
     double samples = 0;      ///< of the light that came last
+    bool has_light = false;  ///< false: colours alone, or nothing yet
   };
   std::vector<Row> rows;
 };

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "apps/options/bake_options.h"
 #include "apps/view/session.h"
+#include "luxel/arguments/bake_options.h"
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/image/codec.h"
@@ -17,7 +17,7 @@
 #include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
 #include "luxel/view/relight/draw_lxr.h"
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace {
 
@@ -29,8 +29,8 @@ struct Options {
   std::filesystem::path subject, screenshot, play, frame_table;
   std::string size, device;
   bool offscreen = false;
-  int width = 0, height = 0;  ///< 0: as preview.png
-  cli::BakeChoice choice;     ///< of a subject that is a scene
+  int width = 0, height = 0;     ///< 0: as preview.png
+  arguments::BakeChoice choice;  ///< of a subject that is a scene
 };
 
 Status parse_size(Options& options) {
@@ -57,7 +57,7 @@ bool is_scene(const std::filesystem::path& subject) {
 
 /// Errors: options of a bake beside a bake that is there.
 Status check_choice(const Options& options) {
-  const cli::BakeChoice& choice = options.choice;
+  const arguments::BakeChoice& choice = options.choice;
   std::string flag;
   if (!choice.solver.empty()) flag = "--solver";
   if (!choice.settings.empty()) flag = "--settings";
@@ -70,11 +70,11 @@ Status check_choice(const Options& options) {
 
 /// Those of `luxel bake`, but that a processor is left to the window, and a folder is chosen.
 Result<pipeline::BakeSettings> settings_of(const Options& options) {
-  cli::BakeChoice choice = options.choice;
+  arguments::BakeChoice choice = options.choice;
   choice.scene = options.subject;
   if (choice.output.empty())
     choice.output = std::filesystem::path("baked") / options.subject.stem();
-  LUXEL_TRY(pipeline::BakeSettings settings, cli::settings_of(choice));
+  LUXEL_TRY(pipeline::BakeSettings settings, arguments::settings_of(choice));
   if (!options.offscreen && !choice.given.has("--threads"))
     settings.threads = std::max(1, int(std::thread::hardware_concurrency()) - 1);
   return settings;
@@ -220,10 +220,10 @@ void add_own(CLI::App& app, Options& options) {
 }
 
 /// They are many, and `luxel bake --help` lists them.
-void add_hidden_bake_options(CLI::App& app, cli::BakeChoice& choice) {
+void add_hidden_bake_options(CLI::App& app, arguments::BakeChoice& choice) {
   const std::vector<CLI::Option*> before = app.get_options();
-  cli::add_bake_settings(app, choice);
-  cli::add_bake_table(app, choice.given);
+  arguments::add_bake_settings(app, choice);
+  arguments::add_bake_table(app, choice.given);
   for (CLI::Option* option : app.get_options())
     if (std::ranges::find(before, option) == before.end()) option->group("");
 }

@@ -14,7 +14,7 @@
 #include "luxel/base/file.h"
 #include "luxel/image/codec.h"
 #include "luxel/view/model/walk.h"
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view_window {
 namespace {
@@ -156,7 +156,10 @@ BakeLines lines_of(const Session& s) {
     out.lines.push_back("shown: direct light, reflections of the draft");
   if (known.kind == view::LiveKind::direct_and_even_rest)
     out.lines.push_back("shown: direct light, reflections spread evenly");
-  if (known.samples > 0) out.lines.push_back(fmt::format("{:.0f} rays per texel", known.samples));
+  if (known.kind == view::LiveKind::partly)
+    out.lines.push_back(fmt::format("shown: {:.0f} % of the texels' own light", 100 * known.share));
+  if (known.kind == view::LiveKind::bake && known.samples > 0)
+    out.lines.push_back(fmt::format("{:.0f} rays per texel", known.samples));
   if (known.rays_per_s > 0)
     out.lines.push_back(fmt::format("{:.2f} million rays/s", 1e-6 * known.rays_per_s));
   if (known.error_p95 > 0)
@@ -185,6 +188,7 @@ void follow_user(Session& s) {
   std::vector<view::Command> asked;
   if (s.walk) asked = std::exchange(s.walk->asked, {});
   if (!s.live) return;
+  if (s.walk) s.live->look(s.walk->shown.camera, float(s.walk->width) / float(s.walk->height));
   const BakeLines& panel = *s.panel.bake;
   if (panel.asks_to_stop || panel.asks_to_go_on) asked.push_back(view::Command::stop_or_go_on);
   if (panel.asks_to_save) asked.push_back(view::Command::save);

@@ -41,6 +41,16 @@ Ray CameraRays::through(float x, float y) const {
   return {.origin = eye, .direction = normalize(forward + aside)};
 }
 
+bool faces(const CameraRays& camera, Vec3 place, Vec3 normal) {
+  const Vec3 to_place = place - camera.eye;
+  if (dot(normal, camera.orthographic ? camera.forward : to_place) >= 0) return false;
+  const float ahead = dot(to_place, camera.forward);
+  if (!camera.orthographic && ahead <= 0) return false;
+  const float reach = camera.orthographic ? 1 : ahead;
+  return std::abs(dot(to_place, camera.right)) <= reach * dot(camera.right, camera.right) &&
+         std::abs(dot(to_place, camera.up)) <= reach * dot(camera.up, camera.up);
+}
+
 std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer,
                               std::span<Ray> rays) {
   std::vector<Hit> hits(rays.size());

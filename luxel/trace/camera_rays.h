@@ -27,6 +27,9 @@ struct CameraRays {
   float width = 1, height = 1;
 };
 
+/// Whether a place lies in the picture and its front turns to the eye, whatever stands before it.
+bool faces(const CameraRays& camera, Vec3 place, Vec3 normal);
+
 /// What each ray meets first when the back faces of one-sided materials are invisible. Such a ray
 /// goes on behind the hit, through 64 surfaces at most; `rays` is left where it got to.
 std::vector<Hit> visible_hits(const scene::Scene& scene, const RayTracer& tracer,

@@ -153,6 +153,17 @@ Result<Ready> make_ready(const BakeSettings& settings, Bake& bake, const Keepers
                light::collect_lights(bake.scene)};
 }
 
+/// What a solver tells of a bake that is watched.
+SolveObserver observer_of(const BakeObserver& watcher, const light::TexelScene& in) {
+  SolveObserver out;
+  out.on_estimate = [&](const light::LightEstimate& e) { watcher.on_estimate(in, e); };
+  if (watcher.guess)
+    out.guess = [&](std::span<const Rgb> direct) { return watcher.guess(in, direct); };
+  if (watcher.is_watched)
+    out.is_watched = [&](size_t element) { return watcher.is_watched(in, element); };
+  return out;
+}
+
 /// The rest of bake_scene() for a bake that has its scene.
 Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
                    const BakeObserver& watcher, Bake& bake, Progress& progress) {
@@ -165,7 +176,7 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
                            keepers.cache};
   SolveObserver observer;
   if (watcher.on_estimate)
-    observer.on_estimate = [&](const light::LightEstimate& e) { watcher.on_estimate(input, e); };
+    observer = observer_of(watcher, input);
   else if (!looks_at_places(settings))
     observer.on_traced = [&] { transport::drop_places(ready.elements); };
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));

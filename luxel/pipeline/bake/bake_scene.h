@@ -64,6 +64,10 @@ struct BakeObserver {
   /// Gets the scene when it is read, its outside light added, and not yet laid out.
   std::function<void(const scene::Scene&)> on_read{};
   OnBakeEstimate on_estimate{};
+  /// With on_estimate: the guess that light begins with, E per element after all bounces, from its
+  /// direct part; and whether light of an element should come early.
+  std::function<std::vector<Rgb>(const light::TexelScene&, std::span<const Rgb> direct)> guess{};
+  std::function<bool(const light::TexelScene&, size_t element)> is_watched{};
 };
 
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a

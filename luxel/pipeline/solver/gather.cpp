@@ -198,10 +198,12 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
   // Not for the trial; and the light of layers is not kept yet.
   if (!told_apart && !params.tells_direct) own.parts = stores.parts;
   if (keeps) own.keep = stores.cache->rays();
-  LUXEL_TRY(gather::Gather result,
-            gather::gather(in, told_apart, params, own,
-                           {.on_estimate = observer.on_estimate, .on_traced = observer.on_traced},
-                           progress));
+  LUXEL_TRY(gather::Gather result, gather::gather(in, told_apart, params, own,
+                                                  {.on_estimate = observer.on_estimate,
+                                                   .guess = observer.guess,
+                                                   .is_watched = observer.is_watched,
+                                                   .on_traced = observer.on_traced},
+                                                  progress));
   const light::LightLayers all_layers = layers;
   const gather::SourceLight sources = std::move(result.sources);
   TexelLight out = light_of(result, layers);

@@ -27,6 +27,9 @@ struct SolveStores {
 /// Who watches a solver; nothing where nobody does.
 struct SolveObserver {
   light::OnLightEstimate on_estimate{};  ///< gets light as it grows, of a solver with `errors`
+  /// With on_estimate: GatherObserver::guess and GatherObserver::is_watched.
+  std::function<std::vector<Rgb>(std::span<const Rgb> direct)> guess{};
+  std::function<bool(size_t element)> is_watched{};
   /// Called, or not, when the solver looks at no place of an element any more: they take memory.
   std::function<void()> on_traced{};
 };

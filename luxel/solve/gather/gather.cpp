@@ -7,6 +7,7 @@
 #include "luxel/solve/gather/bounce/bounce_layers.h"
 #include "luxel/solve/gather/bounce/radiosity_map.h"
 #include "luxel/solve/gather/budget/adaptive.h"
+#include "luxel/solve/gather/partial_light.h"
 #include "luxel/solve/gather/reuse/earlier.h"
 #include "luxel/solve/gather/steps.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
@@ -59,15 +60,6 @@ std::vector<Rgb> with_ambient(const transport::Elements& elements, std::span<con
   return out;
 }
 
-/// The samples after each round, for one who watches: doubled from a few up to all.
-std::vector<int> growing(int samples) {
-  constexpr int kFirst = 8;
-  std::vector<int> out{samples};
-  while (out.back() >= 2 * kFirst) out.push_back(out.back() / 2);
-  std::ranges::reverse(out);
-  return out;
-}
-
 /// The rays of an earlier bake. Where only what lies elsewhere changes them, they tell by how much
 /// the light of then changes in a sweep, too. Errors: cancelled, disk full.
 Status trace_earlier(const Request& in, Progressive& light, Progress& progress) {
@@ -101,17 +93,17 @@ Status trace_first(const Request& in, Progressive& light, Progress& progress) {
   const size_t n = in.scene.elements.size();
   const int all = in.params.samples;
   if (in.stores.earlier) return trace_earlier(in, light, progress);
-  if (!in.observer.on_estimate)
-    return trace_round(in, std::vector<uint16_t>(n, uint16_t(all)), light, progress);
-  const std::vector<Rgb> guess = with_ambient(in.scene.elements, light.direct.irradiance);
-  in.observer.on_estimate({.irradiance = guess, .direct = light.direct.irradiance});
-  for (const int samples : growing(all)) {
-    const std::vector<uint16_t> target(n, uint16_t(samples));
-    LUXEL_TRY_STATUS(trace_round(in, target, light, progress));
-    if (samples == all) break;  // what follows bounces them
-    LUXEL_TRY_STATUS(estimate_round(in, light, progress));
-  }
-  return {};
+  const std::vector<uint16_t> target(n, uint16_t(all));
+  if (!in.observer.on_estimate) return trace_round(in, target, light, progress);
+  std::vector<Rgb> guess = in.observer.guess
+                               ? in.observer.guess(light.direct.irradiance)
+                               : with_ambient(in.scene.elements, light.direct.irradiance);
+  in.observer.on_estimate({.irradiance = guess, .direct = light.direct.irradiance, .share = 0});
+  TileQueue queue((n + kTileElements - 1) / kTileElements);
+  PartialLight partial(in, light, std::move(guess), queue);
+  const TileWatch watch{&queue,
+                        [&](size_t first, const HitTile& hits) { partial.take(first, hits); }};
+  return trace_round(in, target, light, progress, &watch);
 }
 
 /// What light was made of. The counts of rays stay.
@@ -150,7 +142,7 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
   light.hits.rounds.clear();
   LUXEL_TRY_STATUS(judge(in, light, progress));
   drop_light(light.hits);
-  show(in.observer, light);
+  show(in.observer, light, true);
   return {};
 }
 

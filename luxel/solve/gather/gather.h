@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "luxel/base/bytes_per_entry.h"
@@ -48,10 +49,16 @@ struct GatherStores {
 
 /// Who watches gather.
 struct GatherObserver {
-  /// Gets the light as it grows: direct light with an ambient term [Cohen88], then that of a few
-  /// rays, of twice as many, and so on, the last being what gather() returns. `samples` come in
-  /// rounds then, and the result is that without it up to rounding (adaptive_test.cpp).
+  /// Gets the light as it grows: direct light with a guess of the rest, then about twice a second
+  /// that of the elements whose rays are traced, and after each round all of it, the last being
+  /// what gather() returns. The result is that without it, bit by bit.
   light::OnLightEstimate on_estimate{};
+  /// The guess: E per element after all bounces, from its direct part. None: an ambient term
+  /// [Cohen88].
+  std::function<std::vector<Rgb>(std::span<const Rgb> direct)> guess{};
+  /// Whether rays of an element should come early, as it is asked now and then. Called by threads
+  /// that trace. None: they come in order.
+  std::function<bool(size_t element)> is_watched{};
   /// Called when every ray is traced: drop_places() may be called on the elements then.
   std::function<void()> on_traced{};
 };

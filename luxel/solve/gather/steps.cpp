@@ -10,13 +10,14 @@
 
 namespace luxel::gather {
 
-void show(const GatherObserver& observer, const Progressive& light) {
+void show(const GatherObserver& observer, const Progressive& light, bool is_last) {
   if (!observer.on_estimate) return;
   const double n = double(std::max<size_t>(light.hits.size(), 1));
   observer.on_estimate({.irradiance = light.bounced.irradiance,
                         .direct = light.direct.irradiance,
                         .samples = double(sum_of(light.hits.samples)) / n,
                         .error_p95 = light.errors.p95,
+                        .is_last = is_last,
                         .error_rms = light.errors.expected_rms});
 }
 
@@ -47,7 +48,7 @@ Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
 }
 
 Status trace_round(const Request& in, std::span<const uint16_t> target, Progressive& light,
-                   Progress& progress) {
+                   Progress& progress, const TileWatch* watch) {
   const TraceParams trace{
       .seed = in.params.seed,
       .memory_limit_bytes = in.stores.hit_memory_bytes,
@@ -58,6 +59,7 @@ Status trace_round(const Request& in, std::span<const uint16_t> target, Progress
       .earlier = in.stores.earlier ? &in.stores.earlier->rays : nullptr,
       .layers = in.layers,
       .followed_layers = in.followed_layers,
+      .watch = watch,
   };
   const auto start = Clock::now();
   const uint64_t before = light.hits.rays, samples = sum_of(light.hits.samples);
@@ -118,7 +120,7 @@ Status judge(const Request& in, Progressive& light, Progress& progress) {
 Status estimate_round(const Request& in, Progressive& light, Progress& progress) {
   LUXEL_TRY_STATUS(bounce_round(in, kRoughTolerance, light, progress));
   LUXEL_TRY_STATUS(judge(in, light, progress));
-  show(in.observer, light);
+  show(in.observer, light, false);
   return {};
 }
 

@@ -11,6 +11,8 @@
 
 namespace luxel::gather {
 
+struct TileWatch;
+
 /// What gather() was asked for.
 struct Request {
   const light::TexelScene& scene;
@@ -51,9 +53,10 @@ struct Progressive {
 
 /// Direct light, from scratch or from an earlier bake. Errors: cancelled.
 Status begin_direct(const Request& in, Progressive& light, Progress& progress);
-/// Rays of each element up to so many as `target` says. Errors: cancelled, disk full.
+/// Rays of each element up to so many as `target` says. `watch`: null: nobody. Errors: cancelled,
+/// disk full.
 Status trace_round(const Request& in, std::span<const uint16_t> target, Progressive& light,
-                   Progress& progress);
+                   Progress& progress, const TileWatch* watch = nullptr);
 /// All bounces of the light of those rays. Errors: cancelled, the file of hits cannot be read.
 Status bounce_round(const Request& in, float tolerance, Progressive& light, Progress& progress);
 /// Places at which what rays read is checked, where that costs little beside the rays. Errors:
@@ -69,7 +72,7 @@ Result<bool> next_round(const Request& in, double seconds_left, Progressive& lig
                         Progress& progress);
 
 /// Shows the light so far to who watches.
-void show(const GatherObserver& observer, const Progressive& light);
+void show(const GatherObserver& observer, const Progressive& light, bool is_last);
 /// What hits leave of the memory that they may take.
 uint64_t spare_bytes(const GatherStores& stores, const TracedHits& hits);
 

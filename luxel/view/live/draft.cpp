@@ -12,7 +12,7 @@ namespace {
 
 /// Laying out a million triangles takes seconds.
 constexpr size_t kMostTriangles = 200'000;
-constexpr int kSide = 96, kDirectSamples = 8;
+constexpr int kDraftSide = 96, kDraftSamples = 32, kDraftDirectSamples = 8;
 /// How far above a surface the draft's surface is looked for, and as far below, over the scene's
 /// diagonal.
 constexpr float kReach = 1e-4f;
@@ -20,8 +20,8 @@ constexpr float kReach = 1e-4f;
 pipeline::BakeSettings draft_settings(const pipeline::BakeSettings& of) {
   pipeline::BakeSettings out;
   out.output = of.output;
-  out.resolution = kSide;
-  out.samples = kDraftSamples, out.direct_samples = kDirectSamples, out.supersample = 4;
+  out.resolution = kDraftSide;
+  out.samples = kDraftSamples, out.direct_samples = kDraftDirectSamples, out.supersample = 4;
   out.bounces = of.bounces;
   out.seed = of.seed, out.threads = of.threads, out.max_memory_bytes = of.max_memory_bytes;
   return out;
@@ -38,7 +38,7 @@ void keep(const light::TexelScene& in, const light::LightEstimate& light, Draft&
 Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
                                           const pipeline::BakeSettings& settings,
                                           const Progress& watched) {
-  const bool is_coarse = settings.resolution && *settings.resolution <= kSide;
+  const bool is_coarse = settings.resolution && *settings.resolution <= kDraftSide;
   if (is_coarse || settings.solver != "gather" || settings.light != pipeline::LightPart::all ||
       scene::first_triangles(scene).back() > kMostTriangles)
     return nullptr;
@@ -47,11 +47,10 @@ Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
   bool has_light = false;
   pipeline::BakeObserver observer;
   observer.on_estimate = [&](const light::TexelScene& in, const light::LightEstimate& light) {
-    const bool is_last = light.samples >= kDraftSamples;
-    if (is_last) keep(in, light, *out);
-    has_light = is_last;
+    if (light.is_last) keep(in, light, *out);
+    has_light = light.is_last;
     // What comes after the light is not looked at.
-    if (is_last || watched.cancelled()) own.request_cancel();
+    if (light.is_last || watched.cancelled()) own.request_cancel();
   };
   const auto baked = pipeline::bake_scene(scene, draft_settings(settings), own, observer);
   if (watched.cancelled()) return stopped(watched).map([] { return std::unique_ptr<Draft>(); });

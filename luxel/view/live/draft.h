@@ -21,9 +21,6 @@ struct Draft {
   std::vector<Rgb> direct;      ///< the part of it that comes straight from lights
 };
 
-/// Rays per texel of a draft: estimates of fewer look worse.
-inline constexpr int kDraftSamples = 32;
-
 /// Bakes `scene`, which was read and has its outside light. Null where that would take long, since
 /// there are many triangles, where another solver than gather is asked for, and where the bake
 /// itself is no finer. Errors: those of a bake; cancelled.

@@ -16,6 +16,7 @@
 #include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/post/dilate.h"
+#include "luxel/trace/camera_rays.h"
 #include "luxel/transport/irradiance_field.h"
 #include "luxel/view/live/draft.h"
 
@@ -24,6 +25,8 @@ namespace {
 
 /// The picture whose exposure is chosen: as large as it must be for percentiles of luminance.
 constexpr int kSmallWidth = 128, kSmallHeight = 96;
+/// Of the picture whose texels come first; only its shape counts.
+constexpr int kViewHeight = 1000;
 
 Result<std::shared_ptr<const ReadScene>> read_scene(const scene::Scene& scene,
                                                     const pipeline::BakeSettings& settings) {
@@ -75,6 +78,12 @@ class Worker : public LiveBake {
     const std::scoped_lock lock(mutex_);
     return std::exchange(news_, {});
   }
+  void look(const scene::Camera& camera, float aspect) override {
+    auto eye =
+        std::make_shared<const trace::CameraRays>(camera, int(kViewHeight * aspect), kViewHeight);
+    const std::scoped_lock lock(mutex_);
+    eye_ = std::move(eye);
+  }
   LiveState state() const override {
     const LiveState state = state_;
     return state == LiveState::baking && is_paused_ ? LiveState::paused : state;
@@ -105,12 +114,14 @@ class Worker : public LiveBake {
     state_.notify_all();
   }
   bool bake_it() try {
-    pipeline::BakeObserver observer;
-    observer.on_read = [this](const scene::Scene& scene) { has_read(scene); };
-    observer.on_estimate = [this](const light::TexelScene& in, const light::LightEstimate& e) {
+    observer_.on_read = [this](const scene::Scene& scene) { has_read(scene); };
+    observer_.on_estimate = [this](const light::TexelScene& in, const light::LightEstimate& e) {
       has_light(in, e);
     };
-    auto baked = pipeline::bake_scene(settings_, progress_, {}, observer);
+    observer_.is_watched = [this](const light::TexelScene& in, size_t element) {
+      return is_seen(in, element);
+    };
+    auto baked = pipeline::bake_scene(settings_, progress_, {}, observer_);
     progress_.finish();
     if (!baked) return say(baked.error().message), false;
     baked_.emplace(std::move(*baked));
@@ -146,7 +157,11 @@ class Worker : public LiveBake {
     }
     // Without one, the window waits for the bake itself.
     if (auto draft = make_draft(scene, settings_, progress_)) draft_ = std::move(*draft);
-    if (draft_) has_draft();
+    if (!draft_) return;
+    has_draft();
+    observer_.guess = [this](const light::TexelScene& in, std::span<const Rgb> direct) {
+      return with_reflections_of_draft(in, direct);
+    };
   }
   void has_draft() {
     LiveLight light;
@@ -162,17 +177,18 @@ class Worker : public LiveBake {
     // Light that cannot be held ends the bake with an error.
     for (const Rgb& e : estimate.irradiance)
       if (!std::isfinite(e.x + e.y + e.z)) return;
-    std::vector<Rgb> e(estimate.irradiance.begin(), estimate.irradiance.end());
-    // What surfaces send each other is smoother in the draft, as long as there are few rays.
-    const bool is_reflected_by_draft = draft_ && estimate.samples < kDraftSamples;
-    if (is_reflected_by_draft) e = with_reflections_of_draft(in, estimate);
     LiveLight light;
-    light.pages = pages_of(in.atlas, in.map, e);
-    light.exposure = exposure_of({in.scene, in.tracer}, {&in.atlas, &in.map, e});
-    const LiveKind kind = is_reflected_by_draft  ? LiveKind::direct_and_draft
-                          : estimate.samples > 0 ? LiveKind::bake
-                                                 : LiveKind::direct_and_even_rest;
-    known_ = {kind, estimate.samples, estimate.error_p95, estimate.error_rms,
+    light.pages = pages_of(in.atlas, in.map, estimate.irradiance);
+    light.exposure = exposure_of({in.scene, in.tracer}, {&in.atlas, &in.map, estimate.irradiance});
+    const LiveKind guess = draft_ ? LiveKind::direct_and_draft : LiveKind::direct_and_even_rest;
+    const LiveKind kind = estimate.share == 0   ? guess
+                          : estimate.share == 1 ? LiveKind::bake
+                                                : LiveKind::partly;
+    known_ = {kind,
+              estimate.share,
+              estimate.samples,
+              estimate.error_p95,
+              estimate.error_rms,
               rays_per_s(estimate.samples * double(estimate.irradiance.size()))};
     light.numbers = known_;
     // Vertices are split while nobody waits.
@@ -192,13 +208,13 @@ class Worker : public LiveBake {
     out.exposure = draft_exposure_;
     return out;
   }
-  /// Direct light of the bake and the draft's bounces.
+  /// What surfaces send each other, by the draft, and direct light of the bake.
   std::vector<Rgb> with_reflections_of_draft(const light::TexelScene& in,
-                                             const light::LightEstimate& estimate) {
+                                             std::span<const Rgb> direct) const {
     std::vector<Rgb> reflected = draft_->irradiance;
     for (size_t i = 0; i < reflected.size(); ++i) reflected[i] = reflected[i] - draft_->direct[i];
     std::vector<Rgb> out = light_of_draft(*draft_, reflected, in);
-    for (size_t i = 0; i < out.size(); ++i) out[i] = max(out[i], Rgb{}) + estimate.direct[i];
+    for (size_t i = 0; i < out.size(); ++i) out[i] = max(out[i], Rgb{}) + direct[i];
     return out;
   }
   void has_baked() {
@@ -228,6 +244,15 @@ class Worker : public LiveBake {
         own);
     return picture ? display::readable_exposure(*picture) : 1;
   }
+  /// Whether an element lies in the picture and shows its front.
+  bool is_seen(const light::TexelScene& in, size_t element) const {
+    std::shared_ptr<const trace::CameraRays> eye;
+    {
+      const std::scoped_lock lock(mutex_);
+      eye = eye_;
+    }
+    return eye && trace::faces(*eye, in.elements.position[element], in.elements.normal[element]);
+  }
   double rays_per_s(double rays) {
     const double seconds = tracing_seconds(progress_);
     const double more = rays - std::exchange(rays_before_, rays);
@@ -240,12 +265,14 @@ class Worker : public LiveBake {
   std::unique_ptr<Progress> saving_;  ///< made anew by each save()
   mutable std::mutex mutex_;
   LiveNews news_;
+  std::shared_ptr<const trace::CameraRays> eye_;  ///< null: nobody has looked yet
   std::atomic<LiveState> state_{LiveState::baking};
   std::atomic<bool> is_saving_{false};
   bool is_paused_ = false;
 
   // The thread's own.
-  scene::Camera camera_;
+  pipeline::BakeObserver observer_;
+  scene::Camera camera_;          ///< of the first view
   std::unique_ptr<Draft> draft_;  ///< null: there is none
   float draft_exposure_ = 1;
   bool is_laid_out_ = false;

@@ -18,14 +18,16 @@ namespace luxel::view {
 /// What light is made of.
 enum class LiveKind : uint8_t {
   draft,                 ///< coarse, see draft.h
-  direct_and_draft,      ///< sharp direct light, reflections of the draft
+  direct_and_draft,      ///< sharp direct light, and reflections of the draft
   direct_and_even_rest,  ///< sharp direct light and an ambient term
+  partly,                ///< the bake's in part, elsewhere one of the two above
   bake,                  ///< all of it the bake's
 };
 
 /// How well light is known.
 struct LiveNumbers {
   LiveKind kind = LiveKind::bake;
+  double share = 1;       ///< LightEstimate::share
   double samples = 0;     ///< rays per texel, traced by now
   float error_p95 = 0;    ///< LightEstimate::error_p95
   double error_rms = 0;   ///< LightEstimate::error_rms
@@ -63,6 +65,8 @@ class LiveBake {
   virtual ~LiveBake() = default;
 
   virtual LiveNews take() = 0;
+  /// Light of what this camera sees, in a picture of that aspect (width / height), comes first.
+  virtual void look(const scene::Camera& camera, float aspect) = 0;
   virtual LiveState state() const = 0;
   virtual Progress::Snapshot snapshot() const = 0;
   virtual void pause(bool is_paused) = 0;

@@ -146,6 +146,7 @@ TEST(Walk, AKeyOfEveryLineOfTheListDoesSomething) {
     pass(0.1, before);
     const bool changed = walk.shown.show != before.shown.show ||
                          walk.shown.exposure != before.shown.exposure ||
+                         walk.asked.size() != before.asked.size() ||
                          length(eye_of(walk) - eye_of(before)) > 0;
     EXPECT_TRUE(changed) << key.key;
   }
@@ -165,6 +166,28 @@ TEST(Play, GoesOnInStepsOfItsOwn) {
   EXPECT_FALSE(walk.dragging);
   expect_place(*on_the_wall(walk.shown, {80, 120}), walk.target);
   EXPECT_GT(length(walk.target), 1);
+}
+
+TEST(Play, StandsStillWhileItWaits) {
+  const auto events = parse_play(R"({"frames_per_s": 10, "end": 1, "events": [
+    {"at": 0.1, "key": "2"}, {"at": 0.1, "wait": "bake"}, {"at": 0.1, "key": "3"},
+    {"at": 0.5, "wait": "bake"}]})",
+                                 "walk.json");
+  ASSERT_TRUE(events) << events.error().message;
+  Walk walk = before_the_wall();
+  size_t next = 0;
+  EXPECT_FALSE(waits(*events, 0, true, next)) << "its time has not come";
+  handle_frame(*events, 1, on_the_wall, next, walk);
+  EXPECT_EQ(walk.shown.show, Show::light) << "what comes before is played";
+  EXPECT_TRUE(waits(*events, 1, true, next));
+  handle_frame(*events, 1, on_the_wall, next, walk);
+  EXPECT_EQ(walk.shown.show, Show::light);
+  EXPECT_FALSE(waits(*events, 1, false, next));
+  handle_frame(*events, 1, on_the_wall, next, walk);
+  EXPECT_EQ(walk.shown.show, Show::colour);
+  // Without anything to wait for, a play goes on.
+  play(*events, on_the_wall, walk);
+  EXPECT_EQ(walk.shown.show, Show::colour);
 }
 
 TEST(Play, SaysWhichEventIsWrong) {

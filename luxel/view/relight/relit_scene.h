@@ -3,7 +3,7 @@
 
 #include "luxel/view/draw/direct_light.h"
 #include "luxel/view/relight/open_lxr.h"
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view {
 

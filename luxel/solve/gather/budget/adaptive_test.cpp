@@ -207,26 +207,22 @@ TEST(Estimates, BeginWithAnAmbientTerm) {
   EXPECT_NEAR(mean, double(kPi) / 0.5, 0.002 * double(kPi) / 0.5);
 }
 
-// 8, 16, 32 and 64 rays: each estimate is surer than the one before, the last is the result, and
-// that is the result of one who is not watched: sums in another order differ by rounding, and
-// sweeps from another start end within 1e-4 of the mean, each.
+// Whatever comes first, and whoever asks for it: the last estimate is the result, which is that of
+// one who is not watched, bit by bit.
 TEST(Estimates, GrowIntoTheResult) {
   const auto room = lay_out(scene::cornell_box(), 32);
-  Gather result;
-  const std::vector<Shown> shown = watched(*room, with_samples(64), result);
-  ASSERT_EQ(shown.size(), 5u);
   const Gather unwatched = solve(*room, with_samples(64));
-  for (size_t k = 1; k < shown.size(); ++k) {
-    EXPECT_EQ(shown[k].samples, 4 << k);
-    if (k > 1) {
-      EXPECT_LT(shown[k].error, shown[k - 1].error) << k;
-    }
-  }
-  EXPECT_EQ(shown.back().irradiance, result.irradiance);
-  float mean = 0;
-  for (const Rgb& e : result.irradiance) mean += e.x / float(result.irradiance.size());
-  for (size_t i = 0; i < result.irradiance.size(); ++i)
-    ASSERT_NEAR(result.irradiance[i].x, unwatched.irradiance[i].x, 4e-4f * mean);
+  GatherObserver observer;
+  const size_t half = room->elements.size() / 2;
+  observer.is_watched = [&](size_t element) { return element > half; };
+  std::vector<Rgb> last;
+  observer.on_estimate = [&](const light::LightEstimate& e) {
+    last.assign(e.irradiance.begin(), e.irradiance.end());
+  };
+  const Gather result = solve(*room, with_samples(64), {}, nullptr, observer);
+  EXPECT_EQ(last, result.irradiance);
+  EXPECT_EQ(result.irradiance, unwatched.irradiance);
+  EXPECT_EQ(result.errors, unwatched.errors);
 }
 
 // Rounds to an error are shown one by one.
@@ -236,7 +232,7 @@ TEST(Estimates, GoOnWithRounds) {
   params.max_error = 0.1f;
   Gather result;
   const std::vector<Shown> shown = watched(*room, params, result);
-  EXPECT_GT(shown.size(), 4u);
+  EXPECT_GE(shown.size(), 3u);
   EXPECT_LE(shown.back().error, 0.1f);
   EXPECT_GT(shown.back().samples, 16);
 }

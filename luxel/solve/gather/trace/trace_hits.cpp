@@ -50,6 +50,7 @@ struct Round {
   float diagonal_m = 0;
   uint64_t number = 0;
   const EarlierRays* earlier = nullptr;  ///< null: nothing is known
+  const TileWatch* watch = nullptr;      ///< null: nobody
   std::span<const uint64_t> doubtful{};  ///< RetraceScene
   CellCones cell_cones = gather::cell_cones();
 
@@ -238,12 +239,17 @@ Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, T
   const uint32_t places = places_of(round.ray_scene.atlas);
   parallel_for(hits.size(), kTileElements, [&](size_t begin, size_t end) {
     if (progress.cancelled()) return;
+    if (round.watch) {
+      begin = round.watch->queue->next() * kTileElements;
+      end = std::min(begin + kTileElements, hits.size());
+    }
     const size_t number = begin / kTileElements;
     const uint64_t planned = planned_samples(round.target, hits, begin, end);
     Status put;
     if (std::optional<FoundTile> found = find_tile(kept, begin, end, places, hits)) {
       progress.skip(planned);
       rays += found->tile.rays;
+      if (round.watch) round.watch->on_tile(begin, found->tile.rays_met.hits);
       put = store.put(number, std::move(found->tile.rays_met.hits), found->entries);
     } else {
       TileBuffers buffers = pool.take();
@@ -253,6 +259,7 @@ Status trace_tiles(const Round& round, const KeptStage& kept, PartStore* keep, T
       const KeptEntries entries = keep_tile(kept, begin, end, tile, hits);
       keep_rays(keep, round.number, number, tile.rays_met);
       rays += tile.rays, rays_kept += tile.kept;
+      if (round.watch) round.watch->on_tile(begin, tile.rays_met.hits);
       put = store.put(number, std::move(tile.rays_met.hits), entries);
       pool.give(std::move(buffers));
     }
@@ -301,7 +308,7 @@ Status trace_more(const TraceScene& in, std::span<const uint16_t> target, const 
   progress.begin("trace rays", planned_samples(target, hits, 0, target.size()));
   const uint64_t number = hits.rounds.size();
   LUXEL_TRY_STATUS(trace_tiles({ray_scene, elements, in.tracer, target, params.seed, diagonal_m,
-                                number, params.earlier, doubtful},
+                                number, params.earlier, params.watch, doubtful},
                                kept, params.keep, hits, store, progress));
   LUXEL_TRY_STATUS(stopped(progress));
   keep_samples(params.keep, number, hits.samples);

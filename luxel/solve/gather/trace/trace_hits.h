@@ -16,6 +16,7 @@
 #include "luxel/scene/scene.h"
 #include "luxel/solve/gather/rays/traced_hits.h"
 #include "luxel/solve/gather/reuse/earlier_rays.h"
+#include "luxel/solve/gather/trace/tile_watch.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/transport/elements.h"
 #include "luxel/transport/own_side.h"
@@ -47,6 +48,7 @@ struct TraceParams {
   const light::LightLayers* layers = nullptr;  ///< null: light is not told apart
   /// Layers as followed rays see them; null: `layers`.
   const light::LightLayers* followed_layers = nullptr;
+  const TileWatch* watch = nullptr;  ///< null: nobody
 };
 
 /// A round of tracing: of each element the samples from those that it has up to `target`, so many

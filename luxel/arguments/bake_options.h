@@ -1,15 +1,15 @@
-// The options of a bake, for every program that bakes.
+// The options of a bake on a command line, for every program that bakes.
 #pragma once
 
 #include <CLI/App.hpp>
 #include <filesystem>
 #include <string>
 
-#include "apps/options/table_options.h"
+#include "luxel/arguments/table_options.h"
 #include "luxel/base/result.h"
 #include "luxel/pipeline/settings/settings.h"
 
-namespace luxel::cli {
+namespace luxel::arguments {
 
 /// What the user gave.
 struct BakeChoice {
@@ -29,4 +29,4 @@ void add_bake_table(CLI::App& command, Given& given);
 /// would not look at must not be given: its user expects something of it. Errors (bad_setting).
 Result<pipeline::BakeSettings> settings_of(const BakeChoice& choice);
 
-}  // namespace luxel::cli
+}  // namespace luxel::arguments

@@ -1,4 +1,4 @@
-#include "apps/options/bake_options.h"
+#include "luxel/arguments/bake_options.h"
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -7,7 +7,7 @@
 #include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/pipeline/solver/solvers.h"
 
-namespace luxel::cli {
+namespace luxel::arguments {
 namespace {
 
 /// What one option says must not be said by another that was given, too.
@@ -89,4 +89,4 @@ Result<pipeline::BakeSettings> settings_of(const BakeChoice& options) {
   return s;
 }
 
-}  // namespace luxel::cli
+}  // namespace luxel::arguments

@@ -8,7 +8,7 @@
 
 #include "luxel/pipeline/settings/option.h"
 
-namespace luxel::cli {
+namespace luxel::arguments {
 
 /// What the user gave of a table's options, as text, in any order. It is read when the command
 /// runs.
@@ -52,4 +52,4 @@ Status read_given(const Given& given, const pipeline::Options<S>& table, S& sett
 /// What rows exclude one another, when all of a command's options are there.
 void exclude_each_other(CLI::App& command, const pipeline::OptionText& row);
 
-}  // namespace luxel::cli
+}  // namespace luxel::arguments

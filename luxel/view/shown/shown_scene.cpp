@@ -1,4 +1,4 @@
-#include "luxel/view/shown_scene.h"
+#include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view {
 namespace {

@@ -1,10 +1,10 @@
-#include "apps/options/table_options.h"
+#include "luxel/arguments/table_options.h"
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 
-namespace luxel::cli {
+namespace luxel::arguments {
 
 bool Given::has(std::string_view flag) const {
   return std::any_of(values.begin(), values.end(),
@@ -48,4 +48,4 @@ void exclude_each_other(CLI::App& command, const pipeline::OptionText& row) {
     command.get_option(row.flag)->excludes(command.get_option(other));
 }
 
-}  // namespace luxel::cli
+}  // namespace luxel::arguments

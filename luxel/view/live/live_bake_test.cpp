@@ -1,0 +1,130 @@
+// A bake that is watched: it hands over what it has, keeps the bits of one that is not, and stops.
+#include "luxel/view/live/live_bake.h"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/view/live/draft.h"
+#include "luxel/view/live/fade.h"
+
+namespace luxel::view {
+namespace {
+
+using ::testing::HasSubstr;
+
+pipeline::BakeSettings settings_for(const std::string& scene, int resolution, int samples) {
+  pipeline::BakeSettings out;
+  out.scene = std::string(LUXEL_SOURCE_DIR) + "/scenes/" + scene;
+  out.output = ::testing::TempDir();
+  out.resolution = resolution, out.samples = samples;
+  return out;
+}
+
+TEST(LiveBake, EndsWithTheBitsOfABakeThatNobodyWatches) {
+  const pipeline::BakeSettings settings = settings_for("cornell-box.glb", 128, 32);
+  const auto live = LiveBake::begin(settings);
+  live->wait();
+  EXPECT_EQ(live->state(), LiveState::baked);
+  const LiveNews news = live->take();
+  ASSERT_TRUE(news.read && news.lit && news.light && news.before);
+  EXPECT_FALSE(news.said);
+  EXPECT_TRUE(news.light->is_last);
+  Progress progress;
+  const auto bake = pipeline::bake_scene(settings, progress);
+  ASSERT_TRUE(bake);
+  ASSERT_EQ(news.light->pages.size(), bake->lightmaps.size());
+  const image::HalfImage wanted = image::to_half(bake->lightmaps[0]);
+  EXPECT_EQ(news.light->pages[0].data, wanted.data);
+  EXPECT_EQ(news.light->pages[0].scale, wanted.scale);
+  EXPECT_EQ(news.light->exposure, bake->view.exposure);
+  EXPECT_EQ(news.before->pages[0].width, wanted.width) << "of the bake's layout";
+}
+
+TEST(LiveBake, SaysWhyThereIsNoLight) {
+  const auto live = LiveBake::begin(settings_for("absent.glb", 64, 4));
+  live->wait();
+  EXPECT_EQ(live->state(), LiveState::failed);
+  EXPECT_THAT(live->take().said.value_or(""), HasSubstr("absent.glb"));
+}
+
+TEST(LiveBake, StandsStillWhilePausedAndEndsWhenNobodyWantsIt) {
+  // Some minutes of work.
+  const auto live = LiveBake::begin(settings_for("cornell-box.glb", 512, 16384));
+  const auto begin = std::chrono::steady_clock::now();
+  const auto wait = [](int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); };
+  while (live->snapshot().stage != "trace rays") wait(10);
+  live->pause(true);
+  EXPECT_EQ(live->state(), LiveState::paused);
+  wait(300);  // work looks every 0.2 s
+  const uint64_t done = live->snapshot().done;
+  wait(300);
+  EXPECT_EQ(live->snapshot().done, done);
+  live->pause(false);
+  EXPECT_EQ(live->state(), LiveState::baking);
+  while (live->snapshot().done == done) wait(10);
+  live->pause(true);  // and is not waited for when it goes
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+}
+
+// In a furnace all surfaces get pi e / (1 - rho), wherever they are asked.
+TEST(Draft, HasTheLightOfAFurnaceInAnotherLayout) {
+  const float rho = 0.5f;
+  const scene::Scene scene = scene::furnace_box({rho, rho, rho}, {1, 1, 1});
+  pipeline::BakeSettings settings;
+  settings.output = ::testing::TempDir();
+  settings.resolution = 128;
+  const Progress nobody;
+  const auto draft = make_draft(scene, settings, nobody);
+  ASSERT_TRUE(draft && *draft);
+  settings.samples = 1, settings.direct_samples = 1;
+  Progress progress;
+  pipeline::BakeObserver observer;
+  std::vector<Rgb> elsewhere;
+  observer.on_estimate = [&](const light::TexelScene& in, const light::LightEstimate&) {
+    if (elsewhere.empty()) elsewhere = light_of_draft(**draft, (*draft)->irradiance, in);
+  };
+  ASSERT_TRUE(pipeline::bake_scene(scene, settings, progress, observer));
+  ASSERT_GT(elsewhere.size(), 1000u);
+  const float wanted = kPi / (1 - rho);
+  double off = 0;
+  for (const Rgb& e : elsewhere)
+    off += std::abs(double(e.x / wanted) - 1) / double(elsewhere.size());
+  EXPECT_LT(off, 0.03) << "32 rays, half of whose light is direct";
+}
+
+TEST(Draft, IsNotMadeWhereTheBakeIsNoFiner) {
+  pipeline::BakeSettings settings;
+  settings.resolution = 64;
+  const Progress nobody;
+  const auto draft =
+      make_draft(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1}), settings, nobody);
+  ASSERT_TRUE(draft);
+  EXPECT_EQ(*draft, nullptr);
+}
+
+TEST(Fade, GoesFromOnePictureToTheOtherAndBack) {
+  Fade fade;
+  EXPECT_TRUE(is_free(fade));
+  EXPECT_EQ(second_light(fade), 0);
+  fade.exposure_newest = 4;
+  fade = faded_to_other(fade, 1);
+  EXPECT_FALSE(is_free(fade));
+  EXPECT_EQ(second_light(fade), 0);
+  EXPECT_EQ(exposure(fade), 4);
+  pass(kFade_s / 2, fade);
+  EXPECT_NEAR(second_light(fade), 0.5, 1e-6);
+  EXPECT_NEAR(exposure(fade), 2, 1e-6) << "a stop of two";
+  pass(kFade_s, fade);
+  EXPECT_EQ(second_light(fade), 1);
+  EXPECT_EQ(exposure(fade), 1);
+  fade = faded_to_other(fade, 1);
+  pass(kFade_s / 4, fade);
+  EXPECT_NEAR(second_light(fade), 0.75, 1e-6);
+}
+
+}  // namespace
+}  // namespace luxel::view

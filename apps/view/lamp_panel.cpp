@@ -11,7 +11,7 @@ namespace {
 constexpr ImU32 kStageColors[] = {IM_COL32(230, 190, 80, 255),  IM_COL32(220, 110, 80, 255),
                                   IM_COL32(180, 120, 200, 255), IM_COL32(110, 130, 220, 255),
                                   IM_COL32(90, 190, 210, 255),  IM_COL32(120, 190, 110, 255)};
-constexpr size_t kGraphFrames = 120;
+constexpr size_t kGraphFrames = 120, kMeanFrames = 30;
 
 void lay_out_line(LampLine& line) {
   ImGui::Checkbox("on", &line.is_on);
@@ -65,14 +65,20 @@ void draw_graph(const std::vector<StageTimes>& history) {
   ImGui::Dummy(extent);
 }
 
-/// The means of the last pictures, and how many a second has.
+/// The mean of what a stage took in those of the last pictures that had it.
+float mean_of(const std::vector<StageTimes>& history, size_t stage) {
+  float sum = 0;
+  int count = 0;
+  for (size_t k = history.size() - std::min(history.size(), kMeanFrames); k < history.size(); ++k)
+    sum += history[k][stage], count += history[k][stage] > 0;
+  return sum / float(std::max(count, 1));
+}
+
+/// The means of the last pictures, and how many a second would have while lamps move.
 void lay_out_times(const std::vector<StageTimes>& history) {
   if (history.empty()) return;
   StageTimes mean{};
-  const size_t count = std::min<size_t>(history.size(), 30);
-  for (size_t k = history.size() - count; k < history.size(); ++k)
-    for (size_t stage = 0; stage < mean.size(); ++stage)
-      mean[stage] += history[k][stage] / float(count);
+  for (size_t stage = 0; stage < mean.size(); ++stage) mean[stage] = mean_of(history, stage);
   draw_graph(history);
   for (size_t stage = 0; stage < mean.size(); ++stage) {
     const ImVec2 at = ImGui::GetCursorScreenPos();

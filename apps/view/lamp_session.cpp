@@ -67,12 +67,13 @@ void take_line(const LampLine& before, const LampLine& now, view::Lamp& lamp) {
     lamp.light.direction = normalize(vector(now.direction));
 }
 
-void add(scene::PunctualLight::Kind kind, LampSession& session) {
+/// So bright that a grey surface that faces it, from a quarter of the scene's size, is shown half
+/// as bright as can be.
+void add(scene::PunctualLight::Kind kind, float exposure, LampSession& session) {
   view::LampAdded added;
   added.kind = kind;
-  // As bright on the surfaces of a large scene as on those of a small one.
-  const float diagonal_m = session.desk.bounds.diagonal();
-  const float strength = scene::has_position(kind) ? diagonal_m * diagonal_m : 3;
+  const float distance_m = 0.25f * session.desk.bounds.diagonal();
+  const float strength = kPi / exposure * (scene::has_position(kind) ? distance_m * distance_m : 1);
   added.change.intensity = Rgb{strength, strength, strength};
   if (!scene::has_position(kind)) added.change.direction = Vec3{-0.4f, -0.8f, -0.45f};
   view::add_lamp(added, session.desk);
@@ -96,7 +97,7 @@ LampPanel panel_of(const LampSession& session) {
   return out;
 }
 
-void take_changes(const LampPanel& panel, LampSession& session) {
+void take_changes(const LampPanel& panel, float exposure, LampSession& session) {
   const LampPanel before = panel_of(session);
   view::LampDesk& desk = session.desk;
   for (size_t i = 0; i < before.lamps.size(); ++i) {
@@ -113,9 +114,9 @@ void take_changes(const LampPanel& panel, LampSession& session) {
   }
   desk.selected = panel.selected >= 0 ? std::optional(uint32_t(panel.selected)) : std::nullopt;
   session.selected_glow = panel.selected_glow;
-  if (panel.adds_point) add(scene::LightKind::point, session);
-  if (panel.adds_spot) add(scene::LightKind::spot, session);
-  if (panel.adds_sun) add(scene::LightKind::directional, session);
+  if (panel.adds_point) add(scene::LightKind::point, exposure, session);
+  if (panel.adds_spot) add(scene::LightKind::spot, exposure, session);
+  if (panel.adds_sun) add(scene::LightKind::directional, exposure, session);
 }
 
 Result<view::LightTimes> light_lamps(gpu::Commands& commands, view::DeviceScene& scene,

@@ -20,8 +20,8 @@ LampSession begin_lamps(view::OpenedLxr opened, view::DirectLight direct);
 
 /// What the panel is to show.
 LampPanel panel_of(const LampSession& session);
-/// What the user has changed in it.
-void take_changes(const LampPanel& panel, LampSession& session);
+/// What the user has changed in it. New lamps are bright at this exposure.
+void take_changes(const LampPanel& panel, float exposure, LampSession& session);
 
 /// Light follows the lamps where they have changed. Returns what it took. Nothing may still draw
 /// the scene. Errors: the device is lost, no memory.

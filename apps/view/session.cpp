@@ -207,7 +207,7 @@ void lay_out(Session& s) {
     exchange(*s.screen.ui, s.shown, s.screen.looking, s.screen.flip, s.panel, *s.walk);
   else
     s.screen.ui->lay_out(s.panel);
-  if (s.lamps) take_changes(*s.panel.lamps, *s.lamps);
+  if (s.lamps && s.walk) take_changes(*s.panel.lamps, s.walk->shown.exposure, *s.lamps);
 }
 
 /// What keys and the panel ask of a bake.

@@ -1,0 +1,104 @@
+// luxel-view of an .lxr file: lamps that a play moves, in a window and without one.
+#include <gmock/gmock.h>
+
+#include "tests/pictures.h"
+#include "tests/relight_command.h"
+
+namespace luxel::testing_support {
+namespace {
+
+using ::testing::HasSubstr;
+
+CommandResult view_lamps(const std::string& arguments, const std::string& before = "") {
+  return shell(before + " " LUXEL_VIEW_BINARY " " + arguments);
+}
+
+class ViewOfLamps : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    lxr_ = (s_.path / "box.lxr").string();
+    ASSERT_EQ(make(lxr_, "").code, 0);
+    const CommandResult r = view_lamps(lxr_ + offscreen("first.png"));
+    if (r.err.find("Vulkan") != std::string::npos || r.err.find("device") != std::string::npos)
+      GTEST_SKIP() << r.err;
+    ASSERT_EQ(r.code, 0) << r.err;
+  }
+  std::string offscreen(const std::string& name) const {
+    return " --size 80x60 --offscreen --screenshot " + (s_.path / name).string();
+  }
+  std::string play_of(const std::string& events) const {
+    return " --play " +
+           s_.write("play.json", R"({"end": 0.3, "events": [)" + events + "]}").string();
+  }
+  std::string shown(const std::string& events) const {
+    const CommandResult r = view_lamps(lxr_ + offscreen("played.png") + play_of(events));
+    EXPECT_EQ(r.code, 0) << r.err;
+    return slurp(s_.path / "played.png");
+  }
+
+  ScratchFolder s_;
+  std::string lxr_;
+};
+
+// The box's own lamp goes out, and a red one comes that is moved to the left.
+const std::string kRedLamp = R"({"at": 0, "key": "m"},
+  {"at": 0, "material": "light", "radiance": [0, 0, 0]},
+  {"at": 0, "new_lamp": "point", "to": [0.1, 0.4, 0.1], "intensity": [0.03, 0, 0]},
+  {"at": 0.2, "lamp": 0, "to": [0.45, 0.4, 0.1]})";
+
+TEST_F(ViewOfLamps, IsWhatAPlayMakesOfThem) {
+  const std::string first = slurp(s_.path / "first.png");
+  EXPECT_EQ(shown(R"({"at": 0, "key": "m"})"), first) << "there is no lamp to mark";
+  const std::string moved = shown(kRedLamp);
+  EXPECT_NE(moved, first);
+  const image::Image picture = png_at(s_.path / "played.png");
+  double left = 0, right = 0, other = 0;
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 80; ++x) {
+      (x < 40 ? left : right) += double(picture.rgb(x, y).x);
+      other += double(picture.rgb(x, y).z);
+    }
+  EXPECT_GT(left, 1.2 * right);
+  EXPECT_GT(left, 4 * other) << "red light alone";
+  // Off again, and what glowed glows as it did.
+  EXPECT_EQ(shown(R"({"at": 0, "new_lamp": "point", "on": false}, {"at": 0, "key": "m"})"), first);
+}
+
+TEST_F(ViewOfLamps, AWindowShowsTheSame) {
+  if (shell("command -v xvfb-run").code != 0) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  const std::string size = " --size 200x150",
+                    play = play_of(kRedLamp + R"(, {"at": 0.25, "key": "m"})");
+  const CommandResult window =
+      view_lamps(lxr_ + size + play + " --screenshot " + (s_.path / "window.png").string(),
+                 "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
+  ASSERT_EQ(window.code, 0) << window.err;
+  EXPECT_EQ(window.out + window.err, "") << "the validation layer has nothing to say";
+  ASSERT_EQ(view_lamps(lxr_ + size + play + " --offscreen --screenshot " +
+                       (s_.path / "without.png").string())
+                .code,
+            0);
+  EXPECT_EQ(slurp(s_.path / "window.png"), slurp(s_.path / "without.png"));
+}
+
+TEST_F(ViewOfLamps, SaysWhatIsWrong) {
+  const auto error = [&](const std::string& arguments) {
+    const CommandResult r = view_lamps(arguments);
+    EXPECT_EQ(r.code, 1) << r.err;
+    EXPECT_EQ(r.err.find('\n'), r.err.size() - 1) << "one line: " << r.err;
+    return r.err;
+  };
+  EXPECT_THAT(error(lxr_ + offscreen("x.png") + play_of(R"({"at": 0, "lamp": 0, "on": true})")),
+              HasSubstr("play.json, at 0 s: there is no lamp 0; there are 0"));
+  const std::string other = (s_.path / "other.lxr").string();
+  ASSERT_EQ(make(other, "--target vertices").code, 0);
+  EXPECT_THAT(error(other + offscreen("x.png")),
+              HasSubstr("other.lxr: it was made without texels to light"));
+  s_.write("damaged.lxr", "no such thing");
+  EXPECT_THAT(error((s_.path / "damaged.lxr").string() + offscreen("x.png")),
+              HasSubstr("damaged.lxr"));
+  EXPECT_THAT(error((s_.path / "absent.lxr").string() + offscreen("x.png")),
+              HasSubstr("absent.lxr"));
+}
+
+}  // namespace
+}  // namespace luxel::testing_support

@@ -12,15 +12,17 @@ namespace {
 
 /// Laying out a million triangles takes seconds.
 constexpr size_t kMostTriangles = 200'000;
-constexpr int kDraftSide = 96, kDraftSamples = 32, kDraftDirectSamples = 8;
+constexpr int kDraftSamples = 32, kDraftDirectSamples = 8;
+/// Texels along a side; the second for scenes of many charts.
+constexpr int kDraftSides[] = {96, 512};
 /// How far above a surface the draft's surface is looked for, and as far below, over the scene's
 /// diagonal.
 constexpr float kReach = 1e-4f;
 
-pipeline::BakeSettings draft_settings(const pipeline::BakeSettings& of) {
+pipeline::BakeSettings draft_settings(const pipeline::BakeSettings& of, int side) {
   pipeline::BakeSettings out;
   out.output = of.output;
-  out.resolution = kDraftSide;
+  out.resolution = side;
   out.samples = kDraftSamples, out.direct_samples = kDraftDirectSamples, out.supersample = 4;
   out.bounces = of.bounces;
   out.seed = of.seed, out.threads = of.threads, out.max_memory_bytes = of.max_memory_bytes;
@@ -33,29 +35,41 @@ void keep(const light::TexelScene& in, const light::LightEstimate& light, Draft&
   out.direct.assign(light.direct.begin(), light.direct.end());
 }
 
+/// The light of a bake with these settings. False: it has none. Errors: those of a bake; cancelled.
+Result<bool> light_draft(const scene::Scene& scene, const pipeline::BakeSettings& settings,
+                         const Progress& watched, Draft& out) {
+  Progress own;
+  bool has_light = false;
+  pipeline::BakeObserver observer;
+  observer.on_estimate = [&](const light::TexelScene& in, const light::LightEstimate& light) {
+    if (light.is_last) keep(in, light, out);
+    has_light = light.is_last;
+    // What comes after the light is not looked at.
+    if (light.is_last || watched.cancelled()) own.request_cancel();
+  };
+  const auto baked = pipeline::bake_scene(scene, settings, own, observer);
+  LUXEL_TRY_STATUS(stopped(watched));
+  if (!has_light && !baked) return tl::unexpected(baked.error());
+  return has_light;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
                                           const pipeline::BakeSettings& settings,
                                           const Progress& watched) {
-  const bool is_coarse = settings.resolution && *settings.resolution <= kDraftSide;
-  if (is_coarse || settings.solver != "gather" || settings.light != pipeline::LightPart::all ||
+  if (settings.solver != "gather" || settings.light != pipeline::LightPart::all ||
       scene::first_triangles(scene).back() > kMostTriangles)
     return nullptr;
   auto out = std::make_unique<Draft>();
-  Progress own;
-  bool has_light = false;
-  pipeline::BakeObserver observer;
-  observer.on_estimate = [&](const light::TexelScene& in, const light::LightEstimate& light) {
-    if (light.is_last) keep(in, light, *out);
-    has_light = light.is_last;
-    // What comes after the light is not looked at.
-    if (light.is_last || watched.cancelled()) own.request_cancel();
-  };
-  const auto baked = pipeline::bake_scene(scene, draft_settings(settings), own, observer);
-  if (watched.cancelled()) return stopped(watched).map([] { return std::unique_ptr<Draft>(); });
-  if (!has_light)
-    return baked ? nullptr : Result<std::unique_ptr<Draft>>(tl::unexpected(baked.error()));
+  Result<bool> lit = false;
+  for (const int side : kDraftSides) {
+    if (settings.resolution && *settings.resolution <= side) break;
+    lit = light_draft(scene, draft_settings(settings, side), watched, *out);
+    if (lit || lit.error().code != ErrorCode::bad_setting) break;  // else charts do not fit
+  }
+  if (!lit) return tl::unexpected(lit.error());
+  if (!*lit) return nullptr;
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(out->scene));
   out->tracer.emplace(std::move(tracer));
   return out;

@@ -156,6 +156,7 @@ class Worker : public LiveBake {
       news_.read = std::move(*read);
     }
     // Without one, the window waits for the bake itself.
+    progress_.begin("draft", 0);
     if (auto draft = make_draft(scene, settings_, progress_)) draft_ = std::move(*draft);
     if (!draft_) return;
     has_draft();

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <sstream>
 
+#include "luxel/image/color.h"
+#include "luxel/image/false_color.h"
 #include "luxel/image/flip.h"
 #include "tests/command.h"
 #include "tests/pictures.h"
@@ -61,6 +63,138 @@ TEST_P(ViewOfABake, IsWhatRenderDraws) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ViewOfABake,
                          ::testing::Values("cornell-box.glb", "foliage.glb", "tiled-kit.glb"));
+
+/// Mean difference of display values where the first picture is not black, as it is where there is
+/// no surface.
+double apart_where_not_black(const image::Image& a, const image::Image& b) {
+  double sum = 0, count = 0;
+  for (size_t i = 0; i + 2 < std::min(a.data.size(), b.data.size()); i += 3) {
+    if (a.data[i] + a.data[i + 1] + a.data[i + 2] == 0) continue;
+    for (size_t c = i; c < i + 3; ++c)
+      sum += std::abs(image::srgb_from_linear(a.data[c]) - image::srgb_from_linear(b.data[c]));
+    count += 3;
+  }
+  return sum / std::max(count, 1.0);
+}
+
+// texels.png and error.png on the surfaces, and the irradiance of each pixel in false colours, as
+// `luxel render` draws them.
+TEST(View, LooksIntoABakeAsRenderDoes) {
+  const ScratchFolder s;
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  const std::string scene = scene_file("cornell-box.glb"), bake = (s.path / "baked").string();
+  ASSERT_EQ(luxel("bake " + scene + " -o " + bake +
+                  " --resolution 128 --samples 16 --texels --error-map --quiet")
+                .code,
+            0);
+  const auto render = [&](const std::string& technique, const std::string& file) {
+    EXPECT_EQ(luxel("render " + scene + " --from " + bake + " --technique " + technique +
+                    " --size 240x240 --quiet -o " + (s.path / file).string())
+                  .code,
+              0);
+  };
+  const auto look = [&](const std::string& events) {
+    const auto play = s.write("play.json", R"({"end": 0, "events": [)" + events + "]}");
+    const std::string file = (s.path / "view.png").string();
+    const CommandResult r = view(bake + " --offscreen --size 240x240 --play " + play.string() +
+                                 " --screenshot " + file);
+    EXPECT_EQ(r.code, 0) << r.err;
+    return png_at(file);
+  };
+  for (const std::string kind : {"texels", "error"}) {
+    render(kind, kind + ".png");
+    const image::Image wanted = png_at(s.path / (kind + ".png"));
+    // 0.012 at most, at edges of squares: other samples in each pixel.
+    EXPECT_LT(apart_where_not_black(wanted, look(R"({"at": 0, "show": ")" + kind + "\"}")), 0.02)
+        << kind;
+    EXPECT_GT(apart_where_not_black(wanted, look(R"({"at": 0, "show": "charts"})")), 0.05);
+  }
+  render("irradiance", "e.exr");
+  image::Image wanted = exr_at(s.path / "e.exr"), shown(240, 240, 3);
+  for (int i = 0; i < 240 * 240; ++i) {
+    if (wanted.at(i % 240, i / 240)[3] < 1) continue;  // black: does not count
+    const image::Color8 c =
+        image::false_color(double(luminance(wanted.rgb(i % 240, i / 240)) / 0.8f));
+    for (size_t k = 0; k < 3; ++k)
+      shown.data[3 * size_t(i) + k] = image::linear_from_srgb(float(c[k]) / 255);
+  }
+  const image::Image seen =
+      look(R"({"at": 0, "show": "irradiance"}, {"at": 0, "range": [0, 0.8]})");
+  EXPECT_LT(apart_where_not_black(shown, seen), 0.01);
+}
+
+// A bake beside itself differs by nothing; beside another one it does, and a window shows the same.
+TEST(View, ShowsTwoBakesBesideOneAnother) {
+  const ScratchFolder s;
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  const std::string a = (s.path / "a").string(), b = (s.path / "b").string();
+  for (const auto& [folder, samples] : {std::pair(a, "16"), {b, "1"}})
+    ASSERT_EQ(luxel("bake " + scene_file("cornell-box.glb") + " -o " + folder +
+                    " --resolution 64 --samples " + samples + " --quiet")
+                  .code,
+              0);
+  const auto shot = [&](const std::string& beside, const std::string& mode, const char* more = "",
+                        const char* before = "") {
+    const auto play =
+        s.write("play.json", R"({"end": 0, "events": [{"at": 0, "beside": ")" + mode + "\"}]}");
+    const std::string file = (s.path / "view.png").string();
+    const CommandResult r = view(a + " --beside " + beside + " --size 160x160 --play " +
+                                     play.string() + " --screenshot " + file + " " + more,
+                                 before);
+    EXPECT_EQ(r.code, 0) << r.err;
+    if (*before) EXPECT_EQ(r.out + r.err, "") << "the validation layer has nothing to say";
+    return png_at(file);
+  };
+  const auto nothing = [&](const image::Image& picture) {
+    const image::Color8 dark = image::false_color(0);
+    for (size_t i = 0; i < picture.data.size(); ++i)
+      if (std::abs(picture.data[i] - image::linear_from_srgb(float(dark[i % 3]) / 255)) > 1e-5f)
+        return false;
+    return true;
+  };
+  for (const std::string mode : {"difference", "flip"}) {
+    EXPECT_TRUE(nothing(shot(a, mode, "--offscreen"))) << mode;
+    const image::Image other = shot(b, mode, "--offscreen");
+    EXPECT_FALSE(nothing(other)) << mode;
+    if (shell("command -v xvfb-run").code != 0) continue;
+    const image::Image window =
+        shot(b, mode, "", "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
+    EXPECT_EQ(window.data, other.data) << mode;
+  }
+  const CommandResult refused = view(scene_file("cornell-box.glb") + " --beside " + a);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--beside shows a second bake beside a first one"));
+}
+
+// Layers at half of their light, and an exposure of one stop more: what was baked. Without one
+// lamp its side of the room is dark.
+TEST(View, MixesLayers) {
+  const ScratchFolder s;
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
+  const std::string bake = (s.path / "baked").string();
+  ASSERT_EQ(luxel("bake " + scene_file("office.glb") + " -o " + bake +
+                  " --resolution 64 --samples 4 --layers per-light --quiet")
+                .code,
+            0);
+  const auto layer = [](const std::string& name, const std::string& dimmer) {
+    return R"({"at": 0, "layer": {"name": ")" + name + R"(", "dimmer": )" + dimmer + "}}";
+  };
+  const auto look = [&](const std::string& events) {
+    const auto play = s.write("play.json", R"({"end": 0, "events": [)" + events + "]}");
+    const std::string file = (s.path / "view.png").string();
+    const CommandResult r =
+        view(bake + " --offscreen --size 120x90 --play " + play.string() + " --screenshot " + file);
+    EXPECT_EQ(r.code, 0) << r.err;
+    return png_at(file);
+  };
+  const image::Image baked = look("");
+  const std::string brighter =
+      R"({"at": 0, "key": "+"}, {"at": 0, "key_up": "+"}, {"at": 0, "key": "+"})";
+  const image::Image mixed =
+      look(layer("light__left", "0.5") + ", " + layer("light__right", "0.5") + ", " + brighter);
+  EXPECT_LT(apart_where_not_black(baked, mixed), 0.002);
+  EXPECT_GT(apart_where_not_black(baked, look(layer("light__left", "0"))), 0.02);
+}
 
 // A virtual display, the panel over the picture, and a window of another size than the bake's.
 TEST(View, AWindowShowsWhatIsDrawnWithoutOne) {
@@ -167,6 +301,14 @@ TEST(View, SaysWhatIsWrong) {
   EXPECT_THAT(error("bake" + shot + " --play " + play, 1), HasSubstr("play.json: "));
   EXPECT_THAT(error("bake --device nonesuch" + shot, 1),
               HasSubstr("named 'nonesuch'; there are: "));
+  const std::string baked = (s.path / "baked").string();
+  const std::string texels =
+      s.write("texels.json", R"({"end": 0, "events": [{"at": 0, "show": "texels"}]})").string();
+  EXPECT_THAT(error(baked + shot + " --play " + texels, 1),
+              HasSubstr("there is no texels.png in it; bake with --texels"));
+  s.write("baked/error.png", slurp(std::filesystem::path(baked) / "preview.png"));
+  EXPECT_THAT(error(baked + shot + " --play " + texels, 1),
+              HasSubstr("720 pixels and the lightmap 16 x 16: they are not of one bake"));
   EXPECT_THAT(error((s.path / "absent").string() + shot, 1),
               HasSubstr("absent is no bake: there is no baked.glb in it"));
 }

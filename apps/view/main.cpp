@@ -7,12 +7,14 @@
 #include <filesystem>
 #include <thread>
 
+#include "apps/view/looking.h"
 #include "apps/view/session.h"
 #include "luxel/arguments/bake_options.h"
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/image/codec.h"
 #include "luxel/pipeline/settings/version.h"
+#include "luxel/view/draw/beside.h"
 #include "luxel/view/draw/painter.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
@@ -26,7 +28,7 @@ using namespace luxel;
 constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kOutOfResource = 3;
 
 struct Options {
-  std::filesystem::path subject, screenshot, play, frame_table;
+  std::filesystem::path subject, beside, screenshot, play, frame_table;
   std::string size, device;
   bool offscreen = false;
   int width = 0, height = 0;     ///< 0: as preview.png
@@ -58,9 +60,13 @@ bool is_scene(const std::filesystem::path& subject) {
   return !view::is_lxr(subject) && std::filesystem::is_regular_file(subject, ignored);
 }
 
-/// Errors: options of a bake beside a bake that is there.
+/// Errors: options of a bake beside a bake that is there, or a second bake beside none.
 Status check_choice(const Options& options) {
   const arguments::BakeChoice& choice = options.choice;
+  if (!options.beside.empty() && is_scene(options.subject))
+    return fail(ErrorCode::bad_setting,
+                "--beside shows a second bake beside a first one; {} is no folder of a bake",
+                options.subject.string());
   std::string flag;
   if (!choice.solver.empty()) flag = "--solver";
   if (!choice.settings.empty()) flag = "--settings";
@@ -88,6 +94,14 @@ void print_warnings(const std::vector<std::string>& warnings) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
+/// The second bake, if there is one.
+Result<std::optional<view::OpenedBake>> opened_beside(const Options& options) {
+  if (options.beside.empty()) return std::nullopt;
+  LUXEL_TRY(view::OpenedBake out, view::open_bake(options.beside));
+  print_warnings(out.warnings);
+  return out;
+}
+
 Status show(const Options& options) {
   for (const auto& file : {options.screenshot, options.frame_table})
     if (!file.empty()) LUXEL_TRY_STATUS(check_output_file(file));
@@ -109,7 +123,8 @@ Status show(const Options& options) {
   LUXEL_TRY(view::OpenedBake bake, view::open_bake(options.subject));
   print_warnings(bake.warnings);
   if (options.width == 0) params.width = bake.width, params.height = bake.height;
-  return view_window::show_in_window(std::move(bake), params);
+  LUXEL_TRY(std::optional<view::OpenedBake> beside, opened_beside(options));
+  return view_window::show_in_window(std::move(bake), std::move(beside), params);
 }
 
 /// What is to be drawn without a window: a bake that is there, or one that is made first.
@@ -143,10 +158,11 @@ Result<image::Image8> picture_of_lxr(const Options& options,
 
 /// The frame to draw: the first, or where a play gets to.
 view::Frame frame_to_draw(const std::optional<view::Play>& events, const view::ShownScene& shown,
-                          int width, int height) {
+                          bool has_beside, int width, int height) {
   const view::ReadScene& read = *shown.read;
   view::Frame first = read.first;
   first.exposure = view::exposure(shown.fade);
+  if (has_beside) first.beside.emplace();
   if (!events) return first;
   const view::PlaceSeen place_seen = view::place_seen_in(read.scene, *read.tracer, width, height);
   view::Walk walk =
@@ -155,19 +171,42 @@ view::Frame frame_to_draw(const std::optional<view::Play>& events, const view::S
   return walk.shown;
 }
 
+/// A frame of the scene and of the second bake.
+Result<image::Image8> painted_beside(const Options& options, gpu::Commands& commands,
+                                     const view::Canvas& first, view::Frame frame) {
+  LUXEL_TRY(std::optional<view::OpenedBake> opened, opened_beside(options));
+  LUXEL_TRY(view::ShownScene shown, view::bake_shown(commands, std::move(*opened)));
+  view_window::Looking looking;
+  LUXEL_TRY_STATUS(
+      view_window::prepare_look(commands, first.shaders.overlay, false, frame, shown, looking));
+  LUXEL_TRY(const view::Pair pair,
+            view::make_pair(commands, first.shaders, first.painter, shown.device));
+  const view::Canvas second{first.shaders, pair.second, shown.device,
+                            looking.overlay ? &*looking.overlay : nullptr};
+  return view::painted_together(commands, first, second, pair, frame);
+}
+
 /// One picture of a bake after what is played.
 Result<image::Image8> picture_of_bake(const Options& options,
                                       const std::optional<view::Play>& events,
                                       gpu::Commands& commands) {
-  LUXEL_TRY(const view::ShownScene shown, shown_offscreen(options, commands));
+  LUXEL_TRY(view::ShownScene shown, shown_offscreen(options, commands));
   const int width = options.width ? options.width : shown.read->width;
   const int height = options.height ? options.height : shown.read->height;
-  const view::Frame frame = frame_to_draw(events, shown, width, height);
+  view::Frame frame = frame_to_draw(events, shown, !options.beside.empty(), width, height);
   LUXEL_TRY(const view::Shaders shaders, view::make_shaders(commands.device()));
+  view_window::Looking looking;
+  LUXEL_TRY_STATUS(
+      view_window::prepare_look(commands, shaders.overlay, false, frame, shown, looking));
+  if (looking.look)
+    if (const auto missing = view::missing_for(frame.show, *looking.look, shown.folder.string()))
+      return fail(ErrorCode::bad_input, "{}", *missing);
   const view::DeviceScene& scene = shown.device;
   LUXEL_TRY(const view::Painter painter, view::make_painter(commands.device(), shaders, scene,
                                                             uint32_t(width), uint32_t(height)));
-  return view::painted(commands, {shaders, painter, scene}, frame);
+  const view::Canvas canvas{shaders, painter, scene, looking.overlay ? &*looking.overlay : nullptr};
+  return frame.beside ? painted_beside(options, commands, canvas, frame)
+                      : view::painted(commands, canvas, frame);
 }
 
 /// One picture, without a window.
@@ -202,6 +241,8 @@ void add_own(CLI::App& app, Options& options) {
       ->required();
   app.add_option("-o,--output", options.choice.output,
                  "Where 'save' puts the bake of a scene (baked/NAME)")
+      ->type_name("FOLDER");
+  app.add_option("--beside", options.beside, "The folder of a second bake, to be compared")
       ->type_name("FOLDER");
   auto* screenshot = app.add_option("--screenshot", options.screenshot,
                                     "The picture to write: .png; of a window at the end of --play");

@@ -23,6 +23,10 @@ Result<bool> fit_window(const Window& window, const view::DeviceScene& scene, Sc
   screen.swapchain = std::move(swapchain);
   LUXEL_TRY(screen.painter, view::make_painter(device, screen.shaders, scene,
                                                screen.swapchain.width, screen.swapchain.height));
+  if (screen.beside) {
+    LUXEL_TRY(screen.pair, view::make_pair(*screen.commands, screen.shaders, screen.painter,
+                                           screen.beside->device));
+  }
   if (!screen.ui) {
     screen.ui =
         Ui::make(window.get(), {device.instance, device.physical, device.device,
@@ -59,16 +63,40 @@ Result<Screen> open_screen(const Window& window, const std::string& device_name)
   return out;
 }
 
+namespace {
+
+/// What is drawn of a frame before the panel; of two scenes, what is not drawn yet.
+void record(const view::DeviceScene& scene, const view::Frame& frame, const Screen& screen,
+            VkCommandBuffer commands) {
+  const gpu::Device& device = *screen.device;
+  const view::Canvas first = screen.canvas(scene);
+  if (!screen.has_pair(frame)) return view::paint(device, commands, first, frame);
+  if (frame.beside->mode != view::BesideMode::flip)
+    view::paint_both(device, commands, first, screen.canvas_beside(), frame);
+  view::put_together(device, commands, first, *screen.pair, frame);
+}
+
+}  // namespace
+
 Result<bool> draw(const view::DeviceScene& scene, const view::Frame& frame, Screen& screen) {
   const gpu::Device& device = *screen.device;
   LUXEL_TRY(const std::optional<gpu::NextPicture> next,
             gpu::next_picture(device, screen.swapchain));
   if (!next) return false;
+  const bool has_pair = screen.has_pair(frame);
+  screen.flip = -1;
+  if (has_pair && frame.beside->mode == view::BesideMode::flip) {
+    LUXEL_TRY_STATUS(screen.commands->run([&](VkCommandBuffer commands) {
+      view::paint_both(device, commands, screen.canvas(scene), screen.canvas_beside(), frame);
+    }));
+    LUXEL_TRY(screen.flip, view::compare(*screen.commands, screen.painter, *screen.pair));
+  }
   LUXEL_TRY(const uint64_t number,
             screen.commands->submit(
                 [&](VkCommandBuffer commands) {
-                  view::paint(device, commands, screen.canvas(scene), frame);
-                  const gpu::Picture& shown = screen.painter.shown.picture;
+                  record(scene, frame, screen, commands);
+                  const gpu::Picture& shown =
+                      (has_pair ? screen.pair->shown : screen.painter.shown).picture;
                   gpu::copy_to_window(device, commands, shown.image.get(), shown.params.width,
                                       shown.params.height, screen.swapchain, next->number);
                   screen.ui->record(commands, next->number);
@@ -79,10 +107,16 @@ Result<bool> draw(const view::DeviceScene& scene, const view::Frame& frame, Scre
   return is_current;
 }
 
+Result<image::Image8> picture_of(const view::DeviceScene& scene, const view::Frame& frame,
+                                 Screen& screen) {
+  if (!screen.has_pair(frame)) return view::painted(*screen.commands, screen.canvas(scene), frame);
+  return view::painted_together(*screen.commands, screen.canvas(scene), screen.canvas_beside(),
+                                *screen.pair, frame);
+}
+
 Status write_screenshot(const view::DeviceScene& scene, const view::Frame& frame, Screen& screen,
                         std::string& message) {
-  LUXEL_TRY(const image::Image8 picture,
-            view::painted(*screen.commands, screen.canvas(scene), frame));
+  LUXEL_TRY(const image::Image8 picture, picture_of(scene, frame, screen));
   std::filesystem::path file;
   std::error_code ignored;
   for (int number = 1; file.empty() || std::filesystem::exists(file, ignored); ++number)

@@ -5,9 +5,11 @@
 #include <optional>
 #include <string>
 
+#include "apps/view/looking.h"
 #include "apps/view/ui.h"
 #include "apps/view/window.h"
 #include "luxel/gpu/swapchain.h"
+#include "luxel/view/draw/beside.h"
 #include "luxel/view/draw/painter.h"
 
 namespace luxel::view_window {
@@ -21,8 +23,20 @@ struct Screen {
   gpu::Swapchain swapchain;
   view::Painter painter;  ///< of the window's size
   std::unique_ptr<Ui> ui;
+  Looking looking;
+  view::ShownScene* beside = nullptr;  ///< a second scene; null: there is none
+  Looking looking_beside;
+  std::optional<view::Pair> pair;  ///< of the window's size, where there is a second scene
+  float flip = -1;                 ///< of what was drawn last; < 0: not known
 
-  view::Canvas canvas(const view::DeviceScene& scene) const { return {shaders, painter, scene}; }
+  view::Canvas canvas(const view::DeviceScene& scene) const {
+    return {shaders, painter, scene, looking.overlay ? &*looking.overlay : nullptr};
+  }
+  view::Canvas canvas_beside() const {
+    return {shaders, pair->second, beside->device,
+            looking_beside.overlay ? &*looking_beside.overlay : nullptr};
+  }
+  bool has_pair(const view::Frame& frame) const { return pair && frame.beside; }
 };
 
 /// `device_name`: gpu::DeviceParams::name. Errors (no_device): none that shows pictures in a
@@ -38,6 +52,10 @@ bool has_size_of(const Window& window, const gpu::Swapchain& swapchain);
 
 /// Draws a frame into the window and returns when it is drawn. False when the window has changed.
 Result<bool> draw(const view::DeviceScene& scene, const view::Frame& frame, Screen& screen);
+
+/// A frame without the panel: 3 channels. Errors: the device is lost, no memory.
+Result<image::Image8> picture_of(const view::DeviceScene& scene, const view::Frame& frame,
+                                 Screen& screen);
 
 /// Writes what is shown, without the panel, into the first file luxel-view-N.png that is not there;
 /// `message` says where, or why it cannot. Errors: the device is lost.

@@ -29,16 +29,29 @@ std::vector<KeyLine> key_lines(bool has_lamps) {
   return out;
 }
 
+/// The surface under the pointer; none under the panel, or where nobody asks for it.
+std::optional<scene::SurfacePoint> pointed_surface(const Ui& ui, const view::ReadScene& read,
+                                                   const view::Walk& walk) {
+  if (ui.has_pointer() || !view::looks_into_bake(walk.shown.show)) return std::nullopt;
+  return view::surface_seen(read.scene, *read.tracer, walk.shown, walk.pointer, walk.width,
+                            walk.height);
+}
+
 /// What the panel changes of a walk, and the walk of the panel.
-void exchange(Ui& ui, std::span<const scene::Camera> views, Panel& panel, view::Walk& walk) {
+void exchange(Ui& ui, const view::ShownScene& shown, const Looking& looking, float flip,
+              Panel& panel, view::Walk& walk) {
   panel.show = int(walk.shown.show);
   panel.stops = std::log2(walk.shown.exposure / walk.first.exposure);
-  const float before = panel.stops;
+  fill_panel(walk.shown, shown, looking, pointed_surface(ui, *shown.read, walk), panel.look);
+  panel.look.flip = flip;
+  const Panel before = panel;
   ui.lay_out(panel);
-  walk.shown.show = view::Show(panel.show);
-  if (panel.stops != before) walk.shown.exposure = walk.first.exposure * std::exp2(panel.stops);
+  if (panel.show != before.show) walk.shown.show = view::Show(panel.show);
+  take_panel(panel.look, before.look, walk.shown);
+  if (panel.stops != before.stops)
+    walk.shown.exposure = walk.first.exposure * std::exp2(panel.stops);
   if (const int view = std::exchange(panel.view, -1); view >= 0)
-    walk.shown.camera = views[size_t(view)];
+    walk.shown.camera = shown.read->scene.cameras[size_t(view)];
 }
 
 /// Events of the user, but for those that are the panel's. `lamps` may be null.
@@ -119,7 +132,7 @@ Result<bool> follow_bake(Session& s) {
   if (has_news) {
     LUXEL_TRY(const bool is_another,
               view::take_news(std::move(news), *s.screen.commands, s.shown, s.panel.message));
-    if (is_another) s.fits = false;
+    if (is_another) s.fits = false, s.screen.looking = {};
   }
   if (!has_news && seconds_since(s.last_report) < kReport_s) return false;
   s.last_report = Clock::now();
@@ -134,6 +147,20 @@ Status fade(double seconds, Session& s) {
   s.walk->first.exposure = view::exposure(s.shown.fade);
   s.walk->shown.exposure = s.walk->first.exposure * stops;
   return {};
+}
+
+/// What the frame shows of the bake is made where it is not there yet; or it is said why not.
+void look(Session& s) {
+  const Status done =
+      prepare_look(*s.screen.commands, s.screen.shaders.overlay, s.panel.look.asks_for_layers,
+                   s.walk->shown, s.shown, s.screen.looking);
+  if (!done) s.panel.message = done.error().message;
+  if (!s.screen.beside) return;
+  // What the second bake has not is not shown of it: the first one's panel says what is.
+  view::Frame frame = s.walk->shown;
+  const Status beside = prepare_look(*s.screen.commands, s.screen.shaders.overlay, false, frame,
+                                     *s.screen.beside, s.screen.looking_beside);
+  if (!beside) s.panel.message = "beside: " + beside.error().message;
 }
 
 /// What the panel says of a bake.
@@ -177,7 +204,7 @@ void lay_out(Session& s) {
   s.panel.bake = s.live ? std::optional(lines_of(s)) : std::nullopt;
   if (s.lamps) s.panel.lamps = panel_of(*s.lamps);
   if (s.walk)
-    exchange(*s.screen.ui, s.shown.read->scene.cameras, s.panel, *s.walk);
+    exchange(*s.screen.ui, s.shown, s.screen.looking, s.screen.flip, s.panel, *s.walk);
   else
     s.screen.ui->lay_out(s.panel);
   if (s.lamps && s.walk) take_changes(*s.panel.lamps, s.walk->shown.exposure, *s.lamps);
@@ -230,6 +257,19 @@ bool play_on(Session& s) {
   return true;
 }
 
+/// The histogram of the frame that was just drawn, where the panel shows it. Colours that stand for
+/// something have none.
+Status count_pixels(const view::Frame& frame, Session& s) {
+  s.screen.looking.histogram.reset();
+  const bool is_light =
+      frame.show == view::Show::light || frame.show == view::Show::light_and_colour;
+  if (!s.panel.look.asks_for_histogram || !is_light) return {};
+  LUXEL_TRY(const image::Image radiance,
+            view::last_radiance(*s.screen.commands, s.screen.painter, frame.exposure));
+  s.screen.looking.histogram = view::histogram_of(radiance, frame.exposure);
+  return {};
+}
+
 /// Draws and takes the time.
 Status draw_frame(Session& s) {
   const auto begin = Clock::now();
@@ -242,6 +282,7 @@ Status draw_frame(Session& s) {
   LUXEL_TRY(s.fits, draw(s.shown.device, frame, s.screen));
   if (s.lamps) add_times(light, float(1000 * seconds_since(lit)), *s.lamps);
   s.panel.milliseconds = float(1000 * seconds_since(begin));
+  LUXEL_TRY_STATUS(count_pixels(frame, s));
   if (!s.params.frame_table.empty())
     LUXEL_TRY_STATUS(add_row(s.screen, s.panel.milliseconds, s.shown, s.table));
   if (!s.window.asks_for_screenshot()) return {};
@@ -269,6 +310,7 @@ Result<bool> go_on(Session& s) {
   LUXEL_TRY_STATUS(fade(s.params.play ? 1 / s.params.play->frames_per_s : passed, s));
   const bool goes_on = !s.params.play || play_on(s);
   if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
+  if (s.walk) look(s);
   lay_out(s);
   follow_user(s);
   LUXEL_TRY_STATUS(draw_frame(s));
@@ -298,18 +340,24 @@ Status show(Session s) {
         write_file_atomically(s.params.frame_table, std::as_bytes(std::span<const char>(csv))));
   }
   if (s.params.screenshot.empty() || !s.walk) return {};
-  LUXEL_TRY(const image::Image8 picture,
-            view::painted(*s.screen.commands, s.screen.canvas(s.shown.device), frame_of(s)));
+  LUXEL_TRY(const image::Image8 picture, picture_of(s.shown.device, frame_of(s), s.screen));
   return write_file_atomically(s.params.screenshot, image::encode_png(picture));
 }
 
 }  // namespace
 
-Status show_in_window(view::OpenedBake bake, const WindowParams& params) {
+Status show_in_window(view::OpenedBake bake, std::optional<view::OpenedBake> beside,
+                      const WindowParams& params) {
   LUXEL_TRY(const std::unique_ptr<Window> window,
             Window::open(params.title, params.width, params.height));
   LUXEL_TRY(Screen screen, open_screen(*window, params.device));
+  if (beside) bake.first.beside.emplace();
   LUXEL_TRY(view::ShownScene shown, view::bake_shown(*screen.commands, std::move(bake)));
+  std::optional<view::ShownScene> second;
+  if (beside) {
+    LUXEL_TRY(second, view::bake_shown(*screen.commands, std::move(*beside)));
+    screen.beside = &*second;
+  }
   return show({*window, screen, shown, nullptr, nullptr, params});
 }
 

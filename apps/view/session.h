@@ -25,9 +25,10 @@ struct WindowParams {
   std::filesystem::path frame_table;
 };
 
-/// Shows a bake until the window is closed. Errors (no_device): no display, no device that shows
-/// pictures in a window; those of files.
-Status show_in_window(view::OpenedBake bake, const WindowParams& params);
+/// Shows a bake until the window is closed, with a second one `beside` it. Errors (no_device): no
+/// display, no device that shows pictures in a window; those of files.
+Status show_in_window(view::OpenedBake bake, std::optional<view::OpenedBake> beside,
+                      const WindowParams& params);
 /// Bakes a scene and shows it meanwhile and afterwards, until the window is closed. A bake that
 /// fails says so in the window. Errors as above.
 Status bake_in_window(const pipeline::BakeSettings& settings, const WindowParams& params);

@@ -135,6 +135,7 @@ class ImGuiUi : public Ui {
     ImGui::RadioButton("light and colour", &panel.show, 0);
     ImGui::RadioButton("light", &panel.show, 1);
     ImGui::RadioButton("colour", &panel.show, 2);
+    lay_out_look(panel.look);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
     ImGui::SliderFloat("exposure", &panel.stops, -8, 8, "%+.1f stops");
     if (!panel.views.empty() && ImGui::CollapsingHeader("views of the file"))

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/view/lamp_panel.h"
+#include "apps/view/ui_look.h"
 
 struct GLFWwindow;
 
@@ -45,7 +46,8 @@ struct Panel {
   std::string title;       ///< of the scene
   std::string about;       ///< a line under it
   float milliseconds = 0;  ///< of a frame
-  int show = 0;            ///< changed: light and colour, light, colour
+  int show = 0;            ///< changed: light and colour, light, colour; > 2: look
+  LookPanel look;          ///< into the bake
   float stops = 0;         ///< changed: exposure over the first
   bool keys_open = false;  ///< changed: the list of keys
   std::span<const KeyLine> keys;

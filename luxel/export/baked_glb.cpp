@@ -259,6 +259,24 @@ Result<Attach> attach_of(std::span<const std::byte> glb, const std::string& name
                                  : Attach::lightmap;
 }
 
+Result<FileLayers> layers_of(std::span<const std::byte> glb, const std::string& name) {
+  LUXEL_TRY(const json document, document_of(glb, name));
+  FileLayers out;
+  const json::json_pointer where("/asset/extras/luxel/layers"), of_node("/extras/luxel/layer");
+  const json layers = document.contains(where) ? document[where] : json::array();
+  for (const json& layer : layers)
+    if (layer.is_object() && layer.contains("name") && layer["name"].is_string())
+      out.layers.push_back({layer["name"].get<std::string>(), layer.contains("surroundings")});
+  for (const json& node : document.value("nodes", json::array())) {
+    if (!node.contains("mesh")) continue;
+    const json layer = node.contains(of_node) ? node[of_node] : json();
+    const auto found = std::ranges::find_if(
+        out.layers, [&](const FileLayers::Layer& known) { return layer == known.name; });
+    out.shines_in.push_back(size_t(found - out.layers.begin()));
+  }
+  return out;
+}
+
 Result<std::vector<std::byte>> vertex_lit_glb(const scene::Scene& scene, float intensity) {
   try {
     return write_scene(scene, {{"intensity", intensity},

@@ -81,4 +81,17 @@ Result<std::vector<std::byte>> vertex_lit_glb(const scene::Scene& scene, float i
 /// scenes are written to scenes/.
 Result<std::vector<std::byte>> scene_glb(const scene::Scene& scene);
 
+/// The layers that a baked.glb names.
+struct FileLayers {
+  struct Layer {
+    std::string name;
+    bool surroundings = false;  ///< the light of background and environment is in it
+  };
+  std::vector<Layer> layers;
+  /// Per node with a mesh, in the file's order, the layer that it shines in; layers.size(): none.
+  std::vector<size_t> shines_in;
+};
+/// Errors: no glTF.
+Result<FileLayers> layers_of(std::span<const std::byte> glb, const std::string& name);
+
 }  // namespace luxel::export_

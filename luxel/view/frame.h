@@ -1,6 +1,9 @@
 // What a picture of the viewer shows.
 #pragma once
 
+#include <array>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "luxel/display/tone_map.h"
@@ -14,6 +17,66 @@ enum class Show : uint32_t {
   light_and_colour,  ///< what they send to the eye
   light,             ///< as if all surfaces were white
   colour,            ///< their reflectance, whatever falls on them
+  // What a bake is made of: luxel/view/model/look.h.
+  irradiance,  ///< the light that falls on them, in false colours
+  checker,     ///< the lightmap's texels as squares, lit
+  density,     ///< texels per metre, in false colours
+  charts,      ///< the lightmap's charts, each in a colour
+  seams,       ///< edges along which the lightmap is cut
+  overlaps,    ///< places of the lightmap that several surfaces share, red
+  texels,      ///< texels.png
+  error,       ///< error.png
+};
+
+/// What of surfaces can be shown: its name in files that are played, the key that asks for it, and
+/// words for it. In the order of Show.
+struct ShowName {
+  const char *name, *key, *words;
+};
+inline constexpr std::array<ShowName, 11> kShows{{
+    {"both", "1", "light and colour"},
+    {"light", "2", "light alone"},
+    {"colour", "3", "colour alone"},
+    {"irradiance", "4", "irradiance in false colours"},
+    {"checker", "5", "texels as squares"},
+    {"density", "6", "density of texels"},
+    {"charts", "7", "charts of the lightmap"},
+    {"seams", "8", "seams of the lightmap"},
+    {"overlaps", "9", "overlaps in the lightmap"},
+    {"texels", "", "how texels were treated"},
+    {"error", "", "standard error of texels"},
+}};
+
+/// Whether it shows a bake and not the scene.
+inline bool looks_into_bake(Show show) { return show >= Show::irradiance; }
+
+/// What of light becomes a false colour.
+enum class Channel : uint32_t { red, green, blue, luminance };
+inline constexpr std::array<const char*, 4> kChannels{"red", "green", "blue", "luminance"};
+
+/// False colours from `low` to `high`, by the value or its logarithm.
+struct ColorScale {
+  float low = 0, high = 0;  ///< high <= low: that of the bake (Look)
+  bool is_logarithmic = false;
+  friend bool operator==(const ColorScale&, const ColorScale&) = default;
+};
+
+/// How a second bake is shown beside the first.
+enum class BesideMode : uint32_t { split, difference, flip };
+inline constexpr std::array<const char*, 3> kBesideModes{"split", "difference", "flip"};
+struct Beside {
+  BesideMode mode = BesideMode::split;
+  float split = 0.5f;  ///< where the second begins, over the picture's width
+};
+/// The relative difference of luminance that has the last of the false colours.
+inline constexpr float kMostDifference = 0.2f;
+
+/// What became of a layer's light since it was baked.
+struct LayerSetting {
+  std::string name;
+  float dimmer = 1;    ///< factor of it
+  Rgb color{1, 1, 1};  ///< and of each channel
+  friend bool operator==(const LayerSetting&, const LayerSetting&) = default;
 };
 
 /// One picture.
@@ -22,7 +85,12 @@ struct Frame {
   float exposure = 1;  ///< factor of the radiance before the curve
   display::ToneMap curve = display::ToneMap::shoulder;
   Show show = Show::light_and_colour;
-  std::vector<Mark> marks;  ///< over the picture, the last one uppermost
+  Channel channel = Channel::luminance;  ///< of Show::irradiance
+  ColorScale irradiance;                 ///< E [unit of the scene's light]
+  ColorScale density;                    ///< [1/m]
+  std::vector<LayerSetting> layers;      ///< those that are not as they were baked
+  std::optional<Beside> beside;          ///< where there is a second bake
+  std::vector<Mark> marks;               ///< over the picture, the last one uppermost
 };
 
 }  // namespace luxel::view

@@ -5,7 +5,9 @@
 #include "luxel/base/file.h"
 #include "luxel/export/view_page.h"
 #include "luxel/pipeline/bake/camera.h"
+#include "luxel/pipeline/settings/light_unit.h"
 #include "luxel/pipeline/settings/outside_light.h"
+#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/trace/ray_tracer.h"
 
 namespace luxel::view {
@@ -30,7 +32,20 @@ Status add_surroundings(const std::filesystem::path& folder, const nlohmann::jso
   return {};
 }
 
+/// Those that bake.json has; where it cannot be read, those of baked.glb as it is.
+pipeline::BakeSettings settings_of_bake(const std::filesystem::path& folder) {
+  pipeline::BakeSettings out;
+  if (!pipeline::read_settings(folder / "bake.json", out)) out.scene = "baked.glb";
+  return out;
+}
+
 }  // namespace
+
+std::string light_unit_of(const scene::Scene& scene, const pipeline::BakeSettings& settings) {
+  scene::Scene own = scene;
+  own.environment = {}, own.background = {};  // those of the settings, which are asked, too
+  return pipeline::unit_of_light(settings.scene, own, settings.outside).symbol;
+}
 
 Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
   std::error_code ignored;
@@ -41,10 +56,14 @@ Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
         folder.string());
   LUXEL_TRY_STATUS(pipeline::check_has_colors(folder));
   OpenedBake out;
+  out.folder = folder;
   LUXEL_TRY(out.scene, pipeline::scene_of_bake(folder));
   LUXEL_TRY(out.lightmaps,
             pipeline::read_pages(folder, out.scene.materials.size(), pipeline::read_lightmap));
   const nlohmann::json report = report_of(folder);
+  const auto layers = report.find("layers");
+  out.has_layers = layers != report.end() && layers->is_array() && !layers->empty();
+  out.light_unit = light_unit_of(out.scene, settings_of_bake(folder));
   LUXEL_TRY_STATUS(add_surroundings(folder, report, out));
   if (const auto preview = export_::view_of_json(report.value("preview", nlohmann::json()))) {
     out.first.camera = preview->camera, out.first.exposure = preview->exposure;

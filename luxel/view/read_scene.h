@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "luxel/scene/scene.h"
 #include "luxel/trace/ray_tracer.h"
@@ -15,6 +16,7 @@ struct ReadScene {
   std::optional<trace::RayTracer> tracer;  ///< of `scene`
   Frame first;                             ///< from where preview.png is taken
   int width = 960, height = 720;           ///< of preview.png
+  std::string light_unit;                  ///< of E: "lux" or "W/m^2"
 };
 
 }  // namespace luxel::view

@@ -41,6 +41,12 @@ struct DeviceMaterial {
 };
 static_assert(sizeof(DeviceMaterial) == 60 + 5 * 28);
 
+struct DeviceInstance {
+  std::array<float, 12> rows{};  ///< world from object, three rows of four
+  Rgb emission_factor{1, 1, 1};
+};
+static_assert(sizeof(DeviceInstance) == 60);
+
 template <class Values>
 std::span<const std::byte> bytes_of(const Values& values) {
   return std::as_bytes(std::span(values));
@@ -168,15 +174,10 @@ void add_two_sided(const LitMesh& lit, uint32_t triangle, Triangles& out) {
 /// A mesh's triangles by their materials.
 std::vector<DrawRange> add_mesh(const scene::Scene& scene, const LitMesh& lit, Triangles& out) {
   const scene::Mesh& mesh = lit.mesh;
-  std::vector<uint32_t> order(mesh.triangles.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    return mesh.triangle_material[a] < mesh.triangle_material[b];
-  });
   const auto first_vertex = uint32_t(out.vertices.size());
   for (uint32_t i = 0; i < mesh.positions.size(); ++i) out.vertices.push_back(vertex_of(lit, i));
   std::vector<DrawRange> ranges;
-  for (const uint32_t t : order) {
+  for (const uint32_t t : triangles_by_material(mesh)) {
     const uint32_t material = mesh.triangle_material[t];
     if (ranges.empty() || ranges.back().material != material)
       ranges.push_back({uint32_t(out.indices.size()), 0, material});
@@ -200,11 +201,11 @@ Status put_meshes(const gpu::Device& device, const scene::Scene& scene,
     const LitMesh lit{mesh, light_uv.empty() ? mesh.uv1 : light_uv[m]};
     out.ranges.push_back(add_mesh(scene, lit, triangles));
   }
-  std::vector<std::array<float, 12>> rows;
+  std::vector<DeviceInstance> instances;
   for (const scene::Instance& instance : scene.instances) {
     const Mat34& m = instance.world_from_object;
-    std::array<float, 12>& row = rows.emplace_back();
-    for (size_t i = 0; i < 12; ++i) row[i] = m.row[i / 4][i % 4];
+    DeviceInstance& out_instance = instances.emplace_back();
+    for (size_t i = 0; i < 12; ++i) out_instance.rows[i] = m.row[i / 4][i % 4];
     out.mesh_of.push_back(instance.mesh);
     out.is_mirrored.push_back(dot(cross(column(m, 0), column(m, 1)), column(m, 2)) < 0);
   }
@@ -212,7 +213,7 @@ Status put_meshes(const gpu::Device& device, const scene::Scene& scene,
             gpu::buffer_with(device, bytes_of(triangles.vertices), "the scene's vertices"));
   LUXEL_TRY(out.indices,
             gpu::buffer_with(device, bytes_of(triangles.indices), "the scene's triangles"));
-  LUXEL_TRY(out.instances, gpu::buffer_with(device, bytes_of(rows), "the scene's instances"));
+  LUXEL_TRY(out.instances, gpu::buffer_with(device, bytes_of(instances), "the scene's instances"));
   return {};
 }
 
@@ -326,6 +327,15 @@ Status put_shadow_maps(gpu::Commands& commands, uint32_t side, DeviceScene& out)
 
 }  // namespace
 
+std::vector<uint32_t> triangles_by_material(const scene::Mesh& mesh) {
+  std::vector<uint32_t> order(mesh.triangles.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return mesh.triangle_material[a] < mesh.triangle_material[b];
+  });
+  return order;
+}
+
 LightNow& light_now(const DeviceScene& scene) {
   return *reinterpret_cast<LightNow*>(scene.light_now.mapped);
 }
@@ -368,6 +378,11 @@ Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> page
     scales_of(scene)[2 * page + which] = pages[page].scale;
   }
   return {};
+}
+
+void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene) {
+  LUXEL_CHECK(instance < scene.mesh_of.size());
+  reinterpret_cast<DeviceInstance*>(scene.instances.mapped)[instance].emission_factor = factor;
 }
 
 }  // namespace luxel::view

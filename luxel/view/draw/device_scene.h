@@ -38,7 +38,7 @@ struct DeviceScene {
   gpu::Buffer vertices;                        ///< of all meshes
   gpu::Buffer indices;                         ///< 32 bits each, into all vertices
   gpu::Buffer materials;                       ///< of the scene, in its order
-  gpu::Buffer instances;                       ///< world from object, three rows of four
+  gpu::Buffer instances;                       ///< world from object, and factors of emission
   std::vector<std::vector<DrawRange>> ranges;  ///< of each mesh
   std::vector<uint32_t> mesh_of;               ///< of each instance
   std::vector<uint8_t> is_mirrored;            ///< of each instance: its triangles are turned round
@@ -59,11 +59,15 @@ struct DeviceScene {
 
   Box3 bounds;
   Rgb background{};
-  float surroundings_scale = 0;  ///< 0: there is no map
+  Rgb surroundings_factor{1, 1, 1};  ///< of background and map
+  float surroundings_scale = 0;      ///< 0: there is no map
   float rotation_rad = 0;
   gpu::Binding surroundings;  ///< white where there is no map
   gpu::Binding shadow_maps;   ///< of lamps that are drawn by direct_light.h
 };
+
+/// The triangles of a mesh in the order in which a DeviceScene has them: material by material.
+std::vector<uint32_t> triangles_by_material(const scene::Mesh& mesh);
 
 struct DeviceSceneParams {
   bool light_changes = false;  ///< put_light() will be called
@@ -90,6 +94,9 @@ Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& s
 Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> pages, uint32_t which,
                  DeviceScene& scene);
 
+/// The factor of the light that an instance's surfaces emit, 1 to begin with. Nothing may still
+/// draw the scene.
+void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene);
 /// What the next picture is drawn with. Nothing may still draw the scene when it is changed.
 LightNow& light_now(const DeviceScene& scene);
 

@@ -7,6 +7,7 @@
 #include "luxel/trace/camera_rays.h"
 #include "luxel/view/shaders/behind.frag.h"
 #include "luxel/view/shaders/behind.vert.h"
+#include "luxel/view/shaders/beside.frag.h"
 #include "luxel/view/shaders/mark.frag.h"
 #include "luxel/view/shaders/mark.vert.h"
 #include "luxel/view/shaders/screen.frag.h"
@@ -20,6 +21,7 @@ namespace {
 constexpr VkFormat kExposed = VK_FORMAT_R16G16B16A16_SFLOAT;
 constexpr VkFormat kShown = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr VkSampleCountFlagBits kSamples = VK_SAMPLE_COUNT_4_BIT;  // which every device has
+constexpr Rgb kBehindColors{0.806952f, 0.806952f, 0.806952f};      // 232 of 255 on a screen
 constexpr float kNear = 1e-5f;  // the near plane, over the scene's diagonal
 constexpr VkDescriptorType kLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 
@@ -36,12 +38,12 @@ static_assert(sizeof(SurfacePush) == 120);
 
 struct BehindPush {
   Vec3 forward, right, up;
-  Rgb background;
-  float map_scale, rotation;
+  Rgb background, map_scale;
+  float rotation;
   float exposure;
   uint32_t show;
 };
-static_assert(sizeof(BehindPush) == 64);
+static_assert(sizeof(BehindPush) == 72);
 
 struct ScreenPush {
   uint32_t curve;
@@ -101,6 +103,15 @@ gpu::DrawParams screen_params() {
   return params;
 }
 
+/// Two pictures and what each was made from, and the map of FLIP.
+gpu::DrawParams beside_params() {
+  gpu::DrawParams params = screen_params();
+  params.fragment = beside_frag;
+  constexpr uint32_t kPushBytes = 24;  // BesidePush of beside.cpp
+  params.interface = {kPushBytes, std::vector<VkDescriptorType>(5, kLookUp)};
+  return params;
+}
+
 gpu::DrawParams mark_params() {
   gpu::DrawParams params;
   params.vertex = mark_vert, params.fragment = mark_frag;
@@ -128,7 +139,7 @@ void draw_marks(const gpu::Device& device, VkCommandBuffer commands, const Canva
 
 void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
                    SurfacePush push) {
-  const auto& [shaders, painter, scene] = canvas;
+  const auto& [shaders, painter, scene, overlay] = canvas;
   device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   push.vertices = scene.vertices.address;
   push.materials = scene.materials.address;
@@ -149,6 +160,26 @@ void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Ca
     }
 }
 
+/// Whether it shows colours that stand for something, not light.
+bool shows_colors(Show show) { return looks_into_bake(show) && show != Show::checker; }
+
+/// The surroundings, or a light grey behind colours that stand for something.
+BehindPush behind_of(const trace::CameraRays& camera, const DeviceScene& scene, const Frame& frame,
+                     bool has_overlay) {
+  BehindPush out{camera.forward,
+                 camera.orthographic ? Vec3{} : camera.right,
+                 camera.orthographic ? Vec3{} : camera.up,
+                 scene.background * scene.surroundings_factor,
+                 scene.surroundings_factor * scene.surroundings_scale,
+                 scene.rotation_rad,
+                 frame.exposure,
+                 uint32_t(frame.show)};
+  if (!has_overlay || !shows_colors(frame.show)) return out;
+  out.background = kBehindColors;
+  out.map_scale = {}, out.exposure = 1;
+  return out;
+}
+
 }  // namespace
 
 Result<Shaders> make_shaders(const gpu::Device& device) {
@@ -160,6 +191,8 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
             gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_NONE)));
   LUXEL_TRY(out.behind, gpu::make_draw_pipeline(device, behind_params()));
   LUXEL_TRY(out.screen, gpu::make_draw_pipeline(device, screen_params()));
+  LUXEL_TRY(out.beside, gpu::make_draw_pipeline(device, beside_params()));
+  LUXEL_TRY(out.overlay, make_overlay_shader(device, kExposed, kSamples));
   LUXEL_TRY(out.mark, gpu::make_draw_pipeline(device, mark_params()));
   return out;
 }
@@ -183,31 +216,28 @@ Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
 
 void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
            const Frame& frame) {
-  const auto& [shaders, painter, scene] = canvas;
+  const auto& [shaders, painter, scene, overlay] = canvas;
   const gpu::TargetParams& size = painter.exposed.params;
   const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
-  const auto show = uint32_t(frame.show);
-  gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
+  const bool has_overlay = overlay != nullptr && looks_into_bake(frame.show);
   SurfacePush surface{};
   surface.clip_from_world = clip_from_world(camera, scene.bounds);
-  surface.exposure = frame.exposure, surface.show = show;
+  surface.exposure = frame.exposure, surface.show = uint32_t(frame.show);
   light_now(scene).eye = camera.eye;
-  draw_surfaces(device, commands, canvas, surface);
-  const BehindPush behind{camera.forward,
-                          camera.orthographic ? Vec3{} : camera.right,
-                          camera.orthographic ? Vec3{} : camera.up,
-                          scene.background,
-                          scene.surroundings_scale,
-                          scene.rotation_rad,
-                          frame.exposure,
-                          show};
+  if (has_overlay) set_shown(device, commands, *overlay, scene, frame, normalize(camera.forward));
+  gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
+  if (has_overlay)
+    draw_overlay(device, commands, shaders.overlay, *overlay, scene, surface.clip_from_world);
+  else
+    draw_surfaces(device, commands, canvas, surface);
+  const BehindPush behind = behind_of(camera, scene, frame, has_overlay);
   gpu::bind(device, commands, shaders.behind, behind);
   gpu::bind_set(device, commands, shaders.behind, painter.surroundings.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
   gpu::end_drawing(device, commands, painter.exposed, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
   gpu::begin_drawing(device, commands, painter.shown, {0, 0, 0, 1});
-  const bool is_light = frame.show != Show::colour;
+  const bool is_light = frame.show != Show::colour && !(has_overlay && shows_colors(frame.show));
   const ScreenPush screen{uint32_t(is_light ? frame.curve : display::ToneMap::clamp)};
   gpu::bind(device, commands, shaders.screen, screen);
   gpu::bind_set(device, commands, shaders.screen, painter.to_screen.sets[0]);
@@ -219,32 +249,39 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
 }
 
-Result<image::Image8> painted(gpu::Commands& commands, const Canvas& canvas, const Frame& frame) {
-  const Painter& painter = canvas.painter;
-  LUXEL_TRY_STATUS(commands.run(
-      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, canvas, frame); }));
-  LUXEL_TRY(const std::vector<std::byte> pixels, gpu::pixels_of(commands, painter.shown.picture));
+Result<image::Image8> shown_pixels(gpu::Commands& commands, const gpu::Target& shown) {
+  LUXEL_TRY(const std::vector<std::byte> pixels, gpu::pixels_of(commands, shown.picture));
   image::Image8 out;
-  out.width = int(painter.shown.params.width), out.height = int(painter.shown.params.height);
+  out.width = int(shown.params.width), out.height = int(shown.params.height);
   out.channels = 3;
   for (size_t i = 0; i < pixels.size(); ++i)
     if (i % 4 != 3) out.data.push_back(uint8_t(pixels[i]));
   return out;
 }
 
-Result<image::Image> painted_radiance(gpu::Commands& commands, const Canvas& canvas,
-                                      const Frame& frame) {
-  const Painter& painter = canvas.painter;
+Result<image::Image8> painted(gpu::Commands& commands, const Canvas& canvas, const Frame& frame) {
   LUXEL_TRY_STATUS(commands.run(
       [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, canvas, frame); }));
+  return shown_pixels(commands, canvas.painter.shown);
+}
+
+Result<image::Image> last_radiance(gpu::Commands& commands, const Painter& painter,
+                                   float exposure) {
   LUXEL_TRY(const std::vector<std::byte> pixels, gpu::pixels_of(commands, painter.exposed.picture));
   image::Image out(int(painter.exposed.params.width), int(painter.exposed.params.height), 4);
   for (size_t i = 0; i < out.data.size(); ++i) {
     uint16_t half = 0;
     std::memcpy(&half, pixels.data() + 2 * i, 2);
-    out.data[i] = image::from_half(half) / (i % 4 == 3 ? 1 : frame.exposure);
+    out.data[i] = image::from_half(half) / (i % 4 == 3 ? 1 : exposure);
   }
   return out;
+}
+
+Result<image::Image> painted_radiance(gpu::Commands& commands, const Canvas& canvas,
+                                      const Frame& frame) {
+  LUXEL_TRY_STATUS(commands.run(
+      [&](VkCommandBuffer buffer) { paint(commands.device(), buffer, canvas, frame); }));
+  return last_radiance(commands, canvas.painter, frame.exposure);
 }
 
 }  // namespace luxel::view

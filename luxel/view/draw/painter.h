@@ -6,6 +6,7 @@
 #include "luxel/image/codec.h"
 #include "luxel/image/image.h"
 #include "luxel/view/draw/device_scene.h"
+#include "luxel/view/draw/overlay.h"
 #include "luxel/view/frame.h"
 
 namespace luxel::view {
@@ -13,6 +14,7 @@ namespace luxel::view {
 /// The shaders of all pictures.
 struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
+  gpu::Pipeline overlay, beside;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
@@ -33,6 +35,7 @@ struct Canvas {
   const Shaders& shaders;
   const Painter& painter;
   const DeviceScene& scene;
+  const Overlay* overlay = nullptr;  ///< without one no frame looks into the bake
 };
 
 /// Records the drawing of a frame; the painter's `shown` is then in the layout
@@ -41,8 +44,12 @@ struct Canvas {
 void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
            const Frame& frame);
 
+/// The pixels of a picture for a screen that is in the layout TRANSFER_SRC_OPTIMAL: 3 channels.
+Result<image::Image8> shown_pixels(gpu::Commands& commands, const gpu::Target& shown);
 /// Draws a frame and reads the picture back: 3 channels.
 Result<image::Image8> painted(gpu::Commands& commands, const Canvas& canvas, const Frame& frame);
+/// The exposed radiance of what was drawn last, divided by its exposure: 4 channels.
+Result<image::Image> last_radiance(gpu::Commands& commands, const Painter& painter, float exposure);
 /// Draws a frame and reads the exposed radiance back, divided by the exposure: 4 channels, as
 /// display::draw gives them.
 Result<image::Image> painted_radiance(gpu::Commands& commands, const Canvas& canvas,

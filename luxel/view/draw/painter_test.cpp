@@ -3,9 +3,14 @@
 #include <gmock/gmock.h>
 
 #include "luxel/display/draw.h"
+#include "luxel/image/color.h"
+#include "luxel/image/false_color.h"
+#include "luxel/image/flip.h"
 #include "luxel/trace/camera_rays.h"
 #include "luxel/trace/ray_tracer.h"
+#include "luxel/view/draw/beside.h"
 #include "luxel/view/draw/painter.h"
+#include "luxel/view/draw/put_layers.h"
 
 namespace luxel::view {
 namespace {
@@ -245,6 +250,98 @@ TEST_F(PainterTest, CamerasSeeWhatDisplayDraws) {
     // Some 160 of 4096 pixels lie on the edge, whose shares of 4 and of 9 samples differ by 0.1.
     EXPECT_LT(off / double(picture.data.size()), 0.01) << aspect << " " << height_m;
   }
+}
+
+// A lamp that is seen and the surroundings shine as their layers do, and so does the lightmap.
+TEST_F(PainterTest, LayersDimWhatIsSeenOfThem) {
+  LitSquare lit;
+  lit.scene.materials[0].emission = {1, 1, 1};
+  lit.scene.background = {4, 4, 4};
+  Layers layers;
+  layers.layers.resize(2);
+  layers.layers[0].name = "lamp", layers.layers[1].name = "sky";
+  layers.layers[1].has_surroundings = true;
+  image::Image light(2, 2, 4);
+  for (int i = 0; i < 4; ++i) light.set_rgb(i % 2, i / 2, {1, 1, 1});
+  layers.layers[0].pages = {light};
+  for (int i = 0; i < 4; ++i) light.set_rgb(i % 2, i / 2, {2, 2, 2});
+  layers.layers[1].pages = {light};
+  layers.shines_in = {0};
+  DeviceSceneParams params;
+  params.light_changes = true;
+  auto scene = put_on_device(*commands_, lit.scene, lit.lightmaps, params);
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto painter = make_painter(*device_, *shaders_, *scene, kSide, kSide);
+  ASSERT_TRUE(painter) << painter.error().message;
+  Frame frame;
+  const Rgb lamp{0.5f, 1, 0}, sky{2, 0, 1};
+  for (const bool is_set : {true, false}) {  // and back to what was baked
+    if (is_set) frame.layers = {{"lamp", 0.5f, {1, 2, 0}}, {"sky", 1, sky}};
+    if (!is_set) frame.layers.clear();
+    const auto mixed = mixed_light(layers, frame.layers, lit.lightmaps);
+    ASSERT_TRUE(mixed) << mixed.error().message;
+    ASSERT_TRUE(put_layers(*commands_, layers, frame.layers, *mixed, is_set, *scene));
+    const Rgb one{1, 1, 1}, by_lamp = is_set ? lamp : one, by_sky = is_set ? sky : one;
+    const auto middle = [&](float from) {
+      frame.camera = camera_at(from);
+      const auto picture = painted_radiance(*commands_, {*shaders_, *painter, *scene}, frame);
+      return picture ? picture->rgb(kSide / 2, kSide / 2) : Rgb{};
+    };
+    const Rgb e = by_lamp + by_sky * 2;
+    expect_radiance(middle(3), lit.scene.materials[0].base_color * e * (1 / kPi) + by_lamp);
+    expect_radiance(middle(-3), by_sky * 4);  // the square has no back
+  }
+}
+
+// E of 3 beside E of 2.8: left and right of the line, and 0.069 of their mean apart.
+TEST_F(PainterTest, TwoBakesAreShownBesideOneAnother) {
+  LitSquare lit, darker;
+  for (int i = 0; i < 4; ++i)
+    darker.lightmaps.pictures[0].set_rgb(i % 2, i / 2, {2.8f, 2.8f, 2.8f});
+  const auto scene = put_on_device(*commands_, lit.scene, lit.lightmaps);
+  const auto other = put_on_device(*commands_, darker.scene, darker.lightmaps);
+  ASSERT_TRUE(scene && other);
+  const auto painter = make_painter(*device_, *shaders_, *scene, kSide, kSide);
+  ASSERT_TRUE(painter) << painter.error().message;
+  const auto pair = make_pair(*commands_, *shaders_, *painter, *other);
+  ASSERT_TRUE(pair) << pair.error().message;
+  const Canvas first{*shaders_, *painter, *scene}, second{*shaders_, pair->second, *other};
+  Frame frame;
+  frame.camera = camera_at(3), frame.camera.fov_y_rad = 0.4f;  // the square fills the picture
+  const auto a = painted(*commands_, first, frame), b = painted(*commands_, second, frame);
+  ASSERT_TRUE(a && b);
+  frame.beside.emplace();
+  const auto together = [&](BesideMode mode, int x) {
+    frame.beside->mode = mode, frame.beside->split = 0.25f;
+    const auto picture = painted_together(*commands_, first, second, *pair, frame);
+    if (!picture) ADD_FAILURE() << picture.error().message;
+    const size_t i = 3 * size_t(kSide / 2 * kSide + uint32_t(x));
+    return std::vector<uint8_t>(picture->data.begin() + std::ptrdiff_t(i),
+                                picture->data.begin() + std::ptrdiff_t(i + 3));
+  };
+  const auto pixel = [](const image::Image8& picture) {
+    const auto i = std::ptrdiff_t(3 * (kSide / 2 * kSide + kSide / 2));
+    return std::vector<uint8_t>(picture.data.begin() + i, picture.data.begin() + i + 3);
+  };
+  EXPECT_NE(pixel(*a), pixel(*b));
+  EXPECT_EQ(together(BesideMode::split, 5), pixel(*a));
+  EXPECT_EQ(together(BesideMode::split, 20), pixel(*b));
+  EXPECT_EQ(together(BesideMode::split, 16), (std::vector<uint8_t>{255, 255, 255})) << "the line";
+  const image::Color8 wanted = image::false_color(double(0.2f / 2.9f / kMostDifference));
+  const std::vector<uint8_t> seen = together(BesideMode::difference, 40);
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], wanted[c], 5);
+  // FLIP of two even pictures is even, and as CPU's FLIP has it.
+  image::Image left(16, 16, 3), right(16, 16, 3);
+  for (size_t i = 0; i < left.data.size(); ++i) {
+    left.data[i] = image::linear_from_srgb(float(pixel(*a)[i % 3]) / 255);
+    right.data[i] = image::linear_from_srgb(float(pixel(*b)[i % 3]) / 255);
+  }
+  const image::Color8 flip = image::false_color(double(image::flip(left, right).data[100]));
+  const std::vector<uint8_t> flip_seen = together(BesideMode::flip, 40);
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(flip_seen[c], flip[c], 2);
+  const auto mean = compare(*commands_, *painter, *pair);
+  ASSERT_TRUE(mean);
+  EXPECT_NEAR(*mean, image::flip(left, right).data[100], 2e-3f);
 }
 
 }  // namespace

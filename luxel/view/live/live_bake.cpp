@@ -19,6 +19,7 @@
 #include "luxel/trace/camera_rays.h"
 #include "luxel/transport/irradiance_field.h"
 #include "luxel/view/live/draft.h"
+#include "luxel/view/open_bake.h"
 
 namespace luxel::view {
 namespace {
@@ -37,6 +38,7 @@ Result<std::shared_ptr<const ReadScene>> read_scene(const scene::Scene& scene,
   LUXEL_TRY(out->first.camera,
             pipeline::choose_camera({.view = settings.view, .aspect = pipeline::kPreviewAspect},
                                     out->scene, *out->tracer, settings.scene.string()));
+  out->light_unit = light_unit_of(scene, settings);
   std::tie(out->width, out->height) = pipeline::preview_size(out->first.camera);
   return out;
 }

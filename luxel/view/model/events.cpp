@@ -16,6 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kLongest_s = 3600;
+constexpr float kBrightest = 1e6f;  ///< of a layer, over what it was baked with
 
 std::optional<Button> button_of(const std::string& name) {
   if (name == "left") return Button::left;
@@ -71,6 +72,60 @@ std::optional<Event> light_event_of(const json& from) {
   return kind ? std::optional<Event>(LampAdded{*kind, *change}) : std::nullopt;
 }
 
+/// The number of a name in a table; none where it has no such name.
+template <class Table, class Name>
+std::optional<uint32_t> number_of(const std::string& name, const Table& table,
+                                  const Name& name_of) {
+  for (uint32_t i = 0; i < table.size(); ++i)
+    if (name == name_of(table[i])) return i;
+  return std::nullopt;
+}
+
+/// May throw json::exception.
+std::optional<Event> layer_event_of(const json& from) {
+  LayerSetting out;
+  out.name = from.at("name").get<std::string>();
+  out.dimmer = from.value("dimmer", 1.0f);
+  const auto color = from.value("color", std::array<float, 3>{1, 1, 1});
+  out.color = {color[0], color[1], color[2]};
+  const bool is_light = out.dimmer >= 0 && out.dimmer <= kBrightest &&
+                        min_component(out.color) >= 0 && max_component(out.color) <= kBrightest;
+  return is_light ? std::optional<Event>(LayerChanged{out}) : std::nullopt;
+}
+
+/// What changes what is shown of a bake. May throw json::exception.
+std::optional<Event> look_event_of(const json& from) {
+  if (from.contains("show")) {
+    const auto show = number_of(from["show"].get<std::string>(), kShows,
+                                [](const ShowName& known) { return known.name; });
+    return show ? std::optional<Event>(ShowChanged{Show(*show)}) : std::nullopt;
+  }
+  if (from.contains("beside")) {
+    const auto mode = number_of(from["beside"].get<std::string>(), kBesideModes,
+                                [](const char* known) { return known; });
+    return mode ? std::optional<Event>(BesideChanged{BesideMode(*mode)}) : std::nullopt;
+  }
+  if (from.contains("split")) {
+    const auto to = from["split"].get<float>();
+    return to >= 0 && to <= 1 ? std::optional<Event>(SplitMoved{to}) : std::nullopt;
+  }
+  if (from.contains("layer")) return layer_event_of(from["layer"]);
+  if (from.contains("channel")) {
+    const auto channel = number_of(from["channel"].get<std::string>(), kChannels,
+                                   [](const char* known) { return known; });
+    return channel ? std::optional<Event>(ChannelChanged{Channel(*channel)}) : std::nullopt;
+  }
+  for (const bool is_logarithmic : {false, true}) {
+    const char* name = is_logarithmic ? "logarithmic_range" : "range";
+    if (!from.contains(name)) continue;
+    const auto range = from[name].get<std::array<float, 2>>();
+    const bool is_range = std::isfinite(range[0]) && std::isfinite(range[1]) &&
+                          range[0] < range[1] && (range[0] > 0 || !is_logarithmic);
+    if (is_range) return RangeChanged{{range[0], range[1], is_logarithmic}};
+  }
+  return std::nullopt;
+}
+
 /// One event; none where it is something else. May throw json::exception.
 std::optional<Event> event_of(const json& from) {
   for (const char* key : {"lamp", "new_lamp", "material"})
@@ -96,7 +151,7 @@ std::optional<Event> event_of(const json& from) {
     const auto by = from["scroll"].get<float>();
     if (std::abs(by) <= 100) return Scrolled{by};
   }
-  return std::nullopt;
+  return look_event_of(from);
 }
 
 /// The whole file but its events. May throw json::exception.

@@ -10,6 +10,7 @@
 #include "luxel/base/result.h"
 #include "luxel/base/vec.h"
 #include "luxel/scene/scene.h"
+#include "luxel/view/frame.h"
 
 namespace luxel::view {
 
@@ -30,6 +31,30 @@ struct Scrolled {
 struct KeyChanged {
   std::string key;
   bool is_down = false;
+};
+/// What is shown becomes another, by its name in kShows.
+struct ShowChanged {
+  Show show = Show::light_and_colour;
+};
+/// False colours of what is shown run over this range; high <= low: that of the bake.
+struct RangeChanged {
+  ColorScale scale;
+};
+/// False colours of the irradiance are those of a channel, by its name in kChannels.
+struct ChannelChanged {
+  Channel channel = Channel::luminance;
+};
+/// A layer of the light is dimmed or coloured.
+struct LayerChanged {
+  LayerSetting setting;
+};
+/// A second bake is shown in another way; where none is shown, nothing changes.
+struct BesideChanged {
+  BesideMode mode = BesideMode::split;
+};
+/// The line between the two is moved, to a share of the picture's width.
+struct SplitMoved {
+  float to = 0.5f;
 };
 /// What of a lamp becomes otherwise; the rest stays.
 struct LampChange {
@@ -56,7 +81,8 @@ struct GlowChanged {
 /// Of a play: what comes after it is played when the bake has ended and its light is shown.
 struct WaitForBake {};
 using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
-                           LampAdded, GlowChanged, WaitForBake>;
+                           LampAdded, GlowChanged, ShowChanged, RangeChanged, ChannelChanged,
+                           LayerChanged, BesideChanged, SplitMoved, WaitForBake>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -76,6 +102,12 @@ inline constexpr KeyHelp kKeys[] = {
     {"1", "light and colour"},
     {"2", "light alone"},
     {"3", "colour alone"},
+    {"4", "irradiance in false colours"},
+    {"5", "texels as squares"},
+    {"6", "density of texels"},
+    {"7", "charts of the lightmap"},
+    {"8", "seams of the lightmap"},
+    {"9", "overlaps in the lightmap"},
     {"+", "brighter by half a stop"},
     {"-", "darker by half a stop"},
     {"0", "as bright as at first"},
@@ -108,9 +140,14 @@ struct Play {
 ///       {"at": 0, "pointer": [480, 360]}, {"at": 0, "press": "left"},
 ///       {"at": 1, "pointer": [600, 360]}, {"at": 1, "release": "left"},
 ///       {"at": 1.2, "scroll": 3}, {"at": 1.5, "key": "w"}, {"at": 1.8, "key_up": "w"},
+///       {"at": 1.9, "show": "irradiance"}, {"at": 1.9, "range": [0, 500]},
+///       {"at": 1.9, "channel": "red"},
+///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
+///       {"at": 2, "beside": "difference"}, {"at": 2, "split": 0.3},
 ///       {"at": 2, "wait": "bake"},
 ///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]}]}
 ///
+/// A range is by the logarithm where "logarithmic_range" says so.
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.
 Result<Play> parse_play(std::string_view text, const std::string& name);
 /// Errors: those of files, too.

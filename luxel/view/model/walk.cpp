@@ -5,6 +5,7 @@
 
 #include "luxel/trace/camera_rays.h"
 #include "luxel/view/model/camera_moves.h"
+#include "luxel/view/model/layers.h"
 
 namespace luxel::view {
 namespace {
@@ -13,6 +14,7 @@ constexpr float kTurnPerHeight = 2 * kPi;  ///< of a drag over the picture's hei
 constexpr float kNearerPerNotch = 0.9f;
 constexpr float kSceneSizesPerSecond = 0.2f;
 constexpr float kFast = 4;
+constexpr float kNearLine = 6;  ///< so near is the pointer on the line [pixels]
 constexpr float kHalfStop = 1.41421356f;
 
 float aspect_of(const Walk& walk) { return float(walk.width) / float(walk.height); }
@@ -39,6 +41,13 @@ void drag(Vec2 by, Walk& walk) {
                : orbited(camera, walk.target, -parts.x * kTurnPerHeight, parts.y * kTurnPerHeight);
 }
 
+/// Whether the pointer is on the line between two bakes.
+bool is_on_line(const Walk& walk) {
+  const auto& beside = walk.shown.beside;
+  return beside && beside->mode == BesideMode::split &&
+         std::abs(walk.pointer.x - beside->split * float(walk.width)) <= kNearLine;
+}
+
 /// What a key does when it goes down; those that fly do it as long as they are down.
 void press(const std::string& key, Walk& walk) {
   if (key == "f") {
@@ -46,11 +55,10 @@ void press(const std::string& key, Walk& walk) {
     walk.target = walk.bounds.centre();
   }
   if (key == "home") walk.shown.camera = walk.first.camera;
+  for (uint32_t i = 0; i < kShows.size(); ++i)
+    if (key == kShows[i].key) walk.shown.show = Show(i);
   if (key == "space") walk.asked.push_back(Command::stop_or_go_on);
   if (key == "ctrl+s") walk.asked.push_back(Command::save);
-  if (key == "1") walk.shown.show = Show::light_and_colour;
-  if (key == "2") walk.shown.show = Show::light;
-  if (key == "3") walk.shown.show = Show::colour;
   if (key == "+") walk.shown.exposure *= kHalfStop;
   if (key == "-") walk.shown.exposure /= kHalfStop;
   if (key == "0") walk.shown.exposure = walk.first.exposure;
@@ -61,13 +69,19 @@ void press(const std::string& key, Walk& walk) {
 
 }  // namespace
 
+std::optional<scene::SurfacePoint> surface_seen(const scene::Scene& scene,
+                                                const trace::RayTracer& tracer, const Frame& frame,
+                                                Vec2 pixel, int width, int height) {
+  std::array rays{trace::CameraRays(frame.camera, width, height).through(pixel.x, pixel.y)};
+  const trace::Hit hit = trace::visible_hits(scene, tracer, rays).front();
+  return hit.found() ? std::optional(hit.point()) : std::nullopt;
+}
+
 PlaceSeen place_seen_in(const scene::Scene& scene, const trace::RayTracer& tracer, int width,
                         int height) {
   return [&scene, &tracer, width, height](const Frame& frame, Vec2 pixel) -> std::optional<Vec3> {
-    std::array rays{trace::CameraRays(frame.camera, width, height).through(pixel.x, pixel.y)};
-    const trace::Hit hit = trace::visible_hits(scene, tracer, rays).front();
-    if (!hit.found()) return std::nullopt;
-    return scene::world_position(scene, hit.point());
+    const auto point = surface_seen(scene, tracer, frame, pixel, width, height);
+    return point ? std::optional(scene::world_position(scene, *point)) : std::nullopt;
   };
 }
 
@@ -86,12 +100,16 @@ Walk begin_walk(const Frame& first, const Box3& bounds, int width, int height,
 
 void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk) {
   if (const auto* moved = std::get_if<PointerMoved>(&event)) {
-    if (walk.dragging) drag(moved->to - walk.pointer, walk);
+    if (walk.dragging && walk.drags_line)
+      walk.shown.beside->split = std::clamp(moved->to.x / float(walk.width), 0.0f, 1.0f);
+    else if (walk.dragging)
+      drag(moved->to - walk.pointer, walk);
     walk.pointer = moved->to;
   }
   if (const auto* changed = std::get_if<ButtonChanged>(&event)) {
     if (changed->is_down && !walk.dragging) {
       walk.dragging = changed->button;
+      walk.drags_line = changed->button == Button::left && is_on_line(walk);
       walk.target = place_at(walk, walk.pointer, place_seen);
     } else if (!changed->is_down && walk.dragging == changed->button) {
       walk.dragging.reset();
@@ -106,6 +124,18 @@ void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk) {
     if (!key->is_down) walk.keys.erase(key->key);
     if (key->is_down && walk.keys.insert(key->key).second) press(key->key, walk);
   }
+  if (const auto* changed = std::get_if<ShowChanged>(&event)) walk.shown.show = changed->show;
+  if (const auto* changed = std::get_if<ChannelChanged>(&event))
+    walk.shown.channel = changed->channel;
+  if (const auto* changed = std::get_if<BesideChanged>(&event); changed && walk.shown.beside)
+    walk.shown.beside->mode = changed->mode;
+  if (const auto* moved = std::get_if<SplitMoved>(&event); moved && walk.shown.beside)
+    walk.shown.beside->split = moved->to;
+  if (const auto* changed = std::get_if<LayerChanged>(&event))
+    set_layer(changed->setting, walk.shown.layers);
+  if (const auto* changed = std::get_if<RangeChanged>(&event))
+    (walk.shown.show == Show::density ? walk.shown.density : walk.shown.irradiance) =
+        changed->scale;
 }
 
 void pass(double seconds, Walk& walk) {

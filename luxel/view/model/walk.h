@@ -16,6 +16,11 @@ namespace luxel::view {
 /// The place of the surface that is seen at a pixel; none where there is none.
 using PlaceSeen = std::function<std::optional<Vec3>(const Frame& frame, Vec2 pixel)>;
 
+/// The surface that is seen at a pixel of a picture of this size, by a ray from the eye; none where
+/// there is none.
+std::optional<scene::SurfacePoint> surface_seen(const scene::Scene& scene,
+                                                const trace::RayTracer& tracer, const Frame& frame,
+                                                Vec2 pixel, int width, int height);
 /// By a ray from the eye; for pictures of this size. Scene and tracer must outlive it.
 PlaceSeen place_seen_in(const scene::Scene& scene, const trace::RayTracer& tracer, int width,
                         int height);
@@ -33,6 +38,7 @@ struct Walk {
   Vec3 target{};  ///< what the camera turns about
   Vec2 pointer{};
   std::optional<Button> dragging;
+  bool drags_line = false;     ///< between two bakes, not the camera
   std::set<std::string> keys;  ///< that are down
   /// What keys have asked for that is not the walk's to do; whoever does it takes it out.
   std::vector<Command> asked;

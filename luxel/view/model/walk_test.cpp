@@ -1,7 +1,10 @@
 // A user drags, scrolls and flies before a wall: where the camera gets to is known.
 #include "luxel/view/model/walk.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <algorithm>
 
 #include "luxel/trace/camera_rays.h"
 
@@ -144,12 +147,32 @@ TEST(Walk, AKeyOfEveryLineOfTheListDoesSomething) {
     handle(KeyChanged{key.key, true}, on_the_wall, walk);
     pass(0.1, walk);
     pass(0.1, before);
-    const bool changed = walk.shown.show != before.shown.show ||
-                         walk.shown.exposure != before.shown.exposure ||
-                         walk.asked.size() != before.asked.size() ||
-                         length(eye_of(walk) - eye_of(before)) > 0;
+    const bool changed =
+        walk.shown.show != before.shown.show || walk.shown.exposure != before.shown.exposure ||
+        walk.asked.size() != before.asked.size() || length(eye_of(walk) - eye_of(before)) > 0;
     EXPECT_TRUE(changed) << key.key;
   }
+}
+
+TEST(Walk, DraggingTheLineBetweenTwoBakesMovesIt) {
+  Walk walk = before_the_wall();
+  const Vec3 eye = eye_of(walk);
+  handle(SplitMoved{0.1f}, on_the_wall, walk);
+  EXPECT_FALSE(walk.shown.beside) << "there is no second bake";
+  walk.shown.beside.emplace();  // the line is at 150 of 300
+  drag(Button::left, {153, 50}, {225, 80}, walk);
+  EXPECT_FLOAT_EQ(walk.shown.beside->split, 0.75f);
+  expect_place(eye_of(walk), eye);
+  drag(Button::left, {225, 50}, {900, 80}, walk);
+  EXPECT_FLOAT_EQ(walk.shown.beside->split, 1);
+  handle(SplitMoved{0.5f}, on_the_wall, walk);
+  drag(Button::left, {170, 50}, {225, 80}, walk);  // beside the line: the camera turns
+  EXPECT_FLOAT_EQ(walk.shown.beside->split, 0.5f);
+  EXPECT_GT(length(eye_of(walk) - eye), 1);
+  const Vec3 turned = eye_of(walk);
+  handle(BesideChanged{BesideMode::flip}, on_the_wall, walk);
+  drag(Button::left, {150, 50}, {225, 80}, walk);  // there is no line
+  EXPECT_GT(length(eye_of(walk) - turned), 1);
 }
 
 TEST(Play, GoesOnInStepsOfItsOwn) {
@@ -166,6 +189,39 @@ TEST(Play, GoesOnInStepsOfItsOwn) {
   EXPECT_FALSE(walk.dragging);
   expect_place(*on_the_wall(walk.shown, {80, 120}), walk.target);
   EXPECT_GT(length(walk.target), 1);
+}
+
+TEST(Play, ChoosesWhatIsShownOfABake) {
+  const auto events = parse_play(R"({"end": 1, "events": [
+    {"at": 0, "show": "irradiance"}, {"at": 0, "range": [5, 500]}, {"at": 0, "channel": "blue"},
+    {"at": 1, "show": "density"}, {"at": 1, "logarithmic_range": [1, 64]}]})",
+                                 "walk.json");
+  ASSERT_TRUE(events) << events.error().message;
+  Walk walk = before_the_wall();
+  play(*events, on_the_wall, walk);
+  EXPECT_EQ(walk.shown.show, Show::density);
+  EXPECT_EQ(walk.shown.channel, Channel::blue);
+  EXPECT_EQ(walk.shown.irradiance, (ColorScale{5, 500, false}));
+  EXPECT_EQ(walk.shown.density, (ColorScale{1, 64, true}));
+  for (uint32_t i = 0; i < kShows.size(); ++i) {
+    const auto shows = parse_play(fmt::format(R"({{"end": 0, "events": [
+      {{"at": 0, "show": "{}"}}]}})",
+                                              kShows[i].name),
+                                  "walk.json");
+    ASSERT_TRUE(shows) << shows.error().message;
+    play(*shows, on_the_wall, walk);
+    EXPECT_EQ(walk.shown.show, Show(i));
+  }
+}
+
+// The list of F1 says the keys of kShows with the same words.
+TEST(Walk, KeysOfTheListAreThoseOfWhatIsShown) {
+  for (const ShowName& shows : kShows) {
+    const bool is_listed = std::any_of(std::begin(kKeys), std::end(kKeys), [&](const KeyHelp& key) {
+      return std::string(key.key) == shows.key && std::string(key.does) == shows.words;
+    });
+    EXPECT_EQ(is_listed, *shows.key != 0) << shows.name;
+  }
 }
 
 TEST(Play, StandsStillWhileItWaits) {
@@ -199,9 +255,13 @@ TEST(Play, SaysWhichEventIsWrong) {
   EXPECT_EQ(error(right), "no error");
   EXPECT_THAT(error(right + R"(, {"at": 0.5, "scroll": 1})"),
               HasSubstr("walk.json, event 2: its time, 0.5, is not from 1 to 2"));
-  for (const char* wrong : {R"({"at": 1})", R"({"at": 1, "jump": 1})",
-                            R"({"at": 1, "press": "fourth"})", R"({"at": 1, "key": "ctrl"})",
-                            R"({"at": 1, "scroll": 1, "key": "w"})", R"({"at": 1, "scroll": 1e9})"})
+  for (const char* wrong :
+       {R"({"at": 1})", R"({"at": 1, "jump": 1})", R"({"at": 1, "press": "fourth"})",
+        R"({"at": 1, "key": "ctrl"})", R"({"at": 1, "scroll": 1, "key": "w"})",
+        R"({"at": 1, "scroll": 1e9})", R"({"at": 1, "show": "depth"})",
+        R"({"at": 1, "channel": "alpha"})", R"({"at": 1, "range": [2, 2]})",
+        R"({"at": 1, "logarithmic_range": [0, 1]})", R"({"at": 1, "beside": "above"})",
+        R"({"at": 1, "split": 2})"})
     EXPECT_THAT(error(wrong), AllOf(HasSubstr("walk.json, event 1: "), HasSubstr("is no event")));
   for (const char* wrong : {R"({"at": "now", "scroll": 1})", R"({"at": 1, "pointer": [1]})", "7"})
     EXPECT_THAT(error(wrong), HasSubstr("walk.json, event 1: "));

@@ -14,7 +14,7 @@ void main() {
   vec2 at = vec2(0.5 + (atan(d.z, d.x) - rotation) / (2 * pi), atan(length(d.xz), d.y) / pi);
   vec3 radiance = background;
   // Without mipmaps there is no seam where the angle jumps.
-  if (map_scale > 0) radiance += textureLod(map, at, 0).rgb * map_scale;
+  if (map_scale != vec3(0)) radiance += textureLod(map, at, 0).rgb * map_scale;
   if (show == 2) radiance = vec3(0);
   seen = vec4(min(radiance * exposure, most), 0);
 }

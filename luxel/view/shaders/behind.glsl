@@ -4,7 +4,8 @@
 layout(push_constant, scalar) uniform Push {
   vec3 forward, right, up;  // of the picture's middle, and to its edges
   vec3 background;
-  float map_scale, rotation;  // scale 0: there is no map
+  vec3 map_scale;  // 0: there is no map
+  float rotation;
   float exposure;
   uint show;
 };

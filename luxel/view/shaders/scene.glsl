@@ -27,6 +27,7 @@ struct Material {
 };
 struct Instance {
   vec4 row0, row1, row2;  // world from object
+  vec3 emission_factor;
 };
 
 layout(buffer_reference, scalar) readonly buffer Vertices { Vertex at[]; };

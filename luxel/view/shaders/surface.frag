@@ -66,7 +66,7 @@ void main() {
   vec3 facet = facet_normal();
   vec4 base = texture(map, at_map) * vec4(m.base_color * tint, m.alpha);
   if (base.a < m.cutoff) discard;
-  vec3 emitted = m.emission * texture(glow, at_glow).rgb;
+  vec3 emitted = m.emission * texture(glow, at_glow).rgb * instances.at[instance].emission_factor;
   float metallic = clamp(m.metallic * texture(metal, at_metal).b, 0, 1);
   float through = 0;
   if (m.through > 0)

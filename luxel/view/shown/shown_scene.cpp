@@ -20,6 +20,20 @@ Result<DeviceScene> with_light(gpu::Commands& commands, const LitScene& lit,
                        params);
 }
 
+/// What light is by now, as a bake's files have it.
+pipeline::LightmapPages pages_of(const LiveLight& light, const LitScene& lit) {
+  pipeline::LightmapPages out;
+  out.of_material = lit.page_of_material;
+  for (const image::HalfImage& page : light.pages) {
+    image::Image& picture = out.pictures.emplace_back(page.width, page.height, page.channels);
+    for (size_t i = 0; i < picture.data.size(); ++i) {
+      const bool is_alpha = page.channels == 4 && i % 4 == 3;
+      picture.data[i] = image::from_half(page.data[i]) * (is_alpha ? 1 : page.scale);
+    }
+  }
+  return out;
+}
+
 /// Light fades in over what is shown.
 Status fade_in(const LiveLight& light, gpu::Commands& commands, ShownScene& shown) {
   shown.fade = faded_to_other(shown.fade, light.exposure);
@@ -43,10 +57,15 @@ Result<ShownScene> nothing_shown(gpu::Commands& commands) {
 
 Result<ShownScene> bake_shown(gpu::Commands& commands, OpenedBake bake) {
   ShownScene out;
-  LUXEL_TRY(out.device, put_on_device(commands, bake.scene, bake.lightmaps));
+  DeviceSceneParams params;
+  params.light_changes = bake.has_layers;
+  LUXEL_TRY(out.device, put_on_device(commands, bake.scene, bake.lightmaps, params));
   auto read = std::make_shared<ReadScene>();
   read->scene = std::move(bake.scene), read->first = bake.first;
   read->width = bake.width, read->height = bake.height;
+  read->light_unit = bake.light_unit;
+  out.lightmaps = std::move(bake.lightmaps);
+  out.folder = std::move(bake.folder), out.has_layers = bake.has_layers;
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(read->scene));
   read->tracer.emplace(std::move(tracer));
   out.read = std::move(read);
@@ -72,6 +91,8 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
   if (news.lit) {
     const LiveLight& first = news.before ? *news.before : *news.light;
     LUXEL_TRY(shown.device, with_light(commands, *news.lit, first));
+    shown.lightmaps = pages_of(first, *news.lit);
+    shown.lit = std::move(news.lit);
     shown.fade = {0, 1, first.exposure, first.exposure};
     shown.waiting.reset();
     shown.has_light = is_another = true;
@@ -98,5 +119,19 @@ Status settle(gpu::Commands& commands, ShownScene& shown) {
 }
 
 bool is_settled(const ShownScene& shown) { return !shown.waiting && is_free(shown.fade); }
+
+Result<Look> look_of(const ShownScene& shown) {
+  if (shown.lightmaps.pictures.empty())
+    return fail(ErrorCode::bad_input,
+                "there is no lightmap to look into: light of .lxr files is made for each picture");
+  Look out;
+  if (shown.folder.empty()) {
+    out = look_at(shown.drawn(), shown.lightmaps, shown.light_uv());
+  } else {
+    LUXEL_TRY(out, look_into(shown.folder, shown.drawn(), shown.lightmaps));
+  }
+  out.unit = shown.read->light_unit;
+  return out;
+}
 
 }  // namespace luxel::view

@@ -1,12 +1,16 @@
 // A scene on a graphics device, with its light as far as it is known.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "luxel/view/draw/device_scene.h"
 #include "luxel/view/live/fade.h"
 #include "luxel/view/live/live_bake.h"
+#include "luxel/view/model/look.h"
 #include "luxel/view/open_bake.h"
 
 namespace luxel::view {
@@ -19,7 +23,24 @@ struct ShownScene {
   std::optional<LiveLight> waiting;  ///< light that comes when what was there before has faded in
   LiveNumbers numbers;               ///< of the light that came last
   bool has_last = false;             ///< all light has come
+
+  /// What is looked into: the light of a bake that is there; of one that is made, its first.
+  pipeline::LightmapPages lightmaps;
+  std::optional<LitScene> lit;   ///< of a bake that is made: what `device` draws; else read->scene
+  std::filesystem::path folder;  ///< of a bake that is there
+  bool has_layers = false;       ///< read_layers() finds some there
+
+  /// What `device` draws, and where its vertices lie in the lightmap; empty: uv1.
+  const scene::Scene& drawn() const { return lit ? lit->scene : read->scene; }
+  std::span<const std::vector<Vec2>> light_uv() const {
+    return lit ? std::span<const std::vector<Vec2>>(lit->light_uv)
+               : std::span<const std::vector<Vec2>>();
+  }
 };
+
+/// What of it can be looked into, whose light has come. Errors: those of look_into(); it has no
+/// lightmap.
+Result<Look> look_of(const ShownScene& shown);
 
 /// A scene in which nothing can be seen, for a window that opens before the file is read.
 Result<ShownScene> nothing_shown(gpu::Commands& commands);

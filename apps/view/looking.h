@@ -1,0 +1,38 @@
+// A window looks into a bake: what it needs to draw that, and what its panel says.
+#pragma once
+
+#include <optional>
+
+#include "apps/view/ui_look.h"
+#include "luxel/view/draw/painter.h"
+#include "luxel/view/draw/put_layers.h"
+#include "luxel/view/model/histogram.h"
+#include "luxel/view/model/look.h"
+#include "luxel/view/model/walk.h"
+#include "luxel/view/shown/shown_scene.h"
+
+namespace luxel::view_window {
+
+/// Made when it is first asked for; of one scene.
+struct Looking {
+  std::optional<view::Look> look;
+  std::optional<view::Overlay> overlay;
+  std::optional<view::Layers> layers;
+  std::vector<view::LayerSetting> put;       ///< what of them the scene shows
+  std::optional<view::Histogram> histogram;  ///< of the last frame
+  pipeline::LightmapPages mixed;  ///< the light that it shows; none while that is the bake's
+};
+
+/// Makes what a frame needs, once, and puts its layers into the scene. The panel's lines of layers
+/// need them, too. Takes about a second for a million triangles. Nothing may still draw the scene.
+/// What a bake has not is said in an error, after which the frame shows what it can.
+Status prepare_look(gpu::Commands& commands, const gpu::Pipeline& shader, bool needs_layers,
+                    view::Frame& frame, view::ShownScene& shown, Looking& looking);
+
+/// What the panel says of a frame. `pointed`: the surface under the pointer.
+void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const Looking& looking,
+                const std::optional<scene::SurfacePoint>& pointed, LookPanel& panel);
+/// What the user has changed in it, since `before`.
+void take_panel(const LookPanel& panel, const LookPanel& before, view::Frame& frame);
+
+}  // namespace luxel::view_window

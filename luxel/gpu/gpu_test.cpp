@@ -141,6 +141,57 @@ TEST_F(Gpu, DrawsTheMeanOfSamples) {
   }
 }
 
+// A map of shadows: what is in a part is lost there and drawn, and the rest stays.
+TEST_F(Gpu, DepthAloneIsDrawnIntoAPart) {
+  // The left half of a part, at a depth that a float holds.
+  const std::array<std::array<float, 4>, 6> half{{{-1, -1, 0.25f, 1},
+                                                  {-1, 1, 0.25f, 1},
+                                                  {0, 1, 0.25f, 1},
+                                                  {-1, -1, 0.25f, 1},
+                                                  {0, 1, 0.25f, 1},
+                                                  {0, -1, 0.25f, 1}}};
+  PictureParams picture_params;
+  picture_params.format = VK_FORMAT_D32_SFLOAT;
+  picture_params.width = picture_params.height = 16;
+  picture_params.usage =
+      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  const auto depth = make_picture(*device_, picture_params, "a depth");
+  ASSERT_TRUE(depth) << depth.error().message;
+  DrawParams params;
+  params.vertex = test_triangle_vert;
+  params.interface = {24, {}};
+  params.depth = VK_FORMAT_D32_SFLOAT;
+  const auto pipeline = make_draw_pipeline(*device_, params);
+  ASSERT_TRUE(pipeline) << pipeline.error().message;
+  const auto corners = buffer_with(*device_, std::as_bytes(std::span(half)), "corners");
+  ASSERT_TRUE(corners) << corners.error().message;
+  struct Push {
+    VkDeviceAddress corners;
+    std::array<float, 4> color;
+  } const push{corners->address, {}};
+  constexpr VkImageLayout kDepth = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+  ASSERT_TRUE(commands_->run([&](VkCommandBuffer commands) {
+    change_layout(*device_, commands, *depth, VK_IMAGE_LAYOUT_UNDEFINED, kDepth);
+    // All of it, then a part over it, which is cleared first.
+    for (const VkRect2D& part : {VkRect2D{{0, 0}, {16, 16}}, VkRect2D{{0, 8}, {8, 8}}}) {
+      begin_drawing_depth(*device_, commands, *depth, part);
+      bind(*device_, commands, *pipeline, push);
+      device_->vk.vkCmdDraw(commands, 6, 1, 0, 0);
+      device_->vk.vkCmdEndRenderingKHR(commands);
+      full_barrier(*device_, commands);
+    }
+    change_layout(*device_, commands, *depth, kDepth, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  }));
+  const auto pixels = pixels_of(*commands_, *depth);
+  ASSERT_TRUE(pixels) << pixels.error().message;
+  for (size_t y = 0; y < 16; ++y)
+    for (size_t x = 0; x < 16; ++x) {
+      float value = 0;
+      std::memcpy(&value, pixels->data() + 4 * (16 * y + x), 4);
+      EXPECT_EQ(value, x < (y < 8 ? 8u : 4u) ? 0.25f : 0) << x << " " << y;
+    }
+}
+
 TEST_F(Gpu, AveragesMipmaps) {
   std::vector<std::byte> pixels;
   for (const int v : {0, 40, 80, 120})

@@ -217,6 +217,17 @@ Status check_lamps(const Play& play, const Lamps& lamps, const std::string& name
   return {};
 }
 
+Status check_no_lamps(const Play& play, const std::string& name) {
+  for (const TimedEvent& timed : play.events)
+    if (std::holds_alternative<LampChanged>(timed.event) ||
+        std::holds_alternative<LampAdded>(timed.event) ||
+        std::holds_alternative<GlowChanged>(timed.event))
+      return fail(ErrorCode::bad_input,
+                  "{}, at {} s: lamps change in .lxr files only; `luxel relight` makes one", name,
+                  timed.at_s);
+  return {};
+}
+
 void handle_frame_with_lamps(const Play& events, int64_t frame, const PlaceSeen& place_seen,
                              size_t& next, Walk& walk, LampDesk& desk) {
   for (; has_come(events, frame, next); ++next) {

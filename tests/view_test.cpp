@@ -309,8 +309,18 @@ TEST(View, SaysWhatIsWrong) {
   s.write("baked/error.png", slurp(std::filesystem::path(baked) / "preview.png"));
   EXPECT_THAT(error(baked + shot + " --play " + texels, 1),
               HasSubstr("720 pixels and the lightmap 16 x 16: they are not of one bake"));
-  EXPECT_THAT(error((s.path / "absent").string() + shot, 1),
-              HasSubstr("absent is no bake: there is no baked.glb in it"));
+  EXPECT_THAT(
+      error((s.path / "absent.glb").string() + shot, 1),
+      HasSubstr("neither a scene nor a bake of the name " + (s.path / "absent.glb").string()));
+  EXPECT_THAT(error(s.path.string() + shot, 1), HasSubstr("there is no baked.glb in it"));
+  const std::string broken = s.write("broken.glb", "glTF").string();
+  EXPECT_THAT(error(broken + shot, 1), HasSubstr("broken.glb"));
+  if (shell("command -v xvfb-run").code != 0) return;
+  // A play that waits for a bake which fails does not wait for ever.
+  const std::string wait =
+      s.write("wait.json", R"({"end": 1, "events": [{"at": 0, "wait": "bake"}]})").string();
+  EXPECT_THAT(error(broken + " --play " + wait, 1, "timeout 60 xvfb-run -a"),
+              HasSubstr("broken.glb"));
 }
 
 }  // namespace

@@ -239,6 +239,7 @@ view::Frame frame_of(const Session& s) {
 /// end.
 bool play_on(Session& s) {
   const view::Play& play = *s.params.play;
+  if (s.live && s.live->state() == view::LiveState::failed) return false;
   const bool is_baking = s.live && s.live->state() == view::LiveState::baking;
   const bool is_to_come =
       is_baking || !s.walk || !view::is_settled(s.shown) ||
@@ -317,12 +318,13 @@ Result<bool> go_on(Session& s) {
   return goes_on;
 }
 
-/// A play that saves a bake ends when it is saved. Errors: those of the bake.
+/// A play that saves a bake ends when it is saved. Errors: why there is no light.
 Status end_bake(Session& s) {
-  if (s.live->state() != view::LiveState::baked) return {};
-  s.live->wait();
-  const view::LiveNews news = s.live->take();
-  if (news.said) std::fprintf(stderr, "%s\n", news.said->c_str());
+  const view::LiveState state = s.live->state();
+  if (state == view::LiveState::baked) s.live->wait();
+  if (const view::LiveNews news = s.live->take(); news.said) s.panel.message = *news.said;
+  if (state == view::LiveState::failed) return fail(ErrorCode::bad_input, "{}", s.panel.message);
+  if (!s.panel.message.empty()) std::fprintf(stderr, "%s\n", s.panel.message.c_str());
   return {};
 }
 

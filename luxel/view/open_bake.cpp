@@ -49,6 +49,9 @@ std::string light_unit_of(const scene::Scene& scene, const pipeline::BakeSetting
 
 Result<OpenedBake> open_bake(const std::filesystem::path& folder) {
   std::error_code ignored;
+  if (!std::filesystem::exists(folder, ignored))
+    return fail(ErrorCode::bad_input, "there is neither a scene nor a bake of the name {}",
+                folder.string());
   if (!std::filesystem::exists(folder / "baked.glb", ignored))
     return fail(
         ErrorCode::bad_input,

@@ -44,6 +44,8 @@ void exchange(Ui& ui, const view::ShownScene& shown, const Looking& looking, flo
   panel.stops = std::log2(walk.shown.exposure / walk.first.exposure);
   fill_panel(walk.shown, shown, looking, pointed_surface(ui, *shown.read, walk), panel.look);
   panel.look.flip = flip;
+  for (size_t i = 0; i < walk.bookmarks.size(); ++i)
+    panel.has_bookmark[i] = walk.bookmarks[i].has_value();
   const Panel before = panel;
   ui.lay_out(panel);
   if (panel.show != before.show) walk.shown.show = view::Show(panel.show);
@@ -52,6 +54,8 @@ void exchange(Ui& ui, const view::ShownScene& shown, const Looking& looking, flo
     walk.shown.exposure = walk.first.exposure * std::exp2(panel.stops);
   if (const int view = std::exchange(panel.view, -1); view >= 0)
     walk.shown.camera = shown.read->scene.cameras[size_t(view)];
+  if (const int mark = std::exchange(panel.bookmark, -1); mark >= 0)
+    view::go_to(*walk.bookmarks[size_t(mark)], walk.first.exposure, walk.shown);
 }
 
 /// Events of the user, but for those that are the panel's. `lamps` may be null.

@@ -144,6 +144,7 @@ class ImGuiUi : public Ui {
         if (ImGui::Selectable(panel.views[i].c_str())) panel.view = int(i);
         ImGui::PopID();
       }
+    lay_out_bookmarks(panel);
     if (panel.lamps) lay_out_lamps(*panel.lamps);
     ImGui::Text("%.1f ms per frame", double(panel.milliseconds));
     if (!panel.message.empty()) {
@@ -153,6 +154,19 @@ class ImGuiUi : public Ui {
     }
     if (ImGui::Button("keys (F1)")) panel.keys_open = !panel.keys_open;
     ImGui::End();
+  }
+
+  /// A button for each that there is.
+  static void lay_out_bookmarks(Panel& panel) {
+    bool is_first = true;
+    for (size_t i = 0; i < panel.has_bookmark.size(); ++i) {
+      if (!panel.has_bookmark[i]) continue;
+      if (is_first) ImGui::TextUnformatted("bookmarks");
+      is_first = false;
+      ImGui::SameLine();
+      const char name[] = {char('1' + i), 0};
+      if (ImGui::SmallButton(name)) panel.bookmark = int(i);
+    }
   }
 
   static void lay_out_bake(BakeLines& bake) {

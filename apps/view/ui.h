@@ -4,6 +4,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -53,6 +54,8 @@ struct Panel {
   std::span<const KeyLine> keys;
   std::span<const std::string> views;  ///< of the scene's cameras
   int view = -1;                       ///< changed: the one that was asked for; -1: none
+  std::array<bool, 9> has_bookmark{};  ///< remembered views
+  int bookmark = -1;                   ///< changed: the one that was asked for; -1: none
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;
   std::string message;  ///< what was done last

@@ -6,6 +6,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <string_view>
 
 namespace luxel::view_window {
 namespace {
@@ -104,11 +105,12 @@ void Window::listen() {
     if (key == GLFW_KEY_F12 && action == GLFW_PRESS) of(w).asks_for_screenshot_ = true;
     const std::string name = name_of(key, code);
     if (name.empty()) return;
-    const bool is_down = action == GLFW_PRESS, has_ctrl = (with & GLFW_MOD_CONTROL) != 0;
+    const bool is_down = action == GLFW_PRESS;
+    const char* held = with & GLFW_MOD_CONTROL ? "ctrl+" : with & GLFW_MOD_ALT ? "alt+" : "";
     // Either key may go up first.
-    if (is_down == has_ctrl || !is_down)
-      of(w).events_.push_back(view::KeyChanged{"ctrl+" + name, is_down});
-    if (!is_down || !has_ctrl) of(w).events_.push_back(view::KeyChanged{name, is_down});
+    for (const char* before : {"", "ctrl+", "alt+"})
+      if (!is_down || before == std::string_view(held))
+        of(w).events_.push_back(view::KeyChanged{before + name, is_down});
   });
 }
 

@@ -9,6 +9,7 @@
 #include "luxel/base/short_message.h"
 #include "luxel/scene/brightness.h"
 #include "luxel/scene/light_kinds.h"
+#include "luxel/view/model/bookmarks.h"
 
 namespace luxel::view {
 namespace {
@@ -27,7 +28,7 @@ std::optional<Button> button_of(const std::string& name) {
 
 bool is_key(const std::string& name) {
   const auto is_it = [&](const KeyHelp& key) { return name == key.key; };
-  return std::any_of(std::begin(kKeys), std::end(kKeys), is_it) ||
+  return bookmark_key(name) || std::any_of(std::begin(kKeys), std::end(kKeys), is_it) ||
          std::any_of(std::begin(kLampKeys), std::end(kLampKeys), is_it);
 }
 

@@ -111,6 +111,8 @@ inline constexpr KeyHelp kKeys[] = {
     {"+", "brighter by half a stop"},
     {"-", "darker by half a stop"},
     {"0", "as bright as at first"},
+    {"ctrl+1", "remember this view as bookmark 1; as far as ctrl+9"},
+    {"alt+1", "go to bookmark 1; as far as alt+9"},
     {"space", "stop the bake, or let it go on"},
     {"ctrl+s", "save the bake"},
 };

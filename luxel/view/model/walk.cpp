@@ -57,6 +57,13 @@ void press(const std::string& key, Walk& walk) {
   if (key == "home") walk.shown.camera = walk.first.camera;
   for (uint32_t i = 0; i < kShows.size(); ++i)
     if (key == kShows[i].key) walk.shown.show = Show(i);
+  if (const auto mark = bookmark_key(key)) {
+    auto& bookmark = walk.bookmarks[mark->number];
+    if (mark->remembers)
+      bookmark = bookmark_of(walk.shown, walk.first.exposure);
+    else if (bookmark)
+      go_to(*bookmark, walk.first.exposure, walk.shown);
+  }
   if (key == "space") walk.asked.push_back(Command::stop_or_go_on);
   if (key == "ctrl+s") walk.asked.push_back(Command::save);
   if (key == "+") walk.shown.exposure *= kHalfStop;

@@ -9,6 +9,7 @@
 
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/view/frame.h"
+#include "luxel/view/model/bookmarks.h"
 #include "luxel/view/model/events.h"
 
 namespace luxel::view {
@@ -40,6 +41,7 @@ struct Walk {
   std::optional<Button> dragging;
   bool drags_line = false;     ///< between two bakes, not the camera
   std::set<std::string> keys;  ///< that are down
+  Bookmarks bookmarks;
   /// What keys have asked for that is not the walk's to do; whoever does it takes it out.
   std::vector<Command> asked;
 };

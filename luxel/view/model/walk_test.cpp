@@ -142,6 +142,7 @@ TEST(Walk, AKeyOfEveryLineOfTheListDoesSomething) {
     walk.shown.show = Show::colour, walk.shown.exposure = 1;  // as after other keys
     if (std::string(key.key) == "3") walk.shown.show = Show::light;
     walk.shown.camera = Frame{}.camera;
+    walk.bookmarks[0] = bookmark_of(walk.first, 1);
     if (std::string(key.key) == "shift") handle(KeyChanged{"w", true}, on_the_wall, walk);
     Walk before = walk;
     handle(KeyChanged{key.key, true}, on_the_wall, walk);
@@ -149,9 +150,44 @@ TEST(Walk, AKeyOfEveryLineOfTheListDoesSomething) {
     pass(0.1, before);
     const bool changed =
         walk.shown.show != before.shown.show || walk.shown.exposure != before.shown.exposure ||
+        walk.bookmarks[0]->brightness != before.bookmarks[0]->brightness ||
         walk.asked.size() != before.asked.size() || length(eye_of(walk) - eye_of(before)) > 0;
     EXPECT_TRUE(changed) << key.key;
   }
+}
+
+TEST(Walk, GoesToWhatWasRememberedThoughTheLightHasGrown) {
+  const auto events = parse_play(R"({"end": 1, "events": [
+    {"at": 0, "key": "ctrl+2"}, {"at": 0, "key_up": "ctrl+2"}, {"at": 0, "scroll": 2},
+    {"at": 0, "key": "2"}, {"at": 0, "key": "+"}, {"at": 0, "key": "ctrl+9"},
+    {"at": 0, "key": "3"}, {"at": 0, "scroll": 5}, {"at": 0, "key": "-"}]})",
+                                 "walk.json");
+  ASSERT_TRUE(events) << events.error().message;
+  Walk walk = before_the_wall();
+  play(*events, on_the_wall, walk);
+  walk.first.exposure = 12;  // it was 3
+  const auto press = [&](const char* key) {
+    for (const bool is_down : {true, false}) handle(KeyChanged{key, is_down}, on_the_wall, walk);
+  };
+  press("alt+9");
+  expect_place(eye_of(walk), {0, 0, 8.1f});
+  EXPECT_EQ(walk.shown.show, Show::light);
+  EXPECT_FLOAT_EQ(walk.shown.exposure, 12 * std::sqrt(2.0f));
+  press("alt+5");  // there is none
+  expect_place(eye_of(walk), {0, 0, 8.1f});
+  press("alt+2");
+  expect_place(eye_of(walk), {0, 0, 10});
+  EXPECT_EQ(walk.shown.show, Show::light_and_colour);
+  EXPECT_FLOAT_EQ(walk.shown.exposure, 12);
+}
+
+TEST(Bookmarks, HaveTheKeysOfNineDigits) {
+  EXPECT_EQ(bookmark_key("ctrl+1")->number, 0u);
+  EXPECT_EQ(bookmark_key("alt+9")->number, 8u);
+  EXPECT_TRUE(bookmark_key("ctrl+1")->remembers);
+  EXPECT_FALSE(bookmark_key("alt+9")->remembers);
+  for (const char* other : {"", "1", "ctrl+", "ctrl+0", "ctrl+s", "alt+10", "shift+1"})
+    EXPECT_FALSE(bookmark_key(other)) << other;
 }
 
 TEST(Walk, DraggingTheLineBetweenTwoBakesMovesIt) {

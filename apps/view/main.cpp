@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -16,6 +17,7 @@
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/view/draw/beside.h"
 #include "luxel/view/draw/painter.h"
+#include "luxel/view/model/habits.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
 #include "luxel/view/relight/draw_lxr.h"
@@ -109,6 +111,13 @@ Status show(const Options& options) {
   LUXEL_TRY(params.play, events_of(options));
   params.play_name = options.play.string();
   params.title = std::filesystem::absolute(options.subject).lexically_normal().filename().string();
+  std::error_code ignored;
+  params.subject =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(options.subject), ignored)
+          .string();
+  // A play is the same whatever was done before.
+  if (!params.play)
+    params.habits = view::habits_file(std::getenv("XDG_STATE_HOME"), std::getenv("HOME"));
   params.device = options.device;
   params.screenshot = options.screenshot, params.frame_table = options.frame_table;
   if (options.width > 0) params.width = options.width, params.height = options.height;

@@ -10,6 +10,7 @@
 
 #include "apps/view/frame_table.h"
 #include "apps/view/lamp_session.h"
+#include "apps/view/remembered.h"
 #include "apps/view/screen.h"
 #include "luxel/base/file.h"
 #include "luxel/image/codec.h"
@@ -92,6 +93,7 @@ struct Session {
   view::LiveBake* live;  ///< null: the bake is there
   LampSession* lamps;    ///< null: they do not move
   const WindowParams& params;
+  Remembered remembered = recall(params.habits, params.subject);
   std::vector<KeyLine> keys = key_lines(lamps != nullptr);
   std::vector<std::string> views = {};  ///< names of the scene's cameras
   Panel panel = {};
@@ -109,9 +111,11 @@ struct Session {
 void begin(const view::ReadScene& read, Session& s) {
   const auto width = int(s.screen.swapchain.width), height = int(s.screen.swapchain.height);
   s.place_seen = view::place_seen_in(read.scene, *read.tracer, width, height);
-  if (!s.walk)
+  if (!s.walk) {
     s.walk =
         view::begin_walk(read.first, scene::world_bounds(read.scene), width, height, s.place_seen);
+    begin_as_left(s.remembered, *s.walk);
+  }
   s.walk->width = width, s.walk->height = height;
   s.views.clear();
   for (const scene::Camera& camera : read.scene.cameras)
@@ -335,10 +339,14 @@ Status end_bake(Session& s) {
 /// Until the window is closed or a play has ended.
 Status show(Session s) {
   s.panel.title = s.params.title, s.panel.about = s.screen.device->name;
-  s.panel.keys = s.keys;
+  s.panel.keys = s.keys, s.panel.recent = s.remembered.others;
+  s.panel.is_light = s.remembered.is_light, s.panel.message = s.remembered.message;
   bool is_going_on = true;
   while (is_going_on && !glfwWindowShouldClose(s.window.get()))
     LUXEL_TRY_STATUS(go_on(s).map([&](bool more) { is_going_on = more; }));
+  if (s.walk)
+    if (const Status kept = keep(s.remembered, *s.walk, s.panel.is_light); !kept)
+      std::fprintf(stderr, "warning: %s\n", kept.error().message.c_str());
   if (s.params.play && s.live) LUXEL_TRY_STATUS(end_bake(s));
   if (!s.params.frame_table.empty()) {
     const std::string csv = csv_of(s.table);

@@ -16,7 +16,9 @@ namespace luxel::view_window {
 
 struct WindowParams {
   std::string title;
-  std::string device;  ///< gpu::DeviceParams::name
+  std::string subject;           ///< absolute path of what is shown
+  std::filesystem::path habits;  ///< view::habits_file(); empty: nothing is remembered
+  std::string device;            ///< gpu::DeviceParams::name
   int width = 960, height = 720;
   std::optional<view::Play> play;    ///< then the window closes
   std::string play_name;             ///< for messages

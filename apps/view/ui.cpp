@@ -106,6 +106,7 @@ class ImGuiUi : public Ui {
   bool has_keys() const override { return ImGui::GetIO().WantTextInput; }
 
   void lay_out(Panel& panel) override {
+    if (panel.is_light != is_light_) set_theme(panel.is_light);
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
@@ -127,6 +128,11 @@ class ImGuiUi : public Ui {
   }
 
  private:
+  void set_theme(bool is_light) {
+    is_light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
+    is_light_ = is_light;
+  }
+
   static void lay_out_panel(Panel& panel) {
     ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
     ImGui::Begin(panel.title.c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
@@ -146,13 +152,12 @@ class ImGuiUi : public Ui {
       }
     lay_out_bookmarks(panel);
     if (panel.lamps) lay_out_lamps(*panel.lamps);
+    lay_out_recent(panel);
     ImGui::Text("%.1f ms per frame", double(panel.milliseconds));
-    if (!panel.message.empty()) {
-      ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
-      ImGui::TextUnformatted(panel.message.c_str());
-      ImGui::PopTextWrapPos();
-    }
+    if (!panel.message.empty()) lay_out_wrapped(panel.message);
     if (ImGui::Button("keys (F1)")) panel.keys_open = !panel.keys_open;
+    ImGui::SameLine();
+    ImGui::Checkbox("light panel", &panel.is_light);
     ImGui::End();
   }
 
@@ -167,6 +172,17 @@ class ImGuiUi : public Ui {
       const char name[] = {char('1' + i), 0};
       if (ImGui::SmallButton(name)) panel.bookmark = int(i);
     }
+  }
+
+  static void lay_out_recent(const Panel& panel) {
+    if (panel.recent.empty() || !ImGui::CollapsingHeader("recent")) return;
+    for (const std::string& path : panel.recent) lay_out_wrapped(path);
+  }
+
+  static void lay_out_wrapped(const std::string& text) {
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
   }
 
   static void lay_out_bake(BakeLines& bake) {
@@ -206,6 +222,7 @@ class ImGuiUi : public Ui {
   std::vector<VkFramebuffer> pictures_;
   uint32_t width_ = 0, height_ = 0;
   bool has_context_ = false, has_window_ = false, has_device_ = false, has_font_ = false;
+  bool is_light_ = false;  ///< the panel, as ImGui draws it now
 };
 
 }  // namespace

@@ -52,10 +52,12 @@ struct Panel {
   float stops = 0;         ///< changed: exposure over the first
   bool keys_open = false;  ///< changed: the list of keys
   std::span<const KeyLine> keys;
-  std::span<const std::string> views;  ///< of the scene's cameras
-  int view = -1;                       ///< changed: the one that was asked for; -1: none
-  std::array<bool, 9> has_bookmark{};  ///< remembered views
-  int bookmark = -1;                   ///< changed: the one that was asked for; -1: none
+  std::span<const std::string> views;   ///< of the scene's cameras
+  int view = -1;                        ///< changed: the one that was asked for; -1: none
+  std::array<bool, 9> has_bookmark{};   ///< remembered views
+  int bookmark = -1;                    ///< changed: the one that was asked for; -1: none
+  std::span<const std::string> recent;  ///< what else was looked at
+  bool is_light = false;                ///< changed: dark letters on light ground
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;
   std::string message;  ///< what was done last

@@ -46,7 +46,8 @@ void draw_graph(const std::vector<StageTimes>& history) {
   const float size = ImGui::GetFontSize();
   const ImVec2 from = ImGui::GetCursorScreenPos(), extent{size * 18, size * 5};
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(from, {from.x + extent.x, from.y + extent.y}, IM_COL32(0, 0, 0, 90));
+  list.AddRectFilled(from, {from.x + extent.x, from.y + extent.y},
+                     ImGui::GetColorU32(ImGuiCol_FrameBg));
   float most = 1e-3f;
   for (const StageTimes& times : history) most = std::max(most, sum_of(times));
   const float column = extent.x / float(kGraphFrames);
@@ -61,7 +62,7 @@ void draw_graph(const std::vector<StageTimes>& history) {
   }
   char label[32];
   snprintf(label, sizeof(label), "%.1f ms", double(most));
-  list.AddText({from.x + 3, from.y + 1}, IM_COL32(255, 255, 255, 200), label);
+  list.AddText({from.x + 3, from.y + 1}, ImGui::GetColorU32(ImGuiCol_Text), label);
   ImGui::Dummy(extent);
 }
 

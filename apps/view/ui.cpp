@@ -151,13 +151,14 @@ class ImGuiUi : public Ui {
         ImGui::PopID();
       }
     lay_out_bookmarks(panel);
+    lay_out_warnings(panel.warnings);
     if (panel.lamps) lay_out_lamps(*panel.lamps);
     lay_out_recent(panel);
     ImGui::Text("%.1f ms per frame", double(panel.milliseconds));
     if (!panel.message.empty()) lay_out_wrapped(panel.message);
     if (ImGui::Button("keys (F1)")) panel.keys_open = !panel.keys_open;
     ImGui::SameLine();
-    ImGui::Checkbox("light panel", &panel.is_light);
+    ImGui::Checkbox("light theme", &panel.is_light);
     ImGui::End();
   }
 
@@ -177,6 +178,16 @@ class ImGuiUi : public Ui {
   static void lay_out_recent(const Panel& panel) {
     if (panel.recent.empty() || !ImGui::CollapsingHeader("recent")) return;
     for (const std::string& path : panel.recent) lay_out_wrapped(path);
+  }
+
+  /// The header keeps its place in ImGui's memory however many there are.
+  static void lay_out_warnings(std::span<const std::string> warnings) {
+    const std::string header = "warnings (" + std::to_string(warnings.size()) + ")###warnings";
+    if (warnings.empty() || !ImGui::CollapsingHeader(header.c_str())) return;
+    for (const std::string& warning : warnings) {
+      ImGui::Bullet();
+      lay_out_wrapped(warning);
+    }
   }
 
   static void lay_out_wrapped(const std::string& text) {

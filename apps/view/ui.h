@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/bake_panel.h"
 #include "apps/view/lamp_panel.h"
 #include "apps/view/ui_look.h"
 
@@ -33,15 +34,6 @@ struct KeyLine {
   const char *key, *does;
 };
 
-/// What the panel shows of a bake that is being made.
-struct BakeLines {
-  std::string state;  ///< the stage, or how it ended
-  float share = 0;    ///< of the stage that is done
-  std::vector<std::string> lines;
-  bool can_stop = false, can_go_on = false, can_save = false;
-  bool asks_to_stop = false, asks_to_go_on = false, asks_to_save = false;  ///< changed
-};
-
 /// What the panel shows, and what of it the user may change.
 struct Panel {
   std::string title;       ///< of the scene
@@ -52,12 +44,13 @@ struct Panel {
   float stops = 0;         ///< changed: exposure over the first
   bool keys_open = false;  ///< changed: the list of keys
   std::span<const KeyLine> keys;
-  std::span<const std::string> views;   ///< of the scene's cameras
-  int view = -1;                        ///< changed: the one that was asked for; -1: none
-  std::array<bool, 9> has_bookmark{};   ///< remembered views
-  int bookmark = -1;                    ///< changed: the one that was asked for; -1: none
-  std::span<const std::string> recent;  ///< what else was looked at
-  bool is_light = false;                ///< changed: dark letters on light ground
+  std::span<const std::string> views;     ///< of the scene's cameras
+  int view = -1;                          ///< changed: the one that was asked for; -1: none
+  std::array<bool, 9> has_bookmark{};     ///< remembered views
+  int bookmark = -1;                      ///< changed: the one that was asked for; -1: none
+  std::span<const std::string> warnings;  ///< of the bake that is shown
+  std::span<const std::string> recent;    ///< what else was looked at
+  bool is_light = false;                  ///< changed: dark letters on light ground
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;
   std::string message;  ///< what was done last

@@ -231,6 +231,7 @@ class Worker : public LiveBake {
     const std::scoped_lock lock(mutex_);
     if (lit) news_.lit = std::move(lit);
     news_.light = std::move(light);
+    news_.warnings = baked_->warnings;
   }
   struct Traced {
     const scene::Scene& scene;

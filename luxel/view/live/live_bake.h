@@ -50,7 +50,8 @@ struct LiveNews {
   std::optional<LiveLight> light;  ///< the newest
   /// With `lit`, where something else was shown before: its light where `lit` has its own.
   std::optional<LiveLight> before;
-  std::optional<std::string> said;  ///< of saving, or why there is no light; a sentence
+  std::vector<std::string> warnings;  ///< pipeline::Bake::warnings, with the last light
+  std::optional<std::string> said;    ///< of saving, or why there is no light; a sentence
 };
 
 /// The state of the work.

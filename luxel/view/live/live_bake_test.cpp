@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <fstream>
 #include <thread>
 
 #include "luxel/pipeline/bake/bake_scene.h"
@@ -14,6 +15,7 @@
 namespace luxel::view {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
 
 pipeline::BakeSettings settings_for(const std::string& scene, int resolution, int samples) {
@@ -49,6 +51,19 @@ TEST(LiveBake, SaysWhyThereIsNoLight) {
   live->wait();
   EXPECT_EQ(live->state(), LiveState::failed);
   EXPECT_THAT(live->take().said.value_or(""), HasSubstr("absent.glb"));
+}
+
+// A plate without any light.
+TEST(LiveBake, TellsTheWarningsOfTheBake) {
+  const std::string file = ::testing::TempDir() + "/live_plate.obj";
+  std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 1 0 -1\nv 0 0 -1\nf 1 2 3 4\n";
+  pipeline::BakeSettings settings;
+  settings.scene = file, settings.output = ::testing::TempDir();
+  settings.resolution = 16, settings.samples = 4;
+  const auto live = LiveBake::begin(settings);
+  live->wait();
+  ASSERT_EQ(live->state(), LiveState::baked) << live->take().said.value_or("");
+  EXPECT_THAT(live->take().warnings, Contains(HasSubstr("the scene has no light")));
 }
 
 TEST(LiveBake, StandsStillWhilePausedAndEndsWhenNobodyWantsIt) {

@@ -121,7 +121,7 @@ Status write_habits(const Habits& habits, const std::filesystem::path& file) {
 Result<Habits> parse_habits(std::string_view text, const std::string& name) {
   const auto no_habits = [&](const char* why) {
     return fail(ErrorCode::bad_input,
-                "{}: {}; nothing is remembered as long as the file is there like this", name,
+                "{}: {}; nothing is remembered until the file is repaired or removed", name,
                 short_message(why, 400));
   };
   try {

@@ -65,6 +65,7 @@ Result<ShownScene> bake_shown(gpu::Commands& commands, OpenedBake bake) {
   read->width = bake.width, read->height = bake.height;
   read->light_unit = bake.light_unit;
   out.lightmaps = std::move(bake.lightmaps);
+  out.warnings = std::move(bake.warnings);
   out.folder = std::move(bake.folder), out.has_layers = bake.has_layers;
   LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(read->scene));
   read->tracer.emplace(std::move(tracer));
@@ -88,6 +89,7 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
   if (!news.light) return is_another;
   shown.numbers = news.light->numbers;
   shown.has_last = news.light->is_last;
+  if (shown.has_last) shown.warnings = std::move(news.warnings);
   if (news.lit) {
     const LiveLight& first = news.before ? *news.before : *news.light;
     LUXEL_TRY(shown.device, with_light(commands, *news.lit, first));

@@ -20,9 +20,10 @@ struct ShownScene {
   std::shared_ptr<const ReadScene> read;  ///< null: there is nothing to see yet
   bool has_light = false;                 ///< false: colours can be shown, nothing else
   Fade fade;
-  std::optional<LiveLight> waiting;  ///< light that comes when what was there before has faded in
-  LiveNumbers numbers;               ///< of the light that came last
-  bool has_last = false;             ///< all light has come
+  std::optional<LiveLight> waiting;   ///< light that comes when what was there before has faded in
+  LiveNumbers numbers;                ///< of the light that came last
+  bool has_last = false;              ///< all light has come
+  std::vector<std::string> warnings;  ///< of the bake
 
   /// What is looked into: the light of a bake that is there; of one that is made, its first.
   pipeline::LightmapPages lightmaps;

@@ -42,8 +42,12 @@ void PartialLight::take(size_t first, const HitTile& hits) {
 }
 
 void PartialLight::show_now_and_then() {
-  const std::unique_lock lock(showing_, std::try_to_lock);
-  if (!lock.owns_lock() || seconds_since(last_) < kBetweenShows_s) return;
+  if (is_showing_.exchange(true)) return;
+  if (seconds_since(last_) >= kBetweenShows_s) show();
+  is_showing_ = false;
+}
+
+void PartialLight::show() {
   double share = 0;
   {
     const std::lock_guard data(mutex_);

@@ -1,6 +1,7 @@
 // Light while the first rays are traced: tiles that have theirs, and a guess elsewhere.
 #pragma once
 
+#include <atomic>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -26,6 +27,7 @@ class PartialLight {
 
  private:
   void show_now_and_then();
+  void show();
   void prefer_what_is_watched();
 
   const Request& in_;
@@ -34,8 +36,10 @@ class PartialLight {
   RadiosityMap sent_;
   std::mutex mutex_;  ///< of the two below
   std::vector<Rgb> irradiance_;
-  uint64_t done_ = 0;   ///< elements that have their rays
-  std::mutex showing_;  ///< of what the watcher does, and of the two below
+  uint64_t done_ = 0;  ///< elements that have their rays
+  /// Somebody is in show_now_and_then(), whose the two below are. No mutex: a thread that waits for
+  /// a loop of the watcher's may trace another tile meanwhile, and come here again.
+  std::atomic<bool> is_showing_{false};
   std::vector<Rgb> shown_;
   Clock::time_point last_ = Clock::now();
 };

@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""Prints how long frames of luxel-view take: docs/bench/view.MACHINE.csv.
+
+    tools/view_times.py build/release/bin > docs/bench/view.MACHINE.csv     on an idle machine
+    tools/view_times.py --self-test
+
+Each row is a play in a window of 640 x 480 on a virtual display (xvfb-run): a bake of scenes/office.glb seen in each
+way, a scene that is baked meanwhile, and a lamp that is dragged. Without ../shared the living room is left out.
+Columns: what, frames, the median and the 95th percentile of their times [ms], the share under 150 ms [%], and the
+largest change of brightness from one frame to the next [%], of plays in which the camera stands still.
+"""
+import argparse
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+SIZE = "640x480"
+KINDS = ("both", "light", "colour", "irradiance", "checker", "density", "charts", "seams", "overlaps")
+ROOM = pathlib.Path(__file__).parents[2] / "shared/scenes/living_room/living_room.glb"
+
+
+def turning(seconds, frames_per_s, first=()):
+    """A play that turns the camera to and fro."""
+    events = [{"at": 0, **event} for event in first]
+    events += [{"at": 0, "pointer": [320, 240]}, {"at": 0, "press": "right"}]
+    for frame in range(1, int(seconds * frames_per_s)):
+        aside = abs(frame % 40 - 20)
+        events.append({"at": frame / frames_per_s, "pointer": [320 + 4 * aside, 240 + 2 * aside]})
+    return {"frames_per_s": frames_per_s, "end": seconds, "events": events}
+
+
+def walking(seconds, frames_per_s):
+    """Ahead, round a corner, and back a little, again and again."""
+    events = []
+    for start in range(0, seconds, 5):
+        events += [{"at": start, "key": "w"}, {"at": start + 1.5, "key_up": "w"},
+                   {"at": start + 1.6, "pointer": [320, 240]}, {"at": start + 1.6, "press": "left"}]
+        aside = 6 if start % 15 else -6
+        events += [{"at": start + 1.7 + k / 10, "pointer": [320 + aside * k, 240]} for k in range(20)]
+        events += [{"at": start + 3.9, "release": "left"}, {"at": start + 4, "key": "s"},
+                   {"at": start + 4.8, "key_up": "s"}]
+    return {"frames_per_s": frames_per_s, "end": seconds, "events": events}
+
+
+def dragging(seconds, frames_per_s):
+    """A point lamp under the ceiling of the Cornell box, to and fro."""
+    events = [{"at": 0, "material": "light", "radiance": [0, 0, 0]},
+              {"at": 0, "new_lamp": "point", "to": [0.1, 0.45, 0.3], "intensity": [0.07, 0.06, 0.05]}]
+    for frame in range(1, int(seconds * frames_per_s)):
+        aside = abs(frame % 40 - 20) / 20
+        events.append({"at": frame / frames_per_s, "lamp": 0, "to": [0.1 + 0.35 * aside, 0.45, 0.3]})
+    return {"frames_per_s": frames_per_s, "end": seconds, "events": events}
+
+
+def row_of(what, frames, stands):
+    """`frames`: rows of --frame-times as dictionaries."""
+    times = sorted(float(frame["milliseconds"]) for frame in frames)
+    jumps = [abs(float(b["brightness"]) / float(a["brightness"]) - 1)
+             for a, b in zip(frames, frames[1:]) if stands and a["has_light"] == "1"]
+    return [what, len(times), f"{times[len(times) // 2]:.0f}", f"{times[len(times) * 95 // 100]:.0f}",
+            f"{100 * sum(time < 150 for time in times) / len(times):.1f}",
+            f"{100 * max(jumps):.2f}" if stands else "-"]
+
+
+def run(*arguments):
+    subprocess.run([str(a) for a in arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def measure(bin, folder):
+    """Yields the rows."""
+    def played(what, play, subject, *options, stands=False):
+        (folder / "play.json").write_text(json.dumps(play), encoding="utf-8")
+        run("xvfb-run", "-a", "-s", "-screen 0 1280x800x24", bin / "luxel-view", subject, *options, "--size", SIZE,
+            "--play", folder / "play.json", "--frame-times", folder / "frames.csv")
+        with open(folder / "frames.csv", newline="", encoding="utf-8") as file:
+            return row_of(what, list(csv.DictReader(file)), stands)
+
+    root = pathlib.Path(__file__).parents[1]
+    office, box = root / "scenes/office.glb", root / "scenes/cornell-box.glb"
+    run(bin / "luxel", "bake", office, "-o", folder / "office", "--resolution", "256", "--samples", "64")
+    for kind in KINDS:
+        yield played(f"office.glb baked: {kind}", turning(4, 20, [{"show": kind}]), folder / "office")
+    rooms = [(office, [])] + ([(ROOM, ["--sky", "135,45"])] if ROOM.exists() else [])
+    for scene, sky in rooms:
+        yield played(f"{scene.name} while it is baked: walking", walking(60, 10), scene, *sky)
+        stand = {"frames_per_s": 10, "end": 20, "events": []}
+        yield played(f"{scene.name} while it is baked: standing", stand, scene, *sky, stands=True)
+    run(bin / "luxel", "relight", box, "-o", folder / "box.lxr")
+    yield played("cornell-box.lxr: a lamp is dragged", dragging(10, 20), folder / "box.lxr")
+
+
+def self_test():
+    frames = [{"milliseconds": str(m), "brightness": b, "has_light": l}
+              for m, b, l in ((100, "0.9", "0"), (50, "0.5", "1"), (200, "0.51", "1"), (60, "0.51", "1"))]
+    assert row_of("x", frames, True) == ["x", 4, "100", "200", "75.0", "2.00"], row_of("x", frames, True)
+    assert row_of("x", frames, False)[5] == "-"
+    for play in (turning(4, 20), walking(60, 10), dragging(10, 20)):
+        times = [event["at"] for event in play["events"]]
+        assert times == sorted(times) and times[-1] <= play["end"]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("bin", nargs="?", type=pathlib.Path)
+    parser.add_argument("--self-test", action="store_true")
+    options = parser.parse_args()
+    if options.self_test:
+        return self_test()
+    if not options.bin:
+        parser.error("the folder of luxel and luxel-view is needed")
+    table = csv.writer(sys.stdout, lineterminator="\n")
+    table.writerow(["play", "frames", "median [ms]", "95th percentile [ms]", "under 150 ms [%]",
+                    "largest change of brightness [%]"])
+    with tempfile.TemporaryDirectory() as folder:
+        for row in measure(options.bin.resolve(), pathlib.Path(folder)):
+            table.writerow(row)
+            sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()

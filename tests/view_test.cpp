@@ -214,11 +214,14 @@ TEST(View, AWindowShowsWhatIsDrawnWithoutOne) {
   const auto shot = [&](const std::string& name) {
     return " --size 200x150 --play " + play + " --screenshot " + (s.path / name).string();
   };
+  const std::string state = (s.path / "state").string();
   const CommandResult window =
       view(bake + shot("window.png"),
-           "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
+           "XDG_STATE_HOME=" + state +
+               " VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
   ASSERT_EQ(window.code, 0) << window.err;
   EXPECT_EQ(window.out + window.err, "") << "the validation layer has nothing to say";
+  EXPECT_FALSE(std::filesystem::exists(state)) << "a play is not remembered";
   ASSERT_EQ(view(bake + shot("without.png") + " --offscreen").code, 0);
   EXPECT_EQ(slurp(s.path / "window.png"), slurp(s.path / "without.png"));
 }

@@ -3,10 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <new>
 
 #include "apps/cli/cli.h"
 #include "luxel/pipeline/settings/version.h"
@@ -87,11 +89,23 @@ void keep_standard_streams() {
 constexpr const char* kNoMemory =
     "out of memory; lower --resolution or --samples, or set --max-memory";
 
+/// Whether an allocation has ever failed.
+std::atomic<bool>& memory_has_ended() {
+  static constinit std::atomic<bool> has_ended{false};
+  return has_ended;
+}
+void note_end_of_memory() {
+  memory_has_ended() = true;
+  throw std::bad_alloc();
+}
+
 /// Memory that ends where no exception can be passed on, as in a library's noexcept function: the
 /// sentence and the code are those of main(). Anything else is a fault, and leaves its trace.
+/// Where such a function was inlined, GCC 12 does not make its exception the current one.
 [[noreturn]] void end_without_memory() {
   try {
     if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+    if (std::uncaught_exceptions() > 0 && memory_has_ended()) throw std::bad_alloc();
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "luxel: %s\n", kNoMemory);
     std::_Exit(luxel::cli::kOutOfResource);
@@ -106,6 +120,7 @@ constexpr const char* kNoMemory =
 
 int main(int argc, char** argv) {
   keep_standard_streams();
+  std::set_new_handler(note_end_of_memory);
   std::set_terminate(end_without_memory);
   luxel::cli::say_when_the_stack_overflows(wants_json(argc, argv));
   // A limit on the size of files is an error of the write like any other.

@@ -110,8 +110,8 @@ class ImGuiUi : public Ui {
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
-    lay_out_panel(panel);
-    if (panel.keys_open) lay_out_keys(panel);
+    const float right = lay_out_panel(panel);
+    if (panel.keys_open) lay_out_keys(right, panel);
     ImGui::Render();
   }
 
@@ -133,7 +133,8 @@ class ImGuiUi : public Ui {
     is_light_ = is_light;
   }
 
-  static void lay_out_panel(Panel& panel) {
+  /// Returns where its right edge is.
+  static float lay_out_panel(Panel& panel) {
     ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
     ImGui::Begin(panel.title.c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::TextUnformatted(panel.about.c_str());
@@ -159,7 +160,9 @@ class ImGuiUi : public Ui {
     if (ImGui::Button("keys (F1)")) panel.keys_open = !panel.keys_open;
     ImGui::SameLine();
     ImGui::Checkbox("light theme", &panel.is_light);
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowSize().x;
     ImGui::End();
+    return right;
   }
 
   /// A button for each that there is.
@@ -205,9 +208,8 @@ class ImGuiUi : public Ui {
     ImGui::Separator();
   }
 
-  static void lay_out_keys(Panel& panel) {
-    const float beside_panel = ImGui::GetFontSize() * 20;
-    ImGui::SetNextWindowPos({beside_panel, 10}, ImGuiCond_FirstUseEver);
+  static void lay_out_keys(float left, Panel& panel) {
+    ImGui::SetNextWindowPos({left, 10}, ImGuiCond_Appearing);
     ImGui::Begin("keys", &panel.keys_open, ImGuiWindowFlags_AlwaysAutoResize);
     if (ImGui::BeginTable("keys", 2)) {
       for (const KeyLine& line : panel.keys) {

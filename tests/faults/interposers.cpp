@@ -188,13 +188,23 @@ int open(const char* path, int flags, ...) {
 
 }  // extern "C"
 
+namespace {
+
+/// As the C++ library's own: the program's handler is asked for memory, and here has none.
+[[noreturn]] void end_of_memory() {
+  if (const std::new_handler handler = std::get_new_handler()) handler();
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
 void* operator new(size_t bytes) {
   if (void* memory = allocated(bytes, 0)) return memory;
-  throw std::bad_alloc();
+  end_of_memory();
 }
 void* operator new(size_t bytes, std::align_val_t alignment) {
   if (void* memory = allocated(bytes, size_t(alignment))) return memory;
-  throw std::bad_alloc();
+  end_of_memory();
 }
 void* operator new(size_t bytes, const std::nothrow_t&) noexcept { return allocated(bytes, 0); }
 void* operator new[](size_t bytes) { return operator new(bytes); }

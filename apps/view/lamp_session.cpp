@@ -47,7 +47,7 @@ LampLine line_of(const view::Glow& glow) {
   return out;
 }
 
-/// Of what can be chosen: materials that glow now, or did when they were baked.
+/// The materials that can be chosen: those that glow now, or did when they were baked.
 std::vector<uint32_t> glows_shown(const LampSession& session) {
   std::vector<uint32_t> out;
   for (uint32_t m = 0; m < session.desk.lamps.glows.size(); ++m)

@@ -151,7 +151,7 @@ void Progress::clean_up() const {
 }
 
 void Progress::set_paused(bool is_paused) {
-  // Nobody holds work that was asked to stop.
+  // Work that was asked to stop is not held.
   if (is_paused && cancelled_.load(std::memory_order_relaxed)) return;
   is_paused_.store(is_paused, std::memory_order_relaxed);
   is_paused_.notify_all();

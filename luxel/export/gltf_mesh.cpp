@@ -11,14 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-template <class T>
-std::vector<T> picked(const std::vector<T>& values, std::span<const uint32_t> source) {
-  std::vector<T> out;
-  out.reserve(source.size());
-  for (const uint32_t i : source) out.push_back(values[i]);
-  return out;
-}
-
 bool needs_uv_set(const scene::Material& m, int set) {
   for (const scene::TextureRef* ref : scene::textures_of(m))
     if (ref->texture != scene::kNone && (ref->uv_set == 1) == (set == 1)) return true;

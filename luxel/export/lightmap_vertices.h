@@ -45,4 +45,14 @@ class VertexSplitter {
   std::vector<uint32_t> first_, next_;
 };
 
+/// The values of a mesh at those vertices; none where it has none.
+template <class T>
+std::vector<T> picked(const std::vector<T>& values, std::span<const uint32_t> source) {
+  std::vector<T> out;
+  if (values.empty()) return out;
+  out.reserve(source.size());
+  for (const uint32_t i : source) out.push_back(values[i]);
+  return out;
+}
+
 }  // namespace luxel::export_

@@ -7,15 +7,6 @@
 namespace luxel::view {
 namespace {
 
-template <class T>
-std::vector<T> at_sources(const std::vector<T>& values, std::span<const uint32_t> source) {
-  std::vector<T> out;
-  if (values.empty()) return out;
-  out.reserve(source.size());
-  for (const uint32_t i : source) out.push_back(values[i]);
-  return out;
-}
-
 /// Numbers the versions of materials by page.
 class Versions {
  public:
@@ -51,10 +42,11 @@ scene::Mesh lit_mesh(const scene::Mesh& mesh, const export_::LightmapCoordinates
       corners[c] = splitter.vertex(vertices, mesh.triangles[t][c], places.uv[t][c]);
     out.triangle_material.push_back(versions.of(mesh.triangle_material[t], places.page[t]));
   }
-  out.positions = at_sources(mesh.positions, vertices.source);
-  out.normals = at_sources(mesh.normals, vertices.source);
-  out.uv0 = at_sources(mesh.uv0, vertices.source), out.uv1 = at_sources(mesh.uv1, vertices.source);
-  out.colors = at_sources(mesh.colors, vertices.source);
+  out.positions = export_::picked(mesh.positions, vertices.source);
+  out.normals = export_::picked(mesh.normals, vertices.source);
+  out.uv0 = export_::picked(mesh.uv0, vertices.source),
+  out.uv1 = export_::picked(mesh.uv1, vertices.source);
+  out.colors = export_::picked(mesh.colors, vertices.source);
   light_uv = std::move(vertices.lightmap);
   return out;
 }

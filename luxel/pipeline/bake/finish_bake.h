@@ -18,7 +18,7 @@ Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer
 Status add_directions(const BakeSettings& settings, const light::TexelScene& input, Bake& bake,
                       Progress& progress);
 
-/// Of a picture whose camera leaves its shape to it.
+/// The shape of a picture whose camera leaves it open.
 inline constexpr float kPreviewAspect = 4.0f / 3;
 /// Width and height of preview.png [pixels].
 std::pair<int, int> preview_size(const scene::Camera& camera);

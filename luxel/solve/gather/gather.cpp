@@ -8,6 +8,7 @@
 #include "luxel/solve/gather/bounce/radiosity_map.h"
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/partial_light.h"
+#include "luxel/solve/gather/rays/tile_hits.h"
 #include "luxel/solve/gather/reuse/earlier.h"
 #include "luxel/solve/gather/steps.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
@@ -99,7 +100,7 @@ Status trace_first(const Request& in, Progressive& light, Progress& progress) {
                                ? in.observer.guess(light.direct.irradiance)
                                : with_ambient(in.scene.elements, light.direct.irradiance);
   in.observer.on_estimate({.irradiance = guess, .direct = light.direct.irradiance, .share = 0});
-  TileQueue queue((n + kTileElements - 1) / kTileElements);
+  TileQueue queue(tile_count(light.hits));
   PartialLight partial(in, light, std::move(guess), queue);
   const TileWatch watch{&queue,
                         [&](size_t first, const HitTile& hits) { partial.take(first, hits); }};

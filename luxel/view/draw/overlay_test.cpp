@@ -10,12 +10,11 @@
 #include "luxel/image/false_color.h"
 #include "luxel/trace/camera_rays.h"
 #include "luxel/trace/ray_tracer.h"
-#include "luxel/view/draw/painter.h"
+#include "luxel/view/draw/device_test_support.h"
 
 namespace luxel::view {
 namespace {
 
-using ::testing::IsEmpty;
 using Shown8 = image::Color8;
 
 constexpr int kPixels = 128;
@@ -55,29 +54,8 @@ scene::Camera before_the_square(float yaw_rad = 0) {
   return camera;
 }
 
-class OverlayTest : public ::testing::Test {
+class OverlayTest : public testing::OnDevice {
  protected:
-  void SetUp() override {
-    gpu::DeviceParams params;
-    params.validate = true;
-    auto opened = gpu::Device::open(params);
-    if (!opened) GTEST_SKIP() << opened.error().message;
-    device_ = std::move(*opened);
-    auto commands = gpu::Commands::make(*device_);
-    ASSERT_TRUE(commands) << commands.error().message;
-    commands_.emplace(std::move(*commands));
-    auto shaders = make_shaders(*device_);
-    ASSERT_TRUE(shaders) << shaders.error().message;
-    shaders_.emplace(std::move(*shaders));
-  }
-  void TearDown() override {
-    shaders_.reset();
-    commands_.reset();
-    if (device_) {
-      EXPECT_THAT(device_->messages(), IsEmpty());
-    }
-  }
-
   image::Image8 picture_of(const LookedAt& at, const Frame& frame, const Look& look) {
     const auto scene = put_on_device(*commands_, at.scene, at.lightmaps);
     if (!scene) ADD_FAILURE() << scene.error().message;
@@ -93,10 +71,6 @@ class OverlayTest : public ::testing::Test {
   image::Image8 picture_of(const LookedAt& at, const Frame& frame) {
     return picture_of(at, frame, look_at(at.scene, at.lightmaps));
   }
-
-  std::unique_ptr<gpu::Device> device_;
-  std::optional<gpu::Commands> commands_;
-  std::optional<Shaders> shaders_;
 };
 
 Shown8 pixel_of(const image::Image8& picture, int x, int y) {

@@ -9,13 +9,11 @@
 #include "luxel/trace/camera_rays.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/view/draw/beside.h"
-#include "luxel/view/draw/painter.h"
+#include "luxel/view/draw/device_test_support.h"
 #include "luxel/view/draw/put_layers.h"
 
 namespace luxel::view {
 namespace {
-
-using ::testing::IsEmpty;
 
 constexpr uint32_t kSide = 64;
 
@@ -49,29 +47,8 @@ scene::Camera camera_at(float from) {
   return camera;
 }
 
-class PainterTest : public ::testing::Test {
+class PainterTest : public testing::OnDevice {
  protected:
-  void SetUp() override {
-    gpu::DeviceParams params;
-    params.validate = true;
-    auto opened = gpu::Device::open(params);
-    if (!opened) GTEST_SKIP() << opened.error().message;
-    device_ = std::move(*opened);
-    auto commands = gpu::Commands::make(*device_);
-    ASSERT_TRUE(commands) << commands.error().message;
-    commands_.emplace(std::move(*commands));
-    auto shaders = make_shaders(*device_);
-    ASSERT_TRUE(shaders) << shaders.error().message;
-    shaders_.emplace(std::move(*shaders));
-  }
-  void TearDown() override {
-    shaders_.reset();
-    commands_.reset();
-    if (device_) {
-      EXPECT_THAT(device_->messages(), IsEmpty());
-    }
-  }
-
   /// The radiance of a picture of kSide x kSide pixels.
   image::Image picture_of(const LitSquare& lit, const Frame& frame) {
     const auto scene = put_on_device(*commands_, lit.scene, lit.lightmaps);
@@ -85,10 +62,6 @@ class PainterTest : public ::testing::Test {
   Rgb middle_of(const LitSquare& lit, const Frame& frame) {
     return picture_of(lit, frame).rgb(kSide / 2, kSide / 2);
   }
-
-  std::unique_ptr<gpu::Device> device_;
-  std::optional<gpu::Commands> commands_;
-  std::optional<Shaders> shaders_;
 };
 
 /// Halves have 11 bits.

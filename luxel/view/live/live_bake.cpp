@@ -26,7 +26,7 @@ namespace {
 
 /// The picture whose exposure is chosen: as large as it must be for percentiles of luminance.
 constexpr int kSmallWidth = 128, kSmallHeight = 96;
-/// Of the picture whose texels come first; only its shape counts.
+/// The height of the picture whose texels come first; only its shape counts.
 constexpr int kViewHeight = 1000;
 
 Result<std::shared_ptr<const ReadScene>> read_scene(const scene::Scene& scene,

@@ -78,7 +78,8 @@ struct GlowChanged {
   std::string material;
   Rgb radiance{};
 };
-/// Of a play: what comes after it is played when the bake has ended and its light is shown.
+/// A play stands still here: what comes after it is played when the bake has ended and its light is
+/// shown.
 struct WaitForBake {};
 using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
                            LampAdded, GlowChanged, ShowChanged, RangeChanged, ChannelChanged,

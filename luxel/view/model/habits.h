@@ -17,7 +17,7 @@ struct LastView {
   scene::Camera first, last;
 };
 
-/// Of one scene, bake or .lxr file.
+/// What is remembered of one scene, bake or .lxr file.
 struct SubjectHabits {
   std::string path;  ///< absolute
   std::optional<LastView> view;

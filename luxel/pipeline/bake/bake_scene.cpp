@@ -179,6 +179,8 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
     observer = observer_of(watcher, input);
   else if (!looks_at_places(settings))
     observer.on_traced = [&] { transport::drop_places(ready.elements); };
+  hemicube::Observer inside;
+  if (watcher.hemicube) inside = watcher.hemicube(input), observer.hemicube = &inside;
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
   std::vector<uint32_t> regions;
   if (settings.repair_leaks) {
@@ -246,6 +248,7 @@ Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& asked, Progress&
   LUXEL_TRY(bake.warnings, scene::validate(bake.scene, "scene '" + bake.scene.name + "'"));
   LUXEL_TRY(const std::vector<std::string> light, add_outside_light(settings.outside, bake.scene));
   bake.warnings.insert(bake.warnings.end(), light.begin(), light.end());
+  if (watcher.on_read) watcher.on_read(bake.scene);
   LUXEL_TRY_STATUS(bake_in_time(settings, {}, watcher, bake, progress));
   return bake;
 }

@@ -59,7 +59,8 @@ TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution&
 }
 
 Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSettings& settings,
-                                  const SolveStores&, const SolveObserver&, Progress& progress) {
+                                  const SolveStores&, const SolveObserver& observer,
+                                  Progress& progress) {
   hemicube::HemicubeParams params = settings.own.of<hemicube::HemicubeParams>();
   params.direct_samples = std::min(kShadowRaysPerSample * settings.direct_samples, kMostShadowRays);
   params.bounces = settings.bounces, params.seed = settings.seed;
@@ -69,7 +70,8 @@ Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSetting
   params.row_memory_bytes = memory - pixels;
   params.scratch_folder = nearest_folder(settings.output);
   LUXEL_TRY(const hemicube::Solution solution,
-            hemicube::solve(in.scene, in.lights, in.tracer, params, progress));
+            hemicube::solve(in.scene, in.lights, in.tracer, params, progress,
+                            observer.hemicube ? *observer.hemicube : hemicube::Observer{}));
   const float cover_size_m =
       transport::size_for_covers(in.scene, in.tracer, solution.element_size_m);
   TexelLight out = texel_light_of(in, solution, cover_size_m);

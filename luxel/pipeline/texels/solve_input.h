@@ -13,6 +13,7 @@
 #include "luxel/light/light_layers.h"
 #include "luxel/light/texel_scene.h"
 #include "luxel/scene/scene.h"
+#include "luxel/solve/hemicube/observer.h"
 
 namespace luxel::pipeline {
 
@@ -30,6 +31,8 @@ struct SolveObserver {
   /// With on_estimate: GatherObserver::guess and GatherObserver::is_watched.
   std::function<std::vector<Rgb>(std::span<const Rgb> direct)> guess{};
   std::function<bool(size_t element)> is_watched{};
+  /// Who watches hemicube; null: nobody.
+  const hemicube::Observer* hemicube = nullptr;
   /// Called, or not, when the solver looks at no place of an element any more: they take memory.
   std::function<void()> on_traced{};
 };

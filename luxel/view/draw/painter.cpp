@@ -139,7 +139,9 @@ void draw_marks(const gpu::Device& device, VkCommandBuffer commands, const Canva
 
 void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
                    SurfacePush push) {
-  const auto& [shaders, painter, scene, overlay] = canvas;
+  const Shaders& shaders = canvas.shaders;
+  const Painter& painter = canvas.painter;
+  const DeviceScene& scene = canvas.scene;
   device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   push.vertices = scene.vertices.address;
   push.materials = scene.materials.address;
@@ -194,6 +196,8 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
   LUXEL_TRY(out.beside, gpu::make_draw_pipeline(device, beside_params()));
   LUXEL_TRY(out.overlay, make_overlay_shader(device, kExposed, kSamples));
   LUXEL_TRY(out.mark, gpu::make_draw_pipeline(device, mark_params()));
+  LUXEL_TRY(out.technique, make_technique_shaders(device, kExposed, kSamples));
+  LUXEL_TRY(out.inset, make_inset_shader(device, kShown));
   return out;
 }
 
@@ -216,10 +220,14 @@ Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
 
 void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
            const Frame& frame) {
-  const auto& [shaders, painter, scene, overlay] = canvas;
+  const Shaders& shaders = canvas.shaders;
+  const Painter& painter = canvas.painter;
+  const DeviceScene& scene = canvas.scene;
+  const Overlay* overlay = canvas.overlay;
   const gpu::TargetParams& size = painter.exposed.params;
   const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
   const bool has_overlay = overlay != nullptr && looks_into_bake(frame.show);
+  const bool has_technique = canvas.techniques != nullptr && frame.technique;
   SurfacePush surface{};
   surface.clip_from_world = clip_from_world(camera, scene.bounds);
   surface.exposure = frame.exposure, surface.show = uint32_t(frame.show);
@@ -228,6 +236,9 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
   if (has_overlay)
     draw_overlay(device, commands, shaders.overlay, *overlay, scene, surface.clip_from_world);
+  else if (has_technique)
+    draw_technique(device, commands, shaders.technique, *canvas.techniques, scene,
+                   {surface.clip_from_world, painter.materials.sets}, frame);
   else
     draw_surfaces(device, commands, canvas, surface);
   const BehindPush behind = behind_of(camera, scene, frame, has_overlay);
@@ -237,12 +248,16 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   gpu::end_drawing(device, commands, painter.exposed, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
   gpu::begin_drawing(device, commands, painter.shown, {0, 0, 0, 1});
-  const bool is_light = frame.show != Show::colour && !(has_overlay && shows_colors(frame.show));
+  const bool is_light = has_technique ? view::is_light(*frame.technique)
+                                      : frame.show != Show::colour &&
+                                            !(has_overlay && shows_colors(frame.show));
   const ScreenPush screen{uint32_t(is_light ? frame.curve : display::ToneMap::clamp)};
   gpu::bind(device, commands, shaders.screen, screen);
   gpu::bind_set(device, commands, shaders.screen, painter.to_screen.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
   draw_marks(device, commands, canvas, frame.marks);
+  if (canvas.inset)
+    draw_inset(device, commands, shaders.inset, *canvas.inset, size.width, size.height);
   gpu::end_drawing(device, commands, painter.shown, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   gpu::change_layout(device, commands, painter.exposed.picture,
                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,

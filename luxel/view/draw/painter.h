@@ -6,7 +6,9 @@
 #include "luxel/image/codec.h"
 #include "luxel/image/image.h"
 #include "luxel/view/draw/device_scene.h"
+#include "luxel/view/draw/inset.h"
 #include "luxel/view/draw/overlay.h"
+#include "luxel/view/draw/technique_drawing.h"
 #include "luxel/view/frame.h"
 
 namespace luxel::view {
@@ -14,7 +16,8 @@ namespace luxel::view {
 /// The shaders of all pictures.
 struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
-  gpu::Pipeline overlay, beside;
+  gpu::Pipeline overlay, beside, inset;
+  TechniqueShaders technique;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
@@ -36,6 +39,8 @@ struct Canvas {
   const Painter& painter;
   const DeviceScene& scene;
   const Overlay* overlay = nullptr;  ///< without one no frame looks into the bake
+  const DeviceTechniques* techniques = nullptr;  ///< drawn instead of the scene's surfaces
+  const DeviceInset* inset = nullptr;            ///< over the picture
 };
 
 /// Records the drawing of a frame; the painter's `shown` is then in the layout

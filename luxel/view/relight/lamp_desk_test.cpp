@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "luxel/trace/camera_rays.h"
+#include "luxel/view/model/projection.h"
 
 namespace luxel::view {
 namespace {

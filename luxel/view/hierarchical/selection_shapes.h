@@ -17,24 +17,25 @@ struct Area {
 };
 
 /// What is drawn over a picture of the scene.
-struct Shapes {
+struct SelectionShapes {
   std::vector<display::Line> lines;
   std::vector<Area> areas;
 };
 
 /// An element's outline, yellow, and those of the four parts below it, grey; a cluster's box. With
 /// the links that end there: white where all is visible, green where something stands between.
-void add_node(const SolutionView& view, uint32_t id, Shapes& out);
+void add_node(const SolutionView& view, uint32_t id, SelectionShapes& out);
 /// Its ends yellow and blue; the link as add_node() has it; of elements the shaft, grey, and the
 /// blockers in it, red.
-void add_link(const SolutionView& view, const LinkNumber& link, Shapes& out);
+void add_link(const SolutionView& view, const LinkNumber& link, SelectionShapes& out);
 /// Its outline, yellow.
-void add_triangle(const SolutionView& view, uint32_t triangle, Shapes& out);
+void add_triangle(const SolutionView& view, uint32_t triangle, SelectionShapes& out);
 /// The line itself violet; its source yellow, its blocker red, its receiver blue; and the corner or
 /// the edge of each that makes it, with the rays from there to both ends of the line.
-void add_discontinuity(const SolutionView& view, const DiscontinuityFacts& facts, Shapes& out);
+void add_discontinuity(const SolutionView& view, const DiscontinuityFacts& facts,
+                       SelectionShapes& out);
 /// What of each source is seen white, the rest violet; the rays from the point to its outline.
-void add_backprojection(const BackprojectionProbe& probe, Shapes& out);
+void add_backprojection(const BackprojectionProbe& probe, SelectionShapes& out);
 
 /// The edges of the convex hull of two convex polygons that lead from one to the other: the sides
 /// of their shaft. [Haines94]

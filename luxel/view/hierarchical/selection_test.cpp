@@ -90,7 +90,7 @@ TEST(SelectedLink, HasTheBlockersOfItsShaft) {
       if (facts.is_far || facts.visible >= 1) continue;
       EXPECT_THAT(facts.blockers, Contains(screen));
       EXPECT_THAT(lines_of(facts, ""), Contains(HasSubstr("1 face in its shaft")));
-      Shapes shapes;
+      SelectionShapes shapes;
       add_link(view, {id, k}, shapes);
       const auto red = std::count_if(shapes.lines.begin(), shapes.lines.end(), [](const auto& l) {
         return l.color.x > 0.9f && l.color.y < 0.3f;

@@ -139,10 +139,10 @@ class ImGuiUi : public Ui {
     ImGui::Begin(panel.title.c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::TextUnformatted(panel.about.c_str());
     if (panel.bake) lay_out_bake(*panel.bake);
-    ImGui::RadioButton("light and colour", &panel.show, 0);
-    ImGui::RadioButton("light", &panel.show, 1);
-    ImGui::RadioButton("colour", &panel.show, 2);
-    lay_out_look(panel.look);
+    if (panel.hemicube)
+      lay_out_hemicube(*panel.hemicube);
+    else
+      lay_out_shows(panel);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
     ImGui::SliderFloat("exposure", &panel.stops, -8, 8, "%+.1f stops");
     if (!panel.views.empty() && ImGui::CollapsingHeader("views of the file"))
@@ -163,6 +163,13 @@ class ImGuiUi : public Ui {
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowSize().x;
     ImGui::End();
     return right;
+  }
+
+  static void lay_out_shows(Panel& panel) {
+    ImGui::RadioButton("light and colour", &panel.show, 0);
+    ImGui::RadioButton("light", &panel.show, 1);
+    ImGui::RadioButton("colour", &panel.show, 2);
+    lay_out_look(panel.look);
   }
 
   /// A button for each that there is.

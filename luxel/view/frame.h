@@ -92,7 +92,7 @@ struct Frame {
   std::vector<LayerSetting> layers;      ///< those that are not as they were baked
   std::optional<Beside> beside;          ///< where there is a second bake
   std::vector<Mark> marks;               ///< over the picture, the last one uppermost
-  std::optional<Technique> technique;    ///< of Canvas::techniques, where there are any
+  std::optional<Technique> technique;    ///< of Additions::techniques, where there are any
 };
 
 }  // namespace luxel::view

@@ -1,4 +1,5 @@
-// How surfaces are drawn in the workshop of local illumination and hemicube radiosity. [Rodriguez06]
+// How surfaces are drawn in the workshop of local illumination and hemicube radiosity.
+// [Rodriguez06]
 #pragma once
 
 #include <array>

@@ -5,13 +5,13 @@
 
 namespace luxel::hemicube {
 
-/// What a pixel sees. Backs of one-sided surfaces are black, and so is what lies below the element's
-/// own triangle.
+/// What a pixel sees. Backs of one-sided surfaces are black, and so is what lies below the
+/// element's own triangle.
 enum class SeenKind : uint8_t { surface, back, surroundings, below };
 
 struct Item {
   SeenKind kind = SeenKind::below;
-  MeshPoint at;            ///< of a surface or a back
+  MeshPoint at;              ///< of a surface or a back
   bool from_behind = false;  ///< the back of a two-sided surface
 };
 

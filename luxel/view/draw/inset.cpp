@@ -45,9 +45,9 @@ void draw_inset(const gpu::Device& device, VkCommandBuffer commands, const gpu::
   const auto begin = [](uint32_t size, uint32_t room) {
     return room > size + kInsetMargin ? room - size - kInsetMargin : 0;
   };
-  InsetPush push{inset.pixels.address,       begin(inset.width, width),
-                 begin(inset.height, height), inset.width,
-                 inset.height,                {float(width), float(height)}};
+  InsetPush push{
+      inset.pixels.address, begin(inset.width, width),    begin(inset.height, height), inset.width,
+      inset.height,         {float(width), float(height)}};
   gpu::bind(device, commands, shader, push);
   device.vk.vkCmdDraw(commands, 6, 1, 0, 0);
 }

@@ -227,7 +227,8 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   const gpu::TargetParams& size = painter.exposed.params;
   const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
   const bool has_overlay = overlay != nullptr && looks_into_bake(frame.show);
-  const bool has_technique = canvas.techniques != nullptr && frame.technique;
+  const Additions* additions = canvas.additions;
+  const bool has_technique = additions && additions->techniques && frame.technique;
   SurfacePush surface{};
   surface.clip_from_world = clip_from_world(camera, scene.bounds);
   surface.exposure = frame.exposure, surface.show = uint32_t(frame.show);
@@ -237,7 +238,7 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   if (has_overlay)
     draw_overlay(device, commands, shaders.overlay, *overlay, scene, surface.clip_from_world);
   else if (has_technique)
-    draw_technique(device, commands, shaders.technique, *canvas.techniques, scene,
+    draw_technique(device, commands, shaders.technique, *additions->techniques, scene,
                    {surface.clip_from_world, painter.materials.sets}, frame);
   else
     draw_surfaces(device, commands, canvas, surface);
@@ -256,8 +257,8 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   gpu::bind_set(device, commands, shaders.screen, painter.to_screen.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
   draw_marks(device, commands, canvas, frame.marks);
-  if (canvas.inset)
-    draw_inset(device, commands, shaders.inset, *canvas.inset, size.width, size.height);
+  if (additions && additions->inset)
+    draw_inset(device, commands, shaders.inset, *additions->inset, size.width, size.height);
   gpu::end_drawing(device, commands, painter.shown, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   gpu::change_layout(device, commands, painter.exposed.picture,
                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,

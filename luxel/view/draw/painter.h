@@ -33,14 +33,19 @@ struct Painter {
 Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
                              const DeviceScene& scene, uint32_t width, uint32_t height);
 
+/// What is drawn instead of a scene's surfaces, and after all of them.
+struct Additions {
+  std::optional<DeviceTechniques> techniques;  ///< instead, where Frame::technique says so
+  std::optional<DeviceInset> inset;            ///< over the picture
+};
+
 /// What a picture is drawn with and of. All of it must live until it is drawn.
 struct Canvas {
   const Shaders& shaders;
   const Painter& painter;
   const DeviceScene& scene;
   const Overlay* overlay = nullptr;  ///< without one no frame looks into the bake
-  const DeviceTechniques* techniques = nullptr;  ///< drawn instead of the scene's surfaces
-  const DeviceInset* inset = nullptr;            ///< over the picture
+  const Additions* additions = nullptr;
 };
 
 /// Records the drawing of a frame; the painter's `shown` is then in the layout

@@ -38,9 +38,8 @@ SurfaceCorners by_material(const scene::Scene& scene, std::vector<Part> parts) {
   const auto material = [&](const Part& part) {
     return scene.meshes[scene.instances[part.instance].mesh].triangle_material[part.triangle];
   };
-  std::stable_sort(parts.begin(), parts.end(), [&](const Part& a, const Part& b) {
-    return material(a) < material(b);
-  });
+  std::stable_sort(parts.begin(), parts.end(),
+                   [&](const Part& a, const Part& b) { return material(a) < material(b); });
   SurfaceCorners out;
   out.corners.reserve(3 * parts.size());
   for (const Part& part : parts) {

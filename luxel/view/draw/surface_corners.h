@@ -8,11 +8,12 @@
 
 namespace luxel::view {
 
-/// A corner of a drawn triangle, in the world; shaders/technique.glsl has the same in scalar layout.
+/// A corner of a drawn triangle, in the world; shaders/technique.glsl has the same in scalar
+/// layout.
 struct SurfaceCorner {
   Vec3 position, normal;  ///< [m]; the shading normal, on the side of the front
   Vec2 uv0, uv1;
-  Rgb color{1, 1, 1};  ///< of the vertex
+  Rgb color{1, 1, 1};    ///< of the vertex
   uint32_t element = 0;  ///< whose light it has
   uint32_t item = 0;     ///< the colour that stands for its triangle: 0xbbggrr, display values
 };

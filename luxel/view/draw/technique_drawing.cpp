@@ -43,9 +43,10 @@ std::span<DeviceElement> elements_of(const DeviceTechniques& t) {
 }
 
 Result<gpu::Buffer> put_elements(const gpu::Device& device, std::span<const Rgb> reflectance) {
-  LUXEL_TRY(gpu::Buffer out,
-            gpu::make_buffer(device, std::max<size_t>(1, reflectance.size()) * sizeof(DeviceElement),
-                             gpu::Access::from_host, "the light of elements"));
+  LUXEL_TRY(
+      gpu::Buffer out,
+      gpu::make_buffer(device, std::max<size_t>(1, reflectance.size()) * sizeof(DeviceElement),
+                       gpu::Access::from_host, "the light of elements"));
   std::memset(out.mapped, 0, size_t(out.size));
   auto* elements = reinterpret_cast<DeviceElement*>(out.mapped);
   for (size_t i = 0; i < reflectance.size(); ++i) elements[i].reflectance = reflectance[i];
@@ -66,9 +67,9 @@ gpu::DrawParams technique_params(VkFormat color, VkSampleCountFlagBits samples,
                                  VkCullModeFlags cull) {
   gpu::DrawParams params;
   params.vertex = technique_vert, params.fragment = technique_frag;
-  params.interface = {sizeof(TechniquePush),
-                      std::vector<VkDescriptorType>(kLookUps,
-                                                    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER)};
+  params.interface = {
+      sizeof(TechniquePush),
+      std::vector<VkDescriptorType>(kLookUps, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER)};
   params.colors = {color};
   params.depth = VK_FORMAT_D32_SFLOAT;
   params.samples = samples;
@@ -80,8 +81,8 @@ gpu::DrawParams technique_params(VkFormat color, VkSampleCountFlagBits samples,
 Looking looking_at(const scene::Scene& lamps, const scene::Camera& camera) {
   const display::Viewer viewer(camera);
   const display::LocalLights lights = display::local_lights(lamps, camera);
-  return {viewer.eye, viewer.orthographic, viewer.back,
-          lights.ambient, lights.light, -lights.direction};
+  return {viewer.eye,     viewer.orthographic, viewer.back,
+          lights.ambient, lights.light,        -lights.direction};
 }
 
 }  // namespace
@@ -103,8 +104,7 @@ Result<DeviceTechniques> put_techniques(const gpu::Device& device, const scene::
   LUXEL_TRY(out.elements, put_elements(device, {}));
   std::vector<Highlight> highlights{{}};  // a buffer is not empty
   for (const scene::Material& m : scene.materials)
-    highlights.push_back(
-        {min(max(m.specular, Rgb{}), Rgb{1, 1, 1}), m.sharpness});
+    highlights.push_back({min(max(m.specular, Rgb{}), Rgb{1, 1, 1}), m.sharpness});
   if (highlights.size() > 1) highlights.erase(highlights.begin());
   LUXEL_TRY(out.highlights,
             gpu::buffer_with(device, std::as_bytes(std::span(highlights)), "the highlights"));

@@ -46,7 +46,7 @@ void put_irradiance(std::span<const Rgb> irradiance, DeviceTechniques& out);
 
 /// How a picture is taken.
 struct TechniqueView {
-  std::array<float, 16> clip_from_world{};  ///< column by column
+  std::array<float, 16> clip_from_world{};     ///< column by column
   std::span<const VkDescriptorSet> materials;  ///< what the scene's materials look up
 };
 /// All surfaces by frame.technique, which there is. Back faces of one-sided materials are left out

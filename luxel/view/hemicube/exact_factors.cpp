@@ -1,8 +1,8 @@
 // Form factors from an element to every triangle of the scene, past all others, in closed form.
 #include <algorithm>
 
-#include "luxel/viewfactor/point_visibility.h"
 #include "luxel/view/hemicube/vertex_report.h"
+#include "luxel/viewfactor/point_visibility.h"
 
 namespace luxel::view {
 namespace {
@@ -34,8 +34,8 @@ struct Horizon {
 Horizon horizon_of(const LightMesh& mesh, uint32_t element) {
   const transport::Elements& e = mesh.receivers.elements;
   const float diagonal_m = scene::world_bounds(mesh.in->scene).diagonal();
-  const DVec3 from = to_double(
-      trace::offset_origin(e.position[element], e.geometric_normal[element], diagonal_m));
+  const DVec3 from =
+      to_double(trace::offset_origin(e.position[element], e.geometric_normal[element], diagonal_m));
   const DVec3 normal = normalize(to_double(e.normal[element]));
   const DVec3 facet = normalize(to_double(e.geometric_normal[element]));
   return {from, normal, {{{normal, dot(normal, from)}, {facet, dot(facet, from)}}}};
@@ -96,10 +96,10 @@ Result<std::optional<std::vector<double>>> exact_factors(const LightMesh& mesh, 
     others.clear();
     for (uint32_t k = 0; k < all.size(); ++k)
       if (k != i && blockers[k].area_m2 > 0) others.push_back(k);
-    out[all[i].number] = viewfactor::visible_point_factor(horizon.from, horizon.normal, polygon,
-                                                          {blockers, others}, slack_m, casts,
-                                                          scratch)
-                             .visible;
+    out[all[i].number] =
+        viewfactor::visible_point_factor(horizon.from, horizon.normal, polygon, {blockers, others},
+                                         slack_m, casts, scratch)
+            .visible;
     progress.advance(1);
   }
   return out;

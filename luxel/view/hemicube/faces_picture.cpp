@@ -94,10 +94,14 @@ CrossPlace place_in_cross(int resolution, size_t pixel) {
   if (pixel < top) return {h + column, h + row};
   // The top's right is -x and its rows go down from +y; each side begins with the row beside it.
   switch ((pixel - top) / side) {
-    case 0: return {h - 1 - row, h + column};          // +x
-    case 1: return {h + n + row, h + n - 1 - column};  // -x
-    case 2: return {h + n - 1 - column, h - 1 - row};  // +y
-    default: return {h + column, h + n + row};         // -y
+    case 0:
+      return {h - 1 - row, h + column};  // +x
+    case 1:
+      return {h + n + row, h + n - 1 - column};  // -x
+    case 2:
+      return {h + n - 1 - column, h - 1 - row};  // +y
+    default:
+      return {h + column, h + n + row};  // -y
   }
 }
 
@@ -107,8 +111,7 @@ Image8 faces_picture(const LightMesh& mesh, const VertexReport& report, const Fa
   image::Image light(look.faces == Faces::lit ? 2 * n : 1, look.faces == Faces::lit ? 2 * n : 1, 4);
   for (size_t i = 0; i < report.items.items.size(); ++i) {
     const CrossPlace at = place_in_cross(n, i);
-    if (look.faces == Faces::lit)
-      light.set_rgb(at.x, at.y, radiance_of(mesh, report, i));
+    if (look.faces == Faces::lit) light.set_rgb(at.x, at.y, radiance_of(mesh, report, i));
     set_pixel(out, at.x, at.y, item_shown(mesh, report.items.items[i]));
   }
   if (look.faces == Faces::items) return out;

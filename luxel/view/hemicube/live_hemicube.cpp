@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "luxel/base/thread_priority.h"
 #include "luxel/display/draw.h"
 #include "luxel/display/tone_map.h"
 #include "luxel/import/import.h"
@@ -14,6 +15,7 @@
 #include "luxel/pipeline/solver/hemicube.h"
 #include "luxel/scene/merge.h"
 #include "luxel/view/hemicube/known_light.h"
+#include "luxel/view/live/bake_run.h"
 
 namespace luxel::view {
 namespace {
@@ -32,7 +34,9 @@ Result<scene::Scene> read_models(std::span<const std::filesystem::path> models,
     progress.advance(1);
     LUXEL_TRY_STATUS(stopped(progress));
   }
-  return scene::merged(scenes);
+  scene::Scene out = scene::merged(scenes);
+  LUXEL_TRY_STATUS(pipeline::add_outside_light(settings.outside, out).map([](const auto&) {}));
+  return out;
 }
 
 class HemicubeWorker : public LiveHemicube {
@@ -65,6 +69,7 @@ class HemicubeWorker : public LiveHemicube {
 
  private:
   void work() {
+    lower_priority_of_this_thread();
     const bool solved = solve() || is_solved_;
     progress_.finish();
     state_ = solved ? HemicubeState::solved : HemicubeState::failed;
@@ -80,7 +85,8 @@ class HemicubeWorker : public LiveHemicube {
     } else {
       auto scene = read_models(models_, settings_, progress_);
       if (!scene) return say(scene.error().message), false;
-      done = pipeline::bake_scene(std::move(*scene), settings_, progress_, watcher)
+      has_read(*scene);
+      done = pipeline::bake_read_scene(std::move(*scene), settings_, progress_, watcher)
                  .map([](const auto&) {});
     }
     if (!done && !is_solved_) say(done.error().message);
@@ -130,9 +136,9 @@ class HemicubeWorker : public LiveHemicube {
   }
   void has_mesh(const hemicube::Field& field) {
     if (!read_) return;
-    auto mesh = std::make_shared<const LightMesh>(
-        LightMesh{read_, field.mesh, field.receivers, hemicube::choose_emission(lights_),
-                  pipeline::hemicube_params(settings_)});
+    auto mesh = std::make_shared<const LightMesh>(LightMesh{read_, field.mesh, field.receivers,
+                                                            hemicube::choose_emission(lights_),
+                                                            pipeline::hemicube_params(settings_)});
     const std::scoped_lock lock(mutex_);
     mesh_ = mesh;
     news_.mesh = std::move(mesh);

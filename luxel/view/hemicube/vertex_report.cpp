@@ -12,8 +12,8 @@ namespace luxel::view {
 namespace {
 
 hemicube::Senders senders_of(const LightMesh& mesh) {
-  return {mesh.in->scene,          *mesh.in->tracer,           mesh.mesh, mesh.receivers,
-          mesh.emission.exact.around, mesh.emission.by_pixels};
+  return {mesh.in->scene, *mesh.in->tracer,           mesh.mesh,
+          mesh.receivers, mesh.emission.exact.around, mesh.emission.by_pixels};
 }
 
 hemicube::Viewpoint viewpoint_of(const LightMesh& mesh, uint32_t element) {
@@ -55,10 +55,17 @@ void count_missing(VertexReport& out) {
   for (size_t i = 0; i < out.items.items.size(); ++i) {
     const double factor = out.items.factor[i];
     switch (out.items.items[i].kind) {
-      case hemicube::SeenKind::surroundings: open += factor; break;
-      case hemicube::SeenKind::back: back += factor; break;
-      case hemicube::SeenKind::below: below += factor; break;
-      case hemicube::SeenKind::surface: break;
+      case hemicube::SeenKind::surroundings:
+        open += factor;
+        break;
+      case hemicube::SeenKind::back:
+        back += factor;
+        break;
+      case hemicube::SeenKind::below:
+        below += factor;
+        break;
+      case hemicube::SeenKind::surface:
+        break;
     }
   }
   out.open = float(open), out.back = float(back), out.below = float(below);

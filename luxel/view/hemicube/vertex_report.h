@@ -1,5 +1,5 @@
-// What one element of the mesh sees: its row of form factors, its hemicube's faces, and how far both
-// are from exact. [Cohen85; Rodriguez06, section 5.6]
+// What one element of the mesh sees: its row of form factors, its hemicube's faces, and how far
+// both are from exact. [Cohen85; Rodriguez06, section 5.6]
 #pragma once
 
 #include <optional>
@@ -21,16 +21,16 @@ struct ExactRow {
 struct VertexReport {
   uint32_t element = 0;
   int resolution = 0;
-  Vec3 position{};                 ///< that it looks from [m]
-  std::vector<float> row;          ///< form factors that are not 0, of the elements that are seen
-  float sum = 0;                   ///< of the row
-  float open = 0, back = 0;        ///< what is missing from 1: surroundings, backs, which are black,
-  float below = 0;                 ///< and what lies below the element's own triangle
-  Rgb irradiance{};                ///< that it gathers from the light of the mesh as it is [W/m^2]
-  Rgb direct{};                    ///< the part of it straight from lights
-  hemicube::ItemBuffer items;      ///< what each pixel sees
-  std::optional<ExactRow> exact;   ///< none where there are too many triangles, or holes in them
-  std::vector<Rgb> light;          ///< E of all elements, by which it was found
+  Vec3 position{};                ///< that it looks from [m]
+  std::vector<float> row;         ///< form factors that are not 0, of the elements that are seen
+  float sum = 0;                  ///< of the row
+  float open = 0, back = 0;       ///< what is missing from 1: surroundings, backs, which are black,
+  float below = 0;                ///< and what lies below the element's own triangle
+  Rgb irradiance{};               ///< that it gathers from the light of the mesh as it is [W/m^2]
+  Rgb direct{};                   ///< the part of it straight from lights
+  hemicube::ItemBuffer items;     ///< what each pixel sees
+  std::optional<ExactRow> exact;  ///< none where there are too many triangles, or holes in them
+  std::vector<Rgb> light;         ///< E of all elements, by which it was found
 };
 
 /// Looks from an element through a hemicube of this size: even, 2 to hemicube::kMaxResolution.

@@ -43,6 +43,10 @@ Status fade_in(const LiveLight& light, gpu::Commands& commands, ShownScene& show
 
 }  // namespace
 
+Result<DeviceScene> colours_shown(gpu::Commands& commands, const scene::Scene& scene) {
+  return without_light(commands, scene);
+}
+
 Result<ShownScene> nothing_shown(gpu::Commands& commands) {
   scene::Scene nothing;
   scene::Mesh& mesh = nothing.meshes.emplace_back();

@@ -128,16 +128,16 @@ Image8 faces_picture(const LightMesh& mesh, const VertexReport& report, const Fa
 
 std::vector<std::string> lines_of(const VertexReport& r, const std::string& unit) {
   std::vector<std::string> out;
-  out.push_back(fmt::format("element {}, {} x {} pixels", r.element, r.resolution, r.resolution));
-  out.push_back(fmt::format("sum of the row {:.5f}", r.sum));
+  out.push_back(fmt::format("element {}, {} x {}", r.element, r.resolution, r.resolution));
+  out.push_back(fmt::format("sum of row {:.5f}", r.sum));
   if (r.exact) out.push_back(fmt::format("exact sum {:.5f}", r.exact->sum));
   out.push_back(fmt::format("missing {:.5f}", 1 - r.sum));
   if (r.open > 0) out.push_back(fmt::format("  surroundings {:.5f}", r.open));
   if (r.back > 0) out.push_back(fmt::format("  backs {:.5f}", r.back));
   if (r.below > 0) out.push_back(fmt::format("  below {:.5f}", r.below));
-  if (r.exact) out.push_back(fmt::format("on wrong triangles {:.3f} %", 100 * r.exact->wrong));
+  if (r.exact) out.push_back(fmt::format("wrong triangles {:.3f} %", 100 * r.exact->wrong));
   out.push_back(fmt::format("e {:.5g} {}", luminance(r.irradiance), unit));
-  out.push_back(fmt::format("{} factors from 1e-7 on:", r.row.size()));
+  out.push_back(fmt::format("{} factors:", r.row.size()));
   return out;
 }
 

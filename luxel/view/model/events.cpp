@@ -29,7 +29,8 @@ std::optional<Button> button_of(const std::string& name) {
 bool is_key(const std::string& name) {
   const auto is_it = [&](const KeyHelp& key) { return name == key.key; };
   return bookmark_key(name) || std::any_of(std::begin(kKeys), std::end(kKeys), is_it) ||
-         std::any_of(std::begin(kLampKeys), std::end(kLampKeys), is_it);
+         std::any_of(std::begin(kLampKeys), std::end(kLampKeys), is_it) ||
+         std::any_of(std::begin(kSelectionKeys), std::end(kSelectionKeys), is_it);
 }
 
 /// Three numbers; none where one is not held. May throw json::exception.
@@ -127,10 +128,55 @@ std::optional<Event> look_event_of(const json& from) {
   return std::nullopt;
 }
 
+/// A pixel or a place of this name, or none; counts it. May throw json::exception.
+std::optional<ToolPlace> tool_place_of(const json& from, const std::string& before, size_t& known) {
+  if (const std::string name = before + "pixel"; from.contains(name)) {
+    const auto at = from[name].get<std::array<float, 2>>();
+    ++known;
+    if (!std::isfinite(at[0]) || !std::isfinite(at[1])) return std::nullopt;
+    return ToolPlace(Vec2{at[0], at[1]});
+  }
+  const std::string name = before + "place";
+  if (!from.contains(name)) return std::nullopt;
+  ++known;
+  const auto place = vec3_of(from[name]);
+  return place ? std::optional(ToolPlace(*place)) : std::nullopt;
+}
+
+/// What looks into a hierarchical solution. May throw json::exception.
+std::optional<Event> tool_event_of(const json& from) {
+  const auto tool_named = [&](const char* key) {
+    return number_of(from[key].get<std::string>(), kTools,
+                     [](const ToolName& tool) { return tool.name; });
+  };
+  if (from.contains("tool")) {
+    const auto tool = tool_named("tool");
+    return tool && from.size() == 2 ? std::optional<Event>(ToolChanged{Tool(*tool)}) : std::nullopt;
+  }
+  if (from.contains("selection")) {
+    const auto step = number_of(from["selection"].get<std::string>(), kSelectionSteps,
+                                [](const char* known) { return known; });
+    return step && from.size() == 2 ? std::optional<Event>(SelectionStepped{SelectionStep(*step)})
+                                    : std::nullopt;
+  }
+  ToolUsed out;
+  const auto tool = tool_named("use");
+  size_t known = 2;  // "at" and the tool
+  if (tool) out.tool = Tool(*tool);
+  out.at = tool_place_of(from, "", known), out.to = tool_place_of(from, "to_", known);
+  const bool needs_place = out.tool != Tool::none && out.tool != Tool::graph;
+  const bool is_whole =
+      from.size() == known && 2 + size_t(out.at.has_value()) + size_t(out.to.has_value()) == known;
+  if (!tool || !is_whole || (needs_place && !out.at) || (out.to && !out.at)) return std::nullopt;
+  return out;
+}
+
 /// One event; none where it is something else. May throw json::exception.
 std::optional<Event> event_of(const json& from) {
   for (const char* key : {"lamp", "new_lamp", "material"})
     if (from.contains(key)) return light_event_of(from);
+  for (const char* key : {"tool", "use", "selection"})
+    if (from.contains(key)) return tool_event_of(from);
   if (from.size() != 2) return std::nullopt;  // "at" and what happens
   if (from.contains("pointer")) {
     const auto at = from["pointer"].get<std::array<float, 2>>();

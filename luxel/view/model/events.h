@@ -78,12 +78,56 @@ struct GlowChanged {
   std::string material;
   Rgb radiance{};
 };
+/// With what a hierarchical solution is looked into. [Hardt96, appendices B.4.6 to B.4.10]
+enum class Tool : uint8_t {
+  none,
+  element,
+  link,
+  triangle,
+  discontinuity,
+  graph,
+  irradiance,
+  backprojection,
+};
+/// A name in files that are played, and words for it. In the order of Tool.
+struct ToolName {
+  const char *name, *words;
+};
+inline constexpr std::array<ToolName, 8> kTools{{
+    {"none", "no tool"},
+    {"element", "select an element"},
+    {"link", "select a link"},
+    {"triangle", "select a triangle"},
+    {"discontinuity", "select a discontinuity"},
+    {"graph", "graph along a line that is dragged"},
+    {"irradiance", "probe irradiance"},
+    {"backprojection", "probe what is seen of sources"},
+}};
+/// Where a tool is used: a pixel of the picture, or the place of a surface nearest to one in space.
+using ToolPlace = std::variant<Vec2, Vec3>;
+/// Clicks use another tool.
+struct ToolChanged {
+  Tool tool = Tool::none;
+};
+/// A tool is used. Without a place it is a graph across what is selected; none: nothing is selected
+/// any longer.
+struct ToolUsed {
+  Tool tool = Tool::none;
+  std::optional<ToolPlace> at, to;  ///< `to`: the end of a graph
+};
+/// What is selected becomes what holds it, its part, or another link: the next weaker one.
+enum class SelectionStep : uint8_t { up, down, next };
+inline constexpr std::array<const char*, 3> kSelectionSteps{"up", "down", "next"};
+struct SelectionStepped {
+  SelectionStep step = SelectionStep::up;
+};
 /// A play stands still here: what comes after it is played when the bake has ended and its light is
 /// shown.
 struct WaitForBake {};
-using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
-                           LampAdded, GlowChanged, ShowChanged, RangeChanged, ChannelChanged,
-                           LayerChanged, BesideChanged, SplitMoved, WaitForBake>;
+using Event =
+    std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged, LampAdded,
+                 GlowChanged, ShowChanged, RangeChanged, ChannelChanged, LayerChanged,
+                 BesideChanged, SplitMoved, ToolChanged, ToolUsed, SelectionStepped, WaitForBake>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -125,6 +169,15 @@ inline constexpr KeyHelp kLampKeys[] = {
     {"m", "hide the marks of lamps, or show them"},
 };
 
+/// Those of hierarchical solutions.
+inline constexpr KeyHelp kSelectionKeys[] = {
+    {"p", "select what holds the selected element"},
+    {"c", "select its part under the place of the click"},
+    {"n", "select the next weaker link"},
+    {"g", "graph across what is selected"},
+    {"backspace", "select nothing"},
+};
+
 struct TimedEvent {
   double at_s = 0;  ///< since the beginning
   Event event;
@@ -147,7 +200,9 @@ struct Play {
 ///       {"at": 1.9, "channel": "red"},
 ///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
 ///       {"at": 2, "beside": "difference"}, {"at": 2, "split": 0.3},
-///       {"at": 2, "wait": "bake"},
+///       {"at": 2, "tool": "link"}, {"at": 2, "use": "element", "pixel": [480, 360]},
+///       {"at": 2, "use": "graph", "place": [0, 0, 0], "to_place": [1, 0, 0]},
+///       {"at": 2, "selection": "up"}, {"at": 2, "wait": "bake"},
 ///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]}]}
 ///
 /// A range is by the logarithm where "logarithmic_range" says so.

@@ -251,21 +251,21 @@ void use_tool(const ToolUsed& used, const Walk& walk, const Examined& examined,
   follow(examined, desk);
   ++desk.changes;
   desk.said.clear();
-  if (used.tool == Tool::none) return select_nothing(desk);
-  if (used.tool == Tool::graph)
+  if (used.tool == InsideTool::none) return select_nothing(desk);
+  if (used.tool == InsideTool::graph)
     return used.at ? graph_along(used, walk, examined, desk) : graph_across(examined, desk);
-  if (used.tool == Tool::link) return select_link(*used.at, walk, examined, desk);
+  if (used.tool == InsideTool::link) return select_link(*used.at, walk, examined, desk);
   const auto at = point_of(*used.at, walk, examined);
   if (!at) {
     desk.said = "there is no surface";
     return;
   }
-  if (used.tool == Tool::element) select_element(*at, examined, desk);
-  if (used.tool == Tool::triangle) select_triangle(*at, examined, desk);
-  if (used.tool == Tool::discontinuity)
+  if (used.tool == InsideTool::element) select_element(*at, examined, desk);
+  if (used.tool == InsideTool::triangle) select_triangle(*at, examined, desk);
+  if (used.tool == InsideTool::discontinuity)
     ask_for_discontinuity(*at, nearness_of(*used.at, walk, examined), examined, desk);
-  if (used.tool == Tool::irradiance) ask_for_light(*at, examined, desk);
-  if (used.tool == Tool::backprojection) ask_for_sources(*at, examined, desk);
+  if (used.tool == InsideTool::irradiance) ask_for_light(*at, examined, desk);
+  if (used.tool == InsideTool::backprojection) ask_for_sources(*at, examined, desk);
 }
 
 bool follow(const Examined& examined, SelectionDesk& desk) {

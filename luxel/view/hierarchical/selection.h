@@ -51,7 +51,7 @@ struct Inquiries {
 
 /// All of it: tools, what they have found, and a thread that computes.
 struct SelectionDesk {
-  Tool tool = Tool::none;
+  InsideTool tool = InsideTool::none;
   Selection selected;
   Probed probed;
   Inquiries asked;

@@ -56,7 +56,7 @@ TEST(SelectionDesk, AClickSelectsAndKeysStep) {
   SelectionDesk desk;
   click(Button::left, {150, 75}, walk, desk);
   EXPECT_FALSE(desk.selected.at) << "without a tool";
-  handle_selection(ToolChanged{Tool::element}, walk, examined, desk);
+  handle_selection(ToolChanged{InsideTool::element}, walk, examined, desk);
   click(Button::left, {150, 75}, walk, desk, {20, 0});
   EXPECT_FALSE(desk.selected.at) << "that turned the camera";
   click(Button::left, {150, 75}, walk, desk, {2, 0});
@@ -71,7 +71,7 @@ TEST(SelectionDesk, AClickSelectsAndKeysStep) {
   // Up to the root and no further.
   for (int k = 0; k < 40; ++k) step_selection(SelectionStep::up, examined, desk);
   EXPECT_EQ(desk.selected.level, 0u);
-  handle_selection(KeyChanged{"backspace", true}, walk, examined, desk);
+  handle_selection(KeyChanged{"esc", true}, walk, examined, desk);
   EXPECT_FALSE(desk.selected.has_element());
 }
 
@@ -81,8 +81,8 @@ TEST(SelectionDesk, LinksComeByWhatTheyBring) {
   SelectionDesk desk;
   handle_selection(SelectionStepped{SelectionStep::next}, walk, examined, desk);
   EXPECT_THAT(desk.said, HasSubstr("select an element first"));
-  handle_selection(ToolUsed{Tool::element, ToolPlace(Vec3{1, 0.1f, 0.2f}), {}}, walk, examined,
-                   desk);
+  handle_selection(ToolUsed{InsideTool::element, ToolPlace(Vec3{1, 0.1f, 0.2f}), {}}, walk,
+                   examined, desk);
   ASSERT_TRUE(desk.selected.has_element());
   EXPECT_NEAR(desk.selected.at->position.y, 0, 1e-9);
   handle_selection(SelectionStepped{SelectionStep::next}, walk, examined, desk);
@@ -120,7 +120,7 @@ TEST(SelectionDesk, ADragIsAGraph) {
   const Walk walk = walk_above();
   const Examined examined = examined_lamp();
   SelectionDesk desk;
-  desk.tool = Tool::graph;
+  desk.tool = InsideTool::graph;
   click(Button::left, {100, 100}, walk, desk, {70, 0});
   finish(examined, desk);
   ASSERT_TRUE(desk.probed.graph);
@@ -142,7 +142,7 @@ TEST(SelectionDesk, ADiscontinuityAndTheGraphAcrossIt) {
   const Examined examined = examined_lamp();
   SelectionDesk desk;
   // The penumbra of the lamp's near edge begins at x = 0.35: pixel 85.
-  use_tool({Tool::discontinuity, ToolPlace(Vec2{86, 100}), {}}, walk, examined, desk);
+  use_tool({InsideTool::discontinuity, ToolPlace(Vec2{86, 100}), {}}, walk, examined, desk);
   finish(examined, desk);
   ASSERT_TRUE(desk.selected.discontinuity) << desk.said;
   EXPECT_NEAR(desk.selected.discontinuity->line.a.x, 0.35, 1e-4);
@@ -153,7 +153,7 @@ TEST(SelectionDesk, ADiscontinuityAndTheGraphAcrossIt) {
   EXPECT_NEAR((line.from.x + line.to.x) / 2, 0.35, 1e-4);
   EXPECT_NEAR(line.from.z, line.to.z, 1e-9);
   // No line is near there, and a sentence says so.
-  use_tool({Tool::discontinuity, ToolPlace(Vec2{190, 20}), {}}, walk, examined, desk);
+  use_tool({InsideTool::discontinuity, ToolPlace(Vec2{190, 20}), {}}, walk, examined, desk);
   finish(examined, desk);
   EXPECT_THAT(desk.said, HasSubstr("discontinuities"));
 }
@@ -162,11 +162,11 @@ TEST(SelectionDesk, AnotherSolutionIsAskedAgain) {
   const Walk walk = walk_above();
   SelectionDesk desk;
   follow(examined_lamp(1), desk);
-  use_tool({Tool::element, ToolPlace(Vec2{150, 100}), {}}, walk, examined_lamp(1), desk);
+  use_tool({InsideTool::element, ToolPlace(Vec2{150, 100}), {}}, walk, examined_lamp(1), desk);
   step_selection(SelectionStep::up, examined_lamp(1), desk);
   const uint32_t node = desk.selected.path[desk.selected.level];
-  use_tool({Tool::graph, std::nullopt, {}}, walk, examined_lamp(1), desk);
-  use_tool({Tool::irradiance, ToolPlace(Vec2{150, 100}), {}}, walk, examined_lamp(1), desk);
+  use_tool({InsideTool::graph, std::nullopt, {}}, walk, examined_lamp(1), desk);
+  use_tool({InsideTool::irradiance, ToolPlace(Vec2{150, 100}), {}}, walk, examined_lamp(1), desk);
   finish(examined_lamp(1), desk);
   ASSERT_TRUE(desk.probed.light && desk.probed.graph && desk.probed.graph->surface);
   Examined exact = examined_lamp(2);
@@ -187,11 +187,11 @@ TEST(SelectionDesk, SaysWhatIsMissing) {
   Examined examined = examined_lamp();
   examined.view.mesh = nullptr;
   SelectionDesk desk;
-  use_tool({Tool::triangle, ToolPlace(Vec2{150, 100}), {}}, walk, examined, desk);
+  use_tool({InsideTool::triangle, ToolPlace(Vec2{150, 100}), {}}, walk, examined, desk);
   EXPECT_THAT(desk.said, HasSubstr("no triangles"));
-  use_tool({Tool::graph, std::nullopt, {}}, walk, examined, desk);
+  use_tool({InsideTool::graph, std::nullopt, {}}, walk, examined, desk);
   EXPECT_THAT(desk.said, HasSubstr("a graph needs"));
-  use_tool({Tool::irradiance, ToolPlace(Vec2{100, 1e6f}), {}}, walk, examined, desk);
+  use_tool({InsideTool::irradiance, ToolPlace(Vec2{100, 1e6f}), {}}, walk, examined, desk);
   EXPECT_THAT(desk.said, HasSubstr("no surface"));
 }
 

@@ -14,27 +14,27 @@ bool was_clicked(const SelectionDesk& desk) {
 }
 
 /// What a click with this button asks for.
-Tool tool_of(Button button, const Walk& walk, const SelectionDesk& desk) {
+InsideTool tool_of(Button button, const Walk& walk, const SelectionDesk& desk) {
   if (button == Button::left) return desk.tool;
-  if (button == Button::middle) return Tool::none;
-  return walk.keys.contains("shift") ? Tool::backprojection : Tool::irradiance;
+  if (button == Button::middle) return InsideTool::none;
+  return walk.keys.contains("shift") ? InsideTool::backprojection : InsideTool::irradiance;
 }
 
 bool handle_button(const ButtonChanged& button, const Walk& walk, const Examined& examined,
                    SelectionDesk& desk) {
   if (button.is_down) {
     desk.pressed = desk.pointer;
-    desk.drags_graph = button.button == Button::left && desk.tool == Tool::graph;
+    desk.drags_graph = button.button == Button::left && desk.tool == InsideTool::graph;
     return desk.drags_graph;
   }
   const bool clicked = was_clicked(desk), dragged = std::exchange(desk.drags_graph, false);
   const auto pressed = std::exchange(desk.pressed, std::nullopt);
   if (dragged) {
-    if (!clicked) use_tool({Tool::graph, *pressed, desk.pointer}, walk, examined, desk);
+    if (!clicked) use_tool({InsideTool::graph, *pressed, desk.pointer}, walk, examined, desk);
     return true;
   }
-  const Tool tool = tool_of(button.button, walk, desk);
-  if (clicked && tool != Tool::none && tool != Tool::graph)
+  const InsideTool tool = tool_of(button.button, walk, desk);
+  if (clicked && tool != InsideTool::none && tool != InsideTool::graph)
     use_tool({tool, desk.pointer, std::nullopt}, walk, examined, desk);
   return false;  // the walk had its beginning
 }
@@ -44,8 +44,8 @@ bool handle_key(const std::string& key, const Walk& walk, const Examined& examin
   if (key == "p") step_selection(SelectionStep::up, examined, desk);
   if (key == "c") step_selection(SelectionStep::down, examined, desk);
   if (key == "n") step_selection(SelectionStep::next, examined, desk);
-  if (key == "g") use_tool({Tool::graph, std::nullopt, std::nullopt}, walk, examined, desk);
-  if (key == "backspace") use_tool({Tool::none, std::nullopt, std::nullopt}, walk, examined, desk);
+  if (key == "g") use_tool({InsideTool::graph, std::nullopt, std::nullopt}, walk, examined, desk);
+  if (key == "esc") use_tool({InsideTool::none, std::nullopt, std::nullopt}, walk, examined, desk);
   return std::any_of(std::begin(kSelectionKeys), std::end(kSelectionKeys),
                      [&](const KeyHelp& known) { return key == known.key; });
 }

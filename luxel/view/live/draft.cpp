@@ -48,7 +48,7 @@ Result<bool> light_draft(const scene::Scene& scene, const pipeline::BakeSettings
     // What comes after the light is not looked at.
     if (light.is_last || watched.cancelled()) own.request_cancel();
   };
-  const auto baked = pipeline::bake_read_scene(scene, settings, own, observer);
+  const auto baked = pipeline::bake_read_scene(scene, settings, own, {}, observer);
   LUXEL_TRY_STATUS(stopped(watched));
   if (!has_light && !baked) return tl::unexpected(baked.error());
   return has_light;

@@ -86,7 +86,7 @@ class HemicubeWorker : public LiveHemicube {
       auto scene = read_models(models_, settings_, progress_);
       if (!scene) return say(scene.error().message), false;
       has_read(*scene);
-      done = pipeline::bake_read_scene(std::move(*scene), settings_, progress_, watcher)
+      done = pipeline::bake_read_scene(std::move(*scene), settings_, progress_, {}, watcher)
                  .map([](const auto&) {});
     }
     if (!done && !is_solved_) say(done.error().message);

@@ -35,7 +35,9 @@ class HemicubeSubject : public Subject {
     return out;
   }
   Status check(const view::Play& play, const std::string& name) const override {
-    return view::check_hemicube(play, name);
+    LUXEL_TRY_STATUS(view::check_hemicube(play, name));
+    if (const auto pause = view::first_pause(play)) live_->pause_at(*pause);
+    return {};
   }
 
   Result<Followed> follow(gpu::Commands& commands, std::string& message) override {

@@ -137,6 +137,14 @@ Status check_hemicube(const Play& play, const std::string& name) {
   return {};
 }
 
+std::optional<double> first_pause(const Play& play) {
+  for (const TimedEvent& timed : play.events) {
+    const auto* changed = std::get_if<SettingChanged>(&timed.event);
+    if (timed.at_s <= 0 && changed && changed->name == kPauseAt) return changed->to;
+  }
+  return std::nullopt;
+}
+
 std::optional<Mark> mark_of(const HemicubeDesk& desk, const LightMesh* mesh, const Walk& walk) {
   if (!desk.element || !mesh || *desk.element >= mesh->receivers.size()) return std::nullopt;
   const auto at = pixel_of(walk, mesh->receivers.elements.position[*desk.element]);

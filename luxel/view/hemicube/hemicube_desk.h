@@ -32,6 +32,10 @@ bool handle_hemicube(const Event& event, const Walk& walk, const LightMesh* mesh
 /// Errors: an event that is not for this workshop, a number out of range; `name` is the play's.
 Status check_hemicube(const Play& play, const std::string& name);
 
+/// LiveHemicube::pause_at() of a play from its beginning on; it may come before there is anything
+/// to see.
+std::optional<double> first_pause(const Play& play);
+
 /// The mark of the element in the picture; none where it is behind the eye or there is none.
 std::optional<Mark> mark_of(const HemicubeDesk& desk, const LightMesh* mesh, const Walk& walk);
 

@@ -90,6 +90,15 @@ TEST(HemicubeDesk, KeysAndPlaysChooseWhatIsShown) {
   EXPECT_EQ(hemicube_size(1e9), kMostPixels);
 }
 
+TEST(HemicubeDesk, KnowsWhereAPlayStopsFromTheBeginning) {
+  const auto pause = [](const std::string& at) {
+    return first_pause(*parse_play(
+        R"({"end": 1, "events": [{"at": )" + at + R"(, "set": {"pause_at": 0.25}}]})", "p.json"));
+  };
+  EXPECT_EQ(pause("0"), 0.25);
+  EXPECT_EQ(pause("1"), std::nullopt);
+}
+
 TEST(HemicubeDesk, SaysWhatIsNotForIt) {
   const auto error = [](const std::string& event) {
     const auto play = parse_play(R"({"end": 1, "events": [{"at": 0, )" + event + "}]}", "p.json");

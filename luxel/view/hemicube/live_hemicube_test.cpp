@@ -12,14 +12,17 @@
 #include "luxel/view/hemicube/hemicube_test_scene.h"
 #include "luxel/view/hemicube/known_light.h"
 #include "luxel/view/hemicube/report_worker.h"
-#include "tests/command.h"
 
 namespace luxel::view {
 namespace {
 
+std::filesystem::path of_tree(const std::string& scene) {
+  return std::filesystem::path(LUXEL_SOURCE_DIR) / "scenes" / scene;
+}
+
 pipeline::BakeSettings small_settings() {
   pipeline::BakeSettings out;
-  out.scene = testing_support::scene_file("cornell-box.glb");
+  out.scene = of_tree("cornell-box.glb");
   out.solver = "hemicube";
   out.output = std::filesystem::temp_directory_path() / "no-such-bake";
   out.resolution = 32;
@@ -93,7 +96,7 @@ TEST(LiveHemicube, SeveralModelsAreOneScene) {
   pipeline::BakeSettings settings = small_settings();
   settings.own.of<hemicube::HemicubeParams>().max_elements = 2000;
   settings.own.of<hemicube::HemicubeParams>().max_error = 0;
-  const std::filesystem::path box = testing_support::scene_file("radiosity-box.glb");
+  const std::filesystem::path box = of_tree("radiosity-box.glb");
   const auto one = come_to_rest(*LiveHemicube::begin({settings.scene}, settings));
   const auto two = come_to_rest(*LiveHemicube::begin({settings.scene, box}, settings));
   ASSERT_TRUE(one.read && two.read) << two.said.value_or("");

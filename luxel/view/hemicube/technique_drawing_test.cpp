@@ -93,7 +93,9 @@ TEST_F(TechniqueTest, DrawsWhatRenderDraws) {
     const double apart = flip_of(seen, display::tone_map(*wanted, frame.exposure, curve));
     EXPECT_LT(apart, 0.05) << kTechniques[i].name;
     // No technique passes for another.
-    if (!before.data.empty()) EXPECT_GT(flip_of(seen, before), 0.01) << kTechniques[i].name;
+    if (!before.data.empty()) {
+      EXPECT_GT(flip_of(seen, before), 0.01) << kTechniques[i].name;
+    }
     before = seen;
   }
 }

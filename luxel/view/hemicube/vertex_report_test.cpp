@@ -69,7 +69,9 @@ TEST(VertexReport, ExactFactorsAreThoseOfTheBook) {
     // Behind the plate the ceiling is seen but for what the plate covers of it.
     const double plate = has_plate ? to_parallel(0.25, 0.25, 0.5) : 0;
     EXPECT_NEAR(of_quad(f, 8), to_parallel(0.5, 0.5, 1) - plate, 1e-5);
-    if (has_plate) EXPECT_NEAR(of_quad(f, 18), plate, 1e-5);
+    if (has_plate) {
+      EXPECT_NEAR(of_quad(f, 18), plate, 1e-5);
+    }
     const double wall = (1 - to_parallel(0.5, 0.5, 1)) / 4;
     for (const size_t first : {10, 12, 14, 16}) EXPECT_NEAR(of_quad(f, first), wall, 1e-5);
   }

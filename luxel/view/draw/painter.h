@@ -7,6 +7,8 @@
 #include "luxel/image/image.h"
 #include "luxel/view/draw/device_scene.h"
 #include "luxel/view/draw/overlay.h"
+#include "luxel/view/draw/quadratic.h"
+#include "luxel/view/draw/shapes.h"
 #include "luxel/view/frame.h"
 
 namespace luxel::view {
@@ -14,7 +16,8 @@ namespace luxel::view {
 /// The shaders of all pictures.
 struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
-  gpu::Pipeline overlay, beside;
+  gpu::Pipeline overlay, beside, quadratic;
+  ShapeShaders shapes;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
@@ -36,6 +39,10 @@ struct Canvas {
   const Painter& painter;
   const DeviceScene& scene;
   const Overlay* overlay = nullptr;  ///< without one no frame looks into the bake
+  const DeviceQuadratics* quadratics = nullptr;  ///< drawn instead of the scene's surfaces
+  const ExactPixels* exact = nullptr;            ///< of `quadratics`
+  /// Drawn in their order after all surfaces.
+  std::span<const DeviceShapes> shapes = {};
 };
 
 /// Records the drawing of a frame; the painter's `shown` is then in the layout

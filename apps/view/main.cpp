@@ -8,20 +8,15 @@
 #include <filesystem>
 #include <thread>
 
-#include "apps/view/looking.h"
+#include "apps/view/offscreen.h"
 #include "apps/view/session.h"
 #include "luxel/arguments/bake_options.h"
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/image/codec.h"
 #include "luxel/pipeline/settings/version.h"
-#include "luxel/view/draw/beside.h"
-#include "luxel/view/draw/painter.h"
 #include "luxel/view/model/habits.h"
-#include "luxel/view/model/walk.h"
 #include "luxel/view/open_bake.h"
-#include "luxel/view/relight/draw_lxr.h"
-#include "luxel/view/shown/shown_scene.h"
 
 namespace {
 
@@ -50,10 +45,7 @@ Status parse_size(Options& options) {
 
 Result<std::optional<view::Play>> events_of(const Options& options) {
   if (options.play.empty()) return std::nullopt;
-  LUXEL_TRY(view::Play play, view::read_play(options.play));
-  if (!view::is_lxr(options.subject))
-    LUXEL_TRY_STATUS(view::check_no_lamps(play, options.play.string()));
-  return play;
+  return view::read_play(options.play);
 }
 
 /// A scene, which is to be baked; everything else is an .lxr file or the folder of a bake.
@@ -104,6 +96,33 @@ Result<std::optional<view::OpenedBake>> opened_beside(const Options& options) {
   return out;
 }
 
+/// What is to be shown.
+struct Opened {
+  view_window::MakeSubject make;
+  std::optional<view::OpenedBake> beside;
+  int width = 960, height = 720;  ///< of a window, where --size says nothing
+};
+
+Result<Opened> opened(const Options& options) {
+  Opened out;
+  if (is_scene(options.subject)) {
+    LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
+    out.make = view_window::live_subject(settings);
+  } else if (view::is_lxr(options.subject)) {
+    LUXEL_TRY(view::OpenedLxr lxr, view::open_lxr(options.subject));
+    out.make = view_window::lamp_subject(std::move(lxr));
+  } else {
+    LUXEL_TRY(view::OpenedBake bake, view::open_bake(options.subject));
+    print_warnings(bake.warnings);
+    out.width = bake.width, out.height = bake.height;
+    LUXEL_TRY(out.beside, opened_beside(options));
+    if (out.beside) bake.first.beside.emplace();
+    out.make = view_window::baked_subject(std::move(bake));
+  }
+  if (options.width > 0) out.width = options.width, out.height = options.height;
+  return out;
+}
+
 Status show(const Options& options) {
   for (const auto& file : {options.screenshot, options.frame_table})
     if (!file.empty()) LUXEL_TRY_STATUS(check_output_file(file));
@@ -120,116 +139,29 @@ Status show(const Options& options) {
     params.habits = view::habits_file(std::getenv("XDG_STATE_HOME"), std::getenv("HOME"));
   params.device = options.device;
   params.screenshot = options.screenshot, params.frame_table = options.frame_table;
-  if (options.width > 0) params.width = options.width, params.height = options.height;
-  if (is_scene(options.subject)) {
-    LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
-    return view_window::bake_in_window(settings, params);
-  }
-  if (view::is_lxr(options.subject)) {
-    LUXEL_TRY(view::OpenedLxr opened, view::open_lxr(options.subject));
-    return view_window::relight_in_window(std::move(opened), params);
-  }
-  LUXEL_TRY(view::OpenedBake bake, view::open_bake(options.subject));
-  print_warnings(bake.warnings);
-  if (options.width == 0) params.width = bake.width, params.height = bake.height;
-  LUXEL_TRY(std::optional<view::OpenedBake> beside, opened_beside(options));
-  return view_window::show_in_window(std::move(bake), std::move(beside), params);
-}
-
-/// What is to be drawn without a window: a bake that is there, or one that is made first.
-Result<view::ShownScene> shown_offscreen(const Options& options, gpu::Commands& commands) {
-  if (!is_scene(options.subject)) {
-    LUXEL_TRY(view::OpenedBake bake, view::open_bake(options.subject));
-    print_warnings(bake.warnings);
-    return view::bake_shown(commands, std::move(bake));
-  }
-  LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
-  const std::unique_ptr<view::LiveBake> live = view::LiveBake::begin(settings);
-  live->wait();
-  view::LiveNews news = live->take();
-  if (live->state() == view::LiveState::failed)
-    return fail(ErrorCode::bad_input, "{}", news.said.value_or("the bake failed"));
-  view::ShownScene out;
-  std::string said;
-  LUXEL_TRY_STATUS(view::take_news(std::move(news), commands, out, said).map([](bool) {}));
-  LUXEL_TRY_STATUS(view::settle(commands, out));
-  return out;
-}
-
-/// One picture of an .lxr file after what is played.
-Result<image::Image8> picture_of_lxr(const Options& options,
-                                     const std::optional<view::Play>& events,
-                                     gpu::Commands& commands) {
-  LUXEL_TRY(view::OpenedLxr opened, view::open_lxr(options.subject));
-  return view::draw_lxr(commands, opened,
-                        {options.width, options.height, events, options.play.string()});
-}
-
-/// The frame to draw: the first, or where a play gets to.
-view::Frame frame_to_draw(const std::optional<view::Play>& events, const view::ShownScene& shown,
-                          bool has_beside, int width, int height) {
-  const view::ReadScene& read = *shown.read;
-  view::Frame first = read.first;
-  first.exposure = view::exposure(shown.fade);
-  if (has_beside) first.beside.emplace();
-  if (!events) return first;
-  const view::PlaceSeen place_seen = view::place_seen_in(read.scene, *read.tracer, width, height);
-  view::Walk walk =
-      view::begin_walk(first, scene::world_bounds(read.scene), width, height, place_seen);
-  view::play(*events, place_seen, walk);
-  return walk.shown;
-}
-
-/// A frame of the scene and of the second bake.
-Result<image::Image8> painted_beside(const Options& options, gpu::Commands& commands,
-                                     const view::Canvas& first, view::Frame frame) {
-  LUXEL_TRY(std::optional<view::OpenedBake> opened, opened_beside(options));
-  LUXEL_TRY(view::ShownScene shown, view::bake_shown(commands, std::move(*opened)));
-  view_window::Looking looking;
-  LUXEL_TRY_STATUS(
-      view_window::prepare_look(commands, first.shaders.overlay, false, frame, shown, looking));
-  LUXEL_TRY(const view::Pair pair,
-            view::make_pair(commands, first.shaders, first.painter, shown.device));
-  const view::Canvas second{first.shaders, pair.second, shown.device,
-                            looking.overlay ? &*looking.overlay : nullptr};
-  return view::painted_together(commands, first, second, pair, frame);
-}
-
-/// One picture of a bake after what is played.
-Result<image::Image8> picture_of_bake(const Options& options,
-                                      const std::optional<view::Play>& events,
-                                      gpu::Commands& commands) {
-  LUXEL_TRY(view::ShownScene shown, shown_offscreen(options, commands));
-  const int width = options.width ? options.width : shown.read->width;
-  const int height = options.height ? options.height : shown.read->height;
-  view::Frame frame = frame_to_draw(events, shown, !options.beside.empty(), width, height);
-  LUXEL_TRY(const view::Shaders shaders, view::make_shaders(commands.device()));
-  view_window::Looking looking;
-  LUXEL_TRY_STATUS(
-      view_window::prepare_look(commands, shaders.overlay, false, frame, shown, looking));
-  if (looking.look)
-    if (const auto missing = view::missing_for(frame.show, *looking.look, shown.folder.string()))
-      return fail(ErrorCode::bad_input, "{}", *missing);
-  const view::DeviceScene& scene = shown.device;
-  LUXEL_TRY(const view::Painter painter, view::make_painter(commands.device(), shaders, scene,
-                                                            uint32_t(width), uint32_t(height)));
-  const view::Canvas canvas{shaders, painter, scene, looking.overlay ? &*looking.overlay : nullptr};
-  return frame.beside ? painted_beside(options, commands, canvas, frame)
-                      : view::painted(commands, canvas, frame);
+  LUXEL_TRY(Opened to_show, opened(options));
+  params.width = to_show.width, params.height = to_show.height;
+  return view_window::show_in_window(to_show.make, std::move(to_show.beside), params);
 }
 
 /// One picture, without a window.
 Status draw_offscreen(const Options& options) {
   LUXEL_TRY_STATUS(check_output_file(options.screenshot));
-  LUXEL_TRY(const std::optional<view::Play> events, events_of(options));
-  gpu::DeviceParams params;
-  params.name = options.device;
-  LUXEL_TRY(const std::unique_ptr<gpu::Device> device, gpu::Device::open(params));
+  view_window::OffscreenParams params;
+  LUXEL_TRY(params.play, events_of(options));
+  params.play_name = options.play.string();
+  params.width = options.width, params.height = options.height;
+  gpu::DeviceParams device_params;
+  device_params.name = options.device;
+  LUXEL_TRY(const std::unique_ptr<gpu::Device> device, gpu::Device::open(device_params));
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device));
-  LUXEL_TRY(const image::Image8 picture, view::is_lxr(options.subject)
-                                             ? picture_of_lxr(options, events, commands)
-                                             : picture_of_bake(options, events, commands));
+  LUXEL_TRY(Opened to_draw, opened(options));
+  LUXEL_TRY(const std::unique_ptr<view_window::Subject> subject, to_draw.make(commands));
+  LUXEL_TRY(const image::Image8 picture,
+            view_window::draw_offscreen(commands, *subject, std::move(to_draw.beside), params));
+  LUXEL_TRY(const std::string said, subject->end());
   LUXEL_TRY_STATUS(write_file_atomically(options.screenshot, image::encode_png(picture)));
+  if (!said.empty()) std::fprintf(stderr, "%s\n", said.c_str());
   std::fprintf(stderr, "wrote %s, drawn by %s\n", options.screenshot.string().c_str(),
                device->name.c_str());
   return {};

@@ -8,26 +8,24 @@
 #include <cstdio>
 #include <span>
 
-#include "apps/view/bake_lines.h"
 #include "apps/view/frame_table.h"
-#include "apps/view/lamp_session.h"
 #include "apps/view/remembered.h"
 #include "apps/view/screen.h"
 #include "luxel/base/file.h"
 #include "luxel/image/codec.h"
+#include "luxel/view/model/play.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view_window {
 namespace {
 
-std::vector<KeyLine> key_lines(bool has_lamps) {
-  std::vector<KeyLine> out{
-      {"left button", "turn"}, {"other buttons", "move the picture"}, {"wheel", "nearer, farther"}};
+std::vector<KeyLine> key_lines(const Subject& subject) {
+  std::vector<KeyLine> out = subject.keys();
+  out.insert(out.end(), {{"left button", "turn"},
+                         {"other buttons", "move the picture"},
+                         {"wheel", "nearer, farther"}});
   for (const view::KeyHelp& key : view::kKeys) out.push_back({key.key, key.does});
-  if (!has_lamps) return out;
-  out.insert(out.begin(), {"left button on a lamp", "move it"});
-  for (const view::KeyHelp& key : view::kLampKeys) out.push_back({key.key, key.does});
   return out;
 }
 
@@ -60,9 +58,8 @@ void exchange(Ui& ui, const view::ShownScene& shown, const Looking& looking, flo
     view::go_to(*walk.bookmarks[size_t(mark)], walk.first.exposure, walk.shown);
 }
 
-/// Events of the user, but for those that are the panel's. `lamps` may be null.
-void take_events(Window& window, const Ui& ui, const view::PlaceSeen& place_seen, view::Walk& walk,
-                 LampSession* lamps) {
+/// Events of the user, but for those that are the panel's.
+void take_events(Window& window, const Ui& ui, const view::TakeEvent& take) {
   for (const view::Event& event : window.taken()) {
     const bool is_key = std::holds_alternative<view::KeyChanged>(event);
     const auto* button = std::get_if<view::ButtonChanged>(&event);
@@ -70,8 +67,7 @@ void take_events(Window& window, const Ui& ui, const view::PlaceSeen& place_seen
     if (!is_end && !std::holds_alternative<view::PointerMoved>(event) &&
         (is_key ? ui.has_keys() : ui.has_pointer()))
       continue;
-    if (!lamps || !view::handle_lamps(event, walk, lamps->desk))
-      view::handle(event, place_seen, walk);
+    take(event);
   }
 }
 
@@ -90,20 +86,17 @@ constexpr double kReport_s = 0.5;
 struct Session {
   Window& window;
   Screen& screen;
-  view::ShownScene& shown;
-  view::LiveBake* live;  ///< null: the bake is there
-  LampSession* lamps;    ///< null: they do not move
+  Subject& subject;
   const WindowParams& params;
   Remembered remembered = recall(params.habits, params.subject);
-  std::vector<KeyLine> keys = key_lines(lamps != nullptr);
+  std::vector<KeyLine> keys = key_lines(subject);
   std::vector<std::string> views = {};  ///< names of the scene's cameras
   Panel panel = {};
   std::optional<view::Walk> walk = {};  ///< once there is a scene, and the window has a size
   view::PlaceSeen place_seen = {};
   int still_frames = 0;  ///< since something changed
   bool fits = false;     ///< what is drawn with is of the window's size and the scene
-  int64_t frame = 0;     ///< of a play
-  size_t next_event = 0;
+  view::Played played = {};
   FrameTable table = {};
   Clock::time_point last = Clock::now(), last_report = Clock::now();
 };
@@ -128,41 +121,31 @@ void begin(const view::ReadScene& read, Session& s) {
 /// it is hidden.
 Result<bool> fit(Session& s) {
   if (s.fits && has_size_of(s.window, s.screen.swapchain)) return true;
-  LUXEL_TRY(s.fits, fit_window(s.window, s.shown.device, s.screen));
-  if (s.fits && s.shown.read) begin(*s.shown.read, s);
+  const view::ShownScene& shown = s.subject.shown();
+  LUXEL_TRY(s.fits, fit_window(s.window, shown.device, s.screen));
+  if (s.fits && shown.read) begin(*shown.read, s);
   return s.fits;
 }
 
-/// Takes what the bake has come to. True: something is to be drawn.
-Result<bool> follow_bake(Session& s) {
-  if (!s.live) return false;
-  view::LiveNews news = s.live->take();
-  const bool has_news = news.read || news.light || news.said;
-  if (has_news) {
-    LUXEL_TRY(const bool is_another,
-              view::take_news(std::move(news), *s.screen.commands, s.shown, s.panel.message));
-    if (is_another) s.fits = false, s.screen.looking = {};
-  }
-  if (!has_news && seconds_since(s.last_report) < kReport_s) return false;
+/// Takes what has come from the background. True: something is to be drawn.
+Result<bool> follow(Session& s) {
+  LUXEL_TRY(const Followed followed, s.subject.follow(*s.screen.commands, s.panel.message));
+  if (followed.is_another) s.fits = false, s.screen.looking = {};
+  if (!followed.has_news && seconds_since(s.last_report) < kReport_s) return false;
   s.last_report = Clock::now();
-  return has_news || s.live->state() == view::LiveState::baking;
+  return followed.has_news || s.subject.work() == Work::at_work;
 }
 
-/// Light fades in; the exposure goes with it, by as many stops as the user has chosen.
-Status fade(double seconds, Session& s) {
-  LUXEL_TRY_STATUS(view::pass(seconds, *s.screen.commands, s.shown));
-  if (!s.walk || !s.shown.has_light) return {};
-  const float stops = s.walk->shown.exposure / s.walk->first.exposure;
-  s.walk->first.exposure = view::exposure(s.shown.fade);
-  s.walk->shown.exposure = s.walk->first.exposure * stops;
-  return {};
+/// An event goes to the subject, or else to the walk.
+void take(const view::Event& event, Session& s) {
+  if (!s.subject.take(event, *s.walk)) view::handle(event, s.place_seen, *s.walk);
 }
 
 /// What the frame shows of the bake is made where it is not there yet; or it is said why not.
 void look(Session& s) {
   const Status done =
       prepare_look(*s.screen.commands, s.screen.shaders.overlay, s.panel.look.asks_for_layers,
-                   s.walk->shown, s.shown, s.screen.looking);
+                   s.walk->shown, s.subject.shown(), s.screen.looking);
   if (!done) s.panel.message = done.error().message;
   if (!s.screen.beside) return;
   // What the second bake has not is not shown of it: the first one's panel says what is.
@@ -172,64 +155,38 @@ void look(Session& s) {
   if (!beside) s.panel.message = "beside: " + beside.error().message;
 }
 
-/// The panel, what the user changes in it, and what it asks for.
+/// The panel, what the user changes in it, and what is asked for by it and by keys.
 void lay_out(Session& s) {
-  s.panel.bake = s.live ? std::optional(lines_of(*s.live, s.shown)) : std::nullopt;
-  s.panel.warnings = s.shown.warnings;
-  if (s.lamps) s.panel.lamps = panel_of(*s.lamps);
+  view::ShownScene& shown = s.subject.shown();
+  s.panel.warnings = shown.warnings;
+  s.subject.fill(s.panel);
   if (s.walk)
-    exchange(*s.screen.ui, s.shown, s.screen.looking, s.screen.flip, s.panel, *s.walk);
+    exchange(*s.screen.ui, shown, s.screen.looking, s.screen.flip, s.panel, *s.walk);
   else
     s.screen.ui->lay_out(s.panel);
-  if (s.lamps && s.walk) take_changes(*s.panel.lamps, s.walk->shown.exposure, *s.lamps);
+  s.subject.take(s.panel, s.walk ? &*s.walk : nullptr);
+  if (!s.walk) return;
+  for (const view::Command command : std::exchange(s.walk->asked, {})) s.subject.obey(command);
 }
 
-/// What keys and the panel ask of a bake.
-void follow_user(Session& s) {
-  std::vector<view::Command> asked;
-  if (s.walk) asked = std::exchange(s.walk->asked, {});
-  if (!s.live) return;
-  if (s.walk) s.live->look(s.walk->shown.camera, float(s.walk->width) / float(s.walk->height));
-  const BakeLines& panel = *s.panel.bake;
-  if (panel.asks_to_stop || panel.asks_to_go_on) asked.push_back(view::Command::stop_or_go_on);
-  if (panel.asks_to_save) asked.push_back(view::Command::save);
-  for (const view::Command command : asked) {
-    if (command == view::Command::save) s.live->save();
-    if (command == view::Command::stop_or_go_on)
-      s.live->pause(s.live->state() == view::LiveState::baking);
-  }
-}
-
-/// What is drawn: without light, colours.
-view::Frame frame_of(const Session& s) {
-  view::Frame out;
-  if (s.walk) out = s.walk->shown;
-  if (!s.shown.has_light) out.show = view::Show::colour, out.exposure = 1;
-  if (s.lamps && s.walk) out.marks = view::marks_of(s.lamps->desk, *s.walk);
-  return out;
+/// What is drawn; before there is a scene, nothing.
+Result<view::Frame> frame_of(Session& s) {
+  if (s.walk) return frame_of(*s.screen.commands, *s.walk, s.subject);
+  view::Frame nothing;
+  nothing.show = view::Show::colour;
+  return nothing;
 }
 
 /// The events of a play up to this frame, and the time until the next. False: it has come to its
 /// end.
 bool play_on(Session& s) {
+  if (s.subject.work() == Work::failed) return false;
+  if (!s.walk) return true;
   const view::Play& play = *s.params.play;
-  if (s.live && s.live->state() == view::LiveState::failed) return false;
-  const bool is_baking = s.live && s.live->state() == view::LiveState::baking;
-  const bool is_to_come =
-      is_baking || !s.walk || !view::is_settled(s.shown) ||
-      (s.live && s.live->state() == view::LiveState::baked && !s.shown.has_last);
-  do {
-    if (s.walk && s.lamps)
-      view::handle_frame_with_lamps(play, s.frame, s.place_seen, s.next_event, *s.walk,
-                                    s.lamps->desk);
-    else if (s.walk)
-      view::handle_frame(play, s.frame, s.place_seen, s.next_event, *s.walk);
-    if (view::waits(play, s.frame, is_to_come, s.next_event)) return true;
-  } while (s.walk && view::has_come(play, s.frame, s.next_event));
-  if (double(s.frame) >= play.end_s * play.frames_per_s) return false;
-  if (s.walk) view::pass(1 / play.frames_per_s, *s.walk);
-  ++s.frame;
-  return true;
+  const view::Step step = view::step(
+      play, is_at_work(s.subject), [&](const view::Event& event) { take(event, s); }, s.played);
+  if (step == view::Step::next) view::pass(1 / play.frames_per_s, *s.walk);
+  return step != view::Step::ends;
 }
 
 /// The histogram of the frame that was just drawn, where the panel shows it. Colours that stand for
@@ -248,30 +205,27 @@ Status count_pixels(const view::Frame& frame, Session& s) {
 /// Draws and takes the time.
 Status draw_frame(Session& s) {
   const auto begin = Clock::now();
-  const view::Frame frame = frame_of(s);
-  view::LightTimes light;
-  if (s.lamps) {
-    LUXEL_TRY(light, light_lamps(*s.screen.commands, s.shown.device, *s.lamps));
-  }
+  LUXEL_TRY(const view::Frame frame, frame_of(s));
+  const view::ShownScene& shown = s.subject.shown();
   const auto lit = Clock::now();
-  LUXEL_TRY(s.fits, draw(s.shown.device, frame, s.screen));
-  if (s.lamps) add_times(light, float(1000 * seconds_since(lit)), *s.lamps);
+  LUXEL_TRY(s.fits, draw(shown.device, frame, s.screen));
+  s.subject.has_drawn(float(1000 * seconds_since(lit)));
   s.panel.milliseconds = float(1000 * seconds_since(begin));
   LUXEL_TRY_STATUS(count_pixels(frame, s));
   if (!s.params.frame_table.empty())
-    LUXEL_TRY_STATUS(add_row(s.screen, s.panel.milliseconds, s.shown, s.table));
+    LUXEL_TRY_STATUS(add_row(s.screen, s.panel.milliseconds, shown, s.table));
   if (!s.window.asks_for_screenshot()) return {};
-  return write_screenshot(s.shown.device, frame, s.screen, s.panel.message);
+  return write_screenshot(shown.device, frame, s.screen, s.panel.message);
 }
 
 /// One frame of the window. False when a play has come to its end.
 Result<bool> go_on(Session& s) {
   // A window in which nothing moves is not drawn.
   const bool moves =
-      s.params.play || (s.walk && !s.walk->keys.empty()) || !view::is_settled(s.shown);
+      s.params.play || (s.walk && !s.walk->keys.empty()) || !view::is_settled(s.subject.shown());
   moves ? glfwPollEvents() : glfwWaitEventsTimeout(0.1);
   const bool fitted = s.fits;
-  LUXEL_TRY(const bool has_news, follow_bake(s));
+  LUXEL_TRY(const bool has_news, follow(s));
   LUXEL_TRY(const bool fits, fit(s));
   const double passed = seconds_since(std::exchange(s.last, Clock::now()));
   if (!fits) return true;
@@ -279,26 +233,27 @@ Result<bool> go_on(Session& s) {
   s.still_frames = changes ? 0 : s.still_frames + 1;
   if (s.still_frames > kFramesToSettle) return true;
   if (!s.params.play && s.walk) {
-    take_events(s.window, *s.screen.ui, s.place_seen, *s.walk, s.lamps);
+    take_events(s.window, *s.screen.ui, [&](const view::Event& event) { take(event, s); });
     view::pass(std::min(passed, 0.1), *s.walk);
   }
-  LUXEL_TRY_STATUS(fade(s.params.play ? 1 / s.params.play->frames_per_s : passed, s));
+  const double faded_s = s.params.play ? 1 / s.params.play->frames_per_s : passed;
+  LUXEL_TRY_STATUS(pass_light(faded_s, *s.screen.commands, s.walk ? &*s.walk : nullptr, s.subject));
   const bool goes_on = !s.params.play || play_on(s);
   if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
   if (s.walk) look(s);
   lay_out(s);
-  follow_user(s);
   LUXEL_TRY_STATUS(draw_frame(s));
   return goes_on;
 }
 
-/// A play that saves a bake ends when it is saved. Errors: why there is no light.
-Status end_bake(Session& s) {
-  const view::LiveState state = s.live->state();
-  if (state == view::LiveState::baked) s.live->wait();
-  if (const view::LiveNews news = s.live->take(); news.said) s.panel.message = *news.said;
-  if (state == view::LiveState::failed) return fail(ErrorCode::bad_input, "{}", s.panel.message);
-  if (!s.panel.message.empty()) std::fprintf(stderr, "%s\n", s.panel.message.c_str());
+/// A play has ended: what it asked for is done, and told. Errors: why there is nothing to see.
+Status end_play(Session& s) {
+  if (s.subject.work() == Work::failed) {
+    LUXEL_TRY_STATUS(follow(s).map([](bool) {}));
+    return fail(ErrorCode::bad_input, "{}", s.panel.message);
+  }
+  LUXEL_TRY(const std::string said, s.subject.end());
+  if (!said.empty()) std::fprintf(stderr, "%s\n", said.c_str());
   return {};
 }
 
@@ -313,53 +268,33 @@ Status show(Session s) {
   if (s.walk)
     if (const Status kept = keep(s.remembered, *s.walk, s.panel.is_light); !kept)
       std::fprintf(stderr, "warning: %s\n", kept.error().message.c_str());
-  if (s.params.play && s.live) LUXEL_TRY_STATUS(end_bake(s));
+  if (s.params.play) LUXEL_TRY_STATUS(end_play(s));
   if (!s.params.frame_table.empty()) {
     const std::string csv = csv_of(s.table);
     LUXEL_TRY_STATUS(
         write_file_atomically(s.params.frame_table, std::as_bytes(std::span<const char>(csv))));
   }
   if (s.params.screenshot.empty() || !s.walk) return {};
-  LUXEL_TRY(const image::Image8 picture, picture_of(s.shown.device, frame_of(s), s.screen));
+  LUXEL_TRY(const view::Frame frame, frame_of(s));
+  LUXEL_TRY(const image::Image8 picture, picture_of(s.subject.shown().device, frame, s.screen));
   return write_file_atomically(s.params.screenshot, image::encode_png(picture));
 }
 
 }  // namespace
 
-Status show_in_window(view::OpenedBake bake, std::optional<view::OpenedBake> beside,
+Status show_in_window(const MakeSubject& make_subject, std::optional<view::OpenedBake> beside,
                       const WindowParams& params) {
   LUXEL_TRY(const std::unique_ptr<Window> window,
             Window::open(params.title, params.width, params.height));
   LUXEL_TRY(Screen screen, open_screen(*window, params.device));
-  if (beside) bake.first.beside.emplace();
-  LUXEL_TRY(view::ShownScene shown, view::bake_shown(*screen.commands, std::move(bake)));
+  LUXEL_TRY(const std::unique_ptr<Subject> subject, make_subject(*screen.commands));
+  if (params.play) LUXEL_TRY_STATUS(subject->check(*params.play, params.play_name));
   std::optional<view::ShownScene> second;
   if (beside) {
     LUXEL_TRY(second, view::bake_shown(*screen.commands, std::move(*beside)));
     screen.beside = &*second;
   }
-  return show({*window, screen, shown, nullptr, nullptr, params});
-}
-
-Status bake_in_window(const pipeline::BakeSettings& settings, const WindowParams& params) {
-  LUXEL_TRY(const std::unique_ptr<Window> window,
-            Window::open(params.title, params.width, params.height));
-  // The bake reads while the device opens.
-  const std::unique_ptr<view::LiveBake> live = view::LiveBake::begin(settings);
-  LUXEL_TRY(Screen screen, open_screen(*window, params.device));
-  LUXEL_TRY(view::ShownScene shown, view::nothing_shown(*screen.commands));
-  return show({*window, screen, shown, live.get(), nullptr, params});
-}
-
-Status relight_in_window(view::OpenedLxr opened, const WindowParams& params) {
-  if (params.play)
-    LUXEL_TRY_STATUS(view::check_lamps(*params.play, opened.lamps, params.play_name));
-  LUXEL_TRY(const std::unique_ptr<Window> window,
-            Window::open(params.title, params.width, params.height));
-  LUXEL_TRY(Screen screen, open_screen(*window, params.device));
-  LUXEL_TRY(view::RelitScene relit, view::lxr_shown(*screen.commands, opened));
-  LampSession lamps = begin_lamps(std::move(opened), std::move(relit.direct));
-  return show({*window, screen, relit.shown, nullptr, &lamps, params});
+  return show({*window, screen, *subject, params});
 }
 
 }  // namespace luxel::view_window

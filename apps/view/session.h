@@ -1,16 +1,14 @@
-// A window while it is open: a bake that is there, one that is being made, or lamps that
-// are moved.
+// A window while it is open.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "apps/view/subject.h"
 #include "luxel/base/result.h"
-#include "luxel/view/live/live_bake.h"
 #include "luxel/view/model/events.h"
 #include "luxel/view/open_bake.h"
-#include "luxel/view/relight/open_lxr.h"
 
 namespace luxel::view_window {
 
@@ -27,16 +25,10 @@ struct WindowParams {
   std::filesystem::path frame_table;
 };
 
-/// Shows a bake until the window is closed, with a second one `beside` it. Errors (no_device): no
-/// display, no device that shows pictures in a window; those of files.
-Status show_in_window(view::OpenedBake bake, std::optional<view::OpenedBake> beside,
+/// Shows a subject until the window is closed, with a second bake `beside` it if there is one. Work
+/// that fails says so in the window. Errors (no_device): no display, no device that shows pictures
+/// in a window; those of files; a play of something else.
+Status show_in_window(const MakeSubject& make_subject, std::optional<view::OpenedBake> beside,
                       const WindowParams& params);
-/// Bakes a scene and shows it meanwhile and afterwards, until the window is closed. A bake that
-/// fails says so in the window. Errors as above.
-Status bake_in_window(const pipeline::BakeSettings& settings, const WindowParams& params);
-
-/// Shows an .lxr file whose lamps can be moved, until the window is closed. Errors as above; a play
-/// of lamps that there are not.
-Status relight_in_window(view::OpenedLxr opened, const WindowParams& params);
 
 }  // namespace luxel::view_window

@@ -4,16 +4,11 @@
 
 #include <vulkan/vulkan_core.h>
 
-#include <array>
+#include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
-#include <vector>
 
-#include "apps/view/bake_panel.h"
-#include "apps/view/lamp_panel.h"
-#include "apps/view/ui_look.h"
+#include "apps/view/panel.h"
 
 struct GLFWwindow;
 
@@ -27,33 +22,6 @@ struct UiDevice {
   uint32_t queue_family;
   VkQueue queue;
   VkFormat format;  ///< of the window's pictures
-};
-
-/// A key and what it does.
-struct KeyLine {
-  const char *key, *does;
-};
-
-/// What the panel shows, and what of it the user may change.
-struct Panel {
-  std::string title;       ///< of the scene
-  std::string about;       ///< a line under it
-  float milliseconds = 0;  ///< of a frame
-  int show = 0;            ///< changed: light and colour, light, colour; > 2: look
-  LookPanel look;          ///< into the bake
-  float stops = 0;         ///< changed: exposure over the first
-  bool keys_open = false;  ///< changed: the list of keys
-  std::span<const KeyLine> keys;
-  std::span<const std::string> views;     ///< of the scene's cameras
-  int view = -1;                          ///< changed: the one that was asked for; -1: none
-  std::array<bool, 9> has_bookmark{};     ///< remembered views
-  int bookmark = -1;                      ///< changed: the one that was asked for; -1: none
-  std::span<const std::string> warnings;  ///< of the bake that is shown
-  std::span<const std::string> recent;    ///< what else was looked at
-  bool is_light = false;                  ///< changed: dark letters on light ground
-  std::optional<BakeLines> bake;
-  std::optional<LampPanel> lamps;
-  std::string message;  ///< what was done last
 };
 
 class Ui {

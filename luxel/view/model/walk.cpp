@@ -159,42 +159,4 @@ void pass(double seconds, Walk& walk) {
   walk.target += column(walk.shown.camera.world_from_camera, 3) - before;
 }
 
-bool has_come(const Play& events, int64_t frame, size_t number) {
-  constexpr double kRounding_s = 1e-9;
-  return number < events.events.size() &&
-         events.events[number].at_s <= double(frame) / events.frames_per_s + kRounding_s;
-}
-
-namespace {
-
-bool is_wait(const Play& events, size_t number) {
-  return std::holds_alternative<WaitForBake>(events.events[number].event);
-}
-
-}  // namespace
-
-bool waits(const Play& events, int64_t frame, bool is_baking, size_t& next) {
-  if (!has_come(events, frame, next) || !is_wait(events, next)) return false;
-  if (!is_baking) ++next;
-  return is_baking;
-}
-
-void handle_frame(const Play& events, int64_t frame, const PlaceSeen& place_seen, size_t& next,
-                  Walk& walk) {
-  for (; has_come(events, frame, next) && !is_wait(events, next); ++next)
-    handle(events.events[next].event, place_seen, walk);
-}
-
-void play(const Play& events, const PlaceSeen& place_seen, Walk& walk) {
-  const auto frames = int64_t(std::llround(events.end_s * events.frames_per_s));
-  size_t next = 0;
-  for (int64_t frame = 0; frame <= frames; ++frame) {
-    do handle_frame(events, frame, place_seen, next, walk);
-    while (has_come(events, frame, next) && !waits(events, frame, false, next));
-    if (frame < frames) pass(1 / events.frames_per_s, walk);
-  }
-  for (; next < events.events.size(); ++next)  // in what is left of the last frame
-    handle(events.events[next].event, place_seen, walk);
-}
-
 }  // namespace luxel::view

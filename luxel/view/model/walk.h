@@ -58,18 +58,4 @@ void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk);
 /// What goes on while keys are down: flying, a fifth of the scene's size per second.
 void pass(double seconds, Walk& walk);
 
-/// Whether an event of this number has come by this frame.
-bool has_come(const Play& events, int64_t frame, size_t number);
-/// Whether a play stands still at this frame, its event number `next` being one that waits. Skips
-/// it where there is nothing to wait for (`is_baking` false).
-bool waits(const Play& events, int64_t frame, bool is_baking, size_t& next);
-
-/// Handles the events of a play that come up to a frame, from number `next` on, and moves it on; up
-/// to one that waits.
-void handle_frame(const Play& events, int64_t frame, const PlaceSeen& place_seen, size_t& next,
-                  Walk& walk);
-
-/// All of a play from its beginning to its end, in steps of its frames.
-void play(const Play& events, const PlaceSeen& place_seen, Walk& walk);
-
 }  // namespace luxel::view

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "luxel/trace/camera_rays.h"
+#include "luxel/view/model/play.h"
 
 namespace luxel::view {
 namespace {
@@ -40,6 +41,12 @@ Vec3 eye_of(const Walk& walk) { return column(walk.shown.camera.world_from_camer
 void expect_place(Vec3 a, Vec3 b) {
   EXPECT_LE(length(a - b), 1e-4f) << a.x << " " << a.y << " " << a.z << " for " << b.x << " " << b.y
                                   << " " << b.z;
+}
+
+void play_before_the_wall(const Play& events, Walk& walk) {
+  play(
+      events, [&](const Event& event) { handle(event, on_the_wall, walk); },
+      [&](double seconds) { pass(seconds, walk); });
 }
 
 void drag(Button button, Vec2 from, Vec2 to, Walk& walk) {
@@ -164,7 +171,7 @@ TEST(Walk, GoesToWhatWasRememberedThoughTheLightHasGrown) {
                                  "walk.json");
   ASSERT_TRUE(events) << events.error().message;
   Walk walk = before_the_wall();
-  play(*events, on_the_wall, walk);
+  play_before_the_wall(*events, walk);
   walk.first.exposure = 12;  // it was 3
   const auto press = [&](const char* key) {
     for (const bool is_down : {true, false}) handle(KeyChanged{key, is_down}, on_the_wall, walk);
@@ -220,7 +227,7 @@ TEST(Play, GoesOnInStepsOfItsOwn) {
   ASSERT_TRUE(events) << events.error().message;
   EXPECT_EQ(events->events.size(), 6u);
   Walk walk = before_the_wall();
-  play(*events, on_the_wall, walk);
+  play_before_the_wall(*events, walk);
   EXPECT_NEAR(eye_of(walk).z, 8, 1e-4f) << "one second at 2 m/s";
   EXPECT_FALSE(walk.dragging);
   expect_place(*on_the_wall(walk.shown, {80, 120}), walk.target);
@@ -234,7 +241,7 @@ TEST(Play, ChoosesWhatIsShownOfABake) {
                                  "walk.json");
   ASSERT_TRUE(events) << events.error().message;
   Walk walk = before_the_wall();
-  play(*events, on_the_wall, walk);
+  play_before_the_wall(*events, walk);
   EXPECT_EQ(walk.shown.show, Show::density);
   EXPECT_EQ(walk.shown.channel, Channel::blue);
   EXPECT_EQ(walk.shown.irradiance, (ColorScale{5, 500, false}));
@@ -245,7 +252,7 @@ TEST(Play, ChoosesWhatIsShownOfABake) {
                                               kShows[i].name),
                                   "walk.json");
     ASSERT_TRUE(shows) << shows.error().message;
-    play(*shows, on_the_wall, walk);
+    play_before_the_wall(*shows, walk);
     EXPECT_EQ(walk.shown.show, Show(i));
   }
 }
@@ -267,19 +274,21 @@ TEST(Play, StandsStillWhileItWaits) {
                                  "walk.json");
   ASSERT_TRUE(events) << events.error().message;
   Walk walk = before_the_wall();
-  size_t next = 0;
-  EXPECT_FALSE(waits(*events, 0, true, next)) << "its time has not come";
-  handle_frame(*events, 1, on_the_wall, next, walk);
-  EXPECT_EQ(walk.shown.show, Show::light) << "what comes before is played";
-  EXPECT_TRUE(waits(*events, 1, true, next));
-  handle_frame(*events, 1, on_the_wall, next, walk);
-  EXPECT_EQ(walk.shown.show, Show::light);
-  EXPECT_FALSE(waits(*events, 1, false, next));
-  handle_frame(*events, 1, on_the_wall, next, walk);
+  Played played;
+  const auto take = [&](const Event& event) { handle(event, on_the_wall, walk); };
+  EXPECT_EQ(step(*events, true, take, played), Step::next) << "no event has come";
+  EXPECT_EQ(played.frame, 1);
+  for (int frame = 0; frame < 2; ++frame) {
+    EXPECT_EQ(step(*events, true, take, played), Step::waits);
+    EXPECT_EQ(walk.shown.show, Show::light) << "what comes before is played";
+  }
+  EXPECT_EQ(step(*events, false, take, played), Step::next);
   EXPECT_EQ(walk.shown.show, Show::colour);
+  while (played.frame < 5) EXPECT_EQ(step(*events, true, take, played), Step::next);
+  EXPECT_EQ(step(*events, true, take, played), Step::waits);
   // Without anything to wait for, a play goes on.
-  play(*events, on_the_wall, walk);
-  EXPECT_EQ(walk.shown.show, Show::colour);
+  while (played.frame < 10) EXPECT_EQ(step(*events, false, take, played), Step::next);
+  EXPECT_EQ(step(*events, false, take, played), Step::ends);
 }
 
 TEST(Play, SaysWhichEventIsWrong) {

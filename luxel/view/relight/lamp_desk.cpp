@@ -228,22 +228,4 @@ Status check_no_lamps(const Play& play, const std::string& name) {
   return {};
 }
 
-void handle_frame_with_lamps(const Play& events, int64_t frame, const PlaceSeen& place_seen,
-                             size_t& next, Walk& walk, LampDesk& desk) {
-  for (; has_come(events, frame, next); ++next) {
-    const Event& event = events.events[next].event;
-    if (!handle_lamps(event, walk, desk)) handle(event, place_seen, walk);
-  }
-}
-
-void play_with_lamps(const Play& events, const PlaceSeen& place_seen, Walk& walk, LampDesk& desk) {
-  const auto frames = int64_t(std::llround(events.end_s * events.frames_per_s));
-  size_t next = 0;
-  for (int64_t frame = 0; frame <= frames; ++frame) {
-    handle_frame_with_lamps(events, frame, place_seen, next, walk, desk);
-    if (frame < frames) pass(1 / events.frames_per_s, walk);
-  }
-  handle_frame_with_lamps(events, frames + 1, place_seen, next, walk, desk);
-}
-
 }  // namespace luxel::view

@@ -57,10 +57,4 @@ Status check_lamps(const Play& play, const Lamps& lamps, const std::string& name
 /// Errors: an event of any lamp or glowing material, for what is no .lxr file.
 Status check_no_lamps(const Play& play, const std::string& name);
 
-/// All of a play from its beginning to its end, in steps of its frames, as view::play().
-void play_with_lamps(const Play& events, const PlaceSeen& place_seen, Walk& walk, LampDesk& desk);
-/// The events that come up to a frame, as view::handle_frame().
-void handle_frame_with_lamps(const Play& events, int64_t frame, const PlaceSeen& place_seen,
-                             size_t& next, Walk& walk, LampDesk& desk);
-
 }  // namespace luxel::view

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "luxel/trace/camera_rays.h"
+#include "luxel/view/model/play.h"
 
 namespace luxel::view {
 namespace {
@@ -141,7 +142,9 @@ TEST(LampDesk, PlaysLamps) {
                                  "lamps.json");
   ASSERT_TRUE(events) << events.error().message;
   ASSERT_TRUE(check_lamps(*events, t.desk.lamps, "lamps.json"));
-  play_with_lamps(*events, kNowhere, t.walk, t.desk);
+  play(
+      *events, [&](const Event& event) { t.take(event); },
+      [&](double seconds) { pass(seconds, t.walk); });
   EXPECT_EQ(t.light(0).position, (Vec3{1, 2, 3}));
   EXPECT_EQ(t.light(0).intensity, (Rgb{4, 5, 6}));
   EXPECT_EQ(t.light(2).direction, (Vec3{1, 0, 0}));

@@ -1,9 +1,12 @@
 // A scene in memory that a viewer shows: what the mouse points at, and where looking begins.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "luxel/base/result.h"
+#include "luxel/pipeline/settings/settings.h"
 #include "luxel/scene/scene.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/view/frame.h"
@@ -18,5 +21,10 @@ struct ReadScene {
   int width = 960, height = 720;           ///< of preview.png
   std::string light_unit;                  ///< of E: "lux" or "W/m^2"
 };
+
+/// What `luxel bake` reads by these settings, with its tracer and its first view. Errors: no such
+/// view; no memory.
+Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene,
+                                                    const pipeline::BakeSettings& settings);
 
 }  // namespace luxel::view

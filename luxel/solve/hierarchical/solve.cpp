@@ -226,8 +226,9 @@ Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer
                        const SolveParams& params, Progress& progress) {
   LUXEL_TRY(Iterated iterated, begin_iterating(scene, tracer, params, progress));
   Solution& s = iterated.solution;
-  for (bool is_settled = false; !is_settled && s.iterations < kMostIterations;)
+  for (bool is_settled = false; !is_settled && s.iterations < kMostIterations;) {
     LUXEL_TRY(is_settled, iterate_once(iterated, scene, tracer, params, progress));
+  }
   s.all_bounces = params.bounces < 0;
   Solving w = solving_of(iterated, scene, tracer);
   if (!s.all_bounces) count_bounces(w, params.bounces);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <mutex>
 #include <thread>
-#include <tuple>
 
 #include <nlohmann/json.hpp>
 
@@ -13,13 +12,11 @@
 #include "luxel/display/tone_map.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/bake/bake_scene.h"
-#include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/post/dilate.h"
 #include "luxel/trace/camera_rays.h"
 #include "luxel/transport/irradiance_field.h"
 #include "luxel/view/live/draft.h"
-#include "luxel/view/open_bake.h"
 
 namespace luxel::view {
 namespace {
@@ -28,20 +25,6 @@ namespace {
 constexpr int kSmallWidth = 128, kSmallHeight = 96;
 /// The height of the picture whose texels come first; only its shape counts.
 constexpr int kViewHeight = 1000;
-
-Result<std::shared_ptr<const ReadScene>> read_scene(const scene::Scene& scene,
-                                                    const pipeline::BakeSettings& settings) {
-  auto out = std::make_shared<ReadScene>();
-  out->scene = scene;
-  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(out->scene));
-  out->tracer.emplace(std::move(tracer));
-  LUXEL_TRY(out->first.camera,
-            pipeline::choose_camera({.view = settings.view, .aspect = pipeline::kPreviewAspect},
-                                    out->scene, *out->tracer, settings.scene.string()));
-  out->light_unit = light_unit_of(scene, settings);
-  std::tie(out->width, out->height) = pipeline::preview_size(out->first.camera);
-  return out;
-}
 
 std::vector<image::HalfImage> halves_of(std::span<const image::Image> pages) {
   std::vector<image::HalfImage> out;

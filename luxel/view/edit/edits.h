@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "luxel/scene/scene.h"
+#include "luxel/view/lamp.h"
 #include "luxel/view/read_scene.h"
 
 namespace luxel::view {
@@ -53,11 +54,7 @@ void end_drag(History& history);
 bool undo(History& history);
 bool redo(History& history);
 
-/// A lamp as it is now.
-struct EditedLamp {
-  scene::PunctualLight light;
-  bool is_on = true, is_deleted = false;
-};
+using EditedLamp = Lamp;
 /// What of a material can be changed.
 struct MaterialLook {
   Rgb base_color{1, 1, 1}, emission{};

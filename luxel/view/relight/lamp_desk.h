@@ -4,18 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "luxel/view/mark.h"
+#include "luxel/view/model/lamp_marks.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/relight/lamps.h"
 
 namespace luxel::view {
-
-/// What of a lamp can be taken hold of.
-struct Handle {
-  uint32_t lamp = 0;
-  bool turns = false;  ///< a spot's direction; otherwise the lamp itself, or the sun in its sky
-  friend bool operator==(const Handle&, const Handle&) = default;
-};
 
 /// The lamps, and what the user is doing with them.
 struct LampDesk {
@@ -35,8 +28,6 @@ LampDesk begin_desk(const Lamps& lamps, const Box3& bounds);
 
 /// Where a handle is [m].
 Vec3 place_of(const Handle& handle, const LampDesk& desk);
-/// Where a place lies in the picture, in pixels; none behind the eye.
-std::optional<Vec2> pixel_of(const Walk& walk, Vec3 place);
 
 /// What an event does to lamps. True: it is no longer the walk's. A press of the left button near a
 /// mark takes the lamp; while it is held it follows the pointer in the plane that faces the camera,

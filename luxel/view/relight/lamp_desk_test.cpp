@@ -5,6 +5,7 @@
 
 #include "luxel/trace/camera_rays.h"
 #include "luxel/view/model/play.h"
+#include "luxel/view/model/projection.h"
 
 namespace luxel::view {
 namespace {

@@ -6,14 +6,9 @@
 
 #include "luxel/scene/scene.h"
 #include "luxel/solve/matrix/relight_data.h"
+#include "luxel/view/lamp.h"
 
 namespace luxel::view {
-
-/// A point, spot or directional light.
-struct Lamp {
-  scene::PunctualLight light;
-  bool is_on = true;
-};
 
 /// A material of the .lxr file that glows, or could.
 struct Glow {

@@ -12,6 +12,7 @@
 #include "luxel/pipeline/command/relight.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/view/draw/device_test_support.h"
+#include "luxel/view/model/projection.h"
 #include "luxel/view/open_bake.h"
 #include "luxel/view/relight/lamp_desk.h"
 #include "tests/scratch_folder.h"

@@ -2,8 +2,8 @@
 
 #include <tuple>
 
-#include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/bake/camera.h"
+#include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/view/open_bake.h"
 
 namespace luxel::view {

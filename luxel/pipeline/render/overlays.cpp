@@ -81,13 +81,12 @@ std::vector<StrongLink> strong_links(const h::Solution& s, const trace::RayTrace
       const h::Link& link = s.links.of[id][k];
       if (s.tree.is_cluster(link.source)) continue;
       if (!(link.visible < 1 ? choice.partial : choice.whole)) continue;
-      out.push_back({id, k,
-                     s.tree.element(id).area_m2 *
-                         double(luminance(h::irradiance_of(link, x, s.light)))});
+      out.push_back(
+          {id, k,
+           s.tree.element(id).area_m2 * double(luminance(h::irradiance_of(link, x, s.light)))});
     }
-  std::stable_sort(out.begin(), out.end(), [](const StrongLink& a, const StrongLink& b) {
-    return a.power_W > b.power_W;
-  });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const StrongLink& a, const StrongLink& b) { return a.power_W > b.power_W; });
   out.resize(std::min(choice.most, out.size()));
   return out;
 }
@@ -113,8 +112,7 @@ Result<std::vector<h::Discontinuity>> all_discontinuities(const h::Solution& s,
   progress.begin("discontinuities", of_face.size());
   parallel_for(of_face.size(), 1, [&](size_t begin, size_t end) {
     for (size_t f = begin; f < end && !progress.cancelled(); ++f)
-      of_face[f] =
-          h::find_discontinuities(s, scene, tracer, uint32_t(f), params.ranking, limits);
+      of_face[f] = h::find_discontinuities(s, scene, tracer, uint32_t(f), params.ranking, limits);
     progress.advance(end - begin);
   });
   LUXEL_TRY_STATUS(stopped(progress));

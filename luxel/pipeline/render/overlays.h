@@ -38,8 +38,7 @@ struct StrongLink {
 };
 /// Those that bring most light, the first the strongest.
 std::vector<StrongLink> strong_links(const hierarchical::Solution& solution,
-                                     const trace::RayTracer& tracer,
-                                     const LinkChoice& choice = {});
+                                     const trace::RayTracer& tracer, const LinkChoice& choice = {});
 /// From receiver to source, white where they see each other whole, pink where the plane of one cuts
 /// the other, green where something stands between.
 std::vector<display::Line> link_lines(const hierarchical::Solution& solution,
@@ -53,7 +52,8 @@ std::vector<display::Line> discontinuity_lines(
     std::span<const hierarchical::Discontinuity> discontinuities);
 /// Edges of triangles, violet along discontinuities, else green.
 std::vector<display::Line> triangulation_lines(const hierarchical::LightMesh& mesh);
-/// Red sticks, the longest a twentieth of the scene's diagonal; `error` as measure_error() gives it.
+/// Red sticks, the longest a twentieth of the scene's diagonal; `error` as measure_error() gives
+/// it.
 std::vector<display::Line> error_lines(const hierarchical::Solution& solution,
                                        const hierarchical::LightMesh& mesh,
                                        std::span<const float> error);

@@ -182,9 +182,9 @@ Result<std::vector<float>> measure_error(const Solution& s, const scene::Scene& 
   return measure({s, scene, tracer, params}, all, none, mesh, progress);
 }
 
-Result<Round> represent_once(Solution& s, const scene::Scene& scene,
-                             const trace::RayTracer& tracer, const MeshParams& mesh_params,
-                             const RepresentParams& params, Known& known, Progress& progress) {
+Result<Round> represent_once(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+                             const MeshParams& mesh_params, const RepresentParams& params,
+                             Known& known, Progress& progress) {
   const Precision precision = precision_of(s, mesh_params, params);
   Refining r{s, scene, tracer, precision.rough, precision.eps, known};
   Round out;

@@ -224,6 +224,7 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   const Painter& painter = canvas.painter;
   const DeviceScene& scene = canvas.scene;
   const Overlay* overlay = canvas.overlay;
+  const Additions none, &more = canvas.additions ? *canvas.additions : none;
   const gpu::TargetParams& size = painter.exposed.params;
   const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
   const bool has_overlay = overlay != nullptr && looks_into_bake(frame.show);
@@ -235,18 +236,18 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
   if (has_overlay)
     draw_overlay(device, commands, shaders.overlay, *overlay, scene, surface.clip_from_world);
-  else if (canvas.quadratics)
-    draw_quadratics(device, commands, shaders.quadratic, *canvas.quadratics, canvas.exact,
-                    surface.clip_from_world, frame);
-  else
+  else if (!more.instead && !more.no_surfaces)
     draw_surfaces(device, commands, canvas, surface);
+  else if (!more.no_surfaces)
+    draw_quadratics(device, commands, shaders.quadratic, *more.instead, more.exact,
+                    surface.clip_from_world, frame);
   const BehindPush behind = behind_of(camera, scene, frame, has_overlay);
   gpu::bind(device, commands, shaders.behind, behind);
   gpu::bind_set(device, commands, shaders.behind, painter.surroundings.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
   const bool is_light = frame.show != Show::colour && !(has_overlay && shows_colors(frame.show));
   const display::ToneMap curve = is_light ? frame.curve : display::ToneMap::clamp;
-  for (const DeviceShapes& shapes : canvas.shapes)
+  for (const DeviceShapes& shapes : more.shapes)
     draw_shapes(device, commands, shaders.shapes, shapes,
                 {surface.clip_from_world,
                  camera.orthographic,

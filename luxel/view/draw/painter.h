@@ -1,6 +1,9 @@
 // Draws a scene that lies on a graphics device.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "luxel/gpu/pipeline.h"
 #include "luxel/gpu/target.h"
 #include "luxel/image/codec.h"
@@ -33,16 +36,21 @@ struct Painter {
 Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
                              const DeviceScene& scene, uint32_t width, uint32_t height);
 
+/// What is drawn instead of a scene's surfaces, and after all of them.
+struct Additions {
+  std::optional<DeviceQuadratics> instead;
+  std::optional<ExactPixels> exact;  ///< of `instead`
+  bool no_surfaces = false;
+  std::vector<DeviceShapes> shapes;  ///< in this order
+};
+
 /// What a picture is drawn with and of. All of it must live until it is drawn.
 struct Canvas {
   const Shaders& shaders;
   const Painter& painter;
   const DeviceScene& scene;
   const Overlay* overlay = nullptr;  ///< without one no frame looks into the bake
-  const DeviceQuadratics* quadratics = nullptr;  ///< drawn instead of the scene's surfaces
-  const ExactPixels* exact = nullptr;            ///< of `quadratics`
-  /// Drawn in their order after all surfaces.
-  std::span<const DeviceShapes> shapes = {};
+  const Additions* additions = nullptr;
 };
 
 /// Records the drawing of a frame; the painter's `shown` is then in the layout

@@ -34,8 +34,7 @@ Result<DeviceQuadratics> put_quadratics(const gpu::Device& device,
   if (group.empty()) return fail(ErrorCode::bad_input, "there is no surface to draw");
   std::vector<QuadraticTriangle> triangles(group.size());
   for (size_t t = 0; t < triangles.size(); ++t) {
-    for (size_t k = 0; k < 3; ++k)
-      triangles[t].corner[k] = mesh.vertices[mesh.triangles[t][k]];
+    for (size_t k = 0; k < 3; ++k) triangles[t].corner[k] = mesh.vertices[mesh.triangles[t][k]];
     triangles[t].irradiance = mesh.irradiance[t];
     triangles[t].reflectance = mesh.reflectance[t], triangles[t].emission = mesh.emission[t];
     triangles[t].group = group[t], triangles[t].two_sided = mesh.two_sided[t];
@@ -60,8 +59,8 @@ Result<gpu::Pipeline> make_quadratic_shader(const gpu::Device& device, VkFormat 
 
 void draw_quadratics(const gpu::Device& device, VkCommandBuffer commands,
                      const gpu::Pipeline& shader, const DeviceQuadratics& mesh,
-                     const ExactPixels* exact, const std::array<float, 16>& clip_from_world,
-                     const Frame& frame) {
+                     const std::optional<ExactPixels>& exact,
+                     const std::array<float, 16>& clip_from_world, const Frame& frame) {
   QuadraticPush push{clip_from_world, mesh.triangles.address};
   if (exact) push.exact = exact->pixels.address, push.exact_width = exact->width;
   push.exposure = frame.exposure, push.show = uint32_t(frame.show);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,10 +36,10 @@ struct ExactPixels {
   uint32_t width = 0;
 };
 
-/// Draws them as the painter draws surfaces; `exact` may be null.
+/// Draws them as the painter draws surfaces; `exact` may be none.
 void draw_quadratics(const gpu::Device& device, VkCommandBuffer commands,
                      const gpu::Pipeline& shader, const DeviceQuadratics& mesh,
-                     const ExactPixels* exact, const std::array<float, 16>& clip_from_world,
-                     const Frame& frame);
+                     const std::optional<ExactPixels>& exact,
+                     const std::array<float, 16>& clip_from_world, const Frame& frame);
 
 }  // namespace luxel::view

@@ -19,7 +19,7 @@ struct ShapePush {
   uint32_t kind = 0;  ///< 0 triangles, 1 lines, 2 discs
   uint32_t curve = 0;
 };
-static_assert(sizeof(ShapePush) == 100 && sizeof(ShapeCorner) == 28);
+static_assert(sizeof(ShapePush) == 104 && sizeof(ShapeCorner) == 28);
 
 gpu::DrawParams shape_params(VkFormat color, VkSampleCountFlagBits samples, bool is_hidden) {
   gpu::DrawParams params;

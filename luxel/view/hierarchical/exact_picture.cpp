@@ -10,7 +10,7 @@ namespace {
 
 namespace h = luxel::hierarchical;
 
-constexpr int kCoarsest = 16;         ///< the side of the first grid's squares [pixels]
+constexpr int kCoarsest = 16;        ///< the side of the first grid's squares [pixels]
 constexpr double kTolerance = 1e-3;  ///< PointParams::tolerance, as `luxel render` has it
 
 /// The pixels in their order from `first` on: those of a grid of 16, then of 8 that are not on it,
@@ -34,12 +34,13 @@ std::vector<size_t> ordered_pixels(const ExactView& view, size_t first, size_t c
 bool is_same(const ExactView& a, const ExactView& b) {
   const scene::Camera &c = a.camera, &d = b.camera;
   return a.width == b.width && a.height == b.height && c.fov_y_rad == d.fov_y_rad &&
-         c.orthographic_height_m == d.orthographic_height_m &&
-         c.aspect == d.aspect && c.world_from_camera == d.world_from_camera;
+         c.orthographic_height_m == d.orthographic_height_m && c.aspect == d.aspect &&
+         c.world_from_camera == d.world_from_camera;
 }
 
 ExactPicture begin_exact(const Piece& piece, const ExactView& view) {
-  ExactPicture out{view, piece.number};
+  ExactPicture out;
+  out.view = view, out.piece = piece.number;
   out.pixels.resize(size_t(view.width) * size_t(view.height));
   return out;
 }

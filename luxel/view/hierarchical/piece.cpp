@@ -23,8 +23,9 @@ h::Interpolant linear(const h::Interpolant& r) {
   return {Rgb{}, {}, b - a, {}, c - a, a};
 }
 
-Status take_step(SolverStep step, const SolvedScene& in, const pipeline::HierarchicalSettings& settings,
-                 KnownRounds& known, h::Iterated& iterated, Piece& out, Progress& progress) {
+Status take_step(SolverStep step, const SolvedScene& in,
+                 const pipeline::HierarchicalSettings& settings, KnownRounds& known,
+                 h::Iterated& iterated, Piece& out, Progress& progress) {
   h::RepresentParams represent;
   represent.max_elements = settings.solve.max_elements;
   h::Solution& s = iterated.solution;
@@ -46,8 +47,8 @@ Status take_step(SolverStep step, const SolvedScene& in, const pipeline::Hierarc
     }
     case SolverStep::last: {
       represent.max_rounds = 0;
-      LUXEL_TRY(h::LightMesh cut, h::represent(s, in.scene, in.tracer, settings.mesh, represent,
-                                               progress));
+      LUXEL_TRY(h::LightMesh cut,
+                h::represent(s, in.scene, in.tracer, settings.mesh, represent, progress));
       out.cut = std::make_shared<const h::LightMesh>(std::move(cut));
       out.is_settled = true;
       break;
@@ -73,8 +74,8 @@ Result<Piece> stepped(const Piece& from, SolverStep step, const SolvedScene& in,
             h::make_flat_mesh(iterated->solution, in.scene, in.tracer, progress));
   out.flat = std::make_shared<const h::LightMesh>(std::move(flat));
   const auto links = [&](bool is_whole) {
-    return std::make_shared<const std::vector<pipeline::StrongLink>>(pipeline::strong_links(
-        iterated->solution, in.tracer, {is_whole, !is_whole, kMostLinks}));
+    return std::make_shared<const std::vector<pipeline::StrongLink>>(
+        pipeline::strong_links(iterated->solution, in.tracer, {is_whole, !is_whole, kMostLinks}));
   };
   out.whole_links = links(true), out.partial_links = links(false);
   out.iterated = std::move(iterated);

@@ -42,8 +42,7 @@ struct Asked {
 
 class WorkshopThread : public Workshop {
  public:
-  explicit WorkshopThread(const pipeline::BakeSettings& settings)
-      : settings_(settings) {
+  explicit WorkshopThread(const pipeline::BakeSettings& settings) : settings_(settings) {
     const auto& own = settings.own.of<pipeline::HierarchicalSettings>();
     mesh_ = own.mesh;
     asked_.push_back({Ask::begin, own});
@@ -99,6 +98,7 @@ class WorkshopThread : public Workshop {
   }
   WorkshopState state() const override {
     const std::scoped_lock lock(mutex_);
+    if (news_.read || news_.piece || news_.exact || news_.said) return WorkshopState::at_work;
     if (has_failed_) return WorkshopState::failed;
     return now_ != Task::nothing || next() != Task::nothing ? WorkshopState::at_work
                                                             : WorkshopState::at_rest;
@@ -215,8 +215,8 @@ class WorkshopThread : public Workshop {
   /// True: it found nothing to divide.
   Result<bool> take_step(SolverStep step, const pipeline::HierarchicalSettings& settings) {
     const Piece none;
-    LUXEL_TRY(Piece made, stepped(from_ ? *from_ : none, step, scene(), settings, known_rounds_,
-                                  *progress_));
+    LUXEL_TRY(Piece made,
+              stepped(from_ ? *from_ : none, step, scene(), settings, known_rounds_, *progress_));
     LUXEL_TRY_STATUS(stopped(*progress_));
     const bool is_settled = made.is_settled;
     const float exposure = from_ ? 0 : readable_exposure(made, *read_);
@@ -246,8 +246,8 @@ class WorkshopThread : public Workshop {
       made.discontinuities =
           std::make_shared<const std::vector<h::Discontinuity>>(std::move(found));
     } else if (task == Task::error) {
-      LUXEL_TRY(auto error, h::measure_error(s, in.scene, in.tracer, params_.point, *made.cut,
-                                             *progress_));
+      LUXEL_TRY(auto error,
+                h::measure_error(s, in.scene, in.tracer, params_.point, *made.cut, *progress_));
       made.error = std::make_shared<const std::vector<float>>(std::move(error));
     } else {
       h::MeshParams params = params_;
@@ -299,8 +299,8 @@ class WorkshopThread : public Workshop {
   std::shared_ptr<const ReadScene> read_;
   std::shared_ptr<const Piece> from_;  ///< what the task begins with
   h::MeshParams params_;               ///< of the task
-  h::Known known_;            ///< by the light of piece_
-  KnownRounds known_rounds_;  ///< coarser
+  h::Known known_;                     ///< by the light of piece_
+  KnownRounds known_rounds_;           ///< coarser
   size_t pixels_ = kFirstPixels;
   std::thread thread_;  ///< the last: it uses all of the others
 };

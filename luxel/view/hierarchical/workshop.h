@@ -50,7 +50,7 @@ class Workshop {
   virtual void interrupt() = 0;
   /// Meshes are made by the mesh settings; the same as before changes nothing.
   virtual void want(const Wanted& wanted, const hierarchical::MeshParams& mesh) = 0;
-  /// At work while anything is asked for or wanted that is not done.
+  /// At work while anything is asked for or wanted that is not done, or done and not taken.
   virtual WorkshopState state() const = 0;
   /// Whether it is at what it was asked for, and not at what is wanted.
   virtual bool is_solving() const = 0;

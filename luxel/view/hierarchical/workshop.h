@@ -20,7 +20,7 @@ enum class Ask : uint8_t { links, interpolants, converge_links, converge_interpo
 /// What is to be made of the solution, when the solver has nothing else to do.
 struct Wanted {
   bool whole = false, cut = false, discontinuities = false, error = false;  ///< see Piece
-  std::optional<ExactView> exact;  ///< exact light of the pixels of this view
+  std::optional<ExactView> exact = {};  ///< exact light of the pixels of this view
 };
 
 /// What has come since it was last asked for.

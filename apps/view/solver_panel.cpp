@@ -5,6 +5,8 @@
 namespace luxel::view_window {
 namespace {
 
+constexpr float kColumn = 12;  ///< where the second of two begins [letters' heights]
+
 void lay_out_number(NumberLine& line) {
   const ImGuiSliderFlags curve = line.is_logarithmic ? ImGuiSliderFlags_Logarithmic : 0;
   if (!line.is_whole) {
@@ -21,12 +23,12 @@ void lay_out_work(SolverPanel& panel) {
   for (const std::string& line : panel.lines) ImGui::TextUnformatted(line.c_str());
   panel.asked = -1;
   for (size_t i = 0; i < panel.asks.size(); ++i) {
-    if (i % 2 == 1) ImGui::SameLine(ImGui::GetFontSize() * 9);
+    if (i % 2 == 1) ImGui::SameLine(ImGui::GetFontSize() * kColumn);
     if (ImGui::Button(panel.asks[i].c_str())) panel.asked = int(i);
   }
   panel.asks_to_stop = false;
   if (!panel.is_solving) return;
-  ImGui::SameLine(ImGui::GetFontSize() * 9);
+  ImGui::SameLine(ImGui::GetFontSize() * kColumn);
   panel.asks_to_stop = ImGui::Button("stop (space)");
 }
 
@@ -40,7 +42,7 @@ void lay_out_solver(SolverPanel& panel) {
   if (!panel.note.empty()) ImGui::TextUnformatted(panel.note.c_str());
   ImGui::Separator();
   for (size_t i = 0; i < panel.over.size(); ++i) {
-    if (i % 2 == 1) ImGui::SameLine(ImGui::GetFontSize() * 10);
+    if (i % 2 == 1) ImGui::SameLine(ImGui::GetFontSize() * kColumn);
     ImGui::Checkbox(panel.over[i].words.c_str(), &panel.over[i].is_on);
   }
   ImGui::PushItemWidth(ImGui::GetFontSize() * 9);

@@ -43,7 +43,7 @@ inline constexpr std::array<NamedWords, 9> kOverlays{{
     {"discontinuities", "discontinuities"},
     {"triangulation", "triangulation"},
     {"samples", "sample points"},
-    {"error", "error of interpolants"},
+    {"error", "error"},
     {"reflectance", "reflectance"},
     {"no-faces", "no faces"},
 }};
@@ -53,8 +53,8 @@ inline constexpr std::array<const char*, 5> kLightKindKeys{"4", "5", "6", "7", "
 inline constexpr std::array<NamedWords, 5> kAsks{{
     {"iterate", "refine links"},
     {"iterate-interpolants", "refine interpolants"},
-    {"converge", "links to convergence"},
-    {"converge-interpolants", "interpolants to convergence"},
+    {"converge", "all links"},
+    {"converge-interpolants", "all interpolants"},
     {"begin", "begin anew"},
 }};
 

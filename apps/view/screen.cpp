@@ -12,21 +12,15 @@
 
 namespace luxel::view_window {
 
-Result<bool> fit_window(const Window& window, const view::DeviceScene& scene, Screen& screen) {
-  const auto [width, height] = window.pixels();
-  if (width == 0 || height == 0) return false;
+namespace {
+
+/// The window's pictures, and the panel over them.
+Status fit_pictures(const Window& window, uint32_t width, uint32_t height, Screen& screen) {
   const gpu::Device& device = *screen.device;
-  device.vk.vkDeviceWaitIdle(device.device);
   LUXEL_TRY(gpu::Swapchain swapchain,
-            gpu::make_swapchain(device, *screen.surface, uint32_t(width), uint32_t(height),
+            gpu::make_swapchain(device, *screen.surface, width, height,
                                 screen.swapchain.images.empty() ? nullptr : &screen.swapchain));
   screen.swapchain = std::move(swapchain);
-  LUXEL_TRY(screen.painter, view::make_painter(device, screen.shaders, scene,
-                                               screen.swapchain.width, screen.swapchain.height));
-  if (screen.beside) {
-    LUXEL_TRY(screen.pair, view::make_pair(*screen.commands, screen.shaders, screen.painter,
-                                           screen.beside->device));
-  }
   if (!screen.ui) {
     screen.ui =
         Ui::make(window.get(), {device.instance, device.physical, device.device,
@@ -37,7 +31,29 @@ Result<bool> fit_window(const Window& window, const view::DeviceScene& scene, Sc
   if (!screen.ui ||
       !screen.ui->set_pictures(views, screen.swapchain.width, screen.swapchain.height))
     return fail(ErrorCode::no_device, "{} cannot draw the panel", device.name);
+  return {};
+}
+
+}  // namespace
+
+Result<bool> fit_window(const Window& window, const view::DeviceScene& scene, Screen& screen) {
+  const auto [width, height] = window.pixels();
+  if (width == 0 || height == 0) return false;
+  const gpu::Device& device = *screen.device;
+  device.vk.vkDeviceWaitIdle(device.device);
+  LUXEL_TRY_STATUS(fit_pictures(window, uint32_t(width), uint32_t(height), screen));
+  LUXEL_TRY_STATUS(fit_scene(scene, screen));
   return true;
+}
+
+Status fit_scene(const view::DeviceScene& scene, Screen& screen) {
+  LUXEL_TRY(screen.painter, view::make_painter(*screen.device, screen.shaders, scene,
+                                               screen.swapchain.width, screen.swapchain.height));
+  if (screen.beside) {
+    LUXEL_TRY(screen.pair, view::make_pair(*screen.commands, screen.shaders, screen.painter,
+                                           screen.beside->device));
+  }
+  return {};
 }
 
 bool has_size_of(const Window& window, const gpu::Swapchain& swapchain) {

@@ -48,6 +48,10 @@ Result<Screen> open_screen(const Window& window, const std::string& device_name)
 /// none, as when it is hidden.
 Result<bool> fit_window(const Window& window, const view::DeviceScene& scene, Screen& screen);
 
+/// What another scene is drawn with, in a window that is fitted. Nothing may still draw. Errors: no
+/// memory on the device.
+Status fit_scene(const view::DeviceScene& scene, Screen& screen);
+
 /// Not every display says so when the window has got another size.
 bool has_size_of(const Window& window, const gpu::Swapchain& swapchain);
 

@@ -94,8 +94,9 @@ struct Session {
   Panel panel = {};
   std::optional<view::Walk> walk = {};  ///< once there is a scene, and the window has a size
   view::PlaceSeen place_seen = {};
-  int still_frames = 0;  ///< since something changed
-  bool fits = false;     ///< what is drawn with is of the window's size and the scene
+  int still_frames = 0;      ///< since something changed
+  bool fits = false;         ///< what is drawn with is of the window's size
+  bool shows_scene = false;  ///< and of the scene
   view::Played played = {};
   FrameTable table = {};
   Clock::time_point last = Clock::now(), last_report = Clock::now();
@@ -120,9 +121,15 @@ void begin(const view::ReadScene& read, Session& s) {
 /// Fits what is drawn with to the window and the scene. False while the window has no size, as when
 /// it is hidden.
 Result<bool> fit(Session& s) {
-  if (s.fits && has_size_of(s.window, s.screen.swapchain)) return true;
+  const bool fitted = s.fits && has_size_of(s.window, s.screen.swapchain);
+  if (fitted && s.shows_scene) return true;
   const view::ShownScene& shown = s.subject.shown();
-  LUXEL_TRY(s.fits, fit_window(s.window, shown.device, s.screen));
+  if (fitted) {
+    LUXEL_TRY_STATUS(fit_scene(shown.device, s.screen));
+  } else {
+    LUXEL_TRY(s.fits, fit_window(s.window, shown.device, s.screen));
+  }
+  s.shows_scene = s.fits;
   if (s.fits && shown.read) begin(*shown.read, s);
   return s.fits;
 }
@@ -130,7 +137,7 @@ Result<bool> fit(Session& s) {
 /// Takes what has come from the background. True: something is to be drawn.
 Result<bool> follow(Session& s) {
   LUXEL_TRY(const Followed followed, s.subject.follow(*s.screen.commands, s.panel.message));
-  if (followed.is_another) s.fits = false, s.screen.looking = {};
+  if (followed.is_another) s.screen.looking = {}, s.shows_scene = false;
   if (!followed.has_news && seconds_since(s.last_report) < kReport_s) return false;
   s.last_report = Clock::now();
   return followed.has_news || s.subject.work() == Work::at_work;

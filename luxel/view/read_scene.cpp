@@ -22,4 +22,14 @@ Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene,
   return out;
 }
 
+Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene, const ReadScene& before) {
+  auto out = std::make_shared<ReadScene>();
+  out->scene = std::move(scene);
+  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(out->scene));
+  out->tracer.emplace(std::move(tracer));
+  out->first = before.first, out->light_unit = before.light_unit;
+  out->width = before.width, out->height = before.height;
+  return out;
+}
+
 }  // namespace luxel::view

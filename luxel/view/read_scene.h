@@ -22,9 +22,11 @@ struct ReadScene {
   std::string light_unit;                  ///< of E: "lux" or "W/m^2"
 };
 
-/// What `luxel bake` reads by these settings, with its tracer and its first view. Errors: no such
-/// view; no memory.
+/// The scene that a file holds, ready to be looked at, by the view that the settings ask for.
+/// Errors: no such view; no memory.
 Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene,
                                                     const pipeline::BakeSettings& settings);
+/// Another scene, looked at from where the one before it was.
+Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene, const ReadScene& before);
 
 }  // namespace luxel::view

@@ -208,6 +208,16 @@ Status bake_in_time(const BakeSettings& settings, const Keepers& keepers,
   return done;
 }
 
+BakeSettings with_folder(BakeSettings settings) {
+  if (settings.output.empty()) settings.output = ".";
+  return settings;
+}
+
+/// Errors: a scene that cannot be repaired.
+Result<std::vector<std::string>> validated(scene::Scene& scene) {
+  return scene::validate(scene, "scene '" + scene.name + "'");
+}
+
 }  // namespace
 
 Result<scene::Scene> load_scene(const BakeSettings& settings, std::vector<std::string>& warnings,
@@ -237,16 +247,24 @@ Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const 
 
 Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& asked, Progress& progress,
                         const BakeObserver& watcher) {
-  BakeSettings settings = asked;
-  if (settings.output.empty()) settings.output = ".";
+  LUXEL_TRY_STATUS(check(with_folder(asked)));
+  LUXEL_TRY(std::vector<std::string> warnings, validated(scene));
+  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(asked.outside, scene));
+  warnings.insert(warnings.end(), light.begin(), light.end());
+  LUXEL_TRY(Bake bake, bake_read_scene(std::move(scene), asked, progress, {}, watcher));
+  bake.warnings.insert(bake.warnings.begin(), warnings.begin(), warnings.end());
+  return bake;
+}
+
+Result<Bake> bake_read_scene(scene::Scene scene, const BakeSettings& asked, Progress& progress,
+                             const Keepers& keepers, const BakeObserver& watcher) {
+  const BakeSettings settings = with_folder(asked);
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
   bake.scene = std::move(scene);
-  LUXEL_TRY(bake.warnings, scene::validate(bake.scene, "scene '" + bake.scene.name + "'"));
-  LUXEL_TRY(const std::vector<std::string> light, add_outside_light(settings.outside, bake.scene));
-  bake.warnings.insert(bake.warnings.end(), light.begin(), light.end());
-  LUXEL_TRY_STATUS(bake_in_time(settings, {}, watcher, bake, progress));
+  LUXEL_TRY(bake.warnings, validated(bake.scene));
+  LUXEL_TRY_STATUS(bake_in_time(settings, keepers, watcher, bake, progress));
   return bake;
 }
 

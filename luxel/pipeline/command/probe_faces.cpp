@@ -17,42 +17,8 @@
 namespace luxel::pipeline {
 namespace {
 
-/// Faces whose normals differ by more from the one asked for are not meant.
-constexpr double kAlike = 0.7;
 constexpr size_t kMostTiles = 12;
 constexpr int kTile = 240, kMargin = 12;
-
-struct Nearest {
-  uint32_t face = hierarchical::kNone;
-  DVec3 place;
-  double distance_m = INFINITY;
-};
-
-/// The nearest point of a convex polygon.
-DVec3 nearest_on(const hierarchical::Face& face, DVec3 p) {
-  const DVec3 n = face.plane.normal;
-  const DVec3 foot = p - n * face.plane.height(p);
-  if (hierarchical::depth_inside(face.corners, n, foot) >= 0) return foot;
-  DVec3 best = face.corners.front();
-  for (size_t k = 0; k < face.corners.size(); ++k) {
-    const DVec3 a = face.corners[k], d = face.corners[(k + 1) % face.corners.size()] - a;
-    const double t = std::clamp(dot(foot - a, d) / std::max(dot(d, d), 1e-30), 0.0, 1.0);
-    if (const DVec3 q = a + d * t; length(q - p) < length(best - p)) best = q;
-  }
-  return best;
-}
-
-Nearest nearest_face(const hierarchical::Faces& faces, const ProbeSettings& s) {
-  Nearest best;
-  const DVec3 at = to_double(s.at);
-  for (uint32_t f = 0; f < faces.size(); ++f) {
-    const hierarchical::Face& face = faces.faces[f];
-    if (s.normal && dot(face.plane.normal, normalize(to_double(*s.normal))) < kAlike) continue;
-    const DVec3 place = nearest_on(face, at);
-    if (const double d = length(place - at); d < best.distance_m) best = {f, place, d};
-  }
-  return best;
-}
 
 /// Just inside of its face: on an edge irradiance is the limit from there.
 DVec3 inwards(const hierarchical::Face& face, DVec3 place) {
@@ -118,13 +84,19 @@ Result<Probed> probe_by_solution(const ProbeSettings& s, Progress& progress) {
             hierarchical::solve(scene, tracer, s.hierarchical.solve, progress));
   out.warnings.insert(out.warnings.end(), solution.warnings.begin(), solution.warnings.end());
   // The surface that is meant.
-  const Nearest nearest = nearest_face(solution.faces, s);
+  std::optional<DVec3> normal;
+  if (s.normal) normal = normalize(to_double(*s.normal));
+  const hierarchical::FacePoint nearest =
+      hierarchical::nearest_face_point(solution.faces, to_double(s.at), normal);
   const double diagonal_m = double(solution.diagonal_m);
-  if (!(nearest.distance_m <= kFarFromSurfaces * diagonal_m))
-    return tl::unexpected(far_from_surfaces(s, diagonal_m, nearest.distance_m));
+  const double distance_m = nearest.face == hierarchical::kNone
+                                ? double(INFINITY)
+                                : length(nearest.position - to_double(s.at));
+  if (!(distance_m <= kFarFromSurfaces * diagonal_m))
+    return tl::unexpected(far_from_surfaces(s, diagonal_m, distance_m));
   const hierarchical::Face& face = solution.faces.faces[nearest.face];
   const hierarchical::Receiver at = hierarchical::receiver_at(solution, scene, tracer, nearest.face,
-                                                              inwards(face, nearest.place));
+                                                              inwards(face, nearest.position));
   // Its E: exact, and as the mesh of light interpolates it.
   hierarchical::RepresentParams represent;
   represent.seconds = s.time_budget_s - seconds_since(start);
@@ -136,14 +108,14 @@ Result<Probed> probe_by_solution(const ProbeSettings& s, Progress& progress) {
     out.warnings.push_back(about_left_out(left_out, s.time_budget_s));
   LUXEL_TRY(const std::vector<Rgb> exact,
             hierarchical::irradiance_at(solution, scene, tracer, {&at, 1}, {1e-6}, progress));
-  if (const auto p = hierarchical::locate(solution, mesh, nearest.face, nearest.place))
+  if (const auto p = hierarchical::locate(solution, mesh, nearest.face, nearest.position))
     out.interpolated = hierarchical::value_of(mesh.interpolant[p->triangle], p->s, p->t);
   out.irradiance = out.punctual_and_background = exact[0];
-  LUXEL_TRY_STATUS(check_held(scene, to_float(nearest.place), out));
+  LUXEL_TRY_STATUS(check_held(scene, to_float(nearest.position), out));
   if (!(max_component(exact[0]) > 0)) out.warnings.push_back(no_light_arrives("the point"));
   out.name = name_of(scene, face.instance), out.material = scene.materials[face.material].name;
-  out.position = to_float(nearest.place), out.normal = to_float(at.normal);
-  out.distance_m = float(nearest.distance_m);
+  out.position = to_float(nearest.position), out.normal = to_float(at.normal);
+  out.distance_m = float(distance_m);
   // The sources, and what is left of E without them.
   const std::vector<hierarchical::Seen> seen =
       hierarchical::sources_at(solution, tracer, at, {1e-6});

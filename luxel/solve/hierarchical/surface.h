@@ -26,4 +26,8 @@ struct FacePoint {
 FacePoint face_point_of(const scene::Scene& scene, const Faces& faces,
                         const scene::SurfacePoint& p);
 
+/// The nearest place of all faces whose normals are about along `normal`, which is unit: those
+/// whose cosine is at least 0.7. Nothing: any face will do. face is kNone where there is none.
+FacePoint nearest_face_point(const Faces& faces, DVec3 point, std::optional<DVec3> normal);
+
 }  // namespace luxel::hierarchical

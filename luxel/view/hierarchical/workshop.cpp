@@ -7,6 +7,7 @@
 
 #include "luxel/base/clock.h"
 #include "luxel/base/parallel.h"
+#include "luxel/base/thread_priority.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/render/overlays.h"
 #include "luxel/solve/hierarchical/represent.h"
@@ -152,6 +153,7 @@ class WorkshopThread : public Workshop {
   // The thread's own.
 
   void run() {
+    lower_priority_of_this_thread();
     const ThreadLimit threads(settings_.threads);
     for (;;) {
       Task task = Task::nothing;

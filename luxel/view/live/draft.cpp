@@ -12,18 +12,19 @@ namespace {
 
 /// Laying out a million triangles takes seconds.
 constexpr size_t kMostTriangles = 200'000;
-constexpr int kDraftSamples = 32, kDraftDirectSamples = 8;
 /// Texels along a side; the second for scenes of many charts.
 constexpr int kDraftSides[] = {96, 512};
 /// How far above a surface the draft's surface is looked for, and as far below, over the scene's
 /// diagonal.
 constexpr float kReach = 1e-4f;
 
-pipeline::BakeSettings draft_settings(const pipeline::BakeSettings& of, int side) {
+pipeline::BakeSettings draft_settings(const pipeline::BakeSettings& of, const DraftParams& params,
+                                      int side) {
   pipeline::BakeSettings out;
   out.output = of.output;
   out.resolution = side;
-  out.samples = kDraftSamples, out.direct_samples = kDraftDirectSamples, out.supersample = 4;
+  out.samples = params.samples, out.direct_samples = params.direct_samples;
+  out.supersample = params.supersample;
   out.bounces = of.bounces;
   out.seed = of.seed, out.threads = of.threads, out.max_memory_bytes = of.max_memory_bytes;
   return out;
@@ -47,7 +48,7 @@ Result<bool> light_draft(const scene::Scene& scene, const pipeline::BakeSettings
     // What comes after the light is not looked at.
     if (light.is_last || watched.cancelled()) own.request_cancel();
   };
-  const auto baked = pipeline::bake_scene(scene, settings, own, observer);
+  const auto baked = pipeline::bake_read_scene(scene, settings, own, {}, observer);
   LUXEL_TRY_STATUS(stopped(watched));
   if (!has_light && !baked) return tl::unexpected(baked.error());
   return has_light;
@@ -57,7 +58,7 @@ Result<bool> light_draft(const scene::Scene& scene, const pipeline::BakeSettings
 
 Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
                                           const pipeline::BakeSettings& settings,
-                                          const Progress& watched) {
+                                          const DraftParams& params, const Progress& watched) {
   if (settings.solver != "gather" || settings.light != pipeline::LightPart::all ||
       scene::first_triangles(scene).back() > kMostTriangles)
     return nullptr;
@@ -65,7 +66,7 @@ Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
   Result<bool> lit = false;
   for (const int side : kDraftSides) {
     if (settings.resolution && *settings.resolution <= side) break;
-    lit = light_draft(scene, draft_settings(settings, side), watched, *out);
+    lit = light_draft(scene, draft_settings(settings, params, side), watched, *out);
     if (lit || lit.error().code != ErrorCode::bad_setting) break;  // else charts do not fit
   }
   if (!lit) return tl::unexpected(lit.error());

@@ -21,12 +21,20 @@ struct Draft {
   std::vector<Rgb> direct;      ///< the part of it that comes straight from lights
 };
 
+/// What a draft is made of.
+struct DraftParams {
+  int samples = 32, direct_samples = 8, supersample = 4;  ///< as BakeSettings has them
+};
+inline constexpr DraftParams kFirstDraft{};
+/// After an edit, when light is to follow within 0.2 s.
+inline constexpr DraftParams kQuickDraft{16, 4, 1};
+
 /// Bakes `scene`, which was read and has its outside light. Null where that would take long, since
 /// there are many triangles, where another solver than gather is asked for, and where the bake
 /// itself is no finer. Errors: those of a bake; cancelled.
 Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
                                           const pipeline::BakeSettings& settings,
-                                          const Progress& watched);
+                                          const DraftParams& params, const Progress& watched);
 
 /// E of a draft at the elements of another layout of its scene: all of it, or the part that is
 /// direct. Elements at which the draft has no surface get the mean.

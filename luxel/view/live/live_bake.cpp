@@ -1,61 +1,39 @@
 #include "luxel/view/live/live_bake.h"
 
-#include <algorithm>
-#include <atomic>
-#include <cmath>
+#include <condition_variable>
 #include <mutex>
 #include <thread>
 
 #include <nlohmann/json.hpp>
 
-#include "luxel/display/draw.h"
-#include "luxel/display/tone_map.h"
+#include "luxel/base/thread_priority.h"
 #include "luxel/pipeline/bake/bake.h"
-#include "luxel/pipeline/bake/bake_scene.h"
-#include "luxel/pipeline/bake/finish_bake.h"
-#include "luxel/post/dilate.h"
+#include "luxel/pipeline/reuse/bake_cache.h"
+#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/trace/camera_rays.h"
-#include "luxel/transport/irradiance_field.h"
-#include "luxel/view/live/draft.h"
+#include "luxel/view/live/bake_run.h"
 
 namespace luxel::view {
 namespace {
 
-/// The picture whose exposure is chosen: as large as it must be for percentiles of luminance.
-constexpr int kSmallWidth = 128, kSmallHeight = 96;
 /// The height of the picture whose texels come first; only its shape counts.
 constexpr int kViewHeight = 1000;
-
-std::vector<image::HalfImage> halves_of(std::span<const image::Image> pages) {
-  std::vector<image::HalfImage> out;
-  for (const image::Image& page : pages) out.push_back(image::to_half(page));
-  return out;
-}
-
-/// The lightmap that a bake would write, seams and hidden texels aside.
-std::vector<image::HalfImage> pages_of(const atlas::Atlas& atlas, const atlas::TexelMap& map,
-                                       std::span<const Rgb> e) {
-  std::vector<image::Image> pages = post::lightmap_pages(atlas, map, e);
-  for (image::Image& page : pages) post::dilate(page, post::kDilationRings);
-  return halves_of(pages);
-}
-
-/// Seconds of all stages in which rays are traced.
-double tracing_seconds(const Progress& progress) {
-  double out = 0;
-  for (const Stage& stage : progress.stages())
-    if (stage.name == "trace rays") out += stage.seconds;
-  return out;
-}
 
 class Worker : public LiveBake {
  public:
   explicit Worker(const pipeline::BakeSettings& settings) : settings_(settings) {
-    thread_ = std::thread([this] { bake(); });
+    of_edits_.outside = {};  // the scene has it
+    thread_ = std::thread([this] { work(); });
   }
   ~Worker() override {
-    progress_.request_cancel();
-    if (saving_) saving_->request_cancel();
+    {
+      const std::scoped_lock lock(mutex_);
+      is_ending_ = true;
+      ends_.request_cancel();
+      progress_->request_cancel();
+      if (saving_) saving_->request_cancel();
+    }
+    changed_.notify_all();
     thread_.join();
   }
 
@@ -70,166 +48,155 @@ class Worker : public LiveBake {
     eye_ = std::move(eye);
   }
   LiveState state() const override {
-    const LiveState state = state_;
-    return state == LiveState::baking && is_paused_ ? LiveState::paused : state;
+    const std::scoped_lock lock(mutex_);
+    return state_ == LiveState::baking && is_paused_ ? LiveState::paused : state_;
   }
   Progress::Snapshot snapshot() const override {
-    return is_saving_ ? saving_->snapshot() : progress_.snapshot();
+    const std::scoped_lock lock(mutex_);
+    return saving_ ? saving_->snapshot() : progress_->snapshot();
+  }
+  std::vector<std::string> notes() const override {
+    const std::scoped_lock lock(mutex_);
+    return progress_->notes(0);
   }
   void pause(bool is_paused) override {
+    const std::scoped_lock lock(mutex_);
     is_paused_ = is_paused;
-    progress_.set_paused(is_paused);
+    // What is cancelled must not be held.
+    if (state_ == LiveState::baking && !edit_) progress_->set_paused(is_paused);
+  }
+  void edit(const SceneNow& now) override {
+    const std::scoped_lock lock(mutex_);
+    if (!is_read_) return;
+    edit_ = now;
+    state_ = LiveState::baking;
+    progress_->request_cancel();
+    changed_.notify_all();
   }
   void save() override {
-    if (state_ != LiveState::baked || is_saving_) return;
-    thread_.join();
-    saving_ = std::make_unique<Progress>();
-    is_saving_ = true;
-    thread_ = std::thread([this] { write(); });
+    const std::scoped_lock lock(mutex_);
+    if (state_ != LiveState::baked) return;
+    asks_to_save_ = true;
+    changed_.notify_all();
   }
   void wait() override {
-    state_.wait(LiveState::baking);
-    is_saving_.wait(true);
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !is_busy_ && !edit_ && !asks_to_save_; });
   }
 
  private:
-  void bake() {
-    const LiveState ended = bake_it() ? LiveState::baked : LiveState::failed;
-    state_ = ended;
-    state_.notify_all();
+  void work() {
+    lower_priority_of_this_thread();
+    guarded([this] { bake_file(); });
+    while (wait_for_work()) guarded([this] { edit_ ? bake_edit() : write(); });
   }
-  bool bake_it() try {
-    observer_.on_read = [this](const scene::Scene& scene) { has_read(scene); };
-    observer_.on_estimate = [this](const light::TexelScene& in, const light::LightEstimate& e) {
-      has_light(in, e);
-    };
-    observer_.is_watched = [this](const light::TexelScene& in, size_t element) {
-      return is_seen(in, element);
-    };
-    auto baked = pipeline::bake_scene(settings_, progress_, {}, observer_);
-    progress_.finish();
-    if (!baked) return say(baked.error().message), false;
-    baked_.emplace(std::move(*baked));
-    has_baked();
-    return true;
+  /// False: the thread is to end.
+  bool wait_for_work() {
+    std::unique_lock lock(mutex_);
+    is_busy_ = false;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return is_ending_ || edit_ || asks_to_save_; });
+    is_busy_ = true;
+    return !is_ending_;
+  }
+  template <typename Body>
+  void guarded(const Body& body) try {
+    body();
   } catch (const std::bad_alloc&) {
-    return say("out of memory"), false;
-  }
-  void write() try {
-    const auto saved = pipeline::save_bake(settings_, *baked_, progress_, *saving_);
-    say(saved ? "wrote " + settings_.output.string() : saved.error().message);
-    has_saved();
-  } catch (const std::bad_alloc&) {
-    say("out of memory");
-    has_saved();
-  }
-  void has_saved() {
-    is_saving_ = false;
-    is_saving_.notify_all();
+    has_failed("out of memory");
   }
 
-  void say(std::string sentence) {
-    const std::scoped_lock lock(mutex_);
-    news_.said = std::move(sentence);
+  void bake_file() {
+    BakeRun run(settings_, watcher_, *progress_);
+    pipeline::BakeObserver observer;
+    observer.on_read = [&](const scene::Scene& scene) {
+      auto read = read_scene(scene, settings_);
+      if (!read) return;  // the bake ends with the same error
+      has_read(*read);
+      progress_->begin("draft", 0);
+      // Without a draft, the window waits for the bake itself.
+      if (run.begin(*read, kFirstDraft, *progress_)) observer.guess = run.observer().guess;
+    };
+    observer.on_estimate = run.observer().on_estimate;
+    observer.is_watched = watcher_.is_seen;
+    pipeline::BakeCache cache(settings_, pipeline::settings_of_kept_bake(settings_));
+    end(run, pipeline::bake_scene(settings_, *progress_, {nullptr, &cache}, observer), cache);
   }
-  void has_read(const scene::Scene& scene) {
-    auto read = read_scene(scene, settings_);
-    if (!read) return;  // the bake ends with the same error
-    camera_ = (*read)->first.camera;
+
+  void has_read(std::shared_ptr<const ReadScene> read) {
+    as_read_ = std::move(read);
+    const std::scoped_lock lock(mutex_);
+    is_read_ = true;
+  }
+
+  /// The draft comes to its end though there are other edits: it is soon there.
+  void bake_edit() {
+    SceneNow now;
+    const std::shared_ptr<Progress> progress = begin_edit(now);
+    BakeRun run(of_edits_, watcher_, *progress);
+    if (exposure_) run.keep_exposure(*exposure_);
+    progress->begin("draft", 0);
+    auto read = read_scene(edited(as_read_->scene, now), *as_read_);
+    if (!read) return has_failed(read.error().message);
+    if (const Status begun = run.begin(*read, kQuickDraft, ends_); !begun)
+      return has_failed(begun.error().message);
     {
       const std::scoped_lock lock(mutex_);
-      news_.read = std::move(*read);
+      if (!edit_ && !is_ending_) progress->set_paused(is_paused_);
     }
-    // Without one, the window waits for the bake itself.
-    progress_.begin("draft", 0);
-    if (auto draft = make_draft(scene, settings_, progress_)) draft_ = std::move(*draft);
-    if (!draft_) return;
-    has_draft();
-    observer_.guess = [this](const light::TexelScene& in, std::span<const Rgb> direct) {
-      return with_reflections_of_draft(in, direct);
-    };
+    pipeline::BakeCache cache(of_edits_, pipeline::settings_of_kept_bake(of_edits_));
+    end(run,
+        pipeline::bake_read_scene((*read)->scene, of_edits_, *progress, {nullptr, &cache},
+                                  run.observer()),
+        cache);
   }
-  void has_draft() {
-    LiveLight light;
-    light.numbers.kind = LiveKind::draft;
-    light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
-    light.exposure = draft_exposure_ = exposure_of(
-        {draft_->scene, *draft_->tracer}, {&draft_->atlas, &draft_->map, draft_->irradiance});
+  std::shared_ptr<Progress> begin_edit(SceneNow& now) {
+    baked_.reset();
     const std::scoped_lock lock(mutex_);
-    news_.lit = lit_scene(draft_->scene, draft_->atlas);
-    news_.light = std::move(light);
+    now = std::move(*edit_);
+    edit_.reset();
+    progress_ = std::make_shared<Progress>();
+    return progress_;
   }
-  void has_light(const light::TexelScene& in, const light::LightEstimate& estimate) {
-    // Light that cannot be held ends the bake with an error.
-    for (const Rgb& e : estimate.irradiance)
-      if (!std::isfinite(e.x + e.y + e.z)) return;
-    LiveLight light;
-    light.pages = pages_of(in.atlas, in.map, estimate.irradiance);
-    light.exposure = exposure_of({in.scene, in.tracer}, {&in.atlas, &in.map, estimate.irradiance});
-    const LiveKind guess = draft_ ? LiveKind::direct_and_draft : LiveKind::direct_and_even_rest;
-    const LiveKind kind = estimate.share == 0   ? guess
-                          : estimate.share == 1 ? LiveKind::bake
-                                                : LiveKind::partly;
-    known_ = {kind,
-              estimate.share,
-              estimate.samples,
-              estimate.error_p95,
-              estimate.error_rms,
-              rays_per_s(estimate.samples * double(estimate.irradiance.size()))};
-    light.numbers = known_;
-    // Vertices are split while nobody waits.
-    std::optional<LitScene> lit;
-    std::optional<LiveLight> before;
-    if (!std::exchange(is_laid_out_, true)) {
-      lit = lit_scene(in.scene, in.atlas);
-      if (draft_) before = draft_elsewhere(in);
-    }
+
+  void end(BakeRun& run, Result<pipeline::Bake> baked, pipeline::BakeCache& cache) {
+    progress_->finish();
+    exposure_ = run.exposure();
+    if (!baked) return has_failed(baked.error().message);
+    cache.finish(*progress_);
+    if (!cache.failure().empty()) baked->warnings.push_back(cache.failure());
+    baked_.emplace(std::move(*baked));
+    run.end(*baked_);
+    exposure_ = run.exposure();
     const std::scoped_lock lock(mutex_);
-    if (lit) news_.lit = std::move(lit), news_.before = std::move(before);
-    news_.light = std::move(light);
+    if (!edit_) state_ = LiveState::baked;
   }
-  LiveLight draft_elsewhere(const light::TexelScene& in) const {
-    LiveLight out;
-    out.pages = pages_of(in.atlas, in.map, light_of_draft(*draft_, draft_->irradiance, in));
-    out.exposure = draft_exposure_;
-    return out;
-  }
-  /// What surfaces send each other, by the draft, and direct light of the bake.
-  std::vector<Rgb> with_reflections_of_draft(const light::TexelScene& in,
-                                             std::span<const Rgb> direct) const {
-    std::vector<Rgb> reflected = draft_->irradiance;
-    for (size_t i = 0; i < reflected.size(); ++i) reflected[i] = reflected[i] - draft_->direct[i];
-    std::vector<Rgb> out = light_of_draft(*draft_, reflected, in);
-    for (size_t i = 0; i < out.size(); ++i) out[i] = max(out[i], Rgb{}) + direct[i];
-    return out;
-  }
-  void has_baked() {
-    known_.kind = LiveKind::bake;
-    LiveLight light;
-    light.numbers = known_;
-    light.pages = halves_of(baked_->lightmaps);
-    light.exposure = baked_->view.exposure, light.is_last = true;
-    std::optional<LitScene> lit;  // of a solver that shows no estimates
-    if (!is_laid_out_) lit = lit_scene(baked_->scene, baked_->atlas);
+  /// An edit that has come meanwhile is no failure.
+  void has_failed(std::string sentence) {
     const std::scoped_lock lock(mutex_);
-    if (lit) news_.lit = std::move(lit);
-    news_.light = std::move(light);
-    news_.warnings = baked_->warnings;
+    if (edit_) return;
+    asks_to_save_ = false;
+    news_.said = std::move(sentence);
+    state_ = LiveState::failed;
   }
-  struct Traced {
-    const scene::Scene& scene;
-    const trace::RayTracer& tracer;
-  };
-  /// At which the first view is readable.
-  float exposure_of(const Traced& in, const transport::TexelField& field) const {
-    display::DrawParams params;
-    params.width = kSmallWidth, params.height = kSmallHeight, params.samples_per_axis = 1;
-    Progress own;  // its stage is not of the bake
-    const auto picture = display::draw(
-        in.scene, in.tracer, camera_,
-        [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }, params,
-        own);
-    return picture ? display::readable_exposure(*picture) : 1;
+  void write() {
+    const auto saving = std::make_shared<Progress>();
+    set_saving(saving);
+    const auto saved = pipeline::save_bake(settings_, *baked_, *progress_, *saving);
+    set_saving(nullptr);
+    const std::scoped_lock lock(mutex_);
+    asks_to_save_ = false;
+    news_.said = saved ? "wrote " + settings_.output.string() : saved.error().message;
+  }
+  void set_saving(std::shared_ptr<Progress> saving) {
+    const std::scoped_lock lock(mutex_);
+    saving_ = std::move(saving);
+    if (saving_ && is_ending_) saving_->request_cancel();
+  }
+
+  void hand(LiveNews news) {
+    const std::scoped_lock lock(mutex_);
+    add(std::move(news), news_);
   }
   /// Whether an element lies in the picture and shows its front.
   bool is_seen(const light::TexelScene& in, size_t element) const {
@@ -240,32 +207,30 @@ class Worker : public LiveBake {
     }
     return eye && trace::faces(*eye, in.elements.position[element], in.elements.normal[element]);
   }
-  double rays_per_s(double rays) {
-    const double seconds = tracing_seconds(progress_);
-    const double more = rays - std::exchange(rays_before_, rays);
-    const double in = seconds - std::exchange(seconds_before_, seconds);
-    return in > 0 ? more / in : 0;
-  }
 
   const pipeline::BakeSettings settings_;
-  Progress progress_;
-  std::unique_ptr<Progress> saving_;  ///< made anew by each save()
+  pipeline::BakeSettings of_edits_ = settings_;
+  const RunWatcher watcher_{
+      [this](LiveNews news) { hand(std::move(news)); },
+      [this](const light::TexelScene& in, size_t element) { return is_seen(in, element); }};
+  Progress ends_;  ///< cancelled when the thread is to end
+
   mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  // Under the mutex:
   LiveNews news_;
   std::shared_ptr<const trace::CameraRays> eye_;  ///< null: nobody has looked yet
-  std::atomic<LiveState> state_{LiveState::baking};
-  std::atomic<bool> is_saving_{false};
-  bool is_paused_ = false;
+  LiveState state_ = LiveState::baking;
+  std::shared_ptr<Progress> progress_ = std::make_shared<Progress>();  ///< of the last bake
+  std::shared_ptr<Progress> saving_;                                   ///< null: nothing is saved
+  std::optional<SceneNow> edit_;                                       ///< the next
+  bool is_read_ = false, asks_to_save_ = false, is_paused_ = false, is_busy_ = true,
+       is_ending_ = false;
 
   // The thread's own.
-  pipeline::BakeObserver observer_;
-  scene::Camera camera_;          ///< of the first view
-  std::unique_ptr<Draft> draft_;  ///< null: there is none
-  float draft_exposure_ = 1;
-  bool is_laid_out_ = false;
-  LiveNumbers known_;
-  double rays_before_ = 0, seconds_before_ = 0;
-  std::optional<pipeline::Bake> baked_;  ///< read by save() once `state_` says so
+  std::shared_ptr<const ReadScene> as_read_;
+  std::optional<float> exposure_;        ///< of the light that was handed over last
+  std::optional<pipeline::Bake> baked_;  ///< of the scene as it is now
   std::thread thread_;                   ///< the last: it uses all of the others
 };
 

@@ -2,63 +2,21 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "luxel/base/progress.h"
-#include "luxel/base/result.h"
-#include "luxel/image/half.h"
 #include "luxel/pipeline/settings/settings.h"
-#include "luxel/view/lit_scene.h"
-#include "luxel/view/read_scene.h"
+#include "luxel/view/edit/edits.h"
+#include "luxel/view/live/live_news.h"
 
 namespace luxel::view {
-
-/// What light is made of.
-enum class LiveKind : uint8_t {
-  draft,                 ///< coarse, see draft.h
-  direct_and_draft,      ///< sharp direct light, and reflections of the draft
-  direct_and_even_rest,  ///< sharp direct light and an ambient term
-  partly,                ///< the bake's in part, elsewhere one of the two above
-  bake,                  ///< all of it the bake's
-};
-
-/// How well light is known.
-struct LiveNumbers {
-  LiveKind kind = LiveKind::bake;
-  double share = 1;       ///< LightEstimate::share
-  double samples = 0;     ///< rays per texel, traced by now
-  float error_p95 = 0;    ///< LightEstimate::error_p95
-  double error_rms = 0;   ///< LightEstimate::error_rms
-  double rays_per_s = 0;  ///< of the last round; 0: not known
-};
-
-/// Light as far as it is known.
-struct LiveLight {
-  std::vector<image::HalfImage> pages;  ///< E [W/m^2], of sizes that do not change
-  float exposure = 1;                   ///< at which the first view is readable
-  LiveNumbers numbers;
-  bool is_last = false;  ///< what `luxel bake` writes
-};
-
-/// What has come since it was last asked for.
-struct LiveNews {
-  std::shared_ptr<const ReadScene> read;  ///< once, first
-  /// With the first light: of a draft, and then of the bake itself, which lies elsewhere.
-  std::optional<LitScene> lit;
-  std::optional<LiveLight> light;  ///< the newest
-  /// With `lit`, where something else was shown before: its light where `lit` has its own.
-  std::optional<LiveLight> before;
-  std::vector<std::string> warnings;  ///< pipeline::Bake::warnings, with the last light
-  std::optional<std::string> said;    ///< of saving, or why there is no light; a sentence
-};
 
 /// The state of the work.
 enum class LiveState : uint8_t { baking, paused, baked, failed };
 
 /// Guards the thread. Its functions are called by one thread and do not wait for the bake, but for
-/// the destructor, which ends it within about 0.2 s.
+/// the destructor, which ends it within about 0.2 s, and wait().
 class LiveBake {
  public:
   /// Begins to bake settings.scene. It must be called from the thread that calls the others.
@@ -70,11 +28,17 @@ class LiveBake {
   virtual void look(const scene::Camera& camera, float aspect) = 0;
   virtual LiveState state() const = 0;
   virtual Progress::Snapshot snapshot() const = 0;
+  /// What the bake tells people while it goes on: Progress::notes().
+  virtual std::vector<std::string> notes() const = 0;
   virtual void pause(bool is_paused) = 0;
+  /// The scene that was read has become this: a draft of its light comes soon, and then it is baked
+  /// anew. Edits that come faster than drafts are made wait, and only the last one is heeded. The
+  /// exposure stays. Only once something was read.
+  virtual void edit(const SceneNow& now) = 0;
   /// Writes the files of `luxel bake` into settings.output, in the background; take() tells the
   /// end. Only once it is baked.
   virtual void save() = 0;
-  /// Returns when the bake has ended, well or not, and is saved if it was asked for.
+  /// Returns when all that was asked for has ended, well or not.
   virtual void wait() = 0;
 };
 

@@ -5,9 +5,12 @@
 
 #include <chrono>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/pipeline/reuse/bake_cache.h"
+#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/view/live/draft.h"
 #include "luxel/view/live/fade.h"
@@ -85,6 +88,103 @@ TEST(LiveBake, StandsStillWhilePausedAndEndsWhenNobodyWantsIt) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
 }
 
+/// The scene of cornell-box.glb with its tall box elsewhere.
+struct MovedBox {
+  SceneNow now;
+  scene::Scene scene;
+};
+MovedBox with_moved_box(const ReadScene& read) {
+  EditDesk desk = begin_editing(std::make_shared<ReadScene>(ReadScene{read.scene, {}, {}}));
+  const auto box = uint32_t(read.scene.instances.size() - 1);
+  EXPECT_EQ(read.scene.instances[box].name, "tall block");
+  do_edit(InstanceMoved{box, translation({0.1f, 0, 0.15f}) *
+                                 read.scene.instances[box].world_from_object},
+          desk);
+  return {desk.now, edited(read.scene, desk.now)};
+}
+
+/// What comes until the bake has read.
+std::shared_ptr<const ReadScene> wait_for_scene(LiveBake& live) {
+  for (;;) {
+    if (LiveNews news = live.take(); news.read) return news.read;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+TEST(LiveBake, EndsWithTheLightOfTheEditedScene) {
+  const pipeline::BakeSettings settings = settings_for("cornell-box.glb", 128, 32);
+  const auto live = LiveBake::begin(settings);
+  const auto read = wait_for_scene(*live);
+  live->wait();
+  const float exposure = live->take().light->exposure;
+  const MovedBox moved = with_moved_box(*read);
+  live->edit(moved.now);
+  live->wait();
+  ASSERT_EQ(live->state(), LiveState::baked);
+  const LiveNews news = live->take();
+  ASSERT_TRUE(news.read && news.lit && news.light && news.before);
+  EXPECT_TRUE(news.light->is_last);
+  EXPECT_EQ(news.light->exposure, exposure) << "it stays";
+  Progress progress;
+  const auto bake = pipeline::bake_scene(moved.scene, settings, progress);
+  ASSERT_TRUE(bake) << bake.error().message;
+  EXPECT_EQ(news.light->pages[0].data, image::to_half(bake->lightmaps[0]).data);
+}
+
+/// The lightmap of a scene that is baked with --keep, after the one of settings.scene was.
+image::HalfImage baked_after(const scene::Scene& scene, const pipeline::BakeSettings& settings) {
+  Progress progress;
+  {
+    pipeline::BakeCache cache(settings, pipeline::settings_of_kept_bake(settings));
+    EXPECT_TRUE(pipeline::bake_scene(settings, progress, {nullptr, &cache}));
+    cache.finish(progress);
+  }
+  pipeline::BakeCache cache(settings, pipeline::settings_of_kept_bake(settings));
+  const auto bake = pipeline::bake_read_scene(scene, settings, progress, {nullptr, &cache});
+  return bake ? image::to_half(bake->lightmaps[0]) : image::HalfImage{};
+}
+
+// The tests of Rebake hold such a bake against one from scratch.
+TEST(LiveBake, BuildsOnAKeptBakeAfterAnEdit) {
+  pipeline::BakeSettings settings = settings_for("cornell-box.glb", 64, 32);
+  settings.keep = true;
+  settings.output = std::filesystem::path(::testing::TempDir()) / "live_kept";
+  std::filesystem::remove_all(settings.output);
+  const auto live = LiveBake::begin(settings);
+  const auto read = wait_for_scene(*live);
+  live->wait();
+  (void)live->take();
+  const MovedBox moved = with_moved_box(*read);
+  live->edit(moved.now);
+  live->wait();
+  ASSERT_EQ(live->state(), LiveState::baked) << live->take().said.value_or("");
+  EXPECT_THAT(live->notes(), Contains(HasSubstr("instance 'tall block' moved")));
+  settings.output = std::filesystem::path(::testing::TempDir()) / "baked_kept";
+  std::filesystem::remove_all(settings.output);
+  EXPECT_EQ(live->take().light->pages[0].data, baked_after(moved.scene, settings).data);
+}
+
+TEST(LiveBake, HasADraftOfAnEditThoughTheBakeGoesOnForMinutes) {
+  const auto live = LiveBake::begin(settings_for("cornell-box.glb", 256, 65535));
+  const auto read = wait_for_scene(*live);
+  const MovedBox moved = with_moved_box(*read);
+  while (live->snapshot().stage != "trace rays")
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  (void)live->take();
+  for (int again = 0; again < 5; ++again) {
+    live->edit(again % 2 ? unedited(read->scene) : moved.now);
+    LiveNews news;
+    while (!news.read) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      news = live->take();
+    }
+    ASSERT_TRUE(news.light && news.lit);
+    EXPECT_EQ(news.light->numbers.kind, LiveKind::draft);
+    EXPECT_EQ(news.read->scene.instances.back().world_from_object,
+              (again % 2 ? read->scene : moved.scene).instances.back().world_from_object);
+  }
+}
+
 // In a furnace all surfaces get pi e / (1 - rho), wherever they are asked.
 TEST(Draft, HasTheLightOfAFurnaceInAnotherLayout) {
   const float rho = 0.5f;
@@ -93,7 +193,7 @@ TEST(Draft, HasTheLightOfAFurnaceInAnotherLayout) {
   settings.output = ::testing::TempDir();
   settings.resolution = 128;
   const Progress nobody;
-  const auto draft = make_draft(scene, settings, nobody);
+  const auto draft = make_draft(scene, settings, kFirstDraft, nobody);
   ASSERT_TRUE(draft && *draft);
   settings.samples = 1, settings.direct_samples = 1;
   Progress progress;
@@ -118,7 +218,7 @@ TEST(Draft, HasLightWhereABakeHasIt) {
   settings.output = ::testing::TempDir();
   settings.resolution = 128, settings.samples = 64;
   const Progress nobody;
-  const auto draft = make_draft(scene, settings, nobody);
+  const auto draft = make_draft(scene, settings, kFirstDraft, nobody);
   ASSERT_TRUE(draft && *draft);
   Progress progress;
   pipeline::BakeObserver observer;
@@ -139,7 +239,7 @@ TEST(Draft, IsNotMadeWhereTheBakeIsNoFiner) {
   settings.resolution = 64;
   const Progress nobody;
   const auto draft =
-      make_draft(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1}), settings, nobody);
+      make_draft(scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1}), settings, kFirstDraft, nobody);
   ASSERT_TRUE(draft);
   EXPECT_EQ(*draft, nullptr);
 }

@@ -82,7 +82,8 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
   if (news.read) {
     shown.read = std::move(news.read);
     is_another = true;
-    if (!news.lit) {
+    // Until there is light of an edited scene, the one before is shown.
+    if (!news.lit && !shown.has_light) {
       LUXEL_TRY(shown.device, without_light(commands, shown.read->scene));
     }
   }

@@ -1,0 +1,45 @@
+// What is selected of a hierarchical solution, as lines and areas in space. [Hardt96, appendix B.4]
+#pragma once
+
+#include <vector>
+
+#include "luxel/display/lines.h"
+#include "luxel/view/hierarchical/probe.h"
+#include "luxel/view/hierarchical/selection_facts.h"
+
+namespace luxel::view {
+
+/// A triangle that is seen from both sides and lets light through.
+struct Area {
+  std::array<Vec3, 3> corner;  ///< [m]
+  Rgb color;                   ///< display values
+  float opacity = 0.5f;
+};
+
+/// What is drawn over a picture of the scene.
+struct SelectionShapes {
+  std::vector<display::Line> lines;
+  std::vector<Area> areas;
+};
+
+/// An element's outline, yellow, and those of the four parts below it, grey; a cluster's box. With
+/// the links that end there: white where all is visible, green where something stands between.
+void add_node(const SolutionView& view, uint32_t id, SelectionShapes& out);
+/// Its ends yellow and blue; the link as add_node() has it; of elements the shaft, grey, and the
+/// blockers in it, red.
+void add_link(const SolutionView& view, const LinkNumber& link, SelectionShapes& out);
+/// Its outline, yellow.
+void add_triangle(const SolutionView& view, uint32_t triangle, SelectionShapes& out);
+/// The line itself violet; its source yellow, its blocker red, its receiver blue; and the corner or
+/// the edge of each that makes it, with the rays from there to both ends of the line.
+void add_discontinuity(const SolutionView& view, const DiscontinuityFacts& facts,
+                       SelectionShapes& out);
+/// What of each source is seen white, the rest violet; the rays from the point to its outline.
+void add_backprojection(const BackprojectionProbe& probe, SelectionShapes& out);
+
+/// The edges of the convex hull of two convex polygons that lead from one to the other: the sides
+/// of their shaft. [Haines94]
+std::vector<std::array<DVec3, 2>> shaft_edges(hierarchical::PolygonView a,
+                                              hierarchical::PolygonView b, double slack_m);
+
+}  // namespace luxel::view

@@ -1,0 +1,157 @@
+#include "luxel/view/live/bake_run.h"
+
+#include <cmath>
+
+#include "luxel/display/draw.h"
+#include "luxel/display/tone_map.h"
+#include "luxel/pipeline/bake/finish_bake.h"
+#include "luxel/post/dilate.h"
+
+namespace luxel::view {
+namespace {
+
+/// The picture whose exposure is chosen: as large as it must be for percentiles of luminance.
+constexpr int kSmallWidth = 128, kSmallHeight = 96;
+
+std::vector<image::HalfImage> halves_of(std::span<const image::Image> pages) {
+  std::vector<image::HalfImage> out;
+  for (const image::Image& page : pages) out.push_back(image::to_half(page));
+  return out;
+}
+
+/// The lightmap that a bake would write, seams and hidden texels aside.
+std::vector<image::HalfImage> pages_of(const atlas::Atlas& atlas, const atlas::TexelMap& map,
+                                       std::span<const Rgb> e) {
+  std::vector<image::Image> pages = post::lightmap_pages(atlas, map, e);
+  for (image::Image& page : pages) post::dilate(page, post::kDilationRings);
+  return halves_of(pages);
+}
+
+/// Seconds of all stages in which rays are traced.
+double tracing_seconds(const Progress& progress) {
+  double out = 0;
+  for (const Stage& stage : progress.stages())
+    if (stage.name == "trace rays") out += stage.seconds;
+  return out;
+}
+
+}  // namespace
+
+BakeRun::BakeRun(const pipeline::BakeSettings& settings, const RunWatcher& watcher,
+                 const Progress& progress)
+    : settings_(settings), watcher_(watcher), progress_(progress) {}
+
+Status BakeRun::begin(std::shared_ptr<const ReadScene> read, const DraftParams& params,
+                      const Progress& ends) {
+  camera_ = read->first.camera;
+  LiveNews news;
+  news.read = read;
+  // What is read is seen while the first draft is made; later there is a draft to be seen.
+  if (!kept_exposure_) watcher_.hand(std::exchange(news, {}));
+  LUXEL_TRY(draft_, make_draft(read->scene, settings_, params, ends));
+  if (!draft_) return watcher_.hand(std::move(news)), Status();
+  LiveLight light;
+  light.numbers.kind = LiveKind::draft;
+  light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
+  light.exposure = draft_exposure_ = exposure_of(
+      {draft_->scene, *draft_->tracer}, {&draft_->atlas, &draft_->map, draft_->irradiance});
+  exposure_ = light.exposure;
+  news.lit = lit_scene(draft_->scene, draft_->atlas);
+  news.light = std::move(light);
+  watcher_.hand(std::move(news));
+  return {};
+}
+
+pipeline::BakeObserver BakeRun::observer() {
+  pipeline::BakeObserver out;
+  out.on_estimate = [this](const light::TexelScene& in, const light::LightEstimate& e) {
+    has_light(in, e);
+  };
+  out.is_watched = watcher_.is_seen;
+  if (draft_)
+    out.guess = [this](const light::TexelScene& in, std::span<const Rgb> direct) {
+      return with_reflections_of_draft(in, direct);
+    };
+  return out;
+}
+
+void BakeRun::has_light(const light::TexelScene& in, const light::LightEstimate& estimate) {
+  // Light that cannot be held ends the bake with an error.
+  for (const Rgb& e : estimate.irradiance)
+    if (!std::isfinite(e.x + e.y + e.z)) return;
+  LiveNews news;
+  LiveLight& light = news.light.emplace();
+  light.pages = pages_of(in.atlas, in.map, estimate.irradiance);
+  light.exposure = exposure_of({in.scene, in.tracer}, {&in.atlas, &in.map, estimate.irradiance});
+  exposure_ = light.exposure;
+  const LiveKind guess = draft_ ? LiveKind::direct_and_draft : LiveKind::direct_and_even_rest;
+  const LiveKind kind = estimate.share == 0   ? guess
+                        : estimate.share == 1 ? LiveKind::bake
+                                              : LiveKind::partly;
+  known_ = {kind,
+            estimate.share,
+            estimate.samples,
+            estimate.error_p95,
+            estimate.error_rms,
+            rays_per_s(estimate.samples * double(estimate.irradiance.size()))};
+  light.numbers = known_;
+  // Vertices are split while nobody waits.
+  if (!std::exchange(is_laid_out_, true)) {
+    news.lit = lit_scene(in.scene, in.atlas);
+    if (draft_) news.before = draft_elsewhere(in);
+  }
+  watcher_.hand(std::move(news));
+}
+
+LiveLight BakeRun::draft_elsewhere(const light::TexelScene& in) const {
+  LiveLight out;
+  out.pages = pages_of(in.atlas, in.map, light_of_draft(*draft_, draft_->irradiance, in));
+  out.exposure = draft_exposure_;
+  return out;
+}
+
+/// What surfaces send each other, by the draft, and direct light of the bake.
+std::vector<Rgb> BakeRun::with_reflections_of_draft(const light::TexelScene& in,
+                                                    std::span<const Rgb> direct) const {
+  std::vector<Rgb> reflected = draft_->irradiance;
+  for (size_t i = 0; i < reflected.size(); ++i) reflected[i] = reflected[i] - draft_->direct[i];
+  std::vector<Rgb> out = light_of_draft(*draft_, reflected, in);
+  for (size_t i = 0; i < out.size(); ++i) out[i] = max(out[i], Rgb{}) + direct[i];
+  return out;
+}
+
+void BakeRun::end(const pipeline::Bake& baked) {
+  known_.kind = LiveKind::bake;
+  LiveNews news;
+  LiveLight& light = news.light.emplace();
+  light.numbers = known_;
+  light.pages = halves_of(baked.lightmaps);
+  light.exposure = kept_exposure_.value_or(baked.view.exposure);
+  exposure_ = light.exposure;
+  light.is_last = true;
+  if (!is_laid_out_) news.lit = lit_scene(baked.scene, baked.atlas);  // the solver has no estimates
+  news.warnings = baked.warnings;
+  watcher_.hand(std::move(news));
+}
+
+/// At which the first view is readable.
+float BakeRun::exposure_of(const Traced& in, const transport::TexelField& field) const {
+  if (kept_exposure_) return *kept_exposure_;
+  display::DrawParams params;
+  params.width = kSmallWidth, params.height = kSmallHeight, params.samples_per_axis = 1;
+  Progress own;  // its stage is not of the bake
+  const auto picture = display::draw(
+      in.scene, in.tracer, camera_,
+      [&](const scene::SurfacePoint& p) { return transport::irradiance_at(field, p); }, params,
+      own);
+  return picture ? display::readable_exposure(*picture) : 1;
+}
+
+double BakeRun::rays_per_s(double rays) {
+  const double seconds = tracing_seconds(progress_);
+  const double more = rays - std::exchange(rays_before_, rays);
+  const double in = seconds - std::exchange(seconds_before_, seconds);
+  return in > 0 ? more / in : 0;
+}
+
+}  // namespace luxel::view

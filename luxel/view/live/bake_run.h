@@ -1,0 +1,69 @@
+// One bake of a scene while it is looked at: a draft of its light, and then what the bake itself
+// knows, made into pictures of the lightmap.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "luxel/base/progress.h"
+#include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/transport/irradiance_field.h"
+#include "luxel/view/live/draft.h"
+#include "luxel/view/live/live_news.h"
+#include "luxel/view/read_scene.h"
+
+namespace luxel::view {
+
+/// Where light of a run goes, and what it is asked for.
+struct RunWatcher {
+  std::function<void(LiveNews)> hand;
+  /// BakeObserver::is_watched.
+  std::function<bool(const light::TexelScene&, size_t element)> is_seen;
+};
+
+/// All of its functions are called by one thread. Settings, watcher and progress must outlive it.
+class BakeRun {
+ public:
+  BakeRun(const pipeline::BakeSettings& settings, const RunWatcher& watcher,
+          const Progress& progress);
+
+  /// What pictures are shown at, whatever their light is.
+  void keep_exposure(float exposure) { kept_exposure_ = exposure_ = exposure; }
+  /// Hands over a draft, and `read` with it. Where there is none, `read` goes alone. `ends`: what
+  /// cancels the draft. Errors: as make_draft().
+  Status begin(std::shared_ptr<const ReadScene> read, const DraftParams& params,
+               const Progress& ends);
+  /// For bake_scene() of the scene with which it began.
+  pipeline::BakeObserver observer();
+  /// Hands over the light of the bake that has come to its end.
+  void end(const pipeline::Bake& baked);
+
+  /// What the newest light is shown at; nothing: there was none.
+  std::optional<float> exposure() const { return exposure_; }
+
+ private:
+  struct Traced {
+    const scene::Scene& scene;
+    const trace::RayTracer& tracer;
+  };
+  void has_light(const light::TexelScene& in, const light::LightEstimate& estimate);
+  LiveLight draft_elsewhere(const light::TexelScene& in) const;
+  std::vector<Rgb> with_reflections_of_draft(const light::TexelScene& in,
+                                             std::span<const Rgb> direct) const;
+  float exposure_of(const Traced& in, const transport::TexelField& field) const;
+  double rays_per_s(double rays);
+
+  const pipeline::BakeSettings& settings_;
+  const RunWatcher& watcher_;
+  const Progress& progress_;
+  std::optional<float> kept_exposure_, exposure_;
+  scene::Camera camera_;          ///< of the first view
+  std::unique_ptr<Draft> draft_;  ///< null: there is none
+  float draft_exposure_ = 1;
+  bool is_laid_out_ = false;
+  LiveNumbers known_;
+  double rays_before_ = 0, seconds_before_ = 0;
+};
+
+}  // namespace luxel::view

@@ -1,0 +1,57 @@
+// What a bake that is looked at has come to, by the time it is asked.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "luxel/image/half.h"
+#include "luxel/view/lit_scene.h"
+#include "luxel/view/read_scene.h"
+
+namespace luxel::view {
+
+/// What light is made of.
+enum class LiveKind : uint8_t {
+  draft,                 ///< coarse, see draft.h
+  direct_and_draft,      ///< sharp direct light, and reflections of the draft
+  direct_and_even_rest,  ///< sharp direct light and an ambient term
+  partly,                ///< the bake's in part, elsewhere one of the two above
+  bake,                  ///< all of it the bake's
+};
+
+/// How well light is known.
+struct LiveNumbers {
+  LiveKind kind = LiveKind::bake;
+  double share = 1;       ///< LightEstimate::share
+  double samples = 0;     ///< rays per texel, traced by now
+  float error_p95 = 0;    ///< LightEstimate::error_p95
+  double error_rms = 0;   ///< LightEstimate::error_rms
+  double rays_per_s = 0;  ///< of the last round; 0: not known
+};
+
+/// Light as far as it is known.
+struct LiveLight {
+  std::vector<image::HalfImage> pages;  ///< E [W/m^2], of sizes that do not change
+  float exposure = 1;                   ///< at which the first view is readable
+  LiveNumbers numbers;
+  bool is_last = false;  ///< what `luxel bake` writes
+};
+
+/// What has come since it was last asked for.
+struct LiveNews {
+  std::shared_ptr<const ReadScene> read;  ///< of the file, and after each edit
+  /// With the first light: of a draft, and then of the bake itself, which lies elsewhere.
+  std::optional<LitScene> lit;
+  std::optional<LiveLight> light;  ///< the newest
+  /// With `lit`, where something else was shown before: its light where `lit` has its own.
+  std::optional<LiveLight> before;
+  std::vector<std::string> warnings;  ///< pipeline::Bake::warnings, with the last light
+  std::optional<std::string> said;    ///< of saving, or why there is no light; a sentence
+};
+
+/// What is newer takes the place of what is older.
+void add(LiveNews newer, LiveNews& news);
+
+}  // namespace luxel::view

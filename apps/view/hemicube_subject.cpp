@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "apps/view/subject.h"
+#include "luxel/display/normals_view.h"
 #include "luxel/view/hemicube/hemicube_desk.h"
 #include "luxel/view/hemicube/report_worker.h"
 
@@ -12,6 +13,8 @@ namespace {
 /// The faces of a hemicube take this part of a picture's height, and no more than so many pixels.
 constexpr double kFacesPart = 0.45;
 constexpr int kLeastSide = 96, kMostSide = 320;
+/// Lines of normals [pixels].
+constexpr float kLineWidth = 1.5f;
 
 constexpr auto kTechniqueWords = [] {
   std::array<const char*, view::kTechniques.size()> out{};
@@ -90,6 +93,7 @@ class HemicubeSubject : public Subject {
     const auto mark = view::mark_of(desk_, mesh_.get(), walk);
     frame.marks.clear();
     if (mark && desk_.has_report) frame.marks.push_back(*mark);
+    LUXEL_TRY_STATUS(prepare_normals(commands, frame));
     return prepare_inset(commands, walk, frame);
   }
 
@@ -97,6 +101,7 @@ class HemicubeSubject : public Subject {
   Status take_scene(std::shared_ptr<const view::ReadScene> read, gpu::Commands& commands) {
     LUXEL_TRY(shown_.device, view::colours_shown(commands, read->scene));
     LUXEL_TRY(additions_.techniques, view::put_techniques(commands.device(), read->scene));
+    additions_.shapes.clear();
     mesh_.reset();
     shown_.read = std::move(read);
     return {};
@@ -147,6 +152,24 @@ class HemicubeSubject : public Subject {
     is_inset_old_ = true;
   }
 
+  /// Lines of the sides that the camera sees, again where it has moved.
+  Status prepare_normals(gpu::Commands& commands, const view::Frame& frame) {
+    if (*frame.technique != view::Technique::normals) {
+      additions_.shapes.clear();
+      return {};
+    }
+    const Mat34& place = frame.camera.world_from_camera;
+    if (!additions_.shapes.empty() && place.row == normals_from_.row) return {};
+    normals_from_ = place;
+    additions_.shapes.clear();
+    view::Shapes shapes;
+    view::add_lines(display::lines_of_normals(shown_.read->scene, frame.camera), 1, shapes);
+    shapes.line_width = kLineWidth;
+    if (shapes.empty()) return {};
+    LUXEL_TRY(view::DeviceShapes lines, view::put_shapes(commands.device(), shapes));
+    additions_.shapes.push_back(std::move(lines));
+    return {};
+  }
   Status prepare_inset(gpu::Commands& commands, const view::Walk& walk, const view::Frame& frame) {
     if (!report_ || !desk_.has_report) {
       additions_.inset.reset();
@@ -176,6 +199,7 @@ class HemicubeSubject : public Subject {
   std::vector<SizeLine> sizes_;  ///< of its element
   view::FacesLook look_;         ///< of the inset, and its width
   int side_ = 0;
+  Mat34 normals_from_;  ///< the camera of the lines of normals
   bool is_inset_old_ = false;
 };
 

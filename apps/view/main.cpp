@@ -140,9 +140,12 @@ Result<Opened> opened(const Options& options) {
   Opened out;
   if (is_scene(options.subject)) {
     LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
-    out.make = options.inside == kHemicube
-                   ? view_window::hemicube_subject(models_of(options), settings)
-                   : view_window::live_subject(settings);
+    if (options.inside == kHemicube)
+      out.make = view_window::hemicube_subject(models_of(options), settings);
+    else if (options.inside == kHierarchical)
+      out.make = view_window::inside_subject(settings);
+    else
+      out.make = view_window::live_subject(settings);
   } else if (view::is_lxr(options.subject)) {
     LUXEL_TRY(view::OpenedLxr lxr, view::open_lxr(options.subject));
     out.make = view_window::lamp_subject(std::move(lxr));

@@ -75,6 +75,8 @@ MakeSubject live_subject(const pipeline::BakeSettings& settings);
 /// to hold it against; it begins now.
 MakeSubject hemicube_subject(std::vector<std::filesystem::path> models,
                              const pipeline::BakeSettings& settings);
+/// Hierarchical radiosity of a scene, looked into; it begins now.
+MakeSubject inside_subject(const pipeline::BakeSettings& settings);
 /// An .lxr file, whose lamps move.
 MakeSubject lamp_subject(view::OpenedLxr opened);
 

@@ -1,6 +1,9 @@
 // Draws a scene that lies on a graphics device.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "luxel/gpu/pipeline.h"
 #include "luxel/gpu/target.h"
 #include "luxel/image/codec.h"
@@ -8,6 +11,8 @@
 #include "luxel/view/draw/device_scene.h"
 #include "luxel/view/draw/inset.h"
 #include "luxel/view/draw/overlay.h"
+#include "luxel/view/draw/quadratic.h"
+#include "luxel/view/draw/shapes.h"
 #include "luxel/view/draw/technique_drawing.h"
 #include "luxel/view/frame.h"
 
@@ -16,7 +21,8 @@ namespace luxel::view {
 /// The shaders of all pictures.
 struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
-  gpu::Pipeline overlay, beside, inset;
+  gpu::Pipeline overlay, beside, quadratic, inset;
+  ShapeShaders shapes;
   TechniqueShaders technique;
 };
 /// Takes some tenths of a second on the processor.
@@ -35,6 +41,10 @@ Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
 
 /// What is drawn instead of a scene's surfaces, and after all of them.
 struct Additions {
+  std::optional<DeviceQuadratics> instead;
+  std::optional<ExactPixels> exact;  ///< of `instead`
+  bool no_surfaces = false;
+  std::vector<DeviceShapes> shapes;  ///< in this order
   std::optional<DeviceTechniques> techniques;  ///< instead, where Frame::technique says so
   std::optional<DeviceInset> inset;            ///< over the picture
 };

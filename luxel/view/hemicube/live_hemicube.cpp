@@ -15,7 +15,6 @@
 #include "luxel/pipeline/solver/hemicube.h"
 #include "luxel/scene/merge.h"
 #include "luxel/view/hemicube/known_light.h"
-#include "luxel/view/live/bake_run.h"
 
 namespace luxel::view {
 namespace {

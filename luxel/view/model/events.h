@@ -143,8 +143,8 @@ using Event =
     std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged, LampAdded,
                  GlowChanged, ShowChanged, RangeChanged, ChannelChanged, LayerChanged,
                  BesideChanged, SplitMoved, InstanceSelected, LampSelected, MaterialSelected,
-                 InstanceChanged, LampRemoved, MaterialChanged, ToolChanged, ToolUsed,
-                 SelectionStepped, OwnShown, OverlayChanged, SettingChanged, OwnAsked, WaitForBake>;
+                 InstanceChanged, LampRemoved, MaterialChanged, OwnShown, OverlayChanged,
+                 SettingChanged, OwnAsked, ToolChanged, ToolUsed, SelectionStepped, WaitForBake>;
 
 /// Whether an event changes lamps or what glows; or something else of a scene.
 bool changes_lamps(const Event& event);
@@ -245,7 +245,8 @@ struct Play {
 ///       {"at": 2, "set": {"eps": 0.5}}, {"at": 2, "do": "iterate"},
 ///       {"at": 2, "tool": "link"}, {"at": 2, "use": "element", "pixel": [480, 360]},
 ///       {"at": 2, "use": "graph", "place": [0, 0, 0], "to_place": [1, 0, 0]},
-///       {"at": 2, "selection": "up"}, {"at": 2, "wait": "bake"},
+///       {"at": 2, "selection": "up"},
+///       {"at": 2, "wait": "bake"},
 ///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]},
 ///       {"at": 2, "select": "chair"}, {"at": 2, "instance": "chair", "angles_deg": [0, 90, 0]},
 ///       {"at": 2, "material": "wood", "reflectance": [0.5, 0.4, 0.3]}]}
@@ -253,6 +254,7 @@ struct Play {
 /// A range is by the logarithm where "logarithmic_range" says so.
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.
 Result<Play> parse_play(std::string_view text, const std::string& name);
+
 /// Errors: a play asks for the inside of a solver; `name` is what messages call it.
 Status check_no_inside(const Play& play, const std::string& name);
 

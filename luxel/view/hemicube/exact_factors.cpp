@@ -8,7 +8,7 @@ namespace luxel::view {
 namespace {
 
 /// Every triangle may stand before every other: 4 million pairs take about a second.
-constexpr size_t kMostTriangles = 2000;
+constexpr size_t kMostExactTriangles = 2000;
 
 viewfactor::Polygon polygon_of(const scene::Scene& scene, uint32_t instance, uint32_t triangle) {
   scene::Triangle3 t = scene::world_triangle(scene, instance, triangle);
@@ -79,7 +79,7 @@ Result<std::optional<std::vector<double>>> exact_factors(const LightMesh& mesh, 
   const double slack_m = 1e-9 * double(scene::world_bounds(scene).diagonal());
   const Horizon horizon = horizon_of(mesh, element);
   const std::vector<Visible> all = triangles_above(scene, horizon, slack_m);
-  if (all.size() > kMostTriangles) return std::nullopt;
+  if (all.size() > kMostExactTriangles) return std::nullopt;
   progress.begin("exact form factors", all.size());
   std::vector<viewfactor::Blocker> blockers;
   for (const Visible& one : all) blockers.push_back(viewfactor::make_blocker(one.polygon));

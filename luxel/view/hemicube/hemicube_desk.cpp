@@ -11,11 +11,11 @@ namespace luxel::view {
 namespace {
 
 /// A click may shake by so much [pixels].
-constexpr float kClick = 4;
+constexpr float kHemicubeClick = 4;
 
 // Names of SettingChanged and OverlayChanged.
 constexpr std::string_view kSize = "hemicube", kPauseAt = "pause_at";
-constexpr std::string_view kReport = "vertex", kLit = "lit";
+constexpr std::string_view kReport = "vertex", kLitFaces = "lit";
 
 std::optional<Technique> technique_named(std::string_view name,
                                          const char* TechniqueName::*member) {
@@ -35,7 +35,7 @@ void next_faces(HemicubeDesk& desk) {
   }
 }
 
-bool press_key(const KeyChanged& key, HemicubeDesk& desk) {
+bool take_hemicube_key(const KeyChanged& key, HemicubeDesk& desk) {
   const auto technique = technique_named(key.key, &TechniqueName::key);
   if (!technique && key.key != "i") return false;
   if (!key.is_down) return true;
@@ -55,8 +55,8 @@ void choose_element(const Walk& walk, const LightMesh* mesh, HemicubeDesk& desk)
 }
 
 /// The walk sees presses and releases, too: it turns the camera.
-void press_button(const ButtonChanged& button, const Walk& walk, const LightMesh* mesh,
-                  HemicubeDesk& desk) {
+void take_hemicube_button(const ButtonChanged& button, const Walk& walk, const LightMesh* mesh,
+                          HemicubeDesk& desk) {
   if (button.button != Button::left) return;
   if (button.is_down) {
     desk.pressed_at = walk.pointer;
@@ -80,13 +80,14 @@ int hemicube_size(double pixels) {
 
 bool handle_hemicube(const Event& event, const Walk& walk, const LightMesh* mesh,
                      HemicubeDesk& desk) {
-  if (const auto* key = std::get_if<KeyChanged>(&event)) return press_key(*key, desk);
+  if (const auto* key = std::get_if<KeyChanged>(&event)) return take_hemicube_key(*key, desk);
   if (const auto* moved = std::get_if<PointerMoved>(&event)) {
-    if (desk.pressed_at && length(moved->to - *desk.pressed_at) > kClick) desk.pressed_at.reset();
+    if (desk.pressed_at && length(moved->to - *desk.pressed_at) > kHemicubeClick)
+      desk.pressed_at.reset();
     return false;
   }
   if (const auto* button = std::get_if<ButtonChanged>(&event)) {
-    press_button(*button, walk, mesh, desk);
+    take_hemicube_button(*button, walk, mesh, desk);
     return false;
   }
   if (const auto* shown = std::get_if<OwnShown>(&event)) {
@@ -97,7 +98,7 @@ bool handle_hemicube(const Event& event, const Walk& walk, const LightMesh* mesh
     return change_setting(*changed, desk), true;
   if (const auto* overlay = std::get_if<OverlayChanged>(&event)) {
     if (overlay->name == kReport) desk.has_report = overlay->is_on;
-    if (overlay->name == kLit) desk.faces = overlay->is_on ? Faces::lit : Faces::items;
+    if (overlay->name == kLitFaces) desk.faces = overlay->is_on ? Faces::lit : Faces::items;
     return true;
   }
   return false;
@@ -111,9 +112,9 @@ std::optional<std::string> wrong_with(const Event& event) {
     if (!technique_named(shown->name, &TechniqueName::name))
       return "hemicube radiosity does not show '" + shown->name + "'";
   if (const auto* overlay = std::get_if<OverlayChanged>(&event))
-    if (overlay->name != kReport && overlay->name != kLit)
+    if (overlay->name != kReport && overlay->name != kLitFaces)
       return fmt::format("there is no overlay '{}'; there are: {}, {}", overlay->name, kReport,
-                         kLit);
+                         kLitFaces);
   if (const auto* asked = std::get_if<OwnAsked>(&event))
     return "hemicube radiosity cannot do '" + asked->name + "'";
   const auto* changed = std::get_if<SettingChanged>(&event);

@@ -9,6 +9,7 @@
 
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/solver/vertex_lit.h"
+#include "luxel/scene/procedural.h"
 #include "luxel/view/hemicube/hemicube_test_scene.h"
 #include "luxel/view/hemicube/known_light.h"
 #include "luxel/view/hemicube/report_worker.h"

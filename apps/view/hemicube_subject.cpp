@@ -11,7 +11,7 @@ namespace luxel::view_window {
 namespace {
 
 /// The faces of a hemicube take this part of a picture's height, and no more than so many pixels.
-constexpr double kFacesPart = 0.45;
+constexpr double kFacesPart = 0.4;
 constexpr int kLeastSide = 96, kMostSide = 320;
 /// Lines of normals [pixels].
 constexpr float kLineWidth = 1.5f;

@@ -51,7 +51,7 @@ Color8 item_shown(const LightMesh& mesh, const hemicube::Item& item) {
   return {uint8_t(color), uint8_t(color >> 8), uint8_t(color >> 16)};
 }
 
-/// Each pixel of the target shows one of the picture; larger ones in whole steps.
+/// Each pixel of the target's upper middle shows one of the picture; larger ones in whole steps.
 void put_scaled(const Image8& from, int side, Image8& to) {
   const int scale = std::max(1, side / from.width);
   const int shown = from.width <= side ? from.width * scale : side;
@@ -60,7 +60,8 @@ void put_scaled(const Image8& from, int side, Image8& to) {
     for (int x = 0; x < shown; ++x) {
       const int u = int(int64_t(x) * from.width / shown), v = int(int64_t(y) * from.height / shown);
       const uint8_t* pixel = from.data.data() + 4 * (size_t(v) * size_t(from.width) + size_t(u));
-      if (pixel[3] != 0) set_pixel(to, margin + x, margin + y, {pixel[0], pixel[1], pixel[2]});
+      const int left = (to.width - side) / 2 + margin;
+      if (pixel[3] != 0) set_pixel(to, left + x, margin + y, {pixel[0], pixel[1], pixel[2]});
     }
 }
 
@@ -129,15 +130,14 @@ Image8 faces_picture(const LightMesh& mesh, const VertexReport& report, const Fa
 std::vector<std::string> lines_of(const VertexReport& r, const std::string& unit) {
   std::vector<std::string> out;
   out.push_back(fmt::format("element {}, {} x {}", r.element, r.resolution, r.resolution));
-  out.push_back(fmt::format("sum of row {:.5f}", r.sum));
-  if (r.exact) out.push_back(fmt::format("exact sum {:.5f}", r.exact->sum));
+  out.push_back(r.exact ? fmt::format("sum {:.5f}, exact {:.5f}", r.sum, r.exact->sum)
+                        : fmt::format("sum {:.5f}", r.sum));
   out.push_back(fmt::format("missing {:.5f}", 1 - r.sum));
   if (r.open > 0) out.push_back(fmt::format("  surroundings {:.5f}", r.open));
   if (r.back > 0) out.push_back(fmt::format("  backs {:.5f}", r.back));
   if (r.below > 0) out.push_back(fmt::format("  below {:.5f}", r.below));
   if (r.exact) out.push_back(fmt::format("wrong triangles {:.3f} %", 100 * r.exact->wrong));
   out.push_back(fmt::format("e {:.5g} {}", luminance(r.irradiance), unit));
-  out.push_back(fmt::format("{} factors:", r.row.size()));
   return out;
 }
 
@@ -146,7 +146,10 @@ Image8 report_picture(const LightMesh& mesh, const VertexReport& report, const F
   const std::vector<std::string> lines = lines_of(report, unit);
   const int line = image::kGlyphHeight + 2;
   const int text = kPadding + line * int(lines.size());
-  Image8 out = transparent(side, side + text + kHistogramHeight + 3 + line + kPadding);
+  int width = side;
+  for (const std::string& one : lines)
+    width = std::max(width, image::text_width(one, 1) + 2 * kPadding);
+  Image8 out = transparent(width, side + text + kHistogramHeight + 3 + line + kPadding);
   for (size_t i = 0; i < out.data.size(); ++i) out.data[i] = i % 4 == 3 ? kOpaque : kGround;
   put_scaled(faces_picture(mesh, report, look), side, out);
   for (size_t i = 0; i < lines.size(); ++i)

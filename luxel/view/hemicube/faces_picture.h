@@ -34,8 +34,8 @@ struct FacesLook {
 image::Image8 faces_picture(const LightMesh& mesh, const VertexReport& report,
                             const FacesLook& look);
 
-/// The cross in a square of so many pixels, under it the row's histogram and its numbers. `unit`:
-/// of E. 4 channels.
+/// The cross in a square of so many pixels, under it the row's numbers and its histogram, for which
+/// the picture may be wider. `unit`: of E. 4 channels.
 image::Image8 report_picture(const LightMesh& mesh, const VertexReport& report,
                              const FacesLook& look, int side, const std::string& unit);
 

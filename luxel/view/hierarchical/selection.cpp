@@ -193,9 +193,6 @@ Selection carried_over(const Selection& from, const Examined& examined) {
     if (from.has_element()) {
       out.path = path_to(examined.view, *from.at);
       out.level = std::min(from.level, out.path.size() - 1);
-      // What was a leaf and is divided is still selected.
-      const auto same = std::find(out.path.begin(), out.path.end(), from.path[from.level]);
-      if (same != out.path.end()) out.level = size_t(same - out.path.begin());
     }
   }
   const auto& d = from.discontinuity;

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -197,7 +198,9 @@ TEST(SelectionDesk, SaysWhatIsMissing) {
 
 TEST(ProbeWorker, AnswersTheNewestQuestionOfAKind) {
   const auto worker = ProbeWorker::begin();
-  const auto slow = [](Progress& progress) -> Result<Answer> {
+  std::atomic<bool> has_begun = false;
+  const auto slow = [&](Progress& progress) -> Result<Answer> {
+    has_begun = true, has_begun.notify_all();
     while (!progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return fail(ErrorCode::cancelled, "cancelled");
   };
@@ -205,6 +208,7 @@ TEST(ProbeWorker, AnswersTheNewestQuestionOfAKind) {
     return [text](Progress&) -> Result<Answer> { return Answer(std::string(text)); };
   };
   worker->ask(QuestionKind::light, slow);
+  has_begun.wait(false);
   worker->ask(QuestionKind::graph, quick("graph"));
   worker->ask(QuestionKind::light, quick("light"));
   std::vector<std::string> said;

@@ -77,6 +77,19 @@ bool follow_piece(const std::shared_ptr<const view::Piece>& piece,
   return view::follow(*s.examined, s.desk);
 }
 
+bool take_selection(const view::Event& event, const view::Walk& walk, SelectionSession& s) {
+  if (s.examined) return view::handle_selection(event, walk, *s.examined, s.desk);
+  if (!std::holds_alternative<view::ToolUsed>(event)) return false;
+  s.desk.said = "there is no solution yet";
+  return true;
+}
+
+void add_selection_keys(std::vector<KeyLine>& keys) {
+  keys.push_back({"right click", "probe irradiance"});
+  keys.push_back({"shift + right click", "probe what is seen of sources"});
+  for (const view::KeyHelp& key : view::kSelectionKeys) keys.push_back({key.key, key.does});
+}
+
 SelectionPanel selection_lines(const SelectionSession& s) {
   const view::SelectionDesk& desk = s.desk;
   SelectionPanel out;

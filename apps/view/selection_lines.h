@@ -1,6 +1,7 @@
 // Tools over a hierarchical solution: what the panel shows of them, and what lies on the device.
 #pragma once
 
+#include "apps/view/panel.h"
 #include "apps/view/selection_panel.h"
 #include "luxel/view/draw/shapes.h"
 #include "luxel/view/hierarchical/piece.h"
@@ -26,6 +27,11 @@ bool follow_piece(const std::shared_ptr<const view::Piece>& piece,
                   const std::shared_ptr<const view::ReadScene>& read, view::LightKind kind,
                   const hierarchical::DiscontinuityParams& discontinuity,
                   SelectionSession& session);
+
+/// True: the event is no longer the walk's.
+bool take_selection(const view::Event& event, const view::Walk& walk, SelectionSession& session);
+/// Keys and clicks, for F1.
+void add_selection_keys(std::vector<KeyLine>& keys);
 
 SelectionPanel selection_lines(const SelectionSession& session);
 /// What the user has changed in it.

@@ -27,6 +27,7 @@ struct Selection {
   std::vector<uint32_t> path;                 ///< path_to() that place, if an element is selected
   size_t level = 0;                           ///< in the path
   std::optional<LinkNumber> link;
+  uint32_t link_source = 0;  ///< its Link::source
   std::optional<uint32_t> triangle;
   std::optional<DiscontinuityFacts> discontinuity;
 

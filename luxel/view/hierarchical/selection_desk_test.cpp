@@ -241,5 +241,26 @@ TEST(Events, OfToolsAreRead) {
   }
 }
 
+// A tool that has just been used begins to work; what stands after the wait comes when that is
+// done.
+TEST(Events, AWaitIsForWhatCameJustBefore) {
+  const auto play = parse_play(R"({"end": 0, "events": [{"at": 0, "use": "none"},
+      {"at": 0, "wait": "bake"}, {"at": 0, "use": "graph"}, {"at": 0, "wait": "bake"}]})",
+                               "p");
+  ASSERT_TRUE(play);
+  int taken = 0;
+  bool is_at_work = false;
+  const auto take = [&](const Event&) { ++taken, is_at_work = true; };
+  Played played;
+  for (const int expected : {1, 2}) {
+    EXPECT_EQ(step(*play, is_at_work, take, played), Step::waits);
+    EXPECT_EQ(taken, expected);
+    EXPECT_EQ(step(*play, is_at_work, take, played), Step::waits) << "still at work";
+    EXPECT_EQ(taken, expected);
+    is_at_work = false;
+  }
+  EXPECT_EQ(step(*play, is_at_work, take, played), Step::ends);
+}
+
 }  // namespace
 }  // namespace luxel::view

@@ -229,11 +229,11 @@ struct Play {
 ///       {"at": 1.9, "channel": "red"},
 ///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
 ///       {"at": 2, "beside": "difference"}, {"at": 2, "split": 0.3},
+///       {"at": 2, "show": "interpolant"}, {"at": 2, "overlay": {"mesh": true}},
+///       {"at": 2, "set": {"eps": 0.5}}, {"at": 2, "do": "iterate"},
 ///       {"at": 2, "tool": "link"}, {"at": 2, "use": "element", "pixel": [480, 360]},
 ///       {"at": 2, "use": "graph", "place": [0, 0, 0], "to_place": [1, 0, 0]},
 ///       {"at": 2, "selection": "up"},
-///       {"at": 2, "show": "interpolant"}, {"at": 2, "overlay": {"mesh": true}},
-///       {"at": 2, "set": {"eps": 0.5}}, {"at": 2, "do": "iterate"},
 ///       {"at": 2, "wait": "bake"},
 ///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]},
 ///       {"at": 2, "select": "chair"}, {"at": 2, "instance": "chair", "angles_deg": [0, 90, 0]},
@@ -242,6 +242,7 @@ struct Play {
 /// A range is by the logarithm where "logarithmic_range" says so.
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.
 Result<Play> parse_play(std::string_view text, const std::string& name);
+
 /// Errors: a play asks for the inside of a solver; `name` is what messages call it.
 Status check_no_inside(const Play& play, const std::string& name);
 

@@ -202,6 +202,7 @@ class ImGuiUi : public Ui {
   static void lay_out_bake(BakeLines& bake) {
     ImGui::ProgressBar(bake.share, {ImGui::GetFontSize() * 18, 0}, bake.state.c_str());
     for (const std::string& line : bake.lines) ImGui::TextUnformatted(line.c_str());
+    if (!bake.note.empty()) lay_out_wrapped(bake.note);
     if (bake.can_stop) bake.asks_to_stop = ImGui::Button("stop");
     if (bake.can_go_on) bake.asks_to_go_on = ImGui::Button("go on");
     if (bake.can_save) bake.asks_to_save = ImGui::Button("save");

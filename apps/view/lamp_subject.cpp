@@ -19,6 +19,7 @@ class LampSubject : public Subject {
     return out;
   }
   Status check(const view::Play& play, const std::string& name) const override {
+    LUXEL_TRY_STATUS(view::check_no_inside(play, name));
     return view::check_lamps(play, lamps_.opened.lamps, name);
   }
 

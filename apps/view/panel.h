@@ -9,6 +9,7 @@
 
 #include "apps/view/bake_panel.h"
 #include "apps/view/lamp_panel.h"
+#include "apps/view/solver_panel.h"
 #include "apps/view/ui_look.h"
 
 namespace luxel::view_window {
@@ -37,6 +38,7 @@ struct Panel {
   bool is_light = false;                  ///< changed: dark letters on light ground
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;
+  std::optional<SolverPanel> solver;
   std::string message;  ///< what was done last
 };
 

@@ -128,7 +128,7 @@ std::vector<view::Shapes> drawn_shapes(const SelectionSession& s) {
   const view::SelectionShapes shapes = view::shapes_of(*s.examined, s.desk);
   for (const bool is_hidden : {false, true}) {
     view::Shapes drawn;
-    drawn.is_hidden = is_hidden, drawn.line_width = is_hidden ? 2 : 1.5f;
+    drawn.is_hidden = is_hidden, drawn.line_width = is_hidden ? 1.5f : 1.2f;
     add_shapes(shapes, is_hidden ? 1 : kFaint, drawn);
     if (!drawn.empty()) out.push_back(std::move(drawn));
   }

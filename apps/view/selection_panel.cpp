@@ -168,7 +168,7 @@ void lay_out_selection(SelectionPanel& panel) {
     ImGui::Separator();
     lay_out_curve(*panel.curve);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
-    ImGui::SliderFloat("height in space", &panel.graph_height, 0.01f, 1, "%.2f of the scene",
+    ImGui::SliderFloat("height in space", &panel.graph_height, 0.01f, 10, "%.2f of its length",
                        ImGuiSliderFlags_Logarithmic);
   }
   if (!panel.light.empty()) ImGui::Separator();

@@ -33,7 +33,7 @@ struct SelectionPanel {
   /// Changed: the number of what is asked for; -1: nothing.
   int step = -1;
   bool asks_for_graph = false, asks_for_nothing = false;
-  float graph_height = 0.1f;       ///< changed: over the scene's diagonal
+  float graph_height = 0.3f;       ///< changed: over the line's length
   std::vector<std::string> light;  ///< lines on the probe of irradiance
   std::optional<CurvePlot> curve;
   std::vector<SourcePicture> sources;

@@ -101,7 +101,7 @@ void ask_for_light(const h::FacePoint& at, const Examined& examined, SelectionDe
 }
 
 void ask_for_sources(const h::FacePoint& at, const Examined& examined, SelectionDesk& desk) {
-  constexpr size_t kMostSources = 6;
+  constexpr size_t kMostSources = 4;
   desk.asked.sources = at;
   desk.worker->ask(QuestionKind::sources, [=](Progress& progress) -> Result<Answer> {
     LUXEL_TRY(BackprojectionProbe probe, probe_sources(examined.view, at, kMostSources, progress));

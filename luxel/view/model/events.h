@@ -174,7 +174,7 @@ inline constexpr KeyHelp kKeys[] = {
     {"ctrl+1", "remember this view as bookmark 1; as far as ctrl+9"},
     {"alt+1", "go to bookmark 1; as far as alt+9"},
     {"space", "stop the bake, or let it go on"},
-    {"ctrl+s", "save the bake"},
+    {"ctrl+s", "save the bake, or where lamps have been moved to"},
 };
 /// Those of .lxr files.
 inline constexpr KeyHelp kLampKeys[] = {
@@ -182,6 +182,7 @@ inline constexpr KeyHelp kLampKeys[] = {
     {"y", "along y alone"},
     {"z", "along z alone"},
     {"m", "hide the marks of lamps, or show them"},
+    {"c", "compare the light with the path tracer's, or stop that"},
 };
 
 /// Those of hierarchical solutions.

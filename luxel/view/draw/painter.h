@@ -44,7 +44,7 @@ struct Additions {
   std::optional<DeviceQuadratics> instead;
   std::optional<ExactPixels> exact;  ///< of `instead`
   bool no_surfaces = false;
-  std::vector<DeviceShapes> shapes;  ///< in this order
+  std::vector<DeviceShapes> shapes;            ///< in this order
   std::optional<DeviceTechniques> techniques;  ///< instead, where Frame::technique says so
   std::optional<DeviceInset> inset;            ///< over the picture
 };

@@ -137,7 +137,7 @@ std::vector<std::string> lines_of(const VertexReport& r, const std::string& unit
   if (r.back > 0) out.push_back(fmt::format("  backs {:.5f}", r.back));
   if (r.below > 0) out.push_back(fmt::format("  below {:.5f}", r.below));
   if (r.exact) out.push_back(fmt::format("wrong triangles {:.3f} %", 100 * r.exact->wrong));
-  out.push_back(fmt::format("e {:.5g} {}", luminance(r.irradiance), unit));
+  out.push_back(fmt::format("E {:.5g} {}", luminance(r.irradiance), unit));
   return out;
 }
 

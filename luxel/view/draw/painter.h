@@ -6,6 +6,7 @@
 #include "luxel/image/codec.h"
 #include "luxel/image/image.h"
 #include "luxel/view/draw/device_scene.h"
+#include "luxel/view/draw/outline.h"
 #include "luxel/view/draw/overlay.h"
 #include "luxel/view/frame.h"
 
@@ -15,6 +16,7 @@ namespace luxel::view {
 struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
   gpu::Pipeline overlay, beside;
+  OutlineShaders outline;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
@@ -25,6 +27,7 @@ struct Painter {
   gpu::Target shown;    ///< 8 bits, display values
   gpu::BindingSets materials, surroundings, to_screen;
   gpu::OwnedSampler sampler;
+  Outliner outliner;
 };
 /// For this scene.
 Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "apps/view/bake_panel.h"
+#include "apps/view/edit_panel.h"
 #include "apps/view/lamp_panel.h"
 #include "apps/view/ui_look.h"
 
@@ -37,6 +38,7 @@ struct Panel {
   bool is_light = false;                  ///< changed: dark letters on light ground
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;
+  std::optional<EditPanel> edit;
   std::string message;  ///< what was done last
 };
 

@@ -278,7 +278,7 @@ TEST(EditTools, PlaysEdits) {
     {"at": 0, "material": "lower", "reflectance": [0.5, 0.25, 0]},
     {"at": 0, "material": "upper", "radiance": [7, 0, 0]},
     {"at": 0, "lamp": 0, "intensity": [4, 5, 6], "on": false},
-    {"at": 0, "new_lamp": "directional", "sun": "90,30", "disc_radius_deg": 1},
+    {"at": 0, "new_lamp": "directional", "sun": "90,30", "disc_deg": 2},
     {"at": 0, "new_lamp": "spot", "cone_deg": 20, "inner_cone_deg": 10},
     {"at": 0, "lamp": 2, "deleted": true},
     {"at": 0, "select_lamp": 1}]})",

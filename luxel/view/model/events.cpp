@@ -9,6 +9,7 @@
 #include "luxel/base/short_message.h"
 #include "luxel/view/model/bookmarks.h"
 #include "luxel/view/model/scene_events.h"
+#include "luxel/view/model/tool_events.h"
 
 namespace luxel::view {
 namespace {
@@ -29,7 +30,8 @@ bool is_key(const std::string& name) {
   const auto is_it = [&](const KeyHelp& key) { return name == key.key; };
   return bookmark_key(name) || std::any_of(std::begin(kKeys), std::end(kKeys), is_it) ||
          std::any_of(std::begin(kLampKeys), std::end(kLampKeys), is_it) ||
-         std::any_of(std::begin(kEditKeys), std::end(kEditKeys), is_it);
+         std::any_of(std::begin(kEditKeys), std::end(kEditKeys), is_it) ||
+         std::any_of(std::begin(kSelectionKeys), std::end(kSelectionKeys), is_it);
 }
 
 /// The number of a name in a table; none where it has no such name.
@@ -89,6 +91,7 @@ std::optional<Event> look_event_of(const json& from) {
 /// One event; none where it is something else. May throw json::exception.
 std::optional<Event> event_of(const json& from) {
   if (changes_scene(from)) return scene_event_of(from);
+  if (uses_tools(from)) return tool_event_of(from);
   if (from.size() != 2) return std::nullopt;  // "at" and what happens
   if (from.contains("pointer")) {
     const auto at = from["pointer"].get<std::array<float, 2>>();

@@ -11,6 +11,7 @@
 #include "luxel/base/vec.h"
 #include "luxel/scene/scene.h"
 #include "luxel/view/frame.h"
+#include "luxel/view/model/tools.h"
 
 namespace luxel::view {
 
@@ -109,11 +110,11 @@ struct MaterialChanged {
 /// A play stands still here: what comes after it is played when the bake has ended and its light is
 /// shown.
 struct WaitForBake {};
-using Event =
-    std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged, LampAdded,
-                 GlowChanged, ShowChanged, RangeChanged, ChannelChanged, LayerChanged,
-                 BesideChanged, SplitMoved, InstanceSelected, LampSelected, MaterialSelected,
-                 InstanceChanged, LampRemoved, MaterialChanged, WaitForBake>;
+using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
+                           LampAdded, GlowChanged, ShowChanged, RangeChanged, ChannelChanged,
+                           LayerChanged, BesideChanged, SplitMoved, InstanceSelected, LampSelected,
+                           MaterialSelected, InstanceChanged, LampRemoved, MaterialChanged,
+                           ToolChanged, ToolUsed, SelectionStepped, WaitForBake>;
 
 /// Whether an event changes lamps or what glows; or something else of a scene.
 bool changes_lamps(const Event& event);
@@ -159,6 +160,14 @@ inline constexpr KeyHelp kLampKeys[] = {
     {"m", "hide the marks of lamps, or show them"},
 };
 
+/// Those of hierarchical solutions.
+inline constexpr KeyHelp kSelectionKeys[] = {
+    {"p", "select what holds the selected element"},
+    {"c", "select its part under the place of the click"},
+    {"n", "select the next weaker link"},
+    {"g", "graph across what is selected"},
+    {"esc", "select nothing"},
+};
 /// Those of scenes that are edited.
 inline constexpr KeyHelp kEditKeys[] = {
     {"g", "move what is selected"},
@@ -196,6 +205,10 @@ struct Play {
 ///       {"at": 1.9, "channel": "red"},
 ///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
 ///       {"at": 2, "beside": "difference"}, {"at": 2, "split": 0.3},
+///       {"at": 2, "tool": "link"}, {"at": 2, "use": "element", "pixel": [480, 360]},
+///       {"at": 2, "use": "graph", "place": [0, 0, 0], "to_place": [1, 0, 0]},
+///       {"at": 2, "selection": "up"}, {"at": 2, "wait": "bake"},
+///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]}]}
 ///       {"at": 2, "wait": "bake"},
 ///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]},
 ///       {"at": 2, "select": "chair"}, {"at": 2, "instance": "chair", "angles_deg": [0, 90, 0]},

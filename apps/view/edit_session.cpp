@@ -25,9 +25,7 @@ std::vector<EditChoice> choices_of(const Parts& parts, const char* kind) {
   return out;
 }
 
-bool is_in_lux(const EditSession& session) {
-  return session.tools.desk.read->light_unit == "lux";
-}
+bool is_in_lux(const EditSession& session) { return session.tools.desk.read->light_unit == "lux"; }
 
 PlaceLines lines_of(const view::Placement& placement) {
   return {numbers(placement.place), numbers(placement.angles_deg), numbers(placement.scale)};
@@ -75,8 +73,9 @@ void take_sun(const EditPanel& panel, EditSession& session) {
   view::EditTools& tools = session.tools;
   const auto sky = pipeline::parse_sky(panel.sun.data());
   if (!sky) {
-    tools.message = "the sun is to stand at AZIMUTH,ELEVATION in degrees, or where it is seen at "
-                    "TIME,LATITUDE,LONGITUDE";
+    tools.message =
+        "the sun is to stand at AZIMUTH,ELEVATION in degrees, or where it is seen at "
+        "TIME,LATITUDE,LONGITUDE";
     return;
   }
   view::Lamp lamp = tools.desk.now.lamps[*tools.selected.lamp];
@@ -145,6 +144,13 @@ EditPanel panel_of(const EditSession& session) {
   return out;
 }
 
+std::vector<KeyLine> edit_keys() {
+  std::vector<KeyLine> out{{"click", "select an object; once more, its material"},
+                           {"left button on a handle", "move, turn, scale"}};
+  for (const view::KeyHelp& key : view::kEditKeys) out.push_back({key.key, key.does});
+  return out;
+}
+
 void take_changes(const EditPanel& panel, float exposure, EditSession& session) {
   const EditPanel before = panel_of(session);
   view::EditTools& tools = session.tools;
@@ -161,13 +167,13 @@ void take_changes(const EditPanel& panel, float exposure, EditSession& session) 
   if (panel.adds_sun) add(scene::LightKind::directional);
   if (panel.asks_to_undo) undo_step(tools);
   if (panel.asks_to_redo) redo_step(tools);
-  if (panel.asks_to_save) save(session);
+  if (panel.asks_to_save) save_edited(session);
 }
 
 void has_another(EditSession& session) { session.has_put = false; }
 
-void prepare(const view::Walk& walk, view::ShownScene& shown, view::Frame& frame,
-             EditSession& session) {
+void show_edits(const view::Walk& walk, view::ShownScene& shown, view::Frame& frame,
+                EditSession& session) {
   const view::EditDesk& desk = session.tools.desk;
   if (!session.has_put) {
     std::span<const uint32_t> of_layout;
@@ -181,7 +187,7 @@ void prepare(const view::Walk& walk, view::ShownScene& shown, view::Frame& frame
   frame.outline = view::outline_of(session.tools.selected, session.of_material);
 }
 
-void save(EditSession& session) {
+void save_edited(EditSession& session) {
   if (is_saving(session)) return;
   const view::EditDesk& desk = session.tools.desk;
   view::SceneToSave to_save{desk.read, desk.now, session.settings};

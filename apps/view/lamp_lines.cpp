@@ -38,7 +38,8 @@ LampLine line_of(const view::Lamp& lamp, bool is_lux) {
   if (light.profile != scene::kNone) out.unit = "x its profile";
   out.place = numbers(light.position), out.direction = numbers(light.direction);
   out.has_cone = scene::has_cone(light.kind), out.has_disc = !out.has_place;
-  out.cone_deg = light.outer_cone_rad / kDegree, out.inner_cone_deg = light.inner_cone_rad / kDegree;
+  out.cone_deg = light.outer_cone_rad / kDegree,
+  out.inner_cone_deg = light.inner_cone_rad / kDegree;
   out.disc_deg = 2 * light.angular_radius_rad / kDegree;
   set_light(light.intensity, out);
   return out;
@@ -47,8 +48,7 @@ LampLine line_of(const view::Lamp& lamp, bool is_lux) {
 void take_line(const LampLine& before, const LampLine& now, view::Lamp& lamp) {
   scene::PunctualLight& light = lamp.light;
   lamp.is_on = now.is_on;
-  if (now.color != before.color || now.strength != before.strength)
-    light.intensity = light_of(now);
+  if (now.color != before.color || now.strength != before.strength) light.intensity = light_of(now);
   if (now.place != before.place) light.position = vector(now.place);
   if (now.direction != before.direction && length(vector(now.direction)) > 0)
     light.direction = normalize(vector(now.direction));

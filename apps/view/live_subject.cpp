@@ -22,6 +22,7 @@ class LiveSubject : public Subject {
     view::LiveNews news = live_->take();
     Followed out;
     out.has_news = news.read || news.light || news.said;
+    out.has_scene = bool(news.read);
     if (out.has_news) {
       LUXEL_TRY(out.is_another, view::take_news(std::move(news), commands, shown_, message));
     }
@@ -41,7 +42,9 @@ class LiveSubject : public Subject {
   }
 
   bool take(const view::Event& event, const view::Walk& walk) override {
-    return edit_ && view::handle_edits(event, walk, edit_->tools);
+    const bool is_taken = edit_ && view::handle_edits(event, walk, edit_->tools);
+    follow_edits();
+    return is_taken;
   }
   void obey(view::Command command) override {
     if (command == view::Command::save_scene && edit_) save_edited(*edit_);
@@ -61,13 +64,11 @@ class LiveSubject : public Subject {
     if (asked.asks_to_stop || asked.asks_to_go_on) obey(view::Command::stop_or_go_on);
     if (asked.asks_to_save) obey(view::Command::save);
     if (walk && edit_ && panel.edit) take_changes(*panel.edit, walk->shown.exposure, *edit_);
+    follow_edits();
   }
 
   Status prepare(gpu::Commands&, const view::Walk& walk, view::Frame& frame) override {
-    if (!edit_) return {};
-    show_edits(walk, shown_, frame, *edit_);
-    const view::EditDesk& desk = edit_->tools.desk;
-    if (std::exchange(followed_, desk.changes) != desk.changes) live_->edit(desk.now);
+    if (edit_) show_edits(walk, shown_, frame, *edit_);
     return {};
   }
 
@@ -80,6 +81,13 @@ class LiveSubject : public Subject {
   }
 
  private:
+  /// The bake begins anew where something was edited.
+  void follow_edits() {
+    if (!edit_) return;
+    const view::EditDesk& desk = edit_->tools.desk;
+    if (std::exchange(followed_, desk.changes) != desk.changes) live_->edit(desk.now);
+  }
+
   std::unique_ptr<view::LiveBake> live_;
   view::ShownScene shown_;
   pipeline::BakeSettings settings_;

@@ -76,17 +76,31 @@ Status BakeRun::begin(std::shared_ptr<const ReadScene> read, const DraftParams& 
   // What is read is seen while the first draft is made; later there is a draft to be seen.
   if (!kept_exposure_) watcher_.hand(std::exchange(news, {}));
   LUXEL_TRY(draft_, make_draft(read->scene, settings_, params, ends));
-  if (!draft_) return watcher_.hand(std::move(news)), Status();
-  LiveLight light;
+  draft_ ? hand_draft(std::move(read)) : watcher_.hand(std::move(news));
+  return {};
+}
+
+/// After an edit, as what it changes of the light that is shown.
+void BakeRun::hand_draft(std::shared_ptr<const ReadScene> read) {
+  LiveNews news;
+  LiveLight& light = news.light.emplace();
   light.numbers.kind = LiveKind::draft;
-  light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
   light.exposure = draft_exposure_ = exposure_of(
       {draft_->scene, *draft_->tracer}, {&draft_->atlas, &draft_->map, draft_->irradiance});
   exposure_ = light.exposure;
-  news.lit = lit_scene(draft_->scene, draft_->atlas);
-  news.light = std::move(light);
+  light.is_sudden = kept_exposure_.has_value();
+  if (before_) {
+    std::vector<Mat34> world_from_object;
+    for (const scene::Instance& instance : read->scene.instances)
+      world_from_object.push_back(instance.world_from_object);
+    light.pages = pages_of(before_->atlas, before_->map,
+                           light_after_edit(*before_, *draft_, world_from_object));
+  } else {
+    light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
+    news.lit = lit_scene(draft_->scene, draft_->atlas);
+  }
+  if (kept_exposure_) news.read = std::move(read);
   watcher_.hand(std::move(news));
-  return {};
 }
 
 pipeline::BakeObserver BakeRun::observer() {
@@ -125,9 +139,16 @@ void BakeRun::has_light(const light::TexelScene& in, const light::LightEstimate&
   // Vertices are split while nobody waits.
   if (!std::exchange(is_laid_out_, true)) {
     news.lit = lit_scene(in.scene, in.atlas);
-    if (draft_) news.before = draft_elsewhere(in);
+    if (draft_) light_ = std::make_shared<KnownLight>(known_light(in, *draft_));
+    // After an edit there is better light than the draft's, which lies elsewhere.
+    if (draft_ && !kept_exposure_) news.before = draft_elsewhere(in);
   }
+  know(estimate.irradiance);
   watcher_.hand(std::move(news));
+}
+
+void BakeRun::know(std::span<const Rgb> irradiance) {
+  if (light_) light_->irradiance.assign(irradiance.begin(), irradiance.end());
 }
 
 LiveLight BakeRun::draft_elsewhere(const light::TexelScene& in) const {
@@ -158,6 +179,7 @@ void BakeRun::end(const pipeline::Bake& baked) {
   light.is_last = true;
   if (!is_laid_out_) news.lit = lit_scene(baked.scene, baked.atlas);  // the solver has no estimates
   news.warnings = baked.warnings;
+  know(baked.light.irradiance);
   watcher_.hand(std::move(news));
 }
 

@@ -81,10 +81,10 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
   if (news.said) said = *news.said;
   if (news.read) {
     shown.read = std::move(news.read);
-    is_another = true;
     // Until there is light of an edited scene, the one before is shown.
     if (!news.lit && !shown.has_light) {
       LUXEL_TRY(shown.device, without_light(commands, shown.read->scene));
+      is_another = true;
     }
   }
   if (!news.light) return is_another;
@@ -100,6 +100,13 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
     shown.waiting.reset();
     shown.has_light = is_another = true;
     if (!news.before) return true;
+  }
+  if (news.light->is_sudden) {
+    shown.waiting.reset();
+    shown.fade = at_once(shown.fade, news.light->exposure);
+    shown.device.second_light = second_light(shown.fade);
+    LUXEL_TRY_STATUS(put_light(commands, news.light->pages, shown.fade.newest, shown.device));
+    return is_another;
   }
   shown.waiting = std::move(*news.light);
   LUXEL_TRY_STATUS(pass(0, commands, shown));

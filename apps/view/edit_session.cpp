@@ -86,7 +86,7 @@ void take_sun(const EditPanel& panel, EditSession& session) {
 /// Numbers of what is selected.
 void take_numbers(const EditPanel& panel, const EditPanel& before, EditSession& session) {
   view::EditTools& tools = session.tools;
-  const view::Selection& selected = tools.selected;
+  const view::EditSelection& selected = tools.selected;
   if (selected.instance) take_place(panel, before, tools);
   if (selected.material && panel.look != before.look)
     drag_edit(changed(*selected.material, before.look, panel.look,

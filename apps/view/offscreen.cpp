@@ -101,7 +101,10 @@ Result<image::Image8> draw_offscreen(gpu::Commands& commands, Subject& subject,
       view::begin_walk(first, scene::world_bounds(read.scene), width, height, place_seen);
   if (params.play) LUXEL_TRY_STATUS(play_all(*params.play, commands, walk, subject));
   LUXEL_TRY(view::Frame frame, frame_of(commands, walk, subject));
-  return picture_of(commands, std::move(frame), std::move(beside), walk, subject);
+  LUXEL_TRY(image::Image8 out,
+            picture_of(commands, std::move(frame), std::move(beside), walk, subject));
+  if (params.play) LUXEL_TRY_STATUS(subject.end().map([](const std::string&) {}));
+  return out;
 }
 
 }  // namespace luxel::view_window

@@ -34,7 +34,7 @@ void put_edits(const SceneNow& now, std::span<const uint32_t> of_material, Devic
   }
 }
 
-std::optional<Outline> outline_of(const Selection& selected,
+std::optional<Outline> outline_of(const EditSelection& selected,
                                   std::span<const uint32_t> of_material) {
   if (!selected.instance && !selected.material) return std::nullopt;
   Outline out;

@@ -20,6 +20,7 @@ std::vector<uint32_t> materials_as_read(const scene::Scene& as_read, const scene
 void put_edits(const SceneNow& now, std::span<const uint32_t> of_material, DeviceScene& scene);
 
 /// The line around what is selected; none where that is nothing, or a lamp.
-std::optional<Outline> outline_of(const Selection& selected, std::span<const uint32_t> of_material);
+std::optional<Outline> outline_of(const EditSelection& selected,
+                                  std::span<const uint32_t> of_material);
 
 }  // namespace luxel::view

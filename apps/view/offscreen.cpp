@@ -19,6 +19,8 @@ Status finish_work(gpu::Commands& commands, view::Walk* walk, Subject& subject) 
     if (subject.work() == Work::failed) return fail(ErrorCode::bad_input, "{}", message);
     LUXEL_TRY_STATUS(pass_light(view::kFade_s, commands, walk, subject));
     if (!is_at_work(subject)) return {};
+    // What is looked at is asked for.
+    if (walk) LUXEL_TRY_STATUS(frame_of(commands, *walk, subject).map([](const view::Frame&) {}));
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
@@ -78,7 +80,8 @@ Result<image::Image8> picture_of(gpu::Commands& commands, view::Frame frame,
   LUXEL_TRY(easel.painter, view::make_painter(commands.device(), easel.shaders, shown.device,
                                               uint32_t(walk.width), uint32_t(walk.height)));
   const view::Canvas canvas{easel.shaders, easel.painter, shown.device,
-                            easel.looking.overlay ? &*easel.looking.overlay : nullptr};
+                            easel.looking.overlay ? &*easel.looking.overlay : nullptr,
+                            subject.additions()};
   if (beside) return painted_beside(commands, std::move(*beside), canvas, easel, frame);
   return view::painted(commands, canvas, frame);
 }
@@ -101,6 +104,12 @@ Result<image::Image8> draw_offscreen(gpu::Commands& commands, Subject& subject,
       view::begin_walk(first, scene::world_bounds(read.scene), width, height, place_seen);
   if (params.play) LUXEL_TRY_STATUS(play_all(*params.play, commands, walk, subject));
   LUXEL_TRY(view::Frame frame, frame_of(commands, walk, subject));
+  // The second time the camera is at rest.
+  LUXEL_TRY(frame, frame_of(commands, walk, subject));
+  while (is_at_work(subject)) {
+    LUXEL_TRY_STATUS(finish_work(commands, &walk, subject));
+    LUXEL_TRY(frame, frame_of(commands, walk, subject));
+  }
   LUXEL_TRY(image::Image8 out,
             picture_of(commands, std::move(frame), std::move(beside), walk, subject));
   if (params.play) LUXEL_TRY_STATUS(subject.end().map([](const std::string&) {}));

@@ -10,6 +10,7 @@
 #include "apps/view/bake_panel.h"
 #include "apps/view/edit_panel.h"
 #include "apps/view/lamp_panel.h"
+#include "apps/view/solver_panel.h"
 #include "apps/view/ui_look.h"
 
 namespace luxel::view_window {
@@ -39,6 +40,7 @@ struct Panel {
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;
   std::optional<EditPanel> edit;
+  std::optional<SolverPanel> solver;
   std::string message;  ///< what was done last
 };
 

@@ -297,6 +297,7 @@ Status show_in_window(const MakeSubject& make_subject, std::optional<view::Opene
   LUXEL_TRY(Screen screen, open_screen(*window, params.device));
   LUXEL_TRY(const std::unique_ptr<Subject> subject, make_subject(*screen.commands));
   if (params.play) LUXEL_TRY_STATUS(subject->check(*params.play, params.play_name));
+  screen.additions = subject->additions();
   std::optional<view::ShownScene> second;
   if (beside) {
     LUXEL_TRY(second, view::bake_shown(*screen.commands, std::move(*beside)));

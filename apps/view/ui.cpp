@@ -139,6 +139,7 @@ class ImGuiUi : public Ui {
     ImGui::Begin(panel.title.c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::TextUnformatted(panel.about.c_str());
     if (panel.bake) lay_out_bake(*panel.bake);
+    if (panel.solver) lay_out_solver(*panel.solver);
     ImGui::RadioButton("light and colour", &panel.show, 0);
     ImGui::RadioButton("light", &panel.show, 1);
     ImGui::RadioButton("colour", &panel.show, 2);

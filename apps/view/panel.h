@@ -10,6 +10,7 @@
 #include "apps/view/bake_panel.h"
 #include "apps/view/edit_panel.h"
 #include "apps/view/lamp_panel.h"
+#include "apps/view/selection_panel.h"
 #include "apps/view/solver_panel.h"
 #include "apps/view/ui_look.h"
 
@@ -41,6 +42,7 @@ struct Panel {
   std::optional<LampPanel> lamps;
   std::optional<EditPanel> edit;
   std::optional<SolverPanel> solver;
+  std::optional<SelectionPanel> selection;
   std::string message;  ///< what was done last
 };
 

@@ -200,6 +200,7 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
   LUXEL_TRY(out.mark, gpu::make_draw_pipeline(device, mark_params()));
   LUXEL_TRY(out.technique, make_technique_shaders(device, kExposed, kSamples));
   LUXEL_TRY(out.inset, make_inset_shader(device, kShown));
+  LUXEL_TRY(out.outline, make_outline_shaders(device, kShown));
   return out;
 }
 
@@ -217,6 +218,7 @@ Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
   LUXEL_TRY(out.surroundings, gpu::make_sets(device, shaders.behind, surroundings));
   const std::vector<std::vector<gpu::Binding>> exposed{{{&out.exposed.picture, out.sampler.get()}}};
   LUXEL_TRY(out.to_screen, gpu::make_sets(device, shaders.screen, exposed));
+  LUXEL_TRY(out.outliner, make_outliner(device, shaders.outline, width, height));
   return out;
 }
 
@@ -261,6 +263,8 @@ void show_exposed(const gpu::Device& device, VkCommandBuffer commands, const Can
   gpu::bind(device, commands, canvas.shaders.screen, ScreenPush{uint32_t(curve)});
   gpu::bind_set(device, commands, canvas.shaders.screen, painter.to_screen.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  if (frame.outline)
+    draw_line(device, commands, canvas.shaders.outline, painter.outliner, *frame.outline);
   draw_marks(device, commands, canvas, frame.marks);
   if (more.inset)
     draw_inset(device, commands, canvas.shaders.inset, *more.inset, size.width, size.height);
@@ -297,6 +301,9 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
                  {float(size.width), float(size.height)},
                  curve});
   gpu::end_drawing(device, commands, painter.exposed, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  if (frame.outline)
+    draw_mask(device, commands, canvas.shaders.outline, painter.outliner, scene,
+              painter.materials.sets, *frame.outline, surface.clip_from_world);
   show_exposed(device, commands, canvas, more, curve, frame);
   gpu::change_layout(device, commands, painter.exposed.picture,
                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,

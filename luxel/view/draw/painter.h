@@ -10,6 +10,7 @@
 #include "luxel/image/image.h"
 #include "luxel/view/draw/device_scene.h"
 #include "luxel/view/draw/inset.h"
+#include "luxel/view/draw/outline.h"
 #include "luxel/view/draw/overlay.h"
 #include "luxel/view/draw/quadratic.h"
 #include "luxel/view/draw/shapes.h"
@@ -24,6 +25,7 @@ struct Shaders {
   gpu::Pipeline overlay, beside, quadratic, inset;
   ShapeShaders shapes;
   TechniqueShaders technique;
+  OutlineShaders outline;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
@@ -34,6 +36,7 @@ struct Painter {
   gpu::Target shown;    ///< 8 bits, display values
   gpu::BindingSets materials, surroundings, to_screen;
   gpu::OwnedSampler sampler;
+  Outliner outliner;
 };
 /// For this scene.
 Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,

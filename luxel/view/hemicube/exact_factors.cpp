@@ -1,5 +1,6 @@
 // Form factors from an element to every triangle of the scene, past all others, in closed form.
 #include <algorithm>
+#include <numeric>
 
 #include "luxel/view/hemicube/vertex_report.h"
 #include "luxel/viewfactor/point_visibility.h"
@@ -9,6 +10,8 @@ namespace {
 
 /// Every triangle may stand before every other: 4 million pairs take about a second.
 constexpr size_t kMostExactTriangles = 2000;
+/// A hemisphere and rounding.
+constexpr double kMostSum = 1.001;
 
 viewfactor::Polygon polygon_of(const scene::Scene& scene, uint32_t instance, uint32_t triangle) {
   scene::Triangle3 t = scene::world_triangle(scene, instance, triangle);
@@ -102,7 +105,9 @@ Result<std::optional<std::vector<double>>> exact_factors(const LightMesh& mesh, 
             .visible;
     progress.advance(1);
   }
-  return out;
+  // Of surfaces that coincide each is seen whole.
+  const double sum = std::accumulate(out.begin(), out.end(), 0.0);
+  return sum > kMostSum ? std::nullopt : std::optional(std::move(out));
 }
 
 }  // namespace luxel::view

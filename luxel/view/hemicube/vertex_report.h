@@ -29,7 +29,7 @@ struct VertexReport {
   Rgb irradiance{};               ///< that it gathers from the light of the mesh as it is [W/m^2]
   Rgb direct{};                   ///< the part of it straight from lights
   hemicube::ItemBuffer items;     ///< what each pixel sees
-  std::optional<ExactRow> exact;  ///< none where there are too many triangles, or holes in them
+  std::optional<ExactRow> exact;  ///< none where exact_factors() has none
   std::vector<Rgb> light;         ///< E of all elements, by which it was found
 };
 
@@ -39,8 +39,8 @@ Result<VertexReport> report_on(const LightMesh& mesh, std::vector<Rgb> irradianc
                                int resolution, Progress& progress);
 
 /// The form factors from an element to the scene's triangles, in their order
-/// (scene::first_triangles), in closed form; none where more than some 2,000 can be seen, or where
-/// light goes through any. Errors: cancelled.
+/// (scene::first_triangles), in closed form; none where more than some 2,000 can be seen, where
+/// light goes through any, or where some coincide. Errors: cancelled.
 Result<std::optional<std::vector<double>>> exact_factors(const LightMesh& mesh, uint32_t element,
                                                          Progress& progress);
 /// The same by a hemicube.

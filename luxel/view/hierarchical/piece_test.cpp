@@ -21,9 +21,7 @@ struct Box {
   KnownRounds known;
   Progress progress;
 
-  Box() {
-    tracer.emplace(std::move(*trace::RayTracer::build(scene)));
-  }
+  Box() { tracer.emplace(std::move(*trace::RayTracer::build(scene))); }
   SolvedScene solved() const { return {scene, *tracer}; }
   Piece stepped_from(const Piece& from, SolverStep step) {
     auto out = stepped(from, step, solved(), settings, known, progress);

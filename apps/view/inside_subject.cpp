@@ -1,6 +1,8 @@
 // Hierarchical radiosity, looked into.
 #include <algorithm>
+#include <cmath>
 
+#include "apps/view/selection_lines.h"
 #include "apps/view/solver_lines.h"
 #include "apps/view/subject.h"
 #include "luxel/view/hierarchical/desk.h"
@@ -22,6 +24,7 @@ class InsideSubject : public Subject {
     std::vector<KeyLine> out;
     for (size_t i = 0; i < view::kLightKinds.size(); ++i)
       out.push_back({view::kLightKindKeys[i], view::kLightKinds[i].words});
+    add_selection_keys(out);
     return out;
   }
   Status check(const view::Play& play, const std::string& name) const override {
@@ -44,28 +47,35 @@ class InsideSubject : public Subject {
       shown_.fade = {0, 1, news.exposure, news.exposure}, shown_.has_light = true;
     if (news.piece) piece_ = std::move(news.piece);
     if (news.exact) exact_ = std::move(news.exact);
+    out.has_news |= follow_selection();
     return out;
   }
   Work work() const override {
     const view::WorkshopState state = workshop_->state();
-    return state == view::WorkshopState::failed    ? Work::failed
-           : state == view::WorkshopState::at_work ? Work::at_work
-                                                   : Work::at_rest;
+    if (state == view::WorkshopState::failed) return Work::failed;
+    const bool is_at_work =
+        state == view::WorkshopState::at_work || selection_.desk.worker->is_at_work();
+    return is_at_work ? Work::at_work : Work::at_rest;
   }
 
-  bool take(const view::Event& event, const view::Walk&) override {
-    const bool is_taken = view::handle_desk(event, desk_);
-    send();
-    return is_taken;
+  bool take(const view::Event& event, const view::Walk& walk) override {
+    if (view::handle_desk(event, desk_)) {
+      send();
+      return true;
+    }
+    follow_selection();
+    return take_selection(event, walk, selection_);
   }
   void obey(view::Command command) override {
     if (command == view::Command::stop_or_go_on) workshop_->interrupt();
   }
   void fill(Panel& panel) const override {
     panel.solver = solver_lines(*workshop_, piece_.get(), exact_.get(), desk_);
+    panel.selection = selection_lines(selection_);
   }
-  void take(const Panel& panel, const view::Walk*) override {
+  void take(const Panel& panel, const view::Walk* walk) override {
     take_solver_lines(*panel.solver, piece_.get(), desk_);
+    if (walk) take_selection_lines(*panel.selection, *walk, selection_);
     send();
   }
 
@@ -87,10 +97,18 @@ class InsideSubject : public Subject {
  private:
   /// What the desk asks of the workshop.
   void send() {
+    if (desk_.exposure_stops && shown_.has_light) {
+      const auto exposure = float(std::exp2(*desk_.exposure_stops));
+      shown_.fade = {0, 1, exposure, exposure};
+    }
     if (std::exchange(desk_.asks_to_stop, false)) workshop_->interrupt();
     for (const view::Ask what : std::exchange(desk_.asked, {}))
       workshop_->ask(what, desk_.settings);
     workshop_->want(view::wanted_for(desk_, view_), desk_.settings.mesh);
+  }
+  bool follow_selection() {
+    return follow_piece(piece_, shown_.read, desk_.kind, desk_.settings.mesh.discontinuity,
+                        selection_);
   }
   /// Surfaces by the kind that is chosen, or else flat until that is made.
   Status put_light(const gpu::Device& device) {
@@ -120,19 +138,23 @@ class InsideSubject : public Subject {
     return {};
   }
   Status put_over(const gpu::Device& device) {
-    if (put_over_ == piece_ && put_changes_ == desk_.changes) return {};
-    const view::Shapes shapes = view::shapes_over(*piece_, desk_);
+    const uint64_t changes = desk_.changes + selection_.desk.changes;  // both only grow
+    if (put_over_ == piece_ && put_changes_ == changes) return {};
+    std::vector<view::Shapes> shapes = drawn_shapes(selection_);
+    shapes.insert(shapes.begin(), view::shapes_over(*piece_, desk_));
     additions_.shapes.clear();
-    if (!shapes.empty()) {
-      LUXEL_TRY(view::DeviceShapes on_device, view::put_shapes(device, shapes));
+    for (const view::Shapes& drawn : shapes) {
+      if (drawn.empty()) continue;
+      LUXEL_TRY(view::DeviceShapes on_device, view::put_shapes(device, drawn));
       additions_.shapes.push_back(std::move(on_device));
     }
-    put_over_ = piece_, put_changes_ = desk_.changes;
+    put_over_ = piece_, put_changes_ = changes;
     return {};
   }
 
   std::unique_ptr<view::Workshop> workshop_;
   view::HierarchicalDesk desk_;
+  SelectionSession selection_;
   view::ShownScene shown_;
   view::Additions additions_;
   std::shared_ptr<const view::Piece> piece_;         ///< null: there is none yet

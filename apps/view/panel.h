@@ -9,6 +9,7 @@
 
 #include "apps/view/bake_panel.h"
 #include "apps/view/lamp_panel.h"
+#include "apps/view/selection_panel.h"
 #include "apps/view/solver_panel.h"
 #include "apps/view/ui_look.h"
 
@@ -39,6 +40,7 @@ struct Panel {
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;
   std::optional<SolverPanel> solver;
+  std::optional<SelectionPanel> selection;
   std::string message;  ///< what was done last
 };
 

@@ -111,6 +111,7 @@ class ImGuiUi : public Ui {
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     const float right = lay_out_panel(panel);
+    if (panel.selection) lay_out_selection(*panel.selection);
     if (panel.keys_open) lay_out_keys(right, panel);
     ImGui::Render();
   }

@@ -203,7 +203,10 @@ Status check_no_inside(const Play& play, const std::string& name) {
     if (std::holds_alternative<OwnShown>(timed.event) ||
         std::holds_alternative<OverlayChanged>(timed.event) ||
         std::holds_alternative<SettingChanged>(timed.event) ||
-        std::holds_alternative<OwnAsked>(timed.event))
+        std::holds_alternative<OwnAsked>(timed.event) ||
+        std::holds_alternative<ToolChanged>(timed.event) ||
+        std::holds_alternative<ToolUsed>(timed.event) ||
+        std::holds_alternative<SelectionStepped>(timed.event))
       return fail(ErrorCode::bad_input,
                   "{}, at {} s: this is for a solver that is looked into; --inside opens one", name,
                   timed.at_s);

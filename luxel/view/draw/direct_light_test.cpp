@@ -269,8 +269,8 @@ TEST_F(DirectLightTest, ShadowsOfASunAreSharpNearTheEye) {
   const trace::CameraRays eye(camera, kPictureSide, kPictureSide);
   const auto wrong = [&](const image::Image& picture) {
     int out = 0;
-    for (int i = kPictureSide; i < kPictureSide * kPictureSide; ++i) {  // not the horizon
-      if (!(wanted[size_t(i)].facet.y > 0.5f)) continue;                // edges of posts are narrow
+    for (int i = 10 * kPictureSide; i < kPictureSide * kPictureSide; ++i) {  // below the horizon
+      if (!(wanted[size_t(i)].facet.y > 0.5f)) continue;  // edges of posts are narrow
       const float want = wanted[size_t(i)].irradiance.x;
       out += std::abs(picture.data[size_t(4 * i)] - want) > 0.5f * lamps[0].intensity.x;
     }

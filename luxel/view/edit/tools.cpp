@@ -103,7 +103,7 @@ void click(const Walk& walk, EditTools& tools) {
   const scene::Scene& scene = tools.desk.read->scene;
   const uint32_t mesh = scene.instances[point->instance].mesh;
   const uint32_t material = scene.meshes[mesh].triangle_material[point->triangle];
-  Selection selection{.instance = point->instance};
+  EditSelection selection{.instance = point->instance};
   if (tools.selected.instance == point->instance && tools.selected.material != material)
     selection.material = material;
   select(selection, tools);
@@ -159,7 +159,7 @@ std::vector<uint32_t> materials_named(const std::string& name, const EditTools& 
 }
 
 /// Does what an event asks of things that it names.
-struct Ask {
+struct DoAsked {
   EditTools& tools;
 
   template <class Other>
@@ -251,11 +251,11 @@ bool handle_edits(const Event& event, const Walk& walk, EditTools& tools) {
   }
   if (const auto* key = std::get_if<KeyChanged>(&event); key && key->is_down)
     press_edit_key(key->key, tools);
-  std::visit(Ask{tools}, event);
+  std::visit(DoAsked{tools}, event);
   return false;
 }
 
-void select(const Selection& selection, EditTools& tools) {
+void select(const EditSelection& selection, EditTools& tools) {
   if (selection.instance && selection.instance != tools.selected.instance)
     tools.middle = object_bounds(tools.desk.read->scene, *selection.instance).centre();
   tools.selected = selection;

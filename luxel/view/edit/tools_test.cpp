@@ -47,7 +47,14 @@ struct Bench {
     walk = begin_walk(first, tools.bounds, kBenchWidth, kBenchHeight, seen());
   }
 
-  PlaceSeen seen() const { return place_seen_now(tools.desk, kBenchWidth, kBenchHeight); }
+  std::optional<Vec3> place_at(Vec2 pixel) const {
+    const trace::Ray ray = ray_through(walk, pixel);
+    const trace::Hit hit = visible_now(tools.desk, ray);
+    return hit.found() ? std::optional(ray.origin + ray.direction * hit.t) : std::nullopt;
+  }
+  PlaceSeen seen() const {
+    return [this](const Frame&, Vec2 pixel) { return place_at(pixel); };
+  }
   void take(const Event& event) {
     if (!handle_edits(event, walk, tools)) handle(event, seen(), walk);
   }
@@ -77,17 +84,17 @@ void expect_close(Vec3 a, Vec3 b, float within = 2e-3f) {
 TEST(EditTools, AClickSelectsASurfaceAndThenItsMaterial) {
   Bench b;
   b.click({0.5f, -0.5f, 0});
-  EXPECT_EQ(b.tools.selected, (Selection{.instance = 0}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.instance = 0}));
   b.click({0.5f, -0.5f, 0});
-  EXPECT_EQ(b.tools.selected, (Selection{.instance = 0, .material = 0}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.instance = 0, .material = 0}));
   b.click({-0.5f, 0.5f, 0});
-  EXPECT_EQ(b.tools.selected, (Selection{.instance = 0, .material = 1}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.instance = 0, .material = 1}));
   b.click({-0.5f, 0.5f, 0});
-  EXPECT_EQ(b.tools.selected, (Selection{.instance = 0}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.instance = 0}));
   b.click({0, 3, 0});
-  EXPECT_EQ(b.tools.selected, Selection{});
+  EXPECT_EQ(b.tools.selected, EditSelection{});
   b.click({0.5f, -0.5f, 0}), b.key("esc");
-  EXPECT_EQ(b.tools.selected, Selection{});
+  EXPECT_EQ(b.tools.selected, EditSelection{});
   EXPECT_TRUE(b.tools.desk.history.done.empty());
 }
 
@@ -100,7 +107,7 @@ TEST(EditTools, ADragBesideItTurnsTheViewAndSelectsNothing) {
   b.take(PointerMoved{{180, 31}});
   EXPECT_NE(b.walk.shown.camera.world_from_camera, before);
   b.release();
-  EXPECT_EQ(b.tools.selected, Selection{});
+  EXPECT_EQ(b.tools.selected, EditSelection{});
 }
 
 TEST(EditTools, WhatHasMovedIsPickedWhereItIs) {
@@ -110,7 +117,7 @@ TEST(EditTools, WhatHasMovedIsPickedWhereItIs) {
   EXPECT_EQ(b.tools.selected.instance, 1u) << "through where the other was";
   b.click({2.5f, 0.5f, 0});
   EXPECT_EQ(b.tools.selected.instance, 0u);
-  const auto place = b.seen()(b.walk.shown, b.pixel({2.5f, 0.5f, 0}));
+  const auto place = b.place_at(b.pixel({2.5f, 0.5f, 0}));
   ASSERT_TRUE(place);
   expect_close(*place, {2.5f, 0.5f, 0});
   // Turned round, it shows its back, which is not seen.
@@ -234,13 +241,15 @@ TEST(EditTools, AGizmoHasItsSizeWhereverItStands) {
 TEST(EditTools, LampsAreDraggedTurnedAndDeleted) {
   Bench b;
   b.drag({-2, 1, 0}, {1, 2, 0});
-  EXPECT_EQ(b.tools.selected, (Selection{.lamp = 0}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.lamp = 0}));
   expect_close(b.lamp().light.position, {1, 2, 0});
   EXPECT_EQ(b.tools.desk.history.done.size(), 1u);
   const Vec3 grip = Vec3{1, 2, 0} + Vec3{0.8f * b.reach_m(), 0, 0};
   b.drag(grip, grip - Vec3{2, 0, 0});
   expect_close(b.lamp().light.position, {-1, 2, 0}, 0.02f);
-  add_lamp({Kind::spot, {.to = Vec3{0, 0, 0}}}, b.tools);
+  LampAdded spot{Kind::spot, {}};
+  spot.change.to = Vec3{};
+  add_lamp(spot, b.tools);
   b.key("r");
   const Vec3 corner = normalize(Vec3{1, 1, 0}) * b.reach_m();
   b.drag(-corner, Vec3{corner.x, -corner.y, 0});  // a quarter about z
@@ -248,7 +257,7 @@ TEST(EditTools, LampsAreDraggedTurnedAndDeleted) {
   EXPECT_EQ(b.lamp(1).light.position, (Vec3{0, 0, 0}));
   b.key("delete");
   EXPECT_TRUE(b.lamp(1).is_deleted);
-  EXPECT_EQ(b.tools.selected, Selection{});
+  EXPECT_EQ(b.tools.selected, EditSelection{});
   for (const Mark& mark : marks_of(b.tools, b.walk))
     EXPECT_GT(length(mark.from - b.pixel({})), 10) << "no mark of what is deleted";
   while (!b.tools.desk.history.done.empty()) b.key("ctrl+z");
@@ -266,7 +275,7 @@ TEST(EditTools, EscLetsGoOfWhatIsDragged) {
   EXPECT_EQ(b.lamp().light.position, (Vec3{-2, 1, 0}));
   b.take(PointerMoved{b.pixel({1, 2, 0})}), b.release();
   EXPECT_EQ(b.lamp().light.position, (Vec3{-2, 1, 0}));
-  EXPECT_EQ(b.tools.selected, (Selection{.lamp = 0})) << "which the next one lets go of";
+  EXPECT_EQ(b.tools.selected, (EditSelection{.lamp = 0})) << "which the next one lets go of";
 }
 
 TEST(EditTools, PlaysEdits) {
@@ -278,7 +287,7 @@ TEST(EditTools, PlaysEdits) {
     {"at": 0, "material": "lower", "reflectance": [0.5, 0.25, 0]},
     {"at": 0, "material": "upper", "radiance": [7, 0, 0]},
     {"at": 0, "lamp": 0, "intensity": [4, 5, 6], "on": false},
-    {"at": 0, "new_lamp": "directional", "sun": "90,30", "disc_radius_deg": 1},
+    {"at": 0, "new_lamp": "directional", "sun": "90,30", "disc_deg": 2},
     {"at": 0, "new_lamp": "spot", "cone_deg": 20, "inner_cone_deg": 10},
     {"at": 0, "lamp": 2, "deleted": true},
     {"at": 0, "select_lamp": 1}]})",
@@ -299,7 +308,7 @@ TEST(EditTools, PlaysEdits) {
   EXPECT_NEAR(b.lamp(1).light.angular_radius_rad, kPi / 180, 1e-6f);
   EXPECT_NEAR(b.lamp(2).light.outer_cone_rad, kPi / 9, 1e-6f);
   EXPECT_TRUE(b.lamp(2).is_deleted);
-  EXPECT_EQ(b.tools.selected, (Selection{.lamp = 1}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.lamp = 1}));
 }
 
 TEST(EditTools, SaysWhatIsNotThere) {

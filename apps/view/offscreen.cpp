@@ -111,10 +111,7 @@ Result<image::Image8> draw_offscreen(gpu::Commands& commands, Subject& subject,
     LUXEL_TRY_STATUS(finish_work(commands, &walk, subject));
     LUXEL_TRY(frame, frame_of(commands, walk, subject));
   }
-  LUXEL_TRY(image::Image8 out,
-            picture_of(commands, std::move(frame), std::move(beside), walk, subject));
-  if (params.play) LUXEL_TRY_STATUS(subject.end().map([](const std::string&) {}));
-  return out;
+  return picture_of(commands, std::move(frame), std::move(beside), walk, subject);
 }
 
 }  // namespace luxel::view_window

@@ -14,7 +14,7 @@
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/solver/hemicube.h"
 #include "luxel/scene/merge.h"
-#include "luxel/view/hemicube/known_light.h"
+#include "luxel/view/hemicube/growing_light.h"
 
 namespace luxel::view {
 namespace {
@@ -51,7 +51,7 @@ class HemicubeWorker : public LiveHemicube {
 
   HemicubeNews take() override {
     const std::scoped_lock lock(mutex_);
-    if (std::exchange(has_new_light_, false)) news_.irradiance = known_.irradiance;
+    if (std::exchange(has_new_light_, false)) news_.irradiance = growing_.irradiance;
     return std::exchange(news_, {});
   }
   HemicubeState state() const override {
@@ -115,14 +115,14 @@ class HemicubeWorker : public LiveHemicube {
     hemicube::Observer out;
     out.on_mesh = [this](const hemicube::Field& field) { has_mesh(field); };
     out.on_direct = [this](std::span<const Rgb> direct) {
-      change([&] { begin_pass(direct, known_), reached_ = 0; });
+      change([&] { begin_pass(direct, growing_), reached_ = 0; });
       choose_exposure();
     };
     out.on_view = [this](size_t element, Rgb source, const hemicube::View& view) {
       has_view(element, source, view);
     };
     out.on_bounce = [this](std::span<const Rgb> irradiance) {
-      change([&] { take_bounce(irradiance, known_); });
+      change([&] { take_bounce(irradiance, growing_); });
     };
     out.on_solved = [this](const hemicube::Solution& solution) { has_solution(solution); };
     return out;
@@ -141,14 +141,14 @@ class HemicubeWorker : public LiveHemicube {
     const std::scoped_lock lock(mutex_);
     mesh_ = mesh;
     news_.mesh = std::move(mesh);
-    known_ = begin_known(field.receivers.elements.reflectance, field.irradiance);
+    growing_ = begin_growing(field.receivers.elements.reflectance, field.irradiance);
     has_new_light_ = true;
   }
   void has_view(size_t element, Rgb source, const hemicube::View& view) {
     const std::scoped_lock lock(mutex_);
-    reach(element, source, view, known_);
+    reach(element, source, view, growing_);
     has_new_light_ = true;
-    if (double(++reached_) < pause_at_ * double(known_.irradiance.size())) return;
+    if (double(++reached_) < pause_at_ * double(growing_.irradiance.size())) return;
     pause_at_ = 2;
     is_paused_ = true;
     progress_.set_paused(true);
@@ -156,7 +156,7 @@ class HemicubeWorker : public LiveHemicube {
   void has_solution(const hemicube::Solution& solution) {
     // A field that is smoothed has light per vertex, though it was solved per triangle.
     if (!mesh_ || mesh_->receivers.kind != solution.field.receivers.kind) has_mesh(solution.field);
-    change([&] { take_bounce(solution.field.irradiance, known_); });
+    change([&] { take_bounce(solution.field.irradiance, growing_); });
     choose_exposure();
     // What a bake does with it is not looked at.
     is_solved_ = true;
@@ -169,7 +169,7 @@ class HemicubeWorker : public LiveHemicube {
     hemicube::Field field{mesh_->mesh, mesh_->receivers, {}};
     {
       const std::scoped_lock lock(mutex_);
-      field.irradiance = known_.irradiance;
+      field.irradiance = growing_.irradiance;
     }
     display::DrawParams params;
     params.width = kGlimpseWidth, params.height = kGlimpseHeight, params.samples_per_axis = 1;
@@ -188,7 +188,7 @@ class HemicubeWorker : public LiveHemicube {
   Progress progress_;
   mutable std::mutex mutex_;  ///< of what follows
   HemicubeNews news_;
-  KnownLight known_;
+  GrowingLight growing_;
   bool has_new_light_ = false;
   size_t reached_ = 0;  ///< elements that have looked around in this pass
 

@@ -10,8 +10,8 @@
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/pipeline/solver/vertex_lit.h"
 #include "luxel/scene/procedural.h"
+#include "luxel/view/hemicube/growing_light.h"
 #include "luxel/view/hemicube/hemicube_test_scene.h"
-#include "luxel/view/hemicube/known_light.h"
 #include "luxel/view/hemicube/report_worker.h"
 
 namespace luxel::view {
@@ -108,17 +108,17 @@ TEST(LiveHemicube, SeveralModelsAreOneScene) {
 
 // In a furnace of emission e and reflectance 1/2 elements that have looked around have e + e / 2,
 // the others e, until a bounce more is known.
-TEST(KnownLight, GrowsVertexByVertex) {
+TEST(GrowingLight, GrowsVertexByVertex) {
   const scene::Scene box = scene::furnace_box({0.5f, 0.5f, 0.5f}, {1, 1, 1});
   const auto tracer = trace::RayTracer::build(box);
   hemicube::HemicubeParams params;
   params.resolution = 16, params.element_size_m = 0.5f, params.max_error = 0, params.bounces = 1;
-  KnownLight light;
+  GrowingLight light;
   std::vector<uint8_t> has_looked;
   std::mutex mutex;
   hemicube::Observer observer;
   observer.on_mesh = [&](const hemicube::Field& field) {
-    light = begin_known(field.receivers.elements.reflectance, field.irradiance);
+    light = begin_growing(field.receivers.elements.reflectance, field.irradiance);
     has_looked.assign(field.receivers.size(), 0);
   };
   observer.on_direct = [&](std::span<const Rgb> direct) { begin_pass(direct, light); };

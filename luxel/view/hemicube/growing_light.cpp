@@ -1,11 +1,11 @@
-#include "luxel/view/hemicube/known_light.h"
+#include "luxel/view/hemicube/growing_light.h"
 
 #include "luxel/base/check.h"
 
 namespace luxel::view {
 
-KnownLight begin_known(std::span<const Rgb> reflectance, std::span<const Rgb> irradiance) {
-  KnownLight out;
+GrowingLight begin_growing(std::span<const Rgb> reflectance, std::span<const Rgb> irradiance) {
+  GrowingLight out;
   out.reflectance.assign(reflectance.begin(), reflectance.end());
   out.irradiance.assign(irradiance.begin(), irradiance.end());
   out.has_light = !irradiance.empty();
@@ -13,7 +13,7 @@ KnownLight begin_known(std::span<const Rgb> reflectance, std::span<const Rgb> ir
   return out;
 }
 
-void begin_pass(std::span<const Rgb> direct, KnownLight& light) {
+void begin_pass(std::span<const Rgb> direct, GrowingLight& light) {
   LUXEL_CHECK(direct.size() == light.irradiance.size());
   if (!light.has_light) light.irradiance.assign(direct.begin(), direct.end());
   light.has_light = true;
@@ -22,14 +22,14 @@ void begin_pass(std::span<const Rgb> direct, KnownLight& light) {
     light.sent[i] = light.reflectance[i] * light.irradiance[i];
 }
 
-void reach(size_t element, Rgb source, const hemicube::View& view, KnownLight& light) {
+void reach(size_t element, Rgb source, const hemicube::View& view, GrowingLight& light) {
   Rgb sum = source;
   for (size_t k = 0; k < view.element.size(); ++k)
     sum += light.sent[view.element[k]] * view.share[k];
   light.irradiance[element] = sum;
 }
 
-void take_bounce(std::span<const Rgb> irradiance, KnownLight& light) {
+void take_bounce(std::span<const Rgb> irradiance, GrowingLight& light) {
   light.irradiance.assign(irradiance.begin(), irradiance.end());
   light.has_light = true;
 }

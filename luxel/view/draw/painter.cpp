@@ -139,7 +139,7 @@ void draw_marks(const gpu::Device& device, VkCommandBuffer commands, const Canva
 
 void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
                    SurfacePush push) {
-  const auto& [shaders, painter, scene, overlay] = canvas;
+  const auto& [shaders, painter, scene, overlay, probes] = canvas;
   device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   push.vertices = scene.vertices.address;
   push.materials = scene.materials.address;
@@ -193,6 +193,7 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
   LUXEL_TRY(out.screen, gpu::make_draw_pipeline(device, screen_params()));
   LUXEL_TRY(out.beside, gpu::make_draw_pipeline(device, beside_params()));
   LUXEL_TRY(out.overlay, make_overlay_shader(device, kExposed, kSamples));
+  LUXEL_TRY(out.probes, make_probe_shader(device, kExposed, kSamples));
   LUXEL_TRY(out.mark, gpu::make_draw_pipeline(device, mark_params()));
   return out;
 }
@@ -216,7 +217,7 @@ Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
 
 void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
            const Frame& frame) {
-  const auto& [shaders, painter, scene, overlay] = canvas;
+  const auto& [shaders, painter, scene, overlay, probes] = canvas;
   const gpu::TargetParams& size = painter.exposed.params;
   const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
   const bool has_overlay = overlay != nullptr && looks_into_bake(frame.show);
@@ -230,6 +231,9 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
     draw_overlay(device, commands, shaders.overlay, *overlay, scene, surface.clip_from_world);
   else
     draw_surfaces(device, commands, canvas, surface);
+  if (probes && frame.shows_probes)
+    draw_probes(device, commands, shaders.probes, *probes, has_overlay ? overlay : nullptr, frame,
+                surface.clip_from_world);
   const BehindPush behind = behind_of(camera, scene, frame, has_overlay);
   gpu::bind(device, commands, shaders.behind, behind);
   gpu::bind_set(device, commands, shaders.behind, painter.surroundings.sets[0]);

@@ -7,6 +7,7 @@
 #include "luxel/image/image.h"
 #include "luxel/view/draw/device_scene.h"
 #include "luxel/view/draw/overlay.h"
+#include "luxel/view/draw/probe_drawing.h"
 #include "luxel/view/frame.h"
 
 namespace luxel::view {
@@ -14,7 +15,7 @@ namespace luxel::view {
 /// The shaders of all pictures.
 struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
-  gpu::Pipeline overlay, beside;
+  gpu::Pipeline overlay, beside, probes;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
@@ -36,6 +37,7 @@ struct Canvas {
   const Painter& painter;
   const DeviceScene& scene;
   const Overlay* overlay = nullptr;  ///< without one no frame looks into the bake
+  const DeviceProbes* probes = nullptr;
 };
 
 /// Records the drawing of a frame; the painter's `shown` is then in the layout

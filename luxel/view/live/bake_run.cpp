@@ -1,5 +1,6 @@
 #include "luxel/view/live/bake_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -8,6 +9,7 @@
 #include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/post/dilate.h"
+#include "luxel/post/refill.h"
 #include "luxel/view/open_bake.h"
 
 namespace luxel::view {
@@ -15,6 +17,10 @@ namespace {
 
 /// The picture whose exposure is chosen: as large as it must be for percentiles of luminance.
 constexpr int kSmallWidth = 128, kSmallHeight = 96;
+/// What light of each reflection may take before it is made into pictures.
+constexpr size_t kBouncedBytes = 256 << 20;
+/// So many texels are looked up in a draft within some tenths of a second.
+constexpr size_t kSoonLookedUp = 2'000'000;
 
 std::vector<image::HalfImage> halves_of(std::span<const image::Image> pages) {
   std::vector<image::HalfImage> out;
@@ -85,6 +91,11 @@ Status BakeRun::begin(std::shared_ptr<const ReadScene> read, const DraftParams& 
   exposure_ = light.exposure;
   news.lit = lit_scene(draft_->scene, draft_->atlas);
   news.light = std::move(light);
+  BouncedLight bounced;
+  bounced.is_draft = true;
+  for (const std::vector<Rgb>& e : draft_->bounced)
+    bounced.after.push_back(pages_of(draft_->atlas, draft_->map, e));
+  news.bounced = std::make_shared<const BouncedLight>(std::move(bounced));
   watcher_.hand(std::move(news));
   return {};
 }
@@ -95,6 +106,9 @@ pipeline::BakeObserver BakeRun::observer() {
     has_light(in, e);
   };
   out.is_watched = watcher_.is_seen;
+  out.on_bounce = [this](const light::TexelScene&, std::span<const Rgb> e) {
+    return has_bounce(e);
+  };
   if (draft_)
     out.guess = [this](const light::TexelScene& in, std::span<const Rgb> direct) {
       return with_reflections_of_draft(in, direct);
@@ -126,8 +140,44 @@ void BakeRun::has_light(const light::TexelScene& in, const light::LightEstimate&
   if (!std::exchange(is_laid_out_, true)) {
     news.lit = lit_scene(in.scene, in.atlas);
     if (draft_) news.before = draft_elsewhere(in);
+    if (draft_) news.bounced = bounces_of_draft(in, estimate.direct);
   }
   watcher_.hand(std::move(news));
+}
+
+/// True: one more is wanted.
+bool BakeRun::has_bounce(std::span<const Rgb> irradiance) {
+  bounced_.emplace_back(irradiance.begin(), irradiance.end());
+  const size_t fit = kBouncedBytes / (irradiance.size() * sizeof(Rgb) + 1);
+  return bounced_.size() <= std::min<size_t>(kMostBounces, fit);
+}
+
+/// Direct light of the bake, and reflections of the draft, as many as are soon looked up.
+std::shared_ptr<const BouncedLight> BakeRun::bounces_of_draft(const light::TexelScene& in,
+                                                              std::span<const Rgb> direct) const {
+  const auto out = std::make_shared<BouncedLight>();
+  out->is_draft = true;
+  const size_t most = std::max<size_t>(kSoonLookedUp / (direct.size() + 1), 1);
+  for (size_t k = 0; k < std::min(draft_->bounced.size(), most); ++k) {
+    std::vector<Rgb> reflected = draft_->bounced[k];
+    for (size_t i = 0; i < reflected.size(); ++i) reflected[i] = reflected[i] - draft_->direct[i];
+    std::vector<Rgb> light = light_of_draft(*draft_, reflected, in);
+    for (size_t i = 0; i < light.size(); ++i) light[i] = max(light[i], Rgb{}) + direct[i];
+    out->after.push_back(pages_of(in.atlas, in.map, light));
+  }
+  return out;
+}
+
+/// As the bake has it, but for seams. It is used up.
+std::shared_ptr<const BouncedLight> BakeRun::bounces_of(const pipeline::Bake& baked) {
+  if (bounced_.empty()) return nullptr;
+  const std::vector<std::span<Rgb>> arrays(bounced_.begin(), bounced_.end());
+  if (!baked.light.hidden.empty())
+    post::refill_hidden(baked.atlas, baked.map, baked.light.hidden, pipeline::kRefillRings, {}, arrays);
+  const auto out = std::make_shared<BouncedLight>();
+  for (const std::vector<Rgb>& e : std::exchange(bounced_, {}))
+    out->after.push_back(pages_of(baked.atlas, baked.map, e));
+  return out;
 }
 
 LiveLight BakeRun::draft_elsewhere(const light::TexelScene& in) const {
@@ -157,6 +207,10 @@ void BakeRun::end(const pipeline::Bake& baked) {
   exposure_ = light.exposure;
   light.is_last = true;
   if (!is_laid_out_) news.lit = lit_scene(baked.scene, baked.atlas);  // the solver has no estimates
+  news.bounced = bounces_of(baked);
+  if (baked.probes)
+    news.probes = std::make_shared<const ProbeBalls>(
+        ProbeBalls{baked.probes->probes, baked.probes->spacing_m});
   news.warnings = baked.warnings;
   watcher_.hand(std::move(news));
 }

@@ -53,6 +53,10 @@ class BakeRun {
     const trace::RayTracer& tracer;
   };
   void has_light(const light::TexelScene& in, const light::LightEstimate& estimate);
+  bool has_bounce(std::span<const Rgb> irradiance);
+  std::shared_ptr<const BouncedLight> bounces_of_draft(const light::TexelScene& in,
+                                                       std::span<const Rgb> direct) const;
+  std::shared_ptr<const BouncedLight> bounces_of(const pipeline::Bake& baked);
   LiveLight draft_elsewhere(const light::TexelScene& in) const;
   std::vector<Rgb> with_reflections_of_draft(const light::TexelScene& in,
                                              std::span<const Rgb> direct) const;
@@ -66,6 +70,7 @@ class BakeRun {
   scene::Camera camera_;          ///< of the first view
   std::unique_ptr<Draft> draft_;  ///< null: there is none
   float draft_exposure_ = 1;
+  std::vector<std::vector<Rgb>> bounced_;  ///< E after 0, 1, ... reflections
   bool is_laid_out_ = false;
   LiveNumbers known_;
   double rays_before_ = 0, seconds_before_ = 0;

@@ -112,6 +112,7 @@ class Worker : public LiveBake {
       if (run.begin(*read, kFirstDraft, *progress_)) observer.guess = run.observer().guess;
     };
     observer.on_estimate = run.observer().on_estimate;
+    observer.on_bounce = run.observer().on_bounce;
     observer.is_watched = watcher_.is_seen;
     end(run, pipeline::bake_scene(settings_, *progress_, {}, observer));
   }

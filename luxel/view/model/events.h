@@ -78,12 +78,25 @@ struct GlowChanged {
   std::string material;
   Rgb radiance{};
 };
+/// A part of the light is shown.
+struct PartChanged {
+  LightShown light;
+};
+/// Probes are shown as balls, or not.
+struct ProbesChanged {
+  bool are_shown = true;
+};
+/// Another file or folder takes the place of what is shown, as if it had been dropped.
+struct OpenAsked {
+  std::filesystem::path path;
+};
 /// A play stands still here: what comes after it is played when the bake has ended and its light is
 /// shown.
 struct WaitForBake {};
 using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
                            LampAdded, GlowChanged, ShowChanged, RangeChanged, ChannelChanged,
-                           LayerChanged, BesideChanged, SplitMoved, WaitForBake>;
+                           LayerChanged, BesideChanged, SplitMoved, PartChanged, ProbesChanged,
+                           OpenAsked, WaitForBake>;
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -100,6 +113,7 @@ inline constexpr KeyHelp kKeys[] = {
     {"shift", "fly four times as fast; move the picture where it would turn"},
     {"f", "show the whole scene"},
     {"home", "back to the first view"},
+    {"o", "turn around what is looked at, or stop"},
     {"1", "light and colour"},
     {"2", "light alone"},
     {"3", "colour alone"},
@@ -109,6 +123,10 @@ inline constexpr KeyHelp kKeys[] = {
     {"7", "charts of the lightmap"},
     {"8", "seams of the lightmap"},
     {"9", "overlaps in the lightmap"},
+    {"i", "all light, direct, indirect, in turn"},
+    {",", "light of one reflection less"},
+    {".", "light of one reflection more"},
+    {"b", "probes as balls, or none"},
     {"+", "brighter by half a stop"},
     {"-", "darker by half a stop"},
     {"0", "as bright as at first"},
@@ -147,6 +165,7 @@ struct Play {
 ///       {"at": 1.9, "channel": "red"},
 ///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
 ///       {"at": 2, "beside": "difference"}, {"at": 2, "split": 0.3},
+///       {"at": 2, "part": "direct"}, {"at": 2, "bounces": 3}, {"at": 2, "probes": true},
 ///       {"at": 2, "wait": "bake"},
 ///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]}]}
 ///

@@ -18,6 +18,7 @@ BakeLines lines_of(const view::LiveBake& live, const view::ShownScene& shown) {
   if (state != view::LiveState::baking) out.share = state == view::LiveState::baked ? 1 : 0;
   out.can_stop = state == view::LiveState::baking, out.can_go_on = state == view::LiveState::paused;
   out.can_save = state == view::LiveState::baked;
+  if (const std::vector<std::string> notes = live.notes(); !notes.empty()) out.note = notes.back();
   const view::LiveNumbers& known = shown.numbers;
   if (!shown.has_light) return out;
   if (known.kind == view::LiveKind::draft) out.lines.push_back("shown: a coarse draft");

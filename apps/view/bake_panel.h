@@ -11,6 +11,7 @@ struct BakeLines {
   std::string state;  ///< the stage, or how it ended
   float share = 0;    ///< of the stage that is done
   std::vector<std::string> lines;
+  std::string note;  ///< what the bake has told last
   bool can_stop = false, can_go_on = false, can_save = false;
   bool asks_to_stop = false, asks_to_go_on = false, asks_to_save = false;  ///< changed
 };

@@ -55,7 +55,8 @@ Result<image::Image8> painted_beside(gpu::Commands& commands, view::OpenedBake b
             view::make_pair(commands, first.shaders, first.painter, shown.device));
   const view::Canvas second{
       first.shaders, pair.second, shown.device,
-      easel.looking_beside.overlay ? &*easel.looking_beside.overlay : nullptr};
+      easel.looking_beside.overlay ? &*easel.looking_beside.overlay : nullptr,
+      easel.looking_beside.probes ? &*easel.looking_beside.probes : nullptr};
   return view::painted_together(commands, first, second, pair, frame);
 }
 
@@ -74,7 +75,8 @@ Result<image::Image8> picture_of(gpu::Commands& commands, view::Frame frame,
   LUXEL_TRY(easel.painter, view::make_painter(commands.device(), easel.shaders, shown.device,
                                               uint32_t(walk.width), uint32_t(walk.height)));
   const view::Canvas canvas{easel.shaders, easel.painter, shown.device,
-                            easel.looking.overlay ? &*easel.looking.overlay : nullptr};
+                            easel.looking.overlay ? &*easel.looking.overlay : nullptr,
+                            easel.looking.probes ? &*easel.looking.probes : nullptr};
   if (beside) return painted_beside(commands, std::move(*beside), canvas, easel, frame);
   return view::painted(commands, canvas, frame);
 }

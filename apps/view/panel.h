@@ -10,6 +10,7 @@
 #include "apps/view/bake_panel.h"
 #include "apps/view/lamp_panel.h"
 #include "apps/view/ui_look.h"
+#include "apps/view/ui_parts.h"
 
 namespace luxel::view_window {
 
@@ -25,6 +26,8 @@ struct Panel {
   float milliseconds = 0;  ///< of a frame
   int show = 0;            ///< changed: light and colour, light, colour; > 2: look
   LookPanel look;          ///< into the bake
+  PartsPanel parts;        ///< of the light
+  bool turns = false;      ///< changed: the camera goes round
   float stops = 0;         ///< changed: exposure over the first
   bool keys_open = false;  ///< changed: the list of keys
   std::span<const KeyLine> keys;

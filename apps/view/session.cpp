@@ -9,6 +9,7 @@
 #include <span>
 
 #include "apps/view/frame_table.h"
+#include "apps/view/parts.h"
 #include "apps/view/remembered.h"
 #include "apps/view/screen.h"
 #include "luxel/base/file.h"
@@ -44,12 +45,16 @@ void exchange(Ui& ui, const view::ShownScene& shown, const Looking& looking, flo
   panel.stops = std::log2(walk.shown.exposure / walk.first.exposure);
   fill_panel(walk.shown, shown, looking, pointed_surface(ui, *shown.read, walk), panel.look);
   panel.look.flip = flip;
+  panel.parts = parts_panel(walk.shown, shown);
+  panel.turns = walk.turns;
   for (size_t i = 0; i < walk.bookmarks.size(); ++i)
     panel.has_bookmark[i] = walk.bookmarks[i].has_value();
   const Panel before = panel;
   ui.lay_out(panel);
   if (panel.show != before.show) walk.shown.show = view::Show(panel.show);
   take_panel(panel.look, before.look, walk.shown);
+  take_parts(panel.parts, before.parts, walk.shown);
+  walk.turns = panel.turns;
   if (panel.stops != before.stops)
     walk.shown.exposure = walk.first.exposure * std::exp2(panel.stops);
   if (const int view = std::exchange(panel.view, -1); view >= 0)
@@ -228,8 +233,8 @@ Status draw_frame(Session& s) {
 /// One frame of the window. False when a play has come to its end.
 Result<bool> go_on(Session& s) {
   // A window in which nothing moves is not drawn.
-  const bool moves =
-      s.params.play || (s.walk && !s.walk->keys.empty()) || !view::is_settled(s.subject.shown());
+  const bool moves = s.params.play || (s.walk && (!s.walk->keys.empty() || s.walk->turns)) ||
+                     !view::is_settled(s.subject.shown());
   moves ? glfwPollEvents() : glfwWaitEventsTimeout(0.1);
   const bool fitted = s.fits;
   LUXEL_TRY(const bool has_news, follow(s));

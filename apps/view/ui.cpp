@@ -143,8 +143,10 @@ class ImGuiUi : public Ui {
     ImGui::RadioButton("light", &panel.show, 1);
     ImGui::RadioButton("colour", &panel.show, 2);
     lay_out_look(panel.look);
+    lay_out_parts(panel.parts);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
     ImGui::SliderFloat("exposure", &panel.stops, -8, 8, "%+.1f stops");
+    ImGui::Checkbox("turn around (O)", &panel.turns);
     if (!panel.views.empty() && ImGui::CollapsingHeader("views of the file"))
       for (size_t i = 0; i < panel.views.size(); ++i) {
         ImGui::PushID(int(i));  // names need not differ
@@ -202,6 +204,7 @@ class ImGuiUi : public Ui {
   static void lay_out_bake(BakeLines& bake) {
     ImGui::ProgressBar(bake.share, {ImGui::GetFontSize() * 18, 0}, bake.state.c_str());
     for (const std::string& line : bake.lines) ImGui::TextUnformatted(line.c_str());
+    if (!bake.note.empty()) lay_out_wrapped(bake.note);
     if (bake.can_stop) bake.asks_to_stop = ImGui::Button("stop");
     if (bake.can_go_on) bake.asks_to_go_on = ImGui::Button("go on");
     if (bake.can_save) bake.asks_to_save = ImGui::Button("save");

@@ -253,20 +253,20 @@ Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& asked, Progress&
   LUXEL_TRY(std::vector<std::string> warnings, validated(scene));
   LUXEL_TRY(const std::vector<std::string> light, add_outside_light(asked.outside, scene));
   warnings.insert(warnings.end(), light.begin(), light.end());
-  LUXEL_TRY(Bake bake, bake_read_scene(std::move(scene), asked, progress, watcher));
+  LUXEL_TRY(Bake bake, bake_read_scene(std::move(scene), asked, progress, {}, watcher));
   bake.warnings.insert(bake.warnings.begin(), warnings.begin(), warnings.end());
   return bake;
 }
 
 Result<Bake> bake_read_scene(scene::Scene scene, const BakeSettings& asked, Progress& progress,
-                             const BakeObserver& watcher) {
+                             const Keepers& keepers, const BakeObserver& watcher) {
   const BakeSettings settings = with_folder(asked);
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
   bake.scene = std::move(scene);
   LUXEL_TRY(bake.warnings, validated(bake.scene));
-  LUXEL_TRY_STATUS(bake_in_time(settings, {}, watcher, bake, progress));
+  LUXEL_TRY_STATUS(bake_in_time(settings, keepers, watcher, bake, progress));
   return bake;
 }
 

@@ -89,7 +89,7 @@ Result<Bake> bake_scene(scene::Scene scene, const BakeSettings& settings, Progre
 /// Bakes a scene that has its outside light, as BakeObserver::on_read got one: nothing is added,
 /// and one without any light stays dark. Otherwise as above.
 Result<Bake> bake_read_scene(scene::Scene scene, const BakeSettings& settings, Progress& progress,
-                             const BakeObserver& observer = {});
+                             const Keepers& keepers = {}, const BakeObserver& observer = {});
 
 /// `luxel bake --plan`: reads and lays out, and tries a few texels. Nothing is written.
 Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress);

@@ -54,7 +54,7 @@ Result<bool> light_draft(const scene::Scene& scene, const pipeline::BakeSettings
     out.bounced.emplace_back(e.begin(), e.end());
     return out.bounced.size() <= kMostBounces && !watched.cancelled();
   };
-  const auto baked = pipeline::bake_read_scene(scene, settings, own, observer);
+  const auto baked = pipeline::bake_read_scene(scene, settings, own, {}, observer);
   LUXEL_TRY_STATUS(stopped(watched));
   if (!has_light && !baked) return tl::unexpected(baked.error());
   return has_light;

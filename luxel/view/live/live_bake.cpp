@@ -8,6 +8,8 @@
 
 #include "luxel/base/thread_priority.h"
 #include "luxel/pipeline/bake/bake.h"
+#include "luxel/pipeline/reuse/bake_cache.h"
+#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/trace/camera_rays.h"
 #include "luxel/view/live/bake_run.h"
 
@@ -52,6 +54,10 @@ class Worker : public LiveBake {
   Progress::Snapshot snapshot() const override {
     const std::scoped_lock lock(mutex_);
     return saving_ ? saving_->snapshot() : progress_->snapshot();
+  }
+  std::vector<std::string> notes() const override {
+    const std::scoped_lock lock(mutex_);
+    return progress_->notes(0);
   }
   void pause(bool is_paused) override {
     const std::scoped_lock lock(mutex_);
@@ -114,7 +120,8 @@ class Worker : public LiveBake {
     observer.on_estimate = run.observer().on_estimate;
     observer.on_bounce = run.observer().on_bounce;
     observer.is_watched = watcher_.is_seen;
-    end(run, pipeline::bake_scene(settings_, *progress_, {}, observer));
+    pipeline::BakeCache cache(settings_, pipeline::settings_of_kept_bake(settings_));
+    end(run, pipeline::bake_scene(settings_, *progress_, {nullptr, &cache}, observer), cache);
   }
 
   void has_read(std::shared_ptr<const ReadScene> read) {
@@ -138,7 +145,11 @@ class Worker : public LiveBake {
       const std::scoped_lock lock(mutex_);
       if (!edit_ && !is_ending_) progress->set_paused(is_paused_);
     }
-    end(run, pipeline::bake_read_scene((*read)->scene, of_edits_, *progress, run.observer()));
+    pipeline::BakeCache cache(of_edits_, pipeline::settings_of_kept_bake(of_edits_));
+    end(run,
+        pipeline::bake_read_scene((*read)->scene, of_edits_, *progress, {nullptr, &cache},
+                                  run.observer()),
+        cache);
   }
   std::shared_ptr<Progress> begin_edit(SceneNow& now) {
     baked_.reset();
@@ -149,10 +160,12 @@ class Worker : public LiveBake {
     return progress_;
   }
 
-  void end(BakeRun& run, Result<pipeline::Bake> baked) {
+  void end(BakeRun& run, Result<pipeline::Bake> baked, pipeline::BakeCache& cache) {
     progress_->finish();
     exposure_ = run.exposure();
     if (!baked) return has_failed(baked.error().message);
+    cache.finish(*progress_);
+    if (!cache.failure().empty()) baked->warnings.push_back(cache.failure());
     baked_.emplace(std::move(*baked));
     run.end(*baked_);
     exposure_ = run.exposure();

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "luxel/base/progress.h"
 #include "luxel/pipeline/settings/settings.h"
@@ -26,6 +28,8 @@ class LiveBake {
   virtual void look(const scene::Camera& camera, float aspect) = 0;
   virtual LiveState state() const = 0;
   virtual Progress::Snapshot snapshot() const = 0;
+  /// What the bake tells people while it goes on: Progress::notes().
+  virtual std::vector<std::string> notes() const = 0;
   virtual void pause(bool is_paused) = 0;
   /// The scene that was read has become this: a draft of its light comes soon, and then it is baked
   /// anew. Edits that come faster than drafts are made wait, and only the last one is heeded. The

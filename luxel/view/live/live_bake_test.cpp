@@ -5,9 +5,12 @@
 
 #include <chrono>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/pipeline/reuse/bake_cache.h"
+#include "luxel/pipeline/solver/bake_options.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/view/live/draft.h"
 #include "luxel/view/live/fade.h"
@@ -126,6 +129,39 @@ TEST(LiveBake, EndsWithTheLightOfTheEditedScene) {
   const auto bake = pipeline::bake_scene(moved.scene, settings, progress);
   ASSERT_TRUE(bake) << bake.error().message;
   EXPECT_EQ(news.light->pages[0].data, image::to_half(bake->lightmaps[0]).data);
+}
+
+/// The lightmap of a scene that is baked with --keep, after the one of settings.scene was.
+image::HalfImage baked_after(const scene::Scene& scene, const pipeline::BakeSettings& settings) {
+  Progress progress;
+  {
+    pipeline::BakeCache cache(settings, pipeline::settings_of_kept_bake(settings));
+    EXPECT_TRUE(pipeline::bake_scene(settings, progress, {nullptr, &cache}));
+    cache.finish(progress);
+  }
+  pipeline::BakeCache cache(settings, pipeline::settings_of_kept_bake(settings));
+  const auto bake = pipeline::bake_read_scene(scene, settings, progress, {nullptr, &cache});
+  return bake ? image::to_half(bake->lightmaps[0]) : image::HalfImage{};
+}
+
+// The tests of Rebake hold such a bake against one from scratch.
+TEST(LiveBake, BuildsOnAKeptBakeAfterAnEdit) {
+  pipeline::BakeSettings settings = settings_for("cornell-box.glb", 64, 32);
+  settings.keep = true;
+  settings.output = std::filesystem::path(::testing::TempDir()) / "live_kept";
+  std::filesystem::remove_all(settings.output);
+  const auto live = LiveBake::begin(settings);
+  const auto read = wait_for_scene(*live);
+  live->wait();
+  (void)live->take();
+  const MovedBox moved = with_moved_box(*read);
+  live->edit(moved.now);
+  live->wait();
+  ASSERT_EQ(live->state(), LiveState::baked) << live->take().said.value_or("");
+  EXPECT_THAT(live->notes(), Contains(HasSubstr("instance 'tall block' moved")));
+  settings.output = std::filesystem::path(::testing::TempDir()) / "baked_kept";
+  std::filesystem::remove_all(settings.output);
+  EXPECT_EQ(live->take().light->pages[0].data, baked_after(moved.scene, settings).data);
 }
 
 TEST(LiveBake, HasADraftOfAnEditThoughTheBakeGoesOnForMinutes) {

@@ -28,6 +28,8 @@ class LiveSubject : public Subject {
     return is_to_come || state == view::LiveState::baking ? Work::at_work : Work::at_rest;
   }
 
+  bool follows_its_file() const override { return true; }
+
   void obey(view::Command command) override {
     if (command == view::Command::save) live_->save();
     if (command == view::Command::stop_or_go_on)

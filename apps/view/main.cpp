@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "apps/view/next_subject.h"
 #include "apps/view/offscreen.h"
 #include "apps/view/session.h"
 #include "luxel/arguments/bake_options.h"
@@ -124,17 +125,26 @@ Result<Opened> opened(const Options& options) {
   return out;
 }
 
+/// What takes the place of what is shown: a scene is baked with the same options.
+Result<view_window::MakeSubject> opened_later(const Options& options,
+                                              const std::filesystem::path& path) {
+  Options other = options;
+  if (view_window::full_path(path) != view_window::full_path(options.subject))
+    other.choice.output.clear();
+  other.subject = path, other.beside.clear(), other.screenshot.clear();
+  LUXEL_TRY(Opened opened_other, opened(other));
+  return std::move(opened_other.make);
+}
+
 Status show(const Options& options) {
   for (const auto& file : {options.screenshot, options.frame_table})
     if (!file.empty()) LUXEL_TRY_STATUS(check_output_file(file));
   view_window::WindowParams params;
   LUXEL_TRY(params.play, events_of(options));
   params.play_name = options.play.string();
-  params.title = std::filesystem::absolute(options.subject).lexically_normal().filename().string();
-  std::error_code ignored;
-  params.subject =
-      std::filesystem::weakly_canonical(std::filesystem::absolute(options.subject), ignored)
-          .string();
+  params.title = view_window::title_of(options.subject);
+  params.subject = view_window::full_path(options.subject);
+  params.open = [&](const std::filesystem::path& path) { return opened_later(options, path); };
   // A play is the same whatever was done before.
   if (!params.play)
     params.habits = view::habits_file(std::getenv("XDG_STATE_HOME"), std::getenv("HOME"));

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "apps/view/bake_panel.h"
 #include "apps/view/lamp_panel.h"
@@ -17,6 +19,12 @@ namespace luxel::view_window {
 /// A key and what it does.
 struct KeyLine {
   const char *key, *does;
+};
+
+/// Where the panel lies, and which of its headers are open, by ImGui's numbers.
+struct PanelLayout {
+  std::optional<std::array<float, 2>> place;
+  std::vector<uint32_t> open, closed;
 };
 
 /// What the panel shows, and what of it the user may change.
@@ -37,6 +45,11 @@ struct Panel {
   int bookmark = -1;                      ///< changed: the one that was asked for; -1: none
   std::span<const std::string> warnings;  ///< of the bake that is shown
   std::span<const std::string> recent;    ///< what else was looked at
+  int opens = -1;                         ///< changed: the one that is to be opened; -1: none
+  bool offers_again = false;              ///< what is shown has changed on disk
+  bool asks_again = false;                ///< changed: it is to be opened again
+  float scale = 1;                        ///< pixels per point of the monitor
+  PanelLayout layout;                     ///< changed; what it is at first comes back
   bool is_light = false;                  ///< changed: dark letters on light ground
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;

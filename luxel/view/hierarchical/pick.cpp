@@ -8,8 +8,8 @@ namespace {
 
 namespace h = luxel::hierarchical;
 
-/// Lines whose distances to the pointer differ by less lie one upon the other [pixels].
-constexpr float kSameLine = 1;
+/// Lines whose distances differ by less than this part of the reach lie one upon the other.
+constexpr double kSameLine = 0.1;
 /// Nearer to the eye than this part of a line's length nothing is projected.
 constexpr double kNearEye = 1e-4;
 
@@ -91,35 +91,49 @@ float distance_to(const std::array<Vec2, 2>& line, Vec2 pixel) {
   return length(to - along * t);
 }
 
-std::optional<LinkNumber> link_near(const SolutionView& view, uint32_t receiver,
-                                    const trace::CameraRays& camera, Vec2 pixel) {
+Nearness near_pixel(const trace::CameraRays& camera, Vec2 pixel) {
+  return [camera, pixel](DVec3 from, DVec3 to) -> std::optional<double> {
+    const auto line = pixels_of(camera, from, to);
+    if (!line) return std::nullopt;
+    return double(distance_to(*line, pixel) / kPickReach);
+  };
+}
+
+Nearness near_place(DVec3 place, double reach_m) {
+  return [place, reach_m](DVec3 from, DVec3 to) {
+    const DVec3 along = to - from;
+    const double square = dot(along, along);
+    const double t = square > 0 ? std::clamp(dot(place - from, along) / square, 0.0, 1.0) : 0;
+    return std::optional(length(place - from - along * t) / reach_m);
+  };
+}
+
+std::optional<LinkNumber> link_near(const SolutionView& view, std::span<const uint32_t> receivers,
+                                    const Nearness& nearness) {
   const h::Tree& tree = view.solution.tree;
-  const auto& links = view.solution.links.of[receiver];
   std::optional<LinkNumber> out;
-  float least = kPickReach;
-  for (uint32_t k = 0; k < links.size(); ++k) {
-    const auto line =
-        pixels_of(camera, middle_of(tree, receiver), middle_of(tree, links[k].source));
-    if (!line || distance_to(*line, pixel) >= least) continue;
-    least = distance_to(*line, pixel), out = LinkNumber{receiver, k};
-  }
+  double least = 1;
+  for (const uint32_t receiver : receivers)
+    for (uint32_t k = 0; k < view.solution.links.of[receiver].size(); ++k) {
+      const h::Link& link = view.solution.links.of[receiver][k];
+      const auto far = nearness(middle_of(tree, receiver), middle_of(tree, link.source));
+      if (far && *far <= least) least = *far, out = LinkNumber{receiver, k};
+    }
   return out;
 }
 
 std::optional<uint32_t> discontinuity_near(std::span<const h::Discontinuity> discontinuities,
                                            std::span<const double> weight,
-                                           const trace::CameraRays& camera, Vec2 pixel) {
-  std::vector<float> distance;
-  float least = kPickReach;
+                                           const Nearness& nearness) {
+  std::vector<double> distance;
+  double least = 1;
   for (const h::Discontinuity& d : discontinuities) {
-    const auto line = pixels_of(camera, d.a, d.b);
-    distance.push_back(line ? distance_to(*line, pixel) : INFINITY);
+    distance.push_back(nearness(d.a, d.b).value_or(INFINITY));
     least = std::min(least, distance.back());
   }
   std::optional<uint32_t> out;
   for (uint32_t k = 0; k < distance.size(); ++k)
-    if (distance[k] < kPickReach && distance[k] <= least + kSameLine &&
-        (!out || weight[k] > weight[*out]))
+    if (distance[k] <= 1 && distance[k] <= least + kSameLine && (!out || weight[k] > weight[*out]))
       out = k;
   return out;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -50,14 +51,22 @@ float distance_to(const std::array<Vec2, 2>& line, Vec2 pixel);
 /// So near to a line the pointer takes hold of it [pixels].
 inline constexpr float kPickReach = 10;
 
-/// The link of an element or cluster that is seen nearest to a pixel; none within kPickReach.
-std::optional<LinkNumber> link_near(const SolutionView& view, uint32_t receiver,
-                                    const trace::CameraRays& camera, Vec2 pixel);
+/// How far a line is from what points at it, over how far it may be: up to 1 it is meant. None
+/// where it is not seen.
+using Nearness = std::function<std::optional<double>(DVec3 from, DVec3 to)>;
+/// From a pixel, over kPickReach.
+Nearness near_pixel(const trace::CameraRays& camera, Vec2 pixel);
+/// From a place in space, over `reach_m`.
+Nearness near_place(DVec3 place, double reach_m);
 
-/// The discontinuity that is seen nearest to a pixel; the heaviest of those that are about as
-/// near. `weight` is of each. None within kPickReach.
+/// The nearest link of those that end at any of some elements or clusters; none within reach.
+std::optional<LinkNumber> link_near(const SolutionView& view, std::span<const uint32_t> receivers,
+                                    const Nearness& nearness);
+
+/// The nearest discontinuity; the heaviest of those that are about as near. `weight` is of each.
+/// None within reach.
 std::optional<uint32_t> discontinuity_near(
     std::span<const hierarchical::Discontinuity> discontinuities, std::span<const double> weight,
-    const trace::CameraRays& camera, Vec2 pixel);
+    const Nearness& nearness);
 
 }  // namespace luxel::view

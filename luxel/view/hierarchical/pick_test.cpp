@@ -90,11 +90,12 @@ TEST(Pick, TheLinkNearThePointer) {
     if (!(to.y > 2) || std::abs(from.x - 0.5) > 0.8 || std::abs(from.z) > 0.8) continue;
     const auto line = pixels_of(camera, from, from + (to - from) * 0.5);
     ASSERT_TRUE(line);
-    EXPECT_EQ(link_near(view, id, camera, (*line)[1]), (LinkNumber{id, 0}));
+    EXPECT_EQ(link_near(view, {&id, 1}, near_pixel(camera, (*line)[1])), (LinkNumber{id, 0}));
     const Vec2 along = (*line)[1] - (*line)[0];
     const Vec2 aside = Vec2{-along.y, along.x} * (1 / length(along));
-    EXPECT_EQ(link_near(view, id, camera, (*line)[1] + aside * 9.5f), (LinkNumber{id, 0}));
-    EXPECT_FALSE(link_near(view, id, camera, (*line)[1] + aside * 10.5f));
+    EXPECT_EQ(link_near(view, {&id, 1}, near_pixel(camera, (*line)[1] + aside * 9.5f)),
+              (LinkNumber{id, 0}));
+    EXPECT_FALSE(link_near(view, {&id, 1}, near_pixel(camera, (*line)[1] + aside * 10.5f)));
     return;
   }
   FAIL() << "no element with one link to the lamp";
@@ -107,10 +108,13 @@ TEST(Pick, TheHeaviestOfTheDiscontinuitiesUnderThePointer) {
   lines[1].a = {0.605, 0, -0.5}, lines[1].b = {0.605, 0, 0.5};
   lines[2].a = {0.7, 0, -0.5}, lines[2].b = {0.7, 0, 0.5};  // pixel 120
   const std::vector<double> weight{1, 2, 100};
-  EXPECT_EQ(discontinuity_near(lines, weight, camera, {110, 90}), 1u);
-  EXPECT_EQ(discontinuity_near(lines, weight, camera, {116, 90}), 2u);
-  EXPECT_EQ(discontinuity_near(lines, weight, camera, {129.5f, 90}), 2u);
-  EXPECT_EQ(discontinuity_near(lines, weight, camera, {131, 90}), std::nullopt);
+  EXPECT_EQ(discontinuity_near(lines, weight, near_pixel(camera, {110, 90})), 1u);
+  EXPECT_EQ(discontinuity_near(lines, weight, near_pixel(camera, {116, 90})), 2u);
+  EXPECT_EQ(discontinuity_near(lines, weight, near_pixel(camera, {129.5f, 90})), 2u);
+  EXPECT_EQ(discontinuity_near(lines, weight, near_pixel(camera, {131, 90})), std::nullopt);
+  // By a place: 2 cm may lie between.
+  EXPECT_EQ(discontinuity_near(lines, weight, near_place({0.715, 0, 0.1}, 0.02)), 2u);
+  EXPECT_EQ(discontinuity_near(lines, weight, near_place({0.725, 0, 0.1}, 0.02)), std::nullopt);
 }
 
 }  // namespace

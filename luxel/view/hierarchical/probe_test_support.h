@@ -69,13 +69,16 @@ inline double light_at(double x, double z) {
 }
 
 /// Looks down on the floor at x = 0.5 m, 100 pixels a metre there.
-inline trace::CameraRays camera_above() {
+inline scene::Camera scene_camera_above() {
   scene::Camera camera;
   camera.world_from_camera.row[0] = {1, 0, 0, 0.5f};
   camera.world_from_camera.row[1] = {0, 0, 1, 2};
   camera.world_from_camera.row[2] = {0, -1, 0, 0};
   camera.fov_y_rad = 2 * std::atan(0.5f), camera.aspect = 1;
-  return trace::CameraRays(camera, 200, 200);
+  return camera;
+}
+inline trace::CameraRays camera_above() {
+  return trace::CameraRays(scene_camera_above(), 200, 200);
 }
 
 }  // namespace luxel::view::testing

@@ -7,9 +7,9 @@
 
 #include "luxel/base/file.h"
 #include "luxel/base/short_message.h"
-#include "luxel/scene/brightness.h"
-#include "luxel/scene/light_kinds.h"
 #include "luxel/view/model/bookmarks.h"
+#include "luxel/view/model/scene_events.h"
+#include "luxel/view/model/tool_events.h"
 
 namespace luxel::view {
 namespace {
@@ -29,48 +29,9 @@ std::optional<Button> button_of(const std::string& name) {
 bool is_key(const std::string& name) {
   const auto is_it = [&](const KeyHelp& key) { return name == key.key; };
   return bookmark_key(name) || std::any_of(std::begin(kKeys), std::end(kKeys), is_it) ||
-         std::any_of(std::begin(kLampKeys), std::end(kLampKeys), is_it);
-}
-
-/// Three numbers; none where one is not held. May throw json::exception.
-std::optional<Vec3> vec3_of(const json& from) {
-  const auto v = from.get<std::array<float, 3>>();
-  for (const float x : v)
-    if (!(std::abs(x) <= scene::kBrightest)) return std::nullopt;
-  return Vec3{v[0], v[1], v[2]};
-}
-
-/// What "lamp" and "new_lamp" say besides; none where something else is said, too.
-std::optional<LampChange> lamp_change_of(const json& from) {
-  LampChange out;
-  size_t known = 2;  // "at" and which lamp
-  const auto read = [&](const char* key, std::optional<Vec3>& to) {
-    if (!from.contains(key)) return true;
-    to = vec3_of(from[key]);
-    return ++known, to.has_value();
-  };
-  if (!read("to", out.to) || !read("direction", out.direction) || !read("intensity", out.intensity))
-    return std::nullopt;
-  if (from.contains("on")) ++known, out.is_on = from["on"].get<bool>();
-  if (known != from.size() || (out.direction && !(length(*out.direction) > 0)) ||
-      (out.intensity && !(min_component(*out.intensity) >= 0)))
-    return std::nullopt;
-  return out;
-}
-
-/// An event of light; none where it is something else. May throw json::exception.
-std::optional<Event> light_event_of(const json& from) {
-  if (from.contains("material")) {
-    if (from.size() != 3) return std::nullopt;
-    const auto radiance = vec3_of(from.at("radiance"));
-    if (!radiance || !(min_component(*radiance) >= 0)) return std::nullopt;
-    return GlowChanged{from["material"].get<std::string>(), *radiance};
-  }
-  const auto change = lamp_change_of(from);
-  if (!change) return std::nullopt;
-  if (from.contains("lamp")) return LampChanged{from["lamp"].get<uint32_t>(), *change};
-  const auto kind = scene::kind_named(from.at("new_lamp").get<std::string>());
-  return kind ? std::optional<Event>(LampAdded{*kind, *change}) : std::nullopt;
+         std::any_of(std::begin(kLampKeys), std::end(kLampKeys), is_it) ||
+         std::any_of(std::begin(kEditKeys), std::end(kEditKeys), is_it) ||
+         std::any_of(std::begin(kSelectionKeys), std::end(kSelectionKeys), is_it);
 }
 
 /// The number of a name in a table; none where it has no such name.
@@ -147,8 +108,8 @@ std::optional<Event> look_event_of(const json& from) {
 
 /// One event; none where it is something else. May throw json::exception.
 std::optional<Event> event_of(const json& from) {
-  for (const char* key : {"lamp", "new_lamp", "material"})
-    if (from.contains(key)) return light_event_of(from);
+  if (changes_scene(from)) return scene_event_of(from);
+  if (uses_tools(from)) return tool_event_of(from);
   if (from.size() != 2) return std::nullopt;  // "at" and what happens
   if (from.contains("pointer")) {
     const auto at = from["pointer"].get<std::array<float, 2>>();
@@ -182,6 +143,20 @@ bool read_times(const json& from, Play& out) {
 }
 
 }  // namespace
+
+bool changes_lamps(const Event& event) {
+  return std::holds_alternative<LampChanged>(event) || std::holds_alternative<LampAdded>(event) ||
+         std::holds_alternative<GlowChanged>(event);
+}
+
+bool edits_scene(const Event& event) {
+  return std::holds_alternative<InstanceSelected>(event) ||
+         std::holds_alternative<LampSelected>(event) ||
+         std::holds_alternative<MaterialSelected>(event) ||
+         std::holds_alternative<InstanceChanged>(event) ||
+         std::holds_alternative<LampRemoved>(event) ||
+         std::holds_alternative<MaterialChanged>(event);
+}
 
 Result<Play> parse_play(std::string_view text, const std::string& name) {
   Play out;

@@ -11,6 +11,7 @@
 #include "luxel/base/vec.h"
 #include "luxel/scene/scene.h"
 #include "luxel/view/frame.h"
+#include "luxel/view/model/tools.h"
 
 namespace luxel::view {
 
@@ -62,6 +63,8 @@ struct LampChange {
   std::optional<Vec3> direction;  ///< in which its light travels; not 0
   std::optional<Rgb> intensity;   ///< scene::PunctualLight::intensity
   std::optional<bool> is_on;
+  std::optional<float> cone_deg, inner_cone_deg;  ///< of spots: half the angle of their light
+  std::optional<float> disc_radius_deg;           ///< of suns: half the angle of their disc
 };
 /// A lamp of an .lxr file, by its number.
 struct LampChanged {
@@ -90,13 +93,45 @@ struct ProbesChanged {
 struct OpenAsked {
   std::filesystem::path path;
 };
+// What is edited of a scene.
+/// The surfaces of this name, or of this number where the name is a number; empty: none.
+struct InstanceSelected {
+  std::string instance;
+};
+struct LampSelected {
+  uint32_t lamp = 0;
+};
+struct MaterialSelected {
+  std::string material;
+};
+/// It stands otherwise; what is not said stays.
+struct InstanceChanged {
+  std::string instance;            ///< as InstanceSelected has it
+  std::optional<Vec3> to;          ///< where its middle is [m]
+  std::optional<Vec3> angles_deg;  ///< Placement::angles_deg
+  std::optional<Vec3> scale;
+};
+struct LampRemoved {
+  uint32_t lamp = 0;
+};
+/// The materials of this name look otherwise.
+struct MaterialChanged {
+  std::string material;
+  std::optional<Rgb> base_color, radiance;  ///< [1], [W/(sr m^2)]
+};
 /// A play stands still here: what comes after it is played when the bake has ended and its light is
 /// shown.
 struct WaitForBake {};
 using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
                            LampAdded, GlowChanged, ShowChanged, RangeChanged, ChannelChanged,
-                           LayerChanged, BesideChanged, SplitMoved, PartChanged, ProbesChanged,
+                           LayerChanged, BesideChanged, SplitMoved, InstanceSelected, LampSelected,
+                           MaterialSelected, InstanceChanged, LampRemoved, MaterialChanged,
+                           ToolChanged, ToolUsed, SelectionStepped, PartChanged, ProbesChanged,
                            OpenAsked, WaitForBake>;
+
+/// Whether an event changes lamps or what glows; or something else of a scene.
+bool changes_lamps(const Event& event);
+bool edits_scene(const Event& event);
 
 /// A key and what it does, as F1 and the documentation list it.
 struct KeyHelp {
@@ -143,6 +178,29 @@ inline constexpr KeyHelp kLampKeys[] = {
     {"m", "hide the marks of lamps, or show them"},
 };
 
+/// Those of hierarchical solutions.
+inline constexpr KeyHelp kSelectionKeys[] = {
+    {"p", "select what holds the selected element"},
+    {"c", "select its part under the place of the click"},
+    {"n", "select the next weaker link"},
+    {"g", "graph across what is selected"},
+    {"esc", "select nothing"},
+};
+/// Those of scenes that are edited.
+inline constexpr KeyHelp kEditKeys[] = {
+    {"g", "move what is selected"},
+    {"r", "turn it"},
+    {"t", "scale it"},
+    {"ctrl", "move, turn and scale in steps"},
+    {"esc", "select nothing; let go of what is dragged"},
+    {"delete", "delete the lamp that is selected"},
+    {"ctrl+z", "undo"},
+    {"ctrl+shift+z", "redo; ctrl+y, too"},
+    {"ctrl+y", "redo"},
+    {"ctrl+shift+s", "save the edited scene as glTF"},
+    {"m", "hide the marks of lamps, or show them"},
+};
+
 struct TimedEvent {
   double at_s = 0;  ///< since the beginning
   Event event;
@@ -166,8 +224,12 @@ struct Play {
 ///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
 ///       {"at": 2, "beside": "difference"}, {"at": 2, "split": 0.3},
 ///       {"at": 2, "part": "direct"}, {"at": 2, "bounces": 3}, {"at": 2, "probes": true},
-///       {"at": 2, "wait": "bake"},
-///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]}]}
+///       {"at": 2, "tool": "link"}, {"at": 2, "use": "element", "pixel": [480, 360]},
+///       {"at": 2, "use": "graph", "place": [0, 0, 0], "to_place": [1, 0, 0]},
+///       {"at": 2, "selection": "up"}, {"at": 2, "wait": "bake"},
+///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]},
+///       {"at": 2, "select": "chair"}, {"at": 2, "instance": "chair", "angles_deg": [0, 90, 0]},
+///       {"at": 2, "material": "wood", "reflectance": [0.5, 0.4, 0.3]}]}
 ///
 /// A range is by the logarithm where "logarithmic_range" says so.
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.

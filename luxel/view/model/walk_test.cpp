@@ -305,7 +305,7 @@ TEST(Play, SaysWhichEventIsWrong) {
               HasSubstr("walk.json, event 2: its time, 0.5, is not from 1 to 2"));
   for (const char* wrong :
        {R"({"at": 1})", R"({"at": 1, "jump": 1})", R"({"at": 1, "press": "fourth"})",
-        R"({"at": 1, "key": "ctrl"})", R"({"at": 1, "scroll": 1, "key": "w"})",
+        R"({"at": 1, "key": "hyper"})", R"({"at": 1, "scroll": 1, "key": "w"})",
         R"({"at": 1, "scroll": 1e9})", R"({"at": 1, "show": "depth"})",
         R"({"at": 1, "channel": "alpha"})", R"({"at": 1, "range": [2, 2]})",
         R"({"at": 1, "logarithmic_range": [0, 1]})", R"({"at": 1, "beside": "above"})",

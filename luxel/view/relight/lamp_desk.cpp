@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "luxel/scene/light_kinds.h"
+#include "luxel/view/model/lamp_change.h"
 
 namespace luxel::view {
 namespace {
@@ -70,22 +70,14 @@ bool handle_lamps(const Event& event, const Walk& walk, LampDesk& desk) {
 
 void change_lamp(const LampChanged& changed, LampDesk& desk) {
   if (changed.lamp >= desk.lamps.lamps.size()) return;
-  Lamp& lamp = desk.lamps.lamps[changed.lamp];
-  const LampChange& to = changed.change;
-  if (to.to) lamp.light.position = *to.to;
-  if (to.direction) lamp.light.direction = normalize(*to.direction);
-  if (to.intensity) lamp.light.intensity = *to.intensity;
-  if (to.is_on) lamp.is_on = *to.is_on;
+  change(changed.change, desk.lamps.lamps[changed.lamp]);
   ++desk.changes;
 }
 
 void add_lamp(const LampAdded& added, LampDesk& desk) {
-  Lamp lamp;
-  lamp.light.kind = added.kind, lamp.light.position = desk.bounds.centre();
-  lamp.light.name = "new " + std::string(scene::name_of(added.kind));
-  desk.lamps.lamps.push_back(lamp);
+  desk.lamps.lamps.push_back(new_lamp(added, desk.bounds));
   desk.selected = uint32_t(desk.lamps.lamps.size() - 1);
-  change_lamp({*desk.selected, added.change}, desk);
+  ++desk.changes;
 }
 
 std::vector<Mark> marks_of(const LampDesk& desk, const Walk& walk) {
@@ -95,6 +87,12 @@ std::vector<Mark> marks_of(const LampDesk& desk, const Walk& walk) {
 Status check_lamps(const Play& play, const Lamps& lamps, const std::string& name) {
   size_t count = lamps.lamps.size();
   for (const TimedEvent& timed : play.events) {
+    if (edits_scene(timed.event))
+      return fail(
+          ErrorCode::bad_input,
+          "{}, at {} s: in an .lxr file lamps change, and what glows; open the scene itself "
+          "to change more",
+          name, timed.at_s);
     if (std::holds_alternative<LampAdded>(timed.event)) ++count;
     if (const auto* changed = std::get_if<LampChanged>(&timed.event);
         changed && changed->lamp >= count)
@@ -112,12 +110,11 @@ Status check_lamps(const Play& play, const Lamps& lamps, const std::string& name
 
 Status check_no_lamps(const Play& play, const std::string& name) {
   for (const TimedEvent& timed : play.events)
-    if (std::holds_alternative<LampChanged>(timed.event) ||
-        std::holds_alternative<LampAdded>(timed.event) ||
-        std::holds_alternative<GlowChanged>(timed.event))
+    if (changes_lamps(timed.event) || edits_scene(timed.event))
       return fail(ErrorCode::bad_input,
-                  "{}, at {} s: lamps change in .lxr files only; `luxel relight` makes one", name,
-                  timed.at_s);
+                  "{}, at {} s: this is for scenes that are baked while they are looked at, and "
+                  "lamps change in .lxr files, too; a bake that is there stays as it is",
+                  name, timed.at_s);
   return {};
 }
 

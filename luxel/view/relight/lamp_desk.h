@@ -45,7 +45,7 @@ std::vector<Mark> marks_of(const LampDesk& desk, const Walk& walk);
 /// Errors: an event of a lamp or a material that there is not; `name` is the play's.
 Status check_lamps(const Play& play, const Lamps& lamps, const std::string& name);
 
-/// Errors: an event of any lamp or glowing material, for what is no .lxr file.
+/// Errors: an event that changes a scene, for what stays as it is.
 Status check_no_lamps(const Play& play, const std::string& name);
 
 }  // namespace luxel::view

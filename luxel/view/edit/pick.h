@@ -1,0 +1,24 @@
+// What of an edited scene the pointer is on.
+#pragma once
+
+#include <optional>
+
+#include "luxel/view/edit/edits.h"
+#include "luxel/view/model/walk.h"
+
+namespace luxel::view {
+
+/// What a ray meets first of the scene as it is now, as trace::visible_hits(): the back faces of
+/// one-sided materials are invisible. Triangles of instances that have moved are tried one by one:
+/// some milliseconds for a million of them.
+trace::Hit visible_now(const EditDesk& desk, const trace::Ray& ray);
+
+/// surface_seen() and place_seen_in() of the scene as it is now. The desk must outlive the second.
+std::optional<scene::SurfacePoint> surface_seen_now(const EditDesk& desk, const Frame& frame,
+                                                    Vec2 pixel, int width, int height);
+PlaceSeen place_seen_now(const EditDesk& desk, int width, int height);
+
+/// The box around an instance's mesh before it is placed [m].
+Box3 object_bounds(const scene::Scene& scene, uint32_t instance);
+
+}  // namespace luxel::view

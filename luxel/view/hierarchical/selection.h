@@ -1,0 +1,87 @@
+// What a user takes hold of in a hierarchical solution: events in, what is selected and known of it
+// out. [Hardt96, appendices B.4.6 to B.4.10]
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "luxel/view/hierarchical/probe_worker.h"
+#include "luxel/view/hierarchical/selection_shapes.h"
+#include "luxel/view/model/events.h"
+#include "luxel/view/model/walk.h"
+
+namespace luxel::view {
+
+/// A solution that tools are used on, and how its light is shown.
+struct Examined {
+  SolutionView view;
+  ShownLight shown;
+  std::shared_ptr<const void> kept;  ///< lives as long as what the two look at is needed
+  uint64_t number = 0;               ///< another one for each solution and way to show it
+};
+
+/// What is selected, by numbers of the solution.
+struct Selection {
+  std::optional<hierarchical::FacePoint> at;  ///< where the element or the triangle was picked
+  std::vector<uint32_t> path;                 ///< path_to() that place, if an element is selected
+  size_t level = 0;                           ///< in the path
+  std::optional<LinkNumber> link;
+  std::optional<uint32_t> triangle;
+  std::optional<DiscontinuityFacts> discontinuity;
+
+  bool has_element() const { return !path.empty(); }
+};
+
+/// What probes have told.
+struct Probed {
+  std::optional<LightProbe> light;
+  std::optional<BackprojectionProbe> sources;
+  std::optional<Graph> graph;
+};
+
+/// What is asked of the solution there is, to be asked again of the next one.
+struct Inquiries {
+  /// Until it is answered: a discontinuity of the face near this.
+  std::optional<std::pair<hierarchical::FacePoint, Nearness>> discontinuity;
+  std::optional<hierarchical::FacePoint> light, sources;
+  std::optional<CurveLine> graph;
+  bool is_across = false;  ///< the graph, what is selected
+};
+
+/// All of it: tools, what they have found, and a thread that computes.
+struct SelectionDesk {
+  InsideTool tool = InsideTool::none;
+  Selection selected;
+  Probed probed;
+  Inquiries asked;
+  std::string said;             ///< why nothing was found; a sentence
+  float graph_height = 0.1f;    ///< of the largest value of a graph in space, over the diagonal
+  uint64_t solution = 0;        ///< Examined::number that all this is about
+  uint64_t changes = 0;         ///< counts up with whatever is to be drawn
+  Vec2 pointer{};               ///< [pixels]
+  std::optional<Vec2> pressed;  ///< where a button went down, while it is down
+  bool drags_graph = false;
+  std::unique_ptr<ProbeWorker> worker = ProbeWorker::begin();
+};
+
+/// True: the event is no longer the walk's. A click uses the tool; with the right button it probes
+/// irradiance, and with shift what is seen of sources.
+bool handle_selection(const Event& event, const Walk& walk, const Examined& examined,
+                      SelectionDesk& desk);
+/// Uses a tool.
+void use_tool(const ToolUsed& used, const Walk& walk, const Examined& examined,
+              SelectionDesk& desk);
+/// Selects an element above or below, or another link.
+void step_selection(SelectionStep step, const Examined& examined, SelectionDesk& desk);
+/// Selects nothing, and forgets what probes have told.
+void select_nothing(SelectionDesk& desk);
+
+/// Takes the answers that have come. Another solution is asked again what the last one was, and the
+/// selection goes over to it. True: something has changed.
+bool follow(const Examined& examined, SelectionDesk& desk);
+
+/// What is drawn of it.
+SelectionShapes shapes_of(const Examined& examined, const SelectionDesk& desk);
+
+}  // namespace luxel::view

@@ -1,0 +1,99 @@
+// What is selected and what probes have told, as it is drawn over the scene.
+#include <algorithm>
+
+#include "luxel/view/hierarchical/selection.h"
+
+namespace luxel::view {
+namespace {
+
+namespace h = luxel::hierarchical;
+
+// As the thesis has them: exact light, what interpolation makes of it, and the difference.
+constexpr Rgb kExactColor{1, 1, 1}, kShownColor{0.3f, 0.5f, 1}, kErrorColor{1, 0.2f, 0.15f};
+
+float most_of_graph(std::span<const Rgb> a, std::span<const Rgb> b) {
+  float out = 0;
+  for (const auto& values : {a, b})
+    for (const Rgb& e : values) out = std::max(out, luminance(e));
+  return out;
+}
+
+/// Heights over a surface, in metres.
+struct GraphScale {
+  DVec3 normal;
+  double m_per_unit = 0;
+
+  Vec3 at(DVec3 place, float value) const {
+    return to_float(place + normal * (m_per_unit * double(value)));
+  }
+};
+
+GraphScale scale_of_graph(const Examined& examined, const SelectionDesk& desk, uint32_t face,
+                          float most) {
+  const h::Solution& s = examined.view.solution;
+  const double height = double(desk.graph_height * s.diagonal_m);
+  return {s.faces.faces[face].plane.normal, most > 0 ? height / double(most) : 0};
+}
+
+/// Two values, and by how much they differ.
+void add_graph_edge(const GraphScale& scale, DVec3 p, DVec3 q, const std::array<Rgb, 2>& exact,
+                    const std::array<Rgb, 2>& shown, SelectionShapes& out) {
+  const std::array<float, 2> e{luminance(exact[0]), luminance(exact[1])};
+  const std::array<float, 2> s{luminance(shown[0]), luminance(shown[1])};
+  out.lines.push_back({scale.at(p, s[0]), scale.at(q, s[1]), kShownColor});
+  out.lines.push_back({scale.at(p, e[0]), scale.at(q, e[1]), kExactColor});
+  out.lines.push_back(
+      {scale.at(p, std::abs(s[0] - e[0])), scale.at(q, std::abs(s[1] - e[1])), kErrorColor});
+}
+
+void add_graph(const Examined& examined, const SelectionDesk& desk, SelectionShapes& out) {
+  const Curve& curve = desk.probed.graph->curve;
+  const DVec3 from = curve.line.from, to = curve.line.to;
+  out.lines.push_back({to_float(from), to_float(to), {1, 0.85f, 0.1f}});
+  if (const auto& grid = desk.probed.graph->surface) {
+    const GraphScale scale =
+        scale_of_graph(examined, desk, grid->face, most_of_graph(grid->exact, grid->shown));
+    for (const auto& [a, b] : grid->edges)
+      add_graph_edge(scale, grid->places[a], grid->places[b], {grid->exact[a], grid->exact[b]},
+                     {grid->shown[a], grid->shown[b]}, out);
+    return;
+  }
+  const GraphScale scale =
+      scale_of_graph(examined, desk, curve.line.face, most_of_graph(curve.exact, curve.shown));
+  const DVec3 along = normalize(to - from);
+  for (size_t k = 1; k < curve.exact.size(); ++k)
+    add_graph_edge(scale, from + along * double(curve.at_m[k - 1]),
+                   from + along * double(curve.at_m[k]), {curve.exact[k - 1], curve.exact[k]},
+                   {curve.shown[k - 1], curve.shown[k]}, out);
+}
+
+/// Sticks on the surface: exact light has the height of graphs, shown light what that makes it.
+void add_light_probe(const Examined& examined, const SelectionDesk& desk, SelectionShapes& out) {
+  const LightProbe& probe = *desk.probed.light;
+  const float exact = luminance(probe.exact), shown = luminance(probe.interpolated);
+  const GraphScale scale = scale_of_graph(examined, desk, probe.at.face, exact);
+  const DVec3 aside = h::plane_coordinates(examined.view.solution.faces.faces[probe.at.face]).u *
+                      (0.004 * double(examined.view.solution.diagonal_m));
+  const DVec3 p = probe.at.position, q = p + aside;
+  out.lines.push_back({to_float(p), scale.at(p, exact), kExactColor});
+  out.lines.push_back({to_float(q), scale.at(q, shown), kShownColor});
+}
+
+}  // namespace
+
+SelectionShapes shapes_of(const Examined& examined, const SelectionDesk& desk) {
+  SelectionShapes out;
+  const Selection& selected = desk.selected;
+  if (selected.link)
+    add_link(examined.view, *selected.link, out);
+  else if (selected.has_element())
+    add_node(examined.view, selected.path[selected.level], out);
+  if (selected.triangle) add_triangle(examined.view, *selected.triangle, out);
+  if (selected.discontinuity) add_discontinuity(examined.view, *selected.discontinuity, out);
+  if (desk.probed.sources) add_backprojection(*desk.probed.sources, out);
+  if (desk.probed.light) add_light_probe(examined, desk, out);
+  if (desk.probed.graph) add_graph(examined, desk, out);
+  return out;
+}
+
+}  // namespace luxel::view

@@ -1,0 +1,28 @@
+#include "luxel/view/model/lamp_change.h"
+
+#include "luxel/scene/light_kinds.h"
+
+namespace luxel::view {
+
+void change(const LampChange& by, Lamp& lamp) {
+  constexpr float kDegree = kPi / 180;
+  scene::PunctualLight& light = lamp.light;
+  if (by.to) light.position = *by.to;
+  if (by.direction) light.direction = normalize(*by.direction);
+  if (by.intensity) light.intensity = *by.intensity;
+  if (by.is_on) lamp.is_on = *by.is_on;
+  if (by.cone_deg) light.outer_cone_rad = *by.cone_deg * kDegree;
+  if (by.inner_cone_deg) light.inner_cone_rad = *by.inner_cone_deg * kDegree;
+  light.inner_cone_rad = std::min(light.inner_cone_rad, light.outer_cone_rad);
+  if (by.disc_radius_deg) light.angular_radius_rad = *by.disc_radius_deg * kDegree;
+}
+
+Lamp new_lamp(const LampAdded& added, const Box3& bounds) {
+  Lamp out;
+  out.light.kind = added.kind, out.light.position = bounds.centre();
+  out.light.name = "new " + std::string(scene::name_of(added.kind));
+  change(added.change, out);
+  return out;
+}
+
+}  // namespace luxel::view

@@ -1,0 +1,13 @@
+// What events make of lamps.
+#pragma once
+
+#include "luxel/view/lamp.h"
+#include "luxel/view/model/events.h"
+
+namespace luxel::view {
+
+void change(const LampChange& by, Lamp& lamp);
+/// A lamp of its own name; without a place of its own it is in the middle of the scene's bounds.
+Lamp new_lamp(const LampAdded& added, const Box3& bounds);
+
+}  // namespace luxel::view

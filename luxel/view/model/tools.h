@@ -1,0 +1,57 @@
+// Tools that look into a hierarchical solution, as a user or a file that is played asks for them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "luxel/base/vec.h"
+
+namespace luxel::view {
+
+/// With what a hierarchical solution is looked into. [Hardt96, appendices B.4.6 to B.4.10]
+enum class InsideTool : uint8_t {
+  none,
+  element,
+  link,
+  triangle,
+  discontinuity,
+  graph,
+  irradiance,
+  backprojection,
+};
+/// A name in files that are played, and words for it. In the order of InsideTool.
+struct InsideToolName {
+  const char *name, *words;
+};
+inline constexpr std::array<InsideToolName, 8> kInsideTools{{
+    {"none", "no tool"},
+    {"element", "select an element"},
+    {"link", "select a link"},
+    {"triangle", "select a triangle"},
+    {"discontinuity", "select a discontinuity"},
+    {"graph", "graph along a line that is dragged"},
+    {"irradiance", "probe irradiance"},
+    {"backprojection", "probe what is seen of sources"},
+}};
+/// Where a tool is used: a pixel of the picture, or the place of a surface nearest to one in space.
+using ToolPlace = std::variant<Vec2, Vec3>;
+/// Clicks use another tool.
+struct ToolChanged {
+  InsideTool tool = InsideTool::none;
+};
+/// A tool is used. Without a place it is a graph across what is selected; none: nothing is selected
+/// any longer.
+struct ToolUsed {
+  InsideTool tool = InsideTool::none;
+  std::optional<ToolPlace> at, to;  ///< `to`: the end of a graph
+};
+/// What is selected becomes what holds it, its part, or another link: the next weaker one.
+enum class SelectionStep : uint8_t { up, down, next };
+inline constexpr std::array<const char*, 3> kSelectionSteps{"up", "down", "next"};
+struct SelectionStepped {
+  SelectionStep step = SelectionStep::up;
+};
+
+}  // namespace luxel::view

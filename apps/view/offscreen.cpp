@@ -24,6 +24,19 @@ Status finish_work(gpu::Commands& commands, view::Walk* walk, Subject& subject) 
   }
 }
 
+/// Errors: events for a window.
+Status check_no_window(const view::Play& play, const std::string& name) {
+  for (const view::TimedEvent& timed : play.events)
+    if (std::holds_alternative<view::OpenAsked>(timed.event) ||
+        std::holds_alternative<view::ScaleChanged>(timed.event) ||
+        std::holds_alternative<view::DeviceLost>(timed.event))
+      return fail(ErrorCode::bad_input,
+                  "{}: \"open\", \"scale\" and \"lose\" are for a window; play it without "
+                  "--offscreen",
+                  name);
+  return {};
+}
+
 /// Walks to where a play gets to.
 Status play_all(const view::Play& play, const view::PlaceSeen& place_seen, gpu::Commands& commands,
                 view::Walk& walk, Subject& subject) {
@@ -93,6 +106,7 @@ Status draw_offscreen(gpu::Commands& commands, Subject& subject,
                       std::optional<view::OpenedBake> beside, const OffscreenParams& params,
                       const TakePicture& take) {
   if (params.play) LUXEL_TRY_STATUS(subject.check(*params.play, params.play_name));
+  if (params.play) LUXEL_TRY_STATUS(check_no_window(*params.play, params.play_name));
   LUXEL_TRY_STATUS(finish_work(commands, nullptr, subject));
   const view::ReadScene& read = *subject.shown().read;
   const int width = params.width ? params.width : read.width;

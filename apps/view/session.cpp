@@ -132,12 +132,22 @@ Result<bool> follow(Session& s) {
   return followed.has_news || s.subject->work() == Work::at_work;
 }
 
-/// An event goes to the subject, or else to the walk.
+/// No work is taken any longer, as by a device whose driver has crashed.
+void lose_device(Session& s) {
+  s.screen.device->vk.vkQueueSubmit2KHR = [](VkQueue, uint32_t, const VkSubmitInfo2*, VkFence) {
+    return VK_ERROR_DEVICE_LOST;
+  };
+}
+
+/// An event goes to the window, to the subject, or else to the walk.
 void take(const view::Event& event, Session& s) {
-  if (const auto* asked = std::get_if<view::OpenAsked>(&event)) {
-    open_in_window(asked->path, s);
+  if (const auto* asked = std::get_if<view::OpenAsked>(&event))
+    return open_in_window(asked->path, s);
+  if (const auto* changed = std::get_if<view::ScaleChanged>(&event)) {
+    s.scale = changed->to;
     return;
   }
+  if (std::holds_alternative<view::DeviceLost>(event)) return lose_device(s);
   if (!s.subject->take(event, *s.walk)) view::handle(event, s.place_seen, *s.walk);
 }
 
@@ -159,7 +169,7 @@ void look(Session& s) {
 void lay_out(Session& s) {
   view::ShownScene& shown = s.subject->shown();
   s.panel.warnings = shown.warnings;
-  s.panel.scale = s.window.scale();
+  s.panel.scale = s.scale.value_or(s.window.scale());
   s.subject->fill(s.panel);
   if (s.walk)
     exchange(*s.screen.ui, shown, s.screen.looking, s.screen.flip, s.panel, *s.walk);

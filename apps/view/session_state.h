@@ -47,6 +47,7 @@ struct Session {
   FrameTable table = {};
   Clock::time_point last = Clock::now(), last_report = Clock::now();
 
+  std::optional<float> scale = {};       ///< of a play; none: the monitor's
   std::optional<NextSubject> next = {};  ///< that is being opened
   view::FileWatch watch = view::watch_file(path);
   Clock::time_point last_look = Clock::now();  ///< at the files

@@ -89,6 +89,11 @@ std::optional<Event> look_event_of(const json& from) {
   for (const char* key : {"part", "bounces", "bounce"})
     if (from.contains(key)) return part_event_of(from);
   if (from.contains("probes")) return ProbesChanged{from["probes"].get<bool>()};
+  if (from.contains("scale")) {
+    const auto to = from["scale"].get<float>();
+    return to >= 0.5f && to <= 8 ? std::optional<Event>(ScaleChanged{to}) : std::nullopt;
+  }
+  if (from.contains("lose") && from["lose"] == "device") return DeviceLost{};
   if (from.contains("open")) return OpenAsked{from["open"].get<std::string>()};
   if (from.contains("channel")) {
     const auto channel = number_of(from["channel"].get<std::string>(), kChannels,

@@ -93,6 +93,12 @@ struct ProbesChanged {
 struct OpenAsked {
   std::filesystem::path path;
 };
+/// The window comes to a monitor with so many pixels per point.
+struct ScaleChanged {
+  float to = 1;
+};
+/// The device is lost from here on, as after a crash of its driver: for tests.
+struct DeviceLost {};
 // What is edited of a scene.
 /// The surfaces of this name, or of this number where the name is a number; empty: none.
 struct InstanceSelected {
@@ -127,7 +133,7 @@ using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, La
                            LayerChanged, BesideChanged, SplitMoved, InstanceSelected, LampSelected,
                            MaterialSelected, InstanceChanged, LampRemoved, MaterialChanged,
                            ToolChanged, ToolUsed, SelectionStepped, PartChanged, ProbesChanged,
-                           OpenAsked, WaitForBake>;
+                           OpenAsked, ScaleChanged, DeviceLost, WaitForBake>;
 
 /// Whether an event changes lamps or what glows; or something else of a scene.
 bool changes_lamps(const Event& event);

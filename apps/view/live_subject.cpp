@@ -16,6 +16,7 @@ class LiveSubject : public Subject {
     view::LiveNews news = live_->take();
     Followed out;
     out.has_news = news.read || news.light || news.said;
+    out.has_scene = bool(news.read);
     if (!out.has_news) return out;
     LUXEL_TRY(out.is_another, view::take_news(std::move(news), commands, shown_, message));
     return out;

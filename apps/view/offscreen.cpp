@@ -38,10 +38,14 @@ Status check_no_window(const view::Play& play, const std::string& name) {
 }
 
 /// Walks to where a play gets to.
-Status play_all(const view::Play& play, const view::PlaceSeen& place_seen, gpu::Commands& commands,
-                view::Walk& walk, Subject& subject) {
+Status play_all(const view::Play& play, gpu::Commands& commands, view::Walk& walk,
+                Subject& subject) {
   const auto take = [&](const view::Event& event) {
-    if (!subject.take(event, walk)) view::handle(event, place_seen, walk);
+    // An edit may have put another scene in the place of this one.
+    const view::ReadScene& read = *subject.shown().read;
+    if (!subject.take(event, walk))
+      view::handle(event, view::place_seen_in(read.scene, *read.tracer, walk.width, walk.height),
+                   walk);
     for (const view::Command command : std::exchange(walk.asked, {})) subject.obey(command);
   };
   view::Played played;
@@ -117,7 +121,7 @@ Status draw_offscreen(gpu::Commands& commands, Subject& subject,
   if (beside) first.beside.emplace();
   view::Walk walk =
       view::begin_walk(first, scene::world_bounds(read.scene), width, height, place_seen);
-  if (params.play) LUXEL_TRY_STATUS(play_all(*params.play, place_seen, commands, walk, subject));
+  if (params.play) LUXEL_TRY_STATUS(play_all(*params.play, commands, walk, subject));
   LUXEL_TRY(view::Frame frame, frame_of(commands, walk, subject));
   Easel easel;
   LUXEL_TRY_STATUS(

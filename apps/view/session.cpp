@@ -127,6 +127,7 @@ Result<bool> fit(Session& s) {
 Result<bool> follow(Session& s) {
   LUXEL_TRY(const Followed followed, s.subject->follow(*s.screen.commands, s.panel.message));
   if (followed.is_another) s.screen.looking = {}, s.shows_scene = false;
+  if (followed.has_scene && s.fits) begin(*s.subject.shown().read, s);
   if (!followed.has_news && seconds_since(s.last_report) < kReport_s) return false;
   s.last_report = Clock::now();
   return followed.has_news || s.subject->work() == Work::at_work;

@@ -19,6 +19,7 @@ namespace luxel::view_window {
 /// What has come from the background.
 struct Followed {
   bool has_news = false;    ///< something is to be drawn
+  bool has_scene = false;   ///< shown().read is another one
   bool is_another = false;  ///< shown().device is another one, which other things are drawn with
 };
 

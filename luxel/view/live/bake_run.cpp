@@ -44,6 +44,14 @@ double tracing_seconds(const Progress& progress) {
   return out;
 }
 
+std::shared_ptr<const BouncedLight> bounces_of(const Draft& draft) {
+  const auto out = std::make_shared<BouncedLight>();
+  out->is_draft = true;
+  for (const std::vector<Rgb>& e : draft.bounced)
+    out->after.push_back(pages_of(draft.atlas, draft.map, e));
+  return out;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const ReadScene>> read_scene(const scene::Scene& scene,
@@ -82,22 +90,32 @@ Status BakeRun::begin(std::shared_ptr<const ReadScene> read, const DraftParams& 
   // What is read is seen while the first draft is made; later there is a draft to be seen.
   if (!kept_exposure_) watcher_.hand(std::exchange(news, {}));
   LUXEL_TRY(draft_, make_draft(read->scene, settings_, params, ends));
-  if (!draft_) return watcher_.hand(std::move(news)), Status();
-  LiveLight light;
+  draft_ ? hand_draft(std::move(read)) : watcher_.hand(std::move(news));
+  return {};
+}
+
+/// After an edit, as what it changes of the light that is shown.
+void BakeRun::hand_draft(std::shared_ptr<const ReadScene> read) {
+  LiveNews news;
+  LiveLight& light = news.light.emplace();
   light.numbers.kind = LiveKind::draft;
-  light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
   light.exposure = draft_exposure_ = exposure_of(
       {draft_->scene, *draft_->tracer}, {&draft_->atlas, &draft_->map, draft_->irradiance});
   exposure_ = light.exposure;
-  news.lit = lit_scene(draft_->scene, draft_->atlas);
-  news.light = std::move(light);
-  BouncedLight bounced;
-  bounced.is_draft = true;
-  for (const std::vector<Rgb>& e : draft_->bounced)
-    bounced.after.push_back(pages_of(draft_->atlas, draft_->map, e));
-  news.bounced = std::make_shared<const BouncedLight>(std::move(bounced));
+  light.is_sudden = kept_exposure_.has_value();
+  if (before_) {
+    std::vector<Mat34> world_from_object;
+    for (const scene::Instance& instance : read->scene.instances)
+      world_from_object.push_back(instance.world_from_object);
+    light.pages = pages_of(before_->atlas, before_->map,
+                           light_after_edit(*before_, *draft_, world_from_object));
+  } else {
+    light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
+    news.lit = lit_scene(draft_->scene, draft_->atlas);
+    news.bounced = bounces_of(*draft_);
+  }
+  if (kept_exposure_) news.read = std::move(read);
   watcher_.hand(std::move(news));
-  return {};
 }
 
 pipeline::BakeObserver BakeRun::observer() {
@@ -139,9 +157,12 @@ void BakeRun::has_light(const light::TexelScene& in, const light::LightEstimate&
   // Vertices are split while nobody waits.
   if (!std::exchange(is_laid_out_, true)) {
     news.lit = lit_scene(in.scene, in.atlas);
-    if (draft_) news.before = draft_elsewhere(in);
+    if (draft_) light_ = std::make_shared<KnownLight>(known_light(in, *draft_));
+    // After an edit there is better light than the draft's, which lies elsewhere.
+    if (draft_ && !kept_exposure_) news.before = draft_elsewhere(in);
     if (draft_) news.bounced = bounces_of_draft(in, estimate.direct);
   }
+  know(estimate.irradiance);
   watcher_.hand(std::move(news));
 }
 
@@ -169,15 +190,20 @@ std::shared_ptr<const BouncedLight> BakeRun::bounces_of_draft(const light::Texel
 }
 
 /// As the bake has it, but for seams. It is used up.
-std::shared_ptr<const BouncedLight> BakeRun::bounces_of(const pipeline::Bake& baked) {
+std::shared_ptr<const BouncedLight> BakeRun::bounces_of_bake(const pipeline::Bake& baked) {
   if (bounced_.empty()) return nullptr;
   const std::vector<std::span<Rgb>> arrays(bounced_.begin(), bounced_.end());
   if (!baked.light.hidden.empty())
-    post::refill_hidden(baked.atlas, baked.map, baked.light.hidden, pipeline::kRefillRings, {}, arrays);
+    post::refill_hidden(baked.atlas, baked.map, baked.light.hidden, pipeline::kRefillRings, {},
+                        arrays);
   const auto out = std::make_shared<BouncedLight>();
   for (const std::vector<Rgb>& e : std::exchange(bounced_, {}))
     out->after.push_back(pages_of(baked.atlas, baked.map, e));
   return out;
+}
+
+void BakeRun::know(std::span<const Rgb> irradiance) {
+  if (light_) light_->irradiance.assign(irradiance.begin(), irradiance.end());
 }
 
 LiveLight BakeRun::draft_elsewhere(const light::TexelScene& in) const {
@@ -207,11 +233,12 @@ void BakeRun::end(const pipeline::Bake& baked) {
   exposure_ = light.exposure;
   light.is_last = true;
   if (!is_laid_out_) news.lit = lit_scene(baked.scene, baked.atlas);  // the solver has no estimates
-  news.bounced = bounces_of(baked);
+  news.bounced = bounces_of_bake(baked);
   if (baked.probes)
     news.probes = std::make_shared<const ProbeBalls>(
         ProbeBalls{baked.probes->probes, baked.probes->spacing_m});
   news.warnings = baked.warnings;
+  know(baked.light.irradiance);
   watcher_.hand(std::move(news));
 }
 

@@ -9,7 +9,7 @@
 #include "luxel/base/progress.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/transport/irradiance_field.h"
-#include "luxel/view/live/draft.h"
+#include "luxel/view/live/known_light.h"
 #include "luxel/view/live/live_news.h"
 
 namespace luxel::view {
@@ -33,8 +33,11 @@ class BakeRun {
   BakeRun(const pipeline::BakeSettings& settings, const RunWatcher& watcher,
           const Progress& progress);
 
-  /// What pictures are shown at, whatever their light is.
-  void keep_exposure(float exposure) { kept_exposure_ = exposure_ = exposure; }
+  /// It is a run of an edited scene: what pictures are shown at, whatever their light is; and the
+  /// light that is shown, null where it is a draft's alone.
+  void follow(float exposure, std::shared_ptr<const KnownLight> before) {
+    kept_exposure_ = exposure_ = exposure, before_ = std::move(before);
+  }
   /// Hands over a draft, and `read` with it. Where there is none, `read` goes alone. `ends`: what
   /// cancels the draft. Errors: as make_draft().
   Status begin(std::shared_ptr<const ReadScene> read, const DraftParams& params,
@@ -46,6 +49,8 @@ class BakeRun {
 
   /// What the newest light is shown at; nothing: there was none.
   std::optional<float> exposure() const { return exposure_; }
+  /// Light that was handed over and is laid out as the bake is; null: there was none, or no draft.
+  std::shared_ptr<const KnownLight> known() const { return light_; }
 
  private:
   struct Traced {
@@ -56,7 +61,9 @@ class BakeRun {
   bool has_bounce(std::span<const Rgb> irradiance);
   std::shared_ptr<const BouncedLight> bounces_of_draft(const light::TexelScene& in,
                                                        std::span<const Rgb> direct) const;
-  std::shared_ptr<const BouncedLight> bounces_of(const pipeline::Bake& baked);
+  std::shared_ptr<const BouncedLight> bounces_of_bake(const pipeline::Bake& baked);
+  void hand_draft(std::shared_ptr<const ReadScene> read);
+  void know(std::span<const Rgb> irradiance);
   LiveLight draft_elsewhere(const light::TexelScene& in) const;
   std::vector<Rgb> with_reflections_of_draft(const light::TexelScene& in,
                                              std::span<const Rgb> direct) const;
@@ -69,6 +76,8 @@ class BakeRun {
   std::optional<float> kept_exposure_, exposure_;
   scene::Camera camera_;          ///< of the first view
   std::unique_ptr<Draft> draft_;  ///< null: there is none
+  std::shared_ptr<const KnownLight> before_;
+  std::shared_ptr<KnownLight> light_;
   float draft_exposure_ = 1;
   std::vector<std::vector<Rgb>> bounced_;  ///< E after 0, 1, ... reflections
   bool is_laid_out_ = false;

@@ -83,22 +83,30 @@ Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
 }
 
 std::vector<Rgb> light_of_draft(const Draft& draft, std::span<const Rgb> of_texels,
-                                const light::TexelScene& in) {
+                                std::span<const Place> places) {
   const transport::TexelField field{&draft.atlas, &draft.map, of_texels};
   Rgb mean{};
   for (const Rgb& e : of_texels) mean += e;
   mean = mean * (1 / float(std::max<size_t>(of_texels.size(), 1)));
   const float reach = kReach * scene::world_bounds(draft.scene).diagonal();
-  std::vector<Rgb> out(in.elements.size(), mean);
+  std::vector<Rgb> out(places.size(), mean);
   parallel_for(out.size(), 1024, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const Vec3 n = in.elements.geometric_normal[i];
+      const auto& [position, n] = places[i];
       const trace::Hit hit =
-          draft.tracer->closest_hit({in.elements.position[i] + n * reach, 0, n * -1.0f, 2 * reach});
+          draft.tracer->closest_hit({position + n * reach, 0, n * -1.0f, 2 * reach});
       if (hit.found()) out[i] = transport::irradiance_at(field, hit.point());
     }
   });
   return out;
+}
+
+std::vector<Rgb> light_of_draft(const Draft& draft, std::span<const Rgb> of_texels,
+                                const light::TexelScene& in) {
+  std::vector<Place> places(in.elements.size());
+  for (size_t i = 0; i < places.size(); ++i)
+    places[i] = {in.elements.position[i], in.elements.geometric_normal[i]};
+  return light_of_draft(draft, of_texels, places);
 }
 
 }  // namespace luxel::view

@@ -37,8 +37,15 @@ Result<std::unique_ptr<Draft>> make_draft(const scene::Scene& scene,
                                           const pipeline::BakeSettings& settings,
                                           const DraftParams& params, const Progress& watched);
 
-/// E of a draft at the elements of another layout of its scene: all of it, or the part that is
-/// direct. Elements at which the draft has no surface get the mean.
+/// A place of a surface in the world [m], and the normal of its front.
+struct Place {
+  Vec3 position, normal;
+};
+
+/// E of a draft at places of its scene, which is laid out in another way: all of it, or the part
+/// that is direct. Places at which the draft has no surface get the mean.
+std::vector<Rgb> light_of_draft(const Draft& draft, std::span<const Rgb> of_texels,
+                                std::span<const Place> places);
 std::vector<Rgb> light_of_draft(const Draft& draft, std::span<const Rgb> of_texels,
                                 const light::TexelScene& in);
 

@@ -14,6 +14,8 @@ Fade faded_to_other(const Fade& fade, float exposure) {
   return {1 - fade.newest, 0, fade.exposure_newest, exposure};
 }
 
+Fade at_once(const Fade& fade, float exposure) { return {fade.newest, 1, exposure, exposure}; }
+
 void pass(double seconds, Fade& fade) {
   fade.share = float(std::min(1.0, double(fade.share) + seconds / kFade_s));
 }

@@ -20,6 +20,8 @@ inline constexpr double kFade_s = 1;
 bool is_free(const Fade& fade);
 /// Light was put into the picture that is not `newest`: it is, from now on, and fades in.
 Fade faded_to_other(const Fade& fade, float exposure);
+/// Light is put into the picture that is `newest`, and nothing else is seen.
+Fade at_once(const Fade& fade, float exposure);
 /// So many seconds later.
 void pass(double seconds, Fade& fade);
 

@@ -135,7 +135,7 @@ class Worker : public LiveBake {
     SceneNow now;
     const std::shared_ptr<Progress> progress = begin_edit(now);
     BakeRun run(of_edits_, watcher_, *progress);
-    if (exposure_) run.keep_exposure(*exposure_);
+    if (exposure_) run.follow(*exposure_, known_);
     progress->begin("draft", 0);
     auto read = read_scene(edited(as_read_->scene, now), *as_read_);
     if (!read) return has_failed(read.error().message);
@@ -163,6 +163,7 @@ class Worker : public LiveBake {
   void end(BakeRun& run, Result<pipeline::Bake> baked, pipeline::BakeCache& cache) {
     progress_->finish();
     exposure_ = run.exposure();
+    if (run.known()) known_ = run.known();
     if (!baked) return has_failed(baked.error().message);
     cache.finish(*progress_);
     if (!cache.failure().empty()) baked->warnings.push_back(cache.failure());
@@ -230,7 +231,8 @@ class Worker : public LiveBake {
 
   // The thread's own.
   std::shared_ptr<const ReadScene> as_read_;
-  std::optional<float> exposure_;        ///< of the light that was handed over last
+  std::optional<float> exposure_;  ///< of the light that was handed over last
+  std::shared_ptr<const KnownLight> known_;
   std::optional<pipeline::Bake> baked_;  ///< of the scene as it is now
   std::thread thread_;                   ///< the last: it uses all of the others
 };

@@ -38,7 +38,8 @@ struct LiveLight {
   std::vector<image::HalfImage> pages;  ///< E [W/m^2], of sizes that do not change
   float exposure = 1;                   ///< at which the first view is readable
   LiveNumbers numbers;
-  bool is_last = false;  ///< what `luxel bake` writes
+  bool is_last = false;    ///< what `luxel bake` writes
+  bool is_sudden = false;  ///< it does not fade in: the scene was edited
 };
 
 /// What has come since it was last asked for.

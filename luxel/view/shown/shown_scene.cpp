@@ -52,7 +52,7 @@ Status fade_in(LiveLight light, gpu::Commands& commands, ShownScene& shown) {
 
 /// What tells light apart, or the probes, has come.
 void take_more(LiveNews& news, ShownScene& shown) {
-  if (news.bounced || news.lit) shown.bounced = std::move(news.bounced);
+  if (news.bounced || news.lit || news.read) shown.bounced = std::move(news.bounced);
   if (news.probes || news.read) shown.probes = std::move(news.probes);
 }
 
@@ -99,10 +99,10 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
   take_more(news, shown);
   if (news.read) {
     shown.read = std::move(news.read);
-    is_another = true;
     // Until there is light of an edited scene, the one before is shown.
     if (!news.lit && !shown.has_light) {
       LUXEL_TRY(shown.device, without_light(commands, shown.read->scene));
+      is_another = true;
     }
   }
   if (!news.light) return is_another;
@@ -120,6 +120,14 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
     shown.has_light = is_another = true;
     if (!shown.part.is_all()) LUXEL_TRY_STATUS(put_newest(commands, shown));
     if (!news.before) return true;
+  }
+  if (news.light->is_sudden) {
+    shown.waiting.reset();
+    shown.fade = at_once(shown.fade, news.light->exposure);
+    shown.device.second_light = second_light(shown.fade);
+    shown.newest = std::move(news.light->pages);
+    LUXEL_TRY_STATUS(put_newest(commands, shown));
+    return is_another;
   }
   shown.waiting = std::move(*news.light);
   LUXEL_TRY_STATUS(pass(0, commands, shown));

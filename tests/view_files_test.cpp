@@ -57,15 +57,15 @@ double apart(const image::Image& a, const image::Image& b) {
   return sum / double(a.data.size());
 }
 
-const std::string kIrradiance =
-    R"({"at": 0, "show": "irradiance"}, {"at": 0, "range": [0, 0.8]})";
+const std::string kIrradiance = R"({"at": 0, "show": "irradiance"}, {"at": 0, "range": [0, 0.8]})";
 constexpr const char* kSmall = "--resolution 64 --samples 16";
 
-// Light of no reflection beside a bake, and of a scene while it is baked, is that of a bake of none.
+// Light of no reflection beside a bake, and of a scene while it is baked, is that of a bake of
+// none.
 TEST_F(ViewFiles, ShowPartsOfTheLight) {
   const std::string a = baked("a", "cornell-box.glb", kSmall);
-  const CommandResult none = run(a + play(R"({"at": 0, "part": "direct"})") +
-                                 " --offscreen --screenshot x.png");
+  const CommandResult none =
+      run(a + play(R"({"at": 0, "part": "direct"})") + " --offscreen --screenshot x.png");
   EXPECT_EQ(none.code, 1);
   EXPECT_THAT(none.err, HasSubstr("bounces-0 --bounces 0`"));
   const std::string direct =
@@ -80,8 +80,8 @@ TEST_F(ViewFiles, ShowPartsOfTheLight) {
   EXPECT_GT(apart(all, wanted), 0.05);
   EXPECT_LT(apart(picture(a + play(part + R"(, {"at": 0, "part": "all"})") + " --offscreen"), all),
             1e-3);
-  const CommandResult more = run(a + play(R"({"at": 0, "bounces": 1})") +
-                                 " --offscreen --screenshot x.png");
+  const CommandResult more =
+      run(a + play(R"({"at": 0, "bounces": 1})") + " --offscreen --screenshot x.png");
   EXPECT_THAT(more.err, HasSubstr("light of 1 reflections is not told apart; it is up to 0"));
 }
 
@@ -90,8 +90,8 @@ TEST_F(ViewFiles, ShowProbes) {
   const image::Image with = picture(a + play(R"({"at": 0, "probes": true})") + " --offscreen");
   EXPECT_GT(apart(with, picture(a + play("") + " --offscreen")), 0.01);
   const std::string b = baked("b", "cornell-box.glb", kSmall);
-  const CommandResult none = run(b + play(R"({"at": 0, "probes": true})") +
-                                 " --offscreen --screenshot x.png");
+  const CommandResult none =
+      run(b + play(R"({"at": 0, "probes": true})") + " --offscreen --screenshot x.png");
   EXPECT_THAT(none.err, HasSubstr("there are no probes in"));
 }
 
@@ -108,9 +108,9 @@ TEST_F(ViewFiles, TurnAround) {
   EXPECT_FALSE(std::filesystem::exists(s_.path / "turn-004.png"));
   // A quarter of a turn lasts five seconds.
   const std::string quarter = R"({"at": 0, "key": "o"}, {"at": 5, "key_up": "o"})";
-  EXPECT_LT(apart(picture(a + play(quarter, "5") + " --offscreen"),
-                  png_at(s_.path / "turn-001.png")),
-            0.01);
+  EXPECT_LT(
+      apart(picture(a + play(quarter, "5") + " --offscreen"), png_at(s_.path / "turn-001.png")),
+      0.01);
 }
 
 // What cannot be opened changes nothing.
@@ -121,29 +121,28 @@ TEST_F(ViewFiles, OpenInAWindow) {
   const auto opening = [&](const std::string& path) {
     return play(R"({"at": 0, "open": ")" + path + R"("}, {"at": 0.1, "wait": "bake"})", "0.2");
   };
-  EXPECT_EQ(picture(a + opening(b), kWindow).data,
-            picture(b + play("") + " --offscreen").data);
+  EXPECT_EQ(picture(a + opening(b), kWindow).data, picture(b + play("") + " --offscreen").data);
   EXPECT_EQ(picture(a + opening((s_.path / "absent").string()), kWindow).data,
             picture(a + play("") + " --offscreen").data);
   const std::string broken = s_.write("broken.glb", "glTF").string();
   EXPECT_EQ(picture(a + opening(broken), kWindow).data,
             picture(a + play("") + " --offscreen").data);
-  const std::string scene = scene_file("furnace-box.glb");
-  EXPECT_LT(apart(picture(a + opening(scene), kWindow),
-                  picture(scene + play("") + " --offscreen")),
+  const std::string first = scene_file("cornell-box.glb") + " " + kSmall;
+  const std::string second = scene_file("furnace-box.glb");
+  EXPECT_LT(apart(picture(first + opening(second), kWindow),
+                  picture(second + " " + kSmall + play("") + " --offscreen")),
             1e-3);
-  const CommandResult refused =
-      run(a + opening(b) + " --offscreen --screenshot x.png");
+  const CommandResult refused = run(a + opening(b) + " --offscreen --screenshot x.png");
   EXPECT_THAT(refused.err, HasSubstr("are for a window"));
 }
 
 TEST_F(ViewFiles, AWindowThatClosesInMidBakeLeavesNothing) {
   if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
   const auto begin = std::chrono::steady_clock::now();
-  const CommandResult r = run(scene_file("office.glb") +
-                                  " --resolution 512 --samples 65535 -o saved" +
-                                  play(R"({"at": 0, "pointer": [1, 1]})", "0.5"),
-                              kWindow);
+  const CommandResult r =
+      run(scene_file("office.glb") + " --resolution 512 --samples 65535 -o saved" +
+              play(R"({"at": 0.5, "close": "window"})", "1"),
+          kWindow);
   EXPECT_EQ(r.code, 0);
   EXPECT_EQ(r.out + r.err, "");
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
@@ -187,12 +186,13 @@ std::string hills(int n) {
   return out;
 }
 
-// The window shows colours as soon as the file is read, and closes though the bake has hardly begun.
+// The window shows colours as soon as the file is read, and closes though the bake has hardly
+// begun.
 TEST_F(ViewFiles, SlowMillionTrianglesAreDrawn) {
   if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
   const std::string scene = s_.write("hills.ply", hills(708)).string();
   const auto begin = std::chrono::steady_clock::now();
-  const image::Image shot = picture(scene + " --view front" + play("", "0.2"), kWindow);
+  const image::Image shot = picture(scene + play(R"({"at": 0.2, "close": "window"})", "1"), kWindow);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   rusage use{};
@@ -201,7 +201,7 @@ TEST_F(ViewFiles, SlowMillionTrianglesAreDrawn) {
               double(use.ru_maxrss) / 1024);
   double bright = 0;
   for (const float v : shot.data) bright += v > 0.05f;
-  EXPECT_GT(bright / double(shot.data.size()), 0.1) << "hills are seen";
+  EXPECT_GT(bright / double(shot.data.size()), 0.05) << "hills are seen";
 }
 
 }  // namespace

@@ -159,8 +159,8 @@ Status show(const Options& options) {
 std::filesystem::path picture_file(const Options& options, int number) {
   if (options.turn_frames == 0) return options.screenshot;
   std::filesystem::path out = options.screenshot;
-  return out.replace_filename(fmt::format("{}-{:03}{}", out.stem().string(), number,
-                                          out.extension().string()));
+  return out.replace_filename(
+      fmt::format("{}-{:03}{}", out.stem().string(), number, out.extension().string()));
 }
 
 /// One picture, or those of a turn, without a window.
@@ -180,8 +180,8 @@ Status draw_offscreen(const Options& options) {
   const auto write = [&](int number, const image::Image8& picture) {
     return write_file_atomically(picture_file(options, number), image::encode_png(picture));
   };
-  LUXEL_TRY_STATUS(view_window::draw_offscreen(commands, *subject, std::move(to_draw.beside),
-                                               params, write));
+  LUXEL_TRY_STATUS(
+      view_window::draw_offscreen(commands, *subject, std::move(to_draw.beside), params, write));
   LUXEL_TRY(const std::string said, subject->end());
   if (!said.empty()) std::fprintf(stderr, "%s\n", said.c_str());
   std::fprintf(stderr, "wrote %s, drawn by %s\n",

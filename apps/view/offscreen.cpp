@@ -29,10 +29,11 @@ Status check_no_window(const view::Play& play, const std::string& name) {
   for (const view::TimedEvent& timed : play.events)
     if (std::holds_alternative<view::OpenAsked>(timed.event) ||
         std::holds_alternative<view::ScaleChanged>(timed.event) ||
+        std::holds_alternative<view::WindowClosed>(timed.event) ||
         std::holds_alternative<view::DeviceLost>(timed.event))
       return fail(ErrorCode::bad_input,
-                  "{}: \"open\", \"scale\" and \"lose\" are for a window; play it without "
-                  "--offscreen",
+                  "{}: \"open\", \"scale\", \"close\" and \"lose\" are for a window; play it "
+                  "without --offscreen",
                   name);
   return {};
 }
@@ -124,8 +125,7 @@ Status draw_offscreen(gpu::Commands& commands, Subject& subject,
   if (params.play) LUXEL_TRY_STATUS(play_all(*params.play, commands, walk, subject));
   LUXEL_TRY(view::Frame frame, frame_of(commands, walk, subject));
   Easel easel;
-  LUXEL_TRY_STATUS(
-      set_up(commands, frame, std::move(beside), walk, subject.shown(), easel));
+  LUXEL_TRY_STATUS(set_up(commands, frame, std::move(beside), walk, subject.shown(), easel));
   const view::Walk begun = walk;
   for (int k = 0; k < std::max(params.turn_frames, 1); ++k) {
     if (k > 0) {

@@ -63,8 +63,7 @@ PartsPanel parts_panel(const view::Frame& frame, const view::ShownScene& shown) 
   out.has_probes = shown.probes || !shown.folder.empty();
   out.shows_probes = frame.shows_probes;
   out.parts = kPartWords;
-  out.most_bounces =
-      shown.bounced ? int(shown.bounced->after.size()) - 1 : int(view::kMostBounces);
+  out.most_bounces = shown.bounced ? int(shown.bounced->after.size()) - 1 : int(view::kMostBounces);
   const auto* part = std::ranges::find_if(
       view::kParts, [&](const view::PartName& known) { return known.light == frame.light; });
   out.part = part == view::kParts.end() ? -1 : int(part - view::kParts.begin());
@@ -79,8 +78,8 @@ PartsPanel parts_panel(const view::Frame& frame, const view::ShownScene& shown) 
 
 void take_parts(const PartsPanel& panel, const PartsPanel& before, view::Frame& frame) {
   frame.shows_probes = panel.shows_probes;
-  const bool is_changed = panel.part != before.part || panel.bounces != before.bounces ||
-                          panel.is_one != before.is_one;
+  const bool is_changed =
+      panel.part != before.part || panel.bounces != before.bounces || panel.is_one != before.is_one;
   if (!is_changed) return;
   const auto most = uint32_t(panel.bounces);
   frame.light = panel.part >= 0 ? view::kParts[size_t(panel.part)].light

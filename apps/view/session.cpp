@@ -81,12 +81,18 @@ constexpr int kFramesToSettle = 3;
 /// So often the panel tells how a bake goes on.
 constexpr double kReport_s = 0.5;
 
-/// The same file is looked at as before it was opened again.
+/// The same file is looked at as before it was opened again; from elsewhere if its first view is
+/// another one.
 void go_on_as(const view::Walk& before, view::Walk& walk) {
   const float stops = before.shown.exposure / before.first.exposure;
   const float exposure = walk.first.exposure * stops;
-  walk.shown = before.shown, walk.shown.exposure = exposure;
-  walk.target = before.target, walk.bookmarks = before.bookmarks, walk.turns = before.turns;
+  view::SubjectHabits known;
+  known.view = view::LastView{before.first.camera, before.shown.camera};
+  const scene::Camera camera = view::camera_to_begin(known, walk.first.camera);
+  if (camera.world_from_camera == before.shown.camera.world_from_camera)
+    walk.target = before.target;
+  walk.shown = before.shown, walk.shown.camera = camera, walk.shown.exposure = exposure;
+  walk.bookmarks = before.bookmarks, walk.turns = before.turns;
   if (!walk.first.beside) walk.shown.beside.reset();
 }
 
@@ -127,7 +133,7 @@ Result<bool> fit(Session& s) {
 Result<bool> follow(Session& s) {
   LUXEL_TRY(const Followed followed, s.subject->follow(*s.screen.commands, s.panel.message));
   if (followed.is_another) s.screen.looking = {}, s.shows_scene = false;
-  if (followed.has_scene && s.fits) begin(*s.subject.shown().read, s);
+  if (followed.has_scene && s.fits) begin(*s.subject->shown().read, s);
   if (!followed.has_news && seconds_since(s.last_report) < kReport_s) return false;
   s.last_report = Clock::now();
   return followed.has_news || s.subject->work() == Work::at_work;
@@ -148,6 +154,8 @@ void take(const view::Event& event, Session& s) {
     s.scale = changed->to;
     return;
   }
+  if (std::holds_alternative<view::WindowClosed>(event))
+    return glfwSetWindowShouldClose(s.window.get(), GLFW_TRUE);
   if (std::holds_alternative<view::DeviceLost>(event)) return lose_device(s);
   if (!s.subject->take(event, *s.walk)) view::handle(event, s.place_seen, *s.walk);
 }
@@ -196,7 +204,8 @@ bool play_on(Session& s) {
   if (!s.walk) return true;
   const view::Play& play = *s.params.play;
   const view::Step step = view::step(
-      play, is_at_work(*s.subject) || is_opening(s), [&](const view::Event& event) { take(event, s); }, s.played);
+      play, is_at_work(*s.subject) || is_opening(s),
+      [&](const view::Event& event) { take(event, s); }, s.played);
   if (step == view::Step::next) view::pass(1 / play.frames_per_s, *s.walk);
   return step != view::Step::ends;
 }
@@ -250,7 +259,8 @@ Result<bool> go_on(Session& s) {
     view::pass(std::min(passed, 0.1), *s.walk);
   }
   const double faded_s = s.params.play ? 1 / s.params.play->frames_per_s : passed;
-  LUXEL_TRY_STATUS(pass_light(faded_s, *s.screen.commands, s.walk ? &*s.walk : nullptr, *s.subject));
+  LUXEL_TRY_STATUS(
+      pass_light(faded_s, *s.screen.commands, s.walk ? &*s.walk : nullptr, *s.subject));
   const bool goes_on = !s.params.play || play_on(s);
   if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
   if (s.walk) look(s);
@@ -282,7 +292,7 @@ Status show(Session s) {
   if (const Status kept = keep_habits(s); !kept)
     std::fprintf(stderr, "warning: %s\n", kept.error().message.c_str());
   if (!goes_on) return tl::unexpected(goes_on.error());
-  if (s.params.play) LUXEL_TRY_STATUS(end_play(s));
+  if (s.params.play && !glfwWindowShouldClose(s.window.get())) LUXEL_TRY_STATUS(end_play(s));
   if (!s.params.frame_table.empty()) {
     const std::string csv = csv_of(s.table);
     LUXEL_TRY_STATUS(

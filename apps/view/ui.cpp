@@ -59,7 +59,7 @@ class ImGuiUi : public Ui {
     if (pass_ == VK_NULL_HANDLE || pool_ == VK_NULL_HANDLE) return false;
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;  // nothing is written where the program is run
-    ImGui::GetIO().Fonts->Build();  // record() puts them on the device
+    ImGui::GetIO().Fonts->Build();         // record() puts them on the device
     has_context_ = true;
     if (!ImGui_ImplGlfw_InitForVulkan(window, true)) return false;
     has_window_ = true;

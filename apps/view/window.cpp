@@ -87,8 +87,8 @@ Window& Window::of(GLFWwindow* window) {
 void Window::listen() {
   glfwSetWindowUserPointer(window_, this);
   glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { of(w).has_changed_ = true; });
-  glfwSetWindowContentScaleCallback(
-      window_, [](GLFWwindow* w, float, float) { of(w).has_changed_ = true; });
+  glfwSetWindowContentScaleCallback(window_,
+                                    [](GLFWwindow* w, float, float) { of(w).has_changed_ = true; });
   glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
     of(w).has_changed_ = true;
     of(w).dropped_.assign(paths, paths + count);

@@ -44,7 +44,8 @@ Result<gpu::Pipeline> make_probe_shader(const gpu::Device& device, VkFormat colo
 Result<DeviceProbes> put_probes(const gpu::Device& device, const ProbeBalls& balls) {
   DeviceProbes out;
   std::vector<DeviceProbe> probes;
-  for (const light::Probe& probe : balls.probes) probes.push_back({probe.position, probe.irradiance});
+  for (const light::Probe& probe : balls.probes)
+    probes.push_back({probe.position, probe.irradiance});
   out.count = uint32_t(probes.size()), out.radius_m = radius_of(balls);
   if (probes.empty()) probes.resize(1);  // no buffer is empty
   LUXEL_TRY(out.probes,

@@ -59,8 +59,8 @@ class ProbeDrawing : public testing::OnDevice {
     const auto painter = make_painter(*device_, *shaders_, *scene, kBallPixels, kBallPixels);
     const auto probes = put_probes(*device_, room.balls);
     EXPECT_TRUE(scene && painter && probes);
-    auto picture = painted_radiance(*commands_, {*shaders_, *painter, *scene, nullptr, &*probes},
-                                    room.frame);
+    auto picture =
+        painted_radiance(*commands_, {*shaders_, *painter, *scene, nullptr, &*probes}, room.frame);
     EXPECT_TRUE(picture);
     return std::move(*picture);
   }

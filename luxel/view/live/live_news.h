@@ -53,8 +53,8 @@ struct LiveNews {
   /// The newest light reflection by reflection, as far as it is known; laid out as it is.
   std::shared_ptr<const BouncedLight> bounced;
   std::shared_ptr<const ProbeBalls> probes;  ///< of a bake with --probes, with the last light
-  std::vector<std::string> warnings;  ///< pipeline::Bake::warnings, with the last light
-  std::optional<std::string> said;    ///< of saving, or why there is no light; a sentence
+  std::vector<std::string> warnings;         ///< pipeline::Bake::warnings, with the last light
+  std::optional<std::string> said;           ///< of saving, or why there is no light; a sentence
 };
 
 /// What is newer takes the place of what is older.

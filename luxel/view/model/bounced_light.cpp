@@ -87,11 +87,12 @@ Result<BouncedLight> read_bounced(const std::filesystem::path& folder,
     out.after.push_back(std::move(pages));
   }
   if (out.after.empty())
-    return fail(ErrorCode::bad_input,
-                "{0} has all light in one; `luxel bake SCENE -o {0}/bounces-0 --bounces 0`, with the "
-                "other options of that bake, makes its direct light, bounces-1 that after one "
-                "reflection, and so on",
-                folder.string());
+    return fail(
+        ErrorCode::bad_input,
+        "{0} has all light in one; `luxel bake SCENE -o {0}/bounces-0 --bounces 0`, with the "
+        "other options of that bake, makes its direct light, bounces-1 that after one "
+        "reflection, and so on",
+        folder.string());
   return out;
 }
 

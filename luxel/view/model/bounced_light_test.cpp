@@ -10,7 +10,8 @@ using ::testing::HasSubstr;
 
 image::Image page_of(Rgb light) {
   image::Image out(3, 2, 4);
-  for (int i = 0; i < 6; ++i) out.set_rgb(i % 3, i / 3, light * float(i)), out.at(i % 3, i / 3)[3] = 0.5f;
+  for (int i = 0; i < 6; ++i)
+    out.set_rgb(i % 3, i / 3, light * float(i)), out.at(i % 3, i / 3)[3] = 0.5f;
   return out;
 }
 
@@ -29,9 +30,9 @@ TEST(BouncedLight, IsToldApartByReflections) {
   const struct {
     LightShown light;
     float part;
-  } cases[] = {{{}, 1},          {{0, 0}, 0.5f},    {{1, std::nullopt}, 0.5f},
-               {{0, 2}, 0.875f}, {{1, 1}, 0.25f},   {{2, 2}, 0.125f},
-               {{1, 2}, 0.375f}, {{3, std::nullopt}, 0.125f}};
+  } cases[] = {
+      {{}, 1},         {{0, 0}, 0.5f},   {{1, std::nullopt}, 0.5f}, {{0, 2}, 0.875f},
+      {{1, 1}, 0.25f}, {{2, 2}, 0.125f}, {{1, 2}, 0.375f},          {{3, std::nullopt}, 0.125f}};
   for (const auto& c : cases) {
     const auto part = part_of(c.light, h.bounced, h.all);
     ASSERT_TRUE(part) << part.error().message;

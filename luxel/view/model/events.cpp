@@ -93,6 +93,7 @@ std::optional<Event> look_event_of(const json& from) {
     const auto to = from["scale"].get<float>();
     return to >= 0.5f && to <= 8 ? std::optional<Event>(ScaleChanged{to}) : std::nullopt;
   }
+  if (from.contains("close") && from["close"] == "window") return WindowClosed{};
   if (from.contains("lose") && from["lose"] == "device") return DeviceLost{};
   if (from.contains("open")) return OpenAsked{from["open"].get<std::string>()};
   if (from.contains("channel")) {

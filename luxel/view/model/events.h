@@ -97,6 +97,8 @@ struct OpenAsked {
 struct ScaleChanged {
   float to = 1;
 };
+/// The user closes the window, whatever goes on.
+struct WindowClosed {};
 /// The device is lost from here on, as after a crash of its driver: for tests.
 struct DeviceLost {};
 // What is edited of a scene.
@@ -133,7 +135,7 @@ using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, La
                            LayerChanged, BesideChanged, SplitMoved, InstanceSelected, LampSelected,
                            MaterialSelected, InstanceChanged, LampRemoved, MaterialChanged,
                            ToolChanged, ToolUsed, SelectionStepped, PartChanged, ProbesChanged,
-                           OpenAsked, ScaleChanged, DeviceLost, WaitForBake>;
+                           OpenAsked, ScaleChanged, WindowClosed, DeviceLost, WaitForBake>;
 
 /// Whether an event changes lamps or what glows; or something else of a scene.
 bool changes_lamps(const Event& event);

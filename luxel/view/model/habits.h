@@ -33,7 +33,7 @@ struct PanelHabits {
 };
 
 struct Habits {
-  bool is_light = false;              ///< dark letters on a light panel
+  bool is_light = false;  ///< dark letters on a light panel
   PanelHabits panel;
   std::vector<SubjectHabits> recent;  ///< the newest first; at most kMostRecent
 };

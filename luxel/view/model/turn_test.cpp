@@ -16,8 +16,9 @@ Walk before_a_post() {
   first.camera.world_from_camera = translation({0, 1, 10});
   Box3 bounds;
   bounds.extend({-1, 0, 3}), bounds.extend({1, 2, 5});
-  return begin_walk(first, bounds, 300, 200,
-                    [](const Frame&, Vec2) { return std::optional(Vec3{0, 1, 4}); });
+  return begin_walk(first, bounds, 300, 200, [](const Frame&, Vec2) {
+    return std::optional(Vec3{0, 1, 4});
+  });
 }
 
 void expect_eye(const scene::Camera& camera, Vec3 place) {

@@ -56,8 +56,8 @@ Walk begin_walk(const Frame& first, const Box3& bounds, int width, int height,
 /// The wheel goes towards the place under the pointer.
 void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk);
 
-/// What goes on while keys are down: flying, a fifth of the scene's size per second. A walk that turns
-/// comes round once in kTurn_s.
+/// What goes on while keys are down: flying, a fifth of the scene's size per second. A walk that
+/// turns comes round once in kTurn_s.
 void pass(double seconds, Walk& walk);
 inline constexpr double kTurn_s = 20;
 

@@ -159,8 +159,8 @@ TEST(Walk, AKeyOfEveryLineOfTheListDoesSomething) {
     const bool changed =
         walk.shown.show != before.shown.show || walk.shown.exposure != before.shown.exposure ||
         walk.bookmarks[0]->brightness != before.bookmarks[0]->brightness ||
-        walk.shown.light != before.shown.light ||
-        walk.turns != before.turns || walk.shown.shows_probes != before.shown.shows_probes ||
+        walk.shown.light != before.shown.light || walk.turns != before.turns ||
+        walk.shown.shows_probes != before.shown.shows_probes ||
         walk.asked.size() != before.asked.size() || length(eye_of(walk) - eye_of(before)) > 0;
     EXPECT_TRUE(changed) << key.key;
   }

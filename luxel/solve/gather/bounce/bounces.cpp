@@ -225,8 +225,7 @@ Status bounce_by_bounce(const atlas::TexelMap& map, const transport::Elements& e
                         Progress& progress) {
   const size_t n = elements.size();
   LUXEL_CHECK(direct.size() == n && map.texels.size() == n && hits.sky.size() == n);
-  Bouncing bouncing{
-      map, elements, hits, direct, behind, progress, 0, reflectance_range(elements)};
+  Bouncing bouncing{map, elements, hits, direct, behind, progress, 0, reflectance_range(elements)};
   for (size_t i = 0; i < n; ++i) bouncing.out.irradiance.push_back(source_of(hits, direct, i));
   bouncing.out.variance.assign(n, 0.0f), bouncing.out.split_variance.assign(n, 0.0f);
   bouncing.radiosity = empty_radiosity_map(map.resolution);

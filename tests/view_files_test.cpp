@@ -192,7 +192,8 @@ TEST_F(ViewFiles, SlowMillionTrianglesAreDrawn) {
   if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
   const std::string scene = s_.write("hills.ply", hills(708)).string();
   const auto begin = std::chrono::steady_clock::now();
-  const image::Image shot = picture(scene + play(R"({"at": 0.2, "close": "window"})", "1"), kWindow);
+  const image::Image shot =
+      picture(scene + play(R"({"at": 0.2, "close": "window"})", "1"), kWindow);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   rusage use{};

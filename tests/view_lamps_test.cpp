@@ -1,6 +1,9 @@
 // luxel-view of an .lxr file: lamps that a play moves, in a window and without one.
 #include <gmock/gmock.h>
 
+#include <numeric>
+
+#include "luxel/image/flip.h"
 #include "tests/pictures.h"
 #include "tests/relight_command.h"
 
@@ -62,6 +65,42 @@ TEST_F(ViewOfLamps, IsWhatAPlayMakesOfThem) {
   EXPECT_GT(left, 4 * other) << "red light alone";
   // Off again, and what glowed glows as it did.
   EXPECT_EQ(shown(R"({"at": 0, "new_lamp": "point", "on": false}, {"at": 0, "key": "m"})"), first);
+}
+
+// What is saved is drawn by `luxel relight`, by rays and with its own look-up of texels.
+TEST_F(ViewOfLamps, SavesAScriptThatRelightDraws) {
+  const CommandResult saved =
+      view_lamps(lxr_ + offscreen("window.png") +
+                 play_of(kRedLamp + R"(, {"at": 0.25, "scroll": 1}, {"at": 0.25, "key": "+"},
+                                        {"at": 0.25, "key": "ctrl+s"})"));
+  ASSERT_EQ(saved.code, 0) << saved.err;
+  const auto script = s_.path / "box-lamps.json";
+  EXPECT_THAT(saved.err, HasSubstr("wrote " + script.string()));
+  const CommandResult drawn = play(lxr_, script, s_.path / "frames");
+  ASSERT_EQ(drawn.code, 0) << drawn.err;
+  const image::Image window = png_at(s_.path / "window.png"),
+                     frame = png_at(s_.path / "frames" / "frame-0000.png"),
+                     first = png_at(s_.path / "first.png");
+  const auto mean_flip = [&](const image::Image& picture) {
+    const image::Image flip = image::flip(window, picture);
+    return std::accumulate(flip.data.begin(), flip.data.end(), 0.0) / double(flip.data.size());
+  };
+  EXPECT_LT(mean_flip(frame), 0.05);
+  EXPECT_GT(mean_flip(first), 0.2);
+}
+
+// The path tracer lights the same lamps, or its light would be another altogether.
+TEST_F(ViewOfLamps, AreComparedWithPaths) {
+  const CommandResult r =
+      view_lamps(lxr_ + offscreen("compared.png") +
+                 play_of(kRedLamp + R"(, {"at": 0.25, "key": "c"}, {"at": 0.25, "wait": "bake"})"));
+  ASSERT_EQ(r.code, 0) << r.err;
+  const size_t at = r.err.find(" texels is ");
+  ASSERT_NE(at, std::string::npos) << r.err;
+  const double percent = std::stod(r.err.substr(at + 11));
+  EXPECT_GT(percent, 0.1) << "there are only 300 patches";
+  EXPECT_LT(percent, 20);
+  EXPECT_THAT(r.err, HasSubstr("off the path tracer's"));
 }
 
 TEST_F(ViewOfLamps, AWindowShowsTheSame) {

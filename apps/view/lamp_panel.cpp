@@ -92,6 +92,17 @@ void lay_out_times(const std::vector<StageTimes>& history) {
   ImGui::Text("%.0f pictures/s", 1000 / std::max(1e-3, double(sum_of(mean))));
 }
 
+void lay_out_buttons(LampPanel& panel) {
+  panel.asks_to_save = ImGui::Button("save lamps");
+  ImGui::SameLine();
+  panel.asks_to_check = ImGui::Button(panel.checked < 0 ? "compare with paths" : "stop comparing");
+  if (panel.checked >= 0) ImGui::ProgressBar(panel.checked, {ImGui::GetFontSize() * 18, 0});
+  if (panel.found.empty()) return;
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 20);
+  ImGui::TextUnformatted(panel.found.c_str());
+  ImGui::PopTextWrapPos();
+}
+
 }  // namespace
 
 void lay_out_lamps(LampPanel& panel) {
@@ -107,6 +118,7 @@ void lay_out_lamps(LampPanel& panel) {
   }
   if (!panel.glows.empty() && ImGui::CollapsingHeader("materials that glow"))
     lay_out_lines(panel.glows, panel.selected_glow);
+  lay_out_buttons(panel);
   ImGui::SetNextItemOpen(true, ImGuiCond_Once);
   if (ImGui::CollapsingHeader("time")) lay_out_times(panel.history);
   ImGui::PopItemWidth();

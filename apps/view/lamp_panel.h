@@ -27,7 +27,12 @@ struct LampPanel {
   std::vector<LampLine> lamps, glows;
   int selected = -1, selected_glow = -1;                         ///< may be changed; -1: none
   bool adds_point = false, adds_spot = false, adds_sun = false;  ///< changed: a lamp more
-  std::vector<StageTimes> history;  ///< of the last pictures, the newest last
+  /// Against the path tracer: how far that has come, -1 where nothing is compared; and what it
+  /// found.
+  float checked = -1;
+  std::string found;
+  bool asks_to_save = false, asks_to_check = false;  ///< changed; the second stops it, too
+  std::vector<StageTimes> history;                   ///< of the last pictures, the newest last
 };
 
 /// Lays itself out in the window of ImGui that is open.

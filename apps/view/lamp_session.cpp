@@ -9,6 +9,7 @@ namespace luxel::view_window {
 namespace {
 
 constexpr size_t kHistory = 120;
+constexpr view::LampCheckParams kCheck;
 
 std::array<float, 3> numbers(Vec3 v) { return {v.x, v.y, v.z}; }
 Vec3 vector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
@@ -94,6 +95,10 @@ LampPanel panel_of(const LampSession& session) {
   out.selected = session.desk.selected ? int(*session.desk.selected) : -1;
   out.selected_glow = session.selected_glow;
   out.history = session.history;
+  if (session.check) out.checked = session.check->share();
+  out.found = session.found;
+  if (!out.found.empty() && session.found_of != session.desk.changes)
+    out.found = "Before the lamps changed: " + out.found;
   return out;
 }
 
@@ -117,6 +122,23 @@ void take_changes(const LampPanel& panel, float exposure, LampSession& session) 
   if (panel.adds_point) add(scene::LightKind::point, exposure, session);
   if (panel.adds_spot) add(scene::LightKind::spot, exposure, session);
   if (panel.adds_sun) add(scene::LightKind::directional, exposure, session);
+}
+
+void begin_or_stop_check(LampSession& session) {
+  if (session.check) {
+    session.check.reset();
+    return;
+  }
+  session.found_of = session.desk.changes;
+  session.check = view::LampCheck::begin(session.opened, session.desk.lamps, kCheck);
+}
+
+bool take_check(LampSession& session) {
+  const auto result = session.check ? session.check->result() : std::nullopt;
+  if (!result) return false;
+  session.found = *result ? view::sentence_of(**result, kCheck) : result->error().message;
+  session.check.reset();
+  return true;
 }
 
 Result<view::LightTimes> light_lamps(gpu::Commands& commands, view::DeviceScene& scene,

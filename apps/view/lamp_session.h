@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/view/lamp_panel.h"
+#include "luxel/view/relight/lamp_check.h"
 #include "luxel/view/relight/lamp_desk.h"
 #include "luxel/view/relight/relit_scene.h"
 
@@ -13,7 +14,10 @@ struct LampSession {
   view::LampDesk desk;
   uint64_t lit = 0;  ///< view::LampDesk::changes that the picture shows
   int selected_glow = -1;
-  std::vector<StageTimes> history = {};  ///< of the last pictures
+  std::vector<StageTimes> history = {};         ///< of the last pictures
+  std::unique_ptr<view::LampCheck> check = {};  ///< null: nothing is compared
+  std::string found = {};                       ///< by the last one that came to its end
+  uint64_t found_of = 0;                        ///< view::LampDesk::changes that it is about
 };
 
 LampSession begin_lamps(view::OpenedLxr opened, view::DirectLight direct);
@@ -22,6 +26,11 @@ LampSession begin_lamps(view::OpenedLxr opened, view::DirectLight direct);
 LampPanel panel_of(const LampSession& session);
 /// What the user has changed in it. New lamps are bright at this exposure.
 void take_changes(const LampPanel& panel, float exposure, LampSession& session);
+
+/// Begins to compare the light with the path tracer's, or stops that.
+void begin_or_stop_check(LampSession& session);
+/// Takes what was found. True: there is something.
+bool take_check(LampSession& session);
 
 /// Light follows the lamps where they have changed. Returns what it took. Nothing may still draw
 /// the scene. Errors: the device is lost, no memory.

@@ -1,6 +1,7 @@
 // An .lxr file, whose lamps move.
 #include "apps/view/lamp_session.h"
 #include "apps/view/subject.h"
+#include "luxel/view/relight/lamp_script.h"
 
 namespace luxel::view_window {
 namespace {
@@ -18,15 +19,33 @@ class LampSubject : public Subject {
     return out;
   }
   Status check(const view::Play& play, const std::string& name) const override {
+    LUXEL_TRY_STATUS(view::check_no_inside(play, name));
     return view::check_lamps(play, lamps_.opened.lamps, name);
   }
 
+  Result<Followed> follow(gpu::Commands&, std::string& message) override {
+    Followed out;
+    out.has_news = take_found() || !said_.empty();
+    if (!said_.empty()) message = std::exchange(said_, {});
+    return out;
+  }
+  Work work() const override { return lamps_.check ? Work::at_work : Work::at_rest; }
+
   bool take(const view::Event& event, const view::Walk& walk) override {
+    const auto* key = std::get_if<view::KeyChanged>(&event);
+    if (key && key->is_down && key->key == "ctrl+s") {
+      save(walk);
+      return true;
+    }
+    if (key && key->is_down && key->key == "c") begin_or_stop_check(lamps_);
     return view::handle_lamps(event, walk, lamps_.desk);
   }
   void fill(Panel& panel) const override { panel.lamps = panel_of(lamps_); }
   void take(const Panel& panel, const view::Walk* walk) override {
-    if (walk) take_changes(*panel.lamps, walk->shown.exposure, lamps_);
+    if (!walk) return;
+    take_changes(*panel.lamps, walk->shown.exposure, lamps_);
+    if (panel.lamps->asks_to_save) save(*walk);
+    if (panel.lamps->asks_to_check) begin_or_stop_check(lamps_);
   }
 
   Status prepare(gpu::Commands& commands, const view::Walk& walk, view::Frame& frame) override {
@@ -36,10 +55,38 @@ class LampSubject : public Subject {
   }
   void has_drawn(float milliseconds) override { add_times(lit_, milliseconds, lamps_); }
 
+  Result<std::string> end() override {
+    if (lamps_.check) lamps_.check->wait();
+    take_found();
+    if (failed_) return tl::unexpected(*failed_);
+    return said_at_end_;
+  }
+
  private:
+  void save(const view::Walk& walk) {
+    const auto saved = view::write_lamps(
+        lamps_.opened.file, view::script_of(lamps_.desk.lamps, lamps_.opened.lamps, walk));
+    said_ = saved ? *saved : saved.error().message;
+    if (saved)
+      tell(said_);
+    else
+      failed_ = saved.error();
+  }
+  bool take_found() {
+    const bool has_found = take_check(lamps_);
+    if (has_found) tell(lamps_.found);
+    return has_found;
+  }
+  void tell(const std::string& sentence) {
+    said_at_end_ += (said_at_end_.empty() ? "" : "\n") + sentence;
+  }
+
   LampSession lamps_;
   view::ShownScene shown_;
-  view::LightTimes lit_;  ///< what the light of the last frame took
+  view::LightTimes lit_;     ///< what the light of the last frame took
+  std::string said_;         ///< what the panel is yet to tell
+  std::string said_at_end_;  ///< what is to be told after a play
+  std::optional<Error> failed_;
 };
 
 }  // namespace

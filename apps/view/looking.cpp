@@ -117,7 +117,8 @@ void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const L
   static constexpr std::array<uint32_t, 0> kNone{};
   static const std::array<uint32_t, 256> colors = view::packed_false_colors();
   panel = {};
-  panel.kinds = kKindWords;
+  // Light that is not in a lightmap cannot be looked into.
+  if (!shown.has_light || !shown.lightmaps.pictures.empty()) panel.kinds = kKindWords;
   panel.kind = view::looks_into_bake(frame.show) ? int(size_t(frame.show) - kFirstKind) : -1;
   panel.colors = kNone;
   panel.channel = int(frame.channel);

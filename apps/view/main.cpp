@@ -28,6 +28,7 @@ constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kOutOfResource = 3;
 struct Options {
   std::filesystem::path subject, beside, screenshot, play, frame_table;
   std::string size, device;
+  std::string inside;  ///< a solver's name; empty: a scene is baked
   bool offscreen = false;
   int turn_frames = 0;           ///< of --turntable; 0: one picture
   int width = 0, height = 0;     ///< 0: as preview.png
@@ -56,6 +57,24 @@ bool is_scene(const std::filesystem::path& subject) {
   return !view::is_lxr(subject) && std::filesystem::is_regular_file(subject, ignored);
 }
 
+constexpr std::string_view kHierarchical = "hierarchical";
+
+/// Errors: a solver that cannot be looked into, a bake that is there.
+Status check_inside(const Options& options) {
+  const std::string& solver = options.choice.solver;
+  if (options.inside != kHierarchical)
+    return fail(ErrorCode::bad_setting, "--inside '{}' cannot be looked into; there is: {}",
+                options.inside, kHierarchical);
+  if (!is_scene(options.subject))
+    return fail(ErrorCode::bad_setting,
+                "--inside is for a scene, whose light is made while you look; {} is no such file",
+                options.subject.string());
+  if (!solver.empty() && solver != options.inside)
+    return fail(ErrorCode::bad_setting, "--solver {} contradicts --inside {}", solver,
+                options.inside);
+  return {};
+}
+
 /// Errors: options of a bake beside a bake that is there, or a second bake beside none.
 Status check_choice(const Options& options) {
   const arguments::BakeChoice& choice = options.choice;
@@ -63,6 +82,7 @@ Status check_choice(const Options& options) {
     return fail(ErrorCode::bad_setting,
                 "--beside shows a second bake beside a first one; {} is no folder of a bake",
                 options.subject.string());
+  if (!options.inside.empty()) LUXEL_TRY_STATUS(check_inside(options));
   std::string flag;
   if (!choice.solver.empty()) flag = "--solver";
   if (!choice.settings.empty()) flag = "--settings";
@@ -77,6 +97,7 @@ Status check_choice(const Options& options) {
 Result<pipeline::BakeSettings> settings_of(const Options& options) {
   arguments::BakeChoice choice = options.choice;
   choice.scene = options.subject;
+  if (!options.inside.empty()) choice.solver = options.inside;
   if (choice.output.empty())
     choice.output = std::filesystem::path("baked") / options.subject.stem();
   LUXEL_TRY(pipeline::BakeSettings settings, arguments::settings_of(choice));
@@ -109,7 +130,8 @@ Result<Opened> opened(const Options& options) {
   Opened out;
   if (is_scene(options.subject)) {
     LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
-    out.make = view_window::live_subject(settings);
+    out.make = options.inside.empty() ? view_window::live_subject(settings)
+                                      : view_window::inside_subject(settings);
   } else if (view::is_lxr(options.subject)) {
     LUXEL_TRY(view::OpenedLxr lxr, view::open_lxr(options.subject));
     out.make = view_window::lamp_subject(std::move(lxr));
@@ -208,6 +230,9 @@ void add_own(CLI::App& app, Options& options) {
       ->type_name("FOLDER");
   app.add_option("--beside", options.beside, "The folder of a second bake, to be compared")
       ->type_name("FOLDER");
+  app.add_option("--inside", options.inside,
+                 "Look into a solver while it makes the light of a scene: hierarchical")
+      ->type_name("SOLVER");
   auto* screenshot = app.add_option("--screenshot", options.screenshot,
                                     "The picture to write: .png; of a window at the end of --play");
   auto* offscreen =

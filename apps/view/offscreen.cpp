@@ -20,6 +20,8 @@ Status finish_work(gpu::Commands& commands, view::Walk* walk, Subject& subject) 
     if (subject.work() == Work::failed) return fail(ErrorCode::bad_input, "{}", message);
     LUXEL_TRY_STATUS(pass_light(view::kFade_s, commands, walk, subject));
     if (!is_at_work(subject)) return {};
+    // What is looked at is asked for.
+    if (walk) LUXEL_TRY_STATUS(frame_of(commands, *walk, subject).map([](const view::Frame&) {}));
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
@@ -65,15 +67,17 @@ struct Easel {
   Looking looking, looking_beside;
   std::optional<view::ShownScene> beside;
   std::optional<view::Pair> pair;
+  const view::Additions* additions = nullptr;  ///< of the subject
 
   view::Canvas canvas(const view::DeviceScene& scene) const {
-    return {shaders, painter, scene, looking.overlay ? &*looking.overlay : nullptr,
-            looking.probes ? &*looking.probes : nullptr};
+    return {shaders,   painter,
+            scene,     looking.overlay ? &*looking.overlay : nullptr,
+            additions, looking.probes ? &*looking.probes : nullptr};
   }
   view::Canvas canvas_beside() const {
-    return {shaders, pair->second, beside->device,
-            looking_beside.overlay ? &*looking_beside.overlay : nullptr,
-            looking_beside.probes ? &*looking_beside.probes : nullptr};
+    return {shaders,        pair->second,
+            beside->device, looking_beside.overlay ? &*looking_beside.overlay : nullptr,
+            nullptr,        looking_beside.probes ? &*looking_beside.probes : nullptr};
   }
 };
 
@@ -124,7 +128,14 @@ Status draw_offscreen(gpu::Commands& commands, Subject& subject,
       view::begin_walk(first, scene::world_bounds(read.scene), width, height, place_seen);
   if (params.play) LUXEL_TRY_STATUS(play_all(*params.play, commands, walk, subject));
   LUXEL_TRY(view::Frame frame, frame_of(commands, walk, subject));
+  // The second time the camera is at rest.
+  LUXEL_TRY(frame, frame_of(commands, walk, subject));
+  while (is_at_work(subject)) {
+    LUXEL_TRY_STATUS(finish_work(commands, &walk, subject));
+    LUXEL_TRY(frame, frame_of(commands, walk, subject));
+  }
   Easel easel;
+  easel.additions = subject.additions();
   LUXEL_TRY_STATUS(set_up(commands, frame, std::move(beside), walk, subject.shown(), easel));
   const view::Walk begun = walk;
   for (int k = 0; k < std::max(params.turn_frames, 1); ++k) {

@@ -11,6 +11,8 @@
 
 #include "apps/view/bake_panel.h"
 #include "apps/view/lamp_panel.h"
+#include "apps/view/selection_panel.h"
+#include "apps/view/solver_panel.h"
 #include "apps/view/ui_look.h"
 #include "apps/view/ui_parts.h"
 
@@ -53,6 +55,8 @@ struct Panel {
   bool is_light = false;                  ///< changed: dark letters on light ground
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;
+  std::optional<SolverPanel> solver;
+  std::optional<SelectionPanel> selection;
   std::string message;  ///< what was done last
 };
 

@@ -24,19 +24,21 @@ struct Screen {
   view::Painter painter;  ///< of the window's size
   std::unique_ptr<Ui> ui;
   Looking looking;
-  view::ShownScene* beside = nullptr;  ///< a second scene; null: there is none
+  const view::Additions* additions = nullptr;  ///< of the subject
+  view::ShownScene* beside = nullptr;          ///< a second scene; null: there is none
   Looking looking_beside;
   std::optional<view::Pair> pair;  ///< of the window's size, where there is a second scene
   float flip = -1;                 ///< of what was drawn last; < 0: not known
 
   view::Canvas canvas(const view::DeviceScene& scene) const {
-    return {shaders, painter, scene, looking.overlay ? &*looking.overlay : nullptr,
-            looking.probes ? &*looking.probes : nullptr};
+    return {shaders,   painter,
+            scene,     looking.overlay ? &*looking.overlay : nullptr,
+            additions, looking.probes ? &*looking.probes : nullptr};
   }
   view::Canvas canvas_beside() const {
-    return {shaders, pair->second, beside->device,
-            looking_beside.overlay ? &*looking_beside.overlay : nullptr,
-            looking_beside.probes ? &*looking_beside.probes : nullptr};
+    return {shaders,        pair->second,
+            beside->device, looking_beside.overlay ? &*looking_beside.overlay : nullptr,
+            nullptr,        looking_beside.probes ? &*looking_beside.probes : nullptr};
   }
   bool has_pair(const view::Frame& frame) const { return pair && frame.beside; }
 };

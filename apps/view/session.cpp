@@ -105,6 +105,7 @@ void begin(const view::ReadScene& read, Session& s) {
         view::begin_walk(read.first, scene::world_bounds(read.scene), width, height, s.place_seen);
     begin_as_left(s.remembered, *s.walk);
     if (s.carried) go_on_as(*s.carried, *s.walk);
+    s.carried.reset();
   }
   s.walk->width = width, s.walk->height = height;
   s.views.clear();
@@ -313,6 +314,7 @@ Status show_in_window(const MakeSubject& make_subject, std::optional<view::Opene
   LUXEL_TRY(Screen screen, open_screen(*window, params.device));
   LUXEL_TRY(std::unique_ptr<Subject> subject, make_subject(*screen.commands));
   if (params.play) LUXEL_TRY_STATUS(subject->check(*params.play, params.play_name));
+  screen.additions = subject->additions();
   std::optional<view::ShownScene> second;
   if (beside) {
     LUXEL_TRY(second, view::bake_shown(*screen.commands, std::move(*beside)));

@@ -32,6 +32,7 @@ Status show_next(std::unique_ptr<Subject> subject, const std::filesystem::path& 
   s.screen.looking = {}, s.screen.looking_beside = {};
   s.screen.pair.reset(), s.screen.beside = nullptr;
   s.subject = std::move(subject);
+  s.screen.additions = s.subject->additions();
   s.shows_scene = false, s.still_frames = 0;
   s.walk.reset();
   s.path = full_path(path);

@@ -17,7 +17,8 @@ class BakedSubject : public Subject {
 }  // namespace
 
 Status Subject::check(const view::Play& play, const std::string& name) const {
-  return view::check_no_lamps(play, name);
+  LUXEL_TRY_STATUS(view::check_no_lamps(play, name));
+  return view::check_no_inside(play, name);
 }
 
 MakeSubject baked_subject(view::OpenedBake bake) {

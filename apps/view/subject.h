@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/view/panel.h"
+#include "luxel/view/draw/painter.h"
 #include "luxel/view/live/live_bake.h"
 #include "luxel/view/model/walk.h"
 #include "luxel/view/relight/open_lxr.h"
@@ -33,6 +34,8 @@ class Subject {
   virtual ~Subject() = default;
 
   virtual view::ShownScene& shown() = 0;
+  /// What is drawn besides or instead of its surfaces; null: nothing.
+  virtual const view::Additions* additions() const { return nullptr; }
   /// Keys of its own, for F1.
   virtual std::vector<KeyLine> keys() const { return {}; }
   /// Errors: events of a play that are not for it; `name` is the play's.
@@ -75,6 +78,8 @@ using OpenSubject = std::function<Result<MakeSubject>(const std::filesystem::pat
 MakeSubject baked_subject(view::OpenedBake bake);
 /// A bake that is being made; it begins now.
 MakeSubject live_subject(const pipeline::BakeSettings& settings);
+/// Hierarchical radiosity of a scene, looked into; it begins now.
+MakeSubject inside_subject(const pipeline::BakeSettings& settings);
 /// An .lxr file, whose lamps move.
 MakeSubject lamp_subject(view::OpenedLxr opened);
 

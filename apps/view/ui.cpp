@@ -109,6 +109,7 @@ class ImGuiUi : public Ui {
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     const float right = lay_out_panel(panel);
+    if (panel.selection) lay_out_selection(*panel.selection);
     if (panel.keys_open) lay_out_keys(right, panel);
     ImGui::Render();
   }
@@ -166,6 +167,7 @@ class ImGuiUi : public Ui {
     ImGui::TextUnformatted(panel.about.c_str());
     lay_out_again(panel);
     if (panel.bake) lay_out_bake(*panel.bake);
+    if (panel.solver) lay_out_solver(*panel.solver);
     ImGui::RadioButton("light and colour", &panel.show, 0);
     ImGui::RadioButton("light", &panel.show, 1);
     ImGui::RadioButton("colour", &panel.show, 2);

@@ -123,7 +123,7 @@ void lay_out_look(LookPanel& look) {
   lay_out_beside(look);
   lay_out_histogram(look);
   if (look.has_layers) lay_out_layers(look);
-  lay_out_choice("##look", look.kinds, "look into the bake", look.kind);
+  if (!look.kinds.empty()) lay_out_choice("##look", look.kinds, "look into the bake", look.kind);
   if (look.kind < 0 && !look.has_scale) return;
   if (!look.channels.empty()) lay_out_choice("##channel", look.channels, "", look.channel);
   if (look.has_scale) {

@@ -1,9 +1,12 @@
 // A scene in memory that a viewer shows: what the mouse points at, and where looking begins.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "luxel/base/result.h"
+#include "luxel/pipeline/settings/settings.h"
 #include "luxel/scene/scene.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/view/frame.h"
@@ -18,5 +21,12 @@ struct ReadScene {
   int width = 960, height = 720;           ///< of preview.png
   std::string light_unit;                  ///< of E: "lux" or "W/m^2"
 };
+
+/// The scene that a file holds, ready to be looked at, by the view that the settings ask for.
+/// Errors: no such view; no memory.
+Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene,
+                                                    const pipeline::BakeSettings& settings);
+/// Another scene, looked at from where the one before it was.
+Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene, const ReadScene& before);
 
 }  // namespace luxel::view

@@ -29,20 +29,6 @@
 namespace luxel::pipeline {
 namespace {
 
-Result<scene::Scene> load(const BakeSettings& settings, std::vector<std::string>& warnings,
-                          Progress& progress) {
-  progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported,
-            import::import_scene(settings.scene, settings.reading, settings.max_memory_bytes));
-  return_free_memory();  // of documents and files: many small ones
-  warnings = std::move(imported.warnings);
-  LUXEL_TRY(const std::vector<std::string> light,
-            add_outside_light(settings.outside, imported.scene, imported.about_lost_lights));
-  warnings.insert(warnings.end(), light.begin(), light.end());
-  LUXEL_TRY_STATUS(stopped(progress));
-  return std::move(imported.scene);
-}
-
 /// Errors: light of a texel that overflows, or whose variance does; what follows squares both.
 Status check_held(const light::TexelScene& in, const TexelLight& light) {
   const auto place = [&](size_t i) {
@@ -236,12 +222,26 @@ Result<std::vector<std::string>> validated(scene::Scene& scene) {
 
 }  // namespace
 
+Result<scene::Scene> load_scene(const BakeSettings& settings, std::vector<std::string>& warnings,
+                                Progress& progress) {
+  progress.begin("import", 0);
+  LUXEL_TRY(import::Imported imported,
+            import::import_scene(settings.scene, settings.reading, settings.max_memory_bytes));
+  return_free_memory();  // of documents and files: many small ones
+  warnings = std::move(imported.warnings);
+  LUXEL_TRY(const std::vector<std::string> light,
+            add_outside_light(settings.outside, imported.scene, imported.about_lost_lights));
+  warnings.insert(warnings.end(), light.begin(), light.end());
+  LUXEL_TRY_STATUS(stopped(progress));
+  return std::move(imported.scene);
+}
+
 Result<Bake> bake_scene(const BakeSettings& settings, Progress& progress, const Keepers& keepers,
                         const BakeObserver& watcher) {
   LUXEL_TRY_STATUS(check(settings));
   const ThreadLimit threads(settings.threads);
   Bake bake;
-  LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
+  LUXEL_TRY(bake.scene, load_scene(settings, bake.warnings, progress));
   if (watcher.on_read) watcher.on_read(bake.scene);
   LUXEL_TRY_STATUS(bake_in_time(settings, keepers, watcher, bake, progress));
   return bake;
@@ -278,7 +278,7 @@ Result<Plan> plan_bake(const BakeSettings& settings, Progress& progress) {
     return fail(ErrorCode::bad_setting, "--plan: --solver {} cannot say what it will take",
                 settings.solver);
   Bake bake;
-  LUXEL_TRY(bake.scene, load(settings, bake.warnings, progress));
+  LUXEL_TRY(bake.scene, load_scene(settings, bake.warnings, progress));
   LUXEL_TRY(const Ready ready, make_ready(settings, bake, {}, progress));
   return solver.plan({bake.scene, bake.atlas, bake.map, ready.elements, ready.lights, ready.tracer},
                      settings, progress);

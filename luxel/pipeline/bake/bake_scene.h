@@ -72,6 +72,11 @@ struct BakeObserver {
   std::function<bool(const light::TexelScene&, std::span<const Rgb>)> on_bounce{};
 };
 
+/// Reads settings.scene and adds its outside light. `warnings` gets what is to be told. Errors:
+/// those of files and of outside light; cancelled.
+Result<scene::Scene> load_scene(const BakeSettings& settings, std::vector<std::string>& warnings,
+                                Progress& progress);
+
 /// Imports, lays out, solves, repairs and draws. Nothing is written but temporary files without a
 /// name in or above settings.output, and the checkpoint and the cache, if there are any. Errors:
 /// whatever the stages say; settings out of range.

@@ -57,6 +57,9 @@ struct LightScript {
 /// Errors name the file, the field, its value and what it should be; unknown fields are errors.
 Result<LightScript> parse_light_script(const std::string& text, const std::string& name);
 
+/// The file of a script: parse_light_script() gives the script again, angles but for rounding.
+std::string text_of(const LightScript& script);
+
 /// The punctual lights of a frame.
 std::vector<scene::PunctualLight> lights_at(const LightScript& script, double time_s);
 

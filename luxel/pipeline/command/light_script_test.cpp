@@ -235,6 +235,66 @@ TEST(LightScript, RefusesWrongTracks) {
         where + "[1].at is 0.5", "later than the key before it"}});
 }
 
+void expect_same(const Track& a, const Track& b) {
+  ASSERT_EQ(a.keys.size(), b.keys.size());
+  for (size_t k = 0; k < a.keys.size(); ++k) {
+    EXPECT_EQ(a.keys[k].at_s, b.keys[k].at_s);
+    EXPECT_EQ(a.keys[k].value, b.keys[k].value);
+  }
+}
+
+TEST(LightScript, IsReadAsItWasWritten) {
+  const LightScript script = script_of(R"({"frames": 3, "frames_per_second": 0.1,
+    "size": [320, 200], "exposure": -1.3, "keep_lights": true, "background": [0.1, 1e-7, 2],
+    "camera": {"eye": [0.1, 2, 3], "look_at": [4, 0.7, 6], "fov_deg": 33.3},
+    "lights": [
+      {"kind": "spot", "position": [{"at": 0.1, "value": [0.1, 0.2, 0.3]},
+                                    {"at": 0.7, "value": [1, 2e5, 3]}],
+       "direction": [0, 0, 1], "intensity": [0.07, 1e9, 0], "range_m": 0.3,
+       "inner_cone_deg": 10, "outer_cone_deg": 90},
+      {"kind": "directional", "direction": [0, -1, 0], "intensity": [0.3, 0.2, 0.1]},
+      {"kind": "point", "position": [1, 2, 3]}],
+    "emission": [{"material": "a \"lamp\"", "radiance": [1.1, 2.2, 3.3]}]})");
+  const LightScript again = script_of(text_of(script));
+  EXPECT_EQ(again.frames, 3);
+  EXPECT_EQ(again.frames_per_second, 0.1);
+  EXPECT_EQ(again.width, 320);
+  EXPECT_EQ(again.height, 200);
+  EXPECT_FALSE(again.exposure.automatic);
+  EXPECT_EQ(again.exposure.stops, -1.3);
+  EXPECT_TRUE(again.keep_lights);
+  ASSERT_TRUE(again.background);
+  expect_same(*again.background, *script.background);
+  const auto& view = std::get<LightScript::View>(again.camera);
+  EXPECT_EQ(view.eye, (Vec3{0.1f, 2, 3}));
+  EXPECT_EQ(view.look_at, (Vec3{4, 0.7f, 6}));
+  EXPECT_EQ(view.fov_deg, 33.3);
+  ASSERT_EQ(again.lights.size(), 3u);
+  for (size_t k = 0; k < 3; ++k) {
+    const LightScript::MovingLight &a = again.lights[k], &b = script.lights[k];
+    EXPECT_EQ(a.light.kind, b.light.kind);
+    EXPECT_EQ(a.light.range_m, b.light.range_m);
+    EXPECT_NEAR(a.light.inner_cone_rad, b.light.inner_cone_rad, 1e-6);
+    EXPECT_NEAR(a.light.outer_cone_rad, b.light.outer_cone_rad, 1e-6);
+    expect_same(a.intensity, b.intensity);
+    expect_same(a.position, b.position);
+    expect_same(a.direction, b.direction);
+  }
+  ASSERT_EQ(again.glows.size(), 1u);
+  EXPECT_EQ(again.glows[0].material, "a \"lamp\"");
+  expect_same(again.glows[0].radiance, script.glows[0].radiance);
+  for (const char* exposure : {"\"auto\"", "\"auto:95\""}) {
+    const Exposure read = script_of(std::string("{\"exposure\": ") + exposure + "}").exposure;
+    LightScript other;
+    other.exposure = read;
+    EXPECT_EQ(script_of(text_of(other)).exposure.percentile, read.percentile);
+    EXPECT_TRUE(script_of(text_of(other)).exposure.automatic);
+  }
+  LightScript named;
+  named.camera = "door";
+  EXPECT_EQ(std::get<std::string>(script_of(text_of(named)).camera), "door");
+}
+
 TEST(LightScript, RefusesWrongGlows) {
   expect_refused({{R"({"emission": 1})", ".emission is 1", "a list"},
                   {R"({"emission": [1]})", ".emission[0] is 1", "a glowing material, as {"},

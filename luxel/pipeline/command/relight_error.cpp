@@ -31,7 +31,15 @@ struct Check {
   const trace::RayTracer& tracer;
   reference::Receivers places;
   uint64_t seed = 1;
+  int paths = kPaths;
 };
+
+/// What remains when only the punctual lights shine.
+scene::Scene punctual_of(scene::Scene scene) {
+  for (scene::Material& m : scene.materials) m.emission = {};
+  scene.background = {}, scene.environment = {};
+  return scene;
+}
 
 /// E of all light but what comes straight from point, spot and directional lights, once.
 Result<reference::TexelPaths> indirect_by_paths(const Check& check, uint64_t answer, int bounces,
@@ -39,7 +47,7 @@ Result<reference::TexelPaths> indirect_by_paths(const Check& check, uint64_t ans
   const uint64_t seed = hash64(check.seed, answer);
   LUXEL_TRY(reference::TexelPaths all,
             reference::irradiance_by_paths(check.scene, check.places, check.tracer,
-                                           {kPaths, bounces, seed}, progress));
+                                           {check.paths, bounces, seed}, progress));
   const std::vector<scene::PunctualLight>& lights = check.punctual.lights;
   if (lights.empty()) return all;
   // One path finds the light of what has no size.
@@ -48,7 +56,7 @@ Result<reference::TexelPaths> indirect_by_paths(const Check& check, uint64_t ans
                   [](const scene::PunctualLight& light) { return light.angular_radius_rad > 0; });
   LUXEL_TRY(const reference::TexelPaths direct,
             reference::irradiance_by_paths(check.punctual, check.places, check.tracer,
-                                           {has_size ? kPaths : 1, 0, seed}, progress));
+                                           {has_size ? check.paths : 1, 0, seed}, progress));
   for (size_t i = 0; i < all.irradiance.size(); ++i)
     all.irradiance[i] = all.irradiance[i] - direct.irradiance[i];
   return all;
@@ -76,6 +84,29 @@ Result<double> error_of(const Check& check, std::span<const Rgb> got, int bounce
   LUXEL_TRY(const reference::TexelPaths a, indirect_by_paths(check, 0, bounces, progress));
   LUXEL_TRY(const reference::TexelPaths b, indirect_by_paths(check, 1, bounces, progress));
   return relative_error(got, a, b);
+}
+
+/// What two independent answers of the path tracer say of light.
+IndirectError error_between(std::span<const Rgb> got, const reference::TexelPaths& a,
+                            const reference::TexelPaths& b) {
+  IndirectError out;
+  std::vector<double> off;
+  double square = 0, noise = 0, light = 0;
+  for (size_t i = 0; i < got.size(); ++i) {
+    if (a.enclosed[i] || b.enclosed[i]) continue;
+    const auto g = double(luminance(got[i])), p = double(luminance(a.irradiance[i])),
+               q = double(luminance(b.irradiance[i]));
+    square += (g - p) * (g - q), noise += (p - q) * (p - q) / 4, light += (p + q) / 2;
+    off.push_back(std::abs(g - (p + q) / 2));
+  }
+  out.places = off.size();
+  if (off.empty() || light <= 0) return out;
+  const auto n = double(off.size());
+  const auto ninety_five = off.begin() + std::ptrdiff_t(0.95 * (n - 1));
+  std::nth_element(off.begin(), ninety_five, off.end());
+  out.rms = std::sqrt(std::max(0.0, square / n)) * n / light;
+  out.p95 = *ninety_five * n / light, out.noise = std::sqrt(noise / n) * n / light;
+  return out;
 }
 
 /// Places from `own` on are left out.
@@ -121,9 +152,7 @@ Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& 
       checked(all.position), checked(all.normal), checked(all.geometric_normal), {}};
   const uint64_t check_seed = hash64(seed, 0xc4ec);
   const auto relit = [&] { return checked(relighter.latest().indirect_at_points); };
-  scene::Scene punctual = scene;
-  for (scene::Material& m : punctual.materials) m.emission = {};
-  punctual.background = {}, punctual.environment = {};
+  scene::Scene punctual = punctual_of(scene);
   // The scene's own lights.
   if (scene::has_light(scene)) {
     relighter.update({.punctual = scene.lights, .background = scene.background});
@@ -146,5 +175,16 @@ Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& 
   }
   return {};
 }
+
+Result<IndirectError> indirect_error(const RelitPlaces& relit, int paths, uint64_t seed,
+                                     Progress& progress) {
+  const scene::Scene punctual = punctual_of(relit.scene);
+  const Check check{relit.scene, punctual, relit.tracer, relit.places, seed, paths};
+  LUXEL_TRY(const reference::TexelPaths a, indirect_by_paths(check, 0, relit.bounces, progress));
+  LUXEL_TRY(const reference::TexelPaths b, indirect_by_paths(check, 1, relit.bounces, progress));
+  return error_between(relit.indirect, a, b);
+}
+
+int stages_of_indirect_error(size_t lights) { return lights == 0 ? 2 : 4; }
 
 }  // namespace luxel::pipeline

@@ -3,6 +3,7 @@
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/reference/path_tracer.h"
 #include "luxel/solve/matrix/relight.h"
 #include "luxel/transport/elements.h"
 
@@ -27,5 +28,28 @@ CheckedTarget with_places(matrix::Target target, const transport::Elements& plac
 Status measure_relight_error(const scene::Scene& scene, const trace::RayTracer& tracer,
                              size_t own_places, uint64_t seed, matrix::RelightData& data,
                              Progress& progress);
+
+/// Light that is compared with the path tracer's.
+struct RelitPlaces {
+  const scene::Scene& scene;  ///< lit by what the light is of
+  const trace::RayTracer& tracer;
+  reference::Receivers places;
+  std::span<const Rgb> indirect;  ///< E there, but for what comes straight from punctual lights
+  int bounces = -1;               ///< that it has; < 0: all
+};
+
+/// By how much it is off, by luminance and over the mean of the light.
+struct IndirectError {
+  double rms = 0;     ///< root mean square, without the noise of the paths; 0: it is less than that
+  double p95 = 0;     ///< what 95 of 100 places are off by at most, with the noise of the paths
+  double noise = 0;   ///< root mean square of that noise
+  size_t places = 0;  ///< that were compared: not those inside of solids
+};
+
+/// Twice so many paths from each place tell. Errors: cancelled.
+Result<IndirectError> indirect_error(const RelitPlaces& relit, int paths, uint64_t seed,
+                                     Progress& progress);
+/// How many stages of `progress` it has, with so many punctual lights.
+int stages_of_indirect_error(size_t lights);
 
 }  // namespace luxel::pipeline

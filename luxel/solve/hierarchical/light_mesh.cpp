@@ -47,6 +47,10 @@ struct Maker {
   double slack_m;  ///< corners nearer than this are one
 };
 
+double slack_of(const Solution& s) {
+  return std::max(4 * s.faces.slack_m, 1e-7 * double(s.diagonal_m));
+}
+
 /// `found`: of the face, or nothing yet.
 FaceMeshing prepare_face(const Maker& m, uint32_t face, const DiscontinuityLimits& limits,
                          std::optional<std::vector<Discontinuity>>& found) {
@@ -274,8 +278,7 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
 Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
                                   Known& known, Progress& progress) {
-  const Maker m{s, scene, tracer, params,
-                std::max(4 * s.faces.slack_m, 1e-7 * double(s.diagonal_m))};
+  const Maker m{s, scene, tracer, params, slack_of(s)};
   // Triangles, and the points at which their light is asked for.
   LightMesh mesh;
   LUXEL_TRY_STATUS(triangulate_all(m, known, mesh, progress));
@@ -295,6 +298,18 @@ Result<LightMesh> make_light_mesh(const Solution& s, const scene::Scene& scene,
     mesh.interpolant.push_back(interpolant_of(value));
   }
   mesh.samples = known.light.at.size();
+  return mesh;
+}
+
+Result<LightMesh> make_flat_mesh(const Solution& s, const scene::Scene& scene,
+                                 const trace::RayTracer& tracer, Progress& progress) {
+  MeshParams params;
+  params.discontinuities = false;
+  Known none;
+  LightMesh mesh;
+  LUXEL_TRY_STATUS(triangulate_all({s, scene, tracer, params, slack_of(s)}, none, mesh, progress));
+  for (const LightTriangle& t : mesh.triangles)
+    mesh.interpolant.push_back({Rgb{}, {}, {}, {}, {}, s.light.elements[t.leaf].irradiance});
   return mesh;
 }
 

@@ -52,6 +52,10 @@ struct MeshParams {
 Result<LightMesh> make_light_mesh(const Solution& solution, const scene::Scene& scene,
                                   const trace::RayTracer& tracer, const MeshParams& params,
                                   Progress& progress);
+/// Triangulates all leaves, without discontinuities. The light of a triangle is the mean of its
+/// leaf, ElementLight::irradiance. Errors: cancelled.
+Result<LightMesh> make_flat_mesh(const Solution& solution, const scene::Scene& scene,
+                                 const trace::RayTracer& tracer, Progress& progress);
 /// What meshes of one scene share: light at places, and discontinuities. Of those the geometric
 /// part of the weight is kept, and the radiometric one follows the light there is [Hardt96,
 /// sections 5.4 and 5.5.8].

@@ -44,7 +44,7 @@ struct Refining {
   const trace::RayTracer& tracer;
   const MeshParams& params;  ///< of all meshes but the last
   double eps = 0;            ///< how far interpolants may be off [W/m^2]
-  Known known = {};
+  Known& known;
 
   PointScene points() const { return {s, scene, tracer, params.point}; }
 };
@@ -118,6 +118,27 @@ void divide_all(Refining& r, std::span<const size_t> leaves, size_t max_elements
   }
 }
 
+/// How exact light is, of meshes that say what to divide and of the last one.
+struct Precision {
+  MeshParams rough, fine;
+  double eps = 0;  ///< how far interpolants may be off [W/m^2]
+};
+
+/// How exact light at points must be, from how far interpolants may be off.
+Precision precision_of(const Solution& s, const MeshParams& mesh_params,
+                       const RepresentParams& params) {
+  const double mean = double(max_component(totals_of(s).irradiance));
+  Precision out{mesh_params, mesh_params, params.eps.value_or(s.eps * kUsualPart)};
+  if (mean > 0)
+    out.fine.point.tolerance =
+        std::clamp(kExacter * out.eps / mean, std::min(kExactest, out.fine.point.tolerance),
+                   out.fine.point.tolerance);
+  out.rough = out.fine;
+  out.rough.point.tolerance *= kRougher;
+  out.eps = std::max(out.eps, out.rough.point.tolerance * mean);
+  return out;
+}
+
 /// The time there is, and what meshes take of it.
 struct Timing {
   double seconds = INFINITY;
@@ -161,20 +182,28 @@ Result<std::vector<float>> measure_error(const Solution& s, const scene::Scene& 
   return measure({s, scene, tracer, params}, all, none, mesh, progress);
 }
 
+Result<Round> represent_once(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
+                             const MeshParams& mesh_params, const RepresentParams& params,
+                             Known& known, Progress& progress) {
+  const Precision precision = precision_of(s, mesh_params, params);
+  Refining r{s, scene, tracer, precision.rough, precision.eps, known};
+  Round out;
+  LUXEL_TRY(out.mesh, make_light_mesh(s, scene, tracer, r.params, known, progress));
+  LUXEL_TRY(const std::vector<size_t> leaves,
+            leaves_off(r.points(), r.eps, known.light, out.mesh, progress));
+  const size_t before = s.tree.elements.size();
+  divide_all(r, leaves, params.max_elements);
+  out.divided = (s.tree.elements.size() - before) / 4;
+  return out;
+}
+
 Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace::RayTracer& tracer,
                             const MeshParams& mesh_params, const RepresentParams& params,
                             Progress& progress, LeftOut* left_out) {
-  // How exact light at points must be, from how far interpolants may be off.
-  const double mean = double(max_component(totals_of(s).irradiance));
-  MeshParams fine = mesh_params;
-  double eps = params.eps.value_or(s.eps * kUsualPart);
-  if (mean > 0)
-    fine.point.tolerance = std::clamp(
-        kExacter * eps / mean, std::min(kExactest, fine.point.tolerance), fine.point.tolerance);
-  MeshParams rough = fine;
-  rough.point.tolerance *= kRougher;
-  eps = std::max(eps, rough.point.tolerance * mean);
-  Refining r{s, scene, tracer, rough, eps};
+  const Precision precision = precision_of(s, mesh_params, params);
+  const double eps = precision.eps;
+  Known known;
+  Refining r{s, scene, tracer, precision.rough, eps, known};
   Timing timing{params.seconds};
   LeftOut out_of_time;
   for (int round = 0;; ++round) {
@@ -189,7 +218,7 @@ Result<LightMesh> represent(Solution& s, const scene::Scene& scene, const trace:
       LUXEL_TRY_STATUS(settle(r, std::move(mesh), timing, out_of_time, progress));
       if (left_out) *left_out = out_of_time;
       r.known.light.at.clear();
-      return make_light_mesh(s, scene, tracer, fine, r.known, progress);
+      return make_light_mesh(s, scene, tracer, precision.fine, r.known, progress);
     }
     divide_all(r, leaves, params.max_elements);
   }

@@ -35,6 +35,17 @@ Result<LightMesh> represent(Solution& solution, const scene::Scene& scene,
                             const RepresentParams& params, Progress& progress,
                             LeftOut* left_out = nullptr);
 
+/// One round of represent().
+struct Round {
+  LightMesh mesh;      ///< of the leaves there were
+  size_t divided = 0;  ///< leaves whose interpolants were off
+};
+/// Divides the leaves whose interpolants are off, once, and feeds nothing back. `known` is what
+/// earlier rounds found by the same light. Errors: cancelled; the solution is as it was.
+Result<Round> represent_once(Solution& solution, const scene::Scene& scene,
+                             const trace::RayTracer& tracer, const MeshParams& mesh_params,
+                             const RepresentParams& params, Known& known, Progress& progress);
+
 /// How far interpolants are off at the middles of their triangles [W/m^2]. Errors: cancelled.
 Result<std::vector<float>> measure_error(const Solution& solution, const scene::Scene& scene,
                                          const trace::RayTracer& tracer, const PointParams& params,

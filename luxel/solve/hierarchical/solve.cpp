@@ -61,9 +61,18 @@ double change_of(const Tree& tree, const Light& light, std::span<const Rgb> befo
 struct Solving {
   Solution& s;
   const Exchange x;
-  std::vector<float> off;  ///< see light_leaves()
+  std::vector<float>& off;  ///< see light_leaves()
   Refined state;
 };
+
+Solving solving_of(Iterated& iterated, const scene::Scene& scene, const trace::RayTracer& tracer) {
+  Solution& s = iterated.solution;
+  return {s, s.exchange(tracer), iterated.off, {scene, s.tree, s.light, s.links}};
+}
+
+double least_area_of(const Solution& s, const SolveParams& params) {
+  return params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kSolveLeastPart;
+}
 
 /// Light from emission alone, by so many reflections and no more. Points gather what has been
 /// reflected one time less than the last gather brings.
@@ -86,43 +95,44 @@ void count_bounces(Solving& w, int bounces) {
     light[e].rough = before[e].rough;
 }
 
-Status run(Solving& w, const SolveParams& params, Progress& progress) {
+RefineParams refine_params(const Solving& w, const SolveParams& params, double eps) {
+  return {.eps = eps,
+          .min_area_m2 = w.s.min_area_m2,
+          .max_elements = params.max_elements,
+          .max_links = params.max_links};
+}
+
+/// Links everything by a first guess of the light.
+Status link_first(Solving& w, const SolveParams& params, Progress& progress) {
   // Elements shine by what they emit.
-  RefineParams refine_params{.eps = 0,
-                             .min_area_m2 = w.s.min_area_m2,
-                             .max_elements = params.max_elements,
-                             .max_links = params.max_links};
   for (const Element& e : w.s.tree.elements)
     w.s.light.elements.push_back(bare_light(w.state.scene, w.x, e));
   w.s.light.clusters.resize(w.s.tree.clusters.size());
   push_pull(w.s.faces, w.s.tree, w.s.light);
   w.s.links.of.resize(w.s.tree.size());
   // A first guess, from the light that surfaces emit and that others send them.
-  refine_params.eps = INFINITY;
-  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.off, progress));
+  RefineParams refining = refine_params(w, params, INFINITY);
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refining, w.off, progress));
   push_pull(w.s.faces, w.s.tree, w.s.light);
   const double first =
       double(max_component(totals_of(w.s).emission)) + mean_irradiance(w.s.tree, w.s.light);
-  refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * first) : kFirstEps * first;
-  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.off, progress));
-  // All is linked to all, and refined by the light that the links bring, until none errs too much.
-  LUXEL_TRY_STATUS(link_all(w.state, w.x, refine_params, progress));
-  for (w.s.iterations = 0; w.s.iterations < kMostIterations; ++w.s.iterations) {
-    LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
-    const double mean = mean_irradiance(w.s.tree, w.s.light);
-    refine_params.eps = params.eps ? std::max(*params.eps, kLeastEps * mean) : kUsualEps * mean;
-    w.s.eps = refine_params.eps;
-    const size_t leaves = w.s.tree.elements.size();
-    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.off, progress));
-    LUXEL_TRY(const size_t refined, refine(w.state, w.x, refine_params, progress));
-    LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refine_params, w.off, progress));
-    if (refined == 0 && leaves == w.s.tree.elements.size()) break;
-  }
-  // The light of the last links; or that of so many bounces.
-  LUXEL_TRY_STATUS(iterate(w.s, w.x.tracer, params.tolerance, progress));
-  w.s.all_bounces = params.bounces < 0;
-  if (!w.s.all_bounces) count_bounces(w, params.bounces);
-  return {};
+  refining.eps = params.eps ? std::max(*params.eps, kLeastEps * first) : kFirstEps * first;
+  w.s.eps = refining.eps;
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refining, w.off, progress));
+  return link_all(w.state, w.x, refining, progress);
+}
+
+/// What a user should know of a solution that is done.
+void add_warnings(const SolveParams& params, Solution& s) {
+  if (params.eps && *params.eps < s.eps)
+    s.warnings.push_back(
+        fmt::format("--eps {} is below a ten-thousandth of the mean light; {:.3g} W/m^2 was used",
+                    *params.eps, s.eps));
+  if (s.links.bounded)
+    s.warnings.push_back(fmt::format(
+        "refinement ended at {} elements and {} links, before all errors were below {:.3g} W/m^2; "
+        "ask for a larger --eps or --min-area",
+        s.tree.elements.size(), s.links.count, s.eps));
 }
 
 }  // namespace
@@ -169,10 +179,11 @@ double absorbed_over_emitted(const Solution& s) {
   return absorbed / emitted;
 }
 
-Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,
-                       const SolveParams& params, Progress& progress) {
+Result<Iterated> begin_iterating(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                 const SolveParams& params, Progress& progress) {
   // Faces, cut where others stand on them, under clusters.
-  Solution s;
+  Iterated out;
+  Solution& s = out.solution;
   LUXEL_TRY(s.faces, make_faces(scene, progress));
   s.blockers = make_blockers(s.faces);
   s.tree = make_tree(cut_at_contacts(s.faces, s.blockers));
@@ -181,24 +192,48 @@ Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer
   s.basis = params.basis;
   s.diagonal_m = scene::world_bounds(scene).diagonal();
   s.unit_area_m2 = area_of(s.tree) / double(std::clamp<size_t>(s.faces.size(), 1, kMostUnits));
-  s.min_area_m2 = params.min_area_m2 > 0 ? params.min_area_m2 : area_of(s.tree) * kSolveLeastPart;
+  s.min_area_m2 = least_area_of(s, params);
   s.unlinked = unlinked_lights_of(scene);
-  // Links and light; then what a user should know.
   double largest_m2 = 0;
   for (const Element& e : s.tree.elements) largest_m2 = std::max(largest_m2, e.area_m2);
   s.light_in_gaps = transport::size_for_covers(scene, tracer, float(std::sqrt(largest_m2))) == 0;
-  Solving solving{s, s.exchange(tracer), {}, {scene, s.tree, s.light, s.links}};
-  LUXEL_TRY_STATUS(run(solving, params, progress));
-  if (params.eps && *params.eps < s.eps)
-    s.warnings.push_back(
-        fmt::format("--eps {} is below a ten-thousandth of the mean light; {:.3g} W/m^2 was used",
-                    *params.eps, s.eps));
-  if (s.links.bounded)
-    s.warnings.push_back(fmt::format(
-        "refinement ended at {} elements and {} links, before all errors were below {:.3g} W/m^2; "
-        "ask for a larger --eps or --min-area",
-        s.tree.elements.size(), s.links.count, s.eps));
-  return s;
+  // Links and light.
+  Solving w = solving_of(out, scene, tracer);
+  LUXEL_TRY_STATUS(link_first(w, params, progress));
+  LUXEL_TRY_STATUS(iterate(s, tracer, params.tolerance, progress));
+  return out;
+}
+
+Result<bool> iterate_once(Iterated& iterated, const scene::Scene& scene,
+                          const trace::RayTracer& tracer, const SolveParams& params,
+                          Progress& progress) {
+  Solving w = solving_of(iterated, scene, tracer);
+  w.s.min_area_m2 = least_area_of(w.s, params);
+  const double mean = mean_irradiance(w.s.tree, w.s.light);
+  w.s.eps = params.eps ? std::max(*params.eps, kLeastEps * mean) : kUsualEps * mean;
+  const RefineParams refining = refine_params(w, params, w.s.eps);
+  const size_t leaves = w.s.tree.elements.size();
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refining, w.off, progress));
+  LUXEL_TRY(const size_t refined, refine(w.state, w.x, refining, progress));
+  LUXEL_TRY_STATUS(light_leaves(w.state, w.x, w.s.unlinked, refining, w.off, progress));
+  const bool is_settled = refined == 0 && leaves == w.s.tree.elements.size();
+  if (!is_settled) ++w.s.iterations;
+  LUXEL_TRY_STATUS(iterate(w.s, tracer, params.tolerance, progress));
+  return is_settled;
+}
+
+Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,
+                       const SolveParams& params, Progress& progress) {
+  LUXEL_TRY(Iterated iterated, begin_iterating(scene, tracer, params, progress));
+  Solution& s = iterated.solution;
+  for (bool is_settled = false; !is_settled && s.iterations < kMostIterations;) {
+    LUXEL_TRY(is_settled, iterate_once(iterated, scene, tracer, params, progress));
+  }
+  s.all_bounces = params.bounces < 0;
+  Solving w = solving_of(iterated, scene, tracer);
+  if (!s.all_bounces) count_bounces(w, params.bounces);
+  add_warnings(params, s);
+  return std::move(s);
 }
 
 }  // namespace luxel::hierarchical

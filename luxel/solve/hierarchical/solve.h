@@ -54,6 +54,23 @@ struct Solution {
 Result<Solution> solve(const scene::Scene& scene, const trace::RayTracer& tracer,
                        const SolveParams& params, Progress& progress);
 
+/// A solution between two iterations of solve().
+struct Iterated {
+  Solution solution;
+  std::vector<float> off;  ///< what light_leaves() keeps
+};
+/// What solve() begins with: everything is linked to everything by a guess of the light, as
+/// coarsely as ten times the usual eps allows, and light is gathered until it settles. Errors:
+/// cancelled.
+Result<Iterated> begin_iterating(const scene::Scene& scene, const trace::RayTracer& tracer,
+                                 const SolveParams& params, Progress& progress);
+/// One of its iterations: refines the links by the light there is, and gathers until the light
+/// settles. True: no link errs by more than eps, and nothing was refined. `params` may change from
+/// one to the next; `bounces` is not looked at. Errors: cancelled; the solution is then of no use.
+Result<bool> iterate_once(Iterated& iterated, const scene::Scene& scene,
+                          const trace::RayTracer& tracer, const SolveParams& params,
+                          Progress& progress);
+
 /// Jacobi's iteration with the links there are, until a sweep changes less than `tolerance` of the
 /// mean. Errors: cancelled.
 Status iterate(Solution& solution, const trace::RayTracer& tracer, double tolerance,

@@ -139,7 +139,9 @@ void draw_marks(const gpu::Device& device, VkCommandBuffer commands, const Canva
 
 void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
                    SurfacePush push) {
-  const auto& [shaders, painter, scene, overlay, probes] = canvas;
+  const Shaders& shaders = canvas.shaders;
+  const Painter& painter = canvas.painter;
+  const DeviceScene& scene = canvas.scene;
   device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   push.vertices = scene.vertices.address;
   push.materials = scene.materials.address;
@@ -194,6 +196,8 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
   LUXEL_TRY(out.beside, gpu::make_draw_pipeline(device, beside_params()));
   LUXEL_TRY(out.overlay, make_overlay_shader(device, kExposed, kSamples));
   LUXEL_TRY(out.probes, make_probe_shader(device, kExposed, kSamples));
+  LUXEL_TRY(out.quadratic, make_quadratic_shader(device, kExposed, kSamples));
+  LUXEL_TRY(out.shapes, make_shape_shaders(device, kExposed, kSamples));
   LUXEL_TRY(out.mark, gpu::make_draw_pipeline(device, mark_params()));
   return out;
 }
@@ -217,7 +221,11 @@ Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
 
 void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
            const Frame& frame) {
-  const auto& [shaders, painter, scene, overlay, probes] = canvas;
+  const Shaders& shaders = canvas.shaders;
+  const Painter& painter = canvas.painter;
+  const DeviceScene& scene = canvas.scene;
+  const Overlay* overlay = canvas.overlay;
+  const Additions none, &more = canvas.additions ? *canvas.additions : none;
   const gpu::TargetParams& size = painter.exposed.params;
   const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
   const bool has_overlay = overlay != nullptr && looks_into_bake(frame.show);
@@ -229,20 +237,30 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
   if (has_overlay)
     draw_overlay(device, commands, shaders.overlay, *overlay, scene, surface.clip_from_world);
-  else
+  else if (!more.instead && !more.no_surfaces)
     draw_surfaces(device, commands, canvas, surface);
-  if (probes && frame.shows_probes)
-    draw_probes(device, commands, shaders.probes, *probes, has_overlay ? overlay : nullptr, frame,
-                surface.clip_from_world);
+  else if (!more.no_surfaces)
+    draw_quadratics(device, commands, shaders.quadratic, *more.instead, more.exact,
+                    surface.clip_from_world, frame);
+  if (canvas.probes && frame.shows_probes)
+    draw_probes(device, commands, shaders.probes, *canvas.probes, has_overlay ? overlay : nullptr,
+                frame, surface.clip_from_world);
   const BehindPush behind = behind_of(camera, scene, frame, has_overlay);
   gpu::bind(device, commands, shaders.behind, behind);
   gpu::bind_set(device, commands, shaders.behind, painter.surroundings.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  const bool is_light = frame.show != Show::colour && !(has_overlay && shows_colors(frame.show));
+  const display::ToneMap curve = is_light ? frame.curve : display::ToneMap::clamp;
+  for (const DeviceShapes& shapes : more.shapes)
+    draw_shapes(device, commands, shaders.shapes, shapes,
+                {surface.clip_from_world,
+                 camera.orthographic,
+                 {float(size.width), float(size.height)},
+                 curve});
   gpu::end_drawing(device, commands, painter.exposed, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
   gpu::begin_drawing(device, commands, painter.shown, {0, 0, 0, 1});
-  const bool is_light = frame.show != Show::colour && !(has_overlay && shows_colors(frame.show));
-  const ScreenPush screen{uint32_t(is_light ? frame.curve : display::ToneMap::clamp)};
+  const ScreenPush screen{uint32_t(curve)};
   gpu::bind(device, commands, shaders.screen, screen);
   gpu::bind_set(device, commands, shaders.screen, painter.to_screen.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);

@@ -1,6 +1,9 @@
 // Draws a scene that lies on a graphics device.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "luxel/gpu/pipeline.h"
 #include "luxel/gpu/target.h"
 #include "luxel/image/codec.h"
@@ -8,6 +11,8 @@
 #include "luxel/view/draw/device_scene.h"
 #include "luxel/view/draw/overlay.h"
 #include "luxel/view/draw/probe_drawing.h"
+#include "luxel/view/draw/quadratic.h"
+#include "luxel/view/draw/shapes.h"
 #include "luxel/view/frame.h"
 
 namespace luxel::view {
@@ -15,7 +20,8 @@ namespace luxel::view {
 /// The shaders of all pictures.
 struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
-  gpu::Pipeline overlay, beside, probes;
+  gpu::Pipeline overlay, beside, quadratic, probes;
+  ShapeShaders shapes;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
@@ -31,12 +37,21 @@ struct Painter {
 Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
                              const DeviceScene& scene, uint32_t width, uint32_t height);
 
+/// What is drawn instead of a scene's surfaces, and after all of them.
+struct Additions {
+  std::optional<DeviceQuadratics> instead;
+  std::optional<ExactPixels> exact;  ///< of `instead`
+  bool no_surfaces = false;
+  std::vector<DeviceShapes> shapes;  ///< in this order
+};
+
 /// What a picture is drawn with and of. All of it must live until it is drawn.
 struct Canvas {
   const Shaders& shaders;
   const Painter& painter;
   const DeviceScene& scene;
   const Overlay* overlay = nullptr;  ///< without one no frame looks into the bake
+  const Additions* additions = nullptr;
   const DeviceProbes* probes = nullptr;
 };
 

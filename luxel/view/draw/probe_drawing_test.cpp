@@ -59,8 +59,8 @@ class ProbeDrawing : public testing::OnDevice {
     const auto painter = make_painter(*device_, *shaders_, *scene, kBallPixels, kBallPixels);
     const auto probes = put_probes(*device_, room.balls);
     EXPECT_TRUE(scene && painter && probes);
-    auto picture =
-        painted_radiance(*commands_, {*shaders_, *painter, *scene, nullptr, &*probes}, room.frame);
+    auto picture = painted_radiance(
+        *commands_, {*shaders_, *painter, *scene, nullptr, nullptr, &*probes}, room.frame);
     EXPECT_TRUE(picture);
     return std::move(*picture);
   }
@@ -108,7 +108,7 @@ TEST_F(ProbeDrawing, ABallHasTheFalseColoursOfIrradiance) {
   const auto painter = make_painter(*device_, *shaders_, *scene, kBallPixels, kBallPixels);
   const auto probes = put_probes(*device_, room.balls);
   const auto picture =
-      painted(*commands_, {*shaders_, *painter, *scene, &*overlay, &*probes}, room.frame);
+      painted(*commands_, {*shaders_, *painter, *scene, &*overlay, nullptr, &*probes}, room.frame);
   ASSERT_TRUE(picture) << picture.error().message;
   for (const auto& [x, y] : {std::pair(48, 48), {44, 50}, {52, 43}}) {
     const auto n = room.normal_at(x, y);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/solve/hierarchical/segments.h"
+
 namespace luxel::view {
 namespace {
 

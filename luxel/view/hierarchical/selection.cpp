@@ -50,6 +50,11 @@ std::span<const uint32_t> lit_by(const Selection& selected) {
   return std::span(selected.path).first(selected.level + 1);
 }
 
+void set_link(const LinkNumber& link, const Examined& examined, Selection& selected) {
+  selected.link = link;
+  selected.link_source = examined.view.solution.links.of[link.receiver][link.number].source;
+}
+
 /// Of the selected element; without one the element at the place is selected.
 void select_link(const ToolPlace& at, const Walk& walk, const Examined& examined,
                  SelectionDesk& desk) {
@@ -57,7 +62,7 @@ void select_link(const ToolPlace& at, const Walk& walk, const Examined& examined
     const auto link =
         link_near(examined.view, lit_by(desk.selected), nearness_of(at, walk, examined));
     if (link) {
-      desk.selected.link = link;
+      set_link(*link, examined, desk.selected);
       return;
     }
   }
@@ -96,7 +101,7 @@ void ask_for_light(const h::FacePoint& at, const Examined& examined, SelectionDe
 }
 
 void ask_for_sources(const h::FacePoint& at, const Examined& examined, SelectionDesk& desk) {
-  constexpr size_t kMostSources = 6;
+  constexpr size_t kMostSources = 4;
   desk.asked.sources = at;
   desk.worker->ask(QuestionKind::sources, [=](Progress& progress) -> Result<Answer> {
     LUXEL_TRY(BackprojectionProbe probe, probe_sources(examined.view, at, kMostSources, progress));
@@ -183,6 +188,17 @@ std::optional<LinkNumber> next_link(const Examined& examined, const Selection& s
   return is_last ? links.front().second : (now + 1)->second;
 }
 
+/// A link of the same two of another solution; none where it has been divided.
+std::optional<LinkNumber> same_link(const LinkNumber& link, uint32_t source,
+                                    const h::Links& links) {
+  if (link.receiver >= links.of.size()) return std::nullopt;
+  const auto& of = links.of[link.receiver];
+  const auto same = std::find_if(of.begin(), of.end(),
+                                 [&](const h::Link& other) { return other.source == source; });
+  if (same == of.end()) return std::nullopt;
+  return LinkNumber{link.receiver, uint32_t(same - of.begin())};
+}
+
 /// The same place, node, and link of another solution, as far as it has them.
 Selection carried_over(const Selection& from, const Examined& examined) {
   const h::Solution& s = examined.view.solution;
@@ -193,9 +209,7 @@ Selection carried_over(const Selection& from, const Examined& examined) {
     if (from.has_element()) {
       out.path = path_to(examined.view, *from.at);
       out.level = std::min(from.level, out.path.size() - 1);
-      // What was a leaf and is divided is still selected.
-      const auto same = std::find(out.path.begin(), out.path.end(), from.path[from.level]);
-      if (same != out.path.end()) out.level = size_t(same - out.path.begin());
+      if (from.link) out.link = same_link(*from.link, from.link_source, s.links);
     }
   }
   const auto& d = from.discontinuity;
@@ -236,8 +250,10 @@ void step_selection(SelectionStep step, const Examined& examined, SelectionDesk&
     if (step == SelectionStep::down && selected.level + 1 < selected.path.size()) ++selected.level;
     return;
   }
-  selected.link = next_link(examined, selected);
-  if (!selected.link) desk.said = "no link lights this element";
+  if (const auto link = next_link(examined, selected))
+    set_link(*link, examined, selected);
+  else
+    desk.said = "no link lights this element";
 }
 
 void select_nothing(SelectionDesk& desk) {

@@ -27,6 +27,7 @@ struct Selection {
   std::vector<uint32_t> path;                 ///< path_to() that place, if an element is selected
   size_t level = 0;                           ///< in the path
   std::optional<LinkNumber> link;
+  uint32_t link_source = 0;  ///< its Link::source
   std::optional<uint32_t> triangle;
   std::optional<DiscontinuityFacts> discontinuity;
 
@@ -56,7 +57,7 @@ struct SelectionDesk {
   Probed probed;
   Inquiries asked;
   std::string said;             ///< why nothing was found; a sentence
-  float graph_height = 0.1f;    ///< of the largest value of a graph in space, over the diagonal
+  float graph_height = 0.3f;    ///< of a graph's largest value in space, over the line's length
   uint64_t solution = 0;        ///< Examined::number that all this is about
   uint64_t changes = 0;         ///< counts up with whatever is to be drawn
   Vec2 pointer{};               ///< [pixels]

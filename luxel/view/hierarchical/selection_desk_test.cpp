@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -197,7 +198,9 @@ TEST(SelectionDesk, SaysWhatIsMissing) {
 
 TEST(ProbeWorker, AnswersTheNewestQuestionOfAKind) {
   const auto worker = ProbeWorker::begin();
-  const auto slow = [](Progress& progress) -> Result<Answer> {
+  std::atomic<bool> has_begun = false;
+  const auto slow = [&](Progress& progress) -> Result<Answer> {
+    has_begun = true, has_begun.notify_all();
     while (!progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return fail(ErrorCode::cancelled, "cancelled");
   };
@@ -205,6 +208,7 @@ TEST(ProbeWorker, AnswersTheNewestQuestionOfAKind) {
     return [text](Progress&) -> Result<Answer> { return Answer(std::string(text)); };
   };
   worker->ask(QuestionKind::light, slow);
+  has_begun.wait(false);
   worker->ask(QuestionKind::graph, quick("graph"));
   worker->ask(QuestionKind::light, quick("light"));
   std::vector<std::string> said;
@@ -235,6 +239,27 @@ TEST(Events, OfToolsAreRead) {
         parse_play(std::string(R"({"end": 1, "events": [{"at": 0, )") + wrong + "}]}", "p");
     EXPECT_FALSE(bad) << wrong;
   }
+}
+
+// A tool that has just been used begins to work; what stands after the wait comes when that is
+// done.
+TEST(Events, AWaitIsForWhatCameJustBefore) {
+  const auto play = parse_play(R"({"end": 0, "events": [{"at": 0, "use": "none"},
+      {"at": 0, "wait": "bake"}, {"at": 0, "use": "graph"}, {"at": 0, "wait": "bake"}]})",
+                               "p");
+  ASSERT_TRUE(play);
+  int taken = 0;
+  bool is_at_work = false;
+  const auto take = [&](const Event&) { ++taken, is_at_work = true; };
+  Played played;
+  for (const int expected : {1, 2}) {
+    EXPECT_EQ(step(*play, is_at_work, take, played), Step::waits);
+    EXPECT_EQ(taken, expected);
+    EXPECT_EQ(step(*play, is_at_work, take, played), Step::waits) << "still at work";
+    EXPECT_EQ(taken, expected);
+    is_at_work = false;
+  }
+  EXPECT_EQ(step(*play, is_at_work, take, played), Step::ends);
 }
 
 }  // namespace

@@ -28,11 +28,10 @@ struct GraphScale {
   }
 };
 
-GraphScale scale_of_graph(const Examined& examined, const SelectionDesk& desk, uint32_t face,
-                          float most) {
-  const h::Solution& s = examined.view.solution;
-  const double height = double(desk.graph_height * s.diagonal_m);
-  return {s.faces.faces[face].plane.normal, most > 0 ? height / double(most) : 0};
+/// The largest value is so high.
+GraphScale scale_of_graph(const Examined& examined, uint32_t face, double height_m, float most) {
+  return {examined.view.solution.faces.faces[face].plane.normal,
+          most > 0 ? height_m / double(most) : 0};
 }
 
 /// Two values, and by how much they differ.
@@ -50,16 +49,17 @@ void add_graph(const Examined& examined, const SelectionDesk& desk, SelectionSha
   const Curve& curve = desk.probed.graph->curve;
   const DVec3 from = curve.line.from, to = curve.line.to;
   out.lines.push_back({to_float(from), to_float(to), {1, 0.85f, 0.1f}});
+  const double height_m = double(desk.graph_height) * length(to - from);
   if (const auto& grid = desk.probed.graph->surface) {
     const GraphScale scale =
-        scale_of_graph(examined, desk, grid->face, most_of_graph(grid->exact, grid->shown));
+        scale_of_graph(examined, grid->face, height_m, most_of_graph(grid->exact, grid->shown));
     for (const auto& [a, b] : grid->edges)
       add_graph_edge(scale, grid->places[a], grid->places[b], {grid->exact[a], grid->exact[b]},
                      {grid->shown[a], grid->shown[b]}, out);
     return;
   }
   const GraphScale scale =
-      scale_of_graph(examined, desk, curve.line.face, most_of_graph(curve.exact, curve.shown));
+      scale_of_graph(examined, curve.line.face, height_m, most_of_graph(curve.exact, curve.shown));
   const DVec3 along = normalize(to - from);
   for (size_t k = 1; k < curve.exact.size(); ++k)
     add_graph_edge(scale, from + along * double(curve.at_m[k - 1]),
@@ -67,11 +67,12 @@ void add_graph(const Examined& examined, const SelectionDesk& desk, SelectionSha
                    {curve.shown[k - 1], curve.shown[k]}, out);
 }
 
-/// Sticks on the surface: exact light has the height of graphs, shown light what that makes it.
-void add_light_probe(const Examined& examined, const SelectionDesk& desk, SelectionShapes& out) {
-  const LightProbe& probe = *desk.probed.light;
+/// Sticks on the surface: exact light is as high as any, shown light what that makes it.
+void add_light_probe(const Examined& examined, const LightProbe& probe, SelectionShapes& out) {
+  constexpr double kStickHeight = 0.1;  // over the scene's diagonal
   const float exact = luminance(probe.exact), shown = luminance(probe.interpolated);
-  const GraphScale scale = scale_of_graph(examined, desk, probe.at.face, exact);
+  const GraphScale scale = scale_of_graph(
+      examined, probe.at.face, kStickHeight * double(examined.view.solution.diagonal_m), exact);
   const DVec3 aside = h::plane_coordinates(examined.view.solution.faces.faces[probe.at.face]).u *
                       (0.004 * double(examined.view.solution.diagonal_m));
   const DVec3 p = probe.at.position, q = p + aside;
@@ -91,7 +92,7 @@ SelectionShapes shapes_of(const Examined& examined, const SelectionDesk& desk) {
   if (selected.triangle) add_triangle(examined.view, *selected.triangle, out);
   if (selected.discontinuity) add_discontinuity(examined.view, *selected.discontinuity, out);
   if (desk.probed.sources) add_backprojection(*desk.probed.sources, out);
-  if (desk.probed.light) add_light_probe(examined, desk, out);
+  if (desk.probed.light) add_light_probe(examined, *desk.probed.light, out);
   if (desk.probed.graph) add_graph(examined, desk, out);
   return out;
 }

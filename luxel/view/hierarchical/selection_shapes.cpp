@@ -136,7 +136,7 @@ void add_backprojection(const BackprojectionProbe& probe, SelectionShapes& out) 
       add_stroke(probe.at.position, corner, kPickedGrey, out);
     add_area(source.above, kPickedViolet, 0.35f, out);
     for (const h::Polygon& part : source.visible) {
-      add_area(part, kPickedWhite, 0.8f, out);
+      add_area(part, kPickedWhite, 0.5f, out);
       add_outline(part, kPickedGreen, out);
     }
     add_outline(source.outline, kPickedViolet, out);

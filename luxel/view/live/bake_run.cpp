@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "luxel/display/draw.h"
 #include "luxel/display/tone_map.h"
-#include "luxel/pipeline/bake/camera.h"
 #include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/post/dilate.h"
 #include "luxel/post/refill.h"
-#include "luxel/view/open_bake.h"
 
 namespace luxel::view {
 namespace {
@@ -53,30 +50,6 @@ std::shared_ptr<const BouncedLight> bounces_of(const Draft& draft) {
 }
 
 }  // namespace
-
-Result<std::shared_ptr<const ReadScene>> read_scene(const scene::Scene& scene,
-                                                    const pipeline::BakeSettings& settings) {
-  auto out = std::make_shared<ReadScene>();
-  out->scene = scene;
-  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(out->scene));
-  out->tracer.emplace(std::move(tracer));
-  LUXEL_TRY(out->first.camera,
-            pipeline::choose_camera({.view = settings.view, .aspect = pipeline::kPreviewAspect},
-                                    out->scene, *out->tracer, settings.scene.string()));
-  out->light_unit = light_unit_of(scene, settings);
-  std::tie(out->width, out->height) = pipeline::preview_size(out->first.camera);
-  return out;
-}
-
-Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene, const ReadScene& before) {
-  auto out = std::make_shared<ReadScene>();
-  out->scene = std::move(scene);
-  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(out->scene));
-  out->tracer.emplace(std::move(tracer));
-  out->first = before.first, out->light_unit = before.light_unit;
-  out->width = before.width, out->height = before.height;
-  return out;
-}
 
 BakeRun::BakeRun(const pipeline::BakeSettings& settings, const RunWatcher& watcher,
                  const Progress& progress)

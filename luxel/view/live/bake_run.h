@@ -11,6 +11,7 @@
 #include "luxel/transport/irradiance_field.h"
 #include "luxel/view/live/known_light.h"
 #include "luxel/view/live/live_news.h"
+#include "luxel/view/read_scene.h"
 
 namespace luxel::view {
 
@@ -20,12 +21,6 @@ struct RunWatcher {
   /// BakeObserver::is_watched.
   std::function<bool(const light::TexelScene&, size_t element)> is_seen;
 };
-
-/// The scene that a file holds, ready to be looked at, by the view that the settings ask for.
-Result<std::shared_ptr<const ReadScene>> read_scene(const scene::Scene& scene,
-                                                    const pipeline::BakeSettings& settings);
-/// Another scene, looked at from where the one before it was.
-Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene, const ReadScene& before);
 
 /// All of its functions are called by one thread. Settings, watcher and progress must outlive it.
 class BakeRun {

@@ -69,6 +69,33 @@ std::optional<Event> part_event_of(const json& from) {
   return PartChanged{{is_one ? uint32_t(most) : 0, uint32_t(most)}};
 }
 
+/// The only member of an object; none where there are others. May throw json::exception.
+std::optional<std::pair<std::string, json>> only_member(const json& from) {
+  if (!from.is_object() || from.size() != 1) return std::nullopt;
+  return std::pair(from.begin().key(), from.begin().value());
+}
+
+/// What is for a solver that is looked into. May throw json::exception.
+std::optional<Event> solver_event_of(const json& from) {
+  if (from.contains("do")) return OwnAsked{from["do"].get<std::string>()};
+  if (from.contains("overlay")) {
+    const auto member = only_member(from["overlay"]);
+    return member ? std::optional<Event>(OverlayChanged{member->first, member->second.get<bool>()})
+                  : std::nullopt;
+  }
+  if (from.contains("set")) {
+    const auto member = only_member(from["set"]);
+    if (!member) return std::nullopt;
+    const auto to = member->second.get<double>();
+    return std::isfinite(to) ? std::optional<Event>(SettingChanged{member->first, to})
+                             : std::nullopt;
+  }
+  if (!from.contains("show")) return std::nullopt;
+  const auto own = number_of(from["show"].get<std::string>(), kOwnShows,
+                             [](const char* known) { return known; });
+  return own ? std::optional<Event>(OwnShown{kOwnShows[*own]}) : std::nullopt;
+}
+
 /// What changes what is shown of a bake. May throw json::exception.
 std::optional<Event> look_event_of(const json& from) {
   if (from.contains("show")) {
@@ -137,6 +164,7 @@ std::optional<Event> event_of(const json& from) {
     const auto by = from["scroll"].get<float>();
     if (std::abs(by) <= 100) return Scrolled{by};
   }
+  if (auto own = solver_event_of(from)) return own;
   return look_event_of(from);
 }
 
@@ -192,6 +220,21 @@ Result<Play> parse_play(std::string_view text, const std::string& name) {
     return fail(ErrorCode::bad_input, "{}{}: {}", name, where, short_message(e.what(), 400));
   }
   return out;
+}
+
+Status check_no_inside(const Play& play, const std::string& name) {
+  for (const TimedEvent& timed : play.events)
+    if (std::holds_alternative<OwnShown>(timed.event) ||
+        std::holds_alternative<OverlayChanged>(timed.event) ||
+        std::holds_alternative<SettingChanged>(timed.event) ||
+        std::holds_alternative<OwnAsked>(timed.event) ||
+        std::holds_alternative<ToolChanged>(timed.event) ||
+        std::holds_alternative<ToolUsed>(timed.event) ||
+        std::holds_alternative<SelectionStepped>(timed.event))
+      return fail(ErrorCode::bad_input,
+                  "{}, at {} s: this is for a solver that is looked into; --inside opens one", name,
+                  timed.at_s);
+  return {};
 }
 
 Result<Play> read_play(const std::filesystem::path& file) {

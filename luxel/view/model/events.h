@@ -81,6 +81,29 @@ struct GlowChanged {
   std::string material;
   Rgb radiance{};
 };
+/// What a solver that is looked into shows of its light, by its own name for it (kOwnShows).
+struct OwnShown {
+  std::string name;
+};
+/// What such a solver lays over surfaces, by its name, on or off.
+struct OverlayChanged {
+  std::string name;
+  bool is_on = true;
+};
+/// A number of such a solver.
+struct SettingChanged {
+  std::string name;
+  double to = 0;
+};
+/// What such a solver is to do.
+struct OwnAsked {
+  std::string name;
+};
+/// OwnAsked that ends what is under way.
+inline constexpr const char* kStopAsk = "stop";
+/// Names that OwnShown can have, of all solvers that can be looked into.
+inline constexpr std::array<const char*, 5> kOwnShows{"flat", "gouraud", "gouraud-disc",
+                                                      "interpolant", "rayshade"};
 /// A part of the light is shown.
 struct PartChanged {
   LightShown light;
@@ -130,12 +153,13 @@ struct MaterialChanged {
 /// A play stands still here: what comes after it is played when the bake has ended and its light is
 /// shown.
 struct WaitForBake {};
-using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
-                           LampAdded, GlowChanged, ShowChanged, RangeChanged, ChannelChanged,
-                           LayerChanged, BesideChanged, SplitMoved, InstanceSelected, LampSelected,
-                           MaterialSelected, InstanceChanged, LampRemoved, MaterialChanged,
-                           ToolChanged, ToolUsed, SelectionStepped, PartChanged, ProbesChanged,
-                           OpenAsked, ScaleChanged, WindowClosed, DeviceLost, WaitForBake>;
+using Event =
+    std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged, LampAdded,
+                 GlowChanged, ShowChanged, RangeChanged, ChannelChanged, LayerChanged,
+                 BesideChanged, SplitMoved, InstanceSelected, LampSelected, MaterialSelected,
+                 InstanceChanged, LampRemoved, MaterialChanged, OwnShown, OverlayChanged,
+                 SettingChanged, OwnAsked, ToolChanged, ToolUsed, SelectionStepped, PartChanged,
+                 ProbesChanged, OpenAsked, ScaleChanged, WindowClosed, DeviceLost, WaitForBake>;
 
 /// Whether an event changes lamps or what glows; or something else of a scene.
 bool changes_lamps(const Event& event);
@@ -176,7 +200,7 @@ inline constexpr KeyHelp kKeys[] = {
     {"ctrl+1", "remember this view as bookmark 1; as far as ctrl+9"},
     {"alt+1", "go to bookmark 1; as far as alt+9"},
     {"space", "stop the bake, or let it go on"},
-    {"ctrl+s", "save the bake"},
+    {"ctrl+s", "save the bake, or where lamps have been moved to"},
 };
 /// Those of .lxr files.
 inline constexpr KeyHelp kLampKeys[] = {
@@ -184,6 +208,7 @@ inline constexpr KeyHelp kLampKeys[] = {
     {"y", "along y alone"},
     {"z", "along z alone"},
     {"m", "hide the marks of lamps, or show them"},
+    {"c", "compare the light with the path tracer's, or stop that"},
 };
 
 /// Those of hierarchical solutions.
@@ -232,9 +257,12 @@ struct Play {
 ///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
 ///       {"at": 2, "beside": "difference"}, {"at": 2, "split": 0.3},
 ///       {"at": 2, "part": "direct"}, {"at": 2, "bounces": 3}, {"at": 2, "probes": true},
+///       {"at": 2, "show": "interpolant"}, {"at": 2, "overlay": {"mesh": true}},
+///       {"at": 2, "set": {"eps": 0.5}}, {"at": 2, "do": "iterate"},
 ///       {"at": 2, "tool": "link"}, {"at": 2, "use": "element", "pixel": [480, 360]},
 ///       {"at": 2, "use": "graph", "place": [0, 0, 0], "to_place": [1, 0, 0]},
-///       {"at": 2, "selection": "up"}, {"at": 2, "wait": "bake"},
+///       {"at": 2, "selection": "up"},
+///       {"at": 2, "wait": "bake"},
 ///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]},
 ///       {"at": 2, "select": "chair"}, {"at": 2, "instance": "chair", "angles_deg": [0, 90, 0]},
 ///       {"at": 2, "material": "wood", "reflectance": [0.5, 0.4, 0.3]}]}
@@ -242,6 +270,10 @@ struct Play {
 /// A range is by the logarithm where "logarithmic_range" says so.
 /// Errors: no JSON, something else in it, times that go back; each with the event's number.
 Result<Play> parse_play(std::string_view text, const std::string& name);
+
+/// Errors: a play asks for the inside of a solver; `name` is what messages call it.
+Status check_no_inside(const Play& play, const std::string& name);
+
 /// Errors: those of files, too.
 Result<Play> read_play(const std::filesystem::path& file);
 

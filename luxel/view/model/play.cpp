@@ -17,13 +17,15 @@ bool has_come(const Play& events, const Played& played) {
 
 Step step(const Play& events, bool is_at_work, const TakeEvent& take, Played& played) {
   const bool is_last = played.frame >= std::llround(events.end_s * events.frames_per_s);
+  bool has_taken = false;
   // What is left of the last frame comes with it.
   while (has_come(events, played) || (is_last && played.next < events.events.size())) {
     const Event& event = events.events[played.next].event;
     if (std::holds_alternative<WaitForBake>(event)) {
-      if (is_at_work) return Step::waits;
+      // What came just before may have begun work since: it is waited for from the next step on.
+      if (is_at_work || has_taken) return Step::waits;
     } else {
-      take(event);
+      take(event), has_taken = true;
     }
     ++played.next;
   }
@@ -34,7 +36,11 @@ Step step(const Play& events, bool is_at_work, const TakeEvent& take, Played& pl
 
 void play(const Play& events, const TakeEvent& take, const std::function<void(double)>& pass) {
   Played played;
-  while (step(events, false, take, played) != Step::ends) pass(1 / events.frames_per_s);
+  for (;;) {
+    const Step now = step(events, false, take, played);
+    if (now == Step::ends) return;
+    if (now == Step::next) pass(1 / events.frames_per_s);
+  }
 }
 
 }  // namespace luxel::view

@@ -62,7 +62,7 @@ Result<OpenedLxr> open_lxr(const std::filesystem::path& file) {
   LUXEL_TRY(read->tracer, trace::RayTracer::build(read->scene));
   LUXEL_TRY(read->first.camera, pipeline::choose_camera({}, read->scene, *read->tracer, name));
   LUXEL_TRY(read->first.exposure, first_exposure(*read, lamps, light.indirect));
-  return OpenedLxr{std::move(read), std::move(light), std::move(lamps)};
+  return OpenedLxr{file, std::move(read), std::move(light), std::move(lamps)};
 }
 
 }  // namespace luxel::view

@@ -12,6 +12,7 @@ namespace luxel::view {
 
 /// A scene that is relit as its lamps change.
 struct OpenedLxr {
+  std::filesystem::path file;
   std::shared_ptr<const ReadScene> read;  ///< the file's, under its background
   RelitLight light;
   Lamps lamps;  ///< as baked

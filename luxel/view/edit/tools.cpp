@@ -103,7 +103,7 @@ void click(const Walk& walk, EditTools& tools) {
   const scene::Scene& scene = tools.desk.read->scene;
   const uint32_t mesh = scene.instances[point->instance].mesh;
   const uint32_t material = scene.meshes[mesh].triangle_material[point->triangle];
-  Selection selection{.instance = point->instance};
+  EditSelection selection{.instance = point->instance};
   if (tools.selected.instance == point->instance && tools.selected.material != material)
     selection.material = material;
   select(selection, tools);
@@ -255,7 +255,7 @@ bool handle_edits(const Event& event, const Walk& walk, EditTools& tools) {
   return false;
 }
 
-void select(const Selection& selection, EditTools& tools) {
+void select(const EditSelection& selection, EditTools& tools) {
   if (selection.instance && selection.instance != tools.selected.instance)
     tools.middle = object_bounds(tools.desk.read->scene, *selection.instance).centre();
   tools.selected = selection;

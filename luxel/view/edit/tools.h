@@ -15,9 +15,9 @@
 namespace luxel::view {
 
 /// What is selected; a lamp, or surfaces and perhaps one of their materials, or nothing.
-struct Selection {
+struct EditSelection {
   std::optional<uint32_t> instance, material, lamp;
-  friend bool operator==(const Selection&, const Selection&) = default;
+  friend bool operator==(const EditSelection&, const EditSelection&) = default;
 };
 
 /// A grip of a gizmo while it is held.
@@ -31,7 +31,7 @@ struct EditTools {
   EditDesk desk;
   Box3 bounds;  ///< of the scene as it was read [m]
   Tool tool = Tool::move;
-  Selection selected;
+  EditSelection selected;
   Vec3 middle;            ///< of the selected instance's mesh, before it is placed [m]
   bool has_marks = true;  ///< lamps are marked
   std::string message;    ///< what of an event could not be done; whoever tells it takes it out
@@ -52,7 +52,7 @@ EditTools begin_tools(std::shared_ptr<const ReadScene> read);
 /// dragged; with ctrl in steps.
 bool handle_edits(const Event& event, const Walk& walk, EditTools& tools);
 
-void select(const Selection& selection, EditTools& tools);
+void select(const EditSelection& selection, EditTools& tools);
 /// Where the selected instance stands. Only where one is selected.
 Placement placement_of(const EditTools& tools);
 /// Takes a step back or does it again; what is no more is no longer selected.

@@ -77,17 +77,17 @@ void expect_close(Vec3 a, Vec3 b, float within = 2e-3f) {
 TEST(EditTools, AClickSelectsASurfaceAndThenItsMaterial) {
   Bench b;
   b.click({0.5f, -0.5f, 0});
-  EXPECT_EQ(b.tools.selected, (Selection{.instance = 0}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.instance = 0}));
   b.click({0.5f, -0.5f, 0});
-  EXPECT_EQ(b.tools.selected, (Selection{.instance = 0, .material = 0}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.instance = 0, .material = 0}));
   b.click({-0.5f, 0.5f, 0});
-  EXPECT_EQ(b.tools.selected, (Selection{.instance = 0, .material = 1}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.instance = 0, .material = 1}));
   b.click({-0.5f, 0.5f, 0});
-  EXPECT_EQ(b.tools.selected, (Selection{.instance = 0}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.instance = 0}));
   b.click({0, 3, 0});
-  EXPECT_EQ(b.tools.selected, Selection{});
+  EXPECT_EQ(b.tools.selected, EditSelection{});
   b.click({0.5f, -0.5f, 0}), b.key("esc");
-  EXPECT_EQ(b.tools.selected, Selection{});
+  EXPECT_EQ(b.tools.selected, EditSelection{});
   EXPECT_TRUE(b.tools.desk.history.done.empty());
 }
 
@@ -100,7 +100,7 @@ TEST(EditTools, ADragBesideItTurnsTheViewAndSelectsNothing) {
   b.take(PointerMoved{{180, 31}});
   EXPECT_NE(b.walk.shown.camera.world_from_camera, before);
   b.release();
-  EXPECT_EQ(b.tools.selected, Selection{});
+  EXPECT_EQ(b.tools.selected, EditSelection{});
 }
 
 TEST(EditTools, WhatHasMovedIsPickedWhereItIs) {
@@ -234,7 +234,7 @@ TEST(EditTools, AGizmoHasItsSizeWhereverItStands) {
 TEST(EditTools, LampsAreDraggedTurnedAndDeleted) {
   Bench b;
   b.drag({-2, 1, 0}, {1, 2, 0});
-  EXPECT_EQ(b.tools.selected, (Selection{.lamp = 0}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.lamp = 0}));
   expect_close(b.lamp().light.position, {1, 2, 0});
   EXPECT_EQ(b.tools.desk.history.done.size(), 1u);
   const Vec3 grip = Vec3{1, 2, 0} + Vec3{0.8f * b.reach_m(), 0, 0};
@@ -248,7 +248,7 @@ TEST(EditTools, LampsAreDraggedTurnedAndDeleted) {
   EXPECT_EQ(b.lamp(1).light.position, (Vec3{0, 0, 0}));
   b.key("delete");
   EXPECT_TRUE(b.lamp(1).is_deleted);
-  EXPECT_EQ(b.tools.selected, Selection{});
+  EXPECT_EQ(b.tools.selected, EditSelection{});
   for (const Mark& mark : marks_of(b.tools, b.walk))
     EXPECT_GT(length(mark.from - b.pixel({})), 10) << "no mark of what is deleted";
   while (!b.tools.desk.history.done.empty()) b.key("ctrl+z");
@@ -266,7 +266,7 @@ TEST(EditTools, EscLetsGoOfWhatIsDragged) {
   EXPECT_EQ(b.lamp().light.position, (Vec3{-2, 1, 0}));
   b.take(PointerMoved{b.pixel({1, 2, 0})}), b.release();
   EXPECT_EQ(b.lamp().light.position, (Vec3{-2, 1, 0}));
-  EXPECT_EQ(b.tools.selected, (Selection{.lamp = 0})) << "which the next one lets go of";
+  EXPECT_EQ(b.tools.selected, (EditSelection{.lamp = 0})) << "which the next one lets go of";
 }
 
 TEST(EditTools, PlaysEdits) {
@@ -299,7 +299,7 @@ TEST(EditTools, PlaysEdits) {
   EXPECT_NEAR(b.lamp(1).light.angular_radius_rad, kPi / 180, 1e-6f);
   EXPECT_NEAR(b.lamp(2).light.outer_cone_rad, kPi / 9, 1e-6f);
   EXPECT_TRUE(b.lamp(2).is_deleted);
-  EXPECT_EQ(b.tools.selected, (Selection{.lamp = 1}));
+  EXPECT_EQ(b.tools.selected, (EditSelection{.lamp = 1}));
 }
 
 TEST(EditTools, SaysWhatIsNotThere) {

@@ -1,5 +1,6 @@
 // Hierarchical radiosity, looked into.
 #include <algorithm>
+#include <cmath>
 
 #include "apps/view/selection_lines.h"
 #include "apps/view/solver_lines.h"
@@ -96,6 +97,10 @@ class InsideSubject : public Subject {
  private:
   /// What the desk asks of the workshop.
   void send() {
+    if (desk_.exposure_stops && shown_.has_light) {
+      const auto exposure = float(std::exp2(*desk_.exposure_stops));
+      shown_.fade = {0, 1, exposure, exposure};
+    }
     if (std::exchange(desk_.asks_to_stop, false)) workshop_->interrupt();
     for (const view::Ask what : std::exchange(desk_.asked, {}))
       workshop_->ask(what, desk_.settings);

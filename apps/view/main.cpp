@@ -72,6 +72,12 @@ Status check_inside(const Options& options) {
   if (!solver.empty() && solver != options.inside)
     return fail(ErrorCode::bad_setting, "--solver {} contradicts --inside {}", solver,
                 options.inside);
+  if (options.choice.given.has("--bounces"))
+    return fail(ErrorCode::bad_setting, "--inside {} gathers all bounces; leave --bounces out",
+                options.inside);
+  if (!options.choice.output.empty())
+    return fail(ErrorCode::bad_setting, "--output is for a bake; --inside {} saves nothing",
+                options.inside);
   return {};
 }
 

@@ -127,6 +127,7 @@ Status draw_offscreen(gpu::Commands& commands, Subject& subject,
   view::Walk walk =
       view::begin_walk(first, scene::world_bounds(read.scene), width, height, place_seen);
   if (params.play) LUXEL_TRY_STATUS(play_all(*params.play, commands, walk, subject));
+  LUXEL_TRY_STATUS(pass_light(0, commands, &walk, subject));
   LUXEL_TRY(view::Frame frame, frame_of(commands, walk, subject));
   // The second time the camera is at rest.
   LUXEL_TRY(frame, frame_of(commands, walk, subject));

@@ -49,6 +49,8 @@ NumberLine number_line(view::Number which, const view::Piece& piece,
       high = view::depth_of(s.tree), out.is_whole = true;
       value = std::min(value, high);
       break;
+    case view::Number::exposure:
+      break;
     case view::Number::most_links:
       high = double(view::kMostLinks), out.is_whole = out.is_logarithmic = true;
       break;
@@ -103,7 +105,7 @@ SolverPanel solver_lines(const view::Workshop& workshop, const view::Piece* piec
   if (!piece) return out;
   add_solution(*piece, out);
   out.note = note_on(*piece, exact, desk);
-  for (size_t i = 0; i < view::kNumbers.size(); ++i)
+  for (size_t i = 0; i < size_t(view::Number::exposure); ++i)
     out.numbers.push_back(number_line(view::Number(i), *piece, desk));
   return out;
 }

@@ -14,7 +14,7 @@ namespace luxel::view {
 /// A corner of a shape.
 struct ShapeCorner {
   Vec3 place;          ///< [m]
-  Rgb color{1, 1, 1};  ///< that a screen shows, linear, in [0, 1]; bright and pure ones get paler
+  Rgb color{1, 1, 1};  ///< display values; very bright ones get darker, very pure ones paler
   float opacity = 1;
   friend bool operator==(const ShapeCorner&, const ShapeCorner&) = default;
 };

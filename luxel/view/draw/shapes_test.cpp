@@ -1,7 +1,6 @@
 // Shapes among surfaces.
 #include <cmath>
 
-#include "luxel/image/color.h"
 #include "luxel/scene/shapes.h"
 #include "luxel/trace/camera_rays.h"
 #include "luxel/view/draw/device_test_support.h"
@@ -55,7 +54,7 @@ std::array<int, 3> wall_pixel(const image::Image8& picture, size_t x, size_t y) 
   return {p[0], p[1], p[2]};
 }
 
-int level(float linear) { return int(std::lround(255 * image::srgb_from_linear(linear))); }
+int level(float display) { return int(std::lround(255 * display)); }
 
 /// How many pixels are not black.
 size_t count_seen(const image::Image8& picture) {

@@ -6,7 +6,8 @@
 namespace luxel::view {
 namespace {
 
-constexpr float kDarkLine = 0.6f;  ///< opacity where lines are many
+constexpr float kManyLines = 0.6f;  ///< opacity where lines are many
+constexpr Rgb kBareLine{0.7f, 0.7f, 0.7f};
 
 template <class Names>
 std::optional<size_t> place_of(const std::string& name, const Names& names) {
@@ -44,6 +45,15 @@ bool press_desk(const std::string& key, HierarchicalDesk& desk) {
   return key == "9";  // a bake's, which there is not
 }
 
+/// Grey, as light as is seen over surfaces, or without them.
+std::vector<display::Line> mesh_over(const hierarchical::Solution& s,
+                                     const HierarchicalDesk& desk) {
+  std::vector<display::Line> out = pipeline::mesh_lines(s, desk.mesh_depth);
+  if (desk.shows(Over::no_faces))
+    for (display::Line& line : out) line.color = kBareLine;
+  return out;
+}
+
 /// The first links of a list.
 std::vector<display::Line> first_links(const Piece& piece,
                                        const std::vector<pipeline::StrongLink>& links,
@@ -68,6 +78,8 @@ double number_of(const HierarchicalDesk& desk, Number which) {
       return lines.least_weight.value_or(0);
     case Number::mesh_depth:
       return desk.mesh_depth;
+    case Number::exposure:
+      return desk.exposure_stops.value_or(0);
     case Number::most_links:
       break;
   }
@@ -96,6 +108,9 @@ void set_number(Number which, double to, HierarchicalDesk& desk) {
       break;
     case Number::most_links:
       desk.most_links = size_t(to);
+      break;
+    case Number::exposure:
+      desk.exposure_stops = to;
       break;
   }
   ++desk.changes;
@@ -158,9 +173,9 @@ Wanted wanted_for(const HierarchicalDesk& desk, const std::optional<ExactView>& 
 Shapes shapes_over(const Piece& piece, const HierarchicalDesk& desk) {
   Shapes out;
   const hierarchical::Solution& s = piece.solution();
-  if (desk.shows(Over::mesh)) add_lines(pipeline::mesh_lines(s, desk.mesh_depth), kDarkLine, out);
+  if (desk.shows(Over::mesh)) add_lines(mesh_over(s, desk), 1, out);
   if (desk.shows(Over::discontinuities) && piece.discontinuities)
-    add_lines(pipeline::discontinuity_lines(*piece.discontinuities), kDarkLine, out);
+    add_lines(pipeline::discontinuity_lines(*piece.discontinuities), 1, out);
   if (piece.cut) {
     if (desk.shows(Over::triangulation))
       add_lines(pipeline::triangulation_lines(*piece.cut), 1, out);
@@ -169,9 +184,9 @@ Shapes shapes_over(const Piece& piece, const HierarchicalDesk& desk) {
       add_lines(pipeline::error_lines(s, *piece.cut, *piece.error), 1, out);
   }
   if (desk.shows(Over::links))
-    add_lines(first_links(piece, *piece.whole_links, desk.most_links), 1, out);
+    add_lines(first_links(piece, *piece.whole_links, desk.most_links), kManyLines, out);
   if (desk.shows(Over::partial_links))
-    add_lines(first_links(piece, *piece.partial_links, desk.most_links), 1, out);
+    add_lines(first_links(piece, *piece.partial_links, desk.most_links), kManyLines, out);
   return out;
 }
 

@@ -64,14 +64,23 @@ struct NamedNumber {
   double low, high;
 };
 /// What numbers there are. 0 of the first two and of min-weight: as the solver chooses.
-enum class Number : uint8_t { eps, min_area, max_leaf_lines, min_weight, mesh_depth, most_links };
-inline constexpr std::array<NamedNumber, 6> kNumbers{{
+enum class Number : uint8_t {
+  eps,
+  min_area,
+  max_leaf_lines,
+  min_weight,
+  mesh_depth,
+  most_links,
+  exposure  ///< instead of that of the first picture; the last, for the panel has its own
+};
+inline constexpr std::array<NamedNumber, 7> kNumbers{{
     {"eps", "max error [W/m^2]", 0, 1e9},
     {"min-area", "min area [m^2]", 0, 1e9},
     {"max-leaf-lines", "lines per leaf", 0, 1000},
     {"min-weight", "min weight", 0, 1e12},
     {"mesh-depth", "depth of the mesh", 0, 100},
     {"most-links", "links drawn", 0, double(kMostLinks)},
+    {"exposure", "exposure [stops]", -40, 40},
 }};
 
 /// What is chosen.
@@ -80,10 +89,11 @@ struct HierarchicalDesk {
   std::array<bool, kOverlays.size()> over{};
   pipeline::HierarchicalSettings settings;
   int mesh_depth = 100;
-  size_t most_links = 300;
-  std::vector<Ask> asked = {};  ///< whoever does it takes it out
-  bool asks_to_stop = false;    ///< and this, which comes first
-  uint64_t changes = 0;         ///< of what is drawn over surfaces
+  size_t most_links = 150;
+  std::optional<double> exposure_stops = {};  ///< none: what the first picture asks for
+  std::vector<Ask> asked = {};                ///< whoever does it takes it out
+  bool asks_to_stop = false;                  ///< and this, which comes first
+  uint64_t changes = 0;                       ///< of what is drawn over surfaces
 
   bool shows(Over what) const { return over[size_t(what)]; }
 };

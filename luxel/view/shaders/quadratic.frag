@@ -10,22 +10,28 @@ layout(location = 0) out vec4 seen;
 const float pi = 3.14159265358979;
 const float most = 60000;  // of the picture's halves
 
-vec3 irradiance_of(Triangle t) {
-  float u = at.x, v = at.y;
-  vec3 e = (t.irradiance[0] * u + t.irradiance[1] * v + t.irradiance[2]) * u +
-           (t.irradiance[3] * v + t.irradiance[4]) * v + t.irradiance[5];
-  if (exact_width == 0) return max(e, 0);
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec4 known = exact.at[pixel.y * exact_width + pixel.x];
-  return floatBitsToUint(known.a) == t.group ? known.rgb : max(e, 0);
+vec3 coefficient(uint k) { return triangles.at[triangle].irradiance[k]; }
+
+vec3 irradiance() {
+  if (exact_width > 0) {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 known = exact.at[pixel.y * exact_width + pixel.x];
+    if (floatBitsToUint(known.a) == triangles.at[triangle].group) return known.rgb;
+  }
+  vec3 e = (coefficient(0) * at.x + coefficient(1) * at.y + coefficient(2)) * at.x +
+           (coefficient(3) * at.y + coefficient(4)) * at.y + coefficient(5);
+  return max(e, 0);
 }
 
 void main() {
-  Triangle t = triangles.at[triangle];
-  if (!gl_FrontFacing && t.two_sided == 0) discard;
-  vec3 e = irradiance_of(t);
-  vec3 radiance = t.emission + t.reflectance * e / pi;
-  if (show == 1) radiance = e / pi;
-  if (show == 2) radiance = t.reflectance / exposure;
+  if (!gl_FrontFacing && triangles.at[triangle].two_sided == 0) discard;
+  vec3 radiance;
+  if (show == 1)
+    radiance = irradiance() / pi;
+  else if (show == 2)
+    radiance = triangles.at[triangle].reflectance / exposure;
+  else
+    radiance = triangles.at[triangle].emission +
+               triangles.at[triangle].reflectance * irradiance() / pi;
   seen = vec4(min(radiance * exposure, most), 1);
 }

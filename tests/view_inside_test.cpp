@@ -1,0 +1,166 @@
+// luxel-view --inside hierarchical: what it shows of a solution is what `luxel render` draws.
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "luxel/image/flip.h"
+#include "tests/command.h"
+#include "tests/pictures.h"
+
+namespace luxel::testing_support {
+namespace {
+
+using ::testing::HasSubstr;
+
+CommandResult view_inside(const std::string& arguments, const std::string& before = "") {
+  return shell(before + " " LUXEL_VIEW_BINARY " " + arguments);
+}
+
+/// Whether this machine has a device that luxel can use.
+bool has_device_for_inside(const ScratchFolder& s) {
+  const CommandResult r = view_inside((s.path / "absent").string() + " --offscreen --screenshot " +
+                                      (s.path / "x.png").string());
+  return r.err.find("device") == std::string::npos && r.err.find("Vulkan") == std::string::npos;
+}
+
+const std::string kInsideBox = scene_file("cornell-box.glb");
+/// Coarse, since meshes of finer ones take seconds more.
+const std::string kCoarse = " --eps 0.5 ";
+
+/// The box after these events, as a file.
+std::filesystem::path seen_inside(const ScratchFolder& s, const std::string& name,
+                                  const std::string& size, const std::string& events) {
+  const auto play = s.write(name + ".json", "{\"end\": 0, \"events\": [" + events + "]}");
+  const auto picture = s.path / (name + ".png");
+  const CommandResult r =
+      view_inside(kInsideBox + " --inside hierarchical" + kCoarse + "--offscreen --size " + size +
+                  " --play " + play.string() + " --screenshot " + picture.string());
+  EXPECT_EQ(r.code, 0) << r.err;
+  return picture;
+}
+
+std::filesystem::path rendered(const ScratchFolder& s, const std::string& technique,
+                               const std::string& size, const std::string& more = "") {
+  const auto picture = s.path / ("render-" + technique + ".png");
+  const CommandResult r =
+      luxel("render " + kInsideBox + kCoarse + "--exposure 2 --technique " + technique +
+            " --size " + size + " -o " + picture.string() + " --quiet" + more);
+  EXPECT_EQ(r.code, 0) << r.err;
+  return picture;
+}
+
+double mean_flip(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const image::Image flip = image::flip(png_at(a), png_at(b));
+  return std::accumulate(flip.data.begin(), flip.data.end(), 0.0) / double(flip.data.size());
+}
+
+/// A kind of light, the technique that draws it, and steps that lead to what that draws.
+struct KindCase {
+  const char *kind, *technique, *steps, *size;
+};
+constexpr const char* kAllLinks = R"({"at": 0, "do": "converge"}, )";
+constexpr const char* kAll =
+    R"({"at": 0, "do": "converge"}, {"at": 0, "do": "converge-interpolants"}, )";
+
+class InsideKinds : public ::testing::TestWithParam<KindCase> {};
+
+// 0.026 to 0.034 in these small pictures, by edges, which have other samples there. Of lerpshade,
+// as interpolant has one sample for each pixel.
+TEST_P(InsideKinds, AreWhatRenderDraws) {
+  const ScratchFolder s;
+  if (!has_device_for_inside(s)) GTEST_SKIP() << "no graphics device";
+  const KindCase& c = GetParam();
+  const auto seen = seen_inside(s, "seen", c.size,
+                                c.steps + std::string(R"({"at": 0, "set": {"exposure": 2}}, )") +
+                                    "{\"at\": 0, \"show\": \"" + c.kind + "\"}");
+  EXPECT_LT(mean_flip(seen, rendered(s, c.technique, c.size)), 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Hierarchical, InsideKinds,
+                         ::testing::Values(KindCase{"flat", "flat", kAllLinks, "120x90"},
+                                           KindCase{"gouraud", "gouraud", kAll, "120x90"},
+                                           KindCase{"gouraud-disc", "gouraud-disc", kAll, "120x90"},
+                                           KindCase{"interpolant", "lerpshade", kAll, "120x90"},
+                                           KindCase{"rayshade", "rayshade", kAll, "80x60"}),
+                         [](const auto& tested) {
+                           return std::string(1, tested.param.kind[0]) +
+                                  std::to_string(tested.index);
+                         });
+
+// Lines that the processor draws lie where the device draws them.
+TEST(ViewInside, OverlaysAreWhatRenderDraws) {
+  const ScratchFolder s;
+  if (!has_device_for_inside(s)) GTEST_SKIP() << "no graphics device";
+  const std::string size = "240x180";
+  const std::string steps =
+      std::string(kAllLinks) +
+      R"({"at": 0, "set": {"exposure": 2}}, {"at": 0, "set": {"most-links": 300}}, )";
+  const auto with = [&](const std::string& overlay) {
+    return "{\"at\": 0, \"overlay\": {\"" + overlay + "\": true}}";
+  };
+  const auto none = seen_inside(s, "none", size, steps + R"({"at": 0, "show": "flat"})");
+  for (const std::string overlay : {"mesh", "discontinuities"}) {
+    const auto seen = seen_inside(s, overlay, size, steps + with(overlay));
+    const auto drawn = rendered(s, "flat", size, " --overlay " + overlay);
+    EXPECT_LT(mean_flip(seen, drawn), 0.5 * mean_flip(none, drawn)) << overlay;
+    EXPECT_GT(mean_flip(seen, none), 0.01) << overlay << " is drawn";
+  }
+  // A mesh to depth 0 has fewer lines, and without faces their ground is black.
+  const auto roots = seen_inside(s, "roots", size,
+                                 steps + with("mesh") + R"(, {"at": 0, "set": {"mesh-depth": 0}})");
+  EXPECT_LT(mean_flip(roots, none), 0.8 * mean_flip(s.path / "mesh.png", none));
+  const image::Image bare = png_at(seen_inside(s, "bare", size, steps + with("no-faces")));
+  EXPECT_EQ(std::accumulate(bare.data.begin(), bare.data.end(), 0.0), 0);
+}
+
+TEST(ViewInside, AWindowShowsWhatIsDrawnWithoutOne) {
+  const ScratchFolder s;
+  if (!has_device_for_inside(s)) GTEST_SKIP() << "no graphics device";
+  if (shell("command -v xvfb-run").code != 0) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  const std::string events =
+      R"({"at": 0, "do": "iterate"}, {"at": 0, "show": "rayshade"},
+         {"at": 0, "overlay": {"links": true}}, {"at": 0, "key": "+"}, {"at": 0, "wait": "bake"})";
+  const auto without = seen_inside(s, "without", "48x36", events);
+  const std::string state = (s.path / "state").string();
+  const CommandResult window = view_inside(
+      kInsideBox + " --inside hierarchical" + kCoarse + "--size 48x36 --play " +
+          (s.path / "without.json").string() + " --screenshot " + (s.path / "window.png").string(),
+      "XDG_STATE_HOME=" + state +
+          " VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation timeout 60 xvfb-run -a");
+  ASSERT_EQ(window.code, 0) << window.err;
+  EXPECT_EQ(window.out + window.err, "") << "the validation layer has nothing to say";
+  EXPECT_EQ(slurp(s.path / "window.png"), slurp(without));
+}
+
+TEST(ViewInside, SaysWhatIsWrong) {
+  const ScratchFolder s;
+  const std::string shot = " --offscreen --screenshot " + (s.path / "x.png").string();
+  const auto error = [&](const std::string& arguments) {
+    const CommandResult r = view_inside(arguments + shot);
+    EXPECT_EQ(r.code, 1);
+    return r.err;
+  };
+  EXPECT_THAT(error(kInsideBox + " --inside gather"),
+              HasSubstr("--inside 'gather' cannot be looked into; there is: hierarchical"));
+  EXPECT_THAT(error(s.path.string() + " --inside hierarchical"),
+              HasSubstr("--inside is for a scene"));
+  EXPECT_THAT(error(kInsideBox + " --inside hierarchical --solver gather"),
+              HasSubstr("--solver gather contradicts --inside hierarchical"));
+  EXPECT_THAT(error(kInsideBox + " --inside hierarchical --bounces 2"), HasSubstr("--bounces"));
+  EXPECT_THAT(error(kInsideBox + " --inside hierarchical --samples 2"), HasSubstr("--samples"));
+  EXPECT_THAT(error(kInsideBox + " --inside hierarchical -o x"), HasSubstr("--output"));
+  if (!has_device_for_inside(s)) GTEST_SKIP() << "no graphics device";
+  const auto play = [&](const std::string& event) {
+    return " --play " + s.write("wrong.json", "{\"end\": 0, \"events\": [" + event + "]}").string();
+  };
+  EXPECT_THAT(error(kInsideBox + " --inside hierarchical" + play(R"({"at": 0, "do": "dance"})")),
+              HasSubstr("'dance' is not known"));
+  EXPECT_THAT(
+      error(kInsideBox + " --resolution 32 --samples 1" + play(R"({"at": 0, "do": "iterate"})")),
+      HasSubstr("--inside opens one"));
+  EXPECT_THAT(error((s.path / "none.glb").string() + " --inside hierarchical"),
+              HasSubstr("none.glb is no such file"));
+}
+
+}  // namespace
+}  // namespace luxel::testing_support

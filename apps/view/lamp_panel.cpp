@@ -13,16 +13,6 @@ constexpr ImU32 kStageColors[] = {IM_COL32(230, 190, 80, 255),  IM_COL32(220, 11
                                   IM_COL32(90, 190, 210, 255),  IM_COL32(120, 190, 110, 255)};
 constexpr size_t kGraphFrames = 120, kMeanFrames = 30;
 
-void lay_out_line(LampLine& line) {
-  ImGui::Checkbox("on", &line.is_on);
-  ImGui::SameLine();
-  ImGui::ColorEdit3("colour", line.color.data(), ImGuiColorEditFlags_NoInputs);
-  ImGui::DragFloat("strength", &line.strength, std::max(1e-6f, 0.01f * line.strength), 0, 1e12f,
-                   ("%.4g " + line.unit).c_str());
-  if (line.has_place) ImGui::DragFloat3("place", line.place.data(), 0.01f, 0, 0, "%.3f m");
-  if (line.has_direction) ImGui::DragFloat3("direction", line.direction.data(), 0.01f, -1, 1);
-}
-
 /// Names to choose from; what is chosen can be changed.
 void lay_out_lines(std::vector<LampLine>& lines, int& selected) {
   for (size_t i = 0; i < lines.size(); ++i) {
@@ -104,6 +94,21 @@ void lay_out_buttons(LampPanel& panel) {
 }
 
 }  // namespace
+
+void lay_out_line(LampLine& line) {
+  ImGui::Checkbox("on", &line.is_on);
+  ImGui::SameLine();
+  ImGui::ColorEdit3("colour", line.color.data(), ImGuiColorEditFlags_NoInputs);
+  ImGui::DragFloat("strength", &line.strength, std::max(1e-6f, 0.01f * line.strength), 0, 1e12f,
+                   ("%.4g " + line.unit).c_str());
+  if (line.has_place) ImGui::DragFloat3("place", line.place.data(), 0.01f, 0, 0, "%.3f m");
+  if (line.has_direction) ImGui::DragFloat3("direction", line.direction.data(), 0.01f, -1, 1);
+  if (line.has_cone) {
+    ImGui::DragFloat("cone", &line.cone_deg, 0.2f, 0.1f, 90, "%.1f deg");
+    ImGui::DragFloat("inner cone", &line.inner_cone_deg, 0.2f, 0, line.cone_deg, "%.1f deg");
+  }
+  if (line.has_disc) ImGui::DragFloat("disc", &line.disc_deg, 0.02f, 0, 90, "%.2f deg");
+}
 
 void lay_out_lamps(LampPanel& panel) {
   ImGui::PushItemWidth(ImGui::GetFontSize() * 12);

@@ -15,6 +15,9 @@ struct LampLine {
   float strength = 1;                   ///< of the largest [unit]
   bool has_place = false, has_direction = false;
   std::array<float, 3> place{}, direction{};
+  bool has_cone = false, has_disc = false;
+  float cone_deg = 0, inner_cone_deg = 0;  ///< of a spot: half the angle of its light
+  float disc_deg = 0;                      ///< of a sun: the angle of its disc
   friend bool operator==(const LampLine&, const LampLine&) = default;
 };
 
@@ -35,7 +38,8 @@ struct LampPanel {
   std::vector<StageTimes> history;                   ///< of the last pictures, the newest last
 };
 
-/// Lays itself out in the window of ImGui that is open.
+/// Both lay themselves out in the window of ImGui that is open.
+void lay_out_line(LampLine& line);
 void lay_out_lamps(LampPanel& panel);
 
 }  // namespace luxel::view_window

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "luxel/image/color.h"
+#include "apps/view/lamp_lines.h"
 #include "luxel/scene/light_kinds.h"
 
 namespace luxel::view_window {
@@ -10,36 +10,6 @@ namespace {
 
 constexpr size_t kHistory = 120;
 constexpr view::LampCheckParams kCheck;
-
-std::array<float, 3> numbers(Vec3 v) { return {v.x, v.y, v.z}; }
-Vec3 vector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
-
-/// Light as a colour and a strength.
-void set_light(Rgb light, LampLine& line) {
-  line.strength = max_component(light);
-  const Rgb c = line.strength > 0 ? light / line.strength : Rgb{1, 1, 1};
-  line.color = {image::srgb_from_linear(c.x), image::srgb_from_linear(c.y),
-                image::srgb_from_linear(c.z)};
-}
-
-Rgb light_of(const LampLine& line) {
-  return Rgb{image::linear_from_srgb(line.color[0]), image::linear_from_srgb(line.color[1]),
-             image::linear_from_srgb(line.color[2])} *
-         line.strength;
-}
-
-LampLine line_of(const view::Lamp& lamp) {
-  const scene::PunctualLight& light = lamp.light;
-  LampLine out;
-  out.name = light.name.empty() ? std::string(scene::name_of(light.kind)) : light.name;
-  out.is_on = lamp.is_on;
-  out.has_place = scene::has_position(light.kind);
-  out.has_direction = scene::has_direction(light.kind);
-  out.unit = out.has_place ? "W/sr" : "W/m2";
-  out.place = numbers(light.position), out.direction = numbers(light.direction);
-  set_light(light.intensity, out);
-  return out;
-}
 
 LampLine line_of(const view::Glow& glow) {
   LampLine out;
@@ -58,28 +28,6 @@ std::vector<uint32_t> glows_shown(const LampSession& session) {
   return out;
 }
 
-/// Only what was changed: other numbers are rounded on their way through the panel.
-void take_line(const LampLine& before, const LampLine& now, view::Lamp& lamp) {
-  lamp.is_on = now.is_on;
-  if (now.color != before.color || now.strength != before.strength)
-    lamp.light.intensity = light_of(now);
-  if (now.place != before.place) lamp.light.position = vector(now.place);
-  if (now.direction != before.direction && length(vector(now.direction)) > 0)
-    lamp.light.direction = normalize(vector(now.direction));
-}
-
-/// So bright that a grey surface that faces it, from a quarter of the scene's size, is shown half
-/// as bright as can be.
-void add(scene::PunctualLight::Kind kind, float exposure, LampSession& session) {
-  view::LampAdded added;
-  added.kind = kind;
-  const float distance_m = 0.25f * session.desk.bounds.diagonal();
-  const float strength = kPi / exposure * (scene::has_position(kind) ? distance_m * distance_m : 1);
-  added.change.intensity = Rgb{strength, strength, strength};
-  if (!scene::has_position(kind)) added.change.direction = Vec3{-0.4f, -0.8f, -0.45f};
-  view::add_lamp(added, session.desk);
-}
-
 }  // namespace
 
 LampSession begin_lamps(view::OpenedLxr opened, view::DirectLight direct) {
@@ -89,7 +37,10 @@ LampSession begin_lamps(view::OpenedLxr opened, view::DirectLight direct) {
 
 LampPanel panel_of(const LampSession& session) {
   LampPanel out;
-  for (const view::Lamp& lamp : session.desk.lamps.lamps) out.lamps.push_back(line_of(lamp));
+  for (const view::Lamp& lamp : session.desk.lamps.lamps) {
+    out.lamps.push_back(line_of(lamp, false));
+    out.lamps.back().has_disc = false;  // a sun's counts as its centre
+  }
   for (const uint32_t m : glows_shown(session))
     out.glows.push_back(line_of(session.desk.lamps.glows[m]));
   out.selected = session.desk.selected ? int(*session.desk.selected) : -1;
@@ -119,9 +70,12 @@ void take_changes(const LampPanel& panel, float exposure, LampSession& session) 
   }
   desk.selected = panel.selected >= 0 ? std::optional(uint32_t(panel.selected)) : std::nullopt;
   session.selected_glow = panel.selected_glow;
-  if (panel.adds_point) add(scene::LightKind::point, exposure, session);
-  if (panel.adds_spot) add(scene::LightKind::spot, exposure, session);
-  if (panel.adds_sun) add(scene::LightKind::directional, exposure, session);
+  const auto add = [&](scene::LightKind kind) {
+    view::add_lamp(lamp_to_add(kind, exposure, desk.bounds), desk);
+  };
+  if (panel.adds_point) add(scene::LightKind::point);
+  if (panel.adds_spot) add(scene::LightKind::spot);
+  if (panel.adds_sun) add(scene::LightKind::directional);
 }
 
 void begin_or_stop_check(LampSession& session) {

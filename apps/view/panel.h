@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/view/bake_panel.h"
+#include "apps/view/edit_panel.h"
 #include "apps/view/lamp_panel.h"
 #include "apps/view/selection_panel.h"
 #include "apps/view/solver_panel.h"
@@ -55,6 +56,7 @@ struct Panel {
   bool is_light = false;                  ///< changed: dark letters on light ground
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;
+  std::optional<EditPanel> edit;
   std::optional<SolverPanel> solver;
   std::optional<SelectionPanel> selection;
   std::string message;  ///< what was done last

@@ -185,6 +185,7 @@ class ImGuiUi : public Ui {
     lay_out_bookmarks(panel);
     lay_out_warnings(panel.warnings);
     if (panel.lamps) lay_out_lamps(*panel.lamps);
+    if (panel.edit) lay_out_edit(*panel.edit);
     lay_out_recent(panel);
     ImGui::Text("%.1f ms per frame", double(panel.milliseconds));
     if (!panel.message.empty()) lay_out_wrapped(panel.message);

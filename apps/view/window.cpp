@@ -20,6 +20,13 @@ std::string name_of(int key, int code) {
     case GLFW_KEY_LEFT_SHIFT:
     case GLFW_KEY_RIGHT_SHIFT:
       return "shift";
+    case GLFW_KEY_LEFT_CONTROL:
+    case GLFW_KEY_RIGHT_CONTROL:
+      return "ctrl";
+    case GLFW_KEY_ESCAPE:
+      return "esc";
+    case GLFW_KEY_DELETE:
+      return "delete";
     case GLFW_KEY_SPACE:
       return "space";
     case GLFW_KEY_HOME:
@@ -34,6 +41,13 @@ std::string name_of(int key, int code) {
   }
   const char* printed = glfwGetKeyName(key, code);
   return printed ? printed : "";
+}
+
+/// Keys that are held with another one, as view::kKeys has it; those themselves are held with none.
+const char* held_with(const std::string& name, int with) {
+  if (name == "ctrl" || name == "shift") return "";
+  if (with & GLFW_MOD_CONTROL) return with & GLFW_MOD_SHIFT ? "ctrl+shift+" : "ctrl+";
+  return with & GLFW_MOD_ALT ? "alt+" : "";
 }
 
 }  // namespace
@@ -118,9 +132,9 @@ void Window::listen() {
     const std::string name = name_of(key, code);
     if (name.empty()) return;
     const bool is_down = action == GLFW_PRESS;
-    const char* held = with & GLFW_MOD_CONTROL ? "ctrl+" : with & GLFW_MOD_ALT ? "alt+" : "";
+    const char* held = held_with(name, with);
     // Either key may go up first.
-    for (const char* before : {"", "ctrl+", "alt+"})
+    for (const char* before : {"", "ctrl+", "ctrl+shift+", "alt+"})
       if (!is_down || before == std::string_view(held))
         of(w).events_.push_back(view::KeyChanged{before + name, is_down});
   });

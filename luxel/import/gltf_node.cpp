@@ -32,8 +32,26 @@ Mat34 local_transform(const tinygltf::Node& node) {
          scaling(vec3_of(node.scale, {1, 1, 1}));
 }
 
+/// What extras say by "luxel": {"KEY": ...} or by "FLAT_KEY"; null where they do not.
+const tinygltf::Value* luxel_extra(const tinygltf::Value& extras, const char* key,
+                                   const char* flat_key) {
+  if (!extras.IsObject()) return nullptr;
+  if (extras.Has(flat_key)) return &extras.Get(flat_key);
+  if (!extras.Has("luxel") || !extras.Get("luxel").IsObject()) return nullptr;
+  return extras.Get("luxel").Has(key) ? &extras.Get("luxel").Get(key) : nullptr;
+}
+
+/// Half the angle of a sun's disc, of which glTF has no word.
+float disc_of(const tinygltf::Light& light) {
+  const tinygltf::Value* v =
+      luxel_extra(light.extras, "angular_radius_rad", "luxel_angular_radius_rad");
+  const double radius = v && v->IsNumber() ? v->GetNumberAsDouble() : 0;
+  return radius > 0 && radius <= double(kPi) / 2 ? float(radius) : 0.0f;
+}
+
 /// [KHR_lights_punctual]: a light shines along its node's -z; scale does not change it.
-void add_light(GltfReader& reader, const tinygltf::Node& node, const Mat34& world) {
+void add_light(GltfReader& reader, size_t number, const Mat34& world) {
+  const tinygltf::Node& node = reader.model.nodes[number];
   const auto extension = node.extensions.find("KHR_lights_punctual");
   if (extension == node.extensions.end()) return;
   const double index = number_in(extension->second, "light", -1);
@@ -55,7 +73,9 @@ void add_light(GltfReader& reader, const tinygltf::Node& node, const Mat34& worl
   light.range_m = float(in.range);
   light.inner_cone_rad = float(in.spot.innerConeAngle);
   light.outer_cone_rad = float(in.spot.outerConeAngle);
+  if (!scene::has_position(light.kind)) light.angular_radius_rad = disc_of(in);
   reader.out.scene.lights.push_back(light);
+  reader.out.node_of_light.push_back(uint32_t(number));
 }
 
 void add_camera(GltfReader& reader, const tinygltf::Node& node, const Mat34& world) {
@@ -121,14 +141,6 @@ struct LightmapExtras {
   std::optional<bool> bake;
 };
 
-const tinygltf::Value* luxel_extra(const tinygltf::Value& extras, const char* key,
-                                   const char* flat_key) {
-  if (!extras.IsObject()) return nullptr;
-  if (extras.Has(flat_key)) return &extras.Get(flat_key);
-  if (!extras.Has("luxel") || !extras.Get("luxel").IsObject()) return nullptr;
-  return extras.Get("luxel").Has(key) ? &extras.Get("luxel").Get(key) : nullptr;
-}
-
 /// Anything else than a number, or true and false, is left out with a warning.
 LightmapExtras lightmap_extras(GltfReader& reader, const tinygltf::Value& extras,
                                const std::string& where) {
@@ -168,6 +180,7 @@ Status add_instances(GltfReader& reader, size_t index, const Mat34& world,
     reader.out.scene.instances.push_back(
         {node.name.empty() ? mesh_name : node.name, uint32_t(node.mesh), world * copy,
          lightmap.density.value_or(1.0f), lightmap.bake.value_or(true)});
+  reader.out.node_of_instance.resize(reader.out.scene.instances.size(), uint32_t(index));
   return {};
 }
 
@@ -220,7 +233,7 @@ Status read_nodes(GltfReader& reader) {
         reader, size_t(visit.node), world,
         node.mesh < 0 ? inherited
                       : first_of(first_of(own, of_mesh[size_t(node.mesh)]), visit.inherited)));
-    add_light(reader, node, world);
+    add_light(reader, size_t(visit.node), world);
     add_camera(reader, node, world);
     skins |= node.skin >= 0;
     push(node.children, world, inherited);

@@ -310,6 +310,22 @@ TEST(Gltf, LightsShineAlongMinusZOfTheirNode) {
   }
 }
 
+TEST(Gltf, SaysWhichNodesInstancesAndLightsComeFrom) {
+  Gltf gltf = square_gltf();  // node 0
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "directional"}, {"extras", {{"luxel", {{"angular_radius_rad", 0.005}}}}}},
+      {{"type", "directional"}, {"extras", {{"luxel", {{"angular_radius_rad", "wide"}}}}}}};
+  gltf.node({{"mesh", 0}, {"scale", {1, 0, 0}}});  // squashed flat: it is dropped
+  gltf.node({{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
+  gltf.node({{"mesh", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  const auto imported = import_glb(gltf);
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_EQ(imported->node_of_instance, (std::vector<uint32_t>{0, 3}));
+  EXPECT_EQ(imported->node_of_light, (std::vector<uint32_t>{2, 3}));
+  EXPECT_EQ(imported->scene.lights[0].angular_radius_rad, 0);
+  EXPECT_EQ(imported->scene.lights[1].angular_radius_rad, 0.005f);
+}
+
 TEST(Gltf, CamerasKeepTheirViewAndLoseTheirScale) {
   Gltf gltf = square_gltf();
   gltf.json["cameras"] = {

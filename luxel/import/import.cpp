@@ -42,6 +42,18 @@ float crease_deg(const SourceFile& source, const ImportParams& params) {
   return is_obj && asks_for_facets(source) ? 0 : kUsualCreaseDeg;
 }
 
+/// What of the instances that were read validation has kept: it drops some, and changes none.
+void keep_nodes(std::span<const scene::Instance> read, Imported& imported) {
+  if (imported.node_of_instance.empty()) return;
+  const std::vector<scene::Instance>& kept = imported.scene.instances;
+  std::vector<uint32_t> out;
+  for (size_t i = 0; i < read.size() && out.size() < kept.size(); ++i)
+    if (kept[out.size()].world_from_object == read[i].world_from_object &&
+        kept[out.size()].mesh == read[i].mesh)
+      out.push_back(imported.node_of_instance[i]);
+  imported.node_of_instance = std::move(out);
+}
+
 Result<Imported> read_checked(const SourceFile& source, const ImportParams& params) {
   LUXEL_TRY_STATUS(check_extension(source));
   if (source.bytes.empty()) return fail(ErrorCode::bad_input, "{}: the file is empty", source.name);
@@ -49,7 +61,9 @@ Result<Imported> read_checked(const SourceFile& source, const ImportParams& para
   try {
     LUXEL_TRY(Imported imported, read_scene(source));
     if (imported.scene.name.empty()) imported.scene.name = source.path.stem().string();
+    const std::vector<scene::Instance> read = imported.scene.instances;
     LUXEL_TRY(std::vector<std::string> repairs, scene::validate(imported.scene, source.name));
+    keep_nodes(read, imported);
     imported.warnings.insert(imported.warnings.end(), repairs.begin(), repairs.end());
     const float crease_rad = crease_deg(source, params) * kPi / 180;
     for (scene::Mesh& mesh : imported.scene.meshes) scene::smooth_normals(mesh, crease_rad);

@@ -99,6 +99,13 @@ struct LayerSetting {
   friend bool operator==(const LayerSetting&, const LayerSetting&) = default;
 };
 
+/// A line around surfaces, seen through what stands before them.
+struct Outline {
+  std::optional<uint32_t> instance;  ///< of the scene that is drawn; none: all
+  std::vector<uint32_t> materials;   ///< of the scene that is drawn; empty: all
+  Rgb color{1, 0.62f, 0.1f};         ///< display value
+};
+
 /// One picture.
 struct Frame {
   scene::Camera camera;
@@ -112,6 +119,7 @@ struct Frame {
   LightShown light;                      ///< where its parts are known
   bool shows_probes = false;             ///< as balls, where there are any
   std::optional<Beside> beside;          ///< where there is a second bake
+  std::optional<Outline> outline;        ///< around what is selected
   std::vector<Mark> marks;               ///< over the picture, the last one uppermost
 };
 

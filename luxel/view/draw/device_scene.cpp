@@ -47,6 +47,12 @@ struct DeviceInstance {
 };
 static_assert(sizeof(DeviceInstance) == 60);
 
+std::array<float, 12> rows_of(const Mat34& m) {
+  std::array<float, 12> out;
+  for (size_t i = 0; i < 12; ++i) out[i] = m.row[i / 4][i % 4];
+  return out;
+}
+
 template <class Values>
 std::span<const std::byte> bytes_of(const Values& values) {
   return std::as_bytes(std::span(values));
@@ -204,10 +210,9 @@ Status put_meshes(const gpu::Device& device, const scene::Scene& scene,
   std::vector<DeviceInstance> instances;
   for (const scene::Instance& instance : scene.instances) {
     const Mat34& m = instance.world_from_object;
-    DeviceInstance& out_instance = instances.emplace_back();
-    for (size_t i = 0; i < 12; ++i) out_instance.rows[i] = m.row[i / 4][i % 4];
+    instances.emplace_back().rows = rows_of(m);
     out.mesh_of.push_back(instance.mesh);
-    out.is_mirrored.push_back(dot(cross(column(m, 0), column(m, 1)), column(m, 2)) < 0);
+    out.is_mirrored.push_back(determinant(m) < 0);
   }
   LUXEL_TRY(out.vertices,
             gpu::buffer_with(device, bytes_of(triangles.vertices), "the scene's vertices"));
@@ -363,9 +368,31 @@ Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& s
   return put_on_device(commands, scene, PagesOfLight{halves, lightmaps.of_material}, params);
 }
 
-void set_emission(size_t material, Rgb emission, DeviceScene& scene) {
+namespace {
+
+DeviceMaterial& material_on(DeviceScene& scene, size_t material) {
   LUXEL_CHECK((material + 1) * sizeof(DeviceMaterial) <= scene.materials.size);
-  reinterpret_cast<DeviceMaterial*>(scene.materials.mapped)[material].emission = emission;
+  return reinterpret_cast<DeviceMaterial*>(scene.materials.mapped)[material];
+}
+
+DeviceInstance& instance_on(DeviceScene& scene, uint32_t instance) {
+  LUXEL_CHECK(instance < scene.mesh_of.size());
+  return reinterpret_cast<DeviceInstance*>(scene.instances.mapped)[instance];
+}
+
+}  // namespace
+
+void set_emission(size_t material, Rgb emission, DeviceScene& scene) {
+  material_on(scene, material).emission = emission;
+}
+
+void set_base_color(size_t material, Rgb base_color, DeviceScene& scene) {
+  material_on(scene, material).base_color = base_color;
+}
+
+void set_transform(uint32_t instance, const Mat34& world_from_object, DeviceScene& scene) {
+  instance_on(scene, instance).rows = rows_of(world_from_object);
+  scene.is_mirrored[instance] = determinant(world_from_object) < 0;
 }
 
 Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> pages, uint32_t which,
@@ -381,8 +408,7 @@ Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> page
 }
 
 void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene) {
-  LUXEL_CHECK(instance < scene.mesh_of.size());
-  reinterpret_cast<DeviceInstance*>(scene.instances.mapped)[instance].emission_factor = factor;
+  instance_on(scene, instance).emission_factor = factor;
 }
 
 }  // namespace luxel::view

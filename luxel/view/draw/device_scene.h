@@ -100,6 +100,11 @@ void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene);
 /// What the next picture is drawn with. Nothing may still draw the scene when it is changed.
 LightNow& light_now(const DeviceScene& scene);
 
+/// Another place of an instance. Nothing may still draw the scene.
+void set_transform(uint32_t instance, const Mat34& world_from_object, DeviceScene& scene);
+/// Another base colour of a material's surfaces, a factor of its texture. Nothing may still draw
+/// the scene.
+void set_base_color(size_t material, Rgb base_color, DeviceScene& scene);
 /// Another emission of a material's surfaces [W/(sr m^2)], a factor of its texture. Nothing may
 /// still draw the scene.
 void set_emission(size_t material, Rgb emission, DeviceScene& scene);

@@ -199,6 +199,7 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
   LUXEL_TRY(out.quadratic, make_quadratic_shader(device, kExposed, kSamples));
   LUXEL_TRY(out.shapes, make_shape_shaders(device, kExposed, kSamples));
   LUXEL_TRY(out.mark, gpu::make_draw_pipeline(device, mark_params()));
+  LUXEL_TRY(out.outline, make_outline_shaders(device, kShown));
   return out;
 }
 
@@ -216,6 +217,7 @@ Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
   LUXEL_TRY(out.surroundings, gpu::make_sets(device, shaders.behind, surroundings));
   const std::vector<std::vector<gpu::Binding>> exposed{{{&out.exposed.picture, out.sampler.get()}}};
   LUXEL_TRY(out.to_screen, gpu::make_sets(device, shaders.screen, exposed));
+  LUXEL_TRY(out.outliner, make_outliner(device, shaders.outline, width, height));
   return out;
 }
 
@@ -258,12 +260,16 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
                  {float(size.width), float(size.height)},
                  curve});
   gpu::end_drawing(device, commands, painter.exposed, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  if (frame.outline)
+    draw_mask(device, commands, shaders.outline, painter.outliner, scene, painter.materials.sets,
+              *frame.outline, surface.clip_from_world);
 
   gpu::begin_drawing(device, commands, painter.shown, {0, 0, 0, 1});
   const ScreenPush screen{uint32_t(curve)};
   gpu::bind(device, commands, shaders.screen, screen);
   gpu::bind_set(device, commands, shaders.screen, painter.to_screen.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  if (frame.outline) draw_line(device, commands, shaders.outline, painter.outliner, *frame.outline);
   draw_marks(device, commands, canvas, frame.marks);
   gpu::end_drawing(device, commands, painter.shown, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   gpu::change_layout(device, commands, painter.exposed.picture,

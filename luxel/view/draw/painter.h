@@ -9,6 +9,7 @@
 #include "luxel/image/codec.h"
 #include "luxel/image/image.h"
 #include "luxel/view/draw/device_scene.h"
+#include "luxel/view/draw/outline.h"
 #include "luxel/view/draw/overlay.h"
 #include "luxel/view/draw/probe_drawing.h"
 #include "luxel/view/draw/quadratic.h"
@@ -22,6 +23,7 @@ struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
   gpu::Pipeline overlay, beside, quadratic, probes;
   ShapeShaders shapes;
+  OutlineShaders outline;
 };
 /// Takes some tenths of a second on the processor.
 Result<Shaders> make_shaders(const gpu::Device& device);
@@ -32,6 +34,7 @@ struct Painter {
   gpu::Target shown;    ///< 8 bits, display values
   gpu::BindingSets materials, surroundings, to_screen;
   gpu::OwnedSampler sampler;
+  Outliner outliner;
 };
 /// For this scene.
 Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,

@@ -107,6 +107,11 @@ TEST_F(ShapesTest, LinesThatBeginBehindTheCameraAreCut) {
   for (size_t y = 0; y < 30; ++y)
     EXPECT_GT(wall_pixel(seen, 29, y)[0] + wall_pixel(seen, 30, y)[0], 200);
   for (size_t y = 32; y < 60; ++y) EXPECT_EQ(wall_pixel(seen, 30, y)[0], 0) << y;
+  // From pixel (45, 45) to the border at (60, 37.5): a strip of 16.8 by 6 pixels, and those that
+  // its border covers in part.
+  shapes.line_width = 6;
+  shapes.lines = {{{3, 3, 4}, {1, 1, 1}}, {{0.5f, -0.5f, -2}, {1, 1, 1}}};
+  EXPECT_NEAR(double(count_seen(picture_of(shapes))), 101 + 2 * 16.8, 8);
 }
 
 // A screen shows the colour that was asked for, whatever curve and exposure light has.

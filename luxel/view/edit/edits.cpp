@@ -29,6 +29,17 @@ bool is_lamp(const scene::PunctualLight& light) {
          light.angular_radius_rad >= 0 && light.angular_radius_rad <= kPi / 2;
 }
 
+/// Whether two edits are of one thing, so that the later one says all that the earlier one did.
+bool changes_the_same(const Edit& a, const Edit& b) {
+  if (a.index() != b.index()) return false;
+  if (const auto* moved = std::get_if<InstanceMoved>(&a))
+    return moved->instance == std::get<InstanceMoved>(b).instance;
+  if (const auto* set = std::get_if<LampSet>(&a)) return set->lamp == std::get<LampSet>(b).lamp;
+  if (const auto* set = std::get_if<MaterialSet>(&a))
+    return set->material == std::get<MaterialSet>(b).material;
+  return false;
+}
+
 bool is_there(uint32_t lamp, const SceneNow& now) {
   return lamp < now.lamps.size() && !now.lamps[lamp].is_deleted;
 }
@@ -71,7 +82,7 @@ void do_edit(const Edit& edit, History& history) {
 }
 
 void drag_edit(const Edit& edit, History& history) {
-  if (history.is_open)
+  if (history.is_open && changes_the_same(edit, history.done.back()))
     history.done.back() = edit;
   else
     do_edit(edit, history);

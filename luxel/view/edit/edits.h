@@ -46,8 +46,8 @@ struct History {
 
 /// One step more. What was undone is forgotten.
 void do_edit(const Edit& edit, History& history);
-/// A drag is one step: the first call makes it, and each that follows takes its place, until
-/// end_drag().
+/// A drag is one step: the first call makes it, and each that follows and is of the same thing
+/// takes its place, until end_drag().
 void drag_edit(const Edit& edit, History& history);
 void end_drag(History& history);
 /// Takes the last step back, or does it again; a drag ends before. False where there is none.

@@ -88,6 +88,17 @@ TEST(Edits, ADragIsOneStep) {
   EXPECT_EQ(desk.now.world_from_object[1], desk.read->scene.instances[1].world_from_object);
 }
 
+TEST(Edits, ADragOfAnotherThingIsAStepOfItsOwn) {
+  EditDesk desk = begin_editing(cornell_read());
+  drag_edit(InstanceMoved{1, translation({0.1f, 0, 0})}, desk);
+  drag_edit(InstanceMoved{2, translation({0.1f, 0, 0})}, desk);
+  drag_edit(LampSet{0, red_spot()}, desk), drag_edit(LampSet{1, red_spot()}, desk);
+  drag_edit(MaterialSet{0}, desk), drag_edit(MaterialSet{0, {0.5f, 0, 0}}, desk);
+  EXPECT_EQ(desk.history.done.size(), 5u);
+  while (undo(desk)) continue;
+  EXPECT_THAT(difference(desk.read->scene, scene_of(desk)), IsEmpty());
+}
+
 TEST(Edits, WhatWasUndoneIsForgottenByTheNextEdit) {
   EditDesk desk = begin_editing(cornell_read());
   do_edit(LampDeleted{0}, desk), undo(desk);

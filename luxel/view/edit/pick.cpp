@@ -92,14 +92,6 @@ std::optional<scene::SurfacePoint> surface_seen_now(const EditDesk& desk, const 
   return hit.found() ? std::optional(hit.point()) : std::nullopt;
 }
 
-PlaceSeen place_seen_now(const EditDesk& desk, int width, int height) {
-  return [&desk, width, height](const Frame& frame, Vec2 pixel) -> std::optional<Vec3> {
-    const trace::Ray ray = trace::CameraRays(frame.camera, width, height).through(pixel.x, pixel.y);
-    const trace::Hit hit = visible_now(desk, ray);
-    return hit.found() ? std::optional(ray.origin + ray.direction * hit.t) : std::nullopt;
-  };
-}
-
 Box3 object_bounds(const scene::Scene& scene, uint32_t instance) {
   Box3 out;
   const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh];

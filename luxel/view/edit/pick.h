@@ -13,10 +13,9 @@ namespace luxel::view {
 /// some milliseconds for a million of them.
 trace::Hit visible_now(const EditDesk& desk, const trace::Ray& ray);
 
-/// surface_seen() and place_seen_in() of the scene as it is now. The desk must outlive the second.
+/// surface_seen() of the scene as it is now.
 std::optional<scene::SurfacePoint> surface_seen_now(const EditDesk& desk, const Frame& frame,
                                                     Vec2 pixel, int width, int height);
-PlaceSeen place_seen_now(const EditDesk& desk, int width, int height);
 
 /// The box around an instance's mesh before it is placed [m].
 Box3 object_bounds(const scene::Scene& scene, uint32_t instance);

@@ -38,10 +38,10 @@ Mat34 rotation(Vec3 angles_deg) {
 /// Ry Rx Rz has the second row (cos x sin z, cos x cos z, -sin x) and the third column
 /// (sin y cos x, -sin x, cos y cos x).
 Vec3 angles_of(const Mat34& turn) {
-  const float sine = std::clamp(-turn.row[1][2], -1.0f, 1.0f);
+  const float sine = std::clamp(0 - turn.row[1][2], -1.0f, 1.0f);
   constexpr float kUpright = 0.9999999f;
   if (std::abs(sine) > kUpright)  // turned by y or by z is the same
-    return Vec3{std::asin(sine), std::atan2(-turn.row[2][0], turn.row[0][0]), 0} / kDegree;
+    return Vec3{std::asin(sine), std::atan2(0 - turn.row[2][0], turn.row[0][0]), 0} / kDegree;
   return Vec3{std::asin(sine), std::atan2(turn.row[0][2], turn.row[2][2]),
               std::atan2(turn.row[1][0], turn.row[1][1])} /
          kDegree;

@@ -159,7 +159,7 @@ std::vector<uint32_t> materials_named(const std::string& name, const EditTools& 
 }
 
 /// Does what an event asks of things that it names.
-struct Ask {
+struct DoAsked {
   EditTools& tools;
 
   template <class Other>
@@ -251,7 +251,7 @@ bool handle_edits(const Event& event, const Walk& walk, EditTools& tools) {
   }
   if (const auto* key = std::get_if<KeyChanged>(&event); key && key->is_down)
     press_edit_key(key->key, tools);
-  std::visit(Ask{tools}, event);
+  std::visit(DoAsked{tools}, event);
   return false;
 }
 

@@ -16,7 +16,7 @@ namespace luxel::view {
 
 /// What is selected; a lamp, or surfaces and perhaps one of their materials, or nothing.
 struct EditSelection {
-  std::optional<uint32_t> instance, material, lamp;
+  std::optional<uint32_t> instance{}, material{}, lamp{};
   friend bool operator==(const EditSelection&, const EditSelection&) = default;
 };
 

@@ -47,7 +47,14 @@ struct Bench {
     walk = begin_walk(first, tools.bounds, kBenchWidth, kBenchHeight, seen());
   }
 
-  PlaceSeen seen() const { return place_seen_now(tools.desk, kBenchWidth, kBenchHeight); }
+  std::optional<Vec3> place_at(Vec2 pixel) const {
+    const trace::Ray ray = ray_through(walk, pixel);
+    const trace::Hit hit = visible_now(tools.desk, ray);
+    return hit.found() ? std::optional(ray.origin + ray.direction * hit.t) : std::nullopt;
+  }
+  PlaceSeen seen() const {
+    return [this](const Frame&, Vec2 pixel) { return place_at(pixel); };
+  }
   void take(const Event& event) {
     if (!handle_edits(event, walk, tools)) handle(event, seen(), walk);
   }
@@ -110,7 +117,7 @@ TEST(EditTools, WhatHasMovedIsPickedWhereItIs) {
   EXPECT_EQ(b.tools.selected.instance, 1u) << "through where the other was";
   b.click({2.5f, 0.5f, 0});
   EXPECT_EQ(b.tools.selected.instance, 0u);
-  const auto place = b.seen()(b.walk.shown, b.pixel({2.5f, 0.5f, 0}));
+  const auto place = b.place_at(b.pixel({2.5f, 0.5f, 0}));
   ASSERT_TRUE(place);
   expect_close(*place, {2.5f, 0.5f, 0});
   // Turned round, it shows its back, which is not seen.
@@ -240,7 +247,9 @@ TEST(EditTools, LampsAreDraggedTurnedAndDeleted) {
   const Vec3 grip = Vec3{1, 2, 0} + Vec3{0.8f * b.reach_m(), 0, 0};
   b.drag(grip, grip - Vec3{2, 0, 0});
   expect_close(b.lamp().light.position, {-1, 2, 0}, 0.02f);
-  add_lamp({Kind::spot, {.to = Vec3{0, 0, 0}}}, b.tools);
+  LampAdded spot{Kind::spot, {}};
+  spot.change.to = Vec3{};
+  add_lamp(spot, b.tools);
   b.key("r");
   const Vec3 corner = normalize(Vec3{1, 1, 0}) * b.reach_m();
   b.drag(-corner, Vec3{corner.x, -corner.y, 0});  // a quarter about z
@@ -278,7 +287,7 @@ TEST(EditTools, PlaysEdits) {
     {"at": 0, "material": "lower", "reflectance": [0.5, 0.25, 0]},
     {"at": 0, "material": "upper", "radiance": [7, 0, 0]},
     {"at": 0, "lamp": 0, "intensity": [4, 5, 6], "on": false},
-    {"at": 0, "new_lamp": "directional", "sun": "90,30", "disc_radius_deg": 1},
+    {"at": 0, "new_lamp": "directional", "sun": "90,30", "disc_deg": 2},
     {"at": 0, "new_lamp": "spot", "cone_deg": 20, "inner_cone_deg": 10},
     {"at": 0, "lamp": 2, "deleted": true},
     {"at": 0, "select_lamp": 1}]})",

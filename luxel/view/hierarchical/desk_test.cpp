@@ -108,6 +108,14 @@ TEST(HierarchicalDesk, WantsWhatItShows) {
   wanted = wanted_for(desk, view);
   EXPECT_TRUE(wanted.cut && wanted.exact);
   EXPECT_FALSE(wanted_for(desk, std::nullopt).exact) << "the camera moves";
+  for (const Over over : {Over::triangulation, Over::samples}) {
+    desk = {};
+    desk.over[size_t(over)] = true;
+    EXPECT_TRUE(wanted_for(desk, view).cut);
+  }
+  desk = {};
+  desk.over[size_t(Over::discontinuities)] = true;
+  EXPECT_TRUE(wanted_for(desk, view).discontinuities && !wanted_for(desk, view).cut);
   desk = {};
   desk.over[size_t(Over::error)] = true;
   EXPECT_TRUE(wanted_for(desk, view).cut && wanted_for(desk, view).error);

@@ -108,7 +108,7 @@ TEST(Workshop, IsInterruptedAtOnce) {
   pipeline::HierarchicalSettings endless;
   endless.solve.eps = 1e-9, endless.solve.min_area_m2 = 1e-9;
   workshop->ask(Ask::converge_links, endless);
-  workshop->ask(Ask::links, endless);
+  workshop->ask(Ask::converge_links, endless);
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_TRUE(workshop->is_solving());
   const auto before = std::chrono::steady_clock::now();

@@ -64,7 +64,7 @@ struct LampChange {
   std::optional<Rgb> intensity;   ///< scene::PunctualLight::intensity
   std::optional<bool> is_on;
   std::optional<float> cone_deg, inner_cone_deg;  ///< of spots: half the angle of their light
-  std::optional<float> disc_radius_deg;           ///< of suns: half the angle of their disc
+  std::optional<float> disc_deg;                  ///< of suns: the angle of their disc
 };
 /// A lamp of an .lxr file, by its number.
 struct LampChanged {

@@ -14,7 +14,7 @@ void change(const LampChange& by, Lamp& lamp) {
   if (by.cone_deg) light.outer_cone_rad = *by.cone_deg * kDegree;
   if (by.inner_cone_deg) light.inner_cone_rad = *by.inner_cone_deg * kDegree;
   light.inner_cone_rad = std::min(light.inner_cone_rad, light.outer_cone_rad);
-  if (by.disc_radius_deg) light.angular_radius_rad = *by.disc_radius_deg * kDegree;
+  if (by.disc_deg) light.angular_radius_rad = 0.5f * *by.disc_deg * kDegree;
 }
 
 Lamp new_lamp(const LampAdded& added, const Box3& bounds) {

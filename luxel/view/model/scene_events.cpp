@@ -58,7 +58,7 @@ std::optional<LampChange> lamp_change_of(const json& from) {
   if (members.has("on")) out.is_on = from["on"].get<bool>();
   members.read("cone_deg", 90, out.cone_deg),
       members.read("inner_cone_deg", 90, out.inner_cone_deg);
-  members.read("disc_radius_deg", 90, out.disc_radius_deg);
+  members.read("disc_deg", 180, out.disc_deg);
   if (members.has("sun")) {
     const auto sky = pipeline::parse_sky(from["sun"].get<std::string>());
     if (sky) out.direction = -pipeline::sky_params(*sky).towards_sun;

@@ -85,6 +85,7 @@ void press(const std::string& key, Walk& walk) {
   if (key == ".") walk.shown.light = with_bounces(walk.shown.light, 1);
   if (key == "space") walk.asked.push_back(Command::stop_or_go_on);
   if (key == "ctrl+s") walk.asked.push_back(Command::save);
+  if (key == "ctrl+shift+s") walk.asked.push_back(Command::save_scene);
   if (key == "+") walk.shown.exposure *= kHalfStop;
   if (key == "-") walk.shown.exposure /= kHalfStop;
   if (key == "0") walk.shown.exposure = walk.first.exposure;

@@ -27,7 +27,7 @@ PlaceSeen place_seen_in(const scene::Scene& scene, const trace::RayTracer& trace
                         int height);
 
 /// What a user can ask for besides looking.
-enum class Command : uint8_t { stop_or_go_on, save };
+enum class Command : uint8_t { stop_or_go_on, save, save_scene };
 
 /// What is shown, and what the user is about to do.
 struct Walk {

@@ -4,34 +4,34 @@
 #include "quadratic.glsl"
 
 layout(location = 0) centroid in vec2 at;
-layout(location = 1) flat in uint triangle;
+layout(location = 1) flat in uvec2 group_and_sides;
+layout(location = 2) flat in vec3 reflectance;
+layout(location = 3) flat in vec3 emission;
+layout(location = 4) flat in vec3 irradiance[6];
 layout(location = 0) out vec4 seen;
 
 const float pi = 3.14159265358979;
 const float most = 60000;  // of the picture's halves
 
-vec3 coefficient(uint k) { return triangles.at[triangle].irradiance[k]; }
-
-vec3 irradiance() {
+vec3 irradiance_here() {
   if (exact_width > 0) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 known = exact.at[pixel.y * exact_width + pixel.x];
-    if (floatBitsToUint(known.a) == triangles.at[triangle].group) return known.rgb;
+    if (floatBitsToUint(known.a) == group_and_sides.x) return known.rgb;
   }
-  vec3 e = (coefficient(0) * at.x + coefficient(1) * at.y + coefficient(2)) * at.x +
-           (coefficient(3) * at.y + coefficient(4)) * at.y + coefficient(5);
+  vec3 e = (irradiance[0] * at.x + irradiance[1] * at.y + irradiance[2]) * at.x +
+           (irradiance[3] * at.y + irradiance[4]) * at.y + irradiance[5];
   return max(e, 0);
 }
 
 void main() {
-  if (!gl_FrontFacing && triangles.at[triangle].two_sided == 0) discard;
+  if (!gl_FrontFacing && group_and_sides.y == 0) discard;
   vec3 radiance;
   if (show == 1)
-    radiance = irradiance() / pi;
+    radiance = irradiance_here() / pi;
   else if (show == 2)
-    radiance = triangles.at[triangle].reflectance / exposure;
+    radiance = reflectance / exposure;
   else
-    radiance = triangles.at[triangle].emission +
-               triangles.at[triangle].reflectance * irradiance() / pi;
+    radiance = emission + reflectance * irradiance_here() / pi;
   seen = vec4(min(radiance * exposure, most), 1);
 }

@@ -12,12 +12,6 @@ vec4 clip_of(Corner c) {
   return p;
 }
 
-// The part of the way from a to b that lies before the near plane.
-float part_before(vec4 a, vec4 b) {
-  float at_a = a.w - a.z, at_b = b.w - b.z;
-  return at_a >= 0 || at_b <= 0 ? 0 : at_a / (at_a - at_b);
-}
-
 void main() {
   from_centre = vec2(0);
   int corner = gl_VertexIndex % 6;
@@ -32,10 +26,10 @@ void main() {
     Corner own = is_end ? last : first;
     color = vec4(own.color, own.opacity);
     vec4 a = clip_of(first), b = clip_of(last);
-    vec4 from = mix(a, b, part_before(a, b)), to = mix(b, a, part_before(b, a));
-    vec2 along = (to.xy / to.w - from.xy / from.w) * picture;
+    // Of b.xy / b.w - a.xy / a.w the line, one end of which may lie behind the eye.
+    vec2 along = (b.xy * a.w - a.xy * b.w) * picture;
     along = dot(along, along) > 0 ? normalize(along) : vec2(1, 0);
-    gl_Position = is_end ? to : from;
+    gl_Position = is_end ? b : a;
     gl_Position.xy += vec2(-along.y, along.x) * aside * (width / picture) * gl_Position.w;
   } else {
     Corner c = corners.at[gl_VertexIndex / 6];

@@ -1,0 +1,285 @@
+// Edited scenes as files: what is read back is the edited scene, and all else is what it was.
+#include "luxel/view/edit/save_scene.h"
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "luxel/base/base64.h"
+#include "luxel/base/file.h"
+#include "luxel/export/baked_glb.h"
+#include "luxel/import/import.h"
+#include "luxel/scene/digest.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/view/edit/placement.h"
+#include "tests/scratch_folder.h"
+
+namespace luxel::view {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Json = nlohmann::ordered_json;
+
+/// A triangle, three copies of it by EXT_mesh_gpu_instancing, lights, a camera, and much that luxel
+/// does not know.
+constexpr const char* kHall = R"({
+  "asset": {"version": "2.0", "extras": {"z": 1.5e-7, "a": "two \"words\"", "n": [3, 2.50, null]}},
+  "extensionsUsed": ["KHR_lights_punctual", "EXT_mesh_gpu_instancing", "ACME_thing"],
+  "extensions": {"ACME_thing": {"deep": {"b": true, "a": 12345678901234567}},
+    "KHR_lights_punctual": {"lights": [
+      {"type": "point", "intensity": 10, "extras": {"bulb": "E27"}},
+      {"type": "spot", "intensity": 4, "color": [1, 0.5, 0.25], "range": 9,
+       "spot": {"outerConeAngle": 0.5}}]}},
+  "scene": 0, "scenes": [{"nodes": [0, 3, 4, 5], "extras": {"of": "scene"}}],
+  "nodes": [
+    {"name": "table", "mesh": 0, "translation": [1, 0, 2], "scale": [2, 2, 2],
+     "rotation": [0, 0.70710678, 0, 0.70710678], "children": [1, 2], "extras": {"legs": 4}},
+    {"name": "cup", "mesh": 0, "translation": [0, 0.5, 0], "extensions": {"ACME_thing": {"x": 1}}},
+    {"name": "lamp", "mesh": 1, "camera": 0, "translation": [0, 1, 0],
+     "extensions": {"KHR_lights_punctual": {"light": 0}}},
+    {"name": "spot a", "translation": [0, 3, 0], "extensions": {"KHR_lights_punctual": {"light": 1}}},
+    {"name": "spot b", "translation": [2, 3, 0], "extensions": {"KHR_lights_punctual": {"light": 1}}},
+    {"name": "row", "mesh": 0, "translation": [0, 0, -5],
+     "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1}}}}],
+  "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}], "extras": {"m": 1}},
+             {"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "materials": [{"name": "wood", "extras": {"tree": "oak"}, "pbrMetallicRoughness":
+    {"baseColorFactor": [0.5, 0.25, 0.125, 0.75], "metallicFactor": 0, "roughnessFactor": 0.3}}],
+  "accessors": [
+    {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+     "min": [0, 0, 0], "max": [1, 1, 0]},
+    {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36},
+                  {"buffer": 0, "byteOffset": 36, "byteLength": 36}],
+  "buffers": [{"uri": "some%20bytes.bin", "byteLength": 72, "extras": {"of": "buffer"}}]
+})";
+constexpr float kHallBytes[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0};
+
+class SaveScene : public ::testing::Test {
+ protected:
+  /// Reads a file of these bytes in the scratch folder, as a window does.
+  EditDesk open(const std::string& name, std::span<const std::byte> bytes) {
+    settings_.scene = folder_ / name, settings_.output = folder_ / "out";
+    EXPECT_TRUE(write_file_atomically(settings_.scene, bytes));
+    auto imported = import::import_scene(settings_.scene);
+    EXPECT_TRUE(imported) << imported.error().message;
+    auto read = std::make_shared<ReadScene>();
+    read->scene = std::move(imported->scene);
+    return begin_editing(read);
+  }
+  EditDesk open_hall() {
+    const auto bytes = std::as_bytes(std::span(kHallBytes));
+    EXPECT_TRUE(write_file_atomically(folder_ / "some bytes.bin", bytes));
+    return open("hall.gltf", std::as_bytes(std::span(kHall, std::strlen(kHall))));
+  }
+  std::filesystem::path save(const EditDesk& desk) {
+    const auto saved = save_scene({desk.read, desk.now, settings_});
+    EXPECT_TRUE(saved) << saved.error().message;
+    return *saved;
+  }
+  scene::Scene read_back(const EditDesk& desk) {
+    auto imported = import::import_scene(save(desk));
+    EXPECT_TRUE(imported) << imported.error().message;
+    return std::move(imported->scene);
+  }
+
+  testing_support::ScratchFolder scratch_;
+  std::filesystem::path folder_ = scratch_.path;
+  pipeline::BakeSettings settings_;
+};
+
+void expect_same(const scene::PunctualLight& a, const scene::PunctualLight& b) {
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_LE(length(a.intensity - b.intensity), 1e-6f * length(b.intensity));
+  EXPECT_LE(length(a.position - b.position), 1e-5f);
+  EXPECT_LE(length(a.direction - b.direction), 1e-5f);
+  EXPECT_EQ(a.range_m, b.range_m);
+  EXPECT_FLOAT_EQ(a.inner_cone_rad, b.inner_cone_rad);
+  EXPECT_FLOAT_EQ(a.outer_cone_rad, b.outer_cone_rad);
+  EXPECT_EQ(a.angular_radius_rad, b.angular_radius_rad);
+}
+
+/// All but deleted lamps.
+void expect_same(const scene::Scene& saved, const EditDesk& desk) {
+  const scene::Scene now = edited(desk.read->scene, desk.now);
+  ASSERT_EQ(saved.instances.size(), now.instances.size());
+  for (size_t i = 0; i < now.instances.size(); ++i) {
+    SCOPED_TRACE(now.instances[i].name);
+    EXPECT_EQ(saved.instances[i].name, now.instances[i].name);
+    for (int k = 0; k < 4; ++k)
+      EXPECT_LE(length(column(saved.instances[i].world_from_object, k) -
+                       column(now.instances[i].world_from_object, k)),
+                1e-5f);
+  }
+  ASSERT_EQ(saved.materials.size(), now.materials.size());
+  for (size_t m = 0; m < now.materials.size(); ++m) {
+    EXPECT_EQ(saved.materials[m].base_color, now.materials[m].base_color);
+    EXPECT_EQ(saved.materials[m].emission, now.materials[m].emission);
+    EXPECT_EQ(saved.materials[m].alpha, now.materials[m].alpha);
+  }
+  size_t next = 0;
+  for (size_t i = 0; i < now.lights.size(); ++i) {
+    if (desk.now.lamps[i].is_deleted) continue;
+    ASSERT_LT(next, saved.lights.size());
+    SCOPED_TRACE(now.lights[i].name);
+    expect_same(saved.lights[next++], now.lights[i]);
+  }
+  EXPECT_EQ(next, saved.lights.size());
+  ASSERT_EQ(saved.cameras.size(), now.cameras.size());
+  for (size_t c = 0; c < now.cameras.size(); ++c)
+    for (int k = 0; k < 4; ++k)
+      EXPECT_LE(length(column(saved.cameras[c].world_from_camera, k) -
+                       column(now.cameras[c].world_from_camera, k)),
+                1e-5f);
+}
+
+Json json_of(const std::filesystem::path& file) {
+  const auto bytes = read_file(file);
+  EXPECT_TRUE(bytes);
+  const char* text = reinterpret_cast<const char*>(bytes->data());
+  return Json::parse(text, text + bytes->size());
+}
+
+uint32_t instance_of(const EditDesk& desk, const std::string& name) {
+  uint32_t out = 0;
+  while (desk.read->scene.instances.at(out).name != name) ++out;
+  return out;
+}
+
+void move(EditDesk& desk, uint32_t instance, const Mat34& by) {
+  const Mat34 to = by * desk.now.world_from_object[instance];
+  do_edit(InstanceMoved{instance, to}, desk);
+}
+
+TEST_F(SaveScene, WithoutEditsTheDocumentIsWhatItWas) {
+  const EditDesk desk = open_hall();
+  ASSERT_EQ(desk.read->scene.instances.size(), 6u);
+  Json saved = json_of(save(desk)), before = Json::parse(kHall);
+  EXPECT_EQ(saved["buffers"][0]["uri"],
+            "data:application/octet-stream;base64," + base64(std::as_bytes(std::span(kHallBytes))));
+  saved["buffers"][0]["uri"] = before["buffers"][0]["uri"];
+  EXPECT_EQ(saved.dump(), before.dump()) << "numbers, order, and all that is not known";
+}
+
+TEST_F(SaveScene, AnEditedSceneIsReadBack) {
+  EditDesk desk = open_hall();
+  move(desk, instance_of(desk, "table"), turned_about({1, 0, 1}, {0.6f, 0.8f, 0}, 0.7f));
+  move(desk, instance_of(desk, "lamp"), translation({0.5f, 0, 0}));
+  move(desk, instance_of(desk, "row") + 1, scaled_about({}, {}, {1, 2, 1}));
+  Lamp bulb = desk.now.lamps[0], a = desk.now.lamps[1];
+  bulb.light.intensity = {1, 2, 3};
+  a.light.direction = normalize(Vec3{1, -1, 0}), a.light.outer_cone_rad = 0.3f;
+  do_edit(LampSet{0, bulb.light}, desk), do_edit(LampSet{1, a.light}, desk);
+  scene::PunctualLight sun, spot;
+  sun.kind = scene::PunctualLight::Kind::directional, sun.angular_radius_rad = 0.00465f;
+  sun.direction = normalize(Vec3{1, -2, 3}), sun.intensity = {1e5f, 9e4f, 8e4f};
+  spot.kind = scene::PunctualLight::Kind::spot, spot.position = {1, 2, 3};
+  do_edit(LampCreated{sun}, desk), do_edit(LampCreated{spot}, desk);
+  do_edit(MaterialSet{0, {0.1f, 0.2f, 0.3f}, {7, 0, 0.5f}}, desk);
+  do_edit(MaterialSet{1, {0.3f, 0.3f, 0.4f}, {}}, desk);  // glTF's default
+  expect_same(read_back(desk), desk);
+  do_edit(LampDeleted{2}, desk), do_edit(LampDeleted{4}, desk);
+  do_edit(LampSet{0, bulb.light, false}, desk);
+  expect_same(read_back(desk), desk);
+}
+
+TEST_F(SaveScene, WhatIsNotEditedStaysInTheFile) {
+  EditDesk desk = open_hall();
+  move(desk, instance_of(desk, "table"), translation({0, 1, 0}));
+  Lamp a = desk.now.lamps[1];
+  a.light.intensity = {9, 9, 9};
+  do_edit(LampSet{1, a.light}, desk);
+  do_edit(MaterialSet{0, {0.1f, 0.2f, 0.3f}, {}}, desk);
+  const Json saved = json_of(save(desk)), before = Json::parse(kHall);
+  for (const char* key :
+       {"asset", "extensionsUsed", "scenes", "cameras", "meshes", "accessors", "bufferViews"})
+    EXPECT_EQ(saved[key].dump(), before[key].dump());
+  EXPECT_EQ(saved["extensions"]["ACME_thing"].dump(), before["extensions"]["ACME_thing"].dump());
+  EXPECT_EQ(saved["buffers"][0]["extras"].dump(), before["buffers"][0]["extras"].dump());
+  EXPECT_EQ(saved["nodes"][0]["extras"].dump(), before["nodes"][0]["extras"].dump());
+  EXPECT_EQ(saved["nodes"][1]["extensions"].dump(), before["nodes"][1]["extensions"].dump());
+  EXPECT_EQ(saved["nodes"][4].dump(), before["nodes"][4].dump()) << "the other node of the light";
+  EXPECT_EQ(saved["nodes"][5].dump(), before["nodes"][5].dump());
+  EXPECT_EQ(saved["materials"][0]["extras"].dump(), before["materials"][0]["extras"].dump());
+  EXPECT_EQ(saved["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"], 0.3);
+  const Json& lights = saved["extensions"]["KHR_lights_punctual"]["lights"];
+  EXPECT_EQ(lights[1].dump(), before["extensions"]["KHR_lights_punctual"]["lights"][1].dump());
+  EXPECT_EQ(lights[0]["extras"].dump(), R"({"bulb":"E27"})");
+}
+
+/// A .glb with a chunk that nobody knows.
+std::vector<std::byte> with_a_chunk(std::vector<std::byte> glb) {
+  const std::array<uint32_t, 3> chunk{4, 0x454D4341, 42};
+  const auto bytes = std::as_bytes(std::span(chunk));
+  glb.insert(glb.end(), bytes.begin(), bytes.end());
+  const auto whole = uint32_t(glb.size());
+  std::memcpy(glb.data() + 8, &whole, sizeof whole);
+  return glb;
+}
+
+TEST_F(SaveScene, ChunksOfAGlbStayByteByByte) {
+  const auto glb = export_::scene_glb(scene::cornell_box());
+  ASSERT_TRUE(glb);
+  const std::vector<std::byte> file = with_a_chunk(*glb);
+  EditDesk desk = open("box.glb", file);
+  move(desk, 1, translation({0.125f, 0, 0}));
+  do_edit(MaterialSet{0, {0.25f, 0.5f, 0.75f}, {}}, desk);
+  const std::filesystem::path first = save(desk);
+  EXPECT_EQ(first.filename(), "box-edited.glb");
+  const auto saved = read_file(first);
+  ASSERT_TRUE(saved);
+  uint32_t json_length = 0, saved_length = 0;
+  std::memcpy(&json_length, file.data() + 12, 4), std::memcpy(&saved_length, saved->data() + 12, 4);
+  const auto rest = std::span(file).subspan(20 + json_length);
+  const auto saved_rest = std::span(*saved).subspan(20 + saved_length);
+  EXPECT_TRUE(std::ranges::equal(rest, saved_rest));
+  // Numbers that a binary fraction has exactly: the same bits.
+  const scene::Scene again = read_back(desk);
+  EXPECT_THAT(scene::difference(scene::digests_of(edited(desk.read->scene, desk.now)),
+                                scene::digests_of(again)),
+              IsEmpty());
+  EXPECT_EQ(save(desk).filename(), "box-edited-3.glb") << "nothing is written over";
+}
+
+TEST_F(SaveScene, OtherFilesBecomeGlb) {
+  constexpr std::string_view kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\no leaf\nf 1 2 3\n";
+  EditDesk desk = open("leaf.obj", std::as_bytes(std::span(kObj)));
+  move(desk, 0, translation({1, 2, 3}));
+  do_edit(LampCreated{}, desk);
+  const std::filesystem::path file = save(desk);
+  EXPECT_EQ(file.filename(), "leaf-edited.glb");
+  const auto again = import::import_scene(file);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(column(again->scene.instances[0].world_from_object, 3), (Vec3{1, 2, 3}));
+  EXPECT_EQ(again->scene.lights.size(), 1u);
+}
+
+TEST_F(SaveScene, LightOfOptionsIsSavedWhereItWasEdited) {
+  const EditDesk opened = open_hall();
+  auto lit = std::make_shared<ReadScene>();
+  lit->scene = opened.read->scene;
+  lit->scene.lights.resize(lit->scene.lights.size() + 2);  // by --sun, say
+  EditDesk desk = begin_editing(lit);
+  scene::PunctualLight moved = lit->scene.lights[4];
+  moved.position = {1, 2, 3};
+  do_edit(LampSet{4, moved}, desk);
+  const scene::Scene saved = read_back(desk);
+  ASSERT_EQ(saved.lights.size(), 4u);
+  EXPECT_EQ(saved.lights[3].position, (Vec3{1, 2, 3}));
+}
+
+TEST_F(SaveScene, AFileThatHasChangedIsNotSaved) {
+  const EditDesk desk = open_hall();
+  std::string other = kHall;
+  other.replace(other.find("[0, 0, -5]"), 10, "[0, 0, -6]");
+  ASSERT_TRUE(write_file_atomically(settings_.scene, std::as_bytes(std::span(other))));
+  const auto saved = save_scene({desk.read, desk.now, settings_});
+  ASSERT_FALSE(saved);
+  EXPECT_THAT(saved.error().message, HasSubstr("hall.gltf has changed since it was read"));
+}
+
+}  // namespace
+}  // namespace luxel::view

@@ -65,6 +65,20 @@ TEST_F(ViewOfEdits, AreDrawnAndSaved) {
   EXPECT_GT(mean_flip(a, png_at(s_.path / "first.png")), 0.1);
 }
 
+TEST_F(ViewOfEdits, HaveTheLightOfTheSavedFileBitByBit) {
+  const CommandResult r = view("box.glb", "edited.png", kEdits + R"(,
+    {"at": 0, "wait": "bake"}, {"at": 0, "key": "ctrl+s"}, {"at": 0, "key": "ctrl+shift+s"})");
+  if (r.err.find("device") != std::string::npos) GTEST_SKIP() << r.err;
+  ASSERT_EQ(r.code, 0) << r.err;
+  const std::string out = (s_.path / "out").string(), baked = (s_.path / "baked").string();
+  EXPECT_THAT(r.err, HasSubstr("wrote " + out + "; wrote " + out + "/box-edited.glb"));
+  ASSERT_EQ(
+      luxel("bake " + out + "/box-edited.glb --resolution 64 --samples 16 --quiet -o " + baked)
+          .code,
+      0);
+  EXPECT_EQ(slurp(out + "/lightmap.exr"), slurp(baked + "/lightmap.exr"));
+}
+
 TEST_F(ViewOfEdits, SayWhatIsNotThere) {
   const CommandResult r = view("box.glb", "none.png", R"({"at": 0, "select": "chair"})");
   if (r.err.find("device") != std::string::npos) GTEST_SKIP() << r.err;

@@ -132,6 +132,38 @@ TEST(ViewInside, AWindowShowsWhatIsDrawnWithoutOne) {
   EXPECT_EQ(slurp(s.path / "window.png"), slurp(without));
 }
 
+// Whatever a tool has found is drawn, and leaves nothing behind.
+TEST(ViewInside, ToolsAreDrawnUntilNothingIsSelected) {
+  const ScratchFolder s;
+  if (!has_device_for_inside(s)) GTEST_SKIP() << "no graphics device";
+  const std::string steps = std::string(kAllLinks) + R"({"at": 0, "wait": "bake"},
+      {"at": 0, "show": "interpolant"}, {"at": 0, "wait": "bake"}, )";
+  const auto none = seen_inside(s, "none", "120x90", steps + R"({"at": 0, "tool": "element"})");
+  const auto with = [&](const std::string& name, const std::string& events) {
+    return seen_inside(s, name, "120x90", steps + events);
+  };
+  const std::string at = R"("pixel": [60, 84]})";
+  const auto element = with("element", R"({"at": 0, "use": "element", )" + at);
+  for (const auto& [name, events] : {
+           std::pair<std::string, std::string>{"link", R"({"at": 0, "use": "element", )" + at +
+                                                           R"(, {"at": 0, "selection": "next"})"},
+           {"triangle", R"({"at": 0, "use": "triangle", )" + at},
+           {"graph", R"({"at": 0, "use": "graph", "pixel": [40, 84], "to_pixel": [80, 84]})"},
+           {"irradiance", R"({"at": 0, "use": "irradiance", )" + at},
+           {"backprojection", R"({"at": 0, "use": "backprojection", )" + at},
+       }) {
+    EXPECT_GT(mean_flip(with(name, events), none), 1e-3) << name;
+    EXPECT_NE(slurp(s.path / (name + ".png")), slurp(element)) << name;
+  }
+  const auto gone = with("gone", R"({"at": 0, "use": "backprojection", )" + at +
+                                     R"(, {"at": 0, "wait": "bake"}, {"at": 0, "use": "none"})");
+  EXPECT_EQ(slurp(gone), slurp(none));
+  // The area of an element is yellow: less blue in the pixel that was pointed at.
+  const image::Image before = png_at(none), after = png_at(element);
+  const size_t pixel = 3 * (84 * 120 + 60);
+  EXPECT_LT(after.data[pixel + 2] / after.data[pixel], before.data[pixel + 2] / before.data[pixel]);
+}
+
 TEST(ViewInside, SaysWhatIsWrong) {
   const ScratchFolder s;
   const std::string shot = " --offscreen --screenshot " + (s.path / "x.png").string();
@@ -158,6 +190,9 @@ TEST(ViewInside, SaysWhatIsWrong) {
   EXPECT_THAT(
       error(kInsideBox + " --resolution 32 --samples 1" + play(R"({"at": 0, "do": "iterate"})")),
       HasSubstr("--inside opens one"));
+  EXPECT_THAT(error(kInsideBox + " --resolution 32 --samples 1" +
+                    play(R"({"at": 0, "use": "element", "pixel": [1, 2]})")),
+              HasSubstr("--inside opens one"));
   EXPECT_THAT(error((s.path / "none.glb").string() + " --inside hierarchical"),
               HasSubstr("none.glb is no such file"));
 }

@@ -95,11 +95,15 @@ bool take_check(LampSession& session) {
   return true;
 }
 
-Result<view::LightTimes> light_lamps(gpu::Commands& commands, view::DeviceScene& scene,
-                                     LampSession& session) {
-  if (session.lit == session.desk.changes) return view::LightTimes{};
-  session.lit = session.desk.changes;
-  return view::follow_lamps(commands, session.desk.lamps, session.opened, session.direct, scene);
+Result<view::LightTimes> light_lamps(gpu::Commands& commands, const view::Walk& walk,
+                                     view::DeviceScene& scene, LampSession& session) {
+  const trace::CameraRays eye(walk.shown.camera, walk.width, walk.height);
+  const view::Lamps& lamps = session.desk.lamps;
+  if (std::exchange(session.lit, session.desk.changes) != session.desk.changes)
+    return view::follow_lamps(commands, lamps, &eye, session.opened, session.direct, scene);
+  view::LightTimes out;
+  LUXEL_TRY(out.shadows, view::follow_eye(commands, lamps, eye, session.direct, scene));
+  return out;
 }
 
 void add_times(const view::LightTimes& light, float draw_ms, LampSession& session) {

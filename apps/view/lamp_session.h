@@ -32,10 +32,10 @@ void begin_or_stop_check(LampSession& session);
 /// Takes what was found. True: there is something.
 bool take_check(LampSession& session);
 
-/// Light follows the lamps where they have changed. Returns what it took. Nothing may still draw
-/// the scene. Errors: the device is lost, no memory.
-Result<view::LightTimes> light_lamps(gpu::Commands& commands, view::DeviceScene& scene,
-                                     LampSession& session);
+/// Light follows the lamps where they have changed, and maps of shadows the walk. Returns what it
+/// took. Nothing may still draw the scene. Errors: the device is lost, no memory.
+Result<view::LightTimes> light_lamps(gpu::Commands& commands, const view::Walk& walk,
+                                     view::DeviceScene& scene, LampSession& session);
 /// Keeps what a picture took; `draw_ms` is its drawing alone.
 void add_times(const view::LightTimes& light, float draw_ms, LampSession& session);
 

@@ -49,7 +49,7 @@ class LampSubject : public Subject {
   }
 
   Status prepare(gpu::Commands& commands, const view::Walk& walk, view::Frame& frame) override {
-    LUXEL_TRY(lit_, light_lamps(commands, shown_.device, lamps_));
+    LUXEL_TRY(lit_, light_lamps(commands, walk, shown_.device, lamps_));
     frame.marks = view::marks_of(lamps_.desk, walk);
     return {};
   }

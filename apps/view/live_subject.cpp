@@ -87,7 +87,9 @@ class LiveSubject : public Subject {
   void follow_edits() {
     if (!edit_) return;
     const view::EditDesk& desk = edit_->tools.desk;
-    if (std::exchange(followed_, desk.changes) != desk.changes) live_->edit(desk.now);
+    if (std::exchange(followed_, desk.changes) == desk.changes) return;
+    live_->edit(desk.now);
+    shown_.has_last = false;
   }
 
   std::unique_ptr<view::LiveBake> live_;

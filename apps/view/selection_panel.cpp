@@ -14,7 +14,7 @@ constexpr ImU32 kBlue = IM_COL32(90, 140, 255, 255), kRed = IM_COL32(235, 75, 60
                 kLetters = IM_COL32(215, 215, 215, 255), kZero = IM_COL32(110, 110, 110, 255);
 
 void lay_out_lines(const std::vector<std::string>& lines) {
-  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 32);
   for (const std::string& line : lines) ImGui::TextUnformatted(line.c_str());
   ImGui::PopTextWrapPos();
 }
@@ -33,7 +33,7 @@ struct GraphFrame {
 GraphFrame begin_graph(float height, float low, float high, float length_m) {
   const float size = ImGui::GetFontSize();
   const GraphFrame frame{
-      ImGui::GetCursorScreenPos(), {size * 24, size * height}, low, high, length_m};
+      ImGui::GetCursorScreenPos(), {size * 32, size * height}, low, high, length_m};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(frame.from, {frame.from.x + frame.extent.x, frame.from.y + frame.extent.y},
                      kGround);
@@ -48,13 +48,15 @@ void draw_curve(const GraphFrame& frame, const std::vector<float>& at_m,
   ImGui::GetWindowDrawList()->AddPolyline(points.data(), int(points.size()), color, 0, 1.5f);
 }
 
-void end_graph(const GraphFrame& frame, const std::string& unit, const char* name, ImU32 color) {
+/// The values at both edges.
+void end_graph(const GraphFrame& frame, const std::string& unit) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   char label[64];
-  snprintf(label, sizeof(label), "%.3g %s", double(frame.high), unit.c_str());
+  snprintf(label, sizeof(label), "%.4g %s", double(frame.high), unit.c_str());
   list.AddText({frame.from.x + 3, frame.from.y + 1}, kLetters, label);
-  const float width = ImGui::CalcTextSize(name).x;
-  list.AddText({frame.from.x + frame.extent.x - width - 3, frame.from.y + 1}, color, name);
+  snprintf(label, sizeof(label), "%.4g", double(frame.low));
+  list.AddText({frame.from.x + 3, frame.from.y + frame.extent.y - ImGui::GetFontSize() - 1},
+               kLetters, label);
   ImGui::Dummy(frame.extent);
 }
 
@@ -63,23 +65,26 @@ void lay_out_curve(const CurvePlot& plot) {
   if (plot.at_m.empty()) return;
   const float length_m = plot.at_m.back() + plot.at_m.front();
   std::vector<float> off;
-  float high = 1e-30f, most = 1e-30f;
+  float low = INFINITY, high = 0, most = 1e-30f;
   for (size_t k = 0; k < plot.at_m.size(); ++k) {
     off.push_back(plot.shown[k] - plot.exact[k]);
+    low = std::min({low, plot.exact[k], plot.shown[k]});
     high = std::max({high, plot.exact[k], plot.shown[k]});
     most = std::max(most, std::abs(off.back()));
   }
-  const GraphFrame light = begin_graph(8, 0, 1.05f * high, length_m);
+  const float edge = std::max({0.1f * (high - low), 0.01f * high, 1e-30f});
+  const GraphFrame light = begin_graph(8, low - edge, high + edge, length_m);
   draw_curve(light, plot.at_m, plot.shown, kBlue);
   draw_curve(light, plot.at_m, plot.exact, kSeen);
-  end_graph(light, plot.unit, "exact", kSeen);
-  ImGui::GetWindowDrawList()->AddText(
-      {light.from.x + light.extent.x - ImGui::CalcTextSize("as shown").x - 3,
-       light.from.y + 1 + ImGui::GetFontSize()},
-      kBlue, "as shown");
-  const GraphFrame error = begin_graph(4, -1.05f * most, 1.05f * most, length_m);
+  end_graph(light, plot.unit);
+  const GraphFrame error = begin_graph(4, -1.1f * most, 1.1f * most, length_m);
   draw_curve(error, plot.at_m, off, kRed);
-  end_graph(error, plot.unit, "difference", kRed);
+  end_graph(error, plot.unit);
+  ImGui::TextUnformatted("exact: white");
+  ImGui::SameLine();
+  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kBlue), "as shown");
+  ImGui::SameLine();
+  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kRed), "shown less exact");
   lay_out_lines(plot.lines);
 }
 
@@ -138,7 +143,7 @@ void lay_out_source(const SourcePicture& source) {
 
 void lay_out_tools(SelectionPanel& panel) {
   for (size_t i = 0; i < panel.tools.size(); ++i) {
-    if (i % 2 == 1) ImGui::SameLine(ImGui::GetFontSize() * 12);
+    if (i % 2 == 1) ImGui::SameLine(ImGui::GetFontSize() * 14);
     ImGui::RadioButton(panel.tools[i].c_str(), &panel.tool, int(i));
   }
   panel.asks_for_graph = ImGui::Button("graph across it (g)");
@@ -158,7 +163,8 @@ void lay_out_tools(SelectionPanel& panel) {
 void lay_out_selection(SelectionPanel& panel) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x - 10, 10}, ImGuiCond_FirstUseEver, {1, 0});
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {screen.x, screen.y - 20});
+  const float width = ImGui::GetFontSize() * 34;
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, screen.y - 20});
   ImGui::Begin("select and probe", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
   lay_out_tools(panel);
   if (!panel.said.empty()) lay_out_lines({panel.said});

@@ -188,7 +188,7 @@ Result<std::vector<std::byte>> pixels_of(Commands& commands, const Picture& pict
 Result<OwnedSampler> make_sampler(const Device& device, const SamplerParams& params) {
   auto info = structure<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
   info.magFilter = info.minFilter = params.filter;
-  info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+  info.mipmapMode = params.mipmaps;
   info.addressModeU = params.u, info.addressModeV = params.v;
   info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   info.maxLod = VK_LOD_CLAMP_NONE;

@@ -63,6 +63,7 @@ struct SamplerParams {
   VkSamplerAddressMode u = VK_SAMPLER_ADDRESS_MODE_REPEAT, v = VK_SAMPLER_ADDRESS_MODE_REPEAT;
   /// A look-up tells whether a depth is at least the picture's, which is one of depth.
   bool compares_depth = false;
+  VkSamplerMipmapMode mipmaps = VK_SAMPLER_MIPMAP_MODE_LINEAR;
 };
 using OwnedSampler = Owned<VkSampler, &VolkDeviceTable::vkDestroySampler>;
 Result<OwnedSampler> make_sampler(const Device& device, const SamplerParams& params);

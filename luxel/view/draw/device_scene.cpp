@@ -283,8 +283,8 @@ Status put_materials(const gpu::Device& device, Pictures& pictures, const scene:
     LUXEL_TRY(const gpu::Binding share, pictures.texture(m.diffuse_transmission_texture, true));
     LUXEL_TRY(const gpu::Binding tint,
               pictures.texture(m.diffuse_transmission_color_texture, false));
-    out.bindings.push_back(
-        {lights[page][0], map, metal, glow, share, tint, lights[page][1], out.shadow_maps});
+    out.bindings.push_back({lights[page][0], map, metal, glow, share, tint, lights[page][1],
+                            out.shadow_maps, out.shadow_depth});
     out.is_double_sided.push_back(m.double_sided);
     out.is_masked.push_back(m.alpha_mode == scene::AlphaMode::mask && m.alpha_cutoff > 0);
   }
@@ -324,9 +324,14 @@ Status put_shadow_maps(gpu::Commands& commands, uint32_t side, DeviceScene& out)
   constexpr VkSamplerAddressMode kClamp = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   LUXEL_TRY(gpu::OwnedSampler sampler,
             gpu::make_sampler(device, {VK_FILTER_NEAREST, kClamp, kClamp, true}));
+  LUXEL_TRY(gpu::OwnedSampler depth,
+            gpu::make_sampler(device, {VK_FILTER_NEAREST, kClamp, kClamp, false,
+                                       VK_SAMPLER_MIPMAP_MODE_NEAREST}));
   out.pictures.push_back(std::move(picture));
+  out.shadow_maps = {&out.pictures.back(), sampler.get()};
+  out.shadow_depth = {&out.pictures.back(), depth.get()};
   out.samplers.push_back(std::move(sampler));
-  out.shadow_maps = {&out.pictures.back(), out.samplers.back().get()};
+  out.samplers.push_back(std::move(depth));
   return {};
 }
 

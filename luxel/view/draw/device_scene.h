@@ -15,8 +15,8 @@ namespace luxel::view {
 
 /// What the shaders of surfaces look up, in the order of their bindings: E, the base colour, the
 /// metallic factor, emission, the share of light that is scattered through and its colour, the
-/// second picture of E, and the maps of shadows.
-inline constexpr uint32_t kLookUps = 8;
+/// second picture of E, and the maps of shadows, which tell what is lit, and then their depth.
+inline constexpr uint32_t kLookUps = 9;
 
 /// Triangles of one material in one mesh: a range of the indices.
 struct DrawRange {
@@ -64,6 +64,7 @@ struct DeviceScene {
   float rotation_rad = 0;
   gpu::Binding surroundings;  ///< white where there is no map
   gpu::Binding shadow_maps;   ///< of lamps that are drawn by direct_light.h
+  gpu::Binding shadow_depth;  ///< of the same picture
 };
 
 /// The triangles of a mesh in the order in which a DeviceScene has them: material by material.

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "luxel/gpu/target.h"
+#include "luxel/scene/light_kinds.h"
 #include "luxel/view/shaders/shadow.frag.h"
 #include "luxel/view/shaders/shadow.vert.h"
 
@@ -19,13 +20,17 @@ struct DeviceLamp {
   float range_m;
   Vec3 direction;
   float cos_outer, cone;
-  uint32_t first_map, looks_all_round;
+  uint32_t first_map, map_count, looks_all_round;
+  float tan_radius;
 };
-static_assert(sizeof(DeviceLamp) == 60);
-static_assert(sizeof(ShadowMap) == 80);
+static_assert(sizeof(DeviceLamp) == 68);
+static_assert(sizeof(ShadowMap) == 84);
 static_assert(int(scene::PunctualLight::Kind::point) == 0 &&
               int(scene::PunctualLight::Kind::spot) == 1 &&
               int(scene::PunctualLight::Kind::directional) == 2);
+
+/// Wider discs have the shadows of this one [rad].
+constexpr float kWidestDisc = 0.5f;
 
 struct ShadowPush {
   std::array<float, 16> clip_from_world;
@@ -56,7 +61,9 @@ DeviceLamp device_lamp(const scene::PunctualLight& l) {
           outer,
           1 / std::max(1e-3f, inner - outer),
           0,
-          0};
+          0,
+          0,
+          scene::has_disc(l) ? std::tan(std::min(l.angular_radius_rad, kWidestDisc)) : 0};
 }
 
 /// Values in a buffer that is made anew where they have no room.
@@ -105,12 +112,13 @@ Result<DirectLight> make_direct_light(const gpu::Device& device, const DeviceSce
 }
 
 Status set_lamps(const gpu::Device& device, std::span<const scene::PunctualLight> lamps,
-                 DirectLight& direct, DeviceScene& scene) {
-  direct.plan = plan_shadows(lamps, scene.bounds, scene.shadow_maps.picture->params.width);
+                 const trace::CameraRays* eye, DirectLight& direct, DeviceScene& scene) {
+  direct.plan = plan_shadows(lamps, scene.bounds, scene.shadow_maps.picture->params.width, eye);
   std::vector<DeviceLamp> on_device;
   for (size_t i = 0; i < lamps.size(); ++i) {
     on_device.push_back(device_lamp(lamps[i]));
     on_device[i].first_map = direct.plan.first_map[i];
+    on_device[i].map_count = direct.plan.map_count[i];
     on_device[i].looks_all_round = direct.plan.looks_all_round[i];
   }
   LUXEL_TRY_STATUS(put_values(device, on_device, "the lamps", direct.lamps));

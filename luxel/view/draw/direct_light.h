@@ -19,10 +19,11 @@ struct DirectLight {
 Result<DirectLight> make_direct_light(const gpu::Device& device, const DeviceScene& scene);
 
 /// These lamps light the scene from the next picture on: point, spot and directional, without
-/// profiles; a sun's disc counts as its centre. Nothing may still draw the scene. Errors: no
-/// memory.
+/// profiles. Shadows of a sun have edges as soft as its disc makes them; what faces it is lit as if
+/// by its centre. Shadows of suns are sharp near to the eye, if there is one. Nothing may still
+/// draw the scene. Errors: no memory.
 Status set_lamps(const gpu::Device& device, std::span<const scene::PunctualLight> lamps,
-                 DirectLight& direct, DeviceScene& scene);
+                 const trace::CameraRays* eye, DirectLight& direct, DeviceScene& scene);
 
 /// Records the drawing of those maps that have changed, before the scene itself is drawn.
 void draw_shadow_maps(const gpu::Device& device, VkCommandBuffer commands, const DeviceScene& scene,

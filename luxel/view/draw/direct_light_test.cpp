@@ -3,6 +3,7 @@
 #include "luxel/view/draw/direct_light.h"
 
 #include "luxel/scene/procedural.h"
+#include "luxel/scene/shapes.h"
 #include "luxel/solve/matrix/live_light.h"
 #include "luxel/trace/camera_rays.h"
 #include "luxel/trace/ray_tracer.h"
@@ -66,6 +67,11 @@ bool is_within(const std::vector<Pixel>& pixels, int x, int y, int around, float
   return true;
 }
 
+/// Whether a pixel and all around it show one triangle.
+bool is_one_surface(const std::vector<Pixel>& pixels, int x, int y) {
+  return is_within(pixels, x, y, 1, 1);
+}
+
 class DirectLightTest : public testing::OnDevice {
  protected:
   /// Puts a scene on the device, without any light.
@@ -84,8 +90,9 @@ class DirectLightTest : public testing::OnDevice {
   }
 
   /// E of the lamps per pixel.
-  image::Image drawn(const scene::Camera& camera, std::span<const scene::PunctualLight> lamps) {
-    EXPECT_TRUE(set_lamps(*device_, lamps, *direct_, *scene_));
+  image::Image drawn(const scene::Camera& camera, std::span<const scene::PunctualLight> lamps,
+                     const trace::CameraRays* eye = nullptr) {
+    EXPECT_TRUE(set_lamps(*device_, lamps, eye, *direct_, *scene_));
     EXPECT_TRUE(commands_->run(
         [&](VkCommandBuffer buffer) { draw_shadow_maps(*device_, buffer, *scene_, *direct_); }));
     const auto painter = make_painter(*device_, *shaders_, *scene_, kPictureSide, kPictureSide);
@@ -222,6 +229,100 @@ TEST_F(DirectLightTest, HolesOfMasksLetLightThrough) {
     EXPECT_NEAR(light[has_holes] / want, 1, 0.04);
   }
   EXPECT_GT(light[1], 1.02 * light[0]);
+}
+
+/// A floor of 400 m with posts of 0.4 m, a metre apart, around its middle.
+scene::Scene wide_floor() {
+  scene::Scene scene;
+  scene.materials.emplace_back();
+  scene::Mesh mesh;
+  const auto quad = [&](Vec3 a, Vec3 u, Vec3 v) {
+    const auto first = uint32_t(mesh.positions.size());
+    for (const Vec3 p : {a, a + u, a + u + v, a + v}) mesh.positions.push_back(p);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  };
+  quad({-200, 0, -200}, {0, 0, 400}, {400, 0, 0});
+  for (int i = -3; i <= 3; ++i)
+    for (int k = -3; k <= 3; ++k) {
+      const Vec3 at{float(i), 0, float(k)};
+      const float w = 0.1f, h = 0.4f;
+      quad(at + Vec3{0, 0, w}, {w, 0, 0}, {0, h, 0}), quad(at, {0, h, 0}, {w, 0, 0});
+      quad(at + Vec3{w, 0, 0}, {0, h, 0}, {0, 0, w}), quad(at, {0, 0, w}, {0, h, 0});
+      quad(at + Vec3{0, h, 0}, {0, 0, w}, {w, 0, 0});
+    }
+  mesh.triangle_material.assign(mesh.triangles.size(), 0);
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({"floor", 0, {}});
+  return scene;
+}
+
+// One map of all has texels of 0.2 m, in which posts are lost.
+TEST_F(DirectLightTest, ShadowsOfASunAreSharpNearTheEye) {
+  const scene::Scene scene = wide_floor();
+  const trace::RayTracer tracer = *trace::RayTracer::build(scene);
+  put(scene, 4096);
+  scene::Camera camera;
+  camera.world_from_camera = scene::look_at({0, 1.2f, 3}, {0, 0, 0}, {0, 1, 0});
+  const std::array lamps{lamp_of(Kind::directional, {}, {0.5f, -1, 0.3f})};
+  const std::vector<Pixel> wanted = by_rays(scene, tracer, camera, lamps);
+  const trace::CameraRays eye(camera, kPictureSide, kPictureSide);
+  const auto wrong = [&](const image::Image& picture) {
+    int out = 0;
+    for (int i = 10 * kPictureSide; i < kPictureSide * kPictureSide; ++i) {  // below the horizon
+      if (!(wanted[size_t(i)].facet.y > 0.5f)) continue;  // edges of posts are narrow
+      const float want = wanted[size_t(i)].irradiance.x;
+      out += std::abs(picture.data[size_t(4 * i)] - want) > 0.5f * lamps[0].intensity.x;
+    }
+    return out;
+  };
+  int dark = 0;
+  for (const Pixel& p : wanted) dark += p.is_surface && p.lit == 0;
+  EXPECT_GT(dark, 200);
+  const int without = wrong(drawn(camera, lamps));
+  EXPECT_EQ(direct_->plan.maps.size(), 1u);
+  const int with = wrong(drawn(camera, lamps, &eye));
+  EXPECT_EQ(direct_->plan.maps.size(), 2u) << "pixels are too wide for more";
+  EXPECT_GT(without, 100);
+  EXPECT_LT(with, without / 5) << without;
+}
+
+// Half of a sun's disc is seen above an edge; the share by 400 rays to all of the disc.
+TEST_F(DirectLightTest, EdgesOfShadowsAreAsSoftAsADisc) {
+  const scene::Scene scene = scene::cornell_box();
+  const trace::RayTracer tracer = *trace::RayTracer::build(scene);
+  put(scene, 4096);
+  scene::PunctualLight sun = lamp_of(Kind::directional, {}, {0.3f, -0.4f, 1});
+  const float radius = 2 * kPi / 180;
+  std::vector<double> wanted(kPictureSide * kPictureSide);
+  constexpr int kRays = 100;
+  const Vec3 aside = normalize(cross(sun.direction, Vec3{0, 1, 0}));
+  const Vec3 up = cross(sun.direction, aside);
+  std::vector<Pixel> from_centre = by_rays(scene, tracer, scene.cameras[0], {&sun, 1});
+  for (Pixel& p : from_centre) p.lit = 0;
+  for (int k = 0; k < kRays; ++k) {
+    const float r = std::sqrt((float(k) + 0.5f) / kRays) * std::tan(radius);
+    const float turn = 2.39996f * float(k);
+    scene::PunctualLight part = sun;
+    part.direction =
+        normalize(sun.direction + aside * (r * std::cos(turn)) + up * (r * std::sin(turn)));
+    const std::vector<Pixel> seen = by_rays(scene, tracer, scene.cameras[0], {&part, 1});
+    for (size_t i = 0; i < seen.size(); ++i) wanted[i] += double(seen[i].irradiance.x) / kRays;
+  }
+  const auto off = [&](const image::Image& picture) {
+    double sum = 0, light = 0;
+    for (size_t i = 0; i < wanted.size(); ++i) {
+      if (!is_one_surface(from_centre, int(i) % kPictureSide, int(i) / kPictureSide)) continue;
+      const double by = double(picture.data[4 * i]) - wanted[i];
+      sum += by * by, light += wanted[i] * wanted[i];
+    }
+    return std::sqrt(sum / light);
+  };
+  const double hard = off(drawn(scene.cameras[0], {&sun, 1}));
+  sun.angular_radius_rad = radius;
+  const double soft = off(drawn(scene.cameras[0], {&sun, 1}));
+  EXPECT_LT(soft, 0.5 * hard);
+  EXPECT_LT(soft, 0.1);
 }
 
 TEST(ShadowMaps, AllLampsFindRoomUntilThereIsNone) {

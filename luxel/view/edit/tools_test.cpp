@@ -353,5 +353,16 @@ TEST(Placement, NumbersComeBackAsTheyWereTyped) {
     }
 }
 
+TEST(Placement, ScalesAlongTheAxesOfTheObject) {
+  const Vec3 middle{5, 0, 0};
+  const Mat34 turned = turned_about({}, {0, 1, 0}, kPi / 4);
+  Placement to = placement_of(turned, middle);
+  to.scale.x = 2;
+  const Mat34 m = placed(turned, middle, to);
+  expect_close(column(m, 0), column(turned, 0) * 2);
+  expect_close(column(m, 2), column(turned, 2));
+  expect_close(transform_point(m, middle), transform_point(turned, middle));
+}
+
 }  // namespace
 }  // namespace luxel::view

@@ -7,9 +7,11 @@ namespace {
 
 /// So many sources have a line; the others are summed.
 constexpr size_t kSourceLines = 8;
+/// Less than this part of the light is what is left by rounding.
+constexpr float kRounding = 1e-4f;
 
 std::string source_text(const SourceShare& source, const std::string& unit) {
-  return fmt::format("{:5.1f} %  {}: {}, {:.3g} % of it visible", 100 * source.share, source.name,
+  return fmt::format("{:5.1f} %  {}: {}, {:.3g} % seen", 100 * source.share, source.name,
                      text_of(source.irradiance, unit), 100 * source.visible);
 }
 
@@ -31,7 +33,7 @@ std::vector<std::string> lines_of(const LightProbe& probe, const std::string& un
   if (probe.sources.size() > kSourceLines)
     out.push_back(
         fmt::format("{:5.1f} %  {} other faces", 100 * rest, probe.sources.size() - kSourceLines));
-  if (max_component(probe.from_no_face) > 0)
+  if (max_component(probe.from_no_face) > kRounding * max_component(probe.exact))
     out.push_back("from lamps and the sky " + text_of(probe.from_no_face, unit));
   return out;
 }

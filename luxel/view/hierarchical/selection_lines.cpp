@@ -49,8 +49,10 @@ std::vector<std::string> lines_of(const NodeFacts& f, const std::string& unit) {
     out.push_back(fmt::format("{} elements of faces below, {:.4g} m2", f.leaves, f.area_m2));
   } else {
     out.push_back(f.name);
-    out.push_back(fmt::format("depth {}, {} below it; {} leaves; {:.4g} m2", f.depth, f.height,
-                              f.leaves, f.area_m2));
+    out.push_back(f.height == 0
+                      ? fmt::format("a leaf at depth {}, {:.4g} m2", f.depth, f.area_m2)
+                      : fmt::format("depth {}, {} divisions and {} leaves below it; {:.4g} m2",
+                                    f.depth, f.height, f.leaves, f.area_m2));
     out.push_back("E " + text_of(f.irradiance, unit));
   }
   out.push_back("B " + text_of(f.radiosity, unit));

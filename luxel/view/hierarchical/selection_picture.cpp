@@ -88,7 +88,7 @@ SelectionShapes shapes_of(const Examined& examined, const SelectionDesk& desk) {
   if (selected.link)
     add_link(examined.view, *selected.link, out);
   else if (selected.has_element())
-    add_node(examined.view, selected.path[selected.level], out);
+    add_node(examined.view, selected.path[selected.level], !desk.probed.graph, out);
   if (selected.triangle) add_triangle(examined.view, *selected.triangle, out);
   if (selected.discontinuity) add_discontinuity(examined.view, *selected.discontinuity, out);
   if (desk.probed.sources) add_backprojection(*desk.probed.sources, out);

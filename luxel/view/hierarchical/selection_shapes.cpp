@@ -76,9 +76,9 @@ Generator along(const Generator& part, const h::Discontinuity& line) {
 
 }  // namespace
 
-void add_node(const SolutionView& view, uint32_t id, SelectionShapes& out) {
+void add_node(const SolutionView& view, uint32_t id, bool has_links, SelectionShapes& out) {
   const h::Tree& tree = view.solution.tree;
-  add_links_of(view, id, out);
+  if (has_links) add_links_of(view, id, out);
   if (!tree.is_cluster(id) && !tree.element(id).is_leaf())
     for (uint32_t c = 0; c < 4; ++c)
       add_outline(tree.elements[tree.element(id).child + c].polygon(), kPickedGrey, out);
@@ -134,9 +134,8 @@ void add_backprojection(const BackprojectionProbe& probe, SelectionShapes& out) 
   for (const SeenSource& source : probe.sources) {
     for (const DVec3& corner : source.above)
       add_stroke(probe.at.position, corner, kPickedGrey, out);
-    add_area(source.above, kPickedViolet, 0.35f, out);
     for (const h::Polygon& part : source.visible) {
-      add_area(part, kPickedWhite, 0.5f, out);
+      add_area(part, kPickedWhite, 0.4f, out);
       add_outline(part, kPickedGreen, out);
     }
     add_outline(source.outline, kPickedViolet, out);

@@ -23,8 +23,9 @@ struct SelectionShapes {
 };
 
 /// An element's outline, yellow, and those of the four parts below it, grey; a cluster's box. With
-/// the links that end there: white where all is visible, green where something stands between.
-void add_node(const SolutionView& view, uint32_t id, SelectionShapes& out);
+/// the links that end there, if they are to be seen: white where all is visible, green where
+/// something stands between.
+void add_node(const SolutionView& view, uint32_t id, bool has_links, SelectionShapes& out);
 /// Its ends yellow and blue; the link as add_node() has it; of elements the shaft, grey, and the
 /// blockers in it, red.
 void add_link(const SolutionView& view, const LinkNumber& link, SelectionShapes& out);
@@ -34,7 +35,8 @@ void add_triangle(const SolutionView& view, uint32_t triangle, SelectionShapes& 
 /// the edge of each that makes it, with the rays from there to both ends of the line.
 void add_discontinuity(const SolutionView& view, const DiscontinuityFacts& facts,
                        SelectionShapes& out);
-/// What of each source is seen white, the rest violet; the rays from the point to its outline.
+/// Outlines of sources violet, what of them is seen white with green edges; grey rays from the
+/// point to the corners of what its horizon leaves.
 void add_backprojection(const BackprojectionProbe& probe, SelectionShapes& out);
 
 /// The edges of the convex hull of two convex polygons that lead from one to the other: the sides

@@ -31,9 +31,9 @@ inline constexpr std::array<InsideToolName, 8> kInsideTools{{
     {"link", "select a link"},
     {"triangle", "select a triangle"},
     {"discontinuity", "select a discontinuity"},
-    {"graph", "graph along a line that is dragged"},
+    {"graph", "graph along a line"},
     {"irradiance", "probe irradiance"},
-    {"backprojection", "probe what is seen of sources"},
+    {"backprojection", "probe backprojections"},
 }};
 /// Where a tool is used: a pixel of the picture, or the place of a surface nearest to one in space.
 using ToolPlace = std::variant<Vec2, Vec3>;

@@ -16,6 +16,18 @@ void show_glow(const Lamps& lamps, const OpenedLxr& opened, DeviceScene& scene) 
   scene.background = lamps.background;
 }
 
+/// Returns what it took [ms].
+Result<double> draw_shadows(gpu::Commands& commands,
+                            const std::vector<scene::PunctualLight>& lights,
+                            const trace::CameraRays* eye, DirectLight& direct, DeviceScene& scene) {
+  const Clock::time_point start = Clock::now();
+  const gpu::Device& device = commands.device();
+  LUXEL_TRY_STATUS(set_lamps(device, lights, eye, direct, scene));
+  LUXEL_TRY_STATUS(commands.run(
+      [&](VkCommandBuffer buffer) { draw_shadow_maps(device, buffer, scene, direct); }));
+  return 1e3 * seconds_since(start);
+}
+
 }  // namespace
 
 Result<RelitScene> lxr_shown(gpu::Commands& commands, OpenedLxr& opened) {
@@ -31,13 +43,14 @@ Result<RelitScene> lxr_shown(gpu::Commands& commands, OpenedLxr& opened) {
   out.shown.has_light = out.shown.has_last = true;
   LUXEL_TRY(out.direct, make_direct_light(commands.device(), device));
   LUXEL_TRY_STATUS(
-      follow_lamps(commands, opened.lamps, opened, out.direct, device).map([](LightTimes) {}));
+      follow_lamps(commands, opened.lamps, nullptr, opened, out.direct, device).map([](LightTimes) {
+      }));
   return out;
 }
 
-Result<LightTimes> follow_lamps(gpu::Commands& commands, const Lamps& lamps, OpenedLxr& opened,
+Result<LightTimes> follow_lamps(gpu::Commands& commands, const Lamps& lamps,
+                                const trace::CameraRays* eye, OpenedLxr& opened,
                                 DirectLight& direct, DeviceScene& scene) {
-  const gpu::Device& device = commands.device();
   relight(lamps, opened.light);
   const RelitLight::Milliseconds& took = opened.light.took;
   LightTimes out{took.direct, took.bounces, took.places, took.map};
@@ -46,12 +59,16 @@ Result<LightTimes> follow_lamps(gpu::Commands& commands, const Lamps& lamps, Ope
   const std::array pages{image::to_half(opened.light.indirect)};
   LUXEL_TRY_STATUS(put_light(commands, pages, 0, scene));
   out.map += 1e3 * seconds_since(start);
-  const Clock::time_point mapped = Clock::now();
-  LUXEL_TRY_STATUS(set_lamps(device, shining(lamps), direct, scene));
-  LUXEL_TRY_STATUS(commands.run(
-      [&](VkCommandBuffer buffer) { draw_shadow_maps(device, buffer, scene, direct); }));
-  out.shadows = 1e3 * seconds_since(mapped);
+  LUXEL_TRY(out.shadows, draw_shadows(commands, shining(lamps), eye, direct, scene));
   return out;
+}
+
+Result<double> follow_eye(gpu::Commands& commands, const Lamps& lamps, const trace::CameraRays& eye,
+                          DirectLight& direct, DeviceScene& scene) {
+  const std::vector<scene::PunctualLight> lights = shining(lamps);
+  const uint32_t side = scene.shadow_maps.picture->params.width;
+  if (plan_shadows(lights, scene.bounds, side, &eye).maps == direct.drawn) return 0;
+  return draw_shadows(commands, lights, &eye, direct, scene);
 }
 
 }  // namespace luxel::view

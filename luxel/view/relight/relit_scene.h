@@ -26,7 +26,14 @@ struct LightTimes {
 
 /// The next picture is lit by these lamps: light of all bounces, then the lamps themselves, then
 /// their shadows. Nothing may still draw the scene. Errors: no memory, the device is lost.
-Result<LightTimes> follow_lamps(gpu::Commands& commands, const Lamps& lamps, OpenedLxr& opened,
+/// `eye`: whose picture it is; null: anyone's.
+Result<LightTimes> follow_lamps(gpu::Commands& commands, const Lamps& lamps,
+                                const trace::CameraRays* eye, OpenedLxr& opened,
                                 DirectLight& direct, DeviceScene& scene);
+
+/// The next picture is this eye's, the lamps as before: shadows of suns are sharp near to it.
+/// Returns what that took [ms]. Nothing may still draw the scene. Errors: as follow_lamps().
+Result<double> follow_eye(gpu::Commands& commands, const Lamps& lamps, const trace::CameraRays& eye,
+                          DirectLight& direct, DeviceScene& scene);
 
 }  // namespace luxel::view

@@ -112,7 +112,7 @@ TEST_F(RelitSceneTest, ALampIsDraggedToWhereABakeHasIt) {
                           PointerMoved{from + Vec2{-40, 0}}, ButtonChanged{Button::left, false}};
   for (const Event& event : events)
     if (!handle_lamps(event, walk, desk)) handle(event, nowhere, walk);
-  ASSERT_TRUE(follow_lamps(*commands_, desk.lamps, opened, relit->direct, device));
+  ASSERT_TRUE(follow_lamps(*commands_, desk.lamps, nullptr, opened, relit->direct, device));
   const image::Image8 after = drawn(device, walk.shown);
 
   const scene::PunctualLight& moved = desk.lamps.lamps[0].light;

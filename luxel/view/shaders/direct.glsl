@@ -56,6 +56,70 @@ float lit_share(ShadowMap map, vec3 place) {
   return sum;
 }
 
+// Of n points in a disc of radius 1, spread by the golden angle and turned: evenly for a `power` of
+// 0.5, and denser in the middle for a larger one.
+vec2 in_disc(int k, int n, float turn, float power) {
+  float angle = float(k) * 2.39996323 + turn;
+  return pow((float(k) + 0.5) / float(n), power) * vec2(cos(angle), sin(angle));
+}
+
+// Differs from pixel to pixel, over a turn.
+float turn_of_pixel() {
+  return 6.28318531 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+}
+
+const int kSearched = 32, kFiltered = 40;
+
+// The share of a sun's disc that is seen, by what the map has in its way [Fernando05]: from a place
+// in the map, `texels_per_depth` is how far the disc's rim leads for what is nearer to the sun by 1.
+// `slope` is how the surface's own depth changes from texel to texel.
+float seen_share(ShadowMap map, vec3 place, float texels_per_depth, vec2 slope) {
+  vec3 clip = (map.clip_from_world * vec4(place, 1)).xyz;
+  vec2 at = (clip.xy * 0.5 + 0.5) * map.side, size = vec2(textureSize(shadow_maps, 0));
+  vec2 low = vec2(0.5), high = vec2(map.side - 0.5);
+  float turn = turn_of_pixel(), sum = 0, weight = 0;
+  float searched = (0.76 - clip.z) * texels_per_depth;
+  // What is near is searched more densely: of it, less of what is around can be in the way. It counts
+  // by how much of the disc a texel of it hides, so that corners stay dark.
+  for (int k = -1; k < kSearched; ++k) {
+    vec2 aside = k < 0 ? vec2(0) : in_disc(k, kSearched, turn, 1.5) * searched;
+    vec2 texel = clamp(at + aside, low, high);
+    float nearer = textureLod(shadow_depth, (map.corner + texel) / size, 0).r - clip.z;
+    if (nearer <= max(dot(slope, aside), 0) || length(aside) > nearer * texels_per_depth) continue;
+    nearer = max(nearer, 0.5 / texels_per_depth);
+    sum += 1 / nearer, weight += 1 / (nearer * nearer);
+  }
+  float radius = weight > 0 ? sum / weight * texels_per_depth : 0;
+  if (radius < 2) return lit_share(map, place);
+  float lit = 0;
+  for (int k = 0; k < kFiltered; ++k) {
+    vec2 aside = in_disc(k, kFiltered, turn, 0.5) * radius;
+    vec2 texel = clamp(at + aside, low, high);
+    lit += textureLod(shadow_maps, vec3((map.corner + texel) / size, clip.z + dot(slope, aside)), 0);
+  }
+  return lit / float(kFiltered);
+}
+
+// How the depth of a facet in a directional map changes from texel to texel.
+vec2 slope_of(ShadowMap map, vec3 facet, vec3 forward) {
+  mat4 m = map.clip_from_world;
+  vec3 right = normalize(vec3(m[0][0], m[1][0], m[2][0]));
+  vec3 up = normalize(vec3(m[0][1], m[1][1], m[2][1]));
+  float along = min(dot(facet, forward), -0.05);
+  return vec2(dot(facet, right), dot(facet, up)) * (map.texel_m / (along * map.depth_m));
+}
+
+// The finest map of a sun that shows a place and all around that is looked up for it.
+uint map_of_sun(Lamp lamp, vec3 place) {
+  for (uint k = 0; k + 1 < lamp.map_count; ++k) {
+    ShadowMap map = light_now.maps.at[lamp.first_map + k];
+    vec3 clip = abs((map.clip_from_world * vec4(place, 1)).xyz);
+    float texels = 6 + (0.76 - clip.z) * lamp.tan_radius * map.depth_m / map.texel_m;
+    if (max(clip.x, clip.y) < 1 - 2 * texels / map.side) return k;
+  }
+  return lamp.map_count - 1;
+}
+
 vec3 axis_of_side(uint side) {
   float way = side % 2 == 0 ? 1 : -1;
   return side < 2 ? vec3(way, 0, 0) : side < 4 ? vec3(0, way, 0) : vec3(0, 0, way);
@@ -70,13 +134,15 @@ float visible_share(Lamp lamp, vec3 place, vec3 facet) {
   if (lamp.first_map == 0xffffffffu) return 1;
   vec3 from_lamp = place - lamp.position;
   bool all_round = lamp.looks_all_round != 0;
-  uint side = all_round ? side_of_cube(from_lamp) : 0;
+  uint side = all_round ? side_of_cube(from_lamp) : lamp.kind == 2 ? map_of_sun(lamp, place) : 0;
   vec3 forward = all_round ? axis_of_side(side) : lamp.direction;
   ShadowMap map = light_now.maps.at[lamp.first_map + side];
   float depth = lamp.kind == 2 ? 1 : dot(from_lamp, forward);
   float along = dot(facet, forward);
   vec3 p = place + facet * (map.texel_m * depth * (0.2 + 2.9 * sqrt(max(1 - along * along, 0))));
-  return lit_share(map, p);
+  if (lamp.tan_radius <= 0) return lit_share(map, p);
+  float texels_per_depth = lamp.tan_radius * map.depth_m / map.texel_m;
+  return seen_share(map, p, texels_per_depth, slope_of(map, facet, forward));
 }
 
 // E at a place with this normal, on a facet that looks this way.

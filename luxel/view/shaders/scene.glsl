@@ -42,14 +42,15 @@ struct Lamp {
   vec3 direction;
   float cos_outer;
   float cone;  // 1 over what the cosines of the two cones differ by
-  uint first_map;
+  uint first_map, map_count;
   uint looks_all_round;
+  float tan_radius;  // of half the angle of its disc
 };
 struct ShadowMap {
   mat4 clip_from_world;
   vec2 corner;
   float side;
-  float texel_m;
+  float texel_m, depth_m;
 };
 layout(buffer_reference, scalar) readonly buffer Lamps { Lamp at[]; };
 layout(buffer_reference, scalar) readonly buffer ShadowMaps { ShadowMap at[]; };

@@ -11,6 +11,7 @@ layout(binding = 4) uniform sampler2D through_share;
 layout(binding = 5) uniform sampler2D through_tint;
 layout(binding = 6) uniform sampler2D second;
 layout(binding = 7) uniform sampler2DShadow shadow_maps;
+layout(binding = 8) uniform sampler2D shadow_depth;
 
 // At pixels that a triangle covers in part, the middle can lie outside of it: far away in the atlas,
 // on nothing, where the triangle is seen edge-on.

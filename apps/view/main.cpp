@@ -27,6 +27,7 @@ constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kOutOfResource = 3;
 
 struct Options {
   std::filesystem::path subject, beside, screenshot, play, frame_table;
+  std::vector<std::filesystem::path> more;  ///< models beside the subject
   std::string size, device;
   std::string inside;  ///< a solver's name; empty: a scene is baked
   bool offscreen = false;
@@ -57,14 +58,14 @@ bool is_scene(const std::filesystem::path& subject) {
   return !view::is_lxr(subject) && std::filesystem::is_regular_file(subject, ignored);
 }
 
-constexpr std::string_view kHierarchical = "hierarchical";
+constexpr std::string_view kHierarchical = "hierarchical", kHemicube = "hemicube";
 
 /// Errors: a solver that cannot be looked into, a bake that is there.
 Status check_inside(const Options& options) {
   const std::string& solver = options.choice.solver;
-  if (options.inside != kHierarchical)
-    return fail(ErrorCode::bad_setting, "--inside '{}' cannot be looked into; there is: {}",
-                options.inside, kHierarchical);
+  if (options.inside != kHierarchical && options.inside != kHemicube)
+    return fail(ErrorCode::bad_setting, "--inside '{}' cannot be looked into; there are: {}, {}",
+                options.inside, kHierarchical, kHemicube);
   if (!is_scene(options.subject))
     return fail(ErrorCode::bad_setting,
                 "--inside is for a scene, whose light is made while you look; {} is no such file",
@@ -88,6 +89,10 @@ Status check_choice(const Options& options) {
     return fail(ErrorCode::bad_setting,
                 "--beside shows a second bake beside a first one; {} is no folder of a bake",
                 options.subject.string());
+  if (!options.more.empty() && options.inside != kHemicube)
+    return fail(ErrorCode::bad_setting,
+                "several models are one scene with --inside {} alone; give one without it",
+                kHemicube);
   if (!options.inside.empty()) LUXEL_TRY_STATUS(check_inside(options));
   std::string flag;
   if (!choice.solver.empty()) flag = "--solver";
@@ -125,6 +130,13 @@ Result<std::optional<view::OpenedBake>> opened_beside(const Options& options) {
   return out;
 }
 
+/// All models of one scene.
+std::vector<std::filesystem::path> models_of(const Options& options) {
+  std::vector<std::filesystem::path> out{options.subject};
+  out.insert(out.end(), options.more.begin(), options.more.end());
+  return out;
+}
+
 /// What is to be shown.
 struct Opened {
   view_window::MakeSubject make;
@@ -136,8 +148,12 @@ Result<Opened> opened(const Options& options) {
   Opened out;
   if (is_scene(options.subject)) {
     LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
-    out.make = options.inside.empty() ? view_window::live_subject(settings)
-                                      : view_window::inside_subject(settings);
+    if (options.inside == kHemicube)
+      out.make = view_window::hemicube_subject(models_of(options), settings);
+    else if (options.inside == kHierarchical)
+      out.make = view_window::inside_subject(settings);
+    else
+      out.make = view_window::live_subject(settings);
   } else if (view::is_lxr(options.subject)) {
     LUXEL_TRY(view::OpenedLxr lxr, view::open_lxr(options.subject));
     out.make = view_window::lamp_subject(std::move(lxr));
@@ -231,13 +247,14 @@ void add_own(CLI::App& app, Options& options) {
                  "A scene, which is baked while you look, with all options of `luxel bake`; the "
                  "folder that a bake left; or an .lxr file, whose lamps move")
       ->required();
+  app.add_option("MODELS", options.more, "More models of one scene, with --inside hemicube");
   app.add_option("-o,--output", options.choice.output,
                  "Where 'save' puts the bake of a scene (baked/NAME)")
       ->type_name("FOLDER");
   app.add_option("--beside", options.beside, "The folder of a second bake, to be compared")
       ->type_name("FOLDER");
   app.add_option("--inside", options.inside,
-                 "Look into a solver while it makes the light of a scene: hierarchical")
+                 "Look into a solver while it makes the light of a scene: hierarchical, hemicube")
       ->type_name("SOLVER");
   auto* screenshot = app.add_option("--screenshot", options.screenshot,
                                     "The picture to write: .png; of a window at the end of --play");

@@ -11,6 +11,7 @@
 
 #include "apps/view/bake_panel.h"
 #include "apps/view/edit_panel.h"
+#include "apps/view/hemicube_panel.h"
 #include "apps/view/lamp_panel.h"
 #include "apps/view/selection_panel.h"
 #include "apps/view/solver_panel.h"
@@ -57,6 +58,7 @@ struct Panel {
   std::optional<BakeLines> bake;
   std::optional<LampPanel> lamps;
   std::optional<EditPanel> edit;
+  std::optional<HemicubePanel> hemicube;
   std::optional<SolverPanel> solver;
   std::optional<SelectionPanel> selection;
   std::string message;  ///< what was done last

@@ -78,6 +78,10 @@ using OpenSubject = std::function<Result<MakeSubject>(const std::filesystem::pat
 MakeSubject baked_subject(view::OpenedBake bake);
 /// A bake that is being made; it begins now.
 MakeSubject live_subject(const pipeline::BakeSettings& settings);
+/// Hemicube radiosity of one or several models in one scene, and techniques of local illumination
+/// to hold it against; it begins now.
+MakeSubject hemicube_subject(std::vector<std::filesystem::path> models,
+                             const pipeline::BakeSettings& settings);
 /// Hierarchical radiosity of a scene, looked into; it begins now.
 MakeSubject inside_subject(const pipeline::BakeSettings& settings);
 /// An .lxr file, whose lamps move.

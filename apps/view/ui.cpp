@@ -168,11 +168,12 @@ class ImGuiUi : public Ui {
     lay_out_again(panel);
     if (panel.bake) lay_out_bake(*panel.bake);
     if (panel.solver) lay_out_solver(*panel.solver);
-    ImGui::RadioButton("light and colour", &panel.show, 0);
-    ImGui::RadioButton("light", &panel.show, 1);
-    ImGui::RadioButton("colour", &panel.show, 2);
-    lay_out_look(panel.look);
-    lay_out_parts(panel.parts);
+    if (panel.hemicube) {
+      lay_out_hemicube(*panel.hemicube);
+    } else {
+      lay_out_shows(panel);
+      lay_out_parts(panel.parts);
+    }
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
     ImGui::SliderFloat("exposure", &panel.stops, -8, 8, "%+.1f stops");
     ImGui::Checkbox("turn around (O)", &panel.turns);
@@ -195,6 +196,13 @@ class ImGuiUi : public Ui {
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowSize().x;
     ImGui::End();
     return right;
+  }
+
+  static void lay_out_shows(Panel& panel) {
+    ImGui::RadioButton("light and colour", &panel.show, 0);
+    ImGui::RadioButton("light", &panel.show, 1);
+    ImGui::RadioButton("colour", &panel.show, 2);
+    lay_out_look(panel.look);
   }
 
   /// A button for each that there is.

@@ -66,6 +66,14 @@ std::vector<NormalLine> normal_lines(const scene::Scene& scene, const Viewer& vi
 
 }  // namespace
 
+std::vector<Line> lines_of_normals(const scene::Scene& scene, const scene::Camera& camera) {
+  std::vector<Line> out;
+  for (const NormalLine& l :
+       normal_lines(scene, Viewer(camera), kLengthOfDiagonal * world_bounds(scene).diagonal()))
+    out.push_back({l.from, l.from + l.normal * l.length_m, kRed});
+  return out;
+}
+
 Result<image::Image> draw_normals(const scene::Scene& scene, const trace::RayTracer& tracer,
                                   const scene::Camera& camera, const DrawParams& params,
                                   Progress& progress) {
@@ -76,10 +84,7 @@ Result<image::Image> draw_normals(const scene::Scene& scene, const trace::RayTra
     return Rgb{1, 1, 1} * (0.15f + 0.55f * facing);
   };
   LUXEL_TRY(image::Image picture, draw_seen(scene, tracer, camera, grey_at, params, progress));
-  std::vector<Line> lines;
-  for (const NormalLine& l :
-       normal_lines(scene, viewer, kLengthOfDiagonal * world_bounds(scene).diagonal()))
-    lines.push_back({l.from, l.from + l.normal * l.length_m, kRed});
+  const std::vector<Line> lines = lines_of_normals(scene, camera);
   const image::Image drawn =
       draw_lines(scene, tracer, camera, params.width, params.height, lines, progress);
   progress.finish();

@@ -1,9 +1,16 @@
 // The normals that local illumination reckons with, drawn as in [Rodriguez06, plate C.8].
 #pragma once
 
+#include <vector>
+
 #include "luxel/display/draw.h"
+#include "luxel/display/lines.h"
 
 namespace luxel::display {
+
+/// From every corner of a triangle its shading normal as a red line: what draw_normals() draws over
+/// surfaces that are seen by this camera.
+std::vector<Line> lines_of_normals(const scene::Scene& scene, const scene::Camera& camera);
 
 /// Surfaces in greys (bright where they face the viewer) and from every corner of a triangle its
 /// shading normal as a red line, as long as 4 % of the scene's diagonal or as the triangle's

@@ -9,6 +9,7 @@
 #include "luxel/display/tone_map.h"
 #include "luxel/scene/scene.h"
 #include "luxel/view/mark.h"
+#include "luxel/view/technique.h"
 
 namespace luxel::view {
 
@@ -121,6 +122,7 @@ struct Frame {
   std::optional<Beside> beside;          ///< where there is a second bake
   std::optional<Outline> outline;        ///< around what is selected
   std::vector<Mark> marks;               ///< over the picture, the last one uppermost
+  std::optional<Technique> technique;    ///< of Additions::techniques, where there are any
 };
 
 }  // namespace luxel::view

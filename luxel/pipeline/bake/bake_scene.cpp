@@ -167,6 +167,8 @@ Status bake_loaded(const BakeSettings& settings, const Keepers& keepers,
     observer = observer_of(watcher, input);
   else if (!looks_at_places(settings))
     observer.on_traced = [&] { transport::drop_places(ready.elements); };
+  hemicube::Observer inside;
+  if (watcher.hemicube) inside = watcher.hemicube(input), observer.hemicube = &inside;
   LUXEL_TRY_STATUS(solve(settings, input, stores, observer, bake, progress));
   std::vector<uint32_t> regions;
   if (settings.repair_leaks) {

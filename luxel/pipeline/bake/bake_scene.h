@@ -70,6 +70,8 @@ struct BakeObserver {
   std::function<bool(const light::TexelScene&, size_t element)> is_watched{};
   /// With on_estimate: light::OnBounce of gather, neither refilled nor stitched.
   std::function<bool(const light::TexelScene&, std::span<const Rgb>)> on_bounce{};
+  /// Makes who watches hemicube in the scene as it is laid out, which lives as long as the bake.
+  std::function<hemicube::Observer(const light::TexelScene&)> hemicube{};
 };
 
 /// Reads settings.scene and adds its outside light. `warnings` gets what is to be told. Errors:

@@ -59,17 +59,17 @@ TexelLight texel_light_of(const light::TexelScene& in, const hemicube::Solution&
 }
 
 Result<TexelLight> solve_hemicube(const light::TexelScene& in, const BakeSettings& settings,
-                                  const SolveStores&, const SolveObserver&, Progress& progress) {
-  hemicube::HemicubeParams params = settings.own.of<hemicube::HemicubeParams>();
-  params.direct_samples = std::min(kShadowRaysPerSample * settings.direct_samples, kMostShadowRays);
-  params.bounces = settings.bounces, params.seed = settings.seed;
+                                  const SolveStores&, const SolveObserver& observer,
+                                  Progress& progress) {
+  hemicube::HemicubeParams params = hemicube_params(settings);
   const uint64_t pixels = hemicube::bytes_of_hemicube(params.resolution, thread_count());
   LUXEL_TRY(const uint64_t memory,
             memory_to_spare(in, settings, bytes_of_light(in, settings), pixels + kMinHitBytes));
   params.row_memory_bytes = memory - pixels;
   params.scratch_folder = nearest_folder(settings.output);
   LUXEL_TRY(const hemicube::Solution solution,
-            hemicube::solve(in.scene, in.lights, in.tracer, params, progress));
+            hemicube::solve(in.scene, in.lights, in.tracer, params, progress,
+                            observer.hemicube ? *observer.hemicube : hemicube::Observer{}));
   const float cover_size_m =
       transport::size_for_covers(in.scene, in.tracer, solution.element_size_m);
   TexelLight out = texel_light_of(in, solution, cover_size_m);
@@ -140,6 +140,13 @@ Options<hemicube::HemicubeParams> hemicube_options() {
           .unit("ERROR"),
       HemicubeRows::toggle("--smooth", &P::smooth, "Interpolate light that is per triangle"),
   };
+}
+
+hemicube::HemicubeParams hemicube_params(const BakeSettings& settings) {
+  hemicube::HemicubeParams params = settings.own.of<hemicube::HemicubeParams>();
+  params.direct_samples = std::min(kShadowRaysPerSample * settings.direct_samples, kMostShadowRays);
+  params.bounces = settings.bounces, params.seed = settings.seed;
+  return params;
 }
 
 Status check_contradictions(const hemicube::HemicubeParams& params) {

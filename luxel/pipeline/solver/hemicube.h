@@ -2,12 +2,16 @@
 #pragma once
 
 #include "luxel/pipeline/settings/option.h"
+#include "luxel/pipeline/settings/settings.h"
 #include "luxel/solve/hemicube/hemicube.h"
 
 namespace luxel::pipeline {
 
 /// The rows of the solver's parameters that a user chooses.
 Options<hemicube::HemicubeParams> hemicube_options();
+/// What a bake by these settings asks of the solver, memory and folders aside: four shadow rays for
+/// each of --direct-samples.
+hemicube::HemicubeParams hemicube_params(const BakeSettings& settings);
 /// Contradictions between them. Errors (bad_setting).
 Status check_contradictions(const hemicube::HemicubeParams& params);
 

@@ -13,6 +13,7 @@
 #include "luxel/light/light_layers.h"
 #include "luxel/light/texel_scene.h"
 #include "luxel/scene/scene.h"
+#include "luxel/solve/hemicube/observer.h"
 
 namespace luxel::pipeline {
 
@@ -31,6 +32,8 @@ struct SolveObserver {
   std::function<std::vector<Rgb>(std::span<const Rgb> direct)> guess{};
   std::function<bool(size_t element)> is_watched{};
   light::OnBounce on_bounce{};  ///< GatherObserver::on_bounce
+  /// Who watches hemicube; null: nobody.
+  const hemicube::Observer* hemicube = nullptr;
   /// Called, or not, when the solver looks at no place of an element any more: they take memory.
   std::function<void()> on_traced{};
 };

@@ -75,6 +75,7 @@ Result<Exchanged> exchange(const Receivers& receivers, const Rows& rows,
     out.irradiance.swap(next);
     ++out.sweeps;
     progress.advance(1);
+    if (params.on_bounce) params.on_bounce(out.irradiance);
     const double mean = mean_luminance(receivers, out.irradiance);
     if (params.bounces < 0 &&
         light_to_come(change, before, double(largest)) <= double(params.tolerance) * mean)

@@ -20,6 +20,8 @@ Emission choose_emission(const light::Lights& lights);
 struct ExchangeParams {
   int bounces = -1;         ///< passes; < 0: until the light to come is below `tolerance`
   float tolerance = 1e-4f;  ///< root mean square over the elements, relative to the mean
+  /// Gets E of all elements after each pass; nothing where nobody does.
+  std::function<void(std::span<const Rgb>)> on_bounce{};
 };
 
 struct Exchanged {

@@ -102,17 +102,18 @@ Result<FirstMesh> first_mesh(const scene::Scene& scene, const HemicubeParams& pa
 /// light it has on, if any.
 Status exchange_light(const scene::Scene& scene, const trace::RayTracer& tracer,
                       const Emission& emission, const HemicubeParams& params, Solution& s,
-                      Progress& progress) {
+                      Progress& progress, const Observer& observer) {
   const Receivers& receivers = s.field.receivers;
-  LUXEL_TRY(const Sight sight, look_from({scene, tracer, emission, s.field.mesh, receivers},
-                                         receivers.elements, params, s, progress));
+  LUXEL_TRY(const Sight sight,
+            look_from({scene, tracer, emission, s.field.mesh, receivers, &observer},
+                      receivers.elements, params, s, progress));
   s.hidden = sight.rows.hidden, s.enclosed = sight.rows.enclosed, s.covered = sight.rows.covered;
   s.row_bytes_in_file = sight.rows.store.bytes_in_file();
   s.row_bytes = sight.rows.store.bytes_in_memory() + s.row_bytes_in_file;
   LUXEL_TRY(Exchanged exchanged,
             exchange(receivers, sight.rows, sight.source,
                      plan_refill(receivers.neighbours, s.enclosed, s.covered), s.field.irradiance,
-                     {.bounces = params.bounces, .tolerance = params.tolerance}, progress));
+                     {params.bounces, params.tolerance, observer.on_bounce}, progress));
   s.field.irradiance = std::move(exchanged.irradiance);
   s.sweeps = exchanged.sweeps;
   return {};
@@ -123,13 +124,15 @@ Status exchange_light(const scene::Scene& scene, const trace::RayTracer& tracer,
 /// it.
 Status refine_roughly(const scene::Scene& scene, const trace::RayTracer& tracer,
                       const Emission& emission, const HemicubeParams& params, size_t max_elements,
-                      Solution& s, Progress& progress) {
+                      Solution& s, Progress& progress, const Observer& observer) {
   HemicubeParams rough = params;
   rough.resolution = std::max(2, params.resolution / 4 * 2);
-  LUXEL_TRY_STATUS(exchange_light(scene, tracer, emission, rough, s, progress));
+  LUXEL_TRY_STATUS(exchange_light(scene, tracer, emission, rough, s, progress, observer));
   const Field coarse = s.field;
-  return refine({scene, tracer, emission, coarse.mesh, coarse.receivers}, rough, max_elements, s,
-                progress);
+  LUXEL_TRY_STATUS(refine({scene, tracer, emission, coarse.mesh, coarse.receivers}, rough,
+                          max_elements, s, progress));
+  if (observer.on_mesh) observer.on_mesh(s.field);
+  return {};
 }
 
 }  // namespace
@@ -142,7 +145,7 @@ uint64_t bytes_of_hemicube(int resolution, int threads) {
 
 Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
                        const trace::RayTracer& tracer, const HemicubeParams& params,
-                       Progress& progress) {
+                       Progress& progress, const Observer& observer) {
   LUXEL_CHECK(params.resolution >= 2 && params.resolution <= kMaxResolution &&
               params.resolution % 2 == 0);
   LUXEL_TRY(FirstMesh first, first_mesh(scene, params, progress));
@@ -153,15 +156,17 @@ Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
       float(std::sqrt(2 * area_m2(scene) / double(std::max<size_t>(first.mesh.triangle_count, 1))));
   s.field.receivers = make_receivers(scene, first.mesh, params.elements);
   s.field.mesh = std::move(first.mesh);
+  if (observer.on_mesh) observer.on_mesh(s.field);
   if (params.max_error > 0)
     LUXEL_TRY_STATUS(
-        refine_roughly(scene, tracer, emission, params, first.max_elements, s, progress));
-  LUXEL_TRY_STATUS(exchange_light(scene, tracer, emission, params, s, progress));
+        refine_roughly(scene, tracer, emission, params, first.max_elements, s, progress, observer));
+  LUXEL_TRY_STATUS(exchange_light(scene, tracer, emission, params, s, progress, observer));
   s.relative_error = relative_interpolation_error(s.field);
   if (params.smooth && params.elements == ElementKind::triangle) {
     s.field = smoothed(scene, s.field, s.enclosed, s.covered);
     s.hidden.assign(s.field.receivers.size(), 0), s.enclosed = s.covered = s.hidden;
   }
+  if (observer.on_solved) observer.on_solved(s);
   return s;
 }
 

@@ -3,6 +3,7 @@
 
 #include "luxel/light/lights.h"
 #include "luxel/solve/hemicube/field.h"
+#include "luxel/solve/hemicube/observer.h"
 #include "luxel/solve/hemicube/rows.h"
 
 namespace luxel::hemicube {
@@ -53,6 +54,6 @@ struct Solution {
 /// Errors: settings, cancelled, disk full.
 Result<Solution> solve(const scene::Scene& scene, const light::Lights& lights,
                        const trace::RayTracer& tracer, const HemicubeParams& params,
-                       Progress& progress);
+                       Progress& progress, const Observer& observer = {});
 
 }  // namespace luxel::hemicube

@@ -7,6 +7,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
+#include "luxel/solve/hemicube/item_buffer.h"
 #include "luxel/viewfactor/hemicube.h"
 
 namespace luxel::hemicube {
@@ -38,15 +39,6 @@ Result<std::vector<Pixel>> pixels_in_tiles(int resolution, Progress& progress) {
     first += size_t(rows) * size_t(resolution);
   }
   return pixels;
-}
-
-/// The hemicube stands askew about the normal, by an angle without a simple tangent: rows of pixels
-/// that run along the edges of a room would see all of an edge or nothing of it.
-Frame frame_of_cube(Vec3 normal) {
-  constexpr float kCosine = 0.90630779f, kSine = 0.42261826f;  // 25 degrees
-  const Frame f = frame_around(normal);
-  return {f.tangent * kCosine + f.bitangent * kSine, f.bitangent * kCosine - f.tangent * kSine,
-          normal};
 }
 
 /// Sums shares per element; remembers which elements have one.

@@ -181,11 +181,15 @@ Result<Sight> look_from(const SendingScene& around, const transport::Elements& e
                         around.senders,
                         around.emission.exact.around,
                         around.emission.by_pixels};
-  LUXEL_TRY(Rows rows, make_rows(senders, viewpoints(elements),
-                                 {.look = {.resolution = params.resolution},
-                                  .memory_limit_bytes = params.row_memory_bytes,
-                                  .scratch_folder = params.scratch_folder},
-                                 progress));
+  RowParams of_rows{.look = {.resolution = params.resolution},
+                    .memory_limit_bytes = params.row_memory_bytes,
+                    .scratch_folder = params.scratch_folder};
+  if (around.observer && around.observer->on_direct) around.observer->on_direct(direct.irradiance);
+  if (around.observer && around.observer->on_view)
+    of_rows.on_view = [&](size_t i, const View& view) {
+      around.observer->on_view(i, direct.irradiance[i] + view.emitted, view);
+    };
+  LUXEL_TRY(Rows rows, make_rows(senders, viewpoints(elements), of_rows, progress));
   for (size_t k = 0; k < elements.size(); ++k) direct.irradiance[k] += rows.emitted[k];
   const float size_m =
       transport::size_for_covers(around.scene, around.tracer, solution.element_size_m);

@@ -21,8 +21,9 @@ struct SendingScene {
   const scene::Scene& scene;
   const trace::RayTracer& tracer;
   const Emission& emission;
-  const Mesh& mesh;          ///< what is looked at
-  const Receivers& senders;  ///< its elements
+  const Mesh& mesh;                    ///< what is looked at
+  const Receivers& senders;            ///< its elements
+  const Observer* observer = nullptr;  ///< hears of each look; null: nobody does
 };
 
 /// What elements see, and the light that reaches them without any reflection.

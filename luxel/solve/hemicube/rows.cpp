@@ -63,6 +63,7 @@ Result<Rows> make_rows(const Senders& senders, std::span<const Viewpoint> from,
     rows.scale[i] = append_row(view, open[tile]);
     rows.emitted[i] = view.emitted;
     rows.hidden[i] = is_hidden(view), rows.enclosed[i] = is_enclosed(view);
+    if (params.on_view) params.on_view(i, view);
     if (i + 1 != count && (i + 1) % kTileElements != 0) return {};
     return rows.store.put(tile, std::move(open[tile]));
   };

@@ -38,6 +38,8 @@ struct RowParams {
   LookParams look;
   uint64_t memory_limit_bytes = UINT64_MAX;  ///< the rest goes to a temporary file
   std::filesystem::path scratch_folder = ".";
+  /// Gets every view, by the number of its row, from many threads; nothing where nobody does.
+  std::function<void(size_t, const View&)> on_view{};
 };
 
 /// Looks from every viewpoint at all senders. Errors: cancelled, disk full.

@@ -199,6 +199,8 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
   LUXEL_TRY(out.quadratic, make_quadratic_shader(device, kExposed, kSamples));
   LUXEL_TRY(out.shapes, make_shape_shaders(device, kExposed, kSamples));
   LUXEL_TRY(out.mark, gpu::make_draw_pipeline(device, mark_params()));
+  LUXEL_TRY(out.technique, make_technique_shaders(device, kExposed, kSamples));
+  LUXEL_TRY(out.inset, make_inset_shader(device, kShown));
   LUXEL_TRY(out.outline, make_outline_shaders(device, kShown));
   return out;
 }
@@ -221,57 +223,92 @@ Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
   return out;
 }
 
+namespace {
+
+bool has_technique(const Additions& more, const Frame& frame) {
+  return more.techniques && frame.technique;
+}
+
+/// The curve that a frame is shown over. Colours that stand for something are shown as they are.
+display::ToneMap curve_of(const Additions& more, const Frame& frame, bool has_overlay) {
+  const bool is_light = has_technique(more, frame) ? view::is_light(*frame.technique)
+                                                   : frame.show != Show::colour &&
+                                                         !(has_overlay && shows_colors(frame.show));
+  return is_light ? frame.curve : display::ToneMap::clamp;
+}
+
+/// The surfaces, or what is drawn instead of them.
+void draw_surfaces_or_else(const gpu::Device& device, VkCommandBuffer commands,
+                           const Canvas& canvas, const Additions& more, const SurfacePush& push,
+                           const Frame& frame) {
+  const Shaders& shaders = canvas.shaders;
+  if (canvas.overlay != nullptr && looks_into_bake(frame.show))
+    draw_overlay(device, commands, shaders.overlay, *canvas.overlay, canvas.scene,
+                 push.clip_from_world);
+  else if (has_technique(more, frame))
+    draw_technique(device, commands, shaders.technique, *more.techniques, canvas.scene,
+                   {push.clip_from_world, canvas.painter.materials.sets}, frame);
+  else if (!more.instead && !more.no_surfaces)
+    draw_surfaces(device, commands, canvas, push);
+  else if (!more.no_surfaces)
+    draw_quadratics(device, commands, shaders.quadratic, *more.instead, more.exact,
+                    push.clip_from_world, frame);
+}
+
+/// What is exposed as a screen shows it, and what lies over it.
+void show_exposed(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
+                  const Additions& more, display::ToneMap curve, const Frame& frame) {
+  const Painter& painter = canvas.painter;
+  const gpu::TargetParams& size = painter.exposed.params;
+  gpu::begin_drawing(device, commands, painter.shown, {0, 0, 0, 1});
+  gpu::bind(device, commands, canvas.shaders.screen, ScreenPush{uint32_t(curve)});
+  gpu::bind_set(device, commands, canvas.shaders.screen, painter.to_screen.sets[0]);
+  device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
+  if (frame.outline)
+    draw_line(device, commands, canvas.shaders.outline, painter.outliner, *frame.outline);
+  draw_marks(device, commands, canvas, frame.marks);
+  if (more.inset)
+    draw_inset(device, commands, canvas.shaders.inset, *more.inset, size.width, size.height);
+  gpu::end_drawing(device, commands, painter.shown, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+}
+
+}  // namespace
+
 void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
            const Frame& frame) {
-  const Shaders& shaders = canvas.shaders;
   const Painter& painter = canvas.painter;
   const DeviceScene& scene = canvas.scene;
-  const Overlay* overlay = canvas.overlay;
   const Additions none, &more = canvas.additions ? *canvas.additions : none;
   const gpu::TargetParams& size = painter.exposed.params;
   const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
-  const bool has_overlay = overlay != nullptr && looks_into_bake(frame.show);
+  const bool has_overlay = canvas.overlay != nullptr && looks_into_bake(frame.show);
   SurfacePush surface{};
   surface.clip_from_world = clip_from_world(camera, scene.bounds);
   surface.exposure = frame.exposure, surface.show = uint32_t(frame.show);
   light_now(scene).eye = camera.eye;
-  if (has_overlay) set_shown(device, commands, *overlay, scene, frame, normalize(camera.forward));
-  gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
   if (has_overlay)
-    draw_overlay(device, commands, shaders.overlay, *overlay, scene, surface.clip_from_world);
-  else if (!more.instead && !more.no_surfaces)
-    draw_surfaces(device, commands, canvas, surface);
-  else if (!more.no_surfaces)
-    draw_quadratics(device, commands, shaders.quadratic, *more.instead, more.exact,
-                    surface.clip_from_world, frame);
+    set_shown(device, commands, *canvas.overlay, scene, frame, normalize(camera.forward));
+  gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
+  draw_surfaces_or_else(device, commands, canvas, more, surface, frame);
   if (canvas.probes && frame.shows_probes)
-    draw_probes(device, commands, shaders.probes, *canvas.probes, has_overlay ? overlay : nullptr,
-                frame, surface.clip_from_world);
+    draw_probes(device, commands, canvas.shaders.probes, *canvas.probes,
+                has_overlay ? canvas.overlay : nullptr, frame, surface.clip_from_world);
   const BehindPush behind = behind_of(camera, scene, frame, has_overlay);
-  gpu::bind(device, commands, shaders.behind, behind);
-  gpu::bind_set(device, commands, shaders.behind, painter.surroundings.sets[0]);
+  gpu::bind(device, commands, canvas.shaders.behind, behind);
+  gpu::bind_set(device, commands, canvas.shaders.behind, painter.surroundings.sets[0]);
   device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
-  const bool is_light = frame.show != Show::colour && !(has_overlay && shows_colors(frame.show));
-  const display::ToneMap curve = is_light ? frame.curve : display::ToneMap::clamp;
+  const display::ToneMap curve = curve_of(more, frame, has_overlay);
   for (const DeviceShapes& shapes : more.shapes)
-    draw_shapes(device, commands, shaders.shapes, shapes,
+    draw_shapes(device, commands, canvas.shaders.shapes, shapes,
                 {surface.clip_from_world,
                  camera.orthographic,
                  {float(size.width), float(size.height)},
                  curve});
   gpu::end_drawing(device, commands, painter.exposed, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   if (frame.outline)
-    draw_mask(device, commands, shaders.outline, painter.outliner, scene, painter.materials.sets,
-              *frame.outline, surface.clip_from_world);
-
-  gpu::begin_drawing(device, commands, painter.shown, {0, 0, 0, 1});
-  const ScreenPush screen{uint32_t(curve)};
-  gpu::bind(device, commands, shaders.screen, screen);
-  gpu::bind_set(device, commands, shaders.screen, painter.to_screen.sets[0]);
-  device.vk.vkCmdDraw(commands, 3, 1, 0, 0);
-  if (frame.outline) draw_line(device, commands, shaders.outline, painter.outliner, *frame.outline);
-  draw_marks(device, commands, canvas, frame.marks);
-  gpu::end_drawing(device, commands, painter.shown, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    draw_mask(device, commands, canvas.shaders.outline, painter.outliner, scene,
+              painter.materials.sets, *frame.outline, surface.clip_from_world);
+  show_exposed(device, commands, canvas, more, curve, frame);
   gpu::change_layout(device, commands, painter.exposed.picture,
                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);

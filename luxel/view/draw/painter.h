@@ -9,11 +9,13 @@
 #include "luxel/image/codec.h"
 #include "luxel/image/image.h"
 #include "luxel/view/draw/device_scene.h"
+#include "luxel/view/draw/inset.h"
 #include "luxel/view/draw/outline.h"
 #include "luxel/view/draw/overlay.h"
 #include "luxel/view/draw/probe_drawing.h"
 #include "luxel/view/draw/quadratic.h"
 #include "luxel/view/draw/shapes.h"
+#include "luxel/view/draw/technique_drawing.h"
 #include "luxel/view/frame.h"
 
 namespace luxel::view {
@@ -21,8 +23,9 @@ namespace luxel::view {
 /// The shaders of all pictures.
 struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
-  gpu::Pipeline overlay, beside, quadratic, probes;
+  gpu::Pipeline overlay, beside, quadratic, inset, probes;
   ShapeShaders shapes;
+  TechniqueShaders technique;
   OutlineShaders outline;
 };
 /// Takes some tenths of a second on the processor.
@@ -45,7 +48,9 @@ struct Additions {
   std::optional<DeviceQuadratics> instead;
   std::optional<ExactPixels> exact;  ///< of `instead`
   bool no_surfaces = false;
-  std::vector<DeviceShapes> shapes;  ///< in this order
+  std::vector<DeviceShapes> shapes;            ///< in this order
+  std::optional<DeviceTechniques> techniques;  ///< instead, where Frame::technique says so
+  std::optional<DeviceInset> inset;            ///< over the picture
 };
 
 /// What a picture is drawn with and of. All of it must live until it is drawn.

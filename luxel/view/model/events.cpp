@@ -31,7 +31,8 @@ bool is_key(const std::string& name) {
   return bookmark_key(name) || std::any_of(std::begin(kKeys), std::end(kKeys), is_it) ||
          std::any_of(std::begin(kLampKeys), std::end(kLampKeys), is_it) ||
          std::any_of(std::begin(kEditKeys), std::end(kEditKeys), is_it) ||
-         std::any_of(std::begin(kSelectionKeys), std::end(kSelectionKeys), is_it);
+         std::any_of(std::begin(kSelectionKeys), std::end(kSelectionKeys), is_it) ||
+         std::any_of(std::begin(kHemicubeKeys), std::end(kHemicubeKeys), is_it);
 }
 
 /// The number of a name in a table; none where it has no such name.

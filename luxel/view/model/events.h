@@ -102,8 +102,13 @@ struct OwnAsked {
 /// OwnAsked that ends what is under way.
 inline constexpr const char* kStopAsk = "stop";
 /// Names that OwnShown can have, of all solvers that can be looked into.
-inline constexpr std::array<const char*, 5> kOwnShows{"flat", "gouraud", "gouraud-disc",
-                                                      "interpolant", "rayshade"};
+inline constexpr std::array<const char*, 16> kOwnShows{
+    "flat",      "gouraud",    "gouraud-disc", "interpolant",
+    "rayshade",  // hierarchical
+    "c",         "ca",         "cad",          "cas",
+    "cads",  // kTechniques
+    "cas-pixel", "cads-pixel", "normals",      "radiosity-vertex",
+    "radiosity", "elements"};
 /// A part of the light is shown.
 struct PartChanged {
   LightShown light;
@@ -211,6 +216,12 @@ inline constexpr KeyHelp kLampKeys[] = {
     {"c", "compare the light with the path tracer's, or stop that"},
 };
 
+/// Those of the workshop of hemicube radiosity, besides the keys of kTechniques.
+inline constexpr KeyHelp kHemicubeKeys[] = {
+    {"r", "radiosity per pixel"},
+    {"t", "triangles of the mesh in colours"},
+    {"i", "what a vertex sees: its triangles in colours, its light, or nothing"},
+};
 /// Those of hierarchical solutions.
 inline constexpr KeyHelp kSelectionKeys[] = {
     {"p", "select what holds the selected element"},

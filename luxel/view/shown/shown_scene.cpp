@@ -58,6 +58,10 @@ void take_more(LiveNews& news, ShownScene& shown) {
 
 }  // namespace
 
+Result<DeviceScene> colours_shown(gpu::Commands& commands, const scene::Scene& scene) {
+  return without_light(commands, scene);
+}
+
 Result<ShownScene> nothing_shown(gpu::Commands& commands) {
   scene::Scene nothing;
   scene::Mesh& mesh = nothing.meshes.emplace_back();

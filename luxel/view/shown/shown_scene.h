@@ -50,6 +50,9 @@ Result<Look> look_of(const ShownScene& shown);
 /// A scene in which nothing can be seen, for a window that opens before the file is read.
 Result<ShownScene> nothing_shown(gpu::Commands& commands);
 
+/// A scene on a device whose light is not known.
+Result<DeviceScene> colours_shown(gpu::Commands& commands, const scene::Scene& scene);
+
 /// A bake that is there. It is used up.
 Result<ShownScene> bake_shown(gpu::Commands& commands, OpenedBake bake);
 

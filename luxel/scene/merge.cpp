@@ -1,0 +1,59 @@
+#include "luxel/scene/merge.h"
+
+namespace luxel::scene {
+namespace {
+
+template <class T>
+void append(const std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+bool has_surroundings(const Scene& scene) {
+  return max_component(scene.background) > 0 || !scene.environment.empty();
+}
+
+/// A material whose textures are numbered from `first` on.
+Material moved(Material material, uint32_t first) {
+  for (TextureRef* ref :
+       {&material.base_color_texture, &material.metallic_texture, &material.emission_texture,
+        &material.normal_texture, &material.transmission_texture,
+        &material.diffuse_transmission_texture, &material.diffuse_transmission_color_texture})
+    if (ref->texture != kNone) ref->texture += first;
+  return material;
+}
+
+void add_meshes(const Scene& from, Scene& to) {
+  const auto first_material = uint32_t(to.materials.size());
+  for (Mesh mesh : from.meshes) {
+    for (uint32_t& material : mesh.triangle_material) material += first_material;
+    to.meshes.push_back(std::move(mesh));
+  }
+  for (const Material& material : from.materials)
+    to.materials.push_back(moved(material, uint32_t(to.textures.size())));
+  append(from.textures, to.textures);
+}
+
+}  // namespace
+
+Scene merged(std::span<const Scene> scenes) {
+  Scene out;
+  if (!scenes.empty()) out.name = scenes.front().name;
+  for (const Scene& from : scenes) {
+    for (Instance instance : from.instances) {
+      instance.mesh += uint32_t(out.meshes.size());
+      out.instances.push_back(std::move(instance));
+    }
+    add_meshes(from, out);
+    for (PunctualLight light : from.lights) {
+      if (light.profile != kNone) light.profile += uint32_t(out.profiles.size());
+      out.lights.push_back(std::move(light));
+    }
+    append(from.profiles, out.profiles);
+    append(from.cameras, out.cameras);
+    if (has_surroundings(out) || !has_surroundings(from)) continue;
+    out.background = from.background, out.environment = from.environment;
+  }
+  return out;
+}
+
+}  // namespace luxel::scene

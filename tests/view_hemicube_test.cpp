@@ -37,7 +37,7 @@ class ViewOfHemicubes : public ::testing::Test {
   ScratchFolder s_;
 };
 
-double mean_flip(const image::Image& a, const image::Image& b) {
+double flip_between(const image::Image& a, const image::Image& b) {
   const image::Image map = image::flip(a, b);
   return std::accumulate(map.data.begin(), map.data.end(), 0.0) / double(map.data.size());
 }
@@ -53,8 +53,8 @@ TEST_F(ViewOfHemicubes, IsWhatRenderDraws) {
                   .code,
               0);
     const image::Image seen = played(scene, R"({"at": 0, "show": ")" + technique + "\"}");
-    EXPECT_LT(mean_flip(seen, png_at(wanted)), 0.05) << technique;
-    EXPECT_GT(mean_flip(played(scene, R"({"at": 0, "show": "elements"})"), seen), 0.2);
+    EXPECT_LT(flip_between(seen, png_at(wanted)), 0.05) << technique;
+    EXPECT_GT(flip_between(played(scene, R"({"at": 0, "show": "elements"})"), seen), 0.2);
   }
 }
 
@@ -63,12 +63,12 @@ TEST_F(ViewOfHemicubes, StopsWhereAPlaySaysAndShowsWhatAVertexSees) {
   const image::Image whole = played(scene, "");
   const image::Image partly = played(scene, R"({"at": 0, "set": {"pause_at": 0.2}})");
   // Less light, and in a part of the picture the same as ever.
-  EXPECT_GT(mean_flip(partly, whole), 0.02);
+  EXPECT_GT(flip_between(partly, whole), 0.02);
   const std::string click =
       R"({"at": 0, "pointer": [40, 60]}, {"at": 0, "press": "left"}, {"at": 0, "release": "left"})";
   const std::string wait = R"(, {"at": 0, "wait": "bake"})";
   const image::Image seen = played(scene, click + wait);
-  EXPECT_GT(mean_flip(seen, whole), 0.02);
+  EXPECT_GT(flip_between(seen, whole), 0.02);
   EXPECT_EQ(played(scene, click + R"(, {"at": 0, "overlay": {"vertex": false}})" + wait).data,
             whole.data);
   for (const std::string other :
@@ -79,7 +79,7 @@ TEST_F(ViewOfHemicubes, StopsWhereAPlaySaysAndShowsWhatAVertexSees) {
 TEST_F(ViewOfHemicubes, PutsSeveralModelsIntoOneSceneAndSaysWhatIsWrong) {
   const std::string a = scene_file("cornell-box.glb"), b = scene_file("spheres-and-cube.glb");
   const std::string show = R"({"at": 0, "show": "c"})";
-  EXPECT_GT(mean_flip(played(a, show), played(a + " " + b, show)), 0.01);
+  EXPECT_GT(flip_between(played(a, show), played(a + " " + b, show)), 0.01);
   EXPECT_THAT(view(a + " absent.glb --offscreen").err, HasSubstr("absent.glb"));
   const auto play = s_.write("play.json", R"({"end": 0, "events": [{"at": 0, "show": "flat"}]})");
   const CommandResult r = view(a + " --offscreen --play " + play.string());

@@ -46,6 +46,8 @@ class LiveSubject : public Subject {
     follow_edits();
     return is_taken;
   }
+  bool follows_its_file() const override { return !edit_ || edit_->tools.desk.changes == 0; }
+
   void obey(view::Command command) override {
     if (command == view::Command::save_scene && edit_) save_edited(*edit_);
     if (command == view::Command::save) live_->save();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "apps/view/parts.h"
+
 namespace luxel::view_window {
 namespace {
 
@@ -79,7 +81,9 @@ Status put_layers_of(gpu::Commands& commands, const view::Frame& frame, view::Sh
   if (!looking.layers && shown.has_layers) {
     LUXEL_TRY(looking.layers, view::read_layers(shown.folder, shown.lightmaps));
   }
-  if (frame.layers == looking.put) return {};
+  // A part of the light has taken their place.
+  const bool is_covered = frame.light.is_all() && !shown.part.is_all() && !frame.layers.empty();
+  if (frame.layers == looking.put && !is_covered) return {};
   const view::Layers none;
   const view::Layers& layers = looking.layers ? *looking.layers : none;
   LUXEL_TRY(std::vector<image::Image> mixed,
@@ -87,7 +91,7 @@ Status put_layers_of(gpu::Commands& commands, const view::Frame& frame, view::Sh
   const uint32_t other = 1 - shown.fade.newest;
   LUXEL_TRY_STATUS(view::put_layers(commands, layers, frame.layers, mixed, other, shown.device));
   shown.fade.newest = other, shown.fade.share = 1;
-  looking.put = frame.layers;
+  looking.put = frame.layers, shown.part = {};
   looking.mixed = {std::move(mixed), shown.lightmaps.of_material};
   return {};
 }
@@ -100,11 +104,12 @@ Status prepare_look(gpu::Commands& commands, const gpu::Pipeline& shader, bool n
   if (view::looks_into_bake(frame.show) && shown.has_light && !looking.overlay)
     if (out = make_overlay_of(commands, shader, shown, looking); !out)
       frame.show = view::Show::light_and_colour;
-  if (needs_layers || frame.layers != looking.put) {
+  if (needs_layers || !frame.layers.empty() || frame.layers != looking.put) {
     const Status put = put_layers_of(commands, frame, shown, looking);
     if (!put) frame.layers = looking.put, out = put;
   }
-  return out;
+  const Status parts = prepare_parts(commands, frame, shown, looking);
+  return out ? parts : out;
 }
 
 void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const Looking& looking,

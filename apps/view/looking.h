@@ -1,10 +1,12 @@
 // A window looks into a bake: what it needs to draw that, and what its panel says.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "apps/view/ui_look.h"
 #include "luxel/view/draw/painter.h"
+#include "luxel/view/draw/probe_drawing.h"
 #include "luxel/view/draw/put_layers.h"
 #include "luxel/view/model/histogram.h"
 #include "luxel/view/model/look.h"
@@ -20,6 +22,8 @@ struct Looking {
   std::optional<view::Layers> layers;
   std::vector<view::LayerSetting> put;       ///< what of them the scene shows
   std::optional<view::Histogram> histogram;  ///< of the last frame
+  std::optional<view::DeviceProbes> probes;
+  std::shared_ptr<const view::ProbeBalls> of_probes;  ///< what they were made of
   pipeline::LightmapPages mixed;  ///< the light that it shows; none while that is the bake's
 };
 

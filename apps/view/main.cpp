@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "apps/view/next_subject.h"
 #include "apps/view/offscreen.h"
 #include "apps/view/session.h"
 #include "luxel/arguments/bake_options.h"
@@ -30,6 +31,7 @@ struct Options {
   std::string size, device;
   std::string inside;  ///< a solver's name; empty: a scene is baked
   bool offscreen = false;
+  int turn_frames = 0;           ///< of --turntable; 0: one picture
   int width = 0, height = 0;     ///< 0: as preview.png
   arguments::BakeChoice choice;  ///< of a subject that is a scene
 };
@@ -167,17 +169,26 @@ Result<Opened> opened(const Options& options) {
   return out;
 }
 
+/// What takes the place of what is shown: a scene is baked with the same options.
+Result<view_window::MakeSubject> opened_later(const Options& options,
+                                              const std::filesystem::path& path) {
+  Options other = options;
+  if (view_window::full_path(path) != view_window::full_path(options.subject))
+    other.choice.output.clear();
+  other.subject = path, other.beside.clear(), other.screenshot.clear();
+  LUXEL_TRY(Opened opened_other, opened(other));
+  return std::move(opened_other.make);
+}
+
 Status show(const Options& options) {
   for (const auto& file : {options.screenshot, options.frame_table})
     if (!file.empty()) LUXEL_TRY_STATUS(check_output_file(file));
   view_window::WindowParams params;
   LUXEL_TRY(params.play, events_of(options));
   params.play_name = options.play.string();
-  params.title = std::filesystem::absolute(options.subject).lexically_normal().filename().string();
-  std::error_code ignored;
-  params.subject =
-      std::filesystem::weakly_canonical(std::filesystem::absolute(options.subject), ignored)
-          .string();
+  params.title = view_window::title_of(options.subject);
+  params.subject = view_window::full_path(options.subject);
+  params.open = [&](const std::filesystem::path& path) { return opened_later(options, path); };
   // A play is the same whatever was done before.
   if (!params.play)
     params.habits = view::habits_file(std::getenv("XDG_STATE_HOME"), std::getenv("HOME"));
@@ -188,10 +199,19 @@ Status show(const Options& options) {
   return view_window::show_in_window(to_show.make, std::move(to_show.beside), params);
 }
 
-/// One picture, without a window.
+/// Where a picture of a turn goes: out-000.png, out-001.png, ... beside out.png.
+std::filesystem::path picture_file(const Options& options, int number) {
+  if (options.turn_frames == 0) return options.screenshot;
+  std::filesystem::path out = options.screenshot;
+  return out.replace_filename(
+      fmt::format("{}-{:03}{}", out.stem().string(), number, out.extension().string()));
+}
+
+/// One picture, or those of a turn, without a window.
 Status draw_offscreen(const Options& options) {
   LUXEL_TRY_STATUS(check_output_file(options.screenshot));
   view_window::OffscreenParams params;
+  params.turn_frames = options.turn_frames;
   LUXEL_TRY(params.play, events_of(options));
   params.play_name = options.play.string();
   params.width = options.width, params.height = options.height;
@@ -201,12 +221,15 @@ Status draw_offscreen(const Options& options) {
   LUXEL_TRY(gpu::Commands commands, gpu::Commands::make(*device));
   LUXEL_TRY(Opened to_draw, opened(options));
   LUXEL_TRY(const std::unique_ptr<view_window::Subject> subject, to_draw.make(commands));
-  LUXEL_TRY(const image::Image8 picture,
-            view_window::draw_offscreen(commands, *subject, std::move(to_draw.beside), params));
+  const auto write = [&](int number, const image::Image8& picture) {
+    return write_file_atomically(picture_file(options, number), image::encode_png(picture));
+  };
+  LUXEL_TRY_STATUS(
+      view_window::draw_offscreen(commands, *subject, std::move(to_draw.beside), params, write));
   LUXEL_TRY(const std::string said, subject->end());
-  LUXEL_TRY_STATUS(write_file_atomically(options.screenshot, image::encode_png(picture)));
   if (!said.empty()) std::fprintf(stderr, "%s\n", said.c_str());
-  std::fprintf(stderr, "wrote %s, drawn by %s\n", options.screenshot.string().c_str(),
+  std::fprintf(stderr, "wrote %s, drawn by %s\n",
+               picture_file(options, std::max(options.turn_frames - 1, 0)).string().c_str(),
                device->name.c_str());
   return {};
 }
@@ -235,8 +258,14 @@ void add_own(CLI::App& app, Options& options) {
       ->type_name("SOLVER");
   auto* screenshot = app.add_option("--screenshot", options.screenshot,
                                     "The picture to write: .png; of a window at the end of --play");
-  app.add_flag("--offscreen", options.offscreen, "Draw one picture, without a window")
-      ->needs(screenshot);
+  auto* offscreen =
+      app.add_flag("--offscreen", options.offscreen, "Draw one picture, without a window")
+          ->needs(screenshot);
+  app.add_option("--turntable", options.turn_frames,
+                 "Draw so many pictures of a turn, as out-000.png beside --screenshot out.png")
+      ->check(CLI::Range(1, 999))
+      ->type_name("N")
+      ->needs(offscreen);
   auto* play = app.add_option("--play", options.play,
                               "Mouse and keys to play: .json; then the window closes")
                    ->type_name("FILE");

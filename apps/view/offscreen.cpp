@@ -1,5 +1,6 @@
 #include "apps/view/offscreen.h"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -25,6 +26,20 @@ Status finish_work(gpu::Commands& commands, view::Walk* walk, Subject& subject) 
   }
 }
 
+/// Errors: events for a window.
+Status check_no_window(const view::Play& play, const std::string& name) {
+  for (const view::TimedEvent& timed : play.events)
+    if (std::holds_alternative<view::OpenAsked>(timed.event) ||
+        std::holds_alternative<view::ScaleChanged>(timed.event) ||
+        std::holds_alternative<view::WindowClosed>(timed.event) ||
+        std::holds_alternative<view::DeviceLost>(timed.event))
+      return fail(ErrorCode::bad_input,
+                  "{}: \"open\", \"scale\", \"close\" and \"lose\" are for a window; play it "
+                  "without --offscreen",
+                  name);
+  return {};
+}
+
 /// Walks to where a play gets to.
 Status play_all(const view::Play& play, gpu::Commands& commands, view::Walk& walk,
                 Subject& subject) {
@@ -45,31 +60,30 @@ Status play_all(const view::Play& play, gpu::Commands& commands, view::Walk& wal
   }
 }
 
-/// What one picture is drawn with.
+/// What pictures are drawn with.
 struct Easel {
   view::Shaders shaders;
   view::Painter painter;
   Looking looking, looking_beside;
+  std::optional<view::ShownScene> beside;
+  std::optional<view::Pair> pair;
+  const view::Additions* additions = nullptr;  ///< of the subject
+
+  view::Canvas canvas(const view::DeviceScene& scene) const {
+    return {shaders,   painter,
+            scene,     looking.overlay ? &*looking.overlay : nullptr,
+            additions, looking.probes ? &*looking.probes : nullptr};
+  }
+  view::Canvas canvas_beside() const {
+    return {shaders,        pair->second,
+            beside->device, looking_beside.overlay ? &*looking_beside.overlay : nullptr,
+            nullptr,        looking_beside.probes ? &*looking_beside.probes : nullptr};
+  }
 };
 
-Result<image::Image8> painted_beside(gpu::Commands& commands, view::OpenedBake bake,
-                                     const view::Canvas& first, Easel& easel, view::Frame frame) {
-  LUXEL_TRY(view::ShownScene shown, view::bake_shown(commands, std::move(bake)));
-  LUXEL_TRY_STATUS(
-      prepare_look(commands, easel.shaders.overlay, false, frame, shown, easel.looking_beside));
-  LUXEL_TRY(const view::Pair pair,
-            view::make_pair(commands, first.shaders, first.painter, shown.device));
-  const view::Canvas second{
-      first.shaders, pair.second, shown.device,
-      easel.looking_beside.overlay ? &*easel.looking_beside.overlay : nullptr};
-  return view::painted_together(commands, first, second, pair, frame);
-}
-
-Result<image::Image8> picture_of(gpu::Commands& commands, view::Frame frame,
-                                 std::optional<view::OpenedBake> beside, const view::Walk& walk,
-                                 Subject& subject) {
-  view::ShownScene& shown = subject.shown();
-  Easel easel;
+/// Makes all that a frame is drawn with. Errors: what the frame shows is not there.
+Status set_up(gpu::Commands& commands, view::Frame frame, std::optional<view::OpenedBake> beside,
+              const view::Walk& walk, view::ShownScene& shown, Easel& easel) {
   LUXEL_TRY(easel.shaders, view::make_shaders(commands.device()));
   LUXEL_TRY_STATUS(
       prepare_look(commands, easel.shaders.overlay, false, frame, shown, easel.looking));
@@ -79,19 +93,29 @@ Result<image::Image8> picture_of(gpu::Commands& commands, view::Frame frame,
       return fail(ErrorCode::bad_input, "{}", *missing);
   LUXEL_TRY(easel.painter, view::make_painter(commands.device(), easel.shaders, shown.device,
                                               uint32_t(walk.width), uint32_t(walk.height)));
-  const view::Canvas canvas{easel.shaders, easel.painter, shown.device,
-                            easel.looking.overlay ? &*easel.looking.overlay : nullptr,
-                            subject.additions()};
-  if (beside) return painted_beside(commands, std::move(*beside), canvas, easel, frame);
-  return view::painted(commands, canvas, frame);
+  if (!beside) return {};
+  LUXEL_TRY(easel.beside, view::bake_shown(commands, std::move(*beside)));
+  LUXEL_TRY_STATUS(prepare_look(commands, easel.shaders.overlay, false, frame, *easel.beside,
+                                easel.looking_beside));
+  LUXEL_TRY(easel.pair,
+            view::make_pair(commands, easel.shaders, easel.painter, easel.beside->device));
+  return {};
+}
+
+Result<image::Image8> picture_of(gpu::Commands& commands, const view::Frame& frame,
+                                 const view::DeviceScene& scene, const Easel& easel) {
+  if (!easel.beside) return view::painted(commands, easel.canvas(scene), frame);
+  return view::painted_together(commands, easel.canvas(scene), easel.canvas_beside(), *easel.pair,
+                                frame);
 }
 
 }  // namespace
 
-Result<image::Image8> draw_offscreen(gpu::Commands& commands, Subject& subject,
-                                     std::optional<view::OpenedBake> beside,
-                                     const OffscreenParams& params) {
+Status draw_offscreen(gpu::Commands& commands, Subject& subject,
+                      std::optional<view::OpenedBake> beside, const OffscreenParams& params,
+                      const TakePicture& take) {
   if (params.play) LUXEL_TRY_STATUS(subject.check(*params.play, params.play_name));
+  if (params.play) LUXEL_TRY_STATUS(check_no_window(*params.play, params.play_name));
   LUXEL_TRY_STATUS(finish_work(commands, nullptr, subject));
   const view::ReadScene& read = *subject.shown().read;
   const int width = params.width ? params.width : read.width;
@@ -111,7 +135,20 @@ Result<image::Image8> draw_offscreen(gpu::Commands& commands, Subject& subject,
     LUXEL_TRY_STATUS(finish_work(commands, &walk, subject));
     LUXEL_TRY(frame, frame_of(commands, walk, subject));
   }
-  return picture_of(commands, std::move(frame), std::move(beside), walk, subject);
+  Easel easel;
+  easel.additions = subject.additions();
+  LUXEL_TRY_STATUS(set_up(commands, frame, std::move(beside), walk, subject.shown(), easel));
+  const view::Walk begun = walk;
+  for (int k = 0; k < std::max(params.turn_frames, 1); ++k) {
+    if (k > 0) {
+      walk.shown.camera = view::turned_camera(begun, k, params.turn_frames);
+      LUXEL_TRY(frame, frame_of(commands, walk, subject));
+    }
+    LUXEL_TRY(const image::Image8 picture,
+              picture_of(commands, frame, subject.shown().device, easel));
+    LUXEL_TRY_STATUS(take(k, picture));
+  }
+  return {};
 }
 
 }  // namespace luxel::view_window

@@ -10,6 +10,7 @@ Remembered recall(const std::filesystem::path& file, const std::string& subject)
   out.file = file;
   out.subject = view::subject_of(*habits, subject);
   out.is_light = habits->is_light;
+  out.layout = {habits->panel.place, habits->panel.open, habits->panel.closed};
   for (const view::SubjectHabits& known : habits->recent)
     if (known.path != subject) out.others.push_back(known.path);
   return out;
@@ -20,10 +21,12 @@ void begin_as_left(const Remembered& remembered, view::Walk& walk) {
   walk.bookmarks = remembered.subject.bookmarks;
 }
 
-Status keep(const Remembered& remembered, const view::Walk& walk, bool is_light) {
+Status keep(const Remembered& remembered, const view::Walk& walk, bool is_light,
+            const PanelLayout& layout) {
   if (remembered.file.empty()) return {};
   LUXEL_TRY(view::Habits habits, view::read_habits(remembered.file));
   habits.is_light = is_light;
+  habits.panel = {layout.place, layout.open, layout.closed};
   view::remember({remembered.subject.path, view::LastView{walk.first.camera, walk.shown.camera},
                   walk.bookmarks},
                  habits);

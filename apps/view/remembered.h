@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/panel.h"
 #include "luxel/view/model/habits.h"
 #include "luxel/view/model/walk.h"
 
@@ -15,6 +16,7 @@ struct Remembered {
   view::SubjectHabits subject;
   std::vector<std::string> others;  ///< subjects, the newest first
   bool is_light = false;
+  PanelLayout layout;
   std::string message;  ///< why nothing is remembered
 };
 
@@ -26,6 +28,7 @@ void begin_as_left(const Remembered& remembered, view::Walk& walk);
 
 /// Leaves what the walk has come to. What windows of other subjects have left meanwhile stays.
 /// Errors: those of files.
-Status keep(const Remembered& remembered, const view::Walk& walk, bool is_light);
+Status keep(const Remembered& remembered, const view::Walk& walk, bool is_light,
+            const PanelLayout& layout);
 
 }  // namespace luxel::view_window

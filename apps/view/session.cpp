@@ -9,8 +9,8 @@
 #include <span>
 
 #include "apps/view/frame_table.h"
-#include "apps/view/remembered.h"
-#include "apps/view/screen.h"
+#include "apps/view/parts.h"
+#include "apps/view/session_files.h"
 #include "luxel/base/file.h"
 #include "luxel/image/codec.h"
 #include "luxel/view/model/play.h"
@@ -18,7 +18,6 @@
 #include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view_window {
-namespace {
 
 std::vector<KeyLine> key_lines(const Subject& subject) {
   std::vector<KeyLine> out = subject.keys();
@@ -28,6 +27,8 @@ std::vector<KeyLine> key_lines(const Subject& subject) {
   for (const view::KeyHelp& key : view::kKeys) out.push_back({key.key, key.does});
   return out;
 }
+
+namespace {
 
 /// The surface under the pointer; none under the panel, or where nobody asks for it.
 std::optional<scene::SurfacePoint> pointed_surface(const Ui& ui, const view::ReadScene& read,
@@ -44,12 +45,16 @@ void exchange(Ui& ui, const view::ShownScene& shown, const Looking& looking, flo
   panel.stops = std::log2(walk.shown.exposure / walk.first.exposure);
   fill_panel(walk.shown, shown, looking, pointed_surface(ui, *shown.read, walk), panel.look);
   panel.look.flip = flip;
+  panel.parts = parts_panel(walk.shown, shown);
+  panel.turns = walk.turns;
   for (size_t i = 0; i < walk.bookmarks.size(); ++i)
     panel.has_bookmark[i] = walk.bookmarks[i].has_value();
   const Panel before = panel;
   ui.lay_out(panel);
   if (panel.show != before.show) walk.shown.show = view::Show(panel.show);
   take_panel(panel.look, before.look, walk.shown);
+  take_parts(panel.parts, before.parts, walk.shown);
+  walk.turns = panel.turns;
   if (panel.stops != before.stops)
     walk.shown.exposure = walk.first.exposure * std::exp2(panel.stops);
   if (const int view = std::exchange(panel.view, -1); view >= 0)
@@ -71,36 +76,25 @@ void take_events(Window& window, const Ui& ui, const view::TakeEvent& take) {
   }
 }
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point then) {
-  return std::chrono::duration<double>(Clock::now() - then).count();
-}
-
 /// The panel lays itself out anew for some frames after a change.
 constexpr int kFramesToSettle = 3;
 /// So often the panel tells how a bake goes on.
 constexpr double kReport_s = 0.5;
 
-/// A window while it is open.
-struct Session {
-  Window& window;
-  Screen& screen;
-  Subject& subject;
-  const WindowParams& params;
-  Remembered remembered = recall(params.habits, params.subject);
-  std::vector<KeyLine> keys = key_lines(subject);
-  std::vector<std::string> views = {};  ///< names of the scene's cameras
-  Panel panel = {};
-  std::optional<view::Walk> walk = {};  ///< once there is a scene, and the window has a size
-  view::PlaceSeen place_seen = {};
-  int still_frames = 0;      ///< since something changed
-  bool fits = false;         ///< what is drawn with is of the window's size
-  bool shows_scene = false;  ///< and of the scene
-  view::Played played = {};
-  FrameTable table = {};
-  Clock::time_point last = Clock::now(), last_report = Clock::now();
-};
+/// The same file is looked at as before it was opened again; from elsewhere if its first view is
+/// another one.
+void go_on_as(const view::Walk& before, view::Walk& walk) {
+  const float stops = before.shown.exposure / before.first.exposure;
+  const float exposure = walk.first.exposure * stops;
+  view::SubjectHabits known;
+  known.view = view::LastView{before.first.camera, before.shown.camera};
+  const scene::Camera camera = view::camera_to_begin(known, walk.first.camera);
+  if (camera.world_from_camera == before.shown.camera.world_from_camera)
+    walk.target = before.target;
+  walk.shown = before.shown, walk.shown.camera = camera, walk.shown.exposure = exposure;
+  walk.bookmarks = before.bookmarks, walk.turns = before.turns;
+  if (!walk.first.beside) walk.shown.beside.reset();
+}
 
 /// Where looking begins: with the scene that was read.
 void begin(const view::ReadScene& read, Session& s) {
@@ -110,6 +104,8 @@ void begin(const view::ReadScene& read, Session& s) {
     s.walk =
         view::begin_walk(read.first, scene::world_bounds(read.scene), width, height, s.place_seen);
     begin_as_left(s.remembered, *s.walk);
+    if (s.carried) go_on_as(*s.carried, *s.walk);
+    s.carried.reset();
   }
   s.walk->width = width, s.walk->height = height;
   s.views.clear();
@@ -123,7 +119,7 @@ void begin(const view::ReadScene& read, Session& s) {
 Result<bool> fit(Session& s) {
   const bool fitted = s.fits && has_size_of(s.window, s.screen.swapchain);
   if (fitted && s.shows_scene) return true;
-  const view::ShownScene& shown = s.subject.shown();
+  const view::ShownScene& shown = s.subject->shown();
   if (fitted) {
     LUXEL_TRY_STATUS(fit_scene(shown.device, s.screen));
   } else {
@@ -136,24 +132,40 @@ Result<bool> fit(Session& s) {
 
 /// Takes what has come from the background. True: something is to be drawn.
 Result<bool> follow(Session& s) {
-  LUXEL_TRY(const Followed followed, s.subject.follow(*s.screen.commands, s.panel.message));
+  LUXEL_TRY(const Followed followed, s.subject->follow(*s.screen.commands, s.panel.message));
   if (followed.is_another) s.screen.looking = {}, s.shows_scene = false;
-  if (followed.has_scene && s.fits) begin(*s.subject.shown().read, s);
+  if (followed.has_scene && s.fits) begin(*s.subject->shown().read, s);
   if (!followed.has_news && seconds_since(s.last_report) < kReport_s) return false;
   s.last_report = Clock::now();
-  return followed.has_news || s.subject.work() == Work::at_work;
+  return followed.has_news || s.subject->work() == Work::at_work;
 }
 
-/// An event goes to the subject, or else to the walk.
+/// No work is taken any longer, as by a device whose driver has crashed.
+void lose_device(Session& s) {
+  s.screen.device->vk.vkQueueSubmit2KHR = [](VkQueue, uint32_t, const VkSubmitInfo2*, VkFence) {
+    return VK_ERROR_DEVICE_LOST;
+  };
+}
+
+/// An event goes to the window, to the subject, or else to the walk.
 void take(const view::Event& event, Session& s) {
-  if (!s.subject.take(event, *s.walk)) view::handle(event, s.place_seen, *s.walk);
+  if (const auto* asked = std::get_if<view::OpenAsked>(&event))
+    return open_in_window(asked->path, s);
+  if (const auto* changed = std::get_if<view::ScaleChanged>(&event)) {
+    s.scale = changed->to;
+    return;
+  }
+  if (std::holds_alternative<view::WindowClosed>(event))
+    return glfwSetWindowShouldClose(s.window.get(), GLFW_TRUE);
+  if (std::holds_alternative<view::DeviceLost>(event)) return lose_device(s);
+  if (!s.subject->take(event, *s.walk)) view::handle(event, s.place_seen, *s.walk);
 }
 
 /// What the frame shows of the bake is made where it is not there yet; or it is said why not.
 void look(Session& s) {
   const Status done =
       prepare_look(*s.screen.commands, s.screen.shaders.overlay, s.panel.look.asks_for_layers,
-                   s.walk->shown, s.subject.shown(), s.screen.looking);
+                   s.walk->shown, s.subject->shown(), s.screen.looking);
   if (!done) s.panel.message = done.error().message;
   if (!s.screen.beside) return;
   // What the second bake has not is not shown of it: the first one's panel says what is.
@@ -165,21 +177,22 @@ void look(Session& s) {
 
 /// The panel, what the user changes in it, and what is asked for by it and by keys.
 void lay_out(Session& s) {
-  view::ShownScene& shown = s.subject.shown();
+  view::ShownScene& shown = s.subject->shown();
   s.panel.warnings = shown.warnings;
-  s.subject.fill(s.panel);
+  s.panel.scale = s.scale.value_or(s.window.scale());
+  s.subject->fill(s.panel);
   if (s.walk)
     exchange(*s.screen.ui, shown, s.screen.looking, s.screen.flip, s.panel, *s.walk);
   else
     s.screen.ui->lay_out(s.panel);
-  s.subject.take(s.panel, s.walk ? &*s.walk : nullptr);
+  s.subject->take(s.panel, s.walk ? &*s.walk : nullptr);
   if (!s.walk) return;
-  for (const view::Command command : std::exchange(s.walk->asked, {})) s.subject.obey(command);
+  for (const view::Command command : std::exchange(s.walk->asked, {})) s.subject->obey(command);
 }
 
 /// What is drawn; before there is a scene, nothing.
 Result<view::Frame> frame_of(Session& s) {
-  if (s.walk) return frame_of(*s.screen.commands, *s.walk, s.subject);
+  if (s.walk) return frame_of(*s.screen.commands, *s.walk, *s.subject);
   view::Frame nothing;
   nothing.show = view::Show::colour;
   return nothing;
@@ -188,11 +201,12 @@ Result<view::Frame> frame_of(Session& s) {
 /// The events of a play up to this frame, and the time until the next. False: it has come to its
 /// end.
 bool play_on(Session& s) {
-  if (s.subject.work() == Work::failed) return false;
+  if (s.subject->work() == Work::failed) return false;
   if (!s.walk) return true;
   const view::Play& play = *s.params.play;
   const view::Step step = view::step(
-      play, is_at_work(s.subject), [&](const view::Event& event) { take(event, s); }, s.played);
+      play, is_at_work(*s.subject) || is_opening(s),
+      [&](const view::Event& event) { take(event, s); }, s.played);
   if (step == view::Step::next) view::pass(1 / play.frames_per_s, *s.walk);
   return step != view::Step::ends;
 }
@@ -214,10 +228,10 @@ Status count_pixels(const view::Frame& frame, Session& s) {
 Status draw_frame(Session& s) {
   const auto begin = Clock::now();
   LUXEL_TRY(const view::Frame frame, frame_of(s));
-  const view::ShownScene& shown = s.subject.shown();
+  const view::ShownScene& shown = s.subject->shown();
   const auto lit = Clock::now();
   LUXEL_TRY(s.fits, draw(shown.device, frame, s.screen));
-  s.subject.has_drawn(float(1000 * seconds_since(lit)));
+  s.subject->has_drawn(float(1000 * seconds_since(lit)));
   s.panel.milliseconds = float(1000 * seconds_since(begin));
   LUXEL_TRY_STATUS(count_pixels(frame, s));
   if (!s.params.frame_table.empty())
@@ -229,15 +243,16 @@ Status draw_frame(Session& s) {
 /// One frame of the window. False when a play has come to its end.
 Result<bool> go_on(Session& s) {
   // A window in which nothing moves is not drawn.
-  const bool moves =
-      s.params.play || (s.walk && !s.walk->keys.empty()) || !view::is_settled(s.subject.shown());
+  const bool moves = s.params.play || (s.walk && (!s.walk->keys.empty() || s.walk->turns)) ||
+                     !view::is_settled(s.subject->shown());
   moves ? glfwPollEvents() : glfwWaitEventsTimeout(0.1);
   const bool fitted = s.fits;
+  LUXEL_TRY(const bool has_another, follow_files(s));
   LUXEL_TRY(const bool has_news, follow(s));
   LUXEL_TRY(const bool fits, fit(s));
   const double passed = seconds_since(std::exchange(s.last, Clock::now()));
   if (!fits) return true;
-  const bool changes = moves || !fitted || has_news || s.window.has_changed();
+  const bool changes = moves || !fitted || has_news || has_another || s.window.has_changed();
   s.still_frames = changes ? 0 : s.still_frames + 1;
   if (s.still_frames > kFramesToSettle) return true;
   if (!s.params.play && s.walk) {
@@ -245,7 +260,8 @@ Result<bool> go_on(Session& s) {
     view::pass(std::min(passed, 0.1), *s.walk);
   }
   const double faded_s = s.params.play ? 1 / s.params.play->frames_per_s : passed;
-  LUXEL_TRY_STATUS(pass_light(faded_s, *s.screen.commands, s.walk ? &*s.walk : nullptr, s.subject));
+  LUXEL_TRY_STATUS(
+      pass_light(faded_s, *s.screen.commands, s.walk ? &*s.walk : nullptr, *s.subject));
   const bool goes_on = !s.params.play || play_on(s);
   if (s.window.asks_for_keys()) s.panel.keys_open = !s.panel.keys_open;
   if (s.walk) look(s);
@@ -256,11 +272,11 @@ Result<bool> go_on(Session& s) {
 
 /// A play has ended: what it asked for is done, and told. Errors: why there is nothing to see.
 Status end_play(Session& s) {
-  if (s.subject.work() == Work::failed) {
+  if (s.subject->work() == Work::failed) {
     LUXEL_TRY_STATUS(follow(s).map([](bool) {}));
     return fail(ErrorCode::bad_input, "{}", s.panel.message);
   }
-  LUXEL_TRY(const std::string said, s.subject.end());
+  LUXEL_TRY(const std::string said, s.subject->end());
   if (!said.empty()) std::fprintf(stderr, "%s\n", said.c_str());
   return {};
 }
@@ -270,13 +286,14 @@ Status show(Session s) {
   s.panel.title = s.params.title, s.panel.about = s.screen.device->name;
   s.panel.keys = s.keys, s.panel.recent = s.remembered.others;
   s.panel.is_light = s.remembered.is_light, s.panel.message = s.remembered.message;
-  bool is_going_on = true;
-  while (is_going_on && !glfwWindowShouldClose(s.window.get()))
-    LUXEL_TRY_STATUS(go_on(s).map([&](bool more) { is_going_on = more; }));
-  if (s.walk)
-    if (const Status kept = keep(s.remembered, *s.walk, s.panel.is_light); !kept)
-      std::fprintf(stderr, "warning: %s\n", kept.error().message.c_str());
-  if (s.params.play) LUXEL_TRY_STATUS(end_play(s));
+  s.panel.layout = s.remembered.layout;
+  Result<bool> goes_on = true;
+  while (goes_on && *goes_on && !glfwWindowShouldClose(s.window.get())) goes_on = go_on(s);
+  // A device that is lost takes nothing with it that the user has made.
+  if (const Status kept = keep_habits(s); !kept)
+    std::fprintf(stderr, "warning: %s\n", kept.error().message.c_str());
+  if (!goes_on) return tl::unexpected(goes_on.error());
+  if (s.params.play && !glfwWindowShouldClose(s.window.get())) LUXEL_TRY_STATUS(end_play(s));
   if (!s.params.frame_table.empty()) {
     const std::string csv = csv_of(s.table);
     LUXEL_TRY_STATUS(
@@ -284,7 +301,7 @@ Status show(Session s) {
   }
   if (s.params.screenshot.empty() || !s.walk) return {};
   LUXEL_TRY(const view::Frame frame, frame_of(s));
-  LUXEL_TRY(const image::Image8 picture, picture_of(s.subject.shown().device, frame, s.screen));
+  LUXEL_TRY(const image::Image8 picture, picture_of(s.subject->shown().device, frame, s.screen));
   return write_file_atomically(s.params.screenshot, image::encode_png(picture));
 }
 
@@ -295,7 +312,7 @@ Status show_in_window(const MakeSubject& make_subject, std::optional<view::Opene
   LUXEL_TRY(const std::unique_ptr<Window> window,
             Window::open(params.title, params.width, params.height));
   LUXEL_TRY(Screen screen, open_screen(*window, params.device));
-  LUXEL_TRY(const std::unique_ptr<Subject> subject, make_subject(*screen.commands));
+  LUXEL_TRY(std::unique_ptr<Subject> subject, make_subject(*screen.commands));
   if (params.play) LUXEL_TRY_STATUS(subject->check(*params.play, params.play_name));
   screen.additions = subject->additions();
   std::optional<view::ShownScene> second;
@@ -303,7 +320,7 @@ Status show_in_window(const MakeSubject& make_subject, std::optional<view::Opene
     LUXEL_TRY(second, view::bake_shown(*screen.commands, std::move(*beside)));
     screen.beside = &*second;
   }
-  return show({*window, screen, *subject, params});
+  return show({*window, screen, std::move(subject), params});
 }
 
 }  // namespace luxel::view_window

@@ -16,6 +16,7 @@ struct WindowParams {
   std::string title;
   std::string subject;           ///< absolute path of what is shown
   std::filesystem::path habits;  ///< view::habits_file(); empty: nothing is remembered
+  OpenSubject open;              ///< what takes its place when it is asked for
   std::string device;            ///< gpu::DeviceParams::name
   int width = 960, height = 720;
   std::optional<view::Play> play;    ///< then the window closes

@@ -45,6 +45,9 @@ class Subject {
   /// on the device.
   virtual Result<Followed> follow(gpu::Commands&, std::string& /*message*/) { return Followed{}; }
   virtual Work work() const { return Work::at_rest; }
+  /// Whether its file is opened again at once when it has changed: nothing is lost by that, and who
+  /// looks is about to change it.
+  virtual bool follows_its_file() const { return false; }
 
   /// Whether an event is no longer the walk's.
   virtual bool take(const view::Event&, const view::Walk&) { return false; }
@@ -67,6 +70,9 @@ class Subject {
 
 /// Makes a subject that lies on a device.
 using MakeSubject = std::function<Result<std::unique_ptr<Subject>>(gpu::Commands&)>;
+
+/// What lies at a path, to be shown. Errors: those of files; it is nothing that can be shown.
+using OpenSubject = std::function<Result<MakeSubject>(const std::filesystem::path&)>;
 
 /// A bake that is there.
 MakeSubject baked_subject(view::OpenedBake bake);

@@ -6,6 +6,8 @@
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
 
+#include <array>
+#include <utility>
 #include <vector>
 
 namespace luxel::view_window {
@@ -57,11 +59,7 @@ class ImGuiUi : public Ui {
     if (pass_ == VK_NULL_HANDLE || pool_ == VK_NULL_HANDLE) return false;
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;  // nothing is written where the program is run
-    float scale = 1;
-    glfwGetWindowContentScale(window, &scale, nullptr);
-    ImGui::GetIO().FontGlobalScale = scale;
-    ImGui::GetStyle().ScaleAllSizes(scale);
-    ImGui::GetIO().Fonts->Build();  // record() puts them on the device
+    ImGui::GetIO().Fonts->Build();         // record() puts them on the device
     has_context_ = true;
     if (!ImGui_ImplGlfw_InitForVulkan(window, true)) return false;
     has_window_ = true;
@@ -106,7 +104,7 @@ class ImGuiUi : public Ui {
   bool has_keys() const override { return ImGui::GetIO().WantTextInput; }
 
   void lay_out(Panel& panel) override {
-    if (panel.is_light != is_light_) set_theme(panel.is_light);
+    if (panel.is_light != is_light_ || panel.scale != scale_) set_style(panel);
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
@@ -129,24 +127,56 @@ class ImGuiUi : public Ui {
   }
 
  private:
-  void set_theme(bool is_light) {
-    is_light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
-    is_light_ = is_light;
+  /// Sizes are those of a monitor with one pixel per point, times its scale.
+  void set_style(const Panel& panel) {
+    ImGui::GetStyle() = ImGuiStyle();
+    panel.is_light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
+    ImGui::GetStyle().ScaleAllSizes(panel.scale);
+    ImGui::GetIO().FontGlobalScale = panel.scale;
+    is_light_ = panel.is_light, scale_ = panel.scale;
+  }
+
+  /// ImGui keeps what is open under numbers, which are made of names.
+  static void put_headers(const PanelLayout& layout) {
+    for (const uint32_t id : layout.open) ImGui::GetStateStorage()->SetInt(id, 1);
+    for (const uint32_t id : layout.closed) ImGui::GetStateStorage()->SetInt(id, 0);
+  }
+  static void take_layout(PanelLayout& layout) {
+    layout = {};
+    layout.place = {ImGui::GetWindowPos().x, ImGui::GetWindowPos().y};
+    for (const auto& known : ImGui::GetStateStorage()->Data)
+      (known.val_i != 0 ? layout.open : layout.closed).push_back(known.key);
+  }
+
+  /// A panel that would lie outside of a smaller window than the last lies in its corner.
+  void put_panel(const PanelLayout& layout) const {
+    const auto place = layout.place.value_or(std::array{10.0f, 10.0f});
+    const bool is_seen = place[0] >= 0 && place[1] >= 0 && place[0] + 40 < float(width_) &&
+                         place[1] + 40 < float(height_);
+    ImGui::SetNextWindowPos(is_seen ? ImVec2(place[0], place[1]) : ImVec2(10, 10),
+                            ImGuiCond_FirstUseEver);
   }
 
   /// Returns where its right edge is.
-  static float lay_out_panel(Panel& panel) {
-    ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
-    ImGui::Begin(panel.title.c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+  float lay_out_panel(Panel& panel) {
+    put_panel(panel.layout);
+    // The panel is the same whatever its title is.
+    ImGui::Begin((panel.title + "###panel").c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+    if (!std::exchange(has_layout_, true)) put_headers(panel.layout);
+    take_layout(panel.layout);
     ImGui::TextUnformatted(panel.about.c_str());
+    lay_out_again(panel);
     if (panel.bake) lay_out_bake(*panel.bake);
     if (panel.solver) lay_out_solver(*panel.solver);
-    if (panel.hemicube)
+    if (panel.hemicube) {
       lay_out_hemicube(*panel.hemicube);
-    else
+    } else {
       lay_out_shows(panel);
+      lay_out_parts(panel.parts);
+    }
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
     ImGui::SliderFloat("exposure", &panel.stops, -8, 8, "%+.1f stops");
+    ImGui::Checkbox("turn around (O)", &panel.turns);
     if (!panel.views.empty() && ImGui::CollapsingHeader("views of the file"))
       for (size_t i = 0; i < panel.views.size(); ++i) {
         ImGui::PushID(int(i));  // names need not differ
@@ -188,9 +218,23 @@ class ImGuiUi : public Ui {
     }
   }
 
-  static void lay_out_recent(const Panel& panel) {
+  /// A click opens it.
+  static void lay_out_recent(Panel& panel) {
     if (panel.recent.empty() || !ImGui::CollapsingHeader("recent")) return;
-    for (const std::string& path : panel.recent) lay_out_wrapped(path);
+    for (size_t i = 0; i < panel.recent.size(); ++i) {
+      ImGui::PushID(int(i));
+      if (ImGui::Selectable("##path")) panel.opens = int(i);
+      ImGui::SameLine(0, 0);
+      lay_out_wrapped(panel.recent[i]);
+      ImGui::PopID();
+    }
+  }
+
+  static void lay_out_again(Panel& panel) {
+    if (!panel.offers_again) return;
+    ImGui::TextUnformatted("it has changed on disk");
+    ImGui::SameLine();
+    panel.asks_again = ImGui::Button("open it again");
   }
 
   /// The header keeps its place in ImGui's memory however many there are.
@@ -247,6 +291,8 @@ class ImGuiUi : public Ui {
   uint32_t width_ = 0, height_ = 0;
   bool has_context_ = false, has_window_ = false, has_device_ = false, has_font_ = false;
   bool is_light_ = false;  ///< the panel, as ImGui draws it now
+  float scale_ = 1;
+  bool has_layout_ = false;  ///< it lies as it did when it was last seen
 };
 
 }  // namespace

@@ -81,6 +81,12 @@ std::array<int, 2> Window::pixels() const {
   return size;
 }
 
+float Window::scale() const {
+  float out = 1;
+  glfwGetWindowContentScale(window_, &out, nullptr);
+  return out;
+}
+
 std::vector<std::string> Window::extensions() {
   uint32_t count = 0;
   const char** names = glfwGetRequiredInstanceExtensions(&count);
@@ -95,6 +101,12 @@ Window& Window::of(GLFWwindow* window) {
 void Window::listen() {
   glfwSetWindowUserPointer(window_, this);
   glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { of(w).has_changed_ = true; });
+  glfwSetWindowContentScaleCallback(window_,
+                                    [](GLFWwindow* w, float, float) { of(w).has_changed_ = true; });
+  glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
+    of(w).has_changed_ = true;
+    of(w).dropped_.assign(paths, paths + count);
+  });
   glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
     int width = 1, height = 1;  // in the display's units, which may be several pixels
     glfwGetWindowSize(w, &width, &height);

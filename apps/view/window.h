@@ -29,9 +29,13 @@ class Window {
   std::vector<view::Event> taken() { return std::exchange(events_, {}); }
   /// Whether something has happened since the last call that may change the picture.
   bool has_changed() { return std::exchange(has_changed_, false) || !events_.empty(); }
+  /// Files that were dropped on the window since the last call.
+  std::vector<std::filesystem::path> dropped() { return std::exchange(dropped_, {}); }
   bool asks_for_keys() { return std::exchange(asks_for_keys_, false); }
   bool asks_for_screenshot() { return std::exchange(asks_for_screenshot_, false); }
   std::array<int, 2> pixels() const;
+  /// Pixels per point of the monitor that it is on.
+  float scale() const;
   /// That Vulkan must have to draw into windows.
   static std::vector<std::string> extensions();
 
@@ -44,6 +48,7 @@ class Window {
   bool is_open_ = false, has_changed_ = true;
   bool asks_for_keys_ = false, asks_for_screenshot_ = false;
   std::vector<view::Event> events_;
+  std::vector<std::filesystem::path> dropped_;
 };
 
 }  // namespace luxel::view_window

@@ -23,4 +23,8 @@ struct LightEstimate {
 /// returns. While rays are traced it is called by a thread that traces; the others go on.
 using OnLightEstimate = std::function<void(const LightEstimate&)>;
 
+/// Gets E per element [W/m^2], valid during the call, after no reflection, then after one, and so
+/// on. True: the light of one reflection more is wanted.
+using OnBounce = std::function<bool(std::span<const Rgb> irradiance)>;
+
 }  // namespace luxel::light

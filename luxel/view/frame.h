@@ -55,6 +55,26 @@ inline bool looks_into_bake(Show show) { return show >= Show::irradiance; }
 enum class Channel : uint32_t { red, green, blue, luminance };
 inline constexpr std::array<const char*, 4> kChannels{"red", "green", "blue", "luminance"};
 
+/// What of the light is shown, by how often it was reflected since it left its lamp.
+struct LightShown {
+  uint32_t fewest = 0;           ///< reflections that it has behind it
+  std::optional<uint32_t> most;  ///< none: any number
+  bool is_all() const { return fewest == 0 && !most; }
+  friend bool operator==(const LightShown&, const LightShown&) = default;
+};
+/// Parts that have a name: in files that are played, and words for them.
+struct PartName {
+  const char *name, *words;
+  LightShown light;
+};
+inline constexpr std::array<PartName, 3> kParts{{
+    {"all", "all light", {}},
+    {"direct", "direct", {0, 0}},
+    {"indirect", "indirect", {1, std::nullopt}},
+}};
+/// Of more reflections light is not told apart.
+inline constexpr uint32_t kMostBounces = 8;
+
 /// False colours from `low` to `high`, by the value or its logarithm.
 struct ColorScale {
   float low = 0, high = 0;  ///< high <= low: that of the bake (Look)
@@ -97,6 +117,8 @@ struct Frame {
   ColorScale irradiance;                 ///< E [unit of the scene's light]
   ColorScale density;                    ///< [1/m]
   std::vector<LayerSetting> layers;      ///< those that are not as they were baked
+  LightShown light;                      ///< where its parts are known
+  bool shows_probes = false;             ///< as balls, where there are any
   std::optional<Beside> beside;          ///< where there is a second bake
   std::optional<Outline> outline;        ///< around what is selected
   std::vector<Mark> marks;               ///< over the picture, the last one uppermost

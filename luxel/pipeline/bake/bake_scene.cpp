@@ -147,6 +147,8 @@ SolveObserver observer_of(const BakeObserver& watcher, const light::TexelScene& 
     out.guess = [&](std::span<const Rgb> direct) { return watcher.guess(in, direct); };
   if (watcher.is_watched)
     out.is_watched = [&](size_t element) { return watcher.is_watched(in, element); };
+  if (watcher.on_bounce)
+    out.on_bounce = [&](std::span<const Rgb> e) { return watcher.on_bounce(in, e); };
   return out;
 }
 

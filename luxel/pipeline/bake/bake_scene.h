@@ -68,6 +68,8 @@ struct BakeObserver {
   /// direct part; and whether light of an element should come early.
   std::function<std::vector<Rgb>(const light::TexelScene&, std::span<const Rgb> direct)> guess{};
   std::function<bool(const light::TexelScene&, size_t element)> is_watched{};
+  /// With on_estimate: light::OnBounce of gather, neither refilled nor stitched.
+  std::function<bool(const light::TexelScene&, std::span<const Rgb>)> on_bounce{};
   /// Makes who watches hemicube in the scene as it is laid out, which lives as long as the bake.
   std::function<hemicube::Observer(const light::TexelScene&)> hemicube{};
 };

@@ -17,8 +17,6 @@
 namespace luxel::pipeline {
 namespace {
 
-/// Hidden texels are refilled as far as a bilinear lookup from outside can reach.
-constexpr int kRefillRings = 2;
 constexpr int kPreviewHeight = 720;
 
 /// Texels that have nothing to tell of the light at seams: hidden ones, and those of a kept

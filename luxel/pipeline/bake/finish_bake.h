@@ -13,6 +13,9 @@ namespace luxel::pipeline {
 Status repair_light(const BakeSettings& settings, const trace::RayTracer& tracer,
                     std::span<const uint32_t> regions, Bake& bake, Progress& progress);
 
+/// Hidden texels are refilled as far as a bilinear lookup from outside can reach.
+inline constexpr int kRefillRings = 2;
+
 /// Directional maps and probes where they are asked for, of the light that repair_light() left.
 /// Errors: too little memory, cancelled.
 Status add_directions(const BakeSettings& settings, const light::TexelScene& input, Bake& bake,

@@ -202,6 +202,7 @@ Result<TexelLight> solve_gather(const light::TexelScene& in, const BakeSettings&
                                                   {.on_estimate = observer.on_estimate,
                                                    .guess = observer.guess,
                                                    .is_watched = observer.is_watched,
+                                                   .on_bounce = observer.on_bounce,
                                                    .on_traced = observer.on_traced},
                                                   progress));
   const light::LightLayers all_layers = layers;

@@ -31,6 +31,7 @@ struct SolveObserver {
   /// With on_estimate: GatherObserver::guess and GatherObserver::is_watched.
   std::function<std::vector<Rgb>(std::span<const Rgb> direct)> guess{};
   std::function<bool(size_t element)> is_watched{};
+  light::OnBounce on_bounce{};  ///< GatherObserver::on_bounce
   /// Who watches hemicube; null: nobody.
   const hemicube::Observer* hemicube = nullptr;
   /// Called, or not, when the solver looks at no place of an element any more: they take memory.

@@ -139,6 +139,10 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
                       {in.params.bounces, spare_bytes(in.stores, light.hits)}, progress));
     out.layers = std::move(layers.irradiance), out.layers_shared_out = layers.shared_out;
   }
+  if (in.observer.on_bounce)
+    LUXEL_TRY_STATUS(bounce_by_bounce(in.scene.map, in.scene.elements, light.hits,
+                                      light.direct.irradiance, in.behind, in.params.bounces,
+                                      in.observer.on_bounce, progress));
   out.hit_bytes_in_file = light.hits.bytes_in_file();
   light.hits.rounds.clear();
   LUXEL_TRY_STATUS(judge(in, light, progress));

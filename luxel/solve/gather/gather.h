@@ -59,6 +59,9 @@ struct GatherObserver {
   /// Whether rays of an element should come early, as it is asked now and then. Called by threads
   /// that trace. None: they come in order.
   std::function<bool(size_t element)> is_watched{};
+  /// Gets the light reflection by reflection when all rays are known, before the last estimate. It
+  /// costs a sweep over all of them for each, which changes no bit of what gather() returns.
+  light::OnBounce on_bounce{};
   /// Called when every ray is traced: drop_places() may be called on the elements then.
   std::function<void()> on_traced{};
 };

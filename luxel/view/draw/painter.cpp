@@ -195,6 +195,7 @@ Result<Shaders> make_shaders(const gpu::Device& device) {
   LUXEL_TRY(out.screen, gpu::make_draw_pipeline(device, screen_params()));
   LUXEL_TRY(out.beside, gpu::make_draw_pipeline(device, beside_params()));
   LUXEL_TRY(out.overlay, make_overlay_shader(device, kExposed, kSamples));
+  LUXEL_TRY(out.probes, make_probe_shader(device, kExposed, kSamples));
   LUXEL_TRY(out.quadratic, make_quadratic_shader(device, kExposed, kSamples));
   LUXEL_TRY(out.shapes, make_shape_shaders(device, kExposed, kSamples));
   LUXEL_TRY(out.mark, gpu::make_draw_pipeline(device, mark_params()));
@@ -289,6 +290,9 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
     set_shown(device, commands, *canvas.overlay, scene, frame, normalize(camera.forward));
   gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
   draw_surfaces_or_else(device, commands, canvas, more, surface, frame);
+  if (canvas.probes && frame.shows_probes)
+    draw_probes(device, commands, canvas.shaders.probes, *canvas.probes,
+                has_overlay ? canvas.overlay : nullptr, frame, surface.clip_from_world);
   const BehindPush behind = behind_of(camera, scene, frame, has_overlay);
   gpu::bind(device, commands, canvas.shaders.behind, behind);
   gpu::bind_set(device, commands, canvas.shaders.behind, painter.surroundings.sets[0]);

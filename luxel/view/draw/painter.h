@@ -12,6 +12,7 @@
 #include "luxel/view/draw/inset.h"
 #include "luxel/view/draw/outline.h"
 #include "luxel/view/draw/overlay.h"
+#include "luxel/view/draw/probe_drawing.h"
 #include "luxel/view/draw/quadratic.h"
 #include "luxel/view/draw/shapes.h"
 #include "luxel/view/draw/technique_drawing.h"
@@ -22,7 +23,7 @@ namespace luxel::view {
 /// The shaders of all pictures.
 struct Shaders {
   gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
-  gpu::Pipeline overlay, beside, quadratic, inset;
+  gpu::Pipeline overlay, beside, quadratic, inset, probes;
   ShapeShaders shapes;
   TechniqueShaders technique;
   OutlineShaders outline;
@@ -59,6 +60,7 @@ struct Canvas {
   const DeviceScene& scene;
   const Overlay* overlay = nullptr;  ///< without one no frame looks into the bake
   const Additions* additions = nullptr;
+  const DeviceProbes* probes = nullptr;
 };
 
 /// Records the drawing of a frame; the painter's `shown` is then in the layout

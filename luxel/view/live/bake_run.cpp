@@ -1,17 +1,23 @@
 #include "luxel/view/live/bake_run.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "luxel/display/draw.h"
 #include "luxel/display/tone_map.h"
 #include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/post/dilate.h"
+#include "luxel/post/refill.h"
 
 namespace luxel::view {
 namespace {
 
 /// The picture whose exposure is chosen: as large as it must be for percentiles of luminance.
 constexpr int kSmallWidth = 128, kSmallHeight = 96;
+/// What light of each reflection may take before it is made into pictures.
+constexpr size_t kBouncedBytes = 256 << 20;
+/// So many texels are looked up in a draft within some tenths of a second.
+constexpr size_t kSoonLookedUp = 2'000'000;
 
 std::vector<image::HalfImage> halves_of(std::span<const image::Image> pages) {
   std::vector<image::HalfImage> out;
@@ -32,6 +38,14 @@ double tracing_seconds(const Progress& progress) {
   double out = 0;
   for (const Stage& stage : progress.stages())
     if (stage.name == "trace rays") out += stage.seconds;
+  return out;
+}
+
+std::shared_ptr<const BouncedLight> bounces_of(const Draft& draft) {
+  const auto out = std::make_shared<BouncedLight>();
+  out->is_draft = true;
+  for (const std::vector<Rgb>& e : draft.bounced)
+    out->after.push_back(pages_of(draft.atlas, draft.map, e));
   return out;
 }
 
@@ -71,6 +85,7 @@ void BakeRun::hand_draft(std::shared_ptr<const ReadScene> read) {
   } else {
     light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
     news.lit = lit_scene(draft_->scene, draft_->atlas);
+    news.bounced = bounces_of(*draft_);
   }
   if (kept_exposure_) news.read = std::move(read);
   watcher_.hand(std::move(news));
@@ -82,6 +97,9 @@ pipeline::BakeObserver BakeRun::observer() {
     has_light(in, e);
   };
   out.is_watched = watcher_.is_seen;
+  out.on_bounce = [this](const light::TexelScene&, std::span<const Rgb> e) {
+    return has_bounce(e);
+  };
   if (draft_)
     out.guess = [this](const light::TexelScene& in, std::span<const Rgb> direct) {
       return with_reflections_of_draft(in, direct);
@@ -115,9 +133,46 @@ void BakeRun::has_light(const light::TexelScene& in, const light::LightEstimate&
     if (draft_) light_ = std::make_shared<KnownLight>(known_light(in, *draft_));
     // After an edit there is better light than the draft's, which lies elsewhere.
     if (draft_ && !kept_exposure_) news.before = draft_elsewhere(in);
+    if (draft_) news.bounced = bounces_of_draft(in, estimate.direct);
   }
   know(estimate.irradiance);
   watcher_.hand(std::move(news));
+}
+
+/// True: one more is wanted.
+bool BakeRun::has_bounce(std::span<const Rgb> irradiance) {
+  bounced_.emplace_back(irradiance.begin(), irradiance.end());
+  const size_t fit = kBouncedBytes / (irradiance.size() * sizeof(Rgb) + 1);
+  return bounced_.size() <= std::min<size_t>(kMostBounces, fit);
+}
+
+/// Direct light of the bake, and reflections of the draft, as many as are soon looked up.
+std::shared_ptr<const BouncedLight> BakeRun::bounces_of_draft(const light::TexelScene& in,
+                                                              std::span<const Rgb> direct) const {
+  const auto out = std::make_shared<BouncedLight>();
+  out->is_draft = true;
+  const size_t most = std::max<size_t>(kSoonLookedUp / (direct.size() + 1), 1);
+  for (size_t k = 0; k < std::min(draft_->bounced.size(), most); ++k) {
+    std::vector<Rgb> reflected = draft_->bounced[k];
+    for (size_t i = 0; i < reflected.size(); ++i) reflected[i] = reflected[i] - draft_->direct[i];
+    std::vector<Rgb> light = light_of_draft(*draft_, reflected, in);
+    for (size_t i = 0; i < light.size(); ++i) light[i] = max(light[i], Rgb{}) + direct[i];
+    out->after.push_back(pages_of(in.atlas, in.map, light));
+  }
+  return out;
+}
+
+/// As the bake has it, but for seams. It is used up.
+std::shared_ptr<const BouncedLight> BakeRun::bounces_of_bake(const pipeline::Bake& baked) {
+  if (bounced_.empty()) return nullptr;
+  const std::vector<std::span<Rgb>> arrays(bounced_.begin(), bounced_.end());
+  if (!baked.light.hidden.empty())
+    post::refill_hidden(baked.atlas, baked.map, baked.light.hidden, pipeline::kRefillRings, {},
+                        arrays);
+  const auto out = std::make_shared<BouncedLight>();
+  for (const std::vector<Rgb>& e : std::exchange(bounced_, {}))
+    out->after.push_back(pages_of(baked.atlas, baked.map, e));
+  return out;
 }
 
 void BakeRun::know(std::span<const Rgb> irradiance) {
@@ -151,6 +206,10 @@ void BakeRun::end(const pipeline::Bake& baked) {
   exposure_ = light.exposure;
   light.is_last = true;
   if (!is_laid_out_) news.lit = lit_scene(baked.scene, baked.atlas);  // the solver has no estimates
+  news.bounced = bounces_of_bake(baked);
+  if (baked.probes)
+    news.probes = std::make_shared<const ProbeBalls>(
+        ProbeBalls{baked.probes->probes, baked.probes->spacing_m});
   news.warnings = baked.warnings;
   know(baked.light.irradiance);
   watcher_.hand(std::move(news));

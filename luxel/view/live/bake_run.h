@@ -53,6 +53,10 @@ class BakeRun {
     const trace::RayTracer& tracer;
   };
   void has_light(const light::TexelScene& in, const light::LightEstimate& estimate);
+  bool has_bounce(std::span<const Rgb> irradiance);
+  std::shared_ptr<const BouncedLight> bounces_of_draft(const light::TexelScene& in,
+                                                       std::span<const Rgb> direct) const;
+  std::shared_ptr<const BouncedLight> bounces_of_bake(const pipeline::Bake& baked);
   void hand_draft(std::shared_ptr<const ReadScene> read);
   void know(std::span<const Rgb> irradiance);
   LiveLight draft_elsewhere(const light::TexelScene& in) const;
@@ -70,6 +74,7 @@ class BakeRun {
   std::shared_ptr<const KnownLight> before_;
   std::shared_ptr<KnownLight> light_;
   float draft_exposure_ = 1;
+  std::vector<std::vector<Rgb>> bounced_;  ///< E after 0, 1, ... reflections
   bool is_laid_out_ = false;
   LiveNumbers known_;
   double rays_before_ = 0, seconds_before_ = 0;

@@ -6,6 +6,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/transport/irradiance_field.h"
+#include "luxel/view/frame.h"
 
 namespace luxel::view {
 namespace {
@@ -41,12 +42,17 @@ Result<bool> light_draft(const scene::Scene& scene, const pipeline::BakeSettings
                          const Progress& watched, Draft& out) {
   Progress own;
   bool has_light = false;
+  out.bounced.clear();
   pipeline::BakeObserver observer;
   observer.on_estimate = [&](const light::TexelScene& in, const light::LightEstimate& light) {
     if (light.is_last) keep(in, light, out);
     has_light = light.is_last;
     // What comes after the light is not looked at.
     if (light.is_last || watched.cancelled()) own.request_cancel();
+  };
+  observer.on_bounce = [&](const light::TexelScene&, std::span<const Rgb> e) {
+    out.bounced.emplace_back(e.begin(), e.end());
+    return out.bounced.size() <= kMostBounces && !watched.cancelled();
   };
   const auto baked = pipeline::bake_read_scene(scene, settings, own, {}, observer);
   LUXEL_TRY_STATUS(stopped(watched));

@@ -17,8 +17,9 @@ struct Draft {
   std::optional<trace::RayTracer> tracer;
   atlas::Atlas atlas;
   atlas::TexelMap map;
-  std::vector<Rgb> irradiance;  ///< E per texel of the map [W/m^2], after all bounces
-  std::vector<Rgb> direct;      ///< the part of it that comes straight from lights
+  std::vector<Rgb> irradiance;            ///< E per texel of the map [W/m^2], after all bounces
+  std::vector<Rgb> direct;                ///< the part of it that comes straight from lights
+  std::vector<std::vector<Rgb>> bounced;  ///< E after 0, 1, ..., kMostBounces reflections
 };
 
 /// What a draft is made of.

@@ -118,6 +118,7 @@ class Worker : public LiveBake {
       if (run.begin(*read, kFirstDraft, *progress_)) observer.guess = run.observer().guess;
     };
     observer.on_estimate = run.observer().on_estimate;
+    observer.on_bounce = run.observer().on_bounce;
     observer.is_watched = watcher_.is_seen;
     pipeline::BakeCache cache(settings_, pipeline::settings_of_kept_bake(settings_));
     end(run, pipeline::bake_scene(settings_, *progress_, {nullptr, &cache}, observer), cache);

@@ -3,8 +3,12 @@
 namespace luxel::view {
 
 void add(LiveNews newer, LiveNews& news) {
+  const bool is_other = newer.read || newer.lit;
   if (newer.read) news.read = std::move(newer.read);
   if (newer.said) news.said = std::move(newer.said);
+  if (newer.probes) news.probes = std::move(newer.probes);
+  // What lies elsewhere, or is of another scene, tells nothing apart.
+  if (newer.bounced || is_other) news.bounced = std::move(newer.bounced);
   if (!newer.light) return;
   // Light of another layout comes with it; light before that is of no use.
   if (newer.lit) news.lit = std::move(newer.lit), news.before = std::move(newer.before);

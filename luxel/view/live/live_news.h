@@ -8,6 +8,8 @@
 
 #include "luxel/image/half.h"
 #include "luxel/view/lit_scene.h"
+#include "luxel/view/model/bounced_light.h"
+#include "luxel/view/model/probe_balls.h"
 #include "luxel/view/read_scene.h"
 
 namespace luxel::view {
@@ -48,8 +50,11 @@ struct LiveNews {
   std::optional<LiveLight> light;  ///< the newest
   /// With `lit`, where something else was shown before: its light where `lit` has its own.
   std::optional<LiveLight> before;
-  std::vector<std::string> warnings;  ///< pipeline::Bake::warnings, with the last light
-  std::optional<std::string> said;    ///< of saving, or why there is no light; a sentence
+  /// The newest light reflection by reflection, as far as it is known; laid out as it is.
+  std::shared_ptr<const BouncedLight> bounced;
+  std::shared_ptr<const ProbeBalls> probes;  ///< of a bake with --probes, with the last light
+  std::vector<std::string> warnings;         ///< pipeline::Bake::warnings, with the last light
+  std::optional<std::string> said;           ///< of saving, or why there is no light; a sentence
 };
 
 /// What is newer takes the place of what is older.

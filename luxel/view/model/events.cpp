@@ -56,6 +56,20 @@ std::optional<Event> layer_event_of(const json& from) {
   return is_light ? std::optional<Event>(LayerChanged{out}) : std::nullopt;
 }
 
+/// A part of the light: one that has a name, "bounces", which is as many or fewer, or "bounce",
+/// which is as many. May throw json::exception.
+std::optional<Event> part_event_of(const json& from) {
+  if (from.contains("part")) {
+    const auto part = number_of(from["part"].get<std::string>(), kParts,
+                                [](const PartName& known) { return known.name; });
+    return part ? std::optional<Event>(PartChanged{kParts[*part].light}) : std::nullopt;
+  }
+  const bool is_one = from.contains("bounce");
+  const auto most = from.at(is_one ? "bounce" : "bounces").get<int64_t>();
+  if (most < 0 || most > int64_t(kMostBounces)) return std::nullopt;
+  return PartChanged{{is_one ? uint32_t(most) : 0, uint32_t(most)}};
+}
+
 /// The only member of an object; none where there are others. May throw json::exception.
 std::optional<std::pair<std::string, json>> only_member(const json& from) {
   if (!from.is_object() || from.size() != 1) return std::nullopt;
@@ -100,6 +114,16 @@ std::optional<Event> look_event_of(const json& from) {
     return to >= 0 && to <= 1 ? std::optional<Event>(SplitMoved{to}) : std::nullopt;
   }
   if (from.contains("layer")) return layer_event_of(from["layer"]);
+  for (const char* key : {"part", "bounces", "bounce"})
+    if (from.contains(key)) return part_event_of(from);
+  if (from.contains("probes")) return ProbesChanged{from["probes"].get<bool>()};
+  if (from.contains("scale")) {
+    const auto to = from["scale"].get<float>();
+    return to >= 0.5f && to <= 8 ? std::optional<Event>(ScaleChanged{to}) : std::nullopt;
+  }
+  if (from.contains("close") && from["close"] == "window") return WindowClosed{};
+  if (from.contains("lose") && from["lose"] == "device") return DeviceLost{};
+  if (from.contains("open")) return OpenAsked{from["open"].get<std::string>()};
   if (from.contains("channel")) {
     const auto channel = number_of(from["channel"].get<std::string>(), kChannels,
                                    [](const char* known) { return known; });

@@ -109,7 +109,26 @@ inline constexpr std::array<const char*, 16> kOwnShows{
     "cads",  // kTechniques
     "cas-pixel", "cads-pixel", "normals",      "radiosity-vertex",
     "radiosity", "elements"};
-
+/// A part of the light is shown.
+struct PartChanged {
+  LightShown light;
+};
+/// Probes are shown as balls, or not.
+struct ProbesChanged {
+  bool are_shown = true;
+};
+/// Another file or folder takes the place of what is shown, as if it had been dropped.
+struct OpenAsked {
+  std::filesystem::path path;
+};
+/// The window comes to a monitor with so many pixels per point.
+struct ScaleChanged {
+  float to = 1;
+};
+/// The user closes the window, whatever goes on.
+struct WindowClosed {};
+/// The device is lost from here on, as after a crash of its driver: for tests.
+struct DeviceLost {};
 // What is edited of a scene.
 /// The surfaces of this name, or of this number where the name is a number; empty: none.
 struct InstanceSelected {
@@ -144,7 +163,8 @@ using Event =
                  GlowChanged, ShowChanged, RangeChanged, ChannelChanged, LayerChanged,
                  BesideChanged, SplitMoved, InstanceSelected, LampSelected, MaterialSelected,
                  InstanceChanged, LampRemoved, MaterialChanged, OwnShown, OverlayChanged,
-                 SettingChanged, OwnAsked, ToolChanged, ToolUsed, SelectionStepped, WaitForBake>;
+                 SettingChanged, OwnAsked, ToolChanged, ToolUsed, SelectionStepped, PartChanged,
+                 ProbesChanged, OpenAsked, ScaleChanged, WindowClosed, DeviceLost, WaitForBake>;
 
 /// Whether an event changes lamps or what glows; or something else of a scene.
 bool changes_lamps(const Event& event);
@@ -165,6 +185,7 @@ inline constexpr KeyHelp kKeys[] = {
     {"shift", "fly four times as fast; move the picture where it would turn"},
     {"f", "show the whole scene"},
     {"home", "back to the first view"},
+    {"o", "turn around what is looked at, or stop"},
     {"1", "light and colour"},
     {"2", "light alone"},
     {"3", "colour alone"},
@@ -174,6 +195,10 @@ inline constexpr KeyHelp kKeys[] = {
     {"7", "charts of the lightmap"},
     {"8", "seams of the lightmap"},
     {"9", "overlaps in the lightmap"},
+    {"i", "all light, direct, indirect, in turn"},
+    {",", "light of one reflection less"},
+    {".", "light of one reflection more"},
+    {"b", "probes as balls, or none"},
     {"+", "brighter by half a stop"},
     {"-", "darker by half a stop"},
     {"0", "as bright as at first"},
@@ -242,6 +267,7 @@ struct Play {
 ///       {"at": 1.9, "channel": "red"},
 ///       {"at": 2, "layer": {"name": "lamp", "dimmer": 0.5, "color": [1, 0.6, 0.3]}},
 ///       {"at": 2, "beside": "difference"}, {"at": 2, "split": 0.3},
+///       {"at": 2, "part": "direct"}, {"at": 2, "bounces": 3}, {"at": 2, "probes": true},
 ///       {"at": 2, "show": "interpolant"}, {"at": 2, "overlay": {"mesh": true}},
 ///       {"at": 2, "set": {"eps": 0.5}}, {"at": 2, "do": "iterate"},
 ///       {"at": 2, "tool": "link"}, {"at": 2, "use": "element", "pixel": [480, 360]},

@@ -91,6 +91,17 @@ std::optional<SubjectHabits> subject_of(const json& from) {
   return out;
 }
 
+std::optional<PanelHabits> panel_of(const json& from) {
+  PanelHabits out;
+  if (from.contains("place")) {
+    out.place = from["place"].get<std::array<float, 2>>();
+    if (!std::isfinite((*out.place)[0]) || !std::isfinite((*out.place)[1])) return std::nullopt;
+  }
+  out.open = from.at("open").get<std::vector<uint32_t>>();
+  out.closed = from.at("closed").get<std::vector<uint32_t>>();
+  return out;
+}
+
 }  // namespace
 
 std::filesystem::path habits_file(const char* xdg_state_home, const char* home) {
@@ -131,6 +142,11 @@ Result<Habits> parse_habits(std::string_view text, const std::string& name) {
     if (theme != "dark" && theme != "light")
       return no_habits("its theme is neither dark nor light");
     out.is_light = theme == "light";
+    if (file.contains("panel")) {
+      const auto panel = panel_of(file["panel"]);
+      if (!panel) return no_habits("its panel lies nowhere");
+      out.panel = *panel;
+    }
     for (const json& from : file.at("recent")) {
       const auto subject = subject_of(from);
       if (!subject) return no_habits("one of its cameras or bookmarks is none");
@@ -144,6 +160,8 @@ Result<Habits> parse_habits(std::string_view text, const std::string& name) {
 
 std::string json_of(const Habits& habits) {
   json out{{"theme", habits.is_light ? "light" : "dark"}, {"recent", json::array()}};
+  out["panel"] = {{"open", habits.panel.open}, {"closed", habits.panel.closed}};
+  if (habits.panel.place) out["panel"]["place"] = *habits.panel.place;
   for (const SubjectHabits& subject : habits.recent) out["recent"].push_back(json_of(subject));
   // Names of files need not be UTF-8.
   return out.dump(1, ' ', false, json::error_handler_t::replace) + "\n";

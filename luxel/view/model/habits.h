@@ -1,6 +1,7 @@
 // What the window remembers until it is opened again: a small file of JSON.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -24,8 +25,16 @@ struct SubjectHabits {
   Bookmarks bookmarks;
 };
 
+/// How the panel lies. ImGui's numbers stand for its headers.
+struct PanelHabits {
+  std::optional<std::array<float, 2>> place;  ///< of its corner [pixels]
+  std::vector<uint32_t> open, closed;         ///< headers that were opened or closed
+  friend bool operator==(const PanelHabits&, const PanelHabits&) = default;
+};
+
 struct Habits {
-  bool is_light = false;              ///< dark letters on a light panel
+  bool is_light = false;  ///< dark letters on a light panel
+  PanelHabits panel;
   std::vector<SubjectHabits> recent;  ///< the newest first; at most kMostRecent
 };
 inline constexpr size_t kMostRecent = 20;

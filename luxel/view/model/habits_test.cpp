@@ -45,11 +45,13 @@ TEST(Habits, ComeBackBitByBit) {
   EXPECT_TRUE(none->recent.empty());
   Habits habits;
   habits.is_light = true;
+  habits.panel = {std::array{7.5f, -3.0f}, {4000000000u, 2}, {1}};
   remember(some_subject("/a b/\"c\""), habits);
   ASSERT_TRUE(write_habits(habits, file));
   const auto read = read_habits(file);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_TRUE(read->is_light);
+  EXPECT_EQ(read->panel, habits.panel);
   ASSERT_EQ(read->recent.size(), 1u);
   const SubjectHabits back = subject_of(*read, "/a b/\"c\"");
   ASSERT_TRUE(back.view && back.bookmarks[2] && back.bookmarks[8]);

@@ -48,6 +48,20 @@ bool is_on_line(const Walk& walk) {
          std::abs(walk.pointer.x - beside->split * float(walk.width)) <= kNearLine;
 }
 
+/// The next of kParts; of a part without a name, the first.
+LightShown next_part(const LightShown& light) {
+  for (size_t i = 0; i + 1 < kParts.size(); ++i)
+    if (light == kParts[i].light) return kParts[i + 1].light;
+  return kParts[0].light;
+}
+
+/// One reflection more, or less; after the last known one comes all light.
+LightShown with_bounces(const LightShown& light, int by) {
+  const auto most = int(light.most.value_or(kMostBounces + 1)) + by;
+  if (most > int(kMostBounces)) return {};
+  return {0, uint32_t(std::max(most, 0))};
+}
+
 /// What a key does when it goes down; those that fly do it as long as they are down.
 void press(const std::string& key, Walk& walk) {
   if (key == "f") {
@@ -55,6 +69,7 @@ void press(const std::string& key, Walk& walk) {
     walk.target = walk.bounds.centre();
   }
   if (key == "home") walk.shown.camera = walk.first.camera;
+  if (key == "o") walk.turns = !walk.turns;
   for (uint32_t i = 0; i < kShows.size(); ++i)
     if (key == kShows[i].key) walk.shown.show = Show(i);
   if (const auto mark = bookmark_key(key)) {
@@ -64,6 +79,10 @@ void press(const std::string& key, Walk& walk) {
     else if (bookmark)
       go_to(*bookmark, walk.first.exposure, walk.shown);
   }
+  if (key == "b") walk.shown.shows_probes = !walk.shown.shows_probes;
+  if (key == "i") walk.shown.light = next_part(walk.shown.light);
+  if (key == ",") walk.shown.light = with_bounces(walk.shown.light, -1);
+  if (key == ".") walk.shown.light = with_bounces(walk.shown.light, 1);
   if (key == "space") walk.asked.push_back(Command::stop_or_go_on);
   if (key == "ctrl+s") walk.asked.push_back(Command::save);
   if (key == "ctrl+shift+s") walk.asked.push_back(Command::save_scene);
@@ -139,6 +158,9 @@ void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk) {
     walk.shown.beside->mode = changed->mode;
   if (const auto* moved = std::get_if<SplitMoved>(&event); moved && walk.shown.beside)
     walk.shown.beside->split = moved->to;
+  if (const auto* changed = std::get_if<PartChanged>(&event)) walk.shown.light = changed->light;
+  if (const auto* changed = std::get_if<ProbesChanged>(&event))
+    walk.shown.shows_probes = changed->are_shown;
   if (const auto* changed = std::get_if<LayerChanged>(&event))
     set_layer(changed->setting, walk.shown.layers);
   if (const auto* changed = std::get_if<RangeChanged>(&event))
@@ -146,7 +168,10 @@ void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk) {
         changed->scale;
 }
 
-void pass(double seconds, Walk& walk) {
+namespace {
+
+/// Flies while keys are down.
+void fly(double seconds, Walk& walk) {
   const auto along = [&](const char* there, const char* back) {
     return float(walk.keys.contains(there)) - float(walk.keys.contains(back));
   };
@@ -158,6 +183,20 @@ void pass(double seconds, Walk& walk) {
   const Vec3 before = column(walk.shown.camera.world_from_camera, 3);
   walk.shown.camera = flown(walk.shown.camera, by);
   walk.target += column(walk.shown.camera.world_from_camera, 3) - before;
+}
+
+}  // namespace
+
+void pass(double seconds, Walk& walk) {
+  fly(seconds, walk);
+  if (!walk.turns || walk.dragging) return;
+  const auto aside = float(seconds / kTurn_s * 2 * double(kPi));
+  walk.shown.camera = orbited(walk.shown.camera, walk.target, aside, 0);
+}
+
+scene::Camera turned_camera(const Walk& walk, int k, int count) {
+  const auto aside = float(2 * double(kPi) * k / count);
+  return orbited(walk.shown.camera, walk.target, aside, 0);
 }
 
 }  // namespace luxel::view

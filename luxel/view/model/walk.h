@@ -41,6 +41,7 @@ struct Walk {
   std::optional<Button> dragging;
   bool drags_line = false;     ///< between two bakes, not the camera
   std::set<std::string> keys;  ///< that are down
+  bool turns = false;          ///< the camera goes round the target
   Bookmarks bookmarks;
   /// What keys have asked for that is not the walk's to do; whoever does it takes it out.
   std::vector<Command> asked;
@@ -55,7 +56,12 @@ Walk begin_walk(const Frame& first, const Box3& bounds, int width, int height,
 /// The wheel goes towards the place under the pointer.
 void handle(const Event& event, const PlaceSeen& place_seen, Walk& walk);
 
-/// What goes on while keys are down: flying, a fifth of the scene's size per second.
+/// What goes on while keys are down: flying, a fifth of the scene's size per second. A walk that
+/// turns comes round once in kTurn_s.
 void pass(double seconds, Walk& walk);
+inline constexpr double kTurn_s = 20;
+
+/// The camera of the k-th of `count` pictures of a turn that begins with the walk's own.
+scene::Camera turned_camera(const Walk& walk, int k, int count);
 
 }  // namespace luxel::view

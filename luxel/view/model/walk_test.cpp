@@ -148,6 +148,7 @@ TEST(Walk, AKeyOfEveryLineOfTheListDoesSomething) {
     Walk walk = before_the_wall();
     walk.shown.show = Show::colour, walk.shown.exposure = 1;  // as after other keys
     if (std::string(key.key) == "3") walk.shown.show = Show::light;
+    if (std::string(key.key) == ".") walk.shown.light.most = 2;
     walk.shown.camera = Frame{}.camera;
     walk.bookmarks[0] = bookmark_of(walk.first, 1);
     if (std::string(key.key) == "shift") handle(KeyChanged{"w", true}, on_the_wall, walk);
@@ -158,6 +159,8 @@ TEST(Walk, AKeyOfEveryLineOfTheListDoesSomething) {
     const bool changed =
         walk.shown.show != before.shown.show || walk.shown.exposure != before.shown.exposure ||
         walk.bookmarks[0]->brightness != before.bookmarks[0]->brightness ||
+        walk.shown.light != before.shown.light || walk.turns != before.turns ||
+        walk.shown.shows_probes != before.shown.shows_probes ||
         walk.asked.size() != before.asked.size() || length(eye_of(walk) - eye_of(before)) > 0;
     EXPECT_TRUE(changed) << key.key;
   }
@@ -306,7 +309,8 @@ TEST(Play, SaysWhichEventIsWrong) {
         R"({"at": 1, "scroll": 1e9})", R"({"at": 1, "show": "depth"})",
         R"({"at": 1, "channel": "alpha"})", R"({"at": 1, "range": [2, 2]})",
         R"({"at": 1, "logarithmic_range": [0, 1]})", R"({"at": 1, "beside": "above"})",
-        R"({"at": 1, "split": 2})"})
+        R"({"at": 1, "split": 2})", R"({"at": 1, "part": "half"})", R"({"at": 1, "bounces": -1})",
+        R"({"at": 1, "bounce": 9})"})
     EXPECT_THAT(error(wrong), AllOf(HasSubstr("walk.json, event 1: "), HasSubstr("is no event")));
   for (const char* wrong : {R"({"at": "now", "scroll": 1})", R"({"at": 1, "pointer": [1]})", "7"})
     EXPECT_THAT(error(wrong), HasSubstr("walk.json, event 1: "));

@@ -26,21 +26,7 @@ const float most = 60000;  // of the picture's halves
 const float line_width = 1.25;  // of seams, to each side [pixels]
 const vec3 grey = vec3(0.55), seam_color = vec3(1, 0.25, 0.02), red = vec3(0.8, 0.02, 0.02);
 
-vec3 linear(vec3 c) {
-  return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, vec3(lessThanEqual(c, vec3(0.04045))));
-}
-
-vec3 false_color(float value) {
-  float t = (value - look.low) / (look.high - look.low);
-  if (look.is_logarithmic != 0)
-    t = value > look.low ? log(value / look.low) / log(look.high / look.low) : 0;
-  return linear(unpackUnorm4x8(look.colors[uint(clamp(t, 0, 1) * 255 + 0.5)]).rgb);
-}
-
-float value_of(vec3 e) {
-  if (look.channel == 3) return dot(e, vec3(0.2126, 0.7152, 0.0722));
-  return e[look.channel];
-}
+#include "false_color.glsl"
 
 /// Of squares of one texel, the share that is light in this pixel.
 float share_of_light_squares(vec2 at) {

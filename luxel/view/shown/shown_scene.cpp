@@ -24,21 +24,36 @@ Result<DeviceScene> with_light(gpu::Commands& commands, const LitScene& lit,
 pipeline::LightmapPages pages_of(const LiveLight& light, const LitScene& lit) {
   pipeline::LightmapPages out;
   out.of_material = lit.page_of_material;
-  for (const image::HalfImage& page : light.pages) {
-    image::Image& picture = out.pictures.emplace_back(page.width, page.height, page.channels);
-    for (size_t i = 0; i < picture.data.size(); ++i) {
-      const bool is_alpha = page.channels == 4 && i % 4 == 3;
-      picture.data[i] = image::from_half(page.data[i]) * (is_alpha ? 1 : page.scale);
-    }
-  }
+  for (const image::HalfImage& page : light.pages) out.pictures.push_back(to_floats(page));
   return out;
 }
 
+/// The newest light, or the part of it that is shown, becomes that of the fade's newest picture.
+Status put_newest(gpu::Commands& commands, ShownScene& shown) {
+  if (shown.part.is_all() || !shown.bounced)
+    return put_light(commands, shown.newest, shown.fade.newest, shown.device);
+  std::vector<image::Image> all;
+  for (const image::HalfImage& page : shown.newest) all.push_back(to_floats(page));
+  // Another scene may be told apart less finely.
+  const auto part = part_of(shown.part, *shown.bounced, all);
+  if (!part) shown.part = {};
+  PagesOfHalves halves;
+  for (const image::Image& page : part ? *part : all) halves.push_back(image::to_half(page));
+  return put_light(commands, halves, shown.fade.newest, shown.device);
+}
+
 /// Light fades in over what is shown.
-Status fade_in(const LiveLight& light, gpu::Commands& commands, ShownScene& shown) {
+Status fade_in(LiveLight light, gpu::Commands& commands, ShownScene& shown) {
   shown.fade = faded_to_other(shown.fade, light.exposure);
   shown.device.second_light = second_light(shown.fade);
-  return put_light(commands, light.pages, shown.fade.newest, shown.device);
+  shown.newest = std::move(light.pages);
+  return put_newest(commands, shown);
+}
+
+/// What tells light apart, or the probes, has come.
+void take_more(LiveNews& news, ShownScene& shown) {
+  if (news.bounced || news.lit || news.read) shown.bounced = std::move(news.bounced);
+  if (news.probes || news.read) shown.probes = std::move(news.probes);
 }
 
 }  // namespace
@@ -62,7 +77,9 @@ Result<ShownScene> nothing_shown(gpu::Commands& commands) {
 Result<ShownScene> bake_shown(gpu::Commands& commands, OpenedBake bake) {
   ShownScene out;
   DeviceSceneParams params;
-  params.light_changes = bake.has_layers;
+  std::error_code ignored;
+  params.light_changes =
+      bake.has_layers || std::filesystem::exists(bake.folder / "bounces-0", ignored);
   LUXEL_TRY(out.device, put_on_device(commands, bake.scene, bake.lightmaps, params));
   auto read = std::make_shared<ReadScene>();
   read->scene = std::move(bake.scene), read->first = bake.first;
@@ -83,6 +100,7 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
                        std::string& said) {
   bool is_another = false;
   if (news.said) said = *news.said;
+  take_more(news, shown);
   if (news.read) {
     shown.read = std::move(news.read);
     // Until there is light of an edited scene, the one before is shown.
@@ -96,20 +114,23 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
   shown.has_last = news.light->is_last;
   if (shown.has_last) shown.warnings = std::move(news.warnings);
   if (news.lit) {
-    const LiveLight& first = news.before ? *news.before : *news.light;
+    LiveLight& first = news.before ? *news.before : *news.light;
     LUXEL_TRY(shown.device, with_light(commands, *news.lit, first));
     shown.lightmaps = pages_of(first, *news.lit);
+    shown.newest = first.pages;
     shown.lit = std::move(news.lit);
     shown.fade = {0, 1, first.exposure, first.exposure};
     shown.waiting.reset();
     shown.has_light = is_another = true;
+    if (!shown.part.is_all()) LUXEL_TRY_STATUS(put_newest(commands, shown));
     if (!news.before) return true;
   }
   if (news.light->is_sudden) {
     shown.waiting.reset();
     shown.fade = at_once(shown.fade, news.light->exposure);
     shown.device.second_light = second_light(shown.fade);
-    LUXEL_TRY_STATUS(put_light(commands, news.light->pages, shown.fade.newest, shown.device));
+    shown.newest = std::move(news.light->pages);
+    LUXEL_TRY_STATUS(put_newest(commands, shown));
     return is_another;
   }
   shown.waiting = std::move(*news.light);
@@ -122,9 +143,9 @@ Status pass(double seconds, gpu::Commands& commands, ShownScene& shown) {
   // The two pictures of a light that does not change are one.
   shown.device.second_light = second_light(shown.fade);
   if (!shown.waiting || !is_free(shown.fade)) return {};
-  const LiveLight light = std::move(*shown.waiting);
+  LiveLight light = std::move(*shown.waiting);
   shown.waiting.reset();
-  return fade_in(light, commands, shown);
+  return fade_in(std::move(light), commands, shown);
 }
 
 Status settle(gpu::Commands& commands, ShownScene& shown) {

@@ -24,6 +24,10 @@ struct ShownScene {
   LiveNumbers numbers;                ///< of the light that came last
   bool has_last = false;              ///< all light has come
   std::vector<std::string> warnings;  ///< of the bake
+  LightShown part;                    ///< of the light, that is shown
+  PagesOfHalves newest;               ///< all light that came last; none: it is `lightmaps`
+  std::shared_ptr<const BouncedLight> bounced;  ///< of it; null: not told apart, or not yet read
+  std::shared_ptr<const ProbeBalls> probes;     ///< null: there are none, or not yet read
 
   /// What is looked into: the light of a bake that is there; of one that is made, its first.
   pipeline::LightmapPages lightmaps;

@@ -219,4 +219,19 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
   return std::move(bouncing.out);
 }
 
+Status bounce_by_bounce(const atlas::TexelMap& map, const transport::Elements& elements,
+                        const TracedHits& hits, std::span<const Rgb> direct,
+                        std::span<const StoredHit> behind, int bounces, const light::OnBounce& take,
+                        Progress& progress) {
+  const size_t n = elements.size();
+  LUXEL_CHECK(direct.size() == n && map.texels.size() == n && hits.sky.size() == n);
+  Bouncing bouncing{map, elements, hits, direct, behind, progress, 0, reflectance_range(elements)};
+  for (size_t i = 0; i < n; ++i) bouncing.out.irradiance.push_back(source_of(hits, direct, i));
+  bouncing.out.variance.assign(n, 0.0f), bouncing.out.split_variance.assign(n, 0.0f);
+  bouncing.radiosity = empty_radiosity_map(map.resolution);
+  for (int k = 0; take(bouncing.out.irradiance) && k != bounces; ++k)
+    LUXEL_TRY_STATUS(bouncing.sweep(1).map([](double) {}));
+  return {};
+}
+
 }  // namespace luxel::gather

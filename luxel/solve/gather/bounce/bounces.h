@@ -9,6 +9,7 @@
 #include "luxel/base/bytes_per_entry.h"
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
+#include "luxel/light/light_estimate.h"
 #include "luxel/solve/gather/rays/traced_hits.h"
 #include "luxel/transport/elements.h"
 
@@ -65,5 +66,13 @@ Result<Bounced> bounce(const atlas::TexelMap& map, const transport::Elements& el
                        const TracedHits& hits, std::span<const Rgb> direct,
                        std::span<const StoredHit> behind, const BounceParams& params,
                        Progress& progress);
+
+/// E_0 of bounce(), and what each sweep over all rays makes of it: light after at most 0, 1, 2, ...
+/// reflections, as long as `take` wants more and `bounces` (< 0: any number) allows. Errors: those
+/// of bounce().
+Status bounce_by_bounce(const atlas::TexelMap& map, const transport::Elements& elements,
+                        const TracedHits& hits, std::span<const Rgb> direct,
+                        std::span<const StoredHit> behind, int bounces, const light::OnBounce& take,
+                        Progress& progress);
 
 }  // namespace luxel::gather

@@ -62,6 +62,27 @@ TEST(Bounces, AreTheSameBitsWithoutRoomForACopy) {
   EXPECT_EQ(with.sweeps, without.sweeps);
 }
 
+// A run of so many bounces ends with the same bits; nothing comes after who has enough.
+TEST(Bounces, AreToldOneByOne) {
+  const Traced t = traced(16);
+  const auto told = [&](int bounces, size_t enough) {
+    std::vector<std::vector<Rgb>> out;
+    Progress progress;
+    const auto take = [&](std::span<const Rgb> e) {
+      out.emplace_back(e.begin(), e.end());
+      return out.size() < enough;
+    };
+    EXPECT_TRUE(bounce_by_bounce(t.room->map, t.room->elements, t.hits, t.direct, {}, bounces, take,
+                                 progress));
+    return out;
+  };
+  const auto all = told(-1, 4);
+  ASSERT_EQ(all.size(), 4u);
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(all[size_t(k)], t.bounced({.bounces = k}).irradiance) << k;
+  EXPECT_EQ(told(2, 4).size(), 3u) << "there is no more light";
+  EXPECT_EQ(told(0, 4).size(), 1u);
+}
+
 TEST(SubsampledHits, AreMadeWhereTheyFit) {
   const Traced t = traced(64);
   Progress progress;

@@ -172,8 +172,9 @@ TEST(ViewInside, SaysWhatIsWrong) {
     EXPECT_EQ(r.code, 1);
     return r.err;
   };
-  EXPECT_THAT(error(kInsideBox + " --inside gather"),
-              HasSubstr("--inside 'gather' cannot be looked into; there is: hierarchical"));
+  EXPECT_THAT(
+      error(kInsideBox + " --inside gather"),
+      HasSubstr("--inside 'gather' cannot be looked into; there are: hierarchical, hemicube"));
   EXPECT_THAT(error(s.path.string() + " --inside hierarchical"),
               HasSubstr("--inside is for a scene"));
   EXPECT_THAT(error(kInsideBox + " --inside hierarchical --solver gather"),

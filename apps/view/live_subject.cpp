@@ -16,7 +16,9 @@ class LiveSubject : public Subject {
 
   std::vector<KeyLine> keys() const override { return edit_keys(); }
   /// What a play names is looked for when it comes: there is no scene yet.
-  Status check(const view::Play&, const std::string&) const override { return {}; }
+  Status check(const view::Play& play, const std::string& name) const override {
+    return view::check_no_inside(play, name);
+  }
 
   Result<Followed> follow(gpu::Commands& commands, std::string& message) override {
     view::LiveNews news = live_->take();

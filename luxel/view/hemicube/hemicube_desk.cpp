@@ -117,6 +117,9 @@ std::optional<std::string> wrong_with(const Event& event) {
                          kLitFaces);
   if (const auto* asked = std::get_if<OwnAsked>(&event))
     return "hemicube radiosity cannot do '" + asked->name + "'";
+  if (std::holds_alternative<ToolChanged>(event) || std::holds_alternative<ToolUsed>(event) ||
+      std::holds_alternative<SelectionStepped>(event))
+    return "hemicube radiosity has no tools; a click chooses a vertex";
   const auto* changed = std::get_if<SettingChanged>(&event);
   if (!changed) return std::nullopt;
   if (changed->name != kSize && changed->name != kPauseAt)

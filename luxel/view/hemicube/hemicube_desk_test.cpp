@@ -116,6 +116,9 @@ TEST(HemicubeDesk, SaysWhatIsNotForIt) {
             "p.json, at 0 s: there is no setting 'eps'; there are: hemicube, pause_at");
   EXPECT_EQ(error(R"("overlay": {"links": true})"),
             "p.json, at 0 s: there is no overlay 'links'; there are: vertex, lit");
+  EXPECT_NE(error(R"("select": "chair")"), "");
+  EXPECT_EQ(error(R"("tool": "link")"),
+            "p.json, at 0 s: hemicube radiosity has no tools; a click chooses a vertex");
   EXPECT_EQ(error(R"("do": "iterate")"), "p.json, at 0 s: hemicube radiosity cannot do 'iterate'");
 }
 

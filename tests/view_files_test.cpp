@@ -58,22 +58,22 @@ double apart(const image::Image& a, const image::Image& b) {
 }
 
 const std::string kIrradiance = R"({"at": 0, "show": "irradiance"}, {"at": 0, "range": [0, 0.8]})";
-constexpr const char* kSmallBake = "--resolution 64 --samples 16";
+constexpr const char* kFewTexels = "--resolution 64 --samples 16";
 
 // Light of no reflection beside a bake, and of a scene while it is baked, is that of a bake of
 // none.
 TEST_F(ViewFiles, ShowPartsOfTheLight) {
-  const std::string a = baked("a", "cornell-box.glb", kSmallBake);
+  const std::string a = baked("a", "cornell-box.glb", kFewTexels);
   const CommandResult none =
       run(a + play(R"({"at": 0, "part": "direct"})") + " --offscreen --screenshot x.png");
   EXPECT_EQ(none.code, 1);
   EXPECT_THAT(none.err, HasSubstr("bounces-0 --bounces 0`"));
   const std::string direct =
-      baked("a/bounces-0", "cornell-box.glb", std::string(kSmallBake) + " --bounces 0");
+      baked("a/bounces-0", "cornell-box.glb", std::string(kFewTexels) + " --bounces 0");
   const std::string part = kIrradiance + R"(, {"at": 0, "part": "direct"})";
   const image::Image wanted = picture(direct + play(kIrradiance) + " --offscreen");
   EXPECT_LT(apart(picture(a + play(part) + " --offscreen"), wanted), 1e-3);
-  const std::string scene = scene_file("cornell-box.glb") + " " + kSmallBake;
+  const std::string scene = scene_file("cornell-box.glb") + " " + kFewTexels;
   // Its seams are not stitched.
   EXPECT_LT(apart(picture(scene + play(part) + " --offscreen"), wanted), 5e-3);
   const image::Image all = picture(a + play(kIrradiance) + " --offscreen");
@@ -86,17 +86,17 @@ TEST_F(ViewFiles, ShowPartsOfTheLight) {
 }
 
 TEST_F(ViewFiles, ShowProbes) {
-  const std::string a = baked("a", "cornell-box.glb", std::string(kSmallBake) + " --probes 0.15");
+  const std::string a = baked("a", "cornell-box.glb", std::string(kFewTexels) + " --probes 0.15");
   const image::Image with = picture(a + play(R"({"at": 0, "probes": true})") + " --offscreen");
   EXPECT_GT(apart(with, picture(a + play("") + " --offscreen")), 0.01);
-  const std::string b = baked("b", "cornell-box.glb", kSmallBake);
+  const std::string b = baked("b", "cornell-box.glb", kFewTexels);
   const CommandResult none =
       run(b + play(R"({"at": 0, "probes": true})") + " --offscreen --screenshot x.png");
   EXPECT_THAT(none.err, HasSubstr("there are no probes in"));
 }
 
 TEST_F(ViewFiles, TurnAround) {
-  const std::string a = baked("a", "cornell-box.glb", kSmallBake);
+  const std::string a = baked("a", "cornell-box.glb", kFewTexels);
   ASSERT_EQ(run(a + " --offscreen --size 96x96 --turntable 4 --screenshot turn.png").code, 0);
   const auto turned = [&](const char* number) {
     return slurp(s_.path / ("turn-" + std::string(number) + ".png"));
@@ -116,8 +116,8 @@ TEST_F(ViewFiles, TurnAround) {
 // What cannot be opened changes nothing.
 TEST_F(ViewFiles, OpenInAWindow) {
   if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
-  const std::string a = baked("a", "cornell-box.glb", kSmallBake);
-  const std::string b = baked("b", "furnace-box.glb", kSmallBake);
+  const std::string a = baked("a", "cornell-box.glb", kFewTexels);
+  const std::string b = baked("b", "furnace-box.glb", kFewTexels);
   const auto opening = [&](const std::string& path) {
     return play(R"({"at": 0, "open": ")" + path + R"("}, {"at": 0.1, "wait": "bake"})", "0.2");
   };
@@ -127,10 +127,10 @@ TEST_F(ViewFiles, OpenInAWindow) {
   const std::string broken = s_.write("broken.glb", "glTF").string();
   EXPECT_EQ(picture(a + opening(broken), kWindow).data,
             picture(a + play("") + " --offscreen").data);
-  const std::string first = scene_file("cornell-box.glb") + " " + kSmallBake;
+  const std::string first = scene_file("cornell-box.glb") + " " + kFewTexels;
   const std::string second = scene_file("furnace-box.glb");
   EXPECT_LT(apart(picture(first + opening(second), kWindow),
-                  picture(second + " " + kSmallBake + play("") + " --offscreen")),
+                  picture(second + " " + kFewTexels + play("") + " --offscreen")),
             1e-3);
   const CommandResult refused = run(a + opening(b) + " --offscreen --screenshot x.png");
   EXPECT_THAT(refused.err, HasSubstr("are for a window"));
@@ -152,7 +152,7 @@ TEST_F(ViewFiles, AWindowThatClosesInMidBakeLeavesNothing) {
 
 TEST_F(ViewFiles, ALostDeviceIsASentence) {
   if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
-  const std::string a = baked("a", "cornell-box.glb", kSmallBake);
+  const std::string a = baked("a", "cornell-box.glb", kFewTexels);
   const std::string before = slurp(s_.path / "a" / "lightmap.exr");
   const CommandResult r = run(a + play(R"({"at": 0.1, "lose": "device"})", "1"), kWindow);
   EXPECT_EQ(r.code, 1);

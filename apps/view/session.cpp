@@ -81,8 +81,8 @@ constexpr int kFramesToSettle = 3;
 /// So often the panel tells how a bake goes on.
 constexpr double kReport_s = 0.5;
 
-/// The same file is looked at as before it was opened again; from elsewhere if its first view is
-/// another one.
+/// A file that is opened again is looked at as before; from elsewhere if its first view is another
+/// one.
 void go_on_as(const view::Walk& before, view::Walk& walk) {
   const float stops = before.shown.exposure / before.first.exposure;
   const float exposure = walk.first.exposure * stops;

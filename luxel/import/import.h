@@ -19,7 +19,7 @@ struct Imported {
   /// For scenes without light: why the file may have lost its lights, and what to tick to keep
   /// them. Half a sentence; empty when that is not known.
   std::string about_lost_lights;
-  /// Of glTF files: the node that each instance and each light comes from. Empty else.
+  /// The node of a glTF file that each instance and each light comes from. Empty for other files.
   std::vector<uint32_t> node_of_instance, node_of_light;
 };
 

@@ -72,7 +72,7 @@ inline constexpr std::array<PartName, 3> kParts{{
     {"direct", "direct", {0, 0}},
     {"indirect", "indirect", {1, std::nullopt}},
 }};
-/// Of more reflections light is not told apart.
+/// Light of more reflections is not told apart.
 inline constexpr uint32_t kMostBounces = 8;
 
 /// False colours from `low` to `high`, by the value or its logarithm.

@@ -8,55 +8,10 @@
 #include <tuple>
 
 #include "luxel/base/check.h"
+#include "luxel/view/draw/device_structs.h"
 
 namespace luxel::view {
 namespace {
-
-// The structs of shaders/surface.glsl, in scalar layout.
-struct DeviceVertex {
-  Vec3 position;
-  Vec2 uv0, uv1;
-  Vec2 light, light_behind;  ///< places in the lightmap: its own, that of the other side
-  Vec3 normal;               ///< 0: that of the facet
-  Rgb color;
-};
-static_assert(sizeof(DeviceVertex) == 68);
-
-struct DeviceLookUp {
-  Vec3 u{1, 0, 0}, v{0, 1, 0};
-  uint32_t uv_set = 0;
-};
-
-struct DeviceMaterial {
-  Rgb base_color;
-  float alpha = 1;
-  Rgb emission;
-  float metallic = 0;
-  float cutoff = 0;   ///< alpha below it is a hole
-  uint32_t page = 0;  ///< of the lightmap
-  uint32_t unlit = 0;
-  Rgb through_color;  ///< of light that is scattered through
-  float through = 0;
-  DeviceLookUp map, metal, glow, through_share, through_tint;
-};
-static_assert(sizeof(DeviceMaterial) == 60 + 5 * 28);
-
-struct DeviceInstance {
-  std::array<float, 12> rows{};  ///< world from object, three rows of four
-  Rgb emission_factor{1, 1, 1};
-};
-static_assert(sizeof(DeviceInstance) == 60);
-
-std::array<float, 12> rows_of(const Mat34& m) {
-  std::array<float, 12> out;
-  for (size_t i = 0; i < 12; ++i) out[i] = m.row[i / 4][i % 4];
-  return out;
-}
-
-template <class Values>
-std::span<const std::byte> bytes_of(const Values& values) {
-  return std::as_bytes(std::span(values));
-}
 
 /// scene::transformed_uv() as two rows that are multiplied by (u, v, 1).
 DeviceLookUp look_up_of(const scene::TextureRef& ref) {
@@ -238,11 +193,6 @@ DeviceMaterial device_material(const scene::Material& m, size_t page) {
   return out;
 }
 
-std::span<float> scales_of(const DeviceScene& scene) {
-  return {reinterpret_cast<float*>(scene.light_now.mapped + sizeof(LightNow)),
-          (scene.light_now.size - sizeof(LightNow)) / sizeof(float)};
-}
-
 /// The bindings of each page's light, of either picture.
 using Lights = std::vector<std::array<gpu::Binding, 2>>;
 Result<Lights> put_lights(const gpu::Device& device, Pictures& pictures,
@@ -371,49 +321,6 @@ Result<DeviceScene> put_on_device(gpu::Commands& commands, const scene::Scene& s
   std::vector<image::HalfImage> halves;
   for (const image::Image& page : lightmaps.pictures) halves.push_back(image::to_half(page));
   return put_on_device(commands, scene, PagesOfLight{halves, lightmaps.of_material}, params);
-}
-
-namespace {
-
-DeviceMaterial& material_on(DeviceScene& scene, size_t material) {
-  LUXEL_CHECK((material + 1) * sizeof(DeviceMaterial) <= scene.materials.size);
-  return reinterpret_cast<DeviceMaterial*>(scene.materials.mapped)[material];
-}
-
-DeviceInstance& instance_on(DeviceScene& scene, uint32_t instance) {
-  LUXEL_CHECK(instance < scene.mesh_of.size());
-  return reinterpret_cast<DeviceInstance*>(scene.instances.mapped)[instance];
-}
-
-}  // namespace
-
-void set_emission(size_t material, Rgb emission, DeviceScene& scene) {
-  material_on(scene, material).emission = emission;
-}
-
-void set_base_color(size_t material, Rgb base_color, DeviceScene& scene) {
-  material_on(scene, material).base_color = base_color;
-}
-
-void set_transform(uint32_t instance, const Mat34& world_from_object, DeviceScene& scene) {
-  instance_on(scene, instance).rows = rows_of(world_from_object);
-  scene.is_mirrored[instance] = determinant(world_from_object) < 0;
-}
-
-Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> pages, uint32_t which,
-                 DeviceScene& scene) {
-  LUXEL_CHECK(pages.size() == scene.lights[which].size());
-  LUXEL_CHECK(scene.lights[0] != scene.lights[1]);
-  for (size_t page = 0; page < pages.size(); ++page) {
-    LUXEL_TRY_STATUS(gpu::put_pixels(commands, *scene.lights[which][page],
-                                     bytes_of(pages[page].data), "the lightmap"));
-    scales_of(scene)[2 * page + which] = pages[page].scale;
-  }
-  return {};
-}
-
-void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene) {
-  instance_on(scene, instance).emission_factor = factor;
 }
 
 }  // namespace luxel::view

@@ -9,8 +9,8 @@
 
 namespace luxel::view {
 
-/// Of each material that is drawn, the one of the scene as it was read. `drawn` has an instance for
-/// each of `as_read`; its materials are versions of those by `of_layout`, LitScene's
+/// For each material that is drawn, the one of the scene as it was read. `drawn` has an instance
+/// for each of `as_read`; its materials are versions of those by `of_layout`, LitScene's
 /// material_of_scene, or the same where that is empty.
 std::vector<uint32_t> materials_as_read(const scene::Scene& as_read, const scene::Scene& drawn,
                                         std::span<const uint32_t> of_layout);

@@ -13,7 +13,7 @@ Mat34 linear_part(Mat34 m) {
   return m;
 }
 
-/// Of orthonormal axes.
+/// The axes are orthonormal.
 Mat34 transposed(const Mat34& m) {
   return from_columns({m.row[0][0], m.row[0][1], m.row[0][2]},
                       {m.row[1][0], m.row[1][1], m.row[1][2]},

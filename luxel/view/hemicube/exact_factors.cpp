@@ -105,7 +105,7 @@ Result<std::optional<std::vector<double>>> exact_factors(const LightMesh& mesh, 
             .visible;
     progress.advance(1);
   }
-  // Of surfaces that coincide each is seen whole.
+  // Surfaces that coincide are each seen whole.
   const double sum = std::accumulate(out.begin(), out.end(), 0.0);
   return sum > kMostSum ? std::nullopt : std::optional(std::move(out));
 }

@@ -43,7 +43,7 @@ Result<VertexReport> report_on(const LightMesh& mesh, std::vector<Rgb> irradianc
 /// light goes through any, or where some coincide. Errors: cancelled.
 Result<std::optional<std::vector<double>>> exact_factors(const LightMesh& mesh, uint32_t element,
                                                          Progress& progress);
-/// The same by a hemicube.
+/// The form factors of all triangles as the hemicube finds them.
 std::vector<double> factors_of_triangles(const LightMesh& mesh, const hemicube::ItemBuffer& items);
 
 /// How many factors of a row lie between powers of ten: bin k holds those from 10^(k/4 - 7) on.

@@ -57,7 +57,7 @@ struct BackprojectionProbe {
   std::vector<SeenSource> sources;  ///< the brightest first
   size_t left_out = 0;              ///< others that send light
 };
-/// Of `most_sources`, at most. Errors: cancelled.
+/// `most_sources`: how many are told apart. Errors: cancelled.
 Result<BackprojectionProbe> probe_sources(const SolutionView& view,
                                           const hierarchical::FacePoint& at, size_t most_sources,
                                           Progress& progress);

@@ -68,7 +68,7 @@ TEST(BackprojectionProbe, SeesTheHalfOfALampThatNothingHides) {
   ASSERT_EQ(probe->sources.size(), 1u);
   const SeenSource& source = probe->sources[0];
   EXPECT_NEAR(source.visible_area, 0.5, 2e-4);
-  // Of the nearer half a little more is seen than of the whole.
+  // A little more of the nearer half is seen than of the whole.
   const double half = double(testing::kLampHalf_m);
   const double all = testing::factor_of_rectangle(kHalfSeen_m, 0, -half, half, -half, half);
   const double seen = testing::factor_of_rectangle(kHalfSeen_m, 0, 0, half, -half, half);

@@ -23,7 +23,7 @@ using Answer =
 /// Computes an answer; it holds all that it looks at. Errors end as sentences, cancelled ones as
 /// nothing.
 using Question = std::function<Result<Answer>(Progress&)>;
-/// Of each kind the newest question counts.
+/// The newest question of each kind counts.
 enum class QuestionKind : uint8_t { discontinuity, light, sources, graph };
 
 /// Guards the thread. Its functions are called by one thread and do not wait for an answer, but for

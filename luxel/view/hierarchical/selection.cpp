@@ -55,7 +55,7 @@ void set_link(const LinkNumber& link, const Examined& examined, Selection& selec
   selected.link_source = examined.view.solution.links.of[link.receiver][link.number].source;
 }
 
-/// Of the selected element; without one the element at the place is selected.
+/// A link of the selected element; without one the element at the place is selected.
 void select_link(const ToolPlace& at, const Walk& walk, const Examined& examined,
                  SelectionDesk& desk) {
   if (desk.selected.has_element()) {
@@ -199,7 +199,7 @@ std::optional<LinkNumber> same_link(const LinkNumber& link, uint32_t source,
   return LinkNumber{link.receiver, uint32_t(same - of.begin())};
 }
 
-/// The same place, node, and link of another solution, as far as it has them.
+/// Place, node and link in another solution, as far as it has them.
 Selection carried_over(const Selection& from, const Examined& examined) {
   const h::Solution& s = examined.view.solution;
   Selection out;

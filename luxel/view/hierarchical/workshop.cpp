@@ -114,7 +114,7 @@ class WorkshopThread : public Workshop {
   }
 
  private:
-  // Of both threads, under the mutex.
+  // What both threads use, under the mutex.
 
   bool is_wanted(Task task) const {
     switch (task) {

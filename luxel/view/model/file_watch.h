@@ -14,7 +14,7 @@ struct FileState {
   friend bool operator==(const FileState&, const FileState&) = default;
 };
 
-/// Of one scene, .lxr file or folder of a bake.
+/// The files of one scene, one .lxr file or one folder of a bake.
 struct FileWatch {
   std::vector<std::filesystem::path> files;
   std::vector<FileState> known;                ///< when it was opened

@@ -1,0 +1,49 @@
+// Changes of a scene that lies on a device.
+#include "luxel/base/check.h"
+#include "luxel/view/draw/device_structs.h"
+
+namespace luxel::view {
+namespace {
+
+DeviceMaterial& material_on(DeviceScene& scene, size_t material) {
+  LUXEL_CHECK((material + 1) * sizeof(DeviceMaterial) <= scene.materials.size);
+  return reinterpret_cast<DeviceMaterial*>(scene.materials.mapped)[material];
+}
+
+DeviceInstance& instance_on(DeviceScene& scene, uint32_t instance) {
+  LUXEL_CHECK(instance < scene.mesh_of.size());
+  return reinterpret_cast<DeviceInstance*>(scene.instances.mapped)[instance];
+}
+
+}  // namespace
+
+void set_emission(size_t material, Rgb emission, DeviceScene& scene) {
+  material_on(scene, material).emission = emission;
+}
+
+void set_base_color(size_t material, Rgb base_color, DeviceScene& scene) {
+  material_on(scene, material).base_color = base_color;
+}
+
+void set_transform(uint32_t instance, const Mat34& world_from_object, DeviceScene& scene) {
+  instance_on(scene, instance).rows = rows_of(world_from_object);
+  scene.is_mirrored[instance] = determinant(world_from_object) < 0;
+}
+
+Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> pages, uint32_t which,
+                 DeviceScene& scene) {
+  LUXEL_CHECK(pages.size() == scene.lights[which].size());
+  LUXEL_CHECK(scene.lights[0] != scene.lights[1]);
+  for (size_t page = 0; page < pages.size(); ++page) {
+    LUXEL_TRY_STATUS(gpu::put_pixels(commands, *scene.lights[which][page],
+                                     bytes_of(pages[page].data), "the lightmap"));
+    scales_of(scene)[2 * page + which] = pages[page].scale;
+  }
+  return {};
+}
+
+void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene) {
+  instance_on(scene, instance).emission_factor = factor;
+}
+
+}  // namespace luxel::view

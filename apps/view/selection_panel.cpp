@@ -143,7 +143,7 @@ void lay_out_source(const SourcePicture& source) {
 
 void lay_out_tools(SelectionPanel& panel) {
   for (size_t i = 0; i < panel.tools.size(); ++i) {
-    if (i % 2 == 1) ImGui::SameLine(ImGui::GetFontSize() * 14);
+    if (i % 2 == 1) ImGui::SameLine(ImGui::GetFontSize() * 15.5f);
     ImGui::RadioButton(panel.tools[i].c_str(), &panel.tool, int(i));
   }
   panel.asks_for_graph = ImGui::Button("graph across it (g)");

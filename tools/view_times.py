@@ -5,7 +5,8 @@
     tools/view_times.py --self-test
 
 Each row is a play in a window of 640 x 480 on a virtual display (xvfb-run): a bake of scenes/office.glb seen in each
-way, a scene that is baked meanwhile, and a lamp that is dragged. Without ../shared the living room is left out.
+way, solvers that are looked into when they have come to rest, a scene that is baked meanwhile, an object and a lamp
+that are dragged. Without ../shared the living room is left out.
 Columns: what, frames, the median and the 95th percentile of their times [ms], the share under 150 ms [%], and the
 largest change of brightness from one frame to the next [%], of plays in which the camera stands still.
 """
@@ -19,6 +20,8 @@ import tempfile
 
 SIZE = "640x480"
 KINDS = ("both", "light", "colour", "irradiance", "checker", "density", "charts", "seams", "overlaps")
+INSIDE = {"hierarchical": ("flat", "gouraud", "gouraud-disc", "interpolant"),
+          "hemicube": ("c", "cad", "cads", "cads-pixel", "normals", "radiosity-vertex", "radiosity")}
 ROOM = pathlib.Path(__file__).parents[2] / "shared/scenes/living_room/living_room.glb"
 
 
@@ -55,6 +58,15 @@ def dragging(seconds, frames_per_s):
     return {"frames_per_s": frames_per_s, "end": seconds, "events": events}
 
 
+def dragging_block(seconds, frames_per_s):
+    """The tall block of the Cornell box, to and fro."""
+    events = [{"at": 0, "wait": "bake"}]
+    for frame in range(1, int(seconds * frames_per_s)):
+        aside = abs(frame % 40 - 20) / 20
+        events.append({"at": frame / frames_per_s, "instance": "tall block", "to": [0.25 + 0.12 * aside, 0.165, 0.35]})
+    return {"frames_per_s": frames_per_s, "end": seconds, "events": events}
+
+
 def row_of(what, frames, stands):
     """`frames`: rows of --frame-times as dictionaries."""
     times = sorted(float(frame["milliseconds"]) for frame in frames)
@@ -76,18 +88,25 @@ def measure(bin, folder):
         run("xvfb-run", "-a", "-s", "-screen 0 1280x800x24", bin / "luxel-view", subject, *options, "--size", SIZE,
             "--play", folder / "play.json", "--frame-times", folder / "frames.csv")
         with open(folder / "frames.csv", newline="", encoding="utf-8") as file:
-            return row_of(what, list(csv.DictReader(file)), stands)
+            frames = list(csv.DictReader(file))
+        # Those in which a play stands still come first.
+        return row_of(what, frames[-int(play["end"] * play["frames_per_s"]):], stands)
 
     root = pathlib.Path(__file__).parents[1]
     office, box = root / "scenes/office.glb", root / "scenes/cornell-box.glb"
     run(bin / "luxel", "bake", office, "-o", folder / "office", "--resolution", "256", "--samples", "64")
     for kind in KINDS:
         yield played(f"office.glb baked: {kind}", turning(4, 20, [{"show": kind}]), folder / "office")
+    for solver, kinds in INSIDE.items():
+        for kind in kinds:
+            first = [{"show": kind}, {"wait": "bake"}]
+            yield played(f"office.glb inside {solver}: {kind}", turning(4, 20, first), office, "--inside", solver)
     rooms = [(office, [])] + ([(ROOM, ["--sky", "135,45"])] if ROOM.exists() else [])
     for scene, sky in rooms:
         yield played(f"{scene.name} while it is baked: walking", walking(60, 10), scene, *sky)
         stand = {"frames_per_s": 10, "end": 20, "events": []}
         yield played(f"{scene.name} while it is baked: standing", stand, scene, *sky, stands=True)
+    yield played("cornell-box.glb: an object is dragged", dragging_block(10, 20), box)
     run(bin / "luxel", "relight", box, "-o", folder / "box.lxr")
     yield played("cornell-box.lxr: a lamp is dragged", dragging(10, 20), folder / "box.lxr")
 
@@ -97,7 +116,7 @@ def self_test():
               for m, b, l in ((100, "0.9", "0"), (50, "0.5", "1"), (200, "0.51", "1"), (60, "0.51", "1"))]
     assert row_of("x", frames, True) == ["x", 4, "100", "200", "75.0", "2.00"], row_of("x", frames, True)
     assert row_of("x", frames, False)[5] == "-"
-    for play in (turning(4, 20), walking(60, 10), dragging(10, 20)):
+    for play in (turning(4, 20), walking(60, 10), dragging(10, 20), dragging_block(10, 20)):
         times = [event["at"] for event in play["events"]]
         assert times == sorted(times) and times[-1] <= play["end"]
 

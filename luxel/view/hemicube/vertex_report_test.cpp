@@ -8,6 +8,7 @@
 
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/shapes.h"
+#include "luxel/view/draw/surface_corners.h"
 #include "luxel/view/hemicube/faces_picture.h"
 #include "luxel/view/hemicube/hemicube_test_scene.h"
 

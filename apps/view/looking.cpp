@@ -112,6 +112,14 @@ Status prepare_look(gpu::Commands& commands, const gpu::Pipeline& shader, bool n
   return out ? parts : out;
 }
 
+view::Canvas canvas_of(const view::Shaders& shaders, const view::Painter& painter,
+                       const view::DeviceScene& scene, const Looking& looking,
+                       const view::Additions* additions) {
+  return {shaders,   painter,
+          scene,     looking.overlay ? &*looking.overlay : nullptr,
+          additions, looking.probes ? &*looking.probes : nullptr};
+}
+
 void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const Looking& looking,
                 const std::optional<scene::SurfacePoint>& pointed, LookPanel& panel) {
   static constexpr std::array<uint32_t, 0> kNone{};

@@ -33,6 +33,11 @@ struct Looking {
 Status prepare_look(gpu::Commands& commands, const gpu::Pipeline& shader, bool needs_layers,
                     view::Frame& frame, view::ShownScene& shown, Looking& looking);
 
+/// What a picture of a scene that is looked into is drawn with and of. `additions` may be null.
+view::Canvas canvas_of(const view::Shaders& shaders, const view::Painter& painter,
+                       const view::DeviceScene& scene, const Looking& looking,
+                       const view::Additions* additions = nullptr);
+
 /// What the panel says of a frame. `pointed`: the surface under the pointer.
 void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const Looking& looking,
                 const std::optional<scene::SurfacePoint>& pointed, LookPanel& panel);

@@ -70,14 +70,10 @@ struct Easel {
   const view::Additions* additions = nullptr;  ///< of the subject
 
   view::Canvas canvas(const view::DeviceScene& scene) const {
-    return {shaders,   painter,
-            scene,     looking.overlay ? &*looking.overlay : nullptr,
-            additions, looking.probes ? &*looking.probes : nullptr};
+    return canvas_of(shaders, painter, scene, looking, additions);
   }
   view::Canvas canvas_beside() const {
-    return {shaders,        pair->second,
-            beside->device, looking_beside.overlay ? &*looking_beside.overlay : nullptr,
-            nullptr,        looking_beside.probes ? &*looking_beside.probes : nullptr};
+    return canvas_of(shaders, pair->second, beside->device, looking_beside);
   }
 };
 

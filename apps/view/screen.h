@@ -31,14 +31,10 @@ struct Screen {
   float flip = -1;                 ///< of what was drawn last; < 0: not known
 
   view::Canvas canvas(const view::DeviceScene& scene) const {
-    return {shaders,   painter,
-            scene,     looking.overlay ? &*looking.overlay : nullptr,
-            additions, looking.probes ? &*looking.probes : nullptr};
+    return canvas_of(shaders, painter, scene, looking, additions);
   }
   view::Canvas canvas_beside() const {
-    return {shaders,        pair->second,
-            beside->device, looking_beside.overlay ? &*looking_beside.overlay : nullptr,
-            nullptr,        looking_beside.probes ? &*looking_beside.probes : nullptr};
+    return canvas_of(shaders, pair->second, beside->device, looking_beside);
   }
   bool has_pair(const view::Frame& frame) const { return pair && frame.beside; }
 };

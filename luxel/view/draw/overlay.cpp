@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "luxel/view/draw/among_surfaces.h"
 #include "luxel/view/shaders/overlay.frag.h"
 #include "luxel/view/shaders/overlay.vert.h"
 
@@ -82,13 +83,10 @@ Result<std::vector<gpu::Binding>> put_pages(gpu::Commands& commands,
 
 Result<gpu::Pipeline> make_overlay_shader(const gpu::Device& device, VkFormat color,
                                           VkSampleCountFlagBits samples) {
-  gpu::DrawParams params;
+  gpu::DrawParams params = among_surfaces(color, samples);
   params.vertex = overlay_vert, params.fragment = overlay_frag;
   params.interface = {sizeof(OverlayPush),
                       std::vector<VkDescriptorType>(kOverlayLookUps, kOverlayLookUp)};
-  params.colors = {color};
-  params.depth = VK_FORMAT_D32_SFLOAT;
-  params.samples = samples;
   return gpu::make_draw_pipeline(device, params);
 }
 

@@ -5,6 +5,7 @@
 
 #include "luxel/image/half.h"
 #include "luxel/trace/camera_rays.h"
+#include "luxel/view/draw/among_surfaces.h"
 #include "luxel/view/shaders/behind.frag.h"
 #include "luxel/view/shaders/behind.vert.h"
 #include "luxel/view/shaders/beside.frag.h"
@@ -76,12 +77,9 @@ std::array<float, 16> clip_from_world(const trace::CameraRays& c, const Box3& bo
 }
 
 gpu::DrawParams surface_params(VkCullModeFlags cull) {
-  gpu::DrawParams params;
+  gpu::DrawParams params = among_surfaces(kExposed, kSamples);
   params.vertex = surface_vert, params.fragment = surface_frag;
   params.interface = {sizeof(SurfacePush), std::vector<VkDescriptorType>(kLookUps, kLookUp)};
-  params.colors = {kExposed};
-  params.depth = VK_FORMAT_D32_SFLOAT;
-  params.samples = kSamples;
   params.cull = cull;
   return params;
 }

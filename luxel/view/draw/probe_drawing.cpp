@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "luxel/view/draw/among_surfaces.h"
 #include "luxel/view/shaders/probe.frag.h"
 #include "luxel/view/shaders/probe.vert.h"
 
@@ -32,12 +33,9 @@ static_assert(sizeof(ProbePush) == 104);
 
 Result<gpu::Pipeline> make_probe_shader(const gpu::Device& device, VkFormat color,
                                         VkSampleCountFlagBits samples) {
-  gpu::DrawParams params;
+  gpu::DrawParams params = among_surfaces(color, samples);
   params.vertex = probe_vert, params.fragment = probe_frag;
   params.interface.push_bytes = sizeof(ProbePush);
-  params.colors = {color};
-  params.depth = VK_FORMAT_D32_SFLOAT;
-  params.samples = samples;
   return gpu::make_draw_pipeline(device, params);
 }
 

@@ -1,6 +1,7 @@
 #include "luxel/view/draw/quadratic.h"
 
 #include "luxel/base/check.h"
+#include "luxel/view/draw/among_surfaces.h"
 #include "luxel/view/shaders/quadratic.frag.h"
 #include "luxel/view/shaders/quadratic.vert.h"
 
@@ -48,12 +49,9 @@ Result<DeviceQuadratics> put_quadratics(const gpu::Device& device,
 
 Result<gpu::Pipeline> make_quadratic_shader(const gpu::Device& device, VkFormat color,
                                             VkSampleCountFlagBits samples) {
-  gpu::DrawParams params;
+  gpu::DrawParams params = among_surfaces(color, samples);
   params.vertex = quadratic_vert, params.fragment = quadratic_frag;
   params.interface.push_bytes = sizeof(QuadraticPush);
-  params.colors = {color};
-  params.depth = VK_FORMAT_D32_SFLOAT;
-  params.samples = samples;
   return gpu::make_draw_pipeline(device, params);
 }
 

@@ -1,5 +1,6 @@
 #include "luxel/view/draw/shapes.h"
 
+#include "luxel/view/draw/among_surfaces.h"
 #include "luxel/view/shaders/shape.frag.h"
 #include "luxel/view/shaders/shape.vert.h"
 
@@ -22,12 +23,9 @@ struct ShapePush {
 static_assert(sizeof(ShapePush) == 104 && sizeof(ShapeCorner) == 28);
 
 gpu::DrawParams shape_params(VkFormat color, VkSampleCountFlagBits samples, bool is_hidden) {
-  gpu::DrawParams params;
+  gpu::DrawParams params = among_surfaces(color, samples);
   params.vertex = shape_vert, params.fragment = shape_frag;
   params.interface.push_bytes = sizeof(ShapePush);
-  params.colors = {color};
-  params.depth = VK_FORMAT_D32_SFLOAT;
-  params.samples = samples;
   params.writes_depth = false;
   params.depth_compare = is_hidden ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_ALWAYS;
   params.blends = true;

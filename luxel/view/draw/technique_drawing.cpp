@@ -4,6 +4,7 @@
 
 #include "luxel/base/check.h"
 #include "luxel/display/local_light.h"
+#include "luxel/view/draw/among_surfaces.h"
 #include "luxel/view/shaders/technique.frag.h"
 #include "luxel/view/shaders/technique.vert.h"
 
@@ -65,14 +66,11 @@ Result<DeviceCorners> put_corners(const gpu::Device& device, const SurfaceCorner
 
 gpu::DrawParams technique_params(VkFormat color, VkSampleCountFlagBits samples,
                                  VkCullModeFlags cull) {
-  gpu::DrawParams params;
+  gpu::DrawParams params = among_surfaces(color, samples);
   params.vertex = technique_vert, params.fragment = technique_frag;
   params.interface = {
       sizeof(TechniquePush),
       std::vector<VkDescriptorType>(kLookUps, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER)};
-  params.colors = {color};
-  params.depth = VK_FORMAT_D32_SFLOAT;
-  params.samples = samples;
   params.cull = cull;
   return params;
 }

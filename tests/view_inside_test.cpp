@@ -4,24 +4,13 @@
 #include <numeric>
 
 #include "luxel/image/flip.h"
-#include "tests/command.h"
 #include "tests/pictures.h"
+#include "tests/view_command.h"
 
 namespace luxel::testing_support {
 namespace {
 
 using ::testing::HasSubstr;
-
-CommandResult view_inside(const std::string& arguments, const std::string& before = "") {
-  return shell(before + " " LUXEL_VIEW_BINARY " " + arguments);
-}
-
-/// Whether this machine has a device that luxel can use.
-bool has_device_for_inside(const ScratchFolder& s) {
-  const CommandResult r = view_inside((s.path / "absent").string() + " --offscreen --screenshot " +
-                                      (s.path / "x.png").string());
-  return r.err.find("device") == std::string::npos && r.err.find("Vulkan") == std::string::npos;
-}
 
 const std::string kInsideBox = scene_file("cornell-box.glb");
 /// Coarse, since meshes of finer ones take seconds more.
@@ -33,8 +22,8 @@ std::filesystem::path seen_inside(const ScratchFolder& s, const std::string& nam
   const auto play = s.write(name + ".json", "{\"end\": 0, \"events\": [" + events + "]}");
   const auto picture = s.path / (name + ".png");
   const CommandResult r =
-      view_inside(kInsideBox + " --inside hierarchical" + kCoarse + "--offscreen --size " + size +
-                  " --play " + play.string() + " --screenshot " + picture.string());
+      view(kInsideBox + " --inside hierarchical" + kCoarse + "--offscreen --size " + size +
+           " --play " + play.string() + " --screenshot " + picture.string());
   EXPECT_EQ(r.code, 0) << r.err;
   return picture;
 }
@@ -68,7 +57,7 @@ class InsideKinds : public ::testing::TestWithParam<KindCase> {};
 // as interpolant has one sample for each pixel.
 TEST_P(InsideKinds, AreWhatRenderDraws) {
   const ScratchFolder s;
-  if (!has_device_for_inside(s)) GTEST_SKIP() << "no graphics device";
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
   const KindCase& c = GetParam();
   const auto seen = seen_inside(s, "seen", c.size,
                                 c.steps + std::string(R"({"at": 0, "set": {"exposure": 2}}, )") +
@@ -90,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Hierarchical, InsideKinds,
 // Lines that the processor draws lie where the device draws them.
 TEST(ViewInside, OverlaysAreWhatRenderDraws) {
   const ScratchFolder s;
-  if (!has_device_for_inside(s)) GTEST_SKIP() << "no graphics device";
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
   const std::string size = "240x180";
   const std::string steps =
       std::string(kAllLinks) +
@@ -115,14 +104,14 @@ TEST(ViewInside, OverlaysAreWhatRenderDraws) {
 
 TEST(ViewInside, AWindowShowsWhatIsDrawnWithoutOne) {
   const ScratchFolder s;
-  if (!has_device_for_inside(s)) GTEST_SKIP() << "no graphics device";
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
   if (shell("command -v xvfb-run").code != 0) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
   const std::string events =
       R"({"at": 0, "do": "iterate"}, {"at": 0, "show": "rayshade"},
          {"at": 0, "overlay": {"links": true}}, {"at": 0, "key": "+"}, {"at": 0, "wait": "bake"})";
   const auto without = seen_inside(s, "without", "48x36", events);
   const std::string state = (s.path / "state").string();
-  const CommandResult window = view_inside(
+  const CommandResult window = view(
       kInsideBox + " --inside hierarchical" + kCoarse + "--size 48x36 --play " +
           (s.path / "without.json").string() + " --screenshot " + (s.path / "window.png").string(),
       "XDG_STATE_HOME=" + state +
@@ -135,7 +124,7 @@ TEST(ViewInside, AWindowShowsWhatIsDrawnWithoutOne) {
 // Whatever a tool has found is drawn, and leaves nothing behind.
 TEST(ViewInside, ToolsAreDrawnUntilNothingIsSelected) {
   const ScratchFolder s;
-  if (!has_device_for_inside(s)) GTEST_SKIP() << "no graphics device";
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
   const std::string steps = std::string(kAllLinks) + R"({"at": 0, "wait": "bake"},
       {"at": 0, "show": "interpolant"}, {"at": 0, "wait": "bake"}, )";
   const auto none = seen_inside(s, "none", "120x90", steps + R"({"at": 0, "tool": "element"})");
@@ -168,7 +157,7 @@ TEST(ViewInside, SaysWhatIsWrong) {
   const ScratchFolder s;
   const std::string shot = " --offscreen --screenshot " + (s.path / "x.png").string();
   const auto error = [&](const std::string& arguments) {
-    const CommandResult r = view_inside(arguments + shot);
+    const CommandResult r = view(arguments + shot);
     EXPECT_EQ(r.code, 1);
     return r.err;
   };
@@ -182,7 +171,7 @@ TEST(ViewInside, SaysWhatIsWrong) {
   EXPECT_THAT(error(kInsideBox + " --inside hierarchical --bounces 2"), HasSubstr("--bounces"));
   EXPECT_THAT(error(kInsideBox + " --inside hierarchical --samples 2"), HasSubstr("--samples"));
   EXPECT_THAT(error(kInsideBox + " --inside hierarchical -o x"), HasSubstr("--output"));
-  if (!has_device_for_inside(s)) GTEST_SKIP() << "no graphics device";
+  if (!has_device(s)) GTEST_SKIP() << "no graphics device";
   const auto play = [&](const std::string& event) {
     return " --play " + s.write("wrong.json", "{\"end\": 0, \"events\": [" + event + "]}").string();
   };

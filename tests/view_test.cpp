@@ -8,24 +8,13 @@
 #include "luxel/image/color.h"
 #include "luxel/image/false_color.h"
 #include "luxel/image/flip.h"
-#include "tests/command.h"
 #include "tests/pictures.h"
+#include "tests/view_command.h"
 
 namespace luxel::testing_support {
 namespace {
 
 using ::testing::HasSubstr;
-
-CommandResult view(const std::string& arguments, const std::string& before = "") {
-  return shell(before + " " LUXEL_VIEW_BINARY " " + arguments);
-}
-
-/// Whether this machine has a device that luxel can use; says why not.
-bool has_device(const ScratchFolder& s) {
-  const CommandResult r = view((s.path / "absent").string() + " --offscreen --screenshot " +
-                               (s.path / "x.png").string());
-  return r.err.find("device") == std::string::npos && r.err.find("Vulkan") == std::string::npos;
-}
 
 class ViewOfABake : public ::testing::TestWithParam<const char*> {};
 

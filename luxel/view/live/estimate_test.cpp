@@ -88,7 +88,7 @@ TEST(Estimate, HalvesAllLightOfALampThatIsHalved) {
   ASSERT_TRUE(estimate);
   std::vector<Rgb> wanted = known->irradiance;
   for (Rgb& e : wanted) e = e * 0.5f;
-  EXPECT_LT(mean_difference((*estimate)->irradiance, wanted), 0.005);
+  EXPECT_LT(mean_difference((*estimate)->irradiance, wanted), 0.01) << "with the old light: 1";
 }
 
 // A bake of the edited scene knows.

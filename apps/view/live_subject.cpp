@@ -2,6 +2,7 @@
 #include "apps/view/bake_lines.h"
 #include "apps/view/edit_session.h"
 #include "apps/view/subject.h"
+#include "luxel/view/shown/drawn_lamps.h"
 
 namespace luxel::view_window {
 namespace {
@@ -23,14 +24,14 @@ class LiveSubject : public Subject {
   Result<Followed> follow(gpu::Commands& commands, std::string& message) override {
     view::LiveNews news = live_->take();
     Followed out;
-    out.has_news = news.read || news.light || news.said;
+    out.has_news = news.read || news.light || news.said || !news.without_lamps.empty();
     out.has_scene = bool(news.read);
     if (out.has_news) {
       LUXEL_TRY(out.is_another, view::take_news(std::move(news), commands, shown_, message));
     }
     if (!edit_ && shown_.read) edit_ = begin_edits(shown_.read, settings_);
     if (!edit_) return out;
-    if (out.is_another) has_another(*edit_);
+    if (out.is_another) has_another(*edit_), lamps_ = {};
     if (const std::string said = news_of(*edit_); !said.empty())
       message = said, out.has_news = true;
     return out;
@@ -71,9 +72,15 @@ class LiveSubject : public Subject {
     follow_edits();
   }
 
-  Status prepare(gpu::Commands&, const view::Walk& walk, view::Frame& frame) override {
-    if (edit_) show_edits(walk, shown_, frame, *edit_);
-    return {};
+  /// Light straight from lamps follows in the next frame.
+  Status prepare(gpu::Commands& commands, const view::Walk& walk, view::Frame& frame) override {
+    if (!edit_) return {};
+    const view::EditDesk& desk = edit_->tools.desk;
+    if (std::exchange(shown_edits_, desk.changes) != desk.changes)
+      LUXEL_TRY_STATUS(view::leave_out_lamps(commands, shown_));
+    show_edits(walk, shown_, frame, *edit_);
+    const trace::CameraRays eye(walk.shown.camera, walk.width, walk.height);
+    return view::draw_lamps(commands, desk.now, eye, shown_, lamps_);
   }
 
   Result<std::string> end() override {
@@ -99,6 +106,8 @@ class LiveSubject : public Subject {
   pipeline::BakeSettings settings_;
   std::optional<EditSession> edit_;  ///< once something was read
   uint64_t followed_ = 0;            ///< the edits that the bake knows, EditDesk::changes
+  uint64_t shown_edits_ = 0;         ///< and those that were drawn
+  view::DrawnLamps lamps_;
 };
 
 }  // namespace

@@ -29,8 +29,10 @@ struct LightNow {
   Vec3 eye;
   uint32_t lamp_count = 0;
   VkDeviceAddress lamps = 0, maps = 0;  ///< direct_light.h
+  float lamp_share = 1;                 ///< of their light, that is drawn
+  uint32_t unused = 0;
 };
-static_assert(sizeof(LightNow) == 32);
+static_assert(sizeof(LightNow) == 40);
 
 /// A scene's surfaces and their light, ready to be drawn. Structs in its buffers are those of
 /// shaders/surface.glsl.
@@ -79,6 +81,9 @@ struct DeviceSceneParams {
   std::span<const std::vector<Vec2>> light_uv{};
   uint32_t shadow_side = 1;  ///< of the square picture of all shadow maps [pixels]
 };
+
+/// Of the picture of shadow maps where lamps are drawn: 64 MB.
+inline constexpr uint32_t kShadowSide = 4096;
 
 /// E of all pages of the lightmap, and the page of each material.
 struct PagesOfLight {

@@ -9,6 +9,7 @@
 #include "luxel/pipeline/bake/finish_bake.h"
 #include "luxel/post/dilate.h"
 #include "luxel/post/refill.h"
+#include "luxel/view/live/lamp_light.h"
 
 namespace luxel::view {
 namespace {
@@ -94,7 +95,9 @@ void BakeRun::hand_draft() {
       {draft_->scene, *draft_->tracer}, {&draft_->atlas, &draft_->map, draft_->irradiance});
   exposure_ = light.exposure;
   light.is_sudden = kept_exposure_.has_value();
-  light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
+  light.is_without_lamps = !draft_->without_lamps.empty();
+  light.pages = pages_of(draft_->atlas, draft_->map,
+                         light.is_without_lamps ? draft_->without_lamps : draft_->irradiance);
   if (!before_ || !is_before_shown_) news.lit = lit_scene(draft_->scene, draft_->atlas);
   if (!before_) news.bounced = bounces_of(*draft_);
   if (kept_exposure_) news.read = read_;
@@ -228,6 +231,18 @@ void BakeRun::end(const pipeline::Bake& baked) {
   // What was refilled is not the light of the place.
   for (size_t i = 0; light_ && i < baked.light.hidden.size(); ++i)
     if (baked.light.hidden[i]) light_->irradiance[i] = light_->direct[i] = {};
+  watcher_.hand(std::move(news));
+}
+
+/// For the edits that follow.
+void BakeRun::tell_lamps_apart(Progress& progress) {
+  if (!light_ ||
+      !view::tell_lamps_apart({settings_.direct_samples, settings_.supersample, settings_.seed},
+                              *light_, progress))
+    return;
+  LiveNews news;
+  if (const std::vector<Rgb> rest = light_without_lamps(*light_); !rest.empty())
+    news.without_lamps = pages_of(light_->atlas, light_->map, rest);
   watcher_.hand(std::move(news));
 }
 

@@ -40,6 +40,9 @@ class BakeRun {
   pipeline::BakeObserver observer();
   /// Hands over the light of the bake that has come to its end.
   void end(const pipeline::Bake& baked);
+  /// Afterwards: hands over that light but for what comes straight from lamps. Takes as long as the
+  /// bake's direct light.
+  void tell_lamps_apart(Progress& progress);
 
   /// What the newest light is shown at; nothing: there was none.
   std::optional<float> exposure() const { return exposure_; }

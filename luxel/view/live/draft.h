@@ -17,8 +17,10 @@ struct Draft {
   std::optional<trace::RayTracer> tracer;
   atlas::Atlas atlas;
   atlas::TexelMap map;
-  std::vector<Rgb> irradiance;            ///< E per texel of the map [W/m^2], after all bounces
-  std::vector<Rgb> direct;                ///< the part of it that comes straight from lights
+  std::vector<Rgb> irradiance;  ///< E per texel of the map [W/m^2], after all bounces
+  std::vector<Rgb> direct;      ///< the part of it that comes straight from lights
+  /// E but for what comes straight from lamps; empty: that is not told apart.
+  std::vector<Rgb> without_lamps;
   std::vector<std::vector<Rgb>> bounced;  ///< E after 0, 1, ..., kMostBounces reflections
 };
 

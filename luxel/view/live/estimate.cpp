@@ -5,6 +5,7 @@
 
 #include "luxel/base/parallel.h"
 #include "luxel/light/direct_light.h"
+#include "luxel/view/live/lamp_light.h"
 #include "luxel/view/live/spread_texels.h"
 
 namespace luxel::view {
@@ -134,7 +135,7 @@ struct Change {
   }
 };
 struct Around {
-  Change direct, reflected;
+  Change direct, area, reflected;
 };
 
 Around around_texel(const SpreadTexels& spread, const Estimates& e, size_t texel) {
@@ -146,6 +147,7 @@ Around around_texel(const SpreadTexels& spread, const Estimates& e, size_t texel
     const Rgb was = e.direct_before[cell], is = e.direct_after[cell];
     const bool hidden_before = e.hidden_before[cell], hidden_after = e.hidden_after[cell];
     out.direct.add(weight, was, is, hidden_before, hidden_after);
+    out.area.add(weight, e.area_before[cell], e.area_after[cell], hidden_before, hidden_after);
     out.reflected.add(weight, e.reflected_before[cell], e.reflected_after[cell], hidden_before,
                       hidden_after);
   }
@@ -176,15 +178,25 @@ Status sharpen(const KnownLight& known, const SceneState& state, std::span<const
   if (chosen.empty()) return {};
   const transport::Elements elements =
       transport::elements_from_texels(state.scene, known.atlas, map_of_chosen(known.map, chosen));
-  Progress own;
-  LUXEL_TRY(const light::DirectLight direct,
-            light::direct_light(
-                state.scene, elements, state.lights, state.tracer,
-                {.samples = params.sharp_samples, .seed = params.seed, .same_points = true}, own));
+  const auto direct_of = [&](const light::Lights& lights) {
+    Progress own;
+    return light::direct_light(
+        state.scene, elements, lights, state.tracer,
+        {.samples = params.sharp_samples, .seed = params.seed, .same_points = true}, own);
+  };
+  LUXEL_TRY(const light::DirectLight direct, direct_of(state.lights));
+  light::DirectLight area;  // of all but lamps
+  const light::Lights others = without_lamps(state.lights);
+  if (!out.without_lamps.empty() && !is_dark(others)) {
+    LUXEL_TRY(area, direct_of(others));
+  }
   for (size_t k = 0; k < chosen.size(); ++k) {
     const uint32_t i = chosen[k];
-    out.irradiance[i] = max(out.irradiance[i] - out.direct[i], Rgb{}) + direct.irradiance[k];
+    const Rgb reflected = max(out.irradiance[i] - out.direct[i], Rgb{});
+    out.irradiance[i] = reflected + direct.irradiance[k];
     out.direct[i] = direct.irradiance[k];
+    if (!out.without_lamps.empty())
+      out.without_lamps[i] = reflected + (area.irradiance.empty() ? Rgb{} : area.irradiance[k]);
   }
   return {};
 }
@@ -209,20 +221,29 @@ bool is_freed(const KnownLight& known, std::span<const Box3> boxes, size_t i) {
   });
 }
 
+/// What is known of a texel's direct light without lamps.
+Rgb area_light(const KnownLight& known, size_t i) {
+  return max(known.direct[i] - known.of_lamps[i], Rgb{});
+}
+
 /// Light of all texels by that of their cells. Returns by which part of 255 an estimate takes the
 /// place of what is known of their direct light.
 std::vector<uint8_t> spread_light(const KnownLight& known, const SpreadTexels& spread,
                                   const Estimates& e, std::span<const Box3> boxes, Draft& out) {
   std::vector<uint8_t> estimated(known.map.texels.size());
   out.irradiance.resize(estimated.size()), out.direct.resize(estimated.size());
+  out.without_lamps.resize(known.of_lamps.size());
   parallel_for(estimated.size(), kEstimateGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Around at = around_texel(spread, e, i);
       const Rgb reflected = max(known.irradiance[i] - known.direct[i], Rgb{});
       const bool freed = is_freed(known, boxes, i);
       out.direct[i] = freed ? at.direct.of_freed() : at.direct.of(known.direct[i]);
-      out.irradiance[i] =
-          out.direct[i] + (freed ? at.reflected.of_freed() : at.reflected.of(reflected));
+      const Rgb now = freed ? at.reflected.of_freed() : at.reflected.of(reflected);
+      out.irradiance[i] = out.direct[i] + now;
+      if (!known.of_lamps.empty())
+        out.without_lamps[i] =
+            now + (freed ? at.area.of_freed() : at.area.of(area_light(known, i)));
       estimated[i] = freed ? 255 : uint8_t(std::ceil(255 * at.direct.estimated()));
     }
   });

@@ -6,6 +6,7 @@
 #include "luxel/light/direct_light.h"
 #include "luxel/solve/gather/rays/tile_hits.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
+#include "luxel/view/live/lamp_light.h"
 
 namespace luxel::view {
 namespace {
@@ -23,8 +24,8 @@ struct ReadTexel {
 
 /// What chosen texels see.
 struct SeenLight {
-  std::vector<Rgb> direct, sky;  ///< E [W/m^2]
-  std::vector<uint8_t> hidden;   ///< 1: within a solid
+  std::vector<Rgb> direct, area, sky;  ///< E [W/m^2]; `area` is what of `direct` is not of lamps
+  std::vector<uint8_t> hidden;         ///< 1: within a solid
   std::vector<ReadTexel> reads;
   std::vector<uint32_t> end;  ///< of each, one past its last of `reads`
 };
@@ -71,6 +72,16 @@ Status read_hits(const KnownLight& known, const SceneState& state, const gather:
   return {};
 }
 
+/// Direct light of all but lamps. Empty: that is all direct light.
+Result<std::vector<Rgb>> area_light(const SceneState& state, const transport::Elements& elements,
+                                    const EstimateParams& params) {
+  if (state.lights.punctual.empty()) return std::vector<Rgb>();
+  Progress own;
+  return light::direct_light(state.scene, elements, without_lamps(state.lights), state.tracer,
+                             {.samples = params.direct_samples, .seed = params.seed}, own)
+      .map([](light::DirectLight direct) { return std::move(direct.irradiance); });
+}
+
 Result<SeenLight> look_from(const KnownLight& known, const SceneState& state,
                             const atlas::TexelMap& chosen, const EstimateParams& params) {
   Progress own;  // its stages are not those of the bake
@@ -81,6 +92,7 @@ Result<SeenLight> look_from(const KnownLight& known, const SceneState& state,
             light::direct_light(state.scene, elements, state.lights, state.tracer,
                                 {.samples = params.direct_samples, .seed = params.seed}, own));
   out.direct = std::move(direct.irradiance);
+  LUXEL_TRY(out.area, area_light(state, elements, params));
   LUXEL_TRY(const gather::TracedHits hits,
             gather::trace_hits({state.scene, known.atlas, elements, state.lights, state.tracer},
                                params.samples, {.seed = params.seed, .layers = nullptr}, own));
@@ -165,8 +177,9 @@ void smooth(std::span<const CellsBeside> beside, Estimates& e) {
     e.reflected_after = smoothed(beside, e.hidden_after, e.reflected_after);
   }
   const std::vector<Rgb> direct = smoothed(beside, e.hidden_after, e.direct_after);
+  const std::vector<Rgb> area = smoothed(beside, e.hidden_after, e.area_after);
   for (size_t i = 0; i < direct.size(); ++i)
-    if (e.hidden_after[i]) e.direct_after[i] = direct[i];
+    if (e.hidden_after[i]) e.direct_after[i] = direct[i], e.area_after[i] = area[i];
 }
 
 }  // namespace
@@ -195,6 +208,8 @@ Result<Estimates> light_by_few_rays(const KnownLight& known, const SceneState& b
   LUXEL_TRY(SeenLight is, look_from(known, after, chosen, params));
   LUXEL_TRY_STATUS(stopped(watched));
   Estimates out;
+  out.area_before = was.area.empty() ? was.direct : std::move(was.area);
+  out.area_after = is.area.empty() ? is.direct : std::move(is.area);
   out.direct_before = std::move(was.direct), out.direct_after = std::move(is.direct);
   out.hidden_before = std::move(was.hidden), out.hidden_after = std::move(is.hidden);
   const std::vector<CellsBeside> beside = spread.beside();

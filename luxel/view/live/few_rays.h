@@ -30,6 +30,7 @@ struct SceneState {
 /// E per cell of spread texels [W/m^2].
 struct Estimates {
   std::vector<Rgb> direct_before, direct_after;
+  std::vector<Rgb> area_before, area_after;  ///< the part of `direct` that is not of lamps
   std::vector<Rgb> reflected_before, reflected_after;  ///< all but what is direct, soft sky too
   /// 1: within a solid. After the edit such cells have light of those beside them.
   std::vector<uint8_t> hidden_before, hidden_after;

@@ -23,6 +23,7 @@ struct KnownLight {
   float texel_m2 = 0;                      ///< what a texel covers of surfaces in the mean
   std::vector<Rgb> irradiance;             ///< E [W/m^2]
   std::vector<Rgb> direct;                 ///< the part of it that comes straight from lights
+  std::vector<Rgb> of_lamps;  ///< the part that comes straight from lamps; empty: not told apart
 };
 
 /// `as_read`: the scene before it was laid out. E is to be filled in. Errors: no memory.

@@ -171,6 +171,7 @@ class Worker : public LiveBake {
     baked_.emplace(std::move(*baked));
     run.end(*baked_);
     exposure_ = run.exposure();
+    if (settings_.light == pipeline::LightPart::all) run.tell_lamps_apart(*progress_);
     const std::scoped_lock lock(mutex_);
     if (!edit_) state_ = LiveState::baked;
   }

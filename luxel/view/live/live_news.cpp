@@ -9,6 +9,8 @@ void add(LiveNews newer, LiveNews& news) {
   if (newer.probes) news.probes = std::move(newer.probes);
   // What lies elsewhere, or is of another scene, tells nothing apart.
   if (newer.bounced || is_other) news.bounced = std::move(newer.bounced);
+  if (newer.light || is_other || !newer.without_lamps.empty())
+    news.without_lamps = std::move(newer.without_lamps);
   if (!newer.light) return;
   // Light of another layout comes with it; light before that is of no use.
   if (newer.lit) news.lit = std::move(newer.lit), news.before = std::move(newer.before);

@@ -38,8 +38,9 @@ struct LiveLight {
   std::vector<image::HalfImage> pages;  ///< E [W/m^2], of sizes that do not change
   float exposure = 1;                   ///< at which the first view is readable
   LiveNumbers numbers;
-  bool is_last = false;    ///< what `luxel bake` writes
-  bool is_sudden = false;  ///< it does not fade in: the scene was edited
+  bool is_last = false;           ///< what `luxel bake` writes
+  bool is_sudden = false;         ///< it does not fade in: the scene was edited
+  bool is_without_lamps = false;  ///< what comes straight from lamps is to be drawn besides
 };
 
 /// What has come since it was last asked for.
@@ -50,6 +51,9 @@ struct LiveNews {
   std::optional<LiveLight> light;  ///< the newest
   /// With `lit`, where something else was shown before: its light where `lit` has its own.
   std::optional<LiveLight> before;
+  /// The last light of a bake, but for what comes straight from lamps: is shown as soon as
+  /// something is edited, with lamps drawn besides. It comes after that light.
+  std::vector<image::HalfImage> without_lamps;
   /// The newest light reflection by reflection, as far as it is known; laid out as it is.
   std::shared_ptr<const BouncedLight> bounced;
   std::shared_ptr<const ProbeBalls> probes;  ///< of a bake with --probes, with the last light

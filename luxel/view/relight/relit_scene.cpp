@@ -5,9 +5,6 @@
 namespace luxel::view {
 namespace {
 
-/// 64 MB for the shadows of all lamps.
-constexpr uint32_t kShadowSide = 4096;
-
 /// What the eye sees of glowing materials and of the background.
 void show_glow(const Lamps& lamps, const OpenedLxr& opened, DeviceScene& scene) {
   const std::vector<scene::Material>& materials = opened.read->scene.materials;

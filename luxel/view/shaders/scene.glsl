@@ -60,5 +60,7 @@ layout(buffer_reference, scalar) readonly buffer LightNow {
   uint lamp_count;
   Lamps lamps;
   ShadowMaps maps;
+  float lamp_share;
+  uint unused;
   vec2 scale[];  // of the lightmap's pages
 };

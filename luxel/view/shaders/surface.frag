@@ -92,8 +92,8 @@ void main() {
   vec3 irradiance = irradiance_at(at_light), behind = vec3(0);
   if (lamps_drawn > 0) {
     vec3 place = light_now.eye + place_from_eye(facet), n = normal_on(facet);
-    irradiance += direct_light(place, n, facet);
-    if (lets_through) behind = direct_light(place, -n, -facet);
+    irradiance += light_now.lamp_share * direct_light(place, n, facet);
+    if (lets_through) behind = light_now.lamp_share * direct_light(place, -n, -facet);
   }
   vec3 radiosity = rho * irradiance;
   if (lets_through) {

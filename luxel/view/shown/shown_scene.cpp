@@ -16,6 +16,7 @@ Result<DeviceScene> with_light(gpu::Commands& commands, const LitScene& lit,
                                const LiveLight& light) {
   DeviceSceneParams params;
   params.light_changes = true, params.light_uv = lit.light_uv;
+  params.shadow_side = kShadowSide;
   return put_on_device(commands, lit.scene, PagesOfLight{light.pages, lit.page_of_material},
                        params);
 }
@@ -47,6 +48,7 @@ Status fade_in(LiveLight light, gpu::Commands& commands, ShownScene& shown) {
   shown.fade = faded_to_other(shown.fade, light.exposure);
   shown.device.second_light = second_light(shown.fade);
   shown.newest = std::move(light.pages);
+  shown.is_without_lamps[shown.fade.newest] = light.is_without_lamps;
   return put_newest(commands, shown);
 }
 
@@ -54,6 +56,8 @@ Status fade_in(LiveLight light, gpu::Commands& commands, ShownScene& shown) {
 void take_more(LiveNews& news, ShownScene& shown) {
   if (news.bounced || news.lit || news.read) shown.bounced = std::move(news.bounced);
   if (news.probes || news.read) shown.probes = std::move(news.probes);
+  if (news.light || news.lit || news.read || !news.without_lamps.empty())
+    shown.without_lamps = std::move(news.without_lamps);
 }
 
 }  // namespace
@@ -118,6 +122,7 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
     LUXEL_TRY(shown.device, with_light(commands, *news.lit, first));
     shown.lightmaps = pages_of(first, *news.lit);
     shown.newest = first.pages;
+    shown.is_without_lamps = {first.is_without_lamps, first.is_without_lamps};
     shown.lit = std::move(news.lit);
     shown.fade = {0, 1, first.exposure, first.exposure};
     shown.waiting.reset();
@@ -130,6 +135,7 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
     shown.fade = at_once(shown.fade, news.light->exposure);
     shown.device.second_light = second_light(shown.fade);
     shown.newest = std::move(news.light->pages);
+    shown.is_without_lamps[shown.fade.newest] = news.light->is_without_lamps;
     LUXEL_TRY_STATUS(put_newest(commands, shown));
     return is_another;
   }
@@ -151,6 +157,21 @@ Status pass(double seconds, gpu::Commands& commands, ShownScene& shown) {
 Status settle(gpu::Commands& commands, ShownScene& shown) {
   while (!is_settled(shown)) LUXEL_TRY_STATUS(pass(kFade_s, commands, shown));
   return {};
+}
+
+Status leave_out_lamps(gpu::Commands& commands, ShownScene& shown) {
+  if (shown.without_lamps.empty()) return {};
+  shown.waiting.reset();
+  shown.fade = at_once(shown.fade, shown.fade.exposure_newest);
+  shown.device.second_light = second_light(shown.fade);
+  shown.newest = std::exchange(shown.without_lamps, {});
+  shown.is_without_lamps[shown.fade.newest] = true;
+  return put_newest(commands, shown);
+}
+
+float lamp_share(const ShownScene& shown) {
+  const float second = shown.device.second_light;
+  return (shown.is_without_lamps[0] ? 1 - second : 0) + (shown.is_without_lamps[1] ? second : 0);
 }
 
 bool is_settled(const ShownScene& shown) { return !shown.waiting && is_free(shown.fade); }

@@ -1,6 +1,7 @@
 // A scene on a graphics device, with its light as far as it is known.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -20,6 +21,8 @@ struct ShownScene {
   std::shared_ptr<const ReadScene> read;  ///< null: there is nothing to see yet
   bool has_light = false;                 ///< false: colours can be shown, nothing else
   Fade fade;
+  std::array<bool, 2> is_without_lamps{};  ///< of DeviceScene::lights
+  PagesOfHalves without_lamps;             ///< LiveNews::without_lamps of the newest light
   std::optional<LiveLight> waiting;   ///< light that comes when what was there before has faded in
   LiveNumbers numbers;                ///< of the light that came last
   bool has_last = false;              ///< all light has come
@@ -67,6 +70,13 @@ Status pass(double seconds, gpu::Commands& commands, ShownScene& shown);
 
 /// pass(), until all light that has come is shown.
 Status settle(gpu::Commands& commands, ShownScene& shown);
+/// Before the light of an edit is known: shows the newest light without that of lamps, which are
+/// to be drawn; where it is not known, does nothing. Nothing may still draw the scene. Errors: no
+/// memory on the device.
+Status leave_out_lamps(gpu::Commands& commands, ShownScene& shown);
+/// How much of what comes straight from lamps is missing in what is shown.
+float lamp_share(const ShownScene& shown);
+
 /// Whether all light that has come is shown.
 bool is_settled(const ShownScene& shown);
 

@@ -1,0 +1,30 @@
+#include "luxel/view/shown/drawn_lamps.h"
+
+namespace luxel::view {
+
+std::vector<scene::PunctualLight> shining(const SceneNow& now) {
+  std::vector<scene::PunctualLight> out;
+  for (const EditedLamp& lamp : now.lamps)
+    if (lamp.is_on && !lamp.is_deleted) out.push_back(lamp.light);
+  return out;
+}
+
+Status draw_lamps(gpu::Commands& commands, const SceneNow& now, const trace::CameraRays& eye,
+                  ShownScene& shown, DrawnLamps& drawn) {
+  const gpu::Device& device = commands.device();
+  DeviceScene& scene = shown.device;
+  light_now(scene).lamp_share = lamp_share(shown);
+  light_now(scene).lamp_count = 0;
+  if (lamp_share(shown) <= 0) return {};
+  if (!drawn.direct) {
+    LUXEL_TRY(drawn.direct, make_direct_light(device, scene));
+  }
+  if (drawn.world_from_object != now.world_from_object) drawn.direct->drawn.clear();
+  drawn.world_from_object = now.world_from_object;
+  LUXEL_TRY_STATUS(set_lamps(device, shining(now), &eye, *drawn.direct, scene));
+  if (drawn.direct->plan.maps == drawn.direct->drawn) return {};
+  return commands.run(
+      [&](VkCommandBuffer buffer) { draw_shadow_maps(device, buffer, scene, *drawn.direct); });
+}
+
+}  // namespace luxel::view

@@ -82,6 +82,8 @@ void select_nothing(SelectionDesk& desk);
 /// selection goes over to it. True: something has changed.
 bool follow(const Examined& examined, SelectionDesk& desk);
 
+/// The box around the element, link, triangle or discontinuity; empty: nothing is selected.
+Box3 selected_box(const Examined& examined, const SelectionDesk& desk);
 /// What is drawn of it.
 SelectionShapes shapes_of(const Examined& examined, const SelectionDesk& desk);
 

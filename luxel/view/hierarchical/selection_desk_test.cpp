@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -74,6 +75,7 @@ TEST(SelectionDesk, AClickSelectsAndKeysStep) {
   EXPECT_EQ(desk.selected.level, 0u);
   handle_selection(KeyChanged{"esc", true}, walk, examined, desk);
   EXPECT_FALSE(desk.selected.has_element());
+  EXPECT_TRUE(selected_box(examined, desk).empty());
 }
 
 TEST(SelectionDesk, LinksComeByWhatTheyBring) {
@@ -86,12 +88,21 @@ TEST(SelectionDesk, LinksComeByWhatTheyBring) {
                    examined, desk);
   ASSERT_TRUE(desk.selected.has_element());
   EXPECT_NEAR(desk.selected.at->position.y, 0, 1e-9);
+  const Box3 of_element = selected_box(examined, desk);
+  EXPECT_TRUE(of_element.lower.x <= 1 && of_element.upper.x >= 1 && of_element.upper.y == 0);
   handle_selection(SelectionStepped{SelectionStep::next}, walk, examined, desk);
   ASSERT_TRUE(desk.selected.link);
+  EXPECT_LT(of_element.diagonal(), selected_box(examined, desk).diagonal()) << "both ends";
   const LinkFacts first = facts_of(examined.view, *desk.selected.link);
   EXPECT_THAT(first.source, HasSubstr("lamp"));
-  size_t lines = shapes_of(examined, desk).lines.size();
-  EXPECT_GT(lines, 9u) << "two outlines and the link";
+  const std::vector<display::Line> lines = shapes_of(examined, desk).lines;
+  EXPECT_GT(lines.size(), 9u) << "two outlines and the link";
+  const auto begin_at = [&](uint32_t id) {
+    const Vec3 middle = to_float(middle_of(examined.view.solution.tree, id));
+    return std::ranges::count(lines, middle, &display::Line::from);
+  };
+  EXPECT_EQ(begin_at(desk.selected.link->receiver), 3) << "the line, and its head";
+  EXPECT_EQ(begin_at(desk.selected.link_source), 0);
   handle_selection(SelectionStepped{SelectionStep::next}, walk, examined, desk);
   ASSERT_TRUE(desk.selected.link);
   EXPECT_LE(luminance(facts_of(examined.view, *desk.selected.link).irradiance),

@@ -80,7 +80,30 @@ void add_light_probe(const Examined& examined, const LightProbe& probe, Selectio
   out.lines.push_back({to_float(q), scale.at(q, shown), kShownColor});
 }
 
+void extend_over(const h::Tree& tree, uint32_t id, Box3& box) {
+  if (tree.is_cluster(id))
+    box.extend(to_float(tree.clusters[id].lower)), box.extend(to_float(tree.clusters[id].upper));
+  else
+    for (const DVec3& corner : tree.element(id).polygon()) box.extend(to_float(corner));
+}
+
 }  // namespace
+
+Box3 selected_box(const Examined& examined, const SelectionDesk& desk) {
+  const Selection& selected = desk.selected;
+  const h::Tree& tree = examined.view.solution.tree;
+  Box3 out;
+  if (selected.link)
+    extend_over(tree, selected.link->receiver, out), extend_over(tree, selected.link_source, out);
+  else if (selected.has_element())
+    extend_over(tree, selected.path[selected.level], out);
+  if (selected.triangle)
+    for (const DVec3& corner : triangle_facts(examined.view, *selected.triangle).corner)
+      out.extend(to_float(corner));
+  if (const auto& edge = selected.discontinuity)
+    out.extend(to_float(edge->line.a)), out.extend(to_float(edge->line.b));
+  return out;
+}
 
 SelectionShapes shapes_of(const Examined& examined, const SelectionDesk& desk) {
   SelectionShapes out;

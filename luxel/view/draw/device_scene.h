@@ -64,10 +64,10 @@ struct DeviceScene {
   Rgb surroundings_factor{1, 1, 1};  ///< of background and map
   float surroundings_scale = 0;      ///< 0: there is no map
   float rotation_rad = 0;
-  gpu::Binding surroundings;  ///< white where there is no map
+  gpu::Binding surroundings;      ///< white where there is no map
   bool has_soft_shadows = false;  ///< of some lamp: it has a disc
   gpu::Binding shadow_maps;       ///< of lamps that are drawn by direct_light.h
-  gpu::Binding shadow_depth;  ///< of the same picture
+  gpu::Binding shadow_depth;      ///< of the same picture
 };
 
 /// The triangles of a mesh in the order in which a DeviceScene has them: material by material.
@@ -112,5 +112,11 @@ void set_base_color(size_t material, Rgb base_color, DeviceScene& scene);
 /// Another emission of a material's surfaces [W/(sr m^2)], a factor of its texture. Nothing may
 /// still draw the scene.
 void set_emission(size_t material, Rgb emission, DeviceScene& scene);
+/// Another share of metal of a material's surfaces, a factor of its texture. Nothing may still draw
+/// the scene.
+void set_metallic(size_t material, float metallic, DeviceScene& scene);
+/// Other surroundings, whose map is as large as the one before. Nothing may still draw the scene.
+/// Errors: no memory.
+Status set_surroundings(gpu::Commands& commands, const scene::Environment& map, DeviceScene& scene);
 
 }  // namespace luxel::view

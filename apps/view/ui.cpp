@@ -7,11 +7,14 @@
 #include <imgui.h>
 
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 namespace luxel::view_window {
 namespace {
+
+constexpr float kLetters = 13;  ///< height of ImGui's own [points]
 
 /// One attachment that is drawn over and shown afterwards.
 VkRenderPass make_pass(const UiDevice& device) {
@@ -63,6 +66,10 @@ class ImGuiUi : public Ui {
     has_context_ = true;
     if (!ImGui_ImplGlfw_InitForVulkan(window, true)) return false;
     has_window_ = true;
+    return open_device();
+  }
+
+  bool open_device() {
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = device_.instance, info.PhysicalDevice = device_.physical;
     info.Device = device_.device;
@@ -104,6 +111,7 @@ class ImGuiUi : public Ui {
   bool has_keys() const override { return ImGui::GetIO().WantTextInput; }
 
   void lay_out(Panel& panel) override {
+    if (panel.scale != scale_) set_letters(panel.scale);
     if (panel.is_light != is_light_ || panel.scale != scale_) set_style(panel);
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
@@ -127,12 +135,24 @@ class ImGuiUi : public Ui {
   }
 
  private:
+  /// Letters are drawn for their size, not made larger. ImGui puts them on the device once: it
+  /// begins there anew.
+  void set_letters(float scale) {
+    vkDeviceWaitIdle(device_.device);
+    ImGui_ImplVulkan_Shutdown();
+    ImFontConfig letters;
+    letters.SizePixels = std::round(kLetters * scale);
+    ImGui::GetIO().Fonts->Clear();
+    ImGui::GetIO().Fonts->AddFontDefault(&letters);
+    ImGui::GetIO().Fonts->Build();
+    has_font_ = false;
+    open_device();
+  }
   /// Sizes are those of a monitor with one pixel per point, times its scale.
   void set_style(const Panel& panel) {
     ImGui::GetStyle() = ImGuiStyle();
     panel.is_light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
     ImGui::GetStyle().ScaleAllSizes(panel.scale);
-    ImGui::GetIO().FontGlobalScale = panel.scale;
     is_light_ = panel.is_light, scale_ = panel.scale;
   }
 

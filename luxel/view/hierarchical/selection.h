@@ -56,7 +56,8 @@ struct SelectionDesk {
   Selection selected;
   Probed probed;
   Inquiries asked;
-  std::string said;             ///< why nothing was found; a sentence
+  std::string said;  ///< why nothing was found; a sentence
+  std::array<bool, kGraphCurves.size()> graph_shows{true, true, true};
   float graph_height = 0.3f;    ///< of a graph's largest value in space, over the line's length
   uint64_t solution = 0;        ///< Examined::number that all this is about
   uint64_t changes = 0;         ///< counts up with whatever is to be drawn

@@ -147,6 +147,18 @@ TEST(SelectionDesk, ADragIsAGraph) {
   }
   EXPECT_NEAR(curve.rms, std::sqrt(squares), 1e-3 * std::sqrt(squares));
   EXPECT_FALSE(desk.probed.graph->surface);
+  // The line itself, and one less than points of each curve.
+  const auto lines = [&] { return shapes_of(examined, desk).lines.size(); };
+  const size_t of_curve = curve.at_m.size() - 1;
+  EXPECT_EQ(lines(), 1 + 3 * of_curve);
+  GraphChanged alone;
+  alone.shows = {true, false, false}, alone.height = 2.0f;
+  EXPECT_TRUE(handle_selection(alone, walk, examined, desk));
+  EXPECT_EQ(lines(), 1 + of_curve);
+  float highest = 0;
+  for (const display::Line& line : shapes_of(examined, desk).lines)
+    highest = std::max({highest, line.from.y, line.to.y});
+  EXPECT_NEAR(highest, 0.5 * 2 * 0.7, 0.02) << "half as high as what is shown";
 }
 
 TEST(SelectionDesk, ADiscontinuityAndTheGraphAcrossIt) {
@@ -242,8 +254,11 @@ TEST(Events, OfToolsAreRead) {
   ASSERT_EQ(play->events.size(), 6u);
   const auto& graph = std::get<ToolUsed>(play->events[2].event);
   EXPECT_EQ(std::get<Vec3>(*graph.to).z, 6);
+  EXPECT_TRUE(parse_play(
+      R"({"end": 0, "events": [{"at": 0, "graph": {"difference": false, "height": 0.5}}]})", "p"));
   for (const char* wrong :
-       {R"("tool": "hammer")", R"("use": "element")", R"("use": "graph", "to_pixel": [1, 2])",
+       {R"("graph": {})", R"("graph": {"height": 0})", R"("graph": {"curve": true})",
+        R"("tool": "hammer")", R"("use": "element")", R"("use": "graph", "to_pixel": [1, 2])",
         R"("selection": "sideways")", R"("use": "link", "pixel": [1, 2], "more": 3)",
         R"("tool": "link", "pixel": [1, 2])", R"("use": "element", "place": [1, 2, 1e39])"}) {
     const auto bad =

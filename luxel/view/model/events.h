@@ -166,13 +166,13 @@ struct MaterialChanged {
 /// A play stands still here: what comes after it is played when the bake has ended and its light is
 /// shown.
 struct WaitForBake {};
-using Event =
-    std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged, LampAdded,
-                 GlowChanged, ShowChanged, RangeChanged, ChannelChanged, LayerChanged,
-                 BesideChanged, SplitMoved, InstanceSelected, LampSelected, MaterialSelected,
-                 InstanceChanged, LampRemoved, MaterialChanged, OwnShown, OverlayChanged,
-                 SettingChanged, OwnAsked, ToolChanged, ToolUsed, SelectionStepped, PartChanged,
-                 ProbesChanged, OpenAsked, ScaleChanged, WindowClosed, DeviceLost, WaitForBake>;
+using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
+                           LampAdded, GlowChanged, ShowChanged, RangeChanged, ChannelChanged,
+                           LayerChanged, BesideChanged, SplitMoved, InstanceSelected, LampSelected,
+                           MaterialSelected, InstanceChanged, LampRemoved, MaterialChanged,
+                           OwnShown, OverlayChanged, SettingChanged, OwnAsked, ToolChanged,
+                           ToolUsed, SelectionStepped, GraphChanged, PartChanged, ProbesChanged,
+                           OpenAsked, ScaleChanged, WindowClosed, DeviceLost, WaitForBake>;
 
 /// Whether an event changes lamps or what glows; or something else of a scene.
 bool changes_lamps(const Event& event);
@@ -280,7 +280,7 @@ struct Play {
 ///       {"at": 2, "set": {"eps": 0.5}}, {"at": 2, "do": "iterate"},
 ///       {"at": 2, "tool": "link"}, {"at": 2, "use": "element", "pixel": [480, 360]},
 ///       {"at": 2, "use": "graph", "place": [0, 0, 0], "to_place": [1, 0, 0]},
-///       {"at": 2, "selection": "up"},
+///       {"at": 2, "selection": "up"}, {"at": 2, "graph": {"exact": false, "height": 0.5}},
 ///       {"at": 2, "wait": "bake"},
 ///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]},
 ///       {"at": 2, "select": "chair"}, {"at": 2, "instance": "chair", "angles_deg": [0, 90, 0]},

@@ -10,7 +10,7 @@ namespace luxel::view_window {
 
 struct LampSession {
   view::OpenedLxr opened;
-  view::DirectLight direct;
+  view::LampDrawing drawing;
   view::LampDesk desk;
   uint64_t lit = 0;  ///< view::LampDesk::changes that the picture shows
   int selected_glow = -1;
@@ -20,7 +20,7 @@ struct LampSession {
   uint64_t found_of = 0;                        ///< view::LampDesk::changes that it is about
 };
 
-LampSession begin_lamps(view::OpenedLxr opened, view::DirectLight direct);
+LampSession begin_lamps(view::OpenedLxr opened, view::LampDrawing drawing);
 
 /// What the panel is to show.
 LampPanel panel_of(const LampSession& session);

@@ -43,6 +43,7 @@ class LiveSubject : public Subject {
     return is_to_come || state == view::LiveState::baking ? Work::at_work : Work::at_rest;
   }
 
+  Box3 selected() const override { return edit_ ? view::selected_box(edit_->tools) : Box3(); }
   bool take(const view::Event& event, const view::Walk& walk) override {
     const bool is_taken = edit_ && view::handle_edits(event, walk, edit_->tools);
     follow_edits();

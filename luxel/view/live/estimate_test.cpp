@@ -5,6 +5,8 @@
 
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/scene/procedural.h"
+#include "luxel/solve/matrix/live_light.h"
+#include "luxel/view/live/lamp_light.h"
 #include "luxel/view/live/spread_texels.h"
 
 namespace luxel::view {
@@ -150,6 +152,54 @@ TEST(Estimate, IsNearToTheLightOfTheEditedScene) {
   }
   ASSERT_GT(of[2].size(), wanted.size() / 10);
   EXPECT_LT(mean_difference(of[0], of[2]), 0.5 * mean_difference(of[1], of[2]));
+}
+
+/// The Cornell box with a lamp that hangs free in it.
+scene::Scene box_with_lamp(Vec3 position) {
+  scene::Scene out = scene::cornell_box();
+  scene::PunctualLight lamp;
+  lamp.name = "lamp", lamp.position = position, lamp.intensity = {1, 1, 1};
+  out.lights = {lamp};
+  return out;
+}
+
+// Where there are only lamps, direct light is theirs, with the same samples.
+TEST(LampLight, IsAllDirectLightWhereThereIsNoOther) {
+  scene::Scene scene = box_with_lamp({0.1f, 0.45f, 0.3f});
+  for (scene::Material& m : scene.materials) m.emission = {};
+  const auto known = known_of(scene, box_settings());
+  Progress progress;
+  const pipeline::BakeSettings s = box_settings();
+  ASSERT_TRUE(tell_lamps_apart({s.direct_samples, s.supersample, s.seed}, *known, progress));
+  EXPECT_LT(mean_difference(known->of_lamps, known->direct), 1e-6);
+  const auto dark = known_of(scene::cornell_box(), box_settings());
+  ASSERT_TRUE(tell_lamps_apart({}, *dark, progress));
+  EXPECT_EQ(dark->of_lamps, std::vector<Rgb>(dark->irradiance.size()));
+}
+
+// What an estimate has besides is the light of lamps where they have been moved to.
+TEST(Estimate, LeavesOutTheLightOfLamps) {
+  const scene::Scene scene = box_with_lamp({0.1f, 0.45f, 0.3f}),
+                     moved = box_with_lamp({0.35f, 0.45f, 0.3f});
+  const auto known = known_of(scene, box_settings());
+  Progress progress;
+  const pipeline::BakeSettings s = box_settings();
+  ASSERT_TRUE(tell_lamps_apart({s.direct_samples, s.supersample, s.seed}, *known, progress));
+  const auto estimate = estimate_light(*known, moved, {}, progress);
+  ASSERT_TRUE(estimate);
+  const Draft& got = **estimate;
+  const std::vector<Rgb> all = wanted_at(got, moved, box_settings());
+  const float diagonal_m = scene::world_bounds(got.scene).diagonal();
+  std::vector<Rgb> wanted = all;
+  for (size_t i = 0; i < wanted.size(); ++i) {
+    const matrix::LitPoints at{
+        {&known->position[i], 1}, {&known->normal[i], 1}, {&known->normal[i], 1}};
+    wanted[i] =
+        max(wanted[i] - matrix::live_light_at(at, 0, moved.lights, *got.tracer, diagonal_m), Rgb{});
+  }
+  // Edges of shadows, which a bake averages within texels, are part of it.
+  EXPECT_LT(mean_difference(got.without_lamps, wanted), 0.08);
+  EXPECT_GT(mean_difference(got.irradiance, wanted), 0.3);
 }
 
 // Texels beside each other have nearly the same shares, weights of texels in the middle of what is

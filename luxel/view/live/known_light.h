@@ -24,6 +24,8 @@ struct KnownLight {
   std::vector<Rgb> irradiance;             ///< E [W/m^2]
   std::vector<Rgb> direct;                 ///< the part of it that comes straight from lights
   std::vector<Rgb> of_lamps;  ///< the part that comes straight from lamps; empty: not told apart
+  /// Per texel, 1: within a solid, with light of those around it; empty: black ones may be.
+  std::vector<uint8_t> hidden;
 };
 
 /// `as_read`: the scene before it was laid out. E is to be filled in. Errors: no memory.

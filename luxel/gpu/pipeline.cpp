@@ -26,6 +26,14 @@ VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits stage, const Owne
   return info;
 }
 
+/// Constants 0, 1, ... of a shader.
+std::vector<VkSpecializationMapEntry> entries_of(const std::vector<uint32_t>& constants) {
+  std::vector<VkSpecializationMapEntry> out;
+  for (uint32_t k = 0; k < constants.size(); ++k)
+    out.push_back({k, uint32_t(k * sizeof(uint32_t)), sizeof(uint32_t)});
+  return out;
+}
+
 /// All but the pipeline itself.
 Result<Pipeline> with_layout(const Device& device, const Interface& interface,
                              VkShaderStageFlags stages) {
@@ -86,6 +94,11 @@ Result<Pipeline> make_draw_pipeline(const Device& device, const DrawParams& para
     LUXEL_TRY(fragment, make_shader(device, params.fragment));
     stages.push_back(stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, fragment));
   }
+  const std::vector<VkSpecializationMapEntry> entries = entries_of(params.constants);
+  const VkSpecializationInfo constants{uint32_t(entries.size()), entries.data(),
+                                       params.constants.size() * sizeof(uint32_t),
+                                       params.constants.data()};
+  for (VkPipelineShaderStageCreateInfo& stage : stages) stage.pSpecializationInfo = &constants;
   const auto nothing_bound = structure<VkPipelineVertexInputStateCreateInfo>(
       VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
   auto assembly = structure<VkPipelineInputAssemblyStateCreateInfo>(

@@ -19,6 +19,7 @@ DeviceInstance& instance_on(DeviceScene& scene, uint32_t instance) {
 
 void set_emission(size_t material, Rgb emission, DeviceScene& scene) {
   material_on(scene, material).emission = emission;
+  if (max_component(emission) > 0) scene.glows_or_is_metal[material] = 1;
 }
 
 void set_base_color(size_t material, Rgb base_color, DeviceScene& scene) {

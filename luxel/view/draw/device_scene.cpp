@@ -237,6 +237,8 @@ Status put_materials(const gpu::Device& device, Pictures& pictures, const scene:
                             out.shadow_maps, out.shadow_depth});
     out.is_double_sided.push_back(m.double_sided);
     out.is_masked.push_back(m.alpha_mode == scene::AlphaMode::mask && m.alpha_cutoff > 0);
+    out.scatters_through.push_back(m.diffuse_transmission > 0);
+    out.glows_or_is_metal.push_back(m.metallic > 0 || max_component(m.emission) > 0);
   }
   LUXEL_TRY(out.materials, gpu::buffer_with(device, bytes_of(materials), "the scene's materials"));
   return {};

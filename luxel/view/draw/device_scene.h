@@ -44,6 +44,8 @@ struct DeviceScene {
   std::vector<uint8_t> is_mirrored;            ///< of each instance: its triangles are turned round
   std::vector<uint8_t> is_double_sided;        ///< of each material
   std::vector<uint8_t> is_masked;              ///< of each material: it has holes
+  std::vector<uint8_t> scatters_through;       ///< of each material: light to its other side
+  std::vector<uint8_t> glows_or_is_metal;      ///< of each material
 
   /// E per page of the lightmap, in two pictures: where light changes, the one fades into the
   /// other. Elsewhere they are one.
@@ -63,7 +65,8 @@ struct DeviceScene {
   float surroundings_scale = 0;      ///< 0: there is no map
   float rotation_rad = 0;
   gpu::Binding surroundings;  ///< white where there is no map
-  gpu::Binding shadow_maps;   ///< of lamps that are drawn by direct_light.h
+  bool has_soft_shadows = false;  ///< of some lamp: it has a disc
+  gpu::Binding shadow_maps;       ///< of lamps that are drawn by direct_light.h
   gpu::Binding shadow_depth;  ///< of the same picture
 };
 

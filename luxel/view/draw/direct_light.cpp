@@ -114,6 +114,7 @@ Result<DirectLight> make_direct_light(const gpu::Device& device, const DeviceSce
 Status set_lamps(const gpu::Device& device, std::span<const scene::PunctualLight> lamps,
                  const trace::CameraRays* eye, DirectLight& direct, DeviceScene& scene) {
   direct.plan = plan_shadows(lamps, scene.bounds, scene.shadow_maps.picture->params.width, eye);
+  scene.has_soft_shadows = std::any_of(lamps.begin(), lamps.end(), scene::has_disc);
   std::vector<DeviceLamp> on_device;
   for (size_t i = 0; i < lamps.size(); ++i) {
     on_device.push_back(device_lamp(lamps[i]));

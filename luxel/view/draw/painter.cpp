@@ -13,8 +13,6 @@
 #include "luxel/view/shaders/mark.vert.h"
 #include "luxel/view/shaders/screen.frag.h"
 #include "luxel/view/shaders/screen.vert.h"
-#include "luxel/view/shaders/surface.frag.h"
-#include "luxel/view/shaders/surface.vert.h"
 
 namespace luxel::view {
 namespace {
@@ -27,16 +25,6 @@ constexpr float kNear = 1e-5f;  // the near plane, over the scene's diagonal
 constexpr VkDescriptorType kLookUp = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 
 // The push constants of the shaders, in scalar layout.
-struct SurfacePush {
-  std::array<float, 16> clip_from_world;  ///< column by column
-  VkDeviceAddress vertices, materials, instances, light_now;
-  uint32_t instance = 0, material = 0;
-  float exposure = 1;
-  uint32_t show = 0;
-  float second_light = 0;
-};
-static_assert(sizeof(SurfacePush) == 120);
-
 struct BehindPush {
   Vec3 forward, right, up;
   Rgb background, map_scale;
@@ -76,16 +64,8 @@ std::array<float, 16> clip_from_world(const trace::CameraRays& c, const Box3& bo
   return out;
 }
 
-gpu::DrawParams surface_params(VkCullModeFlags cull) {
-  gpu::DrawParams params = among_surfaces(kExposed, kSamples);
-  params.vertex = surface_vert, params.fragment = surface_frag;
-  params.interface = {sizeof(SurfacePush), std::vector<VkDescriptorType>(kLookUps, kLookUp)};
-  params.cull = cull;
-  return params;
-}
-
 gpu::DrawParams behind_params() {
-  gpu::DrawParams params = surface_params(VK_CULL_MODE_NONE);
+  gpu::DrawParams params = among_surfaces(kExposed, kSamples);
   params.vertex = behind_vert, params.fragment = behind_frag;
   params.interface = {sizeof(BehindPush), {kLookUp}};
   params.writes_depth = false;
@@ -135,31 +115,6 @@ void draw_marks(const gpu::Device& device, VkCommandBuffer commands, const Canva
   }
 }
 
-void draw_surfaces(const gpu::Device& device, VkCommandBuffer commands, const Canvas& canvas,
-                   SurfacePush push) {
-  const Shaders& shaders = canvas.shaders;
-  const Painter& painter = canvas.painter;
-  const DeviceScene& scene = canvas.scene;
-  device.vk.vkCmdBindIndexBuffer(commands, scene.indices.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
-  push.vertices = scene.vertices.address;
-  push.materials = scene.materials.address;
-  push.instances = scene.instances.address;
-  push.light_now = scene.light_now.address;
-  push.second_light = scene.second_light;
-  for (push.instance = 0; push.instance < scene.mesh_of.size(); ++push.instance)
-    for (const DrawRange& range : scene.ranges[scene.mesh_of[push.instance]]) {
-      const bool is_mirrored = scene.is_mirrored[push.instance];
-      const gpu::Pipeline& pipeline = scene.is_double_sided[range.material]
-                                          ? shaders.surface_double_sided
-                                      : is_mirrored ? shaders.surface_mirrored
-                                                    : shaders.surface;
-      push.material = range.material;
-      gpu::bind(device, commands, pipeline, push);
-      gpu::bind_set(device, commands, pipeline, painter.materials.sets[range.material]);
-      device.vk.vkCmdDrawIndexed(commands, range.indices, 1, range.first_index, 0, 0);
-    }
-}
-
 /// Whether it shows colours that stand for something, not light.
 bool shows_colors(Show show) { return looks_into_bake(show) && show != Show::checker; }
 
@@ -184,11 +139,7 @@ BehindPush behind_of(const trace::CameraRays& camera, const DeviceScene& scene, 
 
 Result<Shaders> make_shaders(const gpu::Device& device) {
   Shaders out;
-  LUXEL_TRY(out.surface, gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_BACK_BIT)));
-  LUXEL_TRY(out.surface_mirrored,
-            gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_FRONT_BIT)));
-  LUXEL_TRY(out.surface_double_sided,
-            gpu::make_draw_pipeline(device, surface_params(VK_CULL_MODE_NONE)));
+  LUXEL_TRY(out.surfaces, SurfaceShaders::make(device, kExposed, kSamples));
   LUXEL_TRY(out.behind, gpu::make_draw_pipeline(device, behind_params()));
   LUXEL_TRY(out.screen, gpu::make_draw_pipeline(device, screen_params()));
   LUXEL_TRY(out.beside, gpu::make_draw_pipeline(device, beside_params()));
@@ -212,7 +163,7 @@ Result<Painter> make_painter(const gpu::Device& device, const Shaders& shaders,
             gpu::make_target(device, {width, height, kShown, VK_SAMPLE_COUNT_1_BIT, false},
                              "the picture"));
   LUXEL_TRY(out.sampler, gpu::make_sampler(device, {VK_FILTER_NEAREST}));
-  LUXEL_TRY(out.materials, gpu::make_sets(device, shaders.surface, scene.bindings));
+  LUXEL_TRY(out.materials, gpu::make_sets(device, shaders.surfaces.any(), scene.bindings));
   const std::vector<std::vector<gpu::Binding>> surroundings{{scene.surroundings}};
   LUXEL_TRY(out.surroundings, gpu::make_sets(device, shaders.behind, surroundings));
   const std::vector<std::vector<gpu::Binding>> exposed{{{&out.exposed.picture, out.sampler.get()}}};
@@ -237,20 +188,19 @@ display::ToneMap curve_of(const Additions& more, const Frame& frame, bool has_ov
 
 /// The surfaces, or what is drawn instead of them.
 void draw_surfaces_or_else(const gpu::Device& device, VkCommandBuffer commands,
-                           const Canvas& canvas, const Additions& more, const SurfacePush& push,
-                           const Frame& frame) {
+                           const Canvas& canvas, const Additions& more,
+                           const std::array<float, 16>& clip, const Frame& frame) {
   const Shaders& shaders = canvas.shaders;
   if (canvas.overlay != nullptr && looks_into_bake(frame.show))
-    draw_overlay(device, commands, shaders.overlay, *canvas.overlay, canvas.scene,
-                 push.clip_from_world);
+    draw_overlay(device, commands, shaders.overlay, *canvas.overlay, canvas.scene, clip);
   else if (has_technique(more, frame))
     draw_technique(device, commands, shaders.technique, *more.techniques, canvas.scene,
-                   {push.clip_from_world, canvas.painter.materials.sets}, frame);
+                   {clip, canvas.painter.materials.sets}, frame);
   else if (!more.instead && !more.no_surfaces)
-    draw_surfaces(device, commands, canvas, push);
+    draw_surfaces(device, commands, shaders.surfaces, canvas.scene,
+                  {clip, canvas.painter.materials.sets}, frame);
   else if (!more.no_surfaces)
-    draw_quadratics(device, commands, shaders.quadratic, *more.instead, more.exact,
-                    push.clip_from_world, frame);
+    draw_quadratics(device, commands, shaders.quadratic, *more.instead, more.exact, clip, frame);
 }
 
 /// What is exposed as a screen shows it, and what lies over it.
@@ -280,17 +230,15 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   const gpu::TargetParams& size = painter.exposed.params;
   const trace::CameraRays camera(frame.camera, int(size.width), int(size.height));
   const bool has_overlay = canvas.overlay != nullptr && looks_into_bake(frame.show);
-  SurfacePush surface{};
-  surface.clip_from_world = clip_from_world(camera, scene.bounds);
-  surface.exposure = frame.exposure, surface.show = uint32_t(frame.show);
+  const std::array<float, 16> clip = clip_from_world(camera, scene.bounds);
   light_now(scene).eye = camera.eye;
   if (has_overlay)
     set_shown(device, commands, *canvas.overlay, scene, frame, normalize(camera.forward));
   gpu::begin_drawing(device, commands, painter.exposed, {0, 0, 0, 0});
-  draw_surfaces_or_else(device, commands, canvas, more, surface, frame);
+  draw_surfaces_or_else(device, commands, canvas, more, clip, frame);
   if (canvas.probes && frame.shows_probes)
     draw_probes(device, commands, canvas.shaders.probes, *canvas.probes,
-                has_overlay ? canvas.overlay : nullptr, frame, surface.clip_from_world);
+                has_overlay ? canvas.overlay : nullptr, frame, clip);
   const BehindPush behind = behind_of(camera, scene, frame, has_overlay);
   gpu::bind(device, commands, canvas.shaders.behind, behind);
   gpu::bind_set(device, commands, canvas.shaders.behind, painter.surroundings.sets[0]);
@@ -298,14 +246,11 @@ void paint(const gpu::Device& device, VkCommandBuffer commands, const Canvas& ca
   const display::ToneMap curve = curve_of(more, frame, has_overlay);
   for (const DeviceShapes& shapes : more.shapes)
     draw_shapes(device, commands, canvas.shaders.shapes, shapes,
-                {surface.clip_from_world,
-                 camera.orthographic,
-                 {float(size.width), float(size.height)},
-                 curve});
+                {clip, camera.orthographic, {float(size.width), float(size.height)}, curve});
   gpu::end_drawing(device, commands, painter.exposed, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   if (frame.outline)
     draw_mask(device, commands, canvas.shaders.outline, painter.outliner, scene,
-              painter.materials.sets, *frame.outline, surface.clip_from_world);
+              painter.materials.sets, *frame.outline, clip);
   show_exposed(device, commands, canvas, more, curve, frame);
   gpu::change_layout(device, commands, painter.exposed.picture,
                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,

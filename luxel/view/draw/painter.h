@@ -15,6 +15,7 @@
 #include "luxel/view/draw/probe_drawing.h"
 #include "luxel/view/draw/quadratic.h"
 #include "luxel/view/draw/shapes.h"
+#include "luxel/view/draw/surface_drawing.h"
 #include "luxel/view/draw/technique_drawing.h"
 #include "luxel/view/frame.h"
 
@@ -22,8 +23,8 @@ namespace luxel::view {
 
 /// The shaders of all pictures.
 struct Shaders {
-  gpu::Pipeline surface, surface_mirrored, surface_double_sided, behind, screen, mark;
-  gpu::Pipeline overlay, beside, quadratic, inset, probes;
+  SurfaceShaders surfaces;
+  gpu::Pipeline behind, screen, mark, overlay, beside, quadratic, inset, probes;
   ShapeShaders shapes;
   TechniqueShaders technique;
   OutlineShaders outline;

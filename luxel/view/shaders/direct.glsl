@@ -1,5 +1,5 @@
 // Light straight from lamps, as luxel/light/lights.h has it. luxel/view/draw/direct_light.h has the
-// structs and the maps of shadows.
+// structs and the maps of shadows. `lamps_drawn` is a constant of the shader that includes it.
 
 // E on a surface that faces the lamp squarely, and the way to it.
 vec3 arriving_from(Lamp lamp, vec3 place, out vec3 towards, out float distance_m) {
@@ -140,7 +140,7 @@ float visible_share(Lamp lamp, vec3 place, vec3 facet) {
   float depth = lamp.kind == 2 ? 1 : dot(from_lamp, forward);
   float along = dot(facet, forward);
   vec3 p = place + facet * (map.texel_m * depth * (0.2 + 2.9 * sqrt(max(1 - along * along, 0))));
-  if (lamp.tan_radius <= 0) return lit_share(map, p);
+  if (lamps_drawn < 2 || lamp.tan_radius <= 0) return lit_share(map, p);
   float texels_per_depth = lamp.tan_radius * map.depth_m / map.texel_m;
   return seen_share(map, p, texels_per_depth, slope_of(map, facet, forward));
 }

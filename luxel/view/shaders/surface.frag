@@ -29,6 +29,13 @@ layout(location = 10) in vec3 smooth_normal;
 layout(location = 11) flat in float turned;
 layout(location = 0) out vec4 seen;
 
+// What a pipeline is made for: branches that are not taken cost as much as those that are where
+// pixels are drawn side by side.
+layout(constant_id = 0) const uint lamps_drawn = 2;     // 0: none, 1: with sharp shadows, 2: all
+layout(constant_id = 1) const bool lets_through = true;  // m.through may be > 0
+layout(constant_id = 2) const bool fades = true;         // second_light may be > 0
+layout(constant_id = 3) const bool has_more = true;      // it may glow, or be metal
+
 const float pi = 3.14159265358979;
 const float most = 60000;  // of the picture's halves
 const float max_reflectance = 0.99;  // scene::kMaxReflectance
@@ -58,7 +65,7 @@ vec3 normal_on(vec3 facet) {
 vec3 irradiance_at(vec2 place) {
   vec2 scale = light_now.scale[materials.at[material].page];
   vec3 first = textureLod(light, place, 0).rgb * scale.x;
-  if (second_light == 0) return first;
+  if (!fades) return first;
   return mix(first, textureLod(second, place, 0).rgb * scale.y, second_light);
 }
 
@@ -67,20 +74,24 @@ void main() {
   vec3 facet = facet_normal();
   vec4 base = texture(map, at_map) * vec4(m.base_color * tint, m.alpha);
   if (base.a < m.cutoff) discard;
-  vec3 emitted = m.emission * texture(glow, at_glow).rgb * instances.at[instance].emission_factor;
-  float metallic = clamp(m.metallic * texture(metal, at_metal).b, 0, 1);
+  vec3 emitted = vec3(0);
+  float metallic = 0;
+  if (has_more) {
+    emitted = m.emission * texture(glow, at_glow).rgb * instances.at[instance].emission_factor;
+    metallic = clamp(m.metallic * texture(metal, at_metal).b, 0, 1);
+  }
   float through = 0;
-  if (m.through > 0)
+  if (lets_through)
     through = clamp(m.through * texture(through_share, at_through_share).a, 0, 1);
   vec3 rho = clamp(base.rgb * ((1 - metallic) * (1 - through)), 0, max_reflectance);
   vec3 irradiance = irradiance_at(at_light), behind = vec3(0);
-  if (light_now.lamp_count > 0) {
+  if (lamps_drawn > 0) {
     vec3 place = light_now.eye + place_from_eye(facet), n = normal_on(facet);
     irradiance += direct_light(place, n, facet);
-    if (through > 0) behind = direct_light(place, -n, -facet);
+    if (lets_through) behind = direct_light(place, -n, -facet);
   }
   vec3 radiosity = rho * irradiance;
-  if (through > 0) {
+  if (lets_through) {
     vec3 tau = m.through_color * texture(through_tint, at_through_tint).rgb *
                (through * (1 - metallic));
     radiosity += clamp(tau, vec3(0), max_reflectance - rho) *

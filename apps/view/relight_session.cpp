@@ -21,8 +21,11 @@ void wake(const RelitLive& live) {
   if (live.bake.state() != view::LiveState::baked) live.bake.edit(live.desk.now);
 }
 
+/// What is stopped ends within some tenths of a second, and the window does not wait for it.
 void stop(const RelitLive& live, RelightSession& session) {
-  session.maker.reset();
+  session.ending =
+      std::async(std::launch::async,
+                 [maker = std::shared_ptr(std::move(session.maker))]() mutable { maker.reset(); });
   wake(live);
 }
 
@@ -36,6 +39,7 @@ bool take_asked(const RelitLive& live, std::string& message, RelightSession& ses
   }
   if (session.shows_lamps) {
     session.shows_lamps = false;
+    message.clear();
     wake(live);
     return true;
   }

@@ -1,6 +1,7 @@
 // A scene that is edited, and what is made of it so that its lamps move with all bounces.
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@ namespace luxel::view_window {
 struct RelightSession {
   RelightParams params;
   std::unique_ptr<view::LxrMaker> maker = {};  ///< null: nothing is made
+  std::future<void> ending = {};               ///< valid once one was stopped
   std::unique_ptr<Subject> lamps = {};         ///< the last that was made; null: none was
   uint64_t made_of = 0;      ///< view::EditDesk::changes of what is made, or was last
   bool shows_lamps = false;  ///< else the scene is edited

@@ -29,7 +29,8 @@ struct MadeLxr {
 };
 
 /// Guards a thread. Its functions are called by one thread and do not wait for it, but for the
-/// destructor, which ends it within about 0.2 s and leaves nothing half made, and wait().
+/// destructor, which ends it within some tenths of a second and leaves nothing half made, and
+/// wait().
 class LxrMaker {
  public:
   static std::unique_ptr<LxrMaker> begin(LxrToMake to_make);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "luxel/base/result.h"
 #include "luxel/base/vec.h"
@@ -59,6 +60,14 @@ class RayTracer {
  public:
   /// `max_flat_triangles`: drawn triangles above which meshes are shared between instances.
   static Result<RayTracer> build(const scene::Scene& scene, size_t max_flat_triangles = 1u << 20);
+  /// Every mesh is stored once, however many instances it has, also in small scenes: rays take
+  /// longer, but moved() does not.
+  static Result<RayTracer> build_apart(const scene::Scene& scene);
+  /// The tracer of a scene with the same meshes, whose instances may be others and stand elsewhere,
+  /// and whose materials may have other colours: those that let light through are the same. Meshes
+  /// that are stored once are shared between the two, and only the top level is built. Either may
+  /// go first.
+  Result<RayTracer> moved(const scene::Scene& scene) const;
   RayTracer(RayTracer&&) noexcept;
   RayTracer& operator=(RayTracer&&) noexcept;
   ~RayTracer();
@@ -88,7 +97,12 @@ class RayTracer {
   /// Where nothing has a tint it is 1 unless occluded.
   void transmitted(std::span<const Ray> rays, std::span<Rgb> share) const;
 
+  /// Triangles that were sorted into hierarchies to build it: drawn ones, and of meshes that are
+  /// stored once, each once.
+  size_t sorted_triangles() const;
+
  private:
+  static Result<RayTracer> build_with(const scene::Scene& scene, const std::vector<bool>& shared);
   struct Impl;
   explicit RayTracer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "luxel/base/random.h"
 #include "luxel/scene/procedural.h"
 #include "luxel/scene/sides.h"
@@ -355,6 +357,116 @@ TEST(RayTracer, KnowsEmptyBoxes) {
   EXPECT_FALSE(tracer->is_empty(lower_right, [](uint32_t, uint32_t t) { return t == 0; }));
   EXPECT_TRUE(tracer->is_empty({{10.9f, 0.1f, 0}, turned, {0.05f, 0.05f, 0.1f}},
                                [](uint32_t, uint32_t t) { return t == 1; }));
+}
+
+/// A mask with holes, a sheet with two sides, a ball, and panes of film, some of them twice, one
+/// mirrored, and one that is pressed flat: `away` moves them, each in another way.
+scene::Scene mixed_scene(float away) {
+  scene::Scene scene = scene::inward_sphere(0.7f, 2, {0.5f, 0.5f, 0.5f}, {});
+  const auto add = [&](const scene::Mesh& mesh, scene::Material material) {
+    scene.meshes.push_back(mesh);
+    scene.meshes.back().triangle_material.assign(mesh.triangles.size(),
+                                                 uint32_t(scene.materials.size()));
+    scene.materials.push_back(std::move(material));
+    return uint32_t(scene.meshes.size() - 1);
+  };
+  scene::Texture holes;
+  holes.width = 2, holes.height = 1;
+  holes.rgba = {255, 255, 255, 0, 255, 255, 255, 255};
+  scene.textures.push_back(holes);
+  scene::Material masked;
+  masked.base_color_texture.texture = 0;
+  masked.base_color_texture.filter = scene::Filter::nearest;
+  masked.alpha_mode = scene::AlphaMode::mask;
+  const uint32_t mask = add(unit_quad(), masked), sheet = add(unit_quad(), {}),
+                 pane = add(unit_quad(), film({1, 0.5f, 0.7f * away}, 0.25f));
+  scene::add_backs(scene, sheet, std::vector<uint8_t>{1, 1});
+  const Mat34 turned = from_columns({0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {});
+  for (const uint32_t mesh : {0u, mask, sheet, pane})
+    for (const float x : {-1.5f, 1.0f}) {
+      const float at = float(scene.instances.size());
+      const Vec3 to{x + 0.1f * at * away, 0.4f * at - 2 + away, 0.3f * at - 1 - 0.2f * away};
+      const Vec3 size{x < 0 ? -1.0f : 1.5f, 1, 1 + 0.3f * away};
+      const Mat34 place = translation(to) * scaling(size);
+      scene.instances.push_back({"", mesh, away > 0 && x > 0 ? place * turned : place});
+    }
+  scene.instances.push_back({"flat", sheet, translation({0, 0, -2 - away}) * scaling({2, 2, 0})});
+  return scene;
+}
+
+std::vector<Ray> rays_across(size_t count) {
+  RandomStream random{17};
+  const auto place = [&] {
+    return Vec3{random.next(), random.next(), random.next()} * 6 - Vec3{3, 3, 3};
+  };
+  std::vector<Ray> rays;
+  for (size_t k = 0; k < count; ++k) {
+    const Vec3 from = place();
+    rays.push_back({from, 0, place() - from, k % 3 ? 1.0f : INFINITY});
+  }
+  return rays;
+}
+
+/// Rays that meet something else, by more than rounding, of those that meet no film; and those by
+/// which another share of light comes.
+struct Differences {
+  size_t hits = 0, shares = 0, met = 0;
+};
+Differences differences(const RayTracer& a, const RayTracer& b, const scene::Scene& scene) {
+  const std::vector<Ray> rays = rays_across(20000);
+  std::vector<Hit> hit_a(rays.size()), hit_b(rays.size());
+  a.closest_hits(rays, hit_a), b.closest_hits(rays, hit_b);
+  std::vector<Rgb> share_a(rays.size()), share_b(rays.size());
+  a.transmitted(rays, share_a), b.transmitted(rays, share_b);
+  Differences out;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    out.shares += length(share_a[i] - share_b[i]) > 1e-5f;
+    // Which rays pass a film is chance, by the bits of each.
+    const float stops = min_component(share_a[i]);
+    if (stops > 0 && stops < 1) continue;
+    const Hit &p = hit_a[i], &q = hit_b[i];
+    const auto films = [&](const Hit& h) {
+      return h.found() && scene::tints_light(scene::material_at(scene, h.point()));
+    };
+    if (films(p) || films(q)) continue;
+    out.met += p.found();
+    if (p.found() != q.found() || (p.found() && std::abs(p.t - q.t) > 1e-4f))
+      ++out.hits;
+    else if (p.found() && (p.instance != q.instance || p.triangle != q.triangle ||
+                           p.back_face != q.back_face || std::abs(p.at.u - q.at.u) > 1e-3f))
+      ++out.hits;
+  }
+  return out;
+}
+
+// A flat tracer of the scene as it is now is another way to the same answer.
+TEST(RayTracer, MovedMeetsWhatATracerOfTheMovedSceneMeets) {
+  const scene::Scene before = mixed_scene(0), after = mixed_scene(1);
+  std::optional<RayTracer> apart = std::move(*RayTracer::build_apart(before));
+  const auto flat_before = RayTracer::build(before), flat_after = RayTracer::build(after);
+  const auto moved = apart->moved(after);
+  ASSERT_TRUE(moved);
+  const Differences there = differences(*apart, *flat_before, before);
+  apart.reset();  // what is shared outlives it
+  const Differences here = differences(*moved, *flat_after, after);
+  for (const Differences& d : {there, here}) {
+    EXPECT_GT(d.met, 5000u);
+    // Of rays through edges, also those of films in the way.
+    EXPECT_LE(d.hits, d.met / 500);
+    EXPECT_LE(d.shares, 20u);
+  }
+  EXPECT_GT(differences(*flat_before, *flat_after, after).hits, 1000u) << "the scenes differ";
+}
+
+TEST(RayTracer, MovedSortsNoMeshAgain) {
+  const scene::Scene before = mixed_scene(0), after = mixed_scene(1);
+  size_t once = 0;
+  for (const scene::Mesh& mesh : before.meshes) once += mesh.triangles.size();
+  const size_t flat = before.meshes[before.instances.back().mesh].triangles.size();
+  const auto apart = RayTracer::build_apart(before);
+  EXPECT_EQ(apart->sorted_triangles(), once + flat) << "the instance that is pressed flat is alone";
+  EXPECT_EQ(apart->moved(after)->sorted_triangles(), flat);
+  EXPECT_EQ(RayTracer::build(before)->sorted_triangles(), scene::first_triangles(before).back());
 }
 
 }  // namespace

@@ -9,10 +9,13 @@
 namespace luxel::view {
 
 Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene,
-                                                    const pipeline::BakeSettings& settings) {
+                                                    const pipeline::BakeSettings& settings,
+                                                    TracedFor traced) {
   auto out = std::make_shared<ReadScene>();
   out->scene = std::move(scene);
-  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(out->scene));
+  LUXEL_TRY(trace::RayTracer tracer, traced == TracedFor::edits
+                                         ? trace::RayTracer::build_apart(out->scene)
+                                         : trace::RayTracer::build(out->scene));
   out->tracer.emplace(std::move(tracer));
   LUXEL_TRY(out->first.camera,
             pipeline::choose_camera({.view = settings.view, .aspect = pipeline::kPreviewAspect},
@@ -25,7 +28,7 @@ Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene,
 Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene, const ReadScene& before) {
   auto out = std::make_shared<ReadScene>();
   out->scene = std::move(scene);
-  LUXEL_TRY(trace::RayTracer tracer, trace::RayTracer::build(out->scene));
+  LUXEL_TRY(trace::RayTracer tracer, before.tracer->moved(out->scene));
   out->tracer.emplace(std::move(tracer));
   out->first = before.first, out->light_unit = before.light_unit;
   out->width = before.width, out->height = before.height;

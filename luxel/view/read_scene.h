@@ -22,11 +22,15 @@ struct ReadScene {
   std::string light_unit;                  ///< of E: "lux" or "W/m^2"
 };
 
+/// What the tracer of a scene is good for: many rays, or being made again after each edit.
+enum class TracedFor : uint8_t { solvers, edits };
+
 /// The scene that a file holds, ready to be looked at, by the view that the settings ask for.
 /// Errors: no such view; no memory.
 Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene,
-                                                    const pipeline::BakeSettings& settings);
-/// Another scene, looked at from where the one before it was.
+                                                    const pipeline::BakeSettings& settings,
+                                                    TracedFor traced = TracedFor::solvers);
+/// The scene after an edit (edits.h), looked at from where the one before it was.
 Result<std::shared_ptr<const ReadScene>> read_scene(scene::Scene scene, const ReadScene& before);
 
 }  // namespace luxel::view

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -28,11 +29,6 @@ RTCIntersectContext packet_context(bool coherent = false) {
   return context;
 }
 
-/// What a filter function needs to find what lets light through.
-struct SceneTag {
-  const scene::Scene* scene = nullptr;
-};
-
 /// Geometries of the top level are attached under their instance's number, so that a hit's instance
 /// is its geometry where it lies in the top level itself, and its innermost instance id elsewhere.
 inline uint32_t instance_of(uint32_t instance_id, uint32_t geometry_id) {
@@ -46,12 +42,14 @@ enum class Through : uint8_t {
   share    ///< the same with (1 - coverage) tint; where nothing is left, it is blocked
 };
 
-/// Embree hands the context of a query to filter functions: ours has more behind it.
+/// Embree hands the context of a query to filter functions: ours has more behind it. It tells them
+/// the scene, too: geometries are shared between tracers, each of which has a scene of its own.
 struct Query {
-  explicit Query(const RTCIntersectContext& rays, Through which = Through::chance)
-      : context(rays), through(which) {}
+  Query(const scene::Scene& in, const RTCIntersectContext& rays, Through which = Through::chance)
+      : context(rays), scene(in), through(which) {}
 
   RTCIntersectContext context;
+  const scene::Scene& scene;
   Through through;
   Rgb* light = nullptr;  ///< one for each ray of the packet
   unsigned count = 0;    ///< of rays in the packet, where light is asked for
@@ -85,8 +83,8 @@ float chance_of(const RTCFilterFunctionNArguments* args, unsigned i, uint64_t pl
 
 /// Lets rays through the holes of masks and through what is not opaque, for packets of any size.
 void let_through(const RTCFilterFunctionNArguments* args) {
-  const scene::Scene& scene = *static_cast<const SceneTag*>(args->geometryUserPtr)->scene;
   Query& query = *reinterpret_cast<Query*>(args->context);
+  const scene::Scene& scene = query.scene;
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
     const scene::SurfacePoint p{
@@ -127,12 +125,13 @@ void* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, siz
 }  // namespace
 
 struct RayTracer::Impl {
+  const scene::Scene* scene = nullptr;
   RTCDevice device = nullptr;
   RTCScene top = nullptr;
-  std::vector<RTCScene> meshes;  ///< per mesh; null unless several instances share it
+  std::vector<RTCScene> meshes;  ///< per mesh; null: its instances lie in the top level themselves
   bool has_shared_meshes = false;
   bool has_tints = false;
-  SceneTag tag;
+  size_t sorted_triangles = 0;
   /// Per instance, the map of object normals to world normals of the front side.
   std::vector<std::array<Vec3, 3>> normal_columns;
 
@@ -143,9 +142,10 @@ struct RayTracer::Impl {
     if (device) rtcReleaseDevice(device);
   }
 
-  RTCGeometry new_triangles(const scene::Scene& scene, const scene::Mesh& mesh, const Mat34& map);
-  bool add_shared_mesh(const scene::Scene& scene, const scene::Mesh& mesh);
-  bool add_instance(const scene::Scene& scene, uint32_t instance);
+  RTCGeometry new_triangles(const scene::Mesh& mesh, const Mat34& map);
+  bool add_shared_mesh(const scene::Mesh& mesh);
+  bool add_instance(uint32_t instance);
+  bool add_top();
   bool from_behind(uint32_t instance, Vec3 object_normal, Vec3 direction) const {
     const auto& m = normal_columns[instance];
     const Vec3 n = m[0] * object_normal.x + m[1] * object_normal.y + m[2] * object_normal.z;
@@ -154,14 +154,13 @@ struct RayTracer::Impl {
   /// What has two sides is met on the side that the ray comes from.
   void turn_to_ray(Hit& hit) const {
     if (!hit.back_face) return;
-    if (const auto other = scene::other_side_of(*tag.scene, hit.point()))
+    if (const auto other = scene::other_side_of(*scene, hit.point()))
       hit.triangle = other->triangle, hit.at = other->at, hit.back_face = false;
   }
 };
 
 /// A mesh's triangles with `map` applied; nullptr when memory ran out.
-RTCGeometry RayTracer::Impl::new_triangles(const scene::Scene& scene, const scene::Mesh& mesh,
-                                           const Mat34& map) {
+RTCGeometry RayTracer::Impl::new_triangles(const scene::Mesh& mesh, const Mat34& map) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = new_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, sizeof(Vec3),
                               std::max<size_t>(1, mesh.positions.size()));
@@ -179,13 +178,12 @@ RTCGeometry RayTracer::Impl::new_triangles(const scene::Scene& scene, const scen
   // triangles of vertices that there are not.
   for (uint32_t t = 0; t < mesh.other_side.size(); ++t)
     if (mesh.other_side[t] < t) corners[t] = {UINT32_MAX, UINT32_MAX, UINT32_MAX};
-  has_tints = has_tints || has_material(scene, mesh, scene::tints_light);
-  if (has_material(scene, mesh, scene::lets_light_through)) {
-    rtcSetGeometryUserData(geometry, &tag);
+  if (has_material(*scene, mesh, scene::lets_light_through)) {
     rtcSetGeometryIntersectFilterFunction(geometry, let_through);
     rtcSetGeometryOccludedFilterFunction(geometry, let_through);
   }
   rtcCommitGeometry(geometry);
+  sorted_triangles += mesh.triangles.size();
   return geometry;
 }
 
@@ -200,8 +198,8 @@ void commit_scene(RTCScene scene) {
 
 }  // namespace
 
-bool RayTracer::Impl::add_shared_mesh(const scene::Scene& scene, const scene::Mesh& mesh) {
-  RTCGeometry geometry = new_triangles(scene, mesh, {});
+bool RayTracer::Impl::add_shared_mesh(const scene::Mesh& mesh) {
+  RTCGeometry geometry = new_triangles(mesh, {});
   if (!geometry) return false;
   RTCScene bottom = rtcNewScene(device);
   meshes.back() = bottom;
@@ -211,12 +209,23 @@ bool RayTracer::Impl::add_shared_mesh(const scene::Scene& scene, const scene::Me
   return rtcGetDeviceError(device) == RTC_ERROR_NONE;
 }
 
-bool RayTracer::Impl::add_instance(const scene::Scene& scene, uint32_t index) {
-  const scene::Instance& instance = scene.instances[index];
+namespace {
+
+/// Whether rays can be taken into the space of a mesh that stands so: not into that of one which is
+/// pressed flat.
+bool can_be_undone(const Mat34& m) {
+  const float size = length(column(m, 0)) * length(column(m, 1)) * length(column(m, 2));
+  return std::abs(determinant(m)) > 1e-6f * size;
+}
+
+}  // namespace
+
+bool RayTracer::Impl::add_instance(uint32_t index) {
+  const scene::Instance& instance = scene->instances[index];
   const Mat34& m = instance.world_from_object;
-  RTCScene shared = meshes[instance.mesh];
+  RTCScene shared = can_be_undone(m) ? meshes[instance.mesh] : nullptr;
   RTCGeometry geometry = shared ? rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE)
-                                : new_triangles(scene, scene.meshes[instance.mesh], m);
+                                : new_triangles(scene->meshes[instance.mesh], m);
   if (!geometry) return false;
   if (shared) {
     rtcSetGeometryInstancedScene(geometry, shared);
@@ -234,6 +243,17 @@ bool RayTracer::Impl::add_instance(const scene::Scene& scene, uint32_t index) {
   return rtcGetDeviceError(device) == RTC_ERROR_NONE;
 }
 
+/// Everything but the meshes that are shared.
+bool RayTracer::Impl::add_top() {
+  for (const scene::Instance& i : scene->instances)
+    has_tints = has_tints || has_material(*scene, scene->meshes[i.mesh], scene::tints_light);
+  top = rtcNewScene(device);
+  for (uint32_t i = 0; i < scene->instances.size(); ++i)
+    if (!add_instance(i)) return false;
+  commit_scene(top);
+  return rtcGetDeviceError(device) == RTC_ERROR_NONE;
+}
+
 namespace {
 
 /// Per mesh: whether it is stored once for all its instances.
@@ -246,6 +266,13 @@ std::vector<bool> shared_meshes(const scene::Scene& scene, size_t max_flat_trian
   return shared;
 }
 
+tl::unexpected<Error> no_memory(const scene::Scene& scene) {
+  return fail(ErrorCode::out_of_memory,
+              "no memory for the ray tracing structure of {} meshes; close other programs or "
+              "simplify the scene",
+              scene.meshes.size());
+}
+
 }  // namespace
 
 RayTracer::RayTracer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -254,29 +281,47 @@ RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 RayTracer::~RayTracer() = default;
 
 Result<RayTracer> RayTracer::build(const scene::Scene& scene, size_t max_flat_triangles) {
+  return build_with(scene, shared_meshes(scene, max_flat_triangles));
+}
+
+Result<RayTracer> RayTracer::build_apart(const scene::Scene& scene) {
+  return build_with(scene, std::vector<bool>(scene.meshes.size(), true));
+}
+
+Result<RayTracer> RayTracer::build_with(const scene::Scene& scene,
+                                        const std::vector<bool>& shared) {
   auto impl = std::make_unique<Impl>();
   impl->device = rtcNewDevice(nullptr);
   if (!impl->device && rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU)
     return fail(ErrorCode::unsupported, "Embree does not run on this processor");
   if (!impl->device) return fail(ErrorCode::out_of_memory, "no memory for the ray tracer");
-  impl->tag.scene = &scene;
+  impl->scene = &scene;
   bool good = true;
-  const std::vector<bool> shared = shared_meshes(scene, max_flat_triangles);
   for (size_t i = 0; i < scene.meshes.size(); ++i) {
     impl->meshes.push_back(nullptr);
     impl->has_shared_meshes = impl->has_shared_meshes || shared[i];
-    if (shared[i]) good = good && impl->add_shared_mesh(scene, scene.meshes[i]);
+    if (shared[i]) good = good && impl->add_shared_mesh(scene.meshes[i]);
   }
-  impl->top = rtcNewScene(impl->device);
-  for (uint32_t i = 0; i < scene.instances.size(); ++i) good = good && impl->add_instance(scene, i);
-  commit_scene(impl->top);
-  if (!good || rtcGetDeviceError(impl->device) != RTC_ERROR_NONE)
-    return fail(ErrorCode::out_of_memory,
-                "no memory for the ray tracing structure of {} meshes; close other programs or "
-                "simplify the scene",
-                scene.meshes.size());
+  if (!good || !impl->add_top()) return no_memory(scene);
   return RayTracer(std::move(impl));
 }
+
+Result<RayTracer> RayTracer::moved(const scene::Scene& scene) const {
+  LUXEL_CHECK(scene.meshes.size() == impl_->meshes.size());
+  auto impl = std::make_unique<Impl>();
+  rtcRetainDevice(impl_->device);
+  impl->device = impl_->device;
+  impl->scene = &scene;
+  impl->has_shared_meshes = impl_->has_shared_meshes;
+  for (RTCScene mesh : impl_->meshes) {
+    if (mesh) rtcRetainScene(mesh);
+    impl->meshes.push_back(mesh);
+  }
+  if (!impl->add_top()) return no_memory(scene);
+  return RayTracer(std::move(impl));
+}
+
+size_t RayTracer::sorted_triangles() const { return impl_->sorted_triangles; }
 
 namespace {
 
@@ -300,7 +345,8 @@ unsigned load_packet(std::span<const Ray> rays, int* valid, RTCRay16& out) {
 void RayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
                              Packets packets) const {
   LUXEL_CHECK(rays.size() == hits.size());
-  Query query{packet_context(packets == Packets::bundles && !impl_->has_shared_meshes)};
+  Query query{*impl_->scene,
+              packet_context(packets == Packets::bundles && !impl_->has_shared_meshes)};
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     // 16 rays at a time.
     alignas(64) int valid[kPacket];
@@ -336,7 +382,7 @@ Hit RayTracer::closest_hit(const Ray& ray) const {
 
 void RayTracer::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const {
   LUXEL_CHECK(rays.size() == blocked.size());
-  Query query{packet_context()};
+  Query query{*impl_->scene, packet_context()};
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
     RTCRay16 packet;
@@ -383,7 +429,7 @@ bool look_at_triangle(RTCPointQueryFunctionArguments* args) {
 bool RayTracer::is_empty(const TurnedBox& box,
                          const std::function<bool(uint32_t, uint32_t)>& counts) const {
   if (impl_->has_shared_meshes) return false;
-  BoxQuestion question{*impl_->tag.scene, box, counts};
+  BoxQuestion question{*impl_->scene, box, counts};
   RTCPointQuery query;
   query.x = box.middle.x, query.y = box.middle.y, query.z = box.middle.z;
   query.time = 0, query.radius = length(box.half_m);
@@ -398,7 +444,7 @@ bool RayTracer::has_tints() const { return impl_->has_tints; }
 void RayTracer::tint(std::span<const Ray> rays, std::span<const Hit> hits,
                      std::span<Rgb> light) const {
   LUXEL_CHECK(rays.size() == hits.size() && rays.size() == light.size());
-  Query query{packet_context(), Through::tint};
+  Query query{*impl_->scene, packet_context(), Through::tint};
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
     RTCRay16 packet;
@@ -415,7 +461,7 @@ void RayTracer::tint(std::span<const Ray> rays, std::span<const Hit> hits,
 void RayTracer::transmitted(std::span<const Ray> rays, std::span<Rgb> share) const {
   LUXEL_CHECK(rays.size() == share.size());
   // Without tints, only holes let light through: all of it.
-  Query query{packet_context(), has_tints() ? Through::share : Through::chance};
+  Query query{*impl_->scene, packet_context(), has_tints() ? Through::share : Through::chance};
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
     RTCRay16 packet;

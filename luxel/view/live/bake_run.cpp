@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luxel/base/parallel.h"
 #include "luxel/display/draw.h"
 #include "luxel/display/tone_map.h"
 #include "luxel/pipeline/bake/finish_bake.h"
@@ -55,20 +56,37 @@ BakeRun::BakeRun(const pipeline::BakeSettings& settings, const RunWatcher& watch
                  const Progress& progress)
     : settings_(settings), watcher_(watcher), progress_(progress) {}
 
+void BakeRun::follow(float exposure, std::shared_ptr<const KnownLight> before, bool is_shown) {
+  kept_exposure_ = exposure_ = exposure;
+  // Estimates have all light.
+  if (settings_.bounces < 0 && settings_.light == pipeline::LightPart::all)
+    before_ = std::move(before), is_before_shown_ = is_shown;
+}
+
 Status BakeRun::begin(std::shared_ptr<const ReadScene> read, const DraftParams& params,
                       const Progress& ends) {
-  camera_ = read->first.camera;
+  read_ = std::move(read), camera_ = read_->first.camera;
+  // What is read is seen while the first draft is made; later there is light to be seen.
   LiveNews news;
-  news.read = read;
-  // What is read is seen while the first draft is made; later there is a draft to be seen.
+  news.read = read_;
   if (!kept_exposure_) watcher_.hand(std::exchange(news, {}));
-  LUXEL_TRY(draft_, make_draft(read->scene, settings_, params, ends));
-  draft_ ? hand_draft(std::move(read)) : watcher_.hand(std::move(news));
+  LUXEL_TRY(draft_, first_light(params, ends));
+  draft_ ? hand_draft() : watcher_.hand(std::move(news));
   return {};
 }
 
-/// After an edit, as what it changes of the light that is shown.
-void BakeRun::hand_draft(std::shared_ptr<const ReadScene> read) {
+/// What is known is as fine as the bake, and what follows from it is there sooner than a draft,
+/// whatever the scene. Null: there is neither.
+Result<std::unique_ptr<Draft>> BakeRun::first_light(const DraftParams& params,
+                                                    const Progress& ends) const {
+  if (!before_) return make_draft(read_->scene, settings_, params, ends);
+  const ThreadLimit threads(settings_.threads);
+  EstimateParams estimate;
+  estimate.seed = settings_.seed;
+  return estimate_light(*before_, read_->scene, estimate, ends);
+}
+
+void BakeRun::hand_draft() {
   LiveNews news;
   LiveLight& light = news.light.emplace();
   light.numbers.kind = LiveKind::draft;
@@ -76,18 +94,10 @@ void BakeRun::hand_draft(std::shared_ptr<const ReadScene> read) {
       {draft_->scene, *draft_->tracer}, {&draft_->atlas, &draft_->map, draft_->irradiance});
   exposure_ = light.exposure;
   light.is_sudden = kept_exposure_.has_value();
-  if (before_) {
-    std::vector<Mat34> world_from_object;
-    for (const scene::Instance& instance : read->scene.instances)
-      world_from_object.push_back(instance.world_from_object);
-    light.pages = pages_of(before_->atlas, before_->map,
-                           light_after_edit(*before_, *draft_, world_from_object));
-  } else {
-    light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
-    news.lit = lit_scene(draft_->scene, draft_->atlas);
-    news.bounced = bounces_of(*draft_);
-  }
-  if (kept_exposure_) news.read = std::move(read);
+  light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
+  if (!before_ || !is_before_shown_) news.lit = lit_scene(draft_->scene, draft_->atlas);
+  if (!before_) news.bounced = bounces_of(*draft_);
+  if (kept_exposure_) news.read = read_;
   watcher_.hand(std::move(news));
 }
 
@@ -130,12 +140,13 @@ void BakeRun::has_light(const light::TexelScene& in, const light::LightEstimate&
   // Vertices are split while nobody waits.
   if (!std::exchange(is_laid_out_, true)) {
     news.lit = lit_scene(in.scene, in.atlas);
-    if (draft_) light_ = std::make_shared<KnownLight>(known_light(in, *draft_));
+    if (auto known = known_light(in, read_->scene)) light_ = std::move(*known);
     // After an edit there is better light than the draft's, which lies elsewhere.
     if (draft_ && !kept_exposure_) news.before = draft_elsewhere(in);
-    if (draft_) news.bounced = bounces_of_draft(in, estimate.direct);
+    if (draft_ && !draft_->bounced.empty()) news.bounced = bounces_of_draft(in, estimate.direct);
   }
-  know(estimate.irradiance);
+  knows_all_ = estimate.share == 1;
+  know(estimate.irradiance, estimate.direct);
   watcher_.hand(std::move(news));
 }
 
@@ -175,8 +186,10 @@ std::shared_ptr<const BouncedLight> BakeRun::bounces_of_bake(const pipeline::Bak
   return out;
 }
 
-void BakeRun::know(std::span<const Rgb> irradiance) {
-  if (light_) light_->irradiance.assign(irradiance.begin(), irradiance.end());
+void BakeRun::know(std::span<const Rgb> irradiance, std::span<const Rgb> direct) {
+  if (!light_) return;
+  light_->irradiance.assign(irradiance.begin(), irradiance.end());
+  if (direct.size() == irradiance.size()) light_->direct.assign(direct.begin(), direct.end());
 }
 
 LiveLight BakeRun::draft_elsewhere(const light::TexelScene& in) const {
@@ -211,7 +224,10 @@ void BakeRun::end(const pipeline::Bake& baked) {
     news.probes = std::make_shared<const ProbeBalls>(
         ProbeBalls{baked.probes->probes, baked.probes->spacing_m});
   news.warnings = baked.warnings;
-  know(baked.light.irradiance);
+  know(baked.light.irradiance, baked.light.direct);
+  // What was refilled is not the light of the place.
+  for (size_t i = 0; light_ && i < baked.light.hidden.size(); ++i)
+    if (baked.light.hidden[i]) light_->irradiance[i] = light_->direct[i] = {};
   watcher_.hand(std::move(news));
 }
 

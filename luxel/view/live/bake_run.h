@@ -9,7 +9,7 @@
 #include "luxel/base/progress.h"
 #include "luxel/pipeline/bake/bake_scene.h"
 #include "luxel/transport/irradiance_field.h"
-#include "luxel/view/live/known_light.h"
+#include "luxel/view/live/estimate.h"
 #include "luxel/view/live/live_news.h"
 #include "luxel/view/read_scene.h"
 
@@ -28,13 +28,12 @@ class BakeRun {
   BakeRun(const pipeline::BakeSettings& settings, const RunWatcher& watcher,
           const Progress& progress);
 
-  /// It is a run of an edited scene: what pictures are shown at, whatever their light is; and the
-  /// light that is shown, null where it is a draft's alone.
-  void follow(float exposure, std::shared_ptr<const KnownLight> before) {
-    kept_exposure_ = exposure_ = exposure, before_ = std::move(before);
-  }
-  /// Hands over a draft, and `read` with it. Where there is none, `read` goes alone. `ends`: what
-  /// cancels the draft. Errors: as make_draft().
+  /// It is a run of an edited scene: what pictures are shown at, whatever their light is; the light
+  /// from which its first light follows, null where none is known; and whether what is shown is
+  /// laid out as that is.
+  void follow(float exposure, std::shared_ptr<const KnownLight> before, bool is_shown);
+  /// Hands over a draft or an estimate, and `read` with it. Where there is none, `read` goes alone.
+  /// `ends`: what cancels it. Errors: as make_draft() and estimate_light().
   Status begin(std::shared_ptr<const ReadScene> read, const DraftParams& params,
                const Progress& ends);
   /// For bake_scene() of the scene with which it began.
@@ -44,8 +43,12 @@ class BakeRun {
 
   /// What the newest light is shown at; nothing: there was none.
   std::optional<float> exposure() const { return exposure_; }
-  /// Light that was handed over and is laid out as the bake is; null: there was none, or no draft.
+  /// Light that was handed over and is laid out as the bake is; null: there was none.
   std::shared_ptr<const KnownLight> known() const { return light_; }
+  /// Whether its first light follows from what was known, and is laid out as that is.
+  bool follows() const { return before_ != nullptr; }
+  /// Whether known() is made of rays of all texels.
+  bool knows_all() const { return knows_all_; }
 
  private:
   struct Traced {
@@ -57,8 +60,9 @@ class BakeRun {
   std::shared_ptr<const BouncedLight> bounces_of_draft(const light::TexelScene& in,
                                                        std::span<const Rgb> direct) const;
   std::shared_ptr<const BouncedLight> bounces_of_bake(const pipeline::Bake& baked);
-  void hand_draft(std::shared_ptr<const ReadScene> read);
-  void know(std::span<const Rgb> irradiance);
+  Result<std::unique_ptr<Draft>> first_light(const DraftParams& params, const Progress& ends) const;
+  void hand_draft();
+  void know(std::span<const Rgb> irradiance, std::span<const Rgb> direct);
   LiveLight draft_elsewhere(const light::TexelScene& in) const;
   std::vector<Rgb> with_reflections_of_draft(const light::TexelScene& in,
                                              std::span<const Rgb> direct) const;
@@ -69,13 +73,14 @@ class BakeRun {
   const RunWatcher& watcher_;
   const Progress& progress_;
   std::optional<float> kept_exposure_, exposure_;
+  std::shared_ptr<const ReadScene> read_;
   scene::Camera camera_;          ///< of the first view
   std::unique_ptr<Draft> draft_;  ///< null: there is none
   std::shared_ptr<const KnownLight> before_;
   std::shared_ptr<KnownLight> light_;
   float draft_exposure_ = 1;
   std::vector<std::vector<Rgb>> bounced_;  ///< E after 0, 1, ... reflections
-  bool is_laid_out_ = false;
+  bool is_before_shown_ = false, is_laid_out_ = false, knows_all_ = false;
   LiveNumbers known_;
   double rays_before_ = 0, seconds_before_ = 0;
 };

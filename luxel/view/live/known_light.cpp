@@ -3,69 +3,45 @@
 #include <algorithm>
 #include <cmath>
 
-#include "luxel/base/parallel.h"
+#include "luxel/view/edit/drawn_edits.h"
 
 namespace luxel::view {
 namespace {
 
-constexpr size_t kGrain = 4096;
+/// Rays that an estimate traces.
+constexpr double kRaysOfEstimates = 400'000;
+// Seconds: per triangle that is sorted, per instance of a top level, and by how much more a ray
+// takes through two levels; on two cores.
+constexpr double kSort_s = 1e-6, kInstance_s = 1e-6, kTwoLevels_s = 1e-7;
 
-std::vector<Place> placed(const KnownLight& known, std::span<const Mat34> world_from_object) {
-  std::vector<Place> out(known.places.size());
-  parallel_for(out.size(), kGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const Mat34& to_world = world_from_object[known.map.texels[i].sample.instance];
-      const Vec3 normal = transform_normal(to_world, known.places[i].normal);
-      const float size = length(normal);
-      out[i].position = transform_point(to_world, known.places[i].position);
-      out[i].normal = size > 0 ? normal / size : Vec3{0, 1, 0};
-    }
-  });
-  return out;
-}
-
-/// Relative changes of drafts that may be noise, and those that are the edit's.
-constexpr float kNoise = 0.05f, kEdit = 0.2f;
-
-/// What is known keeps its sharp edges where a draft changes little. Where it changes much, edges
-/// of shadows that were there would stay behind: the draft itself takes its place.
-Rgb after_edit(Rgb known, Rgb drafted_before, Rgb drafted) {
-  const float most = std::max(max_component(drafted_before), max_component(drafted));
-  if (!(most > 0)) return known;
-  const Rgb by = drafted - drafted_before;
-  const float change = std::max({std::abs(by.x), std::abs(by.y), std::abs(by.z)}) / most;
-  const float share = std::clamp((change - kNoise) / (kEdit - kNoise), 0.0f, 1.0f);
-  return max((known + by) * (1 - share) + drafted * share, Rgb{});
+float area_of(const scene::Scene& scene) {
+  double sum = 0;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const size_t triangles = scene.meshes[scene.instances[i].mesh].triangles.size();
+    for (uint32_t t = 0; t < triangles; ++t)
+      sum += double(scene::area_m2(scene::world_triangle(scene, i, t)));
+  }
+  return float(sum);
 }
 
 }  // namespace
 
-KnownLight known_light(const light::TexelScene& in, const Draft& draft) {
-  KnownLight out;
-  out.atlas = in.atlas, out.map = in.map;
-  out.places.resize(in.map.texels.size());
-  std::vector<Mat34> world_from_object;
-  for (const scene::Instance& instance : in.scene.instances)
-    world_from_object.push_back(instance.world_from_object);
-  parallel_for(out.places.size(), kGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const scene::SurfacePoint& at = in.map.texels[i].sample;
-      const scene::Mesh& mesh = in.scene.meshes[in.scene.instances[at.instance].mesh];
-      const auto& [a, b, c] = mesh.triangles[at.triangle];
-      const Vec3 pa = mesh.positions[a], pb = mesh.positions[b], pc = mesh.positions[c];
-      out.places[i] = {interpolate(pa, pb, pc, at.at), cross(pb - pa, pc - pa)};
-    }
-  });
-  out.drafted = light_of_draft(draft, draft.irradiance, placed(out, world_from_object));
-  return out;
+bool flat_is_quicker(const scene::Scene& scene, double rays) {
+  const double flat = kSort_s * double(scene::first_triangles(scene).back());
+  return flat < kInstance_s * double(scene.instances.size()) + kTwoLevels_s * rays;
 }
 
-std::vector<Rgb> light_after_edit(const KnownLight& known, const Draft& edited,
-                                  std::span<const Mat34> world_from_object) {
-  std::vector<Rgb> out =
-      light_of_draft(edited, edited.irradiance, placed(known, world_from_object));
-  for (size_t i = 0; i < out.size(); ++i)
-    out[i] = after_edit(known.irradiance[i], known.drafted[i], out[i]);
+Result<std::shared_ptr<KnownLight>> known_light(const light::TexelScene& in,
+                                                const scene::Scene& as_read) {
+  auto out = std::make_shared<KnownLight>();
+  out->scene = in.scene, out->atlas = in.atlas, out->map = in.map;
+  out->is_apart = !flat_is_quicker(in.scene, kRaysOfEstimates);
+  LUXEL_TRY(trace::RayTracer tracer, out->is_apart ? trace::RayTracer::build_apart(out->scene)
+                                                   : trace::RayTracer::build(out->scene));
+  out->tracer.emplace(std::move(tracer));
+  out->material_as_read = materials_as_read(as_read, in.scene, {});
+  out->position = in.elements.position, out->normal = in.elements.geometric_normal;
+  out->texel_m2 = area_of(in.scene) / float(std::max<size_t>(in.map.texels.size(), 1));
   return out;
 }
 

@@ -1,32 +1,36 @@
-// Light of a bake that follows edits of its scene by what drafts say of them.
+// What is known of a bake's light, from which light follows an edit of its scene.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "luxel/light/texel_scene.h"
-#include "luxel/view/live/draft.h"
+#include "luxel/trace/ray_tracer.h"
 
 namespace luxel::view {
 
-/// What is known of the texels of a bake.
+/// Light of the texels of a bake, and the scene as it was laid out for it. It stays where it is:
+/// the tracer looks at the scene.
 struct KnownLight {
+  scene::Scene scene;
+  std::optional<trace::RayTracer> tracer;  ///< of it
+  bool is_apart = false;                   ///< meshes are stored once: RayTracer::moved() is quick
   atlas::Atlas atlas;
   atlas::TexelMap map;
-  /// A place of the surface of each texel and the normal of its front, both in the coordinates of
-  /// its instance's mesh.
-  std::vector<Place> places;
-  std::vector<Rgb> irradiance;  ///< E [W/m^2]
-  std::vector<Rgb> drafted;     ///< what a draft of the same scene has there
+  std::vector<uint32_t> material_as_read;  ///< per material, the one of the scene as it was read
+  std::vector<Vec3> position, normal;      ///< of each texel, in the world [m]; of its triangle
+  float texel_m2 = 0;                      ///< what a texel covers of surfaces in the mean
+  std::vector<Rgb> irradiance;             ///< E [W/m^2]
+  std::vector<Rgb> direct;                 ///< the part of it that comes straight from lights
 };
 
-/// `draft` is one of the scene that `in` was laid out from; E is to be filled in.
-KnownLight known_light(const light::TexelScene& in, const Draft& draft);
+/// `as_read`: the scene before it was laid out. E is to be filled in. Errors: no memory.
+Result<std::shared_ptr<KnownLight>> known_light(const light::TexelScene& in,
+                                                const scene::Scene& as_read);
 
-/// E of each texel after an edit: what is known, and what the draft of the edited scene has more or
-/// less there than the one before; where that is much, the draft's. So light stays sharp where
-/// nothing has changed. The instances stand where `world_from_object` says.
-std::vector<Rgb> light_after_edit(const KnownLight& known, const Draft& edited,
-                                  std::span<const Mat34> world_from_object);
+/// Whether sorting all triangles of a scene anew and tracing so many rays in them takes less time
+/// than RayTracer::moved() and as many rays, which then go through two levels.
+bool flat_is_quicker(const scene::Scene& scene, double rays);
 
 }  // namespace luxel::view

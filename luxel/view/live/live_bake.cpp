@@ -115,7 +115,7 @@ class Worker : public LiveBake {
     BakeRun run(settings_, watcher_, *progress_);
     pipeline::BakeObserver observer;
     observer.on_read = [&](const scene::Scene& scene) {
-      auto read = read_scene(scene, settings_);
+      auto read = read_scene(scene, settings_, TracedFor::edits);
       if (!read) return;  // the bake ends with the same error
       has_read(*read);
       progress_->begin("draft", 0);
@@ -154,12 +154,13 @@ class Worker : public LiveBake {
     SceneNow now;
     const std::shared_ptr<Progress> progress = begin_edit(now);
     BakeRun run(of_edits_, watcher_, *progress);
-    if (exposure_) run.follow(*exposure_, known_);
+    if (exposure_) run.follow(*exposure_, known_, is_known_shown_);
     progress->begin("draft", 0);
     auto read = read_scene(edited(as_read_->scene, now), *as_read_);
     if (!read) return has_failed(read.error().message);
     if (const Status begun = run.begin(*read, kQuickDraft, ends_); !begun)
       return has_failed(begun.error().message);
+    is_known_shown_ = is_known_shown_ || run.follows();
     has_draft();
     {
       const std::scoped_lock lock(mutex_);
@@ -184,7 +185,7 @@ class Worker : public LiveBake {
   void end(BakeRun& run, Result<pipeline::Bake> baked, pipeline::BakeCache& cache) {
     progress_->finish();
     exposure_ = run.exposure();
-    if (run.known()) known_ = run.known();
+    learn(run);
     if (!baked && comes_to_rest()) return;
     if (!baked) return has_failed(baked.error().message);
     cache.finish(*progress_);
@@ -200,6 +201,14 @@ class Worker : public LiveBake {
     const std::scoped_lock lock(mutex_);
     if (ends_early_ && !edit_) state_ = LiveState::paused;
     return ends_early_;
+  }
+  /// Light that is known in part is better than none. But where it follows an edit it is made of an
+  /// estimate: what is known as a whole is a better ground for the next.
+  void learn(const BakeRun& run) {
+    const std::shared_ptr<const KnownLight> light = run.known();
+    const bool is_better = light && (!known_ || run.knows_all());
+    if (is_better) known_ = light;
+    if (light) is_known_shown_ = is_better;
   }
   /// An edit that has come meanwhile is no failure.
   void has_failed(std::string sentence) {
@@ -264,6 +273,7 @@ class Worker : public LiveBake {
   std::shared_ptr<const ReadScene> as_read_;
   std::optional<float> exposure_;  ///< of the light that was handed over last
   std::shared_ptr<const KnownLight> known_;
+  bool is_known_shown_ = false;          ///< what is shown is laid out as it is
   std::optional<pipeline::Bake> baked_;  ///< of the scene as it is now
   std::thread thread_;                   ///< the last: it uses all of the others
 };

@@ -14,7 +14,6 @@
 #include "luxel/scene/procedural.h"
 #include "luxel/view/live/draft.h"
 #include "luxel/view/live/fade.h"
-#include "luxel/view/live/known_light.h"
 
 namespace luxel::view {
 namespace {
@@ -260,72 +259,6 @@ TEST(Draft, HasLightWhereABakeHasIt) {
   };
   ASSERT_TRUE(pipeline::bake_scene(scene, settings, progress, observer));
   EXPECT_LT(off / all, 0.08);
-}
-
-/// The light of a bake, to be asked for at places.
-Draft as_draft(const scene::Scene& scene, const pipeline::BakeSettings& settings) {
-  Progress progress;
-  auto bake = pipeline::bake_scene(scene, settings, progress);
-  EXPECT_TRUE(bake);
-  Draft out;
-  out.scene = std::move(bake->scene), out.atlas = std::move(bake->atlas);
-  out.map = std::move(bake->map), out.irradiance = std::move(bake->light.irradiance);
-  return out;
-}
-
-double mean_difference(std::span<const Rgb> a, std::span<const Rgb> b) {
-  double off = 0, all = 0;
-  for (size_t i = 0; i < a.size(); ++i)
-    off += double(std::abs(a[i].y - b[i].y)), all += double(b[i].y);
-  return off / all;
-}
-
-// Where an edit changes little, what was known is better than any draft.
-TEST(KnownLight, IsNearerToTheEditedScenesThanADraft) {
-  const scene::Scene scene = scene::cornell_box();
-  scene::Scene moved = scene;
-  Mat34& box = moved.instances.back().world_from_object;
-  box = translation({0.05f, 0, 0.05f}) * box;
-  pipeline::BakeSettings settings;
-  settings.output = ::testing::TempDir();
-  settings.resolution = 128, settings.samples = 64;
-  const Progress nobody;
-  const auto before = make_draft(scene, settings, kQuickDraft, nobody);
-  const auto after = make_draft(moved, settings, kQuickDraft, nobody);
-  ASSERT_TRUE(before && after);
-  KnownLight known;
-  pipeline::BakeObserver observer;
-  observer.on_estimate = [&](const light::TexelScene& in, const light::LightEstimate& light) {
-    if (!light.is_last) return;
-    known = known_light(in, **before);
-    known.irradiance.assign(light.irradiance.begin(), light.irradiance.end());
-  };
-  Progress progress;
-  const auto bake = pipeline::bake_scene(scene, settings, progress, observer);
-  ASSERT_TRUE(bake);
-  std::vector<Place> places;
-  scene::Scene moved_as_baked = bake->scene;
-  moved_as_baked.instances.back().world_from_object = box;
-  for (const atlas::Texel& texel : known.map.texels)
-    places.push_back(
-        {scene::world_position(moved_as_baked, texel.sample),
-         scene::front_normal(moved_as_baked, texel.sample.instance, texel.sample.triangle)});
-  Draft truth = as_draft(moved, settings);
-  truth.tracer.emplace(std::move(*trace::RayTracer::build(truth.scene)));
-  const auto wanted = light_of_draft(truth, truth.irradiance, places);
-  std::vector<Mat34> world_from_object;
-  for (const scene::Instance& instance : moved.instances)
-    world_from_object.push_back(instance.world_from_object);
-  const std::vector<Rgb> followed = light_after_edit(known, **after, world_from_object);
-  const std::vector<Rgb> drafted = light_of_draft(**after, (*after)->irradiance, places);
-  EXPECT_LT(mean_difference(followed, wanted), 0.06) << "with the old light it would be 0.15";
-  std::vector<Rgb> of[3];  // where the edit changes less than 2 %: follows, is drafted, is wanted
-  for (size_t i = 0; i < wanted.size(); ++i) {
-    if (std::abs(known.irradiance[i].y - wanted[i].y) > 0.02f * wanted[i].y) continue;
-    of[0].push_back(followed[i]), of[1].push_back(drafted[i]), of[2].push_back(wanted[i]);
-  }
-  ASSERT_GT(of[2].size(), wanted.size() / 10);
-  EXPECT_LT(mean_difference(of[0], of[2]), 0.8 * mean_difference(of[1], of[2]));
 }
 
 TEST(Draft, IsNotMadeWhereTheBakeIsNoFiner) {

@@ -1,0 +1,258 @@
+#include "luxel/view/live/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "luxel/base/parallel.h"
+#include "luxel/light/direct_light.h"
+#include "luxel/view/live/spread_texels.h"
+
+namespace luxel::view {
+namespace {
+
+constexpr size_t kEstimateGrain = 4096;
+
+/// Estimates change what is known by a factor. Where it differs from place to place by more than
+/// kNoise, its relative standard deviation, edges of shadows that were there would stay behind: the
+/// estimate takes the place of what is known, in part, and above kEdit as a whole.
+constexpr float kNoise = 0.03f, kEdit = 0.15f;
+/// So does it where light grows by more than the first, and as a whole above kMostFactor: what was
+/// dark by then had other reasons.
+constexpr float kGrows = 1.5f;
+
+Box3 box_of(const scene::Scene& scene, uint32_t instance) {
+  Box3 out;
+  const scene::Instance& placed = scene.instances[instance];
+  for (const Vec3& p : scene.meshes[placed.mesh].positions)
+    out.extend(transform_point(placed.world_from_object, p));
+  return out;
+}
+
+bool shines(const scene::Scene& scene, const scene::Mesh& mesh) {
+  return std::ranges::any_of(mesh.triangle_material, [&](uint32_t m) {
+    return max_component(scene.materials[m].emission) > 0;
+  });
+}
+
+bool is_same_lamp(const scene::PunctualLight& a, const scene::PunctualLight& b) {
+  return a.kind == b.kind && a.intensity == b.intensity && a.position == b.position &&
+         a.direction == b.direction && a.range_m == b.range_m &&
+         a.inner_cone_rad == b.inner_cone_rad && a.outer_cone_rad == b.outer_cone_rad &&
+         a.angular_radius_rad == b.angular_radius_rad && a.profile == b.profile && a.side == b.side;
+}
+
+/// What an edit changes.
+struct Changes {
+  std::vector<uint8_t> moved;  ///< per instance
+  std::vector<Box3> boxes;     ///< where something was or is; none: all that is lit changes
+};
+
+/// Puts what was edited into the scene as it was laid out.
+Changes put_edits_into(const scene::Scene& edited, std::span<const uint32_t> material_as_read,
+                       scene::Scene& scene) {
+  Changes out;
+  bool is_everywhere = false;
+  out.moved.resize(scene.instances.size());
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const Mat34& to = edited.instances[i].world_from_object;
+    if (scene.instances[i].world_from_object == to) continue;
+    out.moved[i] = 1;
+    out.boxes.push_back(box_of(scene, i));
+    scene.instances[i].world_from_object = to;
+    out.boxes.push_back(box_of(scene, i));
+    is_everywhere = is_everywhere || shines(scene, scene.meshes[scene.instances[i].mesh]);
+  }
+  for (size_t m = 0; m < scene.materials.size(); ++m) {
+    const scene::Material& to = edited.materials[material_as_read[m]];
+    scene::Material& material = scene.materials[m];
+    is_everywhere =
+        is_everywhere || material.base_color != to.base_color || material.emission != to.emission;
+    material.base_color = to.base_color, material.emission = to.emission;
+  }
+  for (size_t k = 0; k < std::max(scene.lights.size(), edited.lights.size()); ++k) {
+    const bool was = k < scene.lights.size(), is = k < edited.lights.size();
+    if (was && is && is_same_lamp(scene.lights[k], edited.lights[k])) continue;
+    for (const bool before : {true, false}) {
+      if (before ? !was : !is) continue;
+      const scene::PunctualLight& light = before ? scene.lights[k] : edited.lights[k];
+      is_everywhere = is_everywhere || light.kind == scene::PunctualLight::Kind::directional;
+      out.boxes.push_back({light.position, light.position});
+    }
+  }
+  scene.lights = edited.lights;
+  if (is_everywhere) out.boxes.clear();
+  return out;
+}
+
+/// How far x lies on the way from `begin` to `end`, between 0 and 1.
+float part_of_way(float x, float begin, float end) {
+  return std::clamp((x - begin) / (end - begin), 0.0f, 1.0f);
+}
+
+/// A kind of light where a texel is, by the cells around it.
+struct Change {
+  Rgb before, after;
+  float weight_before = 0, weight_after = 0;
+  float weight = 0, factor = 0, factor2 = 0;  ///< of factors: sums
+  float all = 0;
+  Rgb beside;  ///< of cells within solids
+  float weight_beside = 0;
+  bool is_one = false;  ///< there is any
+
+  /// Light within solids is none of the light beside them.
+  void add(float w, Rgb was, Rgb is, bool hidden_before, bool hidden_after) {
+    if (hidden_after) beside += is * w, weight_beside += w;
+    if (hidden_before && hidden_after) return;
+    all += w;
+    is_one = is_one || was != is || hidden_before != hidden_after;
+    if (!hidden_before) before += was * w, weight_before += w;
+    if (!hidden_after) after += is * w, weight_after += w;
+    const float l = luminance(was), l_after = luminance(is);
+    if (hidden_before || hidden_after || !(l + l_after > 0)) return;
+    const float f = std::min(l_after / l, 2 * kMostFactor);  // infinite where it was dark
+    weight += w, factor += w * f, factor2 += w * f * f;
+  }
+  /// How much of what is known the estimate takes the place of.
+  float estimated() const {
+    if (!is_one || weight_after <= 0) return 0;
+    if (weight <= 0 || factor <= 0) return 1;
+    const float mean = factor / weight;
+    const float differ = std::sqrt(std::max(factor2 / weight - mean * mean, 0.0f)) / mean;
+    return std::max({part_of_way(differ, kNoise, kEdit), part_of_way(mean, kGrows, kMostFactor),
+                     1 - weight_before / all});
+  }
+  Rgb of(Rgb known) const {
+    if (!is_one || weight_after <= 0) return known;
+    const Rgb estimate = after / weight_after;
+    const float part = estimated();
+    if (part >= 1) return estimate;
+    return scaled(known, before / weight_before, estimate) * (1 - part) + estimate * part;
+  }
+  /// Of a texel that may have come out of the solid in which all of its cells still are.
+  Rgb of_freed() const {
+    return weight_after <= 0 && weight_beside > 0 ? beside / weight_beside : of({});
+  }
+};
+struct Around {
+  Change direct, reflected;
+};
+
+Around around_texel(const SpreadTexels& spread, const Estimates& e, size_t texel) {
+  std::array<CellShare, kMostShares> shares;
+  const size_t count = spread.shares_at(texel, shares);
+  Around out;
+  for (size_t k = 0; k < count; ++k) {
+    const auto [cell, weight] = shares[k];
+    const Rgb was = e.direct_before[cell], is = e.direct_after[cell];
+    const bool hidden_before = e.hidden_before[cell], hidden_after = e.hidden_after[cell];
+    out.direct.add(weight, was, is, hidden_before, hidden_after);
+    out.reflected.add(weight, e.reflected_before[cell], e.reflected_after[cell], hidden_before,
+                      hidden_after);
+  }
+  return out;
+}
+
+/// So many of the texels as may be whose direct light needs an estimate: those that need it most,
+/// and of them those in the finest cells.
+std::vector<uint32_t> to_sharpen(const SpreadTexels& spread, std::span<const uint8_t> estimated,
+                                 size_t most) {
+  constexpr size_t kLevels = 32;
+  const auto rank = [&](size_t i) {
+    return kLevels * size_t(255 - estimated[i]) + size_t(spread.level_of(i));
+  };
+  std::vector<size_t> of(kLevels * 256);
+  for (size_t i = 0; i < estimated.size(); ++i) ++of[rank(i)];
+  size_t end = 0;
+  for (size_t sum = 0; end < kLevels * 255 && sum + of[end] <= most;) sum += of[end++];
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < estimated.size(); ++i)
+    if (rank(i) < end) out.push_back(i);
+  return out;
+}
+
+/// Direct light of texels of their own, in place of that of their cells.
+Status sharpen(const KnownLight& known, const SceneState& state, std::span<const uint32_t> chosen,
+               const EstimateParams& params, Draft& out) {
+  if (chosen.empty()) return {};
+  const transport::Elements elements =
+      transport::elements_from_texels(state.scene, known.atlas, map_of_chosen(known.map, chosen));
+  Progress own;
+  LUXEL_TRY(const light::DirectLight direct,
+            light::direct_light(
+                state.scene, elements, state.lights, state.tracer,
+                {.samples = params.sharp_samples, .seed = params.seed, .same_points = true}, own));
+  for (size_t k = 0; k < chosen.size(); ++k) {
+    const uint32_t i = chosen[k];
+    out.irradiance[i] = max(out.irradiance[i] - out.direct[i], Rgb{}) + direct.irradiance[k];
+    out.direct[i] = direct.irradiance[k];
+  }
+  return {};
+}
+
+/// Texels of what moves stand for nothing else.
+std::vector<uint32_t> bodies(const KnownLight& known, std::span<const uint8_t> moved) {
+  std::vector<uint32_t> out(known.map.texels.size());
+  for (size_t i = 0; i < out.size(); ++i) {
+    const uint32_t instance = known.map.texels[i].sample.instance;
+    out[i] = moved[instance] ? instance + 1 : 0;
+  }
+  return out;
+}
+
+/// Whether nothing is known of a texel where something has gone away.
+bool is_freed(const KnownLight& known, std::span<const Box3> boxes, size_t i) {
+  if (max_component(known.irradiance[i]) > 0) return false;
+  const Vec3 p = known.position[i];
+  const float near_m = 2 * std::sqrt(known.texel_m2);
+  return std::ranges::any_of(boxes, [&](const Box3& box) {
+    return max_component(max(box.lower - p, p - box.upper)) < near_m;
+  });
+}
+
+/// Light of all texels by that of their cells. Returns by which part of 255 an estimate takes the
+/// place of what is known of their direct light.
+std::vector<uint8_t> spread_light(const KnownLight& known, const SpreadTexels& spread,
+                                  const Estimates& e, std::span<const Box3> boxes, Draft& out) {
+  std::vector<uint8_t> estimated(known.map.texels.size());
+  out.irradiance.resize(estimated.size()), out.direct.resize(estimated.size());
+  parallel_for(estimated.size(), kEstimateGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Around at = around_texel(spread, e, i);
+      const Rgb reflected = max(known.irradiance[i] - known.direct[i], Rgb{});
+      const bool freed = is_freed(known, boxes, i);
+      out.direct[i] = freed ? at.direct.of_freed() : at.direct.of(known.direct[i]);
+      out.irradiance[i] =
+          out.direct[i] + (freed ? at.reflected.of_freed() : at.reflected.of(reflected));
+      estimated[i] = freed ? 255 : uint8_t(std::ceil(255 * at.direct.estimated()));
+    }
+  });
+  return estimated;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Draft>> estimate_light(const KnownLight& known, const scene::Scene& edited,
+                                              const EstimateParams& params,
+                                              const Progress& watched) {
+  auto out = std::make_unique<Draft>();
+  out->scene = known.scene, out->atlas = known.atlas, out->map = known.map;
+  const Changes changes = put_edits_into(edited, known.material_as_read, out->scene);
+  LUXEL_TRY(trace::RayTracer tracer,
+            known.is_apart ? known.tracer->moved(out->scene) : trace::RayTracer::build(out->scene));
+  out->tracer.emplace(std::move(tracer));
+  const light::Lights lights_before = light::collect_lights(known.scene),
+                      lights = light::collect_lights(out->scene);
+  const SceneState before{known.scene, *known.tracer, lights_before},
+      after{out->scene, *out->tracer, lights};
+  const std::vector<uint32_t> body = bodies(known, changes.moved);
+  const SpreadTexels spread({known.position, known.normal, body, known.texel_m2},
+                            {std::sqrt(known.texel_m2), changes.boxes}, params.texels);
+  LUXEL_TRY_STATUS(stopped(watched));
+  LUXEL_TRY(const Estimates e, light_by_few_rays(known, before, after, spread, params, watched));
+  const std::vector<uint8_t> estimated = spread_light(known, spread, e, changes.boxes, *out);
+  LUXEL_TRY_STATUS(
+      sharpen(known, after, to_sharpen(spread, estimated, params.sharp), params, *out));
+  return out;
+}
+
+}  // namespace luxel::view

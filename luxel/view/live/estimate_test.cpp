@@ -1,0 +1,154 @@
+// Light after an edit, held against what must follow and against bakes of the edited scene.
+#include "luxel/view/live/estimate.h"
+
+#include <gtest/gtest.h>
+
+#include "luxel/pipeline/bake/bake_scene.h"
+#include "luxel/scene/procedural.h"
+#include "luxel/view/live/spread_texels.h"
+
+namespace luxel::view {
+namespace {
+
+/// The light of a bake, to be asked for at places.
+Draft as_draft(const scene::Scene& scene, const pipeline::BakeSettings& settings) {
+  Progress progress;
+  auto bake = pipeline::bake_scene(scene, settings, progress);
+  EXPECT_TRUE(bake);
+  Draft out;
+  out.scene = std::move(bake->scene), out.atlas = std::move(bake->atlas);
+  out.map = std::move(bake->map), out.irradiance = std::move(bake->light.irradiance);
+  return out;
+}
+
+double mean_difference(std::span<const Rgb> a, std::span<const Rgb> b) {
+  double off = 0, all = 0;
+  for (size_t i = 0; i < a.size(); ++i)
+    off += double(std::abs(a[i].y - b[i].y)), all += double(b[i].y);
+  return off / all;
+}
+
+pipeline::BakeSettings box_settings() {
+  pipeline::BakeSettings out;
+  out.output = ::testing::TempDir();
+  out.resolution = 128, out.samples = 64;
+  return out;
+}
+
+/// A bake of a scene, as light is known of it.
+std::shared_ptr<KnownLight> known_of(const scene::Scene& scene,
+                                     const pipeline::BakeSettings& settings) {
+  std::shared_ptr<KnownLight> out;
+  pipeline::BakeObserver observer;
+  observer.on_estimate = [&](const light::TexelScene& in, const light::LightEstimate& light) {
+    if (!light.is_last) return;
+    out = *known_light(in, scene);
+    out->irradiance.assign(light.irradiance.begin(), light.irradiance.end());
+    out->direct.assign(light.direct.begin(), light.direct.end());
+  };
+  Progress progress;
+  EXPECT_TRUE(pipeline::bake_scene(scene, settings, progress, observer));
+  return out;
+}
+
+/// Light of a bake of the edited scene at the texels of an estimate of it.
+std::vector<Rgb> wanted_at(const Draft& estimate, const scene::Scene& edited,
+                           const pipeline::BakeSettings& settings) {
+  Draft truth = as_draft(edited, settings);
+  truth.tracer.emplace(std::move(*trace::RayTracer::build(truth.scene)));
+  std::vector<Place> places;
+  for (const atlas::Texel& texel : estimate.map.texels)
+    places.push_back(
+        {scene::world_position(estimate.scene, texel.sample),
+         scene::front_normal(estimate.scene, texel.sample.instance, texel.sample.triangle)});
+  return light_of_draft(truth, truth.irradiance, places);
+}
+
+// Rays meet what they met, so that light is what it was, also at an edit that changes nothing.
+TEST(Estimate, LeavesLightAloneThatNothingChanges) {
+  const scene::Scene scene = scene::cornell_box();
+  const auto known = known_of(scene, box_settings());
+  const Progress nobody;
+  const auto estimate = estimate_light(*known, scene, {}, nobody);
+  ASSERT_TRUE(estimate);
+  ASSERT_EQ((*estimate)->irradiance.size(), known->irradiance.size());
+  for (size_t i = 0; i < known->irradiance.size(); ++i)
+    EXPECT_LE(length((*estimate)->irradiance[i] - known->irradiance[i]),
+              1e-5f * length(known->irradiance[i]));
+}
+
+// Light is linear: a lamp of half the strength gives half of all of it, everywhere.
+TEST(Estimate, HalvesAllLightOfALampThatIsHalved) {
+  const scene::Scene scene = scene::cornell_box();
+  scene::Scene dimmed = scene;
+  for (scene::Material& m : dimmed.materials) m.emission = m.emission * 0.5f;
+  const auto known = known_of(scene, box_settings());
+  const Progress nobody;
+  const auto estimate = estimate_light(*known, dimmed, {}, nobody);
+  ASSERT_TRUE(estimate);
+  std::vector<Rgb> wanted = known->irradiance;
+  for (Rgb& e : wanted) e = e * 0.5f;
+  EXPECT_LT(mean_difference((*estimate)->irradiance, wanted), 0.01) << "with the old light: 1";
+}
+
+// A bake of the edited scene knows.
+TEST(Estimate, IsNearToTheLightOfTheEditedScene) {
+  const scene::Scene scene = scene::cornell_box();
+  scene::Scene moved = scene;
+  Mat34& box = moved.instances.back().world_from_object;
+  box = translation({0.05f, 0, 0.05f}) * box;
+  const auto known = known_of(scene, box_settings());
+  const Progress nobody;
+  const auto estimate = estimate_light(*known, moved, {}, nobody);
+  ASSERT_TRUE(estimate);
+  const std::vector<Rgb> wanted = wanted_at(**estimate, moved, box_settings());
+  EXPECT_LT(mean_difference((*estimate)->irradiance, wanted), 0.045)
+      << "with the old light it would be 0.15, and 0.06 with a draft";
+  // Where the edit changes less than 2 %, what was known is better than any draft.
+  const auto draft = make_draft(moved, box_settings(), kQuickDraft, nobody);
+  ASSERT_TRUE(draft && *draft);
+  std::vector<Place> places;
+  for (const atlas::Texel& texel : known->map.texels)
+    places.push_back(
+        {scene::world_position((*estimate)->scene, texel.sample),
+         scene::front_normal((*estimate)->scene, texel.sample.instance, texel.sample.triangle)});
+  const std::vector<Rgb> drafted = light_of_draft(**draft, (*draft)->irradiance, places);
+  std::vector<Rgb> of[3];  // is estimated, is drafted, is wanted
+  for (size_t i = 0; i < wanted.size(); ++i) {
+    if (std::abs(known->irradiance[i].y - wanted[i].y) > 0.02f * wanted[i].y) continue;
+    of[0].push_back((*estimate)->irradiance[i]), of[1].push_back(drafted[i]);
+    of[2].push_back(wanted[i]);
+  }
+  ASSERT_GT(of[2].size(), wanted.size() / 10);
+  EXPECT_LT(mean_difference(of[0], of[2]), 0.5 * mean_difference(of[1], of[2]));
+}
+
+// Texels beside each other have nearly the same shares, weights of texels in the middle of what is
+// even add up to 1, and what moves stands for nothing else.
+TEST(SpreadTexels, AreCloseTogetherWhereSomethingIsEdited) {
+  std::vector<Vec3> position, normal;
+  std::vector<uint32_t> body;
+  for (int y = 0; y < 200; ++y)
+    for (int x = 0; x < 200; ++x) {
+      position.push_back({0.05f * float(x), 0.013f, 0.05f * float(y)});
+      normal.push_back({0, 1, 0}), body.push_back(x < 10 && y < 10 ? 7 : 0);
+    }
+  const SpreadTexels spread({position, normal, body, 0.0025f},
+                            {0.05f, {{{0, 0, 0}, {0.5f, 0.5f, 0.5f}}}}, 2000);
+  EXPECT_GT(spread.size(), 200u);
+  EXPECT_LE(spread.size(), 3000u);
+  EXPECT_GT(spread.level_of(199 * 200 + 199), spread.level_of(20 * 200 + 20));
+  for (size_t i = 0; i < position.size(); ++i) {
+    std::array<CellShare, kMostShares> shares;
+    const size_t count = spread.shares_at(i, shares);
+    ASSERT_GE(count, 1u);
+    for (size_t k = 0; k < count; ++k) {
+      const uint32_t other = spread.texels()[shares[k].cell];
+      EXPECT_EQ(body[other], body[i]);
+      EXPECT_EQ(spread.level_of(other), spread.level_of(i));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace luxel::view

@@ -6,7 +6,8 @@
 
 Each row is a play in a window of 640 x 480 on a virtual display (xvfb-run): a bake of scenes/office.glb seen in each
 way, solvers that are looked into when they have come to rest, a scene that is baked meanwhile, an object and a lamp
-that are dragged. Without ../shared the living room is left out.
+that are dragged, and for the lamp also what the update of its light alone takes. Without ../shared the living room is
+left out.
 Columns: what, frames, the median and the 95th percentile of their times [ms], the share under 150 ms [%], and the
 largest change of brightness from one frame to the next [%], of plays in which the camera stands still.
 """
@@ -19,20 +20,24 @@ import sys
 import tempfile
 
 SIZE = "640x480"
+UPDATE = ("direct_ms", "bounces_ms", "places_ms")
 KINDS = ("both", "light", "colour", "irradiance", "checker", "density", "charts", "seams", "overlaps")
 INSIDE = {"hierarchical": ("flat", "gouraud", "gouraud-disc", "interpolant"),
           "hemicube": ("c", "cad", "cads", "cads-pixel", "normals", "radiosity-vertex", "radiosity")}
 ROOM = pathlib.Path(__file__).parents[2] / "shared/scenes/living_room/living_room.glb"
 
 
-def turning(seconds, frames_per_s, first=()):
-    """A play that turns the camera to and fro."""
+def turning(seconds, frames_per_s, kinds, first=()):
+    """A play that turns the camera to and fro, so many seconds for each kind of picture."""
     events = [{"at": 0, **event} for event in first]
     events += [{"at": 0, "pointer": [320, 240]}, {"at": 0, "press": "right"}]
-    for frame in range(1, int(seconds * frames_per_s)):
+    for frame in range(int(seconds * frames_per_s) * len(kinds)):
+        kind, of_kind = divmod(frame, int(seconds * frames_per_s))
+        if of_kind == 0:
+            events.append({"at": frame / frames_per_s, "show": kinds[kind]})
         aside = abs(frame % 40 - 20)
         events.append({"at": frame / frames_per_s, "pointer": [320 + 4 * aside, 240 + 2 * aside]})
-    return {"frames_per_s": frames_per_s, "end": seconds, "events": events}
+    return {"frames_per_s": frames_per_s, "end": seconds * len(kinds), "events": events}
 
 
 def walking(seconds, frames_per_s):
@@ -67,12 +72,12 @@ def dragging_block(seconds, frames_per_s):
     return {"frames_per_s": frames_per_s, "end": seconds, "events": events}
 
 
-def row_of(what, frames, stands):
-    """`frames`: rows of --frame-times as dictionaries."""
+def row_of(what, frames, stands, digits=0):
+    """`frames`: rows of --frame-times as dictionaries. `stands`: the camera does not move."""
     times = sorted(float(frame["milliseconds"]) for frame in frames)
     jumps = [abs(float(b["brightness"]) / float(a["brightness"]) - 1)
              for a, b in zip(frames, frames[1:]) if stands and a["has_light"] == "1"]
-    return [what, len(times), f"{times[len(times) // 2]:.0f}", f"{times[len(times) * 95 // 100]:.0f}",
+    return [what, len(times), f"{times[len(times) // 2]:.{digits}f}", f"{times[len(times) * 95 // 100]:.{digits}f}",
             f"{100 * sum(time < 150 for time in times) / len(times):.1f}",
             f"{100 * max(jumps):.2f}" if stands else "-"]
 
@@ -83,32 +88,38 @@ def run(*arguments):
 
 def measure(bin, folder):
     """Yields the rows."""
-    def played(what, play, subject, *options, stands=False):
+    def played(play, subject, *options):
         (folder / "play.json").write_text(json.dumps(play), encoding="utf-8")
         run("xvfb-run", "-a", "-s", "-screen 0 1280x800x24", bin / "luxel-view", subject, *options, "--size", SIZE,
             "--play", folder / "play.json", "--frame-times", folder / "frames.csv")
         with open(folder / "frames.csv", newline="", encoding="utf-8") as file:
             frames = list(csv.DictReader(file))
-        # Those in which a play stands still come first.
-        return row_of(what, frames[-int(play["end"] * play["frames_per_s"]):], stands)
+        # Those in which a play waits come first.
+        return frames[-int(play["end"] * play["frames_per_s"]):]
+
+    def turned(kinds, what, subject, *options, first=()):
+        frames = played(turning(4, 20, kinds, first), subject, *options)
+        each = len(frames) // len(kinds)
+        for kind, name in enumerate(kinds):
+            yield row_of(f"{what}: {name}", frames[kind * each:(kind + 1) * each], False)
 
     root = pathlib.Path(__file__).parents[1]
     office, box = root / "scenes/office.glb", root / "scenes/cornell-box.glb"
     run(bin / "luxel", "bake", office, "-o", folder / "office", "--resolution", "256", "--samples", "64")
-    for kind in KINDS:
-        yield played(f"office.glb baked: {kind}", turning(4, 20, [{"show": kind}]), folder / "office")
+    yield from turned(KINDS, "office.glb baked", folder / "office")
     for solver, kinds in INSIDE.items():
-        for kind in kinds:
-            first = [{"show": kind}, {"wait": "bake"}]
-            yield played(f"office.glb inside {solver}: {kind}", turning(4, 20, first), office, "--inside", solver)
+        yield from turned(kinds, f"office.glb inside {solver}", office, "--inside", solver, first=[{"wait": "bake"}])
     rooms = [(office, [])] + ([(ROOM, ["--sky", "135,45"])] if ROOM.exists() else [])
     for scene, sky in rooms:
-        yield played(f"{scene.name} while it is baked: walking", walking(60, 10), scene, *sky)
+        yield row_of(f"{scene.name} while it is baked: walking", played(walking(60, 10), scene, *sky), False)
         stand = {"frames_per_s": 10, "end": 20, "events": []}
-        yield played(f"{scene.name} while it is baked: standing", stand, scene, *sky, stands=True)
-    yield played("cornell-box.glb: an object is dragged", dragging_block(10, 20), box)
+        yield row_of(f"{scene.name} while it is baked: standing", played(stand, scene, *sky), True)
+    yield row_of("cornell-box.glb: an object is dragged", played(dragging_block(10, 20), box), False)
     run(bin / "luxel", "relight", box, "-o", folder / "box.lxr")
-    yield played("cornell-box.lxr: a lamp is dragged", dragging(10, 20), folder / "box.lxr")
+    dragged = played(dragging(10, 20), folder / "box.lxr")
+    yield row_of("cornell-box.lxr: a lamp is dragged", dragged, False)
+    updates = [{**frame, "milliseconds": sum(float(frame[part]) for part in UPDATE)} for frame in dragged]
+    yield row_of("cornell-box.lxr: a lamp is dragged, update of the light", updates, False, digits=1)
 
 
 def self_test():
@@ -116,7 +127,8 @@ def self_test():
               for m, b, l in ((100, "0.9", "0"), (50, "0.5", "1"), (200, "0.51", "1"), (60, "0.51", "1"))]
     assert row_of("x", frames, True) == ["x", 4, "100", "200", "75.0", "2.00"], row_of("x", frames, True)
     assert row_of("x", frames, False)[5] == "-"
-    for play in (turning(4, 20), walking(60, 10), dragging(10, 20), dragging_block(10, 20)):
+    assert len(turning(4, 20, ("a", "b"))["events"]) == 2 + 2 + 160
+    for play in (turning(4, 20, ("light",)), walking(60, 10), dragging(10, 20), dragging_block(10, 20)):
         times = [event["at"] for event in play["events"]]
         assert times == sorted(times) and times[-1] <= play["end"]
 

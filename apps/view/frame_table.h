@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/view/screen.h"
-#include "luxel/view/shown/shown_scene.h"
+#include "apps/view/subject.h"
 
 namespace luxel::view_window {
 
@@ -15,13 +15,13 @@ struct FrameTable {
     double brightness = 0;   ///< the mean of what the screen shows, in [0, 1] of its range
     double samples = 0;      ///< of the light that came last
     bool has_light = false;  ///< false: colours alone, or nothing yet
+    view::LightTimes light;  ///< of lamps that move
   };
   std::vector<Row> rows;
 };
 
 /// The frame that was just drawn. Reads it back, which is not counted. Errors: the device is lost.
-Status add_row(Screen& screen, float milliseconds, const view::ShownScene& shown,
-               FrameTable& table);
+Status add_row(Screen& screen, float milliseconds, Subject& subject, FrameTable& table);
 
 std::string csv_of(const FrameTable& table);
 

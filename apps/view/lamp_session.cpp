@@ -32,9 +32,9 @@ std::vector<uint32_t> glows_shown(const LampSession& session) {
 
 }  // namespace
 
-LampSession begin_lamps(view::OpenedLxr opened, view::DirectLight direct) {
+LampSession begin_lamps(view::OpenedLxr opened, view::LampDrawing drawing) {
   view::LampDesk desk = view::begin_desk(opened.lamps, scene::world_bounds(opened.read->scene));
-  return LampSession{std::move(opened), std::move(direct), std::move(desk)};
+  return LampSession{std::move(opened), std::move(drawing), std::move(desk)};
 }
 
 LampPanel panel_of(const LampSession& session) {
@@ -118,9 +118,9 @@ Result<view::LightTimes> light_lamps(gpu::Commands& commands, const view::Walk& 
   const trace::CameraRays eye(walk.shown.camera, walk.width, walk.height);
   const view::Lamps& lamps = session.desk.lamps;
   if (std::exchange(session.lit, session.desk.changes) != session.desk.changes)
-    return view::follow_lamps(commands, lamps, &eye, session.opened, session.direct, scene);
+    return view::follow_lamps(commands, lamps, &eye, session.opened, session.drawing, scene);
   view::LightTimes out;
-  LUXEL_TRY(out.shadows, view::follow_eye(commands, lamps, eye, session.direct, scene));
+  LUXEL_TRY(out.shadows, view::follow_eye(commands, lamps, eye, session.drawing, scene));
   return out;
 }
 

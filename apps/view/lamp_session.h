@@ -12,7 +12,7 @@ namespace luxel::view_window {
 
 struct LampSession {
   view::OpenedLxr opened;
-  view::DirectLight direct;
+  view::LampDrawing drawing;
   view::LampDesk desk;
   uint64_t lit = 0;  ///< view::LampDesk::changes that the picture shows
   int selected_glow = -1;
@@ -24,7 +24,7 @@ struct LampSession {
   std::future<Result<std::string>> saving = {};
 };
 
-LampSession begin_lamps(view::OpenedLxr opened, view::DirectLight direct);
+LampSession begin_lamps(view::OpenedLxr opened, view::LampDrawing drawing);
 
 /// What the panel is to show.
 LampPanel panel_of(const LampSession& session);

@@ -67,6 +67,7 @@ class LampSubject : public Subject {
     return {};
   }
   void has_drawn(float milliseconds) override { add_times(lit_, milliseconds, lamps_); }
+  view::LightTimes light_times() const override { return lit_; }
 
   Result<std::string> end() override {
     if (lamps_.check) lamps_.check->wait();
@@ -116,8 +117,9 @@ class LampSubject : public Subject {
 MakeSubject lamp_subject(view::OpenedLxr opened) {
   auto kept = std::make_shared<view::OpenedLxr>(std::move(opened));
   return [kept](gpu::Commands& commands) -> Result<std::unique_ptr<Subject>> {
-    LUXEL_TRY(view::RelitScene relit, view::lxr_shown(commands, *kept));
-    return std::make_unique<LampSubject>(begin_lamps(std::move(*kept), std::move(relit.direct)),
+    LUXEL_TRY(view::RelitScene relit,
+              view::lxr_shown(commands, view::patch_light_of(commands.device()), *kept));
+    return std::make_unique<LampSubject>(begin_lamps(std::move(*kept), std::move(relit.lamps)),
                                          std::move(relit.shown));
   };
 }

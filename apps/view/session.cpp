@@ -239,7 +239,7 @@ Status draw_frame(Session& s) {
   s.panel.milliseconds = float(1000 * seconds_since(begin));
   LUXEL_TRY_STATUS(count_pixels(frame, s));
   if (!s.params.frame_table.empty())
-    LUXEL_TRY_STATUS(add_row(s.screen, s.panel.milliseconds, shown, s.table));
+    LUXEL_TRY_STATUS(add_row(s.screen, s.panel.milliseconds, *s.subject, s.table));
   if (!s.window.asks_for_screenshot()) return {};
   return write_screenshot(shown.device, frame, s.screen, s.panel.message);
 }

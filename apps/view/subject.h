@@ -13,7 +13,7 @@
 #include "luxel/view/draw/painter.h"
 #include "luxel/view/live/live_bake.h"
 #include "luxel/view/model/walk.h"
-#include "luxel/view/relight/open_lxr.h"
+#include "luxel/view/relight/relit_scene.h"
 #include "luxel/view/shown/shown_scene.h"
 
 namespace luxel::view_window {
@@ -63,6 +63,8 @@ class Subject {
   virtual Status prepare(gpu::Commands&, const view::Walk&, view::Frame&) { return {}; }
   /// A frame in the window took so long.
   virtual void has_drawn(float /*milliseconds*/) {}
+  /// What the light of the last frame took.
+  virtual view::LightTimes light_times() const { return {}; }
 
   /// After a play: returns when all that it asked for is done, with what is to be told. Errors:
   /// what could not be done.

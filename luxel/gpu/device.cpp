@@ -273,7 +273,7 @@ Status Device::choose(const DeviceParams& params) {
 Status Device::open_device(const DeviceParams& params) {
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical, &properties);
-  limits = properties.limits;
+  limits = properties.limits, type = properties.deviceType;
   vkGetPhysicalDeviceMemoryProperties(physical, &memory_);
   queue_family = *queue_family_of(physical);
   const float priority = 1;

@@ -6,11 +6,13 @@
 #include <cmath>
 
 #include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
 
 namespace luxel::image {
 namespace {
 
 constexpr int kTopExponent = 15;  ///< scaled colours lie below 2^15
+constexpr size_t kGrain = 1 << 16;
 
 float scale_of(const Image& image) {
   float largest = 0;
@@ -31,11 +33,13 @@ HalfImage to_half(const Image& image) {
   HalfImage out{image.width, image.height, image.channels, scale_of(image), {}};
   out.data.resize(image.data.size());
   const size_t channels = size_t(image.channels);
-  for (size_t i = 0; i < image.data.size(); ++i) {
-    const bool is_alpha = channels == 4 && i % channels == 3;
-    const float scaled = is_alpha ? image.data[i] : image.data[i] / out.scale;
-    out.data[i] = Imath::half(scaled).bits();
-  }
+  parallel_for(image.data.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const bool is_alpha = channels == 4 && i % channels == 3;
+      const float scaled = is_alpha ? image.data[i] : image.data[i] / out.scale;
+      out.data[i] = Imath::half(scaled).bits();
+    }
+  });
   return out;
 }
 

@@ -54,27 +54,27 @@ void spread(std::span<const Moments> sent, size_t begin, size_t end, std::span<S
 
 /// A block is read as a whole, 16 words at once: its last four words, which are its scale and its
 /// sender, meet zeros.
-LUXEL_VECTOR_CLONES
+LUXEL_WIDE_VECTOR_CLONES
 void receive_far(const Hierarchical& m, std::span<const SpreadMoments> sent, size_t begin,
                  size_t end, std::span<Moments> received) {
+  static_assert(kWords == 16 && kFunctions == 3);
   for (size_t c = begin; c < end; ++c) {
-    Float8 low[3] = {}, high[3] = {};  // functions b = 0, 1 and b = 2, channel by channel
+    Float16 sum[3] = {};  // functions b = 0, 1, 2, channel by channel
     for (uint32_t k = m.first_far[c]; k < m.first_far[c + 1]; ++k) {
       const Hierarchical::Far& far = m.far[k];
       const float* from = sent[far.sender].data();
-      const auto* word = reinterpret_cast<const int16_t*>(&far);
-      Float8 c_low, c_high, x_low, x_high;
-      load8(word, c_low), load8(word + 8, c_high);
-      c_low *= far.scale, c_high *= far.scale;
+      Float16 block, x;
+      load16(reinterpret_cast<const int16_t*>(&far), block);
+      block *= far.scale;
       for (uint32_t channel = 0; channel < 3; ++channel) {
-        load8(from + kWords * channel, x_low), load8(from + kWords * channel + 8, x_high);
-        low[channel] += c_low * x_low, high[channel] += c_high * x_high;
+        load16(from + kWords * channel, x);
+        sum[channel] += block * x;
       }
     }
     for (uint32_t channel = 0; channel < 3; ++channel)
       for (uint32_t a = 0; a < kLanes; ++a)
         received[c][kLanes * channel + a] =
-            low[channel][a] + low[channel][kLanes + a] + high[channel][a];
+            sum[channel][a] + sum[channel][kLanes + a] + sum[channel][2 * kLanes + a];
   }
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <optional>
+#include <tuple>
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
@@ -38,6 +39,24 @@ Rgb emission_of(Rgb baked, Rgb mean, Rgb wanted) {
 
 }  // namespace
 
+namespace {
+
+/// Lamps whose light is kept: of one that is dragged among others, theirs is not asked for again.
+constexpr size_t kMostKept = 16;
+
+/// All that the light of a lamp depends on.
+auto key_of(const scene::PunctualLight& l) {
+  return std::make_tuple(l.kind, l.intensity, l.position, l.direction, l.range_m, l.inner_cone_rad,
+                         l.outer_cone_rad);
+}
+
+struct KeptLight {
+  std::optional<decltype(key_of({}))> of;  ///< nothing: no lamp yet
+  std::vector<Rgb> direct;                 ///< E per patch
+};
+
+}  // namespace
+
 struct Relighter::Impl {
   RelightData data;
   RelighterParams params;
@@ -47,8 +66,9 @@ struct Relighter::Impl {
   std::vector<Rgb> mean_emission;  ///< B_e per material, as baked
   std::vector<Vec3> probe_position, probe_normal;
 
+  std::array<KeptLight, kMostKept> kept;  ///< of the first lamps
   CodecScratch scratch;
-  std::vector<Rgb> at_probe, sent;
+  std::vector<Rgb> at_probe, at_patch, sent;
   std::vector<Rgb> straight;   ///< E per patch from the background and, where it is kept, the glow
   std::vector<Rgb> radiosity;  ///< of its own, per material
 
@@ -63,6 +83,8 @@ struct Relighter::Impl {
   Seconds seconds;
 
   void make_room();
+  void light_patches(std::span<const Rgb> of_probes, std::span<Rgb> patches) const;
+  void shine(std::span<const scene::PunctualLight> lights, std::span<Rgb> patches);
   void direct_light(const RelightLights& lights, Relit& out);
   void bounces(const RelightLights& lights, Relit& out);
   void light_places(const RelightLights& lights, Relit& out);
@@ -73,7 +95,9 @@ void Relighter::Impl::make_room() {
   for (const PatchPoint& p : data.probe)
     probe_position.push_back(p.position), probe_normal.push_back(p.normal);
   scratch = make_scratch(data.codec, data.size());
-  at_probe.resize(data.probe.size()), sent.resize(data.size()), straight.resize(data.size());
+  at_probe.resize(data.probe.size()), at_patch.resize(data.size());
+  sent.resize(data.size()), straight.resize(data.size());
+  for (KeptLight& light : kept) light.direct.resize(data.size());
   radiosity.resize(mean_emission.size());
   const size_t places = data.target.position.size();
   for (Relit& r : result) {
@@ -83,14 +107,37 @@ void Relighter::Impl::make_room() {
   }
 }
 
-void Relighter::Impl::direct_light(const RelightLights& lights, Relit& out) {
-  live_light({probe_position, probe_normal, probe_normal}, lights.punctual, *tracer, diagonal_m,
-             at_probe);
+/// A patch gets the mean of its probes.
+void Relighter::Impl::light_patches(std::span<const Rgb> of_probes, std::span<Rgb> patches) const {
   for (size_t i = 0; i < data.size(); ++i) {
     Rgb sum{};
-    for (uint32_t k = data.first_probe[i]; k < data.first_probe[i + 1]; ++k) sum += at_probe[k];
-    out.direct[i] = sum / std::max(1.0f, float(data.first_probe[i + 1] - data.first_probe[i]));
+    for (uint32_t k = data.first_probe[i]; k < data.first_probe[i + 1]; ++k) sum += of_probes[k];
+    patches[i] = sum / std::max(1.0f, float(data.first_probe[i + 1] - data.first_probe[i]));
   }
+}
+
+/// By shadow rays.
+void Relighter::Impl::shine(std::span<const scene::PunctualLight> lights, std::span<Rgb> patches) {
+  live_light({probe_position, probe_normal, probe_normal}, lights, *tracer, diagonal_m, at_probe);
+  light_patches(at_probe, patches);
+}
+
+void Relighter::Impl::direct_light(const RelightLights& lights, Relit& out) {
+  if (!lights.direct_at_probes.empty()) return light_patches(lights.direct_at_probes, out.direct);
+  std::fill(out.direct.begin(), out.direct.end(), Rgb{});
+  const auto add = [&](std::span<const Rgb> light) {
+    for (size_t i = 0; i < light.size(); ++i) out.direct[i] += light[i];
+  };
+  const size_t single = std::min(lights.punctual.size(), kMostKept);
+  for (size_t k = 0; k < single; ++k) {
+    const auto key = key_of(lights.punctual[k]);
+    if (kept[k].of != key) shine(lights.punctual.subspan(k, 1), kept[k].direct);
+    kept[k].of = key;
+    add(kept[k].direct);
+  }
+  if (single == lights.punctual.size()) return;
+  shine(lights.punctual.subspan(single), at_patch);
+  add(at_patch);
 }
 
 void Relighter::Impl::bounces(const RelightLights& lights, Relit& out) {
@@ -139,6 +186,8 @@ Relighter::Seconds Relighter::seconds() const { return impl_->seconds; }
 void Relighter::update(const RelightLights& lights) {
   Impl& my = *impl_;
   LUXEL_CHECK(lights.emission.empty() || lights.emission.size() == my.data.material_name.size());
+  LUXEL_CHECK(lights.direct_at_probes.empty() ||
+              lights.direct_at_probes.size() == my.data.probe.size());
   Relit& out = my.result[my.back];
   const Clock::time_point start = Clock::now();
   my.direct_light(lights, out);

@@ -18,6 +18,9 @@ struct RelightLights {
   /// material that glowed unevenly keeps its pattern, and L is its mean.
   std::span<const Rgb> emission{};
   Rgb background{};  ///< radiance of the surroundings
+  /// What `punctual` make at each of RelightData::probe [W/m^2], from who has maps of shadows;
+  /// empty: shadow rays are traced, towards those of the first 16 alone that have changed.
+  std::span<const Rgb> direct_at_probes{};
 };
 
 /// What they make of it. Per patch, and per point of RelightData::target, a texel or a vertex.

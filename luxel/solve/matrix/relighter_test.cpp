@@ -235,6 +235,38 @@ TEST(Relighter, LightOfTwoLampsIsTheSum) {
   }
 }
 
+// Light of lamps that stay is kept from update to update: what it was before must leave no trace.
+TEST(Relighter, FollowsWhicheverLampChanges) {
+  const Stage stage(scene::cornell_box());
+  std::vector<scene::PunctualLight> lamps;  // more than are kept
+  for (int k = 0; k < 18; ++k)
+    lamps.push_back(point_at({0.05f + 0.02f * float(k), 0.4f, 0.2f}, {1, 0.5f, 0.1f * float(k)}));
+  Relighter relighter = relighter_of(stage.data());
+  relit(relighter, {lamps});
+  for (const size_t changed : {size_t(0), size_t(3), size_t(17)}) {
+    lamps[changed].position.y -= 0.1f;
+    lamps[changed].intensity = lamps[changed].intensity * 2.0f;
+    Relighter fresh = relighter_of(stage.data());
+    EXPECT_EQ(relit(relighter, {lamps}).direct, relit(fresh, {lamps}).direct) << changed;
+  }
+  lamps.resize(2);
+  Relighter fresh = relighter_of(stage.data());
+  EXPECT_EQ(relit(relighter, {lamps}).direct, relit(fresh, {lamps}).direct);
+}
+
+// Who knows the light of probes is believed.
+TEST(Relighter, TakesDirectLightOfProbes) {
+  const Stage stage(scene::cornell_box());
+  Relighter relighter = relighter_of(stage.data());
+  const RelightData& d = relighter.data();
+  std::vector<Rgb> at_probes;
+  for (const PatchPoint& probe : d.probe) at_probes.push_back(plain_light_at(stage, probe, kLeft));
+  const Relit got = relit(relighter, {.direct_at_probes = at_probes});
+  const Relit want = relit(relighter, {{&kLeft, 1}});
+  EXPECT_LT(relative_error(got.indirect, want.indirect, d.area_m2), 1e-6);  // floats
+  EXPECT_GT(luminance(got.indirect[0]), 0);
+}
+
 TEST(Relighter, DirectLightAtPlacesIsThatOfLamps) {
   const Stage stage(scene::cornell_box());
   Relighter relighter = relighter_of(stage.data(floor_places(0.54f)), {true});

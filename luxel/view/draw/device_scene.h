@@ -64,10 +64,10 @@ struct DeviceScene {
   Rgb surroundings_factor{1, 1, 1};  ///< of background and map
   float surroundings_scale = 0;      ///< 0: there is no map
   float rotation_rad = 0;
-  gpu::Binding surroundings;  ///< white where there is no map
+  gpu::Binding surroundings;      ///< white where there is no map
   bool has_soft_shadows = false;  ///< of some lamp: it has a disc
   gpu::Binding shadow_maps;       ///< of lamps that are drawn by direct_light.h
-  gpu::Binding shadow_depth;  ///< of the same picture
+  gpu::Binding shadow_depth;      ///< of the same picture
 };
 
 /// The triangles of a mesh in the order in which a DeviceScene has them: material by material.

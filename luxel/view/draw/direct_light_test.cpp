@@ -8,6 +8,7 @@
 #include "luxel/trace/camera_rays.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/view/draw/device_test_support.h"
+#include "luxel/view/draw/light_at_points.h"
 
 namespace luxel::view {
 namespace {
@@ -19,7 +20,7 @@ constexpr int kPictureSide = 96;
 /// What a ray through the middle of a pixel finds.
 struct Pixel {
   bool is_surface = false;
-  Vec3 facet;
+  Vec3 position, facet;
   uint32_t instance = 0, triangle = 0;
   uint32_t lit = 0;  ///< a bit for each lamp that shines there
   Rgb irradiance;
@@ -40,7 +41,7 @@ std::vector<Pixel> by_rays(const scene::Scene& scene, const trace::RayTracer& tr
     const scene::SurfacePoint p = hit.point();
     const Vec3 position = scene::world_position(scene, p), normal = scene::shading_normal(scene, p);
     pixel.is_surface = true, pixel.instance = p.instance, pixel.triangle = p.triangle;
-    pixel.facet = scene::front_normal(scene, p.instance, p.triangle);
+    pixel.position = position, pixel.facet = scene::front_normal(scene, p.instance, p.triangle);
     const matrix::LitPoints point{{&position, 1}, {&normal, 1}, {&pixel.facet, 1}};
     for (size_t k = 0; k < lamps.size(); ++k) {
       const Rgb e = matrix::live_light_at(point, 0, {&lamps[k], 1}, tracer, diagonal_m);
@@ -173,6 +174,34 @@ TEST_F(DirectLightTest, LampsShineAndThrowShadowsAsRaysSay) {
       EXPECT_GT(compared.dark, 200);
     }
   }
+}
+
+// Points get what pixels get, whose shader they share but for the maps and lamps that they are
+// given.
+TEST_F(DirectLightTest, PointsAreLitAsRaysSay) {
+  const scene::Scene scene = scene::cornell_box();
+  const trace::RayTracer tracer = *trace::RayTracer::build(scene);
+  put(scene, 4096);
+  const std::array lamps{lamp_of(Kind::point, {0.1f, 0.45f, 0.3f}, {0, -1, 0}),
+                         lamp_of(Kind::spot, {0.4f, 0.5f, 0.1f}, {-0.3f, -1, 0.4f})};
+  const std::vector<Pixel> pixels = by_rays(scene, tracer, scene.cameras[0], lamps);
+  std::vector<LitPoint> points;
+  std::vector<Rgb> wanted;
+  for (int i = 0; i < kPictureSide * kPictureSide; ++i)
+    if (const Pixel& p = pixels[size_t(i)];
+        is_within(pixels, i % kPictureSide, i / kPictureSide, 3, 1))
+      points.push_back({p.position, p.facet}), wanted.push_back(p.irradiance);
+  ASSERT_GT(points.size(), 1000u);
+  const auto at = make_light_at_points(*device_, *scene_, points);
+  ASSERT_TRUE(at) << at.error().message;
+  ASSERT_TRUE(set_lamps(*device_, lamps, nullptr, *direct_, *scene_));
+  ASSERT_TRUE(commands_->run([&](VkCommandBuffer buffer) {
+    draw_shadow_maps(*device_, buffer, *scene_, *direct_);
+    light_points(*device_, buffer, *scene_, *at);
+  }));
+  // Both work in floats; no half is between them.
+  for (size_t i = 0; i < points.size(); ++i)
+    EXPECT_LT(length(at->result()[i] - wanted[i]), 1e-4f * length(wanted[i]) + 1e-6f) << i;
 }
 
 // A lamp that goes on is drawn where it is now; one that stands keeps its maps.

@@ -11,10 +11,10 @@ Result<RelitLight> make_relit_light(matrix::RelightData data) {
   return RelitLight{std::move(relighter), std::move(places), std::move(map), {}};
 }
 
-void relight(const Lamps& lamps, RelitLight& light) {
+void relight(const Lamps& lamps, RelitLight& light, std::span<const Rgb> at_probes) {
   const std::vector<scene::PunctualLight> punctual = shining(lamps);
   const std::vector<Rgb> emission = glowing(lamps);
-  light.relighter.update({punctual, emission, lamps.background});
+  light.relighter.update({punctual, emission, lamps.background, at_probes});
   const Clock::time_point start = Clock::now();
   put_light(light.places, light.relighter.latest().indirect_at_points, light.indirect);
   const matrix::Relighter::Seconds seconds = light.relighter.seconds();

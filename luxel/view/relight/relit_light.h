@@ -25,7 +25,8 @@ struct RelitLight {
 /// `data` is lit at texels. Errors: triangles that cannot be traced.
 Result<RelitLight> make_relit_light(matrix::RelightData data);
 
-/// E after all bounces of these lamps.
-void relight(const Lamps& lamps, RelitLight& light);
+/// E after all bounces of these lamps. `at_probes`: what they make straight at each of the
+/// relighter's data().probe [W/m^2]; empty: shadow rays are traced.
+void relight(const Lamps& lamps, RelitLight& light, std::span<const Rgb> at_probes = {});
 
 }  // namespace luxel::view

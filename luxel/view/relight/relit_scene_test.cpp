@@ -96,9 +96,14 @@ class RelitSceneTest : public testing::OnDevice {
   testing_support::ScratchFolder folder_;
 };
 
-TEST_F(RelitSceneTest, ALampIsDraggedToWhereABakeHasIt) {
+class DraggedLamp : public RelitSceneTest, public ::testing::WithParamInterface<PatchLight> {};
+
+INSTANTIATE_TEST_SUITE_P(PatchesLit, DraggedLamp,
+                         ::testing::Values(PatchLight::by_rays, PatchLight::by_maps));
+
+TEST_P(DraggedLamp, IsWhereABakeHasIt) {
   OpenedLxr opened = prepared(box_with_lamp(warm_lamp({0.1f, 0.45f, 0.3f})));
-  auto relit = lxr_shown(*commands_, opened);
+  auto relit = lxr_shown(*commands_, GetParam(), opened);
   ASSERT_TRUE(relit) << relit.error().message;
   DeviceScene& device = relit->shown.device;
   const Box3 bounds = scene::world_bounds(opened.read->scene);
@@ -112,7 +117,7 @@ TEST_F(RelitSceneTest, ALampIsDraggedToWhereABakeHasIt) {
                           PointerMoved{from + Vec2{-40, 0}}, ButtonChanged{Button::left, false}};
   for (const Event& event : events)
     if (!handle_lamps(event, walk, desk)) handle(event, nowhere, walk);
-  ASSERT_TRUE(follow_lamps(*commands_, desk.lamps, nullptr, opened, relit->direct, device));
+  ASSERT_TRUE(follow_lamps(*commands_, desk.lamps, nullptr, opened, relit->lamps, device));
   const image::Image8 after = drawn(device, walk.shown);
 
   const scene::PunctualLight& moved = desk.lamps.lamps[0].light;

@@ -1,5 +1,6 @@
 // Light straight from lamps, as luxel/light/lights.h has it. luxel/view/draw/direct_light.h has the
-// structs and the maps of shadows. `lamps_drawn` is a constant of the shader that includes it.
+// structs and the maps of shadows. `lamps_drawn` is a constant of the shader that includes it, and
+// turn_of_place() an angle that differs from place to place.
 
 // E on a surface that faces the lamp squarely, and the way to it.
 vec3 arriving_from(Lamp lamp, vec3 place, out vec3 towards, out float distance_m) {
@@ -63,11 +64,6 @@ vec2 in_disc(int k, int n, float turn, float power) {
   return pow((float(k) + 0.5) / float(n), power) * vec2(cos(angle), sin(angle));
 }
 
-// Differs from pixel to pixel, over a turn.
-float turn_of_pixel() {
-  return 6.28318531 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-}
-
 const int kSearched = 32, kFiltered = 40;
 
 // The share of a sun's disc that is seen, by what the map has in its way [Fernando05]: from a place
@@ -77,7 +73,7 @@ float seen_share(ShadowMap map, vec3 place, float texels_per_depth, vec2 slope) 
   vec3 clip = (map.clip_from_world * vec4(place, 1)).xyz;
   vec2 at = (clip.xy * 0.5 + 0.5) * map.side, size = vec2(textureSize(shadow_maps, 0));
   vec2 low = vec2(0.5), high = vec2(map.side - 0.5);
-  float turn = turn_of_pixel(), sum = 0, weight = 0;
+  float turn = turn_of_place(), sum = 0, weight = 0;
   float searched = (0.76 - clip.z) * texels_per_depth;
   // What is near is searched more densely: of it, less of what is around can be in the way. It counts
   // by how much of the disc a texel of it hides, so that corners stay dark.

@@ -40,6 +40,11 @@ const float pi = 3.14159265358979;
 const float most = 60000;  // of the picture's halves
 const float max_reflectance = 0.99;  // scene::kMaxReflectance
 
+// Over a turn.
+float turn_of_place() {
+  return 6.28318531 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+}
+
 #include "direct.glsl"
 
 // The front of the surface; a coarse grid of pixels knows it.

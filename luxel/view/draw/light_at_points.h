@@ -1,0 +1,35 @@
+// Light straight from lamps at points of surfaces, by the maps of shadows that pixels look up.
+#pragma once
+
+#include <span>
+
+#include "luxel/view/draw/device_scene.h"
+
+namespace luxel::view {
+
+/// A place of a surface [m], and the side that is lit.
+struct LitPoint {
+  Vec3 position, normal;
+};
+
+/// What a device works out the light of points with, for one scene.
+struct LightAtPoints {
+  gpu::Pipeline shader;
+  gpu::BindingSets maps;
+  gpu::Buffer points, irradiance;
+  uint32_t count = 0;
+
+  /// E of each point [W/m^2], of the last recording that the device is done with.
+  std::span<const Rgb> result() const {
+    return {reinterpret_cast<const Rgb*>(irradiance.mapped), count};
+  }
+};
+/// There are points. Errors: no memory on the device.
+Result<LightAtPoints> make_light_at_points(const gpu::Device& device, const DeviceScene& scene,
+                                           std::span<const LitPoint> points);
+
+/// Records what lights the points by the scene's lamps, after draw_shadow_maps().
+void light_points(const gpu::Device& device, VkCommandBuffer commands, const DeviceScene& scene,
+                  const LightAtPoints& at);
+
+}  // namespace luxel::view

@@ -112,6 +112,9 @@ class LiveSubject : public Subject {
   void has_drawn(float milliseconds) override {
     if (lamps()) lamps()->has_drawn(milliseconds);
   }
+  view::LightTimes light_times() const override {
+    return lamps() ? lamps()->light_times() : view::LightTimes{};
+  }
 
   Result<std::string> end() override {
     LUXEL_TRY_STATUS(wait_for_relight(relight_));

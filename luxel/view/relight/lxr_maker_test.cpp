@@ -90,7 +90,7 @@ TEST_F(LxrMakerTest, HasTheLampsAsTheyAreEdited) {
 }
 
 TEST_F(LxrMakerTest, StopsSoonAndLeavesNothing) {
-  to_make_.read = *read_scene(scene::cornell_box(), *to_make_.read);
+  to_make_.read = *read_scene(scene::cornell_box(), pipeline::BakeSettings{});
   to_make_.now = unedited(to_make_.read->scene);
   // On two idle cores it would take longer than all of this file's tests may.
   to_make_.settings.matrix.patches.count = 16384;

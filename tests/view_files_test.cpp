@@ -60,6 +60,15 @@ double apart(const image::Image& a, const image::Image& b) {
 const std::string kIrradiance = R"({"at": 0, "show": "irradiance"}, {"at": 0, "range": [0, 0.8]})";
 constexpr const char* kFewTexels = "--resolution 64 --samples 16";
 
+TEST_F(ViewFiles, AWindowWithoutASubjectWaitsForOne) {
+  if (!has_windows()) GTEST_SKIP() << "needs xvfb-run (package xvfb)";
+  const std::string state = "XDG_STATE_HOME=" + (s_.path / "state").string();
+  const CommandResult r =
+      run("", state + " VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation xvfb-run -a timeout 3");
+  EXPECT_EQ(r.code, 124) << "it is still open";
+  EXPECT_EQ(r.out + r.err, "");
+}
+
 // Light of no reflection beside a bake, and of a scene while it is baked, is that of a bake of
 // none.
 TEST_F(ViewFiles, ShowPartsOfTheLight) {

@@ -273,7 +273,7 @@ TEST(View, SaysWhatIsWrong) {
     EXPECT_FALSE(std::filesystem::exists(s.path / "x.png"));
     return r.err;
   };
-  EXPECT_THAT(error("", 2), HasSubstr("SUBJECT is required; 'luxel-view --help' lists"));
+  EXPECT_THAT(error(shot, 2), HasSubstr("SUBJECT is required without a window"));
   EXPECT_THAT(error("bake --offscreen", 2), HasSubstr("--offscreen requires --screenshot"));
   EXPECT_THAT(error("bake --screenshot x.png", 2), HasSubstr("needs --offscreen or --play"));
   EXPECT_THAT(error("bake --size 10 " + shot, 1), HasSubstr("--size '10' is not WIDTHxHEIGHT"));

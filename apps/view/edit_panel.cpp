@@ -38,6 +38,9 @@ void lay_out_material(EditPanel& panel) {
   MaterialLine& look = panel.look;
   ImGui::ColorEdit3(look.has_texture ? "tint" : "reflectance", look.reflectance.data(),
                     ImGuiColorEditFlags_Float);
+  ImGui::TextUnformatted(look.reflects.c_str());
+  if (look.has_metal)
+    ImGui::SliderFloat("metal", &look.metallic, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
   ImGui::ColorEdit3("glow", look.glow.color.data(), ImGuiColorEditFlags_NoInputs);
   ImGui::SameLine();
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9);

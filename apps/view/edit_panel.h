@@ -25,6 +25,9 @@ struct PlaceLines {
 /// A material. All but its unit may be changed.
 struct MaterialLine {
   std::array<float, 3> reflectance{};  ///< display values
+  float metallic = 0;
+  bool has_metal = true;  ///< it can have some
+  std::string reflects;   ///< in percent, in words
   LampLine glow;
   bool has_texture = false;  ///< the reflectance is a factor of it
   friend bool operator==(const MaterialLine&, const MaterialLine&) = default;

@@ -8,6 +8,7 @@
 #include "luxel/pipeline/settings/sky_setting.h"
 #include "luxel/scene/light_kinds.h"
 #include "luxel/view/edit/save_scene.h"
+#include "luxel/view/edit/sky_sun.h"
 
 namespace luxel::view_window {
 namespace {
@@ -37,6 +38,10 @@ MaterialLine line_of(const scene::Material& material, const view::MaterialLook& 
   out.reflectance = {image::srgb_from_linear(c.x), image::srgb_from_linear(c.y),
                      image::srgb_from_linear(c.z)};
   out.has_texture = material.base_color_texture.texture != scene::kNone;
+  out.metallic = now.metallic, out.has_metal = !material.unlit;
+  const Rgb percent = c * (100 * (1 - now.metallic));
+  out.reflects = fmt::format("{}{:.3g}, {:.3g}, {:.3g} % of red, green, blue",
+                             out.has_texture ? "up to " : "", percent.x, percent.y, percent.z);
   out.glow.unit = is_lux ? "cd/m2" : "W/(sr m2)";
   set_light(now.emission, out.glow);
   return out;
@@ -45,11 +50,12 @@ MaterialLine line_of(const scene::Material& material, const view::MaterialLook& 
 /// Only what was changed, as take_line().
 view::MaterialSet changed(uint32_t number, const MaterialLine& before, const MaterialLine& now,
                           const view::MaterialLook& look) {
-  view::MaterialSet out{number, look.base_color, look.emission};
+  view::MaterialSet out{number, look.base_color, look.emission, look.metallic};
   const auto& c = now.reflectance;
   if (c != before.reflectance)
     out.base_color = {image::linear_from_srgb(c[0]), image::linear_from_srgb(c[1]),
                       image::linear_from_srgb(c[2])};
+  if (now.metallic != before.metallic) out.metallic = now.metallic;
   if (now.glow != before.glow) out.emission = light_of(now.glow);
   return out;
 }
@@ -80,7 +86,8 @@ void take_sun(const EditPanel& panel, EditSession& session) {
   }
   view::Lamp lamp = tools.desk.now.lamps[*tools.selected.lamp];
   lamp.light.direction = -pipeline::sky_params(*sky).towards_sun;
-  do_edit(view::LampSet{*tools.selected.lamp, lamp.light, lamp.is_on}, tools.desk);
+  const view::SkyAsked asked{*sky, panel.sun.data()};
+  do_edit(view::lamp_set(*tools.selected.lamp, lamp, asked, tools.desk), tools.desk);
 }
 
 /// Numbers of what is selected.
@@ -95,7 +102,7 @@ void take_numbers(const EditPanel& panel, const EditPanel& before, EditSession& 
   if (selected.lamp && panel.light != before.light) {
     view::Lamp lamp = tools.desk.now.lamps[*selected.lamp];
     take_line(before.light, panel.light, lamp);
-    drag_edit(view::LampSet{*selected.lamp, lamp.light, lamp.is_on}, tools.desk);
+    drag_edit(view::lamp_set(*selected.lamp, lamp, std::nullopt, tools.desk), tools.desk);
   }
   if (selected.lamp && panel.asks_for_sun) take_sun(panel, session);
   if (selected.lamp && panel.deletes_lamp) delete_lamp(*selected.lamp, tools);
@@ -192,8 +199,9 @@ void save_edited(EditSession& session) {
   const view::EditDesk& desk = session.tools.desk;
   view::SceneToSave to_save{desk.read, desk.now, session.settings};
   session.saving = std::async(std::launch::async, [to_save = std::move(to_save)] {
-    return view::save_scene(to_save).map(
-        [](const std::filesystem::path& file) { return "wrote " + file.string(); });
+    return view::save_scene(to_save).map([&](const std::filesystem::path& file) {
+      return "wrote " + file.string() + view::what_sky_lacks(to_save);
+    });
   });
 }
 
@@ -209,15 +217,15 @@ std::string news_of(EditSession& session) {
     return {};
   const Result<std::string> saved = session.saving.get();
   if (!saved && session.failed.empty()) session.failed = saved.error().message;
+  if (saved) session.told = *saved;
   return saved ? *saved : saved.error().message;
 }
 
 Result<std::string> end_edits(EditSession& session) {
   if (is_saving(session)) session.saving.wait();
-  std::string said;
-  for (std::string news = news_of(session); !news.empty(); news = news_of(session)) said = news;
+  while (!news_of(session).empty()) continue;
   if (!session.failed.empty()) return fail(ErrorCode::bad_input, "{}", session.failed);
-  return said;
+  return session.told;
 }
 
 }  // namespace luxel::view_window

@@ -21,6 +21,7 @@ struct EditSession {
   bool has_put = false;                          ///< what is drawn has the edits that `put` counts
   uint64_t put = 0;                              ///< of EditDesk::changes
   std::future<Result<std::string>> saving;       ///< valid while it goes on
+  std::string told;                              ///< of what was saved last
   std::string failed;                            ///< the first thing of a play that failed
 };
 

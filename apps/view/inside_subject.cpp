@@ -58,6 +58,10 @@ class InsideSubject : public Subject {
     return is_at_work ? Work::at_work : Work::at_rest;
   }
 
+  Box3 selected() const override {
+    const auto& examined = selection_.examined;
+    return examined ? view::selected_box(*examined, selection_.desk) : Box3();
+  }
   bool take(const view::Event& event, const view::Walk& walk) override {
     if (view::handle_desk(event, desk_)) {
       send();

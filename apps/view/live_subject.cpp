@@ -65,6 +65,10 @@ class LiveSubject : public Subject {
     return is_to_come || state == view::LiveState::baking ? Work::at_work : Work::at_rest;
   }
 
+  Box3 selected() const override {
+    if (lamps()) return lamps()->selected();
+    return edit_ ? view::selected_box(edit_->tools) : Box3();
+  }
   bool take(const view::Event& event, const view::Walk& walk) override {
     if (is_relight_key(event)) return relight_.asks = true;
     if (lamps()) return lamps()->take(event, walk);

@@ -151,9 +151,12 @@ void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const L
   const bool is_of_one = !frame.beside || frame.beside->mode == view::BesideMode::split;
   panel.can_scale = is_of_one && frame.show != view::Show::error;
   const auto& lightmaps = looking.mixed.pictures.empty() ? shown.lightmaps : looking.mixed;
-  // While a scene is baked, what is drawn of it has other triangles than what is pointed at.
-  if (pointed && is_of_one && !shown.lit)
+  if (!pointed || !is_of_one) return;
+  // Of a part of the light while it is baked, only pictures are there.
+  if (!shown.lit)
     panel.pointed = view::value_at(frame, shown.drawn(), lightmaps, *pointed).value_or(-1);
+  else if (shown.part.is_all())
+    panel.pointed = view::value_at(frame, *shown.lit, shown.newest, *pointed).value_or(-1);
 }
 
 void take_panel(const LookPanel& panel, const LookPanel& before, view::Frame& frame) {

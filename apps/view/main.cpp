@@ -10,6 +10,7 @@
 
 #include "apps/view/next_subject.h"
 #include "apps/view/offscreen.h"
+#include "apps/view/remembered.h"
 #include "apps/view/session.h"
 #include "luxel/arguments/bake_options.h"
 #include "luxel/base/file.h"
@@ -73,7 +74,7 @@ Status check_inside(const Options& options) {
   if (!is_scene(options.subject))
     return fail(ErrorCode::bad_setting,
                 "--inside is for a scene, whose light is made while you look; {} is no such file",
-                options.subject.string());
+                options.subject.empty() ? "nothing" : options.subject.string());
   if (!solver.empty() && solver != options.inside)
     return fail(ErrorCode::bad_setting, "--solver {} contradicts --inside {}", solver,
                 options.inside);
@@ -110,6 +111,8 @@ Status check_relight(const Options& options) {
 /// Errors: options of a bake beside a bake that is there, or a second bake beside none.
 Status check_choice(const Options& options) {
   const arguments::BakeChoice& choice = options.choice;
+  // Options are for what will be dropped.
+  if (options.subject.empty() && options.beside.empty() && options.inside.empty()) return {};
   if (!options.beside.empty() && is_scene(options.subject))
     return fail(ErrorCode::bad_setting,
                 "--beside shows a second bake beside a first one; {} is no folder of a bake",
@@ -197,7 +200,9 @@ struct Opened {
 
 Result<Opened> opened(const Options& options) {
   Opened out;
-  if (is_scene(options.subject)) {
+  if (options.subject.empty()) {
+    out.make = view_window::no_subject();
+  } else if (is_scene(options.subject)) {
     LUXEL_TRY(const pipeline::BakeSettings settings, settings_of(options));
     if (options.inside == kHemicube)
       out.make = view_window::hemicube_subject(models_of(options), settings);
@@ -240,8 +245,12 @@ Status show(const Options& options) {
   view_window::WindowParams params;
   LUXEL_TRY(params.play, events_of(options));
   params.play_name = options.play.string();
-  params.title = view_window::title_of(options.subject);
-  params.subject = view_window::full_path(options.subject);
+  if (!options.subject.empty()) {
+    params.title = view_window::title_of(options.subject);
+    params.subject = view_window::full_path(options.subject);
+  } else {
+    params.title = "luxel-view";
+  }
   params.open = [&](const std::filesystem::path& path) { return opened_later(options, path); };
   // A play is the same whatever was done before.
   if (!params.play)
@@ -250,6 +259,9 @@ Status show(const Options& options) {
   params.screenshot = options.screenshot, params.frame_table = options.frame_table;
   LUXEL_TRY(Opened to_show, opened(options));
   params.width = to_show.width, params.height = to_show.height;
+  const auto last_size = view_window::last_size(params.habits);
+  if (last_size && options.width == 0)
+    params.width = (*last_size)[0], params.height = (*last_size)[1];
   return view_window::show_in_window(to_show.make, std::move(to_show.beside), params);
 }
 
@@ -297,10 +309,11 @@ int report(const Error& error) {
 }
 
 void add_own(CLI::App& app, Options& options) {
-  app.add_option("SUBJECT", options.subject,
-                 "A scene, which is baked while you look, with all options of `luxel bake`; the "
-                 "folder that a bake left; or an .lxr file, whose lamps move")
-      ->required();
+  app.add_option(
+      "SUBJECT", options.subject,
+      "A scene, which is baked while you look, with all options of `luxel bake`; the "
+      "folder that a bake left; or an .lxr file, whose lamps move; without any, drop one "
+      "on the window");
   app.add_option("MODELS", options.more, "More models of one scene, with --inside hemicube");
   app.add_option("-o,--output", options.choice.output,
                  "Where 'save' puts the bake of a scene (baked/NAME)")
@@ -361,6 +374,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     std::fprintf(stderr, "luxel-view: %s; 'luxel-view --help' lists what there is\n", error.what());
+    return kUsage;
+  }
+  if (options.subject.empty() && (options.offscreen || !options.play.empty())) {
+    std::fprintf(stderr, "luxel-view: SUBJECT is required without a window and by --play\n");
     return kUsage;
   }
   if (!options.screenshot.empty() && !options.offscreen && options.play.empty()) {

@@ -46,6 +46,7 @@ Status play_all(const view::Play& play, gpu::Commands& commands, view::Walk& wal
   const auto take = [&](const view::Event& event) {
     // An edit may have put another scene in the place of this one.
     const view::ReadScene& read = *subject.shown().read;
+    walk.selected = subject.selected();
     if (!subject.take(event, walk))
       view::handle(event, view::place_seen_in(read.scene, *read.tracer, walk.width, walk.height),
                    walk);

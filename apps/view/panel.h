@@ -50,6 +50,7 @@ struct Panel {
   int bookmark = -1;                      ///< changed: the one that was asked for; -1: none
   std::span<const std::string> warnings;  ///< of the bake that is shown
   std::span<const std::string> recent;    ///< what else was looked at
+  bool is_empty = false;                  ///< nothing is shown yet
   int opens = -1;                         ///< changed: the one that is to be opened; -1: none
   bool offers_again = false;              ///< what is shown has changed on disk
   bool asks_again = false;                ///< changed: it is to be opened again

@@ -1,5 +1,7 @@
 #include "apps/view/remembered.h"
 
+#include <algorithm>
+
 namespace luxel::view_window {
 
 Remembered recall(const std::filesystem::path& file, const std::string& subject) {
@@ -21,16 +23,21 @@ void begin_as_left(const Remembered& remembered, view::Walk& walk) {
   walk.bookmarks = remembered.subject.bookmarks;
 }
 
-Status keep(const Remembered& remembered, const view::Walk& walk, bool is_light,
-            const PanelLayout& layout) {
+Status keep(const Remembered& remembered, const view::Walk& walk, const WindowLeft& window) {
   if (remembered.file.empty()) return {};
   LUXEL_TRY(view::Habits habits, view::read_habits(remembered.file));
-  habits.is_light = is_light;
-  habits.panel = {layout.place, layout.open, layout.closed};
+  habits.is_light = window.is_light;
+  habits.panel = {window.layout.place, window.layout.open, window.layout.closed};
+  if (std::ranges::min(window.size) >= view::kSmallestWindow) habits.window = window.size;
   view::remember({remembered.subject.path, view::LastView{walk.first.camera, walk.shown.camera},
                   walk.bookmarks},
                  habits);
   return view::write_habits(habits, remembered.file);
+}
+
+std::optional<std::array<int, 2>> last_size(const std::filesystem::path& file) {
+  const Result<view::Habits> habits = view::read_habits(file);
+  return file.empty() || !habits ? std::nullopt : habits->window;
 }
 
 }  // namespace luxel::view_window

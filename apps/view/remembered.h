@@ -26,9 +26,17 @@ Remembered recall(const std::filesystem::path& file, const std::string& subject)
 /// Where a walk that has just begun goes on.
 void begin_as_left(const Remembered& remembered, view::Walk& walk);
 
+/// What a window leaves besides its walk.
+struct WindowLeft {
+  bool is_light = false;
+  const PanelLayout& layout;
+  std::array<int, 2> size;  ///< Habits::window
+};
 /// Leaves what the walk has come to. What windows of other subjects have left meanwhile stays.
 /// Errors: those of files.
-Status keep(const Remembered& remembered, const view::Walk& walk, bool is_light,
-            const PanelLayout& layout);
+Status keep(const Remembered& remembered, const view::Walk& walk, const WindowLeft& window);
+
+/// How large the last window was; none where none is known.
+std::optional<std::array<int, 2>> last_size(const std::filesystem::path& file);
 
 }  // namespace luxel::view_window

@@ -95,6 +95,7 @@ SelectionPanel selection_lines(const SelectionSession& s) {
   SelectionPanel out;
   for (const view::InsideToolName& tool : view::kInsideTools) out.tools.push_back(tool.words);
   out.tool = int(desk.tool), out.graph_height = desk.graph_height;
+  out.graph_shows = desk.graph_shows;
   out.selected = selected_lines(s), out.can_step = desk.selected.has_element();
   if (desk.probed.graph) out.curve = plot_of(*desk.probed.graph, s.unit);
   if (desk.probed.light) out.light = lines_of(*desk.probed.light, s.unit);
@@ -112,8 +113,8 @@ void take_selection_lines(const SelectionPanel& panel, const view::Walk& walk,
                           SelectionSession& s) {
   view::SelectionDesk& desk = s.desk;
   desk.tool = view::InsideTool(panel.tool);
-  if (panel.graph_height != desk.graph_height)
-    desk.graph_height = panel.graph_height, ++desk.changes;
+  if (panel.graph_height != desk.graph_height || panel.graph_shows != desk.graph_shows)
+    desk.graph_height = panel.graph_height, desk.graph_shows = panel.graph_shows, ++desk.changes;
   if (!s.examined) return;
   if (panel.asks_for_graph)
     view::use_tool({view::InsideTool::graph, std::nullopt, std::nullopt}, walk, *s.examined, desk);

@@ -174,6 +174,11 @@ void lay_out_selection(SelectionPanel& panel) {
     ImGui::Separator();
     lay_out_curve(*panel.curve);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
+    for (size_t i = 0; i < panel.graph_shows.size(); ++i) {
+      constexpr const char* kInSpace[] = {"exact", "as shown", "difference"};
+      ImGui::Checkbox(kInSpace[i], &panel.graph_shows[i]);
+      ImGui::SameLine();
+    }
     ImGui::SliderFloat("height in space", &panel.graph_height, 0.01f, 10, "%.2f of its length",
                        ImGuiSliderFlags_Logarithmic);
   }

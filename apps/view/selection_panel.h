@@ -33,8 +33,9 @@ struct SelectionPanel {
   /// Changed: the number of what is asked for; -1: nothing.
   int step = -1;
   bool asks_for_graph = false, asks_for_nothing = false;
-  float graph_height = 0.3f;       ///< changed: over the line's length
-  std::vector<std::string> light;  ///< lines on the probe of irradiance
+  std::array<bool, 3> graph_shows{};  ///< changed: exact light, as shown, the difference, in space
+  float graph_height = 0.3f;          ///< changed: over the line's length
+  std::vector<std::string> light;     ///< lines on the probe of irradiance
   std::optional<CurvePlot> curve;
   std::vector<SourcePicture> sources;
   std::string left_out;  ///< on sources that have no picture

@@ -23,7 +23,9 @@ std::vector<KeyLine> key_lines(const Subject& subject) {
   std::vector<KeyLine> out = subject.keys();
   out.insert(out.end(), {{"left button", "turn"},
                          {"other buttons", "move the picture"},
-                         {"wheel", "nearer, farther"}});
+                         {"wheel", "nearer, farther"},
+                         {"f1", "this list"},
+                         {"f12", "a picture of what is shown, as luxel-view-1.png"}});
   for (const view::KeyHelp& key : view::kKeys) out.push_back({key.key, key.does});
   return out;
 }
@@ -162,6 +164,7 @@ void take(const view::Event& event, Session& s) {
   if (std::holds_alternative<view::WindowClosed>(event))
     return glfwSetWindowShouldClose(s.window.get(), GLFW_TRUE);
   if (std::holds_alternative<view::DeviceLost>(event)) return lose_device(s);
+  s.walk->selected = s.subject->selected();
   if (!s.subject->take(event, *s.walk)) view::handle(event, s.place_seen, *s.walk);
 }
 
@@ -290,7 +293,7 @@ Status show(Session s) {
   s.panel.title = s.params.title, s.panel.about = s.screen.device->name;
   s.panel.keys = s.keys, s.panel.recent = s.remembered.others;
   s.panel.is_light = s.remembered.is_light, s.panel.message = s.remembered.message;
-  s.panel.layout = s.remembered.layout;
+  s.panel.layout = s.remembered.layout, s.panel.is_empty = s.path.empty();
   Result<bool> goes_on = true;
   while (goes_on && *goes_on && !glfwWindowShouldClose(s.window.get())) goes_on = go_on(s);
   // A device that is lost takes nothing with it that the user has made.

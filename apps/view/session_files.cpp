@@ -3,6 +3,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace luxel::view_window {
@@ -94,7 +96,11 @@ Result<bool> follow_files(Session& s) {
 
 Status keep_habits(const Session& s) {
   if (!s.walk) return {};
-  return keep(s.remembered, *s.walk, s.panel.is_light, s.panel.layout);
+  const float scale = std::max(s.window.scale(), 0.1f);
+  const auto [width, height] = s.window.pixels();
+  const std::array size{int(std::lround(float(width) / scale)),
+                        int(std::lround(float(height) / scale))};
+  return keep(s.remembered, *s.walk, {s.panel.is_light, s.panel.layout, size});
 }
 
 }  // namespace luxel::view_window

@@ -5,9 +5,9 @@
 namespace luxel::view_window {
 namespace {
 
-class BakedSubject : public Subject {
+class ShownSubject : public Subject {
  public:
-  explicit BakedSubject(view::ShownScene shown) : shown_(std::move(shown)) {}
+  explicit ShownSubject(view::ShownScene shown) : shown_(std::move(shown)) {}
   view::ShownScene& shown() override { return shown_; }
 
  private:
@@ -21,11 +21,18 @@ Status Subject::check(const view::Play& play, const std::string& name) const {
   return view::check_no_inside(play, name);
 }
 
+MakeSubject no_subject() {
+  return [](gpu::Commands& commands) -> Result<std::unique_ptr<Subject>> {
+    LUXEL_TRY(view::ShownScene shown, view::nothing_shown(commands));
+    return std::make_unique<ShownSubject>(std::move(shown));
+  };
+}
+
 MakeSubject baked_subject(view::OpenedBake bake) {
   auto kept = std::make_shared<view::OpenedBake>(std::move(bake));
   return [kept](gpu::Commands& commands) -> Result<std::unique_ptr<Subject>> {
     LUXEL_TRY(view::ShownScene shown, view::bake_shown(commands, std::move(*kept)));
-    return std::make_unique<BakedSubject>(std::move(shown));
+    return std::make_unique<ShownSubject>(std::move(shown));
   };
 }
 

@@ -50,6 +50,8 @@ class Subject {
   /// looks is about to change it.
   virtual bool follows_its_file() const { return false; }
 
+  /// The box around what is selected; empty: nothing is.
+  virtual Box3 selected() const { return {}; }
   /// Whether an event is no longer the walk's.
   virtual bool take(const view::Event&, const view::Walk&) { return false; }
   virtual void obey(view::Command) {}
@@ -77,6 +79,8 @@ using MakeSubject = std::function<Result<std::unique_ptr<Subject>>(gpu::Commands
 /// What lies at a path, to be shown. Errors: those of files; it is nothing that can be shown.
 using OpenSubject = std::function<Result<MakeSubject>(const std::filesystem::path&)>;
 
+/// Nothing, until a file is dropped on the window.
+MakeSubject no_subject();
 /// A bake that is there.
 MakeSubject baked_subject(view::OpenedBake bake);
 /// What becomes of a scene when its lamps are to move with all bounces.

@@ -7,11 +7,14 @@
 #include <imgui.h>
 
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 namespace luxel::view_window {
 namespace {
+
+constexpr float kLetters = 13;  ///< height of ImGui's own [points]
 
 /// One attachment that is drawn over and shown afterwards.
 VkRenderPass make_pass(const UiDevice& device) {
@@ -63,6 +66,10 @@ class ImGuiUi : public Ui {
     has_context_ = true;
     if (!ImGui_ImplGlfw_InitForVulkan(window, true)) return false;
     has_window_ = true;
+    return open_device();
+  }
+
+  bool open_device() {
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = device_.instance, info.PhysicalDevice = device_.physical;
     info.Device = device_.device;
@@ -104,6 +111,7 @@ class ImGuiUi : public Ui {
   bool has_keys() const override { return ImGui::GetIO().WantTextInput; }
 
   void lay_out(Panel& panel) override {
+    if (panel.scale != scale_) set_letters(panel.scale);
     if (panel.is_light != is_light_ || panel.scale != scale_) set_style(panel);
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
@@ -127,12 +135,24 @@ class ImGuiUi : public Ui {
   }
 
  private:
+  /// Letters are drawn for their size, not made larger. ImGui puts them on the device once: it
+  /// begins there anew.
+  void set_letters(float scale) {
+    vkDeviceWaitIdle(device_.device);
+    ImGui_ImplVulkan_Shutdown();
+    ImFontConfig letters;
+    letters.SizePixels = std::round(kLetters * scale);
+    ImGui::GetIO().Fonts->Clear();
+    ImGui::GetIO().Fonts->AddFontDefault(&letters);
+    ImGui::GetIO().Fonts->Build();
+    has_font_ = false;
+    open_device();
+  }
   /// Sizes are those of a monitor with one pixel per point, times its scale.
   void set_style(const Panel& panel) {
     ImGui::GetStyle() = ImGuiStyle();
     panel.is_light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
     ImGui::GetStyle().ScaleAllSizes(panel.scale);
-    ImGui::GetIO().FontGlobalScale = panel.scale;
     is_light_ = panel.is_light, scale_ = panel.scale;
   }
 
@@ -160,12 +180,14 @@ class ImGuiUi : public Ui {
   /// Returns where its right edge is.
   float lay_out_panel(Panel& panel) {
     put_panel(panel.layout);
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {FLT_MAX, ImGui::GetIO().DisplaySize.y - 20});
     // The panel is the same whatever its title is.
     ImGui::Begin((panel.title + "###panel").c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     if (!std::exchange(has_layout_, true)) put_headers(panel.layout);
     take_layout(panel.layout);
     ImGui::TextUnformatted(panel.about.c_str());
     lay_out_again(panel);
+    if (panel.is_empty) return lay_out_empty(panel);
     if (panel.bake) lay_out_bake(*panel.bake);
     if (panel.relight) lay_out_relight(*panel.relight);
     if (panel.solver) lay_out_solver(*panel.solver);
@@ -190,6 +212,11 @@ class ImGuiUi : public Ui {
     if (panel.edit) lay_out_edit(*panel.edit);
     lay_out_recent(panel);
     ImGui::Text("%.1f ms per frame", double(panel.milliseconds));
+    return end_panel(panel);
+  }
+
+  /// What every panel ends with. Returns where its right edge is.
+  static float end_panel(Panel& panel) {
     if (!panel.message.empty()) lay_out_wrapped(panel.message);
     if (ImGui::Button("keys (F1)")) panel.keys_open = !panel.keys_open;
     ImGui::SameLine();
@@ -197,6 +224,12 @@ class ImGuiUi : public Ui {
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowSize().x;
     ImGui::End();
     return right;
+  }
+
+  static float lay_out_empty(Panel& panel) {
+    lay_out_wrapped("drop a scene, the folder of a bake or an .lxr file on this window");
+    lay_out_recent(panel);
+    return end_panel(panel);
   }
 
   static void lay_out_shows(Panel& panel) {
@@ -221,6 +254,7 @@ class ImGuiUi : public Ui {
 
   /// A click opens it.
   static void lay_out_recent(Panel& panel) {
+    if (panel.is_empty) ImGui::SetNextItemOpen(true, ImGuiCond_Once);
     if (panel.recent.empty() || !ImGui::CollapsingHeader("recent")) return;
     for (size_t i = 0; i < panel.recent.size(); ++i) {
       ImGui::PushID(int(i));
@@ -274,6 +308,7 @@ class ImGuiUi : public Ui {
 
   static void lay_out_keys(float left, Panel& panel) {
     ImGui::SetNextWindowPos({left, 10}, ImGuiCond_Appearing);
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {FLT_MAX, ImGui::GetIO().DisplaySize.y - 20});
     ImGui::Begin("keys", &panel.keys_open, ImGuiWindowFlags_AlwaysAutoResize);
     if (ImGui::BeginTable("keys", 2)) {
       for (const KeyLine& line : panel.keys) {

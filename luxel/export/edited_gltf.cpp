@@ -111,14 +111,18 @@ void use_extension(OrderedJson& document, const char* name) {
 
 // Materials.
 
+/// Whether its colour is that of KHR_materials_pbrSpecularGlossiness.
+bool is_glossy(const OrderedJson& material) {
+  return material.contains("extensions") && material["extensions"].contains(kGlossiness) &&
+         !material["extensions"].contains("KHR_materials_unlit");
+}
+
 void set_color(Rgb color, OrderedJson& material) {
   color = min(max(color, Rgb{}), Rgb{1, 1, 1});
-  const bool has_extensions = material.contains("extensions");
-  const bool is_glossy = has_extensions && material["extensions"].contains(kGlossiness) &&
-                         !material["extensions"].contains("KHR_materials_unlit");
+  const bool glossy = is_glossy(material);
   OrderedJson& part =
-      is_glossy ? material["extensions"][kGlossiness] : material["pbrMetallicRoughness"];
-  OrderedJson& factor = part[is_glossy ? "diffuseFactor" : "baseColorFactor"];
+      glossy ? material["extensions"][kGlossiness] : material["pbrMetallicRoughness"];
+  OrderedJson& factor = part[glossy ? "diffuseFactor" : "baseColorFactor"];
   const OrderedJson alpha = factor.is_array() && factor.size() > 3 ? factor[3] : OrderedJson(1);
   factor = rgb_of(color);
   factor.push_back(alpha);
@@ -137,6 +141,26 @@ void set_emission(const GltfEdits::Material& edit, OrderedJson& document, Ordere
   if (strength == 1 && !has_strength) return;
   material["extensions"][kStrength]["emissiveStrength"] = strength;
   use_extension(document, kStrength);
+}
+
+/// Metal is known to glTF's own materials alone: others become one, as luxel reads them.
+void become_metallic_roughness(OrderedJson& material) {
+  const OrderedJson glossy = material["extensions"][kGlossiness];
+  OrderedJson& pbr = material["pbrMetallicRoughness"];
+  pbr = OrderedJson::object();
+  pbr["baseColorFactor"] = glossy.value("diffuseFactor", OrderedJson{1, 1, 1, 1});
+  if (glossy.contains("diffuseTexture")) pbr["baseColorTexture"] = glossy["diffuseTexture"];
+  pbr["roughnessFactor"] = 1 - glossy.value("glossinessFactor", 1.0);
+  drop_extension(material, kGlossiness);
+}
+
+void set_metallic(const GltfEdits::Material& edit, OrderedJson& material) {
+  if (is_glossy(material)) become_metallic_roughness(material);
+  OrderedJson& pbr = material["pbrMetallicRoughness"];
+  // Where nothing was metal its picture was not looked at.
+  if (edit.before.metallic == 0 && pbr.contains("metallicRoughnessTexture"))
+    pbr.erase("metallicRoughnessTexture");
+  pbr["metallicFactor"] = edit.now.metallic;
 }
 
 /// The material that stands for none becomes one of the file's own.
@@ -160,6 +184,7 @@ void edit_materials(const GltfEdits& edits, OrderedJson& document) {
     OrderedJson& material = document["materials"][number];
     if (edit.now.base_color != edit.before.base_color) set_color(edit.now.base_color, material);
     if (edit.now.emission != edit.before.emission) set_emission(edit, document, material);
+    if (edit.now.metallic != edit.before.metallic) set_metallic(edit, material);
   }
 }
 

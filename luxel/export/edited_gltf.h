@@ -31,7 +31,7 @@ struct GltfEdits {
   std::vector<scene::PunctualLight> new_lights;
   struct Material {
     uint32_t material = 0;
-    scene::Material before, now;  ///< base colour and emission count
+    scene::Material before, now;  ///< base colour, emission and metallic count
   };
   std::vector<Material> materials;
 };

@@ -17,8 +17,8 @@ inline constexpr int kGlyphAdvance = 6, kGlyphHeight = 9;
 int text_width(std::string_view text, int scale);
 
 /// Draws with the top left corner of the first cell at (x, y); what lies outside the picture is cut
-/// off. Lower-case letters, digits and some signs; capitals appear as lower case, anything else as
-/// a box. `picture` has at least 3 channels, of which a fourth is left alone.
+/// off. Letters, digits and some signs; anything else is a box. `picture` has at least 3 channels,
+/// of which a fourth is left alone.
 void draw_text(Image8& picture, int x, int y, int scale, Color8 color, std::string_view text);
 
 }  // namespace luxel::image

@@ -207,15 +207,20 @@ double aerosol_phase(double g, double cosine) {
   return k * (1 + cosine * cosine) / std::pow(1 + g * g - 2 * g * cosine, 1.5);
 }
 
-AirTables make_air_tables(const Atmosphere& air) {
+AirTables make_transmittance(const Atmosphere& air, int heights) {
   AirTables t;
   t.air = air;
-  t.width = 256, t.height = 64;
+  t.width = 256, t.height = heights;
   fill(t.transmittance, t.width, t.height, [&air](double v) {
     return [&air, radius = radius_of(air, v)](double u) {
       return exp_minus(optical_depth(air, radius, cosine_of(air, radius, u)));
     };
   });
+  return t;
+}
+
+AirTables make_air_tables(const Atmosphere& air) {
+  AirTables t = make_transmittance(air, 64);
   t.suns = 65, t.radii = 32;
   fill(t.scattered_again, t.suns, t.radii, [&t](double v) {
     const double radius = t.air.ground_km + v * v * (t.air.top_km - t.air.ground_km);

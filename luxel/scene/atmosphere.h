@@ -48,6 +48,8 @@ struct AirTables {
   std::vector<DVec3> scattered_again;
 };
 AirTables make_air_tables(const Atmosphere& air);
+/// `transmittance` alone, from so many heights, 2 or more: that from the ground is the same.
+AirTables make_transmittance(const Atmosphere& air, int heights);
 
 /// From a point at `radius_km` along a ray whose cosine with the vertical is `cosine` to the top;
 /// what the earth hides is not left out.

@@ -8,6 +8,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/vec_double.h"
 #include "luxel/scene/atmosphere.h"
+#include "luxel/scene/sun_illuminance.h"
 
 namespace luxel::scene {
 namespace {
@@ -79,18 +80,32 @@ void draw_upper_half(const AirTables& t, DVec3 towards_sun, double lux, Environm
   });
 }
 
+double lux_above_air(const SkyParams& params) {
+  return kSunLux / (params.sun_distance_au * params.sun_distance_au);
+}
+
+/// Needs no more than the transmittance from the ground.
+Rgb sun_light(const AirTables& tables, const SkyParams& params) {
+  const double up = normalize(to_double(params.towards_sun)).y;
+  return to_float(through_air(tables, std::asin(std::clamp(up, -1.0, 1.0))) *
+                  lux_above_air(params));
+}
+
 }  // namespace
+
+Rgb sun_illuminance(const SkyParams& params) {
+  return sun_light(make_transmittance(atmosphere_of(params.turbidity), 2), params);
+}
 
 Sky make_sky(const SkyParams& params) {
   LUXEL_CHECK(params.height >= 2 && params.height % 2 == 0);
   LUXEL_CHECK(params.turbidity >= 1 && params.sun_distance_au > 0);
   const AirTables tables = make_air_tables(atmosphere_of(params.turbidity));
-  const double lux = kSunLux / (params.sun_distance_au * params.sun_distance_au);
+  const double lux = lux_above_air(params);
   const DVec3 sun = normalize(to_double(params.towards_sun));
   Sky out;
   out.towards_sun = to_float(sun);
-  out.sun_illuminance =
-      to_float(through_air(tables, std::asin(std::clamp(sun.y, -1.0, 1.0))) * lux);
+  out.sun_illuminance = sun_light(tables, params);
   const size_t width = 2 * size_t(params.height), half = width * size_t(params.height / 2);
   out.radiance = {int(width), params.height, std::vector<Rgb>(2 * half), 0};
   draw_upper_half(tables, sun, lux, out.radiance);

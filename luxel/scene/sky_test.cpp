@@ -5,6 +5,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/base/vec_double.h"
 #include "luxel/scene/atmosphere.h"
+#include "luxel/scene/sun_illuminance.h"
 
 namespace luxel::scene {
 namespace {
@@ -160,6 +161,15 @@ TEST(SkySlow, HazeTakesFromTheSunAndGivesToTheSky) {
     EXPECT_LT(double(luminance(s.sun_illuminance)), sun);
     EXPECT_GT(lux_of(s), sky);
     sun = double(luminance(s.sun_illuminance)), sky = lux_of(s);
+  }
+}
+
+TEST(Sky, TheSunIsKnownWithoutItsPicture) {
+  for (const float up : {-0.1f, 0.002f, 0.1f, 0.7f, 1.0f}) {
+    SkyParams params;
+    params.towards_sun = normalize(Vec3{std::sqrt(1 - up * up), up, 0});
+    params.turbidity = 3, params.sun_distance_au = 1.01, params.height = 2;
+    EXPECT_EQ(sun_illuminance(params), make_sky(params).sun_illuminance) << up;
   }
 }
 

@@ -7,11 +7,18 @@
 
 #include "luxel/base/result.h"
 #include "luxel/pipeline/settings/settings.h"
+#include "luxel/pipeline/settings/sky_setting.h"
 #include "luxel/scene/scene.h"
 #include "luxel/trace/ray_tracer.h"
 #include "luxel/view/frame.h"
 
 namespace luxel::view {
+
+/// A sky's sun among the lights of a scene, and the sky.
+struct SkySun {
+  uint32_t light = 0;
+  pipeline::SkySetting sky;
+};
 
 /// It stays where it is: the tracer looks at the scene.
 struct ReadScene {
@@ -20,6 +27,7 @@ struct ReadScene {
   Frame first;                             ///< from where preview.png is taken
   int width = 960, height = 720;           ///< of preview.png
   std::string light_unit;                  ///< of E: "lux" or "W/m^2"
+  std::optional<SkySun> sun;               ///< none: there is no such sky, or it is night
 };
 
 /// What the tracer of a scene is good for: many rays, or being made again after each edit.

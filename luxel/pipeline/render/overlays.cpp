@@ -91,12 +91,24 @@ std::vector<StrongLink> strong_links(const h::Solution& s, const trace::RayTrace
   return out;
 }
 
+void add_arrow(DVec3 from, DVec3 to, double head_m, Rgb color, Lines& out) {
+  out.push_back({to_float(to), to_float(from), color});
+  const double length_m = length(from - to);
+  if (!(length_m > 0)) return;
+  const DVec3 back = normalize(from - to);
+  const DVec3 aside =
+      normalize(cross(back, std::abs(back.y) < 0.9 ? DVec3{0, 1, 0} : DVec3{1, 0, 0}));
+  const double head = std::min(head_m, 0.3 * length_m);
+  for (const double side : {-0.4, 0.4})
+    out.push_back({to_float(to), to_float(to + (back + aside * side) * head), color});
+}
+
 Lines link_lines(const h::Solution& s, std::span<const StrongLink> links) {
   Lines out;
   for (const StrongLink& strong : links) {
     const h::Link& link = s.links.of[strong.receiver][strong.number];
     const h::Element &r = s.tree.element(strong.receiver), &e = s.tree.element(link.source);
-    out.push_back({to_float(r.centre), to_float(e.centre), color_of(s, r, e, link)});
+    add_arrow(e.centre, r.centre, kArrowHead * double(s.diagonal_m), color_of(s, r, e, link), out);
   }
   return out;
 }

@@ -39,8 +39,12 @@ struct StrongLink {
 /// Those that bring most light, the first the strongest.
 std::vector<StrongLink> strong_links(const hierarchical::Solution& solution,
                                      const trace::RayTracer& tracer, const LinkChoice& choice = {});
-/// From receiver to source, white where they see each other whole, pink where the plane of one cuts
-/// the other, green where something stands between.
+/// A line with a head where it ends; short ones have a smaller head.
+void add_arrow(DVec3 from, DVec3 to, double head_m, Rgb color, std::vector<display::Line>& out);
+inline constexpr double kArrowHead = 0.02;  ///< of links, over the scene's diagonal
+/// Arrows from source to receiver, of three lines each, the whole length the first: white where
+/// they see each other whole, pink where the plane of one cuts the other, green where something
+/// stands between.
 std::vector<display::Line> link_lines(const hierarchical::Solution& solution,
                                       std::span<const StrongLink> links);
 /// Those on all faces, whatever their weight. Errors: cancelled.

@@ -26,6 +26,11 @@ void set_base_color(size_t material, Rgb base_color, DeviceScene& scene) {
   material_on(scene, material).base_color = base_color;
 }
 
+void set_metallic(size_t material, float metallic, DeviceScene& scene) {
+  material_on(scene, material).metallic = metallic;
+  if (metallic > 0) scene.glows_or_is_metal[material] = 1;
+}
+
 void set_transform(uint32_t instance, const Mat34& world_from_object, DeviceScene& scene) {
   instance_on(scene, instance).rows = rows_of(world_from_object);
   scene.is_mirrored[instance] = determinant(world_from_object) < 0;
@@ -41,6 +46,16 @@ Status put_light(gpu::Commands& commands, std::span<const image::HalfImage> page
     scales_of(scene)[2 * page + which] = pages[page].scale;
   }
   return {};
+}
+
+Status set_surroundings(gpu::Commands& commands, const scene::Environment& map,
+                        DeviceScene& scene) {
+  const gpu::PictureParams& params = scene.surroundings.picture->params;
+  LUXEL_CHECK(uint32_t(map.width) == params.width && uint32_t(map.height) == params.height);
+  const image::HalfImage half = half_of(map);
+  scene.surroundings_scale = half.scale, scene.rotation_rad = map.rotation_rad;
+  return gpu::put_pixels(commands, *scene.surroundings.picture, bytes_of(half.data),
+                         "the surroundings");
 }
 
 void set_emission_factor(uint32_t instance, Rgb factor, DeviceScene& scene) {

@@ -249,11 +249,7 @@ Status put_surroundings(Pictures& pictures, const scene::Scene& scene, DeviceSce
   LUXEL_TRY(out.surroundings, pictures.white());
   const scene::Environment& map = scene.environment;
   if (map.empty()) return {};
-  image::Image image(map.width, map.height, 4);
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x)
-      image.set_rgb(x, y, map.radiance[size_t(y) * size_t(map.width) + size_t(x)]);
-  const image::HalfImage half = image::to_half(image);
+  const image::HalfImage half = half_of(map);
   out.surroundings_scale = half.scale;
   LUXEL_TRY(out.surroundings,
             pictures.light(half, VK_SAMPLER_ADDRESS_MODE_REPEAT, "the surroundings"));

@@ -112,5 +112,11 @@ void set_base_color(size_t material, Rgb base_color, DeviceScene& scene);
 /// Another emission of a material's surfaces [W/(sr m^2)], a factor of its texture. Nothing may
 /// still draw the scene.
 void set_emission(size_t material, Rgb emission, DeviceScene& scene);
+/// Another share of metal of a material's surfaces, a factor of its texture. Nothing may still draw
+/// the scene.
+void set_metallic(size_t material, float metallic, DeviceScene& scene);
+/// Other surroundings, whose map is as large as the one before. Nothing may still draw the scene.
+/// Errors: no memory.
+Status set_surroundings(gpu::Commands& commands, const scene::Environment& map, DeviceScene& scene);
 
 }  // namespace luxel::view

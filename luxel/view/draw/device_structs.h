@@ -49,6 +49,15 @@ inline std::array<float, 12> rows_of(const Mat34& m) {
   return out;
 }
 
+/// The picture of a map.
+inline image::HalfImage half_of(const scene::Environment& map) {
+  image::Image image(map.width, map.height, 4);
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x)
+      image.set_rgb(x, y, map.radiance[size_t(y) * size_t(map.width) + size_t(x)]);
+  return image::to_half(image);
+}
+
 template <class Values>
 std::span<const std::byte> bytes_of(const Values& values) {
   return std::as_bytes(std::span(values));

@@ -96,10 +96,12 @@ TEST_F(OutlineTest, WhatIsChangedLooksAsIfItHadBeenSo) {
     scene.instances[1].world_from_object = translation({0, 0.1f, 0});
     scene.materials[0].base_color = {0.1f, 0.6f, 0.2f};
     scene.materials[1].emission = {0.5f, 0.1f, 0};
+    scene.materials[2].metallic = 0.5f;
     for (const uint32_t i : {0u, 1u})
       set_transform(i, scene.instances[i].world_from_object, changed);
     set_base_color(0, scene.materials[0].base_color, changed);
     set_emission(1, scene.materials[1].emission, changed);
+    set_metallic(2, scene.materials[2].metallic, changed);
     const image::Image8 now = draw(changed, frame);
     EXPECT_NE(now.data, before.data);
     EXPECT_EQ(now.data, draw(put(scene), frame).data);

@@ -31,6 +31,7 @@ void put_edits(const SceneNow& now, std::span<const uint32_t> of_material, Devic
   for (size_t m = 0; m < of_material.size(); ++m) {
     const MaterialLook& look = now.materials[of_material[m]];
     set_base_color(m, look.base_color, scene), set_emission(m, look.emission, scene);
+    set_metallic(m, look.metallic, scene);
   }
 }
 

@@ -56,7 +56,7 @@ struct CanBePut {
   bool operator()(const LampDeleted& edit) const { return is_there(edit.lamp, now); }
   bool operator()(const MaterialSet& edit) const {
     return edit.material < now.materials.size() && is_light(edit.base_color) &&
-           is_light(edit.emission);
+           is_light(edit.emission) && edit.metallic >= 0 && edit.metallic <= 1;
   }
 };
 
@@ -65,11 +65,14 @@ struct Put {
   void operator()(const InstanceMoved& edit) const {
     now.world_from_object[edit.instance] = edit.world_from_object;
   }
-  void operator()(const LampSet& edit) const { now.lamps[edit.lamp] = {edit.light, edit.is_on}; }
+  void operator()(const LampSet& edit) const {
+    now.lamps[edit.lamp] = {edit.light, edit.is_on};
+    if (edit.sky) now.sky = edit.sky;
+  }
   void operator()(const LampCreated& edit) const { now.lamps.push_back({edit.light}); }
   void operator()(const LampDeleted& edit) const { now.lamps[edit.lamp].is_deleted = true; }
   void operator()(const MaterialSet& edit) const {
-    now.materials[edit.material] = {edit.base_color, edit.emission};
+    now.materials[edit.material] = {edit.base_color, edit.emission, edit.metallic};
   }
 };
 
@@ -107,13 +110,17 @@ bool redo(History& history) {
   return true;
 }
 
+MaterialLook look_of(const scene::Material& material) {
+  return {material.base_color, material.emission, material.metallic};
+}
+
 SceneNow unedited(const scene::Scene& as_read) {
   SceneNow out;
   for (const scene::Instance& instance : as_read.instances)
     out.world_from_object.push_back(instance.world_from_object);
   for (const scene::PunctualLight& light : as_read.lights) out.lamps.push_back({light});
   for (const scene::Material& material : as_read.materials)
-    out.materials.push_back({material.base_color, material.emission});
+    out.materials.push_back(look_of(material));
   return out;
 }
 
@@ -132,12 +139,14 @@ scene::Scene edited(const scene::Scene& as_read, const SceneNow& now) {
   for (size_t m = 0; m < out.materials.size(); ++m) {
     out.materials[m].base_color = now.materials[m].base_color;
     out.materials[m].emission = now.materials[m].emission;
+    out.materials[m].metallic = now.materials[m].metallic;
   }
   out.lights.clear();
   for (const EditedLamp& lamp : now.lamps) {
     out.lights.push_back(lamp.light);
     if (!lamp.is_on || lamp.is_deleted) out.lights.back().intensity = {};
   }
+  if (now.sky) out.environment = scene::make_sky(pipeline::sky_params(now.sky->setting)).radiance;
   return out;
 }
 

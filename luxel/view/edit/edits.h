@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
 #include "luxel/scene/scene.h"
 #include "luxel/view/lamp.h"
+#include "luxel/view/model/events.h"
 #include "luxel/view/read_scene.h"
 
 namespace luxel::view {
@@ -24,6 +26,7 @@ struct LampSet {
   uint32_t lamp = 0;
   scene::PunctualLight light;
   bool is_on = true;
+  std::optional<SkyAsked> sky{};  ///< that it is the sun of from now on; none: no other one
 };
 struct LampCreated {
   scene::PunctualLight light;
@@ -35,6 +38,7 @@ struct MaterialSet {
   uint32_t material = 0;
   Rgb base_color{1, 1, 1};  ///< scene::Material::base_color
   Rgb emission{};           ///< scene::Material::emission [W/(sr m^2)]
+  float metallic = 0;       ///< scene::Material::metallic
 };
 using Edit = std::variant<InstanceMoved, LampSet, LampCreated, LampDeleted, MaterialSet>;
 
@@ -58,14 +62,18 @@ using EditedLamp = Lamp;
 /// What of a material can be changed.
 struct MaterialLook {
   Rgb base_color{1, 1, 1}, emission{};
+  float metallic = 0;
   friend bool operator==(const MaterialLook&, const MaterialLook&) = default;
 };
+
+MaterialLook look_of(const scene::Material& material);
 
 /// All that edits can change, as it is now.
 struct SceneNow {
   std::vector<Mat34> world_from_object;  ///< of each instance
   std::vector<EditedLamp> lamps;         ///< of the scene as it was read, then those added
   std::vector<MaterialLook> materials;
+  std::optional<SkyAsked> sky;  ///< another one than was read
 };
 
 /// As it was read.

@@ -41,7 +41,7 @@ std::vector<Edit> all_kinds() {
           LampSet{0, red_spot(), true},
           LampSet{1, red_spot(), false},
           LampCreated{red_spot()},
-          MaterialSet{0, {0.1f, 0.2f, 0.3f}, {5, 0, 0}},
+          MaterialSet{0, {0.1f, 0.2f, 0.3f}, {5, 0, 0}, 0.25f},
           LampDeleted{0}};
 }
 
@@ -53,6 +53,7 @@ TEST(Edits, EachChangesWhatItSaysAndNothingElse) {
   expected.lights = {red_spot(), red_spot(), red_spot()};
   expected.lights[0].intensity = expected.lights[1].intensity = {};  // deleted, and off
   expected.materials[0].base_color = {0.1f, 0.2f, 0.3f}, expected.materials[0].emission = {5, 0, 0};
+  expected.materials[0].metallic = 0.25f;
   EXPECT_THAT(difference(expected, scene_of(desk)), IsEmpty());
   EXPECT_EQ(desk.changes, all_kinds().size());
 }
@@ -112,11 +113,12 @@ TEST(Edits, WhatASceneCannotHoldChangesNothing) {
   EditDesk desk = begin_editing(cornell_read());
   scene::PunctualLight dark = red_spot(), lost = red_spot(), wide = red_spot();
   dark.intensity.x = -1, lost.direction = {}, wide.outer_cone_rad = 2;
-  for (const Edit& edit : std::vector<Edit>{
-           InstanceMoved{99, {}}, InstanceMoved{0, scaling({1, 0, 1})},
-           InstanceMoved{0, translation({NAN, 0, 0})}, LampSet{2, red_spot()}, LampSet{0, dark},
-           LampSet{0, lost}, LampCreated{wide}, LampDeleted{7}, MaterialSet{99},
-           MaterialSet{0, {-1, 0, 0}}, MaterialSet{0, {}, {INFINITY, 0, 0}}})
+  for (const Edit& edit :
+       std::vector<Edit>{InstanceMoved{99, {}}, InstanceMoved{0, scaling({1, 0, 1})},
+                         InstanceMoved{0, translation({NAN, 0, 0})}, LampSet{2, red_spot()},
+                         LampSet{0, dark}, LampSet{0, lost}, LampCreated{wide}, LampDeleted{7},
+                         MaterialSet{99}, MaterialSet{0, {-1, 0, 0}},
+                         MaterialSet{0, {}, {INFINITY, 0, 0}}, MaterialSet{0, {}, {}, 1.5f}})
     do_edit(edit, desk);
   EXPECT_EQ(desk.changes, 0u);
   EXPECT_TRUE(desk.history.done.empty());

@@ -7,6 +7,7 @@
 #include "luxel/export/edited_gltf.h"
 #include "luxel/import/gltf_images.h"
 #include "luxel/import/import.h"
+#include "luxel/view/edit/sky_sun.h"
 #include "luxel/view/free_name.h"
 
 namespace luxel::view {
@@ -43,13 +44,15 @@ export_::GltfEdits edits_of(const SceneToSave& to_save, const import::Imported& 
       out.deleted_lights.push_back(i);
     else if (i < file.scene.lights.size() && is_changed)
       out.lights.push_back({i, read.lights[i], light});
-    else if (i >= file.scene.lights.size() && is_changed && !lamp.is_deleted)
+    else if (i >= file.scene.lights.size() && is_changed && !lamp.is_deleted &&
+             !is_of_sky(i, *to_save.read, now))
       out.new_lights.push_back(light);
   }
   for (uint32_t m = 0; m < read.materials.size(); ++m) {
     scene::Material after = read.materials[m];
     after.base_color = now.materials[m].base_color, after.emission = now.materials[m].emission;
-    if (now.materials[m] != MaterialLook{read.materials[m].base_color, read.materials[m].emission})
+    after.metallic = now.materials[m].metallic;
+    if (now.materials[m] != look_of(read.materials[m]))
       out.materials.push_back({m, read.materials[m], std::move(after)});
   }
   return out;
@@ -62,6 +65,7 @@ scene::Scene with_edits(scene::Scene file, const export_::GltfEdits& edits) {
   for (const auto& material : edits.materials) {
     file.materials[material.material].base_color = material.now.base_color;
     file.materials[material.material].emission = material.now.emission;
+    file.materials[material.material].metallic = material.now.metallic;
   }
   for (const auto& light : edits.lights) file.lights[light.light] = light.now;
   for (size_t k = edits.deleted_lights.size(); k-- > 0;)
@@ -120,6 +124,13 @@ Result<std::filesystem::path> save_scene(const SceneToSave& to_save) {
                 is_gltf ? settings.scene.extension().string() : ".glb");
   LUXEL_TRY_STATUS(write_file_atomically(to, bytes));
   return to;
+}
+
+std::string what_sky_lacks(const SceneToSave& to_save) {
+  if (!to_save.now.sky) return "";
+  return is_of_sky(to_save.read->sun->light, *to_save.read, to_save.now)
+             ? fmt::format("; no file has a sky: open it with --sky {}", to_save.now.sky->words)
+             : "; no file has a sky: of it, only the sun is there";
 }
 
 }  // namespace luxel::view

@@ -119,6 +119,7 @@ void expect_same(const scene::Scene& saved, const EditDesk& desk) {
     EXPECT_EQ(saved.materials[m].base_color, now.materials[m].base_color);
     EXPECT_EQ(saved.materials[m].emission, now.materials[m].emission);
     EXPECT_EQ(saved.materials[m].alpha, now.materials[m].alpha);
+    EXPECT_EQ(saved.materials[m].metallic, now.materials[m].metallic);
   }
   size_t next = 0;
   for (size_t i = 0; i < now.lights.size(); ++i) {
@@ -178,7 +179,7 @@ TEST_F(SaveScene, AnEditedSceneIsReadBack) {
   sun.direction = normalize(Vec3{1, -2, 3}), sun.intensity = {1e5f, 9e4f, 8e4f};
   spot.kind = scene::PunctualLight::Kind::spot, spot.position = {1, 2, 3};
   do_edit(LampCreated{sun}, desk), do_edit(LampCreated{spot}, desk);
-  do_edit(MaterialSet{0, {0.1f, 0.2f, 0.3f}, {7, 0, 0.5f}}, desk);
+  do_edit(MaterialSet{0, {0.1f, 0.2f, 0.3f}, {7, 0, 0.5f}, 0.75f}, desk);
   do_edit(MaterialSet{1, {0.3f, 0.3f, 0.4f}, {}}, desk);  // glTF's default
   expect_same(read_back(desk), desk);
   do_edit(LampDeleted{2}, desk), do_edit(LampDeleted{4}, desk);
@@ -242,6 +243,29 @@ TEST_F(SaveScene, ChunksOfAGlbStayByteByByte) {
                                 scene::digests_of(again)),
               IsEmpty());
   EXPECT_EQ(save(desk).filename(), "box-edited-3.glb") << "nothing is written over";
+}
+
+// glTF without a factor is all metal; glossy materials of old know none.
+TEST_F(SaveScene, MetalIsThatOfTheFileReadBack) {
+  std::string file = kHall;
+  const std::string factor = R"("metallicFactor": 0, )";
+  file.erase(file.find(factor), factor.size());
+  file.replace(file.find(R"("materials": [)"), 14, R"("materials": [
+    {"extensions": {"KHR_materials_pbrSpecularGlossiness":
+      {"diffuseFactor": [0.5, 0.25, 0.125, 1], "glossinessFactor": 0.25}}}, )");
+  const auto bytes = std::as_bytes(std::span(kHallBytes));
+  ASSERT_TRUE(write_file_atomically(folder_ / "some bytes.bin", bytes));
+  EditDesk desk = open("hall.gltf", std::as_bytes(std::span(file)));
+  ASSERT_EQ(desk.now.materials[0].metallic, 0);
+  ASSERT_EQ(desk.now.materials[1].metallic, 1);
+  for (uint32_t m : {0u, 1u}) {
+    const MaterialLook& look = desk.now.materials[m];
+    do_edit(MaterialSet{m, look.base_color, look.emission, 0.5f}, desk);
+  }
+  expect_same(read_back(desk), desk);
+  const Json saved = json_of(save(desk));
+  EXPECT_EQ(saved["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"], 0.75);
+  EXPECT_EQ(saved["materials"][1]["extras"]["tree"], "oak");
 }
 
 TEST_F(SaveScene, OtherFilesBecomeGlb) {

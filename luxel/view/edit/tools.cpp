@@ -5,6 +5,7 @@
 
 #include "luxel/scene/light_kinds.h"
 #include "luxel/view/edit/pick.h"
+#include "luxel/view/edit/sky_sun.h"
 #include "luxel/view/model/lamp_change.h"
 #include "luxel/view/model/projection.h"
 
@@ -26,8 +27,9 @@ Vec3 place_of_lamp(const EditTools& tools) {
   return place_of({*tools.selected.lamp, false}, selected_lamp(tools).light, tools.bounds);
 }
 
-void drag_lamp(const Lamp& lamp, EditTools& tools) {
-  drag_edit(LampSet{*tools.selected.lamp, lamp.light, lamp.is_on}, tools.desk);
+void drag_lamp(Lamp lamp, EditTools& tools) {
+  lamp.light.intensity = selected_lamp(tools).light.intensity;  // a sun's goes with its sky
+  drag_edit(lamp_set(*tools.selected.lamp, lamp, std::nullopt, tools.desk), tools.desk);
 }
 
 /// The selected thing goes with its gizmo, from where it was.
@@ -191,23 +193,24 @@ struct DoAsked {
     if (!is_lamp(event.lamp)) return;
     Lamp lamp = tools.desk.now.lamps[event.lamp];
     change(event.change, lamp);
-    do_edit(LampSet{event.lamp, lamp.light, lamp.is_on}, tools.desk);
+    do_edit(lamp_set(event.lamp, lamp, event.change.sky, tools.desk), tools.desk);
   }
   void operator()(const LampAdded& event) const { add_lamp(event, tools); }
   void operator()(const LampRemoved& event) const {
     if (is_lamp(event.lamp)) delete_lamp(event.lamp, tools);
   }
   void operator()(const GlowChanged& event) const {
-    (*this)(MaterialChanged{event.material, std::nullopt, event.radiance});
+    (*this)(MaterialChanged{event.material, std::nullopt, event.radiance, std::nullopt});
   }
   void operator()(const MaterialChanged& event) const {
     const std::vector<uint32_t> materials = materials_named(event.material, tools);
     if (materials.empty()) return refuse_material(event.material);
     for (const uint32_t m : materials) {
       const MaterialLook& now = tools.desk.now.materials[m];
-      do_edit(MaterialSet{m, event.base_color.value_or(now.base_color),
-                          event.radiance.value_or(now.emission)},
-              tools.desk);
+      do_edit(
+          MaterialSet{m, event.base_color.value_or(now.base_color),
+                      event.radiance.value_or(now.emission), event.metallic.value_or(now.metallic)},
+          tools.desk);
     }
   }
 
@@ -263,6 +266,23 @@ void select(const EditSelection& selection, EditTools& tools) {
 
 Placement placement_of(const EditTools& tools) {
   return placement_of(tools.desk.now.world_from_object[*tools.selected.instance], tools.middle);
+}
+
+Box3 selected_box(const EditTools& tools) {
+  Box3 out;
+  if (const auto i = tools.selected.instance) {
+    const Box3 box = object_bounds(tools.desk.read->scene, *i);
+    for (int k = 0; k < 8; ++k) {
+      const Vec3 corner{k & 1 ? box.upper.x : box.lower.x, k & 2 ? box.upper.y : box.lower.y,
+                        k & 4 ? box.upper.z : box.lower.z};
+      out.extend(transform_point(tools.desk.now.world_from_object[*i], corner));
+    }
+  } else if (tools.selected.lamp && scene::has_position(selected_lamp(tools).light.kind)) {
+    const Vec3 place = selected_lamp(tools).light.position;
+    const Vec3 reach = (tools.bounds.upper - tools.bounds.lower) * 0.05f;
+    out.extend(place - reach), out.extend(place + reach);
+  }
+  return out;
 }
 
 void undo_step(EditTools& tools) { undo(tools.desk), tidy(tools); }

@@ -55,6 +55,9 @@ bool handle_edits(const Event& event, const Walk& walk, EditTools& tools);
 void select(const EditSelection& selection, EditTools& tools);
 /// Where the selected instance stands. Only where one is selected.
 Placement placement_of(const EditTools& tools);
+/// The box around it where it is now; a lamp's is a tenth of the scene's. Empty: nothing is
+/// selected, or a sun.
+Box3 selected_box(const EditTools& tools);
 /// Takes a step back or does it again; what is no more is no longer selected.
 void undo_step(EditTools& tools);
 void redo_step(EditTools& tools);

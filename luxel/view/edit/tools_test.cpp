@@ -98,6 +98,18 @@ TEST(EditTools, AClickSelectsASurfaceAndThenItsMaterial) {
   EXPECT_TRUE(b.tools.desk.history.done.empty());
 }
 
+TEST(EditTools, KnowTheBoxOfWhatIsSelected) {
+  Bench b;
+  EXPECT_TRUE(selected_box(b.tools).empty());
+  b.click({0.5f, -0.5f, 0});
+  do_edit(InstanceMoved{0, translation({-3, 0, 7}) * scaling({1, 2, 1})}, b.tools.desk);
+  const Box3 box = selected_box(b.tools);
+  EXPECT_EQ(box.lower, (Vec3{1, -2, 7}));
+  EXPECT_EQ(box.upper, (Vec3{3, 2, 7}));
+  select({.lamp = 0}, b.tools);
+  EXPECT_EQ(selected_box(b.tools).centre(), (Vec3{-2, 1, 0}));
+}
+
 TEST(EditTools, ADragBesideItTurnsTheViewAndSelectsNothing) {
   Bench b;
   const Mat34 before = b.walk.shown.camera.world_from_camera;

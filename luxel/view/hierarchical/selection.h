@@ -56,7 +56,8 @@ struct SelectionDesk {
   Selection selected;
   Probed probed;
   Inquiries asked;
-  std::string said;             ///< why nothing was found; a sentence
+  std::string said;  ///< why nothing was found; a sentence
+  std::array<bool, kGraphCurves.size()> graph_shows{true, true, true};
   float graph_height = 0.3f;    ///< of a graph's largest value in space, over the line's length
   uint64_t solution = 0;        ///< Examined::number that all this is about
   uint64_t changes = 0;         ///< counts up with whatever is to be drawn
@@ -82,6 +83,8 @@ void select_nothing(SelectionDesk& desk);
 /// selection goes over to it. True: something has changed.
 bool follow(const Examined& examined, SelectionDesk& desk);
 
+/// The box around the element, link, triangle or discontinuity; empty: nothing is selected.
+Box3 selected_box(const Examined& examined, const SelectionDesk& desk);
 /// What is drawn of it.
 SelectionShapes shapes_of(const Examined& examined, const SelectionDesk& desk);
 

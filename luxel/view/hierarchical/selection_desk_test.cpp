@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -74,6 +75,7 @@ TEST(SelectionDesk, AClickSelectsAndKeysStep) {
   EXPECT_EQ(desk.selected.level, 0u);
   handle_selection(KeyChanged{"esc", true}, walk, examined, desk);
   EXPECT_FALSE(desk.selected.has_element());
+  EXPECT_TRUE(selected_box(examined, desk).empty());
 }
 
 TEST(SelectionDesk, LinksComeByWhatTheyBring) {
@@ -86,12 +88,21 @@ TEST(SelectionDesk, LinksComeByWhatTheyBring) {
                    examined, desk);
   ASSERT_TRUE(desk.selected.has_element());
   EXPECT_NEAR(desk.selected.at->position.y, 0, 1e-9);
+  const Box3 of_element = selected_box(examined, desk);
+  EXPECT_TRUE(of_element.lower.x <= 1 && of_element.upper.x >= 1 && of_element.upper.y == 0);
   handle_selection(SelectionStepped{SelectionStep::next}, walk, examined, desk);
   ASSERT_TRUE(desk.selected.link);
+  EXPECT_LT(of_element.diagonal(), selected_box(examined, desk).diagonal()) << "both ends";
   const LinkFacts first = facts_of(examined.view, *desk.selected.link);
   EXPECT_THAT(first.source, HasSubstr("lamp"));
-  size_t lines = shapes_of(examined, desk).lines.size();
-  EXPECT_GT(lines, 9u) << "two outlines and the link";
+  const std::vector<display::Line> lines = shapes_of(examined, desk).lines;
+  EXPECT_GT(lines.size(), 9u) << "two outlines and the link";
+  const auto begin_at = [&](uint32_t id) {
+    const Vec3 middle = to_float(middle_of(examined.view.solution.tree, id));
+    return std::ranges::count(lines, middle, &display::Line::from);
+  };
+  EXPECT_EQ(begin_at(desk.selected.link->receiver), 3) << "the line, and its head";
+  EXPECT_EQ(begin_at(desk.selected.link_source), 0);
   handle_selection(SelectionStepped{SelectionStep::next}, walk, examined, desk);
   ASSERT_TRUE(desk.selected.link);
   EXPECT_LE(luminance(facts_of(examined.view, *desk.selected.link).irradiance),
@@ -136,6 +147,18 @@ TEST(SelectionDesk, ADragIsAGraph) {
   }
   EXPECT_NEAR(curve.rms, std::sqrt(squares), 1e-3 * std::sqrt(squares));
   EXPECT_FALSE(desk.probed.graph->surface);
+  // The line itself, and one less than points of each curve.
+  const auto lines = [&] { return shapes_of(examined, desk).lines.size(); };
+  const size_t of_curve = curve.at_m.size() - 1;
+  EXPECT_EQ(lines(), 1 + 3 * of_curve);
+  GraphChanged alone;
+  alone.shows = {true, false, false}, alone.height = 2.0f;
+  EXPECT_TRUE(handle_selection(alone, walk, examined, desk));
+  EXPECT_EQ(lines(), 1 + of_curve);
+  float highest = 0;
+  for (const display::Line& line : shapes_of(examined, desk).lines)
+    highest = std::max({highest, line.from.y, line.to.y});
+  EXPECT_NEAR(highest, 0.5 * 2 * 0.7, 0.02) << "half as high as what is shown";
 }
 
 TEST(SelectionDesk, ADiscontinuityAndTheGraphAcrossIt) {
@@ -231,8 +254,11 @@ TEST(Events, OfToolsAreRead) {
   ASSERT_EQ(play->events.size(), 6u);
   const auto& graph = std::get<ToolUsed>(play->events[2].event);
   EXPECT_EQ(std::get<Vec3>(*graph.to).z, 6);
+  EXPECT_TRUE(parse_play(
+      R"({"end": 0, "events": [{"at": 0, "graph": {"difference": false, "height": 0.5}}]})", "p"));
   for (const char* wrong :
-       {R"("tool": "hammer")", R"("use": "element")", R"("use": "graph", "to_pixel": [1, 2])",
+       {R"("graph": {})", R"("graph": {"height": 0})", R"("graph": {"curve": true})",
+        R"("tool": "hammer")", R"("use": "element")", R"("use": "graph", "to_pixel": [1, 2])",
         R"("selection": "sideways")", R"("use": "link", "pixel": [1, 2], "more": 3)",
         R"("tool": "link", "pixel": [1, 2])", R"("use": "element", "place": [1, 2, 1e39])"}) {
     const auto bad =

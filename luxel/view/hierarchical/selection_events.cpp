@@ -50,6 +50,13 @@ bool handle_key(const std::string& key, const Walk& walk, const Examined& examin
                      [&](const KeyHelp& known) { return key == known.key; });
 }
 
+void change_graph(const GraphChanged& by, SelectionDesk& desk) {
+  for (size_t i = 0; i < by.shows.size(); ++i)
+    desk.graph_shows[i] = by.shows[i].value_or(desk.graph_shows[i]);
+  desk.graph_height = by.height.value_or(desk.graph_height);
+  ++desk.changes;
+}
+
 }  // namespace
 
 bool handle_selection(const Event& event, const Walk& walk, const Examined& examined,
@@ -67,6 +74,8 @@ bool handle_selection(const Event& event, const Walk& walk, const Examined& exam
     return use_tool(*used, walk, examined, desk), true;
   if (const auto* stepped = std::get_if<SelectionStepped>(&event))
     return step_selection(stepped->step, examined, desk), true;
+  if (const auto* graph = std::get_if<GraphChanged>(&event))
+    return change_graph(*graph, desk), true;
   const auto* changed = std::get_if<ToolChanged>(&event);
   if (changed) desk.tool = changed->tool, ++desk.changes;
   return changed != nullptr;

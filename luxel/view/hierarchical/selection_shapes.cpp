@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "luxel/pipeline/render/overlays.h"
 #include "luxel/viewfactor/shaft.h"
 
 namespace luxel::view {
@@ -58,8 +59,9 @@ void add_links_of(const SolutionView& view, uint32_t id, SelectionShapes& out) {
   std::stable_sort(strong.begin(), strong.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   for (size_t k = 0; k < std::min(kMostShownLinks, strong.size()); ++k)
-    add_stroke(middle_of(s.tree, id), middle_of(s.tree, strong[k].second->source),
-               color_of_link(*strong[k].second), out);
+    pipeline::add_arrow(middle_of(s.tree, strong[k].second->source), middle_of(s.tree, id),
+                        pipeline::kArrowHead * double(s.diagonal_m),
+                        color_of_link(*strong[k].second), out.lines);
 }
 
 /// A corner or an edge that makes a discontinuity, and the rays past it to the line's ends.
@@ -101,8 +103,8 @@ void add_link(const SolutionView& view, const LinkNumber& number, SelectionShape
   }
   add_body(s.tree, number.receiver, kPickedBlue, out);
   add_body(s.tree, link.source, kPickedYellow, out);
-  add_stroke(middle_of(s.tree, number.receiver), middle_of(s.tree, link.source),
-             color_of_link(link), out);
+  pipeline::add_arrow(middle_of(s.tree, link.source), middle_of(s.tree, number.receiver),
+                      pipeline::kArrowHead * double(s.diagonal_m), color_of_link(link), out.lines);
 }
 
 void add_triangle(const SolutionView& view, uint32_t triangle, SelectionShapes& out) {

@@ -65,9 +65,10 @@ Changes put_edits_into(const scene::Scene& edited, std::span<const uint32_t> mat
   for (size_t m = 0; m < scene.materials.size(); ++m) {
     const scene::Material& to = edited.materials[material_as_read[m]];
     scene::Material& material = scene.materials[m];
-    is_everywhere =
-        is_everywhere || material.base_color != to.base_color || material.emission != to.emission;
+    is_everywhere = is_everywhere || material.base_color != to.base_color ||
+                    material.emission != to.emission || material.metallic != to.metallic;
     material.base_color = to.base_color, material.emission = to.emission;
+    material.metallic = to.metallic;
   }
   for (size_t k = 0; k < std::max(scene.lights.size(), edited.lights.size()); ++k) {
     const bool was = k < scene.lights.size(), is = k < edited.lights.size();
@@ -80,6 +81,8 @@ Changes put_edits_into(const scene::Scene& edited, std::span<const uint32_t> mat
     }
   }
   scene.lights = edited.lights;
+  is_everywhere = is_everywhere || scene.environment.radiance != edited.environment.radiance;
+  scene.environment = edited.environment;
   if (is_everywhere) out.boxes.clear();
   return out;
 }

@@ -28,7 +28,7 @@ double mean_difference(std::span<const Rgb> a, std::span<const Rgb> b) {
   return off / all;
 }
 
-pipeline::BakeSettings box_settings() {
+pipeline::BakeSettings settings_of_estimates() {
   pipeline::BakeSettings out;
   out.output = ::testing::TempDir();
   out.resolution = 128, out.samples = 64;
@@ -67,7 +67,7 @@ std::vector<Rgb> wanted_at(const Draft& estimate, const scene::Scene& edited,
 // Rays meet what they met, so that light is what it was, also at an edit that changes nothing.
 TEST(Estimate, LeavesLightAloneThatNothingChanges) {
   const scene::Scene scene = scene::cornell_box();
-  const auto known = known_of(scene, box_settings());
+  const auto known = known_of(scene, settings_of_estimates());
   const Progress nobody;
   const auto estimate = estimate_light(*known, scene, {}, nobody);
   ASSERT_TRUE(estimate);
@@ -82,7 +82,7 @@ TEST(Estimate, HalvesAllLightOfALampThatIsHalved) {
   const scene::Scene scene = scene::cornell_box();
   scene::Scene dimmed = scene;
   for (scene::Material& m : dimmed.materials) m.emission = m.emission * 0.5f;
-  const auto known = known_of(scene, box_settings());
+  const auto known = known_of(scene, settings_of_estimates());
   const Progress nobody;
   const auto estimate = estimate_light(*known, dimmed, {}, nobody);
   ASSERT_TRUE(estimate);
@@ -91,21 +91,50 @@ TEST(Estimate, HalvesAllLightOfALampThatIsHalved) {
   EXPECT_LT(mean_difference((*estimate)->irradiance, wanted), 0.01) << "with the old light: 1";
 }
 
+// So does a sky.
+TEST(Estimate, FollowsTheSky) {
+  scene::Scene scene = scene::cornell_box();
+  for (scene::Material& m : scene.materials) m.emission = {};
+  scene.environment = {8, 4, std::vector<Rgb>(32, Rgb{1, 1, 1}), 0};
+  scene::Scene evening = scene;
+  for (Rgb& e : evening.environment.radiance) e = e * 0.5f;
+  const auto known = known_of(scene, settings_of_estimates());
+  const Progress nobody;
+  const auto estimate = estimate_light(*known, evening, {}, nobody);
+  ASSERT_TRUE(estimate);
+  std::vector<Rgb> wanted = known->irradiance;
+  for (Rgb& e : wanted) e = e * 0.5f;
+  EXPECT_LT(mean_difference((*estimate)->irradiance, wanted), 0.02) << "with the old light: 1";
+}
+
+// What is metal reflects nothing: light is direct.
+TEST(Estimate, FollowsMetal) {
+  const scene::Scene scene = scene::cornell_box();
+  scene::Scene metal = scene;
+  for (scene::Material& m : metal.materials) m.metallic = 1;
+  const auto known = known_of(scene, settings_of_estimates());
+  const Progress nobody;
+  const auto estimate = estimate_light(*known, metal, {}, nobody);
+  ASSERT_TRUE(estimate);
+  EXPECT_LT(mean_difference((*estimate)->irradiance, known->direct), 0.02);
+  EXPECT_GT(mean_difference(known->irradiance, known->direct), 0.2);
+}
+
 // A bake of the edited scene knows.
 TEST(Estimate, IsNearToTheLightOfTheEditedScene) {
   const scene::Scene scene = scene::cornell_box();
   scene::Scene moved = scene;
   Mat34& box = moved.instances.back().world_from_object;
   box = translation({0.05f, 0, 0.05f}) * box;
-  const auto known = known_of(scene, box_settings());
+  const auto known = known_of(scene, settings_of_estimates());
   const Progress nobody;
   const auto estimate = estimate_light(*known, moved, {}, nobody);
   ASSERT_TRUE(estimate);
-  const std::vector<Rgb> wanted = wanted_at(**estimate, moved, box_settings());
+  const std::vector<Rgb> wanted = wanted_at(**estimate, moved, settings_of_estimates());
   EXPECT_LT(mean_difference((*estimate)->irradiance, wanted), 0.045)
       << "with the old light it would be 0.15, and 0.06 with a draft";
   // Where the edit changes less than 2 %, what was known is better than any draft.
-  const auto draft = make_draft(moved, box_settings(), kQuickDraft, nobody);
+  const auto draft = make_draft(moved, settings_of_estimates(), kQuickDraft, nobody);
   ASSERT_TRUE(draft && *draft);
   std::vector<Place> places;
   for (const atlas::Texel& texel : known->map.texels)

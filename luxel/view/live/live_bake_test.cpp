@@ -94,7 +94,9 @@ struct MovedBox {
   scene::Scene scene;
 };
 MovedBox with_moved_box(const ReadScene& read) {
-  EditDesk desk = begin_editing(std::make_shared<ReadScene>(ReadScene{read.scene, {}, {}}));
+  const auto as_read = std::make_shared<ReadScene>();
+  as_read->scene = read.scene;
+  EditDesk desk = begin_editing(as_read);
   const auto box = uint32_t(read.scene.instances.size() - 1);
   EXPECT_EQ(read.scene.instances[box].name, "tall block");
   do_edit(InstanceMoved{box, translation({0.1f, 0, 0.15f}) *

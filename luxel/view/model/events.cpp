@@ -231,7 +231,8 @@ Status check_no_inside(const Play& play, const std::string& name) {
         std::holds_alternative<OwnAsked>(timed.event) ||
         std::holds_alternative<ToolChanged>(timed.event) ||
         std::holds_alternative<ToolUsed>(timed.event) ||
-        std::holds_alternative<SelectionStepped>(timed.event))
+        std::holds_alternative<SelectionStepped>(timed.event) ||
+        std::holds_alternative<GraphChanged>(timed.event))
       return fail(ErrorCode::bad_input,
                   "{}, at {} s: this is for a solver that is looked into; --inside opens one", name,
                   timed.at_s);

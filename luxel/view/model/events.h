@@ -9,6 +9,7 @@
 
 #include "luxel/base/result.h"
 #include "luxel/base/vec.h"
+#include "luxel/pipeline/settings/sky_setting.h"
 #include "luxel/scene/scene.h"
 #include "luxel/view/frame.h"
 #include "luxel/view/model/tools.h"
@@ -57,6 +58,11 @@ struct BesideChanged {
 struct SplitMoved {
   float to = 0.5f;
 };
+/// A sky as `--sky` has it.
+struct SkyAsked {
+  pipeline::SkySetting setting;
+  std::string words;
+};
 /// What of a lamp becomes otherwise; the rest stays.
 struct LampChange {
   std::optional<Vec3> to;         ///< place [m]
@@ -65,6 +71,7 @@ struct LampChange {
   std::optional<bool> is_on;
   std::optional<float> cone_deg, inner_cone_deg;  ///< of spots: half the angle of their light
   std::optional<float> disc_deg;                  ///< of suns: the angle of their disc
+  std::optional<SkyAsked> sky;  ///< of a sun, besides its direction: the sky that has it there
 };
 /// A lamp of an .lxr file, by its number.
 struct LampChanged {
@@ -154,17 +161,18 @@ struct LampRemoved {
 struct MaterialChanged {
   std::string material;
   std::optional<Rgb> base_color, radiance;  ///< [1], [W/(sr m^2)]
+  std::optional<float> metallic;            ///< 0 to 1
 };
 /// A play stands still here: what comes after it is played when the bake has ended and its light is
 /// shown.
 struct WaitForBake {};
-using Event =
-    std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged, LampAdded,
-                 GlowChanged, ShowChanged, RangeChanged, ChannelChanged, LayerChanged,
-                 BesideChanged, SplitMoved, InstanceSelected, LampSelected, MaterialSelected,
-                 InstanceChanged, LampRemoved, MaterialChanged, OwnShown, OverlayChanged,
-                 SettingChanged, OwnAsked, ToolChanged, ToolUsed, SelectionStepped, PartChanged,
-                 ProbesChanged, OpenAsked, ScaleChanged, WindowClosed, DeviceLost, WaitForBake>;
+using Event = std::variant<PointerMoved, ButtonChanged, Scrolled, KeyChanged, LampChanged,
+                           LampAdded, GlowChanged, ShowChanged, RangeChanged, ChannelChanged,
+                           LayerChanged, BesideChanged, SplitMoved, InstanceSelected, LampSelected,
+                           MaterialSelected, InstanceChanged, LampRemoved, MaterialChanged,
+                           OwnShown, OverlayChanged, SettingChanged, OwnAsked, ToolChanged,
+                           ToolUsed, SelectionStepped, GraphChanged, PartChanged, ProbesChanged,
+                           OpenAsked, ScaleChanged, WindowClosed, DeviceLost, WaitForBake>;
 
 /// Whether an event changes lamps or what glows; or something else of a scene.
 bool changes_lamps(const Event& event);
@@ -183,7 +191,7 @@ inline constexpr KeyHelp kKeys[] = {
     {"e", "fly up"},
     {"q", "fly down"},
     {"shift", "fly four times as fast; move the picture where it would turn"},
-    {"f", "show the whole scene"},
+    {"f", "show what is selected, or the whole scene"},
     {"home", "back to the first view"},
     {"o", "turn around what is looked at, or stop"},
     {"1", "light and colour"},
@@ -274,7 +282,7 @@ struct Play {
 ///       {"at": 2, "set": {"eps": 0.5}}, {"at": 2, "do": "iterate"},
 ///       {"at": 2, "tool": "link"}, {"at": 2, "use": "element", "pixel": [480, 360]},
 ///       {"at": 2, "use": "graph", "place": [0, 0, 0], "to_place": [1, 0, 0]},
-///       {"at": 2, "selection": "up"},
+///       {"at": 2, "selection": "up"}, {"at": 2, "graph": {"exact": false, "height": 0.5}},
 ///       {"at": 2, "wait": "bake"},
 ///       {"at": 2, "lamp": 0, "to": [1, 2, 0], "intensity": [3, 2, 1]},
 ///       {"at": 2, "select": "chair"}, {"at": 2, "instance": "chair", "angles_deg": [0, 90, 0]},

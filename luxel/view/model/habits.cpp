@@ -147,6 +147,13 @@ Result<Habits> parse_habits(std::string_view text, const std::string& name) {
       if (!panel) return no_habits("its panel lies nowhere");
       out.panel = *panel;
     }
+    if (file.contains("window")) {
+      const auto size = file["window"].get<std::array<int, 2>>();
+      for (const int side : size)
+        if (side < kSmallestWindow || side > kLargestWindow)
+          return no_habits("its window has no size");
+      out.window = size;
+    }
     for (const json& from : file.at("recent")) {
       const auto subject = subject_of(from);
       if (!subject) return no_habits("one of its cameras or bookmarks is none");
@@ -162,6 +169,7 @@ std::string json_of(const Habits& habits) {
   json out{{"theme", habits.is_light ? "light" : "dark"}, {"recent", json::array()}};
   out["panel"] = {{"open", habits.panel.open}, {"closed", habits.panel.closed}};
   if (habits.panel.place) out["panel"]["place"] = *habits.panel.place;
+  if (habits.window) out["window"] = *habits.window;
   for (const SubjectHabits& subject : habits.recent) out["recent"].push_back(json_of(subject));
   // Names of files need not be UTF-8.
   return out.dump(1, ' ', false, json::error_handler_t::replace) + "\n";

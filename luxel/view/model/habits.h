@@ -35,9 +35,12 @@ struct PanelHabits {
 struct Habits {
   bool is_light = false;  ///< dark letters on a light panel
   PanelHabits panel;
-  std::vector<SubjectHabits> recent;  ///< the newest first; at most kMostRecent
+  std::optional<std::array<int, 2>> window;  ///< its width and height, on a monitor of scale 1
+  std::vector<SubjectHabits> recent;         ///< the newest first; at most kMostRecent
 };
 inline constexpr size_t kMostRecent = 20;
+/// Windows are no smaller and no larger when they are opened again [pixels].
+inline constexpr int kSmallestWindow = 160, kLargestWindow = 16384;
 
 /// The file, by the environment's XDG_STATE_HOME and HOME, which may be null; empty: neither says
 /// where. [XDG Base Directory Specification 0.8]

@@ -46,12 +46,14 @@ TEST(Habits, ComeBackBitByBit) {
   Habits habits;
   habits.is_light = true;
   habits.panel = {std::array{7.5f, -3.0f}, {4000000000u, 2}, {1}};
+  habits.window = std::array{1234, 765};
   remember(some_subject("/a b/\"c\""), habits);
   ASSERT_TRUE(write_habits(habits, file));
   const auto read = read_habits(file);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_TRUE(read->is_light);
   EXPECT_EQ(read->panel, habits.panel);
+  EXPECT_EQ(read->window, habits.window);
   ASSERT_EQ(read->recent.size(), 1u);
   const SubjectHabits back = subject_of(*read, "/a b/\"c\"");
   ASSERT_TRUE(back.view && back.bookmarks[2] && back.bookmarks[8]);

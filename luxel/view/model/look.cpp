@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "luxel/base/file.h"
+#include "luxel/display/bilinear.h"
 #include "luxel/display/lightmap_lookup.h"
 #include "luxel/image/false_color.h"
 #include "luxel/image/value_scale.h"
@@ -90,6 +91,19 @@ ColorScale density_scale(const scene::Scene& scene, const pipeline::LightmapPage
   const float low = density_below(shares, 0.01), high = density_below(shares, 0.99);
   const float wider = std::max(1.0f, 2 / std::sqrt(high / low));
   return {low / wider, high * wider, true};
+}
+
+Rgb light_at(const image::HalfImage& page, Vec2 uv) {
+  const display::BilinearTexels texels = display::bilinear_texels(page.width, page.height, uv);
+  Rgb sum{};
+  for (size_t k = 0; k < 4; ++k) {
+    const auto [x, y] = texels.texel[k];
+    const uint16_t* at =
+        page.data.data() + size_t(page.channels) * (size_t(y) * size_t(page.width) + size_t(x));
+    sum += Rgb{image::from_half(at[0]), image::from_half(at[1]), image::from_half(at[2])} *
+           (page.scale * texels.weight[k]);
+  }
+  return sum;
 }
 
 /// White pixels, which stand for no texel, become what is beside them: at the rim of a chart
@@ -241,6 +255,28 @@ std::optional<float> value_at(const Frame& frame, const scene::Scene& scene,
   if (frame.show == Show::density)
     return density_of(mesh, point.triangle, instance.world_from_object, mesh.uv1, page).per_metre;
   return std::nullopt;
+}
+
+std::optional<float> value_at(const Frame& frame, const LitScene& lit,
+                              std::span<const image::HalfImage> pages,
+                              const scene::SurfacePoint& point) {
+  if (point.instance >= lit.scene.instances.size()) return std::nullopt;
+  const scene::Instance& instance = lit.scene.instances[point.instance];
+  const scene::Mesh& mesh = lit.scene.meshes[instance.mesh];
+  if (point.triangle >= mesh.triangles.size()) return std::nullopt;
+  const size_t number = lit.page_of_material[mesh.triangle_material[point.triangle]];
+  if (number >= pages.size()) return std::nullopt;
+  const image::HalfImage& page = pages[number];
+  const std::vector<Vec2>& places = lit.light_uv[instance.mesh];
+  if (frame.show == Show::irradiance) {
+    const auto& t = mesh.triangles[point.triangle];
+    const Vec2 uv = interpolate(places[t[0]], places[t[1]], places[t[2]], point.at);
+    return value_of(light_at(page, uv), frame.channel);
+  }
+  if (frame.show != Show::density) return std::nullopt;
+  image::Image sized;  // only its size counts
+  sized.width = page.width, sized.height = page.height;
+  return density_of(mesh, point.triangle, instance.world_from_object, places, sized).per_metre;
 }
 
 }  // namespace luxel::view

@@ -10,8 +10,10 @@
 
 #include "luxel/base/result.h"
 #include "luxel/image/codec.h"
+#include "luxel/image/half.h"
 #include "luxel/pipeline/bake/baked_folder.h"
 #include "luxel/view/frame.h"
+#include "luxel/view/lit_scene.h"
 #include "luxel/view/model/charts.h"
 
 namespace luxel::view {
@@ -60,6 +62,11 @@ std::optional<Legend> legend_of(const Frame& frame, const Look& look);
 /// values, or error.png, which has colours only.
 std::optional<float> value_at(const Frame& frame, const scene::Scene& scene,
                               const pipeline::LightmapPages& lightmaps,
+                              const scene::SurfacePoint& point);
+/// While a scene is baked: at a point of the scene as it was read, by the pages of light that came
+/// last. None, too, where what is drawn has no such triangle.
+std::optional<float> value_at(const Frame& frame, const LitScene& lit,
+                              std::span<const image::HalfImage> pages,
                               const scene::SurfacePoint& point);
 /// A channel of light, or its luminance.
 float value_of(Rgb light, Channel channel);

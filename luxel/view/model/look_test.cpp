@@ -77,6 +77,26 @@ TEST(Look, ValuesAreThoseOfThePoint) {
   EXPECT_FLOAT_EQ(*value_at(frame, squares.scene, squares.lightmaps, {1, 0, {0.5f, 0}}), 128);
 }
 
+TEST(Look, ValuesOfABakeThatIsMadeAreThoseOfItsLight) {
+  const TwoSquares squares;
+  LitScene lit;
+  lit.scene = squares.scene;
+  for (scene::Mesh& mesh : lit.scene.meshes) lit.light_uv.push_back(std::move(mesh.uv1));
+  lit.page_of_material = {1};
+  const std::vector<image::HalfImage> pages{image::to_half(image::Image(1, 1, 4)),
+                                            image::to_half(squares.lightmaps.pictures[0])};
+  Frame frame;
+  const scene::SurfacePoint middle{0, 0, {0.5f, 0}};
+  for (const Show show : {Show::irradiance, Show::density, Show::charts})
+    for (const Channel channel : {Channel::red, Channel::luminance}) {
+      frame.show = show, frame.channel = channel;
+      EXPECT_EQ(value_at(frame, lit, pages, middle),
+                value_at(frame, squares.scene, squares.lightmaps, middle));
+    }
+  EXPECT_FALSE(value_at(frame, lit, pages, {0, 9, {}})) << "an older scene's";
+  EXPECT_FALSE(value_at(frame, lit, pages, {7, 0, {}}));
+}
+
 TEST(Look, SaysWhatIsMissing) {
   const TwoSquares squares;
   Look look = look_at(squares.scene, squares.lightmaps);

@@ -60,8 +60,10 @@ std::optional<LampChange> lamp_change_of(const json& from) {
       members.read("inner_cone_deg", 90, out.inner_cone_deg);
   members.read("disc_deg", 180, out.disc_deg);
   if (members.has("sun")) {
-    const auto sky = pipeline::parse_sky(from["sun"].get<std::string>());
+    const auto words = from["sun"].get<std::string>();
+    const auto sky = pipeline::parse_sky(words);
     if (sky) out.direction = -pipeline::sky_params(*sky).towards_sun;
+    if (sky) out.sky = SkyAsked{*sky, words};
     if (!sky) members.refuse();
   }
   if (out.direction && !(length(*out.direction) > 0)) members.refuse();
@@ -85,9 +87,12 @@ std::optional<Event> material_event_of(const json& from) {
   out.material = from["material"].get<std::string>();
   Members members(from);
   members.read("radiance", 0, out.radiance), members.read("reflectance", 0, out.base_color);
-  if (!members.all_fine() || (!out.radiance && !out.base_color)) return std::nullopt;
-  if (!out.base_color) return GlowChanged{out.material, *out.radiance};
-  return max_component(*out.base_color) <= 1 ? std::optional<Event>(out) : std::nullopt;
+  members.read("metallic", 1, out.metallic);
+  const bool is_surface = out.base_color || out.metallic;
+  if (!members.all_fine() || (!out.radiance && !is_surface)) return std::nullopt;
+  if (!is_surface) return GlowChanged{out.material, *out.radiance};
+  const bool is_color = !out.base_color || max_component(*out.base_color) <= 1;
+  return is_color ? std::optional<Event>(out) : std::nullopt;
 }
 
 /// A name, or a number as one.

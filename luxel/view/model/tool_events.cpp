@@ -53,10 +53,26 @@ std::optional<Event> tool_used_of(const json& from) {
   return out;
 }
 
+/// May throw json::exception.
+std::optional<Event> graph_changed_of(const json& from) {
+  GraphChanged out;
+  size_t known = 0;
+  for (size_t i = 0; i < kGraphCurves.size(); ++i) {
+    if (!from.contains(kGraphCurves[i])) continue;
+    out.shows[i] = from[kGraphCurves[i]].get<bool>(), ++known;
+  }
+  if (from.contains("height")) {
+    out.height = from["height"].get<float>(), ++known;
+    if (!(*out.height >= kLowestGraph && *out.height <= kHighestGraph)) return std::nullopt;
+  }
+  return known > 0 && known == from.size() ? std::optional<Event>(out) : std::nullopt;
+}
+
 }  // namespace
 
 bool uses_tools(const json& from) {
-  return from.contains("tool") || from.contains("use") || from.contains("selection");
+  return from.contains("tool") || from.contains("use") || from.contains("selection") ||
+         from.contains("graph");
 }
 
 std::optional<Event> tool_event_of(const json& from) {
@@ -66,6 +82,7 @@ std::optional<Event> tool_event_of(const json& from) {
     const auto tool = tool_named(from["tool"].get<std::string>());
     return tool ? std::optional<Event>(ToolChanged{*tool}) : std::nullopt;
   }
+  if (from.contains("graph")) return graph_changed_of(from["graph"]);
   const auto name = from["selection"].get<std::string>();
   for (size_t i = 0; i < kSelectionSteps.size(); ++i)
     if (name == kSelectionSteps[i]) return SelectionStepped{SelectionStep(i)};

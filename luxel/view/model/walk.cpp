@@ -65,8 +65,9 @@ LightShown with_bounces(const LightShown& light, int by) {
 /// What a key does when it goes down; those that fly do it as long as they are down.
 void press(const std::string& key, Walk& walk) {
   if (key == "f") {
-    walk.shown.camera = framed(walk.shown.camera, walk.bounds, aspect_of(walk));
-    walk.target = walk.bounds.centre();
+    const Box3& box = walk.selected.empty() ? walk.bounds : walk.selected;
+    walk.shown.camera = framed(walk.shown.camera, box, aspect_of(walk));
+    walk.target = box.centre();
   }
   if (key == "home") walk.shown.camera = walk.first.camera;
   if (key == "o") walk.turns = !walk.turns;

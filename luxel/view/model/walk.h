@@ -32,8 +32,9 @@ enum class Command : uint8_t { stop_or_go_on, save, save_scene };
 /// What is shown, and what the user is about to do.
 struct Walk {
   Frame shown;
-  Frame first;  ///< what it began with
-  Box3 bounds;  ///< of the scene [m]
+  Frame first;      ///< what it began with
+  Box3 bounds;      ///< of the scene [m]
+  Box3 selected{};  ///< what is selected of it, which F shows; empty: nothing
   int width = 960, height = 720;
 
   Vec3 target{};  ///< what the camera turns about

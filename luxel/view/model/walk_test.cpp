@@ -71,6 +71,22 @@ TEST(Walk, DraggingTurnsAboutWhatWasUnderThePointer) {
   expect_place(eye_of(walk), before);
 }
 
+// A ball around a box of 2 m just fits into the picture's height.
+TEST(Walk, FShowsWhatIsSelectedAndElseAll) {
+  Walk walk = before_the_wall();
+  walk.selected.extend({4, 1, -3}), walk.selected.extend({6, 3, -1});
+  const auto press_f = [&] {
+    for (const bool is_down : {true, false}) handle(KeyChanged{"f", is_down}, on_the_wall, walk);
+  };
+  press_f();
+  expect_place(walk.target, {5, 2, -2});
+  EXPECT_NEAR(length(eye_of(walk) - Vec3{5, 2, -2}),
+              std::sqrt(3.0f) / std::sin(0.5f * walk.shown.camera.fov_y_rad), 1e-3f);
+  walk.selected = {};
+  press_f();
+  expect_place(walk.target, {0, 0, 0});
+}
+
 TEST(Walk, DraggingWithAnotherButtonKeepsTheWallUnderThePointer) {
   for (const bool with_shift : {false, true}) {
     Walk walk = before_the_wall();

@@ -50,6 +50,13 @@ Status fade_in(LiveLight light, gpu::Commands& commands, ShownScene& shown) {
   return put_newest(commands, shown);
 }
 
+/// The sky of an edited scene.
+Status put_other_sky(const scene::Environment& map, gpu::Commands& commands, ShownScene& shown) {
+  const bool is_other =
+      shown.read && !map.empty() && map.radiance != shown.read->scene.environment.radiance;
+  return is_other ? set_surroundings(commands, map, shown.device) : Status();
+}
+
 /// What tells light apart, or the probes, has come.
 void take_more(LiveNews& news, ShownScene& shown) {
   if (news.bounced || news.lit || news.read) shown.bounced = std::move(news.bounced);
@@ -102,6 +109,7 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
   if (news.said) said = *news.said;
   take_more(news, shown);
   if (news.read) {
+    LUXEL_TRY_STATUS(put_other_sky(news.read->scene.environment, commands, shown));
     shown.read = std::move(news.read);
     // Until there is light of an edited scene, the one before is shown.
     if (!news.lit && !shown.has_light) {

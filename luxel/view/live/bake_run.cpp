@@ -15,6 +15,8 @@ namespace {
 
 /// The picture whose exposure is chosen: as large as it must be for percentiles of luminance.
 constexpr int kSmallWidth = 128, kSmallHeight = 96;
+/// For the rays of an estimate, so that its picture is there within 0.2 s.
+constexpr double kEstimate_s = 0.1;
 /// What light of each reflection may take before it is made into pictures.
 constexpr size_t kBouncedBytes = 256 << 20;
 /// So many texels are looked up in a draft within some tenths of a second.
@@ -81,7 +83,7 @@ Result<std::unique_ptr<Draft>> BakeRun::first_light(const DraftParams& params,
                                                     const Progress& ends) const {
   if (!before_) return make_draft(read_->scene, settings_, params, ends);
   const ThreadLimit threads(settings_.threads);
-  EstimateParams estimate;
+  EstimateParams estimate = params_within(kEstimate_s, read_->scene);
   estimate.seed = settings_.seed;
   return estimate_light(*before_, read_->scene, estimate, ends);
 }
@@ -225,9 +227,7 @@ void BakeRun::end(const pipeline::Bake& baked) {
         ProbeBalls{baked.probes->probes, baked.probes->spacing_m});
   news.warnings = baked.warnings;
   know(baked.light.irradiance, baked.light.direct);
-  // What was refilled is not the light of the place.
-  for (size_t i = 0; light_ && i < baked.light.hidden.size(); ++i)
-    if (baked.light.hidden[i]) light_->irradiance[i] = light_->direct[i] = {};
+  if (light_) light_->hidden = baked.light.hidden;
   watcher_.hand(std::move(news));
 }
 

@@ -133,7 +133,8 @@ struct Change {
   }
   /// Of a texel that may have come out of the solid in which all of its cells still are.
   Rgb of_freed() const {
-    return weight_after <= 0 && weight_beside > 0 ? beside / weight_beside : of({});
+    if (weight_after > 0) return after / weight_after;
+    return weight_beside > 0 ? beside / weight_beside : Rgb{};
   }
 };
 struct Around {
@@ -202,9 +203,10 @@ std::vector<uint32_t> bodies(const KnownLight& known, std::span<const uint8_t> m
   return out;
 }
 
-/// Whether nothing is known of a texel where something has gone away.
+/// Whether a texel was within a solid where something has gone away.
 bool is_freed(const KnownLight& known, std::span<const Box3> boxes, size_t i) {
-  if (max_component(known.irradiance[i]) > 0) return false;
+  if (known.hidden.empty() ? max_component(known.irradiance[i]) > 0 : !known.hidden[i])
+    return false;
   const Vec3 p = known.position[i];
   const float near_m = 2 * std::sqrt(known.texel_m2);
   return std::ranges::any_of(boxes, [&](const Box3& box) {
@@ -221,9 +223,11 @@ std::vector<uint8_t> spread_light(const KnownLight& known, const SpreadTexels& s
   parallel_for(estimated.size(), kEstimateGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Around at = around_texel(spread, e, i);
-      const Rgb reflected = max(known.irradiance[i] - known.direct[i], Rgb{});
+      // Repairs of leaks may have taken away direct light.
+      const Rgb direct = min(known.direct[i], known.irradiance[i]);
+      const Rgb reflected = known.irradiance[i] - direct;
       const bool freed = is_freed(known, boxes, i);
-      out.direct[i] = freed ? at.direct.of_freed() : at.direct.of(known.direct[i]);
+      out.direct[i] = freed ? at.direct.of_freed() : at.direct.of(direct);
       out.irradiance[i] =
           out.direct[i] + (freed ? at.reflected.of_freed() : at.reflected.of(reflected));
       estimated[i] = freed ? 255 : uint8_t(std::ceil(255 * at.direct.estimated()));
@@ -232,7 +236,23 @@ std::vector<uint8_t> spread_light(const KnownLight& known, const SpreadTexels& s
   return estimated;
 }
 
+/// Seconds per ray, and what they are more for each doubling of the triangles: rays of the Cornell
+/// box and of a city of 54,000 triangles took 0.3 and 0.54 us, with all that is done for them.
+constexpr double kRay_s = 0.18e-6, kRayPerDoubling_s = 0.023e-6;
+/// Where many texels get direct light of their own, it takes a quarter of the time.
+constexpr double kPartSharp = 0.25;
+
 }  // namespace
+
+EstimateParams params_within(double seconds, const scene::Scene& scene) {
+  EstimateParams out;
+  const double triangles = double(scene::first_triangles(scene).back());
+  const double rays = seconds / (kRay_s + kRayPerDoubling_s * std::log2(std::max(triangles, 1.0)));
+  const double of_texel = 2.0 * double(out.samples + out.direct_samples);
+  out.texels = size_t(rays * (1 - kPartSharp) / of_texel);
+  out.sharp = size_t(rays * kPartSharp / double(out.sharp_samples));
+  return out;
+}
 
 Result<std::unique_ptr<Draft>> estimate_light(const KnownLight& known, const scene::Scene& edited,
                                               const EstimateParams& params,

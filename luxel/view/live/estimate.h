@@ -10,6 +10,10 @@
 
 namespace luxel::view {
 
+/// So much work as one core does in about so many seconds [s], by what rays cost in such scenes and
+/// not by a clock: the same edit always gets the same light.
+EstimateParams params_within(double seconds, const scene::Scene& scene);
+
 /// Light of a scene in which instances stand elsewhere, lamps or materials are others than in the
 /// one as it was read of which `known` is. All bounces; the same rays before and after, so that
 /// what nothing has changed stays what it was. The result is laid out as `known` is and

@@ -128,8 +128,10 @@ void settle(const KnownLight& known, const SpreadTexels& spread,
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     std::vector<Rgb> next = gathered(after, [&](uint32_t texel) {
       const uint32_t k = outside[spread.cell_of_texel()[texel]];
-      return scaled(known.irradiance[texel], e.direct_before[k] + e.reflected_before[k],
-                    e.direct_after[k] + e.reflected_after[k]);
+      const Rgb light = e.direct_after[k] + e.reflected_after[k];
+      // What is black has been within a solid, or the light is off.
+      if (!(max_component(known.irradiance[texel]) > 0)) return light;
+      return scaled(known.irradiance[texel], e.direct_before[k] + e.reflected_before[k], light);
     });
     double change = 0, all = 0;
     for (size_t i = 0; i < next.size(); ++i) {
@@ -180,7 +182,7 @@ atlas::TexelMap map_of_chosen(const atlas::TexelMap& map, std::span<const uint32
 
 Rgb scaled(Rgb known, Rgb before, Rgb after) {
   const auto channel = [](float k, float b, float a) {
-    return a == b && k > 0 ? k : k > 0 && b > 0 && a < kMostFactor * b ? k * (a / b) : a;
+    return a == b ? k : b > 0 && a < kMostFactor * b ? k * (a / b) : a;
   };
   return {channel(known.x, before.x, after.x), channel(known.y, before.y, after.y),
           channel(known.z, before.z, after.z)};

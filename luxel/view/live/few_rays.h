@@ -44,7 +44,7 @@ Result<Estimates> light_by_few_rays(const KnownLight& known, const SceneState& b
                                     const EstimateParams& params, const Progress& watched);
 
 /// What is known times what an estimate changes. Larger factors than kMostFactor are those of
-/// noise: then, and where what is known is black, as within solids, it is what the estimate says.
+/// noise: then it is what the estimate says.
 Rgb scaled(Rgb known, Rgb before, Rgb after);
 inline constexpr float kMostFactor = 3;
 

@@ -23,6 +23,8 @@ struct KnownLight {
   float texel_m2 = 0;                      ///< what a texel covers of surfaces in the mean
   std::vector<Rgb> irradiance;             ///< E [W/m^2]
   std::vector<Rgb> direct;                 ///< the part of it that comes straight from lights
+  /// Per texel, 1: within a solid, with light of those around it; empty: black ones may be.
+  std::vector<uint8_t> hidden;
 };
 
 /// `as_read`: the scene before it was laid out. E is to be filled in. Errors: no memory.

@@ -3,9 +3,13 @@
 
 #include <numeric>
 
+#include "luxel/base/file.h"
+#include "luxel/export/baked_glb.h"
 #include "luxel/image/flip.h"
+#include "luxel/scene/shapes.h"
 #include "tests/pictures.h"
 #include "tests/relight_command.h"
+#include "tests/view_command.h"
 
 namespace luxel::testing_support {
 namespace {
@@ -101,6 +105,71 @@ TEST_F(ViewOfLamps, AreComparedWithPaths) {
   EXPECT_GT(percent, 0.1) << "there are only 300 patches";
   EXPECT_LT(percent, 20);
   EXPECT_THAT(r.err, HasSubstr("off the path tracer's"));
+}
+
+/// A pole on a floor under a sun whose disc is so wide, and a camera above its shadow.
+scene::Scene pole_in_the_sun(float disc_deg) {
+  scene::Scene out;
+  const uint32_t grey = scene::add_material(out, "grey", {0.5f, 0.5f, 0.5f});
+  scene::add_rectangle(out, {-1, 3, -1, 2}, 0, true, grey);
+  scene::Mesh pole;
+  scene::add_box(pole, {-0.15f, 0, -0.15f}, {0.15f, 2, 0.15f}, grey);
+  scene::place(out, std::move(pole));
+  scene::PunctualLight sun;
+  sun.kind = scene::PunctualLight::Kind::directional, sun.intensity = {1, 1, 1};
+  sun.direction = normalize(Vec3{1, -1, 0.3f});
+  sun.angular_radius_rad = 0.5f * disc_deg * kPi / 180;
+  out.lights = {sun};
+  scene::Camera camera;
+  camera.world_from_camera = scene::look_at({1.2f, 3, 0.35f}, {1.2f, 0, 0.35f}, {0, 0, -1});
+  out.cameras = {camera};
+  return out;
+}
+
+class ViewOfSuns : public ViewOfLamps {
+ protected:
+  void SetUp() override {
+    if (!has_device(s_)) GTEST_SKIP() << "no device";
+  }
+  std::string scene_of(float disc_deg, const std::string& name) const {
+    const auto glb = export_::scene_glb(pole_in_the_sun(disc_deg));
+    EXPECT_TRUE(glb && write_file_atomically(s_.path / name, *glb));
+    return (s_.path / name).string();
+  }
+  image::Image rendered(const std::string& scene) const {
+    const std::string baked = (s_.path / "baked").string(), to = (s_.path / "bake.png").string();
+    EXPECT_EQ(luxel("bake " + scene + " --resolution 512 --samples 64 --quiet -o " + baked).code,
+              0);
+    EXPECT_EQ(luxel("render " + scene + " --from " + baked + kSize + "-o " + to).code, 0);
+    return png_at(s_.path / "bake.png");
+  }
+  image::Image in_a_window(const std::string& scene, const std::string& events) const {
+    const std::string lxr = (s_.path / "sun.lxr").string();
+    EXPECT_EQ(luxel("relight " + scene + kSmall + "--quiet -o " + lxr).code, 0);
+    EXPECT_EQ(
+        view_lamps(lxr + kSize + "--offscreen --screenshot " + (s_.path / "sun.png").string() +
+                   play_of(R"({"at": 0, "key": "m"})" + events))
+            .code,
+        0);
+    return png_at(s_.path / "sun.png");
+  }
+  static double mean_flip(const image::Image& a, const image::Image& b) {
+    const image::Image flip = image::flip(a, b);
+    return std::accumulate(flip.data.begin(), flip.data.end(), 0.0) / double(flip.data.size());
+  }
+  inline static const std::string kSize = " --size 240x180 ";
+};
+
+// The bake asks rays to all of the disc, the window its maps of shadows.
+TEST_F(ViewOfSuns, AreAsSoftAsInABake) {
+  const std::string soft = scene_of(8, "soft.glb"), hard = scene_of(0, "hard.glb");
+  const image::Image wanted = rendered(soft), of_file = in_a_window(soft, ""),
+                     sharp = in_a_window(hard, ""),
+                     of_desk = in_a_window(hard, R"(, {"at": 0, "lamp": 0, "disc_deg": 8})");
+  // 0.016, and 0.066 with a hard shadow.
+  EXPECT_LT(mean_flip(of_file, wanted), 0.03);
+  EXPECT_GT(mean_flip(sharp, wanted), 2 * mean_flip(of_file, wanted));
+  EXPECT_LT(mean_flip(of_desk, of_file), 1e-3) << "whoever made it so wide";
 }
 
 TEST_F(ViewOfLamps, AWindowShowsTheSame) {

@@ -41,10 +41,6 @@ CLI::Validator whole_number(uint64_t most = UINT64_MAX);
 /// "x,y,z".
 Result<Vec3> parse_point(const char* option, const std::string& text);
 
-/// --uv, as text until the command runs.
-CLI::Option* add_uv(CLI::App& command, std::string& text);
-atlas::UvMode uv_mode(const std::string& text);
-
 /// Prints the error's sentence to stderr and, with --json, an object with it to stdout. Returns its
 /// exit code.
 int report(const Error& error, const Common& common);

@@ -304,16 +304,4 @@ int run_and_print(const Common& common,
   return kDone;
 }
 
-CLI::Option* add_uv(CLI::App& command, std::string& text) {
-  return command.add_option("--uv", text, std::string(pipeline::kUvHelp))
-      ->check(CLI::IsMember({"auto", "keep", "unwrap"}))
-      ->capture_default_str();
-}
-
-atlas::UvMode uv_mode(const std::string& text) {
-  return text == "keep"     ? atlas::UvMode::keep
-         : text == "unwrap" ? atlas::UvMode::unwrap
-                            : atlas::UvMode::automatic;
-}
-
 }  // namespace luxel::cli

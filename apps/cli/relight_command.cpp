@@ -4,33 +4,22 @@
 #include "apps/cli/cli.h"
 #include "luxel/base/parallel.h"
 #include "luxel/pipeline/command/play.h"
-#include "luxel/pipeline/command/relight.h"
+#include "luxel/pipeline/command/relight_options.h"
 
 namespace luxel::cli {
 namespace {
 
 struct RelightOptions {
   Common common;
-  Given reading, outside, matrix;
-  std::string uv = "auto", bounces = "inf", max_memory;
-  pipeline::RelightSettings settings;
-  std::filesystem::path lxr, script, output;
-  CLI::Option* density = nullptr;
+  Given reading, outside, making;
+  std::filesystem::path scene, lxr, script, output;
   std::vector<CLI::Option*> of_making;  ///< options that playing does not look at
 };
 
 Result<pipeline::RelightSettings> settings_from(const RelightOptions& options) {
-  pipeline::RelightSettings s = options.settings;
-  // A density of 0 means in the settings that none was given.
-  if (options.density->count() > 0 && s.texels_per_metre == 0)
-    return fail(ErrorCode::bad_setting, "--texels-per-metre 0 is not a density; give a number > 0");
-  s.output = options.output, s.threads = options.common.threads;
-  s.uv = uv_mode(options.uv);
-  LUXEL_TRY(s.bounces, pipeline::parse_bounces(options.bounces));
-  if (!options.max_memory.empty()) {
-    LUXEL_TRY(s.max_memory_bytes, pipeline::parse_size(options.max_memory));
-  }
-  LUXEL_TRY_STATUS(read_given(options.matrix, pipeline::matrix_options(), s.matrix));
+  pipeline::RelightSettings s;
+  s.scene = options.scene, s.output = options.output, s.threads = options.common.threads;
+  LUXEL_TRY_STATUS(read_given(options.making, pipeline::relight_options(), s));
   LUXEL_TRY_STATUS(read_given(options.reading, pipeline::import_options(), s.reading));
   LUXEL_TRY_STATUS(read_given(options.outside, pipeline::outside_light_options(), s.outside));
   return s;
@@ -118,7 +107,7 @@ int run_playing(const RelightOptions& options) {
 
 int run_relight(const RelightOptions& options) {
   if (!options.lxr.empty()) return run_playing(options);
-  if (options.settings.scene.empty())
+  if (options.scene.empty())
     return report(Error{ErrorCode::bad_setting,
                         "give a SCENE to make a file of, or --play FILE.lxr to show one"},
                   options.common);
@@ -130,40 +119,9 @@ int run_relight(const RelightOptions& options) {
 }
 
 void add_making(CLI::App& relight, RelightOptions& options) {
-  pipeline::RelightSettings& s = options.settings;
-  std::vector<CLI::Option*>& all = options.of_making;
-  all.push_back(relight
-                    .add_option("--target", s.target,
-                                "Where light is wanted: texels of a lightmap, vertices, none")
-                    ->capture_default_str());
-  auto* resolution = relight.add_option("--resolution", s.resolution, "Side of the lightmap")
-                         ->capture_default_str();
-  all.push_back(resolution);
-  options.density = all.emplace_back(
-      relight
-          .add_option("--texels-per-metre", s.texels_per_metre,
-                      "Density; the side becomes the smallest power of two that holds "
-                      "the scene")
-          ->excludes(resolution));
-  all.push_back(add_uv(relight, options.uv));
-  for (CLI::Option* option :
-       add_options(relight, pipeline::matrix_options(), s.matrix, options.matrix))
-    all.push_back(option);
-  all.push_back(
-      relight.add_option("--codec", s.codec, "How it is kept: " + pipeline::codec_names())
-          ->capture_default_str());
-  all.push_back(relight
-                    .add_option("--max-error", s.max_error,
-                                "What the codec may lose of indirect light, root mean square")
-                    ->capture_default_str());
-  all.push_back(relight.add_option("--bounces", options.bounces, "Reflections to count, or inf")
-                    ->capture_default_str());
-  all.push_back(relight.add_option("--max-memory", options.max_memory,
-                                   "Memory to stay under, as 900M or 1.5G (default: most of what "
-                                   "is free)"));
-  all.push_back(relight.add_option("--seed", s.seed, "Seed of all random numbers")
-                    ->check(whole_number())
-                    ->capture_default_str());
+  const auto table = pipeline::relight_options();
+  options.of_making = add_options(relight, table, pipeline::RelightSettings{}, options.making);
+  for (const auto& row : table) exclude_each_other(relight, row);
 }
 
 }  // namespace
@@ -172,8 +130,7 @@ void register_relight(CLI::App& app, Action& action) {
   CLI::App* relight = app.add_subcommand(
       "relight", "Prepare a scene for light that moves (.lxr), or play such a file");
   auto options = std::make_shared<RelightOptions>();
-  auto* scene =
-      relight->add_option("SCENE", options->settings.scene, "glTF, OBJ, FBX, ... file to prepare");
+  auto* scene = relight->add_option("SCENE", options->scene, "glTF, OBJ, FBX, ... file to prepare");
   relight
       ->add_option("-o,--output", options->output,
                    "File to write, .lxr; with --play: folder for the frames")

@@ -85,6 +85,7 @@ void lay_out_times(const std::vector<StageTimes>& history) {
 void lay_out_buttons(LampPanel& panel) {
   panel.asks_to_save = ImGui::Button("save lamps");
   ImGui::SameLine();
+  panel.asks_for_lxr = ImGui::Button("save .lxr");
   panel.asks_to_check = ImGui::Button(panel.checked < 0 ? "compare with paths" : "stop comparing");
   if (panel.checked >= 0) ImGui::ProgressBar(panel.checked, {ImGui::GetFontSize() * 18, 0});
   if (panel.found.empty()) return;

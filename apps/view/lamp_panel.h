@@ -34,8 +34,9 @@ struct LampPanel {
   /// found.
   float checked = -1;
   std::string found;
-  bool asks_to_save = false, asks_to_check = false;  ///< changed; the second stops it, too
-  std::vector<StageTimes> history;                   ///< of the last pictures, the newest last
+  bool asks_to_save = false, asks_for_lxr = false;  ///< changed: a script, an .lxr file
+  bool asks_to_check = false;                       ///< changed; stops it, too
+  std::vector<StageTimes> history;                  ///< of the last pictures, the newest last
 };
 
 /// Both lay themselves out in the window of ImGui that is open.

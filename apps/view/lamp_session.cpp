@@ -1,9 +1,11 @@
 #include "apps/view/lamp_session.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "apps/view/lamp_lines.h"
 #include "luxel/scene/light_kinds.h"
+#include "luxel/view/relight/save_lxr.h"
 
 namespace luxel::view_window {
 namespace {
@@ -37,10 +39,7 @@ LampSession begin_lamps(view::OpenedLxr opened, view::LampDrawing drawing) {
 
 LampPanel panel_of(const LampSession& session) {
   LampPanel out;
-  for (const view::Lamp& lamp : session.desk.lamps.lamps) {
-    out.lamps.push_back(line_of(lamp, false));
-    out.lamps.back().has_disc = false;  // a sun's counts as its centre
-  }
+  for (const view::Lamp& lamp : session.desk.lamps.lamps) out.lamps.push_back(line_of(lamp, false));
   for (const uint32_t m : glows_shown(session))
     out.glows.push_back(line_of(session.desk.lamps.glows[m]));
   out.selected = session.desk.selected ? int(*session.desk.selected) : -1;
@@ -93,6 +92,25 @@ bool take_check(LampSession& session) {
   session.found = *result ? view::sentence_of(**result, kCheck) : result->error().message;
   session.check.reset();
   return true;
+}
+
+void begin_to_save_lxr(LampSession& session) {
+  if (session.saving.valid()) return;
+  view::LampsToSave to_save{session.opened.file, &session.opened.light.relighter.data(),
+                            view::lamps_of(session.opened.light.relighter.data()),
+                            session.desk.lamps};
+  session.saving = std::async(std::launch::async, [to_save = std::move(to_save)] {
+    return view::save_lxr(to_save).map([](const std::filesystem::path& file) {
+      return fmt::format("wrote {}; `luxel-view {}` opens it", file.string(), file.string());
+    });
+  });
+}
+
+std::optional<Result<std::string>> take_saved(LampSession& session) {
+  if (!session.saving.valid() ||
+      session.saving.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return std::nullopt;
+  return session.saving.get();
 }
 
 Result<view::LightTimes> light_lamps(gpu::Commands& commands, const view::Walk& walk,

@@ -1,6 +1,8 @@
 // The lamps of an .lxr file in a window: what the panel says of them, and light that follows.
 #pragma once
 
+#include <future>
+
 #include "apps/view/lamp_panel.h"
 #include "luxel/view/relight/lamp_check.h"
 #include "luxel/view/relight/lamp_desk.h"
@@ -18,6 +20,8 @@ struct LampSession {
   std::unique_ptr<view::LampCheck> check = {};  ///< null: nothing is compared
   std::string found = {};                       ///< by the last one that came to its end
   uint64_t found_of = 0;                        ///< view::LampDesk::changes that it is about
+  /// Valid while an .lxr file is being written. The last: it looks at `opened`.
+  std::future<Result<std::string>> saving = {};
 };
 
 LampSession begin_lamps(view::OpenedLxr opened, view::LampDrawing drawing);
@@ -31,6 +35,11 @@ void take_changes(const LampPanel& panel, float exposure, LampSession& session);
 void begin_or_stop_check(LampSession& session);
 /// Takes what was found. True: there is something.
 bool take_check(LampSession& session);
+
+/// Begins to write an .lxr file with the lamps as they are, in the background, if none is.
+void begin_to_save_lxr(LampSession& session);
+/// What came of that, once: what is to be told. Errors: why it could not be written.
+std::optional<Result<std::string>> take_saved(LampSession& session);
 
 /// Light follows the lamps where they have changed, and maps of shadows the walk. Returns what it
 /// took. Nothing may still draw the scene. Errors: the device is lost, no memory.

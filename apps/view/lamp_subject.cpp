@@ -25,11 +25,14 @@ class LampSubject : public Subject {
 
   Result<Followed> follow(gpu::Commands&, std::string& message) override {
     Followed out;
+    has_saved();
     out.has_news = take_found() || !said_.empty();
     if (!said_.empty()) message = std::exchange(said_, {});
     return out;
   }
-  Work work() const override { return lamps_.check ? Work::at_work : Work::at_rest; }
+  Work work() const override {
+    return lamps_.check || lamps_.saving.valid() ? Work::at_work : Work::at_rest;
+  }
 
   bool take(const view::Event& event, const view::Walk& walk) override {
     const auto* key = std::get_if<view::KeyChanged>(&event);
@@ -37,7 +40,16 @@ class LampSubject : public Subject {
       save(walk);
       return true;
     }
+    if (key && key->is_down && key->key == "ctrl+shift+s") {
+      begin_to_save_lxr(lamps_);
+      return true;
+    }
     if (key && key->is_down && key->key == "c") begin_or_stop_check(lamps_);
+    // A play that began with the scene itself could not be looked through before.
+    if (const Status fits = view::check_lamp_event(event, lamps_.desk.lamps); !fits) {
+      said_ = fits.error().message, failed_ = fits.error();
+      return true;
+    }
     return view::handle_lamps(event, walk, lamps_.desk);
   }
   void fill(Panel& panel) const override { panel.lamps = panel_of(lamps_); }
@@ -45,6 +57,7 @@ class LampSubject : public Subject {
     if (!walk) return;
     take_changes(*panel.lamps, walk->shown.exposure, lamps_);
     if (panel.lamps->asks_to_save) save(*walk);
+    if (panel.lamps->asks_for_lxr) begin_to_save_lxr(lamps_);
     if (panel.lamps->asks_to_check) begin_or_stop_check(lamps_);
   }
 
@@ -59,14 +72,23 @@ class LampSubject : public Subject {
   Result<std::string> end() override {
     if (lamps_.check) lamps_.check->wait();
     take_found();
+    if (lamps_.saving.valid()) lamps_.saving.wait();
+    has_saved();
     if (failed_) return tl::unexpected(*failed_);
     return said_at_end_;
   }
 
  private:
   void save(const view::Walk& walk) {
-    const auto saved = view::write_lamps(
-        lamps_.opened.file, view::script_of(lamps_.desk.lamps, lamps_.opened.lamps, walk));
+    note(view::write_lamps(lamps_.opened.file,
+                           view::script_of(lamps_.desk.lamps, lamps_.opened.lamps, walk)));
+  }
+  /// Whether another .lxr file was written, or could not be.
+  void has_saved() {
+    const std::optional<Result<std::string>> saved = take_saved(lamps_);
+    if (saved) note(*saved);
+  }
+  void note(const Result<std::string>& saved) {
     said_ = saved ? *saved : saved.error().message;
     if (saved)
       tell(said_);

@@ -16,9 +16,11 @@
 #include "luxel/base/file.h"
 #include "luxel/base/output_folder.h"
 #include "luxel/image/codec.h"
+#include "luxel/pipeline/command/relight_options.h"
 #include "luxel/pipeline/settings/version.h"
 #include "luxel/view/model/habits.h"
 #include "luxel/view/open_bake.h"
+#include "luxel/view/relight/kept_lxr.h"
 
 namespace {
 
@@ -31,10 +33,12 @@ struct Options {
   std::vector<std::filesystem::path> more;  ///< models beside the subject
   std::string size, device;
   std::string inside;  ///< a solver's name; empty: a scene is baked
+  bool relight = false;
   bool offscreen = false;
   int turn_frames = 0;           ///< of --turntable; 0: one picture
   int width = 0, height = 0;     ///< 0: as preview.png
   arguments::BakeChoice choice;  ///< of a subject that is a scene
+  arguments::Given of_lxr;       ///< what a bake has not
 };
 
 Status parse_size(Options& options) {
@@ -83,6 +87,27 @@ Status check_inside(const Options& options) {
   return {};
 }
 
+/// Errors: what is no scene, or looked at in another way.
+Status check_relight(const Options& options) {
+  if (!options.relight && !options.of_lxr.empty())
+    return fail(ErrorCode::bad_setting, "{} is for --relight; leave it out, or add that",
+                options.of_lxr.values[0].first);
+  if (!options.relight) return {};
+  if (view::is_lxr(options.subject))
+    return fail(ErrorCode::bad_setting,
+                "{} is prepared already: its lamps move without --relight; leave it out",
+                options.subject.string());
+  if (!is_scene(options.subject))
+    return fail(ErrorCode::bad_setting,
+                "--relight is for a scene, which is prepared for lamps that move; {} is no such "
+                "file",
+                options.subject.string());
+  if (!options.inside.empty() || !options.choice.solver.empty())
+    return fail(ErrorCode::bad_setting, "--relight has its own solver; leave {} out",
+                options.inside.empty() ? "--solver" : "--inside");
+  return {};
+}
+
 /// Errors: options of a bake beside a bake that is there, or a second bake beside none.
 Status check_choice(const Options& options) {
   const arguments::BakeChoice& choice = options.choice;
@@ -97,6 +122,7 @@ Status check_choice(const Options& options) {
                 "several models are one scene with --inside {} alone; give one without it",
                 kHemicube);
   if (!options.inside.empty()) LUXEL_TRY_STATUS(check_inside(options));
+  LUXEL_TRY_STATUS(check_relight(options));
   std::string flag;
   if (!choice.solver.empty()) flag = "--solver";
   if (!choice.settings.empty()) flag = "--settings";
@@ -107,10 +133,17 @@ Status check_choice(const Options& options) {
               flag, options.subject.string());
 }
 
+/// Options that a bake and --relight understand differently, or that only other solvers have.
+bool is_of_lxr(const std::string& flag) {
+  return flag == "--patches" || flag == "--rays" || flag == "--max-error";
+}
+
 /// Those of `luxel bake`, but that a processor is left to the window, and a folder is chosen.
 Result<pipeline::BakeSettings> settings_of(const Options& options) {
   arguments::BakeChoice choice = options.choice;
   choice.scene = options.subject;
+  if (options.relight)
+    std::erase_if(choice.given.values, [](const auto& given) { return is_of_lxr(given.first); });
   if (!options.inside.empty()) choice.solver = options.inside;
   if (choice.output.empty())
     choice.output = std::filesystem::path("baked") / options.subject.stem();
@@ -118,6 +151,24 @@ Result<pipeline::BakeSettings> settings_of(const Options& options) {
   if (!options.offscreen && !choice.given.has("--threads"))
     settings.threads = std::max(1, int(std::thread::hardware_concurrency()) - 1);
   return settings;
+}
+
+/// Those of `luxel relight`: what a bake has, too, is the same for both.
+Result<view_window::RelightParams> relight_of(const Options& options,
+                                              const pipeline::BakeSettings& bake) {
+  view_window::RelightParams out;
+  out.begins = options.relight;
+  pipeline::RelightSettings& s = out.settings;
+  s.scene = bake.scene, s.output = view::lxr_in(bake.output);
+  s.resolution = bake.resolution.value_or(s.resolution);
+  s.texels_per_metre = bake.texels_per_metre, s.uv = bake.uv, s.bounces = bake.bounces;
+  s.max_memory_bytes = bake.max_memory_bytes, s.seed = bake.seed, s.threads = bake.threads;
+  if (!options.relight) return out;
+  arguments::Given given = options.of_lxr;
+  for (const auto& value : options.choice.given.values)
+    if (is_of_lxr(value.first)) given.values.push_back(value);
+  LUXEL_TRY_STATUS(arguments::read_given(given, pipeline::relight_options(), s));
+  return out;
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
@@ -157,8 +208,10 @@ Result<Opened> opened(const Options& options) {
       out.make = view_window::hemicube_subject(models_of(options), settings);
     else if (options.inside == kHierarchical)
       out.make = view_window::inside_subject(settings);
-    else
-      out.make = view_window::live_subject(settings);
+    else {
+      LUXEL_TRY(const view_window::RelightParams relight, relight_of(options, settings));
+      out.make = view_window::live_subject(settings, relight);
+    }
   } else if (view::is_lxr(options.subject)) {
     LUXEL_TRY(view::OpenedLxr lxr, view::open_lxr(options.subject));
     out.make = view_window::lamp_subject(std::move(lxr));
@@ -181,6 +234,7 @@ Result<view_window::MakeSubject> opened_later(const Options& options,
   if (view_window::full_path(path) != view_window::full_path(options.subject))
     other.choice.output.clear();
   other.subject = path, other.beside.clear(), other.screenshot.clear();
+  other.relight &= is_scene(path);
   LUXEL_TRY(Opened opened_other, opened(other));
   return std::move(opened_other.make);
 }
@@ -269,6 +323,9 @@ void add_own(CLI::App& app, Options& options) {
   app.add_option("--inside", options.inside,
                  "Look into a solver while it makes the light of a scene: hierarchical, hemicube")
       ->type_name("SOLVER");
+  app.add_flag("--relight", options.relight,
+               "Prepare a scene, as `luxel relight` does, so that its lamps move with all bounces; "
+               "with the options of that");
   auto* screenshot = app.add_option("--screenshot", options.screenshot,
                                     "The picture to write: .png; of a window at the end of --play");
   auto* offscreen =
@@ -294,11 +351,14 @@ void add_own(CLI::App& app, Options& options) {
       ->type_name("NAME");
 }
 
-/// They are many, and `luxel bake --help` lists them.
-void add_hidden_bake_options(CLI::App& app, arguments::BakeChoice& choice) {
+/// They are many, and `luxel bake --help` and `luxel relight --help` list them.
+void add_hidden_options(CLI::App& app, Options& options) {
   const std::vector<CLI::Option*> before = app.get_options();
-  arguments::add_bake_settings(app, choice);
-  arguments::add_bake_table(app, choice.given);
+  arguments::add_bake_settings(app, options.choice);
+  arguments::add_bake_table(app, options.choice.given);
+  for (const auto& row : pipeline::relight_options())
+    if (row.flag != "--target" && !app.get_option_no_throw(row.flag))
+      arguments::add_option(app, row, row.help, "", options.of_lxr);
   for (CLI::Option* option : app.get_options())
     if (std::ranges::find(before, option) == before.end()) option->group("");
 }
@@ -308,7 +368,7 @@ int run(int argc, char** argv) {
   CLI::App app{"Look at light in a window, drawn by the graphics card", "luxel-view"};
   app.set_version_flag("--version", std::string("luxel-view ") + pipeline::kVersion);
   add_own(app, options);
-  add_hidden_bake_options(app, options.choice);
+  add_hidden_options(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

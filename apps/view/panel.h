@@ -13,6 +13,7 @@
 #include "apps/view/edit_panel.h"
 #include "apps/view/hemicube_panel.h"
 #include "apps/view/lamp_panel.h"
+#include "apps/view/relight_panel.h"
 #include "apps/view/selection_panel.h"
 #include "apps/view/solver_panel.h"
 #include "apps/view/ui_look.h"
@@ -57,6 +58,7 @@ struct Panel {
   PanelLayout layout;                     ///< changed; what it is at first comes back
   bool is_light = false;                  ///< changed: dark letters on light ground
   std::optional<BakeLines> bake;
+  std::optional<RelightLines> relight;
   std::optional<LampPanel> lamps;
   std::optional<EditPanel> edit;
   std::optional<HemicubePanel> hemicube;

@@ -135,7 +135,11 @@ Result<bool> fit(Session& s) {
 /// Takes what has come from the background. True: something is to be drawn.
 Result<bool> follow(Session& s) {
   LUXEL_TRY(const Followed followed, s.subject->follow(*s.screen.commands, s.panel.message));
-  if (followed.is_another) s.screen.looking = {}, s.shows_scene = false;
+  if (followed.is_another) {
+    s.screen.looking = {}, s.shows_scene = false;
+    s.screen.additions = s.subject->additions();
+    s.keys = key_lines(*s.subject), s.panel.keys = s.keys;
+  }
   if (followed.has_scene && s.fits) begin(*s.subject->shown().read, s);
   if (!followed.has_news && seconds_since(s.last_report) < kReport_s) return false;
   s.last_report = Clock::now();

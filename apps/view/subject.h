@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/view/panel.h"
+#include "luxel/pipeline/command/relight.h"
 #include "luxel/view/draw/painter.h"
 #include "luxel/view/live/live_bake.h"
 #include "luxel/view/model/walk.h"
@@ -82,8 +83,13 @@ using OpenSubject = std::function<Result<MakeSubject>(const std::filesystem::pat
 MakeSubject no_subject();
 /// A bake that is there.
 MakeSubject baked_subject(view::OpenedBake bake);
+/// What becomes of a scene when its lamps are to move with all bounces.
+struct RelightParams {
+  pipeline::RelightSettings settings;
+  bool begins = false;  ///< as soon as the scene is read; else when it is asked for
+};
 /// A bake that is being made; it begins now.
-MakeSubject live_subject(const pipeline::BakeSettings& settings);
+MakeSubject live_subject(const pipeline::BakeSettings& settings, const RelightParams& relight);
 /// Hemicube radiosity of one or several models in one scene, and techniques of local illumination
 /// to hold it against; it begins now.
 MakeSubject hemicube_subject(std::vector<std::filesystem::path> models,

@@ -189,6 +189,7 @@ class ImGuiUi : public Ui {
     lay_out_again(panel);
     if (panel.is_empty) return lay_out_empty(panel);
     if (panel.bake) lay_out_bake(*panel.bake);
+    if (panel.relight) lay_out_relight(*panel.relight);
     if (panel.solver) lay_out_solver(*panel.solver);
     if (panel.hemicube) {
       lay_out_hemicube(*panel.hemicube);
@@ -294,6 +295,14 @@ class ImGuiUi : public Ui {
     if (bake.can_stop) bake.asks_to_stop = ImGui::Button("stop");
     if (bake.can_go_on) bake.asks_to_go_on = ImGui::Button("go on");
     if (bake.can_save) bake.asks_to_save = ImGui::Button("save");
+    ImGui::Separator();
+  }
+
+  static void lay_out_relight(RelightLines& relight) {
+    if (!relight.stage.empty())
+      ImGui::ProgressBar(relight.share, {ImGui::GetFontSize() * 18, 0}, relight.stage.c_str());
+    if (!relight.left.empty()) ImGui::TextUnformatted(relight.left.c_str());
+    relight.asks = ImGui::Button(relight.does.c_str());
     ImGui::Separator();
   }
 

@@ -52,35 +52,6 @@ bool flatten_sky(scene::Scene& scene) {
   return true;
 }
 
-Status check(const RelightSettings& s) {
-  LUXEL_TRY_STATUS(check_all(matrix_options(), s.matrix));
-  LUXEL_TRY(const matrix::CodecKind codec, codec_of(s.codec));
-  if (matrix::looks_at_all_pairs(codec) && s.matrix.patches.count > matrix::kMaxDensePatches)
-    return fail(ErrorCode::bad_setting,
-                "--patches {} are too many for --codec {}, which looks at all pairs of up to {}; "
-                "ask for fewer, or for --codec hierarchical",
-                s.matrix.patches.count, s.codec, matrix::kMaxDensePatches);
-  if (std::find(kTargets.begin(), kTargets.end(), s.target) == kTargets.end())
-    return fail(ErrorCode::bad_setting,
-                "--target {} is not known; there is: texels, vertices, none", s.target);
-  if (!s.outside.ies.empty())
-    return fail(ErrorCode::bad_setting,
-                "--ies {}={}: .lxr files do not keep light profiles; leave it out",
-                s.outside.ies[0].light, s.outside.ies[0].file.string());
-  if (s.output.extension() != ".lxr")
-    return fail(ErrorCode::bad_setting, "-o {}: the file is to end in .lxr", s.output.string());
-  if (!(s.max_error >= 1e-5 && s.max_error <= 1))
-    return fail(ErrorCode::bad_setting, "--max-error {} is outside 0.00001 to 1", s.max_error);
-  if (s.bounces > 1000)
-    return fail(ErrorCode::bad_setting, "--bounces {} is outside 0 to 1000; inf counts all",
-                s.bounces);
-  BakeSettings map;  // the ranges of a lightmap
-  map.resolution = s.resolution, map.texels_per_metre = s.texels_per_metre, map.scene = s.scene;
-  map.output = s.output, map.threads = s.threads, map.seed = s.seed;
-  LUXEL_TRY_STATUS(check(map));
-  return check_output_file(s.output);
-}
-
 /// Where light is wanted, and the scene as its file is to have it.
 struct Wanted {
   matrix::Target target;
@@ -203,23 +174,44 @@ std::string codec_names() {
   return names;
 }
 
-Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
-  LUXEL_TRY_STATUS(check(s));
-  const ThreadLimit threads(s.threads);
-  progress.begin("import", 0);
-  LUXEL_TRY(import::Imported imported,
-            import::import_scene(s.scene, s.reading, s.max_memory_bytes));
-  scene::Scene& scene = imported.scene;
-  std::vector<std::string> warnings = std::move(imported.warnings);
-  // A scene without light is no mistake here: its lights come later.
-  if (s.outside.background || s.outside.environment || s.outside.sun || s.outside.sky)
-    LUXEL_TRY_STATUS(add_outside_light(s.outside, scene));
+Status check(const RelightSettings& s) {
+  LUXEL_TRY_STATUS(check_all(matrix_options(), s.matrix));
+  LUXEL_TRY(const matrix::CodecKind codec, codec_of(s.codec));
+  if (matrix::looks_at_all_pairs(codec) && s.matrix.patches.count > matrix::kMaxDensePatches)
+    return fail(ErrorCode::bad_setting,
+                "--patches {} are too many for --codec {}, which looks at all pairs of up to {}; "
+                "ask for fewer, or for --codec hierarchical",
+                s.matrix.patches.count, s.codec, matrix::kMaxDensePatches);
+  if (std::find(kTargets.begin(), kTargets.end(), s.target) == kTargets.end())
+    return fail(ErrorCode::bad_setting,
+                "--target {} is not known; there is: texels, vertices, none", s.target);
+  if (!s.outside.ies.empty())
+    return fail(ErrorCode::bad_setting,
+                "--ies {}={}: .lxr files do not keep light profiles; leave it out",
+                s.outside.ies[0].light, s.outside.ies[0].file.string());
+  if (s.output.extension() != ".lxr")
+    return fail(ErrorCode::bad_setting, "-o {}: the file is to end in .lxr", s.output.string());
+  if (!(s.max_error >= 1e-5 && s.max_error <= 1))
+    return fail(ErrorCode::bad_setting, "--max-error {} is outside 0.00001 to 1", s.max_error);
+  if (s.bounces > 1000)
+    return fail(ErrorCode::bad_setting, "--bounces {} is outside 0 to 1000; inf counts all",
+                s.bounces);
+  BakeSettings map;  // the ranges of a lightmap
+  map.resolution = s.resolution, map.texels_per_metre = s.texels_per_metre, map.scene = s.scene;
+  map.output = s.output, map.threads = s.threads, map.seed = s.seed;
+  LUXEL_TRY_STATUS(check(map));
+  return check_output_file(s.output);
+}
+
+Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& s,
+                                     Progress& progress) {
+  Relightable out;
   if (flatten_sky(scene))
-    warnings.push_back(
+    out.warnings.push_back(
         "the sky of an .lxr file has one colour: the map counts as an even sky that lights the "
         "ground as much");
   LUXEL_TRY_STATUS(fits(s));
-  LUXEL_TRY(Wanted wanted, wanted_of(scene, s, warnings, progress));
+  LUXEL_TRY(Wanted wanted, wanted_of(scene, s, out.warnings, progress));
   progress.begin("build ray tracer", 0);
   LUXEL_TRY(const trace::RayTracer tracer, trace::RayTracer::build(scene));
   matrix::RelightParams params;
@@ -230,22 +222,41 @@ Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
             as_if_lit(scene, [&] { return open_backs(scene, progress); }));
   params.max_error = float(s.max_error), params.bounces = s.bounces;
   CheckedTarget checked = with_places(std::move(wanted.target), places_to_check(scene, s.seed));
-  LUXEL_TRY(matrix::RelightData data,
+  LUXEL_TRY(out.data,
             matrix::make_relight_data(scene, tracer, std::move(checked.target), params, progress));
-  LUXEL_TRY_STATUS(measure_relight_error(scene, tracer, checked.own, s.seed, data, progress));
-  if (!std::isfinite(data.baked_error) || !std::isfinite(data.lamp_error))
+  LUXEL_TRY_STATUS(measure_relight_error(scene, tracer, checked.own, s.seed, out.data, progress));
+  if (!std::isfinite(out.data.baked_error) || !std::isfinite(out.data.lamp_error))
     return tl::unexpected(scene::overflow_at(scene, scene::world_bounds(scene).centre()));
-  data.scene_glb = std::move(wanted.glb);
-  if (data.usual_codec_error > s.max_error)
-    warnings.push_back(
+  out.data.scene_glb = std::move(wanted.glb);
+  if (out.data.usual_codec_error > s.max_error)
+    out.warnings.push_back(
         fmt::format("the codec loses {:.2g} where {:.2g} was asked for: more --rays would help",
-                    data.usual_codec_error, s.max_error));
+                    out.data.usual_codec_error, s.max_error));
+  return out;
+}
+
+Result<nlohmann::json> write_relightable(const RelightSettings& s, const Relightable& made,
+                                         Progress& progress) {
   progress.begin(kWriteStage, 0);
-  const std::vector<std::byte> bytes = matrix::encode_lxr(data);
+  const std::vector<std::byte> bytes = matrix::encode_lxr(made.data);
   LUXEL_TRY_STATUS(stopped(progress));
   LUXEL_TRY_STATUS(write_file_atomically(s.output, bytes));
   progress.finish();
-  return report(s, data, bytes.size(), warnings, progress);
+  return report(s, made.data, bytes.size(), made.warnings, progress);
+}
+
+Result<nlohmann::json> relight(const RelightSettings& s, Progress& progress) {
+  LUXEL_TRY_STATUS(check(s));
+  const ThreadLimit threads(s.threads);
+  progress.begin("import", 0);
+  LUXEL_TRY(import::Imported imported,
+            import::import_scene(s.scene, s.reading, s.max_memory_bytes));
+  // A scene without light is no mistake here: its lights come later.
+  if (s.outside.background || s.outside.environment || s.outside.sun || s.outside.sky)
+    LUXEL_TRY_STATUS(add_outside_light(s.outside, imported.scene));
+  LUXEL_TRY(Relightable made, make_relightable(std::move(imported.scene), s, progress));
+  made.warnings.insert(made.warnings.begin(), imported.warnings.begin(), imported.warnings.end());
+  return write_relightable(s, made, progress);
 }
 
 }  // namespace luxel::pipeline

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
 
 #include "luxel/base/progress.h"
 #include "luxel/base/result.h"
@@ -40,8 +42,28 @@ struct RelightSettings {
 /// "hierarchical, ...".
 std::string codec_names();
 
-/// Writes settings.output. Returns what `--json` prints: settings, counts, bytes, seconds. Errors:
-/// whatever the stages say; settings out of range.
+/// A scene prepared for light that moves, before anything is written.
+struct Relightable {
+  matrix::RelightData data;
+  std::vector<std::string> warnings;
+};
+
+/// Prepares a scene that is there, with its outside light; one without any stays dark. Of the
+/// settings, `scene` is a name for messages, and neither `reading` nor `outside` is looked at; see
+/// check(). Errors: whatever the stages say.
+Result<Relightable> make_relightable(scene::Scene scene, const RelightSettings& settings,
+                                     Progress& progress);
+
+/// Writes settings.output, and ends the progress. Returns what `--json` prints: settings, counts,
+/// bytes, seconds. Errors: those of files; cancelled.
+Result<nlohmann::json> write_relightable(const RelightSettings& settings, const Relightable& made,
+                                         Progress& progress);
+
+/// Errors (bad_setting): settings out of range. Errors of files: settings.output cannot be written.
+Status check(const RelightSettings& settings);
+
+/// Reads settings.scene, prepares it and writes settings.output. Returns what write_relightable()
+/// does. Errors: whatever the stages say; settings out of range.
 Result<nlohmann::json> relight(const RelightSettings& settings, Progress& progress);
 
 }  // namespace luxel::pipeline

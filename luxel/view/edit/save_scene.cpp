@@ -8,6 +8,7 @@
 #include "luxel/import/gltf_images.h"
 #include "luxel/import/import.h"
 #include "luxel/view/edit/sky_sun.h"
+#include "luxel/view/free_name.h"
 
 namespace luxel::view {
 namespace {
@@ -95,15 +96,6 @@ bool is_as_read(const scene::Scene& file, const scene::Scene& read) {
          file.materials.size() == read.materials.size() && file.lights.size() <= read.lights.size();
 }
 
-std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& stem,
-                                const std::string& extension) {
-  std::error_code ignored;
-  std::filesystem::path out = folder / (stem + "-edited" + extension);
-  for (int number = 2; std::filesystem::exists(out, ignored); ++number)
-    out = folder / fmt::format("{}-edited-{}{}", stem, number, extension);
-  return out;
-}
-
 }  // namespace
 
 Result<std::filesystem::path> save_scene(const SceneToSave& to_save) {
@@ -128,7 +120,7 @@ Result<std::filesystem::path> save_scene(const SceneToSave& to_save) {
   if (error)
     return fail(ErrorCode::io, "{} cannot be made: {}", settings.output.string(), error.message());
   const std::filesystem::path to =
-      free_name(settings.output, settings.scene.stem().string(),
+      free_name(settings.output, settings.scene.stem().string() + "-edited",
                 is_gltf ? settings.scene.extension().string() : ".glb");
   LUXEL_TRY_STATUS(write_file_atomically(to, bytes));
   return to;

@@ -155,7 +155,7 @@ TEST(Estimate, IsNearToTheLightOfTheEditedScene) {
 }
 
 /// The Cornell box with a lamp that hangs free in it.
-scene::Scene box_with_lamp(Vec3 position) {
+scene::Scene box_with_free_lamp(Vec3 position) {
   scene::Scene out = scene::cornell_box();
   scene::PunctualLight lamp;
   lamp.name = "lamp", lamp.position = position, lamp.intensity = {1, 1, 1};
@@ -165,30 +165,30 @@ scene::Scene box_with_lamp(Vec3 position) {
 
 // Where there are only lamps, direct light is theirs, with the same samples.
 TEST(LampLight, IsAllDirectLightWhereThereIsNoOther) {
-  scene::Scene scene = box_with_lamp({0.1f, 0.45f, 0.3f});
+  scene::Scene scene = box_with_free_lamp({0.1f, 0.45f, 0.3f});
   for (scene::Material& m : scene.materials) m.emission = {};
-  const auto known = known_of(scene, box_settings());
+  const auto known = known_of(scene, settings_of_estimates());
   Progress progress;
-  const pipeline::BakeSettings s = box_settings();
+  const pipeline::BakeSettings s = settings_of_estimates();
   ASSERT_TRUE(tell_lamps_apart({s.direct_samples, s.supersample, s.seed}, *known, progress));
   EXPECT_LT(mean_difference(known->of_lamps, known->direct), 1e-6);
-  const auto dark = known_of(scene::cornell_box(), box_settings());
+  const auto dark = known_of(scene::cornell_box(), settings_of_estimates());
   ASSERT_TRUE(tell_lamps_apart({}, *dark, progress));
   EXPECT_EQ(dark->of_lamps, std::vector<Rgb>(dark->irradiance.size()));
 }
 
 // What an estimate has besides is the light of lamps where they have been moved to.
 TEST(Estimate, LeavesOutTheLightOfLamps) {
-  const scene::Scene scene = box_with_lamp({0.1f, 0.45f, 0.3f}),
-                     moved = box_with_lamp({0.35f, 0.45f, 0.3f});
-  const auto known = known_of(scene, box_settings());
+  const scene::Scene scene = box_with_free_lamp({0.1f, 0.45f, 0.3f}),
+                     moved = box_with_free_lamp({0.35f, 0.45f, 0.3f});
+  const auto known = known_of(scene, settings_of_estimates());
   Progress progress;
-  const pipeline::BakeSettings s = box_settings();
+  const pipeline::BakeSettings s = settings_of_estimates();
   ASSERT_TRUE(tell_lamps_apart({s.direct_samples, s.supersample, s.seed}, *known, progress));
   const auto estimate = estimate_light(*known, moved, {}, progress);
   ASSERT_TRUE(estimate);
   const Draft& got = **estimate;
-  const std::vector<Rgb> all = wanted_at(got, moved, box_settings());
+  const std::vector<Rgb> all = wanted_at(got, moved, settings_of_estimates());
   const float diagonal_m = scene::world_bounds(got.scene).diagonal();
   std::vector<Rgb> wanted = all;
   for (size_t i = 0; i < wanted.size(); ++i) {
@@ -197,8 +197,15 @@ TEST(Estimate, LeavesOutTheLightOfLamps) {
     wanted[i] =
         max(wanted[i] - matrix::live_light_at(at, 0, moved.lights, *got.tracer, diagonal_m), Rgb{});
   }
-  // Edges of shadows, which a bake averages within texels, are part of it.
-  EXPECT_LT(mean_difference(got.without_lamps, wanted), 0.08);
+  // Nothing but lamps' light is left out: it errs by as much as the whole estimate, but for edges of
+  // shadows, which a bake averages within texels.
+  double off = 0, without = 0;
+  for (size_t i = 0; i < wanted.size(); ++i) {
+    off += double(std::abs(got.irradiance[i].y - all[i].y));
+    without += double(std::abs(got.without_lamps[i].y - wanted[i].y));
+  }
+  fprintf(stderr,"%g %g\n", off, without);
+  EXPECT_LT(without, 1.2 * off);
   EXPECT_GT(mean_difference(got.irradiance, wanted), 0.3);
 }
 

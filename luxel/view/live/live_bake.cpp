@@ -65,6 +65,11 @@ class Worker : public LiveBake {
     // What is cancelled must not be held.
     if (state_ == LiveState::baking && !edit_) progress_->set_paused(is_paused);
   }
+  void rest(bool is_resting) override {
+    const std::scoped_lock lock(mutex_);
+    is_resting_ = is_resting;
+    if (is_drafted_ && state_ == LiveState::baking) end_early();
+  }
   void edit(const SceneNow& now) override {
     const std::scoped_lock lock(mutex_);
     if (!is_read_) return;
@@ -116,6 +121,7 @@ class Worker : public LiveBake {
       progress_->begin("draft", 0);
       // Without a draft, the window waits for the bake itself.
       if (run.begin(*read, kFirstDraft, *progress_)) observer.guess = run.observer().guess;
+      has_draft();
     };
     observer.on_estimate = run.observer().on_estimate;
     observer.on_bounce = run.observer().on_bounce;
@@ -130,6 +136,19 @@ class Worker : public LiveBake {
     is_read_ = true;
   }
 
+  /// From now on the bake can end early, and does where it is to rest.
+  void has_draft() {
+    const std::scoped_lock lock(mutex_);
+    is_drafted_ = true;
+    end_early();
+  }
+  /// Under the mutex.
+  void end_early() {
+    if (!is_resting_) return;
+    ends_early_ = true;
+    progress_->request_cancel();
+  }
+
   /// The draft comes to its end though there are other edits: it is soon there.
   void bake_edit() {
     SceneNow now;
@@ -142,9 +161,10 @@ class Worker : public LiveBake {
     if (const Status begun = run.begin(*read, kQuickDraft, ends_); !begun)
       return has_failed(begun.error().message);
     is_known_shown_ = is_known_shown_ || run.follows();
+    has_draft();
     {
       const std::scoped_lock lock(mutex_);
-      if (!edit_ && !is_ending_) progress->set_paused(is_paused_);
+      if (!edit_ && !is_ending_ && !is_resting_) progress->set_paused(is_paused_);
     }
     pipeline::BakeCache cache(of_edits_, pipeline::settings_of_kept_bake(of_edits_));
     end(run,
@@ -157,6 +177,7 @@ class Worker : public LiveBake {
     const std::scoped_lock lock(mutex_);
     now = std::move(*edit_);
     edit_.reset();
+    is_drafted_ = ends_early_ = false;
     progress_ = std::make_shared<Progress>();
     return progress_;
   }
@@ -165,6 +186,7 @@ class Worker : public LiveBake {
     progress_->finish();
     exposure_ = run.exposure();
     learn(run);
+    if (!baked && comes_to_rest()) return;
     if (!baked) return has_failed(baked.error().message);
     cache.finish(*progress_);
     if (!cache.failure().empty()) baked->warnings.push_back(cache.failure());
@@ -174,6 +196,12 @@ class Worker : public LiveBake {
     if (settings_.light == pipeline::LightPart::all) run.tell_lamps_apart(*progress_);
     const std::scoped_lock lock(mutex_);
     if (!edit_) state_ = LiveState::baked;
+  }
+  /// Whether a bake that has not come to its end was to rest.
+  bool comes_to_rest() {
+    const std::scoped_lock lock(mutex_);
+    if (ends_early_ && !edit_) state_ = LiveState::paused;
+    return ends_early_;
   }
   /// Light that is known in part is better than none. But where it follows an edit it is made of an
   /// estimate: what is known as a whole is a better ground for the next.
@@ -238,6 +266,9 @@ class Worker : public LiveBake {
   std::optional<SceneNow> edit_;                                       ///< the next
   bool is_read_ = false, asks_to_save_ = false, is_paused_ = false, is_busy_ = true,
        is_ending_ = false;
+  bool is_drafted_ = false;  ///< there is a draft of what is baked, or never will be
+  bool is_resting_ = false;
+  bool ends_early_ = false;  ///< the bake was told to
 
   // The thread's own.
   std::shared_ptr<const ReadScene> as_read_;

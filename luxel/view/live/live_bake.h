@@ -31,6 +31,10 @@ class LiveBake {
   /// What the bake tells people while it goes on: Progress::notes().
   virtual std::vector<std::string> notes() const = 0;
   virtual void pause(bool is_paused) = 0;
+  /// While it rests it takes no processor: the bake that goes on ends once there is a draft, and of
+  /// an edit only the draft is made. Its light stays as far as it is known, and it is `paused`. The
+  /// first edit() after a rest is baked.
+  virtual void rest(bool is_resting) = 0;
   /// The scene that was read has become this: a draft of its light comes soon, and then it is baked
   /// anew. Edits that come faster than drafts are made wait, and only the last one is heeded. The
   /// exposure stays. Only once something was read.

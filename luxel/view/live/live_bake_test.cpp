@@ -188,6 +188,32 @@ TEST(LiveBake, HasADraftOfAnEditThoughTheBakeGoesOnForMinutes) {
   }
 }
 
+// Some minutes of work, which nobody waits for: wait() returns since the bake has ended.
+TEST(LiveBake, RestsWithADraftUntilTheNextEditAfterIt) {
+  const auto live = LiveBake::begin(settings_for("cornell-box.glb", 256, 65535));
+  live->rest(true);  // before anything is read
+  const auto read = wait_for_scene(*live);
+  live->wait();
+  EXPECT_EQ(live->state(), LiveState::paused);
+  const LiveNews first = live->take();
+  ASSERT_TRUE(first.light && !first.said);
+  EXPECT_EQ(first.light->numbers.kind, LiveKind::draft);
+  const MovedBox moved = with_moved_box(*read);
+  live->edit(moved.now);
+  live->wait();
+  EXPECT_EQ(live->state(), LiveState::paused);
+  EXPECT_TRUE(live->take().light) << "of the edited scene";
+  live->rest(false);
+  live->edit(moved.now);
+  while (live->snapshot().stage != "trace rays")
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_EQ(live->state(), LiveState::baking);
+  live->rest(true);
+  live->wait();
+  EXPECT_EQ(live->state(), LiveState::paused);
+  EXPECT_FALSE(live->take().said) << "it is no failure";
+}
+
 // In a furnace all surfaces get pi e / (1 - rho), wherever they are asked.
 TEST(Draft, HasTheLightOfAFurnaceInAnotherLayout) {
   const float rho = 0.5f;

@@ -222,6 +222,7 @@ inline constexpr KeyHelp kLampKeys[] = {
     {"z", "along z alone"},
     {"m", "hide the marks of lamps, or show them"},
     {"c", "compare the light with the path tracer's, or stop that"},
+    {"ctrl+shift+s", "save another .lxr file with the lamps as they are"},
 };
 
 /// Those of the workshop of hemicube radiosity, besides the keys of kTechniques.
@@ -250,6 +251,7 @@ inline constexpr KeyHelp kEditKeys[] = {
     {"ctrl+shift+z", "redo; ctrl+y, too"},
     {"ctrl+y", "redo"},
     {"ctrl+shift+s", "save the edited scene as glTF"},
+    {"l", "relight: prepare lamps that move with all bounces of their light, or stop that"},
     {"m", "hide the marks of lamps, or show them"},
 };
 

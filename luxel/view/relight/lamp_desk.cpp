@@ -84,26 +84,28 @@ std::vector<Mark> marks_of(const LampDesk& desk, const Walk& walk) {
   return desk.has_marks ? marks_of(marked(desk), walk) : std::vector<Mark>();
 }
 
+Status check_lamp_event(const Event& event, const Lamps& lamps) {
+  if (edits_scene(event))
+    return fail(ErrorCode::bad_input,
+                "in an .lxr file lamps change, and what glows; open the scene itself to change "
+                "more");
+  if (const auto* changed = std::get_if<LampChanged>(&event);
+      changed && changed->lamp >= lamps.lamps.size())
+    return fail(ErrorCode::bad_input, "there is no lamp {}; there are {}", changed->lamp,
+                lamps.lamps.size());
+  const auto* changed = std::get_if<GlowChanged>(&event);
+  if (!changed) return {};
+  const auto is_it = [&](const Glow& glow) { return glow.name == changed->material; };
+  if (std::ranges::any_of(lamps.glows, is_it)) return {};
+  return fail(ErrorCode::bad_input, "the scene has no material '{}'", changed->material);
+}
+
 Status check_lamps(const Play& play, const Lamps& lamps, const std::string& name) {
-  size_t count = lamps.lamps.size();
+  Lamps there = lamps;
   for (const TimedEvent& timed : play.events) {
-    if (edits_scene(timed.event))
-      return fail(
-          ErrorCode::bad_input,
-          "{}, at {} s: in an .lxr file lamps change, and what glows; open the scene itself "
-          "to change more",
-          name, timed.at_s);
-    if (std::holds_alternative<LampAdded>(timed.event)) ++count;
-    if (const auto* changed = std::get_if<LampChanged>(&timed.event);
-        changed && changed->lamp >= count)
-      return fail(ErrorCode::bad_input, "{}, at {} s: there is no lamp {}; there are {}", name,
-                  timed.at_s, changed->lamp, count);
-    const auto* changed = std::get_if<GlowChanged>(&timed.event);
-    if (!changed) continue;
-    const auto is_it = [&](const Glow& glow) { return glow.name == changed->material; };
-    if (std::none_of(lamps.glows.begin(), lamps.glows.end(), is_it))
-      return fail(ErrorCode::bad_input, "{}, at {} s: the scene has no material '{}'", name,
-                  timed.at_s, changed->material);
+    if (std::holds_alternative<LampAdded>(timed.event)) there.lamps.emplace_back();
+    if (const Status fits = check_lamp_event(timed.event, there); !fits)
+      return fail(ErrorCode::bad_input, "{}, at {} s: {}", name, timed.at_s, fits.error().message);
   }
   return {};
 }

@@ -42,7 +42,9 @@ void add_lamp(const LampAdded& added, LampDesk& desk);
 /// The marks of all lamps as they are seen.
 std::vector<Mark> marks_of(const LampDesk& desk, const Walk& walk);
 
-/// Errors: an event of a lamp or a material that there is not; `name` is the play's.
+/// Errors: an event of a lamp or a material that there is not, or of something else of a scene.
+Status check_lamp_event(const Event& event, const Lamps& lamps);
+/// Errors: those of its events; `name` is the play's.
 Status check_lamps(const Play& play, const Lamps& lamps, const std::string& name);
 
 /// Errors: an event that changes a scene, for what stays as it is.

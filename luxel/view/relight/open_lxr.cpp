@@ -49,8 +49,13 @@ Result<float> first_exposure(const ReadScene& read, const Lamps& lamps,
 bool is_lxr(const std::filesystem::path& file) { return file.extension() == ".lxr"; }
 
 Result<OpenedLxr> open_lxr(const std::filesystem::path& file) {
-  const std::string name = file.string();
   LUXEL_TRY(matrix::RelightData data, matrix::read_lxr(file));
+  return opened_lxr(std::move(data), file, nullptr);
+}
+
+Result<OpenedLxr> opened_lxr(matrix::RelightData data, const std::filesystem::path& file,
+                             const ReadScene* before) {
+  const std::string name = file.string();
   LUXEL_TRY_STATUS(check_texels(data, name));
   LUXEL_TRY(import::Imported imported, import::import_glb(data.scene_glb, name));
   auto read = std::make_shared<ReadScene>();
@@ -60,7 +65,12 @@ Result<OpenedLxr> open_lxr(const std::filesystem::path& file) {
   LUXEL_TRY(RelitLight light, make_relit_light(std::move(data)));
   relight(lamps, light);
   LUXEL_TRY(read->tracer, trace::RayTracer::build(read->scene));
-  LUXEL_TRY(read->first.camera, pipeline::choose_camera({}, read->scene, *read->tracer, name));
+  if (before) {
+    read->first.camera = before->first.camera, read->light_unit = before->light_unit;
+    read->width = before->width, read->height = before->height;
+  } else {
+    LUXEL_TRY(read->first.camera, pipeline::choose_camera({}, read->scene, *read->tracer, name));
+  }
   LUXEL_TRY(read->first.exposure, first_exposure(*read, lamps, light.indirect));
   return OpenedLxr{file, std::move(read), std::move(light), std::move(lamps)};
 }

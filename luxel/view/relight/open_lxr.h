@@ -25,4 +25,9 @@ bool is_lxr(const std::filesystem::path& file);
 /// light or without its scene.
 Result<OpenedLxr> open_lxr(const std::filesystem::path& file);
 
+/// What a file of that name holds, or will. `before`: what was looked at, from where it goes on;
+/// null: from where `luxel render` would look. Errors: as above.
+Result<OpenedLxr> opened_lxr(matrix::RelightData data, const std::filesystem::path& file,
+                             const ReadScene* before);
+
 }  // namespace luxel::view

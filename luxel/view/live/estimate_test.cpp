@@ -197,14 +197,13 @@ TEST(Estimate, LeavesOutTheLightOfLamps) {
     wanted[i] =
         max(wanted[i] - matrix::live_light_at(at, 0, moved.lights, *got.tracer, diagonal_m), Rgb{});
   }
-  // Nothing but lamps' light is left out: it errs by as much as the whole estimate, but for edges of
-  // shadows, which a bake averages within texels.
+  // Nothing but lamps' light is left out: it errs by as much as the whole estimate, but for edges
+  // of shadows, which a bake averages within texels.
   double off = 0, without = 0;
   for (size_t i = 0; i < wanted.size(); ++i) {
     off += double(std::abs(got.irradiance[i].y - all[i].y));
     without += double(std::abs(got.without_lamps[i].y - wanted[i].y));
   }
-  fprintf(stderr,"%g %g\n", off, without);
   EXPECT_LT(without, 1.2 * off);
   EXPECT_GT(mean_difference(got.irradiance, wanted), 0.3);
 }

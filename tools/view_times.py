@@ -119,7 +119,7 @@ def measure(bin, folder):
     dragged = played(dragging(10, 20), folder / "box.lxr")
     yield row_of("cornell-box.lxr: a lamp is dragged", dragged, False)
     updates = [{**frame, "milliseconds": sum(float(frame[part]) for part in UPDATE)} for frame in dragged]
-    yield row_of("cornell-box.lxr: a lamp is dragged, update of the light", updates, False, digits=1)
+    yield row_of("cornell-box.lxr: a lamp is dragged (update)", updates, False, digits=1)
 
 
 def self_test():

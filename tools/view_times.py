@@ -5,9 +5,9 @@
     tools/view_times.py --self-test
 
 Each row is a play in a window of 640 x 480 on a virtual display (xvfb-run): a bake of scenes/office.glb seen in each
-way, solvers that are looked into when they have come to rest, a scene that is baked meanwhile, an object and a lamp
-that are dragged, and for the lamp also what the update of its light alone takes. Without ../shared the living room is
-left out.
+way, solvers that are looked into when they have come to rest, a scene that is baked meanwhile, an object that
+is moved, until its first light is seen, an object and a lamp that are dragged, and for the lamp also what the update of
+its light alone takes. Without ../shared the living room is left out.
 Columns: what, frames, the median and the 95th percentile of their times [ms], the share under 150 ms [%], and the
 largest change of brightness from one frame to the next [%], of plays in which the camera stands still.
 """
@@ -20,6 +20,7 @@ import sys
 import tempfile
 
 SIZE = "640x480"
+FRAMES_PER_S = 30  # of plays while something is baked: so they take about as long as they pretend to
 UPDATE = ("direct_ms", "bounces_ms", "places_ms")
 KINDS = ("both", "light", "colour", "irradiance", "checker", "density", "charts", "seams", "overlaps")
 INSIDE = {"hierarchical": ("flat", "gouraud", "gouraud-disc", "interpolant"),
@@ -72,6 +73,27 @@ def dragging_block(seconds, frames_per_s):
     return {"frames_per_s": frames_per_s, "end": seconds, "events": events}
 
 
+def moving_block(times):
+    """The tall block of the Cornell box stands elsewhere, again and again, each time once the bake has ended."""
+    events = [{"at": 0, "wait": "bake"}]
+    for k in range(times):
+        events += [{"at": 2 * k + 1, "instance": "tall block", "to": [0.25 + 0.1 * (k % 2), 0.165, 0.35]},
+                   {"at": 2 * k + 2, "wait": "bake"}]
+    return {"frames_per_s": 20, "end": 2 * times, "events": events}
+
+
+def first_lights(frames):
+    """Seconds from each edit to the frame that has the first light of it: that of no ray of the bake."""
+    edited, out = None, []
+    for before, frame in zip(frames, frames[1:]):
+        if frame["edits"] != before["edits"]:
+            edited = float(frame["at_s"]) - float(frame["milliseconds"]) / 1000
+        if edited is not None and frame["rays_per_texel"] == "0":
+            out.append(float(frame["at_s"]) - edited)
+            edited = None
+    return out
+
+
 def row_of(what, frames, stands, digits=0):
     """`frames`: rows of --frame-times as dictionaries. `stands`: the camera does not move."""
     times = sorted(float(frame["milliseconds"]) for frame in frames)
@@ -88,14 +110,16 @@ def run(*arguments):
 
 def measure(bin, folder):
     """Yields the rows."""
-    def played(play, subject, *options):
+    def all_frames(play, subject, *options):
         (folder / "play.json").write_text(json.dumps(play), encoding="utf-8")
         run("xvfb-run", "-a", "-s", "-screen 0 1280x800x24", bin / "luxel-view", subject, *options, "--size", SIZE,
             "--play", folder / "play.json", "--frame-times", folder / "frames.csv")
         with open(folder / "frames.csv", newline="", encoding="utf-8") as file:
-            frames = list(csv.DictReader(file))
+            return list(csv.DictReader(file))
+
+    def played(play, subject, *options):
         # Those in which a play waits come first.
-        return frames[-int(play["end"] * play["frames_per_s"]):]
+        return all_frames(play, subject, *options)[-int(play["end"] * play["frames_per_s"]):]
 
     def turned(kinds, what, subject, *options, first=()):
         frames = played(turning(4, 20, kinds, first), subject, *options)
@@ -111,9 +135,13 @@ def measure(bin, folder):
         yield from turned(kinds, f"office.glb inside {solver}", office, "--inside", solver, first=[{"wait": "bake"}])
     rooms = [(office, [])] + ([(ROOM, ["--sky", "135,45"])] if ROOM.exists() else [])
     for scene, sky in rooms:
-        yield row_of(f"{scene.name} while it is baked: walking", played(walking(60, 10), scene, *sky), False)
-        stand = {"frames_per_s": 10, "end": 20, "events": []}
+        yield row_of(f"{scene.name} while it is baked: walking", played(walking(60, FRAMES_PER_S), scene, *sky), False)
+        stand = {"frames_per_s": FRAMES_PER_S, "end": 60, "events": []}
         yield row_of(f"{scene.name} while it is baked: standing", played(stand, scene, *sky), True)
+    quick = ("--resolution", "256", "--samples", "64")
+    lights = first_lights(all_frames(moving_block(10), box, *quick))
+    yield row_of("cornell-box.glb: an object is moved (first light)",
+                 [{"milliseconds": 1000 * light} for light in lights], False)
     yield row_of("cornell-box.glb: an object is dragged", played(dragging_block(10, 20), box), False)
     run(bin / "luxel", "relight", box, "-o", folder / "box.lxr")
     dragged = played(dragging(10, 20), folder / "box.lxr")
@@ -128,7 +156,10 @@ def self_test():
     assert row_of("x", frames, True) == ["x", 4, "100", "200", "75.0", "2.00"], row_of("x", frames, True)
     assert row_of("x", frames, False)[5] == "-"
     assert len(turning(4, 20, ("a", "b"))["events"]) == 2 + 2 + 160
-    for play in (turning(4, 20, ("light",)), walking(60, 10), dragging(10, 20), dragging_block(10, 20)):
+    frames = [{"at_s": str(at), "milliseconds": "20", "edits": edits, "rays_per_texel": rays}
+              for at, edits, rays in ((1.0, "0", "64"), (1.1, "1", "64"), (1.2, "1", "0"), (1.3, "1", "0"))]
+    assert [round(light, 3) for light in first_lights(frames)] == [0.12]
+    for play in (turning(4, 20, ("light",)), walking(60, FRAMES_PER_S), dragging(10, 20), dragging_block(10, 20)):
         times = [event["at"] for event in play["events"]]
         assert times == sorted(times) and times[-1] <= play["end"]
 

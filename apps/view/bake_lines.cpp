@@ -21,6 +21,7 @@ BakeLines lines_of(const view::LiveBake& live, const view::ShownScene& shown) {
   if (const std::vector<std::string> notes = live.notes(); !notes.empty()) out.note = notes.back();
   const view::LiveNumbers& known = shown.numbers;
   if (!shown.has_light) return out;
+  if (known.kind == view::LiveKind::estimate) out.lines.push_back("shown: an estimate of the edit");
   if (known.kind == view::LiveKind::draft) out.lines.push_back("shown: a coarse draft");
   if (known.kind == view::LiveKind::direct_and_draft)
     out.lines.push_back("shown: direct light, reflections of the draft");

@@ -1,11 +1,13 @@
 // A table of the frames of a play: how long each took, and how bright it was.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/view/screen.h"
 #include "apps/view/subject.h"
+#include "luxel/base/clock.h"
 
 namespace luxel::view_window {
 
@@ -16,8 +18,11 @@ struct FrameTable {
     double samples = 0;      ///< of the light that came last
     bool has_light = false;  ///< false: colours alone, or nothing yet
     view::LightTimes light;  ///< of lamps that move
+    double at_s = 0;         ///< when it was in the window, since the first one was
+    uint64_t edits = 0;      ///< of the scene, that it shows
   };
   std::vector<Row> rows;
+  std::optional<Clock::time_point> first;  ///< when the first frame was in the window
 };
 
 /// The frame that was just drawn. Reads it back, which is not counted. Errors: the device is lost.

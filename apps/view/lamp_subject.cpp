@@ -9,7 +9,11 @@ namespace {
 class LampSubject : public Subject {
  public:
   LampSubject(LampSession lamps, view::ShownScene shown)
-      : lamps_(std::move(lamps)), shown_(std::move(shown)) {}
+      : lamps_(std::move(lamps)), shown_(std::move(shown)) {
+    if (!view::has_light(lamps_.opened.lamps))
+      said_ = "Nothing shines in " + lamps_.opened.file.filename().string() +
+              ": add a lamp in the panel.";
+  }
 
   view::ShownScene& shown() override { return shown_; }
 

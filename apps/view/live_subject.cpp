@@ -116,6 +116,7 @@ class LiveSubject : public Subject {
   void has_drawn(float milliseconds) override {
     if (lamps()) lamps()->has_drawn(milliseconds);
   }
+  uint64_t edits() const override { return shown_edits_; }
   view::LightTimes light_times() const override {
     return lamps() ? lamps()->light_times() : view::LightTimes{};
   }
@@ -144,6 +145,7 @@ class LiveSubject : public Subject {
     const view::EditDesk& desk = edit_->tools.desk;
     if (std::exchange(shown_edits_, desk.changes) != desk.changes)
       LUXEL_TRY_STATUS(view::leave_out_lamps(commands, shown_));
+    LUXEL_TRY_STATUS(view::draw_lamps_or_not(!view::looks_into_bake(frame.show), commands, shown_));
     show_edits(walk, shown_, frame, *edit_);
     const trace::CameraRays eye(walk.shown.camera, walk.width, walk.height);
     return view::draw_lamps(commands, desk.now, eye, shown_, drawn_lamps_);

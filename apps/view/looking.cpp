@@ -152,7 +152,7 @@ void fill_panel(const view::Frame& frame, const view::ShownScene& shown, const L
   panel.can_scale = is_of_one && frame.show != view::Show::error;
   const auto& lightmaps = looking.mixed.pictures.empty() ? shown.lightmaps : looking.mixed;
   if (!pointed || !is_of_one) return;
-  // Of a part of the light while it is baked, only pictures are there.
+  // A part of the light has only pictures while it is baked.
   if (!shown.lit)
     panel.pointed = view::value_at(frame, shown.drawn(), lightmaps, *pointed).value_or(-1);
   else if (shown.part.is_all())

@@ -65,6 +65,8 @@ class Subject {
   virtual Status prepare(gpu::Commands&, const view::Walk&, view::Frame&) { return {}; }
   /// A frame in the window took so long.
   virtual void has_drawn(float /*milliseconds*/) {}
+  /// How many edits of the scene are drawn.
+  virtual uint64_t edits() const { return 0; }
   /// What the light of the last frame took.
   virtual view::LightTimes light_times() const { return {}; }
 

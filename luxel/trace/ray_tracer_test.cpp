@@ -451,7 +451,7 @@ TEST(RayTracer, MovedMeetsWhatATracerOfTheMovedSceneMeets) {
   const Differences here = differences(*moved, *flat_after, after);
   for (const Differences& d : {there, here}) {
     EXPECT_GT(d.met, 5000u);
-    // Of rays through edges, also those of films in the way.
+    // Rays through edges count, also those of films in the way.
     EXPECT_LE(d.hits, d.met / 500);
     EXPECT_LE(d.shares, 20u);
   }

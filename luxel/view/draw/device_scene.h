@@ -82,7 +82,7 @@ struct DeviceSceneParams {
   uint32_t shadow_side = 1;  ///< of the square picture of all shadow maps [pixels]
 };
 
-/// Of the picture of shadow maps where lamps are drawn: 64 MB.
+/// Side of the picture of shadow maps where lamps are drawn: 64 MB [pixels].
 inline constexpr uint32_t kShadowSide = 4096;
 
 /// E of all pages of the lightmap, and the page of each material.

@@ -19,6 +19,10 @@ static_assert(sizeof(LitPoint) == 24 && sizeof(Rgb) == 12);
 
 }  // namespace
 
+bool can_light_points(const gpu::Device& device, size_t points) {
+  return (points + kGroup - 1) / kGroup <= device.limits.maxComputeWorkGroupCount[0];
+}
+
 Result<LightAtPoints> make_light_at_points(const gpu::Device& device, const DeviceScene& scene,
                                            std::span<const LitPoint> points) {
   LightAtPoints out;

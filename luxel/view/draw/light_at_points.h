@@ -24,7 +24,9 @@ struct LightAtPoints {
     return {reinterpret_cast<const Rgb*>(irradiance.mapped), count};
   }
 };
-/// There are points. Errors: no memory on the device.
+/// Whether a device takes so many at once.
+bool can_light_points(const gpu::Device& device, size_t points);
+/// There are points, no more than can be lit. Errors: no memory on the device.
 Result<LightAtPoints> make_light_at_points(const gpu::Device& device, const DeviceScene& scene,
                                            std::span<const LitPoint> points);
 

@@ -15,7 +15,7 @@ constexpr float kSameLight = 1e-4f;
 
 double to_hundredths(double degrees) { return std::round(100 * degrees) / 100; }
 
-/// The same air, and its sun there.
+/// Its air stays, with the sun there.
 SkyAsked sky_with_sun(Vec3 towards, const pipeline::SkySetting& before) {
   pipeline::SkySetting out = before;
   const double azimuth = std::atan2(double(towards.x), -double(towards.z)) / kSkyDegree;

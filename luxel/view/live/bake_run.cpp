@@ -92,14 +92,17 @@ Result<std::unique_ptr<Draft>> BakeRun::first_light(const DraftParams& params,
 void BakeRun::hand_draft() {
   LiveNews news;
   LiveLight& light = news.light.emplace();
-  light.numbers.kind = LiveKind::draft;
+  light.numbers.kind = before_ ? LiveKind::estimate : LiveKind::draft;
   light.exposure = draft_exposure_ = exposure_of(
       {draft_->scene, *draft_->tracer}, {&draft_->atlas, &draft_->map, draft_->irradiance});
   exposure_ = light.exposure;
   light.is_sudden = kept_exposure_.has_value();
-  light.is_without_lamps = !draft_->without_lamps.empty();
-  light.pages = pages_of(draft_->atlas, draft_->map,
-                         light.is_without_lamps ? draft_->without_lamps : draft_->irradiance);
+  light.pages = pages_of(draft_->atlas, draft_->map, draft_->irradiance);
+  light.is_without_lamps = !draft_->without_lamps.empty() && !draft_->scene.lights.empty();
+  if (light.is_without_lamps) {
+    light.with_lamps = std::move(light.pages);
+    light.pages = pages_of(draft_->atlas, draft_->map, draft_->without_lamps);
+  }
   if (!before_ || !is_before_shown_) news.lit = lit_scene(draft_->scene, draft_->atlas);
   if (!before_) news.bounced = bounces_of(*draft_);
   if (kept_exposure_) news.read = read_;
@@ -230,16 +233,28 @@ void BakeRun::end(const pipeline::Bake& baked) {
         ProbeBalls{baked.probes->probes, baked.probes->spacing_m});
   news.warnings = baked.warnings;
   know(baked.light.irradiance, baked.light.direct);
-  if (light_) light_->hidden = baked.light.hidden;
+  if (light_) {
+    light_->hidden = baked.light.hidden;
+    refill_hidden(light_->direct);
+  }
   watcher_.hand(std::move(news));
+}
+
+/// Texels within solids get the light of those around them, as all light of the bake has it.
+void BakeRun::refill_hidden(std::vector<Rgb>& light) const {
+  if (light_->hidden.empty() || light.empty()) return;
+  post::refill_hidden(light_->atlas, light_->map, light_->hidden, pipeline::kRefillRings, {},
+                      light);
 }
 
 /// For the edits that follow.
 void BakeRun::tell_lamps_apart(Progress& progress) {
+  const ThreadLimit threads(settings_.threads);
   if (!light_ ||
       !view::tell_lamps_apart({settings_.direct_samples, settings_.supersample, settings_.seed},
                               *light_, progress))
     return;
+  refill_hidden(light_->of_lamps);
   LiveNews news;
   if (const std::vector<Rgb> rest = light_without_lamps(*light_); !rest.empty())
     news.without_lamps = pages_of(light_->atlas, light_->map, rest);

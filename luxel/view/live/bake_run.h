@@ -50,6 +50,8 @@ class BakeRun {
   std::shared_ptr<const KnownLight> known() const { return light_; }
   /// Whether its first light follows from what was known, and is laid out as that is.
   bool follows() const { return before_ != nullptr; }
+  /// Whether its light was handed over with the layout of its own.
+  bool lies_anew() const { return is_laid_out_; }
   /// Whether known() is made of rays of all texels.
   bool knows_all() const { return knows_all_; }
 
@@ -66,6 +68,7 @@ class BakeRun {
   Result<std::unique_ptr<Draft>> first_light(const DraftParams& params, const Progress& ends) const;
   void hand_draft();
   void know(std::span<const Rgb> irradiance, std::span<const Rgb> direct);
+  void refill_hidden(std::vector<Rgb>& light) const;
   LiveLight draft_elsewhere(const light::TexelScene& in) const;
   std::vector<Rgb> with_reflections_of_draft(const light::TexelScene& in,
                                              std::span<const Rgb> direct) const;

@@ -132,7 +132,7 @@ struct Change {
     if (part >= 1) return estimate;
     return scaled(known, before / weight_before, estimate) * (1 - part) + estimate * part;
   }
-  /// Of a texel that may have come out of the solid in which all of its cells still are.
+  /// Light of a texel that may have come out of the solid in which all of its cells still are.
   Rgb of_freed() const {
     if (weight_after > 0) return after / weight_after;
     return weight_beside > 0 ? beside / weight_beside : Rgb{};

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "luxel/base/check.h"
 #include "luxel/base/thread_priority.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
@@ -193,14 +194,19 @@ class Worker : public LiveBake {
     baked_.emplace(std::move(*baked));
     run.end(*baked_);
     exposure_ = run.exposure();
+    // It may lie as a sum of kept layers does, of which nothing is known.
+    if (!run.known()) is_known_shown_ = false;
+    {
+      const std::scoped_lock lock(mutex_);
+      if (!edit_) state_ = LiveState::baked;
+    }
     if (settings_.light == pipeline::LightPart::all) run.tell_lamps_apart(*progress_);
-    const std::scoped_lock lock(mutex_);
-    if (!edit_) state_ = LiveState::baked;
   }
   /// Whether a bake that has not come to its end was to rest.
   bool comes_to_rest() {
     const std::scoped_lock lock(mutex_);
     if (ends_early_ && !edit_) state_ = LiveState::paused;
+    if (ends_early_) asks_to_save_ = false;  // there is nothing
     return ends_early_;
   }
   /// Light that is known in part is better than none. But where it follows an edit it is made of an
@@ -209,7 +215,7 @@ class Worker : public LiveBake {
     const std::shared_ptr<const KnownLight> light = run.known();
     const bool is_better = light && (!known_ || run.knows_all());
     if (is_better) known_ = light;
-    if (light) is_known_shown_ = is_better;
+    if (run.lies_anew()) is_known_shown_ = is_better;
   }
   /// An edit that has come meanwhile is no failure.
   void has_failed(std::string sentence) {
@@ -220,6 +226,7 @@ class Worker : public LiveBake {
     state_ = LiveState::failed;
   }
   void write() {
+    LUXEL_CHECK(baked_.has_value());
     const auto saving = std::make_shared<Progress>();
     set_saving(saving);
     const auto saved = pipeline::save_bake(settings_, *baked_, *progress_, *saving);

@@ -181,7 +181,7 @@ TEST(LiveBake, HasADraftOfAnEditThoughTheBakeGoesOnForMinutes) {
       news = live->take();
     }
     ASSERT_TRUE(news.light);
-    EXPECT_EQ(news.light->numbers.kind, LiveKind::draft);
+    EXPECT_EQ(news.light->numbers.kind, LiveKind::estimate);
     EXPECT_TRUE(news.light->is_sudden);
     EXPECT_EQ(news.read->scene.instances.back().world_from_object,
               (again % 2 ? read->scene : moved.scene).instances.back().world_from_object);

@@ -17,6 +17,7 @@ namespace luxel::view {
 /// What light is made of.
 enum class LiveKind : uint8_t {
   draft,                 ///< coarse, see draft.h
+  estimate,              ///< after an edit, see estimate.h
   direct_and_draft,      ///< sharp direct light, and reflections of the draft
   direct_and_even_rest,  ///< sharp direct light and an ambient term
   partly,                ///< the bake's in part, elsewhere one of the two above
@@ -41,6 +42,7 @@ struct LiveLight {
   bool is_last = false;           ///< what `luxel bake` writes
   bool is_sudden = false;         ///< it does not fade in: the scene was edited
   bool is_without_lamps = false;  ///< what comes straight from lamps is to be drawn besides
+  std::vector<image::HalfImage> with_lamps;  ///< then: all of it
 };
 
 /// What has come since it was last asked for.

@@ -176,7 +176,7 @@ size_t SpreadTexels::shares_at(size_t texel, std::array<CellShare, kMostShares>&
       if (cell != kNoCell) out[count++] = {cell, weight};
     }
   }
-  // Of many normals none is the texel's own, or its own cell is as far away as can be.
+  // None of many normals is the texel's own, or its own cell is as far away as can be.
   if (count == 0) out[count++] = {cell_of_texel_[texel], 1};
   return count;
 }

@@ -51,7 +51,7 @@ class SpreadTexels {
   SpreadTexels(const TexelPlaces& places, CellGrid grid, size_t most);
 
   size_t size() const { return texel_.size(); }
-  /// Of each cell, the one nearest to its middle.
+  /// The texel of each cell: the one nearest to its middle.
   std::span<const uint32_t> texels() const { return texel_; }
   /// The cell of each texel.
   std::span<const uint32_t> cell_of_texel() const { return cell_of_texel_; }
@@ -60,7 +60,7 @@ class SpreadTexels {
   /// normal. Returns how many of `out` there are; weights add up to anything above 0, or there are
   /// none.
   size_t shares_at(size_t texel, std::array<CellShare, kMostShares>& out) const;
-  /// Of each cell.
+  /// Neighbours of each cell.
   std::vector<CellsBeside> beside() const;
 
  private:

@@ -29,10 +29,10 @@ struct Look {
   std::vector<image::Image8> overlaps;  ///< uv_overlaps()
 };
 
-/// Of a scene with these lightmaps: all but its unit and the pictures of the folder. E runs up to a
-/// round number that 98 % of the texels stay below; the density by its logarithm, from the first
-/// percentile of the surface to the last. `light_uv`: of each mesh and vertex its place in the
-/// lightmap; empty: uv1 is.
+/// What there is of a scene with these lightmaps: all but its unit and the pictures of the folder.
+/// E runs up to a round number that 98 % of the texels stay below; the density by its logarithm,
+/// from the first percentile of the surface to the last. `light_uv`: of each mesh and vertex its
+/// place in the lightmap; empty: uv1 is.
 Look look_at(const scene::Scene& scene, const pipeline::LightmapPages& lightmaps,
              std::span<const std::vector<Vec2>> light_uv = {});
 

@@ -56,7 +56,7 @@ struct SelectionStepped {
 
 /// What a graph in space shows: exact light, light as it is shown, the difference.
 inline constexpr std::array<const char*, 3> kGraphCurves{"exact", "shown", "difference"};
-/// Of graphs in space some curves are drawn, and so high; what is not said stays.
+/// Graphs in space show some curves, and so high; what is not said stays.
 struct GraphChanged {
   std::array<std::optional<bool>, kGraphCurves.size()> shows;
   std::optional<float> height;  ///< of the largest value, over the line's length

@@ -59,6 +59,17 @@ void expect_near(Vec3 a, Vec3 b) {
                                   << ", " << b.y << ", " << b.z << ")";
 }
 
+TEST(LampDesk, KnowsWhetherAnythingShines) {
+  Lamps lamps = Table().desk.lamps;
+  EXPECT_TRUE(has_light(lamps));
+  for (Lamp& lamp : lamps.lamps) lamp.is_on = false;
+  EXPECT_TRUE(has_light(lamps)) << "glass glows";
+  lamps.glows[0].radiance = {};
+  EXPECT_FALSE(has_light(lamps));
+  lamps.background = {0, 0, 1};
+  EXPECT_TRUE(has_light(lamps));
+}
+
 TEST(LampDesk, PixelsAreThoseOfTheRays) {
   Table t;
   for (const float height_m : {0.0f, 4.0f}) {

@@ -1,5 +1,7 @@
 #include "luxel/view/relight/lamps.h"
 
+#include <algorithm>
+
 namespace luxel::view {
 
 Lamps lamps_of(const matrix::RelightData& data) {
@@ -23,6 +25,13 @@ std::vector<Rgb> glowing(const Lamps& lamps) {
   std::vector<Rgb> out;
   for (const Glow& glow : lamps.glows) out.push_back(glow.is_on ? glow.radiance : Rgb{});
   return out;
+}
+
+bool has_light(const Lamps& lamps) {
+  const auto is_bright = [](Rgb light) { return max_component(light) > 0; };
+  const auto shines = [&](const scene::PunctualLight& l) { return is_bright(l.intensity); };
+  return is_bright(lamps.background) || std::ranges::any_of(shining(lamps), shines) ||
+         std::ranges::any_of(glowing(lamps), is_bright);
 }
 
 Rgb emission_now(const scene::Material& material, const Lamps& now, const Lamps& baked) {

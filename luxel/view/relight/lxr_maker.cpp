@@ -84,6 +84,8 @@ class Maker : public LxrMaker {
     LUXEL_TRY_STATUS(pipeline::check(settings));
     const ThreadLimit threads(settings.threads);
     LUXEL_TRY(pipeline::Relightable made, pipeline::make_relightable(scene, settings, progress_));
+    // One that was stopped meanwhile may have taken the folder along.
+    LUXEL_TRY_STATUS(folder.make());
     LUXEL_TRY_STATUS(
         pipeline::write_relightable(settings, made, progress_).map([](const nlohmann::json&) {}));
     folder.keep();

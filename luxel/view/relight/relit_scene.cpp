@@ -54,7 +54,8 @@ Result<RelitScene> lxr_shown(gpu::Commands& commands, PatchLight patches, Opened
   out.shown.fade.exposure_before = out.shown.fade.exposure_newest = opened.read->first.exposure;
   out.shown.has_light = out.shown.has_last = true;
   LUXEL_TRY(out.lamps.direct, make_direct_light(commands.device(), scene));
-  if (patches == PatchLight::by_maps) {
+  const size_t probes = opened.light.relighter.data().probe.size();
+  if (patches == PatchLight::by_maps && can_light_points(commands.device(), probes)) {
     LUXEL_TRY(out.lamps.patches, patches_on_device(commands.device(), opened, scene));
   }
   LUXEL_TRY_STATUS(

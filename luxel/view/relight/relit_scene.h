@@ -22,7 +22,7 @@ struct RelitScene {
   LampDrawing lamps;
 };
 
-/// Where patches get their light from. Shadow rays of two cores are twice as fast as shaders that a
+/// Where patches get their light from. Shadow rays take a fraction of the time of shaders that a
 /// processor runs; a graphics card has the maps at hand.
 enum class PatchLight : uint8_t { by_rays, by_maps };
 PatchLight patch_light_of(const gpu::Device& device);

@@ -49,7 +49,7 @@ float lit_share(ShadowMap map, vec3 place) {
   for (int v = 0; v < 2; ++v)
     for (int u = 0; u < 2; ++u) {
       vec2 corner = (map.corner + texel + vec2(2 * u, 2 * v)) / size;
-      // Of the left upper, right upper, right lower and left lower texel: w, z, y, x.
+      // The left upper, right upper, right lower and left lower texel: w, z, y, x.
       vec4 lit = textureGather(shadow_maps, corner, clip.z / clip.w);
       vec2 across = u == 0 ? x.xy : x.zw, down = v == 0 ? y.xy : y.zw;
       sum += down.x * dot(across, lit.wz) + down.y * dot(across, lit.xy);
@@ -57,7 +57,7 @@ float lit_share(ShadowMap map, vec3 place) {
   return sum;
 }
 
-// Of n points in a disc of radius 1, spread by the golden angle and turned: evenly for a `power` of
+// The k-th of n points in a disc of radius 1, spread by the golden angle and turned: evenly for a `power` of
 // 0.5, and denser in the middle for a larger one.
 vec2 in_disc(int k, int n, float turn, float power) {
   float angle = float(k) * 2.39996323 + turn;

@@ -2,7 +2,7 @@
 #include "scene.glsl"
 
 layout(buffer_reference, scalar) readonly buffer Corners { uint at[]; };
-/// Of each triangle: its chart, times eight, and a bit for each edge that is a seam.
+/// Per triangle: its chart, times eight, and a bit for each edge that is a seam.
 layout(buffer_reference, scalar) readonly buffer Charts { uint at[]; };
 /// The scene's triangles, what is shown, and 256 false colours, 0xbbggrr.
 layout(buffer_reference, scalar) readonly buffer Look {

@@ -9,6 +9,21 @@ std::vector<scene::PunctualLight> shining(const SceneNow& now) {
   return out;
 }
 
+namespace {
+
+/// What has moved may stand beyond all that stood there when the scene was put on the device.
+void widen_bounds(const SceneNow& now, const std::vector<Mat34>& before, ShownScene& shown) {
+  const scene::Scene& scene = shown.drawn();
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    const Mat34& to_world = now.world_from_object[i];
+    if (i < before.size() && before[i] == to_world) continue;
+    for (const Vec3& p : scene.meshes[scene.instances[i].mesh].positions)
+      shown.device.bounds.extend(transform_point(to_world, p));
+  }
+}
+
+}  // namespace
+
 Status draw_lamps(gpu::Commands& commands, const SceneNow& now, const trace::CameraRays& eye,
                   ShownScene& shown, DrawnLamps& drawn) {
   const gpu::Device& device = commands.device();
@@ -19,8 +34,11 @@ Status draw_lamps(gpu::Commands& commands, const SceneNow& now, const trace::Cam
   if (!drawn.direct) {
     LUXEL_TRY(drawn.direct, make_direct_light(device, scene));
   }
-  if (drawn.world_from_object != now.world_from_object) drawn.direct->drawn.clear();
-  drawn.world_from_object = now.world_from_object;
+  if (drawn.world_from_object != now.world_from_object) {
+    widen_bounds(now, drawn.world_from_object, shown);
+    drawn.direct->drawn.clear();
+    drawn.world_from_object = now.world_from_object;
+  }
   LUXEL_TRY_STATUS(set_lamps(device, shining(now), &eye, *drawn.direct, scene));
   if (drawn.direct->plan.maps == drawn.direct->drawn) return {};
   return commands.run(

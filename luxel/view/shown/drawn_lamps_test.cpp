@@ -92,6 +92,12 @@ TEST_F(DrawnLampsTest, AreAllOfTheLightThatIsLeftOut) {
   const image::Image same = drawn();
   EXPECT_LT(mean_difference(before, same), 0.01 * mean(before));
 
+  ASSERT_TRUE(draw_lamps_or_not(false, *commands_, *shown_));
+  ASSERT_TRUE(draw_lamps_of(now));
+  EXPECT_EQ(lamp_share(*shown_), 0);
+  EXPECT_EQ(drawn().data, before.data) << "the light of the bake again";
+  ASSERT_TRUE(draw_lamps_or_not(true, *commands_, *shown_));
+
   now.lamps[0].is_on = false;
   ASSERT_TRUE(draw_lamps_of(now));
   const image::Image off = drawn();

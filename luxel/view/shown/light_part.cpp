@@ -47,6 +47,8 @@ Status show_part(const LightShown& light, gpu::Commands& commands, ShownScene& s
   // What fades in does so no longer.
   const uint32_t other = 1 - shown.fade.newest;
   LUXEL_TRY_STATUS(put_light(commands, halves, other, shown.device));
+  // Where lamps are left out nothing is told apart: ShownScene::bounced.
+  shown.is_without_lamps[other] = false;
   shown.fade.newest = other, shown.fade.share = 1;
   shown.fade.exposure_before = shown.fade.exposure_newest;
   shown.device.second_light = second_light(shown.fade);

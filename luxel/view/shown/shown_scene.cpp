@@ -31,7 +31,8 @@ pipeline::LightmapPages pages_of(const LiveLight& light, const LitScene& lit) {
 
 /// The newest light, or the part of it that is shown, becomes that of the fade's newest picture.
 Status put_newest(gpu::Commands& commands, ShownScene& shown) {
-  if (shown.part.is_all() || !shown.bounced)
+  if (!shown.bounced) shown.part = {};
+  if (shown.part.is_all())
     return put_light(commands, shown.newest, shown.fade.newest, shown.device);
   std::vector<image::Image> all;
   for (const image::HalfImage& page : shown.newest) all.push_back(to_floats(page));
@@ -47,7 +48,7 @@ Status put_newest(gpu::Commands& commands, ShownScene& shown) {
 Status fade_in(LiveLight light, gpu::Commands& commands, ShownScene& shown) {
   shown.fade = faded_to_other(shown.fade, light.exposure);
   shown.device.second_light = second_light(shown.fade);
-  shown.newest = std::move(light.pages);
+  shown.newest = std::move(light.pages), shown.otherwise = std::move(light.with_lamps);
   shown.is_without_lamps[shown.fade.newest] = light.is_without_lamps;
   return put_newest(commands, shown);
 }
@@ -129,7 +130,7 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
     LiveLight& first = news.before ? *news.before : *news.light;
     LUXEL_TRY(shown.device, with_light(commands, *news.lit, first));
     shown.lightmaps = pages_of(first, *news.lit);
-    shown.newest = first.pages;
+    shown.newest = first.pages, shown.otherwise = first.with_lamps;
     shown.is_without_lamps = {first.is_without_lamps, first.is_without_lamps};
     shown.lit = std::move(news.lit);
     shown.fade = {0, 1, first.exposure, first.exposure};
@@ -143,6 +144,7 @@ Result<bool> take_news(LiveNews news, gpu::Commands& commands, ShownScene& shown
     shown.fade = at_once(shown.fade, news.light->exposure);
     shown.device.second_light = second_light(shown.fade);
     shown.newest = std::move(news.light->pages);
+    shown.otherwise = std::move(news.light->with_lamps);
     shown.is_without_lamps[shown.fade.newest] = news.light->is_without_lamps;
     LUXEL_TRY_STATUS(put_newest(commands, shown));
     return is_another;
@@ -168,12 +170,25 @@ Status settle(gpu::Commands& commands, ShownScene& shown) {
 }
 
 Status leave_out_lamps(gpu::Commands& commands, ShownScene& shown) {
-  if (shown.without_lamps.empty()) return {};
+  // A part is made of light that has lamps.
+  if (shown.without_lamps.empty() || !shown.part.is_all()) return {};
+  shown.bounced.reset();
+  const float exposure = shown.waiting ? shown.waiting->exposure : shown.fade.exposure_newest;
   shown.waiting.reset();
+  shown.fade = at_once(shown.fade, exposure);
+  shown.device.second_light = second_light(shown.fade);
+  shown.otherwise = std::exchange(shown.newest, std::exchange(shown.without_lamps, {}));
+  shown.is_without_lamps[shown.fade.newest] = true;
+  return put_newest(commands, shown);
+}
+
+Status draw_lamps_or_not(bool are_drawn, gpu::Commands& commands, ShownScene& shown) {
+  bool& is_without = shown.is_without_lamps[shown.fade.newest];
+  if (shown.otherwise.empty() || is_without == are_drawn) return {};
+  std::swap(shown.newest, shown.otherwise);
+  is_without = are_drawn;
   shown.fade = at_once(shown.fade, shown.fade.exposure_newest);
   shown.device.second_light = second_light(shown.fade);
-  shown.newest = std::exchange(shown.without_lamps, {});
-  shown.is_without_lamps[shown.fade.newest] = true;
   return put_newest(commands, shown);
 }
 

@@ -23,6 +23,8 @@ struct ShownScene {
   Fade fade;
   std::array<bool, 2> is_without_lamps{};  ///< of DeviceScene::lights
   PagesOfHalves without_lamps;             ///< LiveNews::without_lamps of the newest light
+  /// `newest` with lamps where it is without, and without where it is with; none: it is not known.
+  PagesOfHalves otherwise;
   std::optional<LiveLight> waiting;   ///< light that comes when what was there before has faded in
   LiveNumbers numbers;                ///< of the light that came last
   bool has_last = false;              ///< all light has come
@@ -74,6 +76,9 @@ Status settle(gpu::Commands& commands, ShownScene& shown);
 /// to be drawn; where it is not known, does nothing. Nothing may still draw the scene. Errors: no
 /// memory on the device.
 Status leave_out_lamps(gpu::Commands& commands, ShownScene& shown);
+/// After an edit: shows light without that of lamps, if they are drawn, or all light, if it is
+/// looked into. Nothing may still draw the scene. Errors: no memory on the device.
+Status draw_lamps_or_not(bool are_drawn, gpu::Commands& commands, ShownScene& shown);
 /// How much of what comes straight from lamps is missing in what is shown.
 float lamp_share(const ShownScene& shown);
 

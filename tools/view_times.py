@@ -108,46 +108,68 @@ def run(*arguments):
     subprocess.run([str(a) for a in arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def measure(bin, folder):
-    """Yields the rows."""
-    def all_frames(play, subject, *options):
-        (folder / "play.json").write_text(json.dumps(play), encoding="utf-8")
-        run("xvfb-run", "-a", "-s", "-screen 0 1280x800x24", bin / "luxel-view", subject, *options, "--size", SIZE,
-            "--play", folder / "play.json", "--frame-times", folder / "frames.csv")
-        with open(folder / "frames.csv", newline="", encoding="utf-8") as file:
+class Player:
+    """Plays in a window, with luxel and luxel-view of the folder `bin`; files go into another folder."""
+
+    def __init__(self, bin, folder):
+        self.bin, self.folder = bin, folder
+        root = pathlib.Path(__file__).parents[1]
+        self.office, self.box = root / "scenes/office.glb", root / "scenes/cornell-box.glb"
+
+    def all_frames(self, play, subject, *options):
+        (self.folder / "play.json").write_text(json.dumps(play), encoding="utf-8")
+        run("xvfb-run", "-a", "-s", "-screen 0 1280x800x24", self.bin / "luxel-view", subject, *options, "--size", SIZE,
+            "--play", self.folder / "play.json", "--frame-times", self.folder / "frames.csv")
+        with open(self.folder / "frames.csv", newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
 
-    def played(play, subject, *options):
+    def played(self, play, subject, *options):
         # Those in which a play waits come first.
-        return all_frames(play, subject, *options)[-int(play["end"] * play["frames_per_s"]):]
+        return self.all_frames(play, subject, *options)[-int(play["end"] * play["frames_per_s"]):]
 
-    def turned(kinds, what, subject, *options, first=()):
-        frames = played(turning(4, 20, kinds, first), subject, *options)
+    def turned(self, kinds, what, subject, *options, first=()):
+        frames = self.played(turning(4, 20, kinds, first), subject, *options)
         each = len(frames) // len(kinds)
         for kind, name in enumerate(kinds):
             yield row_of(f"{what}: {name}", frames[kind * each:(kind + 1) * each], False)
 
-    root = pathlib.Path(__file__).parents[1]
-    office, box = root / "scenes/office.glb", root / "scenes/cornell-box.glb"
-    run(bin / "luxel", "bake", office, "-o", folder / "office", "--resolution", "256", "--samples", "64")
-    yield from turned(KINDS, "office.glb baked", folder / "office")
+
+def baked(p):
+    run(p.bin / "luxel", "bake", p.office, "-o", p.folder / "office", "--resolution", "256", "--samples", "64")
+    yield from p.turned(KINDS, "office.glb baked", p.folder / "office")
+
+
+def inside(p):
     for solver, kinds in INSIDE.items():
-        yield from turned(kinds, f"office.glb inside {solver}", office, "--inside", solver, first=[{"wait": "bake"}])
-    rooms = [(office, [])] + ([(ROOM, ["--sky", "135,45"])] if ROOM.exists() else [])
+        yield from p.turned(kinds, f"office.glb inside {solver}", p.office, "--inside", solver,
+                            first=[{"wait": "bake"}])
+
+
+def live(p):
+    rooms = [(p.office, [])] + ([(ROOM, ["--sky", "135,45"])] if ROOM.exists() else [])
     for scene, sky in rooms:
-        yield row_of(f"{scene.name} while it is baked: walking", played(walking(60, FRAMES_PER_S), scene, *sky), False)
+        walk = p.played(walking(60, FRAMES_PER_S), scene, *sky)
+        yield row_of(f"{scene.name} while it is baked: walking", walk, False)
         stand = {"frames_per_s": FRAMES_PER_S, "end": 60, "events": []}
-        yield row_of(f"{scene.name} while it is baked: standing", played(stand, scene, *sky), True)
+        yield row_of(f"{scene.name} while it is baked: standing", p.played(stand, scene, *sky), True)
+
+
+def edited(p):
     quick = ("--resolution", "256", "--samples", "64")
-    lights = first_lights(all_frames(moving_block(10), box, *quick))
-    yield row_of("cornell-box.glb: an object is moved (first light)",
-                 [{"milliseconds": 1000 * light} for light in lights], False)
-    yield row_of("cornell-box.glb: an object is dragged", played(dragging_block(10, 20), box), False)
-    run(bin / "luxel", "relight", box, "-o", folder / "box.lxr")
-    dragged = played(dragging(10, 20), folder / "box.lxr")
+    lights = [{"milliseconds": 1000 * light} for light in first_lights(p.all_frames(moving_block(10), p.box, *quick))]
+    yield row_of("cornell-box.glb: an object is moved (first light)", lights, False)
+    yield row_of("cornell-box.glb: an object is dragged", p.played(dragging_block(10, 20), p.box), False)
+
+
+def lamps(p):
+    run(p.bin / "luxel", "relight", p.box, "-o", p.folder / "box.lxr")
+    dragged = p.played(dragging(10, 20), p.folder / "box.lxr")
     yield row_of("cornell-box.lxr: a lamp is dragged", dragged, False)
     updates = [{**frame, "milliseconds": sum(float(frame[part]) for part in UPDATE)} for frame in dragged]
     yield row_of("cornell-box.lxr: a lamp is dragged (update)", updates, False, digits=1)
+
+
+GROUPS = {"baked": baked, "inside": inside, "live": live, "edited": edited, "lamps": lamps}
 
 
 def self_test():
@@ -167,6 +189,7 @@ def self_test():
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("bin", nargs="?", type=pathlib.Path)
+    parser.add_argument("--only", choices=GROUPS, help="the rows of this part alone")
     parser.add_argument("--self-test", action="store_true")
     options = parser.parse_args()
     if options.self_test:
@@ -177,9 +200,11 @@ def main():
     table.writerow(["play", "frames", "median [ms]", "95th percentile [ms]", "under 150 ms [%]",
                     "largest change of brightness [%]"])
     with tempfile.TemporaryDirectory() as folder:
-        for row in measure(options.bin.resolve(), pathlib.Path(folder)):
-            table.writerow(row)
-            sys.stdout.flush()
+        player = Player(options.bin.resolve(), pathlib.Path(folder))
+        for name in [options.only] if options.only else GROUPS:
+            for row in GROUPS[name](player):
+                table.writerow(row)
+                sys.stdout.flush()
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "luxel/base/check.h"
+#include "luxel/base/errands.h"
 #include "luxel/base/thread_priority.h"
 #include "luxel/pipeline/bake/bake.h"
 #include "luxel/pipeline/reuse/bake_cache.h"
@@ -159,8 +160,9 @@ class Worker : public LiveBake {
     progress->begin("draft", 0);
     auto read = read_scene(edited(as_read_->scene, now), *as_read_);
     if (!read) return has_failed(read.error().message);
-    if (const Status begun = run.begin(*read, kQuickDraft, ends_); !begun)
-      return has_failed(begun.error().message);
+    Status begun;  // somebody waits for it
+    errands_.run([&] { begun = run.begin(*read, kQuickDraft, ends_); });
+    if (!begun) return has_failed(begun.error().message);
     is_known_shown_ = is_known_shown_ || run.follows();
     has_draft();
     {
@@ -283,6 +285,7 @@ class Worker : public LiveBake {
   std::shared_ptr<const KnownLight> known_;
   bool is_known_shown_ = false;          ///< what is shown is laid out as it is
   std::optional<pipeline::Bake> baked_;  ///< of the scene as it is now
+  Errands errands_;                      ///< the priority of the window
   std::thread thread_;                   ///< the last: it uses all of the others
 };
 

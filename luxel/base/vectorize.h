@@ -25,7 +25,6 @@ inline namespace base {
 using Float8 = float __attribute__((vector_size(32)));
 using Float16 = float __attribute__((vector_size(64)));
 using Int8x8 = uint8_t __attribute__((vector_size(8)));
-using Int8x16 = uint8_t __attribute__((vector_size(16)));
 using Int16x8 = int16_t __attribute__((vector_size(16)));
 using Int16x16 = int16_t __attribute__((vector_size(32)));
 using Int32x8 = int32_t __attribute__((vector_size(32)));
@@ -49,12 +48,6 @@ using Int32x16 = int32_t __attribute__((vector_size(64)));
 // Sixteen, likewise.
 [[gnu::always_inline]] inline void load16(const float* from, Float16& to) {
   __builtin_memcpy(&to, from, sizeof to);
-}
-[[gnu::always_inline]] inline void load16(const uint8_t* from, Float16& to) {
-  Int8x16 v;
-  __builtin_memcpy(&v, from, sizeof v);
-  to = __builtin_convertvector(
-      __builtin_convertvector(__builtin_convertvector(v, Int16x16), Int32x16), Float16);
 }
 [[gnu::always_inline]] inline void load16(const int16_t* from, Float16& to) {
   Int16x16 v;

@@ -35,8 +35,8 @@ struct DrawParams {
   Spirv vertex;
   Spirv fragment;  ///< empty: depth alone is drawn
   Interface interface;
-  std::vector<uint32_t>
-      constants;                  ///< what constant_id 0, 1, ... are in both shaders, 32 bits each
+  /// What constant_id 0, 1, ... are in both shaders, 32 bits each.
+  std::vector<uint32_t> constants;
   std::vector<VkFormat> colors;   ///< of the pictures that are drawn into
   std::optional<VkFormat> depth;  ///< none: no depth
   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;

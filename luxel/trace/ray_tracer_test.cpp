@@ -421,7 +421,7 @@ Differences differences(const RayTracer& a, const RayTracer& b, const scene::Sce
   Differences out;
   for (size_t i = 0; i < rays.size(); ++i) {
     out.shares += length(share_a[i] - share_b[i]) > 1e-5f;
-    // Which rays pass a film is chance, by the bits of each.
+    // Chance decides which rays pass a film, by the bits of each.
     const float stops = min_component(share_a[i]);
     if (stops > 0 && stops < 1) continue;
     const Hit &p = hit_a[i], &q = hit_b[i];

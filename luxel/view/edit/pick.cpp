@@ -92,6 +92,12 @@ std::optional<scene::SurfacePoint> surface_seen_now(const EditDesk& desk, const 
   return hit.found() ? std::optional(hit.point()) : std::nullopt;
 }
 
+Box3 placed_bounds(const scene::Mesh& mesh, const Mat34& world_from_object) {
+  Box3 out;
+  for (const Vec3& p : mesh.positions) out.extend(transform_point(world_from_object, p));
+  return out;
+}
+
 Box3 object_bounds(const scene::Scene& scene, uint32_t instance) {
   Box3 out;
   const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh];

@@ -17,6 +17,8 @@ trace::Hit visible_now(const EditDesk& desk, const trace::Ray& ray);
 std::optional<scene::SurfacePoint> surface_seen_now(const EditDesk& desk, const Frame& frame,
                                                     Vec2 pixel, int width, int height);
 
+/// The box around a mesh that is placed so [m].
+Box3 placed_bounds(const scene::Mesh& mesh, const Mat34& world_from_object);
 /// The box around an instance's mesh before it is placed [m].
 Box3 object_bounds(const scene::Scene& scene, uint32_t instance);
 

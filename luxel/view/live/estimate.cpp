@@ -5,6 +5,7 @@
 
 #include "luxel/base/parallel.h"
 #include "luxel/light/direct_light.h"
+#include "luxel/view/edit/pick.h"
 #include "luxel/view/live/lamp_light.h"
 #include "luxel/view/live/spread_texels.h"
 
@@ -22,11 +23,8 @@ constexpr float kNoise = 0.03f, kEdit = 0.15f;
 constexpr float kGrows = 1.5f;
 
 Box3 box_of(const scene::Scene& scene, uint32_t instance) {
-  Box3 out;
   const scene::Instance& placed = scene.instances[instance];
-  for (const Vec3& p : scene.meshes[placed.mesh].positions)
-    out.extend(transform_point(placed.world_from_object, p));
-  return out;
+  return placed_bounds(scene.meshes[placed.mesh], placed.world_from_object);
 }
 
 bool shines(const scene::Scene& scene, const scene::Mesh& mesh) {

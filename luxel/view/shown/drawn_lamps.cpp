@@ -1,5 +1,7 @@
 #include "luxel/view/shown/drawn_lamps.h"
 
+#include "luxel/view/edit/pick.h"
+
 namespace luxel::view {
 
 std::vector<scene::PunctualLight> shining(const SceneNow& now) {
@@ -17,8 +19,9 @@ void widen_bounds(const SceneNow& now, const std::vector<Mat34>& before, ShownSc
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     const Mat34& to_world = now.world_from_object[i];
     if (i < before.size() && before[i] == to_world) continue;
-    for (const Vec3& p : scene.meshes[scene.instances[i].mesh].positions)
-      shown.device.bounds.extend(transform_point(to_world, p));
+    const Box3 box = placed_bounds(scene.meshes[scene.instances[i].mesh], to_world);
+    if (box.empty()) continue;
+    shown.device.bounds.extend(box.lower), shown.device.bounds.extend(box.upper);
   }
 }
 

@@ -39,7 +39,7 @@ float shrink(HierarchicalParams& tried, double max_error, double error, double b
 /// none, and 2 stands in the file.
 int sweeps_of(const CodecInput& t, const RelightParams& params) {
   if (params.bounces >= 0) return 2;
-  return enough_sweeps(t.prepared, t.coarse, t.trials, kPartOfSweeps * double(params.max_error));
+  return enough_sweeps(t.trials, kPartOfSweeps * double(params.max_error));
 }
 
 /// The coarsest hierarchy that keeps to params.max_error, as far as can be.

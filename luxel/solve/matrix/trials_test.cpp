@@ -61,7 +61,7 @@ TEST(MatrixTrials, ErrorOfProductsOnASphereIsAPowerOfItsReflectance) {
 // Clusters see what patches see on a sphere, so that two sweeps, the fewest, are exact.
 TEST(MatrixTrials, TwoSweepsAreEnoughForASphere) {
   const Sphere sphere;
-  EXPECT_EQ(enough_sweeps(sphere.prepared, sphere.coarse, sphere.trials, 1e-5), 2);
+  EXPECT_EQ(enough_sweeps(sphere.trials, 1e-5), 2);
 }
 
 // Half the factors, and one bounce: half the light.

@@ -84,8 +84,7 @@ double relative_square(std::span<const Rgb> got, std::span<const Rgb> wanted,
 /// What the light of a trial errs by, root mean square.
 double rms_error(const Trials& trials, size_t trial, std::span<const Rgb> got,
                  std::span<const float> area_m2) {
-  return std::sqrt(
-      relative_square(got, trials.irradiance[trial], trials.straight[trial], area_m2));
+  return std::sqrt(relative_square(got, trials.irradiance[trial], trials.straight[trial], area_m2));
 }
 
 /// Sweeps that leave nothing to be seen in single precision, ...
@@ -272,8 +271,8 @@ std::vector<double> errors_of_products(const Prepared& prepared, const Trials& t
       for (size_t i = 0; i < patches.size(); ++i)
         radiosity[i] = trials.sent[t][i] + rho[i] * irradiance[i];
       multiply(prepared.factors, radiosity, irradiance);
-      square += relative_square(irradiance, trials.irradiance[t], trials.straight[t],
-                                patches.area_m2);
+      square +=
+          relative_square(irradiance, trials.irradiance[t], trials.straight[t], patches.area_m2);
     }
   }
   for (double& square : squares) square = std::sqrt(square / double(trials.sent.size()));
@@ -286,8 +285,7 @@ std::vector<double> errors_of(const Codec& codec, const Trials& trials, const Pa
   std::vector<Rgb> irradiance(patches.size());
   std::vector<double> out;
   for (size_t t = 0; t < trials.size(); ++t) {
-    irradiance_of(codec,
-                  {trials.sent[t], patches.elements.reflectance, patches.area_m2, bounces},
+    irradiance_of(codec, {trials.sent[t], patches.elements.reflectance, patches.area_m2, bounces},
                   irradiance, scratch);
     out.push_back(rms_error(trials, t, irradiance, patches.area_m2));
   }

@@ -1,8 +1,10 @@
 #include "luxel/solve/matrix/patch_locator.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
+#include "luxel/base/random.h"
 #include "luxel/transport/covers.h"
 
 namespace luxel::matrix {
@@ -10,6 +12,8 @@ namespace {
 
 constexpr int kAxisBits = 21;
 constexpr uint64_t kAxisMask = (uint64_t(1) << kAxisBits) - 1;
+/// Slots of voxels that lie side by side along x share a line of the cache.
+constexpr size_t kSlotsPerLine = 4;
 /// How far above their surfaces two places look for each other, in voxels: over the unevenness of a
 /// surface, not over a wall.
 constexpr float kLift = 0.05f;
@@ -69,44 +73,54 @@ bool see_each_other(const trace::RayTracer& tracer, const PatchPoint& a, const P
 PatchLocator::PatchLocator(const VoxelGrid& grid, std::span<const uint64_t> voxel,
                            std::vector<Part> parts)
     : grid_(grid), parts_(std::move(parts)) {
+  size_t voxels = 0;
+  for (size_t k = 0; k < voxel.size(); ++k) voxels += k == 0 || voxel[k] != voxel[k - 1];
+  slots_.resize(std::bit_ceil(2 * voxels + kSlotsPerLine));
   for (uint32_t k = 0; k < voxel.size(); ++k) {
-    Range& range = range_of_voxel_.try_emplace(voxel[k], Range{k, 0}).first->second;
-    ++range.count;
+    Slot& slot = slots_[slot_of(voxel[k])];
+    if (slot.count == 0) slot = {voxel[k], k, 0};
+    ++slot.count;
   }
 }
 
-std::span<const PatchLocator::Part> PatchLocator::parts_in(uint64_t voxel) const {
-  const auto found = range_of_voxel_.find(voxel);
-  if (found == range_of_voxel_.end()) return {};
-  return std::span(parts_).subspan(found->second.first, found->second.count);
+size_t PatchLocator::slot_of(uint64_t voxel) const {
+  const size_t mask = slots_.size() - 1;
+  size_t at = (hash64(voxel / kSlotsPerLine) * kSlotsPerLine + voxel % kSlotsPerLine) & mask;
+  while (slots_[at].count > 0 && slots_[at].voxel != voxel) at = (at + 1) & mask;
+  return at;
 }
 
-const PatchLocator::Part* PatchLocator::part_at(Vec3 position, Vec3 normal, uint32_t material,
+std::span<const PatchLocator::Part> PatchLocator::parts_in(uint64_t voxel) const {
+  if (slots_.empty()) return {};
+  const Slot& slot = slots_[slot_of(voxel)];
+  return std::span(parts_).subspan(slot.first, slot.count);
+}
+
+const PatchLocator::Part* PatchLocator::part_at(const PatchPoint& at, uint32_t material,
+                                                std::span<const Part> parts,
                                                 const trace::RayTracer& tracer) const {
-  const uint64_t voxel = voxel_of(grid_, position);
   const auto fits = [&](const Part& part) {
-    return part.material == material && dot(part.seed.normal, normal) > kSameDirection &&
+    return part.material == material && dot(part.seed.normal, at.normal) > kSameDirection &&
            part.patch != kNone;
   };
   const Part* only = nullptr;
   int count = 0;
-  for (const Part& part : parts_in(voxel))
+  for (const Part& part : parts)
     if (fits(part)) only = &part, ++count;
   if (count == 1) return only;
   if (count > 1)
-    for (const Part& part : parts_in(voxel))
-      if (fits(part) && see_each_other(tracer, {position, normal}, part.seed, grid_.voxel_m))
-        return &part;
+    for (const Part& part : parts)
+      if (fits(part) && see_each_other(tracer, at, part.seed, grid_.voxel_m)) return &part;
   // No point of the voxel's own: the nearest of what is alike around, else of what faces the same
   // way at all.
   for (const bool strict : {true, false}) {
     const Part* nearest = nullptr;
     float least = INFINITY;
-    around(voxel, 1, [&](uint64_t at) {
-      for (const Part& part : parts_in(at)) {
-        const Vec3 d = part.seed.position - position;
+    around(voxel_of(grid_, at.position), 1, [&](uint64_t voxel) {
+      for (const Part& part : parts_in(voxel)) {
+        const Vec3 d = part.seed.position - at.position;
         const bool alike =
-            strict ? fits(part) : dot(part.seed.normal, normal) > 0 && part.patch != kNone;
+            strict ? fits(part) : dot(part.seed.normal, at.normal) > 0 && part.patch != kNone;
         if (alike && dot(d, d) < least) least = dot(d, d), nearest = &part;
       }
     });
@@ -116,20 +130,22 @@ const PatchLocator::Part* PatchLocator::part_at(Vec3 position, Vec3 normal, uint
 }
 
 /// Rays ask only where the place's voxel has covered parts of its kind.
-bool PatchLocator::is_covered_at(Vec3 position, Vec3 normal, uint32_t material,
+bool PatchLocator::is_covered_at(const PatchPoint& at, uint32_t material,
+                                 std::span<const Part> parts,
                                  const trace::RayTracer& tracer) const {
-  const std::span<const Part> parts = parts_in(voxel_of(grid_, position));
   const bool maybe = std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
     return part.covered && part.material == material &&
-           dot(part.seed.normal, normal) > kSameDirection;
+           dot(part.seed.normal, at.normal) > kSameDirection;
   });
-  return maybe && is_covered(tracer, {position, normal}, grid_);
+  return maybe && is_covered(tracer, at, grid_);
 }
 
 uint32_t PatchLocator::locate(Vec3 position, Vec3 normal, uint32_t material,
                               const trace::RayTracer& tracer) const {
-  if (is_covered_at(position, normal, material, tracer)) return kNone;
-  const Part* part = part_at(position, normal, material, tracer);
+  const PatchPoint at{position, normal};
+  const std::span<const Part> parts = parts_in(voxel_of(grid_, position));
+  if (is_covered_at(at, material, parts, tracer)) return kNone;
+  const Part* part = part_at(at, material, parts, tracer);
   return part ? part->patch : kNone;
 }
 

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "luxel/base/vec.h"
@@ -67,17 +66,21 @@ class PatchLocator {
   void near(Vec3 position, int reach, std::vector<uint32_t>& patches) const;
 
  private:
-  struct Range {
+  /// Where a voxel's parts lie; `count` 0: free.
+  struct Slot {
+    uint64_t voxel = 0;
     uint32_t first = 0, count = 0;
   };
-  bool is_covered_at(Vec3 position, Vec3 normal, uint32_t material,
-                     const trace::RayTracer& tracer) const;
+  /// The slot of a voxel, or the free one where it would be.
+  size_t slot_of(uint64_t voxel) const;
   std::span<const Part> parts_in(uint64_t voxel) const;
-  const Part* part_at(Vec3 position, Vec3 normal, uint32_t material,
+  bool is_covered_at(const PatchPoint& at, uint32_t material, std::span<const Part> parts,
+                     const trace::RayTracer& tracer) const;
+  const Part* part_at(const PatchPoint& at, uint32_t material, std::span<const Part> parts,
                       const trace::RayTracer& tracer) const;
 
   VoxelGrid grid_;
-  std::unordered_map<uint64_t, Range> range_of_voxel_;
+  std::vector<Slot> slots_;  ///< a power of two of them, more than half of them free
   std::vector<Part> parts_;  ///< voxel by voxel
 };
 

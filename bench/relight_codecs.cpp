@@ -69,9 +69,10 @@ Status make_by_error(const Room& room, std::vector<Made>& all, Progress& progres
     matrix::RelightParams params = room.params;
     params.codec = kind, params.max_error = max_error;
     const auto start = Clock::now();
-    LUXEL_TRY(matrix::Codec codec, matrix::make_codec(room.input(), params, progress));
+    LUXEL_TRY(matrix::MadeCodec codec, matrix::make_codec(room.input(), params, progress));
     const double make_s = seconds_since(start);
-    all.push_back(made_of(room, std::move(name), std::move(setting), std::move(codec), make_s));
+    all.push_back(
+        made_of(room, std::move(name), std::move(setting), std::move(codec.codec), make_s));
     return {};
   };
   for (const float max_error : {0.03f, 0.02f, 0.01f, 0.005f})
@@ -138,11 +139,11 @@ Result<CodecRun> run_bc1(size_t patches, Progress& progress) {
   matrix::RelightParams params = room.params;
   params.codec = matrix::CodecKind::bc1;
   const auto start = Clock::now();
-  LUXEL_TRY(matrix::Codec codec, matrix::make_codec(room.input(), params, progress));
+  LUXEL_TRY(matrix::MadeCodec codec, matrix::make_codec(room.input(), params, progress));
   const double make_s = seconds_since(start);
   const size_t n = room.patches().size();
   Made made = made_of(room, "bc1", fmt::format("of {} patches, scaled by the pairs", n),
-                      std::move(codec), make_s);
+                      std::move(codec.codec), make_s);
   matrix::CodecScratch scratch = matrix::make_scratch(made.codec, n);
   std::vector<Rgb> e(n);
   const std::vector<std::function<void()>> tasks{[&] {

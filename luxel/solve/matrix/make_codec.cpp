@@ -42,9 +42,15 @@ int sweeps_of(const CodecInput& t, const RelightParams& params) {
   return enough_sweeps(t.trials, kPartOfSweeps * double(params.max_error));
 }
 
+MadeCodec tried_codec(const CodecInput& t, const RelightParams& params, Codec codec) {
+  std::vector<double> errors =
+      errors_of(codec, t.trials, t.prepared.patched.patches, params.bounces);
+  return {std::move(codec), std::move(errors)};
+}
+
 /// The coarsest hierarchy that keeps to params.max_error, as far as can be.
-Result<Codec> hierarchical_codec(const CodecInput& t, const RelightParams& params,
-                                 Progress& progress) {
+Result<MadeCodec> hierarchical_codec(const CodecInput& t, const RelightParams& params,
+                                     Progress& progress) {
   const Patches& patches = t.prepared.patched.patches;
   const int sweeps = sweeps_of(t, params);
   HierarchicalParams tried;
@@ -52,26 +58,32 @@ Result<Codec> hierarchical_codec(const CodecInput& t, const RelightParams& param
   tried.block_error = kFirstBlockError * params.max_error;
   Compression compression(t.prepared.factors, t.prepared.patched.tree, patches.centroid,
                           patches.area_m2, tried.rays_per_patch);
+  std::vector<double> errors;
   double before = INFINITY;
   float factor = 1;
   for (int step = 0;; ++step) {
     LUXEL_TRY(Hierarchical matrix, compression.step(tried, progress));
     Codec codec = HierarchicalCodec{std::move(matrix), t.coarse, sweeps};
-    const double error = usual_error(t.trials, errors_of(codec, t.trials, patches, params.bounces));
-    if (error <= double(params.max_error) || step == kMaxSteps) return codec;
+    const bool all = step == 0 || step == kMaxSteps;
+    errors = all ? errors_of(codec, t.trials, patches, params.bounces)
+                 : errors_until(codec, t.trials, patches, params.bounces, errors,
+                                double(params.max_error));
+    const double error = usual_error(t.trials, errors);
+    if (error <= double(params.max_error) || step == kMaxSteps)
+      return MadeCodec{std::move(codec), std::move(errors)};
     factor = shrink(tried, double(params.max_error), error, before, factor);
     before = error;
   }
 }
 
-Result<Codec> bc1_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
+Result<MadeCodec> bc1_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
   const Patches& patches = t.prepared.patched.patches;
   const int bounces = params.bounces == 0 ? 1 : params.bounces;
   LUXEL_TRY(const ColourMatrix all,
             make_reflections(t.prepared.factors, patches.elements.reflectance, patches.area_m2,
                              bounces, progress));
   LUXEL_TRY(Bc1 matrix, make_bc1(all, {}, progress));
-  return Bc1Codec{std::move(matrix)};
+  return tried_codec(t, params, Bc1Codec{std::move(matrix)});
 }
 
 /// The most eigenvectors: the small matrices of so many take as long as the large ones.
@@ -80,7 +92,8 @@ constexpr uint32_t kMostRank = 768;
 constexpr size_t kFirstRank = 48;
 
 /// The fewest eigenvectors, up to a factor of two, that keep to params.max_error, as far as can be.
-Result<Codec> low_rank_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
+Result<MadeCodec> low_rank_codec(const CodecInput& t, const RelightParams& params,
+                                 Progress& progress) {
   const Patches& patches = t.prepared.patched.patches;
   SpectrumParams wanted;
   wanted.count = uint32_t(std::min<size_t>(kMostRank, patches.size()));
@@ -91,15 +104,15 @@ Result<Codec> low_rank_codec(const CodecInput& t, const RelightParams& params, P
     rank = std::min(rank, spectrum.count());
     LUXEL_TRY(LowRank matrix, make_low_rank(spectrum, rank, patches.area_m2,
                                             patches.elements.reflectance, progress));
-    Codec codec = LowRankCodec{std::move(matrix)};
-    const double error = usual_error(t.trials, errors_of(codec, t.trials, patches, params.bounces));
-    if (error <= double(params.max_error) || rank == spectrum.count()) return codec;
+    MadeCodec made = tried_codec(t, params, LowRankCodec{std::move(matrix)});
+    const double error = usual_error(t.trials, made.errors);
+    if (error <= double(params.max_error) || rank == spectrum.count()) return made;
   }
 }
 
 }  // namespace
 
-Result<Codec> make_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
+Result<MadeCodec> make_codec(const CodecInput& t, const RelightParams& params, Progress& progress) {
   const size_t patches = t.prepared.patched.patches.size();
   const CodecKind kind = params.codec;
   if (looks_at_all_pairs(kind) && patches > kMaxDensePatches)
@@ -112,7 +125,9 @@ Result<Codec> make_codec(const CodecInput& t, const RelightParams& params, Progr
   if (kind == CodecKind::lowrank) return low_rank_codec(t, params, progress);
   if (kind == CodecKind::bc1) return bc1_codec(t, params, progress);
   const Precision precision = kind == CodecKind::dense32 ? Precision::single : Precision::half;
-  return DenseCodec{make_dense(t.prepared.factors, precision), t.coarse, sweeps_of(t, params)};
+  return tried_codec(
+      t, params,
+      DenseCodec{make_dense(t.prepared.factors, precision), t.coarse, sweeps_of(t, params)});
 }
 
 }  // namespace luxel::matrix

@@ -61,10 +61,10 @@ Result<RelightData> make_relight_data(const scene::Scene& scene, const trace::Ra
             make_trials(scene, tracer, prepared, coarse,
                         {.bounces = params.bounces, .seed = params.patches.seed, .glow = &out.glow},
                         progress));
-  LUXEL_TRY(out.codec, make_codec({prepared, coarse, trials}, params, progress));
-  const std::vector<double> errors = errors_of(out.codec, trials, patches, params.bounces);
-  out.usual_codec_error = usual_error(trials, errors);
-  out.codec_error = largest_error(trials, errors);
+  LUXEL_TRY(MadeCodec made, make_codec({prepared, coarse, trials}, params, progress));
+  out.codec = std::move(made.codec);
+  out.usual_codec_error = usual_error(trials, made.errors);
+  out.codec_error = largest_error(trials, made.errors);
   LUXEL_TRY(target.transfer, make_transfer(prepared.patched, tracer,
                                            {target.position, target.geometric_normal}, progress));
   out.target = std::move(target);

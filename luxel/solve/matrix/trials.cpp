@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "luxel/base/check.h"
 #include "luxel/base/random.h"
 #include "luxel/base/warp.h"
 #include "luxel/solve/matrix/codec.h"
@@ -279,15 +281,62 @@ std::vector<double> errors_of_products(const Prepared& prepared, const Trials& t
   return squares;
 }
 
+namespace {
+
+/// A codec on trial.
+class Tried {
+ public:
+  Tried(const Codec& codec, const Trials& trials, const Patches& patches, int bounces)
+      : codec_(codec),
+        trials_(trials),
+        patches_(patches),
+        bounces_(bounces),
+        scratch_(make_scratch(codec, patches.size())),
+        irradiance_(patches.size()) {}
+
+  double error_of(size_t trial) {
+    irradiance_of(codec_,
+                  {trials_.sent[trial], patches_.elements.reflectance, patches_.area_m2, bounces_},
+                  irradiance_, scratch_);
+    return rms_error(trials_, trial, irradiance_, patches_.area_m2);
+  }
+
+ private:
+  const Codec& codec_;
+  const Trials& trials_;
+  const Patches& patches_;
+  int bounces_ = -1;
+  CodecScratch scratch_;
+  std::vector<Rgb> irradiance_;
+};
+
+}  // namespace
+
 std::vector<double> errors_of(const Codec& codec, const Trials& trials, const Patches& patches,
                               int bounces) {
-  CodecScratch scratch = make_scratch(codec, patches.size());
-  std::vector<Rgb> irradiance(patches.size());
+  Tried tried(codec, trials, patches, bounces);
   std::vector<double> out;
-  for (size_t t = 0; t < trials.size(); ++t) {
-    irradiance_of(codec, {trials.sent[t], patches.elements.reflectance, patches.area_m2, bounces},
-                  irradiance, scratch);
-    out.push_back(rms_error(trials, t, irradiance, patches.area_m2));
+  for (size_t t = 0; t < trials.size(); ++t) out.push_back(tried.error_of(t));
+  return out;
+}
+
+std::vector<double> errors_until(const Codec& codec, const Trials& trials, const Patches& patches,
+                                 int bounces, std::span<const double> before, double most) {
+  LUXEL_CHECK(before.size() == trials.size());
+  std::vector<size_t> order(trials.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return before[a] > before[b]; });
+  Tried tried(codec, trials, patches, bounces);
+  std::vector<double> out(trials.size(), 0.0);
+  double was2 = 0, is2 = 0;
+  for (auto at = order.begin(); at != order.end(); ++at) {
+    out[*at] = tried.error_of(*at);
+    was2 += before[*at] * before[*at], is2 += out[*at] * out[*at];
+    if (usual_error(trials, out) <= most) continue;
+    for (++at; at != order.end(); ++at)
+      out[*at] = before[*at] * std::sqrt(is2 / std::max(was2, 1e-300));
+    break;
   }
   return out;
 }

@@ -66,6 +66,12 @@ std::vector<double> errors_of_products(const Prepared& prepared, const Trials& t
 std::vector<double> errors_of(const Codec& codec, const Trials& trials, const Patches& patches,
                               int bounces);
 
+/// errors_of(), but trials that erred by more `before` come first, and as soon as those that were
+/// tried are sure to make usual_error() exceed `most`, the others are not tried: they are taken to
+/// have changed as these did.
+std::vector<double> errors_until(const Codec& codec, const Trials& trials, const Patches& patches,
+                                 int bounces, std::span<const double> before, double most);
+
 /// What codecs are held to, of errors_of(): root mean square over the point lights in the open, or
 /// the most of the other lights, but for point lights anywhere.
 double usual_error(const Trials& trials, std::span<const double> errors);

@@ -92,5 +92,27 @@ TEST(MatrixTrials, CodecThatHalvesLightErrsByHalf) {
   for (const double e : errors_of(halved, *trials, patches, 1)) EXPECT_NEAR(e, 0.5, 1e-5);
 }
 
+// The first bounce alone, of a light that is to have no more than that: each errs by 0.5. Three
+// errors of which one is known are 0.5 / sqrt 3 = 0.29 or more, two known ones 0.41.
+TEST(MatrixTrials, LightsThatTellEnoughSpareTheOthers) {
+  const Sphere sphere;
+  const Patches& patches = sphere.prepared.patched.patches;
+  Trials trials = sphere.trials;
+  FormFactors half = sphere.prepared.factors;
+  for (float& f : half.factor) f *= 0.5f;
+  const Codec halved = DenseCodec{make_dense(half, Precision::single), {}, 2};
+  for (size_t t = 0; t < 3; ++t)
+    multiply(sphere.prepared.factors, trials.sent[t], trials.irradiance[t]);
+  const std::vector<double> before{0.1, 0.4, 0.2};
+  const auto check = [&](double most, const std::vector<double>& want) {
+    const std::vector<double> got = errors_until(halved, trials, patches, 1, before, most);
+    ASSERT_EQ(got.size(), 3u);
+    for (size_t t = 0; t < 3; ++t) EXPECT_NEAR(got[t], want[t], 1e-5) << most << " " << t;
+  };
+  check(0.28, {0.125, 0.5, 0.25});                      // the second light is 5/4 of what it was
+  check(0.40, {0.1 * std::sqrt(0.5 / 0.2), 0.5, 0.5});  // the two are sqrt(0.5 / 0.2) of that
+  check(0.42, {0.5, 0.5, 0.5});
+}
+
 }  // namespace
 }  // namespace luxel::matrix

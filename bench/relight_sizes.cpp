@@ -46,7 +46,7 @@ Result<SizeRun> run_size(const scene::Scene& scene, const trace::RayTracer& trac
   LUXEL_TRY(const matrix::Trials trials,
             make_trials(scene, tracer, prepared, coarse, {.in_the_open = kTrials, .anywhere = 0},
                         progress));
-  run.sweeps = enough_sweeps(prepared, coarse, trials, kErrorOfSweeps);
+  run.sweeps = enough_sweeps(trials, kErrorOfSweeps);
   const matrix::Codec codec =
       matrix::HierarchicalCodec{std::move(hierarchy), std::move(coarse), run.sweeps};
   run.bytes = bytes_of(codec),

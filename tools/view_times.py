@@ -7,7 +7,7 @@
 Each row is a play in a window of 640 x 480 on a virtual display (xvfb-run): a bake of scenes/office.glb seen in each
 way, solvers that are looked into when they have come to rest, a scene that is baked meanwhile, an object that
 is moved, until its first light is seen, an object and a lamp that are dragged, and for the lamp also what the update of
-its light alone takes. Without ../shared the living room is left out.
+its light alone takes. Without ../shared the living room and the city are left out.
 Columns: what, frames, the median and the 95th percentile of their times [ms], the share under 150 ms [%], and the
 largest change of brightness from one frame to the next [%], of plays in which the camera stands still.
 """
@@ -25,7 +25,8 @@ UPDATE = ("direct_ms", "bounces_ms", "places_ms")
 KINDS = ("both", "light", "colour", "irradiance", "checker", "density", "charts", "seams", "overlaps")
 INSIDE = {"hierarchical": ("flat", "gouraud", "gouraud-disc", "interpolant"),
           "hemicube": ("c", "cad", "cads", "cads-pixel", "normals", "radiosity-vertex", "radiosity")}
-ROOM = pathlib.Path(__file__).parents[2] / "shared/scenes/living_room/living_room.glb"
+SCENES = pathlib.Path(__file__).parents[2] / "shared/scenes"
+ROOM, CITY = SCENES / "living_room/living_room.glb", SCENES / "kaykit_city/kaykit_city.glb"
 
 
 def turning(seconds, frames_per_s, kinds, first=()):
@@ -73,12 +74,11 @@ def dragging_block(seconds, frames_per_s):
     return {"frames_per_s": frames_per_s, "end": seconds, "events": events}
 
 
-def moving_block(times):
-    """The tall block of the Cornell box stands elsewhere, again and again, each time once the bake has ended."""
+def moving(times, name, places):
+    """An object stands elsewhere, again and again, each time once the bake has ended; the hand rests meanwhile."""
     events = [{"at": 0, "wait": "bake"}]
     for k in range(times):
-        events += [{"at": 2 * k + 1, "instance": "tall block", "to": [0.25 + 0.1 * (k % 2), 0.165, 0.35]},
-                   {"at": 2 * k + 2, "wait": "bake"}]
+        events += [{"at": 2 * k + 1, "instance": name, "to": places[k % 2]}, {"at": 2 * k + 1, "wait": "bake"}]
     return {"frames_per_s": 20, "end": 2 * times, "events": events}
 
 
@@ -155,9 +155,14 @@ def live(p):
 
 
 def edited(p):
-    quick = ("--resolution", "256", "--samples", "64")
-    lights = [{"milliseconds": 1000 * light} for light in first_lights(p.all_frames(moving_block(10), p.box, *quick))]
-    yield row_of("cornell-box.glb: an object is moved (first light)", lights, False)
+    block, building = ([0.25, 0.165, 0.35], [0.35, 0.165, 0.35]), ([-0.8, 0.9, -2], [-2, 0.9, -2])
+    moved = [(p.box, ["--resolution", "256"], 10, "tall block", block), (p.box, [], 10, "tall block", block)]
+    moved += [(CITY, ["--resolution", "512"], 5, "building_D_34", building)] if CITY.exists() else []
+    for scene, resolution, times, name, places in moved:
+        frames = p.all_frames(moving(times, name, places), scene, *resolution, "--samples", "16")
+        lights = [{"milliseconds": 1000 * light} for light in first_lights(frames)]
+        what = " ".join([scene.name, *resolution])
+        yield row_of(f"{what}: an object is moved (first light)", lights, False)
     yield row_of("cornell-box.glb: an object is dragged", p.played(dragging_block(10, 20), p.box), False)
 
 

@@ -214,6 +214,7 @@ bool play_on(Session& s) {
   const view::Step step = view::step(
       play, is_at_work(*s.subject) || is_opening(s),
       [&](const view::Event& event) { take(event, s); }, s.played);
+  s.play_waits = step == view::Step::waits;
   if (step == view::Step::next) view::pass(1 / play.frames_per_s, *s.walk);
   return step != view::Step::ends;
 }
@@ -247,12 +248,19 @@ Status draw_frame(Session& s) {
   return write_screenshot(shown.device, frame, s.screen, s.panel.message);
 }
 
+/// How long a window sleeps in which nothing moves [s]. What the background brings is seen then.
+constexpr double kSleep_s = 0.1, kSleepAtWork_s = 0.01;
+
 /// One frame of the window. False when a play has come to its end.
 Result<bool> go_on(Session& s) {
-  // A window in which nothing moves is not drawn.
-  const bool moves = s.params.play || (s.walk && (!s.walk->keys.empty() || s.walk->turns)) ||
+  // A window in which nothing moves is not drawn: the processor is left to the background.
+  const bool moves = (s.params.play && !s.play_waits) ||
+                     (s.walk && (!s.walk->keys.empty() || s.walk->turns)) ||
                      !view::is_settled(s.subject->shown());
-  moves ? glfwPollEvents() : glfwWaitEventsTimeout(0.1);
+  if (moves)
+    glfwPollEvents();
+  else
+    glfwWaitEventsTimeout(is_at_work(*s.subject) ? kSleepAtWork_s : kSleep_s);
   const bool fitted = s.fits;
   LUXEL_TRY(const bool has_another, follow_files(s));
   LUXEL_TRY(const bool has_news, follow(s));
@@ -261,7 +269,7 @@ Result<bool> go_on(Session& s) {
   if (!fits) return true;
   const bool changes = moves || !fitted || has_news || has_another || s.window.has_changed();
   s.still_frames = changes ? 0 : s.still_frames + 1;
-  if (s.still_frames > kFramesToSettle) return true;
+  if (s.still_frames > kFramesToSettle) return !s.params.play || play_on(s);
   if (!s.params.play && s.walk) {
     take_events(s.window, *s.screen.ui, [&](const view::Event& event) { take(event, s); });
     view::pass(std::min(passed, 0.1), *s.walk);

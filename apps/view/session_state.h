@@ -44,6 +44,7 @@ struct Session {
   bool fits = false;         ///< what is drawn with is of the window's size
   bool shows_scene = false;  ///< and of the scene
   view::Played played = {};
+  bool play_waits = false;  ///< for the background
   FrameTable table = {};
   Clock::time_point last = Clock::now(), last_report = Clock::now();
 

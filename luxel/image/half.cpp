@@ -14,11 +14,23 @@ namespace {
 constexpr int kTopExponent = 15;  ///< scaled colours lie below 2^15
 constexpr size_t kGrain = 1 << 16;
 
+/// The largest number of an image that is no alpha. All must be finite.
+float largest_of(const Image& image) {
+  std::vector<float> of_part((image.data.size() + kGrain - 1) / kGrain);
+  parallel_for(image.data.size(), kGrain, [&](size_t begin, size_t end) {
+    float largest = 0;
+    for (size_t i = begin; i < end; ++i) {
+      LUXEL_CHECK(std::isfinite(image.data[i]));
+      if (image.channels < 4 || i % size_t(image.channels) < 3)
+        largest = std::max(largest, std::abs(image.data[i]));
+    }
+    of_part[begin / kGrain] = largest;
+  });
+  return of_part.empty() ? 0 : *std::ranges::max_element(of_part);
+}
+
 float scale_of(const Image& image) {
-  float largest = 0;
-  for (size_t i = 0; i < image.data.size(); ++i)
-    if (image.channels < 4 || i % size_t(image.channels) < 3)
-      largest = std::max(largest, std::abs(image.data[i]));
+  const float largest = largest_of(image);
   if (!(largest > 0)) return 1;
   int exponent = 0;  // largest = m 2^exponent with m in [1/2, 1)
   (void)std::frexp(largest, &exponent);
@@ -29,7 +41,6 @@ float scale_of(const Image& image) {
 
 HalfImage to_half(const Image& image) {
   LUXEL_CHECK(image.channels >= 1);
-  for (const float v : image.data) LUXEL_CHECK(std::isfinite(v));
   HalfImage out{image.width, image.height, image.channels, scale_of(image), {}};
   out.data.resize(image.data.size());
   const size_t channels = size_t(image.channels);

@@ -4,6 +4,7 @@
 
 #include "luxel/atlas/pages.h"
 #include "luxel/base/check.h"
+#include "luxel/base/parallel.h"
 
 namespace luxel::post {
 namespace {
@@ -22,12 +23,17 @@ void for_neighbours(const image::Image& lightmap, Pixel p, const Visit& visit) {
       if (x != p.x || y != p.y) visit(Pixel{x, y});
 }
 
-std::vector<Pixel> covered_pixels(const image::Image& lightmap) {
-  std::vector<Pixel> places;
+/// The empty texels that touch a covered one.
+std::vector<Pixel> first_ring(const image::Image& lightmap) {
+  std::vector<Pixel> ring;
   for (int y = 0; y < lightmap.height; ++y)
-    for (int x = 0; x < lightmap.width; ++x)
-      if (covered(lightmap, {x, y})) places.push_back({x, y});
-  return places;
+    for (int x = 0; x < lightmap.width; ++x) {
+      if (covered(lightmap, {x, y})) continue;
+      bool touches = false;
+      for_neighbours(lightmap, {x, y}, [&](Pixel p) { touches = touches || covered(lightmap, p); });
+      if (touches) ring.push_back({x, y});
+    }
+  return ring;
 }
 
 /// The empty texels that touch `places`, each once.
@@ -74,13 +80,15 @@ std::vector<image::Image> lightmap_pages(const atlas::Atlas& atlas, const atlas:
   const std::vector<atlas::Page> pages = atlas::pages_of(atlas);
   std::vector<image::Image> lightmaps;
   for (const atlas::Page& page : pages) lightmaps.emplace_back(page.side, page.side, 4);
-  for (size_t i = 0; i < values.size(); ++i) {
-    const atlas::Texel& texel = map.texels[i];
-    const uint32_t p = atlas::page_of(atlas, texel.triangle_number);
-    const int x = int(texel.x) - pages[p].x, y = int(texel.y) - pages[p].y;
-    lightmaps[p].set_rgb(x, y, values[i]);
-    lightmaps[p].at(x, y)[3] = texel.centre_covered ? 1.0f : 0.5f;
-  }
+  parallel_for(values.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const atlas::Texel& texel = map.texels[i];
+      const uint32_t p = atlas::page_of(atlas, texel.triangle_number);
+      const int x = int(texel.x) - pages[p].x, y = int(texel.y) - pages[p].y;
+      lightmaps[p].set_rgb(x, y, values[i]);
+      lightmaps[p].at(x, y)[3] = texel.centre_covered ? 1.0f : 0.5f;
+    }
+  });
   return lightmaps;
 }
 
@@ -88,9 +96,10 @@ void dilate(image::Image& lightmap, int rings) {
   LUXEL_CHECK(lightmap.channels == 4);
   if (rings < 0) rings = std::numeric_limits<int>::max();
   std::vector<bool> listed(size_t(lightmap.width) * size_t(lightmap.height));
-  std::vector<Pixel> front = covered_pixels(lightmap);
-  for (int ring = 0; ring < rings && !front.empty(); ++ring) {
-    front = ring_around(lightmap, front, listed);
+  std::vector<Pixel> front;
+  for (int ring = 0; ring < rings; ++ring) {
+    front = ring == 0 ? first_ring(lightmap) : ring_around(lightmap, front, listed);
+    if (front.empty()) break;
     // All values of a ring come from the rings before it: first compute, then write.
     std::vector<Rgb> values;
     values.reserve(front.size());

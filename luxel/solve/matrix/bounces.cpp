@@ -206,25 +206,38 @@ void late_bounces(const CoarseScene& coarse, const Sent& sent, std::span<const R
 
 }  // namespace
 
+void begin_sweeps(std::span<Rgb> irradiance, BounceScratch& scratch) {
+  std::copy(scratch.first.begin(), scratch.first.end(), irradiance.begin());
+  // `gathered` is what came in anew: first all, then what the sweep before did not foresee.
+  std::copy(scratch.first.begin(), scratch.first.end(), scratch.gathered.begin());
+}
+
+void foresee(const CoarseScene& coarse, const Sent& sent, std::span<Rgb> irradiance,
+             BounceScratch& scratch) {
+  late_bounces(coarse, sent, scratch.gathered, scratch);
+  for (size_t i = 0; i < irradiance.size(); ++i) {
+    irradiance[i] += scratch.late[coarse.cluster_of[i]];
+    scratch.radiosity[i] = sent.reflectance[i] * irradiance[i];
+  }
+}
+
+void end_sweep(std::span<Rgb> irradiance, BounceScratch& scratch) {
+  for (size_t i = 0; i < irradiance.size(); ++i) {
+    const Rgb now = scratch.first[i] + scratch.gathered[i];
+    scratch.gathered[i] = now - irradiance[i];
+    irradiance[i] = now;
+  }
+}
+
 void all_bounces(const Multiply& multiply, const CoarseScene& coarse, const Sent& sent, int sweeps,
                  std::span<Rgb> irradiance, BounceScratch& scratch) {
   LUXEL_CHECK(sweeps >= 1);
   multiply(sent.radiosity, scratch.first);
-  std::copy(scratch.first.begin(), scratch.first.end(), irradiance.begin());
-  // `gathered` is what came in anew: first all, then what the sweep before did not foresee.
-  std::copy(scratch.first.begin(), scratch.first.end(), scratch.gathered.begin());
+  begin_sweeps(irradiance, scratch);
   for (int k = 1; k < sweeps; ++k) {
-    late_bounces(coarse, sent, scratch.gathered, scratch);
-    for (size_t i = 0; i < irradiance.size(); ++i) {
-      irradiance[i] += scratch.late[coarse.cluster_of[i]];
-      scratch.radiosity[i] = sent.reflectance[i] * irradiance[i];
-    }
+    foresee(coarse, sent, irradiance, scratch);
     multiply(scratch.radiosity, scratch.gathered);
-    for (size_t i = 0; i < irradiance.size(); ++i) {
-      const Rgb now = scratch.first[i] + scratch.gathered[i];
-      scratch.gathered[i] = now - irradiance[i];
-      irradiance[i] = now;
-    }
+    end_sweep(irradiance, scratch);
   }
 }
 

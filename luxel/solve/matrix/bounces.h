@@ -61,4 +61,13 @@ void count_bounces(const Multiply& multiply, const Sent& sent, std::span<Rgb> ir
 void all_bounces(const Multiply& multiply, const CoarseScene& coarse, const Sent& sent, int sweeps,
                  std::span<Rgb> irradiance, BounceScratch& scratch);
 
+/// Steps of all_bounces, between which the caller multiplies; none allocates.
+/// After the product of `sent.radiosity`, which is scratch.first.
+void begin_sweeps(std::span<Rgb> irradiance, BounceScratch& scratch);
+/// Before each further product, of scratch.radiosity.
+void foresee(const CoarseScene& coarse, const Sent& sent, std::span<Rgb> irradiance,
+             BounceScratch& scratch);
+/// After it; its result is scratch.gathered.
+void end_sweep(std::span<Rgb> irradiance, BounceScratch& scratch);
+
 }  // namespace luxel::matrix

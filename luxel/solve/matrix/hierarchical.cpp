@@ -2,133 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
-#include "luxel/solve/matrix/cluster_functions.h"
+#include "luxel/solve/matrix/found_blocks.h"
 
 namespace luxel::matrix {
 namespace {
-
-using Coupling = std::array<Values, kFunctions>;
 
 /// Clusters whose centres are nearer than this part of their radii's sum touch or overlap: what
 /// they exchange is not smooth, even where it seems so.
 constexpr float kTouching = 0.75f;
 
-/// What compression reads.
-struct Source {
-  const FormFactors& factors;
-  std::span<const Cluster> clusters;
-  std::span<const float> area_m2;
-  ClusterFunctions functions;
-  std::vector<double> cluster_m2;  ///< per cluster
-  double leaf_m2 = 0;              ///< of a mean leaf
-  HierarchicalParams params;
-};
-
-Source make_source(const FormFactors& factors, std::span<const Cluster> clusters,
-                   std::span<const Vec3> position, std::span<const float> area_m2,
-                   const HierarchicalParams& params) {
-  Source s{factors, clusters, area_m2, make_functions(clusters, position, area_m2), {}, 0, params};
-  uint32_t leaves = 0;
-  for (const Cluster& c : clusters) {
-    leaves += c.is_leaf();
-    double area = 0;
-    for (uint32_t i = c.first; i < c.end; ++i) area += double(area_m2[i]);
-    s.cluster_m2.push_back(area);
-  }
-  s.leaf_m2 = s.cluster_m2.front() / leaves;
-  return s;
-}
-
-/// A block of the matrix: receivers x senders.
-struct Block {
-  uint32_t receiver = 0, sender = 0;
-};
-
-/// The two parts that a cluster is looked at as: its halves, or itself.
-struct Parts {
-  std::array<uint32_t, 2> cluster{};
-  uint32_t count = 1;
-  uint32_t middle = 0;  ///< first patch of the second one
-};
-
-Parts parts_of(const Source& s, uint32_t cluster, bool halves) {
-  const Cluster& c = s.clusters[cluster];
-  if (!halves) return {{cluster, cluster}, 1, c.end};
-  return {{c.child, c.child + 1}, 2, s.clusters[c.child].end};
-}
-
-/// What a block couples, part by part.
-struct Coupled {
-  std::array<std::array<Coupling, 2>, 2> part{};
-  std::array<std::array<uint32_t, 2>, 2> entries{};
-  double noise = 0;  ///< expected square of noise in all coefficients
-  uint64_t total() const {
-    return uint64_t(entries[0][0]) + entries[0][1] + entries[1][0] + entries[1][1];
-  }
-};
-
-/// Calls visit(i, j, S_ij) for all entries of a block.
-template <class Visit>
-void for_entries(const Source& s, const Block& block, const Visit& visit) {
-  const Cluster& r = s.clusters[block.receiver];
-  const Cluster& c = s.clusters[block.sender];
-  for (uint32_t i = r.first; i < r.end; ++i) {
-    const auto columns = s.factors.columns_of(i);
-    const auto values = s.factors.factors_of(i);
-    auto k = size_t(std::lower_bound(columns.begin(), columns.end(), c.first) - columns.begin());
-    for (; k < columns.size() && columns[k] < c.end; ++k)
-      visit(i, columns[k], values[k] * s.area_m2[i]);
-  }
-}
-
-float square_sum(const Values& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
-
-/// Variance of S_ij / sqrt(A_i A_j): both traced counts have that of a Poisson process, and the
-/// mean of A_i F_ij and A_j F_ji a quarter of the sum.
-double variance_of(const Source& s, uint32_t i, uint32_t j, float exchange) {
-  const double a = double(s.area_m2[i]), b = double(s.area_m2[j]);
-  return double(exchange) * (a + b) / (4 * a * b * s.params.rays_per_patch);
-}
-
-Coupled couple(const Source& s, const Block& block, const Parts& rows, const Parts& columns) {
-  Coupled out;
-  const std::vector<Values>& row_phi = s.functions.phi[s.clusters[rows.cluster[0]].depth];
-  const std::vector<Values>& column_phi = s.functions.phi[s.clusters[columns.cluster[0]].depth];
-  for_entries(s, block, [&](uint32_t i, uint32_t j, float exchange) {
-    const size_t r = i >= rows.middle, c = j >= columns.middle;
-    const Values& f = row_phi[i];
-    const Values& g = column_phi[j];
-    Coupling& sum = out.part[r][c];
-    for (size_t a = 0; a < kFunctions; ++a)
-      for (size_t b = 0; b < kFunctions; ++b) sum[a][b] += f[a] * exchange * g[b];
-    ++out.entries[r][c];
-    out.noise += variance_of(s, i, j, exchange) * double(square_sum(f) * s.area_m2[i]) *
-                 double(square_sum(g) * s.area_m2[j]);
-  });
-  return out;
-}
-
-double square_sum(const Coupling& c) {
-  double sum = 0;
-  for (const Values& row : c)
-    for (const float v : row) sum += double(v) * double(v);
-  return sum;
-}
-
-/// What a task found, in the order of the recursion.
-struct Found {
-  struct Far {
-    Block block;
-    Coupling coupling;
-  };
-  std::vector<Far> far;
-  std::vector<Block> near;
-};
-
-bool touching(const Source& s, const Block& block) {
+bool touching(const CouplingSource& s, const Block& block) {
   const Ball& a = s.functions.ball[block.receiver];
   const Ball& b = s.functions.ball[block.sender];
   return length(a.centre - b.centre) < kTouching * (a.radius_m + b.radius_m);
@@ -136,21 +23,15 @@ bool touching(const Source& s, const Block& block) {
 
 /// How much energy a block may lose. Light of 1 on all of a cluster has the energy of its area, so
 /// what a block of large clusters loses counts for more.
-double limit_of(const Source& s, const Block& block) {
+double limit_of(const CouplingSource& s, const Block& block, double block_error) {
   const double area = 0.5 * (s.cluster_m2[block.receiver] + s.cluster_m2[block.sender]);
-  return double(s.params.block_error) * double(s.params.block_error) * s.leaf_m2 / area;
+  return block_error * block_error * s.leaf_m2 / area;
 }
 
-/// Whether the functions of two leaves see all but little of the entries between them, or all but
-/// their noise.
-bool leaves_are_smooth(const Source& s, const Block& block, const Coupling& coupling) {
-  double energy = 0, noise = 0;
-  for_entries(s, block, [&](uint32_t i, uint32_t j, float exchange) {
-    const double area2 = double(s.area_m2[i]) * double(s.area_m2[j]);
-    energy += double(exchange) * double(exchange) / area2;
-    noise += variance_of(s, i, j, exchange);
-  });
-  return energy - square_sum(coupling) <= limit_of(s, block) + double(s.params.noise) * noise;
+/// Whether a block loses little, or noise.
+bool is_smooth(const CouplingSource& s, const HierarchicalParams& params, const FarBlock& far) {
+  return far.lost <=
+         limit_of(s, far.block, double(params.block_error)) + double(params.noise) * far.noise;
 }
 
 /// Two clusters whose radii are in a ratio above this are about as large. Halves of a surface have
@@ -162,7 +43,7 @@ constexpr float kAboutAsLarge = 0.6f;
 struct Halving {
   bool rows = false, columns = false;
 };
-Halving halving_of(const Source& s, const Block& block) {
+Halving halving_of(const CouplingSource& s, const Block& block) {
   const Cluster& r = s.clusters[block.receiver];
   const Cluster& c = s.clusters[block.sender];
   const float row_m = s.functions.ball[block.receiver].radius_m,
@@ -177,45 +58,136 @@ Halving halving_of(const Source& s, const Block& block) {
 /// is.
 constexpr double kLeastHalf = 1.0 / 16;
 
-bool has_two_halves(const Source& s, const Parts& parts, uint32_t cluster) {
+bool has_two_halves(const CouplingSource& s, const Parts& parts, uint32_t cluster) {
   if (parts.count == 1) return true;
   const auto [a, b] = parts.cluster;
   return std::min(s.cluster_m2[a], s.cluster_m2[b]) >= kLeastHalf * s.cluster_m2[cluster];
 }
 
-/// Whether a block passes through its own functions: what its parts' functions see more is little,
-/// or noise.
-bool is_smooth(const Source& s, const Block& block, const Coupling& coupling,
-               const Coupled& parts) {
-  if (touching(s, block)) return false;
+/// A walk down the blocks of a task.
+struct Walk {
+  const CouplingSource& source;
+  const HierarchicalParams& params;
+  FoundBlocks& out;
+  /// Entries of the rows of the block that is looked at, above those of the blocks that it is a
+  /// part of.
+  std::vector<RowRange> ranges;
+};
+
+/// The ranges of a block, which begin at `at`.
+std::span<RowRange> ranges_of(Walk& w, const Block& block, size_t at) {
+  return std::span(w.ranges).subspan(at, w.source.clusters[block.receiver].size());
+}
+
+/// Entries of a leaf pair in 8 bits. What rounding takes from one sender's the next gets, so that
+/// the sum over a row is kept.
+void append_near(Walk& w, const Block& block, size_t at) {
+  const uint32_t senders = w.source.clusters[block.sender].size();
+  std::array<float, size_t(kLeafSize) * kLeafSize> room;
+  const std::span<float> value(room.data(), size_t(kLeafSize) * senders);
+  near_entries(w.source, block, ranges_of(w, block, at), value);
+  const float scale = *std::max_element(value.begin(), value.end()) / 255;
+  w.out.near.push_back({block, scale, w.out.entries.size()});
+  std::array<float, kLeafSize> carried{};
+  for (size_t j = 0; j < senders; ++j)
+    for (size_t i = 0; i < kLeafSize; ++i) {
+      const float wanted = value[j * kLeafSize + i] / std::max(scale, 1e-30f) + carried[i];
+      const float kept = std::clamp(std::round(wanted), 0.0f, 255.0f);
+      carried[i] = wanted - kept;
+      w.out.entries.push_back(uint8_t(kept));
+    }
+}
+
+/// A pair of leaves, whose functions may see all but little of the entries between them.
+void visit_leaves(Walk& w, const Block& block, const Coupling& coupling, size_t at) {
+  if (!touching(w.source, block)) {
+    const Energy all = energy_of(w.source, block, ranges_of(w, block, at));
+    const FarBlock far{block, coupling, all.entries - square_sum(coupling), all.noise};
+    if (is_smooth(w.source, w.params, far)) return w.out.far.push_back(far);
+  }
+  append_near(w, block, at);
+}
+
+/// The energy that the parts of a block see.
+double energy_of(const Coupled& parts) {
   double energy = 0;
   for (const auto& row : parts.part)
     for (const Coupling& part : row) energy += square_sum(part);
-  return energy - square_sum(coupling) <= limit_of(s, block) + double(s.params.noise) * parts.noise;
+  return energy;
 }
 
-void visit(const Source& s, const Block& block, const Coupling& coupling, Found& out) {
+void visit_parts(Walk& w, const Block& block, const Coupled& coupled, const Parts& rows,
+                 const Parts& columns, size_t at);
+
+/// A block whose rows' entries are the ranges from `at` on: far as it is, or its parts.
+void visit(Walk& w, const Block& block, const Coupling& coupling, size_t at) {
+  const CouplingSource& s = w.source;
   const Halving halving = halving_of(s, block);
-  if (!halving.rows && !halving.columns) {
-    if (!touching(s, block) && leaves_are_smooth(s, block, coupling))
-      out.far.push_back({block, coupling});
-    else
-      out.near.push_back(block);
-    return;
-  }
+  if (!halving.rows && !halving.columns) return visit_leaves(w, block, coupling, at);
   const Parts rows = parts_of(s, block.receiver, halving.rows);
   const Parts columns = parts_of(s, block.sender, halving.columns);
-  const Coupled coupled = couple(s, block, rows, columns);
-  const bool telling =
-      has_two_halves(s, rows, block.receiver) && has_two_halves(s, columns, block.sender);
-  if (telling && is_smooth(s, block, coupling, coupled)) {
-    out.far.push_back({block, coupling});
+  const Coupled coupled = couple(s, block, rows, columns, ranges_of(w, block, at));
+  const bool telling = has_two_halves(s, rows, block.receiver) &&
+                       has_two_halves(s, columns, block.sender) && !touching(s, block);
+  const FarBlock far{block, coupling, energy_of(coupled) - square_sum(coupling), coupled.noise};
+  if (telling && is_smooth(s, w.params, far)) return w.out.far.push_back(far);
+  visit_parts(w, block, coupled, rows, columns, at);
+}
+
+void visit_parts(Walk& w, const Block& block, const Coupled& coupled, const Parts& rows,
+                 const Parts& columns, size_t at) {
+  const uint32_t first = w.source.clusters[block.receiver].first;
+  const size_t top = at + w.source.clusters[block.receiver].size();
+  for (uint32_t r = 0; r < rows.count; ++r)
+    for (uint32_t c = 0; c < columns.count; ++c) {
+      if (coupled.entries[r][c] == 0) continue;
+      const Block part{rows.cluster[r], columns.cluster[c]};
+      const Cluster& receiver = w.source.clusters[part.receiver];
+      w.ranges.resize(top);
+      for (uint32_t i = receiver.first; i < receiver.end; ++i) {
+        const RowRange whole = w.ranges[at + (i - first)];
+        if (c == 0)
+          w.ranges.push_back({whole.begin, whole.middle, whole.middle});
+        else
+          w.ranges.push_back({whole.middle, whole.end, whole.end});
+      }
+      visit(w, part, coupled.part[r][c], top);
+    }
+}
+
+/// The ranges of a block that is met from outside.
+void enter(Walk& w, const Block& block) {
+  w.ranges.resize(w.source.clusters[block.receiver].size());
+  find_ranges(w.source, block, w.ranges);
+}
+
+/// Walks from (receiver, all) down: blocks above the receiver's depth are never smooth enough.
+void visit_receiver(Walk& w, uint32_t receiver, uint32_t sender) {
+  const CouplingSource& s = w.source;
+  const Cluster& c = s.clusters[sender];
+  if (c.depth < s.clusters[receiver].depth && !c.is_leaf()) {
+    visit_receiver(w, receiver, c.child);
+    visit_receiver(w, receiver, c.child + 1);
     return;
   }
-  for (uint32_t r = 0; r < rows.count; ++r)
-    for (uint32_t c = 0; c < columns.count; ++c)
-      if (coupled.entries[r][c] > 0)
-        visit(s, {rows.cluster[r], columns.cluster[c]}, coupled.part[r][c], out);
+  const Block block{receiver, sender};
+  enter(w, block);
+  const Coupled whole = couple(s, block, parts_of(s, receiver, false), parts_of(s, sender, false),
+                               ranges_of(w, block, 0));
+  if (whole.entries[0][0] > 0) visit(w, block, whole.part[0][0], 0);
+}
+
+/// Divides those far blocks of a task that are smooth no longer.
+void divide(Walk& w) {
+  const std::vector<FarBlock> before = std::exchange(w.out.far, {});
+  for (const FarBlock& far : before) {
+    if (is_smooth(w.source, w.params, far)) {
+      w.out.far.push_back(far);
+      continue;
+    }
+    enter(w, far.block);
+    visit(w, far.block, far.coupling, 0);
+  }
 }
 
 /// Receivers at one depth, or leaves above it: tasks that do not depend on each other.
@@ -229,84 +201,8 @@ std::vector<uint32_t> task_receivers(std::span<const Cluster> clusters) {
   return out;
 }
 
-/// Walks from (receiver, all) down: blocks above the receiver's depth are never smooth enough.
-void visit_receiver(const Source& s, uint32_t receiver, uint32_t sender, Found& out) {
-  const Cluster& r = s.clusters[receiver];
-  const Cluster& c = s.clusters[sender];
-  if (c.depth < r.depth && !c.is_leaf()) {
-    visit_receiver(s, receiver, c.child, out);
-    visit_receiver(s, receiver, c.child + 1, out);
-    return;
-  }
-  const Block block{receiver, sender};
-  const Coupled whole = couple(s, block, parts_of(s, receiver, false), parts_of(s, sender, false));
-  if (whole.entries[0][0] > 0) visit(s, block, whole.part[0][0], out);
-}
-
-/// Entries of a leaf pair in 8 bits. What rounding takes from one sender's the next gets, so that
-/// the sum over a row is kept.
-void append_near(const Source& s, const Block& block, Hierarchical& out) {
-  const Cluster& r = s.clusters[block.receiver];
-  const Cluster& c = s.clusters[block.sender];
-  constexpr uint32_t rows = kLeafSize;
-  std::vector<float> value(size_t(rows) * c.size(), 0.0f);
-  float largest = 0;
-  for_entries(s, block, [&](uint32_t i, uint32_t j, float exchange) {
-    float& v = value[size_t(j - c.first) * rows + (i - r.first)];
-    v = exchange / s.area_m2[i];
-    largest = std::max(largest, v);
-  });
-  const float scale = largest / 255;
-  out.near.push_back({block.sender, uint32_t(out.entries.size()), scale});
-  std::vector<float> carried(rows, 0.0f);
-  for (uint32_t j = 0; j < c.size(); ++j)
-    for (uint32_t i = 0; i < rows; ++i) {
-      const float wanted = value[size_t(j) * rows + i] / std::max(scale, 1e-30f) + carried[i];
-      const float kept = std::clamp(std::round(wanted), 0.0f, 255.0f);
-      carried[i] = wanted - kept;
-      out.entries.push_back(uint8_t(kept));
-    }
-}
-
-/// In 16 bits each of the largest.
-Hierarchical::Far quantised(const Found::Far& far) {
-  float largest = 0;
-  for (const Values& row : far.coupling)
-    for (const float v : row) largest = std::max(largest, std::abs(v));
-  Hierarchical::Far out{{}, largest / 32767, far.block.sender};
-  if (largest > 0)
-    for (size_t a = 0; a < kFunctions; ++a)
-      for (size_t b = 0; b < kFunctions; ++b)
-        out.coefficient[kLanes * b + a] =
-            int16_t(std::lround(far.coupling[a][b] / largest * 32767));
-  return out;
-}
-
-/// Blocks of all tasks, receiver by receiver.
-void append_blocks(const Source& s, std::vector<Found>& found, Hierarchical& out) {
-  std::vector<Found::Far> far;
-  std::vector<Block> near;
-  for (Found& f : found) {
-    far.insert(far.end(), f.far.begin(), f.far.end());
-    near.insert(near.end(), f.near.begin(), f.near.end());
-    f = {};
-  }
-  const auto by_receiver = [](const Block& a, const Block& b) { return a.receiver < b.receiver; };
-  std::stable_sort(far.begin(), far.end(),
-                   [&](const auto& a, const auto& b) { return by_receiver(a.block, b.block); });
-  std::stable_sort(near.begin(), near.end(), by_receiver);
-  size_t f = 0, n = 0;
-  for (uint32_t c = 0; c < out.clusters.size(); ++c) {
-    out.first_far.push_back(uint32_t(out.far.size()));
-    out.first_near.push_back(uint32_t(out.near.size()));
-    for (; f < far.size() && far[f].block.receiver == c; ++f) out.far.push_back(quantised(far[f]));
-    for (; n < near.size() && near[n].receiver == c; ++n) append_near(s, near[n], out);
-  }
-  out.first_far.push_back(uint32_t(out.far.size()));
-  out.first_near.push_back(uint32_t(out.near.size()));
-}
-
-Hierarchical assemble(const Source& s, std::vector<Found>& found) {
+/// All but the blocks.
+Hierarchical without_blocks(const CouplingSource& s) {
   Hierarchical out;
   out.clusters.assign(s.clusters.begin(), s.clusters.end());
   out.area_m2.assign(s.area_m2.begin(), s.area_m2.end());
@@ -315,29 +211,62 @@ Hierarchical assemble(const Source& s, std::vector<Found>& found) {
   for (const Cluster& c : s.clusters)
     if (c.is_leaf())
       for (uint32_t i = c.first; i < c.end; ++i) out.phi[i] = s.functions.phi[c.depth][i];
-  append_blocks(s, found, out);
   return out;
 }
 
 }  // namespace
 
-Result<Hierarchical> compress(const FormFactors& factors, const ClusterTree& tree,
-                              std::span<const Vec3> position, std::span<const float> area_m2,
-                              const HierarchicalParams& params, Progress& progress) {
+struct Compression::State {
+  CouplingSource source;
+  Hierarchical frame;                              ///< all but the blocks
+  std::vector<uint32_t> receivers;                 ///< per task
+  std::vector<FoundBlocks> found;                  ///< per task
+  bool is_first = true;                            ///< no step was taken
+  float block_error = INFINITY, noise = INFINITY;  ///< of the last step
+};
+
+Compression::Compression(const FormFactors& factors, const ClusterTree& tree,
+                         std::span<const Vec3> position, std::span<const float> area_m2,
+                         int rays_per_patch) {
   LUXEL_CHECK(position.size() == factors.size() && area_m2.size() == factors.size());
   for (const Cluster& c : tree.clusters) LUXEL_CHECK(!c.is_leaf() || c.size() <= kLeafSize);
-  const Source source = make_source(factors, tree.clusters, position, area_m2, params);
-  const std::vector<uint32_t> receivers = task_receivers(tree.clusters);
-  std::vector<Found> found(receivers.size());
-  progress.begin("compress", receivers.size());
-  parallel_for(receivers.size(), 1, [&](size_t begin, size_t end) {
+  state_ = std::make_unique<State>(State{
+      make_coupling_source(factors, tree.clusters, position, area_m2, rays_per_patch), {}, {}, {}});
+  state_->frame = without_blocks(state_->source);
+  state_->receivers = task_receivers(tree.clusters);
+}
+
+Compression::~Compression() = default;
+
+Result<Hierarchical> Compression::step(const HierarchicalParams& params, Progress& progress) {
+  State& s = *state_;
+  LUXEL_CHECK(params.block_error <= s.block_error && params.noise <= s.noise);
+  s.block_error = params.block_error, s.noise = params.noise;
+  const bool is_first = std::exchange(s.is_first, false);
+  progress.begin("compress", s.receivers.size());
+  s.found.resize(s.receivers.size());
+  parallel_for(s.receivers.size(), 1, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end && !progress.cancelled(); ++k) {
-      visit_receiver(source, receivers[k], 0, found[k]);
+      Walk walk{s.source, params, s.found[k], {}};
+      if (is_first)
+        visit_receiver(walk, s.receivers[k], 0);
+      else
+        divide(walk);
+      sort_blocks(s.source, s.found[k]);
       progress.advance(1);
     }
   });
   LUXEL_TRY_STATUS(stopped(progress));
-  return assemble(source, found);
+  Hierarchical out = s.frame;
+  assemble(s.source, s.found, out);
+  return out;
+}
+
+Result<Hierarchical> compress(const FormFactors& factors, const ClusterTree& tree,
+                              std::span<const Vec3> position, std::span<const float> area_m2,
+                              const HierarchicalParams& params, Progress& progress) {
+  return Compression(factors, tree, position, area_m2, params.rays_per_patch)
+      .step(params, progress);
 }
 
 uint64_t bytes_of(const Hierarchical& m) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -67,6 +68,27 @@ struct HierarchicalParams {
 Result<Hierarchical> compress(const FormFactors& factors, const ClusterTree& tree,
                               std::span<const Vec3> position, std::span<const float> area_m2,
                               const HierarchicalParams& params, Progress& progress);
+
+/// compress() again and again, each time with a smaller loss: only the blocks that now lose too
+/// much are looked at again, so that all steps together take little more than the last one alone.
+class Compression {
+ public:
+  /// As for compress(). What is passed must outlive it.
+  Compression(const FormFactors& factors, const ClusterTree& tree, std::span<const Vec3> position,
+              std::span<const float> area_m2, int rays_per_patch);
+  ~Compression();
+  Compression(const Compression&) = delete;
+  Compression& operator=(const Compression&) = delete;
+
+  /// What compress() would give, to the bit. params.block_error and params.noise are no larger than
+  /// at the step before, params.rays_per_patch is not looked at. Errors: cancelled, after which
+  /// there are no more steps.
+  Result<Hierarchical> step(const HierarchicalParams& params, Progress& progress);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// Moments of a cluster's light, channel by channel.
 using Moments = std::array<float, 3 * kLanes>;

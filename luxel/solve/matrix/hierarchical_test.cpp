@@ -154,6 +154,31 @@ TEST(Hierarchical, ErrorAndSizeFallAndRiseWithBlockError) {
   }
 }
 
+TEST(Hierarchical, StepByStepItIsWhatItIsAtOnce) {
+  const auto& [cut, f] = cluster_box();
+  Compression compression(f, cut.patched.tree, cut.patches().centroid, cut.patches().area_m2, 1024);
+  // Large steps, one that divides nothing, and one after which leaves that were far are near.
+  size_t far = 0, near = 0;
+  for (const HierarchicalParams params : {HierarchicalParams{0.1f, 1024, 0.25f},
+                                          {0.01f, 1024, 0.25f},
+                                          {0.01f, 1024, 0.25f},
+                                          {0.003f, 1024, 0.05f},
+                                          {0, 1024, 0}}) {
+    Progress progress;
+    const auto got = compression.step(params, progress);
+    ASSERT_TRUE(got);
+    const Hierarchical want = compressed(cut, f, params);
+    EXPECT_EQ(got->first_far, want.first_far);
+    EXPECT_EQ(got->first_near, want.first_near);
+    EXPECT_EQ(got->entries, want.entries);
+    const std::vector<Rgb> b = testing::random_light(cut.size(), 11);
+    EXPECT_EQ(product(*got, b), product(want, b)) << params.block_error;
+    EXPECT_GE(got->near.size(), near);
+    far = std::max(far, got->far.size()), near = got->near.size();
+  }
+  EXPECT_GT(far, 0u);
+}
+
 TEST(Hierarchical, KeepsThePowerOfConstants) {
   // 1 is a function of every cluster, so that far blocks keep sum A_i E_i; near ones keep rows.
   const std::vector<Rgb> one(cluster_box().cut.size(), Rgb{1, 0.5f, 2});

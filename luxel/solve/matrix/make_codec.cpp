@@ -39,7 +39,7 @@ float shrink(HierarchicalParams& tried, double max_error, double error, double b
 /// none, and 2 stands in the file.
 int sweeps_of(const CodecInput& t, const RelightParams& params) {
   if (params.bounces >= 0) return 2;
-  return enough_sweeps(t.prepared, t.coarse, t.trials, kPartOfSweeps * double(params.max_error));
+  return enough_sweeps(t.trials, kPartOfSweeps * double(params.max_error));
 }
 
 /// The coarsest hierarchy that keeps to params.max_error, as far as can be.
@@ -50,11 +50,12 @@ Result<Codec> hierarchical_codec(const CodecInput& t, const RelightParams& param
   HierarchicalParams tried;
   tried.rays_per_patch = params.factors.rays_per_patch;
   tried.block_error = kFirstBlockError * params.max_error;
+  Compression compression(t.prepared.factors, t.prepared.patched.tree, patches.centroid,
+                          patches.area_m2, tried.rays_per_patch);
   double before = INFINITY;
   float factor = 1;
   for (int step = 0;; ++step) {
-    LUXEL_TRY(Hierarchical matrix, compress(t.prepared.factors, t.prepared.patched.tree,
-                                            patches.centroid, patches.area_m2, tried, progress));
+    LUXEL_TRY(Hierarchical matrix, compression.step(tried, progress));
     Codec codec = HierarchicalCodec{std::move(matrix), t.coarse, sweeps};
     const double error = usual_error(t.trials, errors_of(codec, t.trials, patches, params.bounces));
     if (error <= double(params.max_error) || step == kMaxSteps) return codec;

@@ -7,6 +7,7 @@
 #include "luxel/base/warp.h"
 #include "luxel/solve/matrix/codec.h"
 #include "luxel/solve/matrix/live_light.h"
+#include "luxel/solve/matrix/many_lights.h"
 #include "luxel/solve/matrix/probes.h"
 
 namespace luxel::matrix {
@@ -68,59 +69,52 @@ PlacedLamp lamp_at(const LampScene& s, const LampPlaces& places, uint64_t seed) 
   return lamp;
 }
 
-/// Relative square of an error, by area.
-double relative_square(const Trials& trials, size_t trial, std::span<const Rgb> got,
-                       std::span<const float> area_m2) {
+/// Relative square of an error, by area; of `wanted` and what comes straight with it.
+double relative_square(std::span<const Rgb> got, std::span<const Rgb> wanted,
+                       std::span<const Rgb> straight, std::span<const float> area_m2) {
   double error = 0, all = 0;
   for (size_t i = 0; i < got.size(); ++i) {
-    const Rgb wanted = trials.irradiance[trial][i], d = got[i] - wanted;
-    const Rgb whole = wanted + trials.straight[trial][i];
+    const Rgb d = got[i] - wanted[i], whole = wanted[i] + straight[i];
     error += double(area_m2[i]) * double(dot(d, d));
     all += double(area_m2[i]) * double(dot(whole, whole));
   }
   return all > 0 ? error / all : 0;
 }
 
-/// Sweeps that leave nothing to be seen in single precision.
+/// What the light of a trial errs by, root mean square.
+double rms_error(const Trials& trials, size_t trial, std::span<const Rgb> got,
+                 std::span<const float> area_m2) {
+  return std::sqrt(relative_square(got, trials.irradiance[trial], trials.straight[trial], area_m2));
+}
+
+/// Sweeps that leave nothing to be seen in single precision, ...
 constexpr int kManySweeps = 12;
+/// ... or fewer, after one that changed no light by more than this part of it.
+constexpr double kConverged = 1e-6;
 
-/// With the factors themselves.
-class Exact {
- public:
-  Exact(const Prepared& prepared, size_t clusters)
-      : prepared_(prepared),
-        scratch_(make_bounce_scratch(prepared.patched.patches.size(), clusters)) {}
-
-  std::vector<Rgb> counted(std::span<const Rgb> sent, int bounces) {
-    std::vector<Rgb> out(sent.size());
-    count_bounces(product_, sent_by(sent, bounces), out, scratch_);
-    return out;
+/// What all trials get of what they send, by all bounces, and what fewer sweeps err by.
+Status follow_all_bounces(const Prepared& prepared, const CoarseScene& coarse, Trials& trials,
+                          Progress& progress) {
+  const Patches& patches = prepared.patched.patches;
+  std::vector<ManyLights> after;  // 1, 2, ... sweeps
+  const auto see = [&](const ManyLights& now) {
+    bool goes_on = after.empty();
+    for (size_t t = 0; t < now.size() && !goes_on; ++t)
+      goes_on = relative_square(after.back()[t], now[t], trials.straight[t], patches.area_m2) >
+                kConverged * kConverged;
+    after.push_back(now);
+    return goes_on;
+  };
+  LUXEL_TRY(trials.irradiance,
+            all_bounces(prepared.factors, coarse,
+                        {trials.sent, patches.elements.reflectance, patches.area_m2}, kManySweeps,
+                        see, progress));
+  for (const ManyLights& light : after) {
+    std::vector<double>& errors = trials.error_of_sweeps.emplace_back();
+    for (size_t t = 0; t < light.size(); ++t)
+      errors.push_back(rms_error(trials, t, light[t], patches.area_m2));
   }
-  std::vector<Rgb> all(const CoarseScene& coarse, std::span<const Rgb> sent, int sweeps) {
-    std::vector<Rgb> out(sent.size());
-    all_bounces(product_, coarse, sent_by(sent, -1), sweeps, out, scratch_);
-    return out;
-  }
-
- private:
-  Sent sent_by(std::span<const Rgb> radiosity, int bounces) const {
-    const Patches& patches = prepared_.patched.patches;
-    return {radiosity, patches.elements.reflectance, patches.area_m2, bounces};
-  }
-
-  const Prepared& prepared_;
-  const Multiply product_ = [this](auto b, auto e) { multiply(prepared_.factors, b, e); };
-  BounceScratch scratch_;
-};
-
-/// What `solve(sent)` errs by in each trial, root mean square.
-template <class Solve>
-std::vector<double> rms_errors(const Trials& trials, std::span<const float> area_m2,
-                               const Solve& solve) {
-  std::vector<double> out;
-  for (size_t t = 0; t < trials.size(); ++t)
-    out.push_back(std::sqrt(relative_square(trials, t, solve(trials.sent[t]), area_m2)));
-  return out;
+  return {};
 }
 
 /// A lamp that was not tried loses less than the mean of eight others and this many of their
@@ -235,35 +229,34 @@ Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tr
     for (Light& light : own_lights(stage, *params.glow, params.seed))
       lights.push_back(std::move(light));
   // What all of them reflect at first, and what they get of that.
-  Exact exact(prepared, coarse.count());
   Trials out;
-  progress.begin("trial lights", lights.size());
   for (Light& light : lights) {
     std::vector<Rgb> sent(patches.size());
     for (size_t i = 0; i < sent.size(); ++i)
       sent[i] = patches.elements.reflectance[i] * (light.direct[i] + light.straight[i]);
-    progress.advance(1);
-    LUXEL_TRY_STATUS(stopped(progress));
-    const auto k = int(&light - lights.data());
     if (is_dark(sent)) continue;
+    const auto k = int(&light - lights.data());
     if (k < params.in_the_open) ++out.in_the_open;
     if (k >= params.in_the_open && k < params.in_the_open + params.anywhere) ++out.anywhere;
-    out.irradiance.push_back(params.bounces < 0 ? exact.all(coarse, sent, kManySweeps)
-                                                : exact.counted(sent, params.bounces));
     out.sent.push_back(std::move(sent)), out.straight.push_back(std::move(light.straight));
+  }
+  progress.begin("trial lights", uint64_t(params.bounces < 0 ? kManySweeps : params.bounces));
+  if (params.bounces < 0) {
+    LUXEL_TRY_STATUS(follow_all_bounces(prepared, coarse, out, progress));
+  } else {
+    LUXEL_TRY(out.irradiance,
+              count_bounces(prepared.factors, {out.sent, at.reflectance, patches.area_m2},
+                            params.bounces, progress));
   }
   return out;
 }
 
-int enough_sweeps(const Prepared& prepared, const CoarseScene& coarse, const Trials& trials,
-                  double error) {
-  Exact exact(prepared, coarse.count());
-  for (int sweeps = 2; sweeps < kManySweeps; ++sweeps) {
-    const auto solve = [&](std::span<const Rgb> sent) { return exact.all(coarse, sent, sweeps); };
-    if (usual_error(trials, rms_errors(trials, prepared.patched.patches.area_m2, solve)) <= error)
-      return sweeps;
-  }
-  return kManySweeps;
+int enough_sweeps(const Trials& trials, double error) {
+  int sweeps = 2;
+  while (size_t(sweeps) <= trials.error_of_sweeps.size() &&
+         usual_error(trials, trials.error_of_sweeps[size_t(sweeps) - 1]) > error)
+    ++sweeps;
+  return sweeps;
 }
 
 std::vector<double> errors_of_products(const Prepared& prepared, const Trials& trials,
@@ -278,7 +271,8 @@ std::vector<double> errors_of_products(const Prepared& prepared, const Trials& t
       for (size_t i = 0; i < patches.size(); ++i)
         radiosity[i] = trials.sent[t][i] + rho[i] * irradiance[i];
       multiply(prepared.factors, radiosity, irradiance);
-      square += relative_square(trials, t, irradiance, patches.area_m2);
+      square +=
+          relative_square(irradiance, trials.irradiance[t], trials.straight[t], patches.area_m2);
     }
   }
   for (double& square : squares) square = std::sqrt(square / double(trials.sent.size()));
@@ -289,11 +283,13 @@ std::vector<double> errors_of(const Codec& codec, const Trials& trials, const Pa
                               int bounces) {
   CodecScratch scratch = make_scratch(codec, patches.size());
   std::vector<Rgb> irradiance(patches.size());
-  return rms_errors(trials, patches.area_m2, [&](std::span<const Rgb> sent) {
-    irradiance_of(codec, {sent, patches.elements.reflectance, patches.area_m2, bounces}, irradiance,
-                  scratch);
-    return std::span<const Rgb>(irradiance);
-  });
+  std::vector<double> out;
+  for (size_t t = 0; t < trials.size(); ++t) {
+    irradiance_of(codec, {trials.sent[t], patches.elements.reflectance, patches.area_m2, bounces},
+                  irradiance, scratch);
+    out.push_back(rms_error(trials, t, irradiance, patches.area_m2));
+  }
+  return out;
 }
 
 double usual_error(const Trials& trials, std::span<const double> errors) {

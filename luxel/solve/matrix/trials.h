@@ -24,6 +24,10 @@ struct Trials {
   std::vector<std::vector<Rgb>> straight;    ///< E from glowing surfaces and the background
   std::vector<std::vector<Rgb>> irradiance;  ///< E from `sent`
 
+  /// What all_bounces with the factors themselves errs by in each trial, for 1, 2, ... sweeps, and
+  /// the most that were tried; empty where bounces are counted.
+  std::vector<std::vector<double>> error_of_sweeps;
+
   /// The first of them are point lights in the open, then come some anywhere.
   size_t in_the_open = 0, anywhere = 0;
 
@@ -49,10 +53,9 @@ Result<Trials> make_trials(const scene::Scene& scene, const trace::RayTracer& tr
                            const Prepared& prepared, const CoarseScene& coarse,
                            const TrialParams& params, Progress& progress);
 
-/// The fewest sweeps of all_bounces with the factors themselves that err by `error` or less,
-/// by usual_error().
-int enough_sweeps(const Prepared& prepared, const CoarseScene& coarse, const Trials& trials,
-                  double error);
+/// The fewest sweeps of all_bounces, at least 2, with the factors themselves that err by `error` or
+/// less, by usual_error().
+int enough_sweeps(const Trials& trials, double error);
 
 /// What the plain iteration with the factors themselves errs by after 1, 2, ..., `products` of
 /// them.

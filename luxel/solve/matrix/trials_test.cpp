@@ -61,7 +61,17 @@ TEST(MatrixTrials, ErrorOfProductsOnASphereIsAPowerOfItsReflectance) {
 // Clusters see what patches see on a sphere, so that two sweeps, the fewest, are exact.
 TEST(MatrixTrials, TwoSweepsAreEnoughForASphere) {
   const Sphere sphere;
-  EXPECT_EQ(enough_sweeps(sphere.prepared, sphere.coarse, sphere.trials, 1e-5), 2);
+  EXPECT_EQ(enough_sweeps(sphere.trials, 1e-5), 2);
+}
+
+// After one sweep one bounce is there, and 1 - rho of the light; after two all of it is.
+TEST(MatrixTrials, ErrorOfOneSweepOnASphereIsItsReflectance) {
+  const Sphere sphere;
+  ASSERT_GE(sphere.trials.error_of_sweeps.size(), 2u);
+  for (size_t t = 0; t < 3; ++t) {
+    EXPECT_NEAR(sphere.trials.error_of_sweeps[0][t], double(kReflectance), 1e-5);
+    EXPECT_LT(sphere.trials.error_of_sweeps[1][t], 1e-5);
+  }
 }
 
 // Half the factors, and one bounce: half the light.

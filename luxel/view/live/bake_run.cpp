@@ -84,7 +84,7 @@ Result<std::unique_ptr<Draft>> BakeRun::first_light(const DraftParams& params,
                                                     const Progress& ends) const {
   if (!before_) return make_draft(read_->scene, settings_, params, ends);
   const ThreadLimit threads(settings_.threads);
-  EstimateParams estimate = params_within(kEstimate_s, read_->scene);
+  EstimateParams estimate = params_within(kEstimate_s, read_->scene, before_->map.texels.size());
   estimate.seed = settings_.seed;
   return estimate_light(*before_, read_->scene, estimate, ends);
 }

@@ -91,6 +91,32 @@ float part_of_way(float x, float begin, float end) {
   return std::clamp((x - begin) / (end - begin), 0.0f, 1.0f);
 }
 
+/// A kind of light in a cell.
+struct CellChange {
+  Rgb was, is;
+  float factor = -1;  ///< of luminance; < 0: it is dark and was
+  bool differs = false;
+};
+CellChange cell_change(Rgb was, Rgb is) {
+  const float before = luminance(was), after = luminance(is);
+  // Infinite where it was dark.
+  const float factor = std::min(after / before, 2 * kMostFactor);
+  return {was, is, before + after > 0 ? factor : -1.0f, was != is};
+}
+struct CellLight {
+  CellChange direct, area, reflected;
+  bool hidden_before = false, hidden_after = false;
+};
+std::vector<CellLight> light_of_cells(const Estimates& e) {
+  std::vector<CellLight> out(e.direct_before.size());
+  for (size_t c = 0; c < out.size(); ++c)
+    out[c] = {cell_change(e.direct_before[c], e.direct_after[c]),
+              cell_change(e.area_before[c], e.area_after[c]),
+              cell_change(e.reflected_before[c], e.reflected_after[c]), e.hidden_before[c] != 0,
+              e.hidden_after[c] != 0};
+  return out;
+}
+
 /// A kind of light where a texel is, by the cells around it.
 struct Change {
   Rgb before, after;
@@ -102,17 +128,15 @@ struct Change {
   bool is_one = false;  ///< there is any
 
   /// Light within solids is none of the light beside them.
-  void add(float w, Rgb was, Rgb is, bool hidden_before, bool hidden_after) {
-    if (hidden_after) beside += is * w, weight_beside += w;
+  void add(float w, const CellChange& c, bool hidden_before, bool hidden_after) {
+    if (hidden_after) beside += c.is * w, weight_beside += w;
     if (hidden_before && hidden_after) return;
     all += w;
-    is_one = is_one || was != is || hidden_before != hidden_after;
-    if (!hidden_before) before += was * w, weight_before += w;
-    if (!hidden_after) after += is * w, weight_after += w;
-    const float l = luminance(was), l_after = luminance(is);
-    if (hidden_before || hidden_after || !(l + l_after > 0)) return;
-    const float f = std::min(l_after / l, 2 * kMostFactor);  // infinite where it was dark
-    weight += w, factor += w * f, factor2 += w * f * f;
+    is_one = is_one || c.differs || hidden_before != hidden_after;
+    if (!hidden_before) before += c.was * w, weight_before += w;
+    if (!hidden_after) after += c.is * w, weight_after += w;
+    if (hidden_before || hidden_after || c.factor < 0) return;
+    weight += w, factor += w * c.factor, factor2 += w * c.factor * c.factor;
   }
   /// How much of what is known the estimate takes the place of.
   float estimated() const {
@@ -140,18 +164,17 @@ struct Around {
   Change direct, area, reflected;
 };
 
-Around around_texel(const SpreadTexels& spread, const Estimates& e, size_t texel) {
+Around around_texel(const SpreadTexels& spread, std::span<const CellLight> cells, bool has_area,
+                    size_t texel) {
   std::array<CellShare, kMostShares> shares;
   const size_t count = spread.shares_at(texel, shares);
   Around out;
   for (size_t k = 0; k < count; ++k) {
-    const auto [cell, weight] = shares[k];
-    const Rgb was = e.direct_before[cell], is = e.direct_after[cell];
-    const bool hidden_before = e.hidden_before[cell], hidden_after = e.hidden_after[cell];
-    out.direct.add(weight, was, is, hidden_before, hidden_after);
-    out.area.add(weight, e.area_before[cell], e.area_after[cell], hidden_before, hidden_after);
-    out.reflected.add(weight, e.reflected_before[cell], e.reflected_after[cell], hidden_before,
-                      hidden_after);
+    const float weight = shares[k].weight;
+    const CellLight& c = cells[shares[k].cell];
+    out.direct.add(weight, c.direct, c.hidden_before, c.hidden_after);
+    if (has_area) out.area.add(weight, c.area, c.hidden_before, c.hidden_after);
+    out.reflected.add(weight, c.reflected, c.hidden_before, c.hidden_after);
   }
   return out;
 }
@@ -228,12 +251,13 @@ bool is_freed(const KnownLight& known, std::span<const Box3> boxes, size_t i) {
 /// place of what is known of their direct light.
 std::vector<uint8_t> spread_light(const KnownLight& known, const SpreadTexels& spread,
                                   const Estimates& e, std::span<const Box3> boxes, Draft& out) {
+  const std::vector<CellLight> cells = light_of_cells(e);
   std::vector<uint8_t> estimated(known.map.texels.size());
   out.irradiance.resize(estimated.size()), out.direct.resize(estimated.size());
   out.without_lamps.resize(known.of_lamps.size());
   parallel_for(estimated.size(), kEstimateGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const Around at = around_texel(spread, e, i);
+      const Around at = around_texel(spread, cells, !known.of_lamps.empty(), i);
       // Repairs of leaks may have taken away direct light.
       const Rgb direct = min(known.direct[i], known.irradiance[i]);
       const Rgb reflected = known.irradiance[i] - direct;
@@ -254,13 +278,17 @@ std::vector<uint8_t> spread_light(const KnownLight& known, const SpreadTexels& s
 /// Seconds per ray, and what they are more for each doubling of the triangles: rays of the Cornell
 /// box and of a city of 54,000 triangles took 0.3 and 0.54 us, with all that is done for them.
 constexpr double kRay_s = 0.18e-6, kRayPerDoubling_s = 0.023e-6;
+/// Seconds per texel whose light follows from that of its cells, and the least part of all seconds
+/// that rays get.
+constexpr double kTexel_s = 0.17e-6, kLeastPartForRays = 0.25;
 /// Where many texels get direct light of their own, it takes a quarter of the time.
 constexpr double kPartSharp = 0.25;
 
 }  // namespace
 
-EstimateParams params_within(double seconds, const scene::Scene& scene) {
+EstimateParams params_within(double seconds, const scene::Scene& scene, size_t texels) {
   EstimateParams out;
+  seconds = std::max(kLeastPartForRays * seconds, seconds - double(texels) * kTexel_s);
   const double triangles = double(scene::first_triangles(scene).back());
   const double rays = seconds / (kRay_s + kRayPerDoubling_s * std::log2(std::max(triangles, 1.0)));
   const double of_texel = 2.0 * double(out.samples + out.direct_samples);

@@ -11,8 +11,9 @@
 namespace luxel::view {
 
 /// So much work as one core does in about so many seconds [s], by what rays cost in such scenes and
-/// not by a clock: the same edit always gets the same light.
-EstimateParams params_within(double seconds, const scene::Scene& scene);
+/// not by a clock: the same edit always gets the same light. `texels`: those of the map, which take
+/// their part of the time.
+EstimateParams params_within(double seconds, const scene::Scene& scene, size_t texels);
 
 /// Light of a scene in which instances stand elsewhere, lamps or materials are others than in the
 /// one as it was read of which `known` is. All bounces; the same rays before and after, so that

@@ -54,7 +54,7 @@ float finest_for(const TexelPlaces& places, CellGrid grid, size_t most) {
   for (int k = 0; k < 40; ++k) {
     double cells = 0;
     for (size_t i = 0; i < n; i += step) {
-      const float side = std::ldexp(grid.finest_m, grid.level_at(places.position[i]));
+      const float side = grid.side_m(grid.level_at(places.position[i]));
       cells += double(step) * std::min(1.0, double(places.texel_m2) / double(side * side));
     }
     if (cells <= double(most)) break;
@@ -84,7 +84,7 @@ SpreadTexels::SpreadTexels(const TexelPlaces& places, CellGrid grid, size_t most
     parallel_for(n, kSpreadGrain, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         level_[i] = uint8_t(grid_.level_at(places_.position[i]));
-        const Vec3 at = places_.position[i] / std::ldexp(grid_.finest_m, level_[i]);
+        const Vec3 at = places_.position[i] / grid_.side_m(level_[i]);
         const std::array<int, 3> cube = cube_of(at);
         keys[i] = key_of(level_[i], main_axis(places_.normal[i]), cube, places_.body[i]);
         off[i] = length(at - Vec3{float(cube[0]), float(cube[1]), float(cube[2])} -
@@ -96,20 +96,26 @@ SpreadTexels::SpreadTexels(const TexelPlaces& places, CellGrid grid, size_t most
     // Surfaces lie closer together than an even one would.
     grid_.finest_m *= std::sqrt(float(size()) / float(most));
   }
+  find_around();
 }
 
 void SpreadTexels::number_cells(std::span<const uint64_t> keys, std::span<const float> off) {
   texel_.clear(), cell_of_texel_.assign(keys.size(), kNoCell);
   keys_.assign(1 << 10, 0), cells_.assign(1 << 10, kNoCell);
   for (size_t i = 0; i < keys.size(); ++i) {
-    if (2 * texel_.size() > keys_.size()) grow();
-    size_t at = keys[i] & (keys_.size() - 1);
-    while (keys_[at] != 0 && keys_[at] != keys[i]) at = (at + 1) & (keys_.size() - 1);
-    if (keys_[at] == 0) {
-      keys_[at] = keys[i], cells_[at] = uint32_t(texel_.size());
-      texel_.push_back(uint32_t(i));
+    // Texels mostly lie in the cell of the one before.
+    uint32_t cell = i > 0 && keys[i] == keys[i - 1] ? cell_of_texel_[i - 1] : kNoCell;
+    if (cell == kNoCell) {
+      if (2 * texel_.size() > keys_.size()) grow();
+      size_t at = keys[i] & (keys_.size() - 1);
+      while (keys_[at] != 0 && keys_[at] != keys[i]) at = (at + 1) & (keys_.size() - 1);
+      if (keys_[at] == 0) {
+        keys_[at] = keys[i], cells_[at] = uint32_t(texel_.size());
+        texel_.push_back(uint32_t(i));
+      }
+      cell = cells_[at];
     }
-    const uint32_t cell = cell_of_texel_[i] = cells_[at];
+    cell_of_texel_[i] = cell;
     if (off[i] < off[texel_[cell]]) texel_[cell] = uint32_t(i);
   }
 }
@@ -132,30 +138,36 @@ uint32_t SpreadTexels::find(uint64_t key) const {
   return keys_[at] == 0 ? kNoCell : cells_[at];
 }
 
-std::vector<CellsBeside> SpreadTexels::beside() const {
-  std::vector<CellsBeside> out(size());
+void SpreadTexels::find_around() {
+  around_.resize(size());
   parallel_for(size(), 256, [&](size_t begin, size_t end) {
     for (size_t cell = begin; cell < end; ++cell) {
       const uint32_t texel = texel_[cell];
-      const std::array<int, 3> at =
-          cube_of(places_.position[texel] / std::ldexp(grid_.finest_m, level_[texel]));
+      const std::array<int, 3> at = cube_of(places_.position[texel] / grid_.side_m(level_[texel]));
       const int axis = main_axis(places_.normal[texel]);
-      for (int k = 0; k < 27; ++k) {
-        const uint32_t other = find(key_of(
+      for (int k = 0; k < 27; ++k)
+        around_[cell][size_t(k)] = find(key_of(
             level_[texel], axis, {at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1},
             places_.body[texel]));
-        if (other != kNoCell) out[cell].cells[out[cell].count++] = other;
-      }
     }
   });
+}
+
+std::vector<CellsBeside> SpreadTexels::beside() const {
+  std::vector<CellsBeside> out(size());
+  for (size_t cell = 0; cell < size(); ++cell)
+    for (const uint32_t other : around_[cell])
+      if (other != kNoCell) out[cell].cells[out[cell].count++] = other;
   return out;
 }
 
 size_t SpreadTexels::shares_at(size_t texel, std::array<CellShare, kMostShares>& out) const {
   const auto normal = array_of(places_.normal[texel]);
-  const Vec3 at =
-      places_.position[texel] / std::ldexp(grid_.finest_m, level_[texel]) - Vec3{0.5f, 0.5f, 0.5f};
-  const std::array<int, 3> base = cube_of(at);
+  const Vec3 place = places_.position[texel] / grid_.side_m(level_[texel]);
+  const Vec3 at = place - Vec3{0.5f, 0.5f, 0.5f};
+  const std::array<int, 3> base = cube_of(at), own = cube_of(place);
+  const CellsAround& around = around_[cell_of_texel_[texel]];
+  const int main = main_axis(places_.normal[texel]);
   const std::array<float, 3> over{at.x - float(base[0]), at.y - float(base[1]),
                                   at.z - float(base[2])};
   size_t count = 0;
@@ -172,7 +184,11 @@ size_t SpreadTexels::shares_at(size_t texel, std::array<CellShare, kMostShares>&
         cube[i] += upper;
       }
       if (weight <= 0) continue;
-      const uint32_t cell = find(key_of(level_[texel], axis, cube, places_.body[texel]));
+      const size_t beside =
+          size_t(cube[0] - own[0] + 1 + 3 * (cube[1] - own[1] + 1) + 9 * (cube[2] - own[2] + 1));
+      const uint32_t cell = axis == main
+                                ? around[beside]
+                                : find(key_of(level_[texel], axis, cube, places_.body[texel]));
       if (cell != kNoCell) out[count++] = {cell, weight};
     }
   }

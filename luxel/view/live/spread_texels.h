@@ -27,6 +27,7 @@ struct CellGrid {
 
   /// Sides are finest_m times 2 to the power of it.
   int level_at(Vec3 place) const;
+  float side_m(int level) const { return finest_m * float(uint32_t(1) << level); }
 };
 
 /// A share of what is known in a cell.
@@ -64,9 +65,13 @@ class SpreadTexels {
   std::vector<CellsBeside> beside() const;
 
  private:
+  /// Cells of the 27 cubes around and including one's own, x first: kNoCell where there is none.
+  using CellsAround = std::array<uint32_t, 27>;
+
   uint32_t find(uint64_t key) const;
   void grow();
   void number_cells(std::span<const uint64_t> keys, std::span<const float> off);
+  void find_around();
 
   TexelPlaces places_;
   CellGrid grid_;
@@ -74,6 +79,7 @@ class SpreadTexels {
   std::vector<uint8_t> level_;
   std::vector<uint64_t> keys_;   ///< of a hash table of a power of 2 of places; 0: empty
   std::vector<uint32_t> cells_;  ///< of each of its places
+  std::vector<CellsAround> around_;
 };
 
 }  // namespace luxel::view

@@ -38,8 +38,9 @@ TARGET, FAIR = 0.01, 0.01
 MODES = {"quick": {"paths": 256, "cycles": 256, "luxel": 1024},
          "full": {"paths": 2048, "cycles": 16384, "luxel": 16384}}
 """Paths per texel of each of the two references, and the most samples per texel of each baker."""
-COLUMNS = ("scene", "Cycles [s]", "luxel [s]", "ratio", "Cycles' least error [%]", "luxel's least error [%]",
-           "Cycles' mean over the reference's", "luxel's mean over the reference's", "Cycles' lasting difference [%]",
+COLUMNS = ("scene", "Cycles [s]", "luxel [s]", "ratio", "luxel, noise alone [s]", "ratio, noise alone",
+           "Cycles' least error [%]", "luxel's least error [%]", "Cycles' mean over the reference's",
+           "luxel's mean over the reference's", "Cycles' lasting difference [%]",
            "Cycles' memory [MB]", "luxel's memory [MB]", "texels", "mode")
 
 
@@ -125,30 +126,35 @@ class Bench:
 class Series:
     """Bakes of one baker with more and more samples: seconds, errors, and what was seen on the way."""
 
-    def __init__(self, most):
-        self.runs, self.most, self.memory, self.samples = [], most, 0, 4
+    def __init__(self, name, most):
+        self.name = name
+        self.runs, self.noises, self.most, self.memory, self.samples = [], [], most, 0, 4
 
     def wants_more(self):
         return self.samples <= self.most and (not self.runs or self.runs[-1][1] > TARGET)
 
-    def add(self, seconds, error, memory):
+    def add(self, seconds, error, noise, memory):
         self.runs.append((sum(seconds) / len(seconds), error))
+        self.noises.append((self.runs[-1][0], noise))
+        say(f"{self.name}, {self.samples} samples: {self.runs[-1][0]:.2f} s, error {100 * error:.2f} %, "
+            f"noise {100 * noise:.2f} %")
         self.memory = max(self.memory, *memory)
         self.samples *= 4
 
 
-def cycles_series(bench, scene, name, a, b, texels, denoise):
-    series = Series(bench.options.cycles_samples)
+def cycles_series(bench, scene, name, a, b, texels, forgiven=None):
+    """With `forgiven` Cycles denoises: then its error is its difference from the reference, but for that much."""
+    series = Series(f"{name}: Cycles", bench.options.cycles_samples)
     while series.wants_more():
-        bakes = [bench.bake_by_cycles(scene, f"{name}-cycles-{seed}", series.samples, seed, denoise) for seed in (1, 2)]
+        bakes = [bench.bake_by_cycles(scene, f"{name}-cycles-{seed}", series.samples, seed, forgiven is not None)
+                 for seed in (1, 2)]
         first, second = (picture for picture, _, _ in bakes)
         of = measure.counted(a, b, first, texels)
         light = (measure.mean(a, of) + measure.mean(b, of)) / 2
-        samples = series.samples
-        series.add([report["seconds"] for _, report, _ in bakes], measure.noise(first, second, of) / light,
-                   [memory for _, _, memory in bakes])
-        say("{}: Cycles, {} samples: {:.2f} s, {:.2f} %".format(name, samples, series.runs[-1][0],
-                                                               100 * series.runs[-1][1]))
+        noise = measure.noise(first, second, of) / light
+        if forgiven is not None:
+            noise = measure.without(measure.error([first, second], a, b, of) / light, forgiven)
+        series.add([report["seconds"] for _, report, _ in bakes], noise, noise, [memory for _, _, memory in bakes])
         series.mean = (measure.mean(first, of) + measure.mean(second, of)) / 2 / light
         series.lasting = measure.bias(first, second, a, b, of) / light
     series.of, series.can_denoise = of, bakes[0][1]["can_denoise"]
@@ -156,7 +162,7 @@ def cycles_series(bench, scene, name, a, b, texels, denoise):
 
 
 def luxel_series(bench, scene, name, a, b, of, denoise):
-    series = Series(bench.options.luxel_samples)
+    series = Series(f"{name}: luxel", bench.options.luxel_samples)
     light = (measure.mean(a, of) + measure.mean(b, of)) / 2
     while series.wants_more():
         options = ["--samples", series.samples, "--denoise" if denoise else "--no-denoise",
@@ -164,11 +170,9 @@ def luxel_series(bench, scene, name, a, b, of, denoise):
         bakes = [bench.bake_by_luxel(scene, bench.folder / f"{name}-luxel-{seed}", "--seed", seed, *options)
                  for seed in (11, 12)]
         pictures = [picture for picture, _, _ in bakes]
-        samples = series.samples
-        series.add([seconds for _, seconds, _ in bakes], measure.error(pictures, a, b, of) / light,
-                   [memory for _, _, memory in bakes])
-        say("{}: luxel, {} samples: {:.2f} s, {:.2f} %".format(name, samples, series.runs[-1][0],
-                                                              100 * series.runs[-1][1]))
+        error = measure.error(pictures, a, b, of) / light
+        noise = error if denoise else measure.noise(*pictures, of) / light
+        series.add([seconds for _, seconds, _ in bakes], error, noise, [memory for _, _, memory in bakes])
         series.mean = sum(measure.mean(picture, of) for picture in pictures) / len(pictures) / light
     return series
 
@@ -178,21 +182,23 @@ def number(value, digits):
 
 
 def row_of(name, cycles, luxel, mode):
-    """A row of the table and its ratio: None where the bakers' light differs, or one of them never gets there."""
+    """A row of the table and its ratios: None where the bakers' light differs, or one of them never gets there."""
     slow, quick = (measure.seconds_to(TARGET, series.runs) for series in (cycles, luxel))
+    noise = measure.seconds_to(TARGET, luxel.noises)
     fair = all(abs(series.mean - 1) <= FAIR for series in (cycles, luxel))
-    ratio = slow[0] / quick[0] if fair and slow[0] and quick[0] else None
+    ratios = [slow[0] / fast[0] if fair and slow[0] and fast[0] else None for fast in (quick, noise)]
     for who, (seconds, beyond), series in (("Cycles", slow, cycles), ("luxel", quick, luxel)):
         if seconds is None:
             say(f"{name}: {who} does not reach {100 * TARGET:g} %")
         elif beyond:
-            say(f"{name}: {who}'s seconds are extrapolated from {100 * series.runs[-1][1]:.2f} %")
+            say(f"{name}: the seconds of {who} are extrapolated from {100 * series.runs[-1][1]:.2f} %")
     if not fair:
         say(f"{name}: the light differs in the mean by more than {100 * FAIR:g} %: no ratio")
-    return [name, number(slow[0], 1), number(quick[0], 2), number(ratio, 1), number(100 * cycles.runs[-1][1], 2),
+    return [name, number(slow[0], 1), number(quick[0], 2), number(ratios[0], 1), number(noise[0], 2),
+            number(ratios[1], 1), number(100 * cycles.runs[-1][1], 2),
             number(100 * luxel.runs[-1][1], 2), number(cycles.mean, 4), number(luxel.mean, 4),
             number(100 * cycles.lasting, 1), number(cycles.memory / 1e6, 0), number(luxel.memory / 1e6, 0),
-            str(len(cycles.of)), mode], ratio
+            str(len(cycles.of)), mode], ratios
 
 
 def compared(bench, name):
@@ -200,13 +206,13 @@ def compared(bench, name):
     scene, mode = bench.scene_file(name), bench.options.mode
     name = name if name in NAMES else scene.stem
     (a, texels), (b, _) = (bench.reference(scene, name, seed) for seed in (1, 2))
-    cycles = cycles_series(bench, scene, name, a, b, texels, denoise=False)
+    cycles = cycles_series(bench, scene, name, a, b, texels)
     noise = measure.noise(a, b, cycles.of) / math.sqrt(2) / measure.mean(a, cycles.of)
     say(f"{name}: the mean of both references has {100 * noise:.2f} % noise, which is taken away")
     yield row_of(name, cycles, luxel_series(bench, scene, name, a, b, cycles.of, denoise=False), mode)
     if not cycles.can_denoise:
         return say(f"{name}: this Blender has no denoiser: no row with one")
-    cycles = cycles_series(bench, scene, name, a, b, texels, denoise=True)
+    cycles = cycles_series(bench, scene, name, a, b, texels, cycles.lasting)
     yield row_of(f"{name} (denoised)", cycles, luxel_series(bench, scene, name, a, b, cycles.of, denoise=True), mode)
 
 
@@ -218,15 +224,22 @@ def print_table(bench):
         if not bench.scene_file(name).exists():
             say(f"{bench.scene_file(name)} is not on this machine: left out")
             continue
-        for row, ratio in compared(bench, name):
+        for row, of_row in compared(bench, name):
             table.writerow(row)
             sys.stdout.flush()
-            if ratio and "(denoised)" not in row[0]:
-                ratios.append(ratio)
-    if len(ratios) > 1:
-        mean = f"{measure.geometric_mean(ratios):.1f}"
-        table.writerow([f"geometric mean of {len(ratios)}", "", "", mean] + [""] * (len(COLUMNS) - 5) +
-                       [bench.options.mode])
+            if "(denoised)" not in row[0]:
+                ratios.append(of_row)
+    if ratios:
+        table.writerow(mean_row(ratios, bench.options.mode))
+
+
+def mean_row(ratios, mode):
+    """Geometric means over the scenes that have a ratio, and over how many."""
+    by_error, by_noise = ([ratio for ratio in column if ratio] for column in zip(*ratios))
+    row = dict.fromkeys(COLUMNS, "") | {"scene": f"geometric mean of {len(by_error)} and {len(by_noise)}", "mode": mode}
+    for column, values in (("ratio", by_error), ("ratio, noise alone", by_noise)):
+        row[column] = number(measure.geometric_mean(values) if values else None, 1)
+    return list(row.values())
 
 
 def check_tools(options):

@@ -56,6 +56,11 @@ def bias(first, second, a, b, of):
     return root(product(difference(first, a), difference(second, b), of))
 
 
+def without(whole, part):
+    """What is left of an error when an independent part of it is taken away."""
+    return root(whole ** 2 - part ** 2)
+
+
 def seconds_to(target, runs):
     """Seconds in which the error falls to `target`, and whether this is an extrapolation; None where it never does.
 

@@ -53,6 +53,8 @@ def test_errors():
     near(measure.error([noisy(0.1)], a, b, of), 0.1, 0.1)
     near(measure.error([noisy(0.1, 0.2), noisy(0.1, 0.2)], a, b, of), math.hypot(0.1, 0.2), 0.05)
     near(measure.bias(noisy(0.3, 0.2), noisy(0.3, 0.2), a, b, of), 0.2, 0.05)
+    near(measure.without(5, 3), 4)
+    assert measure.without(3, 5) == 0
     assert measure.error([picture(truth)], a, a, of) > 0.4  # one reference twice would count its noise
 
 
@@ -67,20 +69,24 @@ def test_counted():
 
 def test_rows():
     """A ratio stands only where both bakers have the same light in the mean."""
-    def series(runs, mean):
-        out = compare.Series(4)
-        out.runs, out.mean, out.memory, out.lasting, out.of = runs, mean, 3e6, 0.02, range(5)
+    def series(runs, noises, mean):
+        out = compare.Series("hall", 4)
+        out.runs, out.noises, out.mean, out.memory, out.lasting, out.of = runs, noises, mean, 3e6, 0.02, range(5)
         return out
 
-    slow, quick = series([(10, 0.02), (40, 0.01)], 0.995), series([(1, 0.02), (4, 0.01), (9, 0.005)], 1.001)
-    row, ratio = compare.row_of("hall", slow, quick, "quick")
-    near(ratio, 10)
-    assert row == ["hall", "40.0", "4.00", "10.0", "1.00", "0.50", "0.9950", "1.0010", "2.0", "3", "3", "5",
-                   "quick"], row
+    slow = series([(10, 0.02), (40, 0.01)], None, 0.995)
+    quick = series([(1, 0.02), (4, 0.01), (9, 0.005)], [(1, 0.02), (2, 0.01)], 1.001)
+    row, ratios = compare.row_of("hall", slow, quick, "quick")
+    near(ratios[0], 10)
+    near(ratios[1], 20)
+    assert row == ["hall", "40.0", "4.00", "10.0", "2.00", "20.0", "1.00", "0.50", "0.9950", "1.0010", "2.0", "3",
+                   "3", "5", "quick"], row
     assert len(row) == len(compare.COLUMNS)
+    row = compare.mean_row([ratios, [40, None], [None, None]], "quick")
+    assert row[0] == "geometric mean of 2 and 1" and row[3:6] == ["20.0", "", "20.0"], row
     quick.mean = 1.02
-    row, ratio = compare.row_of("hall", slow, quick, "quick")
-    assert ratio is None and row[1:4] == ["40.0", "4.00", "-"]
+    row, ratios = compare.row_of("hall", slow, quick, "quick")
+    assert ratios == [None, None] and row[1:6] == ["40.0", "4.00", "-", "2.00", "-"]
 
 
 def encoded_exr(width, height, channels):

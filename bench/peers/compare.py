@@ -222,6 +222,8 @@ def print_table(bench):
     ratios = []
     for name in bench.options.scene or NAMES:
         if not bench.scene_file(name).exists():
+            if bench.options.scene:
+                raise Fault(f"{bench.scene_file(name)}: there is no such scene.")
             say(f"{bench.scene_file(name)} is not on this machine: left out")
             continue
         for row, of_row in compared(bench, name):

@@ -131,12 +131,12 @@ class Series:
         self.runs, self.noises, self.most, self.memory, self.samples = [], [], most, 0, 4
 
     def wants_more(self):
-        return self.samples <= self.most and (not self.runs or self.runs[-1][1] > TARGET)
+        return self.samples <= self.most and (not self.runs or self.runs[-1][2] > TARGET)
 
     def add(self, seconds, error, noise, memory):
-        self.runs.append((sum(seconds) / len(seconds), error))
-        self.noises.append((self.runs[-1][0], noise))
-        say(f"{self.name}, {self.samples} samples: {self.runs[-1][0]:.2f} s, error {100 * error:.2f} %, "
+        self.runs.append((self.samples, min(seconds), error))
+        self.noises.append((self.samples, min(seconds), noise))
+        say(f"{self.name}, {self.samples} samples: {min(seconds):.2f} s, error {100 * error:.2f} %, "
             f"noise {100 * noise:.2f} %")
         self.memory = max(self.memory, *memory)
         self.samples *= 4
@@ -191,12 +191,12 @@ def row_of(name, cycles, luxel, mode):
         if seconds is None:
             say(f"{name}: {who} does not reach {100 * TARGET:g} %")
         elif beyond:
-            say(f"{name}: the seconds of {who} are extrapolated from {100 * series.runs[-1][1]:.2f} %")
+            say(f"{name}: the seconds of {who} are extrapolated from {100 * series.runs[-1][2]:.2f} %")
     if not fair:
         say(f"{name}: the light differs in the mean by more than {100 * FAIR:g} %: no ratio")
     return [name, number(slow[0], 1), number(quick[0], 2), number(ratios[0], 1), number(noise[0], 2),
-            number(ratios[1], 1), number(100 * cycles.runs[-1][1], 2),
-            number(100 * luxel.runs[-1][1], 2), number(cycles.mean, 4), number(luxel.mean, 4),
+            number(ratios[1], 1), number(100 * cycles.runs[-1][2], 2),
+            number(100 * luxel.runs[-1][2], 2), number(cycles.mean, 4), number(luxel.mean, 4),
             number(100 * cycles.lasting, 1), number(cycles.memory / 1e6, 0), number(luxel.memory / 1e6, 0),
             str(len(cycles.of)), mode], ratios
 

@@ -64,18 +64,23 @@ def without(whole, part):
 def seconds_to(target, runs):
     """Seconds in which the error falls to `target`, and whether this is an extrapolation; None where it never does.
 
-    `runs`: pairs of seconds and error, by samples. Between two runs log(error) is a straight line in log(seconds).
-    Below the least error it goes on as between the last two; if they fall by less than a tenth of a decade per decade
-    of seconds, more samples do not help. The first run is taken whole if its error is below the target already.
+    `runs`: samples, seconds and error, by samples. Between two runs log(error) is a straight line in log(seconds).
+    Beyond the last run it goes on in log(samples) as between the last two, and seconds grow linearly with samples. If
+    the error falls there by less than a tenth of a decade per decade of samples, more samples do not help. The first
+    run is taken whole if its error is below the target already.
     """
-    if runs[0][1] <= target:
-        return runs[0][0], False
-    for (t0, e0), (t1, e1) in zip(runs, runs[1:]):
+    if runs[0][2] <= target:
+        return runs[0][1], False
+    for (_, t0, e0), (_, t1, e1) in zip(runs, runs[1:]):
         if e1 <= target < e0:
             return on_line(target, (t0, e0), (t1, e1)), False
-    if len(runs) < 2 or slope(runs[-2], runs[-1]) > -0.1:
+    if len(runs) < 2:
         return None, True
-    return on_line(target, runs[-2], runs[-1]), True
+    (n0, t0, e0), (n1, t1, e1) = runs[-2:]
+    if slope((n0, e0), (n1, e1)) > -0.1:
+        return None, True
+    samples = on_line(target, (n0, e0), (n1, e1))
+    return t1 + (samples - n1) * max(t1 - t0, 0) / (n1 - n0), True
 
 
 def slope(first, second):
@@ -83,6 +88,9 @@ def slope(first, second):
 
 
 def on_line(target, first, second):
+    """Where a straight line through two points in log(error) over log(seconds) or log(samples) meets the target."""
+    if second[0] == first[0]:
+        return second[0]
     return second[0] * (target / second[1]) ** (1 / slope(first, second))
 
 

@@ -23,7 +23,8 @@ def picture(values):
 
 
 def test_seconds():
-    runs = [(1, 0.08), (4, 0.04), (16, 0.02), (64, 0.005)]  # 1 over the root, then 1 over the time
+    # 1 over the root, then 1 over the time.
+    runs = [(4, 1, 0.08), (16, 4, 0.04), (64, 16, 0.02), (256, 64, 0.005)]
     near(measure.seconds_to(0.02, runs)[0], 16)
     near(measure.seconds_to(0.01, runs)[0], 32)  # half the error in twice the seconds
     assert not measure.seconds_to(0.01, runs)[1]
@@ -31,9 +32,11 @@ def test_seconds():
     near(seconds, 64)
     assert beyond
     assert measure.seconds_to(0.1, runs) == (1, False)
-    assert measure.seconds_to(0.01, [(1, 0.03), (4, 0.029)]) == (None, True)
-    assert measure.seconds_to(0.01, [(1, 0.03), (4, 0.031)]) == (None, True)
-    assert measure.seconds_to(0.01, [(1, 0.03)]) == (None, True)
+    # Half the error takes four times the samples, whatever a sample costs: 256 of them, 192 more at a half second.
+    near(measure.seconds_to(0.01, [(16, 6, 0.04), (64, 30, 0.02)])[0], 30 + 192 / 2)
+    # The second falls by samples too slowly, though a larger part of its seconds is fixed.
+    for runs in ([(1, 1, 0.03), (4, 4, 0.029)], [(4, 2, 0.028), (16, 3, 0.025)], [(1, 1, 0.03), (4, 4, 0.031)], [(1, 1, 0.03)]):
+        assert measure.seconds_to(0.01, runs) == (None, True)
     near(measure.geometric_mean([1, 10, 100]), 10)
 
 
@@ -74,8 +77,8 @@ def test_rows():
         out.runs, out.noises, out.mean, out.memory, out.lasting, out.of = runs, noises, mean, 3e6, 0.02, range(5)
         return out
 
-    slow = series([(10, 0.02), (40, 0.01)], None, 0.995)
-    quick = series([(1, 0.02), (4, 0.01), (9, 0.005)], [(1, 0.02), (2, 0.01)], 1.001)
+    slow = series([(4, 10, 0.02), (16, 40, 0.01)], None, 0.995)
+    quick = series([(4, 1, 0.02), (16, 4, 0.01), (64, 9, 0.005)], [(4, 1, 0.02), (16, 2, 0.01)], 1.001)
     row, ratios = compare.row_of("hall", slow, quick, "quick")
     near(ratios[0], 10)
     near(ratios[1], 20)

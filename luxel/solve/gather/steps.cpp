@@ -132,11 +132,12 @@ Status measure_noise(const Request& in, Progressive& light, Progress& progress) 
   if (in.params.max_error <= 0 || in.params.error_measure != ErrorMeasure::rms) return {};
   Progress own;  // its stages are not those of the bake
   LUXEL_TRY(const double of_noise,
-            noise_by_repeating(
-                in.scene, in.sides,
-                {light.direct, light.levels, light.hits, in.behind, light.bounced.irradiance,
-                 light.errors.noise_variance},
-                {in.supersample_params(), in.params.bounces < 0, in.stores.scratch_folder}, own));
+            noise_by_repeating(in.scene, in.sides,
+                               {light.direct, light.levels, light.hits, in.behind,
+                                light.bounced.irradiance, light.errors.noise_variance},
+                               {in.supersample_params(), in.params.bounces < 0,
+                                spare_bytes(in.stores, light.hits), in.stores.scratch_folder},
+                               own));
   light.errors.expected.noise *= of_noise / std::exchange(light.of_noise, of_noise);
   return stopped(progress);
 }

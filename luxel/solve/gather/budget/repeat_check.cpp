@@ -137,6 +137,7 @@ Result<std::vector<Rgb>> light_again(const Repeated& in, Progress& progress) {
   TracedHits hits = no_hits(samples.size());
   LUXEL_TRY_STATUS(trace_more(trace_scene(in.of_chosen, &in.sides), samples,
                               {.seed = direct.direct.seed,
+                               .memory_limit_bytes = in.params.memory_limit_bytes,
                                .scratch_folder = in.params.scratch_folder,
                                .follows_near = in.params.follows_near},
                               hits, progress));

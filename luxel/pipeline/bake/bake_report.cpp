@@ -55,7 +55,10 @@ nlohmann::json about_error(const BakeSettings& settings, const Bake& bake) {
         {"position", {at.x, at.y, at.z}},
         {"node", bake.scene.instances[texel.sample.instance].name}}},
       {"samples", {{"fewest", *fewest}, {"mean", all / double(samples.size())}, {"most", *most}}}};
-  if (settings.max_error > 0) out["asked"] = settings.max_error;
+  if (settings.max_error > 0) {
+    out["asked"] = settings.max_error;
+    out["asked_of"] = settings.error_measure == gather::ErrorMeasure::rms ? "rms" : "p95";
+  }
   return out;
 }
 

@@ -54,8 +54,14 @@ Options<S> sampling_options() {
           {kSmallestError, 1, "",
            "an error of 0 would never end; give the part of their light to which texels must be "
            "known, as 0.02"},
-          "Add rays until 95 % of texels err by less than this part of their light, e.g. 0.02")
+          "Add rays until the light errs by less than this part of itself, e.g. 0.02")
           .unit("ERROR")
+          .only(&Can::errors),
+      BakeRows::choice(
+          "--error-measure", &S::error_measure,
+          {{"p95", gather::ErrorMeasure::p95}, {"rms", gather::ErrorMeasure::rms}},
+          "What --max-error says: p95: 95 % of texels err by less than this part of their own "
+          "light; rms: the root mean square error of all texels, over their mean light")
           .only(&Can::errors),
       BakeRows::number(
           "--time-budget", &S::time_budget_s,

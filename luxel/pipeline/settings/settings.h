@@ -60,9 +60,10 @@ struct BakeSettings {
   Quality quality = Quality::none;
   int samples = gather::GatherParams{}.samples;  ///< rays or paths per texel
   int direct_samples = gather::GatherParams{}.direct_samples;
-  /// Rays are added until 95 % of texels err by less than this part of their light, and `samples`
-  /// is ignored; 0: no more than `samples`.
+  /// Rays are added until the light errs by less than this, and `samples` is ignored; 0: no more
+  /// than `samples`.
   double max_error = 0;
+  gather::ErrorMeasure error_measure = gather::ErrorMeasure::p95;
   /// > 0: as good as it gets in about so many seconds, `samples` is not looked at; with max_error
   /// until either is reached. The result depends on how fast the machine is.
   double time_budget_s = 0;

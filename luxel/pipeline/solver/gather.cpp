@@ -40,16 +40,19 @@ void warn_about_rounds(const BakeSettings& settings, const gather::GatherParams&
   if (settings.samples_given)
     warnings.push_back(fmt::format("{} decides how many rays there are; --samples {} is ignored",
                                    winner, settings.samples));
-  if (settings.max_error <= 0 || double(result.error_p95) <= settings.max_error) return;
+  const bool is_rms = settings.error_measure == gather::ErrorMeasure::rms;
+  const double error = is_rms ? result.relative_error : double(result.error_p95);
+  const double noise = is_rms ? result.relative_noise : double(result.noise_p95);
+  if (settings.max_error <= 0 || error <= settings.max_error) return;
   const std::string why =
-      double(result.noise_p95) <= settings.max_error
+      noise <= settings.max_error
           ? "since texels are too large to show how light varies; give a higher --resolution"
       : settings.time_budget_s > 0
           ? fmt::format("when --time-budget {} was over", settings.time_budget_s)
           : fmt::format("and none gets more than {} rays", params.max_samples);
-  warnings.push_back(
-      fmt::format("--max-error {} was not reached: 95 % of texels err by less than {:.2g}, {}",
-                  settings.max_error, result.error_p95, why));
+  warnings.push_back(fmt::format(
+      "--max-error {} was not reached: {} {:.2g}, {}", settings.max_error,
+      is_rms ? "the root mean square error is" : "95 % of texels err by less than", error, why));
 }
 
 /// Makes the first round small enough for `seconds`. The forecast is that of `params`.
@@ -104,6 +107,7 @@ gather::GatherParams gather_params(const BakeSettings& settings) {
   const bool rounds = settings.max_error > 0 || settings.time_budget_s > 0;
   params.samples = rounds ? kFirstSamples : settings.samples;
   params.max_error = float(settings.max_error);
+  params.error_measure = settings.error_measure;
   params.direct_samples = settings.direct_samples;
   params.supersample = settings.supersample;
   params.bounces = settings.bounces;

@@ -1,6 +1,7 @@
 #include "luxel/solve/gather/gather.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "luxel/base/clock.h"
 #include "luxel/base/free_memory.h"
@@ -153,7 +154,8 @@ Status bounce_last(const Request& in, Progressive& light, Gather& out, Progress&
 
 /// Moves what the caller gets out of what is known in the end.
 void take_result(Progressive&& light, Gather& out) {
-  out.relative_error = light.errors.expected_rms;
+  out.relative_error = light.errors.expected.rms();
+  out.relative_noise = std::sqrt(light.errors.expected.noise);
   out.irradiance = std::move(light.bounced.irradiance);
   out.direct = std::move(light.direct.irradiance);
   out.direct_variance = std::move(light.direct.variance);

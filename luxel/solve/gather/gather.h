@@ -20,12 +20,19 @@ namespace luxel::gather {
 
 struct Earlier;
 
+/// What a largest error is said of.
+enum class ErrorMeasure : uint8_t {
+  p95,  ///< what 95 % of elements err by less than, over their light, or over a tenth of the mean
+        ///< where they are darker
+  rms,  ///< the root mean square error of all elements that are not hidden, over their mean light
+};
+
 /// How many rays, and how many bounces of their light.
 struct GatherParams {
   int samples = 256;  ///< indirect rays per element; with max_error or seconds, of the first round
-  /// > 0: rounds of more samples until 95 % of elements err by less than this part of their light,
-  /// or of a tenth of the mean where they are darker.
+  /// > 0: rounds of more samples until the error is below it.
   float max_error = 0;
+  ErrorMeasure error_measure = ErrorMeasure::p95;
   /// > 0: rounds of more samples while they, and the bounces, end within so many seconds from the
   /// call. The first round and the first direct light are not cut short. Depends on the machine.
   double seconds = 0;
@@ -103,6 +110,7 @@ struct Gather {
   /// Root mean square error to expect over the mean luminance, of elements that no solid hides: of
   /// the noise (pooled_variances) and of what texels cost (texel_error).
   double relative_error = 0;
+  double relative_noise = 0;  ///< of its noise alone
 };
 
 /// While samples are still to come the bounces need not be exact: a hundredth is far below the

@@ -1,7 +1,9 @@
 // Rounds of more rays, where an error is asked for or time is left.
 #include <algorithm>
+#include <cmath>
 
 #include "luxel/solve/gather/budget/adaptive.h"
+#include "luxel/solve/gather/budget/rms_round.h"
 #include "luxel/solve/gather/steps.h"
 
 namespace luxel::gather {
@@ -16,6 +18,7 @@ constexpr double kSmallestRound = 1.0 / 16;
 constexpr double kDirectShare = 0.25;
 /// What noise may have of an error when texels cost more than the rest of its square: half of it.
 constexpr float kNoiseWithTexels = 0.70710678f;
+constexpr double kNoiseWithTexels2 = 0.5;
 
 /// How many rays the next round may have, such that it and the last bounces end in time: tracing
 /// takes as long per ray as the last round, and bounces grow with the number of all rays.
@@ -30,9 +33,10 @@ double affordable_rays(const Progressive& light, double seconds_left) {
 /// Tells the watcher what is still to come, when an error is asked for.
 void expect_rounds(const GatherParams& params, std::span<const uint16_t> target,
                    const Progressive& light, Progress& progress) {
-  std::vector<uint64_t> rounds =
-      rounds_to_come(light.errors.all, light.errors.gathered, params.max_error, params.max_samples,
-                     light.hits.samples);
+  std::vector<uint64_t> rounds;
+  if (params.error_measure == ErrorMeasure::p95)
+    rounds = rounds_to_come(light.errors.all, light.errors.gathered, params.max_error,
+                            params.max_samples, light.hits.samples);
   const double before = double(sum_of(light.hits.samples));
   if (rounds.empty()) rounds.push_back(0);
   rounds.front() = sum_of(target) - uint64_t(before);  // that is known
@@ -48,35 +52,80 @@ void expect_rounds(const GatherParams& params, std::span<const uint16_t> target,
   progress.expect(std::move(stages));
 }
 
+/// The error that is asked about.
+double error_of(ErrorMeasure measure, const LightErrors& errors) {
+  return measure == ErrorMeasure::rms ? errors.expected.rms() : double(errors.p95);
+}
+
+/// Whether the light is known well enough, or no ray helps: the rest is what texels cost.
+bool is_known(const GatherParams& params, const LightErrors& errors) {
+  const double noise = params.error_measure == ErrorMeasure::rms ? std::sqrt(errors.expected.noise)
+                                                                 : double(errors.noise_p95);
+  return error_of(params.error_measure, errors) <= double(params.max_error) ||
+         noise <= double(kNoiseWithTexels * params.max_error);
+}
+
+/// Indirect light gets more rays, direct light more shadow rays, where either is off by too much.
+/// `affordable` rays at most.
+RoundPlan plan_p95(const Request& in, double affordable, const Progressive& light) {
+  const GatherParams& params = in.params;
+  const float each = error_of_part(params.max_error);
+  RoundPlan out{next_samples(light.errors.gathered, each, params.max_samples, light.hits.samples),
+                {}};
+  float direct_above = each;
+  if (std::isfinite(affordable)) {
+    const double rays_per_sample = double(light.hits.rays) / double(sum_of(light.hits.samples));
+    keep_affordable(light.errors.gathered,
+                    uint64_t((1 - kDirectShare) * affordable / rays_per_sample), light.hits.samples,
+                    out.samples);
+    direct_above = affordable_error(light.errors.direct, each, kDirectShare * affordable,
+                                    in.supersample_params(), light.levels);
+  }
+  out.finer = elements_above(light.errors.direct, direct_above);
+  return out;
+}
+
+/// Rays of each kind where the sum of squared errors falls most for them, until what is left of it
+/// beside that of texels is as asked for.
+RoundPlan plan_rms(const Request& in, double affordable, const Progressive& light) {
+  const GatherParams& params = in.params;
+  const std::vector<Rgb>& e = light.bounced.irradiance;
+  const std::vector<float> gathered = variances_of(light.errors.gathered, e),
+                           direct = variances_of(light.errors.direct, e);
+  double all = 0;
+  for (size_t i = 0; i < e.size(); ++i) all += double(gathered[i]) + double(direct[i]);
+  const ExpectedSquares& now = light.errors.expected;
+  const double asked = double(params.max_error) * double(params.max_error);
+  const double allowed =
+      now.noise > 0 ? all * std::max(asked - now.texels, asked * kNoiseWithTexels2) / now.noise : 0;
+  const double points = double(params.supersample * std::max(params.direct_samples / 8, 8));
+  const RayCosts costs = ray_costs(
+      double(light.hits.rays) / double(sum_of(light.hits.samples)),
+      light.shadow_rays_at_sample > 0 ? light.shadow_rays_at_sample : params.direct_samples,
+      light.shadow_rays_at_points > 0 ? light.shadow_rays_at_points : points);
+  return plan_rms_round({gathered, direct, light.hits.samples, light.levels}, allowed, affordable,
+                        costs, params.max_samples);
+}
+
 }  // namespace
 
 Result<bool> next_round(const Request& in, double seconds_left, Progressive& light,
                         Progress& progress) {
   const GatherParams& params = in.params;
-  if (light.errors.p95 <= params.max_error) return false;
-  // The rest is what texels cost, and no ray helps.
-  if (light.errors.noise_p95 <= kNoiseWithTexels * params.max_error) return false;
-  // Indirect light gets more rays, direct light more shadow rays, where either is off by too much.
-  const float each = error_of_part(params.max_error);
-  const light::SupersampleParams supersample = in.supersample_params();
-  std::vector<uint16_t> target =
-      next_samples(light.errors.gathered, each, params.max_samples, light.hits.samples);
-  float direct_above = each;
-  // A time budget takes both back to what it can pay for, and ends the rounds.
+  if (is_known(params, light.errors)) return false;
+  // A time budget takes both kinds of rays back to what it can pay for, and ends the rounds.
+  double affordable = INFINITY;
   if (params.seconds > 0) {
-    const double rays = affordable_rays(light, seconds_left);
-    if (rays < kSmallestRound * double(light.hits.rays)) return false;
-    const double rays_per_sample = double(light.hits.rays) / double(sum_of(light.hits.samples));
-    keep_affordable(light.errors.gathered, uint64_t((1 - kDirectShare) * rays / rays_per_sample),
-                    light.hits.samples, target);
-    direct_above =
-        affordable_error(light.errors.direct, each, kDirectShare * rays, supersample, light.levels);
+    affordable = affordable_rays(light, seconds_left);
+    if (affordable < kSmallestRound * double(light.hits.rays)) return false;
   }
-  if (params.seconds <= 0) expect_rounds(params, target, light, progress);
-  LUXEL_TRY(const size_t finer, refine_direct(in.scene, light.errors.direct, direct_above,
-                                              supersample, light.levels, light.direct, progress));
-  if (target == light.hits.samples) return finer > 0;
-  LUXEL_TRY_STATUS(trace_round(in, target, light, progress));
+  const bool is_rms = params.error_measure == ErrorMeasure::rms;
+  const RoundPlan plan = is_rms ? plan_rms(in, affordable, light) : plan_p95(in, affordable, light);
+  if (params.seconds <= 0) expect_rounds(params, plan.samples, light, progress);
+  LUXEL_TRY(const size_t finer, refine_direct(in.scene, plan.finer, in.supersample_params(),
+                                              light.levels, light.direct, progress));
+  if (plan.samples == light.hits.samples) return finer > 0;
+  LUXEL_TRY_STATUS(trace_round(in, plan.samples, light, progress));
   return true;
 }
 

@@ -1,10 +1,12 @@
 #include "luxel/solve/gather/steps.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "luxel/base/clock.h"
 #include "luxel/base/free_memory.h"
 #include "luxel/solve/gather/budget/adaptive.h"
+#include "luxel/solve/gather/budget/repeat_check.h"
 #include "luxel/solve/gather/reuse/earlier_direct.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 
@@ -18,7 +20,7 @@ void show(const GatherObserver& observer, const Progressive& light, bool is_last
                         .samples = double(sum_of(light.hits.samples)) / n,
                         .error_p95 = light.errors.p95,
                         .is_last = is_last,
-                        .error_rms = light.errors.expected_rms});
+                        .error_rms = light.errors.expected.rms()});
 }
 
 Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
@@ -35,10 +37,14 @@ Status begin_direct(const Request& in, Progressive& light, Progress& progress) {
   }
   LUXEL_TRY(light.direct, light::direct_light(scene.scene, scene.elements, scene.lights,
                                               scene.tracer, supersample.direct, progress));
+  const double elements = double(std::max<size_t>(scene.elements.size(), 1));
+  light.shadow_rays_at_sample = double(light.direct.rays) / elements;
   LUXEL_TRY(const light::Supersampled averaged,
             light::supersample(scene, supersample, light.direct, progress));
   light.direct.rays += averaged.rays;
   light.averaged = averaged.texels.size();
+  if (light.averaged > 0)
+    light.shadow_rays_at_points = double(averaged.rays) / double(light.averaged);
   // Only rounds, and bakes that are kept, ask how finely light was sampled.
   if (!in.adds_rounds() && in.stores.keep == nullptr) return {};
   light.levels = {std::vector<uint8_t>(scene.elements.size()),
@@ -114,12 +120,34 @@ Status judge(const Request& in, Progressive& light, Progress& progress) {
                                        {light.direct, light.bounced, light.hits, in.behind,
                                         light.check ? &*light.check : nullptr, in.params.bounces},
                                        progress));
+  light.errors.expected.noise *= light.of_noise / kOfNoise;
   return {};
 }
+
+namespace {
+
+/// Where the root mean square error is asked for, its noise is measured. Errors: cancelled, disk
+/// full.
+Status measure_noise(const Request& in, Progressive& light, Progress& progress) {
+  if (in.params.max_error <= 0 || in.params.error_measure != ErrorMeasure::rms) return {};
+  Progress own;  // its stages are not those of the bake
+  LUXEL_TRY(const double of_noise,
+            noise_by_repeating(in.scene, in.sides,
+                               {light.direct, light.levels, light.hits, in.behind,
+                                light.bounced.irradiance, light.errors.noise_variance},
+                               {in.supersample_params(), in.params.bounces < 0,
+                                spare_bytes(in.stores, light.hits), in.stores.scratch_folder},
+                               own));
+  light.errors.expected.noise *= of_noise / std::exchange(light.of_noise, of_noise);
+  return stopped(progress);
+}
+
+}  // namespace
 
 Status estimate_round(const Request& in, Progressive& light, Progress& progress) {
   LUXEL_TRY_STATUS(bounce_round(in, kRoughTolerance, light, progress));
   LUXEL_TRY_STATUS(judge(in, light, progress));
+  LUXEL_TRY_STATUS(measure_noise(in, light, progress));
   show(in.observer, light, false);
   return {};
 }

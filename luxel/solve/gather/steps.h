@@ -42,9 +42,13 @@ struct Progressive {
   std::vector<Rgb> direct_before;  ///< direct light of an earlier bake
   light::DirectLevels levels;
   size_t averaged = 0;
+  /// Of an element's direct light as it was first looked at, on average: at its own sample, and
+  /// averaged over points. 0: none was found.
+  double shadow_rays_at_sample = 0, shadow_rays_at_points = 0;
   TracedHits hits;
   Bounced bounced;
   LightErrors errors;
+  double of_noise = kOfNoise;  ///< the part of pooled variances that is true; measured for an RMS
   std::optional<ReadCheck> check;      ///< places at which what rays read is checked
   std::vector<Rgb> first_change;       ///< BounceParams
   double traced_s = 0, bounced_s = 0;  ///< of the last round in which something was traced

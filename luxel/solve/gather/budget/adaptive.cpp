@@ -80,15 +80,20 @@ std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::Texe
   return out;
 }
 
-std::vector<float> relative_errors(std::span<const float> variance, std::span<const Rgb> irradiance,
-                                   const TracedHits& hits) {
+float darkest_light(std::span<const Rgb> irradiance) {
   double mean = 0;
   for (const Rgb& e : irradiance) mean += double(luminance(e)) / double(irradiance.size());
+  return kDarkest * float(mean);
+}
+
+std::vector<float> relative_errors(std::span<const float> variance, std::span<const Rgb> irradiance,
+                                   const TracedHits& hits) {
+  const float darkest = darkest_light(irradiance);
   std::vector<float> out(irradiance.size());
-  if (!(mean > 0)) return out;
+  if (!(darkest > 0)) return out;
   for (size_t i = 0; i < out.size(); ++i)
     if (!is_hidden(hits, i))
-      out[i] = std::sqrt(variance[i]) / std::max(luminance(irradiance[i]), kDarkest * float(mean));
+      out[i] = std::sqrt(variance[i]) / std::max(luminance(irradiance[i]), darkest);
   return out;
 }
 
@@ -162,8 +167,9 @@ float affordable_error(std::span<const float> errors, float at_least, double ray
   // once.
   const auto cost = [&](size_t i) {
     const int factor = 1 << (2 * (int(levels.level[i]) + 1)), samples = params.direct.samples;
-    if (!levels.averaged[i]) return levels.level[i] < kFinestLevel ? factor * samples : 0;
-    return levels.level[i] < kFinestAverage ? factor * params.points * std::max(samples / 8, 8) : 0;
+    if (!can_be_finer(levels, i)) return 0;
+    return levels.averaged[i] ? factor * params.points * std::max(samples / 8, 8)
+                              : factor * samples;
   };
   std::vector<uint32_t> which;
   for (uint32_t i = 0; i < errors.size(); ++i)
@@ -177,21 +183,27 @@ float affordable_error(std::span<const float> errors, float at_least, double ray
   return at_least;
 }
 
-Result<size_t> refine_direct(const light::TexelScene& in, std::span<const float> errors,
-                             float max_error, const light::SupersampleParams& params,
-                             light::DirectLevels& levels, light::DirectLight& direct,
-                             Progress& progress) {
-  LUXEL_CHECK(levels.level.size() == errors.size() && levels.averaged.size() == errors.size());
+std::vector<uint8_t> elements_above(std::span<const float> errors, float max_error) {
+  std::vector<uint8_t> out(errors.size());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = errors[i] > max_error;
+  return out;
+}
+
+bool can_be_finer(const light::DirectLevels& levels, size_t element) {
+  return levels.level[element] < (levels.averaged[element] ? kFinestAverage : kFinestLevel);
+}
+
+Result<size_t> refine_direct(const light::TexelScene& in, std::span<const uint8_t> chosen,
+                             const light::SupersampleParams& params, light::DirectLevels& levels,
+                             light::DirectLight& direct, Progress& progress) {
+  LUXEL_CHECK(levels.level.size() == chosen.size() && levels.averaged.size() == chosen.size());
   size_t count = 0;
   // From the finest level down: what rises by one level is not met again.
   for (int level = kFinestLevel - 1; level >= 0; --level) {
     std::vector<uint32_t> single, averaged;
-    for (uint32_t i = 0; i < errors.size(); ++i) {
-      if (errors[i] <= max_error || levels.level[i] != level) continue;
-      if (!levels.averaged[i])
-        single.push_back(i);
-      else if (level < kFinestAverage)
-        averaged.push_back(i);
+    for (uint32_t i = 0; i < chosen.size(); ++i) {
+      if (!chosen[i] || levels.level[i] != level || !can_be_finer(levels, i)) continue;
+      (levels.averaged[i] ? averaged : single).push_back(i);
     }
     const int factor = 1 << (2 * (level + 1));
     if (!averaged.empty()) {

@@ -26,6 +26,9 @@ struct VariancePair {
 std::vector<float> pooled_variances(const atlas::Atlas& atlas, const atlas::TexelMap& map,
                                     VariancePair variance, std::span<const uint32_t> among = {});
 
+/// A tenth of the mean luminance: relative errors of what is darker are told over it.
+float darkest_light(std::span<const Rgb> irradiance);
+
 /// Per element, its standard error over its own luminance, or over a tenth of the mean luminance
 /// where it is darker: what nobody sees is not worth the rays. Hidden elements have none.
 std::vector<float> relative_errors(std::span<const float> variance, std::span<const Rgb> irradiance,
@@ -59,13 +62,17 @@ uint64_t sum_of(std::span<const uint16_t> samples);
 void keep_affordable(std::span<const float> errors, uint64_t affordable,
                      std::span<const uint16_t> samples, std::vector<uint16_t>& target);
 
-/// Looks at the direct light of elements whose relative error is larger than max_error again, one
-/// level finer. Returns how many there were: 0 when all are good enough or as fine as they can be.
-/// Errors: cancelled.
-Result<size_t> refine_direct(const light::TexelScene& in, std::span<const float> errors,
-                             float max_error, const light::SupersampleParams& params,
-                             light::DirectLevels& levels, light::DirectLight& direct,
-                             Progress& progress);
+/// Per element, 1 where its error is larger than max_error.
+std::vector<uint8_t> elements_above(std::span<const float> errors, float max_error);
+
+/// Whether the direct light of an element can be looked at one level finer.
+bool can_be_finer(const light::DirectLevels& levels, size_t element);
+
+/// Looks at the direct light of elements that are chosen, 1, again, one level finer. Returns how
+/// many there were: 0 when none is chosen that is not as fine as it can be. Errors: cancelled.
+Result<size_t> refine_direct(const light::TexelScene& in, std::span<const uint8_t> chosen,
+                             const light::SupersampleParams& params, light::DirectLevels& levels,
+                             light::DirectLight& direct, Progress& progress);
 
 /// The smallest max_error, `at_least` or larger, with which refine_direct would trace about `rays`
 /// rays at most.

@@ -1,6 +1,7 @@
 // The root mean square error that a lightmap most likely has.
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include "luxel/base/vec.h"
@@ -15,13 +16,22 @@ struct SafeVariances {
   double likely_of_texels = 1;   ///< the likely square of what texels cost over the safe one
 };
 
-/// The root mean square error to expect over the mean luminance, of elements that no solid hides.
-/// It is smaller than the variances say, which are bounds:
+/// Mean square errors over the square of the mean luminance, of elements that no solid hides.
+struct ExpectedSquares {
+  double noise = 0, texels = 0;
+
+  double rms() const { return std::sqrt(noise + texels); }
+};
+
+/// The part of pooled_variances() that is to be expected, of all elements together.
+inline constexpr double kOfNoise = 0.70710678;
+
+/// The errors to expect. They are smaller than the variances say, which are bounds:
 /// - Halves of n stratified samples tell the variance of n / 2, which is larger than twice that of
 ///   n. Along edges, where most of the noise is, it falls like n^-1.5: by sqrt(2) too large.
 /// - TexelError::likely is smaller than TexelError::safe.
 /// [Mitchell96, section 4] for n^-1.5 of stratified samples in two dimensions.
-double expected_rms(std::span<const Rgb> irradiance, const SafeVariances& variance,
-                    const TracedHits& hits);
+ExpectedSquares expected_squares(std::span<const Rgb> irradiance, const SafeVariances& variance,
+                                 const TracedHits& hits);
 
 }  // namespace luxel::gather

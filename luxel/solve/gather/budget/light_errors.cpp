@@ -53,8 +53,8 @@ Result<LightErrors> light_errors(const light::TexelScene& scene, const LightToJu
   out.all = relative_errors(out.variance, e, light.hits);
   out.p95 = error_p95(out.all, counts);
   const double likely = texels.safe > 0 ? texels.likely / texels.safe : 0;
-  out.expected_rms =
-      expected_rms(e, {out.noise_variance, out.variance, likely * likely}, light.hits);
+  out.expected =
+      expected_squares(e, {out.noise_variance, out.variance, likely * likely}, light.hits);
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "luxel/light/direct_light.h"
 #include "luxel/light/texel_scene.h"
 #include "luxel/solve/gather/bounce/bounces.h"
+#include "luxel/solve/gather/budget/expected_rms.h"
 #include "luxel/solve/gather/budget/read_check.h"
 
 namespace luxel::gather {
@@ -31,8 +32,7 @@ struct LightErrors {
   std::vector<float> direct, gathered;  ///< relative_errors() of the noise
   std::vector<float> all;               ///< relative_errors() by `variance`
   float noise_p95 = 0, p95 = 0;         ///< error_p95
-  /// The root mean square error to expect over the mean luminance, of elements that no solid hides.
-  double expected_rms = 0;
+  ExpectedSquares expected;
 };
 
 /// Errors: the file of hits cannot be read, cancelled.

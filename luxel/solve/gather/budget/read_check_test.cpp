@@ -104,7 +104,8 @@ TEST(ExpectedRms, CountsPartsOfSafeVariances) {
   const std::vector<Rgb> light{{1, 1, 1}, {3, 3, 3}, {100, 100, 100}};
   const std::vector<float> noise{0.02f, 0.04f, 50}, all{0.10f, 0.12f, 90};
   const double squares = (0.06 * std::sqrt(0.5) + 0.25 * 0.16) / 2;
-  EXPECT_NEAR(expected_rms(light, {noise, all, 0.25}, hits), std::sqrt(squares) / 2, 1e-6);
+  EXPECT_NEAR(expected_squares(light, {noise, all, 0.25}, hits).rms(), std::sqrt(squares) / 2,
+              1e-6);
 }
 
 }  // namespace

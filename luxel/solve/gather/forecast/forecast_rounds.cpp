@@ -1,13 +1,16 @@
 #include "luxel/solve/gather/forecast/forecast_rounds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "luxel/base/clock.h"
 #include "luxel/base/parallel.h"
 #include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/budget/error_p95.h"
+#include "luxel/solve/gather/budget/expected_rms.h"
 #include "luxel/solve/gather/budget/neighbours.h"
+#include "luxel/solve/gather/budget/rms_round.h"
 #include "luxel/solve/gather/forecast/expected_bounces.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 
@@ -117,7 +120,9 @@ Status trace(RoundsTrial& trial, std::span<const uint16_t> target, Progress& pro
 /// Relative, of the trial's texels; of all others 0.
 struct ForecastErrors {
   std::vector<float> direct, gathered, all;
-  float p95 = 0;  ///< error_p95 of all that are tried
+  std::vector<Rgb> irradiance;
+  float p95 = 0;      ///< error_p95 of all that are tried
+  double square = 0;  ///< of their mean light, times their number
 };
 
 /// As gather() knows them, but in the coarse light: one bounce of it.
@@ -145,11 +150,16 @@ Result<ForecastErrors> errors_of(const RoundsTrial& trial, Progress& progress) {
     for (const uint32_t i : trial.texels) out[i] = errors[i];
     return out;
   };
-  ForecastErrors out{relative(direct), relative(gathered), relative(all)};
+  ForecastErrors out;
+  out.direct = relative(direct), out.gathered = relative(gathered), out.all = relative(all);
   std::vector<float> tried;
+  double sum = 0;
   for (const uint32_t i : trial.texels)
-    if (!is_hidden(trial.hits, i)) tried.push_back(out.all[i]);
+    if (!is_hidden(trial.hits, i))
+      tried.push_back(out.all[i]), sum += double(luminance(irradiance[i]));
   out.p95 = error_p95(tried);
+  out.square = tried.empty() ? 0 : sum * sum / double(tried.size());
+  out.irradiance = std::move(irradiance);
   return out;
 }
 
@@ -167,25 +177,40 @@ double samples_of(const RoundsTrial& trial) {
   return sum;
 }
 
+/// What a round adds to the texels that are tried; nothing where their light is known.
+RoundPlan next_round_of(const RoundsTrial& trial, const ForecastErrors& errors) {
+  const GatherParams& params = trial.params;
+  const std::vector<uint16_t>& samples = trial.hits.samples;
+  const double max_error = double(params.max_error);
+  if (params.error_measure == ErrorMeasure::rms) {
+    const std::vector<float> gathered = variances_of(errors.gathered, errors.irradiance),
+                             direct = variances_of(errors.direct, errors.irradiance);
+    return plan_rms_round(
+        {gathered, direct, samples, trial.levels}, max_error * max_error * errors.square / kOfNoise,
+        INFINITY, ray_costs(1, params.direct_samples, params.supersample * 8), params.max_samples);
+  }
+  if (double(errors.p95) <= max_error) return {samples, std::vector<uint8_t>(samples.size())};
+  const float each = error_of_part(params.max_error);
+  return {next_samples(errors.gathered, each, params.max_samples, samples),
+          elements_above(errors.direct, each)};
+}
+
 /// Makes all rounds. Returns the samples that every sweep looks at, from round to round. Errors:
 /// cancelled, disk full.
 Result<std::vector<double>> make_rounds(RoundsTrial& trial, RoundsForecast& out,
                                         Progress& progress) {
-  const GatherParams& params = trial.params;
-  const float each = error_of_part(params.max_error);
   std::vector<double> samples;
   for (;;) {
     samples.push_back(samples_of(trial));
     LUXEL_TRY(const ForecastErrors errors, errors_of(trial, progress));
-    if (errors.p95 <= params.max_error) return samples;
-    const std::vector<uint16_t> target =
-        next_samples(errors.gathered, each, params.max_samples, trial.hits.samples);
+    const RoundPlan round = next_round_of(trial, errors);
     const auto start = Clock::now();
     const uint64_t rays = trial.rays();
-    LUXEL_TRY(const size_t finer, refine_direct(trial.in, errors.direct, each, trial.supersample(),
+    LUXEL_TRY(const size_t finer, refine_direct(trial.in, round.finer, trial.supersample(),
                                                 trial.levels, trial.direct, progress));
-    if (finer == 0 && target == trial.hits.samples) return samples;
-    if (target != trial.hits.samples) LUXEL_TRY_STATUS(trace(trial, target, progress));
+    const bool traces = round.samples != trial.hits.samples;
+    if (finer == 0 && !traces) return samples;
+    if (traces) LUXEL_TRY_STATUS(trace(trial, round.samples, progress));
     out.trace_s += trial.scale * seconds_since(start);
     out.rays += trial.scale * double(trial.rays() - rays);
   }

@@ -5,23 +5,21 @@
 
 #include <fstream>
 
+#include "tests/scratch_folder.h"
+
 namespace luxel::view {
 namespace {
 
 class FileWatchTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) / "watched";
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
   /// Each write is a second after the one before, whatever the clock of files is good for.
   void write(const char* name, const std::string& text) {
     std::ofstream(folder_ / name) << text;
     time_ += std::chrono::seconds(1);
     std::filesystem::last_write_time(folder_ / name, time_);
   }
-  std::filesystem::path folder_;
+  testing_support::ScratchFolder scratch_;  // tests of this file run at the same time
+  std::filesystem::path folder_ = scratch_.path;
   std::filesystem::file_time_type time_{std::chrono::hours(24)};
 };
 

@@ -15,7 +15,8 @@ import sys
 PAGE = pathlib.Path(__file__).resolve().parent.parent / "docs" / "options.md"
 COMMANDS = ("info", "bake", "render", "compare", "factors", "relight", "probe", "lux", "bench")
 HEADING = re.compile(r"^(\S.*):$")
-ROW = re.compile(r"^  (-\S.*?)(?:(?:  +| \.\.\. )(\S.*))?$")
+# The meaning begins in column 30; before it there is a single space where the option fills what is before.
+ROW = re.compile(r"^  (-\S.*?)(?:(?:  +| \.\.\. |(?<=^.{29}) )(\S.*))?$")
 TEXT = re.compile(r"^ {10,}(\S.*)$")
 
 
@@ -96,7 +97,8 @@ def self_test():
     text = ("Bake\nUsage: x\n\nOptions:\n  -o,--output TEXT REQUIRED   Folder\n  --uv TEXT:{auto,keep}=auto\n"
             "                              keep = the file's\n  --no-stitch{false}          Do not\n"
             "  --sky A|B Excludes: --sun   A sky\n"
-            "  --ies LIGHT=FILE ... A file\n  --samples RAYS=256          Rays\n\nOPTIONS:\n  --max-error FLOAT=0.01      Error\n")
+            "  --ies LIGHT=FILE ... A file\n  --samples RAYS=256          Rays\n"
+            "  --error-measure p95|rms=p95 What: of all\n\nOPTIONS:\n  --max-error FLOAT=0.01      Error\n")
     groups = read_help(text)
     rows = [o.row() for _, options in groups for o in options]
     wanted = ["| `--output`, `-o` | text | required | Folder |",
@@ -105,6 +107,7 @@ def self_test():
               "| `--sky` | A\\|B |  | A sky |",
               "| `--ies` | LIGHT=FILE |  | A file |",
               "| `--samples` | RAYS | `256` | Rays |",
+              "| `--error-measure` | p95\\|rms | `p95` | What: of all |",
               "| `--max-error` | number | `0.01` | Error |"]
     for got, want in zip(rows, wanted):
         if got != want:

@@ -42,8 +42,8 @@ struct Progressive {
   std::vector<Rgb> direct_before;  ///< direct light of an earlier bake
   light::DirectLevels levels;
   size_t averaged = 0;
-  /// Of an element's direct light as it was first looked at, on average: at its own sample, and
-  /// averaged over points. 0: none was found.
+  /// Shadow rays of an element's direct light as it was first looked at, on average: at its own
+  /// sample, and averaged over points. 0: none was found.
   double shadow_rays_at_sample = 0, shadow_rays_at_points = 0;
   TracedHits hits;
   Bounced bounced;

@@ -8,6 +8,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/vectorize.h"
+#include "luxel/solve/matrix/row_sums.h"
 
 namespace luxel::matrix {
 namespace {
@@ -31,15 +32,7 @@ LUXEL_VECTOR_CLONES
 void add_row(std::span<const uint32_t> column, std::span<const float> factor, const PanelRow* panel,
              float* out) {
   Float8 sum[kPanel / kColourLanes] = {};
-  for (size_t k = 0; k < column.size(); ++k) {
-    const float f = factor[k];
-    const float* x = panel[column[k]].value;
-    for (size_t v = 0; v < kPanel / kColourLanes; ++v) {
-      Float8 lanes;
-      load8(x + v * kColourLanes, lanes);
-      sum[v] += f * lanes;
-    }
-  }
+  add_products(column, factor, panel, sum);
   for (size_t v = 0; v < kPanel / kColourLanes; ++v)
     for (size_t l = 0; l < kColourLanes; ++l) out[v * kColourLanes + l] += sum[v][l];
 }

@@ -5,6 +5,7 @@
 #include "luxel/base/check.h"
 #include "luxel/base/parallel.h"
 #include "luxel/base/vectorize.h"
+#include "luxel/solve/matrix/row_sums.h"
 
 namespace luxel::matrix {
 namespace {
@@ -23,15 +24,7 @@ LUXEL_VECTOR_CLONES
 void sum_of_row(std::span<const uint32_t> column, std::span<const float> factor,
                 const PatchLights* lights, PatchLights& out) {
   Float8 sum[kLightNumbers / kLightLanes] = {};
-  for (size_t k = 0; k < column.size(); ++k) {
-    const float f = factor[k];
-    const float* x = lights[column[k]].value;
-    for (size_t v = 0; v < kLightNumbers / kLightLanes; ++v) {
-      Float8 lanes;
-      load8(x + v * kLightLanes, lanes);
-      sum[v] += f * lanes;
-    }
-  }
+  add_products(column, factor, lights, sum);
   for (size_t v = 0; v < kLightNumbers / kLightLanes; ++v)
     store8(sum[v], out.value + v * kLightLanes);
 }

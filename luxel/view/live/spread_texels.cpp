@@ -107,8 +107,7 @@ void SpreadTexels::number_cells(std::span<const uint64_t> keys, std::span<const 
     uint32_t cell = i > 0 && keys[i] == keys[i - 1] ? cell_of_texel_[i - 1] : kNoCell;
     if (cell == kNoCell) {
       if (2 * texel_.size() > keys_.size()) grow();
-      size_t at = keys[i] & (keys_.size() - 1);
-      while (keys_[at] != 0 && keys_[at] != keys[i]) at = (at + 1) & (keys_.size() - 1);
+      const size_t at = place_of(keys[i]);
       if (keys_[at] == 0) {
         keys_[at] = keys[i], cells_[at] = uint32_t(texel_.size());
         texel_.push_back(uint32_t(i));
@@ -126,15 +125,19 @@ void SpreadTexels::grow() {
   keys_.assign(4 * keys.size(), 0), cells_.assign(4 * keys.size(), kNoCell);
   for (size_t k = 0; k < keys.size(); ++k) {
     if (keys[k] == 0) continue;
-    size_t at = keys[k] & (keys_.size() - 1);
-    while (keys_[at] != 0) at = (at + 1) & (keys_.size() - 1);
+    const size_t at = place_of(keys[k]);
     keys_[at] = keys[k], cells_[at] = cells[k];
   }
 }
 
-uint32_t SpreadTexels::find(uint64_t key) const {
+size_t SpreadTexels::place_of(uint64_t key) const {
   size_t at = key & (keys_.size() - 1);
   while (keys_[at] != 0 && keys_[at] != key) at = (at + 1) & (keys_.size() - 1);
+  return at;
+}
+
+uint32_t SpreadTexels::find(uint64_t key) const {
+  const size_t at = place_of(key);
   return keys_[at] == 0 ? kNoCell : cells_[at];
 }
 

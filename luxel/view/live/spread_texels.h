@@ -68,6 +68,8 @@ class SpreadTexels {
   /// Cells of the 27 cubes around and including one's own, x first: kNoCell where there is none.
   using CellsAround = std::array<uint32_t, 27>;
 
+  /// Where a key is in the hash table, or would be.
+  size_t place_of(uint64_t key) const;
   uint32_t find(uint64_t key) const;
   void grow();
   void number_cells(std::span<const uint64_t> keys, std::span<const float> off);

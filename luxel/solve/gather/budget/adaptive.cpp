@@ -193,6 +193,24 @@ bool can_be_finer(const light::DirectLevels& levels, size_t element) {
   return levels.level[element] < (levels.averaged[element] ? kFinestAverage : kFinestLevel);
 }
 
+Status look_at_level(const light::TexelScene& in, const ByLook& which, int level,
+                     const light::SupersampleParams& params, light::DirectLight& direct,
+                     Progress& progress) {
+  const int factor = 1 << (2 * level);
+  if (!which.averaged.empty()) {
+    light::SupersampleParams finer = params;
+    finer.points *= factor;
+    LUXEL_TRY(const light::Supersampled points,
+              average_texels(in, which.averaged, finer, direct, progress));
+    direct.rays += points.rays;
+  }
+  if (which.single.empty()) return {};
+  light::DirectParams finer = params.direct;
+  finer.samples *= factor;
+  return direct_light_again({in.scene, in.elements, in.lights, in.tracer}, which.single, finer,
+                            direct, progress);
+}
+
 Result<size_t> refine_direct(const light::TexelScene& in, std::span<const uint8_t> chosen,
                              const light::SupersampleParams& params, light::DirectLevels& levels,
                              light::DirectLight& direct, Progress& progress) {
@@ -200,28 +218,15 @@ Result<size_t> refine_direct(const light::TexelScene& in, std::span<const uint8_
   size_t count = 0;
   // From the finest level down: what rises by one level is not met again.
   for (int level = kFinestLevel - 1; level >= 0; --level) {
-    std::vector<uint32_t> single, averaged;
+    ByLook which;
     for (uint32_t i = 0; i < chosen.size(); ++i) {
       if (!chosen[i] || levels.level[i] != level || !can_be_finer(levels, i)) continue;
-      (levels.averaged[i] ? averaged : single).push_back(i);
+      (levels.averaged[i] ? which.averaged : which.single).push_back(i);
     }
-    const int factor = 1 << (2 * (level + 1));
-    if (!averaged.empty()) {
-      light::SupersampleParams finer = params;
-      finer.points *= factor;
-      LUXEL_TRY(const light::Supersampled points,
-                average_texels(in, averaged, finer, direct, progress));
-      direct.rays += points.rays;
-    }
-    if (!single.empty()) {
-      light::DirectParams finer = params.direct;
-      finer.samples *= factor;
-      LUXEL_TRY_STATUS(direct_light_again({in.scene, in.elements, in.lights, in.tracer}, single,
-                                          finer, direct, progress));
-    }
-    for (const auto& risen : {averaged, single})
+    LUXEL_TRY_STATUS(look_at_level(in, which, level + 1, params, direct, progress));
+    for (const auto& risen : {which.averaged, which.single})
       for (const uint32_t i : risen) ++levels.level[i];
-    count += single.size() + averaged.size();
+    count += which.single.size() + which.averaged.size();
   }
   return count;
 }

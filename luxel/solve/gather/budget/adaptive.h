@@ -68,6 +68,16 @@ std::vector<uint8_t> elements_above(std::span<const float> errors, float max_err
 /// Whether the direct light of an element can be looked at one level finer.
 bool can_be_finer(const light::DirectLevels& levels, size_t element);
 
+/// Elements whose direct light is that of their own sample, and those that have a mean over points.
+struct ByLook {
+  std::vector<uint32_t> single, averaged;
+};
+/// The direct light of elements as a level has it: `params` with 4^level times the shadow rays of
+/// single ones, and the points of the others. Errors: cancelled.
+Status look_at_level(const light::TexelScene& in, const ByLook& which, int level,
+                     const light::SupersampleParams& params, light::DirectLight& direct,
+                     Progress& progress);
+
 /// Looks at the direct light of elements that are chosen, 1, again, one level finer. Returns how
 /// many there were: 0 when none is chosen that is not as fine as it can be. Errors: cancelled.
 Result<size_t> refine_direct(const light::TexelScene& in, std::span<const uint8_t> chosen,

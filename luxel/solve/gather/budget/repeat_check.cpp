@@ -6,6 +6,7 @@
 
 #include "luxel/base/random.h"
 #include "luxel/solve/gather/bounce/sweep.h"
+#include "luxel/solve/gather/budget/adaptive.h"
 #include "luxel/solve/gather/trace/trace_hits.h"
 
 namespace luxel::gather {
@@ -78,23 +79,19 @@ Result<light::DirectLight> direct_again(const light::TexelScene& of_chosen,
   LUXEL_TRY(light::DirectLight out,
             light::direct_light(of_chosen.scene, of_chosen.elements, of_chosen.lights,
                                 of_chosen.tracer, params.direct, progress));
-  const int finest = elements.empty() ? 0 : int(*std::ranges::max_element(levels.level));
+  int finest = 0;
+  for (const uint32_t i : elements) finest = std::max(finest, int(levels.level[i]));
   for (int level = 0; level <= finest; ++level) {
-    std::vector<uint32_t> single, averaged;
+    ByLook which;
     for (uint32_t k = 0; k < elements.size(); ++k) {
-      if (levels.level[elements[k]] != level) continue;
-      (levels.averaged[elements[k]] ? averaged : single).push_back(k);
+      const uint32_t i = elements[k];
+      if (levels.level[i] != level) continue;
+      if (levels.averaged[i])
+        which.averaged.push_back(k);
+      else if (level > 0)  // that of the others is there
+        which.single.push_back(k);
     }
-    light::SupersampleParams finer = params;
-    finer.points <<= 2 * level;
-    LUXEL_TRY_STATUS(
-        average_texels(of_chosen, averaged, finer, out, progress).map([](const auto&) {}));
-    if (level == 0) continue;
-    light::DirectParams more = params.direct;
-    more.samples <<= 2 * level;
-    LUXEL_TRY_STATUS(light::direct_light_again(
-        {of_chosen.scene, of_chosen.elements, of_chosen.lights, of_chosen.tracer}, single, more,
-        out, progress));
+    LUXEL_TRY_STATUS(look_at_level(of_chosen, which, level, params, out, progress));
   }
   return out;
 }

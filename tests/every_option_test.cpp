@@ -71,6 +71,7 @@ Options values_of(const Inputs& in) {
       {"--environment", in.map},
       {"--eps", "0.5"},
       {"--error-map", ""},
+      {"--error-measure", "rms"},
       {"--exposure", "0"},
       {"compare --exposure", "2"},
       {"--eye", "0,1,3 --look-at 0,0.5,0"},

@@ -213,12 +213,15 @@ void add_points(const scene::Scene& scene, const trace::RayTracer& tracer, const
                       float(level.high + params.plane_m),
                       float(floor.z0 + (point.row + 0.5) * floor.cell_z())};
       const float depth_m = float(level.high - level.low + params.plane_m) + 4 * skip_m;
-      float ground = -INFINITY;
+      float ground = -INFINITY, bottom = -INFINITY;
       go_down(tracer, from, depth_m, skip_m, [&](const trace::Hit& hit, float y) {
         const bool here = double(y) >= level.low - 1e-3 && double(y) <= level.high + 1e-3;
-        if (here && faces_up(scene, hit)) ground = std::max(ground, y);
+        float& highest = faces_up(scene, hit) ? ground : bottom;
+        if (here) highest = std::max(highest, y);
       });
-      // Within a solid that stands on the floor its own bottom may be met instead.
+      // The bottom of a solid that stands on the floor may be met instead, within it and on its
+      // sides.
+      if (ground == -INFINITY) ground = bottom;
       const bool no_floor = ground == -INFINITY;
       point.position = {from.x, (no_floor ? float(floor.y) : ground) + float(params.plane_m),
                         from.z};

@@ -18,24 +18,30 @@ T attribute_at(const std::vector<T>& values, const std::array<uint32_t, 3>& corn
 }
 
 int wrapped(int i, int n, Wrap wrap) {
+  if (i >= 0 && i < n) return i;  // most are: divisions take longer than all else
   if (wrap == Wrap::clamp) return std::clamp(i, 0, n - 1);
   const int period = wrap == Wrap::mirror ? 2 * n : n;
   const int j = ((i % period) + period) % period;
   return j < n ? j : period - 1 - j;
 }
 
-/// Linear light of each byte of an sRGB texture.
-const std::array<float, 256> kLinearOfByte = [] {
-  std::array<float, 256> linear{};
-  for (size_t i = 0; i < linear.size(); ++i) linear[i] = image::linear_from_srgb(float(i) / 255.0f);
-  return linear;
+/// The share of 255 that a byte is, and its linear light in an sRGB texture.
+struct ByteValues {
+  std::array<float, 256> share, linear;
+};
+const ByteValues kOfByte = [] {
+  ByteValues out{};
+  for (size_t i = 0; i < out.share.size(); ++i) {
+    out.share[i] = float(i) / 255.0f;
+    out.linear[i] = image::linear_from_srgb(out.share[i]);
+  }
+  return out;
 }();
 
 std::array<float, 4> texel(const Texture& t, int x, int y, bool srgb) {
   const uint8_t* p = t.rgba.data() + 4 * (size_t(y) * size_t(t.width) + size_t(x));
-  std::array<float, 4> c{};
-  for (int k = 0; k < 4; ++k) c[k] = srgb && k < 3 ? kLinearOfByte[p[k]] : float(p[k]) / 255.0f;
-  return c;
+  const std::array<float, 256>& of_colour = srgb ? kOfByte.linear : kOfByte.share;
+  return {of_colour[p[0]], of_colour[p[1]], of_colour[p[2]], kOfByte.share[p[3]]};
 }
 
 /// Bilinear lookup; colours are filtered in linear light.
@@ -50,12 +56,13 @@ std::array<float, 4> sample(const Scene& scene, const TextureRef& ref, Vec2 uv, 
                  wrapped(int(std::floor(y)), t.height, ref.wrap_v), srgb);
   const int x0 = int(std::floor(x - 0.5f)), y0 = int(std::floor(y - 0.5f));
   const float fx = x - 0.5f - float(x0), fy = y - 0.5f - float(y0);
+  const std::array column{wrapped(x0, t.width, ref.wrap_u), wrapped(x0 + 1, t.width, ref.wrap_u)},
+      row{wrapped(y0, t.height, ref.wrap_v), wrapped(y0 + 1, t.height, ref.wrap_v)};
   std::array<float, 4> sum{};
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) {
+  for (size_t j = 0; j < 2; ++j)
+    for (size_t i = 0; i < 2; ++i) {
       const float w = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
-      const auto c = texel(t, wrapped(x0 + i, t.width, ref.wrap_u),
-                           wrapped(y0 + j, t.height, ref.wrap_v), srgb);
+      const auto c = texel(t, column[i], row[j], srgb);
       for (int k = 0; k < 4; ++k) sum[k] += w * c[k];
     }
   return sum;

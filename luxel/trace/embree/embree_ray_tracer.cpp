@@ -325,17 +325,34 @@ size_t RayTracer::sorted_triangles() const { return impl_->sorted_triangles; }
 
 namespace {
 
+/// What all rays have alike, packet after packet.
+void begin_packets(RTCRay16& out) {
+  for (unsigned i = 0; i < kPacket; ++i)
+    out.time[i] = 0, out.mask[i] = ~0u, out.id[i] = i, out.flags[i] = 0;
+}
+
+/// Compilers make vector code of it.
+void load_rays(const Ray* from, RTCRay16& out) {
+  for (unsigned i = 0; i < kPacket; ++i) {
+    out.org_x[i] = from[i].origin.x, out.org_y[i] = from[i].origin.y;
+    out.org_z[i] = from[i].origin.z, out.tnear[i] = from[i].t_min;
+    out.dir_x[i] = from[i].direction.x, out.dir_y[i] = from[i].direction.y;
+    out.dir_z[i] = from[i].direction.z, out.tfar[i] = from[i].t_max;
+  }
+}
+
 /// Loads up to 16 rays. Lanes beyond the last are invalid; they hold copies of the first ray, so
 /// that no garbage reaches Embree.
 unsigned load_packet(std::span<const Ray> rays, int* valid, RTCRay16& out) {
   const unsigned count = unsigned(std::min<size_t>(kPacket, rays.size()));
-  for (unsigned i = 0; i < kPacket; ++i) {
-    valid[i] = i < count ? -1 : 0;
-    const Ray& ray = rays[i < count ? i : 0];
-    out.org_x[i] = ray.origin.x, out.org_y[i] = ray.origin.y, out.org_z[i] = ray.origin.z;
-    out.dir_x[i] = ray.direction.x, out.dir_y[i] = ray.direction.y, out.dir_z[i] = ray.direction.z;
-    out.tnear[i] = ray.t_min, out.tfar[i] = ray.t_max;
-    out.time[i] = 0, out.mask[i] = ~0u, out.id[i] = i, out.flags[i] = 0;
+  for (unsigned i = 0; i < kPacket; ++i) valid[i] = i < count ? -1 : 0;
+  if (count == kPacket) {
+    load_rays(rays.data(), out);
+  } else {
+    std::array<Ray, kPacket> padded;
+    padded.fill(rays[0]);
+    std::copy_n(rays.begin(), count, padded.begin());
+    load_rays(padded.data(), out);
   }
   return count;
 }
@@ -347,10 +364,11 @@ void RayTracer::closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
   LUXEL_CHECK(rays.size() == hits.size());
   Query query{*impl_->scene,
               packet_context(packets == Packets::bundles && !impl_->has_shared_meshes)};
+  RTCRayHit16 packet;
+  begin_packets(packet.ray);
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     // 16 rays at a time.
     alignas(64) int valid[kPacket];
-    RTCRayHit16 packet;
     const unsigned count = load_packet(rays.subspan(first), valid, packet.ray);
     for (unsigned i = 0; i < kPacket; ++i)
       packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -383,9 +401,10 @@ Hit RayTracer::closest_hit(const Ray& ray) const {
 void RayTracer::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const {
   LUXEL_CHECK(rays.size() == blocked.size());
   Query query{*impl_->scene, packet_context()};
+  RTCRay16 packet;
+  begin_packets(packet);
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
-    RTCRay16 packet;
     const unsigned count = load_packet(rays.subspan(first), valid, packet);
     rtcOccluded16(valid, impl_->top, &query.context, &packet);
     for (unsigned i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0 ? 1 : 0;
@@ -445,9 +464,10 @@ void RayTracer::tint(std::span<const Ray> rays, std::span<const Hit> hits,
                      std::span<Rgb> light) const {
   LUXEL_CHECK(rays.size() == hits.size() && rays.size() == light.size());
   Query query{*impl_->scene, packet_context(), Through::tint};
+  RTCRay16 packet;
+  begin_packets(packet);
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
-    RTCRay16 packet;
     const unsigned count = load_packet(rays.subspan(first), valid, packet);
     // Up to just before the hit: what stands there has stopped the ray, not tinted it.
     for (unsigned i = 0; i < count; ++i)
@@ -462,9 +482,10 @@ void RayTracer::transmitted(std::span<const Ray> rays, std::span<Rgb> share) con
   LUXEL_CHECK(rays.size() == share.size());
   // Without tints, only holes let light through: all of it.
   Query query{*impl_->scene, packet_context(), has_tints() ? Through::share : Through::chance};
+  RTCRay16 packet;
+  begin_packets(packet);
   for (size_t first = 0; first < rays.size(); first += kPacket) {
     alignas(64) int valid[kPacket];
-    RTCRay16 packet;
     const unsigned count = load_packet(rays.subspan(first), valid, packet);
     for (unsigned i = 0; i < count; ++i) share[first + i] = {1, 1, 1};
     query.light = share.data() + first, query.count = count;

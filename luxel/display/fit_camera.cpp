@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <vector>
 
 #include "luxel/base/check.h"
@@ -162,7 +164,11 @@ std::vector<uint8_t> under_a_roof(const Stage& stage, std::span<const trace::Ray
   return out;
 }
 
-View look(const Stage& stage, const Candidate& candidate, std::vector<Seen>& scratch) {
+/// What of a view is looked for: light and roofs take more rays than all else.
+enum class LookFor : uint8_t { surfaces, all };
+
+View look(const Stage& stage, const Candidate& candidate, LookFor what,
+          std::vector<Seen>& scratch) {
   const scene::Scene& scene = stage.scene;
   const int rows = kProbeRows, columns = std::clamp(int(float(rows) * stage.aspect), 8, 4 * rows);
   const trace::CameraRays rays_of(candidate.camera, columns, rows);
@@ -171,9 +177,13 @@ View look(const Stage& stage, const Candidate& candidate, std::vector<Seen>& scr
     for (int x = 0; x < columns; ++x)
       rays.push_back(rays_of.through(float(x) + 0.5f, float(y) + 0.5f));
   const std::vector<trace::Hit> hits = trace::visible_hits(scene, stage.tracer, rays);
-  const std::vector<uint8_t> lit = lit_by_sources(scene, stage.tracer, stage.glimpse, rays, hits);
-  const std::vector<uint8_t> roofed =
-      candidate.inside ? under_a_roof(stage, rays, hits) : std::vector<uint8_t>(hits.size());
+  const bool all = what == LookFor::all;
+  const std::vector<uint8_t> lit =
+      all ? lit_by_sources(scene, stage.tracer, stage.glimpse, rays, hits)
+          : std::vector<uint8_t>(hits.size(), 1);
+  const std::vector<uint8_t> roofed = all && candidate.inside
+                                          ? under_a_roof(stage, rays, hits)
+                                          : std::vector<uint8_t>(hits.size(), 1);
 
   View view;
   const float pixel = 4 * length(rays_of.right) * length(rays_of.up) / float(rows * columns);
@@ -228,13 +238,16 @@ bool is_dark(const Stage& stage, std::span<const Candidate> candidates) {
   std::vector<uint8_t> dark(candidates.size());
   parallel_for(candidates.size(), 8, [&](size_t begin, size_t end) {
     std::vector<Seen> scratch(stage.first.back());
-    for (size_t i = begin; i < end; ++i) dark[i] = look(stage, candidates[i], scratch).lit <= kDark;
+    for (size_t i = begin; i < end; ++i)
+      dark[i] = look(stage, candidates[i], LookFor::all, scratch).lit <= kDark;
   });
   return std::ranges::all_of(dark, [](uint8_t d) { return d != 0; });
 }
 
-double score_of(const Stage& stage, const Candidate& candidate, std::vector<Seen>& scratch) {
-  const View view = look(stage, candidate, scratch);
+/// Of the surfaces alone it is the highest that the score may be: light and roofs only lower it.
+double score_of(const Stage& stage, const Candidate& candidate, LookFor what,
+                std::vector<Seen>& scratch) {
+  const View view = look(stage, candidate, what, scratch);
   // Inside, the finest thing of all is close to the eye soon: the room is what is to be seen.
   const double detail = candidate.inside ? std::sqrt(view.detail) * view.width : view.detail;
   // What is seen through windows is not what a picture of rooms is to show.
@@ -243,13 +256,35 @@ double score_of(const Stage& stage, const Candidate& candidate, std::vector<Seen
          light_marks(stage, view) * (1 - view.near) * indoors * double(candidate.liking);
 }
 
-scene::Camera best_of(const Stage& stage, std::span<const Candidate> candidates) {
-  std::vector<double> scores(candidates.size());
-  parallel_for(candidates.size(), 8, [&](size_t begin, size_t end) {
+/// The scores of those candidates that are numbered in `which`.
+std::vector<double> scores_of(const Stage& stage, std::span<const Candidate> candidates,
+                              std::span<const uint32_t> which, LookFor what) {
+  std::vector<double> scores(which.size());
+  parallel_for(which.size(), 4, [&](size_t begin, size_t end) {
     std::vector<Seen> scratch(stage.first.back());
-    for (size_t i = begin; i < end; ++i) scores[i] = score_of(stage, candidates[i], scratch);
+    for (size_t k = begin; k < end; ++k)
+      scores[k] = score_of(stage, candidates[which[k]], what, scratch);
   });
-  const size_t best = size_t(std::max_element(scores.begin(), scores.end()) - scores.begin());
+  return scores;
+}
+
+/// The first of those with the highest score. Light and roofs are looked at from the most promising
+/// ones, until no other can be better.
+scene::Camera best_of(const Stage& stage, std::span<const Candidate> candidates) {
+  constexpr size_t kAtATime = 16;
+  std::vector<uint32_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const std::vector<double> most = scores_of(stage, candidates, order, LookFor::surfaces);
+  std::ranges::stable_sort(order, [&](uint32_t a, uint32_t b) { return most[a] > most[b]; });
+  uint32_t best = order.front();
+  double highest = -1;
+  for (size_t begin = 0; begin < order.size() && most[order[begin]] >= highest; begin += kAtATime) {
+    const auto which = std::span(order).subspan(begin, std::min(kAtATime, order.size() - begin));
+    const std::vector<double> scores = scores_of(stage, candidates, which, LookFor::all);
+    for (size_t k = 0; k < which.size(); ++k)
+      if (scores[k] > highest || (scores[k] == highest && which[k] < best))
+        highest = scores[k], best = which[k];
+  }
   return candidates[best].camera;
 }
 

@@ -118,6 +118,7 @@ std::pair<int, int> preview_size(const scene::Camera& camera) {
 Status draw_preview(const BakeSettings& settings, const trace::RayTracer& tracer, Bake& bake,
                     Progress& progress) {
   const transport::TexelField field{&bake.atlas, &bake.map, bake.light.irradiance};
+  progress.begin("draw", 0);  // a view is chosen for the picture's sake
   LUXEL_TRY(const scene::Camera camera,
             choose_camera({.view = settings.view, .aspect = kPreviewAspect}, bake.scene, tracer,
                           settings.scene.string()));

@@ -8,6 +8,7 @@
 #include "luxel/base/parallel.h"
 #include "luxel/scene/drawn_triangle.h"
 #include "luxel/transport/back_faces.h"
+#include "luxel/transport/clear_runs.h"
 #include "luxel/transport/spots.h"
 
 namespace luxel::transport {
@@ -29,6 +30,12 @@ struct Walls {
 
 /// What is known of a texel's sample.
 enum class Inside : uint8_t { not_asked, no, yes };
+
+/// Places on the outlines of what some texels' charts have in them.
+struct Outlines {
+  std::vector<scene::SurfacePoint> places;
+  std::vector<uint32_t> of;  ///< per place: the texel's number among those that are looked at
+};
 
 /// Where walls stand between texels and within them.
 struct WallSearch : TexelSpots {
@@ -55,7 +62,11 @@ struct WallSearch : TexelSpots {
 
   bool is_at_border(uint32_t texel) const;
   bool parts(const Neighbours& pair) const;
-  bool is_parted_within(uint32_t texel, std::span<const uint32_t> cover) const;
+  void add_outline(uint32_t texel, uint32_t of, std::span<const uint32_t> cover,
+                   Outlines& out) const;
+  void find_parted_within(std::span<const uint32_t> texels, const Outlines& outlines,
+                          std::span<uint8_t> parted) const;
+  bool has_clear_lines(TexelRun run) const;
   std::vector<Neighbours> blocked(uint32_t begin, uint32_t end) const;
   std::vector<Neighbours> blocked() const;
   Walls find_walls() const;
@@ -88,32 +99,56 @@ std::vector<Vec2> part_in_texel(const std::array<Vec2, 3>& corners, const atlas:
   return out;
 }
 
-/// Whether a wall stands between a texel's sample and some of the outline of what `cover`, the
-/// triangles that cover it, have in the texel.
-bool WallSearch::is_parted_within(uint32_t texel, std::span<const uint32_t> cover) const {
+/// Adds the outline of what `cover`, the triangles that cover a texel, have in it, corners and
+/// middles of sides; `of` tells which texel it is of.
+void WallSearch::add_outline(uint32_t texel, uint32_t of, std::span<const uint32_t> cover,
+                             Outlines& out) const {
   constexpr size_t kMostTriangles = 16;
   constexpr float kInwards = 0.02f;
-  const atlas::Texel& t = in.map.texels[texel];
-  const Spot own = spot(texel);
   for (const uint32_t number : cover.first(std::min(cover.size(), kMostTriangles))) {
     const auto& corners = in.atlas.corners[number];
     const auto drawn = scene::drawn_triangle(in.atlas.first_triangle, number);
-    const std::vector<Vec2> part = part_in_texel(corners, t);
+    const std::vector<Vec2> part = part_in_texel(corners, in.map.texels[texel]);
     Vec2 middle{0, 0};
     for (const Vec2& p : part) middle = middle + p * (1 / float(part.size()));
-    const auto is_hidden = [&](Vec2 p) {
+    const auto add = [&](Vec2 p) {
       const Barycentric at = atlas::barycentric_in(corners, p + (middle - p) * kInwards);
-      if (at.u < 0 || at.v < 0 || at.u + at.v > 1) return false;  // it has no area
-      const Spot there =
-          spot_at(in.scene, in.atlas, in.tracer, {drawn.instance, drawn.triangle, at});
-      return !sees(own, there) && !is_inside_solid(texel) && !is_inside_solid(there);
+      if (at.u < 0 || at.v < 0 || at.u + at.v > 1) return;  // it has no area
+      out.places.push_back({drawn.instance, drawn.triangle, at}), out.of.push_back(of);
     };
-    for (size_t k = 0; k < part.size(); ++k) {
-      const Vec2 next = part[(k + 1) % part.size()];
-      if (is_hidden(part[k]) || is_hidden((part[k] + next) * 0.5f)) return true;
-    }
+    for (size_t k = 0; k < part.size(); ++k)
+      add(part[k]), add((part[k] + part[(k + 1) % part.size()]) * 0.5f);
   }
-  return false;
+}
+
+/// Whether a wall stands between the sample of each of `texels` and some of its outline.
+void WallSearch::find_parted_within(std::span<const uint32_t> texels, const Outlines& outlines,
+                                    std::span<uint8_t> parted) const {
+  SpotMaker maker = this->maker();
+  std::vector<Spot> own;
+  for (const uint32_t texel : texels) own.push_back(spot(texel, maker));
+  const std::vector<Spot> there = spots_at(in.scene, in.atlas, in.tracer, outlines.places);
+  std::vector<trace::Ray> rays;
+  for (size_t k = 0; k < there.size(); ++k)
+    rays.push_back(line_between(own[outlines.of[k]], there[k]));
+  std::vector<trace::Hit> hits(rays.size());
+  in.tracer.closest_hits(rays, hits);
+  for (size_t k = 0; k < there.size(); ++k) {
+    const uint32_t t = outlines.of[k];
+    if (parted[t] ||
+        (!is_far(own[t], there[k]) && !is_between(in.scene, in.atlas, own[t], there[k], hits[k])))
+      continue;
+    parted[t] = !is_inside_solid(texels[t]) && !is_inside_solid(there[k]);
+  }
+}
+
+/// Whether nothing is in the way of lines between the texels of a run and their neighbours on its
+/// triangle.
+bool WallSearch::has_clear_lines(TexelRun run) const {
+  const scene::SurfacePoint& p = in.map.texels[run.first].sample;
+  const float rounding_m = trace::rounding_m(scene::world_position(in.scene, p), diagonal_m);
+  return is_clear(in.scene, in.atlas, in.map, in.tracer, run,
+                  {-rounding_m, 1.01f * kLineHeight, 0, false});
 }
 
 /// The pairs of texels [begin, end) with neighbours that do not see each other.
@@ -122,13 +157,21 @@ std::vector<Neighbours> WallSearch::blocked(uint32_t begin, uint32_t end) const 
   std::vector<Neighbours> pairs;
   std::vector<std::array<Spot, 2>> spots;
   std::vector<trace::Ray> rays;
+  SpotMaker own_maker = maker(), other_maker = maker();
+  TexelRun run;
+  bool clear = false;
   for (uint32_t i = begin; i < end; ++i) {
-    const Spot own = spot(i);
+    if (i >= run.first + run.count) {
+      run = run_from(in.map, i, end - i);
+      clear = has_clear_lines(run);
+    }
     for (const auto& offset : kForward) {
       const uint32_t j = beside(i, offset[0], offset[1]);
       if (j == atlas::kNone) continue;
-      pairs.push_back({i, j, offset}), spots.push_back({own, spot(j)});
-      rays.push_back(line_between(own, spots.back()[1]));
+      if (clear && in.map.texels[j].triangle_number == in.map.texels[i].triangle_number) continue;
+      pairs.push_back({i, j, offset});
+      spots.push_back({spot(i, own_maker), spot(j, other_maker)});
+      rays.push_back(line_between(spots.back()[0], spots.back()[1]));
     }
   }
   std::vector<trace::Hit> hits(rays.size());
@@ -179,8 +222,12 @@ Walls WallSearch::find_walls() const {
     if (!out.parted[i] && (out.beside[i] || is_at_border(i))) which.push_back(i);
   const atlas::Cover cover = atlas::cover_of(in.atlas, in.map, which);
   parallel_for(which.size(), 64, [&](size_t begin, size_t end) {
+    Outlines outlines;
     for (size_t k = begin; k < end; ++k)
-      out.parted[which[k]] = is_parted_within(which[k], cover.of(k));
+      add_outline(which[k], uint32_t(k - begin), cover.of(k), outlines);
+    std::vector<uint8_t> parted(end - begin);
+    find_parted_within(std::span(which).subspan(begin, end - begin), outlines, parted);
+    for (size_t k = begin; k < end; ++k) out.parted[which[k]] = parted[k - begin];
   });
   return out;
 }
@@ -191,9 +238,10 @@ std::vector<uint64_t> find_under(const OwnSides& in) {
   const size_t count = in.map.texels.size();
   std::vector<uint64_t> out((count + 63) / 64);
   parallel_for(count, kBlock, [&](size_t begin, size_t end) {
+    SpotMaker maker{in.scene, in.atlas};
     std::vector<trace::Ray> rays;
     for (size_t i = begin; i < end; ++i)
-      rays.push_back(line_up(plain_spot(in.scene, in.atlas, in.map.texels[i].sample)));
+      rays.push_back(line_up(maker.spot(in.map.texels[i].sample)));
     std::vector<uint8_t> blocked(rays.size());
     in.tracer.occluded(rays, blocked);
     for (size_t i = begin; i < end; ++i)

@@ -34,6 +34,25 @@ float weight_of(const Four& four, float fx, float fy) {
   return sum;
 }
 
+/// Looks which of the four the place sees. Their lines are traced together.
+void find_own(const OwnSides& sides, const Spot& here, Four& four) {
+  const TexelSpots texels{sides};
+  SpotMaker maker = texels.maker();
+  std::array<Spot, 4> there;
+  std::array<trace::Ray, 4> lines;
+  std::array<trace::Hit, 4> hits;
+  std::array<size_t, 4> of{};
+  size_t count = 0;
+  for (size_t k = 0; k < 4; ++k) {
+    if (four.texel[k] == atlas::kNone) continue;
+    there[k] = texels.spot(four.texel[k], maker);
+    if (!is_far(here, there[k])) lines[count] = line_between(here, there[k]), of[count++] = k;
+  }
+  sides.tracer.closest_hits(std::span(lines).first(count), std::span(hits).first(count));
+  for (size_t n = 0; n < count; ++n)
+    four.is_own[of[n]] = !is_between(sides.scene, sides.atlas, here, there[of[n]], hits[n]);
+}
+
 /// The place nearest to `p` that reads own texels alone; kReadsNothing: none of the four is.
 LookupPlace nearest_own(const LookupPlace& p, const Four& four) {
   const auto distance = [&](float fx, float fy) { return std::hypot(fx - p.fx, fy - p.fy); };
@@ -66,11 +85,8 @@ LookupPlace own_lookup(const OwnSides& sides, const scene::SurfacePoint& p, MayB
   const int side = int(border_side(sides.map));
   const int x0 = int(place.base) % side - 1, y0 = int(place.base) / side - 1;
   Four four;
-  for (int k = 0; k < 4; ++k) {
-    const uint32_t texel = texels.at(x0 + k % 2, y0 + k / 2);
-    four.texel[size_t(k)] = texel;
-    four.is_own[size_t(k)] = texel != atlas::kNone && texels.sees(here, texels.spot(texel));
-  }
+  for (int k = 0; k < 4; ++k) four.texel[size_t(k)] = texels.at(x0 + k % 2, y0 + k / 2);
+  find_own(sides, here, four);
   const LookupPlace own = nearest_own(place, four);
   if (own.base != kReadsNothing.base) return own;
   // None of the four: the nearest of those around them.
@@ -130,13 +146,10 @@ std::vector<uint64_t> lookups_near(const OwnSides& sides, std::span<const Box3> 
 uint64_t find_on_side(const scene::Scene& scene, const atlas::Atlas& atlas,
                       const trace::RayTracer& tracer, const scene::SurfacePoint& sample,
                       std::span<const scene::SurfacePoint> points, std::span<uint8_t> on_side) {
-  std::vector<Spot> spots;
-  std::vector<trace::Ray> rays;
   const Spot own = spot_at(scene, atlas, tracer, sample);
-  for (const scene::SurfacePoint& p : points) {
-    spots.push_back(spot_at(scene, atlas, tracer, p));
-    rays.push_back(line_between(own, spots.back()));
-  }
+  const std::vector<Spot> spots = spots_at(scene, atlas, tracer, points);
+  std::vector<trace::Ray> rays;
+  for (const Spot& spot : spots) rays.push_back(line_between(own, spot));
   std::vector<trace::Hit> hits(rays.size());
   tracer.closest_hits(rays, hits);
   uint64_t traced = 2 * rays.size() + 1;

@@ -24,15 +24,35 @@ trace::Ray line_up(const Spot& s) {
   return {from, 0, line_end(s, kLineHeight) - from, 1};
 }
 
-Spot plain_spot(const scene::Scene& scene, const atlas::Atlas& atlas,
-                const scene::SurfacePoint& p) {
-  return {flat_point(scene, p), atlas.chart[atlas.triangle_number(p.instance, p.triangle)],
-          texel_width_m(scene, atlas, p.instance, p.triangle)};
+Spot SpotMaker::spot(const scene::SurfacePoint& p) {
+  if (p.instance != instance || p.triangle != triangle) {
+    instance = p.instance, triangle = p.triangle;
+    facet = scene::facet_of(scene, instance, triangle);
+    const uint32_t number = atlas.triangle_number(instance, triangle);
+    last = {{{}, facet.front}, atlas.chart[number], texel_width_m(atlas, number, facet.corners)};
+  }
+  const scene::Triangle3& t = facet.corners;
+  last.at.position = interpolate(t.a, t.b, t.c, p.at);
+  return last;
 }
+
 Spot spot_at(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,
              const scene::SurfacePoint& p) {
-  Spot out = plain_spot(scene, atlas, p);
-  if (tracer.closest_hit(line_up(out)).found()) out.line_height = kLowHeight;
+  return spots_at(scene, atlas, tracer, {&p, 1}).front();
+}
+
+std::vector<Spot> spots_at(const scene::Scene& scene, const atlas::Atlas& atlas,
+                           const trace::RayTracer& tracer,
+                           std::span<const scene::SurfacePoint> places) {
+  SpotMaker maker{scene, atlas};
+  std::vector<Spot> out;
+  std::vector<trace::Ray> rays;
+  for (const scene::SurfacePoint& p : places)
+    out.push_back(maker.spot(p)), rays.push_back(line_up(out.back()));
+  std::vector<trace::Hit> above(rays.size());
+  tracer.closest_hits(rays, above);
+  for (size_t k = 0; k < out.size(); ++k)
+    if (above[k].found()) out[k].line_height = kLowHeight;
   return out;
 }
 

@@ -1,6 +1,10 @@
 // Places of texels, and whether they see each other just above the surface.
 #pragma once
 
+#include <span>
+#include <vector>
+
+#include "luxel/scene/facet.h"
 #include "luxel/transport/barriers.h"
 #include "luxel/transport/own_side.h"
 
@@ -22,10 +26,24 @@ trace::Ray line_between(const Spot& a, const Spot& b);
 /// What leans over a place is in its way.
 trace::Ray line_up(const Spot& s);
 
-/// A spot over which nothing leans, for all that is known.
-Spot plain_spot(const scene::Scene& scene, const atlas::Atlas& atlas, const scene::SurfacePoint& p);
+/// Makes spots over which nothing leans, for all that is known. Those that follow each other mostly
+/// lie on one triangle: what its places share is worked out once.
+struct SpotMaker {
+  const scene::Scene& scene;
+  const atlas::Atlas& atlas;
+  uint32_t instance = scene::kNone, triangle = 0;  ///< of the last spot
+  scene::Facet facet{};
+  Spot last{};
+
+  Spot spot(const scene::SurfacePoint& p);
+};
+
 Spot spot_at(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::RayTracer& tracer,
              const scene::SurfacePoint& p);
+/// spot_at() of many places, whose rays are traced together.
+std::vector<Spot> spots_at(const scene::Scene& scene, const atlas::Atlas& atlas,
+                           const trace::RayTracer& tracer,
+                           std::span<const scene::SurfacePoint> places);
 
 /// Whether spots of two charts are no neighbours in space.
 bool is_far(const Spot& a, const Spot& b);
@@ -39,10 +57,15 @@ bool sees(const scene::Scene& scene, const atlas::Atlas& atlas, const trace::Ray
 struct TexelSpots {
   const OwnSides& in;
 
-  Spot spot(uint32_t texel) const {
-    Spot out = plain_spot(in.scene, in.atlas, in.map.texels[texel].sample);
+  SpotMaker maker() const { return {in.scene, in.atlas}; }
+  Spot spot(uint32_t texel, SpotMaker& maker) const {
+    Spot out = maker.spot(in.map.texels[texel].sample);
     if (in.is_under(texel)) out.line_height = kLowHeight;
     return out;
+  }
+  Spot spot(uint32_t texel) const {
+    SpotMaker alone = maker();
+    return spot(texel, alone);
   }
   uint32_t at(int x, int y) const {
     const int side = in.map.resolution;

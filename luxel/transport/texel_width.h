@@ -9,5 +9,7 @@ namespace luxel::transport {
 /// triangle has no area in the atlas.
 float texel_width_m(const scene::Scene& scene, const atlas::Atlas& atlas, uint32_t instance,
                     uint32_t triangle);
+/// Where the triangle's corners are known already; `number` is its number in the atlas.
+float texel_width_m(const atlas::Atlas& atlas, uint32_t number, const scene::Triangle3& world);
 
 }  // namespace luxel::transport

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <span>
+#include <vector>
 
 #include "luxel/atlas/atlas.h"
 #include "luxel/atlas/cover.h"
@@ -106,30 +109,42 @@ AtlasStats atlas_stats(const scene::Scene& scene, const Atlas& atlas, const Texe
   return stats;
 }
 
+namespace {
+
+/// The texels that triangles of other charts touch when they are moved by any of these.
+std::vector<uint32_t> touched_by_others(const Atlas& atlas, const TexelMap& map,
+                                        std::span<const DVec2> moves) {
+  std::vector<uint32_t> chart_of;  // per texel
+  chart_of.reserve(map.texels.size());
+  for (const Texel& texel : map.texels) chart_of.push_back(atlas.chart[texel.triangle_number]);
+  std::vector<uint8_t> marked(map.texels.size());
+  parallel_for(atlas.corners.size(), 64, [&](size_t begin, size_t end) {
+    for (size_t t = begin; t < end; ++t)
+      for (const DVec2 moved : moves)
+        for_touched(
+            atlas, map, uint32_t(t),
+            [&](uint32_t texel) {
+              if (chart_of[texel] != atlas.chart[t])
+                std::atomic_ref(marked[texel]).store(1, std::memory_order_relaxed);
+            },
+            moved);
+  });
+  return numbers_of(marked);
+}
+
+}  // namespace
+
 std::vector<uint32_t> overlapping_texels(const Atlas& atlas, const TexelMap& map) {
-  std::vector<uint8_t> shared(map.texels.size());
-  for (uint32_t t = 0; t < atlas.corners.size(); ++t)
-    for_touched(atlas, map, t, [&](uint32_t texel) {
-      if (atlas.chart[map.texels[texel].triangle_number] != atlas.chart[t]) shared[texel] = 1;
-    });
-  return numbers_of(shared);
+  return touched_by_others(atlas, map, std::array{DVec2{}});
 }
 
 std::vector<uint32_t> blended_texels(const Atlas& atlas, const TexelMap& map) {
   // A look-up blends texels whose centres lie less than a texel away in x and in y. A triangle
   // looks a texel up if it reaches into the square of 2 x 2 texels about its centre: that square is
   // the texel four times, moved by half a texel each way.
-  std::vector<uint8_t> blended(map.texels.size());
-  for (const DVec2 moved : {DVec2{-0.5, -0.5}, DVec2{0.5, -0.5}, DVec2{-0.5, 0.5}, DVec2{0.5, 0.5}})
-    for (uint32_t t = 0; t < atlas.corners.size(); ++t)
-      for_touched(
-          atlas, map, t,
-          [&](uint32_t texel) {
-            if (atlas.chart[map.texels[texel].triangle_number] != atlas.chart[t])
-              blended[texel] = 1;
-          },
-          moved);
-  return numbers_of(blended);
+  return touched_by_others(
+      atlas, map,
+      std::array{DVec2{-0.5, -0.5}, DVec2{0.5, -0.5}, DVec2{-0.5, 0.5}, DVec2{0.5, 0.5}});
 }
 
 }  // namespace luxel::atlas

@@ -45,22 +45,26 @@ Result<double> blended_part(const scene::Scene& scene, int resolution, Progress&
   return blended_part(*atlas, atlas::rasterise(scene, *atlas));
 }
 
+/// A resolution, and the part of its texels that are blended.
+struct BlendedAt {
+  int resolution = 0;
+  double part = 0;
+};
+
 /// A layout is made for some resolution, at which its charts end between texels; at others they may
 /// lie less than a texel apart. Of this resolution and the next ones up to twice as large, with no
 /// more than `most` texels on a side: the first at which no more than `few` of the texels are
 /// blended, else that with the fewest.
-Result<int> resolution_for_uv1(const scene::Scene& scene, int resolution, double most, double few,
+Result<int> resolution_for_uv1(const scene::Scene& scene, BlendedAt first, double most, double few,
                                Progress& progress) {
-  int best = resolution;
-  double fewest = 2;
-  for (int side = resolution; side <= 2 * resolution && side <= atlas::kMaxResolution;
-       side = atlas::round_side_up(side + 1)) {
-    if (side > resolution && side > most) break;
+  BlendedAt best = first;
+  for (int side = first.resolution; best.part > few && side < atlas::kMaxResolution;) {
+    side = atlas::round_side_up(side + 1);
+    if (side > 2 * first.resolution || side > most) break;
     LUXEL_TRY(const double part, blended_part(scene, side, progress));
-    if (part < fewest) best = side, fewest = part;
-    if (part <= few || side == atlas::kMaxResolution) break;
+    if (part < best.part) best = {side, part};
   }
-  return fewest < 1 ? best : resolution;
+  return best.part < 1 ? best.resolution : first.resolution;
 }
 
 /// What would do: every chart but a fiftieth of the area kFewestTexelsAcross wide or wider.
@@ -113,8 +117,9 @@ Result<SettledResolution> settle_resolution(const BakeSettings& settings, const 
   out.chosen = chosen;
   out.settings.resolution = chosen.resolution;
   if (chosen.uv1_area > 0) {
+    LUXEL_TRY(const double part, blended_part(scene, chosen.resolution, progress));
     LUXEL_TRY(out.settings.resolution,
-              resolution_for_uv1(scene, chosen.resolution,
+              resolution_for_uv1(scene, {chosen.resolution, part},
                                  std::sqrt(kMostTexelsByDefault / chosen.uv1_area), kManyBlended,
                                  progress));
   }
@@ -130,8 +135,8 @@ Result<std::string> about_blended(const SettledResolution& settled, const scene:
   if (!atlas.kept) return std::string();
   const double part = blended_part(atlas, map);
   if (part <= kFewBlended) return std::string();
-  LUXEL_TRY(const int better, resolution_for_uv1(scene, atlas.resolution, atlas::kMaxResolution,
-                                                 kFewBlended, progress));
+  LUXEL_TRY(const int better, resolution_for_uv1(scene, {atlas.resolution, part},
+                                                 atlas::kMaxResolution, kFewBlended, progress));
   const std::string what = better != *settled.settings.resolution
                                ? fmt::format("--resolution {} would do better", better)
                                : "--uv unwrap keeps them apart";

@@ -1,5 +1,6 @@
 #include "luxel/transport/back_faces.h"
 
+#include <algorithm>
 #include <array>
 
 #include "luxel/base/check.h"
@@ -84,9 +85,12 @@ bool is_shut_in(const scene::Scene& scene, const trace::RayTracer& tracer, Vec3 
   BackFaces seen = backs_of(scene, look);
   if (is_enclosed(seen)) return true;
   if (!sees_nearly_backs_alone(seen)) return false;
+  if (std::ranges::any_of(look.hits, [&](const trace::Hit& hit) {
+        return !hit.found() || max_component(scene::emission_at(scene, hit.point())) > 0;
+      }))
+    return false;
   int open = 0;
   for (const trace::Hit& hit : look.hits) {
-    if (!hit.found() || max_component(scene::emission_at(scene, hit.point())) > 0) return false;
     if (hit.back_face) continue;
     const Vec3 front = scene::front_normal(scene, hit.instance, hit.triangle);
     const Vec3 at =

@@ -35,11 +35,29 @@ struct Fragments {
   }
 };
 
+/// The shadows that blockers throw from one point. Planes face into the shadow, relative to the
+/// point.
+struct PointShadows {
+  struct Range {
+    uint32_t look = 0, first = 0, end = 0;  ///< of `planes`, where `look` is the present one
+  };
+  DVec3 point;
+  double slack = 0;
+  uint32_t look = 0;      ///< counts points; 0: none yet
+  std::vector<Range> of;  ///< per blocker
+  std::vector<Plane> planes;
+};
+
 /// Memory that one evaluation leaves to the next; one per thread.
 struct VisibilityScratch {
+  /// For a caller who looks from one point many times, past always the same `all`: each shadow is
+  /// made once per point.
+  bool keeps_shadows = false;
   Fragments visible, next;
-  Polygon polygon, rest, inside, outside;
-  std::vector<Plane> shadow;
+  Polygon polygon, rest, inside;
+  std::vector<double> height;
+  std::vector<Plane> crossed, crossed_by_part;
+  PointShadows shadows;
 };
 
 /// F from a differential element at `point` with unit `normal` to the part of the polygon that it

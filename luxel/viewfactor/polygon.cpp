@@ -37,17 +37,24 @@ double magnitude(PolygonView polygon) {
 
 Polygon clip_above(PolygonView polygon, const Plane& plane, double slack) {
   Polygon above;
+  clip_above(polygon, plane, slack, above);
+  return above;
+}
+
+void clip_above(PolygonView polygon, const Plane& plane, double slack, Polygon& above) {
+  above.clear();
   bool reaches_above = false;
+  double hq = polygon.empty() ? 0 : plane.height(polygon[0]);
   for (size_t i = 0; i < polygon.size(); ++i) {
-    const DVec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    const double hp = plane.height(p), hq = plane.height(q);
+    const DVec3 &p = polygon[i], &q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    const double hp = hq;
+    hq = plane.height(q);
     reaches_above |= hp > slack;
     if (hp >= -slack) above.push_back(p);
     if ((hp > slack && hq < -slack) || (hp < -slack && hq > slack))
       above.push_back(p + (q - p) * (hp / (hp - hq)));
   }
   if (!reaches_above || above.size() < 3) above.clear();
-  return above;
 }
 
 }  // namespace luxel::viewfactor

@@ -26,5 +26,7 @@ double magnitude(PolygonView polygon);
 /// The part of a convex polygon above the plane [Sutherland74]. Corners within `slack` of the plane
 /// count as lying on it. Empty when nothing reaches above it.
 Polygon clip_above(PolygonView polygon, const Plane& plane, double slack);
+/// clip_above() into memory that is there; `above` is none of the polygon.
+void clip_above(PolygonView polygon, const Plane& plane, double slack, Polygon& above);
 
 }  // namespace luxel::viewfactor

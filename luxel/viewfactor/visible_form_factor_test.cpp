@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "luxel/viewfactor/point_form_factor.h"
 #include "luxel/viewfactor/polygon_test_support.h"
 #include "luxel/viewfactor/sampled_factors.h"
 #include "tests/reference_data.h"
@@ -125,6 +126,31 @@ TEST(VisibleFormFactorSlow, AgreesWithRaysAndIsReciprocal) {
     partly += factor.value > 0 && factor.value < 0.99 * open;
   }
   EXPECT_GE(partly, 5);
+}
+
+// Half way up to a ceiling stands a screen whose edge is x = 0: from a floor point at x = d the
+// ceiling is seen from x = -d on. Shadows that are kept are those of the point that looks.
+TEST(VisiblePointFactor, KeptShadowsMoveWithThePoint) {
+  const auto ceiling_from = [](double x) {
+    return Polygon{{x, -1, 2}, {x, 1, 2}, {1, 1, 2}, {1, -1, 2}};
+  };
+  const std::vector<Blocker> screen{
+      make_blocker(Polygon{{-9, -9, 1}, {0, -9, 1}, {0, 9, 1}, {-9, 9, 1}})};
+  const std::vector<uint32_t> first{0};
+  const DVec3 up{0, 0, 1};
+  std::vector<uint8_t> casts(1);
+  for (const bool keeps : {true, false}) {
+    VisibilityScratch scratch;
+    scratch.keeps_shadows = keeps;
+    for (const double d : {0.0, 0.5, 0.5, -0.25}) {
+      const DVec3 point{d, 0, 0};
+      const SeenFactor seen =
+          visible_point_factor(point, up, ceiling_from(-1), {screen, first}, 1e-12, casts, scratch);
+      EXPECT_NEAR(seen.whole, point_to_polygon(point, up, ceiling_from(-1)), 1e-14) << d;
+      EXPECT_NEAR(seen.visible, point_to_polygon(point, up, ceiling_from(-d)), 1e-12) << d;
+      EXPECT_LT(seen.visible, 0.9 * seen.whole) << d;
+    }
+  }
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ void Gathering::visit_root(uint32_t id) {
   if (params_.sky == 0 && (!shines || (most == 0 && !list_))) return;
   // What is at stake: the form factor, were nothing in between, and the rays that it is worth.
   turned_ = height < 0;
-  const Polygon polygon = above_horizon(e.polygon());
+  const PolygonView polygon = above_horizon(e.polygon());
   if (polygon.empty()) return;
   const double whole = viewfactor::point_to_polygon(at_.position, at_.normal, polygon);
   if (!(whole > 0)) return;
@@ -146,7 +146,7 @@ void Gathering::look_by_rays(size_t index, double whole, bool shines) {
   const ElementLight& light = s_.light.elements[index];
   if (shines && !e.is_leaf() && double(light.rough) * whole > params_.limit) {
     for (uint32_t c = e.child; c < e.child + 4; ++c) {
-      const Polygon polygon = above_horizon(s_.tree.elements[c].polygon());
+      const PolygonView polygon = above_horizon(s_.tree.elements[c].polygon());
       if (polygon.empty()) continue;
       const double part = viewfactor::point_to_polygon(at_.position, at_.normal, polygon);
       if (part > 0) look_by_rays(c, part, shines);
@@ -160,10 +160,12 @@ void Gathering::look_by_rays(size_t index, double whole, bool shines) {
   if (shines) sum_ += sample.radiosity * float(whole);
 }
 
-Polygon Gathering::above_horizon(PolygonView polygon) const {
-  Polygon out = viewfactor::clip_above(polygon, horizon_, s_.blockers.slack_m * 1e-3);
-  if (turned_) std::reverse(out.begin(), out.end());
-  return out;
+/// The part of a polygon above the horizon, its front towards the receiver. Valid until the next
+/// call.
+PolygonView Gathering::above_horizon(PolygonView polygon) {
+  viewfactor::clip_above(polygon, horizon_, s_.blockers.slack_m * 1e-3, above_);
+  if (turned_) std::reverse(above_.begin(), above_.end());
+  return above_;
 }
 
 viewfactor::SeenFactor Gathering::look(PolygonView polygon, std::span<const uint32_t> blockers) {
@@ -190,7 +192,7 @@ std::vector<uint32_t> Gathering::casters(std::span<const uint32_t> blockers) con
 /// is.
 template <class Take>
 void Gathering::look_again(PolygonView part, std::span<const uint32_t> blockers, const Take& take) {
-  const Polygon polygon = above_horizon(part);
+  const PolygonView polygon = above_horizon(part);
   if (polygon.empty()) return;
   const viewfactor::SeenFactor there = look(polygon, blockers);
   if (there.visible > 0) take(there, casters(blockers));

@@ -21,6 +21,7 @@ class Gathering {
             const GatheringParams& params)
       : s_(solution), params_(params), sampler_(solution, tracer, sources) {
     casts_.resize(solution.blockers.all.size());
+    scratch_.keeps_shadows = true;
   }
 
   /// E from all faces. With `list` every source is looked at exactly, and what is seen of each is
@@ -38,7 +39,7 @@ class Gathering {
   void look_by_rays(size_t index, double whole, bool shines);
   double rays_for(double light) const;
   double at_stake(size_t index, double whole, bool shines) const;
-  Polygon above_horizon(PolygonView polygon) const;
+  PolygonView above_horizon(PolygonView polygon);
   viewfactor::SeenFactor look(PolygonView polygon, std::span<const uint32_t> blockers);
   template <class Take>
   void look_again(PolygonView part, std::span<const uint32_t> blockers, const Take& take);
@@ -59,6 +60,7 @@ class Gathering {
   double covered_ = 0;
   std::vector<Seen>* list_ = nullptr;
   std::vector<uint32_t> first_;
+  Polygon above_;  ///< what above_horizon() clipped last
   std::vector<uint8_t> casts_;
   viewfactor::VisibilityScratch scratch_;
 };
